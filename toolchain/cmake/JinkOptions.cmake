@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# One place for what every target is compiled with.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(JINK_CCACHE ccache)
+if(JINK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${JINK_CCACHE}")
+  set(CMAKE_C_COMPILER_LAUNCHER "${JINK_CCACHE}")
+endif()
+
+# No contraction of a*b+c into one rounding: host and targets must agree (docs/architecture.md).
+add_compile_options(-ffp-contract=off)
+if(JINK_SANITIZE)
+  add_compile_options(-fsanitize=${JINK_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${JINK_SANITIZE})
+endif()
+
+# jink_warnings: for everything of ours, never exported.
+add_library(jink_warnings INTERFACE)
+target_compile_options(jink_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow
+  $<$<BOOL:${JINK_WERROR}>:-Werror>)
+
+# jink_embedded: rules of code that is flashed (no exceptions, no RTTI, nothing thread-safe behind statics).
+add_library(jink_embedded INTERFACE)
+target_compile_options(jink_embedded INTERFACE
+  $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti -fno-threadsafe-statics>)
