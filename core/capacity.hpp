@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Every capacity of the core in one place. Each may be set on the compiler's command line; sizeof figures per target are
+// in the memory report. A full container gives way as its owner's header says, and counts it.
+
+#include <cstddef>
+
+#ifndef JINK_MAX_TRACKS
+#define JINK_MAX_TRACKS 32
+#endif
+#ifndef JINK_MAX_OBSTACLES
+#define JINK_MAX_OBSTACLES 96
+#endif
+#ifndef JINK_MAX_PATH_POINTS
+#define JINK_MAX_PATH_POINTS 64
+#endif
+#ifndef JINK_MAX_CANDIDATES
+#define JINK_MAX_CANDIDATES 512
+#endif
+#ifndef JINK_MAX_HULL_VERTICES
+#define JINK_MAX_HULL_VERTICES 64
+#endif
+
+namespace jink {
+
+/// Tracks kept at once. 32 covers an ADS-B receiver's nearest traffic plus own detections.
+/// When full, the track whose closest approach is farthest away gives way, and TrackTable counts it.
+inline constexpr std::size_t kMaxTracks = JINK_MAX_TRACKS;
+static_assert(kMaxTracks >= 1 && kMaxTracks <= 256);
+
+/// Obstacles known at once: a 72-sector range scan, and 24 surveyed ones.
+/// When full, the obstacle farthest from the vehicle gives way, and ObstacleTable counts it.
+inline constexpr std::size_t kMaxObstacles = JINK_MAX_OBSTACLES;
+static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
+
+/// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
+inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
+static_assert(kMaxPathPoints >= 8 && kMaxPathPoints <= 1024);
+
+/// Candidates of one geometric plan: l (n + 1) per family. A setting that asks for more is refused as a whole.
+inline constexpr std::size_t kMaxCandidates = JINK_MAX_CANDIDATES;
+static_assert(kMaxCandidates >= 8 && kMaxCandidates <= 4096);
+
+/// Vertices of one convex hull in a constant table; a larger one is refused.
+inline constexpr std::size_t kMaxHullVertices = JINK_MAX_HULL_VERTICES;
+static_assert(kMaxHullVertices >= 4 && kMaxHullVertices <= 1024);
+
+}  // namespace jink

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/time.hpp"
+#include "core/base/vec3.hpp"
+
+namespace jink::vehicle {
+
+/// Own state at `stamp`, world frame (ENU).
+struct VehicleState {
+    TimePoint stamp;
+    Vec3 position = Vec3::Zero();  ///< [m]
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    float yaw = 0.0F;              ///< [rad], counter-clockwise from east
+    float sigma_position = 0.0F;   ///< one standard deviation per axis [m]; 0 where the autopilot does not say
+    float sigma_velocity = 0.0F;   ///< [m/s]
+};
+
+enum class VehicleKind : std::uint8_t { multirotor, fixed_wing };
+
+/// What the vehicle can do. Defaults: the source's default vehicle (Pinheiro tab. 1.1), ours where it says nothing.
+struct VehicleLimits {
+    VehicleKind kind = VehicleKind::multirotor;
+    float cruise_speed = 5.0F;      ///< [m/s], > 0
+    float max_climb = 3.0F;         ///< rate of climb [m/s], > 0
+    float max_descent = 3.0F;       ///< rate of descent [m/s], > 0; ours, the source has one limit for both
+    float max_acceleration = 5.0F;  ///< horizontal, and the deceleration when braking [m/s2], > 0; ours
+    float max_vertical_acceleration = 3.0F;  ///< [m/s2], > 0; ours
+    float velocity_lag = 0.25F;     ///< time constant of the autopilot's velocity loop [s], >= 0; ours
+    Vec3 half_extents = Vec3::Ones();  ///< safety box, world-aligned [m]: body, position and tracking uncertainty
+};
+
+/// What costs depend on beyond the limits (Pinheiro tab. 1.1 and 4.5).
+struct Airframe {
+    float mass = 3.0F;              ///< [kg]
+    float drag_coefficient = 0.5F;  ///< [-]
+    float effective_area = 2.5F;    ///< [m2]
+    float blades = 2.0F;            ///< per rotor
+    float chord = 0.035F;           ///< of a blade [m]
+    float rotor_radius = 0.1905F;   ///< [m]
+    float rotors = 4.0F;
+    float air_density = 1.225F;     ///< [kg/m3]
+};
+
+/// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the climb or
+/// descent limit, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives zero. O(1).
+[[nodiscard]] Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept;
+
+/// Distance and time to stop from `speed` [m/s] with the horizontal deceleration limit and the loop's lag. O(1).
+[[nodiscard]] float stopping_distance(float speed, const VehicleLimits& limits) noexcept;
+[[nodiscard]] Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept;
+
+/// One step of the vehicle model used for prediction: velocity follows `command` with the loop's lag (first order), its change
+/// bounded by the acceleration limits, climb and descent bounded; position by the mean of old and new velocity. dt > 0. O(1).
+void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept;
+
+/// All fields finite and within the ranges said above.
+[[nodiscard]] bool is_valid(const VehicleLimits& limits) noexcept;
+[[nodiscard]] bool is_valid(const Airframe& airframe) noexcept;
+
+/// The source's second vehicle (Pinheiro tab. 4.5); rotor data as the default where the source gives none.
+[[nodiscard]] VehicleLimits uav2_limits() noexcept;
+[[nodiscard]] Airframe uav2_airframe() noexcept;
+
+}  // namespace jink::vehicle

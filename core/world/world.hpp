@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/base/time.hpp"
+#include "core/geometry/shape.hpp"
+#include "core/path/timed_path.hpp"
+#include "core/vehicle/vehicle.hpp"
+
+// What is known at one instant. Plain values; tables that fill them are in track_table.hpp and obstacle_table.hpp.
+
+namespace jink::world {
+
+using TrackId = std::uint32_t;
+using ObstacleId = std::uint32_t;
+
+enum class TrackSource : std::uint8_t { adsb, own_sensor, datalink };
+
+/// A moving threat: a sphere with a straight motion and what is not known of it.
+struct Track {
+    TrackId id = 0;
+    TimePoint stamp;               ///< of the newest measurement in it
+    Vec3 position = Vec3::Zero();  ///< [m]; in a Situation: at Situation::now
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    float radius = 0.0F;           ///< of the body [m]
+    float sigma_position = 0.0F;   ///< at `stamp`, one standard deviation per axis [m]
+    float sigma_velocity = 0.0F;   ///< [m/s]
+    float max_acceleration = 0.0F; ///< bound on what it may do unannounced [m/s2]
+    TrackSource source = TrackSource::adsb;
+    bool cooperative = false;
+};
+
+struct Obstacle {
+    ObstacleId id = 0;
+    geometry::Shape shape;
+};
+
+/// Bounds of the airspace, met like any obstacle by the own box. Heights above the world origin [m].
+struct Airspace {
+    bool has_floor = false;
+    bool has_ceiling = false;
+    bool has_keep_in = false;
+    float floor = 0.0F;
+    float ceiling = 0.0F;
+    Vec3 home = Vec3::Zero();
+    float keep_in_radius = 0.0F;  ///< horizontal, about home [m]
+};
+
+/// A straight leg to fly.
+struct Leg {
+    Vec3 start = Vec3::Zero();
+    Vec3 end = Vec3::Zero();
+    float speed = 5.0F;  ///< [m/s], > 0
+};
+
+/// Where the vehicle means to go.
+struct Reference {
+    bool valid = false;
+    Leg leg;
+};
+
+enum class MethodId : std::uint8_t { none, supervisor, geometric };
+enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
+
+/// What to fly. For `brake` and `velocity` the path is the predicted flight under the constant command `command`.
+struct Manoeuvre {
+    ManoeuvreKind kind = ManoeuvreKind::brake;
+    MethodId by = MethodId::none;
+    TimePoint start;               ///< path time 0
+    TimePoint valid_until;
+    Vec3 command = Vec3::Zero();   ///< `velocity`: [m/s]
+    Vec3 side = Vec3::Zero();      ///< unit vector from the leg towards the farthest point of the path; zero for none
+    float cost = 0.0F;             ///< [0, 1], as the method counts it
+    path::TimedPath path;
+};
+
+/// A view of everything a method may know; made once per tick, immutable.
+struct Situation {
+    TimePoint now;
+    const vehicle::VehicleState& own;
+    const vehicle::VehicleLimits& limits;
+    const vehicle::Airframe& airframe;
+    const Reference& reference;
+    std::span<const Track> tracks;
+    std::span<const Obstacle> obstacles;
+    const Airspace& airspace;
+    const Manoeuvre* flying = nullptr;  ///< what is being flown or was last chosen, for hysteresis
+    float k_sigma = 3.0F;               ///< standard deviations that count as possible
+};
+
+enum class PlanStatus : std::uint8_t {
+    found,             ///< `out` holds a checked manoeuvre
+    no_conflict,       ///< nothing to avoid
+    too_close,         ///< nearer to the main threat than the method can plan for
+    none_available,    ///< every candidate touches something or cannot be flown
+    budget_spent,      ///< the work budget ran out before an answer that may be trusted
+    bad_input,         ///< no leg, or settings out of range
+};
+
+/// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma times its uncertainty (own position uncertainty
+/// included) grown from its stamp on, and half its acceleration bound times t squared. The only place where threats grow. O(1).
+[[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
+
+}  // namespace jink::world
