@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "core/base/static_vector.hpp"
+#include "core/capacity.hpp"
+#include "core/cost/cost.hpp"
+#include "core/path/timed_path.hpp"
+#include "core/world/separation.hpp"
+
+// Candidate curves around the main threat (geometric planner, section 2; Pinheiro 3.1 after Chen, Zhao & Yin 2020).
+
+namespace jink::geometric {
+
+enum class Family : std::uint8_t { simple, symmetric };
+
+enum class CandidateStatus : std::uint8_t {
+    available,       ///< clear, not the cheapest
+    chosen,
+    hits_static,     ///< touches a static threat or an obstacle
+    hits_moving,     ///< touches a moving threat
+    hits_airspace,   ///< leaves floor, ceiling or keep-in
+    not_flyable,     ///< asks for more acceleration than the vehicle has
+    not_evaluated,   ///< the work budget ran out before its turn
+};
+
+/// Right-handed frame of the manoeuvre: x along the leg, y horizontal, z = x cross y; columns of `axes`.
+struct PathFrame {
+    Vec3 origin = Vec3::Zero();
+    Mat3 axes = Mat3::Identity();
+};
+/// Frame at `origin` with x towards `direction` (length > 0); y = world z cross x, and world north for a vertical leg.
+[[nodiscard]] PathFrame make_path_frame(const Vec3& origin, const Vec3& direction) noexcept;
+
+/// One curve: family, plane and offset say everything but the scale D.
+struct CandidateShape {
+    Family family = Family::simple;
+    float plane = 0.0F;   ///< theta [rad], rotation about the leg
+    float offset = 0.0F;  ///< w [m], signed
+};
+
+/// Offset y [m] of the curve at abscissa s in [0, length_x] for a threat at distance D: w (3u^2 - 2u^3), mirrored for symmetric.
+[[nodiscard]] float curve_offset(const CandidateShape& shape, float distance, float s) noexcept;
+/// 1.5 D or 2 D.
+[[nodiscard]] float curve_length_x(Family family, float distance) noexcept;
+
+/// What became of one candidate.
+struct Candidate {
+    CandidateShape shape;
+    CandidateStatus status = CandidateStatus::not_evaluated;
+    float sin_alpha = 0.0F;          ///< sine of the angle between its plane and the ground, >= 0
+    float duration = 0.0F;           ///< [s]
+    world::ThreatRef hit;            ///< what it touches, where status says so
+    cost::Terms terms;               ///< valid when available or chosen
+    cost::NormalisedTerms normalised;
+    float total = 0.0F;
+};
+
+}  // namespace jink::geometric

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/base/work_budget.hpp"
+#include "core/world/world.hpp"
+
+namespace jink::world {
+
+enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in };
+
+/// What a separation is measured against: the kind and, for tracks and obstacles, the index in the Situation.
+struct ThreatRef {
+    ThreatKind kind = ThreatKind::none;
+    std::uint16_t index = 0;
+    friend constexpr bool operator==(const ThreatRef&, const ThreatRef&) noexcept = default;
+};
+
+/// Separations beyond this are not told apart [m].
+inline constexpr float kSeparationCap = 50.0F;
+
+struct Separation {
+    float margin = kSeparationCap;  ///< own box to the threat's grown surface [m]; below 0: contact
+    Seconds when = 0.0F;            ///< path time of it
+    ThreatRef against;
+};
+
+/// How a flight that starts inside a margin is judged: each threat's sphere (or clearance) is shrunk to just clear the start and
+/// grows back at `speed`, so that a flight which leaves the margin at least that fast, and does not come back, is clear.
+struct EscapeRule {
+    float slack = 0.05F;  ///< the shrunk surface clears the start by this much [m]
+    float speed = 0.5F;   ///< the surface grows back at this speed [m/s]
+};
+
+/// Least separation along a timed path, from path time 0 (= Situation::now + `offset`) to min(path end, `horizon`): exact and time-aware
+/// for tracks (relative motion per segment in closed form, the threat at the size it has at the segment's end, so never optimistic),
+/// swept and exact for obstacles (libccd under `budget`, a budget that runs out counts as contact), airspace bounds by their planes.
+///
+/// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface.
+/// Cost in budget: one unit per track and segment after culling, support calls for obstacles. O(points * (tracks + obstacles)).
+[[nodiscard]] Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
+                                          WorkBudget& budget, const EscapeRule& escape = {}) noexcept;
+
+/// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now. `position`: own box centre.
+[[nodiscard]] Separation separation_at(const Situation& situation, const Vec3& position, Seconds t, WorkBudget& budget) noexcept;
+
+}  // namespace jink::world
