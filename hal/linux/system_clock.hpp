@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "hal/clock.hpp"
+
+namespace jink::hal {
+
+/// CLOCK_MONOTONIC: not set by anyone, slewed by NTP by at most 500 ppm, stands still while the machine sleeps.
+class SystemClock final : public Clock {
+public:
+    [[nodiscard]] std::int64_t now_us() noexcept override;
+};
+
+}  // namespace jink::hal
