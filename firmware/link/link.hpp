@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+
+#include "firmware/link/messages.hpp"
+
+namespace jink::link {
+
+/// Health as told to the autopilot and ground station (MAV_STATE of the HEARTBEAT).
+enum class SystemState : std::uint8_t { boot = 1, standby = 3, active = 4, critical = 5, emergency = 6 };
+
+enum class Severity : std::uint8_t { critical = 2, error = 3, warning = 4, notice = 5, info = 6 };
+
+/// COLLISION.action / threat_level.
+enum class CollisionAction : std::uint8_t { none = 0, report = 1, ascend_or_descend = 2, move_horizontally = 3, move_perpendicular = 4, hover = 6 };
+enum class ThreatLevel : std::uint8_t { none = 0, low = 1, high = 2 };
+
+struct CollisionWarning {
+    std::uint32_t id = 0;
+    Seconds time_to_closest = 0.0F;
+    float vertical_miss = 0.0F;    ///< [m]
+    float horizontal_miss = 0.0F;  ///< [m]
+    CollisionAction action = CollisionAction::none;
+    ThreatLevel level = ThreatLevel::none;
+};
+
+/// What happened on the link since start; every refusal has its own counter.
+struct LinkDiagnostics {
+    std::uint32_t frames_in = 0;
+    std::uint32_t frames_out = 0;
+    std::uint32_t frames_refused = 0;    ///< by the parser, all causes together
+    std::uint32_t frames_ignored = 0;    ///< understood, but not for us or not of interest
+    std::uint32_t not_finite = 0;        ///< reports with NaN or infinity
+    std::uint32_t out_of_range = 0;      ///< absurd values, zero increments, unknown frames
+    std::uint32_t stale_stamp = 0;       ///< stamps too old or in the future
+    std::uint32_t no_origin = 0;         ///< traffic that could not be placed yet
+    std::uint32_t inbox_full = 0;        ///< reports dropped because the inbox was full
+    std::uint32_t clock_relocks = 0;     ///< jumps of the autopilot's clock followed
+    std::uint32_t outbox_full = 0;       ///< frames not sent because the transmit buffer was full
+};
+
+/// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
+///
+/// Nothing here blocks or allocates. Sending is queued in a bounded transmit buffer; a message that finds no room is dropped
+/// whole and counted.
+class Link {
+public:
+    /// Takes bytes that arrived, at time `now`; fills the inbox. O(bytes).
+    virtual void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept = 0;
+    /// Periodic work of the link itself: time synchronisation requests, fetching the mission. Call every tick.
+    virtual void service(TimePoint now) noexcept = 0;
+
+    /// Bytes waiting to go out (contiguous part), and taking `n` of them off once the port has accepted them.
+    [[nodiscard]] virtual std::span<const std::byte> pending() const noexcept = 0;
+    virtual void consume(std::size_t n) noexcept = 0;
+    /// Drops everything queued: on a lost port nothing stale may go out later.
+    virtual void discard_pending() noexcept = 0;
+
+    virtual void send_heartbeat(SystemState state) noexcept = 0;
+    /// Velocity set-point [m/s, ENU] for the autopilot's external mode.
+    virtual void send_velocity(const Vec3& velocity, TimePoint now) noexcept = 0;
+    virtual void send_collision(const CollisionWarning& warning) noexcept = 0;
+    /// At most 50 characters are sent.
+    virtual void send_text(Severity severity, std::string_view text) noexcept = 0;
+    virtual void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept = 0;
+    virtual void acknowledge(const CommandRequest& request, CommandResult result) noexcept = 0;
+    /// Asks the autopilot for its external mode (GUIDED, OFFBOARD).
+    virtual void request_external_mode() noexcept = 0;
+    /// Asks for a mode by its wire number: giving the former mode back.
+    virtual void request_mode(std::uint32_t custom_mode) noexcept = 0;
+    /// Asks for the stack's holding mode (BRAKE/LOITER, AUTO.LOITER).
+    virtual void request_hold_mode() noexcept = 0;
+
+    [[nodiscard]] virtual const LinkDiagnostics& diagnostics() const noexcept = 0;
+
+protected:
+    ~Link() = default;
+};
+
+}  // namespace jink::link

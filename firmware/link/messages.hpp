@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/static_vector.hpp"
+#include "core/base/time.hpp"
+#include "core/base/vec3.hpp"
+#include "core/world/world.hpp"
+
+// What a link tells the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's clock.
+// Every number in here is finite; reports with numbers that are not were refused and counted by the link.
+
+namespace jink::link {
+
+/// Autopilot stack behind the link; decides how modes are requested.
+enum class AutopilotStack : std::uint8_t { unknown, ardupilot, px4 };
+
+/// What the autopilot is doing, as far as taking over is concerned.
+enum class FlightMode : std::uint8_t {
+    unknown,
+    mission,   ///< flies a mission by itself (AUTO): the mode that may be taken over
+    external,  ///< follows set-points of a companion (GUIDED, OFFBOARD)
+    hold,      ///< LOITER, BRAKE, AUTO.LOITER
+    going_home,  ///< RTL and the like
+    manual,    ///< a pilot steers
+    other,
+};
+
+/// One sighting of the autopilot's HEARTBEAT, with the landed state as last heard.
+struct AutopilotReport {
+    TimePoint stamp;
+    AutopilotStack stack = AutopilotStack::unknown;
+    FlightMode mode = FlightMode::unknown;
+    std::uint32_t custom_mode = 0;  ///< as on the wire, to be given back
+    bool armed = false;
+    bool landed = false;
+    bool fixed_wing = false;
+    bool rebooted = false;          ///< its boot clock or sequence started again since the last report
+};
+
+/// Own state as the autopilot estimates it. Fields not known keep their last value.
+struct OwnStateReport {
+    vehicle::VehicleState state;
+    bool estimator_reset = false;  ///< position jumped by a reset of the estimator
+};
+
+/// A sighting of another aircraft.
+struct TrackReport {
+    world::TrackId id = 0;
+    TimePoint stamp;               ///< of validity: arrival less the time since last communication
+    Vec3 position = Vec3::Zero();
+    Vec3 velocity = Vec3::Zero();
+    bool has_velocity = false;
+    float radius = 0.0F;           ///< [m], 0: not said
+    float sigma_position = 0.0F;   ///< [m], 0: not said
+    float sigma_velocity = 0.0F;
+    world::TrackSource source = world::TrackSource::adsb;
+};
+
+inline constexpr std::size_t kMaxScanSectors = 72;
+
+/// Horizontal range scan. Sector i looks at yaw_first + i * increment (world frame, counter-clockwise), width |increment|.
+struct RangeScan {
+    TimePoint stamp;
+    float yaw_first = 0.0F;   ///< [rad]
+    float increment = 0.0F;   ///< [rad], != 0; negative: clockwise
+    float min_range = 0.0F;   ///< [m]
+    float max_range = 0.0F;   ///< [m]
+    std::uint8_t sensor = 0;
+    StaticVector<float, kMaxScanSectors> ranges;  ///< [m]; kNothing: seen to be clear; kUnknown: not known
+    static constexpr float kNothing = 1e9F;
+    static constexpr float kUnknown = -1.0F;
+};
+
+/// Single range reading along a direction in the world frame.
+struct RangeReading {
+    TimePoint stamp;
+    Vec3 direction = Vec3::UnitX();  ///< unit vector, world frame
+    float range = 0.0F;              ///< [m]; RangeScan::kNothing beyond the sensor's reach
+    float max_range = 0.0F;
+    float half_angle = 0.0F;         ///< of the beam [rad]
+    std::uint8_t sensor = 0;
+};
+
+struct LegReport {
+    world::Leg leg;                  ///< speed 0: not said
+};
+
+inline constexpr std::size_t kParamNameLength = 16;
+using ParamName = std::array<char, kParamNameLength>;  ///< padded with NUL, no terminator when full
+
+enum class ParamRequestKind : std::uint8_t { read_by_name, read_by_index, list, set };
+struct ParamRequest {
+    ParamRequestKind kind = ParamRequestKind::list;
+    ParamName name{};
+    std::int16_t index = -1;
+    float value = 0.0F;
+    bool value_finite = true;
+};
+
+struct CommandRequest {
+    std::uint16_t command = 0;
+    std::array<float, 7> params{};   ///< NaN allowed: "not said"
+    std::uint8_t from_system = 0;
+    std::uint8_t from_component = 0;
+};
+
+enum class CommandResult : std::uint8_t { accepted = 0, temporarily_rejected = 1, denied = 2, unsupported = 3, failed = 4 };
+
+/// The autopilot's answer to our request of a mode.
+struct ModeAnswer {
+    bool accepted = false;
+    std::uint8_t result = 0;  ///< as on the wire
+};
+
+/// Everything heard since the last tick. Filled by the link, emptied by the application. About 5 KiB.
+struct Inbox {
+    bool has_own_state = false;
+    OwnStateReport own_state;
+    bool has_autopilot = false;
+    AutopilotReport autopilot;
+    bool has_leg = false;
+    LegReport leg;
+    bool has_home = false;
+    Vec3 home = Vec3::Zero();
+    bool has_scan = false;
+    RangeScan scan;
+    StaticVector<TrackReport, 2 * kMaxTracks> tracks;
+    StaticVector<RangeReading, 16> readings;
+    StaticVector<ParamRequest, 16> params;
+    StaticVector<CommandRequest, 8> commands;
+    StaticVector<ModeAnswer, 4> mode_answers;
+
+    void clear() noexcept
+    {
+        has_own_state = has_autopilot = has_leg = has_home = has_scan = false;
+        own_state.estimator_reset = false;
+        tracks.clear();
+        readings.clear();
+        params.clear();
+        commands.clear();
+        mode_answers.clear();
+    }
+};
+
+}  // namespace jink::link
