@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/world/conflict.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometry/convex.hpp"
+#include "core/geometry/sweep.hpp"
+#include "core/world/obstacle_distance.hpp"
+
+namespace jink::world {
+namespace {
+
+using geometry::Motion;
+
+/// Pieces in which a growing threat is compared with its size at the piece's end [s].
+constexpr Seconds kPiece = 0.5F;
+/// Cross-track error up to which the vehicle counts as being on the leg [m].
+constexpr float kOnLeg = 0.25F;
+/// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro tab. 4.1).
+constexpr float kLargestRadius = 3.0F;
+
+/// The way in time: flown until its end, then hovering there.
+struct Phase {
+    Motion own;      ///< position at `start`
+    Seconds start;
+    Seconds end;
+};
+
+std::array<Phase, 2> phases_of(const Way& way, Seconds lookahead) noexcept
+{
+    const Seconds arrival = way.speed > 0.0F ? std::min(way.length / way.speed, lookahead) : 0.0F;
+    const Vec3 velocity = way.direction * way.speed;
+    const Vec3 end = way.origin + velocity * arrival;
+    return {Phase{{way.origin, velocity}, 0.0F, arrival}, Phase{{end, Vec3::Zero()}, arrival, lookahead}};
+}
+
+Vec3 way_position(const Way& way, Seconds t) noexcept
+{
+    return way.origin + way.direction * std::min(way.speed * std::max(t, 0.0F), way.length);
+}
+
+/// Closest approach of the two centres over both phases.
+Seconds closest_time(const std::array<Phase, 2>& phases, const Track& track) noexcept
+{
+    Seconds best_time = 0.0F;
+    float best = (track.position - phases[0].own.position).squaredNorm();
+    for (const Phase& phase : phases) {
+        const Vec3 gap = track.position + track.velocity * phase.start - phase.own.position;
+        const Vec3 closing = track.velocity - phase.own.velocity;
+        const float speed2 = closing.squaredNorm();
+        const Seconds t = speed2 > 1e-9F ? std::clamp(-gap.dot(closing) / speed2, 0.0F, phase.end - phase.start) : 0.0F;
+        const float distance = (gap + closing * t).squaredNorm();
+        if (distance < best) {
+            best = distance;
+            best_time = phase.start + t;
+        }
+    }
+    return best_time;
+}
+
+/// First loss of separation within one phase; negative when there is none.
+Seconds loss_within(const Situation& situation, const Phase& phase, const Track& track) noexcept
+{
+    const Vec3& half = situation.limits.half_extents;
+    const Seconds span = phase.end - phase.start;
+    const Motion threat{track.position + track.velocity * phase.start, track.velocity};
+    if (span <= 0.0F || !geometry::contact_interval(half, phase.own, threat, threat_radius(situation, track, phase.end), span)) {
+        return -1.0F;
+    }
+    const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
+    const Seconds length = grows ? kPiece : span;
+    for (Seconds t = 0.0F; t < span; t += length) {
+        const Seconds piece = std::min(length, span - t);
+        const Motion own{phase.own.position + phase.own.velocity * t, phase.own.velocity};
+        const Motion other{threat.position + threat.velocity * t, threat.velocity};
+        const float radius = threat_radius(situation, track, phase.start + t + piece);
+        if (const auto touch = geometry::contact_interval(half, own, other, radius, piece)) {
+            return phase.start + t + touch->first;
+        }
+    }
+    return -1.0F;
+}
+
+bool sphere_like_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, const Vec3& half, float radius,
+                          Seconds lookahead, Conflict& out) noexcept
+{
+    const Phase phase = phases_of(way, lookahead)[0];
+    const Motion still{shape.centre, Vec3::Zero()};
+    const float grown = radius + situation.k_sigma * situation.own.sigma_position;
+    if (phase.end <= 0.0F) {
+        return false;
+    }
+    const auto touch = geometry::contact_interval(half, phase.own, still, grown, phase.end);
+    if (!touch) {
+        return false;
+    }
+    const geometry::Approach near = geometry::least_distance(half, phase.own, still, phase.end);
+    out.time_to_loss = touch->first;
+    out.margin = near.distance - grown;
+    out.radius_at_closest = grown;
+    return true;
+}
+
+bool general_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, Seconds lookahead,
+                      WorkBudget& budget, Conflict& out) noexcept
+{
+    const Vec3& half = situation.limits.half_extents;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const Vec3 end = way_position(way, lookahead);
+    if (geometry::swept_box_contact(half, way.origin, end, shape, extra, budget) == geometry::Contact::clear) {
+        return false;
+    }
+    float clear = 0.0F;
+    float touching = 1.0F;
+    for (int i = 0; i < 8; ++i) {
+        const float middle = 0.5F * (clear + touching);
+        const bool is_clear = geometry::swept_box_contact(half, way.origin, way.origin + (end - way.origin) * middle, shape,
+                                                          extra, budget) == geometry::Contact::clear;
+        (is_clear ? clear : touching) = middle;
+    }
+    const float length = (end - way.origin).norm();
+    out.time_to_loss = way.speed > 0.0F ? clear * length / way.speed : 0.0F;
+    out.margin = obstacle_margin(half, way.origin, end, shape, budget) - extra;
+    out.radius_at_closest = std::min(geometry::bounding_radius(shape), kLargestRadius) + extra;
+    return true;
+}
+
+bool obstacle_conflict(const Situation& situation, const Way& way, std::size_t index, Seconds lookahead, WorkBudget& budget,
+                       Conflict& out) noexcept
+{
+    const geometry::Shape& shape = situation.obstacles[index].shape;
+    Vec3 half;
+    float radius = 0.0F;
+    const bool found = as_sphere(shape, situation.limits.half_extents, half, radius)
+                           ? sphere_like_conflict(situation, way, shape, half, radius, lookahead, out)
+                           : general_conflict(situation, way, shape, lookahead, budget, out);
+    if (!found) {
+        return false;
+    }
+    const float along = std::clamp((shape.centre - way.origin).dot(way.direction), 0.0F, way.length);
+    out.threat = {ThreatKind::obstacle, static_cast<std::uint16_t>(index)};
+    out.time_to_closest = way.speed > 0.0F ? std::max(along / way.speed, out.time_to_loss) : 0.0F;
+    out.own_at_closest = way_position(way, out.time_to_closest);
+    out.threat_at_closest = shape.centre;
+    out.miss_distance = (shape.centre - out.own_at_closest).norm();
+    // Already inside the margin and flying off: nothing ahead to avoid.
+    return out.time_to_loss > 0.0F || along > 0.0F;
+}
+
+bool comes_first(const Conflict& a, const Conflict& b) noexcept
+{
+    if (a.time_to_loss != b.time_to_loss) {
+        return a.time_to_loss < b.time_to_loss;
+    }
+    return a.margin < b.margin;
+}
+
+}  // namespace
+
+Way way_of(const Situation& situation) noexcept
+{
+    const Leg& leg = situation.reference.leg;
+    const Vec3& own = situation.own.position;
+    const Vec3 span = leg.end - leg.start;
+    const float length = span.norm();
+    const Vec3 forward = length > 1e-3F ? Vec3(span / length) : Vec3::UnitX();
+    const float along = std::clamp((own - leg.start).dot(forward), 0.0F, length);
+    const float off = (own - (leg.start + forward * along)).norm();
+
+    Way way;
+    way.origin = own;
+    const Vec3 aim = off <= kOnLeg ? leg.end : Vec3(leg.start + forward * std::min(along + kRejoinLookahead, length));
+    const Vec3 to_aim = aim - own;
+    const float distance = to_aim.norm();
+    way.direction = distance > 1e-3F ? Vec3(to_aim / distance) : forward;
+    way.length = distance > 1e-3F ? distance + (leg.end - aim).norm() : 0.0F;
+    way.speed = vehicle::clamped_velocity(way.direction, leg.speed, situation.limits).norm();
+    return way;
+}
+
+bool predict_conflict(const Situation& situation, const Way& way, std::size_t track_index, Seconds lookahead,
+                      Conflict& out) noexcept
+{
+    const Track& track = situation.tracks[track_index];
+    const std::array<Phase, 2> phases = phases_of(way, lookahead);
+    Seconds loss = loss_within(situation, phases[0], track);
+    if (loss < 0.0F) {
+        loss = loss_within(situation, phases[1], track);
+    }
+    if (loss < 0.0F) {
+        return false;
+    }
+    const Seconds closest = closest_time(phases, track);
+    // Inside the margin already and drawing apart: nothing on the way can mend it.
+    if (loss <= 0.0F && closest <= 0.0F) {
+        return false;
+    }
+    out.threat = {ThreatKind::track, static_cast<std::uint16_t>(track_index)};
+    out.time_to_loss = loss;
+    out.time_to_closest = std::max(closest, loss);
+    out.own_at_closest = way_position(way, out.time_to_closest);
+    out.threat_at_closest = track.position + track.velocity * out.time_to_closest;
+    out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
+    out.radius_at_closest = threat_radius(situation, track, out.time_to_closest);
+    out.margin = geometry::least_distance(situation.limits.half_extents, {out.own_at_closest, Vec3::Zero()},
+                                          {out.threat_at_closest, Vec3::Zero()}, 0.0F)
+                     .distance -
+                 out.radius_at_closest;
+    return true;
+}
+
+bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget, Conflict& out) noexcept
+{
+    bool found = false;
+    const auto consider = [&](const Conflict& conflict) {
+        if (!found || comes_first(conflict, out)) {
+            out = conflict;
+            found = true;
+        }
+    };
+    Conflict conflict;
+    for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
+        if (predict_conflict(situation, way, i, lookahead, conflict)) {
+            consider(conflict);
+        }
+    }
+    for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
+        if (obstacle_conflict(situation, way, i, lookahead, budget, conflict)) {
+            consider(conflict);
+        }
+    }
+    return found;
+}
+
+}  // namespace jink::world
