@@ -37,8 +37,9 @@ struct PathSample {
 [[nodiscard]] float arc_length(const TimedPath& path) noexcept;
 
 /// Fills `out` with the points `positions` (2..kMaxPathPoints, first at t = 0): velocities and times by the source's rule
-/// (`clamped_velocity` at `speed` along each segment; Pinheiro 3.3). Segments shorter than 1e-6 m are dropped.
-/// False (out is then empty) when fewer than two points remain or there are too many. O(points).
+/// (`clamped_velocity` at `speed` > 0 along each segment; Pinheiro 3.3). A point nearer than 1e-6 m to the last one kept, or so
+/// near that its time would not differ in float, is dropped. False (out is then empty) when fewer than two points remain or
+/// there are too many. O(points).
 [[nodiscard]] bool make_timed_path(std::span<const Vec3> positions, float speed, const vehicle::VehicleLimits& limits,
                                    TimedPath& out) noexcept;
 

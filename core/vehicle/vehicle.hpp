@@ -29,7 +29,7 @@ struct VehicleLimits {
     float max_acceleration = 5.0F;  ///< horizontal, and the deceleration when braking [m/s2], > 0; ours
     float max_vertical_acceleration = 3.0F;  ///< [m/s2], > 0; ours
     float velocity_lag = 0.25F;     ///< time constant of the autopilot's velocity loop [s], >= 0; ours
-    Vec3 half_extents = Vec3::Ones();  ///< safety box, world-aligned [m]: body, position and tracking uncertainty
+    Vec3 half_extents = Vec3::Ones();  ///< safety box, world-aligned [m], > 0: body, position and tracking uncertainty
 };
 
 /// What costs depend on beyond the limits (Pinheiro tab. 1.1 and 4.5).
@@ -48,12 +48,20 @@ struct Airframe {
 /// descent limit, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives zero. O(1).
 [[nodiscard]] Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept;
 
-/// Distance and time to stop from `speed` [m/s] with the horizontal deceleration limit and the loop's lag. O(1).
+/// Slower than this counts as standing [m/s]: a first-order loop never stops entirely.
+inline constexpr float kStandstillSpeed = 0.05F;
+
+/// Distance to stop from the horizontal speed `speed` [m/s] >= 0 on the command zero, as `advance` flies it: full
+/// deceleration, then the loop's lag. The whole way, to speed 0. O(1).
 [[nodiscard]] float stopping_distance(float speed, const VehicleLimits& limits) noexcept;
+/// Time until the vehicle is slower than kStandstillSpeed on the command zero. O(1).
 [[nodiscard]] Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept;
 
 /// One step of the vehicle model used for prediction: velocity follows `command` with the loop's lag (first order), its change
-/// bounded by the acceleration limits, climb and descent bounded; position by the mean of old and new velocity. dt > 0. O(1).
+/// bounded by the acceleration limits (horizontally as a vector, vertically by itself), the command's climb and descent bounded.
+///
+/// Integrated in closed form, position too: a step of 2 dt equals two steps of dt, whatever dt > 0 (float rounding). The stamp
+/// moves on by dt. O(1), two exponentials.
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept;
 
 /// All fields finite and within the ranges said above.

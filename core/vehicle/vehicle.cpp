@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/vehicle/vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::vehicle {
+namespace {
+
+bool positive(float value) noexcept
+{
+    return std::isfinite(value) && value > 0.0F;
+}
+
+bool not_negative(float value) noexcept
+{
+    return std::isfinite(value) && value >= 0.0F;
+}
+
+/// Size of a velocity error after dt, and its integral over dt.
+struct Decay {
+    float error = 0.0F;     ///< [m/s]
+    float integral = 0.0F;  ///< [m]
+};
+
+/// An error that shrinks at rate min(error / lag, limit): a straight ramp down to limit * lag, an exponential from there.
+/// Its direction stays, so one number says it all.
+Decay decay(float error, float lag, float limit, Seconds dt) noexcept
+{
+    const float knee = limit * lag;
+    float integral = 0.0F;
+    if (error > knee) {
+        const Seconds ramp = (error - knee) / limit;
+        if (ramp >= dt) {
+            const float left = error - limit * dt;
+            return {left, 0.5F * (error + left) * dt};
+        }
+        integral = 0.5F * (error + knee) * ramp;
+        error = knee;
+        dt -= ramp;
+    }
+    if (lag <= 0.0F) {
+        return {0.0F, integral};
+    }
+    const float rest = std::expm1(-dt / lag);  // exp - 1 in [-1, 0]
+    return {error + error * rest, integral - error * lag * rest};
+}
+
+}  // namespace
+
+Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept
+{
+    const float largest = direction.cwiseAbs().maxCoeff();
+    if (!(largest > 0.0F)) {
+        return Vec3::Zero();
+    }
+    const Vec3 scaled = direction / largest;  // so that no square over- or underflows
+    Vec3 velocity = scaled * (speed / scaled.norm());
+    const float bound = velocity.z() > 0.0F ? limits.max_climb : limits.max_descent;
+    const float vertical = std::abs(velocity.z());
+    if (vertical > bound) {
+        velocity *= bound / vertical;
+        velocity.z() = std::copysign(bound, velocity.z());
+    }
+    return velocity;
+}
+
+float stopping_distance(float speed, const VehicleLimits& limits) noexcept
+{
+    const float knee = limits.max_acceleration * limits.velocity_lag;
+    if (speed <= knee) {
+        return speed * limits.velocity_lag;
+    }
+    return 0.5F * (speed + knee) * (speed - knee) / limits.max_acceleration + knee * limits.velocity_lag;
+}
+
+Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept
+{
+    const float knee = std::max(limits.max_acceleration * limits.velocity_lag, kStandstillSpeed);
+    const Seconds ramp = std::max(speed - knee, 0.0F) / limits.max_acceleration;
+    const float rest = std::min(speed, knee);
+    return rest > kStandstillSpeed ? ramp + limits.velocity_lag * std::log(rest / kStandstillSpeed) : ramp;
+}
+
+void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept
+{
+    Vec3 goal = command;
+    goal.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
+    const Vec3 error = state.velocity - goal;
+
+    const float horizontal = std::sqrt(error.x() * error.x() + error.y() * error.y());
+    const Decay level = decay(horizontal, limits.velocity_lag, limits.max_acceleration, dt);
+    const Decay vertical = decay(std::abs(error.z()), limits.velocity_lag, limits.max_vertical_acceleration, dt);
+    const float per_metre = horizontal > 0.0F ? 1.0F / horizontal : 0.0F;
+    const Vec3 direction(error.x() * per_metre, error.y() * per_metre, std::copysign(1.0F, error.z()));
+
+    state.position += goal * dt + direction.cwiseProduct(Vec3(level.integral, level.integral, vertical.integral));
+    state.velocity = goal + direction.cwiseProduct(Vec3(level.error, level.error, vertical.error));
+    state.stamp = state.stamp + dt;
+}
+
+bool is_valid(const VehicleLimits& limits) noexcept
+{
+    return positive(limits.cruise_speed) && positive(limits.max_climb) && positive(limits.max_descent) &&
+           positive(limits.max_acceleration) && positive(limits.max_vertical_acceleration) &&
+           not_negative(limits.velocity_lag) && is_finite(limits.half_extents) && limits.half_extents.minCoeff() > 0.0F;
+}
+
+bool is_valid(const Airframe& airframe) noexcept
+{
+    return positive(airframe.mass) && not_negative(airframe.drag_coefficient) && not_negative(airframe.effective_area) &&
+           positive(airframe.blades) && positive(airframe.chord) && positive(airframe.rotor_radius) &&
+           positive(airframe.rotors) && positive(airframe.air_density);
+}
+
+VehicleLimits uav2_limits() noexcept
+{
+    VehicleLimits limits;
+    limits.cruise_speed = 15.0F;
+    limits.max_climb = 8.0F;
+    limits.max_descent = 8.0F;
+    return limits;
+}
+
+Airframe uav2_airframe() noexcept
+{
+    Airframe airframe;
+    airframe.mass = 10.0F;
+    airframe.drag_coefficient = 0.8F;
+    airframe.effective_area = 10.0F;
+    return airframe;
+}
+
+}  // namespace jink::vehicle

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/path/follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/random.hpp"
+
+namespace jink::path {
+namespace {
+
+/// A curve of the geometric planner's kind: out by `offset` at `distance`, back at 1.5 times (simple) or twice that (symmetric).
+std::vector<Vec3> bump(float distance, float offset, float heading, float tilt, bool simple, std::size_t points)
+{
+    std::vector<Vec3> positions;
+    const float end = simple ? 1.5F : 2.0F;
+    for (std::size_t i = 0; i < points; ++i) {
+        const float s = end * static_cast<float>(i) / static_cast<float>(points - 1);
+        const float u = simple || s <= 1.0F ? s : 2.0F - s;
+        const float y = offset * u * u * (3.0F - 2.0F * u);
+        const float level = y * std::cos(tilt);
+        const float x = s * distance;
+        positions.emplace_back(x * std::cos(heading) - level * std::sin(heading),
+                               x * std::sin(heading) + level * std::cos(heading), y * std::sin(tilt));
+    }
+    return positions;
+}
+
+/// Greatest acceleration that the path asks for, as a share of the vehicle's limits.
+float demand(const TimedPath& path, const vehicle::VehicleLimits& limits)
+{
+    float most = 0.0F;
+    for (std::size_t i = 1; i + 1 < path.points.size(); ++i) {
+        const Vec3 change = path.points[i].velocity - path.points[i - 1].velocity;
+        const Seconds time = 0.5F * (path.points[i + 1].time - path.points[i - 1].time);
+        most = std::max({most, change.head<2>().norm() / (time * limits.max_acceleration),
+                         std::abs(change.z()) / (time * limits.max_vertical_acceleration)});
+    }
+    return most;
+}
+
+TEST(FollowerLaws, StaysNearTheTimedPointOfAFeasibleCurve)
+{
+    float worst_modest = 0.0F;
+    float worst_full = 0.0F;
+    int flown = 0;
+    for (std::uint64_t seed = 1; seed <= 40000; ++seed) {
+        Random random(seed);
+        vehicle::VehicleLimits limits;
+        limits.velocity_lag = random.uniform(0.05F, 0.4F);
+        const float distance = random.uniform(4.0F, 40.0F);
+        const float offset = random.uniform(-1.3F, 1.3F) * distance;
+        const float heading = random.uniform(-kPi, kPi);
+        const float tilt = random.uniform(-kPi, kPi);
+        TimedPath path;
+        ASSERT_TRUE(make_timed_path(bump(distance, offset, heading, tilt, random.uniform() < 0.5F, 25), limits.cruise_speed,
+                                    limits, path));
+        const float demanded = demand(path, limits);
+        if (demanded > 1.0F) {
+            continue;
+        }
+        ++flown;
+        vehicle::VehicleState state;
+        state.position = path.points.front().position;
+        state.velocity = limits.cruise_speed * Vec3(std::cos(heading), std::sin(heading), 0.0F);
+        TimedPath flight;
+        const float dt = std::max(0.1F, path.duration() / static_cast<float>(kMaxPathPoints - 1));
+        predict_flight(state, path, 0.0F, dt, limits, {}, flight);
+        ASSERT_NEAR(flight.duration(), path.duration(), 1e-3F) << "seed " << seed;
+        for (const PathPoint& point : flight.points) {
+            const float error = (point.position - sample(path, point.time).position).norm();
+            (demanded <= 0.5F ? worst_modest : worst_full) = std::max(demanded <= 0.5F ? worst_modest : worst_full, error);
+            ASSERT_LE(error, demanded <= 0.5F ? 0.25F : 0.45F) << "seed " << seed << " t " << point.time;
+        }
+    }
+    EXPECT_GT(flown, 10000);
+    std::printf("[ measured ] worst tracking error %.3f m up to half, %.3f m up to all of the acceleration limits, %d flights\n",
+                static_cast<double>(worst_modest), static_cast<double>(worst_full), flown);
+}
+
+TEST(FollowerLaws, APositionErrorDiesAway)
+{
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+        Random random(seed);
+        vehicle::VehicleLimits limits;
+        limits.velocity_lag = random.uniform(0.0F, 0.6F);
+        TimedPath path;
+        const std::vector<Vec3> positions{Vec3::Zero(), Vec3(100.0F, 0.0F, 0.0F)};
+        ASSERT_TRUE(make_timed_path(positions, 5.0F, limits, path));
+        vehicle::VehicleState state;
+        state.position = Vec3(random.uniform(-3.0F, 3.0F), random.uniform(-3.0F, 3.0F), random.uniform(-3.0F, 3.0F));
+        state.velocity = Vec3(random.uniform(0.0F, 6.0F), random.uniform(-3.0F, 3.0F), random.uniform(-2.0F, 2.0F));
+        TimedPath flight;
+        predict_flight(state, path, 0.0F, 0.4F, limits, {}, flight);
+        const PathPoint& end = flight.points.back();
+        ASSERT_LT((end.position - sample(path, end.time).position).norm(), 0.02F) << "seed " << seed;
+    }
+}
+
+TEST(SampleLaws, ContinuousAndOnThePath)
+{
+    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
+        Random random(seed);
+        std::vector<Vec3> positions;
+        for (std::uint64_t i = 0, n = 2 + random.below(kMaxPathPoints - 1); i < n; ++i) {
+            positions.emplace_back(random.uniform(-20.0F, 20.0F), random.uniform(-20.0F, 20.0F), random.uniform(-20.0F, 20.0F));
+        }
+        TimedPath path;
+        const vehicle::VehicleLimits limits;
+        ASSERT_TRUE(make_timed_path(positions, random.uniform(0.5F, 10.0F), limits, path));
+        for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+            const PathPoint& from = path.points[i];
+            const PathPoint& to = path.points[i + 1];
+            ASSERT_GT(to.time, from.time) << "seed " << seed;
+            const Vec3 reached = from.position + from.velocity * (to.time - from.time);
+            ASSERT_LT((reached - to.position).norm(), 2e-2F) << "seed " << seed;
+            ASSERT_LE(std::abs(from.velocity.z()), 3.0F) << "seed " << seed;
+            const Seconds t = random.uniform(from.time, to.time);
+            const PathSample at = sample(path, t);
+            const Vec3 expected = from.position + from.velocity * (t - from.time);
+            ASSERT_LT((at.position - expected).norm(), 2e-2F) << "seed " << seed;
+            ASSERT_EQ(at.velocity, from.velocity) << "seed " << seed;
+        }
+        ASSERT_EQ(sample(path, path.duration()).position, positions.back()) << "seed " << seed;
+    }
+}
+
+}  // namespace
+}  // namespace jink::path
