@@ -26,7 +26,7 @@ struct Way {
 };
 
 /// Off the leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer [m].
-inline constexpr float kRejoinLookahead = 25.0F;
+inline constexpr float kRejoinLookahead = 12.0F;
 
 /// The way for a situation with a valid reference. Within 1e-3 m of the leg's end: the leg's direction, length 0. O(1).
 [[nodiscard]] Way way_of(const Situation& situation) noexcept;

@@ -58,6 +58,7 @@ struct TrackReport {
     float sigma_position = 0.0F;   ///< [m], 0: not said
     float sigma_velocity = 0.0F;
     world::TrackSource source = world::TrackSource::adsb;
+    bool at_rest = false;          ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
 };
 
 inline constexpr std::size_t kMaxScanSectors = 72;

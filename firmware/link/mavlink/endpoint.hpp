@@ -20,6 +20,7 @@
 //   less LOCAL_POSITION_NED when both are younger than 0.2 s. Until known, ADSB_VEHICLE counts no_origin. Local plane:
 //   north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (longitude wrap at 180 deg handled).
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity 128 - verify);
+//   emitter_type 19, 20, 21 (point, cluster, line obstacle - verify): TrackReport::at_rest, velocity zero;
 //   stamp = now - tslc - latency (Options). Without valid coordinates or altitude: out_of_range.
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by yaw); increment_f over increment; zero increment refused; 65535 unknown; > max: nothing;
 //   0..max: range (a value below min_distance means "nearer than min": kept as min_distance). DISTANCE_SENSOR orientations 0-7, 24, 25.

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/guard.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace jink::avoid {
+namespace {
+
+using path::PathPoint;
+using path::TimedPath;
+
+/// A fallback that was chosen stays unless another is better by this much [m].
+constexpr float kFallbackHysteresis = 0.3F;
+/// Points kept free for the braking tail.
+constexpr std::size_t kTailPoints = 12;
+constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
+
+/// State at the end of a predicted flight.
+vehicle::VehicleState end_state(const vehicle::VehicleState& own, const TimedPath& flight) noexcept
+{
+    vehicle::VehicleState end = own;
+    end.position = flight.points.back().position;
+    end.velocity = flight.points.back().velocity;
+    return end;
+}
+
+void append(TimedPath& flight, const TimedPath& tail) noexcept
+{
+    if (flight.points.empty()) {
+        flight = tail;
+        return;
+    }
+    const Seconds offset = flight.duration();
+    flight.points.back().velocity = tail.points.front().velocity;
+    for (std::size_t i = 1; i < tail.points.size(); ++i) {
+        PathPoint p = tail.points[i];
+        p.time += offset;
+        if (!flight.points.try_push_back(p)) {
+            break;
+        }
+    }
+}
+
+/// Flight under a turn that never ends, by the vehicle model.
+void predict_turn(const world::Situation& s, float direction, const Settings& settings, TimedPath& out) noexcept
+{
+    vehicle::VehicleState state = s.own;
+    out.points.clear();
+    Seconds t = 0.0F;
+    out.points.unchecked_push_back({state.position, state.velocity, t});
+    const Seconds step = std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 1));
+    while (t < settings.fallback_horizon && !out.points.full()) {
+        const Vec3 from = state.position;
+        vehicle::advance(state, turn_command(state, s.limits, direction), s.limits, step);
+        out.points.back().velocity = (state.position - from) / step;
+        t += step;
+        out.points.unchecked_push_back({state.position, out.points.back().velocity, t});
+    }
+}
+
+std::array<Vec3, 14> directions(const Vec3& forward) noexcept
+{
+    Vec3 ahead(forward.x(), forward.y(), 0.0F);
+    const float length = ahead.norm();
+    ahead = length > 1e-3F ? Vec3(ahead / length) : Vec3::UnitX();
+    const Vec3 left(-ahead.y(), ahead.x(), 0.0F);
+    constexpr float k = 0.70710678F;
+    return {left, -left, k * (ahead + left), k * (ahead - left), k * (left - ahead), k * (-left - ahead), -ahead, ahead,
+            Vec3::UnitZ(), -Vec3::UnitZ(), k * (left + Vec3::UnitZ()), k * (Vec3::UnitZ() - left),
+            k * (left - Vec3::UnitZ()), k * (-left - Vec3::UnitZ())};
+}
+
+Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous, const Settings& settings,
+                             WorkBudget& budget) noexcept
+{
+    Fallback best{world::ManoeuvreKind::hold_turn, Vec3::Zero(), -world::kSeparationCap};
+    bool first = true;
+    TimedPath flight;
+    for (const float direction : {1.0F, -1.0F}) {
+        predict_turn(s, direction, settings, flight);
+        float margin = world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
+        const bool kept = previous != nullptr && previous->kind == world::ManoeuvreKind::hold_turn &&
+                          previous->command.z() * direction > 0.0F;
+        margin += kept ? kFallbackHysteresis : 0.0F;
+        if (first || margin > best.margin) {
+            // The sense of the turn travels in z: there is no vertical command in a hold turn.
+            best.command = Vec3(0.0F, 0.0F, direction);
+            best.margin = margin;
+            first = false;
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+bool is_valid(const Settings& s) noexcept
+{
+    const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
+    return within(s.lookahead, 1.0F, 60.0F) && within(s.prediction_step, 0.02F, 0.5F) && within(s.fallback_horizon, 1.0F, 20.0F) &&
+           within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) && within(s.clear_extra, 0.0F, 10.0F) &&
+           within(s.on_leg, 0.05F, 50.0F) && within(s.blocked_patience, 0.0F, 600.0F) &&
+           within(s.give_ground_speed, 0.0F, 5.0F) && within(s.give_ground_limit, 0.0F, 600.0F) && s.budget >= 1000 &&
+           within(s.gains.position_gain, 0.0F, 10.0F) && within(s.gains.max_correction, 0.0F, 10.0F) &&
+           within(s.escape.slack, 0.0F, 1.0F) && within(s.escape.speed, 0.0F, 10.0F);
+}
+
+world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre, const Settings& settings,
+                                  WorkBudget& budget) noexcept
+{
+    const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
+    const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
+    const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 2));
+    TimedPath flight;
+    path::predict_flight(s.own, manoeuvre.path, start, step, s.limits, settings.gains, flight);
+    while (flight.points.size() > kFlightPoints) {
+        flight.points.pop_back();
+    }
+    if (!flight.points.empty()) {
+        const vehicle::VehicleState end = end_state(s.own, flight);
+        const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
+        const Seconds span = vehicle::stopping_time(end.velocity.norm(), s.limits);
+        TimedPath tail;
+        path::predict_velocity_command(end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
+                                       std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)), s.limits, tail);
+        append(flight, tail);
+    }
+    return world::least_separation(s, flight, flight.duration(), budget, settings.escape);
+}
+
+float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings, WorkBudget& budget) noexcept
+{
+    TimedPath flight;
+    const Seconds step = std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 2));
+    path::predict_velocity_command(s.own, command, settings.fallback_horizon, step, s.limits, flight);
+    return world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
+}
+
+Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, float direction) noexcept
+{
+    Vec3 level(own.velocity.x(), own.velocity.y(), 0.0F);
+    const float speed = level.norm();
+    level = speed > 0.1F ? Vec3(level / speed) : Vec3(std::cos(own.yaw), std::sin(own.yaw), 0.0F);
+    // The command leads the velocity by as much as the lag needs for full lateral acceleration.
+    const float lead = std::min(limits.max_acceleration * std::max(limits.velocity_lag, 0.1F) / limits.cruise_speed, 0.7F);
+    const float c = std::cos(lead);
+    const float d = direction * std::sin(lead);
+    return limits.cruise_speed * Vec3(c * level.x() - d * level.y(), d * level.x() + c * level.y(), 0.0F);
+}
+
+Fallback choose_fallback(const world::Situation& s, const world::Way& way, const Fallback* previous, const Settings& settings,
+                         WorkBudget& budget) noexcept
+{
+    if (s.limits.kind == vehicle::VehicleKind::fixed_wing) {
+        return fixed_wing_fallback(s, previous, settings, budget);
+    }
+    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), command_margin(s, Vec3::Zero(), settings, budget)};
+    if (best.margin >= 0.0F) {
+        return best;
+    }
+    float kept_margin = -world::kSeparationCap;
+    if (previous != nullptr && previous->kind == world::ManoeuvreKind::velocity) {
+        kept_margin = command_margin(s, previous->command, settings, budget);
+        if (kept_margin >= 0.0F) {
+            return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
+        }
+    }
+    for (const Vec3& direction : directions(way.direction)) {
+        const Vec3 command = vehicle::clamped_velocity(direction, s.limits.cruise_speed, s.limits);
+        const float margin = command_margin(s, command, settings, budget);
+        if (margin > best.margin) {
+            best = {world::ManoeuvreKind::velocity, command, margin};
+        }
+    }
+    if (kept_margin + kFallbackHysteresis >= best.margin && kept_margin > -world::kSeparationCap) {
+        return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
+    }
+    return best;
+}
+
+}  // namespace jink::avoid

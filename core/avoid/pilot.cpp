@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/pilot.hpp"
+
+#include <algorithm>
+
+namespace jink::avoid {
+namespace {
+
+/// Below this speed the vehicle counts as standing [m/s].
+constexpr float kStanding = 0.3F;
+/// Sides further apart than this (cosine) are opposite ones.
+constexpr float kOppositeSide = -0.1F;
+
+float cross_track(const world::Situation& s) noexcept
+{
+    const world::Leg& leg = s.reference.leg;
+    const Vec3 span = leg.end - leg.start;
+    const float length2 = span.squaredNorm();
+    const float u = length2 > 0.0F ? std::clamp((s.own.position - leg.start).dot(span) / length2, 0.0F, 1.0F) : 0.0F;
+    return (s.own.position - (leg.start + span * u)).norm();
+}
+
+}  // namespace
+
+struct Pilot::Tick {
+    const world::Situation& s;
+    bool in_control;
+    const Ladder& ladder;
+    WorkBudget budget;
+    world::Way way;
+    Guidance out;
+    bool planned = false;
+    bool wide_clear = false;
+};
+
+bool Pilot::configure(const Settings& settings) noexcept
+{
+    if (!is_valid(settings)) {
+        return false;
+    }
+    settings_ = settings;
+    return true;
+}
+
+void Pilot::reset() noexcept
+{
+    state_ = State::watching;
+    had_control_ = has_flying_ = has_fallback_ = standing_ = was_clear_ = false;
+    ground_given_ = 0.0F;
+}
+
+bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept
+{
+    return time_to_loss <= vehicle::stopping_time(tick.s.own.velocity.norm(), tick.s.limits) + settings_.reserve;
+}
+
+bool Pilot::plan(Tick& tick) noexcept
+{
+    tick.planned = true;
+    ++diagnostics_.plans;
+    float margin = 0.0F;
+    tick.out.plan_status = tick.ladder.plan(tick.ladder.self, tick.s, settings_, tick.budget, diagnostics_, answer_, margin);
+    if (tick.out.plan_status != world::PlanStatus::found) {
+        return false;
+    }
+    ++diagnostics_.plans_found;
+    tick.out.margin = margin;
+    return true;
+}
+
+/// Makes the answer the manoeuvre that is flown (or offered, while not in control).
+void Pilot::take(Tick& tick) noexcept
+{
+    if (tick.in_control) {
+        if (has_flying_ && state_ == State::avoiding) {
+            ++diagnostics_.replans;
+            diagnostics_.flips += flying_.side.dot(answer_.side) < kOppositeSide ? 1U : 0U;
+        } else {
+            ++diagnostics_.manoeuvres;
+        }
+        state_ = State::avoiding;
+        tick.out.new_manoeuvre = true;
+    }
+    flying_ = answer_;
+    has_flying_ = true;
+    has_fallback_ = false;
+    tick.out.wants_control = true;
+    tick.out.kind = flying_.kind;
+    tick.out.velocity = path::follow(flying_.path, tick.s.now - flying_.start, tick.s.own.position, tick.s.limits, settings_.gains);
+}
+
+void Pilot::fall_back(Tick& tick) noexcept
+{
+    const Fallback chosen = choose_fallback(tick.s, tick.way, has_fallback_ ? &fallback_ : nullptr, settings_, tick.budget);
+    if (tick.in_control) {
+        diagnostics_.brakes += state_ != State::braking ? 1U : 0U;
+        const bool moves = chosen.kind == world::ManoeuvreKind::velocity;
+        const bool moved = has_fallback_ && fallback_.kind == world::ManoeuvreKind::velocity;
+        diagnostics_.escapes += moves && !moved ? 1U : 0U;
+        state_ = State::braking;
+    }
+    fallback_ = chosen;
+    has_fallback_ = true;
+    tick.out.wants_control = true;
+    tick.out.kind = chosen.kind;
+    tick.out.margin = chosen.margin;
+    tick.out.velocity = chosen.kind == world::ManoeuvreKind::hold_turn
+                            ? turn_command(tick.s.own, tick.s.limits, chosen.command.z())
+                            : chosen.command;
+}
+
+void Pilot::enter_rejoining() noexcept
+{
+    state_ = State::rejoining;
+    has_fallback_ = false;
+    standing_ = false;
+}
+
+void Pilot::follow_way(Tick& tick) noexcept
+{
+    tick.out.wants_control = true;
+    tick.out.kind = world::ManoeuvreKind::velocity;
+    tick.out.velocity = tick.way.length > 0.0F ? Vec3(tick.way.direction * tick.way.speed) : Vec3(Vec3::Zero());
+}
+
+/// How long the way has been clear, with something to spare.
+void Pilot::note_clearness(Tick& tick) noexcept
+{
+    if (!tick.out.has_conflict) {
+        vehicle::VehicleLimits wide = tick.s.limits;
+        wide.half_extents += Vec3::Constant(settings_.clear_extra);
+        const world::Situation wider{tick.s.now,       tick.s.own,       wide,           tick.s.airframe, tick.s.reference,
+                                     tick.s.tracks,    tick.s.obstacles, tick.s.airspace, tick.s.flying,   tick.s.k_sigma};
+        world::Conflict unused;
+        tick.wide_clear = !world::main_conflict(wider, tick.way, settings_.lookahead, tick.budget, unused);
+    }
+    if (tick.wide_clear && !was_clear_) {
+        clear_since_ = tick.s.now;
+    }
+    was_clear_ = tick.wide_clear;
+}
+
+bool Pilot::way_clear_for(const Tick& tick, Seconds span) const noexcept
+{
+    return was_clear_ && tick.s.now - clear_since_ >= span;
+}
+
+void Pilot::watch(Tick& tick) noexcept
+{
+    if (!tick.out.has_conflict) {
+        if (tick.in_control) {
+            enter_rejoining();
+            follow_way(tick);
+            return;
+        }
+        if (way_clear_for(tick, settings_.settle)) {
+            has_flying_ = false;
+        }
+        has_fallback_ = false;
+        return;
+    }
+    if (plan(tick)) {
+        take(tick);
+    } else if (urgent(tick, tick.out.conflict.time_to_loss)) {
+        fall_back(tick);
+    } else if (tick.in_control) {
+        enter_rejoining();
+        follow_way(tick);
+    }
+}
+
+void Pilot::avoid(Tick& tick) noexcept
+{
+    const Seconds flown = tick.s.now - flying_.start;
+    if (flown >= flying_.path.duration()) {
+        enter_rejoining();
+        rejoin(tick);
+        return;
+    }
+    const world::Separation ahead = check_manoeuvre(tick.s, flying_, settings_, tick.budget);
+    tick.out.margin = ahead.margin;
+    tick.out.wants_control = true;
+    tick.out.kind = flying_.kind;
+    tick.out.velocity = path::follow(flying_.path, flown, tick.s.own.position, tick.s.limits, settings_.gains);
+    if (ahead.margin < 0.0F) {
+        if (plan(tick)) {
+            take(tick);
+        } else if (urgent(tick, ahead.when)) {
+            fall_back(tick);
+        }
+        return;
+    }
+    if (way_clear_for(tick, settings_.settle)) {
+        enter_rejoining();
+        rejoin(tick);
+    }
+}
+
+void Pilot::rejoin(Tick& tick) noexcept
+{
+    if (tick.out.has_conflict) {
+        if (plan(tick)) {
+            take(tick);
+            return;
+        }
+        if (urgent(tick, tick.out.conflict.time_to_loss)) {
+            fall_back(tick);
+            return;
+        }
+    }
+    follow_way(tick);
+    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg;
+    if (back && way_clear_for(tick, settings_.settle)) {
+        ++diagnostics_.rejoined;
+        state_ = State::watching;
+        has_flying_ = false;
+        tick.out.wants_control = false;
+    }
+}
+
+/// Standing in front of something that stays: back off, so that there is room to plan around it.
+void Pilot::give_ground(Tick& tick) noexcept
+{
+    const bool stands = tick.s.own.velocity.norm() < kStanding + settings_.give_ground_speed;
+    if (!stands) {
+        standing_ = false;
+        return;
+    }
+    if (!standing_) {
+        standing_ = true;
+        standing_since_ = tick.s.now;
+    }
+    const bool patient = tick.s.now - standing_since_ < settings_.blocked_patience;
+    if (patient || settings_.give_ground_speed <= 0.0F || ground_given_ >= settings_.give_ground_limit ||
+        fallback_.kind != world::ManoeuvreKind::brake) {
+        return;
+    }
+    const Vec3 back = vehicle::clamped_velocity(-tick.way.direction, settings_.give_ground_speed, tick.s.limits);
+    if (command_margin(tick.s, back, settings_, tick.budget) >= 0.0F) {
+        ground_given_ += std::clamp(tick.s.now - last_update_, 0.0F, 1.0F);
+        tick.out.velocity = back;
+        tick.out.kind = world::ManoeuvreKind::velocity;
+    }
+}
+
+void Pilot::brake(Tick& tick) noexcept
+{
+    if (way_clear_for(tick, settings_.settle)) {
+        enter_rejoining();
+        rejoin(tick);
+        return;
+    }
+    if (tick.out.has_conflict && plan(tick)) {
+        standing_ = false;
+        take(tick);
+        return;
+    }
+    fall_back(tick);
+    give_ground(tick);
+}
+
+Guidance Pilot::update(const world::Situation& given, bool in_control, const Ladder& ladder) noexcept
+{
+    ++diagnostics_.updates;
+    if (had_control_ && !in_control && state_ != State::watching) {
+        ++diagnostics_.control_lost;
+        reset();
+    }
+    had_control_ = in_control;
+
+    world::Situation situation = given;
+    situation.flying = has_flying_ ? &flying_ : nullptr;
+    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false, false};
+    tick.out.has_conflict =
+        world::main_conflict(situation, tick.way, settings_.lookahead, tick.budget, tick.out.conflict);
+    diagnostics_.conflicts += tick.out.has_conflict && !in_conflict_ ? 1U : 0U;
+    if (!tick.out.has_conflict && in_conflict_) {
+        ground_given_ = 0.0F;
+    }
+    in_conflict_ = tick.out.has_conflict;
+    note_clearness(tick);
+
+    switch (state_) {
+    case State::watching: watch(tick); break;
+    case State::avoiding: avoid(tick); break;
+    case State::rejoining: rejoin(tick); break;
+    case State::braking: brake(tick); break;
+    }
+    tick.out.state = state_;
+    last_update_ = situation.now;
+    diagnostics_.budget_spent += tick.budget.exhausted() ? 1U : 0U;
+    diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());
+    return tick.out;
+}
+
+}  // namespace jink::avoid

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/avoid/guard.hpp"
+#include "core/world/method.hpp"
+
+namespace jink::avoid {
+
+/// The ladder of methods as the state machine sees it: one function that plans, checked answers only.
+struct Ladder {
+    void* self = nullptr;
+    world::PlanStatus (*plan)(void* self, const world::Situation&, const Settings&, WorkBudget&, Diagnostics&, world::Manoeuvre&,
+                              float& margin) noexcept = nullptr;
+};
+
+/// The state machine of the supervisor, free of the methods' types. See Supervisor.
+///
+/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: one conflict search, at most one plan, at most two checks, at most one
+/// fallback choice; all under Settings::budget.
+class Pilot {
+public:
+    explicit Pilot(const Settings& settings) noexcept : settings_(settings) {}
+
+    Guidance update(const world::Situation& given, bool in_control, const Ladder& ladder) noexcept;
+
+    /// Forgets what is flown: after a pilot took over, after the estimator was reset. What was counted stays.
+    void reset() noexcept;
+
+    [[nodiscard]] bool configure(const Settings& settings) noexcept;
+    [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+    [[nodiscard]] State state() const noexcept { return state_; }
+    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return diagnostics_; }
+    /// What is being flown, or was offered last while not in control; null when nothing is.
+    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return has_flying_ ? &flying_ : nullptr; }
+
+private:
+    struct Tick;  // what one update carries along
+
+    void watch(Tick& tick) noexcept;
+    void avoid(Tick& tick) noexcept;
+    void rejoin(Tick& tick) noexcept;
+    void brake(Tick& tick) noexcept;
+    [[nodiscard]] bool plan(Tick& tick) noexcept;
+    [[nodiscard]] bool urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
+    void take(Tick& tick) noexcept;
+    void fall_back(Tick& tick) noexcept;
+    void enter_rejoining() noexcept;
+    [[nodiscard]] bool way_clear_for(const Tick& tick, Seconds span) const noexcept;
+    void follow_way(Tick& tick) noexcept;
+    void give_ground(Tick& tick) noexcept;
+    void note_clearness(Tick& tick) noexcept;
+
+    Settings settings_;
+    Diagnostics diagnostics_;
+    State state_ = State::watching;
+    bool had_control_ = false;
+    bool in_conflict_ = false;
+    bool has_flying_ = false;
+    bool was_clear_ = false;
+    bool standing_ = false;
+    bool has_fallback_ = false;
+    TimePoint clear_since_;
+    TimePoint standing_since_;
+    Seconds ground_given_ = 0.0F;
+    TimePoint last_update_;
+    Fallback fallback_;
+    world::Manoeuvre flying_;
+    world::Manoeuvre answer_;
+};
+
+}  // namespace jink::avoid

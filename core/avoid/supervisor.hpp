@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tuple>
+
+#include "core/avoid/pilot.hpp"
+
+namespace jink::avoid {
+
+/// Decides, once per tick, what is flown: predicts conflicts of the way ahead, asks the methods in their order, checks each answer once
+/// more as it will really be flown, holds on to a chosen manoeuvre while it stays safe, replans when it does not, returns to the leg, and
+/// brakes (or takes the way of least harm) when nothing is safe.
+///
+/// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does not, nothing is
+/// held on to: the answer is made anew from the present state every tick, on the side chosen before where that is about as good.
+/// Methods are owned by the caller and outlive the supervisor. Same situations in the same order give the same guidance.
+template <world::AvoidanceMethod... Methods>
+class Supervisor {
+public:
+    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept : pilot_(settings), methods_(methods...) {}
+
+    Guidance update(const world::Situation& situation, bool in_control) noexcept
+    {
+        return pilot_.update(situation, in_control, {this, &Supervisor::ladder});
+    }
+
+    void reset() noexcept { pilot_.reset(); }
+    /// Refused (false, nothing changed) when out of range.
+    [[nodiscard]] bool configure(const Settings& settings) noexcept { return pilot_.configure(settings); }
+    [[nodiscard]] const Settings& settings() const noexcept { return pilot_.settings(); }
+    [[nodiscard]] State state() const noexcept { return pilot_.state(); }
+    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return pilot_.diagnostics(); }
+    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return pilot_.flying(); }
+
+private:
+    template <class Method>
+    static bool ask(Method& method, const world::Situation& situation, const Settings& settings, WorkBudget& budget,
+                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin, world::PlanStatus& status) noexcept
+    {
+        status = method.plan(situation, budget, out);
+        if (status != world::PlanStatus::found) {
+            return false;
+        }
+        margin = check_manoeuvre(situation, out, settings, budget).margin;
+        if (margin < 0.0F) {
+            ++diagnostics.answers_rejected;
+            status = world::PlanStatus::none_available;
+            return false;
+        }
+        return true;
+    }
+
+    static world::PlanStatus ladder(void* self, const world::Situation& situation, const Settings& settings, WorkBudget& budget,
+                                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin) noexcept
+    {
+        world::PlanStatus status = world::PlanStatus::none_available;
+        std::apply(
+            [&](auto&... method) {
+                static_cast<void>((ask(method, situation, settings, budget, diagnostics, out, margin, status) || ...));
+            },
+            static_cast<Supervisor*>(self)->methods_);
+        return status;
+    }
+
+    Pilot pilot_;
+    std::tuple<Methods&...> methods_;
+};
+
+}  // namespace jink::avoid
