@@ -19,6 +19,8 @@ endif()
 add_compile_options(-ffp-contract=off)
 if(JINK_SANITIZE)
   add_compile_options(-fsanitize=${JINK_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  # The vptr check compares type information, which code built without RTTI does not have.
+  add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=vptr>)
   add_link_options(-fsanitize=${JINK_SANITIZE})
 endif()
 

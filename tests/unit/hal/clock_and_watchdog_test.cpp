@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <ctime>
+
+#include <gtest/gtest.h>
+
+#include "hal/linux/system_clock.hpp"
+#include "hal/memory/counting_watchdog.hpp"
+#include "hal/memory/manual_clock.hpp"
+#include "hal/software_watchdog.hpp"
+
+namespace jink::hal {
+namespace {
+
+TEST(SoftwareWatchdog, ReportsGapsThatAreTooLong)
+{
+    ManualClock clock(1'000);
+    SoftwareWatchdog watchdog(clock, 100);
+    clock.advance(1'000'000);
+    EXPECT_FALSE(watchdog.starving());  // not armed before the first feed
+    watchdog.feed();
+    clock.advance(100);
+    EXPECT_FALSE(watchdog.starving());
+    watchdog.feed();
+    EXPECT_EQ(watchdog.misses(), 0U);
+    clock.advance(101);
+    EXPECT_TRUE(watchdog.starving());
+    EXPECT_EQ(watchdog.misses(), 0U);
+    watchdog.feed();
+    EXPECT_FALSE(watchdog.starving());
+    EXPECT_EQ(watchdog.misses(), 1U);
+    EXPECT_EQ(watchdog.longest_gap_us(), 101);
+    clock.advance(5);
+    watchdog.feed();
+    EXPECT_EQ(watchdog.longest_gap_us(), 101);
+    EXPECT_EQ(watchdog.feeds(), 4U);
+}
+
+TEST(CountingWatchdog, CountsFeeds)
+{
+    CountingWatchdog watchdog;
+    EXPECT_EQ(watchdog.feeds(), 0U);
+    Watchdog& as_port = watchdog;
+    as_port.feed();
+    as_port.feed();
+    EXPECT_EQ(watchdog.feeds(), 2U);
+}
+
+TEST(SystemClock, NeverRunsBackwardsAndAgreesWithTheKernel)
+{
+    SystemClock clock;
+    std::int64_t last = clock.now_us();
+    for (int i = 0; i < 100'000; ++i) {
+        const std::int64_t now = clock.now_us();
+        ASSERT_GE(now, last);
+        last = now;
+    }
+    timespec before{};
+    timespec after{};
+    ::clock_gettime(CLOCK_MONOTONIC, &before);
+    const std::int64_t now = clock.now_us();
+    ::clock_gettime(CLOCK_MONOTONIC, &after);
+    EXPECT_GE(now, before.tv_sec * 1'000'000 + before.tv_nsec / 1'000);
+    EXPECT_LE(now, after.tv_sec * 1'000'000 + after.tv_nsec / 1'000);
+}
+
+TEST(ManualClock, MovesOnlyWhenTold)
+{
+    ManualClock clock(-7);
+    EXPECT_EQ(clock.now_us(), -7);
+    EXPECT_EQ(clock.now_us(), -7);
+    clock.advance(10);
+    clock.advance(0);
+    EXPECT_EQ(clock.now_us(), 3);
+}
+
+}  // namespace
+}  // namespace jink::hal

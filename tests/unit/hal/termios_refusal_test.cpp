@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Why a serial device does not open, and what drivers do that no test machine has.
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+
+#include <asm/ioctls.h>
+#include <asm/termbits.h>
+#include <linux/serial.h>
+
+#include "hal/linux/termios_serial_port.hpp"
+#include "tests/unit/hal/ioctl_hook.hpp"
+#include "tests/unit/hal/pty.hpp"
+
+namespace jink::hal {
+namespace {
+
+using test::IoctlHook;
+using test::Pty;
+using test::TemporaryFolder;
+
+constexpr std::int64_t kRetry = 500'000;
+
+TEST(TermiosSerialPort, RefusesUselessArguments)
+{
+    TermiosSerialPort port;
+    EXPECT_EQ(port.open("", 57'600, kRetry), OpenStatus::bad_path);
+    EXPECT_EQ(port.open(std::string(kMaxDevicePath, 'x'), 57'600, kRetry), OpenStatus::bad_path);
+    EXPECT_EQ(port.health().state, PortState::closed);
+    EXPECT_EQ(port.open("/" + std::string(kMaxDevicePath - 2, 'x'), 57'600, kRetry), OpenStatus::no_device);
+    EXPECT_EQ(port.health().state, PortState::lost);
+    EXPECT_EQ(port.open("/dev/null", 0, kRetry), OpenStatus::bad_baud);
+    EXPECT_EQ(port.health().state, PortState::closed);
+    EXPECT_EQ(port.open_status(), OpenStatus::bad_baud);
+}
+
+TEST(TermiosSerialPort, TellsWhyADeviceDoesNotOpen)
+{
+    TermiosSerialPort port;
+    EXPECT_EQ(port.open("/dev/null", 57'600, kRetry), OpenStatus::not_a_serial_device);
+    EXPECT_EQ(port.open("/", 57'600, kRetry), OpenStatus::not_a_serial_device);
+    EXPECT_EQ(port.open("/dev/null/tty", 57'600, kRetry), OpenStatus::no_device);
+    // A running program may not be opened for writing: an error that fits no other cause.
+    EXPECT_EQ(port.open("/proc/self/exe", 57'600, kRetry), OpenStatus::failed);
+    EXPECT_EQ(port.descriptor(), -1);
+    EXPECT_EQ(port.health().state, PortState::lost);
+    EXPECT_EQ(port.health().open_failures, 4U);
+}
+
+TEST(TermiosSerialPort, TellsThatPermissionIsMissing)
+{
+    const TemporaryFolder folder;
+    const std::string locked = folder / "locked";
+    std::ofstream(locked) << "x";
+    std::filesystem::permissions(locked, std::filesystem::perms::none);
+    std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+    TermiosSerialPort port;
+    OpenStatus status{};
+    {
+        const test::AsNobody unprivileged;
+        status = port.open(locked, 57'600, kRetry);
+    }
+    EXPECT_EQ(status, OpenStatus::access_denied);
+}
+
+TEST(TermiosSerialPort, RefusesADriverThatDoesNotTakeTheSettings)
+{
+    const Pty peer;
+    TermiosSerialPort port;
+    const IoctlHook refusing([](int, unsigned long request, void*) -> std::optional<int> {
+        if (request == TCSETS2) {
+            errno = EINVAL;
+            return -1;
+        }
+        return std::nullopt;
+    });
+    EXPECT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::settings_refused);
+    EXPECT_EQ(port.descriptor(), -1);
+    EXPECT_EQ(port.health().state, PortState::lost);
+}
+
+/// A driver that takes all settings and then does something else.
+OpenStatus open_with_driver(TermiosSerialPort& port, std::uint32_t asked, const std::function<void(termios2&)>& change)
+{
+    const Pty peer;
+    bool has_set = false;
+    const IoctlHook changing([&](int descriptor, unsigned long request, void* argument) -> std::optional<int> {
+        const int result = test::kernel_ioctl(descriptor, request, argument);
+        has_set = has_set || request == TCSETS2;
+        if (has_set && request == TCGETS2) {
+            change(*static_cast<termios2*>(argument));
+        }
+        return result;
+    });
+    return port.open(peer.path(), asked, kRetry);
+}
+
+TEST(TermiosSerialPort, ChecksWhatTheDriverMadeOfTheSettings)
+{
+    TermiosSerialPort port;
+    const auto rate = [](std::uint32_t baud) {
+        return [baud](termios2& settings) { settings.c_ispeed = settings.c_ospeed = baud; };
+    };
+    // 2.5 % of 100000 is 2500.
+    EXPECT_EQ(open_with_driver(port, 100'000, rate(102'500)), OpenStatus::ok);
+    EXPECT_EQ(port.actual_baud(), 102'500U);
+    EXPECT_EQ(open_with_driver(port, 100'000, rate(102'501)), OpenStatus::settings_refused);
+    EXPECT_EQ(open_with_driver(port, 100'000, rate(97'500)), OpenStatus::ok);
+    EXPECT_EQ(open_with_driver(port, 100'000, rate(97'499)), OpenStatus::settings_refused);
+    EXPECT_EQ(open_with_driver(port, 4'000'000'000U, rate(9600)), OpenStatus::settings_refused);
+    const auto input_only = [](termios2& settings) { settings.c_ispeed = 9600; };
+    EXPECT_EQ(open_with_driver(port, 100'000, input_only), OpenStatus::settings_refused);
+    const auto parity = [](termios2& settings) { settings.c_cflag |= PARENB; };
+    EXPECT_EQ(open_with_driver(port, 100'000, parity), OpenStatus::settings_refused);
+    const auto flow_control = [](termios2& settings) { settings.c_cflag |= CRTSCTS; };
+    EXPECT_EQ(open_with_driver(port, 100'000, flow_control), OpenStatus::settings_refused);
+    const auto seven_bits = [](termios2& settings) { settings.c_cflag = (settings.c_cflag & ~tcflag_t{CSIZE}) | CS7; };
+    EXPECT_EQ(open_with_driver(port, 100'000, seven_bits), OpenStatus::settings_refused);
+}
+
+TEST(TermiosSerialPort, CountsWhatTheDriverSaysWasLost)
+{
+    const Pty peer;
+    serial_icounter_struct driver{};
+    driver.overrun = -1;  // about to wrap
+    driver.frame = 100;
+    const IoctlHook counting([&](int, unsigned long request, void* argument) -> std::optional<int> {
+        if (request != TIOCGICOUNT) {
+            return std::nullopt;
+        }
+        *static_cast<serial_icounter_struct*>(argument) = driver;
+        return 0;
+    });
+    TermiosSerialPort port;
+    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    port.service(0);
+    EXPECT_EQ(port.health().overruns, 0U);
+    EXPECT_EQ(port.health().line_errors, 0U);
+    driver.overrun = 2;
+    driver.buf_overrun = 4;
+    driver.frame = 101;
+    driver.parity = 20;
+    driver.brk = 300;
+    port.service(1);
+    EXPECT_EQ(port.health().overruns, 7U);
+    EXPECT_EQ(port.health().line_errors, 321U);
+    port.service(2);
+    EXPECT_EQ(port.health().overruns, 7U);
+    EXPECT_EQ(port.health().line_errors, 321U);
+}
+
+}  // namespace
+}  // namespace jink::hal
