@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/link/mavlink/signing.hpp"
+
+#include <algorithm>
+
+#include "firmware/link/mavlink/sha256.hpp"
+
+namespace jink::link::mavlink {
+namespace {
+
+constexpr std::size_t kTimeSize = 6;
+constexpr std::size_t kHashSize = 6;
+constexpr std::uint64_t kOneMinute = 6'000'000;
+
+[[nodiscard]] std::uint64_t read_time(std::span<const std::byte> frame) noexcept
+{
+    const std::span<const std::byte> bytes = frame.subspan(frame.size() - kHashSize - kTimeSize, kTimeSize);
+    std::uint64_t time = 0;
+    for (std::size_t i = 0; i < kTimeSize; ++i) {
+        time |= std::to_integer<std::uint64_t>(bytes[i]) << (8U * i);
+    }
+    return time;
+}
+
+}  // namespace
+
+Signing::Hash Signing::hash(std::span<const std::byte> frame) const noexcept
+{
+    Sha256 sha;
+    sha.add(key_);
+    sha.add(frame.first(frame.size() - kHashSize));
+    const Sha256::Digest digest = sha.finish();
+    Hash first;
+    std::copy_n(digest.begin(), kHashSize, first.begin());
+    return first;
+}
+
+SignatureStatus Signing::check(std::span<const std::byte> frame) noexcept
+{
+    const Hash expected = hash(frame);
+    std::byte difference{0};
+    for (std::size_t i = 0; i < kHashSize; ++i) {  // no early exit: its time would tell a forger how far it got
+        difference |= expected[i] ^ frame[frame.size() - kHashSize + i];
+    }
+    if (difference != std::byte{0}) {
+        return SignatureStatus::wrong;
+    }
+    const std::uint64_t time = read_time(frame);
+    if (time + kOneMinute < time_) {
+        return SignatureStatus::stale;
+    }
+    const Stream key{time, std::to_integer<std::uint8_t>(frame[5]), std::to_integer<std::uint8_t>(frame[6]),
+                     std::to_integer<std::uint8_t>(frame[frame.size() - kSignatureSize])};
+    auto* const stream = std::find_if(streams_.begin(), streams_.end(), [&key](const Stream& s) {
+        return s.system_id == key.system_id && s.component_id == key.component_id && s.link_id == key.link_id;
+    });
+    if (stream == streams_.end()) {
+        if (!streams_.try_push_back(key)) {
+            return SignatureStatus::streams_full;
+        }
+    } else {
+        if (time <= stream->time) {
+            return SignatureStatus::stale;
+        }
+        stream->time = time;
+    }
+    advance_to(time);
+    return SignatureStatus::valid;
+}
+
+void Signing::sign(std::span<std::byte> frame) noexcept
+{
+    ++time_;
+    const std::span<std::byte> signature = frame.last(kSignatureSize);
+    signature[0] = std::byte{link_id_};
+    for (std::size_t i = 0; i < kTimeSize; ++i) {
+        signature[1 + i] = static_cast<std::byte>((time_ >> (8U * i)) & 0xFFU);
+    }
+    const Hash value = hash(frame);
+    std::copy(value.begin(), value.end(), signature.last(kHashSize).begin());
+}
+
+}  // namespace jink::link::mavlink
