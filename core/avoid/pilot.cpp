@@ -149,8 +149,12 @@ void Pilot::watch(Tick& tick) noexcept
 {
     if (!tick.out.has_conflict) {
         if (tick.in_control) {
-            enter_rejoining();
+            // Ours without a reason (granted late, or being given back): keep to the leg meanwhile.
             follow_way(tick);
+            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg;
+            if (tick.out.wants_control) {
+                enter_rejoining();
+            }
             return;
         }
         if (way_clear_for(tick, settings_.settle)) {
@@ -214,6 +218,7 @@ void Pilot::rejoin(Tick& tick) noexcept
         ++diagnostics_.rejoined;
         state_ = State::watching;
         has_flying_ = false;
+        // The velocity stays valid: it is flown until the autopilot has its mode back.
         tick.out.wants_control = false;
     }
 }

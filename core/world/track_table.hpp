@@ -69,7 +69,11 @@ public:
     /// O(kMaxTracks^2). The view is valid until the next call of any member.
     [[nodiscard]] std::span<const Track> snapshot(TimePoint now) noexcept;
 
+    /// Id of track `index` of the last snapshot.
+    [[nodiscard]] TrackId id_in_snapshot(std::size_t index) const noexcept { return snapshot_[index].id; }
+
     void clear() noexcept { entries_.clear(); }
+    void configure(const TrackTableSettings& settings) noexcept { settings_ = settings; }
     [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }
     [[nodiscard]] const TrackDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 

@@ -21,7 +21,7 @@
 //   north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (longitude wrap at 180 deg handled).
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity 128 - verify);
 //   emitter_type 19, 20, 21 (point, cluster, line obstacle - verify): TrackReport::at_rest, velocity zero;
-//   stamp = now - tslc - latency (Options). Without valid coordinates or altitude: out_of_range.
+//   stamp = now - tslc (the application takes the assumed latency off). Without valid coordinates or altitude: out_of_range.
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by yaw); increment_f over increment; zero increment refused; 65535 unknown; > max: nothing;
 //   0..max: range (a value below min_distance means "nearer than min": kept as min_distance). DISTANCE_SENSOR orientations 0-7, 24, 25.
 // * Leg: POSITION_TARGET_LOCAL_NED (position used, frame 1) while not in the external mode: from the position when it changed to the target;
@@ -36,7 +36,6 @@ namespace jink::link::mavlink {
 struct EndpointOptions {
     std::uint8_t system_id = 0;        ///< 0: that of the first autopilot heard
     std::uint8_t component_id = 196;
-    float traffic_latency = 0.1F;      ///< assumed age of a traffic report on arrival, beyond tslc [s]
     float max_stamp_age = 1.0F;        ///< older own-state stamps are refused [s]
 };
 

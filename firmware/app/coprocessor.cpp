@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/coprocessor.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/app/text.hpp"
+
+namespace jink::app {
+namespace {
+
+constexpr Seconds kHeartbeatPeriod = 1.0F;
+constexpr Seconds kCollisionPeriod = 0.5F;
+/// A step that comes this long after the last one means that we were not there when we should have been [s].
+constexpr Seconds kStall = 0.5F;
+/// Speed from which the own motion itself is taken for the way, where no leg is known [m/s].
+constexpr float kMoving = 0.5F;
+constexpr float kWayAhead = 60.0F;  // [s]
+
+constexpr std::uint16_t bit(Fault fault) noexcept { return static_cast<std::uint16_t>(fault); }
+
+}  // namespace
+
+Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog, const Parameters& parameters) noexcept
+    : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters), applied_generation_(parameters.generation()),
+      planner_(parameters.configuration().planner), supervisor_(parameters.configuration().supervisor, planner_),
+      tracks_(parameters.configuration().tracks)
+{
+}
+
+void Coprocessor::apply_configuration() noexcept
+{
+    if (applied_generation_ == parameters_.generation()) {
+        return;
+    }
+    applied_generation_ = parameters_.generation();
+    const Configuration& c = parameters_.configuration();
+    // Parameters admit only what both accept (fits_together).
+    static_cast<void>(planner_.configure(c.planner));
+    static_cast<void>(supervisor_.configure(c.supervisor));
+    tracks_.configure(c.tracks);
+}
+
+void Coprocessor::read_port(TimePoint now, StepReport& report) noexcept
+{
+    const std::size_t n = port_.read(bytes_);
+    report.bytes_in = static_cast<std::uint32_t>(n);
+    link_.receive({bytes_.data(), n}, now, inbox_);
+}
+
+void Coprocessor::write_port(StepReport& report) noexcept
+{
+    const bool open = port_.health().state == hal::PortState::open;
+    if (!open) {
+        // What could not go out when it was true must not go out when it no longer is.
+        link_.discard_pending();
+        return;
+    }
+    for (int part = 0; part < 2 && !link_.pending().empty(); ++part) {
+        const std::size_t n = port_.write(link_.pending());
+        link_.consume(n);
+        report.bytes_out += static_cast<std::uint32_t>(n);
+        if (n == 0) {
+            break;
+        }
+    }
+}
+
+vehicle::VehicleState Coprocessor::own_at(TimePoint now) const noexcept
+{
+    vehicle::VehicleState own = own_;
+    own.position += own.velocity * std::clamp(now - own.stamp, 0.0F, parameters_.configuration().own_age);
+    own.stamp = now;
+    return own;
+}
+
+world::Reference Coprocessor::reference_at(const vehicle::VehicleState& own) const noexcept
+{
+    world::Reference reference;
+    reference.valid = true;
+    const float cruise = parameters_.configuration().limits.cruise_speed;
+    if (has_leg_) {
+        reference.leg = leg_;
+        reference.leg.speed = leg_.speed > 0.0F ? leg_.speed : cruise;
+        return reference;
+    }
+    const float speed = own.velocity.norm();
+    reference.leg = {own.position, own.position, cruise};
+    if (speed > kMoving) {
+        reference.leg.end += own.velocity * kWayAhead;
+        reference.leg.speed = speed;
+    }
+    return reference;
+}
+
+world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    world::Airspace air;
+    air.has_floor = c.floor_on;
+    air.has_ceiling = c.ceiling_on;
+    air.has_keep_in = c.keep_in_on;
+    air.floor = home_.z() + c.floor;
+    air.ceiling = home_.z() + c.ceiling;
+    air.home = home_;
+    air.keep_in_radius = c.keep_in;
+    if (c.floor_on && has_ground_ && now <= ground_expires_) {
+        air.floor = std::max(air.floor, ground_ + std::max(c.floor, 0.0F));
+    }
+    return air;
+}
+
+std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    unsigned faults = 0;
+    faults |= port_.health().state == hal::PortState::open ? 0U : bit(Fault::port_lost);
+    faults |= stalled ? bit(Fault::late) : 0U;
+    if (!has_autopilot_) {
+        faults |= bit(Fault::no_autopilot);
+    } else if (now - autopilot_.stamp > c.heartbeat_age) {
+        faults |= bit(Fault::autopilot_silent);
+    }
+    if (!has_own_) {
+        faults |= bit(Fault::own_state_missing);
+    } else if (now - own_.stamp > c.own_age) {
+        faults |= bit(Fault::own_state_stale);
+    }
+    return static_cast<std::uint16_t>(faults);
+}
+
+void Coprocessor::send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept
+{
+    if (!takeover_.streaming() || now - last_setpoint_ < parameters_.configuration().setpoint_period - 0.5F * kTick) {
+        return;
+    }
+    // Until the autopilot follows us, the stream says what it does anyway.
+    const Vec3 velocity = takeover_.in_control() ? report.guidance.velocity : own.velocity;
+    if (!is_finite(velocity)) {
+        ++diagnostics_.setpoints_withheld;
+        report.faults = static_cast<std::uint16_t>(report.faults | bit(Fault::not_finite));
+        takeover_.drop(true);
+        return;
+    }
+    link_.send_velocity(velocity, now);
+    last_setpoint_ = now;
+    report.setpoint_sent = true;
+    ++diagnostics_.setpoints;
+}
+
+void Coprocessor::control(TimePoint now, StepReport& report) noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    const bool fresh = (report.faults & (bit(Fault::own_state_missing) | bit(Fault::own_state_stale))) == 0;
+    const vehicle::VehicleState own = own_at(now);
+    if (fresh && c.mode != ActMode::off) {
+        const world::Reference reference = reference_at(own);
+        const world::Airspace air = airspace(now);
+        const world::Situation situation{now, own, c.limits, c.airframe, reference, tracks_.snapshot(now), obstacles_.obstacles(), air, nullptr, c.k_sigma};
+        report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
+        report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
+        report.guidance = supervisor_.update(situation, takeover_.in_control());
+        report.work = supervisor_.diagnostics().most_work;
+    }
+    TakeoverInput input;
+    input.wants_control = report.guidance.wants_control;
+    input.in_conflict = report.guidance.has_conflict;
+    input.may_act = report.faults == 0 && c.mode == ActMode::act;
+    input.urgent_hold = report.guidance.kind == world::ManoeuvreKind::brake;
+    input.has_report = new_autopilot_report_;
+    input.report = autopilot_;
+    input.mode_denied = mode_denied_;
+    const bool link_alive = (report.faults & bit(Fault::port_lost)) == 0;
+    const TakeoverOutput output = takeover_.update(input, now);
+    switch (output.action) {
+    case TakeoverAction::request_external: link_.request_external_mode(); break;
+    case TakeoverAction::request_former: link_.request_mode(takeover_.former_mode()); break;
+    case TakeoverAction::request_hold: link_.request_hold_mode(); break;
+    case TakeoverAction::none: break;
+    }
+    if (output.event == TakeoverEvent::lost && link_alive) {
+        // CRITICAL first, then silence; and the vehicle should not coast on our last word.
+        link_.send_heartbeat(link::SystemState::critical);
+        link_.request_hold_mode();
+    }
+    if (output.event == TakeoverEvent::overruled) {
+        supervisor_.reset();
+    }
+    announce(output.event);
+    send_setpoint(now, own, report);
+    report.control = takeover_.control();
+}
+
+StepReport Coprocessor::step(TimePoint now) noexcept
+{
+    StepReport report;
+    ++diagnostics_.steps;
+    const Seconds gap = has_stepped_ ? now - last_step_ : 0.0F;
+    report.deadline_missed = gap > 2.0F * kTick;
+    diagnostics_.deadlines_missed += report.deadline_missed ? 1U : 0U;
+    last_step_ = now;
+    has_stepped_ = true;
+
+    read_port(now, report);
+    take_inbox(now);
+    link_.service(now);
+    report.faults = find_faults(now, gap > kStall);
+    control(now, report);
+    report.state = system_state(report);
+    tell(now, report);
+    write_port(report);
+    if ((report.faults & (bit(Fault::not_finite) | bit(Fault::late))) == 0) {
+        watchdog_.feed();
+    }
+    last_faults_ = report.faults;
+    return report;
+}
+
+link::SystemState Coprocessor::system_state(const StepReport& report) const noexcept
+{
+    const unsigned never_ready = bit(Fault::no_autopilot) | bit(Fault::own_state_missing);
+    if (report.faults != 0) {
+        const bool only_waiting = (report.faults & ~never_ready) == 0;
+        return only_waiting ? link::SystemState::boot : link::SystemState::critical;
+    }
+    if (report.guidance.wants_control && report.guidance.margin < 0.0F && report.guidance.state == avoid::State::braking) {
+        return link::SystemState::emergency;
+    }
+    const bool on_guard = autopilot_.armed && parameters_.configuration().mode != ActMode::off;
+    return on_guard ? link::SystemState::active : link::SystemState::standby;
+}
+
+void Coprocessor::announce(TakeoverEvent event) noexcept
+{
+    using link::Severity;
+    switch (event) {
+    case TakeoverEvent::took_over: link_.send_text(Severity::warning, "jink: avoiding, has control"); break;
+    case TakeoverEvent::gave_back: link_.send_text(Severity::notice, "jink: clear, mission resumed"); break;
+    case TakeoverEvent::refused: link_.send_text(Severity::critical, "jink: control refused, advising only"); break;
+    case TakeoverEvent::overruled: link_.send_text(Severity::warning, "jink: mode changed by others, hands off"); break;
+    case TakeoverEvent::lost: link_.send_text(Severity::critical, "jink: fault while avoiding, control dropped"); break;
+    case TakeoverEvent::none: break;
+    }
+}
+
+void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noexcept
+{
+    const avoid::Guidance& g = report.guidance;
+    const world::Conflict& c = g.conflict;
+    const Vec3 miss = c.threat_at_closest - c.own_at_closest;
+    const bool is_track = c.threat.kind == world::ThreatKind::track;
+    link::CollisionWarning warning;
+    warning.id = is_track ? tracks_.id_in_snapshot(c.threat.index) : obstacles_.obstacles()[c.threat.index].id;
+    warning.time_to_closest = c.time_to_closest;
+    warning.horizontal_miss = std::hypot(miss.x(), miss.y());
+    warning.vertical_miss = std::abs(miss.z());
+    warning.action = link::CollisionAction::report;
+    if (takeover_.in_control()) {
+        const world::Manoeuvre* flying = supervisor_.flying();
+        const bool vertical = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
+        warning.action = g.kind == world::ManoeuvreKind::brake ? link::CollisionAction::hover
+                         : vertical                           ? link::CollisionAction::ascend_or_descend
+                                                              : link::CollisionAction::move_horizontally;
+    }
+    const bool near = c.time_to_loss <= vehicle::stopping_time(own_.velocity.norm(), parameters_.configuration().limits) + 1.0F;
+    warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
+    link_.send_collision(warning);
+    last_collision_ = now;
+    if (!told_conflict_) {
+        Text text;
+        text << (is_track ? "jink: conflict, traffic in " : "jink: conflict, obstacle in ") << c.time_to_loss << " s";
+        link_.send_text(link::Severity::warning, text.view());
+    }
+}
+
+void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
+{
+    const bool changed = report.state != told_state_;
+    if (changed && report.state == link::SystemState::critical) {
+        ++diagnostics_.faults;
+        Text text;
+        text << "jink: fault " << static_cast<std::uint32_t>(report.faults);
+        link_.send_text(link::Severity::critical, text.view());
+    }
+    if (!heartbeat_sent_ || changed || now - last_heartbeat_ >= kHeartbeatPeriod) {
+        link_.send_heartbeat(report.state);
+        heartbeat_sent_ = true;
+        last_heartbeat_ = now;
+        told_state_ = report.state;
+    }
+    const avoid::Guidance& g = report.guidance;
+    if (g.has_conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
+        warn_of_conflict(now, report);
+    }
+    told_conflict_ = g.has_conflict;
+    if (g.state != told_guidance_ && g.state == avoid::State::braking) {
+        link_.send_text(link::Severity::critical, "jink: nothing safe, braking");
+    }
+    told_guidance_ = g.state;
+}
+
+void Coprocessor::shut_down(TimePoint now) noexcept
+{
+    static_cast<void>(now);
+    if (takeover_.in_control()) {
+        link_.request_hold_mode();
+    }
+    takeover_.drop(false);
+    link_.send_heartbeat(link::SystemState::critical);
+    link_.send_text(link::Severity::notice, "jink: stopped");
+    StepReport report;
+    write_port(report);
+}
+
+}  // namespace jink::app

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/avoid/supervisor.hpp"
+#include "core/geometric/planner.hpp"
+#include "core/world/obstacle_table.hpp"
+#include "core/world/track_table.hpp"
+#include "firmware/app/parameters.hpp"
+#include "firmware/app/takeover.hpp"
+#include "firmware/link/link.hpp"
+#include "hal/serial_port.hpp"
+#include "hal/watchdog.hpp"
+
+namespace jink::app {
+
+/// Why the co-processor is not fit to act; a bit set.
+enum class Fault : std::uint16_t {
+    none = 0,
+    no_autopilot = 1,      ///< never heard
+    autopilot_silent = 2,  ///< HEARTBEAT too old
+    own_state_missing = 4,
+    own_state_stale = 8,
+    port_lost = 16,
+    late = 32,             ///< the last step came later than two ticks after the one before
+    not_finite = 64,       ///< a command that is not a number: never sent
+};
+
+/// What one step did and cost.
+struct StepReport {
+    link::SystemState state = link::SystemState::boot;
+    std::uint16_t faults = 0;         ///< Fault bits
+    bool deadline_missed = false;     ///< this step came late
+    bool setpoint_sent = false;
+    std::uint32_t work = 0;           ///< units of the supervisor's budget
+    std::uint32_t bytes_in = 0;
+    std::uint32_t bytes_out = 0;
+    std::uint16_t tracks = 0;
+    std::uint16_t obstacles = 0;
+    Control control = Control::autopilot;
+    avoid::Guidance guidance;
+};
+
+/// Counts since start, beside those of the rooms (see the accessors).
+struct Diagnostics {
+    std::uint32_t steps = 0;
+    std::uint32_t deadlines_missed = 0;
+    std::uint32_t setpoints = 0;
+    std::uint32_t setpoints_withheld = 0;   ///< due, but nothing fresh to say
+    std::uint32_t own_states = 0;
+    std::uint32_t own_state_refused = 0;    ///< stamped in the future, or older than what is known
+    std::uint32_t estimator_resets = 0;
+    std::uint32_t autopilot_reboots = 0;
+    std::uint32_t params_set = 0;
+    std::uint32_t params_refused = 0;
+    std::uint32_t params_unknown = 0;
+    std::uint32_t commands = 0;
+    std::uint32_t commands_refused = 0;
+    std::uint32_t scans = 0;
+    std::uint32_t readings = 0;
+    std::uint32_t tracks_in = 0;
+    std::uint32_t faults = 0;               ///< times the state became CRITICAL
+};
+
+/// The co-processor: one call does everything the firmware does in a tick. Images own the ports and call it; so do the tests and the simulator.
+///
+/// Memory: sizeof(Coprocessor), about 110 KiB with the default capacities (most of it candidate reports; JINK_MAX_CANDIDATES shrinks them). No allocation after
+/// construction, none in it. step() is O(bytes + candidates * waypoints * threats), bounded by kMaxBytesPerStep and the work budget.
+class Coprocessor {
+public:
+    /// Bytes read per step; 921600 baud bring 1843 in 20 ms.
+    static constexpr std::size_t kMaxBytesPerStep = 4096;
+    static constexpr Seconds kTick = 0.02F;
+
+    Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog, const Parameters& parameters) noexcept;
+    Coprocessor(const Coprocessor&) = delete;
+    Coprocessor& operator=(const Coprocessor&) = delete;
+
+    StepReport step(TimePoint now) noexcept;
+
+    /// Says CRITICAL and stops streaming: called before an image stops on purpose. The bytes are written as far as the port takes them.
+    void shut_down(TimePoint now) noexcept;
+
+    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return diagnostics_; }
+    [[nodiscard]] const avoid::Diagnostics& supervisor_diagnostics() const noexcept { return supervisor_.diagnostics(); }
+    [[nodiscard]] const world::TrackDiagnostics& track_diagnostics() const noexcept { return tracks_.diagnostics(); }
+    [[nodiscard]] const world::ObstacleDiagnostics& obstacle_diagnostics() const noexcept { return obstacles_.diagnostics(); }
+    [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
+    [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
+    [[nodiscard]] const geometric::Planner& planner() const noexcept { return planner_; }
+    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
+    [[nodiscard]] const vehicle::VehicleState& own() const noexcept { return own_; }
+
+private:
+    void read_port(TimePoint now, StepReport& report) noexcept;
+    void write_port(StepReport& report) noexcept;
+    void take_inbox(TimePoint now) noexcept;
+    void take_own_state(TimePoint now) noexcept;
+    void take_autopilot(TimePoint now) noexcept;
+    void take_tracks(TimePoint now) noexcept;
+    void take_scan(TimePoint now) noexcept;
+    void take_readings() noexcept;
+    void take_params() noexcept;
+    void take_commands() noexcept;
+    void apply_configuration() noexcept;
+    void place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle, TimePoint expires) noexcept;
+    [[nodiscard]] std::uint16_t find_faults(TimePoint now, bool late) const noexcept;
+    [[nodiscard]] vehicle::VehicleState own_at(TimePoint now) const noexcept;
+    [[nodiscard]] world::Reference reference_at(const vehicle::VehicleState& own) const noexcept;
+    [[nodiscard]] world::Airspace airspace(TimePoint now) const noexcept;
+    void control(TimePoint now, StepReport& report) noexcept;
+    void send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept;
+    void tell(TimePoint now, const StepReport& report) noexcept;
+    void announce(TakeoverEvent event) noexcept;
+    void warn_of_conflict(TimePoint now, const StepReport& report) noexcept;
+    [[nodiscard]] link::SystemState system_state(const StepReport& report) const noexcept;
+
+    link::Link& link_;
+    hal::SerialPort& port_;
+    hal::Watchdog& watchdog_;
+    Parameters parameters_;
+    std::uint32_t applied_generation_ = 0;
+    geometric::Planner planner_;
+    avoid::Supervisor<geometric::Planner> supervisor_;
+    Takeover takeover_;
+    world::TrackTable tracks_;
+    world::ObstacleTable obstacles_;
+    link::Inbox inbox_;
+    std::array<std::byte, kMaxBytesPerStep> bytes_{};
+
+    vehicle::VehicleState own_;
+    bool has_own_ = false;
+    link::AutopilotReport autopilot_;
+    bool has_autopilot_ = false;
+    bool new_autopilot_report_ = false;
+    bool mode_denied_ = false;
+    world::Leg leg_;
+    bool has_leg_ = false;
+    Vec3 home_ = Vec3::Zero();
+    bool has_ground_ = false;      ///< seen by a sensor that looks down
+    float ground_ = 0.0F;
+    TimePoint ground_expires_;
+    bool was_port_open_ = false;
+    std::uint16_t last_faults_ = 0;
+    std::uint16_t param_cursor_ = 0;
+    bool param_listing_ = false;
+    bool has_stepped_ = false;
+    TimePoint last_step_;
+    TimePoint last_heartbeat_;
+    TimePoint last_setpoint_;
+    TimePoint last_collision_;
+    bool heartbeat_sent_ = false;
+    link::SystemState told_state_ = link::SystemState::boot;
+    avoid::State told_guidance_ = avoid::State::watching;
+    bool told_conflict_ = false;
+    Diagnostics diagnostics_;
+};
+
+}  // namespace jink::app

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the co-processor does with what it hears: the inbox into own state, tracks, obstacles, parameters.
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/app/coprocessor.hpp"
+
+namespace jink::app {
+namespace {
+
+/// Own state may be stamped this far ahead of our clock before it is refused [s].
+constexpr Seconds kFutureSlack = 0.05F;
+/// Velocity noise given to what stands still [m/s].
+constexpr float kRestSigma = 0.02F;
+/// Least radius of what a range sensor sees [m].
+constexpr float kLeastEchoRadius = 0.25F;
+/// Readings steeper downwards than this are the ground, not an obstacle.
+constexpr float kDownwards = -0.7F;
+
+constexpr std::uint32_t kScanIds = 0x01000000;
+constexpr std::uint32_t kReadingIds = 0x02000000;
+
+}  // namespace
+
+void Coprocessor::take_own_state(TimePoint now) noexcept
+{
+    if (!inbox_.has_own_state) {
+        return;
+    }
+    const vehicle::VehicleState& heard = inbox_.own_state.state;
+    if (heard.stamp > now + kFutureSlack || (has_own_ && heard.stamp < own_.stamp)) {
+        ++diagnostics_.own_state_refused;
+        return;
+    }
+    if (inbox_.own_state.estimator_reset && has_own_) {
+        // The local frame has jumped: paths and places in it mean nothing any more.
+        ++diagnostics_.estimator_resets;
+        supervisor_.reset();
+        tracks_.clear();
+        obstacles_.clear();
+        has_ground_ = false;
+    }
+    own_ = heard;
+    has_own_ = true;
+    ++diagnostics_.own_states;
+}
+
+void Coprocessor::take_autopilot(TimePoint now) noexcept
+{
+    static_cast<void>(now);
+    new_autopilot_report_ = inbox_.has_autopilot;
+    if (!inbox_.has_autopilot) {
+        return;
+    }
+    autopilot_ = inbox_.autopilot;
+    has_autopilot_ = true;
+    if (autopilot_.rebooted) {
+        ++diagnostics_.autopilot_reboots;
+        supervisor_.reset();
+        takeover_.drop(false);
+        tracks_.clear();
+        obstacles_.clear();
+        has_own_ = has_leg_ = has_ground_ = false;
+    }
+}
+
+void Coprocessor::take_tracks(TimePoint now) noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    for (const link::TrackReport& report : inbox_.tracks) {
+        world::TrackMeasurement m;
+        m.id = report.id;
+        m.stamp = report.stamp - c.track_latency;
+        m.position = report.position;
+        m.source = report.source;
+        m.sigma_position = report.sigma_position > 0.0F ? report.sigma_position : c.track_sigma_position;
+        if (report.at_rest) {
+            m.has_velocity = true;
+            m.sigma_velocity = kRestSigma;
+            m.radius = report.radius > 0.0F ? report.radius : c.point_radius;
+        } else {
+            m.velocity = report.velocity;
+            m.has_velocity = report.has_velocity;
+            m.sigma_velocity = report.sigma_velocity > 0.0F ? report.sigma_velocity : c.track_sigma_velocity;
+            m.radius = report.radius > 0.0F ? report.radius : c.track_radius;
+            m.max_acceleration = c.track_acceleration;
+        }
+        ++diagnostics_.tracks_in;
+        static_cast<void>(tracks_.update(m, own_, now));  // each refusal is counted there
+    }
+    tracks_.expire(now);
+}
+
+/// An echo becomes an upright capsule: a level scan says nothing about height, so what it sees may be tall.
+void Coprocessor::place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle, TimePoint expires) noexcept
+{
+    const float radius = std::max(kLeastEchoRadius, range * std::sin(std::min(half_angle, 0.5F * kPi)));
+    const Vec3 centre = own_.position + direction * (range + radius);
+    const Vec3 tall = Vec3::UnitZ() * parameters_.configuration().scan_height;
+    const world::Obstacle echo{id, geometry::make_capsule(centre - tall, centre + tall, radius)};
+    static_cast<void>(obstacles_.update(echo, expires, own_.position));  // each refusal is counted there
+}
+
+void Coprocessor::take_scan(TimePoint now) noexcept
+{
+    obstacles_.expire(now);
+    if (!inbox_.has_scan || !has_own_) {
+        return;
+    }
+    ++diagnostics_.scans;
+    const link::RangeScan& scan = inbox_.scan;
+    const TimePoint expires = scan.stamp + parameters_.configuration().scan_keep;
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+        const std::uint32_t id = kScanIds + scan.sensor * 256U + static_cast<std::uint32_t>(i);
+        const float range = scan.ranges[i];
+        if (range == link::RangeScan::kNothing) {
+            static_cast<void>(obstacles_.remove(id));
+        } else if (range >= 0.0F) {
+            const float yaw = scan.yaw_first + scan.increment * static_cast<float>(i);
+            place_range(id, Vec3(std::cos(yaw), std::sin(yaw), 0.0F), range, 0.5F * std::abs(scan.increment), expires);
+        }
+    }
+}
+
+void Coprocessor::take_readings() noexcept
+{
+    for (const link::RangeReading& reading : inbox_.readings) {
+        if (!has_own_) {
+            return;
+        }
+        ++diagnostics_.readings;
+        const TimePoint expires = reading.stamp + parameters_.configuration().scan_keep;
+        const std::uint32_t id = kReadingIds + reading.sensor;
+        const bool nothing = reading.range == link::RangeScan::kNothing;
+        if (reading.direction.z() < kDownwards) {
+            has_ground_ = !nothing;
+            ground_ = own_.position.z() + reading.direction.z() * reading.range;
+            ground_expires_ = expires;
+        } else if (nothing) {
+            static_cast<void>(obstacles_.remove(id));
+        } else {
+            place_range(id, reading.direction, reading.range, reading.half_angle, expires);
+        }
+    }
+}
+
+void Coprocessor::take_params() noexcept
+{
+    const auto& table = param_table();
+    const auto answer = [&](std::size_t index) {
+        link::ParamName name{};
+        std::copy(table[index].name.begin(), table[index].name.end(), name.begin());
+        link_.send_param(name, parameters_.values()[index], static_cast<std::uint16_t>(index), static_cast<std::uint16_t>(kParamCount));
+    };
+    for (const link::ParamRequest& request : inbox_.params) {
+        if (request.kind == link::ParamRequestKind::list) {
+            param_listing_ = true;
+            param_cursor_ = 0;
+            continue;
+        }
+        const std::size_t index = request.kind == link::ParamRequestKind::read_by_index
+                                      ? (request.index >= 0 ? static_cast<std::size_t>(request.index) : kParamCount)
+                                      : Parameters::find({request.name.data(), request.name.size()});
+        if (index >= kParamCount) {
+            ++diagnostics_.params_unknown;
+            continue;
+        }
+        if (request.kind == link::ParamRequestKind::set) {
+            const bool taken = request.value_finite && parameters_.set(static_cast<Param>(index), request.value) == ParamStatus::ok;
+            ++(taken ? diagnostics_.params_set : diagnostics_.params_refused);
+        }
+        answer(index);  // a refused set is answered with the value that stands
+    }
+    apply_configuration();
+    // A list goes out a few at a time, so that it never fills the transmit buffer.
+    constexpr std::uint16_t kPerStep = 3;
+    for (std::uint16_t i = 0; param_listing_ && i < kPerStep; ++i) {
+        answer(param_cursor_++);
+        param_listing_ = param_cursor_ < kParamCount;
+    }
+}
+
+void Coprocessor::take_commands() noexcept
+{
+    constexpr std::uint16_t kRequestMessage = 512;
+    constexpr float kHeartbeat = 0.0F;
+    for (const link::CommandRequest& request : inbox_.commands) {
+        ++diagnostics_.commands;
+        link::CommandResult result = link::CommandResult::unsupported;
+        if (request.command == kRequestMessage) {
+            const bool known = request.params[0] == kHeartbeat;
+            result = known ? link::CommandResult::accepted : link::CommandResult::denied;
+            heartbeat_sent_ = heartbeat_sent_ && !known;
+        }
+        diagnostics_.commands_refused += result == link::CommandResult::accepted ? 0U : 1U;
+        link_.acknowledge(request, result);
+    }
+}
+
+void Coprocessor::take_inbox(TimePoint now) noexcept
+{
+    take_autopilot(now);
+    take_own_state(now);
+    if (inbox_.has_home) {
+        home_ = inbox_.home;
+    }
+    if (inbox_.has_leg) {
+        leg_ = inbox_.leg.leg;
+        has_leg_ = true;
+    }
+    mode_denied_ = std::any_of(inbox_.mode_answers.begin(), inbox_.mode_answers.end(),
+                               [](const link::ModeAnswer& a) { return !a.accepted; });
+    take_tracks(now);
+    take_scan(now);
+    take_readings();
+    take_params();
+    take_commands();
+    inbox_.clear();
+}
+
+}  // namespace jink::app

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/parameters.hpp"
+
+#include <cmath>
+
+namespace jink::app {
+namespace {
+
+constexpr std::array<ParamInfo, kParamCount> kTable{{
+    {"JNK_MODE", 2, 0, 2, true, "0 off, 1 advise only, 2 take over and avoid"},
+    {"JNK_LOOKAHEAD", 8, 1, 60, false, "conflicts are looked for this far ahead [s]"},
+    {"JNK_HALF_XY", 1, 0.1F, 20, false, "half extent of the own safety box, level [m]"},
+    {"JNK_HALF_Z", 1, 0.1F, 20, false, "half extent of the own safety box, vertical [m]"},
+    {"JNK_K_SIGMA", 3, 0, 6, false, "standard deviations that count as possible"},
+    {"JNK_BOUNDS", 1, 0, 7, true, "sum of: 1 floor, 2 ceiling, 4 keep-in distance"},
+    {"JNK_FLOOR", 2, -500, 5000, false, "floor above home [m]"},
+    {"JNK_CEILING", 120, -500, 5000, false, "ceiling above home [m]"},
+    {"JNK_KEEP_IN", 500, 10, 50000, false, "keep-in distance from home, level [m]"},
+    {"JNK_RESERVE", 0.75F, 0, 5, false, "nothing is forced before the stopping time plus this [s]"},
+    {"JNK_SETTLE", 1, 0, 10, false, "the way must be clear this long before it is trusted [s]"},
+    {"JNK_RATE", 20, 10, 50, true, "set-points per second while avoiding"},
+    {"TRK_RADIUS", 1, 0.05F, 500, false, "radius of traffic [m]"},
+    {"TRK_RADIUS_PT", 1, 0.05F, 500, false, "radius of traffic that is an obstacle at rest [m]"},
+    {"TRK_SIGMA_P", 0.5F, 0.01F, 500, false, "position noise of traffic, one standard deviation [m]"},
+    {"TRK_SIGMA_V", 0.3F, 0.01F, 100, false, "velocity noise of traffic, one standard deviation [m/s]"},
+    {"TRK_ACCEL", 0, 0, 50, false, "acceleration that traffic may show unannounced [m/s2]"},
+    {"TRK_LATENCY", 0.1F, 0, 2, false, "age of a traffic report on arrival [s]"},
+    {"TRK_AGE", 3, 0.2F, 60, false, "traffic not heard for longer is dropped [s]"},
+    {"OBS_HEIGHT", 10, 0.5F, 500, false, "half height given to what a level scan sees [m]"},
+    {"OBS_KEEP", 1, 0.1F, 60, false, "what a scan saw is kept this long [s]"},
+    {"OWN_AGE", 0.5F, 0.05F, 2, false, "own state older than this is a fault [s]"},
+    {"HB_AGE", 4.5F, 1.5F, 20, false, "autopilot heartbeat older than this is a fault [s]"},
+    {"VEH_CRUISE", 5, 0.5F, 100, false, "cruise speed [m/s]"},
+    {"VEH_CLIMB", 3, 0.1F, 50, false, "greatest rate of climb [m/s]"},
+    {"VEH_DESCENT", 3, 0.1F, 50, false, "greatest rate of descent [m/s]"},
+    {"VEH_ACC", 5, 0.2F, 50, false, "greatest level acceleration, and deceleration when braking [m/s2]"},
+    {"VEH_ACC_Z", 3, 0.2F, 50, false, "greatest vertical acceleration [m/s2]"},
+    {"VEH_LAG", 0.25F, 0, 2, false, "time constant of the velocity loop [s]"},
+    {"VEH_FIXED_WING", 0, 0, 1, true, "1: cannot stop, holds by turning"},
+    {"VEH_MASS", 3, 0.05F, 5000, false, "mass [kg]"},
+    {"VEH_DRAG", 0.5F, 0.01F, 5, false, "drag coefficient"},
+    {"VEH_AREA", 2.5F, 0.001F, 500, false, "effective area [m2]"},
+    {"GEO_OFFSETS", 4, 2, 64, true, "candidates per plane and family, even"},
+    {"GEO_PLANES", 3, 0, 31, true, "planes beyond the first"},
+    {"GEO_FAMILIES", 3, 1, 3, true, "sum of: 1 simple, 2 symmetric"},
+    {"GEO_WAYPOINTS", 25, 8, static_cast<float>(kMaxPathPoints), true, "points per candidate"},
+    {"GEO_SWEPT", 0, 0, 1, true, "0 time-aware security, 1 swept as the source"},
+    {"GEO_K_S", 0.3F, 0, 0.9F, false, "weight of smoothness; closeness gets what is left of 1"},
+    {"GEO_K_T", 0.2F, 0.1F, 1, false, "weight of time"},
+    {"GEO_K_P", 1, 0, 10, false, "penalty on planes that are not level"},
+    {"GEO_FLIP", 0.15F, 0, 1, false, "penalty on changing sides"},
+    {"GEO_MAX_COST", 1, 0, 2, false, "a plan that costs more counts as not found"},
+    {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
+    {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
+}};
+
+Configuration build(const std::array<float, kParamCount>& v) noexcept
+{
+    const auto at = [&](Param p) { return v[static_cast<std::size_t>(p)]; };
+    const auto whole = [&](Param p) { return static_cast<std::uint32_t>(at(p)); };
+    Configuration c;
+    c.mode = static_cast<ActMode>(whole(Param::mode));
+    c.supervisor.lookahead = at(Param::lookahead);
+    c.supervisor.reserve = at(Param::reserve);
+    c.supervisor.settle = at(Param::settle);
+    c.limits.half_extents = Vec3(at(Param::half_xy), at(Param::half_xy), at(Param::half_z));
+    c.limits.kind = whole(Param::fixed_wing) == 1 ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
+    c.limits.cruise_speed = at(Param::cruise);
+    c.limits.max_climb = at(Param::climb);
+    c.limits.max_descent = at(Param::descent);
+    c.limits.max_acceleration = at(Param::acceleration);
+    c.limits.max_vertical_acceleration = at(Param::vertical_acceleration);
+    c.limits.velocity_lag = at(Param::lag);
+    c.airframe.mass = at(Param::mass);
+    c.airframe.drag_coefficient = at(Param::drag);
+    c.airframe.effective_area = at(Param::area);
+    c.k_sigma = at(Param::k_sigma);
+    c.floor_on = (whole(Param::bounds) & 1U) != 0;
+    c.ceiling_on = (whole(Param::bounds) & 2U) != 0;
+    c.keep_in_on = (whole(Param::bounds) & 4U) != 0;
+    c.floor = at(Param::floor);
+    c.ceiling = at(Param::ceiling);
+    c.keep_in = at(Param::keep_in);
+    c.track_radius = at(Param::track_radius);
+    c.point_radius = at(Param::point_radius);
+    c.track_sigma_position = at(Param::track_sigma_p);
+    c.track_sigma_velocity = at(Param::track_sigma_v);
+    c.track_acceleration = at(Param::track_acceleration);
+    c.track_latency = at(Param::track_latency);
+    c.tracks.max_age = at(Param::track_age);
+    c.scan_height = at(Param::scan_height);
+    c.scan_keep = at(Param::scan_keep);
+    c.own_age = at(Param::own_age);
+    c.heartbeat_age = at(Param::heartbeat_age);
+    c.setpoint_period = 1.0F / at(Param::rate);
+    geometric::Settings& g = c.planner;
+    g.offsets = static_cast<std::uint16_t>(whole(Param::offsets));
+    g.extra_planes = static_cast<std::uint16_t>(whole(Param::planes));
+    g.simple = (whole(Param::families) & 1U) != 0;
+    g.symmetric = (whole(Param::families) & 2U) != 0;
+    g.waypoints = static_cast<std::uint16_t>(whole(Param::waypoints));
+    g.security = whole(Param::swept) == 1 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
+    g.weights.smoothness = at(Param::weight_smoothness);
+    g.weights.time = at(Param::weight_time);
+    g.weights.closeness = 1.0F - g.weights.smoothness - g.weights.time;
+    g.rotation_penalty = at(Param::rotation_penalty);
+    g.flip_penalty = at(Param::flip_penalty);
+    g.max_cost = at(Param::max_cost);
+    g.caps.time_low = at(Param::time_low);
+    g.caps.time_high = at(Param::time_high);
+    return c;
+}
+
+bool fits_together(const Configuration& c) noexcept
+{
+    const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
+    return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && avoid::is_valid(c.supervisor) &&
+           vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner);
+}
+
+ParamStatus check_one(std::size_t index, float value) noexcept
+{
+    const ParamInfo& info = kTable[index];
+    if (!std::isfinite(value)) {
+        return ParamStatus::not_finite;
+    }
+    if (!(value >= info.low && value <= info.high) || (info.integer && value != std::floor(value))) {
+        return ParamStatus::out_of_range;
+    }
+    return ParamStatus::ok;
+}
+
+}  // namespace
+
+const std::array<ParamInfo, kParamCount>& param_table() noexcept { return kTable; }
+
+Parameters::Parameters() noexcept : values_{}
+{
+    for (std::size_t i = 0; i < kParamCount; ++i) {
+        values_[i] = kTable[i].initial;
+    }
+    configuration_ = build(values_);
+}
+
+ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) noexcept
+{
+    for (std::size_t i = 0; i < kParamCount; ++i) {
+        const ParamStatus status = check_one(i, values[i]);
+        if (status != ParamStatus::ok) {
+            return status;
+        }
+    }
+    const Configuration candidate = build(values);
+    if (!fits_together(candidate)) {
+        return ParamStatus::inconsistent;
+    }
+    values_ = values;
+    configuration_ = candidate;
+    ++generation_;
+    return ParamStatus::ok;
+}
+
+ParamStatus Parameters::set(Param p, float value) noexcept
+{
+    std::array<float, kParamCount> changed = values_;
+    changed[static_cast<std::size_t>(p)] = value;
+    return set_all(changed);
+}
+
+ParamStatus Parameters::set(std::string_view name, float value) noexcept
+{
+    const std::size_t index = find(name);
+    return index < kParamCount ? set(static_cast<Param>(index), value) : ParamStatus::unknown_name;
+}
+
+std::size_t Parameters::find(std::string_view name) noexcept
+{
+    const std::string_view trimmed = name.substr(0, name.find('\0'));
+    for (std::size_t i = 0; i < kParamCount; ++i) {
+        if (kTable[i].name == trimmed) {
+            return i;
+        }
+    }
+    return kParamCount;
+}
+
+}  // namespace jink::app

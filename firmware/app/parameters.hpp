@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+
+#include "core/avoid/guidance.hpp"
+#include "core/geometric/planner.hpp"
+#include "core/world/track_table.hpp"
+
+namespace jink::app {
+
+/// What the co-processor does about a conflict.
+enum class ActMode : std::uint8_t { off = 0, advise = 1, act = 2 };
+
+/// Parameters in the order of their MAVLink index.
+enum class Param : std::uint8_t {
+    mode, lookahead, half_xy, half_z, k_sigma, bounds, floor, ceiling, keep_in, reserve, settle, rate,
+    track_radius, point_radius, track_sigma_p, track_sigma_v, track_acceleration, track_latency, track_age,
+    scan_height, scan_keep, own_age, heartbeat_age,
+    cruise, climb, descent, acceleration, vertical_acceleration, lag, fixed_wing,
+    mass, drag, area,
+    offsets, planes, families, waypoints, swept, weight_smoothness, weight_time, rotation_penalty, flip_penalty, max_cost,
+    time_low, time_high,
+    count
+};
+inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
+
+struct ParamInfo {
+    std::string_view name;  ///< at most 16 characters, as on the wire and in files
+    float initial;
+    float low;
+    float high;
+    bool integer;
+    std::string_view text;  ///< meaning and unit
+};
+/// The table; index = Param.
+[[nodiscard]] const std::array<ParamInfo, kParamCount>& param_table() noexcept;
+
+enum class ParamStatus : std::uint8_t {
+    ok,
+    unknown_name,
+    not_finite,
+    out_of_range,   ///< beyond its own limits, or not a whole number
+    inconsistent,   ///< alone in range, but not together with the others
+};
+
+/// Everything that parameters decide, as the rooms of core want it.
+struct Configuration {
+    ActMode mode = ActMode::act;
+    avoid::Settings supervisor;
+    geometric::Settings planner;
+    vehicle::VehicleLimits limits;
+    vehicle::Airframe airframe;
+    world::TrackTableSettings tracks;
+    float k_sigma = 3.0F;
+    bool floor_on = false, ceiling_on = false, keep_in_on = false;
+    float floor = 0.0F, ceiling = 0.0F, keep_in = 0.0F;  ///< above and about home [m]
+    float track_radius = 1.0F, point_radius = 1.0F;      ///< of traffic that does not say its size [m]
+    float track_sigma_position = 0.5F, track_sigma_velocity = 0.3F, track_acceleration = 0.0F, track_latency = 0.1F;
+    float scan_height = 10.0F;                           ///< half height given to what a level scan sees [m]
+    Seconds scan_keep = 1.0F;
+    Seconds own_age = 0.5F, heartbeat_age = 4.5F;        ///< older is a fault [s]
+    Seconds setpoint_period = 0.05F;
+};
+
+/// Values with their checks. A refused change changes nothing.
+class Parameters {
+public:
+    Parameters() noexcept;
+
+    [[nodiscard]] float get(Param p) const noexcept { return values_[static_cast<std::size_t>(p)]; }
+    ParamStatus set(Param p, float value) noexcept;
+    ParamStatus set(std::string_view name, float value) noexcept;
+    /// Several at once, checked together: weights, caps, limits that only fit as a set. A refused set changes nothing.
+    ParamStatus set_all(const std::array<float, kParamCount>& values) noexcept;
+    [[nodiscard]] const std::array<float, kParamCount>& values() const noexcept { return values_; }
+
+    /// Index of a name (NUL or end of view ends it); kParamCount when unknown. O(kParamCount).
+    [[nodiscard]] static std::size_t find(std::string_view name) noexcept;
+
+    [[nodiscard]] const Configuration& configuration() const noexcept { return configuration_; }
+    /// Counts accepted changes, so that users of the configuration know when to take it over.
+    [[nodiscard]] std::uint32_t generation() const noexcept { return generation_; }
+
+private:
+    std::array<float, kParamCount> values_;
+    Configuration configuration_;
+    std::uint32_t generation_ = 0;
+};
+
+}  // namespace jink::app

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/link/messages.hpp"
+
+namespace jink::app {
+
+/// Who flies, as far as we know it.
+enum class Control : std::uint8_t {
+    autopilot,   ///< the autopilot flies by itself; we are silent
+    announcing,  ///< set-points are streamed, the mode is not asked for yet
+    requesting,  ///< the external mode was asked for
+    ours,        ///< the autopilot follows us, confirmed by its HEARTBEAT
+    returning,   ///< still ours, the former mode was asked for
+    refused,     ///< the autopilot did not give control: advise only until this conflict is over
+    overruled,   ///< a pilot or the autopilot chose another mode: hands off until this conflict is over
+};
+
+/// What the application has to send because of it.
+enum class TakeoverAction : std::uint8_t { none, request_external, request_former, request_hold };
+
+/// What happened, for STATUSTEXT and counters.
+enum class TakeoverEvent : std::uint8_t { none, took_over, gave_back, refused, overruled, lost };
+
+struct TakeoverInput {
+    bool wants_control = false;   ///< the supervisor has something to fly
+    bool in_conflict = false;     ///< a conflict is still predicted
+    bool may_act = false;         ///< acting is allowed and everything needed is healthy
+    bool urgent_hold = false;     ///< what it wants is to brake
+    bool has_report = false;      ///< a HEARTBEAT of the autopilot arrived since the last tick
+    link::AutopilotReport report; ///< the newest one
+    bool mode_denied = false;     ///< a COMMAND_ACK refused the mode
+};
+
+struct TakeoverOutput {
+    TakeoverAction action = TakeoverAction::none;
+    TakeoverEvent event = TakeoverEvent::none;
+};
+
+struct TakeoverDiagnostics {
+    std::uint32_t requests = 0;       ///< of the external mode
+    std::uint32_t taken = 0;
+    std::uint32_t given_back = 0;
+    std::uint32_t refused = 0;
+    std::uint32_t overruled = 0;
+    std::uint32_t lost_by_fault = 0;  ///< control dropped because of a fault of ours
+};
+
+/// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT that shows it (1 s,
+/// two more tries), fly, ask for the former mode, stream until that is confirmed. Any other mode seen is the pilot's: stop at once.
+///
+/// Pure: no messages, no clock; O(1) per tick.
+class Takeover {
+public:
+    [[nodiscard]] TakeoverOutput update(const TakeoverInput& input, TimePoint now) noexcept;
+
+    /// A fault of ours or a rebooted autopilot: back to silence at once.
+    void drop(bool by_fault) noexcept;
+
+    /// The mode to give back, as on the wire.
+    [[nodiscard]] std::uint32_t former_mode() const noexcept { return former_mode_; }
+    [[nodiscard]] Control control() const noexcept { return control_; }
+    /// Set-points are due: from before the request until the former mode is confirmed.
+    [[nodiscard]] bool streaming() const noexcept
+    {
+        return control_ == Control::announcing || control_ == Control::requesting || in_control();
+    }
+    /// The autopilot follows us.
+    [[nodiscard]] bool in_control() const noexcept { return control_ == Control::ours || control_ == Control::returning; }
+    [[nodiscard]] const TakeoverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
+
+    /// Stream this long before the request; autopilots refuse a mode whose set-points they have not seen [s].
+    static constexpr Seconds kAnnounce = 0.1F;
+    /// Wait this long for a confirmation [s].
+    static constexpr Seconds kConfirm = 1.0F;
+    static constexpr int kTries = 3;
+
+private:
+    [[nodiscard]] TakeoverOutput idle(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput ask(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput fly(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] bool foreign(const TakeoverInput& input) const noexcept;
+    [[nodiscard]] TakeoverOutput overrule() noexcept;
+
+    Control control_ = Control::autopilot;
+    std::uint32_t former_mode_ = 0;
+    link::FlightMode mode_ = link::FlightMode::unknown;
+    TimePoint since_;
+    int tries_ = 0;
+    bool owed_ = false;  ///< a fault of ours interrupted the flight in a mode that we had asked for
+    TakeoverDiagnostics diagnostics_;
+};
+
+}  // namespace jink::app
