@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 
@@ -39,12 +40,25 @@ struct Weights {
     float closeness = 0.50F;
 };
 [[nodiscard]] bool is_valid(const Weights& weights) noexcept;
+/// The seven combinations that the source tried, in its order (Pinheiro tab. 4.8); the fifth is the default.
+inline constexpr std::array<Weights, 7> kTriedWeights{{{0.20F, 0.10F, 0.70F},
+                                                       {0.30F, 0.10F, 0.60F},
+                                                       {0.25F, 0.15F, 0.60F},
+                                                       {0.40F, 0.10F, 0.50F},
+                                                       {0.30F, 0.20F, 0.50F},
+                                                       {0.35F, 0.15F, 0.50F},
+                                                       {0.35F, 0.25F, 0.40F}}};
 
 /// Bounds of the min-max normalisation of time and energy, one set per vehicle.
 struct Caps {
     float time_low = 1.2530F, time_high = 7.0814F;    ///< [s]
     float energy_low = 249.59F, energy_high = 1759.0F;  ///< [J]
 };
+/// Finite, low < 1.15 high for the time and low < high for the energy, lows >= 0.
+[[nodiscard]] bool is_valid(const Caps& caps) noexcept;
+
+/// The source's upper bound of the normalised time is this much above its cap (Pinheiro 4.2.2.1).
+inline constexpr float kTimeHeadroom = 1.15F;
 
 /// A moving threat as the closeness term sees it.
 struct MovingThreat {
@@ -56,14 +70,19 @@ struct MovingThreat {
 /// Sum of segment times [s].
 [[nodiscard]] float flight_time(const path::TimedPath& path) noexcept;
 
-/// Smoothness of a curve given in its own plane at abscissae `x` [m] with offsets `y` [m], equal lengths >= 3, x increasing.
-/// Numerical: central differences and the trapezoid rule, as the reference. O(n).
+/// Smoothness of a curve given in its own plane at abscissae `x` [m] with offsets `y` [m], equal lengths >= 3, x increasing
+/// (Pinheiro eq. 4.6 to 4.9).
+///
+/// Numerical as the source's: derivatives by central differences over the index, one-sided at both ends, the second one as the
+/// derivative of the first; the integral by the trapezoid rule. Of the exact integral for a flat curve 57 points give 93 % for a simple
+/// candidate and 91 % for a symmetric one: the one-sided differences flatten the ends. O(n).
 [[nodiscard]] float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessMethod method) noexcept;
 
 /// S (1 + k_p |sin alpha|), alpha between the candidate's plane and the ground (Pinheiro eq. 4.10).
 [[nodiscard]] float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept;
 
-/// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the waypoint distances less the radius; infinity when that is <= 0.
+/// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the distances between the waypoints and the threat's centre
+/// less its radius; infinity when that bracket is <= 0. swept: distance to its whole path from 0 to `duration`. Path not empty. O(points).
 [[nodiscard]] float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
 /// M over threats (eq. 4.12): half the greatest plus half the mean; 0 for none.
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
@@ -81,7 +100,16 @@ struct MovingThreat {
 /// k_S S_rp + k_T T + k_C M on normalised terms.
 [[nodiscard]] float total(const NormalisedTerms& terms, const Weights& weights) noexcept;
 
-/// Caps for another vehicle: the two stored reference paths flown with it (section 6). Off line; O(waypoints).
+/// Times and energies of the two stored reference paths flown by a vehicle.
+///
+/// lower: main threat at D = 3 m on a level leg, R = 1 m; simple candidate, level plane, w = 2.1333 m. upper: D = 8.25 m ahead and
+/// 1.75 m below, R = 3 m; simple candidate, vertical plane, w = -9.6 m: its time is the nearest to the published cap of all
+/// candidates in that environment, and the only one that fits the source's number for it (path 39 when two planes of 13 symmetric
+/// and 13 simple candidates are counted through; 23 is the lower one in its first plane). 57 points, or kMaxPathPoints. O(points).
+[[nodiscard]] Caps reference_flights(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
+
+/// Caps for another vehicle, off line: the published ones, each scaled by what `reference_flights` says of this vehicle against
+/// the default one. The default vehicle so keeps the published caps, which its own flights do not all meet (docs/reproduction.md).
 [[nodiscard]] Caps caps_for(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
 
 }  // namespace jink::cost

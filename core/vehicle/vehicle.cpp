@@ -109,7 +109,7 @@ bool is_valid(const VehicleLimits& limits) noexcept
 bool is_valid(const Airframe& airframe) noexcept
 {
     return positive(airframe.mass) && not_negative(airframe.drag_coefficient) && not_negative(airframe.effective_area) &&
-           positive(airframe.blades) && positive(airframe.chord) && positive(airframe.rotor_radius) &&
+           not_negative(airframe.blade_drag_coefficient) && positive(airframe.tip_speed) && positive(airframe.blades) && positive(airframe.chord) && positive(airframe.rotor_radius) &&
            positive(airframe.rotors) && positive(airframe.air_density);
 }
 

@@ -42,6 +42,9 @@ struct Airframe {
     float rotor_radius = 0.1905F;   ///< [m]
     float rotors = 4.0F;
     float air_density = 1.225F;     ///< [kg/m3]
+    float blade_drag_coefficient = 0.5F;  ///< [-]; the source reads it from the same setting as the one above, which makes the
+                                          ///< profile power large: fit to compare paths, not to size a battery
+    float tip_speed = 272.2F;       ///< of a blade [m/s]; its bound by the source, 0.8 of the speed of sound (Pinheiro 4.1.6)
 };
 
 /// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the climb or

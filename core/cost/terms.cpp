@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/cost/cost.hpp"
+
+namespace jink::cost {
+namespace {
+
+/// Derivative of `values` over their index: central differences, one-sided at the ends.
+template <class Values>
+float gradient(const Values& values, std::size_t i, std::size_t n) noexcept
+{
+    if (i == 0) {
+        return values(1) - values(0);
+    }
+    if (i + 1 == n) {
+        return values(i) - values(i - 1);
+    }
+    return 0.5F * (values(i + 1) - values(i - 1));
+}
+
+/// First and second derivatives of one coordinate over the index.
+struct Derivatives {
+    float first = 0.0F;
+    float second = 0.0F;
+};
+
+Derivatives derive(std::span<const float> values, std::size_t i) noexcept
+{
+    const std::size_t n = values.size();
+    const auto value = [&](std::size_t k) { return values[k]; };
+    const auto slope = [&](std::size_t k) { return gradient(value, k, n); };
+    return {slope(i), gradient(slope, i, n)};
+}
+
+float integral_of_squared_curvature(std::span<const float> x, std::span<const float> y) noexcept
+{
+    float integral = 0.0F;
+    float before = 0.0F;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Derivatives dx = derive(x, i);
+        const Derivatives dy = derive(y, i);
+        const float bend = dx.second * dy.first - dx.first * dy.second;
+        const float stretch = dx.first * dx.first + dy.first * dy.first;
+        const float squared = bend * bend / (stretch * stretch * stretch);
+        if (i > 0) {
+            integral += 0.5F * (squared + before) * (x[i] - x[i - 1]);
+        }
+        before = squared;
+    }
+    return integral;
+}
+
+float standard_deviation(std::span<const float> y) noexcept
+{
+    const auto n = static_cast<float>(y.size());
+    float sum = 0.0F;
+    for (const float value : y) {
+        sum += value;
+    }
+    const float mean = sum / n;
+    float squares = 0.0F;
+    for (const float value : y) {
+        squares += (value - mean) * (value - mean);
+    }
+    return std::sqrt(squares / n);
+}
+
+float mean_second_derivative(std::span<const float> x, std::span<const float> y) noexcept
+{
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const Derivatives dx = derive(x, i);
+        const Derivatives dy = derive(y, i);
+        sum += std::abs(dx.first * dy.second - dx.second * dy.first) / (dx.first * dx.first * dx.first);
+    }
+    return sum / static_cast<float>(x.size());
+}
+
+}  // namespace
+
+float flight_time(const path::TimedPath& path) noexcept
+{
+    return path.duration();
+}
+
+float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessMethod method) noexcept
+{
+    switch (method) {
+        case SmoothnessMethod::curvature:
+            return integral_of_squared_curvature(x, y);
+        case SmoothnessMethod::deviation:
+            return standard_deviation(y);
+        case SmoothnessMethod::second_derivative:
+            return mean_second_derivative(x, y);
+    }
+    return 0.0F;
+}
+
+float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept
+{
+    return smoothness * (1.0F + penalty * std::abs(sin_alpha));
+}
+
+float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept
+{
+    // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to the velocity.
+    const float speed_squared = threat.motion.velocity.squaredNorm();
+    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
+    float least_squared = std::numeric_limits<float>::infinity();
+    float sum = 0.0F;
+    for (const path::PathPoint& point : path.points) {
+        const Vec3 apart = point.position - threat.motion.position;
+        const Seconds t = method == ClosenessMethod::time_aware
+                              ? point.time
+                              : std::clamp(apart.dot(threat.motion.velocity) * per_speed, 0.0F, threat.duration);
+        const float squared = (apart - t * threat.motion.velocity).squaredNorm();
+        sum += std::sqrt(squared);
+        least_squared = std::min(least_squared, squared);
+    }
+    const float mean = sum / static_cast<float>(path.points.size());
+    const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared) - threat.radius;
+    return bracket > 0.0F ? 1.0F / bracket : std::numeric_limits<float>::infinity();
+}
+
+float combined_closeness(std::span<const float> per_threat) noexcept
+{
+    if (per_threat.empty()) {
+        return 0.0F;
+    }
+    float sum = 0.0F;
+    float greatest = 0.0F;
+    for (const float f : per_threat) {
+        sum += f;
+        greatest = std::max(greatest, f);
+    }
+    return 0.5F * greatest + 0.5F * sum / static_cast<float>(per_threat.size());
+}
+
+float energy(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept
+{
+    const float drag = 0.25F * airframe.drag_coefficient * airframe.air_density * airframe.effective_area;
+    float mechanical = 0.0F;
+    float dragged = 0.0F;
+    for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+        const path::PathPoint& from = path.points[i];
+        const path::PathPoint& to = path.points[i + 1];
+        const Vec3 step = to.position - from.position;
+        const Vec3 sum = to.velocity + from.velocity;
+        // (v1^2 - v0^2) / 2 as a product of sum and difference: no small difference of large heights or squares.
+        const float kinetic = 0.5F * sum.dot(to.velocity - from.velocity);
+        mechanical += airframe.mass * std::abs(kinetic + kGravity * step.z());
+        dragged += step.norm() * sum.squaredNorm();
+    }
+    return mechanical + drag * dragged;
+}
+
+}  // namespace jink::cost
