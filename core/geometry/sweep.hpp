@@ -39,23 +39,32 @@ struct Approach {
 /// @param horizon  interval length [s], > 0
 /// @return first and last contact within [0, horizon], or nothing. Touching counts as contact.
 ///
-/// Exact for straight motion; error of the instants below 3e-5 * horizon for coordinates up to 1 km (float rounding);
-/// a motion that comes within 1e-5 * (1 + largest coordinate) of touching may be reported as contact, a true contact
-/// deeper than that is never missed. O(1). Source: geometric planner, section 4 (Pinheiro 3.4, made time-aware).
+/// Exact for straight motion but for float rounding, which works to the safe side. With
+/// e = 1e-6 * (sum of the relative position's magnitudes + sum of `half` + radius) [m]:
+/// a contact is never missed; what is reported comes within e of touching; `first` is never later and `last` never earlier than
+/// the true instant (by more than 2.4e-7 * horizon); and at both the distance exceeds the radius by e at most, so that an
+/// instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s count as none.
+/// O(1): six divisions, two roots. Source: geometric planner, section 4 (Pinheiro 3.4, made time-aware).
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Vec3& half, const Motion& own, const Motion& threat,
                                                            float radius, Seconds horizon) noexcept;
 
-/// The same for two spheres: `radius` is the sum of both. O(1), one quadratic.
+/// The same for two spheres: `radius` is the sum of both. Same accuracy. O(1), one root.
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Motion& own, const Motion& threat, float radius,
                                                            Seconds horizon) noexcept;
 
 /// Least distance in [0, horizon] between the box and the (moving) centre point of a threat; subtract the threat's radius
-/// for the margin. Accuracy as above. horizon >= 0. O(1): piecewise quadratic with at most six breakpoints.
+/// for the margin. horizon >= 0.
+///
+/// Rounding error of the distance below 5e-7 * (sum of magnitudes of relative position, way travelled in `horizon` and `half`);
+/// `when` is an instant whose distance is the least one within that. O(1): a piecewise quadratic of at most six breakpoints.
 [[nodiscard]] Approach least_distance(const Vec3& half, const Motion& own, const Motion& threat, Seconds horizon) noexcept;
 
 /// Distance between the box swept from `own_from` to `own_to` and the segment `threat_from`..`threat_to`, regardless of
 /// time [m]: 0 when they touch. Subtract the threat's radius for the margin of the source's "swept" dynamic security
-/// (Pinheiro 3.4.2). Exact up to rounding (1e-5 * (1 + largest coordinate)); degenerate (zero-length) segments allowed. O(1).
+/// (Pinheiro 3.4.2). Zero-length, parallel and nearly parallel segments are no exception.
+///
+/// Rounding error below 5e-7 * (sum of magnitudes of threat_from - own_from, of both ways and of `half`); touching may come out
+/// as such an error instead of 0. O(1): four closest approaches and one plane.
 [[nodiscard]] float swept_distance(const Vec3& half, const Vec3& own_from, const Vec3& own_to, const Vec3& threat_from,
                                    const Vec3& threat_to) noexcept;
 
