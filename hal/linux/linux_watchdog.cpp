@@ -23,28 +23,19 @@ WatchdogStatus cause_of(int error) noexcept
     case ENOENT:
     case ENOTDIR:
     case ENODEV:
-    case ENXIO:
-        return WatchdogStatus::no_device;
-    case EBUSY:
-        return WatchdogStatus::busy;
-    default:
-        return WatchdogStatus::failed;
+    case ENXIO: return WatchdogStatus::no_device;
+    case EBUSY: return WatchdogStatus::busy;
+    default: return WatchdogStatus::failed;
     }
 }
 
-bool write_byte(int descriptor, char value) noexcept
-{
-    return ::write(descriptor, &value, 1) == 1;
-}
+bool write_byte(int descriptor, char value) noexcept { return ::write(descriptor, &value, 1) == 1; }
 
 }  // namespace
 
 static_assert(sizeof(sockaddr_un::sun_path) == 108);
 
-LinuxWatchdog::~LinuxWatchdog()
-{
-    close();
-}
+LinuxWatchdog::~LinuxWatchdog() { close(); }
 
 WatchdogStatus LinuxWatchdog::open_device(std::string_view path, int timeout_s) noexcept
 {

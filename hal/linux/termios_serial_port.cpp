@@ -27,17 +27,13 @@ OpenStatus cause_of(int error) noexcept
     case ENOENT:
     case ENOTDIR:
     case ENODEV:
-    case ENXIO:
-        return OpenStatus::no_device;
+    case ENXIO: return OpenStatus::no_device;
     case EACCES:
     case EPERM:
-    case EBUSY:
-        return OpenStatus::access_denied;
+    case EBUSY: return OpenStatus::access_denied;
     case EISDIR:
-    case ENOTTY:
-        return OpenStatus::not_a_serial_device;
-    default:
-        return OpenStatus::failed;
+    case ENOTTY: return OpenStatus::not_a_serial_device;
+    default: return OpenStatus::failed;
     }
 }
 
@@ -49,10 +45,7 @@ bool is_near(std::uint32_t actual, std::uint32_t wanted) noexcept
 
 }  // namespace
 
-TermiosSerialPort::~TermiosSerialPort()
-{
-    release();
-}
+TermiosSerialPort::~TermiosSerialPort() { release(); }
 
 OpenStatus TermiosSerialPort::open(std::string_view path, std::uint32_t baud, std::int64_t retry_period_us) noexcept
 {

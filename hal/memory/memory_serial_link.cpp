@@ -37,10 +37,7 @@ std::uint64_t MemoryLine::random() noexcept
     return z ^ (z >> 31U);
 }
 
-bool MemoryLine::chance(std::uint32_t per_million) noexcept
-{
-    return random() % kMillion < per_million;
-}
+bool MemoryLine::chance(std::uint32_t per_million) noexcept { return random() % kMillion < per_million; }
 
 bool MemoryLine::stalled(std::int64_t now_us) const noexcept
 {

@@ -26,9 +26,9 @@ struct StallWindow {
 
 /// What is wrong with one direction of a line.
 struct LineFaults {
-    std::uint32_t loss_per_million = 0;        ///< chance that a byte vanishes, 0 .. 1'000'000
-    std::uint32_t corruption_per_million = 0;  ///< chance that one bit of a byte is flipped, 0 .. 1'000'000
-    std::int64_t latency_us = 0;               ///< time from write to readable [us], >= 0
+    std::uint32_t loss_per_million = 0;          ///< chance that a byte vanishes, 0 .. 1'000'000
+    std::uint32_t corruption_per_million = 0;    ///< chance that one bit of a byte is flipped, 0 .. 1'000'000
+    std::int64_t latency_us = 0;                 ///< time from write to readable [us], >= 0
     std::size_t capacity = kMemoryLineCapacity;  ///< bytes under way at once, 0 .. kMemoryLineCapacity
     bool back_pressure = true;  ///< full: true, write takes less (pty, USB); false, bytes are overrun as on a bare UART
 };
@@ -100,7 +100,9 @@ public:
 
     private:
         friend class MemorySerialLink;
-        Port(const MemorySerialLink& link, MemoryLine& out, MemoryLine& in) noexcept : link_(link), out_(out), in_(in) {}
+        Port(const MemorySerialLink& link, MemoryLine& out, MemoryLine& in) noexcept : link_(link), out_(out), in_(in)
+        {
+        }
 
         const MemorySerialLink& link_;
         MemoryLine& out_;

@@ -18,15 +18,9 @@ IoctlHook::Answer hook;
 
 }  // namespace
 
-IoctlHook::IoctlHook(Answer answer)
-{
-    hook = std::move(answer);
-}
+IoctlHook::IoctlHook(Answer answer) { hook = std::move(answer); }
 
-IoctlHook::~IoctlHook()
-{
-    hook = nullptr;
-}
+IoctlHook::~IoctlHook() { hook = nullptr; }
 
 int kernel_ioctl(int descriptor, unsigned long request, void* argument)
 {

@@ -1,0 +1,255 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks the house rules that can be read off the sources.
+
+    layering.py includes     who may know whom (docs/architecture.md), over the include lines
+    layering.py spdx         every source starts with its licence
+    layering.py length       files longer than they should be; an error beyond MOST_LINES
+    layering.py self-test    plants one violation of each kind and fails when it is not found
+
+Python 3 standard library only. `--root FOLDER` checks another tree.
+"""
+import argparse
+import pathlib
+import re
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PLACES = ("core", "hal", "firmware", "tests", "toolchain")
+PASSED_OVER = {"node_modules", "__pycache__", "build", ".git"}
+CPP = {".hpp", ".cpp", ".h", ".c"}
+
+# Rooms of core from the ground up: a room knows itself and every floor below its own, never a neighbour.
+FLOORS = (
+    ("core/base",),
+    ("core/geometry",),
+    ("core/vehicle",),
+    ("core/path",),
+    ("core/world",),
+    ("core/cost",),
+    ("core/geometric", "core/reach", "core/orca", "core/airspace", "core/tree", "core/fleet", "core/soaring"),
+    ("core/avoid",),
+)
+# What lies in a place itself, not in a room of it (core/capacity.hpp), is known to the whole place.
+CORE = ("core",) + tuple(room for floor in FLOORS for room in floor)
+HAL_PLATFORMS = ("hal/linux", "hal/memory", "hal/mps2_an500", "hal/stm32f405")
+HAL_INTERFACES = ("hal",)
+
+# System headers that flashed code may include. No heap, no I/O, no clock, no threads behind any of them.
+STANDARD = set("""algorithm array atomic bit cassert cerrno cfloat charconv climits cmath compare concepts cstddef
+    cstdint cstring functional initializer_list iterator limits numbers numeric optional ranges ratio span string_view
+    tuple type_traits utility variant version""".split())
+EMBEDDED = ("core", "hal", "firmware/link", "firmware/app")
+THIRD_PARTY = ("Eigen/", "ccd/")  # core alone
+
+WANTED_LINES = 400
+MOST_LINES = 450
+
+
+def floors_below():
+    known = {"core": {"core"}}
+    below = {"core"}
+    for floor in FLOORS:
+        for room in floor:
+            known[room] = below | {room}
+        below = below | set(floor)
+    return known
+
+
+def rules():
+    """room -> rooms it may include; None: any."""
+    known = floors_below()
+    known["hal"] = {"hal"}
+    for platform in HAL_PLATFORMS:
+        known[platform] = {"hal", platform}
+    known["firmware/link"] = {"core", "core/base", "core/world", "firmware/link"}
+    known["firmware/app"] = set(CORE) | {"firmware/link", "firmware/app"} | set(HAL_INTERFACES)
+    return known
+
+
+def room_of(path):
+    """Room of a file or of an include: core/geometry/sweep.hpp -> core/geometry, hal/clock.hpp -> hal."""
+    parts = path.split("/")
+    if parts[0] in ("core", "hal", "firmware") and len(parts) > 2:
+        return "/".join(parts[:2])
+    return parts[0]
+
+
+def sources(root, suffixes=None):
+    for place in PLACES:
+        for path in sorted((root / place).rglob("*")):
+            relative = path.relative_to(root)
+            if PASSED_OVER & set(relative.parts) or not path.is_file():
+                continue
+            if suffixes is None or path.suffix in suffixes:
+                yield path, relative.as_posix()
+
+
+def include_lines(path):
+    for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        match = re.match(r'\s*#\s*include\s*([<"])([^">]+)[">]', line)
+        if match:
+            yield number, match.group(1) == '"', match.group(2)
+
+
+def quoted_error(room, target, known):
+    """What is wrong with room's #include "target", or None."""
+    place = target.split("/")[0]
+    if place not in PLACES or "/" not in target or ".." in target:
+        return f'"{target}" does not name its room'
+    if place == "tests":
+        return None if room == "tests" else f"{room} may not know tests"
+    if place == "toolchain":
+        return None if room in ("tests", "toolchain") else f"{room} may not know toolchain"
+    if room in ("tests", "toolchain"):
+        return None
+    if room in known:
+        return None if room_of(target) in known[room] else f"{room} may not know {room_of(target)}"
+    if room.startswith("firmware/"):  # an image: all of firmware/app and what that knows, one platform
+        allowed = known["firmware/app"] | {room, *HAL_PLATFORMS}
+        return None if room_of(target) in allowed else f"{room} may not know {room_of(target)}"
+    return f"{room} is not in the table of toolchain/checks/layering.py"
+
+
+def system_error(room, target):
+    """What is wrong with room's #include <target>, or None."""
+    place = room.split("/")[0]
+    if room not in EMBEDDED and place not in EMBEDDED or room.startswith("hal/"):
+        return None  # platforms and host programs: whatever the system has
+    if target in STANDARD or (place == "core" and target.startswith(THIRD_PARTY)):
+        return None
+    return f"<{target}> is not among the headers of flashed code"
+
+
+def check_includes(root):
+    errors = []
+    known = rules()
+    platforms_of = {}
+    for path, name in sources(root, CPP):
+        room = room_of(name)
+        for number, quoted, target in include_lines(path):
+            error = quoted_error(room, target, known) if quoted else system_error(room, target)
+            if error:
+                errors.append(f"{name}:{number}: {error}")
+            if quoted and room.startswith("firmware/") and room_of(target) in HAL_PLATFORMS:
+                platforms_of.setdefault(room, set()).add(room_of(target))
+    for room, platforms in sorted(platforms_of.items()):
+        if len(platforms) > 1:
+            errors.append(f"{room}: more than one platform: {', '.join(sorted(platforms))}")
+    return errors
+
+
+def needs_licence(path):
+    if path.suffix in CPP | {".py", ".sh", ".cmake", ".js", ".mjs", ".cjs", ".S", ".s", ".ld"}:
+        return True
+    if path.name == "CMakeLists.txt":
+        return True
+    if path.suffix:
+        return False
+    with path.open("rb") as file:
+        return file.read(2) == b"#!"
+
+
+def check_spdx(root):
+    errors = []
+    files = [(root / name, name) for name in ("CMakeLists.txt", ".ci/run") if (root / name).exists()]
+    for path, name in files + list(sources(root)):
+        if not needs_licence(path):
+            continue
+        lines = path.read_text(encoding="utf-8").splitlines()[:2]
+        first = 1 if lines and lines[0].startswith("#!") else 0
+        if not re.match(r"(//|#|/\*) SPDX-License-Identifier: \S", "".join(lines[first : first + 1])):
+            errors.append(f"{name}: no SPDX-License-Identifier in its first line")
+    return errors
+
+
+def check_length(root):
+    errors = []
+    for path, name in sources(root, CPP | {".py"}):
+        lines = path.read_text(encoding="utf-8").splitlines()
+        if any("Generated by" in line for line in lines[:5]):
+            continue
+        if len(lines) > MOST_LINES:
+            errors.append(f"{name}: {len(lines)} lines, more than {MOST_LINES}: is there a second idea in it?")
+        elif len(lines) > WANTED_LINES:
+            print(f"{name}: {len(lines)} lines, should be at most {WANTED_LINES}")
+    return errors
+
+
+CHECKS = {"includes": check_includes, "spdx": check_spdx, "length": check_length}
+
+# Planted violations: check, file, text, what the error has to say.
+LICENCE = "// SPDX-License-Identifier: BSD-3-Clause\n"
+PLANTS = [
+    ("includes", "core/geometric/a.hpp", '#include "core/reach/b.hpp"\n', "may not know core/reach"),
+    ("includes", "core/base/a.hpp", '#include "core/geometry/b.hpp"\n', "may not know core/geometry"),
+    ("includes", "core/vehicle/a.hpp", '#include "core/path/b.hpp"\n', "may not know core/path"),
+    ("includes", "core/world/a.hpp", '#include "hal/clock.hpp"\n', "may not know hal"),
+    ("includes", "core/world/a.hpp", '  #  include "firmware/app/b.hpp"\n', "may not know firmware/app"),
+    ("includes", "core/unheard_of/a.hpp", '#include "core/base/b.hpp"\n', "not in the table"),
+    ("includes", "core/world/a.hpp", '#include "b.hpp"\n', "does not name its room"),
+    ("includes", "core/world/a.hpp", '#include "core/world/../base/b.hpp"\n', "does not name its room"),
+    ("includes", "core/world/a.cpp", "#include <vector>\n", "headers of flashed code"),
+    ("includes", "core/world/a.cpp", "#include <iostream>\n", "headers of flashed code"),
+    ("includes", "hal/a.hpp", '#include "core/base/time.hpp"\n', "may not know core/base"),
+    ("includes", "hal/a.hpp", "#include <termios.h>\n", "headers of flashed code"),
+    ("includes", "hal/linux/a.hpp", '#include "hal/memory/b.hpp"\n', "may not know hal/memory"),
+    ("includes", "hal/memory/a.hpp", '#include "core/base/random.hpp"\n', "may not know core/base"),
+    ("includes", "firmware/link/a.hpp", '#include "core/avoid/b.hpp"\n', "may not know core/avoid"),
+    ("includes", "firmware/link/a.hpp", '#include "hal/serial_port.hpp"\n', "may not know hal"),
+    ("includes", "firmware/link/a.hpp", "#include <Eigen/Core>\n", "headers of flashed code"),
+    ("includes", "firmware/app/a.hpp", '#include "hal/linux/b.hpp"\n', "may not know hal/linux"),
+    ("includes", "firmware/app/a.hpp", '#include "firmware/linux/b.hpp"\n', "may not know firmware/linux"),
+    ("includes", "firmware/linux/a.cpp", '#include "firmware/stm32f405/b.hpp"\n', "may not know firmware/stm32f405"),
+    ("includes", "firmware/linux/a.cpp", '#include "hal/linux/b.hpp"\n#include "hal/memory/c.hpp"\n', "more than one"),
+    ("includes", "firmware/linux/a.cpp", '#include "toolchain/sim/b.hpp"\n', "may not know toolchain"),
+    ("includes", "toolchain/sim/a.cpp", '#include "tests/unit/b.hpp"\n', "may not know tests"),
+    ("spdx", "core/world/a.hpp", "#pragma once\n", "no SPDX"),
+    ("spdx", "core/world/a.hpp", "\n" + LICENCE, "no SPDX"),
+    ("spdx", "toolchain/a", "#!/bin/sh\necho\n", "no SPDX"),
+    ("spdx", "tests/CMakeLists.txt", "", "no SPDX"),
+    ("length", "core/world/a.cpp", "\n" * (MOST_LINES + 1), "more than"),
+]
+# Nothing may be found in these.
+CLEAN = [
+    ("core/avoid/a.hpp", LICENCE + '#include "core/reach/b.hpp"\n#include "core/capacity.hpp"\n#include <cmath>\n'),
+    ("core/reach/a.cpp", LICENCE + '#include "core/cost/b.hpp"\n#include <Eigen/Core>\n// #include "hal/c.hpp"\n'),
+    ("hal/linux/a.cpp", LICENCE + '#include "hal/linux/a.hpp"\n#include "hal/clock.hpp"\n#include <termios.h>\n'),
+    ("firmware/app/a.hpp", LICENCE + '#include "hal/clock.hpp"\n#include "core/avoid/b.hpp"\n'),
+    ("firmware/linux/a.cpp", LICENCE + '#include "hal/linux/a.hpp"\n#include "firmware/app/b.hpp"\n#include <vector>\n'),
+    ("tests/unit/a.cpp", LICENCE + '#include "tests/unit/b.hpp"\n#include "core/base/c.hpp"\n#include <vector>\n'),
+    ("toolchain/sim/a.cpp", LICENCE + '#include "toolchain/sim/b.hpp"\n#include "hal/memory/c.hpp"\n'),
+    ("toolchain/run", "#!/bin/sh\n# SPDX-License-Identifier: BSD-3-Clause\n"),
+    ("toolchain/mesh/table.hpp", LICENCE + "// Generated by toolchain/mesh.\n" + "\n" * (MOST_LINES + 1)),
+]
+
+
+def self_test(_root):
+    errors = []
+    for check, name, text, expected in PLANTS + [(check, *clean, None) for clean in CLEAN for check in CHECKS]:
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / name
+            path.parent.mkdir(parents=True)
+            path.write_text(text, encoding="utf-8")
+            found = CHECKS[check](pathlib.Path(folder))
+            if expected is None and found:
+                errors.append(f"self-test: {check} finds fault with {name}: {found}")
+            elif expected is not None and not any(expected in error for error in found):
+                errors.append(f'self-test: {check} misses "{expected}" in {name}: {found}')
+    return errors
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("check", choices=[*CHECKS, "self-test"])
+    parser.add_argument("--root", type=pathlib.Path, default=ROOT)
+    arguments = parser.parse_args()
+    errors = {**CHECKS, "self-test": self_test}[arguments.check](arguments.root.resolve())
+    for error in errors:
+        print(error)
+    return 1 if errors else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
