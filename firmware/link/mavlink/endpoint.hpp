@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-
 #include "firmware/link/link.hpp"
+#include "firmware/link/mavlink/clock_sync.hpp"
+#include "firmware/link/mavlink/encoder.hpp"
+#include "firmware/link/mavlink/geodesy.hpp"
+#include "firmware/link/mavlink/messages.hpp"
+#include "firmware/link/mavlink/mission_client.hpp"
+#include "firmware/link/mavlink/modes.hpp"
+#include "firmware/link/mavlink/parser.hpp"
+#include "firmware/link/mavlink/transmit_buffer.hpp"
 
-// MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. Contract for the implementation:
+// MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. What it does with each message:
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its first HEARTBEAT,
 //   component 1, unless `Options::system_id` fixes it). Own state, modes and legs are taken from that autopilot alone; traffic
@@ -19,8 +25,8 @@
 // * Origin of the local frame: GPS_GLOBAL_ORIGIN; else HOME_POSITION (its lat/lon/alt less its local x, y, z); else GLOBAL_POSITION_INT
 //   less LOCAL_POSITION_NED when both are younger than 0.2 s. Until known, ADSB_VEHICLE counts no_origin. Local plane:
 //   north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (longitude wrap at 180 deg handled).
-// * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity 128 - verify);
-//   emitter_type 19, 20, 21 (point, cluster, line obstacle - verify): TrackReport::at_rest, velocity zero;
+// * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity 128);
+//   emitter_type 19 (point obstacle): TrackReport::at_rest, velocity zero;
 //   stamp = now - tslc (the application takes the assumed latency off). Without valid coordinates or altitude: out_of_range.
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by yaw); increment_f over increment; zero increment refused; 65535 unknown; > max: nothing;
 //   0..max: range (a value below min_distance means "nearer than min": kept as min_distance). DISTANCE_SENSOR orientations 0-7, 24, 25.
@@ -37,6 +43,114 @@ struct EndpointOptions {
     std::uint8_t system_id = 0;        ///< 0: that of the first autopilot heard
     std::uint8_t component_id = 196;
     float max_stamp_age = 1.0F;        ///< older own-state stamps are refused [s]
+};
+
+/// See the head of this file. Memory: about 6 KiB, most of it the transmit buffer. Frames that are refused are counted by the parser, reports
+/// that are refused by `diagnostics`.
+class Endpoint final : public Link {
+public:
+    /// Room for the longest burst of one step (a heartbeat, a set-point, texts, three parameters) many times over.
+    static constexpr std::size_t kTransmitBytes = 4096;
+
+    explicit Endpoint(const EndpointOptions& options = {}, Signing* signing = nullptr) noexcept;
+
+    void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept override;
+    void service(TimePoint now) noexcept override;
+
+    [[nodiscard]] std::span<const std::byte> pending() const noexcept override { return transmit_.pending(); }
+    void consume(std::size_t n) noexcept override { transmit_.consume(n); }
+    void discard_pending() noexcept override { transmit_.clear(); }
+
+    void send_heartbeat(SystemState state) noexcept override;
+    void send_velocity(const Vec3& velocity, TimePoint now) noexcept override;
+    void send_collision(const CollisionWarning& warning) noexcept override;
+    void send_text(Severity severity, std::string_view text) noexcept override;
+    void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept override;
+    void acknowledge(const CommandRequest& request, CommandResult result) noexcept override;
+    void request_external_mode() noexcept override;
+    void request_mode(std::uint32_t custom_mode) noexcept override;
+    void request_hold_mode() noexcept override;
+
+    [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept override { return diagnostics_; }
+    [[nodiscard]] const ParserDiagnostics& parser_diagnostics() const noexcept { return parser_.diagnostics(); }
+    /// 0 until an autopilot was heard.
+    [[nodiscard]] std::uint8_t system_id() const noexcept { return system_; }
+    [[nodiscard]] bool has_origin() const noexcept { return origin_rank_ > 0; }
+
+private:
+    struct Context {
+        const Frame& frame;
+        TimePoint now;
+        Inbox& inbox;
+    };
+
+    void dispatch(const Context& c) noexcept;
+    void dispatch_autopilot(const Context& c) noexcept;
+    void dispatch_sensors(const Context& c) noexcept;
+    void dispatch_requests(const Context& c) noexcept;
+
+    void on_heartbeat(const Context& c) noexcept;
+    void on_local_position(const Context& c) noexcept;
+    void on_attitude(const Context& c) noexcept;
+    void on_odometry(const Context& c) noexcept;
+    void on_global_position(const Context& c) noexcept;
+    void on_origin(const Context& c) noexcept;
+    void on_home(const Context& c) noexcept;
+    void on_position_target(const Context& c) noexcept;
+    void on_mission_item(const Context& c) noexcept;
+    void on_command_ack(const Context& c) noexcept;
+    void on_timesync(const Context& c) noexcept;
+    void on_adsb(const Context& c) noexcept;
+    void on_obstacle_distance(const Context& c) noexcept;
+    void on_distance_sensor(const Context& c) noexcept;
+    void on_command(const Context& c) noexcept;
+    void on_param(const Context& c) noexcept;
+
+    [[nodiscard]] bool from_autopilot(const Frame& frame) const noexcept;
+    [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
+    void note(ClockEvent event) noexcept;
+    [[nodiscard]] bool stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) noexcept;
+    void set_origin(const GlobalPosition& origin, int rank) noexcept;
+    [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
+    void resolve_leg(Inbox& inbox) noexcept;
+    void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
+    void send_mode(std::uint32_t custom_mode) noexcept;
+    template <Message M>
+    void send(const M& message) noexcept;
+
+    EndpointOptions options_;
+    Signing* signing_;
+    Parser parser_;
+    TransmitBuffer<kTransmitBytes> transmit_;
+    LinkDiagnostics diagnostics_;
+    ClockSync clock_;
+    MissionClient mission_;
+    std::uint8_t system_;
+    std::uint8_t sequence_ = 0;
+    TimePoint last_timesync_;
+    bool timesync_asked_ = false;
+
+    AutopilotReport autopilot_;
+    VehicleClass vehicle_class_ = VehicleClass::copter;
+    bool rebooted_ = false;
+
+    vehicle::VehicleState own_;
+    bool has_yaw_ = false;
+    bool has_odometry_ = false;
+    TimePoint last_odometry_;
+    std::uint8_t reset_counter_ = 0;
+    bool has_local_ = false;
+    TimePoint local_heard_;
+
+    int origin_rank_ = 0;  ///< 0 none, 1 own global less local position, 2 home, 3 GPS_GLOBAL_ORIGIN
+    GlobalPosition origin_;
+    bool has_home_ = false;
+    Vec3 home_ = Vec3::Zero();
+
+    bool has_target_ = false;
+    Vec3 target_ = Vec3::Zero();
+    bool has_mission_leg_ = false;
+    bool leg_waits_ = false;  ///< both ends are here, but cannot be placed yet
 };
 
 }  // namespace jink::link::mavlink

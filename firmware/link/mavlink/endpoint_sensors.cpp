@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Traffic and range sensors, and what others ask of us.
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/link/mavlink/endpoint.hpp"
+
+namespace jink::link::mavlink {
+namespace {
+
+constexpr std::uint8_t kFrameGlobal = 0;
+constexpr std::uint8_t kFrameLocalNed = 1;
+constexpr std::uint8_t kFrameBodyFrd = 12;
+
+// ADSB_FLAGS and ADSB_EMITTER_TYPE
+constexpr unsigned kValidCoordinates = 1;
+constexpr unsigned kValidAltitude = 2;
+constexpr unsigned kValidHeading = 4;
+constexpr unsigned kValidVelocity = 8;
+constexpr unsigned kValidVerticalVelocity = 128;
+constexpr std::uint8_t kPointObstacle = 19;
+
+constexpr std::uint16_t kUnknownDistance = 65535;
+constexpr float kCentimetre = 0.01F;
+constexpr float kDegree = kPi / 180.0F;
+/// Beam width taken for a range finder that does not say its own: half angle [rad].
+constexpr float kDefaultHalfAngle = 0.1F;
+
+}  // namespace
+
+void Endpoint::dispatch_sensors(const Context& c) noexcept
+{
+    const bool same_system = c.frame.header.system_id == system_;
+    switch (c.frame.message_id) {
+    case AdsbVehicle::kInfo.id:
+        if (same_system) {
+            on_adsb(c);
+            return;
+        }
+        break;
+    case ObstacleDistance::kInfo.id:
+        if (same_system) {
+            on_obstacle_distance(c);
+            return;
+        }
+        break;
+    case DistanceSensor::kInfo.id:
+        if (same_system) {
+            on_distance_sensor(c);
+            return;
+        }
+        break;
+    default: dispatch_requests(c); return;
+    }
+    ++diagnostics_.frames_ignored;
+}
+
+void Endpoint::on_adsb(const Context& c) noexcept
+{
+    AdsbVehicle m;
+    static_cast<void>(decode(c.frame, m));
+    const GlobalPosition where{m.lat, m.lon, m.altitude};
+    constexpr unsigned kNeeded = kValidCoordinates | kValidAltitude;
+    if ((m.flags & kNeeded) != kNeeded || !is_on_earth(where)) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (origin_rank_ == 0) {
+        ++diagnostics_.no_origin;
+        return;
+    }
+    TrackReport report;
+    report.id = m.ICAO_address;
+    report.stamp = c.now - static_cast<Seconds>(m.tslc);
+    report.position = to_local(where, origin_);
+    report.at_rest = m.emitter_type == kPointObstacle;
+    const bool level = (m.flags & kValidHeading) != 0 && (m.flags & kValidVelocity) != 0;
+    report.has_velocity = report.at_rest || level;
+    if (level && !report.at_rest) {
+        const float yaw = swap_heading_yaw(static_cast<float>(m.heading) * 0.01F * kDegree);
+        const float speed = static_cast<float>(m.hor_velocity) * kCentimetre;
+        const float climb = (m.flags & kValidVerticalVelocity) != 0 ? static_cast<float>(m.ver_velocity) * kCentimetre : 0.0F;
+        report.velocity = Vec3(speed * std::cos(yaw), speed * std::sin(yaw), climb);
+    }
+    if (!c.inbox.tracks.try_push_back(report)) {
+        ++diagnostics_.inbox_full;
+    }
+}
+
+void Endpoint::on_obstacle_distance(const Context& c) noexcept
+{
+    ObstacleDistance m;
+    static_cast<void>(decode(c.frame, m));
+    if (!std::isfinite(m.increment_f) || !std::isfinite(m.angle_offset)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    const float increment = m.increment_f != 0.0F ? m.increment_f : static_cast<float>(m.increment);
+    const bool known_frame = m.frame == kFrameGlobal || m.frame == kFrameLocalNed || m.frame == kFrameBodyFrd;
+    // Sectors below a degree would leave most of the circle unseen, above 180 they say nothing.
+    if (!known_frame || std::abs(increment) < 0.5F || std::abs(increment) > 180.0F || std::abs(m.angle_offset) > 360.0F ||
+        m.max_distance == 0 || m.min_distance > m.max_distance) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (m.frame == kFrameBodyFrd && !has_yaw_) {
+        ++diagnostics_.no_origin;
+        return;
+    }
+    RangeScan& scan = c.inbox.scan;
+    scan.stamp = c.now;
+    scan.sensor = m.sensor_type;
+    scan.min_range = static_cast<float>(m.min_distance) * kCentimetre;
+    scan.max_range = static_cast<float>(m.max_distance) * kCentimetre;
+    scan.increment = -increment * kDegree;
+    const float forward = m.frame == kFrameBodyFrd ? own_.yaw : 0.5F * kPi;
+    scan.yaw_first = forward - m.angle_offset * kDegree;
+    scan.ranges.clear();
+    const auto sectors = std::min<std::size_t>(kMaxScanSectors, static_cast<std::size_t>(std::ceil(360.0F / std::abs(increment))));
+    for (std::size_t i = 0; i < sectors; ++i) {
+        const std::uint16_t d = m.distances[i];
+        const float range = d == kUnknownDistance ? RangeScan::kUnknown
+                            : d > m.max_distance  ? RangeScan::kNothing
+                                                  : static_cast<float>(std::max(d, m.min_distance)) * kCentimetre;
+        scan.ranges.unchecked_push_back(range);
+    }
+    c.inbox.has_scan = true;
+}
+
+void Endpoint::on_distance_sensor(const Context& c) noexcept
+{
+    DistanceSensor m;
+    static_cast<void>(decode(c.frame, m));
+    constexpr std::uint8_t kUp = 24;
+    constexpr std::uint8_t kDown = 25;
+    constexpr std::uint8_t kInvalidSignal = 1;
+    const bool level = m.orientation <= 7;
+    if (!std::isfinite(m.horizontal_fov)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if ((!level && m.orientation != kUp && m.orientation != kDown) || m.max_distance == 0 || m.min_distance > m.max_distance ||
+        m.signal_quality == kInvalidSignal) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (level && !has_yaw_) {
+        ++diagnostics_.no_origin;
+        return;
+    }
+    RangeReading reading;
+    reading.stamp = c.now;
+    reading.sensor = m.id;
+    reading.max_range = static_cast<float>(m.max_distance) * kCentimetre;
+    reading.range = m.current_distance > m.max_distance
+                        ? RangeScan::kNothing
+                        : static_cast<float>(std::max(m.current_distance, m.min_distance)) * kCentimetre;
+    reading.half_angle = m.horizontal_fov > 0.0F ? std::min(0.5F * m.horizontal_fov, 0.5F * kPi) : kDefaultHalfAngle;
+    if (level) {
+        const float yaw = own_.yaw - static_cast<float>(m.orientation) * 45.0F * kDegree;
+        reading.direction = Vec3(std::cos(yaw), std::sin(yaw), 0.0F);
+    } else {
+        reading.direction = m.orientation == kUp ? Vec3(Vec3::UnitZ()) : Vec3(-Vec3::UnitZ());
+    }
+    if (!c.inbox.readings.try_push_back(reading)) {
+        ++diagnostics_.inbox_full;
+    }
+}
+
+void Endpoint::dispatch_requests(const Context& c) noexcept
+{
+    switch (c.frame.message_id) {
+    case CommandLong::kInfo.id: on_command(c); break;
+    case ParamRequestRead::kInfo.id:
+    case ParamRequestList::kInfo.id:
+    case ParamSet::kInfo.id: on_param(c); break;
+    default: ++diagnostics_.frames_ignored;
+    }
+}
+
+void Endpoint::on_command(const Context& c) noexcept
+{
+    CommandLong m;
+    static_cast<void>(decode(c.frame, m));
+    if (!for_us(m.target_system, m.target_component)) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    const CommandRequest request{m.command,
+                                 {m.param1, m.param2, m.param3, m.param4, m.param5, m.param6, m.param7},
+                                 c.frame.header.system_id,
+                                 c.frame.header.component_id};
+    if (!c.inbox.commands.try_push_back(request)) {
+        ++diagnostics_.inbox_full;
+    }
+}
+
+void Endpoint::on_param(const Context& c) noexcept
+{
+    ParamRequest request;
+    bool ours = false;
+    ParamRequestList list;
+    ParamRequestRead read;
+    ParamSet set;
+    if (decode(c.frame, list)) {
+        // A list may be asked of every component at once.
+        ours = for_us(list.target_system, list.target_component) || (list.target_system == system_ && list.target_component == 0);
+        request.kind = ParamRequestKind::list;
+    } else if (decode(c.frame, read)) {
+        ours = for_us(read.target_system, read.target_component);
+        request.kind = read.param_index < 0 ? ParamRequestKind::read_by_name : ParamRequestKind::read_by_index;
+        request.index = read.param_index;
+        request.name = read.param_id;
+    } else if (decode(c.frame, set)) {
+        ours = for_us(set.target_system, set.target_component);
+        request.kind = ParamRequestKind::set;
+        request.name = set.param_id;
+        request.value_finite = std::isfinite(set.param_value);
+        request.value = request.value_finite ? set.param_value : 0.0F;
+    }
+    if (!ours) {
+        ++diagnostics_.frames_ignored;
+    } else if (!c.inbox.params.try_push_back(request)) {
+        ++diagnostics_.inbox_full;
+    }
+}
+
+}  // namespace jink::link::mavlink

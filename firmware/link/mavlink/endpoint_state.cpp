@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Own state, origin and leg.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "firmware/link/mavlink/endpoint.hpp"
+
+namespace jink::link::mavlink {
+namespace {
+
+constexpr std::uint8_t kFrameGlobal = 0;
+constexpr std::uint8_t kFrameLocalNed = 1;
+constexpr std::uint8_t kFrameGlobalRelative = 3;
+constexpr std::uint8_t kFrameGlobalInt = 5;
+constexpr std::uint8_t kFrameGlobalRelativeInt = 6;
+constexpr std::uint8_t kFrameBodyNed = 8;
+constexpr std::uint8_t kFrameBodyFrd = 12;
+/// Own positions and speeds beyond these are no vehicle's of ours [m, m/s].
+constexpr float kLargestPosition = 200000.0F;
+constexpr float kLargestSpeed = 400.0F;
+/// LOCAL_POSITION_NED is passed over while ODOMETRY, which says more, is younger than this [s].
+constexpr Seconds kOdometryFresh = 1.0F;
+/// Own global and local position this close in time make an origin [s].
+constexpr Seconds kPairAge = 0.2F;
+/// A target that moves less is the same target [m].
+constexpr float kSameTarget = 0.5F;
+
+bool plausible(const Vec3& position, const Vec3& velocity) noexcept
+{
+    return position.norm() <= kLargestPosition && velocity.norm() <= kLargestSpeed;
+}
+
+/// Standard deviation from the first three variances of an upper triangle of 6 x 6; 0 when not given.
+float sigma_of(const std::array<float, 21>& covariance) noexcept
+{
+    const float largest = std::max({covariance[0], covariance[6], covariance[11]});
+    return std::isfinite(covariance[0]) && std::isfinite(largest) && largest > 0.0F ? std::sqrt(largest) : 0.0F;
+}
+
+/// v turned by the unit quaternion q = (w, x, y, z).
+Vec3 turn(const std::array<float, 4>& q, const Vec3& v) noexcept
+{
+    const Vec3 axis(q[1], q[2], q[3]);
+    const Vec3 t = 2.0F * axis.cross(v);
+    return v + q[0] * t + axis.cross(t);
+}
+
+float heading_of(const std::array<float, 4>& q) noexcept
+{
+    return std::atan2(2.0F * (q[0] * q[3] + q[1] * q[2]), 1.0F - 2.0F * (q[2] * q[2] + q[3] * q[3]));
+}
+
+bool is_unit(const std::array<float, 4>& q) noexcept
+{
+    const float norm2 = q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3];
+    return norm2 > 0.9F && norm2 < 1.1F;
+}
+
+}  // namespace
+
+void Endpoint::deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept
+{
+    own_.stamp = stamp;
+    const bool reset = inbox.own_state.estimator_reset;
+    inbox.own_state.state = own_;
+    inbox.own_state.estimator_reset = reset;
+    inbox.has_own_state = true;
+}
+
+void Endpoint::on_local_position(const Context& c) noexcept
+{
+    LocalPositionNed m;
+    static_cast<void>(decode(c.frame, m));
+    const Vec3 position = swap_ned_enu({m.x, m.y, m.z});
+    const Vec3 velocity = swap_ned_enu({m.vx, m.vy, m.vz});
+    if (!is_finite(position) || !is_finite(velocity)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if (!plausible(position, velocity)) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    TimePoint stamp;
+    if (!stamp_of(clock_.extend(m.time_boot_ms), c.now, stamp)) {
+        return;
+    }
+    if (has_odometry_ && c.now - last_odometry_ < kOdometryFresh) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    own_.position = position;
+    own_.velocity = velocity;
+    own_.sigma_position = own_.sigma_velocity = 0.0F;
+    has_local_ = true;
+    local_heard_ = c.now;
+    deliver_own_state(c.inbox, stamp);
+}
+
+void Endpoint::on_attitude(const Context& c) noexcept
+{
+    AttitudeQuaternion m;
+    static_cast<void>(decode(c.frame, m));
+    const std::array<float, 4> q{m.q1, m.q2, m.q3, m.q4};
+    if (!std::all_of(q.begin(), q.end(), [](float x) { return std::isfinite(x); })) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if (!is_unit(q)) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    own_.yaw = swap_heading_yaw(heading_of(q));
+    has_yaw_ = true;
+}
+
+void Endpoint::on_odometry(const Context& c) noexcept
+{
+    Odometry m;
+    static_cast<void>(decode(c.frame, m));
+    const Vec3 ned(m.x, m.y, m.z);
+    Vec3 velocity(m.vx, m.vy, m.vz);
+    if (!is_finite(ned) || !is_finite(velocity) || !std::all_of(m.q.begin(), m.q.end(), [](float x) { return std::isfinite(x); })) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    const bool in_body = m.child_frame_id == kFrameBodyFrd || m.child_frame_id == kFrameBodyNed;
+    if (m.frame_id != kFrameLocalNed || (!in_body && m.child_frame_id != kFrameLocalNed) || !is_unit(m.q) || !plausible(ned, velocity)) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    // The stamp may be on the boot clock or since 1970; only the first can be mapped, the other counts as just arrived.
+    constexpr std::uint64_t kSince1970 = 1'000'000'000'000'000ULL;
+    TimePoint stamp = c.now;
+    if (m.time_usec < kSince1970 && !stamp_of(static_cast<std::int64_t>(m.time_usec), c.now, stamp)) {
+        return;
+    }
+    velocity = in_body ? turn(m.q, velocity) : velocity;
+    const bool reset = has_odometry_ && m.reset_counter != reset_counter_;
+    reset_counter_ = m.reset_counter;
+    has_odometry_ = true;
+    last_odometry_ = c.now;
+    own_.position = swap_ned_enu(ned);
+    own_.velocity = swap_ned_enu(velocity);
+    own_.yaw = swap_heading_yaw(heading_of(m.q));
+    own_.sigma_position = sigma_of(m.pose_covariance);
+    own_.sigma_velocity = sigma_of(m.velocity_covariance);
+    has_yaw_ = has_local_ = true;
+    local_heard_ = c.now;
+    c.inbox.own_state.estimator_reset = c.inbox.own_state.estimator_reset || reset;
+    deliver_own_state(c.inbox, stamp);
+}
+
+void Endpoint::set_origin(const GlobalPosition& origin, int rank) noexcept
+{
+    if (!is_on_earth(origin)) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (rank >= origin_rank_) {
+        origin_ = origin;
+        origin_rank_ = rank;
+    }
+}
+
+void Endpoint::on_global_position(const Context& c) noexcept
+{
+    GlobalPositionInt m;
+    static_cast<void>(decode(c.frame, m));
+    const GlobalPosition own{m.lat, m.lon, m.alt};
+    if (origin_rank_ > 1 || !has_local_ || c.now - local_heard_ > kPairAge) {
+        return;
+    }
+    if (!is_on_earth(own) || (m.lat == 0 && m.lon == 0)) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (origin_rank_ == 0) {
+        set_origin(to_global(-own_.position, own), 1);
+    }
+}
+
+void Endpoint::on_origin(const Context& c) noexcept
+{
+    GpsGlobalOrigin m;
+    static_cast<void>(decode(c.frame, m));
+    set_origin({m.latitude, m.longitude, m.altitude}, 3);
+}
+
+void Endpoint::on_home(const Context& c) noexcept
+{
+    HomePosition m;
+    static_cast<void>(decode(c.frame, m));
+    const Vec3 local = swap_ned_enu({m.x, m.y, m.z});
+    if (!is_finite(local)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    const GlobalPosition home{m.latitude, m.longitude, m.altitude};
+    if (!is_on_earth(home) || local.norm() > kLargestPosition) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (origin_rank_ < 2) {
+        set_origin(to_global(-local, home), 2);
+    }
+    home_ = local;
+    has_home_ = true;
+    c.inbox.home = local;
+    c.inbox.has_home = true;
+}
+
+void Endpoint::on_position_target(const Context& c) noexcept
+{
+    PositionTargetLocalNed m;
+    static_cast<void>(decode(c.frame, m));
+    constexpr std::uint16_t kPositionIgnored = 7;
+    const bool usable = m.coordinate_frame == kFrameLocalNed && (m.type_mask & kPositionIgnored) == 0;
+    if (autopilot_.mode == FlightMode::external || has_mission_leg_ || !usable || !has_local_) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    const Vec3 target = swap_ned_enu({m.x, m.y, m.z});
+    if (!is_finite(target)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if (target.norm() > kLargestPosition) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (has_target_ && (target - target_).norm() < kSameTarget) {
+        return;
+    }
+    has_target_ = true;
+    target_ = target;
+    c.inbox.leg.leg = {own_.position, target, 0.0F};
+    c.inbox.has_leg = true;
+}
+
+void Endpoint::on_mission_item(const Context& c) noexcept
+{
+    MissionItemInt m;
+    static_cast<void>(decode(c.frame, m));
+    if (m.mission_type != 0 || !for_us(m.target_system, m.target_component)) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    if (!std::isfinite(m.z)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if (!mission_.item(m.seq, m.command, {true, m.frame, m.x, m.y, m.z}, c.now)) {
+        ++diagnostics_.frames_ignored;
+    }
+}
+
+/// Where a mission point lies in the local frame; false while that cannot be known.
+bool Endpoint::place(const MissionPoint& point, Vec3& local) const noexcept
+{
+    if (point.frame == kFrameLocalNed) {
+        local = swap_ned_enu({static_cast<float>(point.x) * 1e-4F, static_cast<float>(point.y) * 1e-4F, point.z});
+        return true;
+    }
+    const bool relative = point.frame == kFrameGlobalRelative || point.frame == kFrameGlobalRelativeInt;
+    const bool absolute = point.frame == kFrameGlobal || point.frame == kFrameGlobalInt;
+    if (origin_rank_ == 0 || (!relative && !absolute) || (relative && !has_home_)) {
+        return false;
+    }
+    local = to_local({point.x, point.y, origin_.alt}, origin_);
+    local.z() = relative ? home_.z() + point.z : point.z - static_cast<float>(origin_.alt) * 1e-3F;
+    return true;
+}
+
+void Endpoint::resolve_leg(Inbox& inbox) noexcept
+{
+    Vec3 from = own_.position;
+    Vec3 to;
+    leg_waits_ = !has_local_ || !place(mission_.to(), to) || (mission_.from().known && !place(mission_.from(), from));
+    if (leg_waits_) {
+        return;
+    }
+    if (from.norm() > kLargestPosition || to.norm() > kLargestPosition) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    has_mission_leg_ = true;
+    inbox.leg.leg = {from, to, 0.0F};
+    inbox.has_leg = true;
+}
+
+}  // namespace jink::link::mavlink

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "core/base/vec3.hpp"
+
+namespace jink::link::mavlink {
+
+/// Position on the wire: degrees * 1e7, millimetres above mean sea level.
+struct GlobalPosition {
+    std::int32_t lat = 0;
+    std::int32_t lon = 0;
+    std::int32_t alt = 0;
+};
+
+inline constexpr float kMetresPerDegE7 = 6378137.0F * kPi / 180.0F * 1e-7F;
+
+/// North, east, down on the wire and our ENU: the same swap both ways.
+[[nodiscard]] inline Vec3 swap_ned_enu(const Vec3& v) noexcept { return {v.y(), v.x(), -v.z()}; }
+/// Compass angle (clockwise from north) and ENU yaw (counter-clockwise from east): the same both ways [rad].
+[[nodiscard]] inline float swap_heading_yaw(float angle) noexcept { return 0.5F * kPi - angle; }
+
+/// Latitude and longitude within their range (a longitude of 180 degrees counts as both).
+[[nodiscard]] constexpr bool is_on_earth(const GlobalPosition& p) noexcept
+{
+    return p.lat >= -900000000 && p.lat <= 900000000 && p.lon >= -1800000000 && p.lon <= 1800000000;
+}
+
+/// Position relative to `origin` on the plane that touches the sphere there [m, ENU]. Differences are taken in integers, so the error
+/// is that of the plane: below 1 m within 10 km of the origin up to 60 degrees of latitude.
+[[nodiscard]] inline Vec3 to_local(const GlobalPosition& p, const GlobalPosition& origin) noexcept
+{
+    constexpr std::int64_t kTurn = 3600000000LL;
+    std::int64_t dlon = static_cast<std::int64_t>(p.lon) - origin.lon;
+    if (dlon > kTurn / 2) {
+        dlon -= kTurn;
+    } else if (dlon < -kTurn / 2) {
+        dlon += kTurn;
+    }
+    const std::int64_t dlat = static_cast<std::int64_t>(p.lat) - origin.lat;
+    const float cosine = std::cos(static_cast<float>(origin.lat) * 1e-7F * kPi / 180.0F);
+    return {static_cast<float>(dlon) * kMetresPerDegE7 * cosine, static_cast<float>(dlat) * kMetresPerDegE7,
+            static_cast<float>(static_cast<std::int64_t>(p.alt) - origin.alt) * 1e-3F};
+}
+
+/// The inverse: where a local position lies on the globe. Same accuracy; latitudes above 89 degrees are no place for it.
+[[nodiscard]] inline GlobalPosition to_global(const Vec3& local, const GlobalPosition& origin) noexcept
+{
+    const float cosine = std::cos(static_cast<float>(origin.lat) * 1e-7F * kPi / 180.0F);
+    return {origin.lat + static_cast<std::int32_t>(std::lround(local.y() / kMetresPerDegE7)),
+            origin.lon + static_cast<std::int32_t>(std::lround(local.x() / (kMetresPerDegE7 * cosine))),
+            origin.alt + static_cast<std::int32_t>(std::lround(local.z() * 1e3F))};
+}
+
+}  // namespace jink::link::mavlink

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "firmware/link/messages.hpp"
+
+namespace jink::link::mavlink {
+
+/// Mode numbers of the autopilots (their own sources; docs/links.md "Taking over and giving back").
+enum class VehicleClass : std::uint8_t { copter, plane };
+
+/// What a custom_mode means.
+[[nodiscard]] FlightMode classify(AutopilotStack stack, VehicleClass vehicle, std::uint32_t custom_mode) noexcept;
+/// custom_mode of the mode that follows a companion's set-points, and of the one that holds.
+[[nodiscard]] std::uint32_t external_mode(AutopilotStack stack, VehicleClass vehicle) noexcept;
+[[nodiscard]] std::uint32_t hold_mode(AutopilotStack stack, VehicleClass vehicle) noexcept;
+
+/// PX4 packs main and sub mode into custom_mode.
+[[nodiscard]] constexpr std::uint32_t px4_mode(std::uint32_t main, std::uint32_t sub) noexcept { return main << 16U | sub << 24U; }
+[[nodiscard]] constexpr std::uint32_t px4_main(std::uint32_t custom) noexcept { return custom >> 16U & 0xFFU; }
+[[nodiscard]] constexpr std::uint32_t px4_sub(std::uint32_t custom) noexcept { return custom >> 24U; }
+
+}  // namespace jink::link::mavlink
