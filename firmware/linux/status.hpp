@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "firmware/app/coprocessor.hpp"
+#include "firmware/link/mavlink/endpoint.hpp"
+#include "hal/port_health.hpp"
+
+namespace jink::host {
+
+/// The daemon's status line and the summary that it leaves behind.
+class StatusLog {
+public:
+    /// @param period  seconds between status lines on standard output; 0: none
+    explicit StatusLog(double period) : period_us_(static_cast<std::int64_t>(period * 1e6)) {}
+
+    void note(const app::StepReport& report, const app::Coprocessor& coprocessor, const link::mavlink::Endpoint& endpoint,
+              const hal::PortHealth& port, std::int64_t now_us, std::int64_t took_us);
+
+    /// JSON; false when the file cannot be written.
+    [[nodiscard]] bool write_summary(const std::string& path, const app::Coprocessor& coprocessor,
+                                     const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port) const;
+
+private:
+    /// Step times in bins of 10 us; the last one takes all that is longer.
+    static constexpr std::size_t kBins = 500;
+    static constexpr std::int64_t kBinWidth = 10;
+
+    std::int64_t period_us_;
+    std::int64_t last_line_us_ = 0;
+    std::int64_t total_us_ = 0;
+    std::int64_t longest_us_ = 0;
+    std::uint64_t steps_ = 0;
+    std::array<std::uint32_t, kBins> bins_{};
+    std::array<std::uint32_t, kBins> plan_bins_{};  ///< of the steps in which a plan was made
+    std::uint32_t last_plans_ = 0;
+    std::int64_t longest_plan_us_ = 0;
+    std::int64_t total_plan_us_ = 0;
+    std::uint64_t plan_steps_ = 0;
+};
+
+}  // namespace jink::host
