@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/linux/complaint.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+namespace jink::files {
+namespace {
+
+char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+/// Optimal string alignment distance, case aside. O(|a| |b|).
+std::size_t edit_distance(std::string_view a, std::string_view b)
+{
+    std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
+    for (std::size_t i = 0; i <= a.size(); ++i) {
+        d[i][0] = i;
+    }
+    for (std::size_t j = 0; j <= b.size(); ++j) {
+        d[0][j] = j;
+    }
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t change = lower(a[i - 1]) == lower(b[j - 1]) ? 0U : 1U;
+            d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, d[i - 1][j - 1] + change});
+            if (i > 1 && j > 1 && lower(a[i - 1]) == lower(b[j - 2]) && lower(a[i - 2]) == lower(b[j - 1])) {
+                d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
+            }
+        }
+    }
+    return d[a.size()][b.size()];
+}
+
+}  // namespace
+
+std::string to_string(const Complaint& complaint)
+{
+    std::string text = complaint.file;
+    if (complaint.line != 0) {
+        text += ":" + std::to_string(complaint.line);
+    }
+    if (complaint.line != 0 && complaint.column != 0) {
+        text += ":" + std::to_string(complaint.column);
+    }
+    return text + ": " + complaint.text;
+}
+
+std::string to_text(float value)
+{
+    std::array<char, 32> buffer{};
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return error == std::errc{} ? std::string(buffer.data(), end) : std::string("?");
+}
+
+std::string printable(std::string_view text)
+{
+    constexpr std::size_t kLongest = 60;
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string out;
+    for (const char c : text.substr(0, kLongest)) {
+        if (c >= ' ' && c <= '~') {
+            out += c;
+        } else {
+            const auto byte = static_cast<unsigned char>(c);
+            out += "\\x";
+            out += kDigits[byte >> 4U];
+            out += kDigits[byte & 15U];
+        }
+    }
+    return text.size() > kLongest ? out + "..." : out;
+}
+
+std::string in_quotes(std::string_view text)
+{
+    std::string out(1, '\'');
+    out += printable(text);
+    out += '\'';
+    return out;
+}
+
+NumberStatus parse_number(std::string_view text, float& out)
+{
+    if (text.starts_with('+') && text.size() > 1 && text[1] != '-') {
+        text.remove_prefix(1);
+    }
+    float value = 0.0F;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error == std::errc::result_out_of_range && end == text.data() + text.size()) {
+        return NumberStatus::too_big;
+    }
+    if (error != std::errc{} || end != text.data() + text.size()) {
+        return NumberStatus::not_a_number;
+    }
+    if (!std::isfinite(value)) {
+        return NumberStatus::not_finite;
+    }
+    out = value;
+    return NumberStatus::ok;
+}
+
+std::optional<std::string> judge_number(std::string_view text, const Range& range, bool integer, float& out)
+{
+    // YAML's own spellings of what is refused in any case
+    std::string_view bare = text;
+    if (!bare.empty() && (bare[0] == '+' || bare[0] == '-')) {
+        bare.remove_prefix(1);
+    }
+    float value = 0.0F;
+    NumberStatus status = parse_number(text, value);
+    if (bare == ".nan" || bare == ".NaN" || bare == ".NAN" || bare == ".inf" || bare == ".Inf" || bare == ".INF") {
+        status = NumberStatus::not_finite;
+    }
+    const std::string said = in_quotes(text);
+    switch (status) {
+    case NumberStatus::not_a_number: return said + " is not a number";
+    case NumberStatus::not_finite: return said + " is not finite";
+    case NumberStatus::too_big: return said + " is beyond what single precision can hold";
+    case NumberStatus::ok: break;
+    }
+    if (!(value >= range.low && value <= range.high)) {
+        return said + " is out of range: " + to_text(range.low) + " to " + to_text(range.high);
+    }
+    if (integer && value != std::floor(value)) {
+        return said + " is not a whole number";
+    }
+    out = value;
+    return std::nullopt;
+}
+
+std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string_view> names)
+{
+    constexpr std::size_t kLongest = 64;  // nobody mistypes more than that, and the search stays cheap
+    if (name.empty() || name.size() > kLongest) {
+        return std::nullopt;
+    }
+    std::optional<std::string> best;
+    std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+    for (const std::string_view candidate : names) {
+        const std::size_t distance = edit_distance(name, candidate);
+        if (distance < least) {
+            least = distance;
+            best = std::string(candidate);
+        }
+    }
+    return best;
+}
+
+std::string suggestion(std::string_view name, std::span<const std::string_view> names)
+{
+    const std::optional<std::string> meant = nearest_name(name, names);
+    return meant ? "; did you mean '" + *meant + "'?" : std::string{};
+}
+
+std::optional<std::string> read_text_file(const std::filesystem::path& path, Complaints& complaints)
+{
+    const auto refuse = [&](const char* why) {
+        complaints.push_back({0, 0, why, path.string()});
+        return std::nullopt;
+    };
+    std::error_code error;
+    const std::filesystem::file_status status = std::filesystem::status(path, error);
+    if (!std::filesystem::exists(status)) {
+        return refuse("no such file");
+    }
+    if (std::filesystem::is_directory(status)) {
+        return refuse("is a directory");
+    }
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) {
+        return refuse("cannot be opened");
+    }
+    std::string text(kMaxFileSize + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (stream.bad()) {
+        return refuse("cannot be read");
+    }
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kMaxFileSize) {
+        return refuse("is larger than 1 MiB: not a hand-written file");
+    }
+    return text;
+}
+
+}  // namespace jink::files

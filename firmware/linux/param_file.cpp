@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/linux/param_file.hpp"
+
+#include <algorithm>
+
+#include "firmware/linux/vehicle_file.hpp"
+
+namespace jink::files {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r";
+
+std::string_view trimmed(std::string_view text)
+{
+    const std::size_t first = text.find_first_not_of(kBlanks);
+    return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// Splits at the first comma, or else at the first blank.
+struct Line {
+    std::string_view name;
+    std::string_view value;
+};
+Line split(std::string_view line)
+{
+    const std::size_t comma = line.find(',');
+    const std::size_t at = comma != std::string_view::npos ? comma : line.find_first_of(kBlanks);
+    return at == std::string_view::npos ? Line{line, {}} : Line{trimmed(line.substr(0, at)), trimmed(line.substr(at + 1))};
+}
+
+std::vector<std::string_view> names()
+{
+    std::vector<std::string_view> out;
+    for (const app::ParamInfo& info : app::param_table()) {
+        out.push_back(info.name);
+    }
+    return out;
+}
+
+/// What is wrong with one line, or nothing, after its value has been put in place.
+std::optional<std::string> take(const Line& line, std::size_t number, ParamValues& values, std::array<std::size_t, app::kParamCount>& seen)
+{
+    const std::vector<std::string_view> known = names();
+    const auto at = std::find(known.begin(), known.end(), line.name);
+    if (at == known.end()) {
+        return "unknown parameter " + in_quotes(line.name) + suggestion(line.name, known);
+    }
+    const auto index = static_cast<std::size_t>(at - known.begin());
+    if (line.value.empty()) {
+        return std::string(line.name) + " has no value";
+    }
+    if (seen[index] != 0) {
+        return std::string(line.name) + " was given in line " + std::to_string(seen[index]) + " already";
+    }
+    seen[index] = number;
+    const app::ParamInfo& info = app::param_table()[index];
+    if (const auto wrong = judge_number(line.value, {info.low, info.high}, info.integer, values[index])) {
+        return std::string(line.name) + ": " + *wrong + " (" + std::string(info.text) + ")";
+    }
+    return std::nullopt;
+}
+
+float value_of(const ParamValues& values, app::Param p)
+{
+    return values[static_cast<std::size_t>(p)];
+}
+
+/// Reasons that this file knows of for a set that does not fit together, with the names of those concerned.
+std::vector<std::string> misfits(const ParamValues& values)
+{
+    using app::Param;
+    std::vector<std::string> out;
+    const auto bounds = static_cast<unsigned>(value_of(values, Param::bounds));
+    if ((bounds & 3U) == 3U && value_of(values, Param::ceiling) - value_of(values, Param::floor) < 4.0F * value_of(values, Param::half_z)) {
+        out.emplace_back("JNK_CEILING must lie at least 4 JNK_HALF_Z above JNK_FLOOR");
+    }
+    if (value_of(values, Param::time_high) * cost::kTimeHeadroom <= value_of(values, Param::time_low)) {
+        out.emplace_back("GEO_T_HIGH * 1.15 must be greater than GEO_T_LOW");
+    }
+    const float smoothness = value_of(values, Param::weight_smoothness);
+    const float time = value_of(values, Param::weight_time);
+    if (!cost::is_valid(cost::Weights{smoothness, time, 1.0F - smoothness - time})) {
+        out.emplace_back("GEO_K_S and GEO_K_T leave closeness a weight outside 0 to 0.7: their sum must be 0.3 to 1");
+    }
+    const float families = (static_cast<unsigned>(value_of(values, Param::families)) == 3U) ? 2.0F : 1.0F;
+    if (families * value_of(values, Param::offsets) * (value_of(values, Param::planes) + 1.0F) > static_cast<float>(kMaxCandidates)) {
+        out.emplace_back("GEO_OFFSETS * (GEO_PLANES + 1) candidates per family are more than " + std::to_string(kMaxCandidates));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::optional<ParamValues> apply_param_text(std::string_view text, const std::string& file, const ParamValues& values,
+                                            Complaints& complaints)
+{
+    const std::size_t before = complaints.size();
+    ParamValues changed = values;
+    std::array<std::size_t, app::kParamCount> seen{};
+    if (text.starts_with("\xEF\xBB\xBF")) {
+        text.remove_prefix(3);
+    }
+    for (std::size_t number = 1; !text.empty(); ++number) {
+        const std::size_t end = text.find('\n');
+        std::string_view line = text.substr(0, end);
+        text = end == std::string_view::npos ? std::string_view{} : text.substr(end + 1);
+        line = trimmed(line.substr(0, line.find('#')));
+        if (line.empty()) {
+            continue;
+        }
+        if (const auto wrong = take(split(line), number, changed, seen)) {
+            complaints.push_back({number, 0, *wrong, file});
+        }
+    }
+    return complaints.size() == before ? std::optional<ParamValues>(changed) : std::nullopt;
+}
+
+std::optional<ParamValues> apply_param_file(const std::filesystem::path& path, const ParamValues& values, Complaints& complaints)
+{
+    const std::optional<std::string> text = read_text_file(path, complaints);
+    return text ? apply_param_text(*text, path.string(), values, complaints) : std::nullopt;
+}
+
+bool apply_together(const ParamValues& values, const std::string& file, app::Parameters& parameters, Complaints& complaints)
+{
+    if (parameters.set_all(values) == app::ParamStatus::ok) {
+        return true;
+    }
+    std::vector<std::string> reasons = misfits(values);
+    if (reasons.empty()) {
+        reasons.emplace_back("values do not fit together");
+    }
+    for (std::string& reason : reasons) {
+        complaints.push_back({0, 0, std::move(reason), file});
+    }
+    return false;
+}
+
+std::optional<app::Parameters> load_parameters(const std::filesystem::path& vehicle, const std::filesystem::path& params,
+                                               Complaints& complaints)
+{
+    const std::size_t before = complaints.size();
+    app::Parameters parameters;
+    ParamValues values = parameters.values();
+    std::string file;
+    if (!vehicle.empty()) {
+        values = apply_vehicle_file(vehicle, values, complaints).value_or(values);
+        file = vehicle.string();
+    }
+    if (!params.empty()) {
+        values = apply_param_file(params, values, complaints).value_or(values);
+        file += (file.empty() ? "" : " with ") + params.string();
+    }
+    if (complaints.size() != before || !apply_together(values, file, parameters, complaints)) {
+        return std::nullopt;
+    }
+    return parameters;
+}
+
+std::string param_file_text(const ParamValues& values)
+{
+    std::string out;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const app::ParamInfo& info = app::param_table()[i];
+        out += "# " + std::string(info.text) + "; " + to_text(info.low) + " to " + to_text(info.high) + "\n";
+        out += std::string(info.name) + "," + to_text(values[i]) + "\n";
+    }
+    return out;
+}
+
+}  // namespace jink::files
