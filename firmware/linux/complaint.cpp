@@ -10,10 +10,7 @@
 namespace jink::files {
 namespace {
 
-char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 /// Optimal string alignment distance, case aside. O(|a| |b|).
 std::size_t edit_distance(std::string_view a, std::string_view b)

@@ -18,7 +18,7 @@ struct Complaint {
     std::size_t line = 0;    ///< from 1; 0: the file as a whole
     std::size_t column = 0;  ///< from 1; 0: the line as a whole
     std::string text;
-    std::string file;        ///< as the reader was given it
+    std::string file;  ///< as the reader was given it
 };
 using Complaints = std::vector<Complaint>;
 
@@ -43,10 +43,11 @@ enum class NumberStatus { ok, not_a_number, not_finite, too_big };
 /// Reads a decimal number that is the whole of `text`: optional sign, no blanks, no hexadecimal. Locale plays no part.
 [[nodiscard]] NumberStatus parse_number(std::string_view text, float& out);
 /// What to say of a number that is not one, or lies outside `range`; nothing when all is well.
-[[nodiscard]] std::optional<std::string> judge_number(std::string_view text, const Range& range, bool integer, float& out);
+[[nodiscard]] std::optional<std::string> judge_number(std::string_view text, const Range& range, bool integer,
+                                                      float& out);
 
-/// The name that somebody who wrote `name` may have meant (Damerau-Levenshtein distance at most a third of its length, case aside),
-/// or nothing.
+/// The name that somebody who wrote `name` may have meant (Damerau-Levenshtein distance at most a third of its length,
+/// case aside), or nothing.
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string_view> names);
 /// "; did you mean 'x'?" or nothing at all.
 [[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string_view> names);

@@ -13,7 +13,8 @@ constexpr std::string_view kBlanks = " \t\r";
 std::string_view trimmed(std::string_view text)
 {
     const std::size_t first = text.find_first_not_of(kBlanks);
-    return first == std::string_view::npos ? std::string_view{} : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+    return first == std::string_view::npos ? std::string_view{}
+                                           : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
 /// Splits at the first comma, or else at the first blank.
@@ -25,7 +26,8 @@ Line split(std::string_view line)
 {
     const std::size_t comma = line.find(',');
     const std::size_t at = comma != std::string_view::npos ? comma : line.find_first_of(kBlanks);
-    return at == std::string_view::npos ? Line{line, {}} : Line{trimmed(line.substr(0, at)), trimmed(line.substr(at + 1))};
+    return at == std::string_view::npos ? Line{line, {}}
+                                        : Line{trimmed(line.substr(0, at)), trimmed(line.substr(at + 1))};
 }
 
 std::vector<std::string_view> names()
@@ -38,7 +40,8 @@ std::vector<std::string_view> names()
 }
 
 /// What is wrong with one line, or nothing, after its value has been put in place.
-std::optional<std::string> take(const Line& line, std::size_t number, ParamValues& values, std::array<std::size_t, app::kParamCount>& seen)
+std::optional<std::string> take(const Line& line, std::size_t number, ParamValues& values,
+                                std::array<std::size_t, app::kParamCount>& seen)
 {
     const std::vector<std::string_view> known = names();
     const auto at = std::find(known.begin(), known.end(), line.name);
@@ -60,10 +63,7 @@ std::optional<std::string> take(const Line& line, std::size_t number, ParamValue
     return std::nullopt;
 }
 
-float value_of(const ParamValues& values, app::Param p)
-{
-    return values[static_cast<std::size_t>(p)];
-}
+float value_of(const ParamValues& values, app::Param p) { return values[static_cast<std::size_t>(p)]; }
 
 /// Reasons that this file knows of for a set that does not fit together, with the names of those concerned.
 std::vector<std::string> misfits(const ParamValues& values)
@@ -71,7 +71,8 @@ std::vector<std::string> misfits(const ParamValues& values)
     using app::Param;
     std::vector<std::string> out;
     const auto bounds = static_cast<unsigned>(value_of(values, Param::bounds));
-    if ((bounds & 3U) == 3U && value_of(values, Param::ceiling) - value_of(values, Param::floor) < 4.0F * value_of(values, Param::half_z)) {
+    if ((bounds & 3U) == 3U &&
+        value_of(values, Param::ceiling) - value_of(values, Param::floor) < 4.0F * value_of(values, Param::half_z)) {
         out.emplace_back("JNK_CEILING must lie at least 4 JNK_HALF_Z above JNK_FLOOR");
     }
     if (value_of(values, Param::time_high) * cost::kTimeHeadroom <= value_of(values, Param::time_low)) {
@@ -83,8 +84,10 @@ std::vector<std::string> misfits(const ParamValues& values)
         out.emplace_back("GEO_K_S and GEO_K_T leave closeness a weight outside 0 to 0.7: their sum must be 0.3 to 1");
     }
     const float families = (static_cast<unsigned>(value_of(values, Param::families)) == 3U) ? 2.0F : 1.0F;
-    if (families * value_of(values, Param::offsets) * (value_of(values, Param::planes) + 1.0F) > static_cast<float>(kMaxCandidates)) {
-        out.emplace_back("GEO_OFFSETS * (GEO_PLANES + 1) candidates per family are more than " + std::to_string(kMaxCandidates));
+    if (families * value_of(values, Param::offsets) * (value_of(values, Param::planes) + 1.0F) >
+        static_cast<float>(kMaxCandidates)) {
+        out.emplace_back("GEO_OFFSETS * (GEO_PLANES + 1) candidates per family are more than " +
+                         std::to_string(kMaxCandidates));
     }
     return out;
 }
@@ -115,13 +118,15 @@ std::optional<ParamValues> apply_param_text(std::string_view text, const std::st
     return complaints.size() == before ? std::optional<ParamValues>(changed) : std::nullopt;
 }
 
-std::optional<ParamValues> apply_param_file(const std::filesystem::path& path, const ParamValues& values, Complaints& complaints)
+std::optional<ParamValues> apply_param_file(const std::filesystem::path& path, const ParamValues& values,
+                                            Complaints& complaints)
 {
     const std::optional<std::string> text = read_text_file(path, complaints);
     return text ? apply_param_text(*text, path.string(), values, complaints) : std::nullopt;
 }
 
-bool apply_together(const ParamValues& values, const std::string& file, app::Parameters& parameters, Complaints& complaints)
+bool apply_together(const ParamValues& values, const std::string& file, app::Parameters& parameters,
+                    Complaints& complaints)
 {
     if (parameters.set_all(values) == app::ParamStatus::ok) {
         return true;
@@ -136,8 +141,8 @@ bool apply_together(const ParamValues& values, const std::string& file, app::Par
     return false;
 }
 
-std::optional<app::Parameters> load_parameters(const std::filesystem::path& vehicle, const std::filesystem::path& params,
-                                               Complaints& complaints)
+std::optional<app::Parameters> load_parameters(const std::filesystem::path& vehicle,
+                                               const std::filesystem::path& params, Complaints& complaints)
 {
     const std::size_t before = complaints.size();
     app::Parameters parameters;

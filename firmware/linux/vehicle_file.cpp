@@ -14,10 +14,7 @@ Range range_of(Param p)
     return {info.low, info.high};
 }
 
-void put(float& out, std::optional<float> value)
-{
-    out = value.value_or(out);
-}
+void put(float& out, std::optional<float> value) { out = value.value_or(out); }
 
 void read_limits(YamlMap& map, vehicle::VehicleLimits& limits)
 {
@@ -29,7 +26,8 @@ void read_limits(YamlMap& map, vehicle::VehicleLimits& limits)
     put(limits.max_climb, map.number("max_climb", range_of(Param::climb), kNeed));
     put(limits.max_descent, map.number("max_descent", range_of(Param::descent), kNeed));
     put(limits.max_acceleration, map.number("max_acceleration", range_of(Param::acceleration), kNeed));
-    put(limits.max_vertical_acceleration, map.number("max_vertical_acceleration", range_of(Param::vertical_acceleration), kNeed));
+    put(limits.max_vertical_acceleration,
+        map.number("max_vertical_acceleration", range_of(Param::vertical_acceleration), kNeed));
     put(limits.velocity_lag, map.number("velocity_lag", range_of(Param::lag), kNeed));
     float level = 1.0F;
     float vertical = 1.0F;
@@ -78,7 +76,8 @@ void read_caps(YamlMap& map, cost::Caps& caps)
 
 }  // namespace
 
-std::optional<Vehicle> read_vehicle(const YAML::Node& node, const std::string& where, const std::string& file, Complaints& complaints)
+std::optional<Vehicle> read_vehicle(const YAML::Node& node, const std::string& where, const std::string& file,
+                                    Complaints& complaints)
 {
     const std::size_t before = complaints.size();
     YamlMap map(node, where, file, complaints);
@@ -94,8 +93,10 @@ std::optional<Vehicle> read_vehicle(const YAML::Node& node, const std::string& w
     }
     read_caps(map, out.caps);
     map.finish();
-    if (complaints.size() == before && !(vehicle::is_valid(out.limits) && vehicle::is_valid(out.airframe) && cost::is_valid(out.caps))) {
-        complaints.push_back(complaint_at(node.Mark(), file, where + (where.empty() ? "" : ": ") + "values do not make a vehicle"));
+    if (complaints.size() == before &&
+        !(vehicle::is_valid(out.limits) && vehicle::is_valid(out.airframe) && cost::is_valid(out.caps))) {
+        complaints.push_back(
+            complaint_at(node.Mark(), file, where + (where.empty() ? "" : ": ") + "values do not make a vehicle"));
     }
     return complaints.size() == before ? std::optional<Vehicle>(std::move(out)) : std::nullopt;
 }
@@ -141,7 +142,8 @@ ParamValues apply_vehicle(const Vehicle& vehicle, const ParamValues& values)
     return out;
 }
 
-std::optional<ParamValues> apply_vehicle_file(const std::filesystem::path& path, const ParamValues& values, Complaints& complaints)
+std::optional<ParamValues> apply_vehicle_file(const std::filesystem::path& path, const ParamValues& values,
+                                              Complaints& complaints)
 {
     const std::optional<Vehicle> read = read_vehicle_file(path, complaints);
     return read ? std::optional<ParamValues>(apply_vehicle(*read, values)) : std::nullopt;

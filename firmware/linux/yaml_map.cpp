@@ -22,10 +22,7 @@ const char* kind_of(const YAML::Node& node)
 }
 
 /// Scalars in quotes are text even when they look like a number: yaml-cpp marks them with the tag "!".
-bool is_plain(const YAML::Node& node)
-{
-    return node.IsScalar() && node.Tag() != "!";
-}
+bool is_plain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
 
 }  // namespace
 
@@ -41,8 +38,9 @@ std::optional<float> element(const YAML::Node& node, Range range, const std::str
                              Complaints& complaints)
 {
     if (!is_plain(node)) {
-        complaints.push_back(complaint_at(node.Mark(), file, where + ": a number is wanted, not " +
-                                                                 (node.IsScalar() ? "quoted text" : kind_of(node))));
+        complaints.push_back(
+            complaint_at(node.Mark(), file,
+                         where + ": a number is wanted, not " + (node.IsScalar() ? "quoted text" : kind_of(node))));
         return std::nullopt;
     }
     float value = 0.0F;
@@ -57,11 +55,13 @@ std::optional<Vec3> vector_of(const YAML::Node& node, Range range, const std::st
                               Complaints& complaints)
 {
     if (!node.IsSequence()) {
-        complaints.push_back(complaint_at(node.Mark(), file, where + ": a list of three numbers is wanted, not " + kind_of(node)));
+        complaints.push_back(
+            complaint_at(node.Mark(), file, where + ": a list of three numbers is wanted, not " + kind_of(node)));
         return std::nullopt;
     }
     if (node.size() != 3) {
-        complaints.push_back(complaint_at(node.Mark(), file, where + ": three numbers are wanted, not " + std::to_string(node.size())));
+        complaints.push_back(
+            complaint_at(node.Mark(), file, where + ": three numbers are wanted, not " + std::to_string(node.size())));
         return std::nullopt;
     }
     Vec3 out = Vec3::Zero();
@@ -99,14 +99,17 @@ std::optional<YAML::Node> load_yaml(const std::filesystem::path& path, Complaint
 }
 
 YamlMap::YamlMap(const YAML::Node& node, std::string where, std::string file, Complaints& complaints)
-    : mark_(node.Mark()), where_(std::move(where)), file_(std::move(file)), complaints_(&complaints), is_map_(node.IsMap())
+    : mark_(node.Mark()), where_(std::move(where)), file_(std::move(file)), complaints_(&complaints),
+      is_map_(node.IsMap())
 {
     if (!is_map_) {
-        complain_at(mark_, (where_.empty() ? std::string() : where_ + ": ") + "a mapping of keys to values is wanted, not " + kind_of(node));
+        complain_at(mark_, (where_.empty() ? std::string() : where_ + ": ") +
+                               "a mapping of keys to values is wanted, not " + kind_of(node));
         return;
     }
     if (node.size() > kMaxKeys) {
-        complain_at(mark_, (where_.empty() ? std::string() : where_ + ": ") + "more than " + std::to_string(kMaxKeys) + " keys");
+        complain_at(mark_, (where_.empty() ? std::string() : where_ + ": ") + "more than " + std::to_string(kMaxKeys) +
+                               " keys");
         is_map_ = false;
         return;
     }
@@ -188,9 +191,15 @@ std::optional<float> YamlMap::scalar(std::string_view key, Range range, bool int
     return value;
 }
 
-std::optional<float> YamlMap::number(std::string_view key, Range range, Need need) { return scalar(key, range, false, need); }
+std::optional<float> YamlMap::number(std::string_view key, Range range, Need need)
+{
+    return scalar(key, range, false, need);
+}
 
-std::optional<float> YamlMap::whole(std::string_view key, Range range, Need need) { return scalar(key, range, true, need); }
+std::optional<float> YamlMap::whole(std::string_view key, Range range, Need need)
+{
+    return scalar(key, range, true, need);
+}
 
 std::optional<bool> YamlMap::boolean(std::string_view key, Need need)
 {
@@ -224,7 +233,8 @@ std::optional<Vec3> YamlMap::vector(std::string_view key, Range range, Need need
     return entry == nullptr ? std::nullopt : vector_of(entry->value, range, name(key), file_, *complaints_);
 }
 
-std::optional<std::size_t> YamlMap::choice(std::string_view key, std::initializer_list<std::string_view> words, Need need)
+std::optional<std::size_t> YamlMap::choice(std::string_view key, std::initializer_list<std::string_view> words,
+                                           Need need)
 {
     const std::optional<std::string> word = text(key, need);
     if (!word) {

@@ -14,16 +14,19 @@
 
 namespace jink::files {
 
-/// The one document of a YAML file; complaints and nothing when the file cannot be read, is not YAML, or holds none or several.
+/// The one document of a YAML file; complaints and nothing when the file cannot be read, is not YAML, or holds none or
+/// several.
 [[nodiscard]] std::optional<YAML::Node> load_yaml(const std::filesystem::path& path, Complaints& complaints);
 
 /// The same for text already read; `file` is what complaints call it.
-[[nodiscard]] std::optional<YAML::Node> parse_yaml(const std::string& text, const std::string& file, Complaints& complaints);
+[[nodiscard]] std::optional<YAML::Node> parse_yaml(const std::string& text, const std::string& file,
+                                                   Complaints& complaints);
 
-/// A mapping of a YAML file, read key by key with a complaint for whatever is wrong: not a mapping at all, a key twice, a value of another
-/// type, not finite, out of range, missing, and, on `finish`, keys that nobody asked for.
+/// A mapping of a YAML file, read key by key with a complaint for whatever is wrong: not a mapping at all, a key twice,
+/// a value of another type, not finite, out of range, missing, and, on `finish`, keys that nobody asked for.
 ///
-/// Each reader returns what is there and fits; otherwise nothing, after a complaint (a key that is absent is none, but for `required`).
+/// Each reader returns what is there and fits; otherwise nothing, after a complaint (a key that is absent is none, but
+/// for `required`).
 class YamlMap {
 public:
     enum class Need { optional, required };
@@ -42,7 +45,8 @@ public:
     /// Three numbers, each in `range`.
     std::optional<Vec3> vector(std::string_view key, Range range, Need need = Need::optional);
     /// Index of the word in `words`.
-    std::optional<std::size_t> choice(std::string_view key, std::initializer_list<std::string_view> words, Need need = Need::optional);
+    std::optional<std::size_t> choice(std::string_view key, std::initializer_list<std::string_view> words,
+                                      Need need = Need::optional);
     /// Any value, for the caller to go into.
     std::optional<YAML::Node> node(std::string_view key, Need need = Need::optional);
     /// Elements of a sequence.
@@ -80,10 +84,10 @@ private:
 /// Complaint at the place of a node.
 [[nodiscard]] Complaint complaint_at(const YAML::Mark& mark, const std::string& file, std::string text);
 /// A number of a sequence; a complaint named `where` and nothing when it is none, or out of range.
-[[nodiscard]] std::optional<float> element(const YAML::Node& node, Range range, const std::string& where, const std::string& file,
-                                           Complaints& complaints);
+[[nodiscard]] std::optional<float> element(const YAML::Node& node, Range range, const std::string& where,
+                                           const std::string& file, Complaints& complaints);
 /// A sequence of three numbers.
-[[nodiscard]] std::optional<Vec3> vector_of(const YAML::Node& node, Range range, const std::string& where, const std::string& file,
-                                            Complaints& complaints);
+[[nodiscard]] std::optional<Vec3> vector_of(const YAML::Node& node, Range range, const std::string& where,
+                                            const std::string& file, Complaints& complaints);
 
 }  // namespace jink::files
