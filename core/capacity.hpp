@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Every capacity of the core in one place. Each may be set on the compiler's command line; sizeof figures per target are
-// in the memory report. A full container gives way as its owner's header says, and counts it.
+// Every capacity of the core in one place. Each may be set on the compiler's command line; sizeof figures per target
+// are in the memory report. A full container gives way as its owner's header says, and counts it.
 
 #include <cstddef>
 

@@ -50,7 +50,8 @@ void predict_turn(const world::Situation& s, float direction, const Settings& se
     out.points.clear();
     Seconds t = 0.0F;
     out.points.unchecked_push_back({state.position, state.velocity, t});
-    const Seconds step = std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 1));
+    const Seconds step =
+        std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 1));
     while (t < settings.fallback_horizon && !out.points.full()) {
         const Vec3 from = state.position;
         vehicle::advance(state, turn_command(state, s.limits, direction), s.limits, step);
@@ -67,9 +68,20 @@ std::array<Vec3, 14> directions(const Vec3& forward) noexcept
     ahead = length > 1e-3F ? Vec3(ahead / length) : Vec3::UnitX();
     const Vec3 left(-ahead.y(), ahead.x(), 0.0F);
     constexpr float k = 0.70710678F;
-    return {left, -left, k * (ahead + left), k * (ahead - left), k * (left - ahead), k * (-left - ahead), -ahead, ahead,
-            Vec3::UnitZ(), -Vec3::UnitZ(), k * (left + Vec3::UnitZ()), k * (Vec3::UnitZ() - left),
-            k * (left - Vec3::UnitZ()), k * (-left - Vec3::UnitZ())};
+    return {left,
+            -left,
+            k * (ahead + left),
+            k * (ahead - left),
+            k * (left - ahead),
+            k * (-left - ahead),
+            -ahead,
+            ahead,
+            Vec3::UnitZ(),
+            -Vec3::UnitZ(),
+            k * (left + Vec3::UnitZ()),
+            k * (Vec3::UnitZ() - left),
+            k * (left - Vec3::UnitZ()),
+            k * (-left - Vec3::UnitZ())};
 }
 
 Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous, const Settings& settings,
@@ -99,16 +111,17 @@ Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous
 bool is_valid(const Settings& s) noexcept
 {
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
-    return within(s.lookahead, 1.0F, 60.0F) && within(s.prediction_step, 0.02F, 0.5F) && within(s.fallback_horizon, 1.0F, 20.0F) &&
-           within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) && within(s.clear_extra, 0.0F, 10.0F) &&
-           within(s.on_leg, 0.05F, 50.0F) && within(s.blocked_patience, 0.0F, 600.0F) &&
-           within(s.give_ground_speed, 0.0F, 5.0F) && within(s.give_ground_limit, 0.0F, 600.0F) && s.budget >= 1000 &&
+    return within(s.lookahead, 1.0F, 60.0F) && within(s.prediction_step, 0.02F, 0.5F) &&
+           within(s.fallback_horizon, 1.0F, 20.0F) && within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) &&
+           within(s.clear_extra, 0.0F, 10.0F) && within(s.on_leg, 0.05F, 50.0F) &&
+           within(s.blocked_patience, 0.0F, 600.0F) && within(s.give_ground_speed, 0.0F, 5.0F) &&
+           within(s.give_ground_limit, 0.0F, 600.0F) && s.budget >= 1000 &&
            within(s.gains.position_gain, 0.0F, 10.0F) && within(s.gains.max_correction, 0.0F, 10.0F) &&
            within(s.escape.slack, 0.0F, 1.0F) && within(s.escape.speed, 0.0F, 10.0F);
 }
 
-world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre, const Settings& settings,
-                                  WorkBudget& budget) noexcept
+world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre,
+                                  const Settings& settings, WorkBudget& budget) noexcept
 {
     const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
     const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
@@ -124,16 +137,19 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
         const Seconds span = vehicle::stopping_time(end.velocity.norm(), s.limits);
         TimedPath tail;
         path::predict_velocity_command(end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
-                                       std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)), s.limits, tail);
+                                       std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)),
+                                       s.limits, tail);
         append(flight, tail);
     }
     return world::least_separation(s, flight, flight.duration(), budget, settings.escape);
 }
 
-float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings, WorkBudget& budget) noexcept
+float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings,
+                     WorkBudget& budget) noexcept
 {
     TimedPath flight;
-    const Seconds step = std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 2));
+    const Seconds step =
+        std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 2));
     path::predict_velocity_command(s.own, command, settings.fallback_horizon, step, s.limits, flight);
     return world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
 }
@@ -144,14 +160,15 @@ Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits
     const float speed = level.norm();
     level = speed > 0.1F ? Vec3(level / speed) : Vec3(std::cos(own.yaw), std::sin(own.yaw), 0.0F);
     // The command leads the velocity by as much as the lag needs for full lateral acceleration.
-    const float lead = std::min(limits.max_acceleration * std::max(limits.velocity_lag, 0.1F) / limits.cruise_speed, 0.7F);
+    const float lead =
+        std::min(limits.max_acceleration * std::max(limits.velocity_lag, 0.1F) / limits.cruise_speed, 0.7F);
     const float c = std::cos(lead);
     const float d = direction * std::sin(lead);
     return limits.cruise_speed * Vec3(c * level.x() - d * level.y(), d * level.x() + c * level.y(), 0.0F);
 }
 
-Fallback choose_fallback(const world::Situation& s, const world::Way& way, const Fallback* previous, const Settings& settings,
-                         WorkBudget& budget) noexcept
+Fallback choose_fallback(const world::Situation& s, const world::Way& way, const Fallback* previous,
+                         const Settings& settings, WorkBudget& budget) noexcept
 {
     if (s.limits.kind == vehicle::VehicleKind::fixed_wing) {
         return fixed_wing_fallback(s, previous, settings, budget);

@@ -5,29 +5,31 @@
 
 namespace jink::avoid {
 
-/// Least separation of a manoeuvre as it will really be flown from now on: the vehicle model follows the rest of it, and brakes at
-/// its end (a fixed wing flies on), so that a way that ends in a trap is not clear. O(points * threats).
+/// Least separation of a manoeuvre as it will really be flown from now on: the vehicle model follows the rest of it,
+/// and brakes at its end (a fixed wing flies on), so that a way that ends in a trap is not clear. O(points * threats).
 [[nodiscard]] world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
                                                 const Settings& settings, WorkBudget& budget) noexcept;
 
 /// The last rung: always an answer.
 struct Fallback {
-    world::ManoeuvreKind kind = world::ManoeuvreKind::brake;  ///< brake, hold_turn, or velocity where standing still does more harm
-    Vec3 command = Vec3::Zero();                              ///< [m/s]
-    float margin = 0.0F;                                      ///< least predicted over the horizon [m]
+    world::ManoeuvreKind kind =
+        world::ManoeuvreKind::brake;  ///< brake, hold_turn, or velocity where standing still does more harm
+    Vec3 command = Vec3::Zero();      ///< [m/s]
+    float margin = 0.0F;              ///< least predicted over the horizon [m]
 };
 
-/// Brake (a fixed wing: hold turn) when that is clear; else the one of brake, 8 level directions, climb, descent and 4 slanted ones with
-/// the greatest least margin; what was flown before (`previous`, may be null) keeps its place unless another is 0.3 m better.
-/// O(15 * points * threats).
-[[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way, const Fallback* previous,
-                                       const Settings& settings, WorkBudget& budget) noexcept;
+/// Brake (a fixed wing: hold turn) when that is clear; else the one of brake, 8 level directions, climb, descent and 4
+/// slanted ones with the greatest least margin; what was flown before (`previous`, may be null) keeps its place unless
+/// another is 0.3 m better. O(15 * points * threats).
+[[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
+                                       const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 
 /// Least separation when `command` is held for the fallback horizon.
 [[nodiscard]] float command_margin(const world::Situation& situation, const Vec3& command, const Settings& settings,
                                    WorkBudget& budget) noexcept;
 
 /// Turning left or right at the lateral acceleration limit: the command for this tick [m/s].
-[[nodiscard]] Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, float direction) noexcept;
+[[nodiscard]] Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,
+                                float direction) noexcept;
 
 }  // namespace jink::avoid

@@ -16,17 +16,17 @@ enum class State : std::uint8_t {
 };
 
 struct Settings {
-    Seconds lookahead = 8.0F;          ///< conflicts are looked for this far ahead, 1..60 [s]
-    Seconds prediction_step = 0.2F;    ///< of the predicted flight, 0.02..0.5 [s]
-    Seconds fallback_horizon = 4.0F;   ///< over which fallbacks are compared, 1..20 [s]
-    Seconds reserve = 0.75F;           ///< on top of the stopping time, before which nothing is forced, 0..5 [s]
-    Seconds settle = 1.0F;             ///< the way must have been clear this long before it is trusted, 0..10 [s]
-    float clear_extra = 0.5F;          ///< and clear by this much more than the margin, 0..10 [m]
-    float on_leg = 1.0F;               ///< cross-track error at which the leg counts as rejoined, > 0 [m]
-    Seconds blocked_patience = 2.0F;   ///< standing in front of something this long, the vehicle gives ground [s]
-    float give_ground_speed = 1.0F;    ///< backwards, 0: never [m/s]
-    Seconds give_ground_limit = 10.0F; ///< per conflict, at most [s]
-    std::uint32_t budget = 120000;     ///< units of work per update
+    Seconds lookahead = 8.0F;           ///< conflicts are looked for this far ahead, 1..60 [s]
+    Seconds prediction_step = 0.2F;     ///< of the predicted flight, 0.02..0.5 [s]
+    Seconds fallback_horizon = 4.0F;    ///< over which fallbacks are compared, 1..20 [s]
+    Seconds reserve = 0.75F;            ///< on top of the stopping time, before which nothing is forced, 0..5 [s]
+    Seconds settle = 1.0F;              ///< the way must have been clear this long before it is trusted, 0..10 [s]
+    float clear_extra = 0.5F;           ///< and clear by this much more than the margin, 0..10 [m]
+    float on_leg = 1.0F;                ///< cross-track error at which the leg counts as rejoined, > 0 [m]
+    Seconds blocked_patience = 2.0F;    ///< standing in front of something this long, the vehicle gives ground [s]
+    float give_ground_speed = 1.0F;     ///< backwards, 0: never [m/s]
+    Seconds give_ground_limit = 10.0F;  ///< per conflict, at most [s]
+    std::uint32_t budget = 120000;      ///< units of work per update
     path::FollowerGains gains;
     world::EscapeRule escape;
 };
@@ -35,32 +35,33 @@ struct Settings {
 /// What is to be done this tick.
 struct Guidance {
     State state = State::watching;
-    bool wants_control = false;        ///< the vehicle should follow `velocity`
-    Vec3 velocity = Vec3::Zero();      ///< command [m/s]; valid when wants_control
+    bool wants_control = false;    ///< the vehicle should follow `velocity`
+    Vec3 velocity = Vec3::Zero();  ///< command [m/s]; valid when wants_control
     bool has_conflict = false;
-    world::Conflict conflict;          ///< of the way, when has_conflict
+    world::Conflict conflict;              ///< of the way, when has_conflict
     float margin = world::kSeparationCap;  ///< least predicted margin of what is flown or offered [m]
     world::ManoeuvreKind kind = world::ManoeuvreKind::follow_path;
-    world::PlanStatus plan_status = world::PlanStatus::no_conflict;  ///< of this tick's plan, no_conflict when none was made
+    world::PlanStatus plan_status =
+        world::PlanStatus::no_conflict;  ///< of this tick's plan, no_conflict when none was made
     bool new_manoeuvre = false;
 };
 
 /// Counts since start.
 struct Diagnostics {
     std::uint32_t updates = 0;
-    std::uint32_t conflicts = 0;          ///< begun
-    std::uint32_t plans = 0;              ///< asked of the ladder
+    std::uint32_t conflicts = 0;  ///< begun
+    std::uint32_t plans = 0;      ///< asked of the ladder
     std::uint32_t plans_found = 0;
-    std::uint32_t answers_rejected = 0;   ///< by the final check
-    std::uint32_t manoeuvres = 0;         ///< begun under control
-    std::uint32_t replans = 0;            ///< manoeuvres replaced because the picture changed
-    std::uint32_t flips = 0;              ///< replaced by one on the other side of the leg
-    std::uint32_t brakes = 0;             ///< fallbacks begun
-    std::uint32_t escapes = 0;            ///< fallbacks that had to move
+    std::uint32_t answers_rejected = 0;  ///< by the final check
+    std::uint32_t manoeuvres = 0;        ///< begun under control
+    std::uint32_t replans = 0;           ///< manoeuvres replaced because the picture changed
+    std::uint32_t flips = 0;             ///< replaced by one on the other side of the leg
+    std::uint32_t brakes = 0;            ///< fallbacks begun
+    std::uint32_t escapes = 0;           ///< fallbacks that had to move
     std::uint32_t rejoined = 0;
-    std::uint32_t control_lost = 0;       ///< control ended while it was wanted
-    std::uint32_t budget_spent = 0;       ///< updates that ran out of work budget
-    std::uint32_t most_work = 0;          ///< units, the worst update
+    std::uint32_t control_lost = 0;  ///< control ended while it was wanted
+    std::uint32_t budget_spent = 0;  ///< updates that ran out of work budget
+    std::uint32_t most_work = 0;     ///< units, the worst update
 };
 
 }  // namespace jink::avoid

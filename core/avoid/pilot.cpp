@@ -59,7 +59,8 @@ bool Pilot::plan(Tick& tick) noexcept
     tick.planned = true;
     ++diagnostics_.plans;
     float margin = 0.0F;
-    tick.out.plan_status = tick.ladder.plan(tick.ladder.self, tick.s, settings_, tick.budget, diagnostics_, answer_, margin);
+    tick.out.plan_status =
+        tick.ladder.plan(tick.ladder.self, tick.s, settings_, tick.budget, diagnostics_, answer_, margin);
     if (tick.out.plan_status != world::PlanStatus::found) {
         return false;
     }
@@ -86,12 +87,14 @@ void Pilot::take(Tick& tick) noexcept
     has_fallback_ = false;
     tick.out.wants_control = true;
     tick.out.kind = flying_.kind;
-    tick.out.velocity = path::follow(flying_.path, tick.s.now - flying_.start, tick.s.own.position, tick.s.limits, settings_.gains);
+    tick.out.velocity =
+        path::follow(flying_.path, tick.s.now - flying_.start, tick.s.own.position, tick.s.limits, settings_.gains);
 }
 
 void Pilot::fall_back(Tick& tick) noexcept
 {
-    const Fallback chosen = choose_fallback(tick.s, tick.way, has_fallback_ ? &fallback_ : nullptr, settings_, tick.budget);
+    const Fallback chosen =
+        choose_fallback(tick.s, tick.way, has_fallback_ ? &fallback_ : nullptr, settings_, tick.budget);
     if (tick.in_control) {
         diagnostics_.brakes += state_ != State::braking ? 1U : 0U;
         const bool moves = chosen.kind == world::ManoeuvreKind::velocity;
@@ -129,8 +132,9 @@ void Pilot::note_clearness(Tick& tick) noexcept
     if (!tick.out.has_conflict) {
         vehicle::VehicleLimits wide = tick.s.limits;
         wide.half_extents += Vec3::Constant(settings_.clear_extra);
-        const world::Situation wider{tick.s.now,       tick.s.own,       wide,           tick.s.airframe, tick.s.reference,
-                                     tick.s.tracks,    tick.s.obstacles, tick.s.airspace, tick.s.flying,   tick.s.k_sigma};
+        const world::Situation wider{
+            tick.s.now,       tick.s.own,      wide,          tick.s.airframe, tick.s.reference, tick.s.tracks,
+            tick.s.obstacles, tick.s.airspace, tick.s.flying, tick.s.k_sigma};
         world::Conflict unused;
         tick.wide_clear = !world::main_conflict(wider, tick.way, settings_.lookahead, tick.budget, unused);
     }

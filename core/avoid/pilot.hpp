@@ -9,14 +9,14 @@ namespace jink::avoid {
 /// The ladder of methods as the state machine sees it: one function that plans, checked answers only.
 struct Ladder {
     void* self = nullptr;
-    world::PlanStatus (*plan)(void* self, const world::Situation&, const Settings&, WorkBudget&, Diagnostics&, world::Manoeuvre&,
-                              float& margin) noexcept = nullptr;
+    world::PlanStatus (*plan)(void* self, const world::Situation&, const Settings&, WorkBudget&, Diagnostics&,
+                              world::Manoeuvre&, float& margin) noexcept = nullptr;
 };
 
 /// The state machine of the supervisor, free of the methods' types. See Supervisor.
 ///
-/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: one conflict search, at most one plan, at most two checks, at most one
-/// fallback choice; all under Settings::budget.
+/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: one conflict search, at most one plan, at
+/// most two checks, at most one fallback choice; all under Settings::budget.
 class Pilot {
 public:
     explicit Pilot(const Settings& settings) noexcept : settings_(settings) {}

@@ -7,17 +7,20 @@
 
 namespace jink::avoid {
 
-/// Decides, once per tick, what is flown: predicts conflicts of the way ahead, asks the methods in their order, checks each answer once
-/// more as it will really be flown, holds on to a chosen manoeuvre while it stays safe, replans when it does not, returns to the leg, and
-/// brakes (or takes the way of least harm) when nothing is safe.
+/// Decides, once per tick, what is flown: predicts conflicts of the way ahead, asks the methods in their order, checks
+/// each answer once more as it will really be flown, holds on to a chosen manoeuvre while it stays safe, replans when
+/// it does not, returns to the leg, and brakes (or takes the way of least harm) when nothing is safe.
 ///
-/// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does not, nothing is
-/// held on to: the answer is made anew from the present state every tick, on the side chosen before where that is about as good.
-/// Methods are owned by the caller and outlive the supervisor. Same situations in the same order give the same guidance.
+/// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does
+/// not, nothing is held on to: the answer is made anew from the present state every tick, on the side chosen before
+/// where that is about as good. Methods are owned by the caller and outlive the supervisor. Same situations in the same
+/// order give the same guidance.
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:
-    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept : pilot_(settings), methods_(methods...) {}
+    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept : pilot_(settings), methods_(methods...)
+    {
+    }
 
     Guidance update(const world::Situation& situation, bool in_control) noexcept
     {
@@ -50,8 +53,9 @@ private:
         return true;
     }
 
-    static world::PlanStatus ladder(void* self, const world::Situation& situation, const Settings& settings, WorkBudget& budget,
-                                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin) noexcept
+    static world::PlanStatus ladder(void* self, const world::Situation& situation, const Settings& settings,
+                                    WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
+                                    float& margin) noexcept
     {
         world::PlanStatus status = world::PlanStatus::none_available;
         std::apply(

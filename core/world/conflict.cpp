@@ -18,12 +18,13 @@ using geometry::Motion;
 constexpr Seconds kPiece = 0.5F;
 /// Cross-track error up to which the vehicle counts as being on the leg [m].
 constexpr float kOnLeg = 0.25F;
-/// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro tab. 4.1).
+/// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro
+/// tab. 4.1).
 constexpr float kLargestRadius = 3.0F;
 
 /// The way in time: flown until its end, then hovering there.
 struct Phase {
-    Motion own;      ///< position at `start`
+    Motion own;  ///< position at `start`
     Seconds start;
     Seconds end;
 };
@@ -66,7 +67,8 @@ Seconds loss_within(const Situation& situation, const Phase& phase, const Track&
     const Vec3& half = situation.limits.half_extents;
     const Seconds span = phase.end - phase.start;
     const Motion threat{track.position + track.velocity * phase.start, track.velocity};
-    if (span <= 0.0F || !geometry::contact_interval(half, phase.own, threat, threat_radius(situation, track, phase.end), span)) {
+    if (span <= 0.0F ||
+        !geometry::contact_interval(half, phase.own, threat, threat_radius(situation, track, phase.end), span)) {
         return -1.0F;
     }
     const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
@@ -83,8 +85,8 @@ Seconds loss_within(const Situation& situation, const Phase& phase, const Track&
     return -1.0F;
 }
 
-bool sphere_like_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, const Vec3& half, float radius,
-                          Seconds lookahead, Conflict& out) noexcept
+bool sphere_like_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, const Vec3& half,
+                          float radius, Seconds lookahead, Conflict& out) noexcept
 {
     const Phase phase = phases_of(way, lookahead)[0];
     const Motion still{shape.centre, Vec3::Zero()};
@@ -116,8 +118,8 @@ bool general_conflict(const Situation& situation, const Way& way, const geometry
     float touching = 1.0F;
     for (int i = 0; i < 8; ++i) {
         const float middle = 0.5F * (clear + touching);
-        const bool is_clear = geometry::swept_box_contact(half, way.origin, way.origin + (end - way.origin) * middle, shape,
-                                                          extra, budget) == geometry::Contact::clear;
+        const bool is_clear = geometry::swept_box_contact(half, way.origin, way.origin + (end - way.origin) * middle,
+                                                          shape, extra, budget) == geometry::Contact::clear;
         (is_clear ? clear : touching) = middle;
     }
     const float length = (end - way.origin).norm();
@@ -127,8 +129,8 @@ bool general_conflict(const Situation& situation, const Way& way, const geometry
     return true;
 }
 
-bool obstacle_conflict(const Situation& situation, const Way& way, std::size_t index, Seconds lookahead, WorkBudget& budget,
-                       Conflict& out) noexcept
+bool obstacle_conflict(const Situation& situation, const Way& way, std::size_t index, Seconds lookahead,
+                       WorkBudget& budget, Conflict& out) noexcept
 {
     const geometry::Shape& shape = situation.obstacles[index].shape;
     Vec3 half;
@@ -211,7 +213,8 @@ bool predict_conflict(const Situation& situation, const Way& way, std::size_t tr
     return true;
 }
 
-bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget, Conflict& out) noexcept
+bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
+                   Conflict& out) noexcept
 {
     bool found = false;
     const auto consider = [&](const Conflict& conflict) {

@@ -17,28 +17,31 @@ struct Conflict {
     float radius_at_closest = 0.0F;         ///< threat's grown radius then [m]
 };
 
-/// The straight way that the vehicle takes when nothing is in it: from its position back to and along the leg at the leg's speed.
+/// The straight way that the vehicle takes when nothing is in it: from its position back to and along the leg at the
+/// leg's speed.
 struct Way {
-    Vec3 origin = Vec3::Zero();     ///< own position [m]
-    Vec3 direction = Vec3::UnitX(); ///< unit vector
-    float speed = 0.0F;             ///< after climb and descent limits [m/s]
-    float length = 0.0F;            ///< to the end of the leg [m]
+    Vec3 origin = Vec3::Zero();      ///< own position [m]
+    Vec3 direction = Vec3::UnitX();  ///< unit vector
+    float speed = 0.0F;              ///< after climb and descent limits [m/s]
+    float length = 0.0F;             ///< to the end of the leg [m]
 };
 
-/// Off the leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer [m].
+/// Off the leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer
+/// [m].
 inline constexpr float kRejoinLookahead = 12.0F;
 
 /// The way for a situation with a valid reference. Within 1e-3 m of the leg's end: the leg's direction, length 0. O(1).
 [[nodiscard]] Way way_of(const Situation& situation) noexcept;
 
-/// Conflict of one track with the way within `lookahead` seconds: exact closest approach and loss times with the radius the
-/// threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the true one). O(lookahead).
+/// Conflict of one track with the way within `lookahead` seconds: exact closest approach and loss times with the radius
+/// the threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the true one).
+/// O(lookahead).
 [[nodiscard]] bool predict_conflict(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
                                     Conflict& out) noexcept;
 
-/// The main threat: of all tracks and obstacles in conflict with the way within `lookahead`, the one whose loss of separation
-/// comes first (ties: the smaller margin, then the smaller index). False when there is none. Airspace bounds are no threats:
-/// candidates obey them, but a leg outside them is the mission's business. O(tracks + obstacles).
+/// The main threat: of all tracks and obstacles in conflict with the way within `lookahead`, the one whose loss of
+/// separation comes first (ties: the smaller margin, then the smaller index). False when there is none. Airspace bounds
+/// are no threats: candidates obey them, but a leg outside them is the mission's business. O(tracks + obstacles).
 [[nodiscard]] bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                                  Conflict& out) noexcept;
 

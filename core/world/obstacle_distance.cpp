@@ -12,14 +12,16 @@ namespace {
 /// Halvings that find how much of the box must be taken off: 2^-6 of the half extents.
 constexpr int kShrinkSteps = 6;
 
-float overlap(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& shape, WorkBudget& budget) noexcept
+float overlap(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& shape,
+              WorkBudget& budget) noexcept
 {
     float clear = 0.0F;
     float touching = 1.0F;
     for (int i = 0; i < kShrinkSteps; ++i) {
         const float scale = 0.5F * (clear + touching);
         const Vec3 smaller = half * scale;
-        const bool is_clear = geometry::swept_box_contact(smaller, from, to, shape, 0.0F, budget) == geometry::Contact::clear;
+        const bool is_clear =
+            geometry::swept_box_contact(smaller, from, to, shape, 0.0F, budget) == geometry::Contact::clear;
         (is_clear ? clear : touching) = scale;
     }
     return (1.0F - clear) * half.maxCoeff();

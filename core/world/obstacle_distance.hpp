@@ -12,13 +12,16 @@ inline constexpr float kObstacleResolution = 0.05F;
 
 /// Margin between the own box (half extents [m]) flown straight from `from` to `to` and an obstacle [m].
 ///
-/// Spheres and vertical capsules: closed form, exact; below 0 where they overlap (no deeper than the radius). Other shapes: libccd, a lower bound by at
-/// most kObstacleResolution, capped at kObstacleReach; overlap shows as minus the part of the box (largest half extent) that has to
-/// be taken off until it is clear. A budget that runs out gives the worst value. O(1), O(log) support queries otherwise.
+/// Spheres and vertical capsules: closed form, exact; below 0 where they overlap (no deeper than the radius). Other
+/// shapes: libccd, a lower bound by at most kObstacleResolution, capped at kObstacleReach; overlap shows as minus the
+/// part of the box (largest half extent) that has to be taken off until it is clear. A budget that runs out gives the
+/// worst value. O(1), O(log) support queries otherwise.
 [[nodiscard]] float obstacle_margin(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& shape,
                                     WorkBudget& budget) noexcept;
 
-/// True, and the box and radius to use in the sphere's closed form, for shapes that are a sphere but for a taller own box.
-[[nodiscard]] bool as_sphere(const geometry::Shape& shape, const Vec3& half, Vec3& effective_half, float& radius) noexcept;
+/// True, and the box and radius to use in the sphere's closed form, for shapes that are a sphere but for a taller own
+/// box.
+[[nodiscard]] bool as_sphere(const geometry::Shape& shape, const Vec3& half, Vec3& effective_half,
+                             float& radius) noexcept;
 
 }  // namespace jink::world

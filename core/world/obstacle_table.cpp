@@ -52,9 +52,9 @@ ObstacleStatus ObstacleTable::place(const Obstacle& obstacle, TimePoint expires,
         insert(obstacle, expires);
         return ObstacleStatus::created;
     }
-    const auto* const farthest = std::max_element(obstacles_.begin(), obstacles_.end(), [&](const Obstacle& a, const Obstacle& b) {
-        return gap(a.shape, own) < gap(b.shape, own);
-    });
+    const auto* const farthest =
+        std::max_element(obstacles_.begin(), obstacles_.end(),
+                         [&](const Obstacle& a, const Obstacle& b) { return gap(a.shape, own) < gap(b.shape, own); });
     if (gap(obstacle.shape, own) >= gap(farthest->shape, own)) {
         return ObstacleStatus::full;
     }

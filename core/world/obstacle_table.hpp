@@ -34,7 +34,10 @@ public:
     void clear() noexcept;
 
     /// In order of id. Valid until the next call of a non-const member.
-    [[nodiscard]] std::span<const Obstacle> obstacles() const noexcept { return {obstacles_.data(), obstacles_.size()}; }
+    [[nodiscard]] std::span<const Obstacle> obstacles() const noexcept
+    {
+        return {obstacles_.data(), obstacles_.size()};
+    }
     [[nodiscard]] const ObstacleDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
 private:

@@ -45,7 +45,8 @@ void cut_into_pieces(const path::TimedPath& path, Seconds horizon, Flight& fligh
     const auto& points = path.points;
     for (std::size_t i = 0; i + 1 < points.size() && points[i].time < horizon; ++i) {
         const Seconds end = std::min(points[i + 1].time, horizon);
-        flight.pieces.unchecked_push_back({points[i].position, points[i].velocity, points[i].time, end - points[i].time});
+        flight.pieces.unchecked_push_back(
+            {points[i].position, points[i].velocity, points[i].time, end - points[i].time});
     }
     if (flight.pieces.empty() && !points.empty()) {
         flight.pieces.unchecked_push_back({points.front().position, Vec3::Zero(), 0.0F, 0.0F});
@@ -117,8 +118,7 @@ void against_track(const Situation& situation, const Flight& flight, std::size_t
                 const Motion own{p.from + p.velocity * offset, p.velocity};
                 const Motion other{threat.position + threat.velocity * start, threat.velocity};
                 const geometry::Approach near = geometry::least_distance(half, own, other, length);
-                const float radius =
-                    threat_radius(situation, track, start + length) - shrink_at(shrunk, escape, start);
+                const float radius = threat_radius(situation, track, start + length) - shrink_at(shrunk, escape, start);
                 consider(best, near.distance - radius, start + near.when, ThreatKind::track, index);
             }
         }
@@ -135,25 +135,28 @@ void against_obstacle(const Situation& situation, const Flight& flight, std::siz
     float shrunk = -1.0F;  // found when the first piece near the obstacle is met
 
     for (const Bounds& chunk : flight.chunks) {
-        const float bound = box_distance(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach - extra;
+        const float bound =
+            box_distance(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach - extra;
         if (bound >= best.margin) {
             continue;
         }
         if (shrunk < 0.0F) {
-            const float start = obstacle_margin(half, flight.pieces.front().from, flight.pieces.front().from, shape, budget) - extra;
+            const float start =
+                obstacle_margin(half, flight.pieces.front().from, flight.pieces.front().from, shape, budget) - extra;
             shrunk = start < 0.0F ? escape.slack - start : 0.0F;
         }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
             const Piece& p = flight.pieces[i];
-            const float margin = obstacle_margin(half, p.from, p.from + p.velocity * p.duration, shape, budget) - extra +
-                                 shrink_at(shrunk, escape, p.start);
+            const float margin = obstacle_margin(half, p.from, p.from + p.velocity * p.duration, shape, budget) -
+                                 extra + shrink_at(shrunk, escape, p.start);
             consider(best, margin, p.start, ThreatKind::obstacle, index);
         }
     }
 }
 
 /// Airspace bounds are convex sets: the least margin of a straight piece lies at one of its ends.
-void against_airspace(const Situation& situation, const Flight& flight, const EscapeRule& escape, Separation& best) noexcept
+void against_airspace(const Situation& situation, const Flight& flight, const EscapeRule& escape,
+                      Separation& best) noexcept
 {
     const Airspace& air = situation.airspace;
     const Vec3& half = situation.limits.half_extents;
@@ -190,8 +193,8 @@ float threat_radius(const Situation& situation, const Track& track, Seconds t) n
            0.5F * track.max_acceleration * age * age;
 }
 
-Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon, WorkBudget& budget,
-                            const EscapeRule& escape) noexcept
+Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
+                            WorkBudget& budget, const EscapeRule& escape) noexcept
 {
     Separation best;
     if (path.points.empty()) {
@@ -216,7 +219,8 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
     for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
         const Track& track = situation.tracks[i];
         const Vec3 centre = track.position + track.velocity * t;
-        const float distance = geometry::least_distance(half, {position, Vec3::Zero()}, {centre, Vec3::Zero()}, 0.0F).distance;
+        const float distance =
+            geometry::least_distance(half, {position, Vec3::Zero()}, {centre, Vec3::Zero()}, 0.0F).distance;
         consider(best, distance - threat_radius(situation, track, t), t, ThreatKind::track, i);
     }
     for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
@@ -224,7 +228,8 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
         const float extra = situation.k_sigma * situation.own.sigma_position;
         const float near = (position - shape.centre).norm() - geometry::bounding_radius(shape) - half.norm() - extra;
         if (near < best.margin) {
-            consider(best, obstacle_margin(half, position, position, shape, budget) - extra, t, ThreatKind::obstacle, i);
+            consider(best, obstacle_margin(half, position, position, shape, budget) - extra, t, ThreatKind::obstacle,
+                     i);
         }
     }
     Flight flight;

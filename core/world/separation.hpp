@@ -24,23 +24,28 @@ struct Separation {
     ThreatRef against;
 };
 
-/// How a flight that starts inside a margin is judged: each threat's sphere (or clearance) is shrunk to just clear the start and
-/// grows back at `speed`, so that a flight which leaves the margin at least that fast, and does not come back, is clear.
+/// How a flight that starts inside a margin is judged: each threat's sphere (or clearance) is shrunk to just clear the
+/// start and grows back at `speed`, so that a flight which leaves the margin at least that fast, and does not come
+/// back, is clear.
 struct EscapeRule {
     float slack = 0.05F;  ///< the shrunk surface clears the start by this much [m]
     float speed = 0.5F;   ///< the surface grows back at this speed [m/s]
 };
 
-/// Least separation along a timed path, from path time 0 (= Situation::now + `offset`) to min(path end, `horizon`): exact and time-aware
-/// for tracks (relative motion per segment in closed form, the threat at the size it has at the segment's end, so never optimistic),
-/// swept and exact for obstacles (libccd under `budget`, a budget that runs out counts as contact), airspace bounds by their planes.
+/// Least separation along a timed path, from path time 0 (= Situation::now + `offset`) to min(path end, `horizon`):
+/// exact and time-aware for tracks (relative motion per segment in closed form, the threat at the size it has at the
+/// segment's end, so never optimistic), swept and exact for obstacles (libccd under `budget`, a budget that runs out
+/// counts as contact), airspace bounds by their planes.
 ///
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface.
-/// Cost in budget: one unit per track and segment after culling, support calls for obstacles. O(points * (tracks + obstacles)).
+/// Cost in budget: one unit per track and segment after culling, support calls for obstacles. O(points * (tracks +
+/// obstacles)).
 [[nodiscard]] Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
                                           WorkBudget& budget, const EscapeRule& escape = {}) noexcept;
 
-/// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now. `position`: own box centre.
-[[nodiscard]] Separation separation_at(const Situation& situation, const Vec3& position, Seconds t, WorkBudget& budget) noexcept;
+/// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now.
+/// `position`: own box centre.
+[[nodiscard]] Separation separation_at(const Situation& situation, const Vec3& position, Seconds t,
+                                       WorkBudget& budget) noexcept;
 
 }  // namespace jink::world

@@ -35,8 +35,8 @@ std::uint32_t& counter(TrackDiagnostics& d, TrackStatus status) noexcept
 
 bool all_finite(const TrackMeasurement& m) noexcept
 {
-    return is_finite(m.position) && is_finite(m.velocity) && std::isfinite(m.radius) && std::isfinite(m.sigma_position) &&
-           std::isfinite(m.sigma_velocity) && std::isfinite(m.max_acceleration);
+    return is_finite(m.position) && is_finite(m.velocity) && std::isfinite(m.radius) &&
+           std::isfinite(m.sigma_position) && std::isfinite(m.sigma_velocity) && std::isfinite(m.max_acceleration);
 }
 
 }  // namespace
@@ -65,8 +65,11 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
     entry.variance_position = m.sigma_position * m.sigma_position;
     const float sigma_velocity = m.has_velocity ? m.sigma_velocity : settings_.first_sigma_velocity;
     entry.variance_velocity = sigma_velocity * sigma_velocity;
-    entry.track = {m.id, m.stamp, m.position, m.has_velocity ? m.velocity : Vec3(Vec3::Zero()), m.radius, m.sigma_position,
-                   sigma_velocity, m.max_acceleration, m.source, false};
+    entry.track = {m.id,           m.stamp,
+                   m.position,     m.has_velocity ? m.velocity : Vec3(Vec3::Zero()),
+                   m.radius,       m.sigma_position,
+                   sigma_velocity, m.max_acceleration,
+                   m.source,       false};
     return entry;
 }
 
@@ -75,7 +78,8 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     const Seconds dt = m.stamp - e.track.stamp;
     const float q = settings_.process_acceleration * settings_.process_acceleration;
     const Vec3 predicted = e.track.position + e.track.velocity * dt;
-    const float ppp = e.variance_position + dt * (2.0F * e.covariance + dt * e.variance_velocity) + q * dt * dt * dt / 3.0F;
+    const float ppp =
+        e.variance_position + dt * (2.0F * e.covariance + dt * e.variance_velocity) + q * dt * dt * dt / 3.0F;
     const float ppv = e.covariance + dt * e.variance_velocity + 0.5F * q * dt * dt;
     const float pvv = e.variance_velocity + q * dt;
 
@@ -110,7 +114,8 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_position = vpp;
     e.covariance = vpv;
     e.variance_velocity = vvv;
-    e.track = {m.id, m.stamp, position, velocity, m.radius, std::sqrt(vpp), std::sqrt(vvv), m.max_acceleration, m.source, false};
+    e.track = {m.id,           m.stamp,        position,           velocity, m.radius,
+               std::sqrt(vpp), std::sqrt(vvv), m.max_acceleration, m.source, false};
 }
 
 TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::VehicleState& own, TimePoint now) noexcept
@@ -129,9 +134,10 @@ TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::Vehicle
             status = TrackStatus::created;
         } else {
             const Entry fresh = start(m);
-            auto* const farthest = std::max_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
-                return closest_approach(a.track, own) < closest_approach(b.track, own);
-            });
+            auto* const farthest =
+                std::max_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
+                    return closest_approach(a.track, own) < closest_approach(b.track, own);
+                });
             status = TrackStatus::full;
             if (closest_approach(fresh.track, own) < closest_approach(farthest->track, own)) {
                 *farthest = fresh;

@@ -14,8 +14,8 @@ namespace jink::world {
 struct TrackMeasurement {
     TrackId id = 0;
     TimePoint stamp;
-    Vec3 position = Vec3::Zero();   ///< [m]
-    Vec3 velocity = Vec3::Zero();   ///< [m/s]
+    Vec3 position = Vec3::Zero();  ///< [m]
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
     bool has_velocity = false;
     float radius = 0.0F;            ///< of the body [m], >= 0
     float sigma_position = 0.0F;    ///< [m], > 0
@@ -37,19 +37,20 @@ enum class TrackStatus : std::uint8_t {
 
 /// Counters since start; each sighting adds to exactly one but `expired` and `jumps`.
 struct TrackDiagnostics {
-    std::uint32_t updated = 0, created = 0, replaced = 0, not_finite = 0, out_of_range = 0, stale = 0, future = 0, full = 0;
+    std::uint32_t updated = 0, created = 0, replaced = 0, not_finite = 0, out_of_range = 0, stale = 0, future = 0,
+                  full = 0;
     std::uint32_t expired = 0;  ///< dropped by age
     std::uint32_t jumps = 0;    ///< sightings so far from the prediction that the track was started anew from them
 };
 
 struct TrackTableSettings {
-    Seconds max_age = 3.0F;            ///< a track not seen for longer is dropped [s]
-    float max_range = 20000.0F;        ///< from the vehicle [m]
-    float max_speed = 400.0F;          ///< [m/s]
-    float process_acceleration = 0.5F; ///< white acceleration noise of the filter, root of its density [m/s^1.5]
-    float first_sigma_velocity = 5.0F; ///< of a track first seen without velocity [m/s]
-    float jump_gate = 6.0F;            ///< innovation in standard deviations beyond which a track starts anew
-    Seconds future_slack = 0.05F;      ///< stamps may lie this far ahead of now [s]
+    Seconds max_age = 3.0F;             ///< a track not seen for longer is dropped [s]
+    float max_range = 20000.0F;         ///< from the vehicle [m]
+    float max_speed = 400.0F;           ///< [m/s]
+    float process_acceleration = 0.5F;  ///< white acceleration noise of the filter, root of its density [m/s^1.5]
+    float first_sigma_velocity = 5.0F;  ///< of a track first seen without velocity [m/s]
+    float jump_gate = 6.0F;             ///< innovation in standard deviations beyond which a track starts anew
+    Seconds future_slack = 0.05F;       ///< stamps may lie this far ahead of now [s]
 };
 
 /// Tracks under a constant-velocity Kalman filter, one variance for the three axes.
@@ -65,8 +66,8 @@ public:
     /// Drops tracks older than `max_age`. O(kMaxTracks).
     void expire(TimePoint now) noexcept;
 
-    /// Tracks extrapolated to `now`, in order of id (so that order of arrival changes nothing); their sigmas stay those at their stamp.
-    /// O(kMaxTracks^2). The view is valid until the next call of any member.
+    /// Tracks extrapolated to `now`, in order of id (so that order of arrival changes nothing); their sigmas stay those
+    /// at their stamp. O(kMaxTracks^2). The view is valid until the next call of any member.
     [[nodiscard]] std::span<const Track> snapshot(TimePoint now) noexcept;
 
     /// Id of track `index` of the last snapshot.
@@ -79,13 +80,14 @@ public:
 
 private:
     struct Entry {
-        Track track;                   ///< at its stamp
+        Track track;  ///< at its stamp
         float variance_position = 0.0F;
         float covariance = 0.0F;
         float variance_velocity = 0.0F;
     };
 
-    [[nodiscard]] TrackStatus admit(const TrackMeasurement& m, const vehicle::VehicleState& own, TimePoint now) const noexcept;
+    [[nodiscard]] TrackStatus admit(const TrackMeasurement& m, const vehicle::VehicleState& own,
+                                    TimePoint now) const noexcept;
     [[nodiscard]] Entry start(const TrackMeasurement& m) const noexcept;
     void filter(Entry& entry, const TrackMeasurement& m) noexcept;
 

@@ -21,13 +21,13 @@ enum class TrackSource : std::uint8_t { adsb, own_sensor, datalink };
 /// A moving threat: a sphere with a straight motion and what is not known of it.
 struct Track {
     TrackId id = 0;
-    TimePoint stamp;               ///< of the newest measurement in it
-    Vec3 position = Vec3::Zero();  ///< [m]; in a Situation: at Situation::now
-    Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    float radius = 0.0F;           ///< of the body [m]
-    float sigma_position = 0.0F;   ///< at `stamp`, one standard deviation per axis [m]
-    float sigma_velocity = 0.0F;   ///< [m/s]
-    float max_acceleration = 0.0F; ///< bound on what it may do unannounced [m/s2]
+    TimePoint stamp;                ///< of the newest measurement in it
+    Vec3 position = Vec3::Zero();   ///< [m]; in a Situation: at Situation::now
+    Vec3 velocity = Vec3::Zero();   ///< [m/s]
+    float radius = 0.0F;            ///< of the body [m]
+    float sigma_position = 0.0F;    ///< at `stamp`, one standard deviation per axis [m]
+    float sigma_velocity = 0.0F;    ///< [m/s]
+    float max_acceleration = 0.0F;  ///< bound on what it may do unannounced [m/s2]
     TrackSource source = TrackSource::adsb;
     bool cooperative = false;
 };
@@ -68,11 +68,11 @@ enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_tur
 struct Manoeuvre {
     ManoeuvreKind kind = ManoeuvreKind::brake;
     MethodId by = MethodId::none;
-    TimePoint start;               ///< path time 0
+    TimePoint start;  ///< path time 0
     TimePoint valid_until;
-    Vec3 command = Vec3::Zero();   ///< `velocity`: [m/s]
-    Vec3 side = Vec3::Zero();      ///< unit vector from the leg towards the farthest point of the path; zero for none
-    float cost = 0.0F;             ///< [0, 1], as the method counts it
+    Vec3 command = Vec3::Zero();  ///< `velocity`: [m/s]
+    Vec3 side = Vec3::Zero();     ///< unit vector from the leg towards the farthest point of the path; zero for none
+    float cost = 0.0F;            ///< [0, 1], as the method counts it
     path::TimedPath path;
 };
 
@@ -91,16 +91,17 @@ struct Situation {
 };
 
 enum class PlanStatus : std::uint8_t {
-    found,             ///< `out` holds a checked manoeuvre
-    no_conflict,       ///< nothing to avoid
-    too_close,         ///< nearer to the main threat than the method can plan for
-    none_available,    ///< every candidate touches something or cannot be flown
-    budget_spent,      ///< the work budget ran out before an answer that may be trusted
-    bad_input,         ///< no leg, or settings out of range
+    found,           ///< `out` holds a checked manoeuvre
+    no_conflict,     ///< nothing to avoid
+    too_close,       ///< nearer to the main threat than the method can plan for
+    none_available,  ///< every candidate touches something or cannot be flown
+    budget_spent,    ///< the work budget ran out before an answer that may be trusted
+    bad_input,       ///< no leg, or settings out of range
 };
 
-/// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma times its uncertainty (own position uncertainty
-/// included) grown from its stamp on, and half its acceleration bound times t squared. The only place where threats grow. O(1).
+/// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma times its uncertainty (own position
+/// uncertainty included) grown from its stamp on, and half its acceleration bound times t squared. The only place where
+/// threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
 
 }  // namespace jink::world

@@ -21,10 +21,11 @@ constexpr std::uint16_t bit(Fault fault) noexcept { return static_cast<std::uint
 
 }  // namespace
 
-Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog, const Parameters& parameters) noexcept
-    : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters), applied_generation_(parameters.generation()),
-      planner_(parameters.configuration().planner), supervisor_(parameters.configuration().supervisor, planner_),
-      tracks_(parameters.configuration().tracks)
+Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog,
+                         const Parameters& parameters) noexcept
+    : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters),
+      applied_generation_(parameters.generation()), planner_(parameters.configuration().planner),
+      supervisor_(parameters.configuration().supervisor, planner_), tracks_(parameters.configuration().tracks)
 {
 }
 
@@ -156,7 +157,9 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     if (fresh && c.mode != ActMode::off) {
         const world::Reference reference = reference_at(own);
         const world::Airspace air = airspace(now);
-        const world::Situation situation{now, own, c.limits, c.airframe, reference, tracks_.snapshot(now), obstacles_.obstacles(), air, nullptr, c.k_sigma};
+        const world::Situation situation{
+            now, own,     c.limits, c.airframe, reference, tracks_.snapshot(now), obstacles_.obstacles(),
+            air, nullptr, c.k_sigma};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
         report.guidance = supervisor_.update(situation, takeover_.in_control());
@@ -223,7 +226,8 @@ link::SystemState Coprocessor::system_state(const StepReport& report) const noex
         const bool only_waiting = (report.faults & ~never_ready) == 0;
         return only_waiting ? link::SystemState::boot : link::SystemState::critical;
     }
-    if (report.guidance.wants_control && report.guidance.margin < 0.0F && report.guidance.state == avoid::State::braking) {
+    if (report.guidance.wants_control && report.guidance.margin < 0.0F &&
+        report.guidance.state == avoid::State::braking) {
         return link::SystemState::emergency;
     }
     const bool on_guard = autopilot_.armed && parameters_.configuration().mode != ActMode::off;
@@ -259,10 +263,11 @@ void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noex
         const world::Manoeuvre* flying = supervisor_.flying();
         const bool vertical = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
         warning.action = g.kind == world::ManoeuvreKind::brake ? link::CollisionAction::hover
-                         : vertical                           ? link::CollisionAction::ascend_or_descend
-                                                              : link::CollisionAction::move_horizontally;
+                         : vertical                            ? link::CollisionAction::ascend_or_descend
+                                                               : link::CollisionAction::move_horizontally;
     }
-    const bool near = c.time_to_loss <= vehicle::stopping_time(own_.velocity.norm(), parameters_.configuration().limits) + 1.0F;
+    const bool near =
+        c.time_to_loss <= vehicle::stopping_time(own_.velocity.norm(), parameters_.configuration().limits) + 1.0F;
     warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
     link_.send_collision(warning);
     last_collision_ = now;

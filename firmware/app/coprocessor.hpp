@@ -24,17 +24,17 @@ enum class Fault : std::uint16_t {
     own_state_missing = 4,
     own_state_stale = 8,
     port_lost = 16,
-    late = 32,             ///< the last step came later than two ticks after the one before
-    not_finite = 64,       ///< a command that is not a number: never sent
+    late = 32,        ///< the last step came later than two ticks after the one before
+    not_finite = 64,  ///< a command that is not a number: never sent
 };
 
 /// What one step did and cost.
 struct StepReport {
     link::SystemState state = link::SystemState::boot;
-    std::uint16_t faults = 0;         ///< Fault bits
-    bool deadline_missed = false;     ///< this step came late
+    std::uint16_t faults = 0;      ///< Fault bits
+    bool deadline_missed = false;  ///< this step came late
     bool setpoint_sent = false;
-    std::uint32_t work = 0;           ///< units of the supervisor's budget
+    std::uint32_t work = 0;  ///< units of the supervisor's budget
     std::uint32_t bytes_in = 0;
     std::uint32_t bytes_out = 0;
     std::uint16_t tracks = 0;
@@ -48,9 +48,9 @@ struct Diagnostics {
     std::uint32_t steps = 0;
     std::uint32_t deadlines_missed = 0;
     std::uint32_t setpoints = 0;
-    std::uint32_t setpoints_withheld = 0;   ///< due, but nothing fresh to say
+    std::uint32_t setpoints_withheld = 0;  ///< due, but nothing fresh to say
     std::uint32_t own_states = 0;
-    std::uint32_t own_state_refused = 0;    ///< stamped in the future, or older than what is known
+    std::uint32_t own_state_refused = 0;  ///< stamped in the future, or older than what is known
     std::uint32_t estimator_resets = 0;
     std::uint32_t autopilot_reboots = 0;
     std::uint32_t params_set = 0;
@@ -61,32 +61,42 @@ struct Diagnostics {
     std::uint32_t scans = 0;
     std::uint32_t readings = 0;
     std::uint32_t tracks_in = 0;
-    std::uint32_t faults = 0;               ///< times the state became CRITICAL
+    std::uint32_t faults = 0;  ///< times the state became CRITICAL
 };
 
-/// The co-processor: one call does everything the firmware does in a tick. Images own the ports and call it; so do the tests and the simulator.
+/// The co-processor: one call does everything the firmware does in a tick. Images own the ports and call it; so do the
+/// tests and the simulator.
 ///
-/// Memory: sizeof(Coprocessor), about 110 KiB with the default capacities (most of it candidate reports; JINK_MAX_CANDIDATES shrinks them). No allocation after
-/// construction, none in it. step() is O(bytes + candidates * waypoints * threats), bounded by kMaxBytesPerStep and the work budget.
+/// Memory: sizeof(Coprocessor), about 110 KiB with the default capacities (most of it candidate reports;
+/// JINK_MAX_CANDIDATES shrinks them). No allocation after construction, none in it. step() is O(bytes + candidates *
+/// waypoints * threats), bounded by kMaxBytesPerStep and the work budget.
 class Coprocessor {
 public:
     /// Bytes read per step; 921600 baud bring 1843 in 20 ms.
     static constexpr std::size_t kMaxBytesPerStep = 4096;
     static constexpr Seconds kTick = 0.02F;
 
-    Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog, const Parameters& parameters) noexcept;
+    Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog,
+                const Parameters& parameters) noexcept;
     Coprocessor(const Coprocessor&) = delete;
     Coprocessor& operator=(const Coprocessor&) = delete;
 
     StepReport step(TimePoint now) noexcept;
 
-    /// Says CRITICAL and stops streaming: called before an image stops on purpose. The bytes are written as far as the port takes them.
+    /// Says CRITICAL and stops streaming: called before an image stops on purpose. The bytes are written as far as the
+    /// port takes them.
     void shut_down(TimePoint now) noexcept;
 
     [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return diagnostics_; }
-    [[nodiscard]] const avoid::Diagnostics& supervisor_diagnostics() const noexcept { return supervisor_.diagnostics(); }
+    [[nodiscard]] const avoid::Diagnostics& supervisor_diagnostics() const noexcept
+    {
+        return supervisor_.diagnostics();
+    }
     [[nodiscard]] const world::TrackDiagnostics& track_diagnostics() const noexcept { return tracks_.diagnostics(); }
-    [[nodiscard]] const world::ObstacleDiagnostics& obstacle_diagnostics() const noexcept { return obstacles_.diagnostics(); }
+    [[nodiscard]] const world::ObstacleDiagnostics& obstacle_diagnostics() const noexcept
+    {
+        return obstacles_.diagnostics();
+    }
     [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const geometric::Planner& planner() const noexcept { return planner_; }
@@ -105,7 +115,8 @@ private:
     void take_params() noexcept;
     void take_commands() noexcept;
     void apply_configuration() noexcept;
-    void place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle, TimePoint expires) noexcept;
+    void place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle,
+                     TimePoint expires) noexcept;
     [[nodiscard]] std::uint16_t find_faults(TimePoint now, bool late) const noexcept;
     [[nodiscard]] vehicle::VehicleState own_at(TimePoint now) const noexcept;
     [[nodiscard]] world::Reference reference_at(const vehicle::VehicleState& own) const noexcept;
@@ -139,7 +150,7 @@ private:
     world::Leg leg_;
     bool has_leg_ = false;
     Vec3 home_ = Vec3::Zero();
-    bool has_ground_ = false;      ///< seen by a sensor that looks down
+    bool has_ground_ = false;  ///< seen by a sensor that looks down
     float ground_ = 0.0F;
     TimePoint ground_expires_;
     bool was_port_open_ = false;

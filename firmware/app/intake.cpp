@@ -92,7 +92,8 @@ void Coprocessor::take_tracks(TimePoint now) noexcept
 }
 
 /// An echo becomes an upright capsule: a level scan says nothing about height, so what it sees may be tall.
-void Coprocessor::place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle, TimePoint expires) noexcept
+void Coprocessor::place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle,
+                              TimePoint expires) noexcept
 {
     const float radius = std::max(kLeastEchoRadius, range * std::sin(std::min(half_angle, 0.5F * kPi)));
     const Vec3 centre = own_.position + direction * (range + radius);
@@ -150,7 +151,8 @@ void Coprocessor::take_params() noexcept
     const auto answer = [&](std::size_t index) {
         link::ParamName name{};
         std::copy(table[index].name.begin(), table[index].name.end(), name.begin());
-        link_.send_param(name, parameters_.values()[index], static_cast<std::uint16_t>(index), static_cast<std::uint16_t>(kParamCount));
+        link_.send_param(name, parameters_.values()[index], static_cast<std::uint16_t>(index),
+                         static_cast<std::uint16_t>(kParamCount));
     };
     for (const link::ParamRequest& request : inbox_.params) {
         if (request.kind == link::ParamRequestKind::list) {
@@ -166,7 +168,8 @@ void Coprocessor::take_params() noexcept
             continue;
         }
         if (request.kind == link::ParamRequestKind::set) {
-            const bool taken = request.value_finite && parameters_.set(static_cast<Param>(index), request.value) == ParamStatus::ok;
+            const bool taken =
+                request.value_finite && parameters_.set(static_cast<Param>(index), request.value) == ParamStatus::ok;
             ++(taken ? diagnostics_.params_set : diagnostics_.params_refused);
         }
         answer(index);  // a refused set is answered with the value that stands

@@ -17,13 +17,51 @@ enum class ActMode : std::uint8_t { off = 0, advise = 1, act = 2 };
 
 /// Parameters in the order of their MAVLink index.
 enum class Param : std::uint8_t {
-    mode, lookahead, half_xy, half_z, k_sigma, bounds, floor, ceiling, keep_in, reserve, settle, rate,
-    track_radius, point_radius, track_sigma_p, track_sigma_v, track_acceleration, track_latency, track_age,
-    scan_height, scan_keep, own_age, heartbeat_age,
-    cruise, climb, descent, acceleration, vertical_acceleration, lag, fixed_wing,
-    mass, drag, area,
-    offsets, planes, families, waypoints, swept, weight_smoothness, weight_time, rotation_penalty, flip_penalty, max_cost,
-    time_low, time_high,
+    mode,
+    lookahead,
+    half_xy,
+    half_z,
+    k_sigma,
+    bounds,
+    floor,
+    ceiling,
+    keep_in,
+    reserve,
+    settle,
+    rate,
+    track_radius,
+    point_radius,
+    track_sigma_p,
+    track_sigma_v,
+    track_acceleration,
+    track_latency,
+    track_age,
+    scan_height,
+    scan_keep,
+    own_age,
+    heartbeat_age,
+    cruise,
+    climb,
+    descent,
+    acceleration,
+    vertical_acceleration,
+    lag,
+    fixed_wing,
+    mass,
+    drag,
+    area,
+    offsets,
+    planes,
+    families,
+    waypoints,
+    swept,
+    weight_smoothness,
+    weight_time,
+    rotation_penalty,
+    flip_penalty,
+    max_cost,
+    time_low,
+    time_high,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -43,8 +81,8 @@ enum class ParamStatus : std::uint8_t {
     ok,
     unknown_name,
     not_finite,
-    out_of_range,   ///< beyond its own limits, or not a whole number
-    inconsistent,   ///< alone in range, but not together with the others
+    out_of_range,  ///< beyond its own limits, or not a whole number
+    inconsistent,  ///< alone in range, but not together with the others
 };
 
 /// Everything that parameters decide, as the rooms of core want it.
@@ -60,9 +98,9 @@ struct Configuration {
     float floor = 0.0F, ceiling = 0.0F, keep_in = 0.0F;  ///< above and about home [m]
     float track_radius = 1.0F, point_radius = 1.0F;      ///< of traffic that does not say its size [m]
     float track_sigma_position = 0.5F, track_sigma_velocity = 0.3F, track_acceleration = 0.0F, track_latency = 0.1F;
-    float scan_height = 10.0F;                           ///< half height given to what a level scan sees [m]
+    float scan_height = 10.0F;  ///< half height given to what a level scan sees [m]
     Seconds scan_keep = 1.0F;
-    Seconds own_age = 0.5F, heartbeat_age = 4.5F;        ///< older is a fault [s]
+    Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]
     Seconds setpoint_period = 0.05F;
 };
 

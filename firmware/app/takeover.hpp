@@ -25,13 +25,13 @@ enum class TakeoverAction : std::uint8_t { none, request_external, request_forme
 enum class TakeoverEvent : std::uint8_t { none, took_over, gave_back, refused, overruled, lost };
 
 struct TakeoverInput {
-    bool wants_control = false;   ///< the supervisor has something to fly
-    bool in_conflict = false;     ///< a conflict is still predicted
-    bool may_act = false;         ///< acting is allowed and everything needed is healthy
-    bool urgent_hold = false;     ///< what it wants is to brake
-    bool has_report = false;      ///< a HEARTBEAT of the autopilot arrived since the last tick
-    link::AutopilotReport report; ///< the newest one
-    bool mode_denied = false;     ///< a COMMAND_ACK refused the mode
+    bool wants_control = false;    ///< the supervisor has something to fly
+    bool in_conflict = false;      ///< a conflict is still predicted
+    bool may_act = false;          ///< acting is allowed and everything needed is healthy
+    bool urgent_hold = false;      ///< what it wants is to brake
+    bool has_report = false;       ///< a HEARTBEAT of the autopilot arrived since the last tick
+    link::AutopilotReport report;  ///< the newest one
+    bool mode_denied = false;      ///< a COMMAND_ACK refused the mode
 };
 
 struct TakeoverOutput {
@@ -40,7 +40,7 @@ struct TakeoverOutput {
 };
 
 struct TakeoverDiagnostics {
-    std::uint32_t requests = 0;       ///< of the external mode
+    std::uint32_t requests = 0;  ///< of the external mode
     std::uint32_t taken = 0;
     std::uint32_t given_back = 0;
     std::uint32_t refused = 0;
@@ -48,8 +48,9 @@ struct TakeoverDiagnostics {
     std::uint32_t lost_by_fault = 0;  ///< control dropped because of a fault of ours
 };
 
-/// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT that shows it (1 s,
-/// two more tries), fly, ask for the former mode, stream until that is confirmed. Any other mode seen is the pilot's: stop at once.
+/// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT
+/// that shows it (1 s, two more tries), fly, ask for the former mode, stream until that is confirmed. Any other mode
+/// seen is the pilot's: stop at once.
 ///
 /// Pure: no messages, no clock; O(1) per tick.
 class Takeover {
@@ -68,7 +69,10 @@ public:
         return control_ == Control::announcing || control_ == Control::requesting || in_control();
     }
     /// The autopilot follows us.
-    [[nodiscard]] bool in_control() const noexcept { return control_ == Control::ours || control_ == Control::returning; }
+    [[nodiscard]] bool in_control() const noexcept
+    {
+        return control_ == Control::ours || control_ == Control::returning;
+    }
     [[nodiscard]] const TakeoverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
     /// Stream this long before the request; autopilots refuse a mode whose set-points they have not seen [s].

@@ -8,8 +8,8 @@
 
 namespace jink::app {
 
-/// Builds a STATUSTEXT of at most 50 characters without the C library's formatting, which would bring an allocator into images.
-/// What does not fit is cut off.
+/// Builds a STATUSTEXT of at most 50 characters without the C library's formatting, which would bring an allocator into
+/// images. What does not fit is cut off.
 class Text {
 public:
     Text& operator<<(std::string_view part) noexcept

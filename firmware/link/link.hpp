@@ -15,7 +15,14 @@ enum class SystemState : std::uint8_t { boot = 1, standby = 3, active = 4, criti
 enum class Severity : std::uint8_t { critical = 2, error = 3, warning = 4, notice = 5, info = 6 };
 
 /// COLLISION.action / threat_level.
-enum class CollisionAction : std::uint8_t { none = 0, report = 1, ascend_or_descend = 2, move_horizontally = 3, move_perpendicular = 4, hover = 6 };
+enum class CollisionAction : std::uint8_t {
+    none = 0,
+    report = 1,
+    ascend_or_descend = 2,
+    move_horizontally = 3,
+    move_perpendicular = 4,
+    hover = 6
+};
 enum class ThreatLevel : std::uint8_t { none = 0, low = 1, high = 2 };
 
 struct CollisionWarning {
@@ -31,21 +38,21 @@ struct CollisionWarning {
 struct LinkDiagnostics {
     std::uint32_t frames_in = 0;
     std::uint32_t frames_out = 0;
-    std::uint32_t frames_refused = 0;    ///< by the parser, all causes together
-    std::uint32_t frames_ignored = 0;    ///< understood, but not for us or not of interest
-    std::uint32_t not_finite = 0;        ///< reports with NaN or infinity
-    std::uint32_t out_of_range = 0;      ///< absurd values, zero increments, unknown frames
-    std::uint32_t stale_stamp = 0;       ///< stamps too old or in the future
-    std::uint32_t no_origin = 0;         ///< traffic that could not be placed yet
-    std::uint32_t inbox_full = 0;        ///< reports dropped because the inbox was full
-    std::uint32_t clock_relocks = 0;     ///< jumps of the autopilot's clock followed
-    std::uint32_t outbox_full = 0;       ///< frames not sent because the transmit buffer was full
+    std::uint32_t frames_refused = 0;  ///< by the parser, all causes together
+    std::uint32_t frames_ignored = 0;  ///< understood, but not for us or not of interest
+    std::uint32_t not_finite = 0;      ///< reports with NaN or infinity
+    std::uint32_t out_of_range = 0;    ///< absurd values, zero increments, unknown frames
+    std::uint32_t stale_stamp = 0;     ///< stamps too old or in the future
+    std::uint32_t no_origin = 0;       ///< traffic that could not be placed yet
+    std::uint32_t inbox_full = 0;      ///< reports dropped because the inbox was full
+    std::uint32_t clock_relocks = 0;   ///< jumps of the autopilot's clock followed
+    std::uint32_t outbox_full = 0;     ///< frames not sent because the transmit buffer was full
 };
 
 /// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
 ///
-/// Nothing here blocks or allocates. Sending is queued in a bounded transmit buffer; a message that finds no room is dropped
-/// whole and counted.
+/// Nothing here blocks or allocates. Sending is queued in a bounded transmit buffer; a message that finds no room is
+/// dropped whole and counted.
 class Link {
 public:
     /// Takes bytes that arrived, at time `now`; fills the inbox. O(bytes).

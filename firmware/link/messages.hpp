@@ -10,8 +10,8 @@
 #include "core/base/vec3.hpp"
 #include "core/world/world.hpp"
 
-// What a link tells the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's clock.
-// Every number in here is finite; reports with numbers that are not were refused and counted by the link.
+// What a link tells the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's
+// clock. Every number in here is finite; reports with numbers that are not were refused and counted by the link.
 
 namespace jink::link {
 
@@ -21,11 +21,11 @@ enum class AutopilotStack : std::uint8_t { unknown, ardupilot, px4 };
 /// What the autopilot is doing, as far as taking over is concerned.
 enum class FlightMode : std::uint8_t {
     unknown,
-    mission,   ///< flies a mission by itself (AUTO): the mode that may be taken over
-    external,  ///< follows set-points of a companion (GUIDED, OFFBOARD)
-    hold,      ///< LOITER, BRAKE, AUTO.LOITER
+    mission,     ///< flies a mission by itself (AUTO): the mode that may be taken over
+    external,    ///< follows set-points of a companion (GUIDED, OFFBOARD)
+    hold,        ///< LOITER, BRAKE, AUTO.LOITER
     going_home,  ///< RTL and the like
-    manual,    ///< a pilot steers
+    manual,      ///< a pilot steers
     other,
 };
 
@@ -38,7 +38,7 @@ struct AutopilotReport {
     bool armed = false;
     bool landed = false;
     bool fixed_wing = false;
-    bool rebooted = false;          ///< its boot clock or sequence started again since the last report
+    bool rebooted = false;  ///< its boot clock or sequence started again since the last report
 };
 
 /// Own state as the autopilot estimates it. Fields not known keep their last value.
@@ -50,26 +50,28 @@ struct OwnStateReport {
 /// A sighting of another aircraft.
 struct TrackReport {
     world::TrackId id = 0;
-    TimePoint stamp;               ///< of validity: arrival less the time since last communication
+    TimePoint stamp;  ///< of validity: arrival less the time since last communication
     Vec3 position = Vec3::Zero();
     Vec3 velocity = Vec3::Zero();
     bool has_velocity = false;
-    float radius = 0.0F;           ///< [m], 0: not said
-    float sigma_position = 0.0F;   ///< [m], 0: not said
+    float radius = 0.0F;          ///< [m], 0: not said
+    float sigma_position = 0.0F;  ///< [m], 0: not said
     float sigma_velocity = 0.0F;
     world::TrackSource source = world::TrackSource::adsb;
-    bool at_rest = false;          ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
+    bool at_rest =
+        false;  ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
 };
 
 inline constexpr std::size_t kMaxScanSectors = 72;
 
-/// Horizontal range scan. Sector i looks at yaw_first + i * increment (world frame, counter-clockwise), width |increment|.
+/// Horizontal range scan. Sector i looks at yaw_first + i * increment (world frame, counter-clockwise), width
+/// |increment|.
 struct RangeScan {
     TimePoint stamp;
-    float yaw_first = 0.0F;   ///< [rad]
-    float increment = 0.0F;   ///< [rad], != 0; negative: clockwise
-    float min_range = 0.0F;   ///< [m]
-    float max_range = 0.0F;   ///< [m]
+    float yaw_first = 0.0F;  ///< [rad]
+    float increment = 0.0F;  ///< [rad], != 0; negative: clockwise
+    float min_range = 0.0F;  ///< [m]
+    float max_range = 0.0F;  ///< [m]
     std::uint8_t sensor = 0;
     StaticVector<float, kMaxScanSectors> ranges;  ///< [m]; kNothing: seen to be clear; kUnknown: not known
     static constexpr float kNothing = 1e9F;
@@ -82,12 +84,12 @@ struct RangeReading {
     Vec3 direction = Vec3::UnitX();  ///< unit vector, world frame
     float range = 0.0F;              ///< [m]; RangeScan::kNothing beyond the sensor's reach
     float max_range = 0.0F;
-    float half_angle = 0.0F;         ///< of the beam [rad]
+    float half_angle = 0.0F;  ///< of the beam [rad]
     std::uint8_t sensor = 0;
 };
 
 struct LegReport {
-    world::Leg leg;                  ///< speed 0: not said
+    world::Leg leg;  ///< speed 0: not said
 };
 
 inline constexpr std::size_t kParamNameLength = 16;
@@ -104,12 +106,18 @@ struct ParamRequest {
 
 struct CommandRequest {
     std::uint16_t command = 0;
-    std::array<float, 7> params{};   ///< NaN allowed: "not said"
+    std::array<float, 7> params{};  ///< NaN allowed: "not said"
     std::uint8_t from_system = 0;
     std::uint8_t from_component = 0;
 };
 
-enum class CommandResult : std::uint8_t { accepted = 0, temporarily_rejected = 1, denied = 2, unsupported = 3, failed = 4 };
+enum class CommandResult : std::uint8_t {
+    accepted = 0,
+    temporarily_rejected = 1,
+    denied = 2,
+    unsupported = 3,
+    failed = 4
+};
 
 /// The autopilot's answer to our request of a mode.
 struct ModeAnswer {

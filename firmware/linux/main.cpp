@@ -17,11 +17,11 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/status.hpp"
 #include "firmware/linux/vehicle_file.hpp"
-#include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/linux/linux_watchdog.hpp"
 #include "hal/linux/system_clock.hpp"
 #include "hal/linux/termios_serial_port.hpp"
@@ -135,8 +135,8 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
     hal::TermiosSerialPort port;
     hal::LinuxWatchdog watchdog;
     const hal::OpenStatus opened = port.open(device, baud, kReconnectPeriod);
-    if (opened == hal::OpenStatus::bad_path || opened == hal::OpenStatus::bad_baud || opened == hal::OpenStatus::not_a_serial_device ||
-        opened == hal::OpenStatus::settings_refused) {
+    if (opened == hal::OpenStatus::bad_path || opened == hal::OpenStatus::bad_baud ||
+        opened == hal::OpenStatus::not_a_serial_device || opened == hal::OpenStatus::settings_refused) {
         std::fprintf(stderr, "jinkd: %s: %s\n", device.c_str(), text_of(opened));
         return EXIT_FAILURE;
     }
@@ -144,7 +144,8 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         std::fprintf(stderr, "jinkd: %s: %s; going on trying\n", device.c_str(), text_of(opened));
     }
     constexpr int kWatchdogSeconds = 5;
-    if (!options.watchdog.empty() && watchdog.open_device(options.watchdog, kWatchdogSeconds) != hal::WatchdogStatus::ok) {
+    if (!options.watchdog.empty() &&
+        watchdog.open_device(options.watchdog, kWatchdogSeconds) != hal::WatchdogStatus::ok) {
         std::fprintf(stderr, "jinkd: watchdog %s cannot be used\n", options.watchdog.c_str());
         return EXIT_FAILURE;
     }
@@ -193,14 +194,18 @@ int main(int argc, char** argv)
     Options options;
     CLI::App cli{"jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line.\n"
                  "Runs until SIGTERM or SIGINT."};
-    cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given")->required();
+    cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given")
+        ->required();
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
     cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
-    cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")->check(CLI::Range(0, 255));
-    cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")->check(CLI::Range(0.0, 3600.0));
+    cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
+        ->check(CLI::Range(0, 255));
+    cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")
+        ->check(CLI::Range(0.0, 3600.0));
     cli.add_option("--summary", options.summary, "write counters and step times to this file (JSON) at the end");
     cli.add_option("--watchdog", options.watchdog, "watchdog device to feed, e.g. /dev/watchdog0");
-    cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")->check(CLI::Range(0, 99));
+    cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
+        ->check(CLI::Range(0, 99));
     cli.add_flag("--quiet", options.quiet, "errors only");
     CLI11_PARSE(cli, argc, argv);
 
@@ -214,7 +219,7 @@ int main(int argc, char** argv)
     if (!load_parameters(options, parameters)) {
         return EXIT_FAILURE;
     }
-    struct sigaction action{};
+    struct sigaction action {};
     action.sa_handler = request_stop;
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);

@@ -57,13 +57,15 @@ const char* name_of(hal::PortState state)
 
 }  // namespace
 
-void StatusLog::note(const app::StepReport& report, const app::Coprocessor& coprocessor, const link::mavlink::Endpoint& endpoint,
-                     const hal::PortHealth& port, std::int64_t now_us, std::int64_t took_us)
+void StatusLog::note(const app::StepReport& report, const app::Coprocessor& coprocessor,
+                     const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port, std::int64_t now_us,
+                     std::int64_t took_us)
 {
     ++steps_;
     total_us_ += took_us;
     longest_us_ = std::max(longest_us_, took_us);
-    const auto bin = std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, took_us) / kBinWidth));
+    const auto bin =
+        std::min<std::size_t>(kBins - 1, static_cast<std::size_t>(std::max<std::int64_t>(0, took_us) / kBinWidth));
     ++bins_[bin];
     const std::uint32_t plans = coprocessor.supervisor_diagnostics().plans;
     if (plans != last_plans_) {
@@ -78,8 +80,8 @@ void StatusLog::note(const app::StepReport& report, const app::Coprocessor& copr
     }
     last_line_us_ = now_us;
     const avoid::Guidance& g = report.guidance;
-    std::printf("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state), name_of(port.state),
-                name_of(report.control), name_of(g.state), report.tracks, report.obstacles);
+    std::printf("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
+                name_of(port.state), name_of(report.control), name_of(g.state), report.tracks, report.obstacles);
     if (g.has_conflict) {
         std::printf("conflict in %.1f s ", static_cast<double>(g.conflict.time_to_loss));
     }
@@ -92,8 +94,8 @@ void StatusLog::note(const app::StepReport& report, const app::Coprocessor& copr
     std::fflush(stdout);
 }
 
-bool StatusLog::write_summary(const std::string& path, const app::Coprocessor& coprocessor, const link::mavlink::Endpoint& endpoint,
-                              const hal::PortHealth& port) const
+bool StatusLog::write_summary(const std::string& path, const app::Coprocessor& coprocessor,
+                              const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port) const
 {
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "w"), &std::fclose);
     if (!file) {
@@ -105,35 +107,49 @@ bool StatusLog::write_summary(const std::string& path, const app::Coprocessor& c
     const app::TakeoverDiagnostics& t = coprocessor.takeover_diagnostics();
     const world::TrackDiagnostics& k = coprocessor.track_diagnostics();
     const link::LinkDiagnostics& l = endpoint.diagnostics();
-    const auto mean = [](std::int64_t sum, std::uint64_t n) { return n > 0 ? static_cast<double>(sum) / static_cast<double>(n) : 0.0; };
-    std::fprintf(f, "{\n  \"steps\": %llu, \"step_mean_us\": %.1f, \"step_max_us\": %lld,\n", static_cast<unsigned long long>(steps_),
-                 mean(total_us_, steps_), static_cast<long long>(longest_us_));
+    const auto mean = [](std::int64_t sum, std::uint64_t n) {
+        return n > 0 ? static_cast<double>(sum) / static_cast<double>(n) : 0.0;
+    };
+    std::fprintf(f, "{\n  \"steps\": %llu, \"step_mean_us\": %.1f, \"step_max_us\": %lld,\n",
+                 static_cast<unsigned long long>(steps_), mean(total_us_, steps_), static_cast<long long>(longest_us_));
     std::fprintf(f, "  \"plan_steps\": %llu, \"plan_step_mean_us\": %.1f, \"plan_step_max_us\": %lld,\n",
-                 static_cast<unsigned long long>(plan_steps_), mean(total_plan_us_, plan_steps_), static_cast<long long>(longest_plan_us_));
+                 static_cast<unsigned long long>(plan_steps_), mean(total_plan_us_, plan_steps_),
+                 static_cast<long long>(longest_plan_us_));
     std::fprintf(f, "  \"plan_step_bins_us\": {");
     bool first = true;
     for (std::size_t i = 0; i < kBins; ++i) {
         if (plan_bins_[i] != 0) {
-            std::fprintf(f, "%s\"%lld\": %u", first ? "" : ", ", static_cast<long long>(static_cast<std::int64_t>(i) * kBinWidth), plan_bins_[i]);
+            std::fprintf(f, "%s\"%lld\": %u", first ? "" : ", ",
+                         static_cast<long long>(static_cast<std::int64_t>(i) * kBinWidth), plan_bins_[i]);
             first = false;
         }
     }
-    std::fprintf(f, "},\n  \"conflicts\": %u, \"plans\": %u, \"plans_found\": %u, \"answers_rejected\": %u, \"manoeuvres\": %u,\n", s.conflicts,
-                 s.plans, s.plans_found, s.answers_rejected, s.manoeuvres);
-    std::fprintf(f, "  \"replans\": %u, \"flips\": %u, \"brakes\": %u, \"escapes\": %u, \"rejoined\": %u, \"budget_spent\": %u,\n", s.replans,
-                 s.flips, s.brakes, s.escapes, s.rejoined, s.budget_spent);
-    std::fprintf(f, "  \"deadlines_missed\": %u, \"setpoints\": %u, \"setpoints_withheld\": %u, \"faults\": %u,\n", d.deadlines_missed,
-                 d.setpoints, d.setpoints_withheld, d.faults);
-    std::fprintf(f, "  \"mode_requests\": %u, \"taken\": %u, \"given_back\": %u, \"refused\": %u, \"overruled\": %u, \"lost_by_fault\": %u,\n",
+    std::fprintf(
+        f,
+        "},\n  \"conflicts\": %u, \"plans\": %u, \"plans_found\": %u, \"answers_rejected\": %u, \"manoeuvres\": %u,\n",
+        s.conflicts, s.plans, s.plans_found, s.answers_rejected, s.manoeuvres);
+    std::fprintf(
+        f,
+        "  \"replans\": %u, \"flips\": %u, \"brakes\": %u, \"escapes\": %u, \"rejoined\": %u, \"budget_spent\": %u,\n",
+        s.replans, s.flips, s.brakes, s.escapes, s.rejoined, s.budget_spent);
+    std::fprintf(f, "  \"deadlines_missed\": %u, \"setpoints\": %u, \"setpoints_withheld\": %u, \"faults\": %u,\n",
+                 d.deadlines_missed, d.setpoints, d.setpoints_withheld, d.faults);
+    std::fprintf(f,
+                 "  \"mode_requests\": %u, \"taken\": %u, \"given_back\": %u, \"refused\": %u, \"overruled\": %u, "
+                 "\"lost_by_fault\": %u,\n",
                  t.requests, t.taken, t.given_back, t.refused, t.overruled, t.lost_by_fault);
-    std::fprintf(f, "  \"autopilot_reboots\": %u, \"estimator_resets\": %u, \"params_set\": %u, \"params_refused\": %u,\n",
+    std::fprintf(f,
+                 "  \"autopilot_reboots\": %u, \"estimator_resets\": %u, \"params_set\": %u, \"params_refused\": %u,\n",
                  d.autopilot_reboots, d.estimator_resets, d.params_set, d.params_refused);
-    std::fprintf(f, "  \"tracks_created\": %u, \"tracks_refused\": %u, \"tracks_expired\": %u, \"tracks_dropped\": %u,\n", k.created,
-                 k.not_finite + k.out_of_range + k.stale + k.future, k.expired, k.full + k.replaced);
-    std::fprintf(f, "  \"frames_in\": %u, \"frames_out\": %u, \"frames_refused\": %u, \"stale_stamps\": %u, \"clock_relocks\": %u,\n",
+    std::fprintf(f,
+                 "  \"tracks_created\": %u, \"tracks_refused\": %u, \"tracks_expired\": %u, \"tracks_dropped\": %u,\n",
+                 k.created, k.not_finite + k.out_of_range + k.stale + k.future, k.expired, k.full + k.replaced);
+    std::fprintf(f,
+                 "  \"frames_in\": %u, \"frames_out\": %u, \"frames_refused\": %u, \"stale_stamps\": %u, "
+                 "\"clock_relocks\": %u,\n",
                  l.frames_in, l.frames_out, l.frames_refused, l.stale_stamp, l.clock_relocks);
-    std::fprintf(f, "  \"port_disconnects\": %llu, \"port_reconnects\": %llu\n}\n", static_cast<unsigned long long>(port.disconnects),
-                 static_cast<unsigned long long>(port.reconnects));
+    std::fprintf(f, "  \"port_disconnects\": %llu, \"port_reconnects\": %llu\n}\n",
+                 static_cast<unsigned long long>(port.disconnects), static_cast<unsigned long long>(port.reconnects));
     return std::ferror(f) == 0;
 }
 

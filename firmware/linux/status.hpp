@@ -17,8 +17,9 @@ public:
     /// @param period  seconds between status lines on standard output; 0: none
     explicit StatusLog(double period) : period_us_(static_cast<std::int64_t>(period * 1e6)) {}
 
-    void note(const app::StepReport& report, const app::Coprocessor& coprocessor, const link::mavlink::Endpoint& endpoint,
-              const hal::PortHealth& port, std::int64_t now_us, std::int64_t took_us);
+    void note(const app::StepReport& report, const app::Coprocessor& coprocessor,
+              const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port, std::int64_t now_us,
+              std::int64_t took_us);
 
     /// JSON; false when the file cannot be written.
     [[nodiscard]] bool write_summary(const std::string& path, const app::Coprocessor& coprocessor,

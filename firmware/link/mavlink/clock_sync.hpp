@@ -11,10 +11,10 @@ enum class ClockEvent : std::uint8_t { none, relocked_forward, relocked_backward
 
 /// Maps the autopilot's boot clock to ours.
 ///
-/// Two sources: one-way samples (arrival less stamp: the true offset plus the line's delay, so the least one is kept) and TIMESYNC
-/// round trips (midpoint; the quickest one is kept, and wins). Both over the last 5 to 10 s, so drift of 100 ppm stays below 1 ms.
-/// Samples that disagree by more than kJump three times in a row move the clock: the autopilot was set or restarted.
-/// O(1). All times in microseconds.
+/// Two sources: one-way samples (arrival less stamp: the true offset plus the line's delay, so the least one is kept)
+/// and TIMESYNC round trips (midpoint; the quickest one is kept, and wins). Both over the last 5 to 10 s, so drift of
+/// 100 ppm stays below 1 ms. Samples that disagree by more than kJump three times in a row move the clock: the
+/// autopilot was set or restarted. O(1). All times in microseconds.
 class ClockSync {
 public:
     static constexpr std::int64_t kJump = 200'000;
@@ -22,7 +22,8 @@ public:
     static constexpr std::int64_t kBucket = 5'000'000;
 
     ClockEvent one_way(std::int64_t remote, std::int64_t arrived) noexcept;
-    /// Request sent at `sent`, answered at remote time `remote`, answer received at `received`. Refused (none) when it took over 1 s.
+    /// Request sent at `sent`, answered at remote time `remote`, answer received at `received`. Refused (none) when it
+    /// took over 1 s.
     ClockEvent round_trip(std::int64_t sent, std::int64_t remote, std::int64_t received) noexcept;
 
     /// Our time of a remote stamp; nothing until a first sample.
@@ -48,7 +49,8 @@ private:
     };
 
     [[nodiscard]] std::optional<std::int64_t> offset() const noexcept;
-    [[nodiscard]] ClockEvent accept(Window& window, std::int64_t offset, std::int64_t quality, std::int64_t now) noexcept;
+    [[nodiscard]] ClockEvent accept(Window& window, std::int64_t offset, std::int64_t quality,
+                                    std::int64_t now) noexcept;
 
     Window one_way_;
     Window round_trip_;

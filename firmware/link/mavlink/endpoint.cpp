@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reception of what the autopilot says about itself, and sending. Sensors, traffic and requests: endpoint_sensors.cpp, endpoint_requests.cpp.
+// Reception of what the autopilot says about itself, and sending. Sensors, traffic and requests: endpoint_sensors.cpp,
+// endpoint_requests.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -52,9 +53,9 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
         dispatch({*frame, now, inbox});
     }
     const ParserDiagnostics& p = parser_.diagnostics();
-    diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum + p.cut +
-                                  p.signed_refused + p.unsigned_refused + p.wrong_signature + p.stale_signature +
-                                  p.signature_streams;
+    diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
+                                  p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
+                                  p.stale_signature + p.signature_streams;
     if (mission_.take_leg() || leg_waits_) {
         resolve_leg(inbox);
     }
@@ -205,7 +206,8 @@ void Endpoint::on_timesync(const Context& c) noexcept
 void Endpoint::on_command_ack(const Context& c) noexcept
 {
     CommandAck m;
-    if (!decode(c.frame, m) || m.command != kDoSetMode || (m.target_system != 0 && !for_us(m.target_system, m.target_component))) {
+    if (!decode(c.frame, m) || m.command != kDoSetMode ||
+        (m.target_system != 0 && !for_us(m.target_system, m.target_component))) {
         ++diagnostics_.frames_ignored;
         return;
     }
@@ -261,7 +263,8 @@ void Endpoint::send(const M& message) noexcept
 {
     std::array<std::byte, kMaxFrame> frame;
     const Header header{system_, options_.component_id, sequence_};
-    const std::size_t size = signing_ != nullptr ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
+    const std::size_t size =
+        signing_ != nullptr ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
     if (!transmit_.push({frame.data(), size})) {
         ++diagnostics_.outbox_full;
         return;

@@ -79,7 +79,8 @@ void Endpoint::on_adsb(const Context& c) noexcept
     if (level && !report.at_rest) {
         const float yaw = swap_heading_yaw(static_cast<float>(m.heading) * 0.01F * kDegree);
         const float speed = static_cast<float>(m.hor_velocity) * kCentimetre;
-        const float climb = (m.flags & kValidVerticalVelocity) != 0 ? static_cast<float>(m.ver_velocity) * kCentimetre : 0.0F;
+        const float climb =
+            (m.flags & kValidVerticalVelocity) != 0 ? static_cast<float>(m.ver_velocity) * kCentimetre : 0.0F;
         report.velocity = Vec3(speed * std::cos(yaw), speed * std::sin(yaw), climb);
     }
     if (!c.inbox.tracks.try_push_back(report)) {
@@ -98,8 +99,8 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
     const float increment = m.increment_f != 0.0F ? m.increment_f : static_cast<float>(m.increment);
     const bool known_frame = m.frame == kFrameGlobal || m.frame == kFrameLocalNed || m.frame == kFrameBodyFrd;
     // Sectors below a degree would leave most of the circle unseen, above 180 they say nothing.
-    if (!known_frame || std::abs(increment) < 0.5F || std::abs(increment) > 180.0F || std::abs(m.angle_offset) > 360.0F ||
-        m.max_distance == 0 || m.min_distance > m.max_distance) {
+    if (!known_frame || std::abs(increment) < 0.5F || std::abs(increment) > 180.0F ||
+        std::abs(m.angle_offset) > 360.0F || m.max_distance == 0 || m.min_distance > m.max_distance) {
         ++diagnostics_.out_of_range;
         return;
     }
@@ -116,7 +117,8 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
     const float forward = m.frame == kFrameBodyFrd ? own_.yaw : 0.5F * kPi;
     scan.yaw_first = forward - m.angle_offset * kDegree;
     scan.ranges.clear();
-    const auto sectors = std::min<std::size_t>(kMaxScanSectors, static_cast<std::size_t>(std::ceil(360.0F / std::abs(increment))));
+    const auto sectors =
+        std::min<std::size_t>(kMaxScanSectors, static_cast<std::size_t>(std::ceil(360.0F / std::abs(increment))));
     for (std::size_t i = 0; i < sectors; ++i) {
         const std::uint16_t d = m.distances[i];
         const float range = d == kUnknownDistance ? RangeScan::kUnknown
@@ -139,8 +141,8 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
         ++diagnostics_.not_finite;
         return;
     }
-    if ((!level && m.orientation != kUp && m.orientation != kDown) || m.max_distance == 0 || m.min_distance > m.max_distance ||
-        m.signal_quality == kInvalidSignal) {
+    if ((!level && m.orientation != kUp && m.orientation != kDown) || m.max_distance == 0 ||
+        m.min_distance > m.max_distance || m.signal_quality == kInvalidSignal) {
         ++diagnostics_.out_of_range;
         return;
     }
@@ -204,7 +206,8 @@ void Endpoint::on_param(const Context& c) noexcept
     ParamSet set;
     if (decode(c.frame, list)) {
         // A list may be asked of every component at once.
-        ours = for_us(list.target_system, list.target_component) || (list.target_system == system_ && list.target_component == 0);
+        ours = for_us(list.target_system, list.target_component) ||
+               (list.target_system == system_ && list.target_component == 0);
         request.kind = ParamRequestKind::list;
     } else if (decode(c.frame, read)) {
         ours = for_us(read.target_system, read.target_component);

@@ -121,12 +121,14 @@ void Endpoint::on_odometry(const Context& c) noexcept
     static_cast<void>(decode(c.frame, m));
     const Vec3 ned(m.x, m.y, m.z);
     Vec3 velocity(m.vx, m.vy, m.vz);
-    if (!is_finite(ned) || !is_finite(velocity) || !std::all_of(m.q.begin(), m.q.end(), [](float x) { return std::isfinite(x); })) {
+    if (!is_finite(ned) || !is_finite(velocity) ||
+        !std::all_of(m.q.begin(), m.q.end(), [](float x) { return std::isfinite(x); })) {
         ++diagnostics_.not_finite;
         return;
     }
     const bool in_body = m.child_frame_id == kFrameBodyFrd || m.child_frame_id == kFrameBodyNed;
-    if (m.frame_id != kFrameLocalNed || (!in_body && m.child_frame_id != kFrameLocalNed) || !is_unit(m.q) || !plausible(ned, velocity)) {
+    if (m.frame_id != kFrameLocalNed || (!in_body && m.child_frame_id != kFrameLocalNed) || !is_unit(m.q) ||
+        !plausible(ned, velocity)) {
         ++diagnostics_.out_of_range;
         return;
     }

@@ -28,8 +28,8 @@ inline constexpr float kMetresPerDegE7 = 6378137.0F * kPi / 180.0F * 1e-7F;
     return p.lat >= -900000000 && p.lat <= 900000000 && p.lon >= -1800000000 && p.lon <= 1800000000;
 }
 
-/// Position relative to `origin` on the plane that touches the sphere there [m, ENU]. Differences are taken in integers, so the error
-/// is that of the plane: below 1 m within 10 km of the origin up to 60 degrees of latitude.
+/// Position relative to `origin` on the plane that touches the sphere there [m, ENU]. Differences are taken in
+/// integers, so the error is that of the plane: below 1 m within 10 km of the origin up to 60 degrees of latitude.
 [[nodiscard]] inline Vec3 to_local(const GlobalPosition& p, const GlobalPosition& origin) noexcept
 {
     constexpr std::int64_t kTurn = 3600000000LL;
@@ -45,7 +45,8 @@ inline constexpr float kMetresPerDegE7 = 6378137.0F * kPi / 180.0F * 1e-7F;
             static_cast<float>(static_cast<std::int64_t>(p.alt) - origin.alt) * 1e-3F};
 }
 
-/// The inverse: where a local position lies on the globe. Same accuracy; latitudes above 89 degrees are no place for it.
+/// The inverse: where a local position lies on the globe. Same accuracy; latitudes above 89 degrees are no place for
+/// it.
 [[nodiscard]] inline GlobalPosition to_global(const Vec3& local, const GlobalPosition& origin) noexcept
 {
     const float cosine = std::cos(static_cast<float>(origin.lat) * 1e-7F * kPi / 180.0F);

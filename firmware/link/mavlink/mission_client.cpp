@@ -48,7 +48,8 @@ void MissionClient::count(std::uint16_t count, TimePoint now) noexcept
     ask(State::ask_item);
 }
 
-bool MissionClient::item(std::uint16_t sequence, std::uint16_t command, const MissionPoint& point, TimePoint now) noexcept
+bool MissionClient::item(std::uint16_t sequence, std::uint16_t command, const MissionPoint& point,
+                         TimePoint now) noexcept
 {
     if (state_ != State::await_item || sequence != wanted_) {
         return false;

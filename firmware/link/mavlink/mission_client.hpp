@@ -13,7 +13,7 @@ struct MissionPoint {
     std::uint8_t frame = 0;
     std::int32_t x = 0;  ///< degE7, or local metres * 1e4
     std::int32_t y = 0;
-    float z = 0.0F;      ///< [m]
+    float z = 0.0F;  ///< [m]
 };
 
 /// What has to be sent next.
@@ -21,8 +21,9 @@ enum class MissionStep : std::uint8_t { none, list, item, finish };
 
 /// Fetches the two ends of the leg being flown: the current mission item and the one before it.
 ///
-/// MISSION_CURRENT starts it; MISSION_REQUEST_LIST, MISSION_COUNT, MISSION_REQUEST_INT for each, MISSION_ACK. A step that is not answered
-/// within 1 s is repeated twice, then given up until the current item changes or 10 s have passed. Pure and O(1).
+/// MISSION_CURRENT starts it; MISSION_REQUEST_LIST, MISSION_COUNT, MISSION_REQUEST_INT for each, MISSION_ACK. A step
+/// that is not answered within 1 s is repeated twice, then given up until the current item changes or 10 s have passed.
+/// Pure and O(1).
 class MissionClient {
 public:
     /// MISSION_CURRENT.seq. Starts a fetch when it is another one than is known.

@@ -7,11 +7,18 @@ namespace {
 FlightMode classify_copter(std::uint32_t mode) noexcept
 {
     switch (mode) {
-    case 3: return FlightMode::mission;                                    // AUTO
-    case 4: return FlightMode::external;                                   // GUIDED
-    case 5: case 17: return FlightMode::hold;                              // LOITER, BRAKE
-    case 6: case 9: case 21: return FlightMode::going_home;                // RTL, LAND, SMART_RTL
-    case 0: case 1: case 2: case 13: case 16: return FlightMode::manual;   // STABILIZE, ACRO, ALT_HOLD, SPORT, POSHOLD
+    case 3: return FlightMode::mission;   // AUTO
+    case 4: return FlightMode::external;  // GUIDED
+    case 5:
+    case 17: return FlightMode::hold;  // LOITER, BRAKE
+    case 6:
+    case 9:
+    case 21: return FlightMode::going_home;  // RTL, LAND, SMART_RTL
+    case 0:
+    case 1:
+    case 2:
+    case 13:
+    case 16: return FlightMode::manual;  // STABILIZE, ACRO, ALT_HOLD, SPORT, POSHOLD
     default: return FlightMode::other;
     }
 }
@@ -23,7 +30,12 @@ FlightMode classify_plane(std::uint32_t mode) noexcept
     case 15: return FlightMode::external;
     case 12: return FlightMode::hold;
     case 11: return FlightMode::going_home;
-    case 0: case 2: case 4: case 5: case 6: case 7: return FlightMode::manual;  // MANUAL, STABILIZE, ACRO, FBWA, FBWB, CRUISE
+    case 0:
+    case 2:
+    case 4:
+    case 5:
+    case 6:
+    case 7: return FlightMode::manual;  // MANUAL, STABILIZE, ACRO, FBWA, FBWB, CRUISE
     default: return FlightMode::other;
     }
 }
@@ -43,7 +55,8 @@ FlightMode classify_px4(std::uint32_t custom) noexcept
     switch (px4_sub(custom)) {
     case 3: return FlightMode::hold;
     case 4: return FlightMode::mission;
-    case 5: case 6: return FlightMode::going_home;
+    case 5:
+    case 6: return FlightMode::going_home;
     default: return FlightMode::other;
     }
 }

@@ -17,7 +17,10 @@ enum class VehicleClass : std::uint8_t { copter, plane };
 [[nodiscard]] std::uint32_t hold_mode(AutopilotStack stack, VehicleClass vehicle) noexcept;
 
 /// PX4 packs main and sub mode into custom_mode.
-[[nodiscard]] constexpr std::uint32_t px4_mode(std::uint32_t main, std::uint32_t sub) noexcept { return main << 16U | sub << 24U; }
+[[nodiscard]] constexpr std::uint32_t px4_mode(std::uint32_t main, std::uint32_t sub) noexcept
+{
+    return main << 16U | sub << 24U;
+}
 [[nodiscard]] constexpr std::uint32_t px4_main(std::uint32_t custom) noexcept { return custom >> 16U & 0xFFU; }
 [[nodiscard]] constexpr std::uint32_t px4_sub(std::uint32_t custom) noexcept { return custom >> 24U; }
 

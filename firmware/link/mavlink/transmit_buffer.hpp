@@ -12,14 +12,16 @@ namespace jink::link::mavlink {
 template <std::size_t N>
 class TransmitBuffer {
 public:
-    /// All of `frame`, or nothing (false) when there is no room for all of it. O(N) at worst, when it has to close ranks.
+    /// All of `frame`, or nothing (false) when there is no room for all of it. O(N) at worst, when it has to close
+    /// ranks.
     [[nodiscard]] bool push(std::span<const std::byte> frame) noexcept
     {
         if (frame.size() > N - (end_ - begin_)) {
             return false;
         }
         if (frame.size() > N - end_) {
-            std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_), bytes_.begin() + static_cast<std::ptrdiff_t>(end_), bytes_.begin());
+            std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_),
+                      bytes_.begin() + static_cast<std::ptrdiff_t>(end_), bytes_.begin());
             end_ -= begin_;
             begin_ = 0;
         }
@@ -27,7 +29,10 @@ public:
         end_ += frame.size();
         return true;
     }
-    [[nodiscard]] std::span<const std::byte> pending() const noexcept { return {bytes_.data() + begin_, end_ - begin_}; }
+    [[nodiscard]] std::span<const std::byte> pending() const noexcept
+    {
+        return {bytes_.data() + begin_, end_ - begin_};
+    }
     void consume(std::size_t n) noexcept
     {
         begin_ += std::min(n, end_ - begin_);
