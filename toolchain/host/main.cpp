@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cstdio>
+#include <exception>
+
+#include "toolchain/host/commands.hpp"
+
+int main(int argc, char** argv)
+{
+    CLI::App app{"jink: plans, checks files, runs studies and writes reports on the host."};
+    app.require_subcommand(1);
+    try {
+        jink::host::add_check(app);
+        app.parse(argc, argv);
+        return jink::host::kExitGood;
+    } catch (const CLI::RuntimeError& end) {
+        return end.get_exit_code();
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? jink::host::kExitGood : jink::host::kExitBadInput;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "jink: %s\n", error.what());
+        return jink::host::kExitBadInput;
+    }
+}
