@@ -12,6 +12,7 @@ namespace jink::link::mavlink {
 namespace {
 
 constexpr std::uint8_t kAutopilotComponent = 1;
+constexpr std::uint8_t kUsualSystem = 1;
 constexpr std::uint8_t kAutopilotInvalid = 8;
 constexpr std::uint8_t kAutopilotArduPilot = 3;
 constexpr std::uint8_t kAutopilotPx4 = 12;
@@ -262,7 +263,8 @@ template <Message M>
 void Endpoint::send(const M& message) noexcept
 {
     std::array<std::byte, kMaxFrame> frame;
-    const Header header{system_, options_.component_id, sequence_};
+    // 0 is nobody's id: until the autopilot is known, its usual one.
+    const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence_};
     const std::size_t size =
         signing_ != nullptr ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
     if (!transmit_.push({frame.data(), size})) {

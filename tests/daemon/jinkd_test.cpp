@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The daemon from outside: options, files, signals, a cable that is pulled and put back.
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "firmware/link/mavlink/codec.hpp"
+#include "firmware/link/mavlink/encoder.hpp"
+#include "firmware/link/mavlink/messages.hpp"
+#include "firmware/link/mavlink/parser.hpp"
+
+namespace {
+
+using namespace jink::link::mavlink;
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+/// A folder that goes when the test ends.
+class Scratch {
+public:
+    Scratch()
+    {
+        std::string name = (fs::temp_directory_path() / "jinkd_test_XXXXXX").string();
+        path_ = mkdtemp(name.data());
+    }
+    ~Scratch() { fs::remove_all(path_); }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    [[nodiscard]] fs::path operator/(const std::string& name) const { return path_ / name; }
+
+private:
+    fs::path path_;
+};
+
+/// The autopilot's end of a pseudo-terminal.
+class Cable {
+public:
+    Cable()
+    {
+        std::array<char, 256> name{};
+        int slave = -1;
+        EXPECT_EQ(openpty(&master_, &slave, name.data(), nullptr, nullptr), 0);
+        fcntl(master_, F_SETFL, fcntl(master_, F_GETFL) | O_NONBLOCK);
+        // Kept open, so that the line does not hang up before the daemon has opened it.
+        slave_ = slave;
+        path_ = name.data();
+    }
+    ~Cable() { pull(); }
+    Cable(const Cable&) = delete;
+    Cable& operator=(const Cable&) = delete;
+
+    void pull()
+    {
+        for (int* fd : {&slave_, &master_}) {
+            if (*fd >= 0) {
+                close(*fd);
+                *fd = -1;
+            }
+        }
+    }
+    [[nodiscard]] const std::string& path() const { return path_; }
+
+    template <class M>
+    void send(const M& message)
+    {
+        std::array<std::byte, kMaxFrame> frame{};
+        const std::size_t n = encode(message, {1, 1, sequence_++}, frame);
+        EXPECT_EQ(write(master_, frame.data(), n), static_cast<ssize_t>(n));
+    }
+
+    /// Waits for a HEARTBEAT of component 196.
+    std::optional<Heartbeat> heartbeat(milliseconds patience)
+    {
+        const auto end = Clock::now() + patience;
+        while (Clock::now() < end) {
+            pollfd p{master_, POLLIN, 0};
+            poll(&p, 1, 20);
+            std::array<std::byte, 4096> bytes{};
+            const ssize_t n = read(master_, bytes.data(), bytes.size());
+            if (n <= 0) {
+                std::this_thread::sleep_for(milliseconds(5));
+                continue;
+            }
+            std::span<const std::byte> input(bytes.data(), static_cast<std::size_t>(n));
+            std::optional<Heartbeat> found;
+            while (const auto frame = parser_.next(input)) {
+                Heartbeat m;
+                if (decode(*frame, m) && frame->header.component_id == 196) {
+                    found = m;
+                }
+            }
+            if (found) {
+                return found;
+            }
+        }
+        return std::nullopt;
+    }
+
+private:
+    int master_ = -1;
+    int slave_ = -1;
+    std::string path_;
+    std::uint8_t sequence_ = 0;
+    Parser parser_;
+};
+
+/// A running jinkd; its output goes to a file.
+class Daemon {
+public:
+    Daemon(const std::vector<std::string>& arguments, const fs::path& output)
+    {
+        pid_ = fork();
+        if (pid_ == 0) {
+            const int fd = open(output.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
+            dup2(fd, STDOUT_FILENO);
+            dup2(fd, STDERR_FILENO);
+            std::vector<char*> argv{const_cast<char*>("jinkd")};
+            for (const std::string& a : arguments) {
+                argv.push_back(const_cast<char*>(a.c_str()));
+            }
+            argv.push_back(nullptr);
+            execv(JINKD_PATH, argv.data());
+            _exit(127);
+        }
+    }
+    ~Daemon()
+    {
+        if (pid_ > 0) {
+            kill(pid_, SIGKILL);
+            waitpid(pid_, nullptr, 0);
+        }
+    }
+    Daemon(const Daemon&) = delete;
+    Daemon& operator=(const Daemon&) = delete;
+
+    void signal(int number) const { kill(pid_, number); }
+
+    /// Exit status; -1 while it still runs after `patience`, 1000 + signal when it was killed.
+    int wait(milliseconds patience)
+    {
+        const auto end = Clock::now() + patience;
+        do {
+            int status = 0;
+            if (waitpid(pid_, &status, WNOHANG) == pid_) {
+                pid_ = -1;
+                return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+            }
+            std::this_thread::sleep_for(milliseconds(10));
+        } while (Clock::now() < end);
+        return -1;
+    }
+
+private:
+    pid_t pid_ = -1;
+};
+
+std::string text_of(const fs::path& path)
+{
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+constexpr milliseconds kPatience(10'000);
+
+TEST(Jinkd, HelpNamesEveryOptionOfTheReadme)
+{
+    Scratch scratch;
+    Daemon daemon({"--help"}, scratch / "out");
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+    const std::string help = text_of(scratch / "out");
+    for (const char* option : {"--serial", "--vehicle", "--params", "--summary", "--watchdog", "--system-id"}) {
+        EXPECT_NE(help.find(option), std::string::npos) << option;
+    }
+}
+
+TEST(Jinkd, RefusesWhatItCannotUse)
+{
+    Scratch scratch;
+    std::ofstream(scratch / "bad.param") << "JNK_MODE,7\nNO_SUCH_NAME,1\n";
+    std::ofstream(scratch / "file") << "no terminal";
+    const std::string bad = (scratch / "bad.param").string();
+    const std::string file = (scratch / "file").string();
+    const std::vector<std::vector<std::string>> cases{
+        {},
+        {"--serial", ""},
+        {"--serial", "/dev/null:0"},
+        {"--serial", file},
+        {"--serial", "/dev/ptmx", "--params", bad},
+        {"--serial", "/dev/ptmx", "--params", file + "-that-is-not-there"},
+        {"--serial", "/dev/ptmx", "--vehicle", file},
+        {"--serial", "/dev/ptmx", "--system-id", "256"},
+    };
+    for (const auto& arguments : cases) {
+        Daemon daemon(arguments, scratch / "out");
+        const int status = daemon.wait(kPatience);
+        EXPECT_NE(status, 0) << testing::PrintToString(arguments);
+        EXPECT_LT(status, 1000) << testing::PrintToString(arguments);
+        EXPECT_GT(status, 0) << testing::PrintToString(arguments);
+        EXPECT_FALSE(text_of(scratch / "out").empty()) << testing::PrintToString(arguments);
+    }
+    Daemon daemon({"--serial", "/dev/ptmx", "--params", bad}, scratch / "out");
+    EXPECT_EQ(daemon.wait(kPatience), 1);
+    const std::string said = text_of(scratch / "out");
+    EXPECT_NE(said.find("bad.param:1"), std::string::npos) << said;
+    EXPECT_NE(said.find("bad.param:2"), std::string::npos) << said;
+}
+
+TEST(Jinkd, SaysCriticalAndLeavesOnSigterm)
+{
+    Scratch scratch;
+    Cable cable;
+    Daemon daemon({"--serial", cable.path() + ":921600", "--summary", (scratch / "summary.json").string()},
+                  scratch / "out");
+    const auto first = cable.heartbeat(kPatience);
+    ASSERT_TRUE(first);
+    EXPECT_EQ(first->type, 18);
+    EXPECT_EQ(first->autopilot, 8);
+    EXPECT_EQ(first->system_status, 1) << "boot, until there is an autopilot";
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+    std::optional<Heartbeat> last;
+    while (const auto next = cable.heartbeat(milliseconds(300))) {
+        last = next;
+    }
+    ASSERT_TRUE(last);
+    EXPECT_EQ(last->system_status, 5) << "critical before silence";
+    EXPECT_NE(text_of(scratch / "summary.json").find("\"step_mean_us\""), std::string::npos);
+}
+
+TEST(Jinkd, WaitsForADeviceThatComesLater)
+{
+    Scratch scratch;
+    const fs::path device = scratch / "port";
+    Daemon daemon({"--serial", device.string()}, scratch / "out");
+    EXPECT_EQ(daemon.wait(milliseconds(300)), -1) << text_of(scratch / "out");
+    Cable cable;
+    fs::create_symlink(cable.path(), device);
+    EXPECT_TRUE(cable.heartbeat(kPatience)) << text_of(scratch / "out");
+    daemon.signal(SIGINT);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+}
+
+TEST(Jinkd, ComesBackWhenTheCableDoes)
+{
+    Scratch scratch;
+    const fs::path device = scratch / "port";
+    auto cable = std::make_unique<Cable>();
+    fs::create_symlink(cable->path(), device);
+    Daemon daemon({"--serial", device.string()}, scratch / "out");
+    ASSERT_TRUE(cable->heartbeat(kPatience));
+    for (int i = 0; i < 3; ++i) {
+        cable->pull();
+        EXPECT_EQ(daemon.wait(milliseconds(200)), -1) << "it must outlive the cable";
+        auto next = std::make_unique<Cable>();
+        fs::remove(device);
+        fs::create_symlink(next->path(), device);
+        EXPECT_TRUE(next->heartbeat(kPatience)) << "after pulling it " << i + 1 << " times\n"
+                                                << text_of(scratch / "out");
+        cable = std::move(next);
+    }
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+}
+
+TEST(Jinkd, TakesTheSystemIdOfTheAutopilotItHears)
+{
+    Scratch scratch;
+    Cable cable;
+    Daemon daemon({"--serial", cable.path(), "--quiet"}, scratch / "out");
+    ASSERT_TRUE(cable.heartbeat(kPatience));
+    Heartbeat autopilot;
+    autopilot.type = 2;
+    autopilot.autopilot = 3;
+    autopilot.base_mode = 1;
+    cable.send(autopilot);
+    LocalPositionNed state;
+    bool ready = false;
+    for (std::uint32_t i = 0; i < 200 && !ready; ++i) {
+        state.time_boot_ms = 1000 + 20 * i;
+        cable.send(state);
+        if (i % 25 == 0) {
+            cable.send(autopilot);
+        }
+        const auto heard = cable.heartbeat(milliseconds(20));
+        ready = heard && heard->system_status == 3;
+    }
+    EXPECT_TRUE(ready) << "standby once autopilot and own state are heard\n" << text_of(scratch / "out");
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+    EXPECT_TRUE(text_of(scratch / "out").empty()) << text_of(scratch / "out");
+}
+
+}  // namespace
