@@ -21,7 +21,6 @@
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/status.hpp"
-#include "firmware/linux/vehicle_file.hpp"
 #include "hal/linux/linux_watchdog.hpp"
 #include "hal/linux/system_clock.hpp"
 #include "hal/linux/termios_serial_port.hpp"
@@ -66,34 +65,6 @@ bool split_device(const std::string& text, std::string& device, std::uint32_t& b
         baud = static_cast<std::uint32_t>(value);
     }
     return !device.empty();
-}
-
-/// Vehicle first, then single parameters, which win. Says everything that is wrong, not only the first thing.
-bool load_parameters(const Options& options, app::Parameters& parameters)
-{
-    auto values = parameters.values();
-    std::vector<files::Complaint> complaints;
-    if (!options.vehicle_file.empty()) {
-        if (const auto changed = files::apply_vehicle_file(options.vehicle_file, values, complaints)) {
-            values = *changed;
-        }
-    }
-    if (!options.param_file.empty()) {
-        if (const auto changed = files::apply_param_file(options.param_file, values, complaints)) {
-            values = *changed;
-        }
-    }
-    for (const files::Complaint& c : complaints) {
-        std::fprintf(stderr, "jinkd: %s\n", files::to_string(c).c_str());
-    }
-    if (!complaints.empty()) {
-        return false;
-    }
-    if (parameters.set_all(values) != app::ParamStatus::ok) {
-        std::fprintf(stderr, "jinkd: the parameters do not fit together\n");
-        return false;
-    }
-    return true;
 }
 
 void go_realtime(int priority)
@@ -215,8 +186,12 @@ int main(int argc, char** argv)
         std::fprintf(stderr, "jinkd: --serial %s: expected DEV[:BAUD]\n", options.serial.c_str());
         return EXIT_FAILURE;
     }
-    app::Parameters parameters;
-    if (!load_parameters(options, parameters)) {
+    files::Complaints complaints;
+    const auto parameters = files::load_parameters(options.vehicle_file, options.param_file, complaints);
+    for (const files::Complaint& complaint : complaints) {
+        std::fprintf(stderr, "jinkd: %s\n", files::to_string(complaint).c_str());
+    }
+    if (!parameters) {
         return EXIT_FAILURE;
     }
     struct sigaction action {};
@@ -226,5 +201,5 @@ int main(int argc, char** argv)
     if (options.realtime > 0) {
         go_realtime(options.realtime);
     }
-    return run(options, parameters, device, baud);
+    return run(options, *parameters, device, baud);
 }
