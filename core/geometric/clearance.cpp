@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometric/clearance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/convex.hpp"
+#include "core/geometry/sweep.hpp"
+#include "core/world/obstacle_distance.hpp"
+
+namespace jink::geometric::detail {
+namespace {
+
+using world::ThreatKind;
+
+/// Share by which boxes are grown before they are compared, so that rounding never passes over a contact.
+constexpr float kRounding = 1e-5F;
+
+bool is_moving(const Threat& threat) noexcept
+{
+    return threat.motion.velocity.x() != 0.0F || threat.motion.velocity.y() != 0.0F || threat.motion.velocity.z() != 0.0F;
+}
+
+/// Whether two boxes, one of them grown by `half` + `radius`, are apart along some axis.
+bool apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b, const Vec3& half, float radius) noexcept
+{
+    for (int i = 0; i < 3; ++i) {
+        const float edge = (half[i] + radius) * (1.0F + kRounding) + kRounding * (1.0F + std::abs(low_b[i]) + std::abs(high_b[i]));
+        if (low_a[i] > high_b[i] + edge || high_a[i] < low_b[i] - edge) {
+            return true;
+        }
+    }
+    return false;
+}
+
+Extent about(const Vec3& a, const Vec3& b) noexcept
+{
+    return {a.cwiseMin(b), a.cwiseMax(b)};
+}
+
+}  // namespace
+
+Extent extent_of(const Curve& curve) noexcept
+{
+    Extent extent{curve.position(0), curve.position(0)};
+    for (std::size_t i = 1; i < curve.points; ++i) {
+        extent.low = extent.low.cwiseMin(curve.position(i));
+        extent.high = extent.high.cwiseMax(curve.position(i));
+    }
+    return extent;
+}
+
+Clearance::Clearance(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
+    : problem_(problem), settings_(settings), half_(limits.half_extents)
+{
+}
+
+void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept
+{
+    items_.clear();
+    add_threats(reach, longest, false);
+    for (std::size_t i = 0; i < problem_.obstacles.size(); ++i) {
+        add_obstacle(i, reach, budget);
+    }
+    add_threats(reach, longest, true);
+}
+
+Seconds Clearance::sweep_end(std::size_t index) const noexcept
+{
+    if (!settings_.main_swept_to_collision_point || index != problem_.main) {
+        return t_max_;
+    }
+    const geometry::Motion& motion = problem_.threats[index].motion;
+    const Vec3 goal = problem_.frame.origin + problem_.distance * problem_.frame.axes.col(0) + problem_.main_centre_offset;
+    const float speed_squared = motion.velocity.squaredNorm();
+    if (!(speed_squared > 0.0F)) {
+        return t_max_;
+    }
+    return std::clamp((goal - motion.position).dot(motion.velocity) / speed_squared, 0.0F, t_max_);
+}
+
+float Clearance::shrink_to_clear(float start_margin) const noexcept
+{
+    return settings_.escape_from_margin && start_margin < 0.0F ? settings_.escape.slack - start_margin : 0.0F;
+}
+
+float Clearance::shrink_at(float shrunk, Seconds t) const noexcept
+{
+    return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
+}
+
+Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
+{
+    const Threat& t = problem_.threats[threat];
+    return {t.motion.position - problem_.frame.origin, t.motion.velocity, half_, t.radius, t.radius_rate, t.radius_acceleration};
+}
+
+Clearance::Ball Clearance::ball_of(const geometry::Shape& shape) const noexcept
+{
+    Ball ball;
+    static_cast<void>(world::as_sphere(shape, half_, ball.half, ball.radius));
+    ball.position = shape.centre - problem_.frame.origin;
+    ball.velocity = Vec3::Zero();
+    ball.radius += problem_.obstacle_clearance;
+    return ball;
+}
+
+void Clearance::add_ball(Kind kind, std::size_t index, const Ball& ball, const Extent& reach, Seconds longest) noexcept
+{
+    const Extent path = about(ball.position, ball.position + ball.velocity * longest);
+    if (apart(path.low, path.high, reach.low, reach.high, ball.half, ball.radius_at(longest))) {
+        return;
+    }
+    const float start = geometry::least_distance(ball.half, {}, {ball.position, Vec3::Zero()}, 0.0F).distance;
+    items_.unchecked_push_back({kind, static_cast<std::uint16_t>(index), shrink_to_clear(start - ball.radius)});
+}
+
+void Clearance::add_threats(const Extent& reach, Seconds longest, bool moving) noexcept
+{
+    for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
+        if (is_moving(problem_.threats[i]) == moving) {
+            add_ball(moving ? Kind::moving_ball : Kind::static_ball, i, ball_of(i), reach, longest);
+        }
+    }
+}
+
+void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept
+{
+    const geometry::Shape& shape = problem_.obstacles[index].shape;
+    Ball ball;
+    if (world::as_sphere(shape, half_, ball.half, ball.radius)) {
+        add_ball(Kind::obstacle_ball, index, ball_of(shape), reach, 0.0F);
+        return;
+    }
+    const Vec3 centre = shape.centre - problem_.frame.origin;
+    const float bound = geometry::bounding_radius(shape) + problem_.obstacle_clearance;
+    if (apart(centre, centre, reach.low, reach.high, half_, bound)) {
+        return;
+    }
+    Item item{Kind::solid, static_cast<std::uint16_t>(index), 0.0F};
+    if (settings_.escape_from_margin && !apart(centre, centre, Vec3::Zero(), Vec3::Zero(), half_, bound)) {
+        const Vec3& start = problem_.frame.origin;
+        item.shrunk = shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget) - problem_.obstacle_clearance);
+    }
+    items_.unchecked_push_back(item);
+}
+
+world::ThreatKind Clearance::left_airspace(const Curve& curve) const noexcept
+{
+    if (problem_.airspace == nullptr) {
+        return ThreatKind::none;
+    }
+    const world::Airspace& air = *problem_.airspace;
+    const Vec3 home = air.home - problem_.frame.origin;
+    const float floor = air.floor + half_.z() - problem_.frame.origin.z();
+    const float ceiling = air.ceiling - half_.z() - problem_.frame.origin.z();
+    const float radius = air.keep_in_radius - std::sqrt(half_.x() * half_.x() + half_.y() * half_.y());
+    const float floor_shrunk = shrink_to_clear(-floor);
+    const float ceiling_shrunk = shrink_to_clear(ceiling);
+    const float keep_in_shrunk = shrink_to_clear(radius - home.head<2>().norm());
+    for (std::size_t i = 0; i < curve.points; ++i) {
+        const Seconds t = curve.t[i];
+        if (air.has_floor && curve.z[i] - floor + shrink_at(floor_shrunk, t) < 0.0F) {
+            return ThreatKind::floor;
+        }
+        if (air.has_ceiling && ceiling - curve.z[i] + shrink_at(ceiling_shrunk, t) < 0.0F) {
+            return ThreatKind::ceiling;
+        }
+        if (air.has_keep_in) {
+            const float x = curve.x[i] - home.x();
+            const float y = curve.y[i] - home.y();
+            const float reach = radius + shrink_at(keep_in_shrunk, t);
+            if (reach < 0.0F || x * x + y * y > reach * reach) {
+                return ThreatKind::keep_in;
+            }
+        }
+    }
+    return ThreatKind::none;
+}
+
+bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept
+{
+    Vec3 before = curve.position(0) - ball.position;
+    for (std::size_t i = 0; i + 1 < curve.points; ++i) {
+        const Vec3 after = curve.position(i + 1) - (ball.position + ball.velocity * curve.t[i + 1]);
+        // The size at the segment's end: never too small. Of the escape rule the start, as world::least_separation has it.
+        const float radius = ball.radius_at(curve.t[i + 1]) - shrink_at(shrunk, curve.t[i]);
+        if (radius >= 0.0F) {
+            const Extent piece = about(before, after);
+            if (!apart(Vec3::Zero(), Vec3::Zero(), piece.low, piece.high, ball.half, radius) &&
+                geometry::contact_interval(ball.half, {}, {-before, before - after}, radius, 1.0F)) {
+                return true;
+            }
+        }
+        before = after;
+    }
+    return false;
+}
+
+bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end) const noexcept
+{
+    const Vec3 to = ball.position + ball.velocity * end;
+    const float radius = ball.radius_at(end);
+    const Extent path = about(ball.position, to);
+    if (apart(path.low, path.high, extent.low, extent.high, ball.half, radius)) {
+        return false;
+    }
+    const float slack = kRounding * (1.0F + path.low.cwiseAbs().cwiseMax(path.high.cwiseAbs()).maxCoeff());
+    for (std::size_t i = 0; i + 1 < curve.points; ++i) {
+        const Vec3 a = curve.position(i);
+        const Vec3 b = curve.position(i + 1);
+        const Extent piece = about(a, b);
+        if (!apart(path.low, path.high, piece.low, piece.high, ball.half, radius) &&
+            geometry::swept_distance(ball.half, a, b, ball.position, to) <= radius + slack) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool Clearance::touches(const Curve& curve, const Extent& extent, const geometry::Shape& shape, float shrunk,
+                        WorkBudget& budget) const noexcept
+{
+    const Vec3& origin = problem_.frame.origin;
+    const Vec3 centre = shape.centre - origin;
+    const float clearance = problem_.obstacle_clearance;
+    const float bound = geometry::bounding_radius(shape) + clearance;
+    if (apart(centre, centre, extent.low, extent.high, half_, bound)) {
+        return false;
+    }
+    for (std::size_t i = 0; i + 1 < curve.points; ++i) {
+        const Vec3 a = curve.position(i);
+        const Vec3 b = curve.position(i + 1);
+        const Extent piece = about(a, b);
+        if (apart(centre, centre, piece.low, piece.high, half_, bound)) {
+            continue;
+        }
+        const float left = shrink_at(shrunk, curve.t[i]);
+        const bool clear = left > 0.0F
+                               ? world::obstacle_margin(half_, origin + a, origin + b, shape, budget) - clearance + left >= 0.0F
+                               : geometry::swept_box_contact(half_, origin + a, origin + b, shape, clearance, budget) ==
+                                     geometry::Contact::clear;
+        if (!clear) {
+            return true;
+        }
+    }
+    return false;
+}
+
+bool Clearance::touches(const Curve& curve, const Extent& extent, const Item& item, WorkBudget& budget) const noexcept
+{
+    switch (item.kind) {
+        case Kind::static_ball:
+            return touches(curve, ball_of(item.index), item.shrunk);
+        case Kind::obstacle_ball:
+            return touches(curve, ball_of(problem_.obstacles[item.index].shape), item.shrunk);
+        case Kind::solid:
+            return touches(curve, extent, problem_.obstacles[item.index].shape, item.shrunk, budget);
+        case Kind::moving_ball:
+            break;
+    }
+    const Ball ball = ball_of(item.index);
+    return settings_.security == SecurityMode::swept ? touches_swept(curve, extent, ball, sweep_end(item.index))
+                                                     : touches(curve, ball, item.shrunk);
+}
+
+Verdict Clearance::check(const Curve& curve, WorkBudget& budget) const noexcept
+{
+    if (const ThreatKind bound = left_airspace(curve); bound != ThreatKind::none) {
+        return {CandidateStatus::hits_airspace, {bound, 0}};
+    }
+    const Extent extent = extent_of(curve);
+    const auto segments = static_cast<std::uint32_t>(curve.points - 1);
+    for (const Item& item : items_) {
+        const bool hit = budget.spend(segments) && touches(curve, extent, item, budget);
+        if (budget.exhausted()) {
+            return {CandidateStatus::not_evaluated, {}};
+        }
+        if (hit) {
+            const bool of_threat = item.kind == Kind::static_ball || item.kind == Kind::moving_ball;
+            return {item.kind == Kind::moving_ball ? CandidateStatus::hits_moving : CandidateStatus::hits_static,
+                    {of_threat ? ThreatKind::track : ThreatKind::obstacle, item.index}};
+        }
+    }
+    return {};
+}
+
+}  // namespace jink::geometric::detail

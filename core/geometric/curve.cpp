@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometric/curve.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometric/planner.hpp"
+
+namespace jink::geometric::detail {
+namespace {
+
+/// Rounding of the finite differences that accelerations are taken from.
+constexpr float kRounding = 1.001F;
+
+bool within(const Vec3& change, Seconds time, const vehicle::VehicleLimits& limits) noexcept
+{
+    const float level = kRounding * limits.max_acceleration * time;
+    const float vertical = kRounding * limits.max_vertical_acceleration * time;
+    return change.x() * change.x() + change.y() * change.y() <= level * level && std::abs(change.z()) <= vertical;
+}
+
+/// How far a speed across the leg carries before the vehicle has taken it off: lag, then full acceleration.
+float overshoot(float speed, float acceleration, Seconds lag) noexcept
+{
+    return speed * (lag + 0.5F * speed / acceleration);
+}
+
+}  // namespace
+
+UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept
+{
+    UnitCurve unit;
+    unit.points = waypoints;
+    const float step = curve_length_x(family, 1.0F) / static_cast<float>(waypoints - 1);
+    for (std::size_t i = 0; i < unit.points; ++i) {
+        unit.u[i] = step * static_cast<float>(i);
+        unit.f[i] = unit_offset(family, unit.u[i]);
+    }
+    return unit;
+}
+
+Vec3 plane_direction(const PathFrame& frame, float plane) noexcept
+{
+    return std::cos(plane) * frame.axes.col(1) + std::sin(plane) * frame.axes.col(2);
+}
+
+void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, float distance, float offset, float speed,
+                const vehicle::VehicleLimits& limits, Curve& out) noexcept
+{
+    out.points = unit.points;
+    const Vec3 leg = distance * along;
+    const Vec3 out_to = offset * side;
+    for (std::size_t i = 0; i < unit.points; ++i) {
+        out.x[i] = unit.u[i] * leg.x() + unit.f[i] * out_to.x();
+        out.y[i] = unit.u[i] * leg.y() + unit.f[i] * out_to.y();
+        out.z[i] = unit.u[i] * leg.z() + unit.f[i] * out_to.z();
+    }
+    const float per_speed = 1.0F / speed;
+    const float per_climb = 1.0F / limits.max_climb;
+    const float per_descent = -1.0F / limits.max_descent;
+    const float advance = distance * (unit.u[1] - unit.u[0]);
+    out.t[0] = 0.0F;
+    for (std::size_t i = 0; i + 1 < unit.points; ++i) {
+        const float aside = offset * (unit.f[i + 1] - unit.f[i]);
+        const float rise = out.z[i + 1] - out.z[i];
+        const float length = std::sqrt(advance * advance + aside * aside);
+        out.t[i + 1] = out.t[i] + std::max(length * per_speed, std::max(rise * per_climb, rise * per_descent));
+    }
+}
+
+void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out) noexcept
+{
+    out.points.resize(curve.points);
+    for (std::size_t i = 0; i < curve.points; ++i) {
+        const std::size_t segment = std::min(i, curve.points - 2);
+        out.points[i] = {origin + curve.position(i), curve.velocity(segment), curve.t[i]};
+    }
+}
+
+void from_timed_path(const path::TimedPath& path, const Vec3& origin, Curve& out) noexcept
+{
+    out.points = path.points.size();
+    for (std::size_t i = 0; i < out.points; ++i) {
+        const Vec3 position = path.points[i].position - origin;
+        out.x[i] = position.x();
+        out.y[i] = position.y();
+        out.z[i] = position.z();
+        out.t[i] = path.points[i].time;
+    }
+}
+
+bool is_flyable(const Curve& curve, const Vec3& along, float speed, const vehicle::VehicleLimits& limits) noexcept
+{
+    // The first chord is reached half a segment after the start: from straight flight, that is the curvature at the start.
+    Vec3 before = vehicle::clamped_velocity(along, speed, limits);
+    Seconds middle = 0.0F;
+    for (std::size_t i = 0; i + 1 < curve.points; ++i) {
+        const Vec3 velocity = curve.velocity(i);
+        const Seconds next_middle = 0.5F * (curve.t[i] + curve.t[i + 1]);
+        if (!within(velocity - before, next_middle - middle, limits)) {
+            return false;
+        }
+        before = velocity;
+        middle = next_middle;
+    }
+    const Vec3 across = before - before.dot(along) * along;
+    const float level = std::sqrt(across.x() * across.x() + across.y() * across.y());
+    return overshoot(level, limits.max_acceleration, limits.velocity_lag) <= kRejoinOvershoot &&
+           overshoot(std::abs(across.z()), limits.max_vertical_acceleration, limits.velocity_lag) <= kRejoinOvershoot;
+}
+
+}  // namespace jink::geometric::detail

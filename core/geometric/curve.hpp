@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+
+#include "core/capacity.hpp"
+#include "core/geometric/candidate.hpp"
+#include "core/path/timed_path.hpp"
+
+// One candidate as numbers: waypoints with times, coordinate by coordinate, about the start of the manoeuvre (so that far from the
+// world's origin nothing is lost). Private to this room.
+
+namespace jink::geometric::detail {
+
+using Coordinates = std::array<float, kMaxPathPoints>;
+
+/// A family's curve for D = 1, w = 1: made once per plan.
+struct UnitCurve {
+    std::size_t points = 0;
+    Coordinates u;
+    Coordinates f;
+};
+[[nodiscard]] UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept;
+
+/// Timed waypoints relative to the start. Entries past `points` hold nothing.
+struct Curve {
+    std::size_t points = 0;
+    Coordinates x, y, z;
+    Coordinates t;
+
+    [[nodiscard]] Vec3 position(std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
+    [[nodiscard]] Seconds duration() const noexcept { return t[points - 1]; }
+    /// Of the segment from point i to the next one.
+    [[nodiscard]] Vec3 velocity(std::size_t i) const noexcept
+    {
+        return Vec3(x[i + 1] - x[i], y[i + 1] - y[i], z[i + 1] - z[i]) / (t[i + 1] - t[i]);
+    }
+};
+
+/// Unit vector, across the leg, in which positive offsets of a plane lie.
+[[nodiscard]] Vec3 plane_direction(const PathFrame& frame, float plane) noexcept;
+
+/// `side`: plane_direction of the candidate. Segment times by the rule of make_timed_path: as long as the cruise speed, the climb
+/// or the descent limit takes, whichever is longest. O(waypoints).
+void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, float distance, float offset, float speed,
+                const vehicle::VehicleLimits& limits, Curve& out) noexcept;
+
+/// As a timed path about `origin`. O(points).
+void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out) noexcept;
+/// A timed path about `origin` as a curve. O(points).
+void from_timed_path(const path::TimedPath& path, const Vec3& origin, Curve& out) noexcept;
+
+/// Within the acceleration limits all along, from flying along the leg at `speed` on, and back on the leg without a turn that would
+/// carry the vehicle more than kRejoinOvershoot past it. See Settings::check_acceleration. O(points).
+[[nodiscard]] bool is_flyable(const Curve& curve, const Vec3& along, float speed, const vehicle::VehicleLimits& limits) noexcept;
+
+}  // namespace jink::geometric::detail

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometric/planner.hpp"
+
+#include <algorithm>
+
+#include "core/world/conflict.hpp"
+#include "core/world/method.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+using world::Situation;
+
+static_assert(world::AvoidanceMethod<Planner>);
+
+/// The track with its growth as a polynomial of time from now: equal to world::threat_radius, and never below it where the
+/// track's stamp lies ahead of now.
+Threat threat_of(const Situation& situation, const world::Track& track) noexcept
+{
+    const Seconds age = std::max(situation.now - track.stamp, 0.0F);
+    Threat threat;
+    threat.motion = {track.position, track.velocity};
+    threat.radius = world::threat_radius(situation, track, 0.0F);
+    threat.radius_rate = situation.k_sigma * track.sigma_velocity + track.max_acceleration * age;
+    threat.radius_acceleration = track.max_acceleration;
+    return threat;
+}
+
+Problem problem_of(const Situation& situation, const world::Way& way, const world::Conflict& conflict) noexcept
+{
+    Problem problem;
+    problem.frame = make_path_frame(way.origin, way.direction);
+    problem.distance = (conflict.own_at_closest - way.origin).norm();
+    problem.main_radius = std::max(conflict.radius_at_closest, Planner::kLeastMainRadius);
+    problem.obstacles = situation.obstacles;
+    problem.obstacle_clearance = situation.k_sigma * situation.own.sigma_position;
+    problem.airspace = &situation.airspace;
+    problem.start_velocity = situation.own.velocity;
+    problem.speed = way.speed;
+    problem.preferred_side = situation.flying != nullptr ? situation.flying->side : Vec3(Vec3::Zero());
+    problem.main_centre_offset = conflict.threat_at_closest - conflict.own_at_closest;
+    if (conflict.threat.kind == world::ThreatKind::track) {
+        problem.main = conflict.threat.index;
+    } else {
+        const geometry::Shape& shape = situation.obstacles[conflict.threat.index].shape;
+        problem.main_shape = shape.kind == geometry::ShapeKind::sphere ? nullptr : &shape;
+    }
+    return problem;
+}
+
+}  // namespace
+
+bool Planner::configure(const Settings& settings) noexcept
+{
+    if (!is_valid(settings)) {
+        return false;
+    }
+    settings_ = settings;
+    return true;
+}
+
+PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::Manoeuvre& out) noexcept
+{
+    result_.candidates.clear();
+    if (!situation.reference.valid || !is_valid(settings_) || situation.tracks.size() > kMaxTracks) {
+        return PlanStatus::bad_input;
+    }
+    const world::Way way = world::way_of(situation);
+    world::Conflict conflict;
+    if (!world::main_conflict(situation, way, settings_.lookahead, budget, conflict)) {
+        return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
+    }
+    StaticVector<Threat, kMaxTracks> threats;
+    for (const world::Track& track : situation.tracks) {
+        threats.unchecked_push_back(threat_of(situation, track));
+    }
+    Problem problem = problem_of(situation, way, conflict);
+    problem.threats = {threats.data(), threats.size()};
+    if (problem.distance < kLeastDistanceInRadii * problem.main_radius) {
+        return PlanStatus::too_close;
+    }
+    const std::size_t tries = settings_.offset_rule == OffsetRule::clearing ? settings_.retries + std::size_t{1} : 1;
+    PlanStatus status = PlanStatus::none_available;
+    for (std::size_t i = 0; i < tries && status == PlanStatus::none_available; ++i) {
+        problem.span_from = i == 0 ? 0.0F : kRetrySpans[i - 1];
+        problem.span_to = kRetrySpans[i];
+        status = solve(problem, settings_, situation.limits, situation.airframe, budget, result_);
+    }
+    if (status != PlanStatus::found) {
+        return status;
+    }
+    out.kind = world::ManoeuvreKind::follow_path;
+    out.by = world::MethodId::geometric;
+    out.start = situation.now;
+    out.valid_until = situation.now + result_.path.duration();
+    out.command = Vec3::Zero();
+    out.side = result_.side;
+    out.cost = result_.candidates[result_.chosen].total;
+    out.path = result_.path;
+    return status;
+}
+
+}  // namespace jink::geometric

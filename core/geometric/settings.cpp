@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+
+#include "core/geometric/planner.hpp"
+
+namespace jink::geometric {
+namespace {
+
+bool not_negative(float value) noexcept
+{
+    return std::isfinite(value) && value >= 0.0F;
+}
+
+bool has_valid_counts(const Settings& s) noexcept
+{
+    if (s.offsets < 2 || s.offsets > 64 || s.offsets % 2 != 0 || s.extra_planes > 31 || s.waypoints < 8 ||
+        s.waypoints > kMaxPathPoints || s.retries >= kRetrySpans.size()) {
+        return false;
+    }
+    const std::size_t families = (s.simple ? 1U : 0U) + (s.symmetric ? 1U : 0U);
+    const std::size_t candidates = families * s.offsets * (s.extra_planes + std::size_t{1});
+    return candidates >= 1 && candidates <= kMaxCandidates;
+}
+
+}  // namespace
+
+Settings source_settings() noexcept
+{
+    Settings s;
+    s.security = SecurityMode::swept;
+    s.offset_rule = OffsetRule::source;
+    s.main_swept_to_collision_point = true;
+    s.check_acceleration = false;
+    s.verify_flight = false;
+    s.closeness = cost::ClosenessMethod::swept;
+    s.escape_from_margin = false;
+    s.retries = 0;
+    return s;
+}
+
+bool is_valid(const Settings& s) noexcept
+{
+    return has_valid_counts(s) && not_negative(s.source_drop_margin) && not_negative(s.rotation_penalty) &&
+           not_negative(s.flip_penalty) && cost::is_valid(s.weights) && cost::is_valid(s.caps) && s.max_cost > 0.0F &&
+           s.max_cost <= 1.0F && not_negative(s.escape.slack) && not_negative(s.escape.speed) &&
+           not_negative(s.gains.position_gain) && not_negative(s.gains.max_correction) && s.lookahead >= 1.0F &&
+           s.lookahead <= 60.0F;
+}
+
+}  // namespace jink::geometric

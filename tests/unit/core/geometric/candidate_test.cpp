@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometric/candidate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "core/geometric/planner.hpp"
+
+namespace jink::geometric {
+namespace {
+
+TEST(PathFrame, LevelLegHasYToTheLeftAndZUp)
+{
+    const PathFrame frame = make_path_frame(Vec3(1.0F, 2.0F, 3.0F), Vec3(7.0F, 0.0F, 0.0F));
+    EXPECT_EQ(frame.origin, Vec3(1.0F, 2.0F, 3.0F));
+    EXPECT_TRUE(frame.axes.isApprox(Mat3::Identity()));
+}
+
+TEST(PathFrame, ClimbingLegKeepsYLevel)
+{
+    const PathFrame frame = make_path_frame(Vec3::Zero(), Vec3(3.0F, 4.0F, 5.0F));
+    EXPECT_NEAR(frame.axes.col(1).z(), 0.0F, 1e-7F);
+    EXPECT_GT(frame.axes.col(2).z(), 0.0F);
+    EXPECT_TRUE(frame.axes.isUnitary(1e-5F));
+    EXPECT_NEAR(frame.axes.determinant(), 1.0F, 1e-5F);
+}
+
+TEST(PathFrame, VerticalLegTakesNorthForY)
+{
+    for (const float up : {1.0F, -1.0F}) {
+        const PathFrame frame = make_path_frame(Vec3::Zero(), Vec3(0.0F, 0.0F, up));
+        EXPECT_EQ(frame.axes.col(0), Vec3(0.0F, 0.0F, up));
+        EXPECT_EQ(frame.axes.col(1), Vec3::UnitY());
+        EXPECT_NEAR(frame.axes.determinant(), 1.0F, 1e-6F);
+    }
+    const PathFrame nearly = make_path_frame(Vec3::Zero(), Vec3(1e-6F, 2e-6F, 1.0F));
+    EXPECT_TRUE(nearly.axes.isUnitary(1e-5F));
+}
+
+TEST(PathFrame, AnyLengthOfDirection)
+{
+    for (const float length : {1e-30F, 1.0F, 1e30F}) {
+        const PathFrame frame = make_path_frame(Vec3::Zero(), length * Vec3(1.0F, -1.0F, 0.5F));
+        EXPECT_TRUE(frame.axes.isUnitary(1e-5F)) << length;
+    }
+}
+
+TEST(Curve, MeetsItsDefinition)
+{
+    const float distance = 8.0F;
+    for (const float offset : {-5.0F, 2.0F, 9.6F}) {
+        const CandidateShape simple{Family::simple, 0.0F, offset};
+        const CandidateShape symmetric{Family::symmetric, 0.0F, offset};
+        EXPECT_EQ(curve_offset(simple, distance, 0.0F), 0.0F);
+        EXPECT_FLOAT_EQ(curve_offset(simple, distance, distance), offset);
+        EXPECT_NEAR(curve_offset(simple, distance, 1.5F * distance), 0.0F, 1e-5F);
+        EXPECT_FLOAT_EQ(curve_offset(symmetric, distance, distance), offset);
+        EXPECT_NEAR(curve_offset(symmetric, distance, 2.0F * distance), 0.0F, 1e-5F);
+        for (float s = 0.0F; s <= distance; s += 0.5F) {
+            // Polynomial of the source: a s^3 + b s^2, a = -2 w / D^3, b = 3 w / D^2 (Pinheiro eq. 3.1 to 3.4).
+            const float a = -2.0F * offset / (distance * distance * distance);
+            const float b = 3.0F * offset / (distance * distance);
+            EXPECT_NEAR(curve_offset(simple, distance, s), a * s * s * s + b * s * s, 1e-4F);
+            EXPECT_NEAR(curve_offset(symmetric, distance, 2.0F * distance - s), curve_offset(symmetric, distance, s), 1e-5F);
+            EXPECT_EQ(curve_offset({Family::simple, 0.0F, -offset}, distance, s), -curve_offset(simple, distance, s));
+        }
+    }
+    EXPECT_FLOAT_EQ(curve_length_x(Family::simple, 8.0F), 12.0F);
+    EXPECT_FLOAT_EQ(curve_length_x(Family::symmetric, 8.0F), 16.0F);
+}
+
+TEST(Curve, ContinuousWithItsSlope)
+{
+    const float h = 1e-3F;
+    for (const Family family : {Family::simple, Family::symmetric}) {
+        const float end = curve_length_x(family, 1.0F);
+        for (float u = 2.0F * h; u < end - 2.0F * h; u += h) {
+            const float before = (unit_offset(family, u) - unit_offset(family, u - h)) / h;
+            const float after = (unit_offset(family, u + h) - unit_offset(family, u)) / h;
+            ASSERT_LT(std::abs(after - before), 13.0F * h) << "u " << u;  // |y''| <= 12 on the simple curve
+        }
+        EXPECT_NEAR(unit_offset(family, h) / h, 0.0F, 4.0F * h);
+    }
+    // It meets the leg again at a slope of -4.5 w / D (simple).
+    EXPECT_NEAR((unit_offset(Family::simple, 1.5F) - unit_offset(Family::simple, 1.5F - h)) / h, -4.5F, 0.02F);
+}
+
+TEST(MakeCandidatePath, IsThePathOfTheRule)
+{
+    Problem problem;
+    problem.frame = make_path_frame(Vec3(100.0F, -50.0F, 30.0F), Vec3(2.0F, 1.0F, 0.4F));
+    problem.distance = 9.0F;
+    problem.main_radius = 1.0F;
+    const vehicle::VehicleLimits limits;
+    const CandidateShape shape{Family::symmetric, 2.0F, -3.0F};
+    path::TimedPath path;
+    ASSERT_TRUE(make_candidate_path(problem, shape, 25, limits, path));
+    ASSERT_EQ(path.points.size(), 25U);
+    const Vec3 side = std::cos(2.0F) * problem.frame.axes.col(1) + std::sin(2.0F) * problem.frame.axes.col(2);
+    std::vector<Vec3> positions;
+    for (int i = 0; i < 25; ++i) {
+        const float s = 18.0F * static_cast<float>(i) / 24.0F;
+        positions.push_back(problem.frame.origin + s * problem.frame.axes.col(0) + curve_offset(shape, 9.0F, s) * side);
+    }
+    path::TimedPath expected;
+    ASSERT_TRUE(path::make_timed_path(positions, problem.speed, limits, expected));
+    for (std::size_t i = 0; i < 25; ++i) {
+        EXPECT_LT((path.points[i].position - expected.points[i].position).norm(), 1e-4F) << i;
+        EXPECT_LT((path.points[i].velocity - expected.points[i].velocity).norm(), 1e-3F) << i;
+        EXPECT_NEAR(path.points[i].time, expected.points[i].time, 1e-4F) << i;
+    }
+}
+
+TEST(MakeCandidatePath, RefusesBadInput)
+{
+    Problem problem;
+    problem.distance = 9.0F;
+    problem.main_radius = 1.0F;
+    path::TimedPath path;
+    const vehicle::VehicleLimits limits;
+    EXPECT_TRUE(make_candidate_path(problem, {}, 8, limits, path));
+    EXPECT_FALSE(make_candidate_path(problem, {}, 7, limits, path));
+    EXPECT_FALSE(make_candidate_path(problem, {}, kMaxPathPoints + 1, limits, path));
+    EXPECT_FALSE(make_candidate_path(problem, {Family::simple, NAN, 1.0F}, 25, limits, path));
+    EXPECT_FALSE(make_candidate_path(problem, {Family::simple, 0.0F, NAN}, 25, limits, path));
+    problem.distance = 0.0F;
+    EXPECT_FALSE(make_candidate_path(problem, {}, 25, limits, path));
+}
+
+}  // namespace
+}  // namespace jink::geometric
