@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "firmware/link/mavlink/endpoint.hpp"
 
 namespace jink::link::mavlink {
