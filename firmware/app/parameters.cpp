@@ -94,6 +94,8 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.heartbeat_age = at(Param::heartbeat_age);
     c.setpoint_period = 1.0F / at(Param::rate);
     geometric::Settings& g = c.planner;
+    // What the supervisor sees as a conflict the planner has to see too.
+    g.lookahead = c.supervisor.lookahead;
     g.offsets = static_cast<std::uint16_t>(whole(Param::offsets));
     g.extra_planes = static_cast<std::uint16_t>(whole(Param::planes));
     g.simple = (whole(Param::families) & 1U) != 0;
