@@ -10,6 +10,8 @@
 Python 3 standard library only. `--root FOLDER` checks another tree.
 """
 import argparse
+import contextlib
+import io
 import pathlib
 import re
 import sys
@@ -235,7 +237,8 @@ def self_test(_root):
             path = pathlib.Path(folder) / name
             path.parent.mkdir(parents=True)
             path.write_text(text, encoding="utf-8")
-            found = CHECKS[check](pathlib.Path(folder))
+            with contextlib.redirect_stdout(io.StringIO()):
+                found = CHECKS[check](pathlib.Path(folder))
             if expected is None and found:
                 errors.append(f"self-test: {check} finds fault with {name}: {found}")
             elif expected is not None and not any(expected in error for error in found):
