@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The autopilot's modes and what flies in them.
+#include "toolchain/sim/autopilot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace jink::sim {
+namespace {
+
+/// Boot clock at the start of the flight: it has been on for a while [us].
+constexpr Micros kUpBefore = 60 * kSecond;
+/// GUID_TIMEOUT and COM_OF_LOSS_T [us].
+constexpr Micros kArdupilotTimeout = 3 * kSecond;
+constexpr Micros kPx4Timeout = 1 * kSecond;
+/// Position hold: pull towards the place where it stopped [1/s].
+constexpr double kHoldGain = 0.8;
+constexpr double kStopped = 0.3;  // [m/s]
+
+}  // namespace
+
+Autopilot::Autopilot(World& world) : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world)
+{
+    for (const auto& [name, value] : scenario_.parameters) {
+        wanted_.push_back({name, static_cast<float>(value), false});
+    }
+    parameters_verified_ = wanted_.empty() ? 0 : -1;
+}
+
+Micros Autopilot::boot_us() const noexcept
+{
+    const Faults& faults = scenario_.faults;
+    Micros boot = world_.now() + kUpBefore;
+    if (faults.reboot_at && world_.now() >= to_micros(*faults.reboot_at)) {
+        boot = world_.now() - to_micros(*faults.reboot_at);
+    }
+    if (faults.clock_jump_at && world_.now() >= to_micros(*faults.clock_jump_at)) {
+        boot += to_micros(faults.clock_jump_by);
+    }
+    return boot;
+}
+
+bool Autopilot::rebooting() const noexcept
+{
+    const Faults& faults = scenario_.faults;
+    return faults.reboot_at && world_.now() >= to_micros(*faults.reboot_at) &&
+           world_.now() < to_micros(*faults.reboot_at + faults.reboot_lasts);
+}
+
+void Autopilot::enter(Mode mode, bool asked)
+{
+    if (mode == mode_) {
+        return;
+    }
+    mode_ = mode;
+    mode_since_ = world_.now();
+    last_change_was_asked_ = asked;
+    holding_ = false;
+    if (mode == Mode::external) {
+        ++takeovers_;
+        last_followed_ = world_.now();
+        // GUIDED starts by holding its place; OFFBOARD goes on with the stream that it has seen.
+        has_external_setpoint_ = scenario_.stack == Stack::px4;
+    }
+    send_heartbeat();
+}
+
+void Autopilot::suffer_faults()
+{
+    const Faults& faults = scenario_.faults;
+    if (faults.pilot_takes_over && !pilot_acted_ && world_.now() >= to_micros(*faults.pilot_takes_over)) {
+        pilot_acted_ = true;
+        enter(faults.pilot_mode, false);
+    }
+    if (faults.reboot_at && !rebooted_ && world_.now() >= to_micros(*faults.reboot_at)) {
+        rebooted_ = true;
+        writer_.restart();
+        writer_.bytes().clear();
+        if (mode_ == Mode::external) {
+            enter(Mode::hold, false);
+        }
+    }
+}
+
+void Autopilot::watch_setpoints()
+{
+    if (mode_ != Mode::external) {
+        return;
+    }
+    const Micros silent = world_.now() - last_followed_;
+    heard_.longest_setpoint_gap = std::max(heard_.longest_setpoint_gap, silent);
+    if (scenario_.stack == Stack::px4 && silent > kPx4Timeout) {
+        enter(Mode::hold, false);
+    }
+    if (scenario_.stack == Stack::ardupilot && silent > kArdupilotTimeout) {
+        has_external_setpoint_ = false;
+    }
+}
+
+Vec Autopilot::wanted_velocity()
+{
+    const Truth& own = world_.own();
+    switch (mode_) {
+    case Mode::mission: return mission_.command(own.position);
+    case Mode::external:
+        if (has_external_setpoint_) {
+            return setpoint_;
+        }
+        break;
+    case Mode::pilot: return scenario_.faults.pilot_velocity;
+    case Mode::home: {
+        const Vec to_home(-own.position.x(), -own.position.y(), 0.0);
+        return along(to_home, std::min(scenario_.vehicle.cruise, kHoldGain * to_home.norm()), scenario_.vehicle);
+    }
+    case Mode::hold:
+    case Mode::brake: break;
+    }
+    if (!holding_ && own.velocity.norm() < kStopped) {
+        holding_ = true;
+        hold_at_ = own.position;
+    }
+    return holding_ ? Vec(kHoldGain * (hold_at_ - own.position)) : Vec(Vec::Zero());
+}
+
+void Autopilot::step()
+{
+    suffer_faults();
+    if (!rebooting()) {
+        send_telemetry();
+    }
+    send_traffic();
+    send_scan();
+    watch_setpoints();
+    command_ = wanted_velocity();
+    world_.step(command_);
+}
+
+std::vector<std::byte> Autopilot::take_output() { return std::exchange(writer_.bytes(), {}); }
+
+std::vector<std::string> Autopilot::parameters_missing() const
+{
+    std::vector<std::string> missing;
+    for (const Wanted& wanted : wanted_) {
+        if (!wanted.verified) {
+            missing.push_back(wanted.name);
+        }
+    }
+    return missing;
+}
+
+}  // namespace jink::sim

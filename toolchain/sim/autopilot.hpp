@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware/link/mavlink/messages.hpp"
+#include "firmware/link/mavlink/parser.hpp"
+#include "toolchain/sim/frame_writer.hpp"
+#include "toolchain/sim/mission_pilot.hpp"
+#include "toolchain/sim/sensors.hpp"
+#include "toolchain/sim/world.hpp"
+
+namespace jink::sim {
+
+/// A STATUSTEXT as heard.
+struct Text {
+    double time = 0.0;
+    int severity = 0;
+    std::string text;
+};
+
+/// What the co-processor was seen to do on the link.
+struct Heard {
+    unsigned frames = 0;
+    unsigned frames_refused = 0;  ///< noise, wrong checksums
+    unsigned heartbeats = 0;
+    int state = 0;  ///< MAV_STATE of the newest one, 0: never heard
+    Micros last_heartbeat = -1;
+    Micros longest_heartbeat_gap = 0;
+    unsigned setpoints = 0;
+    unsigned bad_setpoints = 0;        ///< mask, frame, target or numbers that an autopilot refuses
+    unsigned setpoints_overruled = 0;  ///< sent more than 0.2 s after somebody else had chosen a mode
+    Micros longest_setpoint_gap = 0;   ///< while in external mode
+    unsigned warnings = 0;             ///< COLLISION
+    unsigned external_requests = 0;
+    unsigned refused_requests = 0;  ///< of any mode
+    std::vector<Text> texts;
+};
+
+/// The other end of the link: ArduPilot Copter or PX4 as far as a companion can tell, flying the vehicle of a World.
+///
+/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/links.md): ArduPilot takes velocities in
+/// GUIDED only and stops 3 s after the last one; PX4 wants to have seen set-points before OFFBOARD and leaves it for
+/// AUTO.LOITER 1 s after the last one.
+class Autopilot {
+public:
+    /// @param world  outlives the autopilot
+    explicit Autopilot(World& world);
+
+    /// Bytes from the co-processor, as they arrive.
+    void receive(std::span<const std::byte> bytes);
+    /// One kStep: telemetry that is due, the world moved on under the present mode's command.
+    void step();
+    /// Everything to be sent since the last call.
+    [[nodiscard]] std::vector<std::byte> take_output();
+
+    [[nodiscard]] Mode mode() const noexcept { return mode_; }
+    [[nodiscard]] const Heard& heard() const noexcept { return heard_; }
+    [[nodiscard]] const MissionPilot& mission() const noexcept { return mission_; }
+    /// The set-point in force [m/s], external mode.
+    [[nodiscard]] const Vec& setpoint() const noexcept { return setpoint_; }
+    [[nodiscard]] const Vec& command() const noexcept { return command_; }
+    [[nodiscard]] unsigned takeovers() const noexcept { return takeovers_; }
+    /// True when the last change of mode was the co-processor's wish.
+    [[nodiscard]] bool last_change_was_asked() const noexcept { return last_change_was_asked_; }
+    [[nodiscard]] Micros mode_since() const noexcept { return mode_since_; }
+    /// When the last parameter was verified [us]; -1: not yet.
+    [[nodiscard]] Micros parameters_verified() const noexcept { return parameters_verified_; }
+    [[nodiscard]] std::vector<std::string> parameters_missing() const;
+
+private:
+    struct Wanted {
+        std::string name;
+        float value = 0.0F;
+        bool verified = false;
+    };
+
+    void handle(const link::mavlink::Frame& frame);
+    void hear_heartbeat(const link::mavlink::Heartbeat& heartbeat);
+    void hear_setpoint(const link::mavlink::SetPositionTargetLocalNed& target);
+    void hear_command(const link::mavlink::CommandLong& command, link::mavlink::Header from);
+    void hear_param(const link::mavlink::ParamValue& value);
+    void answer_timesync(const link::mavlink::Timesync& sync, link::mavlink::Header from);
+    void answer_mission(const link::mavlink::Frame& frame);
+    [[nodiscard]] std::uint8_t set_mode(const link::mavlink::CommandLong& command);
+    [[nodiscard]] bool send_message(int id);
+
+    void enter(Mode mode, bool asked);
+    void suffer_faults();
+    void watch_setpoints();
+    [[nodiscard]] Vec wanted_velocity();
+
+    void send_telemetry();
+    void send_heartbeat();
+    void send_own_state();
+    void send_slow();
+    void send_target();
+    void send_parameters();
+    void send_traffic();
+    void send_scan();
+    void send_mission_item(std::uint16_t seq, std::uint8_t frame, const Vec& place, std::uint8_t system,
+                           std::uint8_t component);
+
+    [[nodiscard]] Micros boot_us() const noexcept;
+    [[nodiscard]] std::uint32_t boot_ms() const noexcept { return static_cast<std::uint32_t>(boot_us() / 1000); }
+    [[nodiscard]] bool due(Micros period, Micros phase = 0) const noexcept { return world_.now() % period == phase; }
+    [[nodiscard]] bool rebooting() const noexcept;
+    [[nodiscard]] std::uint16_t home_items() const noexcept;
+
+    World& world_;
+    const Scenario& scenario_;
+    MissionPilot mission_;
+    TrafficReceiver receiver_;
+    link::mavlink::Parser parser_;
+    FrameWriter writer_;
+    Heard heard_;
+    std::vector<Wanted> wanted_;
+    Micros parameters_verified_ = -1;
+
+    Mode mode_ = Mode::mission;
+    Micros mode_since_ = 0;
+    bool last_change_was_asked_ = false;
+    bool pilot_acted_ = false;
+    bool rebooted_ = false;
+    unsigned takeovers_ = 0;
+    Vec setpoint_ = Vec::Zero();
+    Micros last_setpoint_ = -1;  ///< newest acceptable one
+    Micros last_followed_ = -1;  ///< in external mode: newest one, or the entry
+    bool has_external_setpoint_ = false;
+    Vec command_ = Vec::Zero();
+    Vec hold_at_ = Vec::Zero();
+    bool holding_ = false;
+};
+
+}  // namespace jink::sim

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the autopilot understands of what the co-processor sends.
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/link/mavlink/text.hpp"
+#include "toolchain/sim/autopilot.hpp"
+#include "toolchain/sim/modes.hpp"
+
+namespace jink::sim {
+
+using namespace link::mavlink;
+
+namespace {
+
+constexpr std::uint8_t kAccepted = 0;
+constexpr std::uint8_t kTemporarilyRejected = 1;
+constexpr std::uint8_t kDenied = 2;
+constexpr std::uint8_t kUnsupported = 3;
+constexpr std::uint16_t kDoSetMode = 176;
+constexpr std::uint16_t kSetMessageInterval = 511;
+constexpr std::uint16_t kRequestMessage = 512;
+constexpr float kCustomModeEnabled = 1.0F;
+constexpr float kArmed = 128.0F;
+/// The co-processor's component id: obstacle avoidance.
+constexpr std::uint8_t kJink = 196;
+/// Everything ignored but the velocity: links.md, B.1.
+constexpr std::uint16_t kVelocityMask = 0x0DC7;
+constexpr std::uint8_t kLocalNed = 1;
+/// PX4 wants to have seen set-points this recently before it goes into OFFBOARD [us].
+constexpr Micros kSeenRecently = kSecond / 2;
+/// Set-points that were under way when somebody chose a mode are forgiven [us].
+constexpr Micros kGrace = kSecond / 5;
+
+bool for_us(std::uint8_t system, std::uint8_t component) noexcept
+{
+    return (system == kAutopilot.system || system == 0) && (component == kAutopilot.component || component == 0);
+}
+
+}  // namespace
+
+void Autopilot::receive(std::span<const std::byte> bytes)
+{
+    if (rebooting()) {
+        return;
+    }
+    while (const auto frame = parser_.next(bytes)) {
+        ++heard_.frames;
+        handle(*frame);
+    }
+    const ParserDiagnostics& d = parser_.diagnostics();
+    heard_.frames_refused = d.unknown_message + d.too_long + d.too_short + d.bad_checksum + d.incompatible_flags;
+}
+
+void Autopilot::handle(const Frame& frame)
+{
+    Heartbeat heartbeat;
+    SetPositionTargetLocalNed target;
+    CommandLong command;
+    ParamValue value;
+    Timesync sync;
+    Statustext text;
+    Collision collision;
+    if (decode(frame, heartbeat) && frame.header.component_id == kJink) {
+        hear_heartbeat(heartbeat);
+    } else if (decode(frame, target)) {
+        hear_setpoint(target);
+    } else if (decode(frame, command)) {
+        hear_command(command, frame.header);
+    } else if (decode(frame, value)) {
+        hear_param(value);
+    } else if (decode(frame, sync)) {
+        answer_timesync(sync, frame.header);
+    } else if (decode(frame, text)) {
+        heard_.texts.push_back({world_.seconds(), text.severity, std::string(text_of(text.text))});
+    } else if (decode(frame, collision)) {
+        ++heard_.warnings;
+    } else {
+        answer_mission(frame);
+    }
+}
+
+void Autopilot::hear_heartbeat(const Heartbeat& heartbeat)
+{
+    if (heard_.last_heartbeat >= 0) {
+        heard_.longest_heartbeat_gap = std::max(heard_.longest_heartbeat_gap, world_.now() - heard_.last_heartbeat);
+    }
+    heard_.last_heartbeat = world_.now();
+    heard_.state = heartbeat.system_status;
+    ++heard_.heartbeats;
+}
+
+void Autopilot::hear_setpoint(const SetPositionTargetLocalNed& target)
+{
+    ++heard_.setpoints;
+    const Vec velocity(static_cast<double>(target.vy), static_cast<double>(target.vx), -static_cast<double>(target.vz));
+    const bool good = for_us(target.target_system, target.target_component) && target.type_mask == kVelocityMask &&
+                      target.coordinate_frame == kLocalNed && velocity.allFinite();
+    if (!good) {
+        ++heard_.bad_setpoints;
+        return;
+    }
+    last_setpoint_ = world_.now();
+    if (mode_ == Mode::external) {
+        last_followed_ = world_.now();
+        has_external_setpoint_ = true;
+    } else if (mode_ != Mode::mission && !last_change_was_asked_ && world_.now() - mode_since_ > kGrace) {
+        ++heard_.setpoints_overruled;
+    }
+    if (mode_ == Mode::external || scenario_.stack == Stack::px4) {
+        setpoint_ = velocity;
+    }
+}
+
+std::uint8_t Autopilot::set_mode(const CommandLong& command)
+{
+    const auto mode = requested_mode(scenario_.stack, command.param2, command.param3);
+    if (command.param1 != kCustomModeEnabled && command.param1 != kCustomModeEnabled + kArmed) {
+        return kDenied;
+    }
+    if (!mode) {
+        return kUnsupported;
+    }
+    if (*mode == Mode::external) {
+        ++heard_.external_requests;
+        if (scenario_.faults.refuse_external) {
+            return kDenied;
+        }
+        const bool stream = last_setpoint_ >= 0 && world_.now() - last_setpoint_ <= kSeenRecently;
+        if (scenario_.stack == Stack::px4 && !stream) {
+            return kTemporarilyRejected;
+        }
+    }
+    enter(*mode, true);
+    return kAccepted;
+}
+
+void Autopilot::hear_command(const CommandLong& command, Header from)
+{
+    if (!for_us(command.target_system, command.target_component)) {
+        return;
+    }
+    CommandAck ack;
+    ack.command = command.command;
+    ack.result = kUnsupported;
+    if (command.command == kDoSetMode) {
+        ack.result = set_mode(command);
+        heard_.refused_requests += ack.result == kAccepted ? 0U : 1U;
+    } else if (command.command == kSetMessageInterval) {
+        ack.result = kAccepted;  // every rate is fixed here
+    } else if (command.command == kRequestMessage) {
+        ack.result = send_message(static_cast<int>(command.param1)) ? kAccepted : kUnsupported;
+    }
+    ack.target_system = from.system_id;
+    ack.target_component = from.component_id;
+    writer_.write(ack);
+}
+
+void Autopilot::hear_param(const ParamValue& value)
+{
+    for (Wanted& wanted : wanted_) {
+        if (text_of(value.param_id) == wanted.name) {
+            wanted.verified = value.param_value == wanted.value;
+        }
+    }
+    if (parameters_verified_ < 0 && parameters_missing().empty()) {
+        parameters_verified_ = world_.now();
+    }
+}
+
+void Autopilot::answer_timesync(const Timesync& sync, Header from)
+{
+    if (sync.tc1 == 0) {
+        writer_.write(Timesync{boot_us() * 1000, sync.ts1, from.system_id, from.component_id});
+    }
+}
+
+}  // namespace jink::sim

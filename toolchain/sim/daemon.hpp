@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "toolchain/sim/record.hpp"
+
+namespace jink::sim {
+
+/// Flies a scenario in real time against the real program: starts `jinkd --serial PTY` on a pseudo-terminal, plays the
+/// autopilot at its master end, stops it with SIGTERM and wants a clean exit. Takes as long as the flight; one thread,
+/// mostly asleep.
+///
+/// @param daemon  the program
+/// @param folder  for what it prints (NAME.log) and its summary (NAME.json); must exist
+/// A program that does not start, dies, or does not stop cleanly makes the outcome `failed` and is named in
+/// Record::faults.
+[[nodiscard]] Record fly_daemon(const Scenario& scenario, const std::filesystem::path& daemon,
+                                const std::filesystem::path& folder);
+
+/// Several at once, `at_once` of them, in the order of the scenarios.
+[[nodiscard]] std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios,
+                                              const std::filesystem::path& daemon, const std::filesystem::path& folder,
+                                              unsigned at_once);
+
+}  // namespace jink::sim

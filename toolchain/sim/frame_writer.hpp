@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "firmware/link/mavlink/encoder.hpp"
+
+namespace jink::sim {
+
+/// Who sends on the autopilot's side of the cable.
+struct Sender {
+    std::uint8_t system = 1;
+    std::uint8_t component = 1;
+};
+inline constexpr Sender kAutopilot{1, 1};
+inline constexpr Sender kAdsbReceiver{1, 156};
+inline constexpr Sender kRangefinder{1, 158};
+inline constexpr Sender kGroundStation{255, 190};
+
+/// Encodes messages one behind the other, each sender with its own running number.
+class FrameWriter {
+public:
+    template <link::mavlink::Message M>
+    void write(const M& message, Sender sender = kAutopilot)
+    {
+        std::array<std::byte, link::mavlink::kMaxFrame> frame{};
+        const std::uint8_t sequence = sequences_[{sender.system, sender.component}]++;
+        const std::size_t n = link::mavlink::encode(message, {sender.system, sender.component, sequence}, frame);
+        bytes_.insert(bytes_.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n));
+    }
+
+    /// Running numbers start again, as after a reboot.
+    void restart() { sequences_.clear(); }
+    [[nodiscard]] std::vector<std::byte>& bytes() noexcept { return bytes_; }
+
+private:
+    std::map<std::pair<std::uint8_t, std::uint8_t>, std::uint8_t> sequences_;
+    std::vector<std::byte> bytes_;
+};
+
+}  // namespace jink::sim

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "toolchain/sim/scenario.hpp"
+
+namespace jink::sim {
+
+/// As on the wire.
+struct GlobalPosition {
+    std::int32_t lat = 0;  ///< [degE7]
+    std::int32_t lon = 0;  ///< [degE7]
+    std::int32_t alt = 0;  ///< above mean sea level [mm]
+};
+
+/// Where home is: a village in the Alps, so that a degree of longitude is far from a degree of latitude.
+inline constexpr double kHomeLatitude = 46.7;
+inline constexpr double kHomeLongitude = 8.2;
+inline constexpr double kHomeAltitude = 570.0;
+
+/// Global position of a point in the local frame as the autopilot's own projection has it: ArduPilot's plane with its
+/// constant scaling factor, PX4's azimuthal equidistant projection on a sphere of 6371000 m. On purpose neither is the
+/// co-processor's.
+[[nodiscard]] GlobalPosition to_global(const Vec& local, Stack stack) noexcept;
+
+}  // namespace jink::sim

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/judge.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "toolchain/sim/mission_pilot.hpp"
+#include "toolchain/sim/world.hpp"
+
+namespace jink::sim {
+namespace {
+
+constexpr int kDirections = 240;
+constexpr double kSpeeds[] = {1.0, 0.6, 0.3};
+/// The truth is looked ahead this far for a conflict [s].
+constexpr double kLookahead = 12.0;
+/// And asked this often [us].
+constexpr Micros kAskEvery = 50'000;
+/// Step of the manoeuvres that are tried [s].
+constexpr double kTrialStep = 0.01;
+
+/// Least separation of the rest of the flight under `command(position)`, from `start` on; stops early below `enough`.
+template <class Command>
+double least_separation(const Scenario& scenario, Truth truth, double start, double horizon, double enough,
+                        Command&& command)
+{
+    double least = 1e9;
+    const auto steps = static_cast<int>(horizon / kTrialStep);
+    for (int i = 0; i < steps && least >= enough; ++i) {
+        const Vec before = truth.position;
+        const double t = start + i * kTrialStep;
+        fly(truth, command(before), scenario.vehicle, kTrialStep);
+        if (scenario.floor && truth.position.z() < *scenario.floor) {
+            return -1e9;
+        }
+        for (const Threat& threat : scenario.threats) {
+            const Nearest near = nearest_in_step(threat, threat.position_at(t), threat.position_at(t + kTrialStep),
+                                                 before, truth.position);
+            least = std::min(least, near.distance);
+        }
+    }
+    return least;
+}
+
+bool mission_breaks_promise(const Scenario& scenario, const World& world, const MissionPilot& mission)
+{
+    MissionPilot pilot = mission;
+    const double least = least_separation(scenario, world.own(), world.seconds(), kLookahead, scenario.promise,
+                                          [&](const Vec& position) { return pilot.command(position); });
+    return least < scenario.promise;
+}
+
+bool anything_seen(const Scenario& scenario, const World& world)
+{
+    for (std::size_t i = 0; i < scenario.threats.size(); ++i) {
+        if (world.visible(i)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Directions spread evenly over the sphere (Fibonacci lattice).
+Vec direction(int i)
+{
+    const double golden = std::numbers::pi * (3.0 - std::sqrt(5.0));
+    const double z = 1.0 - 2.0 * (i + 0.5) / kDirections;
+    const double r = std::sqrt(1.0 - z * z);
+    return {r * std::cos(golden * i), r * std::sin(golden * i), z};
+}
+
+}  // namespace
+
+Verdict judge(const Scenario& scenario, double reaction, double horizon)
+{
+    World world(scenario);
+    MissionPilot mission(scenario);
+    Verdict verdict;
+    Micros act_at = -1;
+    while (world.now() < to_micros(scenario.duration) && (act_at < 0 || world.now() < act_at)) {
+        if (act_at < 0 && world.now() % kAskEvery == 0 && anything_seen(scenario, world) &&
+            mission_breaks_promise(scenario, world, mission)) {
+            verdict.conflict = true;
+            verdict.detected = world.seconds();
+            act_at = world.now() + to_micros(reaction);
+            continue;
+        }
+        world.step(mission.command(world.own().position));
+    }
+    if (!verdict.conflict) {
+        return verdict;
+    }
+    verdict.best = -1e9;
+    const auto attempt = [&](const Vec& command) {
+        const double least = least_separation(scenario, world.own(), world.seconds(), horizon, -1e9,
+                                              [&](const Vec&) { return command; });
+        ++verdict.tried;
+        verdict.keep += least >= scenario.promise ? 1U : 0U;
+        if (least > verdict.best) {
+            verdict.best = least;
+            verdict.best_command = command;
+        }
+    };
+    attempt(Vec::Zero());
+    for (const double share : kSpeeds) {
+        for (int i = 0; i < kDirections; ++i) {
+            attempt(along(direction(i), share * scenario.vehicle.cruise, scenario.vehicle));
+        }
+    }
+    // What had been too close before anybody could act counts too.
+    verdict.avoidable = verdict.keep > 0 && world.closest().surface >= scenario.promise;
+    return verdict;
+}
+
+}  // namespace jink::sim

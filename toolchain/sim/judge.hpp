@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "toolchain/sim/scenario.hpp"
+
+namespace jink::sim {
+
+/// Whether an encounter could have been avoided, found out by trying.
+struct Verdict {
+    bool conflict = false;   ///< the mission, flown on, breaks the promise
+    double detected = 0.0;   ///< first instant at which a threat is seen and the truth says that it will [s]
+    bool avoidable = false;  ///< some manoeuvre keeps the promise
+    unsigned keep = 0;       ///< how many of those tried
+    unsigned tried = 0;
+    double best = 0.0;  ///< greatest least separation of all that were tried [m]
+    Vec best_command = Vec::Zero();
+};
+
+/// Judges a scenario with perfect knowledge and without core's code: flies the mission alone to the instant of
+/// detection plus `reaction` seconds, then from there each of 240 directions at three speeds, and braking, as constant
+/// velocity commands through the true vehicle model against the true motion of all threats, until all are past or
+/// `horizon` seconds are over. O(commands * steps * threats).
+[[nodiscard]] Verdict judge(const Scenario& scenario, double reaction = 0.0, double horizon = 12.0);
+
+}  // namespace jink::sim

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// jink-sim: flies scenarios against the co-processor, in this process or as the real program.
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "toolchain/sim/daemon.hpp"
+#include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/random_scenario.hpp"
+#include "toolchain/sim/report.hpp"
+#include "toolchain/sim/scenario_file.hpp"
+
+namespace {
+
+using namespace jink::sim;
+namespace fs = std::filesystem;
+
+struct Options {
+    std::vector<std::string> files;
+    std::string daemon;
+    std::string out;
+    std::string scenarios = JINK_SCENARIOS;
+    unsigned count = 50;
+    std::uint64_t seed = 1;
+    unsigned at_once = 8;
+    bool quiet = false;
+};
+
+/// jinkd beside this program, or where a build folder has it.
+fs::path find_daemon()
+{
+    const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
+    for (const fs::path& candidate : {here / "jinkd", here / "../../firmware/linux/jinkd"}) {
+        if (fs::exists(candidate)) {
+            return fs::canonical(candidate);
+        }
+    }
+    throw std::runtime_error("jinkd is not where this program is; say where with --daemon");
+}
+
+std::vector<Scenario> load_all(const std::vector<std::string>& files)
+{
+    std::vector<Scenario> scenarios;
+    for (const std::string& file : files) {
+        scenarios.push_back(load_scenario(file));
+    }
+    return scenarios;
+}
+
+/// Random flights in process, on `threads` threads, in the order of their seeds.
+std::vector<ReportedFlight> fly_random(std::uint64_t first, unsigned count, unsigned threads)
+{
+    std::vector<ReportedFlight> flights(count);
+    std::atomic<unsigned> next{0};
+    std::vector<std::thread> workers;
+    for (unsigned i = 0; i < threads; ++i) {
+        workers.emplace_back([&] {
+            for (unsigned k = next++; k < count; k = next++) {
+                const Scenario scenario = random_scenario(first + k);
+                flights[k] = report_on(scenario, fly_in_process(scenario), true);
+            }
+        });
+    }
+    for (std::thread& worker : workers) {
+        worker.join();
+    }
+    return flights;
+}
+
+/// Judged flights count as bad only where the judge knew a way out; the others by their expectation.
+bool is_bad(const ReportedFlight& flight)
+{
+    return flight.judged ? flight.failed_avoidable || flight.record.outcome == Outcome::failed : !flight.unmet.empty();
+}
+
+int finish(const Options& options, const std::vector<ReportedFlight>& flights)
+{
+    const auto bad = std::count_if(flights.begin(), flights.end(), is_bad);
+    if (!options.quiet) {
+        print_table(std::cout, flights);
+    }
+    const auto count = [&](Outcome outcome) {
+        return std::count_if(flights.begin(), flights.end(),
+                             [&](const ReportedFlight& f) { return f.record.outcome == outcome; });
+    };
+    std::cout << flights.size() << " flights: ";
+    for (const Outcome outcome :
+         {Outcome::clear, Outcome::avoided, Outcome::braked, Outcome::breach, Outcome::collision, Outcome::failed}) {
+        std::cout << count(outcome) << " " << to_string(outcome) << (outcome == Outcome::failed ? "" : ", ");
+    }
+    std::cout << "; " << bad << " not as expected\n";
+    for (const ReportedFlight& f : flights) {
+        if (f.judged && f.record.closest.surface < f.record.promise) {
+            std::cout << f.record.name << ": " << f.record.closest.surface << " m at " << f.record.closest.time
+                      << " s; "
+                      << (f.verdict.avoidable ? "avoidable: " + std::to_string(f.verdict.keep) + " of " +
+                                                    std::to_string(f.verdict.tried) + " manoeuvres kept the promise"
+                                              : std::string("no manoeuvre tried kept the promise"))
+                      << "\n";
+        }
+    }
+    if (!options.out.empty()) {
+        const fs::path file = fs::path(options.out) / "run.json";
+        if (!write_run(file, flights)) {
+            std::cerr << "jink-sim: " << file.string() << " cannot be written\n";
+            return EXIT_FAILURE;
+        }
+        std::cout << "Written: " << file.string() << "\n";
+    }
+    return bad == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+void make_folder(const Options& options)
+{
+    if (!options.out.empty()) {
+        fs::create_directories(options.out);
+    }
+}
+
+fs::path log_folder(const Options& options)
+{
+    const fs::path folder =
+        options.out.empty() ? fs::temp_directory_path() / "jink-sim" : fs::path(options.out) / "jinkd";
+    fs::create_directories(folder);
+    return folder;
+}
+
+int fly(const Options& options)
+{
+    make_folder(options);
+    std::vector<ReportedFlight> flights;
+    const std::vector<Scenario> scenarios = load_all(options.files);
+    if (options.daemon.empty()) {
+        for (const Scenario& scenario : scenarios) {
+            flights.push_back(report_on(scenario, fly_in_process(scenario), false));
+        }
+    } else {
+        std::vector<Record> records = fly_daemons(scenarios, options.daemon, log_folder(options), options.at_once);
+        for (std::size_t i = 0; i < scenarios.size(); ++i) {
+            flights.push_back(report_on(scenarios[i], std::move(records[i]), false));
+        }
+    }
+    return finish(options, flights);
+}
+
+int demo(const Options& options)
+{
+    make_folder(options);
+    const auto began = std::chrono::steady_clock::now();
+    const fs::path daemon = options.daemon.empty() ? find_daemon() : fs::path(options.daemon);
+    std::vector<std::string> files;
+    for (const fs::path& file : scenario_files(options.scenarios)) {
+        files.push_back(file.string());
+    }
+    const std::vector<Scenario> scenarios = load_all(files);
+    std::cout << scenarios.size() << " scenarios in real time against " << daemon.filename().string() << ", "
+              << options.at_once << " at once ..." << std::endl;
+    std::vector<Record> records = fly_daemons(scenarios, daemon, log_folder(options), options.at_once);
+    std::vector<ReportedFlight> flights;
+    for (std::size_t i = 0; i < scenarios.size(); ++i) {
+        ReportedFlight flight = report_on(scenarios[i], std::move(records[i]), false);
+        // The picture of the candidates is only to be had from inside.
+        Record inside = fly_in_process(scenarios[i]);
+        if (flight.record.inside && inside.inside) {
+            flight.record.inside->fan = inside.inside->fan;
+            flight.record.inside->first_candidate = inside.inside->first_candidate;
+        }
+        flights.push_back(std::move(flight));
+    }
+    std::cout << options.count << " random encounters in process ..." << std::endl;
+    for (ReportedFlight& flight : fly_random(options.seed, options.count, 2)) {
+        flights.push_back(std::move(flight));
+    }
+    const int result = finish(options, flights);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    std::cout << "Flown in " << took.count() << " s\n";
+    return result;
+}
+
+int random(const Options& options)
+{
+    make_folder(options);
+    return finish(options, fly_random(options.seed, options.count, 2));
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+    Options options;
+    CLI::App cli{"jink-sim: flies encounters against the co-processor. The exit status is not 0 when one does not end "
+                 "as expected."};
+    cli.require_subcommand(1);
+    CLI::App* fly_command = cli.add_subcommand("fly", "fly scenario files in process, or in real time against jinkd");
+    fly_command->add_option("files", options.files, "scenario files (tests/scenario/README.md)")
+        ->required()
+        ->check(CLI::ExistingFile);
+    CLI::App* demo_command =
+        cli.add_subcommand("demo", "all scenarios against jinkd, then random encounters in process");
+    demo_command->add_option("--scenarios", options.scenarios, "folder of scenario files")
+        ->check(CLI::ExistingDirectory);
+    CLI::App* random_command =
+        cli.add_subcommand("random", "random encounters in process, each judged for avoidability");
+    for (CLI::App* command : {fly_command, demo_command}) {
+        command->add_option("--daemon", options.daemon, "the program jinkd")->check(CLI::ExistingFile);
+        command->add_option("--at-once", options.at_once, "flights in real time at once")->check(CLI::Range(1, 64));
+    }
+    for (CLI::App* command : {random_command, demo_command}) {
+        command->add_option("--count", options.count, "random encounters")->check(CLI::Range(0, 1000000));
+        command->add_option("--seed", options.seed, "of the first one");
+    }
+    for (CLI::App* command : {fly_command, demo_command, random_command}) {
+        command->add_option("--out", options.out, "folder for run.json and the daemon's logs");
+        command->add_flag("--quiet", options.quiet, "no table");
+    }
+    CLI11_PARSE(cli, argc, argv);
+    try {
+        return fly_command->parsed() ? fly(options) : demo_command->parsed() ? demo(options) : random(options);
+    } catch (const std::exception& e) {
+        std::cerr << "jink-sim: " << e.what() << "\n";
+        return EXIT_FAILURE;
+    }
+}

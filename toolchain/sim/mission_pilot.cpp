@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/mission_pilot.hpp"
+
+#include <algorithm>
+
+namespace jink::sim {
+namespace {
+
+/// The leg is flown towards the point this far ahead [m].
+constexpr double kCarrot = 6.0;
+/// A waypoint counts as reached within this [m].
+constexpr double kReached = 2.0;
+/// Approach of the last waypoint [1/s].
+constexpr double kHoverGain = 0.8;
+
+}  // namespace
+
+Vec MissionPilot::abeam(const Vec& position, double ahead) const
+{
+    const Vec& from = scenario_.mission[target_ - 1];
+    const Vec span = scenario_.mission[target_] - from;
+    const double length = span.norm();
+    if (length == 0.0) {
+        return from;
+    }
+    const double s = std::clamp((position - from).dot(span) / length + ahead, 0.0, length);
+    return from + span * (s / length);
+}
+
+Vec MissionPilot::command(const Vec& position)
+{
+    if (target_ + 1 < scenario_.mission.size() && (position - scenario_.mission[target_]).norm() < kReached) {
+        ++target_;
+    }
+    const bool last = target_ + 1 == scenario_.mission.size();
+    const Vec to_end = scenario_.mission[target_] - position;
+    const double speed =
+        last ? std::min(scenario_.vehicle.cruise, kHoverGain * to_end.norm()) : scenario_.vehicle.cruise;
+    return along(abeam(position, kCarrot) - position, speed, scenario_.vehicle);
+}
+
+double MissionPilot::cross_track(const Vec& position) const { return (position - abeam(position, 0.0)).norm(); }
+
+}  // namespace jink::sim

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "toolchain/sim/scenario.hpp"
+
+namespace jink::sim {
+
+/// Flies a mission as an autopilot does: towards a point of the leg some way ahead, at cruise speed, waypoint by
+/// waypoint, and hovers at the last one.
+class MissionPilot {
+public:
+    /// @param scenario  outlives the pilot; its mission has at least two waypoints
+    explicit MissionPilot(const Scenario& scenario) : scenario_(scenario) {}
+
+    /// Velocity command at a place; moves on to the next waypoint when the present one is reached.
+    [[nodiscard]] Vec command(const Vec& position);
+
+    /// Index of the waypoint that is flown to, >= 1.
+    [[nodiscard]] std::size_t target() const noexcept { return target_; }
+    /// Distance from the present leg [m].
+    [[nodiscard]] double cross_track(const Vec& position) const;
+
+private:
+    [[nodiscard]] Vec abeam(const Vec& position, double ahead) const;
+
+    const Scenario& scenario_;
+    std::size_t target_ = 1;
+};
+
+}  // namespace jink::sim

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::sim {
+namespace {
+
+constexpr Micros kSamplePeriod = 20'000;
+/// A set-point slower than this is a command to stand still [m/s].
+constexpr double kStill = 0.1;
+/// Standing still by command for this long counts as having braked [s].
+constexpr double kHeldLong = 0.5;
+/// After the last event the flight goes on for this long [us].
+constexpr Micros kSettled = 2 * kSecond;
+/// Back on the leg within this [m].
+constexpr double kOnLeg = 1.5;
+/// Longest gap between set-points in external mode that is no fault: half of PX4's time-out [s].
+constexpr double kLongestGap = 0.5;
+/// Longest gap between the co-processor's heartbeats [s].
+constexpr double kHeartbeatGap = 1.5;
+
+}  // namespace
+
+Plant::Plant(const Scenario& scenario)
+    : scenario_(scenario), world_(scenario), autopilot_(world_), flips_(scenario.mission)
+{
+    take_notes();
+}
+
+bool Plant::cable_pulled() const noexcept
+{
+    const Faults& faults = scenario_.faults;
+    return faults.cable_pulled_at && world_.seconds() >= *faults.cable_pulled_at &&
+           world_.seconds() < *faults.cable_pulled_at + faults.cable_pulled_for;
+}
+
+void Plant::deliver(std::span<const std::byte> bytes)
+{
+    if (!cable_pulled()) {
+        autopilot_.receive(bytes);
+    }
+}
+
+std::vector<std::byte> Plant::collect()
+{
+    std::vector<std::byte> bytes = autopilot_.take_output();
+    if (cable_pulled()) {
+        bytes.clear();
+    }
+    return bytes;
+}
+
+void Plant::take_notes()
+{
+    Sample sample;
+    sample.time = world_.seconds();
+    sample.position = world_.own().position;
+    sample.velocity = world_.own().velocity;
+    sample.setpoint = autopilot_.setpoint();
+    sample.mode = autopilot_.mode();
+    sample.separation = world_.separation(sample.nearest);
+    sample.jink_state = autopilot_.heard().state;
+    samples_.push_back(sample);
+}
+
+void Plant::step()
+{
+    autopilot_.step();
+    if (autopilot_.mode() == Mode::external) {
+        flips_.note(world_.own().position, autopilot_.command());
+        held_ = autopilot_.command().norm() < kStill ? held_ + kStep : 0;
+        longest_hold_ = std::max(longest_hold_, held_);
+    } else {
+        held_ = 0;
+    }
+    if (world_.now() % kSamplePeriod == 0) {
+        take_notes();
+    }
+}
+
+bool Plant::faults_over() const
+{
+    const Faults& faults = scenario_.faults;
+    const double t = world_.seconds() - 2.0;
+    return (!faults.pilot_takes_over || t > *faults.pilot_takes_over) &&
+           (!faults.reboot_at || t > *faults.reboot_at + faults.reboot_lasts) &&
+           (!faults.clock_jump_at || t > *faults.clock_jump_at) &&
+           (!faults.cable_pulled_at || t > *faults.cable_pulled_at + faults.cable_pulled_for);
+}
+
+bool Plant::finished() const
+{
+    if (world_.now() >= to_micros(scenario_.duration)) {
+        return true;
+    }
+    const bool back = autopilot_.mode() == Mode::mission && autopilot_.mode_since() > 0 &&
+                      world_.now() - autopilot_.mode_since() >= kSettled &&
+                      autopilot_.mission().cross_track(world_.own().position) < kOnLeg;
+    return back && world_.all_past() && faults_over();
+}
+
+Record Plant::record() const
+{
+    Record record;
+    record.name = scenario_.name;
+    record.title = scenario_.title;
+    record.stack = scenario_.stack;
+    record.seed = scenario_.seed;
+    record.promise = scenario_.promise;
+    record.duration = world_.seconds();
+    record.closest = world_.closest();
+    record.closest_threat = scenario_.threats.empty() ? "" : scenario_.threats[record.closest.threat].name;
+    record.takeovers = autopilot_.takeovers();
+    record.flips = flips_.flips();
+    record.longest_hold = to_seconds(longest_hold_);
+    record.final_mode = autopilot_.mode();
+    record.given_back =
+        record.takeovers > 0 && autopilot_.mode() == Mode::mission && autopilot_.last_change_was_asked();
+    record.cross_track = autopilot_.mission().cross_track(world_.own().position);
+    record.lowest = world_.lowest();
+    record.heard = autopilot_.heard();
+    record.mission = scenario_.mission;
+    record.threats = scenario_.threats;
+    for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
+        record.appeared.push_back(world_.appeared(i) < 0 ? -1.0 : to_seconds(world_.appeared(i)));
+    }
+    record.samples = samples_;
+    for (const std::string& name : autopilot_.parameters_missing()) {
+        record.faults.push_back("parameter " + name + " was not taken");
+    }
+    return record;
+}
+
+void conclude(const Scenario& scenario, Record& record)
+{
+    const auto check = [&](bool broken, const std::string& what) {
+        if (broken) {
+            record.faults.push_back(what);
+        }
+    };
+    const Heard& heard = record.heard;
+    const bool link_faulty = scenario.faults.cable_pulled_at || scenario.faults.reboot_at;
+    check(heard.heartbeats == 0, "the co-processor was never heard");
+    check(heard.bad_setpoints > 0, std::to_string(heard.bad_setpoints) + " set-points that an autopilot refuses");
+    check(heard.setpoints_overruled > 0,
+          std::to_string(heard.setpoints_overruled) + " set-points after somebody else chose a mode");
+    check(heard.frames_refused > 0 && !link_faulty, std::to_string(heard.frames_refused) + " damaged frames");
+    check(!link_faulty && to_seconds(heard.longest_heartbeat_gap) > kHeartbeatGap,
+          "the co-processor's heartbeat paused");
+    check(!link_faulty && to_seconds(heard.longest_setpoint_gap) > kLongestGap,
+          "the set-points paused in external mode");
+    check(scenario.floor && record.lowest < *scenario.floor, "below the floor");
+    check(record.final_mode == Mode::external, "the external mode was not given back");
+
+    if (record.closest.surface < scenario.body_radius) {
+        record.outcome = Outcome::collision;
+    } else if (record.closest.surface < scenario.promise) {
+        record.outcome = Outcome::breach;
+    } else if (!record.faults.empty()) {
+        record.outcome = Outcome::failed;
+    } else if (record.longest_hold >= kHeldLong) {
+        record.outcome = Outcome::braked;
+    } else {
+        record.outcome = record.takeovers > 0 ? Outcome::avoided : Outcome::clear;
+    }
+}
+
+}  // namespace jink::sim

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "toolchain/sim/record.hpp"
+
+namespace jink::sim {
+
+/// Everything at the autopilot's end of the cable for one flight: world, autopilot, and the one who takes notes.
+///
+/// Whoever owns it moves the bytes: `deliver` what came from the co-processor, `step`, send on what `collect` gives.
+/// The same plant is flown in process and against the real program.
+class Plant {
+public:
+    /// @param scenario  outlives the plant
+    explicit Plant(const Scenario& scenario);
+    Plant(const Plant&) = delete;
+    Plant& operator=(const Plant&) = delete;
+
+    void deliver(std::span<const std::byte> bytes);
+    /// One kStep of time.
+    void step();
+    [[nodiscard]] std::vector<std::byte> collect();
+
+    /// The time is up, or everything is over and settled.
+    [[nodiscard]] bool finished() const;
+    [[nodiscard]] Micros now() const noexcept { return world_.now(); }
+    [[nodiscard]] const Autopilot& autopilot() const noexcept { return autopilot_; }
+    [[nodiscard]] const World& world() const noexcept { return world_; }
+
+    /// Closes the notes; `inside` and further faults are the caller's to add before `conclude`.
+    [[nodiscard]] Record record() const;
+
+private:
+    [[nodiscard]] bool cable_pulled() const noexcept;
+    [[nodiscard]] bool faults_over() const;
+    void take_notes();
+
+    const Scenario& scenario_;
+    World world_;
+    Autopilot autopilot_;
+    FlipCounter flips_;
+    std::vector<Sample> samples_;
+    Micros held_ = 0;
+    Micros longest_hold_ = 0;
+};
+
+/// Decides the outcome and lists the rules that were broken.
+void conclude(const Scenario& scenario, Record& record);
+
+}  // namespace jink::sim

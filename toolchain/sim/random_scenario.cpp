@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/random_scenario.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "core/base/random.hpp"
+#include "toolchain/sim/scenario_file.hpp"
+
+namespace jink::sim {
+namespace {
+
+constexpr double kHeight = 40.0;
+
+double uniform(Random& random, double low, double high)
+{
+    return low + (high - low) * static_cast<double>(random.uniform());
+}
+
+Vec any_direction(Random& random)
+{
+    const double z = uniform(random, -1.0, 1.0);
+    const double azimuth = uniform(random, -std::numbers::pi, std::numbers::pi);
+    const double r = std::sqrt(1.0 - z * z);
+    return {r * std::cos(azimuth), r * std::sin(azimuth), z};
+}
+
+Threat intruder(Random& random, const Scenario& scenario, std::size_t index)
+{
+    Threat threat;
+    threat.name = "intruder_" + std::to_string(index + 1);
+    threat.radius = uniform(random, 0.5, 2.0);
+    const double meets_at = uniform(random, 10.0, 13.0);
+    const double seen_before = uniform(random, 5.0, 10.0);
+    const Vec at = scenario.start_position + scenario.start_velocity * meets_at +
+                   any_direction(random) * uniform(random, 0.0, index == 0 ? 0.5 : 1.5);
+    Vec direction = any_direction(random);
+    direction.z() *= 0.5;  // aircraft climb less steeply than they turn
+    const double speed = uniform(random, 0.0, 12.0);
+    // Slower than this is a thing that hovers: it stands.
+    constexpr double kHovers = 0.5;
+    threat.velocity = speed < kHovers ? Vec(Vec::Zero()) : Vec(direction.normalized() * speed);
+    threat.position = at - threat.velocity * meets_at;
+    threat.appears_at = meets_at - seen_before;
+    threat.sensed_by = SensedBy::traffic;
+    return threat;
+}
+
+}  // namespace
+
+Scenario random_scenario(std::uint64_t seed)
+{
+    Random random(seed * 7919U + 17U);
+    Scenario s;
+    s.name = "random_" + std::to_string(seed);
+    s.seed = seed;
+    s.stack = random.below(2) == 0 ? Stack::ardupilot : Stack::px4;
+    s.duration = 40.0;
+    const double course = uniform(random, -std::numbers::pi, std::numbers::pi);
+    const double climb = random.below(3) == 0 ? uniform(random, -0.2, 0.3) : 0.0;
+    s.mission = {Vec(0.0, 0.0, kHeight),
+                 Vec(0.0, 0.0, kHeight) + 220.0 * Vec(std::cos(course), std::sin(course), climb).normalized()};
+    s.start_position = s.mission[0];
+    s.start_velocity = along(s.mission[1] - s.mission[0], s.vehicle.cruise, s.vehicle);
+    s.floor = 2.7;
+    const std::size_t count = 1 + random.below(3);
+    for (std::size_t i = 0; i < count; ++i) {
+        s.threats.push_back(intruder(random, s, i));
+    }
+    s.title = std::to_string(count) + (count == 1 ? " intruder" : " intruders") + " on conflicting courses, seed " +
+              std::to_string(seed);
+    s.traffic.sigma_position = 0.3;
+    s.traffic.sigma_velocity = 0.2;
+    s.traffic.latency = 0.1;
+    s.traffic.jitter = 0.05;
+    s.traffic.dropout = 0.05;
+    s.expect.outcomes = {Outcome::clear, Outcome::avoided, Outcome::braked};
+    default_radii(s);
+    return s;
+}
+
+}  // namespace jink::sim

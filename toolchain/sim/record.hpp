@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "toolchain/sim/autopilot.hpp"
+
+namespace jink::sim {
+
+/// The flight at one instant.
+struct Sample {
+    double time = 0.0;
+    Vec position = Vec::Zero();
+    Vec velocity = Vec::Zero();
+    Vec setpoint = Vec::Zero();  ///< in force; meaningful in external mode
+    Mode mode = Mode::mission;
+    double separation = 0.0;  ///< centre to the nearest surface [m]
+    std::size_t nearest = 0;  ///< whose
+    int jink_state = 0;       ///< MAV_STATE as last heard
+};
+
+/// One candidate of a plan, for a picture of the fan.
+struct FanCurve {
+    std::vector<Vec> points;
+    std::string status;
+    double cost = 0.0;
+};
+
+/// Wall time of a kind of call [us].
+struct Durations {
+    unsigned count = 0;
+    double mean = 0.0;
+    double worst = 0.0;
+};
+
+/// What only shows from inside the co-processor.
+struct Inside {
+    Durations steps;       ///< Coprocessor::step
+    Durations plan_steps;  ///< of these, the ones that asked the planner
+    unsigned conflicts = 0, plans = 0, plans_found = 0, answers_rejected = 0, manoeuvres = 0, replans = 0, flips = 0,
+             brakes = 0, escapes = 0, rejoined = 0, control_lost = 0, budget_spent = 0, most_work = 0;
+    unsigned deadlines_missed = 0, setpoints_withheld = 0, own_state_refused = 0, autopilot_reboots = 0,
+             clock_relocks = 0;
+    unsigned tracks_refused = 0, track_jumps = 0, frames_refused = 0, not_finite = 0, stale_stamp = 0, inbox_full = 0,
+             outbox_full = 0;
+    std::string first_candidate;  ///< of the first plan found
+    std::vector<FanCurve> fan;    ///< of the first plan found
+};
+
+/// Everything that is kept of a flight.
+struct Record {
+    std::string name;
+    std::string title;
+    std::string transport;  ///< "in process" or "daemon"
+    Stack stack = Stack::ardupilot;
+    std::uint64_t seed = 0;
+    double promise = 0.7;
+    Outcome outcome = Outcome::failed;
+    std::vector<std::string> faults;  ///< rules broken, in words
+    double duration = 0.0;
+    Closest closest;
+    std::string closest_threat;
+    unsigned takeovers = 0;
+    int flips = 0;              ///< side changes of the commanded track about the leg
+    double longest_hold = 0.0;  ///< standing still by command [s]
+    bool given_back = false;
+    Mode final_mode = Mode::mission;
+    double cross_track = 0.0;  ///< at the end [m]
+    double lowest = 0.0;       ///< least height of the centre [m]
+    Heard heard;
+    unsigned late_steps = 0;  ///< real time: steps begun more than a tick late
+    std::vector<Vec> mission;
+    std::vector<Threat> threats;
+    std::vector<double> appeared;  ///< when each threat appeared; negative: never [s]
+    std::vector<Sample> samples;
+    std::optional<Inside> inside;
+};
+
+/// Counts how often the commanded track changes its side of the leg: where the vehicle will be one second on under its
+/// command, seen along the leg, lies more than a dead band off on the side opposite to the last one.
+class FlipCounter {
+public:
+    explicit FlipCounter(const std::vector<Vec>& mission);
+    void note(const Vec& position, const Vec& command);
+    [[nodiscard]] int flips() const noexcept { return flips_; }
+
+private:
+    Vec start_;
+    Vec forward_;
+    Vec side_ = Vec::Zero();
+    int flips_ = 0;
+};
+
+/// What was expected and did not come true; empty when all is well.
+[[nodiscard]] std::vector<std::string> unmet(const Scenario& scenario, const Record& record);
+
+}  // namespace jink::sim

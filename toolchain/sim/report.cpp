@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/report.hpp"
+
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "toolchain/sim/in_process.hpp"
+
+namespace jink::sim {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Every fifth sample: 10 Hz.
+constexpr std::size_t kStride = 5;
+/// Separations beyond this are not worth a number [m].
+constexpr double kNobody = 1e8;
+
+/// Millimetres, so that files stay small and readable.
+double rounded(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
+
+Json json(const Vec& v) { return Json::array({rounded(v.x()), rounded(v.y()), rounded(v.z())}); }
+
+Json json_or_null(double value) { return value < kNobody ? Json(rounded(value)) : Json(nullptr); }
+
+Json series(const Record& record)
+{
+    Json t = Json::array();
+    Json position = Json::array();
+    Json velocity = Json::array();
+    Json setpoint = Json::array();
+    Json mode = Json::array();
+    Json separation = Json::array();
+    Json nearest = Json::array();
+    Json state = Json::array();
+    for (std::size_t i = 0; i < record.samples.size(); i += kStride) {
+        const Sample& s = record.samples[i];
+        t.push_back(rounded(s.time));
+        position.push_back(json(s.position));
+        velocity.push_back(json(s.velocity));
+        setpoint.push_back(s.mode == Mode::external ? json(s.setpoint) : Json(nullptr));
+        mode.push_back(to_string(s.mode));
+        separation.push_back(json_or_null(s.separation));
+        nearest.push_back(s.nearest);
+        state.push_back(s.jink_state);
+    }
+    return {{"t", t},       {"position", position},     {"velocity", velocity}, {"setpoint", setpoint},
+            {"mode", mode}, {"separation", separation}, {"nearest", nearest},   {"jink_state", state}};
+}
+
+Json threats(const Record& record)
+{
+    Json all = Json::array();
+    for (std::size_t k = 0; k < record.threats.size(); ++k) {
+        const Threat& threat = record.threats[k];
+        Json positions = Json::array();
+        const std::size_t count =
+            threat.at_rest() ? std::min<std::size_t>(1, record.samples.size()) : record.samples.size();
+        for (std::size_t i = 0; i < count; i += kStride) {
+            positions.push_back(json(threat.position_at(record.samples[i].time)));
+        }
+        all.push_back({{"name", threat.name},
+                       {"radius", threat.radius},
+                       {"half_height", threat.half_height},
+                       {"sensed_by", to_string(threat.sensed_by)},
+                       {"moves", !threat.at_rest()},
+                       {"appeared", record.appeared[k] < 0.0 ? Json(nullptr) : Json(rounded(record.appeared[k]))},
+                       {"positions", positions}});
+    }
+    return all;
+}
+
+Json link_of(const Record& record)
+{
+    const Heard& h = record.heard;
+    Json texts = Json::array();
+    for (const Text& text : h.texts) {
+        texts.push_back({{"t", rounded(text.time)}, {"severity", text.severity}, {"text", text.text}});
+    }
+    return {{"frames", h.frames},
+            {"frames_refused", h.frames_refused},
+            {"heartbeats", h.heartbeats},
+            {"longest_heartbeat_gap", rounded(to_seconds(h.longest_heartbeat_gap))},
+            {"setpoints", h.setpoints},
+            {"bad_setpoints", h.bad_setpoints},
+            {"setpoints_overruled", h.setpoints_overruled},
+            {"longest_setpoint_gap", rounded(to_seconds(h.longest_setpoint_gap))},
+            {"warnings", h.warnings},
+            {"external_requests", h.external_requests},
+            {"refused_requests", h.refused_requests},
+            {"texts", texts}};
+}
+
+Json json(const Durations& d)
+{
+    return {{"count", d.count}, {"mean_us", rounded(d.mean)}, {"worst_us", rounded(d.worst)}};
+}
+
+Json inside_of(const Inside& in, bool machine_independent)
+{
+    Json j;
+    if (!machine_independent) {
+        j["steps"] = json(in.steps);
+        j["plan_steps"] = json(in.plan_steps);
+    }
+    j["conflicts"] = in.conflicts;
+    j["plans"] = in.plans;
+    j["plans_found"] = in.plans_found;
+    j["answers_rejected"] = in.answers_rejected;
+    j["manoeuvres"] = in.manoeuvres;
+    j["replans"] = in.replans;
+    j["flips"] = in.flips;
+    j["brakes"] = in.brakes;
+    j["escapes"] = in.escapes;
+    j["rejoined"] = in.rejoined;
+    j["control_lost"] = in.control_lost;
+    j["budget_spent"] = in.budget_spent;
+    j["most_work"] = in.most_work;
+    j["deadlines_missed"] = in.deadlines_missed;
+    j["setpoints_withheld"] = in.setpoints_withheld;
+    j["own_state_refused"] = in.own_state_refused;
+    j["autopilot_reboots"] = in.autopilot_reboots;
+    j["clock_relocks"] = in.clock_relocks;
+    j["tracks_refused"] = in.tracks_refused;
+    j["track_jumps"] = in.track_jumps;
+    j["frames_refused"] = in.frames_refused;
+    j["not_finite"] = in.not_finite;
+    j["stale_stamp"] = in.stale_stamp;
+    j["inbox_full"] = in.inbox_full;
+    j["outbox_full"] = in.outbox_full;
+    j["first_candidate"] = in.first_candidate;
+    return j;
+}
+
+Json fan_of_record(const Inside& in)
+{
+    Json fan = Json::array();
+    for (const FanCurve& curve : in.fan) {
+        Json points = Json::array();
+        for (const Vec& p : curve.points) {
+            points.push_back(json(p));
+        }
+        fan.push_back({{"status", curve.status}, {"cost", rounded(curve.cost)}, {"points", points}});
+    }
+    return fan;
+}
+
+Json json(const ReportedFlight& flight, bool machine_independent)
+{
+    const Record& r = flight.record;
+    Json expected = Json::array();
+    for (const Outcome outcome : flight.scenario.expect.outcomes) {
+        expected.push_back(to_string(outcome));
+    }
+    Json mission = Json::array();
+    for (const Vec& waypoint : r.mission) {
+        mission.push_back(json(waypoint));
+    }
+    Json j{{"name", r.name},
+           {"title", r.title},
+           {"transport", r.transport},
+           {"stack", to_string(r.stack)},
+           {"seed", r.seed},
+           {"outcome", to_string(r.outcome)},
+           {"expected", expected},
+           {"as_expected", flight.unmet.empty()},
+           {"unmet", flight.unmet},
+           {"faults", r.faults},
+           {"promise", r.promise},
+           {"duration", rounded(r.duration)},
+           {"least",
+            {{"surface", json_or_null(r.closest.surface)},
+             {"box", json_or_null(r.closest.box)},
+             {"alone", json_or_null(flight.alone)},
+             {"t", rounded(r.closest.time)},
+             {"threat", r.closest_threat},
+             {"own", json(r.closest.own)},
+             {"centre", json(r.closest.threat_centre)}}},
+           {"takeovers", r.takeovers},
+           {"flips", r.flips},
+           {"longest_hold", rounded(r.longest_hold)},
+           {"given_back", r.given_back},
+           {"final_mode", to_string(r.final_mode)},
+           {"cross_track", rounded(r.cross_track)},
+           {"lowest", rounded(r.lowest)}};
+    if (!machine_independent) {
+        j["late_steps"] = r.late_steps;
+    }
+    j["link"] = link_of(r);
+    if (flight.judged) {
+        j["judge"] = {{"conflict", flight.verdict.conflict},
+                      {"detected", rounded(flight.verdict.detected)},
+                      {"avoidable", flight.verdict.avoidable},
+                      {"keep", flight.verdict.keep},
+                      {"tried", flight.verdict.tried},
+                      {"best", json_or_null(flight.verdict.best)},
+                      {"best_command", json(flight.verdict.best_command)}};
+    }
+    j["mission"] = mission;
+    j["threats"] = threats(r);
+    j["series"] = series(r);
+    if (r.inside) {
+        j["inside"] = inside_of(*r.inside, machine_independent);
+        j["fan"] = fan_of_record(*r.inside);
+    }
+    return j;
+}
+
+}  // namespace
+
+ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge)
+{
+    ReportedFlight flight{scenario, std::move(record), {}, 0.0, with_judge, {}, false};
+    flight.unmet = unmet(scenario, flight.record);
+    flight.alone = fly_alone(scenario).closest.surface;
+    const bool broken = flight.record.closest.surface < scenario.promise;
+    if (with_judge) {
+        flight.verdict = judge(scenario);
+        flight.failed_avoidable = broken && (flight.verdict.avoidable || !flight.verdict.conflict);
+    }
+    return flight;
+}
+
+void print_table(std::ostream& out, const std::vector<ReportedFlight>& flights)
+{
+    out << std::left << std::setw(24) << "flight" << std::setw(12) << "transport" << std::setw(10) << "outcome"
+        << std::right << std::setw(9) << "least m" << std::setw(9) << "alone m" << std::setw(8) << "at s"
+        << "  " << std::left << std::setw(16) << "nearest threat" << std::right << std::setw(9) << "plan us"
+        << "  verdict\n";
+    for (const ReportedFlight& f : flights) {
+        const Record& r = f.record;
+        const bool anybody = r.closest.surface < kNobody;
+        out << std::left << std::setw(24) << r.name << std::setw(12) << r.transport << std::setw(10)
+            << to_string(r.outcome) << std::right << std::fixed << std::setprecision(2);
+        if (anybody) {
+            out << std::setw(9) << r.closest.surface << std::setw(9) << f.alone << std::setw(8) << r.closest.time;
+        } else {
+            out << std::setw(9) << "-" << std::setw(9) << "-" << std::setw(8) << "-";
+        }
+        out << "  " << std::left << std::setw(16) << r.closest_threat.substr(0, 15) << std::right << std::setw(9)
+            << std::setprecision(0) << (r.inside ? r.inside->plan_steps.worst : 0.0) << "  ";
+        if (f.unmet.empty()) {
+            out << "as expected";
+        }
+        for (std::size_t i = 0; i < f.unmet.size(); ++i) {
+            out << (i > 0 ? "; " : "") << f.unmet[i];
+        }
+        for (const std::string& fault : r.faults) {
+            out << " [" << fault << "]";
+        }
+        out << "\n";
+    }
+}
+
+std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_independent)
+{
+    Json all = Json::array();
+    for (const ReportedFlight& flight : flights) {
+        all.push_back(json(flight, machine_independent));
+    }
+    const Json run{{"format", "jink-sim run"},
+                   {"version", 1},
+                   {"units", "metres, seconds, metres per second; x east, y north, z up from home"},
+                   {"world_step", to_seconds(kStep)},
+                   {"flights", all}};
+    return run.dump();
+}
+
+bool write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights)
+{
+    std::ofstream out(file);
+    out << run_text(flights, false) << '\n';
+    return static_cast<bool>(out.flush());
+}
+
+}  // namespace jink::sim

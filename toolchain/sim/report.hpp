@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "toolchain/sim/judge.hpp"
+#include "toolchain/sim/record.hpp"
+
+namespace jink::sim {
+
+/// A flight with what belongs to it in a report.
+struct ReportedFlight {
+    Scenario scenario;
+    Record record;
+    std::vector<std::string> unmet;  ///< of the scenario's expectations; empty: as expected
+    double alone = 0.0;              ///< least separation of the same mission without a co-processor [m]
+    bool judged = false;
+    Verdict verdict;                ///< when judged
+    bool failed_avoidable = false;  ///< the promise was broken although the judge found a way to keep it
+};
+
+/// Adds what can be found out after a flight: the expectation, the flight alone and, when `with_judge`, the verdict.
+[[nodiscard]] ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge);
+
+/// Table for people: name, outcome, least separation with time and threat, longest step with a plan.
+void print_table(std::ostream& out, const std::vector<ReportedFlight>& flights);
+
+/// Writes run.json, the input of `jink report`; its layout stands in tests/scenario/README.md. False when the file
+/// cannot be written.
+[[nodiscard]] bool write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights);
+
+/// The same as text, without wall times when `machine_independent`: equal for equal seeds, byte by byte.
+[[nodiscard]] std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_independent);
+
+}  // namespace jink::sim

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "toolchain/sim/threat.hpp"
+#include "toolchain/sim/truth_vehicle.hpp"
+
+namespace jink::sim {
+
+enum class Stack : std::uint8_t { ardupilot, px4 };
+
+/// What the autopilot is doing, whatever its stack calls it.
+enum class Mode : std::uint8_t { mission, external, hold, brake, home, pilot };
+
+enum class Outcome : std::uint8_t {
+    clear,      ///< no manoeuvre needed, none flown
+    avoided,    ///< control was taken and the promise kept
+    braked,     ///< the same, and it held still for a while
+    breach,     ///< nearer than the promise
+    collision,  ///< the bodies touched
+    failed,     ///< a rule of the protocol or of the airspace was broken
+};
+
+[[nodiscard]] std::string_view to_string(Outcome outcome) noexcept;
+[[nodiscard]] std::string_view to_string(Mode mode) noexcept;
+[[nodiscard]] std::string_view to_string(Stack stack) noexcept;
+
+/// What traffic looks like when it arrives.
+struct TrafficSensor {
+    double rate = 5.0;            ///< [Hz]
+    double sigma_position = 0.0;  ///< per axis [m]
+    double sigma_velocity = 0.0;  ///< per axis [m/s]
+    double latency = 0.1;         ///< from measurement to arrival [s]
+    double jitter = 0.0;          ///< on top, uniform [s]
+    double dropout = 0.0;         ///< share of sightings that never arrive
+};
+
+/// Level range scan.
+struct ScanSensor {
+    double rate = 10.0;   ///< [Hz]
+    double range = 30.0;  ///< [m]
+};
+
+/// What goes wrong on purpose. Times in [s]; those left out do not happen.
+struct Faults {
+    std::optional<double> pilot_takes_over;  ///< mode of `pilot_mode` chosen by the pilot
+    Mode pilot_mode = Mode::hold;            ///< hold, home or pilot
+    Vec pilot_velocity = Vec::Zero();        ///< flown in pilot mode [m/s]
+    bool refuse_external = false;            ///< every request of the external mode is denied
+    std::optional<double> reboot_at;         ///< the autopilot falls silent, then its boot clock starts again
+    double reboot_lasts = 1.0;
+    std::optional<double> clock_jump_at;  ///< the boot clock jumps
+    double clock_jump_by = 0.0;
+    std::optional<double> cable_pulled_at;  ///< no byte passes either way
+    double cable_pulled_for = 0.0;
+};
+
+struct Expectation {
+    std::vector<Outcome> outcomes;   ///< any of these
+    std::optional<bool> given_back;  ///< the mission flies again at the end, and control had been taken
+    std::optional<Mode> final_mode;
+    std::optional<int> flips_at_most;
+};
+
+/// One flight: the world, the vehicle, its mission, the autopilot and what is expected.
+struct Scenario {
+    std::string name;
+    std::string title;
+    std::uint64_t seed = 1;
+    Stack stack = Stack::ardupilot;
+    double duration = 20.0;       ///< at most [s]
+    double promise = 0.7;         ///< least distance from the vehicle's centre to a true surface [m]
+    double body_radius = 0.5;     ///< of the vehicle [m]
+    std::optional<double> floor;  ///< the centre stays this high above home [m]
+    TruthLimits vehicle;
+    Vec start_position = Vec::Zero();
+    Vec start_velocity = Vec::Zero();
+    std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
+    std::vector<Threat> threats;
+    TrafficSensor traffic;
+    ScanSensor scan;
+    std::map<std::string, double> parameters;  ///< set at the start, verified
+    Faults faults;
+    Expectation expect;
+};
+
+}  // namespace jink::sim

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include "toolchain/sim/scenario.hpp"
+
+namespace jink::sim {
+
+/// A scenario file that cannot be used; what() reads "file:line: why".
+class BadScenario : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// Reads a scenario file (format: tests/scenario/README.md). Unknown keys, wrong types, missing and impossible values
+/// are refused.
+/// @throws BadScenario
+[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
+
+/// The same from text; `name` stands for the file in messages, and its stem for the scenario's name.
+[[nodiscard]] Scenario parse_scenario(const std::string& text, const std::filesystem::path& name);
+
+/// All *.yaml of a folder in order of name.
+[[nodiscard]] std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder);
+
+/// Sets TRK_RADIUS and TRK_RADIUS_PT to the largest radius that is sensed as traffic and as a point, where the scenario
+/// does not: ADSB_VEHICLE carries no size, so the co-processor has to be told.
+void default_radii(Scenario& scenario);
+
+}  // namespace jink::sim

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/sensors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace jink::sim {
+namespace {
+
+/// Rays per sector of a scan.
+constexpr int kRays = 5;
+
+double normal(Random& random) { return static_cast<double>(random.normal()); }
+
+Vec noise(Random& random, double sigma)
+{
+    const double x = normal(random);
+    const double y = normal(random);
+    const double z = normal(random);
+    return Vec(x, y, z) * sigma;
+}
+
+/// Range at which a level ray at the own height meets a threat; negative when it does not.
+double ray_range(const Threat& threat, const Vec& centre, const Vec& from, const Vec& direction)
+{
+    const double above = std::max(0.0, std::abs(centre.z() - from.z()) - threat.half_height);
+    const double radius2 = threat.radius * threat.radius - above * above;
+    if (radius2 <= 0.0) {
+        return -1.0;
+    }
+    const Eigen::Vector2d gap = (centre - from).head<2>();
+    const double along = gap.dot(direction.head<2>());
+    const double inside = radius2 - (gap.squaredNorm() - along * along);
+    if (inside < 0.0 || along < 0.0) {
+        return -1.0;
+    }
+    return std::max(0.0, along - std::sqrt(inside));
+}
+
+}  // namespace
+
+TrafficReceiver::TrafficReceiver(const World& world) : world_(world)
+{
+    for (std::size_t i = 0; i < world.scenario().threats.size(); ++i) {
+        channels_.push_back({Random(world.scenario().seed * 1000003U + i), -1, {}});
+    }
+}
+
+void TrafficReceiver::sight(std::size_t i, Channel& channel)
+{
+    const TrafficSensor& sensor = world_.scenario().traffic;
+    const Threat& threat = world_.scenario().threats[i];
+    const Vec position_noise = noise(channel.random, sensor.sigma_position);
+    const Vec velocity_noise = noise(channel.random, sensor.sigma_velocity);
+    const double late = sensor.jitter * static_cast<double>(channel.random.uniform());
+    const bool lost = static_cast<double>(channel.random.uniform()) < sensor.dropout;
+    if (lost) {
+        return;
+    }
+    Sighting seen{i, world_.now() + to_micros(sensor.latency + late), world_.threat_position(i) + position_noise,
+                  Vec::Zero()};
+    if (threat.sensed_by == SensedBy::traffic) {
+        seen.velocity = threat.velocity_at(world_.seconds()) + velocity_noise;
+    }
+    channel.under_way.push_back(seen);
+}
+
+std::vector<Sighting> TrafficReceiver::poll()
+{
+    std::vector<Sighting> arrived;
+    const Micros period = to_micros(1.0 / world_.scenario().traffic.rate);
+    for (std::size_t i = 0; i < channels_.size(); ++i) {
+        Channel& channel = channels_[i];
+        if (world_.scenario().threats[i].sensed_by == SensedBy::scan || !world_.visible(i)) {
+            continue;
+        }
+        channel.next = channel.next < 0 ? world_.appeared(i) : channel.next;
+        if (world_.now() >= channel.next) {
+            sight(i, channel);
+            channel.next += period;
+        }
+        // Jitter may let a later sighting overtake an earlier one: they arrive in the order of arrival.
+        auto& queue = channel.under_way;
+        for (auto it = queue.begin(); it != queue.end();) {
+            if (it->arrives <= world_.now()) {
+                arrived.push_back(*it);
+                it = queue.erase(it);
+            } else {
+                ++it;
+            }
+        }
+    }
+    std::stable_sort(arrived.begin(), arrived.end(),
+                     [](const Sighting& a, const Sighting& b) { return a.arrives < b.arrives; });
+    return arrived;
+}
+
+std::array<double, kScanSectors> scan(const World& world)
+{
+    std::array<double, kScanSectors> ranges{};
+    const Scenario& scenario = world.scenario();
+    const Truth& own = world.own();
+    for (std::size_t sector = 0; sector < kScanSectors; ++sector) {
+        double nearest = -1.0;
+        for (int ray = 0; ray < kRays; ++ray) {
+            const double within = (static_cast<double>(ray) + 0.5) / kRays - 0.5;
+            const double clockwise = (static_cast<double>(sector) + within) * kScanIncrement * std::numbers::pi / 180.0;
+            const Vec direction(std::cos(own.yaw - clockwise), std::sin(own.yaw - clockwise), 0.0);
+            for (std::size_t i = 0; i < scenario.threats.size(); ++i) {
+                if (scenario.threats[i].sensed_by != SensedBy::scan || !world.visible(i)) {
+                    continue;
+                }
+                const double range = ray_range(scenario.threats[i], world.threat_position(i), own.position, direction);
+                if (range >= 0.0 && range <= scenario.scan.range && (nearest < 0.0 || range < nearest)) {
+                    nearest = range;
+                }
+            }
+        }
+        ranges[sector] = nearest;
+    }
+    return ranges;
+}
+
+}  // namespace jink::sim

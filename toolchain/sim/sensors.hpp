@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <deque>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "toolchain/sim/world.hpp"
+
+namespace jink::sim {
+
+/// One traffic report as it arrives: true place with noise, already as old as the sensor's latency.
+struct Sighting {
+    std::size_t threat = 0;
+    Micros arrives = 0;
+    Vec position = Vec::Zero();
+    Vec velocity = Vec::Zero();
+};
+
+/// Sees the threats of the world that are sensed as traffic or point obstacles.
+///
+/// Each threat has its own random numbers, drawn for each sighting in the order of simulated time whether it arrives or
+/// not: what the co-processor does, and when anybody looks, changes none of them.
+class TrafficReceiver {
+public:
+    explicit TrafficReceiver(const World& world);
+
+    /// Sightings that have arrived since the last call, in order of arrival. Call every step. O(threats).
+    [[nodiscard]] std::vector<Sighting> poll();
+
+private:
+    struct Channel {
+        Random random;
+        Micros next = -1;
+        std::deque<Sighting> under_way;
+    };
+
+    void sight(std::size_t i, Channel& channel);
+
+    const World& world_;
+    std::vector<Channel> channels_;
+};
+
+inline constexpr std::size_t kScanSectors = 72;
+inline constexpr double kScanIncrement = 5.0;  // [deg]
+
+/// Level scan from the vehicle: sector i looks clockwise from the nose by i * kScanIncrement degrees. Distance to the
+/// nearest visible threat that is sensed by scan [m], or a negative number where there is none within the range.
+[[nodiscard]] std::array<double, kScanSectors> scan(const World& world);
+
+}  // namespace jink::sim

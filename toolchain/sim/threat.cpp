@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/threat.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::sim {
+namespace {
+
+/// From the nearest point of the threat's axis to `point`.
+Vec from_axis(const Threat& threat, const Vec& centre, const Vec& point) noexcept
+{
+    Vec gap = point - centre;
+    gap.z() -= std::clamp(gap.z(), -threat.half_height, threat.half_height);
+    return gap;
+}
+
+}  // namespace
+
+std::string_view to_string(SensedBy by) noexcept
+{
+    switch (by) {
+    case SensedBy::traffic: return "traffic";
+    case SensedBy::point: return "point";
+    case SensedBy::scan: break;
+    }
+    return "scan";
+}
+
+Vec Threat::position_at(double t) const noexcept
+{
+    Vec at = position;
+    Vec moving = velocity;
+    double since = 0.0;
+    for (const Turn& turn : turns) {
+        if (t <= turn.at) {
+            break;
+        }
+        at += moving * (turn.at - since);
+        moving = turn.velocity;
+        since = turn.at;
+    }
+    return at + moving * (t - since);
+}
+
+Vec Threat::velocity_at(double t) const noexcept
+{
+    Vec moving = velocity;
+    for (const Turn& turn : turns) {
+        if (t <= turn.at) {
+            break;
+        }
+        moving = turn.velocity;
+    }
+    return moving;
+}
+
+bool Threat::at_rest() const noexcept
+{
+    return velocity.norm() == 0.0 &&
+           std::all_of(turns.begin(), turns.end(), [](const Turn& turn) { return turn.velocity.norm() == 0.0; });
+}
+
+double surface_distance(const Threat& threat, const Vec& centre, const Vec& point) noexcept
+{
+    return from_axis(threat, centre, point).norm() - threat.radius;
+}
+
+double box_distance(const Threat& threat, const Vec& centre, const Vec& point, const Vec& half) noexcept
+{
+    Vec gap = (centre - point).cwiseAbs();
+    gap.z() -= threat.half_height;
+    return std::max(0.0, (gap - half).cwiseMax(0.0).norm() - threat.radius);
+}
+
+Nearest nearest_in_step(const Threat& threat, const Vec& centre_from, const Vec& centre_to, const Vec& from,
+                        const Vec& to) noexcept
+{
+    const double at_start = surface_distance(threat, centre_from, from);
+    const double at_end = surface_distance(threat, centre_to, to);
+    Nearest nearest = at_end < at_start ? Nearest{at_end, 1.0} : Nearest{at_start, 0.0};
+    if (threat.half_height > 0.0) {
+        return nearest;
+    }
+    const Vec gap = from - centre_from;
+    const Vec motion = (to - from) - (centre_to - centre_from);
+    const double length2 = motion.squaredNorm();
+    if (length2 > 0.0) {
+        const double share = std::clamp(-gap.dot(motion) / length2, 0.0, 1.0);
+        const double distance = (gap + motion * share).norm() - threat.radius;
+        if (distance < nearest.distance) {
+            nearest = {distance, share};
+        }
+    }
+    return nearest;
+}
+
+}  // namespace jink::sim

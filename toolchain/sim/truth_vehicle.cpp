@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/truth_vehicle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace jink::sim {
+namespace {
+
+/// Below this speed a course means nothing [m/s].
+constexpr double kCourseSpeed = 0.5;
+
+using Plane = Eigen::Vector2d;
+
+double wrapped(double angle) noexcept { return std::remainder(angle, 2.0 * std::numbers::pi); }
+
+void bound_acceleration(Truth& truth, const TruthLimits& limits) noexcept
+{
+    Plane level = truth.acceleration.head<2>();
+    const Plane course = truth.velocity.head<2>();
+    const double speed = course.norm();
+    if (limits.max_course_rate > 0.0 && speed > kCourseSpeed) {
+        const Plane forward = course / speed;
+        const Plane left(-forward.y(), forward.x());
+        const double most = limits.max_course_rate * speed;
+        level = forward * level.dot(forward) + left * std::clamp(level.dot(left), -most, most);
+    }
+    const double size = level.norm();
+    if (size > limits.max_acceleration) {
+        level *= limits.max_acceleration / size;
+    }
+    truth.acceleration.head<2>() = level;
+    truth.acceleration.z() =
+        std::clamp(truth.acceleration.z(), -limits.max_vertical_acceleration, limits.max_vertical_acceleration);
+}
+
+void turn_nose(Truth& truth, const TruthLimits& limits, double dt) noexcept
+{
+    const Plane course = truth.velocity.head<2>();
+    if (course.norm() < kCourseSpeed) {
+        return;
+    }
+    const double error = wrapped(std::atan2(course.y(), course.x()) - truth.yaw);
+    truth.yaw = wrapped(truth.yaw + std::clamp(error, -limits.max_yaw_rate * dt, limits.max_yaw_rate * dt));
+}
+
+}  // namespace
+
+void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept
+{
+    Vec goal = command;
+    goal.z() = std::clamp(goal.z(), -limits.max_descent, limits.max_climb);
+    const double w = limits.omega;
+    truth.acceleration += dt * (w * w * (goal - truth.velocity) - 2.0 * limits.damping * w * truth.acceleration);
+    bound_acceleration(truth, limits);
+    const Vec before = truth.velocity;
+    truth.velocity += dt * truth.acceleration;
+    const double vertical = std::clamp(truth.velocity.z(), -limits.max_descent, limits.max_climb);
+    if (vertical != truth.velocity.z()) {
+        truth.velocity.z() = vertical;
+        truth.acceleration.z() = 0.0;
+    }
+    truth.position += 0.5 * dt * (before + truth.velocity);
+    turn_nose(truth, limits, dt);
+}
+
+Vec along(const Vec& direction, double speed, const TruthLimits& limits) noexcept
+{
+    const double length = direction.norm();
+    if (length < 1e-9) {
+        return Vec::Zero();
+    }
+    Vec velocity = direction * (speed / length);
+    const double bound = velocity.z() > 0.0 ? limits.max_climb : limits.max_descent;
+    const double vertical = std::abs(velocity.z());
+    return vertical > bound ? Vec(velocity * (bound / vertical)) : velocity;
+}
+
+}  // namespace jink::sim

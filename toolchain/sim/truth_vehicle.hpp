@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "toolchain/sim/vec.hpp"
+
+namespace jink::sim {
+
+/// What the simulated vehicle can do. On purpose not core's vehicle model: that one is of first order.
+struct TruthLimits {
+    double cruise = 5.0;                     ///< [m/s]
+    double omega = 5.0;                      ///< natural frequency of the velocity loop [rad/s]
+    double damping = 0.9;                    ///< of the velocity loop [-]
+    double max_acceleration = 5.0;           ///< horizontal [m/s2]
+    double max_vertical_acceleration = 3.0;  ///< [m/s2]
+    double max_climb = 3.0;                  ///< [m/s]
+    double max_descent = 3.0;                ///< [m/s]
+    double max_yaw_rate = 1.5;               ///< the nose follows the course this fast at most [rad/s]
+    double max_course_rate =
+        0.0;  ///< turn rate of the velocity above 0.5 m/s [rad/s]; 0: only the acceleration bounds it
+};
+
+struct Truth {
+    Vec position = Vec::Zero();
+    Vec velocity = Vec::Zero();
+    Vec acceleration = Vec::Zero();
+    double yaw = 0.0;  ///< [rad], counter-clockwise from east
+};
+
+/// One step of the vehicle under a velocity command: second-order response, bounded acceleration, climb, descent and
+/// turn rates. Accurate for dt well below 1 / omega; the simulator uses kStep. O(1).
+void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept;
+
+/// Velocity along `direction` at `speed`, slowed where the climb or descent limit asks for it, so that the direction
+/// stays.
+[[nodiscard]] Vec along(const Vec& direction, double speed, const TruthLimits& limits) noexcept;
+
+}  // namespace jink::sim
