@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/world/obstacle_table.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace jink::world {
+namespace {
+
+constexpr TimePoint kNow{50'000'000};
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+Obstacle ball(ObstacleId id, const Vec3& centre, float radius = 1.0F)
+{
+    return {id, geometry::make_sphere(centre, radius)};
+}
+
+struct ObstacleTables : testing::Test {
+    ObstacleTable table;
+    Vec3 own = Vec3::Zero();
+    TimePoint later = kNow + 10.0F;
+};
+
+TEST_F(ObstacleTables, CreatesAndRenewsInOrderOfId)
+{
+    for (const ObstacleId id : {5U, 1U, 9U, 3U}) {
+        EXPECT_EQ(table.update(ball(id, Vec3(static_cast<float>(id), 0, 0)), later, own), ObstacleStatus::created);
+    }
+    EXPECT_EQ(table.update(ball(9, Vec3(90, 0, 0)), later, own), ObstacleStatus::updated);
+    const auto all = table.obstacles();
+    ASSERT_EQ(all.size(), 4U);
+    const ObstacleId order[] = {1, 3, 5, 9};
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(all[i].id, order[i]);
+    }
+    EXPECT_EQ(all[3].shape.centre.x(), 90.0F);
+    EXPECT_EQ(table.diagnostics().created, 4U);
+    EXPECT_EQ(table.diagnostics().updated, 1U);
+}
+
+TEST_F(ObstacleTables, InvalidShapesAreRefused)
+{
+    std::vector<geometry::Shape> bad;
+    for (const float number : {kNan, kInf, -kInf}) {
+        bad.push_back(geometry::make_sphere(Vec3(number, 0, 0), 1.0F));
+        bad.push_back(geometry::make_sphere(Vec3::Zero(), number));
+        bad.push_back(geometry::make_box(Vec3::Zero(), Vec3(1, number, 1)));
+        bad.push_back(geometry::make_capsule(Vec3::Zero(), Vec3(0, 0, number), 1.0F));
+    }
+    bad.push_back(geometry::make_sphere(Vec3::Zero(), -1.0F));
+    bad.push_back(geometry::make_box(Vec3::Zero(), Vec3(1, -1, 1)));
+    bad.push_back(geometry::make_box(Vec3::Zero(), Vec3::Ones(), Mat3(2.0F * Mat3::Identity())));
+    bad.push_back(geometry::make_hull({}, Vec3::Zero()));
+    const std::vector<Vec3> many(kMaxHullVertices + 1, Vec3::Ones());
+    bad.push_back(geometry::make_hull(many, Vec3::Zero()));
+    for (const geometry::Shape& shape : bad) {
+        EXPECT_EQ(table.update({1, shape}, later, own), ObstacleStatus::invalid);
+    }
+    EXPECT_EQ(table.diagnostics().invalid, bad.size());
+    EXPECT_TRUE(table.obstacles().empty());
+}
+
+TEST_F(ObstacleTables, AnInvalidRenewalLeavesTheOldOne)
+{
+    EXPECT_EQ(table.update(ball(1, Vec3(5, 0, 0)), later, own), ObstacleStatus::created);
+    EXPECT_EQ(table.update(ball(1, Vec3(kNan, 0, 0)), later, own), ObstacleStatus::invalid);
+    EXPECT_EQ(table.obstacles()[0].shape.centre.x(), 5.0F);
+}
+
+TEST_F(ObstacleTables, RemoveAndExpire)
+{
+    for (ObstacleId id = 0; id < 6; ++id) {
+        EXPECT_EQ(table.update(ball(id, Vec3::Zero()), kNow + static_cast<float>(id), own), ObstacleStatus::created);
+    }
+    EXPECT_TRUE(table.remove(3));
+    EXPECT_FALSE(table.remove(3));
+    table.expire(kNow + 2.0F);
+    EXPECT_EQ(table.obstacles().size(), 3U) << "2 expires at this very instant and still counts";
+    EXPECT_EQ(table.diagnostics().expired, 2U);
+    EXPECT_EQ(table.obstacles()[0].id, 2U);
+    EXPECT_EQ(table.update(ball(4, Vec3::Zero()), kNow + 100.0F, own), ObstacleStatus::updated);
+    table.expire(kNow + 50.0F);
+    ASSERT_EQ(table.obstacles().size(), 1U) << "renewal moves the expiry";
+    EXPECT_EQ(table.obstacles()[0].id, 4U);
+    table.clear();
+    EXPECT_TRUE(table.obstacles().empty());
+}
+
+TEST_F(ObstacleTables, CapacityLessOneFullAndOneMore)
+{
+    for (std::size_t i = 0; i < kMaxObstacles; ++i) {
+        EXPECT_EQ(table.obstacles().size(), i);
+        const auto id = static_cast<ObstacleId>(1000 - i);
+        EXPECT_EQ(table.update(ball(id, Vec3(10.0F + static_cast<float>(i), 0, 0)), later, own),
+                  ObstacleStatus::created);
+    }
+    EXPECT_EQ(table.update(ball(2000, Vec3(500, 0, 0)), later, own), ObstacleStatus::full);
+    EXPECT_EQ(table.update(ball(2000, Vec3(500, 0, 0), 495.0F), later, own), ObstacleStatus::replaced)
+        << "surface counts";
+    EXPECT_EQ(table.obstacles().size(), kMaxObstacles);
+    const auto farthest = static_cast<ObstacleId>(1000 - (kMaxObstacles - 1));
+    for (const Obstacle& o : table.obstacles()) {
+        EXPECT_NE(o.id, farthest);
+    }
+    EXPECT_EQ(table.diagnostics().full, 1U);
+    EXPECT_EQ(table.diagnostics().replaced, 1U);
+    EXPECT_EQ(table.update(ball(1000, Vec3(11, 0, 0)), later, own), ObstacleStatus::updated);
+}
+
+TEST_F(ObstacleTables, OrderStaysSortedThroughReplacement)
+{
+    for (std::size_t i = 0; i < 2 * kMaxObstacles; ++i) {
+        const auto id = static_cast<ObstacleId>((i * 7919) % 1009);
+        static_cast<void>(table.update(ball(id, Vec3(static_cast<float>((i * 31) % 97), 0, 0)), later, own));
+        for (std::size_t k = 1; k < table.obstacles().size(); ++k) {
+            ASSERT_LT(table.obstacles()[k - 1].id, table.obstacles()[k].id);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace jink::world

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/world/conflict.hpp"
+
+namespace jink::world::test {
+
+/// Owns what a Situation refers to.
+struct Scene {
+    TimePoint now{10'000'000};
+    vehicle::VehicleState own;
+    vehicle::VehicleLimits limits;
+    vehicle::Airframe airframe;
+    Reference reference;
+    std::vector<Track> tracks;
+    std::vector<Obstacle> obstacles;
+    Airspace airspace;
+    const Manoeuvre* flying = nullptr;
+    float k_sigma = 3.0F;
+
+    [[nodiscard]] Situation situation() const
+    {
+        return {now, own, limits, airframe, reference, tracks, obstacles, airspace, flying, k_sigma};
+    }
+
+    void leg(const Vec3& start, const Vec3& end, float speed = 5.0F)
+    {
+        reference.valid = true;
+        reference.leg = {start, end, speed};
+    }
+    /// A track without any uncertainty, seen just now.
+    Track& track(const Vec3& position, const Vec3& velocity, float radius = 1.0F)
+    {
+        Track t;
+        t.id = static_cast<TrackId>(tracks.size() + 1);
+        t.stamp = now;
+        t.position = position;
+        t.velocity = velocity;
+        t.radius = radius;
+        return tracks.emplace_back(t);
+    }
+    void obstacle(const geometry::Shape& shape)
+    {
+        obstacles.push_back({static_cast<ObstacleId>(obstacles.size() + 1), shape});
+    }
+};
+
+/// Straight flight through `positions`, `step` seconds apart.
+inline path::TimedPath flight(const std::vector<Vec3>& positions, Seconds step)
+{
+    path::TimedPath path;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        const bool last = i + 1 == positions.size();
+        const Vec3 velocity = last ? (path.points.empty() ? Vec3(Vec3::Zero()) : path.points.back().velocity)
+                                   : Vec3((positions[i + 1] - positions[i]) / step);
+        path.points.unchecked_push_back({positions[i], velocity, step * static_cast<float>(i)});
+    }
+    return path;
+}
+
+/// Units that no test of one query uses up.
+inline constexpr std::uint32_t kPlenty = 10'000'000;
+
+inline Separation separation(const Scene& scene, const path::TimedPath& path, Seconds horizon = 100.0F,
+                             const EscapeRule& escape = {})
+{
+    WorkBudget budget(kPlenty);
+    return least_separation(scene.situation(), path, horizon, budget, escape);
+}
+
+}  // namespace jink::world::test
