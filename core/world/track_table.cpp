@@ -8,10 +8,15 @@
 namespace jink::world {
 namespace {
 
-/// Distance at the closest approach ahead, both flying straight on [m].
-float closest_approach(const Track& track, const vehicle::VehicleState& own) noexcept
+/// Sigmas below this are no measurement's, and their squares would vanish beside others [m, m/s].
+constexpr float kLeastSigma = 1e-4F;
+/// No aircraft's: larger ones would swell a sphere over everything, or float's range [m/s2].
+constexpr float kLargestAcceleration = 1000.0F;
+
+/// Distance at the closest approach from `now` on, both flying straight on [m].
+float closest_approach(const Track& track, const vehicle::VehicleState& own, TimePoint now) noexcept
 {
-    const Vec3 gap = track.position - own.position;
+    const Vec3 gap = track.position + track.velocity * (now - track.stamp) - own.position;
     const Vec3 closing = track.velocity - own.velocity;
     const float speed2 = closing.squaredNorm();
     const float t = speed2 > 1e-9F ? std::max(0.0F, -gap.dot(closing) / speed2) : 0.0F;
@@ -46,8 +51,11 @@ TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleS
     if (!all_finite(m)) {
         return TrackStatus::not_finite;
     }
-    const bool sizes_ok = m.radius >= 0.0F && m.sigma_position > 0.0F && m.max_acceleration >= 0.0F &&
-                          (!m.has_velocity || m.sigma_velocity > 0.0F);
+    const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
+    const bool sizes_ok = within(m.radius, 0.0F, settings_.max_range) &&
+                          within(m.sigma_position, kLeastSigma, settings_.max_range) &&
+                          within(m.max_acceleration, 0.0F, kLargestAcceleration) &&
+                          (!m.has_velocity || within(m.sigma_velocity, kLeastSigma, settings_.max_speed));
     if (!sizes_ok || !((m.position - own.position).norm() <= settings_.max_range) ||
         !(m.velocity.norm() <= settings_.max_speed)) {
         return TrackStatus::out_of_range;
@@ -136,10 +144,10 @@ TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::Vehicle
             const Entry fresh = start(m);
             auto* const farthest =
                 std::max_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
-                    return closest_approach(a.track, own) < closest_approach(b.track, own);
+                    return closest_approach(a.track, own, now) < closest_approach(b.track, own, now);
                 });
             status = TrackStatus::full;
-            if (closest_approach(fresh.track, own) < closest_approach(farthest->track, own)) {
+            if (closest_approach(fresh.track, own, now) < closest_approach(farthest->track, own, now)) {
                 *farthest = fresh;
                 status = TrackStatus::replaced;
             }
