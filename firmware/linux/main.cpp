@@ -85,6 +85,17 @@ void sleep_until(std::int64_t us)
     static_cast<void>(clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr));
 }
 
+/// Closing throws away what the driver has not sent yet, and the last words are the ones that matter.
+void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
+{
+    constexpr std::int64_t kLeast = 100'000;  // a pseudo-terminal does not tell, its reader needs a moment
+    constexpr std::int64_t kMost = 1'000'000;
+    const std::int64_t began = clock.now_us();
+    for (std::int64_t now = began; now - began < kLeast || (port.unsent() > 0 && now - began < kMost); now = clock.now_us()) {
+        sleep_until(now + kTickMicroseconds);
+    }
+}
+
 const char* text_of(hal::OpenStatus status)
 {
     switch (status) {
@@ -146,6 +157,7 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         sleep_until(next);
     }
     coprocessor->shut_down({clock.now_us()});
+    let_go_out(port, clock);
     watchdog.close();
     port.close();
     if (!options.quiet) {

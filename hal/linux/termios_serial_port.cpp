@@ -200,6 +200,13 @@ void TermiosSerialPort::count_line_errors() noexcept
     }
 }
 
+std::size_t TermiosSerialPort::unsent() const noexcept
+{
+    int held = 0;
+    const bool known = descriptor_ >= 0 && ::ioctl(descriptor_, TIOCOUTQ, &held) == 0 && held > 0;
+    return known ? static_cast<std::size_t>(held) : 0;
+}
+
 void TermiosSerialPort::release() noexcept
 {
     if (descriptor_ >= 0) {

@@ -60,6 +60,9 @@ public:
     [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override;
     [[nodiscard]] PortHealth health() const noexcept override { return health_; }
 
+    /// Bytes taken by write() that the driver still holds; 0 when not open, and always on a pseudo-terminal.
+    [[nodiscard]] std::size_t unsent() const noexcept;
+
     /// For poll() and friends; -1 when not open. Changes with every reconnect.
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
     /// Outcome of the latest attempt to open, first or repeated.
