@@ -9,9 +9,10 @@
 
 // Shared by the closed forms of sweep.hpp; not meant for other rooms.
 //
-// The squared distance of a straight-moving point from a box is convex and piecewise quadratic in time. Its pieces end where a
-// coordinate crosses a face plane: six instants at most. All eight instants of interest (those and both ends) are evaluated at
-// once, unsorted: the piece that holds what is sought lies between the latest one before it and the earliest one after it.
+// The squared distance of a straight-moving point from a box is convex and piecewise quadratic in time. Its pieces end
+// where a coordinate crosses a face plane: six instants at most. All eight instants of interest (those and both ends)
+// are evaluated at once, unsorted: the piece that holds what is sought lies between the latest one before it and the
+// earliest one after it.
 
 namespace jink::geometry::detail {
 
@@ -55,7 +56,8 @@ public:
     [[nodiscard]] float distance_squared(Seconds t) const noexcept { return excess(t).squaredNorm(); }
     /// Half the slope of the squared distance.
     [[nodiscard]] float slope(Seconds t) const noexcept { return excess(t).dot(velocity_); }
-    /// Half the second derivative on the piece that holds `t`: the squared speed in the axes that lie outside their slab.
+    /// Half the second derivative on the piece that holds `t`: the squared speed in the axes that lie outside their
+    /// slab.
     [[nodiscard]] float curvature(Seconds t) const noexcept
     {
         const Vec3 x = position_ + velocity_ * t;

@@ -50,19 +50,16 @@ Vec3 hull_support(const Shape& shape, const Vec3& local) noexcept
 Vec3 local_support(const Shape& shape, const Vec3& local) noexcept
 {
     switch (shape.kind) {
-        case ShapeKind::box:
-            return {signed_like(shape.half.x(), local.x()), signed_like(shape.half.y(), local.y()),
-                    signed_like(shape.half.z(), local.z())};
-        case ShapeKind::cylinder: {
-            const Vec3 radial = unit_or_zero({local.x(), local.y(), 0.0F});
-            return {shape.radius * radial.x(), shape.radius * radial.y(), signed_like(shape.half.z(), local.z())};
-        }
-        case ShapeKind::capsule:
-            return {0.0F, 0.0F, signed_like(shape.half.z(), local.z())};
-        case ShapeKind::hull:
-            return hull_support(shape, local);
-        case ShapeKind::sphere:
-            break;
+    case ShapeKind::box:
+        return {signed_like(shape.half.x(), local.x()), signed_like(shape.half.y(), local.y()),
+                signed_like(shape.half.z(), local.z())};
+    case ShapeKind::cylinder: {
+        const Vec3 radial = unit_or_zero({local.x(), local.y(), 0.0F});
+        return {shape.radius * radial.x(), shape.radius * radial.y(), signed_like(shape.half.z(), local.z())};
+    }
+    case ShapeKind::capsule: return {0.0F, 0.0F, signed_like(shape.half.z(), local.z())};
+    case ShapeKind::hull: return hull_support(shape, local);
+    case ShapeKind::sphere: break;
     }
     return Vec3::Zero();
 }
@@ -153,13 +150,11 @@ bool is_valid(const Shape& shape) noexcept
         return false;
     }
     switch (shape.kind) {
-        case ShapeKind::hull:
-            return has_valid_vertices(shape);
-        case ShapeKind::sphere:
-        case ShapeKind::box:
-        case ShapeKind::capsule:
-        case ShapeKind::cylinder:
-            return true;
+    case ShapeKind::hull: return has_valid_vertices(shape);
+    case ShapeKind::sphere:
+    case ShapeKind::box:
+    case ShapeKind::capsule:
+    case ShapeKind::cylinder: return true;
     }
     return false;
 }
@@ -168,14 +163,12 @@ Vec3 support(const Shape& shape, const Vec3& direction) noexcept
 {
     const Vec3 unit = unit_or_zero(direction);
     switch (shape.kind) {
-        case ShapeKind::sphere:
-            return shape.centre + shape.radius * unit;
-        case ShapeKind::capsule:
-            return shape.centre + shape.axes * local_support(shape, shape.axes.transpose() * unit) + shape.radius * unit;
-        case ShapeKind::box:
-        case ShapeKind::cylinder:
-        case ShapeKind::hull:
-            break;
+    case ShapeKind::sphere: return shape.centre + shape.radius * unit;
+    case ShapeKind::capsule:
+        return shape.centre + shape.axes * local_support(shape, shape.axes.transpose() * unit) + shape.radius * unit;
+    case ShapeKind::box:
+    case ShapeKind::cylinder:
+    case ShapeKind::hull: break;
     }
     return shape.centre + shape.axes * local_support(shape, shape.axes.transpose() * unit);
 }
@@ -183,16 +176,11 @@ Vec3 support(const Shape& shape, const Vec3& direction) noexcept
 float bounding_radius(const Shape& shape) noexcept
 {
     switch (shape.kind) {
-        case ShapeKind::sphere:
-            return shape.radius;
-        case ShapeKind::box:
-            return kAxesStretch * shape.half.norm();
-        case ShapeKind::capsule:
-            return kAxesStretch * shape.half.z() + shape.radius;
-        case ShapeKind::cylinder:
-            return kAxesStretch * std::hypot(shape.half.z(), shape.radius);
-        case ShapeKind::hull:
-            break;
+    case ShapeKind::sphere: return shape.radius;
+    case ShapeKind::box: return kAxesStretch * shape.half.norm();
+    case ShapeKind::capsule: return kAxesStretch * shape.half.z() + shape.radius;
+    case ShapeKind::cylinder: return kAxesStretch * std::hypot(shape.half.z(), shape.radius);
+    case ShapeKind::hull: break;
     }
     float squared = 0.0F;
     for (const Vec3& vertex : shape.vertices) {

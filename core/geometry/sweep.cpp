@@ -14,13 +14,13 @@ namespace {
 using detail::Instants;
 using detail::PastBox;
 
-/// What is added to the radius of a contact test, as a share of the relative coordinates and sizes: eight roundings (2^-24 each)
-/// cover the chain relative position, relative velocity, instant, position at the instant, distance.
+/// What is added to the radius of a contact test, as a share of the relative coordinates and sizes: eight roundings
+/// (2^-24 each) cover the chain relative position, relative velocity, instant, position at the instant, distance.
 constexpr float kSlackShare = 8.0F * 0x1p-24F;
 
 /// Part of [0, horizon] in which the point lies in the box grown by `reach` on every side; empty when first > last.
-/// Outside of it there is no contact; inside, no coordinate exceeds the box by more than `reach`, so that no squares of far
-/// coordinates have to cancel.
+/// Outside of it there is no contact; inside, no coordinate exceeds the box by more than `reach`, so that no squares of
+/// far coordinates have to cancel.
 TimeInterval grown_box_interval(const PastBox& past, float reach, Seconds horizon) noexcept
 {
     TimeInterval inside{0.0F, horizon};

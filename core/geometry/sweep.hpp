@@ -6,9 +6,9 @@
 #include "core/base/time.hpp"
 #include "core/base/vec3.hpp"
 
-// Swept and moving tests between the own safety box (world-aligned, moving without turning) and spheres, in closed form.
-// The box against a sphere of radius r is a point against the box rounded by r; both moving, the point's motion is the
-// relative one. No iteration, no allocation. Oracle: double-precision convex minimisation and bisection.
+// Swept and moving tests between the own safety box (world-aligned, moving without turning) and spheres, in closed
+// form. The box against a sphere of radius r is a point against the box rounded by r; both moving, the point's motion
+// is the relative one. No iteration, no allocation. Oracle: double-precision convex minimisation and bisection.
 
 namespace jink::geometry {
 
@@ -41,10 +41,10 @@ struct Approach {
 ///
 /// Exact for straight motion but for float rounding, which works to the safe side. With
 /// e = 1e-6 * (sum of the relative position's magnitudes + sum of `half` + radius) [m]:
-/// a contact is never missed; what is reported comes within e of touching; `first` is never later and `last` never earlier than
-/// the true instant (by more than 2.4e-7 * horizon); and at both the distance exceeds the radius by e at most, so that an
-/// instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s count as none.
-/// O(1): six divisions, two roots. Source: geometric planner, section 4 (Pinheiro 3.4, made time-aware).
+/// a contact is never missed; what is reported comes within e of touching; `first` is never later and `last` never
+/// earlier than the true instant (by more than 2.4e-7 * horizon); and at both the distance exceeds the radius by e at
+/// most, so that an instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s
+/// count as none. O(1): six divisions, two roots. Source: geometric planner, section 4 (Pinheiro 3.4, made time-aware).
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Vec3& half, const Motion& own, const Motion& threat,
                                                            float radius, Seconds horizon) noexcept;
 
@@ -52,19 +52,21 @@ struct Approach {
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Motion& own, const Motion& threat, float radius,
                                                            Seconds horizon) noexcept;
 
-/// Least distance in [0, horizon] between the box and the (moving) centre point of a threat; subtract the threat's radius
-/// for the margin. horizon >= 0.
+/// Least distance in [0, horizon] between the box and the (moving) centre point of a threat; subtract the threat's
+/// radius for the margin. horizon >= 0.
 ///
-/// Rounding error of the distance below 5e-7 * (sum of magnitudes of relative position, way travelled in `horizon` and `half`);
-/// `when` is an instant whose distance is the least one within that. O(1): a piecewise quadratic of at most six breakpoints.
-[[nodiscard]] Approach least_distance(const Vec3& half, const Motion& own, const Motion& threat, Seconds horizon) noexcept;
+/// Rounding error of the distance below 5e-7 * (sum of magnitudes of relative position, way travelled in `horizon` and
+/// `half`); `when` is an instant whose distance is the least one within that. O(1): a piecewise quadratic of at most
+/// six breakpoints.
+[[nodiscard]] Approach least_distance(const Vec3& half, const Motion& own, const Motion& threat,
+                                      Seconds horizon) noexcept;
 
 /// Distance between the box swept from `own_from` to `own_to` and the segment `threat_from`..`threat_to`, regardless of
 /// time [m]: 0 when they touch. Subtract the threat's radius for the margin of the source's "swept" dynamic security
 /// (Pinheiro 3.4.2). Zero-length, parallel and nearly parallel segments are no exception.
 ///
-/// Rounding error below 5e-7 * (sum of magnitudes of threat_from - own_from, of both ways and of `half`); touching may come out
-/// as such an error instead of 0. O(1): four closest approaches and one plane.
+/// Rounding error below 5e-7 * (sum of magnitudes of threat_from - own_from, of both ways and of `half`); touching may
+/// come out as such an error instead of 0. O(1): four closest approaches and one plane.
 [[nodiscard]] float swept_distance(const Vec3& half, const Vec3& own_from, const Vec3& own_to, const Vec3& threat_from,
                                    const Vec3& threat_to) noexcept;
 

@@ -7,11 +7,12 @@
 #include "core/geometry/past_box.hpp"
 #include "core/geometry/sweep.hpp"
 
-// Seen from the box, the threat's point less the own one fills the parallelogram corner + s * threat - t * own, 0 <= s, t <= 1.
-// Its distance from the box is attained on one of its four edges (a point moving past the box: closed form), or between its
-// inside and a corner of the box, or it is pierced by the box. The last two need one point of the box only: the one nearest to
-// the parallelogram's plane. Where that point is not unique, the nearest points are an edge or a face parallel to the plane, and
-// those either cover the parallelogram's border, which the edges find, or lie inside of it as a whole, or miss it.
+// Seen from the box, the threat's point less the own one fills the parallelogram corner + s * threat - t * own, 0 <= s,
+// t <= 1. Its distance from the box is attained on one of its four edges (a point moving past the box: closed form), or
+// between its inside and a corner of the box, or it is pierced by the box. The last two need one point of the box only:
+// the one nearest to the parallelogram's plane. Where that point is not unique, the nearest points are an edge or a
+// face parallel to the plane, and those either cover the parallelogram's border, which the edges find, or lie inside of
+// it as a whole, or miss it.
 
 namespace jink::geometry {
 
@@ -47,8 +48,8 @@ float difference_exactly(float y, float factor, float x) noexcept
     return (y - product) - error;
 }
 
-/// Squared distance between the box and a point of the parallelogram corner + s * u + t * v that is the closest one if the
-/// closest one lies inside; |u| >= |v|. Never below the true distance.
+/// Squared distance between the box and a point of the parallelogram corner + s * u + t * v that is the closest one if
+/// the closest one lies inside; |u| >= |v|. Never below the true distance.
 ///
 /// v is replaced by its part across u, free of cancellation, so that slender parallelograms lose no accuracy.
 float inside_distance_squared(const Vec3& half, const Vec3& corner, const Vec3& u, const Vec3& v) noexcept
@@ -69,7 +70,8 @@ float inside_distance_squared(const Vec3& half, const Vec3& corner, const Vec3& 
     const float plane = normal.dot(corner);
     const float extent = normal.cwiseAbs().dot(half);
     const float share = std::abs(plane) < extent ? plane / extent : std::copysign(1.0F, plane);
-    const Vec3 nearest(std::copysign(share * half.x(), share * normal.x()), std::copysign(share * half.y(), share * normal.y()),
+    const Vec3 nearest(std::copysign(share * half.x(), share * normal.x()),
+                       std::copysign(share * half.y(), share * normal.y()),
                        std::copysign(share * half.z(), share * normal.z()));
     const Vec3 w = nearest - corner;
     const float t = std::clamp(u.cross(w).dot(normal) / normal_squared, 0.0F, 1.0F);
@@ -87,7 +89,8 @@ float swept_distance(const Vec3& half, const Vec3& own_from, const Vec3& own_to,
     const Vec3 threat = threat_to - threat_from;
     const Vec3 corner = threat_from - own_from;
     const float edges = std::min(
-        std::min(edge_distance_squared(half, corner, threat), edge_distance_squared(half, threat_from - own_to, threat)),
+        std::min(edge_distance_squared(half, corner, threat),
+                 edge_distance_squared(half, threat_from - own_to, threat)),
         std::min(edge_distance_squared(half, corner, own), edge_distance_squared(half, threat_to - own_from, own)));
     const bool threat_is_longer = threat.squaredNorm() >= own.squaredNorm();
     const float inside = threat_is_longer ? inside_distance_squared(half, corner, threat, own)

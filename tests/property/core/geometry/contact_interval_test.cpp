@@ -40,17 +40,17 @@ std::string text(const Case& c)
 void degenerate(Random& random, Vec3& v)
 {
     switch (random.below(6)) {
-        case 0: v = Vec3::Zero(); break;
-        case 1: v[static_cast<int>(random.below(3))] = 0.0F; break;
-        case 2: {
-            const auto i = static_cast<int>(random.below(3));
-            const float kept = v[i];
-            v = Vec3::Zero();
-            v[i] = kept;
-            break;
-        }
-        case 3: v[static_cast<int>(random.below(3))] = v[static_cast<int>(random.below(3))]; break;
-        default: break;
+    case 0: v = Vec3::Zero(); break;
+    case 1: v[static_cast<int>(random.below(3))] = 0.0F; break;
+    case 2: {
+        const auto i = static_cast<int>(random.below(3));
+        const float kept = v[i];
+        v = Vec3::Zero();
+        v[i] = kept;
+        break;
+    }
+    case 3: v[static_cast<int>(random.below(3))] = v[static_cast<int>(random.below(3))]; break;
+    default: break;
     }
 }
 
@@ -70,10 +70,13 @@ Case ordinary(Random& random, float size, float far)
     return c;
 }
 
-/// Small whole numbers: parallel faces, equal coordinates and exact touching are common, and rounding has no part in them.
+/// Small whole numbers: parallel faces, equal coordinates and exact touching are common, and rounding has no part in
+/// them.
 Case on_grid(Random& random)
 {
-    const auto whole = [&](std::uint64_t n) { return static_cast<float>(random.below(2 * n + 1)) - static_cast<float>(n); };
+    const auto whole = [&](std::uint64_t n) {
+        return static_cast<float>(random.below(2 * n + 1)) - static_cast<float>(n);
+    };
     Case c;
     c.half = Vec3(whole(2), whole(2), whole(2)).cwiseAbs();
     c.own.position = Vec3(whole(4), whole(4), whole(4));
@@ -165,7 +168,8 @@ struct Tally {
         if (missed + spurious + late + loose > before && before < 5) {
             ADD_FAILURE() << "missed " << missed << " spurious " << spurious << " late " << late << " loose " << loose
                           << " least " << least << " radius " << radius << " found "
-                          << (found ? double(found->first) : -1.0) << ".." << (found ? double(found->last) : -1.0) << "\n"
+                          << (found ? double(found->first) : -1.0) << ".." << (found ? double(found->last) : -1.0)
+                          << "\n"
                           << text(c);
         }
     }
@@ -177,8 +181,10 @@ struct Tally {
         const double first = passage.distance(0) <= radius ? 0.0 : passage.crossing(0, closest, radius);
         // The closest instant may be the first one of a plateau within contact.
         const double last = passage.distance(horizon) <= radius ? horizon : passage.crossing(horizon, closest, radius);
-        late += double(found.first) > first + 0x1p-22 * horizon || double(found.last) < last - 0x1p-22 * horizon ? 1 : 0;
-        const double error = std::max(std::abs(double(found.first) - first), std::abs(double(found.last) - last)) / horizon;
+        late +=
+            double(found.first) > first + 0x1p-22 * horizon || double(found.last) < last - 0x1p-22 * horizon ? 1 : 0;
+        const double error =
+            std::max(std::abs(double(found.first) - first), std::abs(double(found.last) - last)) / horizon;
         double& worst = radius - least > 0.01 * radius + 1000 * allowed(c) ? worst_instant : worst_grazing;
         worst = std::max(worst, error);
     }
@@ -187,7 +193,8 @@ struct Tally {
     {
         std::cout << what << ": cases=" << cases << " hits=" << hits << " missed=" << missed << " spurious=" << spurious
                   << " late=" << late << " within slack=" << within_slack << " max instant error=" << worst_instant
-                  << " of the horizon (grazing: " << worst_grazing << "), max excess=" << worst_excess << " of the allowed\n";
+                  << " of the horizon (grazing: " << worst_grazing << "), max excess=" << worst_excess
+                  << " of the allowed\n";
         ::testing::Test::RecordProperty("cases", std::to_string(cases));
         ::testing::Test::RecordProperty("hits", std::to_string(hits));
         ::testing::Test::RecordProperty("max_instant_error", std::to_string(worst_instant));
@@ -208,7 +215,8 @@ TEST(ContactInterval, BoxAgainstSphereAgreesWithBisectionInDouble)
     Tally tally;
     for (std::size_t n = oracle::case_count(1'000'000); n > 0; --n) {
         const Case c = any_case(random);
-        tally.judge(c, Passage(c.half, c.own, c.threat), contact_interval(c.half, c.own, c.threat, c.radius, c.horizon));
+        tally.judge(c, Passage(c.half, c.own, c.threat),
+                    contact_interval(c.half, c.own, c.threat, c.radius, c.horizon));
     }
     tally.report("box/sphere");
 }

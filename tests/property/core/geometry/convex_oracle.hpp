@@ -11,8 +11,8 @@
 #include "core/geometry/shape.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
-// Distance of convex solids in double precision by Wolfe's least-norm-point method (Wolfe 1976) on support functions of its own:
-// an upper bound (a point of the difference) and a lower one (a separating plane) that close in on the truth.
+// Distance of convex solids in double precision by Wolfe's least-norm-point method (Wolfe 1976) on support functions of
+// its own: an upper bound (a point of the difference) and a lower one (a separating plane) that close in on the truth.
 
 namespace jink::geometry::oracle {
 
@@ -33,25 +33,28 @@ inline Vec3d exact_support(const Shape& shape, const Vec3d& direction)
     const auto sign = [](double x) { return x < 0 ? -1.0 : 1.0; };
     Vec3d point = Vec3d::Zero();
     switch (shape.kind) {
-        case ShapeKind::sphere: break;
-        case ShapeKind::box: point = Vec3d(sign(local.x()) * half.x(), sign(local.y()) * half.y(), sign(local.z()) * half.z()); break;
-        case ShapeKind::capsule: point.z() = sign(local.z()) * half.z(); break;
-        case ShapeKind::cylinder: {
-            const double flat = std::hypot(local.x(), local.y());
-            point = Vec3d(flat > 0 ? radius * local.x() / flat : 0, flat > 0 ? radius * local.y() / flat : 0, sign(local.z()) * half.z());
-            break;
-        }
-        case ShapeKind::hull: {
-            double most = -std::numeric_limits<double>::infinity();
-            for (const Vec3& vertex : shape.vertices) {
-                const double along = vertex.cast<double>().dot(local);
-                if (along > most) {
-                    most = along;
-                    point = vertex.cast<double>();
-                }
+    case ShapeKind::sphere: break;
+    case ShapeKind::box:
+        point = Vec3d(sign(local.x()) * half.x(), sign(local.y()) * half.y(), sign(local.z()) * half.z());
+        break;
+    case ShapeKind::capsule: point.z() = sign(local.z()) * half.z(); break;
+    case ShapeKind::cylinder: {
+        const double flat = std::hypot(local.x(), local.y());
+        point = Vec3d(flat > 0 ? radius * local.x() / flat : 0, flat > 0 ? radius * local.y() / flat : 0,
+                      sign(local.z()) * half.z());
+        break;
+    }
+    case ShapeKind::hull: {
+        double most = -std::numeric_limits<double>::infinity();
+        for (const Vec3& vertex : shape.vertices) {
+            const double along = vertex.cast<double>().dot(local);
+            if (along > most) {
+                most = along;
+                point = vertex.cast<double>();
             }
-            break;
         }
+        break;
+    }
     }
     return shape.centre.cast<double>() + axes * point;
 }
@@ -75,7 +78,8 @@ inline std::vector<double> affine_weights(const std::vector<Vec3d>& points)
     return weights;
 }
 
-/// Distance of the origin from the convex set that `reach(direction)` supports; the radius of spheres and capsules is left out.
+/// Distance of the origin from the convex set that `reach(direction)` supports; the radius of spheres and capsules is
+/// left out.
 template <class Support>
 Bounds distance_from_origin(const Support& reach, double tolerance)
 {
@@ -134,7 +138,8 @@ inline Bounds swept_box_bounds(const Vec3& half, const Vec3& from, const Vec3& t
         const Vec3d corner(d.x() < 0 ? -h.x() : h.x(), d.y() < 0 ? -h.y() : h.y(), d.z() < 0 ? -h.z() : h.z());
         return (d.dot(a) > d.dot(b) ? a : b) + corner;
     };
-    Bounds bounds = distance_from_origin([&](const Vec3d& d) -> Vec3d { return own(d) - exact_support(shape, -d); }, tolerance);
+    Bounds bounds =
+        distance_from_origin([&](const Vec3d& d) -> Vec3d { return own(d) - exact_support(shape, -d); }, tolerance);
     if (shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule) {
         bounds.lower = std::max(bounds.lower - double(shape.radius), 0.0);
         bounds.upper = std::max(bounds.upper - double(shape.radius), 0.0);
@@ -172,14 +177,14 @@ inline Shape any_shape(Random& random, ShapeKind kind, const Vec3& centre, float
 {
     const Vec3 arm = in_cube(random, size);
     switch (kind) {
-        case ShapeKind::sphere: return make_sphere(centre, random.uniform(0.0F, size));
-        case ShapeKind::box: {
-            const Mat3 axes = random.below(4) == 0 ? Mat3(Mat3::Identity()) : any_rotation(random);
-            return make_box(centre, in_cube(random, size).cwiseAbs(), axes);
-        }
-        case ShapeKind::capsule: return make_capsule(centre - arm, centre + arm, random.uniform(0.0F, size));
-        case ShapeKind::cylinder: return make_cylinder(centre - arm, centre + arm, random.uniform(0.0F, size));
-        case ShapeKind::hull: break;
+    case ShapeKind::sphere: return make_sphere(centre, random.uniform(0.0F, size));
+    case ShapeKind::box: {
+        const Mat3 axes = random.below(4) == 0 ? Mat3(Mat3::Identity()) : any_rotation(random);
+        return make_box(centre, in_cube(random, size).cwiseAbs(), axes);
+    }
+    case ShapeKind::capsule: return make_capsule(centre - arm, centre + arm, random.uniform(0.0F, size));
+    case ShapeKind::cylinder: return make_cylinder(centre - arm, centre + arm, random.uniform(0.0F, size));
+    case ShapeKind::hull: break;
     }
     vertices = any_vertices(random, size);
     return make_hull(vertices, centre, any_rotation(random));

@@ -72,7 +72,8 @@ TEST_F(LeastDistance, AgreesWithBisectionInDouble)
         ASSERT_LE(worst, 1.0) << n << " found " << found.distance << " least " << least;
         ASSERT_LE(worst_when, 1.0) << n;
     }
-    std::cout << "least_distance: worst error " << worst << ", worst distance at its instant " << worst_when << " of the allowed\n";
+    std::cout << "least_distance: worst error " << worst << ", worst distance at its instant " << worst_when
+              << " of the allowed\n";
 }
 
 TEST_F(LeastDistance, KeepsItsValueUnderMirrorsPermutationsAndExchange)
@@ -82,7 +83,8 @@ TEST_F(LeastDistance, KeepsItsValueUnderMirrorsPermutationsAndExchange)
         const float distance = run(c).distance;
         Case mirrored = c;
         const auto axis = static_cast<int>(random.below(3));
-        for (Vec3* v : {&mirrored.own.position, &mirrored.own.velocity, &mirrored.threat.position, &mirrored.threat.velocity}) {
+        for (Vec3* v :
+             {&mirrored.own.position, &mirrored.own.velocity, &mirrored.threat.position, &mirrored.threat.velocity}) {
             (*v)[axis] = -(*v)[axis];
         }
         // Negation is exact, so not a single bit may change.
@@ -92,7 +94,8 @@ TEST_F(LeastDistance, KeepsItsValueUnderMirrorsPermutationsAndExchange)
         std::swap(exchanged.own, exchanged.threat);
         ASSERT_EQ(run(exchanged).distance, distance);
         Case turned = c;
-        for (Vec3* v : {&turned.half, &turned.own.position, &turned.own.velocity, &turned.threat.position, &turned.threat.velocity}) {
+        for (Vec3* v : {&turned.half, &turned.own.position, &turned.own.velocity, &turned.threat.position,
+                        &turned.threat.velocity}) {
             *v = Vec3(v->y(), v->z(), v->x());
         }
         ASSERT_NEAR(double(run(turned).distance), double(distance), 2.0 * allowed(c));
@@ -120,9 +123,10 @@ TEST_F(LeastDistance, DependsOnRelativeMotionOnly)
         moved.own = {c.own.position + by, c.own.velocity + wind};
         moved.threat = {c.threat.position + by, c.threat.velocity + wind};
         // The sums above round as well, each to half a unit in its last place.
-        const double rounding = 6e-8 * 2.0 * double((moved.own.position.cwiseAbs() + moved.threat.position.cwiseAbs() +
-                                                    c.horizon * (moved.own.velocity.cwiseAbs() + moved.threat.velocity.cwiseAbs()))
-                                                       .sum());
+        const double rounding = 6e-8 * 2.0 *
+                                double((moved.own.position.cwiseAbs() + moved.threat.position.cwiseAbs() +
+                                        c.horizon * (moved.own.velocity.cwiseAbs() + moved.threat.velocity.cwiseAbs()))
+                                           .sum());
         ASSERT_NEAR(double(run(moved).distance), double(run(c).distance), 2.0 * allowed(c) + 2.0 * rounding);
     }
 }
@@ -139,7 +143,9 @@ TEST_F(LeastDistance, IsZeroExactlyWhereAPointTouches)
             ASSERT_TRUE(contact);
         }
         if (contact) {
-            ASSERT_LE(double(found.distance), 2.0 * allowed(c) + 1e-6 * double((c.threat.position - c.own.position).cwiseAbs().sum() + c.half.sum()));
+            ASSERT_LE(double(found.distance),
+                      2.0 * allowed(c) +
+                          1e-6 * double((c.threat.position - c.own.position).cwiseAbs().sum() + c.half.sum()));
         }
     }
     EXPECT_GT(touching, 1000U);

@@ -66,31 +66,31 @@ Case any_case(Random& random)
     c.threat_from = centre + oracle::in_cube(random, 1.5F * size);
     c.threat_to = centre + oracle::in_cube(random, 1.5F * size);
     switch (random.below(12)) {
-        case 0: c.threat_to = c.threat_from; break;
-        case 1: c.own_to = c.own_from; break;
-        case 2: c.half = Vec3::Zero(); break;
-        case 3:  // parallel, up to rounding
-            c.threat_to = c.threat_from + random.uniform(-2.0F, 2.0F) * (c.own_to - c.own_from);
-            break;
-        case 4:  // nearly parallel: slender parallelograms
-            c.threat_to = c.threat_from + random.uniform(-2.0F, 2.0F) * (c.own_to - c.own_from) +
-                          size * oracle::power_of_ten(random, -8.0F, -1.0F) * oracle::in_cube(random, 1.0F);
-            break;
-        case 5: {  // within a plane parallel to a face
-            const auto axis = static_cast<int>(random.below(3));
-            c.own_to[axis] = c.own_from[axis];
-            c.threat_to[axis] = c.threat_from[axis];
-            break;
-        }
-        case 6: c.half[static_cast<int>(random.below(3))] = 0.0F; break;
-        case 7:  // the ways cross
-            c.threat_to = c.threat_from + 2.0F * (0.5F * (c.own_from + c.own_to) - c.threat_from);
-            break;
-        case 8:  // along an axis
-            c.own_to = c.own_from;
-            c.own_to[static_cast<int>(random.below(3))] += size;
-            break;
-        default: break;
+    case 0: c.threat_to = c.threat_from; break;
+    case 1: c.own_to = c.own_from; break;
+    case 2: c.half = Vec3::Zero(); break;
+    case 3:  // parallel, up to rounding
+        c.threat_to = c.threat_from + random.uniform(-2.0F, 2.0F) * (c.own_to - c.own_from);
+        break;
+    case 4:  // nearly parallel: slender parallelograms
+        c.threat_to = c.threat_from + random.uniform(-2.0F, 2.0F) * (c.own_to - c.own_from) +
+                      size * oracle::power_of_ten(random, -8.0F, -1.0F) * oracle::in_cube(random, 1.0F);
+        break;
+    case 5: {  // within a plane parallel to a face
+        const auto axis = static_cast<int>(random.below(3));
+        c.own_to[axis] = c.own_from[axis];
+        c.threat_to[axis] = c.threat_from[axis];
+        break;
+    }
+    case 6: c.half[static_cast<int>(random.below(3))] = 0.0F; break;
+    case 7:  // the ways cross
+        c.threat_to = c.threat_from + 2.0F * (0.5F * (c.own_from + c.own_to) - c.threat_from);
+        break;
+    case 8:  // along an axis
+        c.own_to = c.own_from;
+        c.own_to[static_cast<int>(random.below(3))] += size;
+        break;
+    default: break;
     }
     return c;
 }
@@ -112,8 +112,9 @@ TEST_F(SweptDistance, AgreesWithNestedBisectionInDouble)
         const double found = double(run(c));
         touching += expected == 0.0 ? 1 : 0;
         worst = std::max(worst, std::abs(found - expected) / allowed(c));
-        ASSERT_LE(std::abs(found - expected), allowed(c)) << "case " << n << " found " << found << " expected " << expected
-            << std::hexfloat << "\nhalf " << c.half.x() << " " << c.half.y() << " " << c.half.z();
+        ASSERT_LE(std::abs(found - expected), allowed(c))
+            << "case " << n << " found " << found << " expected " << expected << std::hexfloat << "\nhalf "
+            << c.half.x() << " " << c.half.y() << " " << c.half.z();
     }
     std::cout << "swept_distance: worst error " << worst << " of the allowed, " << touching << " touching\n";
     EXPECT_GT(touching, 1000U);
@@ -146,9 +147,13 @@ TEST_F(SweptDistance, FindsABoxThatOnlyItsCornerOrItsMiddleMeets)
 {
     const Vec3 half(1.0F, 1.0F, 1.0F);
     // A wide parallelogram in the plane z = 0.5 pierces the box without any of its edges near it.
-    EXPECT_EQ(swept_distance(half, {-10.0F, 0.0F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, -10.0F, 0.5F}, {0.0F, 10.0F, 0.5F}), 0.0F);
+    EXPECT_EQ(
+        swept_distance(half, {-10.0F, 0.0F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, -10.0F, 0.5F}, {0.0F, 10.0F, 0.5F}),
+        0.0F);
     // The same above the top face.
-    EXPECT_FLOAT_EQ(swept_distance(half, {-10.0F, 0.0F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, -10.0F, 3.0F}, {0.0F, 10.0F, 3.0F}), 2.0F);
+    EXPECT_FLOAT_EQ(
+        swept_distance(half, {-10.0F, 0.0F, 0.0F}, {10.0F, 0.0F, 0.0F}, {0.0F, -10.0F, 3.0F}, {0.0F, 10.0F, 3.0F}),
+        2.0F);
     // A slanted one whose nearest feature is the corner (1, 1, 1): plane x + y + z = 6, distance (6 - 3) / sqrt(3).
     const Vec3 u(10.0F, -10.0F, 0.0F);
     const Vec3 v(10.0F, 10.0F, -20.0F);

@@ -18,7 +18,8 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-const std::array<Vec3, 4> kTetrahedron{Vec3(0.0F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F), Vec3(0.0F, 0.0F, 1.0F)};
+const std::array<Vec3, 4> kTetrahedron{Vec3(0.0F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F),
+                                       Vec3(0.0F, 0.0F, 1.0F)};
 
 void expect_near(const Vec3& found, const Vec3& expected, float tolerance = 1e-5F)
 {
@@ -45,8 +46,8 @@ TEST(Shape, SupportIsTheFarthestPointOfEachKind)
 TEST(Shape, SupportTakesDirectionsOfAnyLength)
 {
     const std::array shapes{make_sphere(Vec3::Zero(), 1.0F), make_box(Vec3::Zero(), {1.0F, 1.0F, 1.0F}),
-                            make_capsule(-Vec3::UnitX(), Vec3::UnitX(), 1.0F), make_cylinder(-Vec3::UnitX(), Vec3::UnitX(), 1.0F),
-                            make_hull(kTetrahedron, Vec3::Zero())};
+                            make_capsule(-Vec3::UnitX(), Vec3::UnitX(), 1.0F),
+                            make_cylinder(-Vec3::UnitX(), Vec3::UnitX(), 1.0F), make_hull(kTetrahedron, Vec3::Zero())};
     for (const Shape& shape : shapes) {
         const Vec3 expected = support(shape, {1.0F, 2.0F, 3.0F});
         for (const float scale : {1e-37F, 1e-20F, 1e20F, 1e37F}) {
@@ -72,10 +73,12 @@ TEST(Shape, SupportNeverLosesToASampleOfTheSolid)
         const float along = random.uniform();
         const Vec3 axis_point = a + along * (b - a);
         const Vec3 ball = radius * any(1.0F).normalized();
-        ASSERT_LE(direction.dot(axis_point + ball), direction.dot(support(make_capsule(a, b, radius), direction)) + 1e-5F);
+        ASSERT_LE(direction.dot(axis_point + ball),
+                  direction.dot(support(make_capsule(a, b, radius), direction)) + 1e-5F);
         const Vec3 axis = (b - a).normalized();
         const Vec3 flat = ball - axis * axis.dot(ball);
-        ASSERT_LE(direction.dot(axis_point + flat), direction.dot(support(make_cylinder(a, b, radius), direction)) + 1e-5F);
+        ASSERT_LE(direction.dot(axis_point + flat),
+                  direction.dot(support(make_cylinder(a, b, radius), direction)) + 1e-5F);
     }
 }
 
@@ -95,8 +98,9 @@ TEST(Shape, BoundingRadiusHoldsEverySupportPoint)
         capsule.axes = axes;
         Shape cylinder = make_cylinder(any(2.0F), any(2.0F), random.uniform());
         cylinder.axes = axes;
-        for (const Shape& shape : {make_sphere(any(1.0F), random.uniform()), make_box(any(1.0F), any(2.0F).cwiseAbs(), axes), capsule,
-                                   cylinder, make_hull(vertices, any(1.0F), axes)}) {
+        for (const Shape& shape :
+             {make_sphere(any(1.0F), random.uniform()), make_box(any(1.0F), any(2.0F).cwiseAbs(), axes), capsule,
+              cylinder, make_hull(vertices, any(1.0F), axes)}) {
             ASSERT_TRUE(is_valid(shape));
             ASSERT_LE((support(shape, any(1.0F)) - shape.centre).norm(), bounding_radius(shape) + 1e-6F);
         }

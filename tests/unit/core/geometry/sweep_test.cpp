@@ -33,7 +33,8 @@ TEST(ContactInterval, BothMovingIsTheRelativeMotion)
 
 TEST(ContactInterval, RoundsTheCornerInsteadOfFillingIt)
 {
-    // Passing the edge x = 1, y = 2 at 0.8 in both axes: 1.13 away, outside of a sphere of 1 but inside of the square corner.
+    // Passing the edge x = 1, y = 2 at 0.8 in both axes: 1.13 away, outside of a sphere of 1 but inside of the square
+    // corner.
     EXPECT_FALSE(contact_interval(kHalf, {}, moving({1.8F, 2.8F, -9.0F}, {0.0F, 0.0F, 1.0F}), 1.0F, 100.0F));
     // The same at 0.7: 0.99 away.
     EXPECT_TRUE(contact_interval(kHalf, {}, moving({1.7F, 2.7F, -9.0F}, {0.0F, 0.0F, 1.0F}), 1.0F, 100.0F));

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include "core/geometry/convex.hpp"
+#include "core/geometry/simplex.hpp"
+#include "core/geometry/swept_box.hpp"
+
+namespace jink::geometry {
+
+namespace {
+
+using detail::Simplex;
+using detail::SweptBox;
+
+/// The difference of the swept box and a solid, seen from the middle of the way: numbers as small as the scene allows.
+class Difference {
+public:
+    Difference(const SweptBox& box, const Shape& shape) noexcept
+        : half_(box.half), sweep_(0.5F * (box.to - box.from)), offset_((shape.centre - box.from) - sweep_),
+          solid_(shape)
+    {
+        solid_.centre = Vec3::Zero();
+    }
+
+    [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }
+
+    [[nodiscard]] Vec3 support(const Vec3& direction) const noexcept
+    {
+        const Vec3 corner(std::copysign(half_.x(), direction.x()), std::copysign(half_.y(), direction.y()),
+                          std::copysign(half_.z(), direction.z()));
+        const Vec3 end = direction.dot(sweep_) < 0.0F ? Vec3(-sweep_) : sweep_;
+        return (corner + end) - (offset_ + geometry::support(solid_, -direction));
+    }
+
+private:
+    Vec3 half_;
+    Vec3 sweep_;
+    Vec3 offset_;
+    Shape solid_;
+};
+
+/// Rounds without a nearer point before the search ends. The direction still improves when the distance no longer does:
+/// its error enters the distance squared.
+constexpr int kStallsAllowed = 2;
+
+bool holds(const Simplex& simplex, const Vec3& point) noexcept
+{
+    for (std::size_t i = 0; i < simplex.size; ++i) {
+        if (simplex.points[i] == point) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+// GJK (Gilbert, Johnson & Keerthi 1988): the nearest point of a growing simplex is an upper bound, the support plane
+// across it a lower one. Only the lower one is ever returned, so that an error of the simplex costs rounds, not safety.
+float detail::proven_distance(const SweptBox& box, const Shape& shape, const SearchLimits& limits,
+                              WorkBudget& budget) noexcept
+{
+    const Difference difference(box, shape);
+    const float slack = box.slack(shape);
+    Simplex simplex;
+    Vec3 nearest = -difference.offset();
+    float upper = std::numeric_limits<float>::max();
+    float proven = 0.0F;
+    int stalls = 0;
+    for (std::uint32_t calls = 2; calls <= limits.calls; calls += 2) {
+        if (!budget.spend(2)) {
+            return 0.0F;
+        }
+        const Vec3 next = difference.support(-nearest);
+        proven = std::max(proven, nearest.dot(next) / nearest.norm() - slack);
+        if (proven >= limits.reach || holds(simplex, next)) {
+            break;
+        }
+        simplex.points[simplex.size++] = next;
+        nearest = detail::reduce_to_nearest(simplex);
+        const float norm = nearest.norm();
+        stalls += norm < upper ? 0 : 1;
+        upper = std::min(upper, norm);
+        const bool decided = upper <= limits.near + slack || upper - proven <= limits.resolution + 2.0F * slack;
+        if (decided || simplex.size == simplex.points.size() || stalls > kStallsAllowed) {
+            break;
+        }
+    }
+    return std::min(proven, limits.reach);
+}
+
+float swept_box_distance(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape, float reach,
+                         float resolution, WorkBudget& budget) noexcept
+{
+    assert(is_valid(shape) && half.minCoeff() >= 0.0F && reach >= 0.0F && resolution >= 0.0F);
+    const SweptBox box{half, from, to};
+    const float slack = box.slack(shape);
+    if (detail::has_closed_form(shape)) {
+        if (!budget.spend()) {
+            return 0.0F;
+        }
+        return std::clamp(box.closed_form_distance(shape) - slack, 0.0F, reach);
+    }
+    if (box.distance_to(shape.centre) - bounding_radius(shape) - slack >= reach) {
+        return reach;
+    }
+    return detail::proven_distance(box, shape, {0.0F, reach, resolution, kSupportCallsPerQuery}, budget);
+}
+
+}  // namespace jink::geometry
