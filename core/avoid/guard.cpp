@@ -111,11 +111,11 @@ Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous
 bool is_valid(const Settings& s) noexcept
 {
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
-    return within(s.lookahead, 1.0F, 60.0F) && within(s.prediction_step, 0.02F, 0.5F) &&
-           within(s.fallback_horizon, 1.0F, 20.0F) && within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) &&
-           within(s.clear_extra, 0.0F, 10.0F) && within(s.on_leg, 0.05F, 50.0F) &&
-           within(s.blocked_patience, 0.0F, 600.0F) && within(s.give_ground_speed, 0.0F, 5.0F) &&
-           within(s.give_ground_limit, 0.0F, 600.0F) && s.budget >= 1000 &&
+    return within(s.lookahead, 1.0F, 60.0F) && within(s.commit, 0.5F, 60.0F) && within(s.room, 0.0F, 10.0F) &&
+           within(s.prediction_step, 0.02F, 0.5F) && within(s.fallback_horizon, 1.0F, 20.0F) &&
+           within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) && within(s.clear_extra, 0.0F, 10.0F) &&
+           within(s.on_leg, 0.05F, 50.0F) && within(s.blocked_patience, 0.0F, 600.0F) &&
+           within(s.give_ground_speed, 0.0F, 5.0F) && within(s.give_ground_limit, 0.0F, 600.0F) && s.budget >= 1000 &&
            within(s.gains.position_gain, 0.0F, 10.0F) && within(s.gains.max_correction, 0.0F, 10.0F) &&
            within(s.escape.slack, 0.0F, 1.0F) && within(s.escape.speed, 0.0F, 10.0F);
 }

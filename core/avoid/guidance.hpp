@@ -16,7 +16,9 @@ enum class State : std::uint8_t {
 };
 
 struct Settings {
-    Seconds lookahead = 8.0F;           ///< conflicts are looked for this far ahead, 1..60 [s]
+    Seconds lookahead = 8.0F;  ///< conflicts are looked for this far ahead, 1..60 [s]
+    Seconds commit = 5.0F;     ///< the way is left when its loss of separation is nearer than this, 0.5..60 [s]
+    float room = 0.4F;  ///< plans are asked for with this much to spare, so that noise does not undo them, 0..10 [m]
     Seconds prediction_step = 0.2F;     ///< of the predicted flight, 0.02..0.5 [s]
     Seconds fallback_horizon = 4.0F;    ///< over which fallbacks are compared, 1..20 [s]
     Seconds reserve = 0.75F;            ///< on top of the stopping time, before which nothing is forced, 0..5 [s]

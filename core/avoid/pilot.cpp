@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/geometry/sweep.hpp"
+
 namespace jink::avoid {
 namespace {
 
@@ -13,12 +15,28 @@ constexpr float kOppositeSide = -0.1F;
 
 float cross_track(const world::Situation& s) noexcept
 {
-    const world::Leg& leg = s.reference.leg;
-    const Vec3 span = leg.end - leg.start;
-    const float length2 = span.squaredNorm();
-    const float u = length2 > 0.0F ? std::clamp((s.own.position - leg.start).dot(span) / length2, 0.0F, 1.0F) : 0.0F;
-    return (s.own.position - (leg.start + span * u)).norm();
+    return geometry::point_segment_distance(s.own.position, s.reference.leg.start, s.reference.leg.end);
 }
+
+/// The same situation for a vehicle with `extra` more to every side.
+struct Wider {
+    vehicle::VehicleLimits limits;
+    world::Situation situation;
+
+    Wider(const world::Situation& s, float extra) noexcept
+        : limits(widened(s.limits, extra)), situation{s.now,    s.own,       limits,     s.airframe, s.reference,
+                                                      s.tracks, s.obstacles, s.airspace, s.flying,   s.k_sigma}
+    {
+    }
+    Wider(const Wider&) = delete;
+    Wider& operator=(const Wider&) = delete;
+
+    static vehicle::VehicleLimits widened(vehicle::VehicleLimits limits, float extra) noexcept
+    {
+        limits.half_extents += Vec3::Constant(extra);
+        return limits;
+    }
+};
 
 }  // namespace
 
@@ -29,7 +47,6 @@ struct Pilot::Tick {
     WorkBudget budget;
     world::Way way;
     Guidance out;
-    bool planned = false;
     bool wide_clear = false;
 };
 
@@ -49,24 +66,33 @@ void Pilot::reset() noexcept
     ground_given_ = 0.0F;
 }
 
+/// Tracks get better and threats come nearer: what lies further ahead is planned for when it is known better.
+bool Pilot::due(const Tick& tick, Seconds time_to_loss) const noexcept
+{
+    return time_to_loss <= settings_.commit || urgent(tick, time_to_loss);
+}
+
 bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept
 {
     return time_to_loss <= vehicle::stopping_time(tick.s.own.velocity.norm(), tick.s.limits) + settings_.reserve;
 }
 
+/// Asks for a plan with room to spare; in a tight place for one without.
 bool Pilot::plan(Tick& tick) noexcept
 {
-    tick.planned = true;
-    ++diagnostics_.plans;
+    const Wider wider(tick.s, settings_.room);
     float margin = 0.0F;
-    tick.out.plan_status =
-        tick.ladder.plan(tick.ladder.self, tick.s, settings_, tick.budget, diagnostics_, answer_, margin);
-    if (tick.out.plan_status != world::PlanStatus::found) {
-        return false;
+    for (const world::Situation* s : {&wider.situation, &tick.s}) {
+        ++diagnostics_.plans;
+        tick.out.plan_status =
+            tick.ladder.plan(tick.ladder.self, *s, settings_, tick.budget, diagnostics_, answer_, margin);
+        if (tick.out.plan_status == world::PlanStatus::found) {
+            ++diagnostics_.plans_found;
+            tick.out.margin = margin;
+            return true;
+        }
     }
-    ++diagnostics_.plans_found;
-    tick.out.margin = margin;
-    return true;
+    return false;
 }
 
 /// Makes the answer the manoeuvre that is flown (or offered, while not in control).
@@ -130,13 +156,9 @@ void Pilot::follow_way(Tick& tick) noexcept
 void Pilot::note_clearness(Tick& tick) noexcept
 {
     if (!tick.out.has_conflict) {
-        vehicle::VehicleLimits wide = tick.s.limits;
-        wide.half_extents += Vec3::Constant(settings_.clear_extra);
-        const world::Situation wider{
-            tick.s.now,       tick.s.own,      wide,          tick.s.airframe, tick.s.reference, tick.s.tracks,
-            tick.s.obstacles, tick.s.airspace, tick.s.flying, tick.s.k_sigma};
+        const Wider wider(tick.s, settings_.clear_extra);
         world::Conflict unused;
-        tick.wide_clear = !world::main_conflict(wider, tick.way, settings_.lookahead, tick.budget, unused);
+        tick.wide_clear = !world::main_conflict(wider.situation, tick.way, settings_.lookahead, tick.budget, unused);
     }
     if (tick.wide_clear && !was_clear_) {
         clear_since_ = tick.s.now;
@@ -167,9 +189,10 @@ void Pilot::watch(Tick& tick) noexcept
         has_fallback_ = false;
         return;
     }
-    if (plan(tick)) {
+    const Seconds left = tick.out.conflict.time_to_loss;
+    if (due(tick, left) && plan(tick)) {
         take(tick);
-    } else if (urgent(tick, tick.out.conflict.time_to_loss)) {
+    } else if (urgent(tick, left)) {
         fall_back(tick);
     } else if (tick.in_control) {
         enter_rejoining();
@@ -207,7 +230,7 @@ void Pilot::avoid(Tick& tick) noexcept
 void Pilot::rejoin(Tick& tick) noexcept
 {
     if (tick.out.has_conflict) {
-        if (plan(tick)) {
+        if (due(tick, tick.out.conflict.time_to_loss) && plan(tick)) {
             take(tick);
             return;
         }
@@ -279,7 +302,7 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
 
     world::Situation situation = given;
     situation.flying = has_flying_ ? &flying_ : nullptr;
-    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false, false};
+    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false};
     tick.out.has_conflict =
         world::main_conflict(situation, tick.way, settings_.lookahead, tick.budget, tick.out.conflict);
     diagnostics_.conflicts += tick.out.has_conflict && !in_conflict_ ? 1U : 0U;

@@ -41,6 +41,7 @@ private:
     void rejoin(Tick& tick) noexcept;
     void brake(Tick& tick) noexcept;
     [[nodiscard]] bool plan(Tick& tick) noexcept;
+    [[nodiscard]] bool due(const Tick& tick, Seconds time_to_loss) const noexcept;
     [[nodiscard]] bool urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
     void take(Tick& tick) noexcept;
     void fall_back(Tick& tick) noexcept;
