@@ -29,9 +29,11 @@ void source_offsets(float radius, const Settings& settings, Offsets& out) noexce
 }
 
 /// Offset k of `count` on one side, 0 the innermost.
-float clearing_offset(const Problem& problem, float smallest, std::size_t k, std::size_t count) noexcept
+float clearing_offset(const Problem& problem, float smallest, float box_aside, std::size_t k,
+                      std::size_t count) noexcept
 {
-    const float span = std::max(kFan * problem.main_radius, 2.0F * smallest) - smallest;
+    const float fan_radius = problem.body_radius > 0.0F ? problem.body_radius : problem.main_radius;
+    const float span = std::max(kFan * fan_radius - smallest, 2.0F * box_aside);
     const auto n = static_cast<float>(count);
     const auto i = static_cast<float>(k);
     const float share = problem.span_from > 0.0F ? (i + 1.0F) / n : i / std::max(n - 1.0F, 1.0F);
@@ -43,15 +45,16 @@ float main_extent(const Problem& problem, const Vec3& direction) noexcept
 {
     if (problem.main_shape != nullptr) {
         const Vec3 collision_point = problem.frame.origin + problem.distance * problem.frame.axes.col(0);
-        return (geometry::support(*problem.main_shape, direction) - collision_point).dot(direction) + problem.obstacle_clearance;
+        return (geometry::support(*problem.main_shape, direction) - collision_point).dot(direction) +
+               problem.obstacle_clearance;
     }
     return problem.main_centre_offset.dot(direction) + problem.main_radius;
 }
 
 }  // namespace
 
-float smallest_clearing_offset(const Problem& problem, const Settings& settings, Family family, const Vec3& half_extents,
-                               const Vec3& side) noexcept
+float smallest_clearing_offset(const Problem& problem, const Settings& settings, Family family,
+                               const Vec3& half_extents, const Vec3& side) noexcept
 {
     const Vec3 along = problem.frame.axes.col(0);
     const float box_aside = half_extents.dot(side.cwiseAbs());
@@ -61,7 +64,8 @@ float smallest_clearing_offset(const Problem& problem, const Settings& settings,
     // The chords of the curve lie inside of it, by y'' / 8 of a step at its top.
     const float step = curve_length_x(family, 1.0F) / static_cast<float>(settings.waypoints - 1);
     const float chord = 0.75F * step * step;
-    // A sphere falls away behind its top as the curve does; points of it say which falls first. Other solids: their ends.
+    // A sphere falls away behind its top as the curve does; points of it say which falls first. Other solids: their
+    // ends.
     const bool sphere = problem.main_shape == nullptr;
     const float before = sphere ? problem.main_radius : std::max(main_extent(problem, -along), 0.0F);
     const float behind = sphere ? problem.main_radius : std::max(main_extent(problem, along), 0.0F);
@@ -71,7 +75,8 @@ float smallest_clearing_offset(const Problem& problem, const Settings& settings,
         const float u_behind = 1.0F + (box_along + part * behind) / problem.distance;
         const float share = std::min(unit_offset(family, std::max(u_before, 0.0F)),
                                      unit_offset(family, std::min(u_behind, curve_length_x(family, 1.0F))));
-        smallest = std::max(smallest, (extent - drop + box_aside + kClearingSlack) / std::max(share - chord, kLeastShare));
+        smallest =
+            std::max(smallest, (extent - drop + box_aside + kClearingSlack) / std::max(share - chord, kLeastShare));
     }
     return smallest;
 }
@@ -85,13 +90,14 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
         return;
     }
     const std::size_t per_side = settings.offsets / 2U;
+    const float box_aside = half_extents.dot(side.cwiseAbs());
     const float left = smallest_clearing_offset(problem, settings, family, half_extents, side);
     const float right = smallest_clearing_offset(problem, settings, family, half_extents, -side);
     for (std::size_t k = per_side; k > 0; --k) {
-        out.unchecked_push_back(-clearing_offset(problem, right, k - 1, per_side));
+        out.unchecked_push_back(-clearing_offset(problem, right, box_aside, k - 1, per_side));
     }
     for (std::size_t k = 0; k < per_side; ++k) {
-        out.unchecked_push_back(clearing_offset(problem, left, k, per_side));
+        out.unchecked_push_back(clearing_offset(problem, left, box_aside, k, per_side));
     }
 }
 

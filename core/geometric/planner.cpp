@@ -14,8 +14,8 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// The track with its growth as a polynomial of time from now: equal to world::threat_radius, and never below it where the
-/// track's stamp lies ahead of now.
+/// The track with its growth as a polynomial of time from now: equal to world::threat_radius, and never below it where
+/// the track's stamp lies ahead of now.
 Threat threat_of(const Situation& situation, const world::Track& track) noexcept
 {
     const Seconds age = std::max(situation.now - track.stamp, 0.0F);
@@ -33,6 +33,9 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     problem.frame = make_path_frame(way.origin, way.direction);
     problem.distance = (conflict.own_at_closest - way.origin).norm();
     problem.main_radius = std::max(conflict.radius_at_closest, Planner::kLeastMainRadius);
+    if (conflict.threat.kind == world::ThreatKind::track) {
+        problem.body_radius = std::max(situation.tracks[conflict.threat.index].radius, Planner::kLeastMainRadius);
+    }
     problem.obstacles = situation.obstacles;
     problem.obstacle_clearance = situation.k_sigma * situation.own.sigma_position;
     problem.airspace = &situation.airspace;

@@ -11,51 +11,57 @@
 
 namespace jink::geometric {
 
-/// swept: threats are the volume they sweep until the longest candidate ends (Pinheiro 3.4.2). time_aware: where they are, when.
+/// swept: threats are the volume they sweep until the longest candidate ends (Pinheiro 3.4.2). time_aware: where they
+/// are, when.
 enum class SecurityMode : std::uint8_t { time_aware, swept };
-/// source: -3.2 R + i 6.4 R / l, those inside the threat dropped (Pinheiro eq. 3.6). clearing: l offsets, half a side, from the
-/// smallest one with which the family's curve clears the main threat, box and all, to max(3.2 R, twice that).
+/// source: -3.2 R + i 6.4 R / l, those inside the threat dropped (Pinheiro eq. 3.6). clearing: l offsets, half a side,
+/// from the smallest one with which the family's curve clears the main threat, box and all, to 3.2 R of its body, or
+/// one box width further where that is more.
 enum class OffsetRule : std::uint8_t { clearing, source };
 
 /// What a vehicle may overshoot the leg by where a simple candidate meets it again [m]: half the default safety box.
 inline constexpr float kRejoinOvershoot = 0.5F;
 /// Nearest distance to the main threat that is planned for, in its radii (Pinheiro 3.1.1).
 inline constexpr float kLeastDistanceInRadii = 2.5F;
-/// Where the clearing offsets end, in the span between smallest and largest, at the first try and each retry: a wall of threats
-/// has its gap further out.
+/// Where the clearing offsets end, in the span between smallest and largest, at the first try and each retry: a wall of
+/// threats has its gap further out.
 inline constexpr std::array<float, 3> kRetrySpans{1.0F, 2.0F, 3.5F};
 
 struct Settings {
-    std::uint16_t offsets = 4;             ///< l, even, 2..64
-    std::uint16_t extra_planes = 3;        ///< n, 0..31
+    std::uint16_t offsets = 4;       ///< l, even, 2..64
+    std::uint16_t extra_planes = 3;  ///< n, 0..31
     bool simple = true;
     bool symmetric = true;
-    std::uint16_t waypoints = 25;          ///< per candidate, 8..kMaxPathPoints
+    std::uint16_t waypoints = 25;  ///< per candidate, 8..kMaxPathPoints
     SecurityMode security = SecurityMode::time_aware;
     OffsetRule offset_rule = OffsetRule::clearing;
-    bool main_swept_to_collision_point = false;  ///< swept mode: the main threat's volume ends at the collision point (source)
-    float source_drop_margin = 0.0F;       ///< source offsets: |w| < R + this is dropped; 0 as the text, 1 m as the reproduced distribution study
-    /// Candidates beyond the acceleration limits are not flyable; off in source mode. The change of velocity from each segment to
-    /// the next, and from straight flight to the first, must be within the limits (6 |w| v^2 / D^2 at the start of the curve); at
-    /// the end of a simple candidate, where the slope of 4.5 |w| / D ends at once, the vehicle may overshoot by kRejoinOvershoot.
+    bool main_swept_to_collision_point =
+        false;  ///< swept mode: the main threat's volume ends at the collision point (source)
+    float source_drop_margin =
+        0.0F;  ///< source offsets: |w| < R + this is dropped; 0 as the text, 1 m as the reproduced distribution study
+    /// Candidates beyond the acceleration limits are not flyable; off in source mode. The change of velocity from each
+    /// segment to the next, and from straight flight to the first, must be within the limits (6 |w| v^2 / D^2 at the
+    /// start of the curve); at the end of a simple candidate, where the slope of 4.5 |w| / D ends at once, the vehicle
+    /// may overshoot by kRejoinOvershoot.
     bool check_acceleration = true;
-    /// The cheapest must also be clear as the vehicle will fly it (path::predict_flight, then braking to a stand at the end),
-    /// or else the next cheapest is tried; off in source mode.
+    /// The cheapest must also be clear as the vehicle will fly it (path::predict_flight, then braking to a stand at the
+    /// end), or else the next cheapest is tried; off in source mode.
     bool verify_flight = true;
     cost::SmoothnessMethod smoothness = cost::SmoothnessMethod::curvature;
     cost::ClosenessMethod closeness = cost::ClosenessMethod::time_aware;
-    float rotation_penalty = 1.0F;         ///< k_p
+    float rotation_penalty = 1.0F;  ///< k_p
     cost::Weights weights;
     cost::Caps caps;
-    float flip_penalty = 0.15F;            ///< added to the total of candidates on the other side of what is being flown
-    std::uint16_t closeness_nearest = 0;   ///< only the k moving threats nearest to the start count for closeness; 0: all
-    float max_cost = 1.0F;                 ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
+    float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of what is being flown
+    std::uint16_t closeness_nearest =
+        0;                  ///< only the k moving threats nearest to the start count for closeness; 0: all
+    float max_cost = 1.0F;  ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
     /// Time-aware mode: a start inside a margin is judged by this rule, so that there is a way out. Off in source mode.
     bool escape_from_margin = true;
     world::EscapeRule escape;
-    path::FollowerGains gains;             ///< for verify_flight
-    Seconds lookahead = 10.0F;             ///< Planner: conflicts are looked for this far ahead, 1..60 [s]
-    std::uint8_t retries = 2;              ///< Planner: further spans tried when nothing is available, 0..2
+    path::FollowerGains gains;  ///< for verify_flight
+    Seconds lookahead = 10.0F;  ///< Planner: conflicts are looked for this far ahead, 1..60 [s]
+    std::uint8_t retries = 2;   ///< Planner: further spans tried when nothing is available, 0..2
 };
 /// The source's planner: swept security ending at the collision point, source offsets, no feasibility, swept closeness.
 [[nodiscard]] Settings source_settings() noexcept;
@@ -65,8 +71,8 @@ struct Settings {
 /// A threat of the planning problem. Static when its velocity is zero.
 struct Threat {
     geometry::Motion motion;
-    float radius = 0.0F;            ///< at t = 0 [m], uncertainty included
-    float radius_rate = 0.0F;       ///< growth by velocity uncertainty [m/s]
+    float radius = 0.0F;               ///< at t = 0 [m], uncertainty included
+    float radius_rate = 0.0F;          ///< growth by velocity uncertainty [m/s]
     float radius_acceleration = 0.0F;  ///< growth by unknown acceleration [m/s2], as radius += a t^2 / 2
 };
 
@@ -75,61 +81,72 @@ inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
 /// One planning problem on its own, free of Situation: what `jink plan`, the campaign and the reproduction tests solve.
 struct Problem {
-    PathFrame frame;                 ///< start of the manoeuvre and leg direction
-    float distance = 0.0F;           ///< D: start to the collision point [m]
-    float main_radius = 0.0F;        ///< R that scales offsets and the 2.5 R rule [m]
-    std::size_t main = kNoThreat;    ///< index of the main threat in `threats`, or kNoThreat
+    PathFrame frame;        ///< start of the manoeuvre and leg direction
+    float distance = 0.0F;  ///< D: start to the collision point [m]
+    float main_radius =
+        0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets and the 2.5 R rule [m]
+    float body_radius =
+        0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan [m]; 0: main_radius
+    std::size_t main = kNoThreat;                ///< index of the main threat in `threats`, or kNoThreat
     std::span<const Threat> threats;             ///< at most kMaxTracks
     std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
-    float obstacle_clearance = 0.0F; ///< own position uncertainty, kept from obstacles [m]
+    float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles [m]
     const world::Airspace* airspace = nullptr;
-    Vec3 start_velocity = Vec3::Zero();  ///< own velocity at the start, for verify_flight [m/s]
-    float speed = 5.0F;              ///< cruise speed along the candidates [m/s]
-    Vec3 preferred_side = Vec3::Zero();  ///< of what is being flown; zero for none
-    Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point [m]; clearing offsets account for it
-    const geometry::Shape* main_shape = nullptr;  ///< of a main threat that is an obstacle; null: a sphere of main_radius
-    float span_from = 0.0F;          ///< clearing offsets: where they begin and end in the span from smallest to largest;
-    float span_to = 1.0F;            ///< beyond 1 further out. With span_from > 0 the first one lies past it
+    Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
+    float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
+    Vec3 preferred_side = Vec3::Zero();      ///< of what is being flown; zero for none
+    Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
+                                             ///< [m]; clearing offsets account for it
+    const geometry::Shape* main_shape =
+        nullptr;             ///< of a main threat that is an obstacle; null: a sphere of main_radius
+    float span_from = 0.0F;  ///< clearing offsets: where they begin and end in the span from smallest to largest;
+    float span_to = 1.0F;    ///< beyond 1 further out. With span_from > 0 the first one lies past it
 };
 
 struct Result {
     StaticVector<Candidate, kMaxCandidates> candidates;  ///< in the order of generation
-    std::size_t chosen = 0;          ///< index, valid on PlanStatus::found
-    path::TimedPath path;            ///< of the chosen one
-    Vec3 side = Vec3::Zero();        ///< unit vector from the leg to its apex
+    std::size_t chosen = 0;                              ///< index, valid on PlanStatus::found
+    path::TimedPath path;                                ///< of the chosen one
+    Vec3 side = Vec3::Zero();                            ///< unit vector from the leg to its apex
 };
 
 /// Solves one problem.
 ///
-/// Order of generation: simple before symmetric, then planes, then offsets ascending; of equally cheap candidates the first is
-/// chosen. Budget: one unit per candidate segment and threat or obstacle near the candidates, support calls for obstacles that
-/// are no spheres. When it runs out, what has been found available until then is still fully checked and may be chosen.
+/// Order of generation: simple before symmetric, then planes, then offsets ascending; of equally cheap candidates the
+/// first is chosen. Budget: one unit per candidate segment and threat or obstacle near the candidates, support calls
+/// for obstacles that are no spheres. When it runs out, what has been found available until then is still fully checked
+/// and may be chosen.
 ///
-/// @return found; too_close (D < 2.5 R); none_available; budget_spent (nothing available until then); bad_input (settings,
-///         limits or problem not finite or out of range). `result.candidates` is filled as far as evaluated on every status but
-///         bad_input and too_close.
+/// @return found; too_close (D < 2.5 R); none_available; budget_spent (nothing available until then); bad_input
+/// (settings,
+///         limits or problem not finite or out of range). `result.candidates` is filled as far as evaluated on every
+///         status but bad_input and too_close.
 /// O(candidates * waypoints * threats); with verify_flight that once more in the worst case.
-[[nodiscard]] world::PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
-                                      const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept;
+[[nodiscard]] world::PlanStatus solve(const Problem& problem, const Settings& settings,
+                                      const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
+                                      WorkBudget& budget, Result& result) noexcept;
 
-/// The timed path of one candidate, as `solve` makes it: `waypoints` points at equal steps of the abscissa. False (out untouched)
-/// on bad input as above or fewer than 8 or more than kMaxPathPoints waypoints. O(waypoints).
+/// The timed path of one candidate, as `solve` makes it: `waypoints` points at equal steps of the abscissa. False (out
+/// untouched) on bad input as above or fewer than 8 or more than kMaxPathPoints waypoints. O(waypoints).
 [[nodiscard]] bool make_candidate_path(const Problem& problem, const CandidateShape& shape, std::uint16_t waypoints,
                                        const vehicle::VehicleLimits& limits, path::TimedPath& out) noexcept;
 
 /// The method: satisfies world's AvoidanceMethod.
 ///
-/// Memory: sizeof(Result), about kMaxCandidates * 100 bytes. Reads the conflict with the leg out of the Situation (collision point = own position on the leg at the closest approach of the
-/// main threat, R = its grown radius then, at least kLeastMainRadius), solves, and returns the chosen path as a follow_path
-/// manoeuvre. When nothing is available it tries again further out, `retries` times.
+/// Memory: sizeof(Result), about kMaxCandidates * 100 bytes. Reads the conflict with the leg out of the Situation
+/// (collision point = own position on the leg at the closest approach of the main threat, R = its grown radius then, at
+/// least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. When nothing is available
+/// it tries again further out, `retries` times.
 class Planner {
 public:
-    /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with [m].
+    /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with
+    /// [m].
     static constexpr float kLeastMainRadius = 0.5F;
 
     explicit Planner(const Settings& settings) noexcept : settings_(settings) {}
 
-    [[nodiscard]] world::PlanStatus plan(const world::Situation& situation, WorkBudget& budget, world::Manoeuvre& out) noexcept;
+    [[nodiscard]] world::PlanStatus plan(const world::Situation& situation, WorkBudget& budget,
+                                         world::Manoeuvre& out) noexcept;
 
     [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
     /// Refused (false, nothing changed) when out of range.
