@@ -224,7 +224,12 @@ std::optional<std::string> YamlMap::text(std::string_view key, Need need)
         complain(key, std::string("text is wanted, not ") + kind_of(entry->value));
         return std::nullopt;
     }
-    return entry->value.Scalar();
+    const std::string& value = entry->value.Scalar();
+    if (std::any_of(value.begin(), value.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
+        complain(key, "text of one line without control characters is wanted");
+        return std::nullopt;
+    }
+    return value;
 }
 
 std::optional<Vec3> YamlMap::vector(std::string_view key, Range range, Need need)

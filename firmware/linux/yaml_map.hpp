@@ -35,6 +35,7 @@ public:
     YamlMap(const YAML::Node& node, std::string where, std::string file, Complaints& complaints);
 
     [[nodiscard]] bool is_map() const { return is_map_; }
+    [[nodiscard]] const std::string& file() const { return file_; }
     /// True when the key is there, whatever its value. Counts as asked for.
     bool has(std::string_view key);
 

@@ -14,5 +14,7 @@ inline constexpr int kExitBadInput = 1;  ///< a file or a command line that is w
 inline constexpr int kExitStop = 2;      ///< the answer is "no": the plan says stop
 
 void add_check(CLI::App& jink);
+void add_plan(CLI::App& jink);
+void add_report(CLI::App& jink);
 
 }  // namespace jink::host

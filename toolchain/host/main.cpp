@@ -10,6 +10,8 @@ int main(int argc, char** argv)
     app.require_subcommand(1);
     try {
         jink::host::add_check(app);
+        jink::host::add_plan(app);
+        jink::host::add_report(app);
         app.parse(argc, argv);
         return jink::host::kExitGood;
     } catch (const CLI::RuntimeError& end) {

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "firmware/linux/yaml_map.hpp"
+#include "toolchain/host/problem_file.hpp"
+
+// The parts of a problem file, one reader each. They put what they find in place and complain of the rest.
+
+namespace jink::host::detail {
+
+/// Coordinates in files lie within this of the origin [m]: positions in single precision are good to a millimetre
+/// there.
+inline constexpr files::Range kCoordinate{-10000.0F, 10000.0F};
+inline constexpr files::Range kVelocity{-400.0F, 400.0F};
+inline constexpr files::Range kSize{0.01F, 1000.0F};
+
+void read_settings(files::YamlMap& root, const cost::Caps& caps, geometric::Settings& settings,
+                   files::Complaints& complaints);
+void read_obstacles(files::YamlMap& root, ProblemFile& out, std::vector<std::size_t>& mains,
+                    files::Complaints& complaints);
+
+}  // namespace jink::host::detail
