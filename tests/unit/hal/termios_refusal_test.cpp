@@ -155,5 +155,30 @@ TEST(TermiosSerialPort, CountsWhatTheDriverSaysWasLost)
     EXPECT_EQ(port.health().line_errors, 321U);
 }
 
+TEST(TermiosSerialPort, TellsWhatTheDriverStillHolds)
+{
+    const Pty peer;
+    TermiosSerialPort port;
+    EXPECT_EQ(port.unsent(), 0U);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    EXPECT_EQ(port.unsent(), 0U);
+    std::optional<int> held = 17;
+    const IoctlHook holding([&](int, unsigned long request, void* argument) -> std::optional<int> {
+        if (request != TIOCOUTQ) {
+            return std::nullopt;
+        }
+        *static_cast<int*>(argument) = held.value_or(99);
+        return held ? 0 : -1;
+    });
+    EXPECT_EQ(port.unsent(), 17U);
+    held = -1;
+    EXPECT_EQ(port.unsent(), 0U);
+    held.reset();  // the driver does not tell
+    EXPECT_EQ(port.unsent(), 0U);
+    held = 17;
+    port.close();
+    EXPECT_EQ(port.unsent(), 0U);
+}
+
 }  // namespace
 }  // namespace jink::hal
