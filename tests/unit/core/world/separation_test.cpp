@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/world/separation.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/world/obstacle_distance.hpp"
+#include "tests/unit/core/world/scene.hpp"
+
+namespace jink::world {
+namespace {
+
+using namespace test;
+
+TEST(ThreatRadius, AddsBodyDoubtAndAcceleration)
+{
+    Scene scene;
+    scene.own.sigma_position = 0.5F;
+    Track& track = scene.track(Vec3(10, 0, 0), Vec3::Zero(), 2.0F);
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 0.0F), 2.0F + 3.0F * 0.5F);
+    track.sigma_position = 0.25F;
+    track.sigma_velocity = 0.1F;
+    track.max_acceleration = 0.2F;
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (0.5F + 0.25F + 0.4F) + 0.1F * 16.0F);
+    track.stamp = scene.now - 2.0F;
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (0.5F + 0.25F + 0.6F) + 0.1F * 36.0F);
+    track.stamp = scene.now + 1.0F;
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 0.0F), 2.0F + 3.0F * 0.75F) << "no negative age";
+    scene.k_sigma = 0.0F;
+    track.stamp = scene.now;
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 0.1F * 16.0F);
+}
+
+TEST(LeastSeparation, NothingAnywhereIsTheCap)
+{
+    Scene scene;
+    const Separation found = separation(scene, flight({Vec3::Zero(), Vec3(10, 0, 0)}, 2.0F));
+    EXPECT_EQ(found.margin, kSeparationCap);
+    EXPECT_EQ(found.against.kind, ThreatKind::none);
+    scene.track(Vec3::Zero(), Vec3::Zero());
+    EXPECT_EQ(separation(scene, {}).margin, kSeparationCap) << "an empty path goes nowhere";
+}
+
+TEST(LeastSeparation, HeadOnMeetsInTheMiddle)
+{
+    Scene scene;
+    scene.track(Vec3(20, 0, 0), Vec3(-5, 0, 0), 1.5F);
+    const Separation found = separation(scene, flight({Vec3::Zero(), Vec3(50, 0, 0)}, 10.0F));
+    EXPECT_NEAR(found.margin, -1.5F, 1e-4F);
+    EXPECT_NEAR(found.when, 1.9F, 1e-4F) << "first touch of the box: 19 m at 10 m/s";
+    EXPECT_EQ(found.against, (ThreatRef{ThreatKind::track, 0}));
+}
+
+TEST(LeastSeparation, OnlyUpToTheHorizonAndToThePathsEnd)
+{
+    Scene scene;
+    scene.track(Vec3(20, 0, 0), Vec3::Zero(), 1.0F);
+    const path::TimedPath path = flight({Vec3::Zero(), Vec3(20, 0, 0)}, 4.0F);
+    EXPECT_LT(separation(scene, path).margin, 0.0F);
+    EXPECT_NEAR(separation(scene, path, 2.0F).margin, 8.0F, 1e-4F);
+    EXPECT_NEAR(separation(scene, path, 0.0F).margin, 18.0F, 1e-4F);
+    EXPECT_NEAR(separation(scene, flight({Vec3::Zero(), Vec3(10, 0, 0)}, 2.0F)).margin, 8.0F, 1e-4F);
+    EXPECT_NEAR(separation(scene, flight({Vec3::Zero()}, 1.0F)).margin, 18.0F, 1e-4F) << "a single point is an instant";
+}
+
+TEST(LeastSeparation, NamesWhatItIsMeasuredAgainst)
+{
+    Scene scene;
+    scene.airspace.has_floor = true;
+    scene.airspace.floor = -10.0F;
+    const path::TimedPath path = flight({Vec3::Zero(), Vec3(10, 0, 0)}, 2.0F);
+    EXPECT_EQ(separation(scene, path).against.kind, ThreatKind::floor);
+    EXPECT_NEAR(separation(scene, path).margin, 9.0F, 1e-5F);
+    scene.airspace.has_ceiling = true;
+    scene.airspace.ceiling = 5.0F;
+    EXPECT_EQ(separation(scene, path).against.kind, ThreatKind::ceiling);
+    scene.airspace.has_keep_in = true;
+    scene.airspace.keep_in_radius = 12.0F;
+    EXPECT_EQ(separation(scene, path).against.kind, ThreatKind::keep_in);
+    EXPECT_NEAR(separation(scene, path).margin, 2.0F - std::sqrt(2.0F), 1e-5F);
+    EXPECT_NEAR(separation(scene, path).when, 2.0F, 1e-5F);
+    scene.obstacle(geometry::make_sphere(Vec3(50, 0, 0), 1.0F));
+    scene.obstacle(geometry::make_sphere(Vec3(5, 2.2F, 0), 1.0F));
+    EXPECT_EQ(separation(scene, path).against, (ThreatRef{ThreatKind::obstacle, 1}));
+    EXPECT_NEAR(separation(scene, path).margin, 0.2F, 1e-5F);
+}
+
+// --- the escape rule
+// ---------------------------------------------------------------------------------------------------------
+
+/// What a flight may start inside of.
+struct Margin {
+    const char* name;
+    void (*place)(Scene&);
+    Vec3 out;        ///< the way out
+    float leave;     ///< pace that must do [m/s]
+    float too_slow;  ///< pace that must not
+
+    friend void PrintTo(const Margin& m, std::ostream* out) { *out << m.name; }
+};
+
+const std::vector<Vec3>& block()
+{
+    static const std::vector<Vec3> vertices{{-2, -2, -2}, {-2, -2, 2}, {-2, 2, -2}, {-2, 2, 2},
+                                            {2, -2, -2},  {2, -2, 2},  {2, 2, -2},  {2, 2, 2}};
+    return vertices;
+}
+
+// The flight starts at the origin, where a margin of about half a metre is lacking.
+const Margin kMargins[] = {
+    {"track", [](Scene& s) { s.track(Vec3(3.5F, 0, 0), Vec3::Zero(), 3.0F); }, Vec3(-1, 0, 0), 0.55F, 0.4F},
+    {"growing track", [](Scene& s) { s.track(Vec3(3.5F, 0, 0), Vec3::Zero(), 2.9F).sigma_velocity = 0.05F; },
+     Vec3(-1, 0, 0), 0.75F, 0.4F},
+    {"moving track", [](Scene& s) { s.track(Vec3(3.5F, 0, 0), Vec3(-2, 0, 0), 3.0F); }, Vec3(-1, 0, 0), 2.55F, 2.4F},
+    {"ball", [](Scene& s) { s.obstacle(geometry::make_sphere(Vec3(3.5F, 0, 0), 3.0F)); }, Vec3(-1, 0, 0), 0.55F, 0.4F},
+    {"upright capsule", [](Scene& s) { s.obstacle(geometry::make_capsule(Vec3(3.5F, 0, -5), Vec3(3.5F, 0, 5), 3.0F)); },
+     Vec3(-1, 0, 0), 0.55F, 0.4F},
+    {"box", [](Scene& s) { s.obstacle(geometry::make_box(Vec3(2.5F, 0, 0), Vec3(2, 2, 2))); }, Vec3(-1, 0, 0), 0.6F,
+     0.2F},
+    {"hull", [](Scene& s) { s.obstacle(geometry::make_hull(block(), Vec3(2.5F, 0, 0))); }, Vec3(-1, 0, 0), 0.6F, 0.2F},
+    {"wall's clearance",
+     [](Scene& s) { s.own.sigma_position = 0.3F, s.obstacle(geometry::make_box(Vec3(3.4F, 0, 0), Vec3(2, 20, 20))); },
+     Vec3(-1, 0, 0), 0.6F, 0.2F},
+    {"floor", [](Scene& s) { s.airspace.has_floor = true, s.airspace.floor = -0.5F; }, Vec3(0, 0, 1), 0.55F, 0.4F},
+    {"ceiling", [](Scene& s) { s.airspace.has_ceiling = true, s.airspace.ceiling = 0.5F; }, Vec3(0, 0, -1), 0.55F,
+     0.4F},
+    {"keep-in",
+     [](Scene& s) {
+         s.airspace.has_keep_in = true, s.airspace.home = Vec3(-10, 0, 0), s.airspace.keep_in_radius = 10.9F;
+     },
+     Vec3(-1, 0, 0), 0.55F, 0.4F},
+};
+
+/// Points `step` seconds apart along `direction` at `pace`.
+path::TimedPath straight(const Vec3& direction, float pace, Seconds step, int steps)
+{
+    std::vector<Vec3> positions;
+    for (int i = 0; i <= steps; ++i) {
+        positions.push_back(direction * (pace * step * static_cast<float>(i)));
+    }
+    return flight(positions, step);
+}
+
+struct EscapeRules : testing::TestWithParam<Margin> {
+    void SetUp() override { GetParam().place(scene); }
+    Scene scene;
+};
+
+TEST_P(EscapeRules, StartsInside)
+{
+    WorkBudget budget(kPlenty);
+    EXPECT_LT(separation_at(scene.situation(), Vec3::Zero(), 0.0F, budget).margin, -0.3F);
+}
+
+/// Whatever the length of the pieces: leaving fast enough is clear.
+TEST_P(EscapeRules, LeavingIsClear)
+{
+    for (const Seconds step : {0.02F, 0.1F, 0.2F, 0.5F, 4.0F}) {
+        const int steps = std::min(60, static_cast<int>(4.0F / step));
+        EXPECT_GE(separation(scene, straight(GetParam().out, GetParam().leave, step, steps)).margin, 0.0F)
+            << "steps of " << step;
+        EXPECT_GE(separation(scene, straight(GetParam().out, GetParam().leave + 3.0F, step, steps)).margin, 0.0F)
+            << "steps of " << step;
+    }
+}
+
+TEST_P(EscapeRules, LeavingTooSlowlyIsNot)
+{
+    for (const Seconds step : {0.1F, 0.5F, 6.0F}) {
+        const int steps = static_cast<int>(6.0F / step);
+        EXPECT_LT(separation(scene, straight(GetParam().out, GetParam().too_slow, step, steps)).margin, 0.0F)
+            << "steps of " << step;
+    }
+}
+
+TEST_P(EscapeRules, StayingIsNot)
+{
+    for (const Seconds step : {0.05F, 0.2F, 1.0F, 5.0F}) {
+        EXPECT_LT(
+            separation(scene, straight(Vec3::Zero(), 0.0F, step, std::max(1, static_cast<int>(2.0F / step)))).margin,
+            0.0F)
+            << "steps of " << step;
+    }
+}
+
+TEST_P(EscapeRules, GoingDeeperIsNot)
+{
+    for (const Seconds step : {0.1F, 1.0F}) {
+        EXPECT_LT(separation(scene, straight(-GetParam().out, 1.0F, step, 8)).margin, 0.0F) << "steps of " << step;
+    }
+}
+
+TEST_P(EscapeRules, LeavingAndComingBackIsNot)
+{
+    std::vector<Vec3> positions;
+    for (const float at : {0.0F, 2.0F, 4.0F, 6.0F, 4.0F, 2.0F, 0.0F}) {
+        positions.push_back(GetParam().out * at);
+    }
+    const Vec3 threat = scene.tracks.empty() ? Vec3(Vec3::Zero()) : scene.tracks[0].velocity;
+    std::size_t i = 0;
+    for (Vec3& p : positions) {
+        p += threat * static_cast<float>(i++);  // beside one that moves, coming back is relative to it
+    }
+    const Separation found = separation(scene, flight(positions, 1.0F));
+    EXPECT_LT(found.margin, 0.0F);
+    EXPECT_GT(found.when, 3.0F) << "on the way back";
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, EscapeRules, testing::ValuesIn(kMargins), [](const auto& info) {
+    std::string name = info.param.name;
+    std::erase_if(name, [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); });
+    return name;
+});
+
+/// One threat's margin is no licence against another.
+TEST(EscapeRule, HoldsForEachThreatByItself)
+{
+    Scene scene;
+    scene.track(Vec3(3.5F, 0, 0), Vec3::Zero(), 3.0F);
+    scene.track(Vec3(-9, 0, 0), Vec3::Zero(), 1.0F);
+    const Separation found = separation(scene, straight(Vec3(-1, 0, 0), 2.0F, 0.5F, 10));
+    EXPECT_LT(found.margin, 0.0F);
+    EXPECT_EQ(found.against.index, 1U);
+}
+
+TEST(EscapeRule, AFlightThatStartsOutsideGetsNoCredit)
+{
+    Scene scene;
+    scene.track(Vec3(4.001F, 0, 0), Vec3::Zero(), 3.0F);
+    EXPECT_GE(separation(scene, straight(Vec3(-1, 0, 0), 0.0F, 1.0F, 3)).margin, 0.0F);
+    EXPECT_LT(separation(scene, straight(Vec3(1, 0, 0), 0.01F, 1.0F, 1)).margin, 0.0F);
+}
+
+// --- obstacle_margin
+// -----------------------------------------------------------------------------------------------------------
+
+TEST(ObstacleMargin, ATiltedCapsuleTakenForUprightIsNoThinner)
+{
+    const float reach = 300.0F;
+    const Vec3 axis(0.0009F, 0, 1.0F);
+    const geometry::Shape mast = geometry::make_capsule(-axis * reach, axis * reach, 0.5F);
+    Vec3 half;
+    float radius = 0.0F;
+    ASSERT_TRUE(as_sphere(mast, Vec3::Ones(), half, radius));
+    WorkBudget budget(kPlenty);
+    // At its top the axis stands 0.27 m off.
+    const float margin = obstacle_margin(Vec3::Ones(), Vec3(5, 0, 295), Vec3(5, 0, 295), mast, budget);
+    EXPECT_LE(margin, 5.0F - 1.0F - 0.5F - 0.0009F * 295.0F + 1e-4F);
+}
+
+TEST(ObstacleMargin, ASpentBudgetIsContact)
+{
+    WorkBudget none(0);
+    EXPECT_LT(obstacle_margin(Vec3::Ones(), Vec3(5, 0, 0), Vec3(6, 0, 0),
+                              geometry::make_box(Vec3::Zero(), Vec3::Ones()), none),
+              0.0F);
+}
+
+}  // namespace
+}  // namespace jink::world
