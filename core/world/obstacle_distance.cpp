@@ -39,6 +39,7 @@ bool as_sphere(const geometry::Shape& shape, const Vec3& half, Vec3& effective_h
     }
     if (shape.kind == geometry::ShapeKind::capsule && std::abs(shape.axes(2, 2)) >= kVertical) {
         effective_half.z() += shape.half.z();
+        radius += shape.half.z() * std::hypot(shape.axes(0, 2), shape.axes(1, 2));  // how far its ends lean
         return true;
     }
     return false;

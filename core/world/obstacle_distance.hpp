@@ -20,7 +20,7 @@ inline constexpr float kObstacleResolution = 0.05F;
                                     WorkBudget& budget) noexcept;
 
 /// True, and the box and radius to use in the sphere's closed form, for shapes that are a sphere but for a taller own
-/// box.
+/// box: spheres, and capsules within 1 mrad of upright, taken for upright and thicker by as much as their ends lean.
 [[nodiscard]] bool as_sphere(const geometry::Shape& shape, const Vec3& half, Vec3& effective_half,
                              float& radius) noexcept;
 

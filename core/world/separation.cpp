@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/convex.hpp"
 #include "core/geometry/sweep.hpp"
@@ -18,6 +19,9 @@ constexpr std::size_t kChunk = 8;
 constexpr std::size_t kMaxChunks = (kMaxPathPoints + kChunk - 1) / kChunk;
 /// A growing threat is looked at in pieces no longer than this, each with the size at its end [s].
 constexpr Seconds kGrowthPiece = 0.25F;
+/// No shorter, however small the slack [s].
+constexpr Seconds kLeastEscapePiece = 0.02F;
+constexpr Seconds kSolidEscapePiece = 0.2F;
 
 struct Piece {
     Vec3 from;
@@ -76,10 +80,67 @@ float shrink_at(float initial, const EscapeRule& escape, Seconds t) noexcept
     return initial > 0.0F ? std::max(0.0F, initial - escape.speed * t) : 0.0F;
 }
 
-void consider(Separation& best, float margin, Seconds when, ThreatKind kind, std::size_t index) noexcept
+/// While a shrunk surface grows back it is looked at in pieces so short that it takes half the slack at most in each,
+/// so that its size at their end may stand for it.
+Seconds escape_piece(const EscapeRule& escape) noexcept
 {
-    if (margin < best.margin) {
-        best = {margin, when, {kind, static_cast<std::uint16_t>(index)}};
+    return escape.speed > 0.0F ? std::max(kLeastEscapePiece, 0.5F * escape.slack / escape.speed)
+                               : std::numeric_limits<Seconds>::infinity();
+}
+
+int parts_of(Seconds duration, Seconds longest) noexcept
+{
+    return std::max(1, static_cast<int>(std::ceil(duration / longest)));
+}
+
+/// What is not a number is contact of the worst kind.
+void consider(Separation& best, float margin, Seconds when, ThreatRef against) noexcept
+{
+    if (!(margin >= best.margin)) {
+        best = {margin > -kSeparationCap ? margin : -kSeparationCap, when, against};
+    }
+}
+
+/// A sphere in straight motion, as large as `radius_at` says at an instant.
+template <class RadiusAt>
+void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bool grows, const RadiusAt& radius_at,
+                  ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
+{
+    const Vec3& begin = flight.pieces.front().from;
+    const float start_margin =
+        geometry::least_distance(half, {begin, Vec3::Zero()}, {ball.position, Vec3::Zero()}, 0.0F).distance -
+        radius_at(0.0F);
+    const float shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
+    const Seconds growth_piece = grows ? kGrowthPiece : std::numeric_limits<Seconds>::infinity();
+
+    for (const Bounds& chunk : flight.chunks) {
+        const Vec3 a = ball.position + ball.velocity * chunk.start;
+        const Vec3 b = ball.position + ball.velocity * chunk.end;
+        const float bound =
+            box_distance(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) - radius_at(chunk.end);
+        if (bound >= best.margin) {
+            continue;
+        }
+        for (std::size_t i = chunk.first; i < chunk.last; ++i) {
+            const Piece& p = flight.pieces[i];
+            const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
+            const int parts =
+                parts_of(p.duration, escapes ? std::min(growth_piece, escape_piece(escape)) : growth_piece);
+            const Seconds length = p.duration / static_cast<float>(parts);
+            for (int part = 0; part < parts; ++part) {
+                const Seconds offset = length * static_cast<float>(part);
+                const Seconds start = p.start + offset;
+                if (!budget.spend()) {
+                    consider(best, -kSeparationCap, start, ref);
+                    return;
+                }
+                const Motion own{p.from + p.velocity * offset, p.velocity};
+                const Motion other{ball.position + ball.velocity * start, ball.velocity};
+                const geometry::Approach near = geometry::least_distance(half, own, other, length);
+                const float radius = radius_at(start + length) - shrink_at(shrunk, escape, start + length);
+                consider(best, near.distance - radius, start + near.when, ref);
+            }
+        }
     }
 }
 
@@ -87,50 +148,19 @@ void against_track(const Situation& situation, const Flight& flight, std::size_t
                    WorkBudget& budget, Separation& best) noexcept
 {
     const Track& track = situation.tracks[index];
-    const Vec3& half = situation.limits.half_extents;
-    const Motion threat{track.position, track.velocity};
-    const Piece& first = flight.pieces.front();
-    const float start_margin =
-        geometry::least_distance(half, {first.from, Vec3::Zero()}, {track.position, Vec3::Zero()}, 0.0F).distance -
-        threat_radius(situation, track, 0.0F);
-    const float shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
     const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
-
-    for (const Bounds& chunk : flight.chunks) {
-        const Vec3 a = threat.position + threat.velocity * chunk.start;
-        const Vec3 b = threat.position + threat.velocity * chunk.end;
-        const float bound = box_distance(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) -
-                            threat_radius(situation, track, chunk.end);
-        if (bound >= best.margin) {
-            continue;
-        }
-        for (std::size_t i = chunk.first; i < chunk.last; ++i) {
-            const Piece& p = flight.pieces[i];
-            const int parts = grows ? std::max(1, static_cast<int>(std::ceil(p.duration / kGrowthPiece))) : 1;
-            const Seconds length = p.duration / static_cast<float>(parts);
-            for (int part = 0; part < parts; ++part) {
-                const Seconds offset = length * static_cast<float>(part);
-                const Seconds start = p.start + offset;
-                if (!budget.spend()) {
-                    consider(best, -kSeparationCap, start, ThreatKind::track, index);
-                    return;
-                }
-                const Motion own{p.from + p.velocity * offset, p.velocity};
-                const Motion other{threat.position + threat.velocity * start, threat.velocity};
-                const geometry::Approach near = geometry::least_distance(half, own, other, length);
-                const float radius = threat_radius(situation, track, start + length) - shrink_at(shrunk, escape, start);
-                consider(best, near.distance - radius, start + near.when, ThreatKind::track, index);
-            }
-        }
-    }
+    against_ball(
+        flight, situation.limits.half_extents, {track.position, track.velocity}, grows,
+        [&](Seconds t) { return threat_radius(situation, track, t); },
+        {ThreatKind::track, static_cast<std::uint16_t>(index)}, escape, budget, best);
 }
 
-void against_obstacle(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
-                      WorkBudget& budget, Separation& best) noexcept
+/// Margins of solids are told apart no finer than kObstacleResolution, and one query costs hundreds of support calls:
+/// the shrunk surface clears the start by that much more, and grows back in coarser pieces.
+void against_solid(const Situation& situation, const Flight& flight, const geometry::Shape& shape, float extra,
+                   ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
 {
-    const geometry::Shape& shape = situation.obstacles[index].shape;
     const Vec3& half = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
     const float reach = geometry::bounding_radius(shape);
     float shrunk = -1.0F;  // found when the first piece near the obstacle is met
 
@@ -141,46 +171,91 @@ void against_obstacle(const Situation& situation, const Flight& flight, std::siz
             continue;
         }
         if (shrunk < 0.0F) {
-            const float start =
-                obstacle_margin(half, flight.pieces.front().from, flight.pieces.front().from, shape, budget) - extra;
-            shrunk = start < 0.0F ? escape.slack - start : 0.0F;
+            const Vec3& begin = flight.pieces.front().from;
+            const float start = obstacle_margin(half, begin, begin, shape, budget) - extra;
+            const float slack = escape.slack + kObstacleResolution + escape.speed * kSolidEscapePiece;
+            shrunk = start < 0.0F ? slack - start : 0.0F;
         }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
             const Piece& p = flight.pieces[i];
-            const float margin = obstacle_margin(half, p.from, p.from + p.velocity * p.duration, shape, budget) -
-                                 extra + shrink_at(shrunk, escape, p.start);
-            consider(best, margin, p.start, ThreatKind::obstacle, index);
+            const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
+            const int parts = escapes ? parts_of(p.duration, kSolidEscapePiece) : 1;
+            const Seconds length = p.duration / static_cast<float>(parts);
+            for (int part = 0; part < parts; ++part) {
+                const Seconds offset = length * static_cast<float>(part);
+                const Seconds start = p.start + offset;
+                const Vec3 from = p.from + p.velocity * offset;
+                const float margin = obstacle_margin(half, from, from + p.velocity * length, shape, budget) - extra;
+                if (budget.exhausted()) {
+                    consider(best, -kSeparationCap, start, ref);
+                    return;
+                }
+                consider(best, margin + shrink_at(shrunk, escape, start + length), start, ref);
+            }
         }
     }
 }
 
-/// Airspace bounds are convex sets: the least margin of a straight piece lies at one of its ends.
-void against_airspace(const Situation& situation, const Flight& flight, const EscapeRule& escape,
-                      Separation& best) noexcept
+void against_obstacle(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
+                      WorkBudget& budget, Separation& best) noexcept
+{
+    const geometry::Shape& shape = situation.obstacles[index].shape;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const ThreatRef ref{ThreatKind::obstacle, static_cast<std::uint16_t>(index)};
+    Vec3 half;
+    float radius = 0.0F;
+    if (as_sphere(shape, situation.limits.half_extents, half, radius)) {
+        against_ball(
+            flight, half, {shape.centre, Vec3::Zero()}, false, [&](Seconds) { return radius + extra; }, ref, escape,
+            budget, best);
+    } else {
+        against_solid(situation, flight, shape, extra, ref, escape, budget, best);
+    }
+}
+
+/// Calls `judge(margin of a position, kind)` for each bound that is set.
+template <class Judge>
+void for_each_bound(const Situation& situation, const Judge& judge) noexcept
 {
     const Airspace& air = situation.airspace;
     const Vec3& half = situation.limits.half_extents;
-    const float corner = std::hypot(half.x(), half.y());
-    const auto floor_margin = [&](const Vec3& p) { return p.z() - half.z() - air.floor; };
-    const auto ceiling_margin = [&](const Vec3& p) { return air.ceiling - p.z() - half.z(); };
-    const auto keep_in_margin = [&](const Vec3& p) {
-        return air.keep_in_radius - std::hypot(p.x() - air.home.x(), p.y() - air.home.y()) - corner;
-    };
-    const auto check = [&](bool active, const auto& margin_of, ThreatKind kind) {
-        if (!active) {
-            return;
-        }
+    if (air.has_floor) {
+        judge([&](const Vec3& p) { return p.z() - half.z() - air.floor; }, ThreatKind::floor);
+    }
+    if (air.has_ceiling) {
+        judge([&](const Vec3& p) { return air.ceiling - p.z() - half.z(); }, ThreatKind::ceiling);
+    }
+    if (air.has_keep_in) {
+        const float corner = std::hypot(half.x(), half.y());
+        judge(
+            [&](const Vec3& p) {
+                return air.keep_in_radius - std::hypot(p.x() - air.home.x(), p.y() - air.home.y()) - corner;
+            },
+            ThreatKind::keep_in);
+    }
+}
+
+/// Airspace bounds are convex sets: the least margin of a straight piece lies at one of its ends, or where a surface
+/// that the escape rule has shrunk is back at its size.
+void against_airspace(const Situation& situation, const Flight& flight, const EscapeRule& escape,
+                      Separation& best) noexcept
+{
+    for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {
         const float start = margin_of(flight.pieces.front().from);
         const float shrunk = start < 0.0F ? escape.slack - start : 0.0F;
+        const Seconds whole = escape.speed > 0.0F ? shrunk / escape.speed : 0.0F;
         for (const Piece& p : flight.pieces) {
-            const Seconds end = p.start + p.duration;
-            consider(best, margin_of(p.from) + shrink_at(shrunk, escape, p.start), p.start, kind, 0);
-            consider(best, margin_of(p.from + p.velocity * p.duration) + shrink_at(shrunk, escape, end), end, kind, 0);
+            const auto judge = [&](Seconds t) {
+                const float margin = margin_of(p.from + p.velocity * (t - p.start));
+                consider(best, margin + shrink_at(shrunk, escape, t), t, {kind, 0});
+            };
+            judge(p.start);
+            judge(p.start + p.duration);
+            if (whole > p.start && whole < p.start + p.duration) {
+                judge(whole);
+            }
         }
-    };
-    check(air.has_floor, floor_margin, ThreatKind::floor);
-    check(air.has_ceiling, ceiling_margin, ThreatKind::ceiling);
-    check(air.has_keep_in, keep_in_margin, ThreatKind::keep_in);
+    });
 }
 
 }  // namespace
@@ -221,21 +296,21 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
         const Vec3 centre = track.position + track.velocity * t;
         const float distance =
             geometry::least_distance(half, {position, Vec3::Zero()}, {centre, Vec3::Zero()}, 0.0F).distance;
-        consider(best, distance - threat_radius(situation, track, t), t, ThreatKind::track, i);
+        consider(best, distance - threat_radius(situation, track, t), t,
+                 {ThreatKind::track, static_cast<std::uint16_t>(i)});
     }
     for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
         const geometry::Shape& shape = situation.obstacles[i].shape;
         const float extra = situation.k_sigma * situation.own.sigma_position;
         const float near = (position - shape.centre).norm() - geometry::bounding_radius(shape) - half.norm() - extra;
         if (near < best.margin) {
-            consider(best, obstacle_margin(half, position, position, shape, budget) - extra, t, ThreatKind::obstacle,
-                     i);
+            consider(best, obstacle_margin(half, position, position, shape, budget) - extra, t,
+                     {ThreatKind::obstacle, static_cast<std::uint16_t>(i)});
         }
     }
-    Flight flight;
-    flight.pieces.unchecked_push_back({position, Vec3::Zero(), t, 0.0F});
-    // No escape here: a speed and slack of zero leave the plain margin.
-    against_airspace(situation, flight, {0.0F, 0.0F}, best);
+    for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {
+        consider(best, margin_of(position), t, {kind, 0});
+    });
     return best;
 }
 

@@ -31,9 +31,9 @@ enum class TrackStatus : std::uint8_t {
     not_finite,    ///< NaN or infinity
     out_of_range,  ///< farther, larger or less certain than `max_range`, faster or less certain in that than
                    ///< `max_speed`, sigmas below 0.1 mm, acceleration not in 0..1000 m/s2
-    stale,   ///< older than `max_age`, or not newer than what is known
-    future,  ///< stamped later than now
-    full,    ///< table full and this one is the least dangerous
+    stale,         ///< older than `max_age`, or not newer than what is known
+    future,        ///< stamped later than now
+    full,          ///< table full and this one is the least dangerous
 };
 
 /// Counters since start; each sighting adds to exactly one but `expired` and `jumps`.

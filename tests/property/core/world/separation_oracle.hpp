@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "tests/property/core/geometry/convex_oracle.hpp"
 #include "tests/unit/core/world/scene.hpp"
@@ -54,22 +55,32 @@ double least(const Margin& margin, double end, const EscapeRule& escape, double*
     const auto judged = [&](double t) {
         return margin(t) + std::max(0.0, shrunk > 0 ? shrunk - double(escape.speed) * t : 0.0);
     };
-    const int samples = end > 0 ? std::max(64, static_cast<int>(end / 4e-3)) : 0;
-    double best = judged(0.0);
-    double at = 0;
-    for (int i = 1; i <= samples; ++i) {
-        const double t = end * i / samples;
-        if (judged(t) < best) {
-            best = judged(t);
-            at = t;
-        }
+    const int samples = end > 0 ? std::max(64, static_cast<int>(end / 0.02)) : 0;
+    std::vector<double> values;
+    for (int i = 0; i <= samples; ++i) {
+        values.push_back(judged(samples > 0 ? end * i / samples : 0.0));
     }
-    for (double step = samples > 0 ? end / samples : 0; step > 1e-6; step /= 2) {
-        for (const double t : {std::max(0.0, at - step), std::min(end, at + step)}) {
-            if (judged(t) < best) {
-                best = judged(t);
-                at = t;
+    double best = values[0];
+    double at = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const bool valley =
+            (i == 0 || values[i] <= values[i - 1]) && (i + 1 == values.size() || values[i] <= values[i + 1]);
+        if (!valley || values[i] > best + 1.0) {
+            continue;  // nothing moves a metre between two samples
+        }
+        double t = samples > 0 ? end * double(i) / samples : 0.0;
+        double value = values[i];
+        for (double step = samples > 0 ? end / samples : 0; step > 1e-6; step /= 2) {
+            for (const double near : {std::max(0.0, t - step), std::min(end, t + step)}) {
+                if (judged(near) < value) {
+                    value = judged(near);
+                    t = near;
+                }
             }
+        }
+        if (value < best) {
+            best = value;
+            at = t;
         }
     }
     if (when != nullptr) {
@@ -107,7 +118,7 @@ inline double ball_margin_at(const Scene& scene, const path::TimedPath& path, co
                            : Vec3d(Vec3d::Zero());
     const auto distance = [&](double u) { return point_box(shape.centre.cast<double>() + u * axis - own, half); };
     double low = -1, high = 1;
-    for (int i = 0; i < 60 && axis.norm() > 0; ++i) {
+    for (int i = 0; i < 45 && axis.norm() > 0; ++i) {
         const double a = low + 0.382 * (high - low);
         const double b = low + 0.618 * (high - low);
         (distance(a) <= distance(b) ? high : low) = distance(a) <= distance(b) ? b : a;

@@ -103,13 +103,18 @@ bool is_ball(const geometry::Shape& shape)
     return as_sphere(shape, Vec3::Ones(), half, radius);
 }
 
+double escape_pessimism(const EscapeRule& escape)
+{
+    return std::max(0.5 * double(escape.slack), 0.02 * double(escape.speed));
+}
+
 /// How much too small a margin may come out: what growth and the escape rule do within the pieces that they are looked
 /// at in.
 double pessimism(const Scene& scene, const Track& track, double end, const EscapeRule& escape, bool inside)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6) + end;
     const double rate = double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
-    return 2e-3 + 0.25 * rate + (inside ? 0.5 * double(escape.slack) : 0.0);
+    return 2e-3 + 0.25 * rate + (inside ? escape_pessimism(escape) : 0.0);
 }
 
 struct Expected {
@@ -124,7 +129,8 @@ Expected expect(const Case& c, const EscapeRule& escape)
 {
     Expected e;
     const double end = oracle::flight_end(c.path, double(c.horizon));
-    const auto take = [&](double margin, double slack) {
+    const auto take = [&](double exact, double slack) {
+        const double margin = std::max(exact, -double(kSeparationCap));
         e.least = std::min(e.least, margin);
         e.capped = std::min(e.capped, margin);
         e.pessimism = std::max(e.pessimism, slack);
@@ -139,7 +145,7 @@ Expected expect(const Case& c, const EscapeRule& escape)
             const auto at = [&](double t) { return oracle::ball_margin_at(c.scene, c.path, o.shape, t); };
             // A capsule within a milliradian of upright is taken for upright, and thicker by what that leaves out.
             const double tilt = o.shape.kind == ShapeKind::capsule ? 1.5e-3 * double(o.shape.half.z()) : 0.0;
-            take(oracle::least(at, end, escape), 2e-3 + tilt + (at(0.0) < tilt ? 0.5 * double(escape.slack) : 0.0));
+            take(oracle::least(at, end, escape), 2e-3 + tilt + (at(0.0) < tilt ? escape_pessimism(escape) : 0.0));
         } else {
             const double extra = double(c.scene.k_sigma) * double(c.scene.own.sigma_position);
             const double distance = oracle::solid_distance(c.scene, c.path, o.shape, double(c.horizon));
@@ -189,7 +195,8 @@ void compare(bool with_solids, std::uint64_t default_seed, std::size_t cases)
         if (found.against.kind == ThreatKind::track &&
             oracle::track_margin_at(c.scene, c.path, found.against.index, 0.0) >= 0) {
             const double then = oracle::track_margin_at(c.scene, c.path, found.against.index, double(found.when));
-            ASSERT_NEAR(then, double(found.margin), e.pessimism + kOptimism) << "case " << i;
+            ASSERT_NEAR(std::max(then, -double(kSeparationCap)), double(found.margin), e.pessimism + kOptimism)
+                << "case " << i;
         }
     }
     testing::Test::RecordProperty("most_pessimistic_mm", static_cast<int>(most_pessimistic * 1000));
@@ -283,6 +290,7 @@ TEST(SeparationAt, IsThePlainMarginOfThatInstant)
         bound(air.has_floor, ThreatKind::floor);
         bound(air.has_ceiling, ThreatKind::ceiling);
         bound(air.has_keep_in, ThreatKind::keep_in);
+        least = std::max(least, -double(kSeparationCap));
         WorkBudget budget(kPlenty);
         const Separation found = separation_at(c.scene.situation(), own, t, budget);
         ASSERT_LE(double(found.margin), least + kOptimism) << "case " << i;
