@@ -32,8 +32,7 @@ void source_offsets(float radius, const Settings& settings, Offsets& out) noexce
 float clearing_offset(const Problem& problem, float smallest, float box_aside, std::size_t k,
                       std::size_t count) noexcept
 {
-    const float fan_radius = problem.body_radius > 0.0F ? problem.body_radius : problem.main_radius;
-    const float span = std::max(kFan * fan_radius - smallest, 2.0F * box_aside);
+    const float span = std::max(kFan * scale_radius(problem) - smallest, 2.0F * box_aside);
     const auto n = static_cast<float>(count);
     const auto i = static_cast<float>(k);
     const float share = problem.span_from > 0.0F ? (i + 1.0F) / n : i / std::max(n - 1.0F, 1.0F);

@@ -80,7 +80,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     }
     Problem problem = problem_of(situation, way, conflict);
     problem.threats = {threats.data(), threats.size()};
-    if (problem.distance < kLeastDistanceInRadii * problem.main_radius) {
+    if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
     const std::size_t tries = settings_.offset_rule == OffsetRule::clearing ? settings_.retries + std::size_t{1} : 1;

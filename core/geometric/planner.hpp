@@ -81,12 +81,11 @@ inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
 /// One planning problem on its own, free of Situation: what `jink plan`, the campaign and the reproduction tests solve.
 struct Problem {
-    PathFrame frame;        ///< start of the manoeuvre and leg direction
-    float distance = 0.0F;  ///< D: start to the collision point [m]
-    float main_radius =
-        0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets and the 2.5 R rule [m]
-    float body_radius =
-        0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan [m]; 0: main_radius
+    PathFrame frame;           ///< start of the manoeuvre and leg direction
+    float distance = 0.0F;     ///< D: start to the collision point [m]
+    float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets [m]
+    float body_radius = 0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan and the 2.5 R
+                               ///< rule [m]; 0: main_radius
     std::size_t main = kNoThreat;                ///< index of the main threat in `threats`, or kNoThreat
     std::span<const Threat> threats;             ///< at most kMaxTracks
     std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
@@ -102,6 +101,12 @@ struct Problem {
     float span_from = 0.0F;  ///< clearing offsets: where they begin and end in the span from smallest to largest;
     float span_to = 1.0F;    ///< beyond 1 further out. With span_from > 0 the first one lies past it
 };
+
+/// R of the clearing fan and of the 2.5 R rule [m].
+[[nodiscard]] inline float scale_radius(const Problem& problem) noexcept
+{
+    return problem.body_radius > 0.0F ? problem.body_radius : problem.main_radius;
+}
 
 struct Result {
     StaticVector<Candidate, kMaxCandidates> candidates;  ///< in the order of generation

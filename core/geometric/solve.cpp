@@ -23,20 +23,14 @@ constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4
 /// Step of a verified flight [s], longer where the path would not fit otherwise.
 constexpr Seconds kFlightStep = 0.2F;
 
-bool positive(float value) noexcept
-{
-    return std::isfinite(value) && value > 0.0F;
-}
+bool positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
 
-bool not_negative(float value) noexcept
-{
-    return std::isfinite(value) && value >= 0.0F;
-}
+bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
 
 bool is_valid(const Threat& t) noexcept
 {
-    return is_finite(t.motion.position) && is_finite(t.motion.velocity) && not_negative(t.radius) && not_negative(t.radius_rate) &&
-           not_negative(t.radius_acceleration);
+    return is_finite(t.motion.position) && is_finite(t.motion.velocity) && not_negative(t.radius) &&
+           not_negative(t.radius_rate) && not_negative(t.radius_acceleration);
 }
 
 bool is_valid(const PathFrame& frame) noexcept
@@ -64,16 +58,10 @@ bool is_valid(const Problem& p) noexcept
 /// One run of `solve`: what its steps share.
 class Run {
 public:
-    Run(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
-        WorkBudget& budget, Result& result) noexcept
-        : problem_(problem),
-          settings_(settings),
-          limits_(limits),
-          airframe_(airframe),
-          budget_(budget),
-          result_(result),
-          along_(problem.frame.axes.col(0)),
-          clearance_(problem, settings, limits)
+    Run(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
+        const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept
+        : problem_(problem), settings_(settings), limits_(limits), airframe_(airframe), budget_(budget),
+          result_(result), along_(problem.frame.axes.col(0)), clearance_(problem, settings, limits)
     {
     }
 
@@ -112,8 +100,8 @@ private:
     Seconds longest_ = 0.0F;         ///< duration of any candidate, where threats sweep volumes
     std::array<UnitCurve, 2> unit_;  ///< by family
     Clearance clearance_;
-    Curve curve_;                    ///< of the candidate at hand
-    path::TimedPath path_;           ///< the same, about the start
+    Curve curve_;                                          ///< of the candidate at hand
+    path::TimedPath path_;                                 ///< the same, about the start
     StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start
     struct {
         CandidateShape shape;
@@ -128,8 +116,8 @@ Vec3 Run::side_of(const CandidateShape& shape) const noexcept
 
 void Run::build(const CandidateShape& shape) noexcept
 {
-    detail::make_curve(unit_[static_cast<std::size_t>(shape.family)], along_, side_of(shape), problem_.distance, shape.offset,
-                       problem_.speed, limits_, curve_);
+    detail::make_curve(unit_[static_cast<std::size_t>(shape.family)], along_, side_of(shape), problem_.distance,
+                       shape.offset, problem_.speed, limits_, curve_);
 }
 
 void Run::generate() noexcept
@@ -166,7 +154,8 @@ void Run::prepare() noexcept
     const Vec3 end = length * along_;
     const Vec3 aside = Vec3::Constant(widest);
     const float slowest = std::min({problem_.speed, limits_.max_climb, limits_.max_descent});
-    clearance_.collect({end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside}, (length + 2.0F * widest) / slowest, budget_);
+    clearance_.collect({end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside}, (length + 2.0F * widest) / slowest,
+                       budget_);
     if (settings_.security == SecurityMode::swept || settings_.closeness == cost::ClosenessMethod::swept) {
         for (const Candidate& candidate : result_.candidates) {
             build(candidate.shape);
@@ -190,7 +179,8 @@ void Run::list_moving() noexcept
     }
     while (settings_.closeness_nearest > 0 && moving_.size() > settings_.closeness_nearest) {
         const auto count = static_cast<std::ptrdiff_t>(moving_.size());
-        const auto farthest = static_cast<std::size_t>(std::max_element(distance.begin(), distance.begin() + count) - distance.begin());
+        const auto farthest =
+            static_cast<std::size_t>(std::max_element(distance.begin(), distance.begin() + count) - distance.begin());
         distance[farthest] = distance[moving_.size() - 1];
         moving_.swap_erase(farthest);
     }
@@ -247,7 +237,8 @@ void Run::assess(Candidate& candidate) noexcept
     cost::Terms& terms = candidate.terms;
     terms.time = cost::flight_time(path_);
     terms.smoothness = smoothness_of(candidate.shape);
-    terms.smoothness_penalised = cost::penalised_smoothness(terms.smoothness, candidate.sin_alpha, settings_.rotation_penalty);
+    terms.smoothness_penalised =
+        cost::penalised_smoothness(terms.smoothness, candidate.sin_alpha, settings_.rotation_penalty);
     terms.closeness = closeness_of(path_);
     terms.energy = cost::energy(path_, airframe_);
     terms.hover_power = cost::hover_power(path_, airframe_);
@@ -255,7 +246,8 @@ void Run::assess(Candidate& candidate) noexcept
     candidate.total = std::min(cost::total(candidate.normalised, settings_.weights), 1.0F);
     const float sign = std::copysign(1.0F, candidate.shape.offset);
     constexpr float kOtherSide = -1e-3F;  // a plane at right angles to what is flown is on neither side
-    candidate.flip_penalty = sign * side_of(candidate.shape).dot(problem_.preferred_side) < kOtherSide ? settings_.flip_penalty : 0.0F;
+    candidate.flip_penalty =
+        sign * side_of(candidate.shape).dot(problem_.preferred_side) < kOtherSide ? settings_.flip_penalty : 0.0F;
 }
 
 /// The flight that following the candidate gives, with braking at its end, must be clear too.
@@ -271,7 +263,8 @@ bool Run::verify(Candidate& candidate) noexcept
         state.velocity = flight.points.back().velocity;
         const Seconds span = std::max(vehicle::stopping_time(state.velocity.norm(), limits_), kFlightStep);
         path::TimedPath tail;
-        path::predict_velocity_command(state, Vec3::Zero(), span, span / static_cast<float>(kTailPoints - 1), limits_, tail);
+        path::predict_velocity_command(state, Vec3::Zero(), span, span / static_cast<float>(kTailPoints - 1), limits_,
+                                       tail);
         const Seconds end = flight.duration();
         for (std::size_t i = 1; i < tail.points.size() && !flight.points.full(); ++i) {
             path::PathPoint point = tail.points[i];
@@ -332,7 +325,7 @@ PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle
     if (!is_valid(settings) || !vehicle::is_valid(limits) || !vehicle::is_valid(airframe) || !is_valid(problem)) {
         return PlanStatus::bad_input;
     }
-    if (problem.distance < kLeastDistanceInRadii * problem.main_radius) {
+    if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
     return Run(problem, settings, limits, airframe, budget, result)();
@@ -347,8 +340,8 @@ bool make_candidate_path(const Problem& problem, const CandidateShape& shape, st
     }
     Curve curve;
     detail::make_curve(detail::make_unit_curve(shape.family, waypoints), problem.frame.axes.col(0),
-                       detail::plane_direction(problem.frame, shape.plane), problem.distance, shape.offset, problem.speed, limits,
-                       curve);
+                       detail::plane_direction(problem.frame, shape.plane), problem.distance, shape.offset,
+                       problem.speed, limits, curve);
     detail::to_timed_path(curve, problem.frame.origin, out);
     return true;
 }

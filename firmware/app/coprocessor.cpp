@@ -169,7 +169,8 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     input.wants_control = report.guidance.wants_control;
     input.in_conflict = report.guidance.has_conflict;
     input.may_act = report.faults == 0 && c.mode == ActMode::act;
-    input.urgent_hold = report.guidance.kind == world::ManoeuvreKind::brake;
+    const Seconds stopping = vehicle::stopping_time(own.velocity.norm(), c.limits) + c.supervisor.reserve;
+    input.urgent_hold = report.guidance.has_conflict && report.guidance.conflict.time_to_loss <= stopping;
     input.has_report = new_autopilot_report_;
     input.report = autopilot_;
     input.mode_denied = mode_denied_;

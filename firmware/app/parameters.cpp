@@ -96,6 +96,8 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     geometric::Settings& g = c.planner;
     // What the supervisor sees as a conflict the planner has to see too.
     g.lookahead = c.supervisor.lookahead;
+    // What the vehicle cannot fly shows in the predicted flight, which every answer has to pass.
+    g.check_acceleration = false;
     g.offsets = static_cast<std::uint16_t>(whole(Param::offsets));
     g.extra_planes = static_cast<std::uint16_t>(whole(Param::planes));
     g.simple = (whole(Param::families) & 1U) != 0;

@@ -81,7 +81,8 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     }
     control_ = Control::refused;
     ++diagnostics_.refused;
-    return {input.urgent_hold ? TakeoverAction::request_hold : TakeoverAction::none, TakeoverEvent::refused};
+    tries_ = 0;
+    return {TakeoverAction::none, TakeoverEvent::refused};
 }
 
 TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
@@ -110,6 +111,28 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
     return {};
 }
 
+/// Refused: all that is left is to have the autopilot stop by itself before it is too late.
+TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noexcept
+{
+    if (input.has_report && mode_ == FlightMode::external) {
+        // Granted late, after we had given up waiting: without a stream the vehicle would stop there for good.
+        control_ = Control::ours;
+        return {TakeoverAction::none, TakeoverEvent::took_over};
+    }
+    if (!input.in_conflict && !input.wants_control) {
+        control_ = Control::autopilot;
+        return {};
+    }
+    const bool still_flying = mode_ == FlightMode::mission;
+    if (input.urgent_hold && input.may_act && still_flying && tries_ < kTries &&
+        (tries_ == 0 || now - since_ >= kConfirm)) {
+        ++tries_;
+        since_ = now;
+        return {TakeoverAction::request_hold, TakeoverEvent::none};
+    }
+    return {};
+}
+
 TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexcept
 {
     if (input.has_report) {
@@ -125,13 +148,7 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
     case Control::requesting: return ask(input, now);
     case Control::ours:
     case Control::returning: return fly(input, now);
-    case Control::refused:
-        if (input.has_report && mode_ == FlightMode::external) {
-            // Granted late, after we had given up waiting: without a stream the vehicle would stop there for good.
-            control_ = Control::ours;
-            return {TakeoverAction::none, TakeoverEvent::took_over};
-        }
-        [[fallthrough]];
+    case Control::refused: return stand_by(input, now);
     case Control::overruled:
         if (!input.in_conflict && !input.wants_control) {
             control_ = Control::autopilot;

@@ -14,7 +14,8 @@ enum class Control : std::uint8_t {
     requesting,  ///< the external mode was asked for
     ours,        ///< the autopilot follows us, confirmed by its HEARTBEAT
     returning,   ///< still ours, the former mode was asked for
-    refused,     ///< the autopilot did not give control: advise only until this conflict is over
+    refused,     ///< the autopilot did not give control: advise only until this conflict is over, and ask it to hold in
+                 ///< time
     overruled,   ///< a pilot or the autopilot chose another mode: hands off until this conflict is over
 };
 
@@ -76,7 +77,7 @@ public:
     [[nodiscard]] const TakeoverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
     /// Stream this long before the request; autopilots refuse a mode whose set-points they have not seen [s].
-    static constexpr Seconds kAnnounce = 0.1F;
+    static constexpr Seconds kAnnounce = 0.06F;
     /// Wait this long for a confirmation [s].
     static constexpr Seconds kConfirm = 1.0F;
     static constexpr int kTries = 3;
@@ -85,6 +86,7 @@ private:
     [[nodiscard]] TakeoverOutput idle(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput ask(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput fly(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput stand_by(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] bool foreign(const TakeoverInput& input) const noexcept;
     [[nodiscard]] TakeoverOutput overrule() noexcept;
 
