@@ -20,10 +20,11 @@ constexpr Micros kAskEvery = 50'000;
 /// Step of the manoeuvres that are tried [s].
 constexpr double kTrialStep = 0.01;
 
-/// Least separation of the rest of the flight under `command(position)`, from `start` on; stops early below `enough`.
-template <class Command>
+/// Least separation of the rest of the flight under `command(position)`, from `start` on, towards the threats that
+/// `counts`; ends early once it is below `enough`.
+template <class Command, class Counts>
 double least_separation(const Scenario& scenario, Truth truth, double start, double horizon, double enough,
-                        Command&& command)
+                        Command&& command, Counts&& counts)
 {
     double least = 1e9;
     const auto steps = static_cast<int>(horizon / kTrialStep);
@@ -34,31 +35,28 @@ double least_separation(const Scenario& scenario, Truth truth, double start, dou
         if (scenario.floor && truth.position.z() < *scenario.floor) {
             return -1e9;
         }
-        for (const Threat& threat : scenario.threats) {
-            const Nearest near = nearest_in_step(threat, threat.position_at(t), threat.position_at(t + kTrialStep),
-                                                 before, truth.position);
-            least = std::min(least, near.distance);
+        for (std::size_t k = 0; k < scenario.threats.size(); ++k) {
+            const Threat& threat = scenario.threats[k];
+            if (counts(k)) {
+                const Nearest near = nearest_in_step(threat, threat.position_at(t), threat.position_at(t + kTrialStep),
+                                                     before, truth.position);
+                least = std::min(least, near.distance);
+            }
         }
     }
     return least;
 }
 
-bool mission_breaks_promise(const Scenario& scenario, const World& world, const MissionPilot& mission)
+bool conflict_in_sight(const Scenario& scenario, const World& world, const MissionPilot& mission)
 {
     MissionPilot pilot = mission;
-    const double least = least_separation(scenario, world.own(), world.seconds(), kLookahead, scenario.promise,
-                                          [&](const Vec& position) { return pilot.command(position); });
+    const double least = least_separation(
+        scenario, world.own(), world.seconds(), kLookahead, scenario.promise,
+        [&](const Vec& position) { return pilot.command(position); },
+        [&](std::size_t k) {
+            return world.visible(k) && world.now() - world.appeared(k) >= to_micros(scenario.traffic.latency);
+        });
     return least < scenario.promise;
-}
-
-bool anything_seen(const Scenario& scenario, const World& world)
-{
-    for (std::size_t i = 0; i < scenario.threats.size(); ++i) {
-        if (world.visible(i)) {
-            return true;
-        }
-    }
-    return false;
 }
 
 /// Directions spread evenly over the sphere (Fibonacci lattice).
@@ -72,29 +70,15 @@ Vec direction(int i)
 
 }  // namespace
 
-Verdict judge(const Scenario& scenario, double reaction, double horizon)
+Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon)
 {
-    World world(scenario);
-    MissionPilot mission(scenario);
     Verdict verdict;
-    Micros act_at = -1;
-    while (world.now() < to_micros(scenario.duration) && (act_at < 0 || world.now() < act_at)) {
-        if (act_at < 0 && world.now() % kAskEvery == 0 && anything_seen(scenario, world) &&
-            mission_breaks_promise(scenario, world, mission)) {
-            verdict.conflict = true;
-            verdict.detected = world.seconds();
-            act_at = world.now() + to_micros(reaction);
-            continue;
-        }
-        world.step(mission.command(world.own().position));
-    }
-    if (!verdict.conflict) {
-        return verdict;
-    }
+    verdict.conflict = true;
+    verdict.detected = at;
     verdict.best = -1e9;
     const auto attempt = [&](const Vec& command) {
-        const double least = least_separation(scenario, world.own(), world.seconds(), horizon, -1e9,
-                                              [&](const Vec&) { return command; });
+        const double least = least_separation(
+            scenario, start, at, horizon, -1e8, [&](const Vec&) { return command; }, [](std::size_t) { return true; });
         ++verdict.tried;
         verdict.keep += least >= scenario.promise ? 1U : 0U;
         if (least > verdict.best) {
@@ -108,9 +92,21 @@ Verdict judge(const Scenario& scenario, double reaction, double horizon)
             attempt(along(direction(i), share * scenario.vehicle.cruise, scenario.vehicle));
         }
     }
-    // What had been too close before anybody could act counts too.
-    verdict.avoidable = verdict.keep > 0 && world.closest().surface >= scenario.promise;
+    verdict.avoidable = verdict.keep > 0;
     return verdict;
+}
+
+Verdict judge(const Scenario& scenario, double horizon)
+{
+    World world(scenario);
+    MissionPilot mission(scenario);
+    while (world.now() < to_micros(scenario.duration)) {
+        if (world.now() % kAskEvery == 0 && conflict_in_sight(scenario, world, mission)) {
+            return judge_from(scenario, world.own(), world.seconds(), horizon);
+        }
+        world.step(mission.command(world.own().position));
+    }
+    return {};
 }
 
 }  // namespace jink::sim

@@ -7,9 +7,9 @@ namespace jink::sim {
 
 /// Whether an encounter could have been avoided, found out by trying.
 struct Verdict {
-    bool conflict = false;   ///< the mission, flown on, breaks the promise
-    double detected = 0.0;   ///< first instant at which a threat is seen and the truth says that it will [s]
-    bool avoidable = false;  ///< some manoeuvre keeps the promise
+    bool conflict = false;   ///< the mission, flown on, breaks the promise towards a threat that was told of
+    double detected = 0.0;   ///< first instant at which the truth says so; of `judge_from` the instant given [s]
+    bool avoidable = false;  ///< some manoeuvre keeps the promise towards all threats, seen or not
     unsigned keep = 0;       ///< how many of those tried
     unsigned tried = 0;
     double best = 0.0;  ///< greatest least separation of all that were tried [m]
@@ -17,9 +17,12 @@ struct Verdict {
 };
 
 /// Judges a scenario with perfect knowledge and without core's code: flies the mission alone to the instant of
-/// detection plus `reaction` seconds, then from there each of 240 directions at three speeds, and braking, as constant
-/// velocity commands through the true vehicle model against the true motion of all threats, until all are past or
-/// `horizon` seconds are over. O(commands * steps * threats).
-[[nodiscard]] Verdict judge(const Scenario& scenario, double reaction = 0.0, double horizon = 12.0);
+/// detection, then from there each of 240 directions at three speeds, and braking, as constant velocity commands
+/// through the true vehicle model against the true motion of all threats for `horizon` seconds. O(commands * steps *
+/// threats).
+[[nodiscard]] Verdict judge(const Scenario& scenario, double horizon = 12.0);
+
+/// The same manoeuvres from a given true state at a given time.
+[[nodiscard]] Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon = 12.0);
 
 }  // namespace jink::sim

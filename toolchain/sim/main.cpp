@@ -96,12 +96,10 @@ int finish(const Options& options, const std::vector<ReportedFlight>& flights)
     std::cout << "; " << bad << " not as expected\n";
     for (const ReportedFlight& f : flights) {
         if (f.judged && f.record.closest.surface < f.record.promise) {
-            std::cout << f.record.name << ": " << f.record.closest.surface << " m at " << f.record.closest.time
-                      << " s; "
-                      << (f.verdict.avoidable ? "avoidable: " + std::to_string(f.verdict.keep) + " of " +
-                                                    std::to_string(f.verdict.tried) + " manoeuvres kept the promise"
-                                              : std::string("no manoeuvre tried kept the promise"))
-                      << "\n";
+            std::cout << f.record.name << ": " << f.record.closest.surface << " m from " << f.record.closest_threat
+                      << " at " << f.record.closest.time << " s; " << f.last_chance.keep << " of "
+                      << f.last_chance.tried << " manoeuvres from " << f.last_chance.detected
+                      << " s on kept the promise\n";
         }
     }
     if (!options.out.empty()) {

@@ -58,6 +58,7 @@ void Plant::take_notes()
     sample.time = world_.seconds();
     sample.position = world_.own().position;
     sample.velocity = world_.own().velocity;
+    sample.acceleration = world_.own().acceleration;
     sample.setpoint = autopilot_.setpoint();
     sample.mode = autopilot_.mode();
     sample.separation = world_.separation(sample.nearest);

@@ -31,7 +31,7 @@ Threat intruder(Random& random, const Scenario& scenario, std::size_t index)
     threat.name = "intruder_" + std::to_string(index + 1);
     threat.radius = uniform(random, 0.5, 2.0);
     const double meets_at = uniform(random, 10.0, 13.0);
-    const double seen_before = uniform(random, 5.0, 10.0);
+    const double seen_before = uniform(random, 2.0, 8.0);
     const Vec at = scenario.start_position + scenario.start_velocity * meets_at +
                    any_direction(random) * uniform(random, 0.0, index == 0 ? 0.5 : 1.5);
     Vec direction = any_direction(random);

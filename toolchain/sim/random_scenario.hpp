@@ -7,7 +7,7 @@ namespace jink::sim {
 
 /// An encounter drawn from a seed: the vehicle on a level or climbing leg; one to three intruders that pass the leg
 /// within 1.5 m (the first one within 0.5 m) of where the vehicle then is, from any direction, at 0 to 12 m/s, radius
-/// 0.5 to 2 m, seen 5 to 10 s before. Noise 0.3 m and 0.2 m/s, latency 0.1 s, jitter 0.05 s, 5 % dropouts. Either
+/// 0.5 to 2 m, seen 2 to 8 s before. Noise 0.3 m and 0.2 m/s, latency 0.1 s, jitter 0.05 s, 5 % dropouts. Either
 /// stack. The same seed gives the same scenario on every machine.
 [[nodiscard]] Scenario random_scenario(std::uint64_t seed);
 

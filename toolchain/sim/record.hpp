@@ -14,6 +14,7 @@ struct Sample {
     double time = 0.0;
     Vec position = Vec::Zero();
     Vec velocity = Vec::Zero();
+    Vec acceleration = Vec::Zero();
     Vec setpoint = Vec::Zero();  ///< in force; meaningful in external mode
     Mode mode = Mode::mission;
     double separation = 0.0;  ///< centre to the nearest surface [m]

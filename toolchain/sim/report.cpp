@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "toolchain/sim/report.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iomanip>
@@ -214,13 +215,24 @@ Json json(const ReportedFlight& flight, bool machine_independent)
 
 ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge)
 {
-    ReportedFlight flight{scenario, std::move(record), {}, 0.0, with_judge, {}, false};
+    ReportedFlight flight;
+    flight.scenario = scenario;
+    flight.record = std::move(record);
     flight.unmet = unmet(scenario, flight.record);
     flight.alone = fly_alone(scenario).closest.surface;
-    const bool broken = flight.record.closest.surface < scenario.promise;
-    if (with_judge) {
-        flight.verdict = judge(scenario);
-        flight.failed_avoidable = broken && (flight.verdict.avoidable || !flight.verdict.conflict);
+    flight.judged = with_judge;
+    if (!with_judge) {
+        return flight;
+    }
+    flight.verdict = judge(scenario);
+    const Record& r = flight.record;
+    if (r.closest.surface < scenario.promise) {
+        const double told = r.appeared[r.closest.threat] + scenario.traffic.latency;
+        const double in_sight = std::max(told, flight.verdict.conflict ? flight.verdict.detected : 0.0);
+        const Sample& then =
+            *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= in_sight; });
+        flight.last_chance = judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time);
+        flight.failed_avoidable = flight.last_chance.avoidable;
     }
     return flight;
 }

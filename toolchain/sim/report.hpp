@@ -18,8 +18,11 @@ struct ReportedFlight {
     std::vector<std::string> unmet;  ///< of the scenario's expectations; empty: as expected
     double alone = 0.0;              ///< least separation of the same mission without a co-processor [m]
     bool judged = false;
-    Verdict verdict;                ///< when judged
-    bool failed_avoidable = false;  ///< the promise was broken although the judge found a way to keep it
+    Verdict verdict;  ///< when judged
+    /// The promise was broken, and from where the vehicle was when the first sighting of the threat arrived (or the
+    /// first conflict came into sight, if that was later) one of the judge's manoeuvres would have kept it.
+    bool failed_avoidable = false;
+    Verdict last_chance;  ///< of that instant, where the promise was broken
 };
 
 /// Adds what can be found out after a flight: the expectation, the flight alone and, when `with_judge`, the verdict.
