@@ -29,6 +29,7 @@ struct Options {
     std::uint64_t seed = 1;
     unsigned at_once = 8;
     bool quiet = false;
+    bool judge = false;
 };
 
 /// jinkd beside this program, or where a build folder has it.
@@ -135,12 +136,12 @@ int fly(const Options& options)
     const std::vector<Scenario> scenarios = load_all(options.files);
     if (options.daemon.empty()) {
         for (const Scenario& scenario : scenarios) {
-            flights.push_back(report_on(scenario, fly_in_process(scenario), false));
+            flights.push_back(report_on(scenario, fly_in_process(scenario), options.judge));
         }
     } else {
         std::vector<Record> records = fly_daemons(scenarios, options.daemon, log_folder(options), options.at_once);
         for (std::size_t i = 0; i < scenarios.size(); ++i) {
-            flights.push_back(report_on(scenarios[i], std::move(records[i]), false));
+            flights.push_back(report_on(scenarios[i], std::move(records[i]), options.judge));
         }
     }
     return finish(options, flights);
@@ -198,6 +199,7 @@ int main(int argc, char** argv)
     fly_command->add_option("files", options.files, "scenario files (tests/scenario/README.md)")
         ->required()
         ->check(CLI::ExistingFile);
+    fly_command->add_flag("--judge", options.judge, "search for a manoeuvre that keeps the promise, and go by that");
     CLI::App* demo_command =
         cli.add_subcommand("demo", "all scenarios against jinkd, then random encounters in process");
     demo_command->add_option("--scenarios", options.scenarios, "folder of scenario files")
