@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MAVLink parser, decoder and encoder on arbitrary bytes. First input byte: 1 repair checksums, 2 a signing key is set, 4 longer
-// payloads accepted, 8 feed byte by byte. Checked: every byte is accounted for, work is bounded, chunks do not matter, and whatever
-// is decoded encodes to a frame that decodes to the same bytes.
+// MAVLink parser, decoder and encoder on arbitrary bytes. First input byte: 1 repair checksums, 2 a signing key is set,
+// 4 longer payloads accepted, 8 feed byte by byte. Checked: every byte is accounted for, work is bounded, chunks do not
+// matter, and whatever is decoded encodes to a frame that decodes to the same bytes.
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -49,8 +49,8 @@ struct Outcome {
 void consider(const Frame& frame, Outcome& outcome)
 {
     ++outcome.frames;
-    outcome.frame_bytes +=
-        (frame.version == 1 ? kHeaderV1 : kHeaderV2) + frame.length + kChecksumSize + (frame.is_signed ? kSignatureSize : 0);
+    outcome.frame_bytes += (frame.version == 1 ? kHeaderV1 : kHeaderV2) + frame.length + kChecksumSize +
+                           (frame.is_signed ? kSignatureSize : 0);
     for (const std::byte b : frame.payload) {
         outcome.digest = outcome.digest * 31 + std::to_integer<std::uint32_t>(b);
     }

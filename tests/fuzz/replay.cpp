@@ -49,26 +49,16 @@ void mutate(jink::Random& random, Input& input, const std::vector<Input>& seeds)
     for (std::size_t i = 0; i < steps; ++i) {
         const Input& other = seeds[random.below(seeds.size())];
         switch (input.empty() ? 2 : random.below(6)) {
-        case 0:
-            input[random.below(input.size())] ^= static_cast<std::uint8_t>(1U << random.below(8));
-            break;
-        case 1:
-            input[random.below(input.size())] = static_cast<std::uint8_t>(random.below(256));
-            break;
-        case 2:
-            input.insert(place(), static_cast<std::uint8_t>(random.below(256)));
-            break;
-        case 3:
-            input.erase(input.begin() + static_cast<std::ptrdiff_t>(random.below(input.size())));
-            break;
+        case 0: input[random.below(input.size())] ^= static_cast<std::uint8_t>(1U << random.below(8)); break;
+        case 1: input[random.below(input.size())] = static_cast<std::uint8_t>(random.below(256)); break;
+        case 2: input.insert(place(), static_cast<std::uint8_t>(random.below(256))); break;
+        case 3: input.erase(input.begin() + static_cast<std::ptrdiff_t>(random.below(input.size()))); break;
         case 4:
             if (input.size() + other.size() < 4096) {
                 input.insert(place(), other.begin(), other.end());
             }
             break;
-        default:
-            input.resize(random.below(input.size() + 1));
-            break;
+        default: input.resize(random.below(input.size() + 1)); break;
         }
     }
 }

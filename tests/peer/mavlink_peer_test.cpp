@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames exchanged with node-mavlink (npm), an implementation that shares nothing with ours: every field of every frame must
-// come out as it went in. JINK_PEER_FRAMES sets the number per direction (20000). Exit code 77: the peer is not installed.
+// Frames exchanged with node-mavlink (npm), an implementation that shares nothing with ours: every field of every frame
+// must come out as it went in. JINK_PEER_FRAMES sets the number per direction (20000). Exit code 77: the peer is not
+// installed.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -54,7 +55,8 @@ Bytes random_frame(Random& random, Header header, unsigned version, Signing* sig
 {
     payload = random_bytes(random, M::kInfo.max_length);
     if (random.below(3) == 0) {
-        std::fill(payload.begin() + static_cast<std::ptrdiff_t>(random.below(payload.size())), payload.end(), std::byte{0});
+        std::fill(payload.begin() + static_cast<std::ptrdiff_t>(random.below(payload.size())), payload.end(),
+                  std::byte{0});
     }
     const M message = from_payload<M>(payload);
     Bytes out(kMaxFrame);
@@ -93,25 +95,19 @@ std::string element_text(FieldType type, std::uint64_t bits, PeerDefects& defect
     char text[32];
     switch (type) {
     case FieldType::f32:
-        if ((bits & 0x7FC00000U) == 0x7F800000U && (bits & 0x3FFFFFU) != 0) {  // signalling NaN: no such number in JavaScript
+        if ((bits & 0x7FC00000U) == 0x7F800000U &&
+            (bits & 0x3FFFFFU) != 0) {  // signalling NaN: no such number in JavaScript
             bits |= 0x400000U;
             ++defects.quieted_nans;
         }
         std::snprintf(text, sizeof text, "%08llx", static_cast<unsigned long long>(bits));
         break;
-    case FieldType::f64:
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(bits));
-        break;
-    case FieldType::i8:
-        return std::to_string(static_cast<std::int8_t>(bits));
-    case FieldType::i16:
-        return std::to_string(static_cast<std::int16_t>(bits));
-    case FieldType::i32:
-        return std::to_string(static_cast<std::int32_t>(bits));
-    case FieldType::i64:
-        return std::to_string(static_cast<std::int64_t>(bits));
-    default:
-        return std::to_string(bits);
+    case FieldType::f64: std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(bits)); break;
+    case FieldType::i8: return std::to_string(static_cast<std::int8_t>(bits));
+    case FieldType::i16: return std::to_string(static_cast<std::int16_t>(bits));
+    case FieldType::i32: return std::to_string(static_cast<std::int32_t>(bits));
+    case FieldType::i64: return std::to_string(static_cast<std::int64_t>(bits));
+    default: return std::to_string(bits);
     }
     return text;
 }
@@ -126,7 +122,8 @@ std::string fields_text(const Kind& kind, const Bytes& payload, PeerDefects& def
         if (field.type == FieldType::character) {
             const auto begin = payload.begin() + field.wire_offset;
             const auto nul = std::find(begin, begin + field.count, std::byte{0});
-            defects.text_after_nul += std::any_of(nul, begin + field.count, [](std::byte b) { return b != std::byte{0}; });
+            defects.text_after_nul +=
+                std::any_of(nul, begin + field.count, [](std::byte b) { return b != std::byte{0}; });
             text += 't';
             text += to_hex(Bytes(begin, nul));
             continue;
@@ -139,7 +136,8 @@ std::string fields_text(const Kind& kind, const Bytes& payload, PeerDefects& def
     return text;
 }
 
-std::string line_of(unsigned version, Header h, const Kind& kind, const Bytes& payload, bool is_signed, PeerDefects& defects)
+std::string line_of(unsigned version, Header h, const Kind& kind, const Bytes& payload, bool is_signed,
+                    PeerDefects& defects)
 {
     std::ostringstream line;
     line << version << ' ' << +h.sequence << ' ' << +h.system_id << ' ' << +h.component_id << ' ' << kind.info.id;
@@ -254,7 +252,8 @@ void we_send(unsigned version, bool sign, std::size_t count)
     for (std::size_t i = 0; i < expected.size(); ++i) {
         ASSERT_EQ(printed[i], expected[i]) << "frame " << i;
     }
-    std::printf("we -> node v%u%s: %zu frames of %zu messages equal (known of the peer: %zu NaNs quieted, %zu texts cut at NUL)\n",
+    std::printf("we -> node v%u%s: %zu frames of %zu messages equal (known of the peer: %zu NaNs quieted, %zu texts "
+                "cut at NUL)\n",
                 version, sign ? " signed" : "", count, kinds.size(), defects.quieted_nans, defects.text_after_nul);
 }
 
@@ -289,7 +288,8 @@ void peer_sends(const std::string& mode, std::size_t count)
                     decoded.push_back("unexpected message " + std::to_string(frame.message_id));
                     continue;
                 }
-                decoded.push_back(line_of(frame.version, frame.header, kind->second, frame.payload, frame.is_signed, defects));
+                decoded.push_back(
+                    line_of(frame.version, frame.header, kind->second, frame.payload, frame.is_signed, defects));
             }
         }
         decoded.emplace_back("end");

@@ -13,8 +13,9 @@ static_assert(std::is_sorted(kCatalogue.begin(), kCatalogue.end(),
 
 const MessageInfo* find_message(std::uint32_t id) noexcept
 {
-    const auto* found = std::lower_bound(kCatalogue.data(), kCatalogue.data() + kCatalogue.size(), id,
-                                         [](const MessageInfo& info, std::uint32_t wanted) { return info.id < wanted; });
+    const auto* found =
+        std::lower_bound(kCatalogue.data(), kCatalogue.data() + kCatalogue.size(), id,
+                         [](const MessageInfo& info, std::uint32_t wanted) { return info.id < wanted; });
     return found != kCatalogue.data() + kCatalogue.size() && found->id == id ? found : nullptr;
 }
 

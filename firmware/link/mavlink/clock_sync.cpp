@@ -30,28 +30,40 @@ std::optional<std::int64_t> ClockSync::offset() const noexcept
     return std::nullopt;
 }
 
-ClockEvent ClockSync::accept(Window& window, std::int64_t sample, std::int64_t quality, std::int64_t now) noexcept
+void ClockSync::restart(Window& window, std::int64_t sample, std::int64_t quality, std::int64_t now) noexcept
 {
-    const std::optional<std::int64_t> known = offset();
-    if (known && (sample - *known > kJump || *known - sample > kJump)) {
-        if (++jumps_ < kJumpsToBelieve) {
-            return ClockEvent::none;
-        }
-        // A greater offset means that the remote clock shows less than before: it went back.
-        const ClockEvent event = sample > *known ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
-        one_way_ = round_trip_ = {};
-        jumps_ = 0;
-        window.add(sample, quality, now);
-        return event;
-    }
-    jumps_ = 0;
+    one_way_ = round_trip_ = {};
+    ahead_ = behind_ = disagreements_ = 0;
     window.add(sample, quality, now);
-    return ClockEvent::none;
 }
 
 ClockEvent ClockSync::one_way(std::int64_t remote, std::int64_t arrived) noexcept
 {
-    return accept(one_way_, arrived - remote, arrived - remote, arrived);
+    const std::int64_t sample = arrived - remote;
+    const std::optional<std::int64_t> known = offset();
+    if (!known) {
+        newest_ = remote;
+        one_way_.add(sample, sample, arrived);
+        return ClockEvent::none;
+    }
+    const bool from_future = sample < *known - kJump;
+    const bool late = sample > *known + kJump;
+    const bool from_past = late && remote < newest_ - kJump;
+    ahead_ = from_future ? ahead_ + 1 : 0;
+    behind_ = from_past ? behind_ + 1 : 0;
+    if (ahead_ >= kJumpsToBelieve || behind_ >= kJumpsToBelieve) {
+        newest_ = remote;
+        restart(one_way_, sample, sample, arrived);
+        return from_past ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
+    }
+    if (from_future || from_past) {
+        return ClockEvent::none;
+    }
+    newest_ = remote > newest_ ? remote : newest_;
+    if (!late) {
+        one_way_.add(sample, sample, arrived);
+    }
+    return ClockEvent::none;
 }
 
 ClockEvent ClockSync::round_trip(std::int64_t sent, std::int64_t remote, std::int64_t received) noexcept
@@ -61,7 +73,24 @@ ClockEvent ClockSync::round_trip(std::int64_t sent, std::int64_t remote, std::in
     if (took < 0 || took > kSlowest) {
         return ClockEvent::none;
     }
-    return accept(round_trip_, sent + took / 2 - remote, took, received);
+    const std::int64_t sample = sent + took / 2 - remote;
+    const std::optional<std::int64_t> known = offset();
+    const std::int64_t slack = kJump + took / 2;
+    if (known && (sample - *known > slack || *known - sample > slack)) {
+        if (++disagreements_ < kJumpsToBelieve) {
+            return ClockEvent::none;
+        }
+        newest_ = remote;
+        restart(round_trip_, sample, took, received);
+        // A greater offset means that the remote clock shows less than before: it went back.
+        return sample > *known ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
+    }
+    disagreements_ = 0;
+    if (!known) {
+        newest_ = remote;
+    }
+    round_trip_.add(sample, took, received);
+    return ClockEvent::none;
 }
 
 std::optional<std::int64_t> ClockSync::to_local(std::int64_t remote) const noexcept

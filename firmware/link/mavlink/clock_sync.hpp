@@ -13,8 +13,12 @@ enum class ClockEvent : std::uint8_t { none, relocked_forward, relocked_backward
 ///
 /// Two sources: one-way samples (arrival less stamp: the true offset plus the line's delay, so the least one is kept)
 /// and TIMESYNC round trips (midpoint; the quickest one is kept, and wins). Both over the last 5 to 10 s, so drift of
-/// 100 ppm stays below 1 ms. Samples that disagree by more than kJump three times in a row move the clock: the
-/// autopilot was set or restarted. O(1). All times in microseconds.
+/// 100 ppm stays below 1 ms. O(1). All times in microseconds.
+///
+/// A clock that jumped is told from a line that stalled: a stall can only make stamps late, in their order. So the
+/// clock is moved when three samples in a row come from the future (by more than kJump), or from before stamps already
+/// heard (a restart), or when three round trips in a row disagree by more than kJump and half their duration. A stamp
+/// that is merely late moves nothing: mapped by the clock as known, it shows its age.
 class ClockSync {
 public:
     static constexpr std::int64_t kJump = 200'000;
@@ -49,12 +53,15 @@ private:
     };
 
     [[nodiscard]] std::optional<std::int64_t> offset() const noexcept;
-    [[nodiscard]] ClockEvent accept(Window& window, std::int64_t offset, std::int64_t quality,
-                                    std::int64_t now) noexcept;
+    /// Forgets all samples but this one.
+    void restart(Window& window, std::int64_t offset, std::int64_t quality, std::int64_t now) noexcept;
 
     Window one_way_;
     Window round_trip_;
-    int jumps_ = 0;
+    int ahead_ = 0;            ///< one-way samples from the future, in a row
+    int behind_ = 0;           ///< one-way samples from before what was heard, in a row
+    int disagreements_ = 0;    ///< round trips, in a row
+    std::int64_t newest_ = 0;  ///< latest remote stamp that was believed
     bool extended_known_ = false;
     std::uint32_t last_ms_ = 0;
     std::int64_t extended_ms_ = 0;

@@ -11,9 +11,14 @@ namespace jink::link::mavlink {
 
 /// A structure of messages.hpp.
 template <class M>
-concept Message = std::is_standard_layout_v<M> && std::is_trivially_copyable_v<M> && requires {
-    { M::kInfo } -> std::convertible_to<const MessageInfo&>;
-    { M::kFields.size() } -> std::convertible_to<std::size_t>;
+concept Message = std::is_standard_layout_v<M> && std::is_trivially_copyable_v<M> && requires
+{
+    {
+        M::kInfo
+        } -> std::convertible_to<const MessageInfo&>;
+    {
+        M::kFields.size()
+        } -> std::convertible_to<std::size_t>;
 };
 
 /// Copies the fields of the structure at `object` into `payload` in wire order, little-endian.

@@ -35,7 +35,8 @@ template <Message M>
 
 /// As `encode`, with a signature of 13 bytes behind the frame.
 template <Message M>
-[[nodiscard]] std::size_t encode_signed(const M& message, Header header, Signing& signing, std::span<std::byte> out) noexcept
+[[nodiscard]] std::size_t encode_signed(const M& message, Header header, Signing& signing,
+                                        std::span<std::byte> out) noexcept
 {
     return encode_v2(reinterpret_cast<const std::byte*>(&message), {M::kInfo, M::kFields}, header, &signing, out);
 }

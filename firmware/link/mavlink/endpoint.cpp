@@ -25,6 +25,8 @@ constexpr std::uint16_t kDoSetMode = 176;
 constexpr std::uint16_t kVelocityOnly = 0x0DC7;
 constexpr std::uint8_t kReal32 = 9;
 constexpr Seconds kTimesyncPeriod = 1.0F;
+/// A line this long without a byte is not in the middle of a frame any more: 20 bytes take less at 2400 baud [s].
+constexpr Seconds kSilence = 0.1F;
 /// A stamp may lie this far ahead of our clock: resolution of the wire and of the mapping [s].
 constexpr Seconds kFutureSlack = 0.03F;
 
@@ -49,7 +51,9 @@ bool Endpoint::for_us(std::uint8_t system, std::uint8_t component) const noexcep
 
 void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept
 {
-    while (const std::optional<Frame> frame = parser_.next(bytes)) {
+    const bool silent = bytes.empty() && now - last_byte_ > kSilence;
+    last_byte_ = bytes.empty() ? last_byte_ : now;
+    while (const std::optional<Frame> frame = silent ? parser_.flush() : parser_.next(bytes)) {
         ++diagnostics_.frames_in;
         dispatch({*frame, now, inbox});
     }
@@ -84,6 +88,7 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
     switch (c.frame.message_id) {
     case LocalPositionNed::kInfo.id: on_local_position(c); break;
     case AttitudeQuaternion::kInfo.id: on_attitude(c); break;
+    case Attitude::kInfo.id: on_euler_attitude(c); break;
     case Odometry::kInfo.id: on_odometry(c); break;
     case GlobalPositionInt::kInfo.id: on_global_position(c); break;
     case GpsGlobalOrigin::kInfo.id: on_origin(c); break;
@@ -262,6 +267,9 @@ void Endpoint::service(TimePoint now) noexcept
 template <Message M>
 void Endpoint::send(const M& message) noexcept
 {
+    if (system_ == 0) {  // no autopilot heard yet: there is no system to speak for
+        return;
+    }
     std::array<std::byte, kMaxFrame> frame;
     // 0 is nobody's id: until the autopilot is known, its usual one.
     const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence_};

@@ -11,45 +11,40 @@
 #include "firmware/link/mavlink/parser.hpp"
 #include "firmware/link/mavlink/transmit_buffer.hpp"
 
-// MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. What it does with each message:
+// MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/links.md is the reference for
+// users; this is what it does with each message:
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its
-// first HEARTBEAT,
-//   component 1, unless `Options::system_id` fixes it). Own state, modes and legs are taken from that autopilot alone;
-//   traffic (ADSB_VEHICLE) and ranges from any component of our system.
-// * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION (yaw), ODOMETRY (position, velocity in its
-// child frame turned
-//   by q, sigmas from the covariances when not NaN, reset_counter), stamps mapped from the boot clock by ClockSync. One
-//   of ODOMETRY and LOCAL_POSITION_NED is enough; ODOMETRY with frame_id LOCAL_NED (1) or LOCAL_FRD refused as
-//   out_of_range when not 1.
-// * ClockSync: TIMESYNC requests once a second, lowest-round-trip filter, fallback to the least one-way delay seen; a
-// jump of more than
-//   0.2 s seen three times in a row re-locks (clock_relocks), in between such stamps are refused as stale. We answer
-//   TIMESYNC requests. time_boot_ms wraps after 49.7 days: handled modulo 2^32.
+//   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing is sent. Own state,
+//   modes and legs are taken from that autopilot alone; traffic and ranges from any component of our system.
+// * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION or ATTITUDE (yaw), ODOMETRY (all of it:
+//   velocity in its child frame turned by q, sigmas from the covariances when not NaN, reset_counter; frame_id other
+//   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 1 s. Stamps are mapped by ClockSync; older
+//   than max_stamp_age or from the future: stale_stamp. time_boot_ms wraps after 49.7 days: followed.
+// * ClockSync: TIMESYNC requests once a second, lowest-round-trip filter, fallback to the least one-way delay seen;
+//   re-locks are counted (clock_relocks), and one that goes back counts as the autopilot's restart: origin, mission and
+//   own state are forgotten. We answer the autopilot's TIMESYNC requests.
 // * Origin of the local frame: GPS_GLOBAL_ORIGIN; else HOME_POSITION (its lat/lon/alt less its local x, y, z); else
-// GLOBAL_POSITION_INT
-//   less LOCAL_POSITION_NED when both are younger than 0.2 s. Until known, ADSB_VEHICLE counts no_origin. Local plane:
-//   north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (longitude wrap at 180 deg
-//   handled).
+//   GLOBAL_POSITION_INT less LOCAL_POSITION_NED when both are younger than 0.2 s. Until known, ADSB_VEHICLE counts
+//   no_origin. Local plane: north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (the
+//   wrap at 180 degrees is handled). Above 85 degrees of latitude there is no origin.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
-// 128);
-//   emitter_type 19 (point obstacle): TrackReport::at_rest, velocity zero;
-//   stamp = now - tslc (the application takes the assumed latency off). Without valid coordinates or altitude:
-//   out_of_range.
-// * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by yaw); increment_f over increment; zero increment
-// refused; 65535 unknown; > max: nothing;
-//   0..max: range (a value below min_distance means "nearer than min": kept as min_distance). DISTANCE_SENSOR
-//   orientations 0-7, 24, 25.
-// * Leg: POSITION_TARGET_LOCAL_NED (position used, frame 1) while not in the external mode: from the position when it
-// changed to the target;
-//   mission items: MISSION_CURRENT tells the sequence number, then MISSION_REQUEST_LIST / MISSION_COUNT /
-//   MISSION_REQUEST_INT for seq - 1 and seq / MISSION_ACK; frames 0, 3, 5, 6 (global, relative to home altitude) and 1;
-//   a mission leg wins over the position target.
-// * Modes as in links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1 plus
-// the armed bit (128) as heard.
-// * COMMAND_LONG addressed to us (or to component 0 of our system): passed on; PARAM_* likewise. PARAM_SET with NaN:
-// value_finite = false.
-// * set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot.
+//   128). Without coordinates and altitude: out_of_range. emitter_type 19 (point obstacle): at_rest, velocity zero.
+//   Stamp = now - tslc (the application takes the assumed latency off).
+// * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by a yaw not older than 1 s, else no_origin);
+//   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
+//   min_distance means "nearer than that" and is kept as min_distance. A second scan within a tick takes the place of
+//   the first (inbox_full). DISTANCE_SENSOR orientations 0-7 (by yaw, as above), 24, 25.
+// * Leg: POSITION_TARGET_LOCAL_NED (frame 1) while not in the external mode: from the position when it changed to the
+//   target; mission items: MISSION_CURRENT tells the sequence number, then MISSION_REQUEST_LIST / MISSION_COUNT /
+//   MISSION_REQUEST_INT for seq and seq - 1 / MISSION_ACK; frames 0, 3, 5, 6 (global, or relative to home) and 1; items
+//   without a place of their own give no leg; a mission leg wins over the position target.
+// * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
+//   plus the armed bit (128) as heard.
+// * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
+//   that is not a finite REAL32 has value_finite = false.
+// * Set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot.
+// * A line that has been silent for 0.1 s in mid-frame: what is pending is searched once more (Parser::flush).
 
 namespace jink::link::mavlink {
 
@@ -106,6 +101,7 @@ private:
     void on_heartbeat(const Context& c) noexcept;
     void on_local_position(const Context& c) noexcept;
     void on_attitude(const Context& c) noexcept;
+    void on_euler_attitude(const Context& c) noexcept;
     void on_odometry(const Context& c) noexcept;
     void on_global_position(const Context& c) noexcept;
     void on_origin(const Context& c) noexcept;
@@ -124,7 +120,9 @@ private:
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
     void note(ClockEvent event) noexcept;
     [[nodiscard]] bool stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) noexcept;
-    void set_origin(const GlobalPosition& origin, int rank) noexcept;
+    void note_heading(float heading, TimePoint now) noexcept;
+    [[nodiscard]] bool knows_yaw(TimePoint now) const noexcept;
+    void set_origin(const std::optional<GlobalPosition>& origin, int rank) noexcept;
     [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
     void resolve_leg(Inbox& inbox) noexcept;
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
@@ -141,6 +139,7 @@ private:
     MissionClient mission_;
     std::uint8_t system_;
     std::uint8_t sequence_ = 0;
+    TimePoint last_byte_;
     TimePoint last_timesync_;
     bool timesync_asked_ = false;
 
@@ -150,6 +149,7 @@ private:
 
     vehicle::VehicleState own_;
     bool has_yaw_ = false;
+    TimePoint yaw_heard_;
     bool has_odometry_ = false;
     TimePoint last_odometry_;
     std::uint8_t reset_counter_ = 0;

@@ -20,6 +20,8 @@ constexpr unsigned kValidVelocity = 8;
 constexpr unsigned kValidVerticalVelocity = 128;
 constexpr std::uint8_t kPointObstacle = 19;
 
+constexpr std::uint8_t kReal32 = 9;
+
 constexpr std::uint16_t kUnknownDistance = 65535;
 constexpr float kCentimetre = 0.01F;
 constexpr float kDegree = kPi / 180.0F;
@@ -104,9 +106,12 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         return;
     }
-    if (m.frame == kFrameBodyFrd && !has_yaw_) {
+    if (m.frame == kFrameBodyFrd && !knows_yaw(c.now)) {
         ++diagnostics_.no_origin;
         return;
+    }
+    if (c.inbox.has_scan) {  // there is room for one: the newer takes its place
+        ++diagnostics_.inbox_full;
     }
     RangeScan& scan = c.inbox.scan;
     scan.stamp = c.now;
@@ -146,7 +151,7 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         return;
     }
-    if (level && !has_yaw_) {
+    if (level && !knows_yaw(c.now)) {
         ++diagnostics_.no_origin;
         return;
     }
@@ -218,7 +223,8 @@ void Endpoint::on_param(const Context& c) noexcept
         ours = for_us(set.target_system, set.target_component);
         request.kind = ParamRequestKind::set;
         request.name = set.param_id;
-        request.value_finite = std::isfinite(set.param_value);
+        // Another type may mean that the bits are those of an integer: no number to go by.
+        request.value_finite = std::isfinite(set.param_value) && set.param_type == kReal32;
         request.value = request.value_finite ? set.param_value : 0.0F;
     }
     if (!ours) {

@@ -25,6 +25,10 @@ constexpr float kLargestSpeed = 400.0F;
 constexpr Seconds kOdometryFresh = 1.0F;
 /// Own global and local position this close in time make an origin [s].
 constexpr Seconds kPairAge = 0.2F;
+/// Ranges seen from the body are placed by a heading no older than this [s].
+constexpr Seconds kYawFresh = 1.0F;
+/// Angles on the wire lie within a turn either way [rad].
+constexpr float kLargestAngle = 2.0F * kPi;
 /// A target that moves less is the same target [m].
 constexpr float kSameTarget = 0.5F;
 
@@ -38,6 +42,13 @@ float sigma_of(const std::array<float, 21>& covariance) noexcept
 {
     const float largest = std::max({covariance[0], covariance[6], covariance[11]});
     return std::isfinite(covariance[0]) && std::isfinite(largest) && largest > 0.0F ? std::sqrt(largest) : 0.0F;
+}
+
+/// q scaled to length 1: the wire rounds, and `turn` would stretch what it turns.
+std::array<float, 4> normalised(const std::array<float, 4>& q) noexcept
+{
+    const float scale = 1.0F / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    return {scale * q[0], scale * q[1], scale * q[2], scale * q[3]};
 }
 
 /// v turned by the unit quaternion q = (w, x, y, z).
@@ -113,9 +124,32 @@ void Endpoint::on_attitude(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         return;
     }
-    own_.yaw = swap_heading_yaw(heading_of(q));
-    has_yaw_ = true;
+    note_heading(heading_of(normalised(q)), c.now);
 }
+
+void Endpoint::on_euler_attitude(const Context& c) noexcept
+{
+    Attitude m;
+    static_cast<void>(decode(c.frame, m));
+    if (!std::isfinite(m.yaw)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if (std::abs(m.yaw) > kLargestAngle) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    note_heading(m.yaw, c.now);
+}
+
+void Endpoint::note_heading(float heading, TimePoint now) noexcept
+{
+    own_.yaw = swap_heading_yaw(heading);
+    has_yaw_ = true;
+    yaw_heard_ = now;
+}
+
+bool Endpoint::knows_yaw(TimePoint now) const noexcept { return has_yaw_ && now - yaw_heard_ <= kYawFresh; }
 
 void Endpoint::on_odometry(const Context& c) noexcept
 {
@@ -140,30 +174,31 @@ void Endpoint::on_odometry(const Context& c) noexcept
     if (m.time_usec < kSince1970 && !stamp_of(static_cast<std::int64_t>(m.time_usec), c.now, stamp)) {
         return;
     }
-    velocity = in_body ? turn(m.q, velocity) : velocity;
+    const std::array<float, 4> q = normalised(m.q);
+    velocity = in_body ? turn(q, velocity) : velocity;
     const bool reset = has_odometry_ && m.reset_counter != reset_counter_;
     reset_counter_ = m.reset_counter;
     has_odometry_ = true;
     last_odometry_ = c.now;
     own_.position = swap_ned_enu(ned);
     own_.velocity = swap_ned_enu(velocity);
-    own_.yaw = swap_heading_yaw(heading_of(m.q));
+    note_heading(heading_of(q), c.now);
     own_.sigma_position = sigma_of(m.pose_covariance);
     own_.sigma_velocity = sigma_of(m.velocity_covariance);
-    has_yaw_ = has_local_ = true;
+    has_local_ = true;
     local_heard_ = c.now;
     c.inbox.own_state.estimator_reset = c.inbox.own_state.estimator_reset || reset;
     deliver_own_state(c.inbox, stamp);
 }
 
-void Endpoint::set_origin(const GlobalPosition& origin, int rank) noexcept
+void Endpoint::set_origin(const std::optional<GlobalPosition>& origin, int rank) noexcept
 {
-    if (!is_on_earth(origin)) {
+    if (!origin || !is_on_earth(*origin) || std::abs(origin->lat) > kHighestLatitude) {
         ++diagnostics_.out_of_range;
         return;
     }
     if (rank >= origin_rank_) {
-        origin_ = origin;
+        origin_ = *origin;
         origin_rank_ = rank;
     }
 }
@@ -189,7 +224,7 @@ void Endpoint::on_origin(const Context& c) noexcept
 {
     GpsGlobalOrigin m;
     static_cast<void>(decode(c.frame, m));
-    set_origin({m.latitude, m.longitude, m.altitude}, 3);
+    set_origin(GlobalPosition{m.latitude, m.longitude, m.altitude}, 3);
 }
 
 void Endpoint::on_home(const Context& c) noexcept
@@ -269,7 +304,9 @@ bool Endpoint::place(const MissionPoint& point, Vec3& local) const noexcept
     }
     const bool relative = point.frame == kFrameGlobalRelative || point.frame == kFrameGlobalRelativeInt;
     const bool absolute = point.frame == kFrameGlobal || point.frame == kFrameGlobalInt;
-    if (origin_rank_ == 0 || (!relative && !absolute) || (relative && !has_home_)) {
+    // Latitude and longitude 0 stand for "here" in ArduPilot's items; the greatest integer for "not said".
+    const bool has_place = is_on_earth({point.x, point.y, 0}) && (point.x != 0 || point.y != 0);
+    if (origin_rank_ == 0 || (!relative && !absolute) || (relative && !has_home_) || !has_place) {
         return false;
     }
     local = to_local({point.x, point.y, origin_.alt}, origin_);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "core/base/vec3.hpp"
 
@@ -45,14 +46,28 @@ inline constexpr float kMetresPerDegE7 = 6378137.0F * kPi / 180.0F * 1e-7F;
             static_cast<float>(static_cast<std::int64_t>(p.alt) - origin.alt) * 1e-3F};
 }
 
-/// The inverse: where a local position lies on the globe. Same accuracy; latitudes above 89 degrees are no place for
-/// it.
-[[nodiscard]] inline GlobalPosition to_global(const Vec3& local, const GlobalPosition& origin) noexcept
+/// Beyond this latitude a plane with meridians for one axis is no map any more [degE7].
+inline constexpr std::int32_t kHighestLatitude = 850000000;
+
+/// The inverse of `to_local`: where a local position (components up to 1000 km) lies on the globe. Same accuracy.
+/// Nothing when the origin or the result lies beyond kHighestLatitude or the altitude does not fit.
+[[nodiscard]] inline std::optional<GlobalPosition> to_global(const Vec3& local, const GlobalPosition& origin) noexcept
 {
+    constexpr std::int64_t kTurn = 3600000000LL;
+    constexpr std::int64_t kHighestAltitude = 1000000000;
+    if (origin.lat < -kHighestLatitude || origin.lat > kHighestLatitude) {
+        return std::nullopt;
+    }
     const float cosine = std::cos(static_cast<float>(origin.lat) * 1e-7F * kPi / 180.0F);
-    return {origin.lat + static_cast<std::int32_t>(std::lround(local.y() / kMetresPerDegE7)),
-            origin.lon + static_cast<std::int32_t>(std::lround(local.x() / (kMetresPerDegE7 * cosine))),
-            origin.alt + static_cast<std::int32_t>(std::lround(local.z() * 1e3F))};
+    const std::int64_t lat = origin.lat + static_cast<std::int64_t>(local.y() / kMetresPerDegE7);
+    const std::int64_t alt = origin.alt + static_cast<std::int64_t>(local.z() * 1e3F);
+    std::int64_t lon = origin.lon + static_cast<std::int64_t>(local.x() / (kMetresPerDegE7 * cosine));
+    lon += lon > kTurn / 2 ? -kTurn : lon < -kTurn / 2 ? kTurn : 0;
+    if (lat < -kHighestLatitude || lat > kHighestLatitude || alt < -kHighestAltitude || alt > kHighestAltitude) {
+        return std::nullopt;
+    }
+    return GlobalPosition{static_cast<std::int32_t>(lat), static_cast<std::int32_t>(lon),
+                          static_cast<std::int32_t>(alt)};
 }
 
 }  // namespace jink::link::mavlink

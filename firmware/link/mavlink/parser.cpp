@@ -39,7 +39,8 @@ std::optional<Frame> Parser::flush() noexcept
 void Parser::take(std::span<const std::byte>& input) noexcept
 {
     if (end_ == buffer_.size()) {
-        // Less than half is pending, so more than half has gone since the last move: at most one byte moved per byte taken.
+        // Less than half is pending, so more than half has gone since the last move: at most one byte moved per byte
+        // taken.
         std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.end(), buffer_.begin());
         end_ -= begin_;
         begin_ = 0;
@@ -57,15 +58,12 @@ std::optional<Frame> Parser::scan() noexcept
         skip_noise();
         Candidate candidate{};
         switch (examine(candidate)) {
-        case Verdict::incomplete:
-            return std::nullopt;
+        case Verdict::incomplete: return std::nullopt;
         case Verdict::rejected:
             ++diagnostics_.noise_bytes;
             ++begin_;
             break;
-        case Verdict::refused:
-            begin_ += candidate.size;
-            break;
+        case Verdict::refused: begin_ += candidate.size; break;
         case Verdict::accepted: {
             const Frame frame = deliver(candidate);
             begin_ += candidate.size;
@@ -170,17 +168,10 @@ Parser::Verdict Parser::check_signature(const Candidate& candidate) noexcept
         cause = &diagnostics_.unsigned_refused;
     } else {
         switch (signing_->check(std::span(buffer_).subspan(begin_, candidate.size))) {
-        case SignatureStatus::valid:
-            break;
-        case SignatureStatus::wrong:
-            cause = &diagnostics_.wrong_signature;
-            break;
-        case SignatureStatus::stale:
-            cause = &diagnostics_.stale_signature;
-            break;
-        case SignatureStatus::streams_full:
-            cause = &diagnostics_.signature_streams;
-            break;
+        case SignatureStatus::valid: break;
+        case SignatureStatus::wrong: cause = &diagnostics_.wrong_signature; break;
+        case SignatureStatus::stale: cause = &diagnostics_.stale_signature; break;
+        case SignatureStatus::streams_full: cause = &diagnostics_.signature_streams; break;
         }
     }
     if (cause == nullptr) {
@@ -217,8 +208,12 @@ Frame Parser::deliver(const Candidate& candidate) noexcept
     std::fill(payload_.begin() + static_cast<std::ptrdiff_t>(candidate.length), payload_.end(), std::byte{0});
     follow_sequence(candidate.header);
     ++diagnostics_.accepted;
-    return {candidate.message_id, candidate.version, candidate.header, candidate.is_signed,
-            static_cast<std::uint8_t>(candidate.length), payload_};
+    return {candidate.message_id,
+            candidate.version,
+            candidate.header,
+            candidate.is_signed,
+            static_cast<std::uint8_t>(candidate.length),
+            payload_};
 }
 
 }  // namespace jink::link::mavlink

@@ -57,17 +57,19 @@ enum class LongerPayload : std::uint8_t {
 
 /// Finds MAVLink frames (v1 and v2) in a stream of bytes.
 ///
-/// After noise, a cut frame or a false start byte the search goes on at the byte behind the rejected start byte, so a good
-/// frame that lies inside what a bad one claimed is still found; the frames found are those of a left-to-right scan of
-/// the whole stream. A frame of an unknown id cannot be checked and is searched in the same way (docs/links.md).
+/// After noise, a cut frame or a false start byte the search goes on at the byte behind the rejected start byte, so a
+/// good frame that lies inside what a bad one claimed is still found; the frames found are those of a left-to-right
+/// scan of the whole stream. A frame of an unknown id cannot be checked and is searched in the same way
+/// (docs/links.md).
 ///
-/// Work: each start byte is examined once; at most kMaxFrame - 1 bytes go through the checksum and one SHA-256 for each byte
-/// of input, and at most one byte is moved. One call on top of that may scan again what was pending: less than
+/// Work: each start byte is examined once; at most kMaxFrame - 1 bytes go through the checksum and one SHA-256 for each
+/// byte of input, and at most one byte is moved. One call on top of that may scan again what was pending: less than
 /// kMaxFrame bytes, so at most kMaxFrame^2 / 2 checksum bytes. Nothing is allocated.
 /// Memory: 2 * kMaxFrame + kMaxPayload + 3 * kMaxSenders bytes and the counters.
 class Parser {
 public:
-    /// @param signing  key and times to check signatures with; must outlive the parser. nullptr: signed frames are refused.
+    /// @param signing  key and times to check signatures with; must outlive the parser. nullptr: signed frames are
+    /// refused.
     explicit Parser(Signing* signing = nullptr, LongerPayload longer = LongerPayload::reject) noexcept
         : signing_(signing), longer_(longer)
     {
@@ -78,8 +80,8 @@ public:
     ///     while (const auto frame = parser.next(input)) { handle(*frame); }
     [[nodiscard]] std::optional<Frame> next(std::span<const std::byte>& input) noexcept;
 
-    /// For a line that has fallen silent in mid-frame: gives up the incomplete candidate in front and searches what it has
-    /// swallowed. Repeat until nothing comes back; then nothing is pending.
+    /// For a line that has fallen silent in mid-frame: gives up the incomplete candidate in front and searches what it
+    /// has swallowed. Repeat until nothing comes back; then nothing is pending.
     [[nodiscard]] std::optional<Frame> flush() noexcept;
 
     /// Bytes taken that are not yet part of a verdict; below kMaxFrame between calls that return nothing.

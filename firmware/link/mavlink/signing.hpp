@@ -32,7 +32,8 @@ class Signing {
 public:
     using Key = std::array<std::byte, 32>;
 
-    Signing(const Key& key, std::uint8_t link_id, std::uint64_t time) noexcept : key_(key), time_(time), link_id_(link_id)
+    Signing(const Key& key, std::uint8_t link_id, std::uint64_t time) noexcept
+        : key_(key), time_(time), link_id_(link_id)
     {
     }
 

@@ -45,7 +45,10 @@ Bytes good_frame()
     return frame_of(m, {42, 42, 42});
 }
 
-bool is_good_frame(const Received& r) { return r.message_id == 0 && r.header.system_id == 42 && r.payload[0] == std::byte{0xA5}; }
+bool is_good_frame(const Received& r)
+{
+    return r.message_id == 0 && r.header.system_id == 42 && r.payload[0] == std::byte{0xA5};
+}
 
 /// Frames other than the good one that follows the damaged bytes; fails when the good one is not found.
 std::size_t strangers(const Bytes& damaged, LongerPayload longer = LongerPayload::reject)
@@ -91,8 +94,8 @@ TEST(MavlinkDamage, NoSingleFlippedBitIsAccepted)
     std::printf("single flipped bits: %zu tried, 0 accepted\n", flips);
 }
 
-// A length that changed makes the parser look for the checksum in another place, where any two bytes may stand: no checksum
-// of 16 bits can promise more than one in 2^16 here. Four times that is allowed for chance.
+// A length that changed makes the parser look for the checksum in another place, where any two bytes may stand: no
+// checksum of 16 bits can promise more than one in 2^16 here. Four times that is allowed for chance.
 TEST(MavlinkDamage, FlippedLengthsAreAcceptedNoMoreOftenThanTheChecksumAllows)
 {
     std::size_t tries = 0;
@@ -189,7 +192,8 @@ TEST(MavlinkDamage, EveryLength)
     for (const Sample& sample : samples(base_seed(), false)) {
         for (std::size_t length = 0; length <= 255; ++length) {
             const bool fits = length <= sample.info.max_length;
-            ASSERT_EQ(strangers(frame_of_length(sample.info, length, 2)), fits ? 1U : 0U) << sample.info.id << " " << length;
+            ASSERT_EQ(strangers(frame_of_length(sample.info, length, 2)), fits ? 1U : 0U)
+                << sample.info.id << " " << length;
             ASSERT_EQ(strangers(frame_of_length(sample.info, length, 2), LongerPayload::accept), 1U);
             if (sample.info.id < 256) {
                 const bool exact = length == sample.info.min_length;

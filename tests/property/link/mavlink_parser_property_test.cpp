@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parser against a brute-force search over the whole stream, and its promised bound on work. Streams mix noise full of
-// false start bytes, good frames, and frames with every kind of damage.
+// The parser against a brute-force search over the whole stream, and its promised bound on work. Streams mix noise full
+// of false start bytes, good frames, and frames with every kind of damage.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -25,8 +25,8 @@ struct Place {
     friend bool operator==(const Place&, const Place&) = default;
 };
 
-/// Is there a whole frame with a right checksum at `p`? Written from the format's description, nothing shared with the parser
-/// but the table of ids.
+/// Is there a whole frame with a right checksum at `p`? Written from the format's description, nothing shared with the
+/// parser but the table of ids.
 bool frame_at(std::span<const std::byte> s, std::size_t p, Place& place)
 {
     const auto at = [&](std::size_t i) { return std::to_integer<unsigned>(s[p + i]); };
@@ -77,11 +77,12 @@ std::vector<Bytes> sample_frames(Random& random)
         M message = random_message<M>(random);
         if (random.below(3) == 0) {  // a short one
             Bytes payload = payload_of(message);
-            std::fill(payload.begin() + static_cast<std::ptrdiff_t>(random.below(payload.size())), payload.end(), std::byte{0});
+            std::fill(payload.begin() + static_cast<std::ptrdiff_t>(random.below(payload.size())), payload.end(),
+                      std::byte{0});
             message = from_payload<M>(payload);
         }
         frames.push_back(random.below(4) == 0 && M::kInfo.id < 256 ? legacy_frame_of(message, header)
-                                                                    : frame_of(message, header));
+                                                                   : frame_of(message, header));
     });
     return frames;
 }
@@ -101,29 +102,28 @@ Bytes noise(Random& random)
 /// False header of a message that is known and long: the parser must wait for all that it claims.
 Bytes false_header(Random& random)
 {
-    const std::vector<std::string_view> headers{"fdff000001010100006e", "fda700000001c44a0100", "fde70000000101" "4b0100",
-                                                "fd090000000101000000", "fe0900010100", "fe1c00010120", "fd0102fe", "fdff01"};
+    const std::vector<std::string_view> headers{"fdff000001010100006e",
+                                                "fda700000001c44a0100",
+                                                "fde70000000101"
+                                                "4b0100",
+                                                "fd090000000101000000",
+                                                "fe0900010100",
+                                                "fe1c00010120",
+                                                "fd0102fe",
+                                                "fdff01"};
     return from_hex(headers[random.below(headers.size())]);
 }
 
 void damage(Random& random, Bytes& frame)
 {
     switch (random.below(6)) {
-    case 0:
-        frame[random.below(frame.size())] ^= static_cast<std::byte>(1U << random.below(8));
-        break;
-    case 1:
-        frame.resize(random.below(frame.size()));
-        break;
-    case 2:
-        frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(random.below(frame.size())));
-        break;
+    case 0: frame[random.below(frame.size())] ^= static_cast<std::byte>(1U << random.below(8)); break;
+    case 1: frame.resize(random.below(frame.size())); break;
+    case 2: frame.erase(frame.begin() + static_cast<std::ptrdiff_t>(random.below(frame.size()))); break;
     case 3:
         frame.insert(frame.begin() + static_cast<std::ptrdiff_t>(random.below(frame.size())), std::byte{0xFD});
         break;
-    case 4:
-        frame[1] = static_cast<std::byte>(random.below(256));
-        break;
+    case 4: frame[1] = static_cast<std::byte>(random.below(256)); break;
     default:
         frame[std::min<std::size_t>(frame.size() - 1, 7)] = std::byte{3};  // no such message
         break;
@@ -137,17 +137,10 @@ Bytes random_stream(Random& random, const std::vector<Bytes>& frames)
     for (std::size_t i = 0; i < parts; ++i) {
         Bytes part = frames[random.below(frames.size())];
         switch (random.below(6)) {
-        case 0:
-            part = noise(random);
-            break;
-        case 1:
-            part = false_header(random);
-            break;
-        case 2:
-            damage(random, part);
-            break;
-        default:
-            break;
+        case 0: part = noise(random); break;
+        case 1: part = false_header(random); break;
+        case 2: damage(random, part); break;
+        default: break;
         }
         stream.insert(stream.end(), part.begin(), part.end());
     }
@@ -177,7 +170,8 @@ TEST(MavlinkParserLaw, FindsExactlyWhatABruteForceSearchFinds)
         ASSERT_EQ(found.size(), unsigned_ones.size()) << "JINK_SEED=" << seed;
         for (std::size_t i = 0; i < found.size(); ++i) {
             const std::size_t header = found[i].version == 1 ? kHeaderV1 : kHeaderV2;
-            const Bytes payload(unsigned_ones[i].begin() + static_cast<std::ptrdiff_t>(header), unsigned_ones[i].end() - 2);
+            const Bytes payload(unsigned_ones[i].begin() + static_cast<std::ptrdiff_t>(header),
+                                unsigned_ones[i].end() - 2);
             ASSERT_EQ(found[i].length, payload.size()) << "JINK_SEED=" << seed;
             ASSERT_TRUE(std::equal(payload.begin(), payload.end(), found[i].payload.begin())) << "JINK_SEED=" << seed;
         }

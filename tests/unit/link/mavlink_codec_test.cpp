@@ -87,8 +87,9 @@ TEST(MavlinkCodec, WrongMessageIsNotDecoded)
 
 TEST(MavlinkCodec, SpecialFloatsPassBitExactly)
 {
-    constexpr std::array<std::uint32_t, 12> kPatterns{0x00000000, 0x80000000, 0x7F800000, 0xFF800000, 0x7FC00000, 0xFFC00001,
-                                                      0x7F800001, 0xFFBFFFFF, 0x00000001, 0x807FFFFF, 0x7F7FFFFF, 0x00800000};
+    constexpr std::array<std::uint32_t, 12> kPatterns{0x00000000, 0x80000000, 0x7F800000, 0xFF800000,
+                                                      0x7FC00000, 0xFFC00001, 0x7F800001, 0xFFBFFFFF,
+                                                      0x00000001, 0x807FFFFF, 0x7F7FFFFF, 0x00800000};
     for (const std::uint32_t pattern : kPatterns) {
         for_each_message([pattern]<class M>() {
             Bytes payload(M::kInfo.max_length, std::byte{0x55});

@@ -87,9 +87,10 @@ TEST(MavlinkGoldenFrames, SetPositionTargetLocalNed)
     m.target_system = 1;
     m.target_component = 1;
     m.coordinate_frame = 1;
-    expect_golden(m, kUs,
-                  "fd3500000001c4540000e80300000000000000000000000000000000803f000000bf0000803e0000000000000000000000000000"
-                  "000000000000c70d010101b1a2");
+    expect_golden(
+        m, kUs,
+        "fd3500000001c4540000e80300000000000000000000000000000000803f000000bf0000803e0000000000000000000000000000"
+        "000000000000c70d010101b1a2");
 }
 
 TEST(MavlinkGoldenFrames, Collision)
@@ -143,8 +144,7 @@ TEST(MavlinkGoldenFrames, LocalPositionNed)
     m.z = -3.0F;
     m.vx = 0.5F;
     m.vz = -0.25F;
-    expect_golden(m, {1, 1, 0},
-                  "fd1c0000000101200000e80300000000803f00000040000040c00000003f00000000000080be1792");
+    expect_golden(m, {1, 1, 0}, "fd1c0000000101200000e80300000000803f00000040000040c00000003f00000000000080be1792");
 }
 
 TEST(MavlinkGoldenFrames, Statustext)
@@ -170,8 +170,9 @@ TEST(MavlinkGoldenFrames, AdsbVehicle)
     ASSERT_TRUE(set_text(m.callsign, "N123AB"));
     m.emitter_type = 14;
     m.tslc = 1;
-    expect_golden(m, {1, 156, 0},
-                  "fd26000000019cf60000efcdab004c52401c44f41705804f12002823dc0538ff7f00b004004e31323341420000000e01bee1");
+    expect_golden(
+        m, {1, 156, 0},
+        "fd26000000019cf60000efcdab004c52401c44f41705804f12002823dc0538ff7f00b004004e31323341420000000e01bee1");
 }
 
 // Key = SHA-256("secret"), link 3, time 2026-01-01T00:00:00Z; made by node-mavlink, accepted by the C library.
