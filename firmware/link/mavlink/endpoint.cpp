@@ -267,7 +267,7 @@ void Endpoint::service(TimePoint now) noexcept
 template <Message M>
 void Endpoint::send(const M& message) noexcept
 {
-    if (system_ == 0) {  // no autopilot heard yet: there is no system to speak for
+    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // nobody known yet to speak to
         return;
     }
     std::array<std::byte, kMaxFrame> frame;

@@ -15,8 +15,9 @@
 // users; this is what it does with each message:
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its
-//   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing is sent. Own state,
-//   modes and legs are taken from that autopilot alone; traffic and ranges from any component of our system.
+//   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing but HEARTBEAT is
+//   sent, as system 1. Own state, modes and legs are taken from that autopilot alone; traffic and ranges from any
+//   component of our system.
 // * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION or ATTITUDE (yaw), ODOMETRY (all of it:
 //   velocity in its child frame turned by q, sigmas from the covariances when not NaN, reset_counter; frame_id other
 //   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 1 s. Stamps are mapped by ClockSync; older

@@ -16,7 +16,7 @@ struct GlobalPosition {
     std::int32_t alt = 0;
 };
 
-inline constexpr float kMetresPerDegE7 = 6378137.0F * kPi / 180.0F * 1e-7F;
+inline constexpr float kEarthRadius = 6378137.0F;  ///< [m]
 
 /// North, east, down on the wire and our ENU: the same swap both ways.
 [[nodiscard]] inline Vec3 swap_ned_enu(const Vec3& v) noexcept { return {v.y(), v.x(), -v.z()}; }
@@ -29,25 +29,33 @@ inline constexpr float kMetresPerDegE7 = 6378137.0F * kPi / 180.0F * 1e-7F;
     return p.lat >= -900000000 && p.lat <= 900000000 && p.lon >= -1800000000 && p.lon <= 1800000000;
 }
 
-/// Position relative to `origin` on the plane that touches the sphere there [m, ENU]. Differences are taken in
-/// integers, so the error is that of the plane: below 1 m within 10 km of the origin up to 60 degrees of latitude.
+/// Beyond this latitude there is no map: its east turns too fast [degE7].
+inline constexpr std::int32_t kHighestLatitude = 850000000;
+
+/// Distance of a local position from that by great circle and bearing (the azimuthal projection that PX4 uses;
+/// ArduPilot differs from it by half the second-order term), on the same sphere, for places within 10 km of the origin
+/// [m].
+inline constexpr float kMapError = 0.05F;      ///< up to 60 degrees of latitude
+inline constexpr float kPolarMapError = 1.0F;  ///< up to kHighestLatitude
+
+/// Position relative to `origin` [m, ENU], on a sphere, to second order in the distance: see kMapError. Differences are
+/// taken in integers, so nothing is lost to rounding. PX4 takes a radius that is 0.11 % smaller than ours and
+/// ArduPilot's: 1 m in 1 km.
 [[nodiscard]] inline Vec3 to_local(const GlobalPosition& p, const GlobalPosition& origin) noexcept
 {
     constexpr std::int64_t kTurn = 3600000000LL;
+    constexpr float kRadians = 1e-7F * kPi / 180.0F;
     std::int64_t dlon = static_cast<std::int64_t>(p.lon) - origin.lon;
-    if (dlon > kTurn / 2) {
-        dlon -= kTurn;
-    } else if (dlon < -kTurn / 2) {
-        dlon += kTurn;
-    }
+    dlon += dlon > kTurn / 2 ? -kTurn : dlon < -kTurn / 2 ? kTurn : 0;
     const std::int64_t dlat = static_cast<std::int64_t>(p.lat) - origin.lat;
-    const float cosine = std::cos(static_cast<float>(origin.lat) * 1e-7F * kPi / 180.0F);
-    return {static_cast<float>(dlon) * kMetresPerDegE7 * cosine, static_cast<float>(dlat) * kMetresPerDegE7,
+    const float lat0 = static_cast<float>(origin.lat) * kRadians;
+    const float sine = std::sin(lat0);
+    const float cosine = std::cos(lat0);
+    const float north = static_cast<float>(dlat) * kRadians;
+    const float turn = static_cast<float>(dlon) * kRadians;
+    return {kEarthRadius * turn * (cosine - sine * north), kEarthRadius * (north + 0.5F * turn * turn * sine * cosine),
             static_cast<float>(static_cast<std::int64_t>(p.alt) - origin.alt) * 1e-3F};
 }
-
-/// Beyond this latitude a plane with meridians for one axis is no map any more [degE7].
-inline constexpr std::int32_t kHighestLatitude = 850000000;
 
 /// The inverse of `to_local`: where a local position (components up to 1000 km) lies on the globe. Same accuracy.
 /// Nothing when the origin or the result lies beyond kHighestLatitude or the altitude does not fit.
@@ -55,17 +63,20 @@ inline constexpr std::int32_t kHighestLatitude = 850000000;
 {
     constexpr std::int64_t kTurn = 3600000000LL;
     constexpr std::int64_t kHighestAltitude = 1000000000;
+    constexpr float kRadians = 1e-7F * kPi / 180.0F;
     if (origin.lat < -kHighestLatitude || origin.lat > kHighestLatitude) {
         return std::nullopt;
     }
-    const float cosine = std::cos(static_cast<float>(origin.lat) * 1e-7F * kPi / 180.0F);
-    const std::int64_t lat = origin.lat + static_cast<std::int64_t>(local.y() / kMetresPerDegE7);
-    const std::int64_t alt = origin.alt + static_cast<std::int64_t>(local.z() * 1e3F);
-    std::int64_t lon = origin.lon + static_cast<std::int64_t>(local.x() / (kMetresPerDegE7 * cosine));
-    lon += lon > kTurn / 2 ? -kTurn : lon < -kTurn / 2 ? kTurn : 0;
+    const float lat0 = static_cast<float>(origin.lat) * kRadians;
+    const float east = local.x() / kEarthRadius;
+    const float north = local.y() / kEarthRadius - 0.5F * east * east * std::tan(lat0);
+    const std::int64_t lat = origin.lat + std::llround(north / kRadians);
+    const std::int64_t alt = origin.alt + std::llround(local.z() * 1e3F);
     if (lat < -kHighestLatitude || lat > kHighestLatitude || alt < -kHighestAltitude || alt > kHighestAltitude) {
         return std::nullopt;
     }
+    std::int64_t lon = origin.lon + std::llround(east / ((std::cos(lat0) - std::sin(lat0) * north) * kRadians));
+    lon += lon > kTurn / 2 ? -kTurn : lon < -kTurn / 2 ? kTurn : 0;
     return GlobalPosition{static_cast<std::int32_t>(lat), static_cast<std::int32_t>(lon),
                           static_cast<std::int32_t>(alt)};
 }

@@ -20,9 +20,16 @@ TEST_F(MavlinkEndpointState, NothingCountsBeforeAnAutopilotIsHeard)
     EXPECT_FALSE(endpoint->has_origin());
     EXPECT_EQ(count().frames_ignored, 3U);
     EXPECT_EQ(endpoint->system_id(), 0);
-    endpoint->send_heartbeat(SystemState::boot);
+    endpoint->send_velocity({1, 2, 3}, now);
+    endpoint->request_external_mode();
+    endpoint->send_text(Severity::info, "hello");
     endpoint->service(now);
-    EXPECT_TRUE(endpoint->pending().empty()) << "there is no system id to send under";
+    EXPECT_TRUE(endpoint->pending().empty()) << "nobody known to speak to";
+    endpoint->send_heartbeat(SystemState::boot);
+    const std::vector<Received> frames = sent();
+    ASSERT_EQ(frames.size(), 1U);
+    EXPECT_EQ(frames[0].message_id, Heartbeat::kInfo.id);
+    EXPECT_EQ(frames[0].header.system_id, 1) << "0 is nobody's";
 }
 
 TEST_F(MavlinkEndpointState, LearnsItsSystemFromTheFirstAutopilot)
