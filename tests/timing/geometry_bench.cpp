@@ -9,7 +9,7 @@
 #include "core/geometry/convex.hpp"
 #include "core/geometry/sweep.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
-#include "tests/timing/fcl_scene.hpp"
+#include "tests/timing/crossing_scene.hpp"
 
 namespace {
 
