@@ -10,7 +10,10 @@ namespace jink::geometry::detail {
 
 namespace {
 
-/// A triangle or tetrahedron whose height is below this share of its sides has no inside worth the name in float.
+/// Relative rounding error of a cross product and a dot product after it, with room to spare.
+constexpr float kSumRounding = 8.0F * 0x1p-24F;
+
+/// A triangle whose height is below this share of its sides has no inside worth the name in float.
 constexpr float kFlat = 1e-6F;
 
 Vec3 keep_one(Simplex& s, const Vec3& a) noexcept
@@ -82,15 +85,16 @@ Vec3 nearest_on_triangle(Simplex& s, const Vec3& a, const Vec3& b, const Vec3& c
     if (ac_c >= 0.0F && ab_c <= ac_c) {
         return keep_one(s, c);
     }
-    const float on_c = ab_a * ac_b - ab_b * ac_a;
+    // Signed areas across the sides as triple products: as differences of the dot products above they would cancel.
+    const float on_c = normal.dot(a.cross(b));
     if (on_c <= 0.0F && ab_a >= 0.0F && ab_b <= 0.0F) {
         return keep_two(s, a, b, ab_a / (ab_a - ab_b));
     }
-    const float on_b = ab_c * ac_a - ab_a * ac_c;
+    const float on_b = normal.dot(c.cross(a));
     if (on_b <= 0.0F && ac_a >= 0.0F && ac_c <= 0.0F) {
         return keep_two(s, a, c, ac_a / (ac_a - ac_c));
     }
-    const float on_a = ab_b * ac_c - ab_c * ac_b;
+    const float on_a = normal.dot(b.cross(c));
     const float towards_c = ac_b - ab_b;
     const float towards_b = ab_c - ac_c;
     if (on_a <= 0.0F && towards_c >= 0.0F && towards_b >= 0.0F) {
@@ -102,14 +106,18 @@ Vec3 nearest_on_triangle(Simplex& s, const Vec3& a, const Vec3& b, const Vec3& c
     return (normal.dot(a) / normal.squaredNorm()) * normal;
 }
 
-/// Whether the origin may lie beyond the plane of a, b, c seen from `inner`; a flat tetrahedron says yes on all sides.
+/// Whether the origin may lie beyond the plane of a, b, c seen from `inner`. Within rounding of the plane, or of a
+/// tetrahedron without height, the answer is yes: what is not surely inside is searched face by face.
 bool may_be_beyond(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& inner) noexcept
 {
     const Vec3 normal = (b - a).cross(c - a);
     const float height = normal.dot(inner - a);
     const float origin = -normal.dot(a);
-    const bool flat = std::abs(height) <= kFlat * normal.norm() * (inner - a).norm();
-    return flat || (height > 0.0F ? origin < 0.0F : origin > 0.0F);
+    const float rounding = kSumRounding * (b - a).norm() * (c - a).norm();
+    if (std::abs(height) <= rounding * (inner - a).norm() || std::abs(origin) <= rounding * a.norm()) {
+        return true;
+    }
+    return (height > 0.0F) != (origin > 0.0F);
 }
 
 Vec3 nearest_on_tetrahedron(Simplex& s) noexcept

@@ -59,19 +59,22 @@ inline Vec3d exact_support(const Shape& shape, const Vec3d& direction)
     return shape.centre.cast<double>() + axes * point;
 }
 
+/// Points kept at once. Four span a simplex; affinely dependent ones may stay a while.
+inline constexpr int kMostPoints = 16;
+
 /// Least-norm point of the affine hull of `points`, as weights.
 inline std::vector<double> affine_weights(const std::vector<Vec3d>& points)
 {
     std::vector<double> weights(points.size(), 0.0);
     weights[0] = 1;
     if (points.size() > 1) {
-        // Five points at most, in place: the core forbids Eigen's heap.
-        Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 4> sides(
+        // In place: the core forbids Eigen's heap.
+        Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostPoints> sides(
             3, static_cast<Eigen::Index>(points.size()) - 1);
         for (Eigen::Index i = 0; i < sides.cols(); ++i) {
             sides.col(i) = points[static_cast<std::size_t>(i) + 1] - points[0];
         }
-        const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, 4, 1> along =
+        const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPoints, 1> along =
             sides.completeOrthogonalDecomposition().solve(-points[0]);
         for (Eigen::Index i = 0; i < sides.cols(); ++i) {
             weights[static_cast<std::size_t>(i) + 1] = along(i);
@@ -101,6 +104,9 @@ Bounds distance_from_origin(const Support& reach, double tolerance)
         const Vec3d next = reach(-x);
         bounds.lower = std::max(bounds.lower, x.dot(next) / x.norm());
         if (bounds.upper - bounds.lower <= tolerance) {
+            return bounds;
+        }
+        if (points.size() > kMostPoints) {
             return bounds;
         }
         points.push_back(next);

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometry/convex.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include <Eigen/Geometry>
+
+namespace jink::geometry {
+namespace {
+
+const Vec3 kHalf(1.0F, 1.0F, 1.0F);
+const Vec3 kZero = Vec3::Zero();
+const std::array<Vec3, 4> kWedge{Vec3(0.0F, -1.0F, -1.0F), Vec3(0.0F, 1.0F, -1.0F), Vec3(2.0F, 0.0F, -1.0F),
+                                 Vec3(0.0F, 0.0F, 1.0F)};
+
+/// One of each kind, all about 1 m in size.
+std::array<Shape, 5> one_of_each(const Vec3& centre)
+{
+    return {make_sphere(centre, 1.0F), make_box(centre, Vec3::Ones()),
+            make_capsule(centre - Vec3::UnitX(), centre + Vec3::UnitX(), 0.5F),
+            make_cylinder(centre - Vec3::UnitZ(), centre + Vec3::UnitZ(), 1.0F), make_hull(kWedge, centre)};
+}
+
+Contact contact(const Vec3& from, const Vec3& to, const Shape& shape, float clearance = 0.0F)
+{
+    WorkBudget budget(kSupportCallsPerQuery);
+    return swept_box_contact(kHalf, from, to, shape, clearance, budget);
+}
+
+float distance(const Vec3& from, const Vec3& to, const Shape& shape, float reach = 100.0F, float resolution = 1e-4F)
+{
+    WorkBudget budget(kSupportCallsPerQuery);
+    return swept_box_distance(kHalf, from, to, shape, reach, resolution, budget);
+}
+
+TEST(SweptBoxContact, WithEachKindOnItsWayAndBesideIt)
+{
+    const Vec3 from(-10.0F, 0.0F, 0.0F);
+    const Vec3 to(10.0F, 0.0F, 0.0F);
+    for (const Shape& shape : one_of_each({3.0F, 0.5F, 0.0F})) {
+        EXPECT_EQ(contact(from, to, shape), Contact::contact) << int(shape.kind);
+    }
+    for (const Shape& shape : one_of_each({3.0F, 4.0F, 0.0F})) {
+        EXPECT_EQ(contact(from, to, shape), Contact::clear) << int(shape.kind);
+        EXPECT_EQ(contact(from, to, shape, 3.0F), Contact::contact) << int(shape.kind);
+    }
+    // Short of it, and past it.
+    for (const Shape& shape : one_of_each({13.5F, 0.0F, 0.0F})) {
+        EXPECT_EQ(contact(from, to, shape), Contact::clear) << int(shape.kind);
+        EXPECT_EQ(contact(-from, -to, shape), Contact::clear) << int(shape.kind);
+    }
+}
+
+TEST(SweptBoxContact, ASweptBoxIsNotTheBoxAroundItsWay)
+{
+    // A diagonal way leaves two corners of its bounding box free.
+    const Shape post = make_cylinder({8.0F, -8.0F, -5.0F}, {8.0F, -8.0F, 5.0F}, 1.0F);
+    EXPECT_EQ(contact({-10.0F, -10.0F, 0.0F}, {10.0F, 10.0F, 0.0F}, post), Contact::clear);
+    EXPECT_NEAR(distance({-10.0F, -10.0F, 0.0F}, {10.0F, 10.0F, 0.0F}, post), 8.8995F, 1e-3F);
+}
+
+TEST(SweptBoxContact, TouchingCounts)
+{
+    EXPECT_EQ(contact(kZero, kZero, make_box({2.0F, 0.0F, 0.0F}, Vec3::Ones())), Contact::contact);
+    EXPECT_EQ(contact(kZero, kZero, make_box({2.001F, 0.0F, 0.0F}, Vec3::Ones())), Contact::clear);
+    EXPECT_EQ(contact(kZero, kZero, make_box({2.5F, 0.0F, 0.0F}, Vec3::Ones()), 0.5F), Contact::contact);
+    EXPECT_EQ(contact(kZero, kZero, make_sphere({3.0F, 0.0F, 0.0F}, 2.0F)), Contact::contact);
+    // Corner to corner, edge to edge.
+    EXPECT_EQ(contact(kZero, kZero, make_box({2.0F, 2.0F, 2.0F}, Vec3::Ones())), Contact::contact);
+    EXPECT_EQ(contact(kZero, kZero, make_box({2.0F, 2.0F, 0.0F}, Vec3::Ones())), Contact::contact);
+}
+
+TEST(SweptBoxContact, OfThingsWithoutSize)
+{
+    const std::array<Vec3, 1> point{kZero};
+    WorkBudget budget(10'000);
+    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_hull(point, kZero), 0.0F, budget), Contact::contact);
+    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_hull(point, Vec3::UnitX()), 0.0F, budget), Contact::clear);
+    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_hull(point, Vec3::UnitX()), 1.0F, budget), Contact::contact);
+    EXPECT_EQ(swept_box_contact(kZero, -Vec3::UnitX(), Vec3::UnitX(), make_hull(point, kZero), 0.0F, budget),
+              Contact::contact);
+    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_box(kZero, kZero), 0.0F, budget), Contact::contact);
+    EXPECT_FALSE(budget.exhausted());
+}
+
+TEST(SweptBoxContact, TheSameAtMillimetresAndAtAKilometre)
+{
+    for (const float scale : {1e-3F, 1.0F, 1e3F}) {
+        const Mat3 axes = Eigen::AngleAxisf(0.7F, Vec3(1.0F, 2.0F, 3.0F).normalized()).toRotationMatrix();
+        const Vec3 at = scale * Vec3(3.0F, 0.3F, -0.2F);
+        const Shape shape = make_box(at, scale * Vec3(1.0F, 0.5F, 0.2F), axes);
+        const Vec3 half = scale * kHalf;
+        WorkBudget budget(10'000);
+        const float apart = swept_box_distance(half, kZero, kZero, shape, 100.0F * scale, 0.0F, budget);
+        EXPECT_GT(apart, 0.5F * scale);
+        EXPECT_EQ(swept_box_contact(half, kZero, kZero, shape, apart * 0.9999F, budget), Contact::clear);
+        EXPECT_EQ(swept_box_contact(half, kZero, kZero, shape, apart * 1.0001F, budget), Contact::contact);
+    }
+}
+
+TEST(SweptBoxContact, ABudgetTooSmallIsSpentAndNeverClear)
+{
+    // Slanted and close, so that no first direction parts them.
+    const Mat3 axes = Eigen::AngleAxisf(0.6F, Vec3(1.0F, 1.0F, 0.3F).normalized()).toRotationMatrix();
+    const Shape shape = make_box({1.7F, 1.5F, 1.1F}, {1.0F, 0.6F, 0.4F}, axes);
+    WorkBudget ample(kSupportCallsPerQuery);
+    const Contact full = swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, ample);
+    ASSERT_GE(ample.spent(), 4U);
+    for (std::uint32_t units = 0; units < ample.spent(); ++units) {
+        WorkBudget budget(units);
+        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, budget), Contact::budget_spent) << units;
+        EXPECT_TRUE(budget.exhausted());
+        EXPECT_LE(budget.spent(), units);
+    }
+    WorkBudget exact(ample.spent());
+    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, exact), full);
+    EXPECT_FALSE(exact.exhausted());
+}
+
+TEST(SweptBoxContact, ClosedFormsTakeOneUnit)
+{
+    for (const Shape& shape :
+         {make_sphere({3.0F, 0.0F, 0.0F}, 1.0F), make_capsule({3.0F, 0.0F, 0.0F}, {4.0F, 0.0F, 0.0F}, 1.0F)}) {
+        WorkBudget none(0);
+        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, none), Contact::budget_spent);
+        EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, shape, 10.0F, 0.01F, none), 0.0F);
+        WorkBudget one(1);
+        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, one), Contact::clear);
+        EXPECT_EQ(one.spent(), 1U);
+    }
+}
+
+TEST(SweptBoxContact, BeyondTheBoundingSphereNothingIsSpent)
+{
+    WorkBudget none(0);
+    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, make_box({9.0F, 0.0F, 0.0F}, Vec3::Ones()), 1.0F, none),
+              Contact::clear);
+    EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, make_box({9.0F, 0.0F, 0.0F}, Vec3::Ones()), 5.0F, 0.01F, none),
+              5.0F);
+    EXPECT_FALSE(none.exhausted());
+}
+
+TEST(SweptBoxDistance, OfEachKind)
+{
+    const Vec3 centre(0.0F, 7.0F, 0.0F);
+    const auto shapes = one_of_each(centre);
+    const std::array<float, 5> expected{5.0F, 5.0F, 5.5F, 5.0F, 5.0F};
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+        const float found = distance(kZero, kZero, shapes[i]);
+        EXPECT_LE(found, expected[i]) << i;
+        EXPECT_NEAR(found, expected[i], 3e-4F) << i;
+    }
+}
+
+TEST(SweptBoxDistance, IsZeroInContactAndCappedAtReach)
+{
+    for (const Shape& shape : one_of_each({0.5F, 0.0F, 0.0F})) {
+        EXPECT_EQ(distance(kZero, kZero, shape), 0.0F) << int(shape.kind);
+    }
+    for (const Shape& shape : one_of_each({8.0F, 0.0F, 0.0F})) {
+        EXPECT_EQ(distance(kZero, kZero, shape, 2.0F), 2.0F) << int(shape.kind);
+        EXPECT_EQ(distance(kZero, kZero, shape, 0.0F), 0.0F) << int(shape.kind);
+    }
+}
+
+TEST(SweptBoxDistance, IsZeroWhenTheBudgetRunsOut)
+{
+    const Shape shape = make_cylinder({2.5F, -1.0F, 0.3F}, {2.0F, 2.0F, 3.0F}, 0.7F);
+    WorkBudget ample(1000);
+    ASSERT_GT(swept_box_distance(kHalf, kZero, Vec3::UnitZ(), shape, 10.0F, 0.0F, ample), 0.0F);
+    for (std::uint32_t units = 0; units < ample.spent(); ++units) {
+        WorkBudget budget(units);
+        EXPECT_EQ(swept_box_distance(kHalf, kZero, Vec3::UnitZ(), shape, 10.0F, 0.0F, budget), 0.0F);
+        EXPECT_TRUE(budget.exhausted());
+    }
+}
+
+TEST(SweptBoxDistance, AHullNeedNotHoldItsOwnCentre)
+{
+    const std::array<Vec3, 2> far{Vec3(10.0F, 0.0F, -1.0F), Vec3(10.0F, 0.0F, 1.0F)};
+    EXPECT_NEAR(distance(kZero, kZero, make_hull(far, kZero)), 9.0F, 1e-3F);
+    EXPECT_EQ(contact(kZero, kZero, make_hull(far, kZero)), Contact::clear);
+}
+
+}  // namespace
+}  // namespace jink::geometry
