@@ -21,7 +21,7 @@ namespace jink::geometry {
 enum class Contact : std::uint8_t { clear, contact, budget_spent };
 
 /// Support calls (of either solid) allowed for one query; libccd gets half of them, the distance search what is left.
-/// Over ten million random pairs, a third of them grazing, no query took more than 104; without an answer by then it is
+/// Over ten million random pairs, a third of them grazing, no query took more than 106; without an answer by then it is
 /// contact.
 inline constexpr std::uint32_t kSupportCallsPerQuery = 128;
 
