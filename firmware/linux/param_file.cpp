@@ -83,6 +83,9 @@ std::vector<std::string> misfits(const ParamValues& values)
     if (!cost::is_valid(cost::Weights{smoothness, time, 1.0F - smoothness - time})) {
         out.emplace_back("GEO_K_S and GEO_K_T leave closeness a weight outside 0 to 0.7: their sum must be 0.3 to 1");
     }
+    if (static_cast<unsigned>(value_of(values, Param::offsets)) % 2U != 0) {
+        out.emplace_back("GEO_OFFSETS must be even");
+    }
     const float families = (static_cast<unsigned>(value_of(values, Param::families)) == 3U) ? 2.0F : 1.0F;
     if (families * value_of(values, Param::offsets) * (value_of(values, Param::planes) + 1.0F) >
         static_cast<float>(kMaxCandidates)) {

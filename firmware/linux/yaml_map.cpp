@@ -85,9 +85,9 @@ std::optional<YAML::Node> parse_yaml(const std::string& text, const std::string&
         }
         return documents.front();
     } catch (const YAML::Exception& error) {
-        complaints.push_back(complaint_at(error.mark, file, "is not YAML: " + error.msg));
+        complaints.push_back(complaint_at(error.mark, file, "is not YAML: " + printable(error.msg)));
     } catch (const std::exception& error) {
-        complaints.push_back({0, 0, std::string("is not YAML: ") + error.what(), file});
+        complaints.push_back({0, 0, "is not YAML: " + printable(error.what()), file});
     }
     return std::nullopt;
 }
@@ -225,7 +225,8 @@ std::optional<std::string> YamlMap::text(std::string_view key, Need need)
         return std::nullopt;
     }
     const std::string& value = entry->value.Scalar();
-    if (std::any_of(value.begin(), value.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
+    if (std::any_of(value.begin(), value.end(),
+                    [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; })) {
         complain(key, "text of one line without control characters is wanted");
         return std::nullopt;
     }

@@ -2,6 +2,7 @@
 #include "toolchain/host/problem_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <tuple>
 
 #include "toolchain/host/problem_parts.hpp"
@@ -13,6 +14,7 @@ using files::Complaints;
 using files::YamlMap;
 constexpr auto kNeed = YamlMap::Need::required;
 constexpr files::Range kSpeed{0.5F, 100.0F};
+constexpr std::array<std::string_view, 2> kBuiltInVehicles{"default", "uav2"};
 constexpr float kShortest = 1e-3F;  // of a leg or a direction
 
 /// What the reader has in hand besides the file it fills.
@@ -42,7 +44,8 @@ void read_vehicle_part(Reader& reader)
             if (reader.complaints.size() != before) {
                 reader.root.complain(
                     "vehicle", files::in_quotes(node->Scalar()) +
-                                   " is neither a vehicle file beside this one that can be used, nor default or uav2");
+                                   " is neither a vehicle file beside this one that can be used, nor default or uav2" +
+                                   files::suggestion(node->Scalar(), kBuiltInVehicles));
             }
         }
     } else if (node) {
@@ -251,7 +254,7 @@ std::variant<ProblemFile, Complaints> read(const YAML::Node& node, const std::st
     if (!complaints.empty()) {
         std::stable_sort(complaints.begin(), complaints.end(),
                          [](const files::Complaint& a, const files::Complaint& b) {
-                             return std::tie(a.file, a.line) < std::tie(b.file, b.line);
+                             return std::tie(a.file, a.line, a.column) < std::tie(b.file, b.line, b.column);
                          });
         return complaints;
     }

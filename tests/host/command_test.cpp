@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The jink command as its user meets it: arguments, exit statuses, what goes to which stream, the report.
+#include <sys/wait.h>
+
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/host/scratch.hpp"
+
+namespace {
+
+using jink::test::Scratch;
+using jink::test::slurp;
+
+struct Ran {
+    int status = -1;
+    std::string out;
+    std::string err;
+};
+
+/// Runs jink in the scratch folder; arguments are shell words.
+Ran jink(const Scratch& scratch, const std::string& arguments)
+{
+    const std::string command =
+        "cd '" + scratch.path().string() + "' && '" JINK_PROGRAM "' " + arguments + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, slurp(scratch.path() / "out.txt"),
+            slurp(scratch.path() / "err.txt")};
+}
+
+const std::string kGood = "vehicle: default\nleg: {start: [0, 0, 20], end: [60, 0, 20], speed: 5}\n"
+                          "threats: [{position: [20, 1, 20], velocity: [-3, 0, 0], radius: 1.5}]\n";
+const std::string kStop = "vehicle: default\nstart: [0, 0, 20]\ndirection: [1, 0, 0]\ndistance: 2.4\n"
+                          "threats: [{position: [2.4, 0, 20], radius: 1}]\n";
+
+TEST(Command, PlanExitsWithZeroTwoOrOne)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("good.yaml", kGood));
+    static_cast<void>(scratch.write("stop.yaml", kStop));
+    static_cast<void>(scratch.write("bad.yaml", kGood + "speeed: 5\n"));
+    const Ran good = jink(scratch, "plan good.yaml");
+    EXPECT_EQ(good.status, 0) << good.err;
+    EXPECT_NE(good.out.find("Fly candidate"), std::string::npos);
+    EXPECT_EQ(good.err, "");
+    const Ran stop = jink(scratch, "plan stop.yaml");
+    EXPECT_EQ(stop.status, 2);
+    EXPECT_NE(stop.out.find("Stop: "), std::string::npos);
+    const Ran bad = jink(scratch, "plan bad.yaml");
+    EXPECT_EQ(bad.status, 1);
+    EXPECT_EQ(bad.out, "");
+    EXPECT_EQ(bad.err, "bad.yaml:4:1: unknown key 'speeed'; did you mean 'speed'?\n");
+    const Ran none = jink(scratch, "plan none.yaml");
+    EXPECT_EQ(none.status, 1);
+    EXPECT_EQ(none.err, "none.yaml: no such file\n");
+}
+
+TEST(Command, PlanInEveryFormat)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("good.yaml", kGood));
+    const auto json = nlohmann::json::parse(jink(scratch, "plan good.yaml --format json --points").out);
+    EXPECT_EQ(json["status"], "found");
+    EXPECT_EQ(json["candidates"].size(), 32U);
+    EXPECT_EQ(json["candidates"][0]["points"].size(), 25U);
+    const std::string csv = jink(scratch, "plan good.yaml --format csv").out;
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 33);
+    EXPECT_EQ(jink(scratch, "plan good.yaml --format table").out, jink(scratch, "plan good.yaml").out);
+}
+
+TEST(Command, PlanAsTheSourceOrInAnotherMode)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("good.yaml", kGood));
+    const std::string source = jink(scratch, "plan good.yaml --source").out;
+    EXPECT_NE(source.find("swept security, offsets by the source's rule"), std::string::npos);
+    EXPECT_EQ(source.find("not flyable"), std::string::npos) << "the source does not ask";
+    EXPECT_NE(jink(scratch, "plan good.yaml --mode swept").out.find("swept security, offsets by the clearing rule"),
+              std::string::npos);
+    EXPECT_NE(jink(scratch, "plan good.yaml --source --mode time-aware")
+                  .out.find("time-aware security, offsets by the source's rule"),
+              std::string::npos);
+    EXPECT_EQ(jink(scratch, "plan good.yaml --budget 1").status, 2);
+}
+
+TEST(Command, WrongCommandLinesExitWithOneAndHelpWithZero)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("good.yaml", kGood));
+    for (const char* arguments : {"", "fly", "plan", "plan good.yaml --format xml", "plan good.yaml --mode fast",
+                                  "plan good.yaml --sauce", "plan good.yaml --budget 0", "plan good.yaml --budget -5",
+                                  "check", "check --as poem good.yaml", "report", "report . --run x"}) {
+        const Ran ran = jink(scratch, arguments);
+        EXPECT_EQ(ran.status, 1) << arguments;
+        EXPECT_NE(ran.err, "") << arguments;
+    }
+    for (const char* arguments : {"--help", "plan --help", "check --help", "report --help"}) {
+        const Ran ran = jink(scratch, arguments);
+        EXPECT_EQ(ran.status, 0) << arguments;
+        EXPECT_NE(ran.out.find("Usage"), std::string::npos) << arguments;
+    }
+}
+
+TEST(Command, CheckKnowsEveryKindOfFile)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("problem.yaml", kGood));
+    static_cast<void>(scratch.write("p.parm", "JNK_MODE,1\n"));
+    static_cast<void>(scratch.write("bad.parm", "JNK_MOOD,1\nJNK_MODE,7\n"));
+    static_cast<void>(scratch.write("odd.parm", "GEO_OFFSETS,5\n"));
+    static_cast<void>(
+        scratch.write("scenario.yaml", "mission: [[0, 0, 30], [10, 0, 30]]\nexpect: {outcome: clear}\nseeed: 3\n"));
+    static_cast<void>(scratch.write("riddle.yaml", "what: is it\n"));
+    static_cast<void>(scratch.write("broken.yaml", "a: [1\n"));
+    const Ran good = jink(scratch, "check problem.yaml p.parm '" JINK_SOURCES "/firmware/vehicles/default.yaml'");
+    EXPECT_EQ(good.status, 0) << good.err;
+    EXPECT_EQ(good.out, "problem.yaml: good (problem)\np.parm: good (params)\n" JINK_SOURCES
+                        "/firmware/vehicles/default.yaml: good (vehicle)\n");
+    EXPECT_EQ(good.err, "");
+
+    const Ran bad = jink(scratch, "check bad.parm problem.yaml odd.parm");
+    EXPECT_EQ(bad.status, 1);
+    EXPECT_EQ(bad.out, "problem.yaml: good (problem)\n");
+    EXPECT_NE(bad.err.find("bad.parm:1: unknown parameter 'JNK_MOOD'; did you mean 'JNK_MODE'?\n"), std::string::npos)
+        << bad.err;
+    EXPECT_NE(bad.err.find("bad.parm:2: JNK_MODE: '7' is out of range: 0 to 2"), std::string::npos) << bad.err;
+    EXPECT_NE(bad.err.find("odd.parm: GEO_OFFSETS must be even"), std::string::npos) << bad.err;
+
+    const Ran scenario = jink(scratch, "check scenario.yaml");
+    EXPECT_EQ(scenario.status, 1);
+    EXPECT_EQ(scenario.err, "scenario.yaml:3: unknown key 'seeed'\n");
+    EXPECT_NE(jink(scratch, "check riddle.yaml").err.find("is neither a vehicle nor a problem nor a scenario"),
+              std::string::npos);
+    EXPECT_NE(jink(scratch, "check broken.yaml").err.find("is not YAML"), std::string::npos);
+    EXPECT_NE(jink(scratch, "check --as vehicle problem.yaml").err.find("missing key 'kind'"), std::string::npos);
+    EXPECT_NE(jink(scratch, "check none.parm").err.find("no such file"), std::string::npos);
+    EXPECT_NE(jink(scratch, "check --as scenario none.yaml").err.find("none.yaml: cannot be read"), std::string::npos);
+}
+
+TEST(Command, EveryFileThatIsShippedIsGood)
+{
+    const Scratch scratch;
+    const Ran ran = jink(scratch, "check '" JINK_SOURCES "'/firmware/vehicles/*.yaml '" JINK_SOURCES
+                                  "'/tests/scenario/*.yaml '" JINK_SOURCES "'/tests/scenario/problems/*.yaml");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+}
+
+/// A run with one flight of each kind, as jink-sim writes it.
+nlohmann::json sample_run()
+{
+    nlohmann::json series{{"t", nlohmann::json::array()},
+                          {"position", nlohmann::json::array()},
+                          {"mode", nlohmann::json::array()},
+                          {"separation", nlohmann::json::array()}};
+    nlohmann::json way = nlohmann::json::array();
+    for (int i = 0; i < 60; ++i) {
+        series["t"].push_back(0.1 * i);
+        series["position"].push_back({0.5 * i, i > 20 && i < 40 ? 2.0 : 0.0, 30.0});
+        series["mode"].push_back(i > 20 && i < 40 ? "external" : "mission");
+        series["separation"].push_back(std::abs(30 - i) + 1.5);
+        way.push_back({30.0 - 0.5 * i, 0.0, 30.0});
+    }
+    const nlohmann::json flight{
+        {"name", "one"},
+        {"title", "A title with <script>alert(1)</script> & \"quotes\""},
+        {"transport", "daemon"},
+        {"stack", "px4"},
+        {"outcome", "avoided"},
+        {"expected", {"avoided"}},
+        {"as_expected", true},
+        {"promise", 0.7},
+        {"duration", 6.0},
+        {"least",
+         {{"surface", 1.5},
+          {"alone", -1.0},
+          {"t", 3.0},
+          {"threat", "intruder"},
+          {"own", {15, 2, 30}},
+          {"centre", {15, 0, 30}}}},
+        {"link", {{"texts", {{{"t", 1.9}, {"severity", 4}, {"text", "jink: conflict, traffic in 3.0 s"}}}}}},
+        {"mission", {{0, 0, 30}, {60, 0, 30}}},
+        {"threats",
+         {{{"name", "intruder"},
+           {"radius", 1.0},
+           {"half_height", 0.0},
+           {"moves", true},
+           {"appeared", 1.0},
+           {"positions", way}}}},
+        {"series", series},
+        {"inside", {{"plan_steps", {{"count", 3}, {"mean_us", 40.0}, {"worst_us", 75.0}}}, {"first_candidate", "x"}}},
+        {"fan",
+         {{{"status", "chosen"}, {"points", {{0, 0, 30}, {5, 2, 30}, {10, 0, 30}}}},
+          {{"status", "hits_moving"}, {"points", {{0, 0, 30}, {5, -2, 30}, {10, 0, 30}}}}}}};
+    nlohmann::json random = flight;
+    random["name"] = "random_1";
+    random["judge"] = {{"avoidable", true}};
+    random["outcome"] = "breach";
+    random["least"]["surface"] = 0.2;
+    return {{"flights", {flight, random}}};
+}
+
+TEST(Command, ReportIsOneFileThatFetchesNothing)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("run.json", sample_run().dump()));
+    const Ran ran = jink(scratch, "report .");
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const std::string page = slurp(scratch.path() / "report.html");
+    EXPECT_TRUE(page.starts_with("<!DOCTYPE html>"));
+    EXPECT_TRUE(page.ends_with("</html>\n"));
+    for (const char* outside :
+         {"src=\"http", "href=\"http", "url(", "@import", "<link", "<script", "<iframe", "src=\"/", "src=\"file"}) {
+        EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+    }
+    std::size_t images = 0;
+    for (std::size_t at = page.find("<img src=\""); at != std::string::npos; at = page.find("<img src=\"", at + 1)) {
+        EXPECT_EQ(page.compare(at + 10, 11, "data:image/"), 0);
+        ++images;
+    }
+    EXPECT_EQ(images, 7U) << "five of the flight, random flights, times";
+    EXPECT_NE(page.find("&lt;script&gt;alert(1)&lt;/script&gt; &amp; &quot;quotes&quot;"), std::string::npos);
+    EXPECT_NE(page.find("1 of 2"), std::string::npos) << "kept the promise";
+    EXPECT_NE(page.find("1.50 m"), std::string::npos);
+    EXPECT_NE(page.find("a way out was found afterwards"), std::string::npos);
+    EXPECT_NE(page.find("jink: conflict, traffic in 3.0 s"), std::string::npos);
+}
+
+TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
+{
+    const Scratch scratch;
+    nlohmann::json bare = sample_run();
+    bare["flights"] = {
+        nlohmann::json::object(),
+        {{"name", "named"}, {"series", {{"t", {0, 1}}}}},
+        {{"name", 3}, {"least", nullptr}, {"threats", {nullptr, 7}}, {"fan", {{{"points", {{1, 2}}}}}}, {"series", 4}}};
+    static_cast<void>(scratch.write("bare.json", bare.dump()));
+    const Ran ran = jink(scratch, "report --run bare.json --out page.html");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_EQ(ran.out, "Written: page.html\n");
+    static_cast<void>(scratch.write("empty.json", "{\"flights\": []}"));
+    EXPECT_EQ(jink(scratch, "report --run empty.json").status, 0);
+    EXPECT_NE(slurp(scratch.path() / "report.html").find("The run holds no flights."), std::string::npos);
+
+    const struct {
+        const char* text;
+        const char* complaint;
+    } cases[] = {
+        {"{", "is not JSON"},
+        {"[]", "holds no list of flights"},
+        {"{\"flights\": 3}", "holds no list of flights"},
+        {"{\"flights\": [3]}", "a flight is no JSON object"},
+    };
+    for (const auto& c : cases) {
+        static_cast<void>(scratch.write("wrong.json", c.text));
+        const Ran wrong = jink(scratch, "report --run wrong.json");
+        EXPECT_EQ(wrong.status, 1) << c.text;
+        EXPECT_NE(wrong.err.find(c.complaint), std::string::npos) << wrong.err;
+    }
+    EXPECT_NE(jink(scratch, "report --run none.json").err.find("No such file"), std::string::npos);
+    EXPECT_EQ(jink(scratch, "report --run empty.json --out /nowhere/page.html").status, 1);
+    const Ran python = jink(scratch, "report --run empty.json --python /nowhere/python3");
+    EXPECT_EQ(python.status, 1);
+    EXPECT_NE(python.err.find("/nowhere/python3 cannot be started"), std::string::npos) << python.err;
+}
+
+}  // namespace
