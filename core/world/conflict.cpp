@@ -18,6 +18,9 @@ using geometry::Motion;
 constexpr Seconds kPiece = 0.5F;
 /// Cross-track error up to which the vehicle counts as being on the leg [m].
 constexpr float kOnLeg = 0.25F;
+/// Pieces that one track is looked at in, inside a margin: 60 s of them at a quarter of a second, twice. Spent is a
+/// conflict.
+constexpr std::uint32_t kDrawingApartBudget = 480;
 /// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro
 /// tab. 4.1).
 constexpr float kLargestRadius = 3.0F;
@@ -85,6 +88,36 @@ Seconds loss_within(const Situation& situation, const Phase& phase, const Track&
     return -1.0F;
 }
 
+/// The way as a path: flown to its end, and hovered there until `until` where `hovers`.
+path::TimedPath path_of(const std::array<Phase, 2>& phases, bool hovers) noexcept
+{
+    path::TimedPath path;
+    for (const Phase& phase : phases) {
+        if (phase.end > phase.start) {
+            path.points.unchecked_push_back({phase.own.position, phase.own.velocity, phase.start});
+        }
+        if (!hovers) {
+            break;
+        }
+    }
+    const Phase& last = phases[hovers ? 1 : 0];
+    const Vec3 velocity = path.points.empty() ? Vec3(Vec3::Zero()) : path.points.back().velocity;
+    const Seconds span = last.end - last.start;
+    path.points.unchecked_push_back({last.own.position + last.own.velocity * span, velocity, last.end});
+    return path;
+}
+
+/// A way that starts inside a margin and draws apart from this one threat for good. Nothing on it could mend the start.
+bool draws_apart(const Situation& situation, std::span<const Track> tracks, std::span<const Obstacle> obstacles,
+                 const path::TimedPath& path, WorkBudget& budget) noexcept
+{
+    const Airspace open;
+    const Situation alone{
+        situation.now, situation.own, situation.limits, situation.airframe, situation.reference, tracks,
+        obstacles,     open,          nullptr,          situation.k_sigma};
+    return least_separation(alone, path, path.duration(), budget, kDrawingApart).margin >= 0.0F;
+}
+
 bool sphere_like_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, const Vec3& half,
                           float radius, Seconds lookahead, Conflict& out) noexcept
 {
@@ -147,8 +180,11 @@ bool obstacle_conflict(const Situation& situation, const Way& way, std::size_t i
     out.own_at_closest = way_position(way, out.time_to_closest);
     out.threat_at_closest = shape.centre;
     out.miss_distance = (shape.centre - out.own_at_closest).norm();
-    // Already inside the margin and flying off: nothing ahead to avoid.
-    return out.time_to_loss > 0.0F || along > 0.0F;
+    if (out.time_to_loss > 0.0F) {
+        return true;
+    }
+    const path::TimedPath path = path_of(phases_of(way, lookahead), false);
+    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), path, budget);
 }
 
 bool comes_first(const Conflict& a, const Conflict& b) noexcept
@@ -195,9 +231,11 @@ bool predict_conflict(const Situation& situation, const Way& way, std::size_t tr
         return false;
     }
     const Seconds closest = closest_time(phases, track);
-    // Inside the margin already and drawing apart: nothing on the way can mend it.
-    if (loss <= 0.0F && closest <= 0.0F) {
-        return false;
+    if (loss <= 0.0F) {
+        WorkBudget budget(kDrawingApartBudget);
+        if (draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, path_of(phases, true), budget)) {
+            return false;
+        }
     }
     out.threat = {ThreatKind::track, static_cast<std::uint16_t>(track_index)};
     out.time_to_loss = loss;

@@ -10,7 +10,7 @@ struct Conflict {
     ThreatRef threat;
     Seconds time_to_loss = 0.0F;     ///< until the own box touches the threat's grown surface [s]; 0: already
     Seconds time_to_closest = 0.0F;  ///< until the closest approach of the centres [s]
-    float margin = 0.0F;             ///< least margin within the look-ahead [m]
+    float margin = 0.0F;             ///< at the closest approach; of a solid the least on the way [m]
     float miss_distance = 0.0F;      ///< between the centres (nearest point of an obstacle) at the closest approach [m]
     Vec3 own_at_closest = Vec3::Zero();     ///< the collision point: own position on the way then [m]
     Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then [m]
@@ -29,6 +29,11 @@ struct Way {
 /// Off the leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer
 /// [m].
 inline constexpr float kRejoinLookahead = 12.0F;
+
+/// A way that starts inside a margin and leaves it like this, for good, is no conflict: nothing ahead on it could mend
+/// the start. Gentler than what an own manoeuvre has to do, so that noise of a velocity does not make a conflict of
+/// whatever passes by.
+inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 
 /// The way for a situation with a valid reference. Within 1e-3 m of the leg's end: the leg's direction, length 0. O(1).
 [[nodiscard]] Way way_of(const Situation& situation) noexcept;
