@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "core/geometric/planner.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+
+/// On a level leg of 200 m eastwards at 5 m/s, 50 m up.
+struct Flight {
+    TimePoint now{1'000'000};
+    vehicle::VehicleState own;
+    vehicle::VehicleLimits limits;
+    vehicle::Airframe airframe;
+    world::Reference reference;
+    std::vector<world::Track> tracks;
+    std::vector<world::Obstacle> obstacles;
+    world::Airspace airspace;
+    const world::Manoeuvre* flying = nullptr;
+    Planner planner{Settings{}};
+    WorkBudget budget{1'000'000};
+    world::Manoeuvre out;
+
+    Flight()
+    {
+        own.stamp = now;
+        own.position = Vec3(0.0F, 0.0F, 50.0F);
+        own.velocity = Vec3(5.0F, 0.0F, 0.0F);
+        reference.valid = true;
+        reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
+    }
+
+    void add(const Vec3& position, const Vec3& velocity, float radius)
+    {
+        world::Track track;
+        track.id = static_cast<world::TrackId>(tracks.size() + 1);
+        track.stamp = now;
+        track.position = position;
+        track.velocity = velocity;
+        track.radius = radius;
+        tracks.push_back(track);
+    }
+
+    [[nodiscard]] world::Situation situation() const
+    {
+        return {now, own, limits, airframe, reference, tracks, obstacles, airspace, flying, 3.0F};
+    }
+
+    PlanStatus plan() { return planner.plan(situation(), budget, out); }
+};
+
+TEST(Planner, HeadOnTrafficIsPassed)
+{
+    Flight flight;
+    flight.add(Vec3(60.0F, 0.0F, 50.0F), Vec3(-5.0F, 0.0F, 0.0F), 1.0F);
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    const world::Manoeuvre& m = flight.out;
+    EXPECT_EQ(m.kind, world::ManoeuvreKind::follow_path);
+    EXPECT_EQ(m.by, world::MethodId::geometric);
+    EXPECT_EQ(m.start, flight.now);
+    EXPECT_NEAR(m.valid_until - m.start, m.path.duration(), 1e-4F);
+    EXPECT_NEAR(m.side.norm(), 1.0F, 1e-4F);
+    EXPECT_NEAR(m.side.x(), 0.0F, 1e-5F);
+    EXPECT_GT(m.cost, 0.0F);
+    EXPECT_LE(m.cost, 1.0F);
+    EXPECT_EQ(m.path.points.front().position, flight.own.position);
+    EXPECT_GE(world::least_separation(flight.situation(), m.path, 100.0F, flight.budget).margin, 0.0F);
+}
+
+TEST(Planner, UncertainTrackIsGivenMoreRoom)
+{
+    Flight flight;
+    flight.add(Vec3(60.0F, 0.0F, 50.0F), Vec3(-5.0F, 0.0F, 0.0F), 1.0F);
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    const float sure = std::abs(flight.planner.last().candidates[flight.planner.last().chosen].shape.offset);
+    flight.tracks[0].sigma_position = 0.3F;
+    flight.tracks[0].sigma_velocity = 0.1F;
+    flight.tracks[0].max_acceleration = 0.02F;
+    flight.own.sigma_position = 0.2F;
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_GT(std::abs(flight.planner.last().candidates[flight.planner.last().chosen].shape.offset), sure + 1.0F);
+    EXPECT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, flight.budget).margin, 0.0F);
+}
+
+TEST(Planner, TreeInTheWay)
+{
+    Flight flight;
+    flight.obstacles = {{1, geometry::make_capsule(Vec3(30.0F, 0.5F, 0.0F), Vec3(30.0F, 0.5F, 70.0F), 1.0F)}};
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_LT(flight.out.side.y(), -0.5F);  // the tree stands half a metre to the left
+}
+
+TEST(Planner, WallIsFlownOver)
+{
+    Flight flight;
+    flight.obstacles = {{1, geometry::make_box(Vec3(40.0F, 0.0F, 40.0F), Vec3(0.5F, 40.0F, 12.0F))}};
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_GT(flight.out.side.z(), 0.5F);
+}
+
+TEST(PlannerStatus, NoConflict)
+{
+    Flight flight;
+    EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
+    flight.add(Vec3(60.0F, 30.0F, 50.0F), Vec3(-5.0F, 0.0F, 0.0F), 1.0F);
+    EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
+    EXPECT_EQ(flight.out.by, world::MethodId::none);  // untouched
+}
+
+TEST(PlannerStatus, NoConflictWithinTheLookahead)
+{
+    Flight flight;
+    flight.add(Vec3(90.0F, 0.0F, 50.0F), Vec3::Zero(), 1.0F);
+    EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
+    Settings settings;
+    settings.lookahead = 20.0F;
+    ASSERT_TRUE(flight.planner.configure(settings));
+    EXPECT_EQ(flight.plan(), PlanStatus::found);
+}
+
+TEST(PlannerStatus, TooClose)
+{
+    Flight flight;
+    flight.add(Vec3(6.0F, 0.0F, 50.0F), Vec3::Zero(), 3.0F);
+    EXPECT_EQ(flight.plan(), PlanStatus::too_close);
+}
+
+TEST(PlannerStatus, NoneAvailable)
+{
+    Flight flight;
+    flight.obstacles = {{1, geometry::make_box(Vec3(40.0F, 0.0F, 50.0F), Vec3(0.5F, 500.0F, 500.0F))}};
+    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+    EXPECT_EQ(flight.out.by, world::MethodId::none);
+    EXPECT_FALSE(flight.planner.last().candidates.empty());
+}
+
+TEST(PlannerStatus, BudgetSpent)
+{
+    Flight flight;
+    flight.add(Vec3(60.0F, 0.0F, 50.0F), Vec3(-5.0F, 0.0F, 0.0F), 1.0F);
+    flight.budget = WorkBudget{10};
+    EXPECT_EQ(flight.plan(), PlanStatus::budget_spent);
+    Flight blind;
+    blind.obstacles = {{1, geometry::make_box(Vec3(40.0F, 0.0F, 40.0F), Vec3(0.5F, 40.0F, 12.0F))}};
+    blind.budget = WorkBudget{3};
+    EXPECT_EQ(blind.plan(), PlanStatus::budget_spent);
+}
+
+TEST(PlannerStatus, BadInput)
+{
+    Flight flight;
+    flight.add(Vec3(60.0F, 0.0F, 50.0F), Vec3(-5.0F, 0.0F, 0.0F), 1.0F);
+    flight.reference.valid = false;
+    EXPECT_EQ(flight.plan(), PlanStatus::bad_input);
+    flight.reference.valid = true;
+    Settings settings;
+    settings.offsets = 3;
+    flight.planner = Planner{settings};
+    EXPECT_EQ(flight.plan(), PlanStatus::bad_input);
+}
+
+TEST(Planner, ConfigureRefusesWhatIsOutOfRange)
+{
+    Planner planner{Settings{}};
+    Settings settings;
+    settings.extra_planes = 5;
+    EXPECT_TRUE(planner.configure(settings));
+    settings.waypoints = 3;
+    EXPECT_FALSE(planner.configure(settings));
+    EXPECT_EQ(planner.settings().extra_planes, 5);
+    EXPECT_EQ(planner.settings().waypoints, 25);
+}
+
+TEST(Planner, KeepsToTheSideBeingFlown)
+{
+    Flight flight;
+    flight.add(Vec3(40.0F, 0.0F, 50.0F), Vec3::Zero(), 1.0F);
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    world::Manoeuvre flown = flight.out;
+    for (const float side : {1.0F, -1.0F}) {
+        flown.side = side * Vec3::UnitY();
+        flight.flying = &flown;
+        ASSERT_EQ(flight.plan(), PlanStatus::found);
+        EXPECT_GT(flight.out.side.dot(flown.side), 0.9F);
+    }
+}
+
+TEST(PlannerRetry, AWallOfBalloonsHasItsGapFurtherOut)
+{
+    Flight flight;
+    for (int y = -2; y <= 2; ++y) {
+        for (int z = -2; z <= 2; ++z) {
+            flight.add(Vec3(45.0F, 4.0F * static_cast<float>(y), 50.0F + 4.0F * static_cast<float>(z)), Vec3::Zero(), 1.5F);
+        }
+    }
+    Settings settings;
+    settings.retries = 0;
+    ASSERT_TRUE(flight.planner.configure(settings));
+    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+    settings.retries = 2;
+    ASSERT_TRUE(flight.planner.configure(settings));
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, flight.budget).margin, 0.0F);
+    // In source mode the offsets are what they are.
+    Settings source = source_settings();
+    source.retries = 2;
+    ASSERT_TRUE(flight.planner.configure(source));
+    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+}
+
+TEST(Planner, SmallThreatsArePlannedForAsIfHalfAMetre)
+{
+    Flight flight;
+    flight.add(Vec3(40.0F, 0.0F, 50.0F), Vec3::Zero(), 0.01F);
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_GT(std::abs(flight.planner.last().candidates[flight.planner.last().chosen].shape.offset), 1.5F);
+}
+
+}  // namespace
+}  // namespace jink::geometric

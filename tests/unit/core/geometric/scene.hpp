@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "core/geometric/planner.hpp"
+
+namespace jink::geometric {
+
+/// Level leg along x at 50 m height, a main threat of radius 1 on it 20 m ahead.
+struct Scene {
+    std::vector<Threat> threats{still(Vec3(20.0F, 0.0F, 50.0F), 1.0F)};
+    std::vector<world::Obstacle> obstacles;
+    world::Airspace airspace;
+    Problem problem;
+    Settings settings;
+    vehicle::VehicleLimits limits;
+    vehicle::Airframe airframe;
+    Result result;
+    WorkBudget budget{1'000'000};
+
+    static Threat still(const Vec3& position, float radius) { return {{position, Vec3::Zero()}, radius}; }
+
+    Scene()
+    {
+        problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
+        problem.distance = 20.0F;
+        problem.main_radius = 1.0F;
+        problem.main = 0;
+        problem.airspace = &airspace;
+        problem.start_velocity = Vec3(5.0F, 0.0F, 0.0F);
+    }
+
+    world::PlanStatus run()
+    {
+        problem.threats = threats;
+        problem.obstacles = obstacles;
+        return solve(problem, settings, limits, airframe, budget, result);
+    }
+
+    std::size_t count(CandidateStatus status) const
+    {
+        return static_cast<std::size_t>(std::count_if(result.candidates.begin(), result.candidates.end(),
+                                                      [&](const Candidate& c) { return c.status == status; }));
+    }
+};
+
+}  // namespace jink::geometric
