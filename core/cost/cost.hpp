@@ -20,12 +20,12 @@ enum class ClosenessMethod : std::uint8_t { swept, time_aware };
 
 /// Raw terms of one path.
 struct Terms {
-    float time = 0.0F;            ///< T [s]
-    float smoothness = 0.0F;      ///< S
+    float time = 0.0F;                  ///< T [s]
+    float smoothness = 0.0F;            ///< S
     float smoothness_penalised = 0.0F;  ///< S_rp
-    float closeness = 0.0F;       ///< M [1/m]; infinity on contact, 0 with nothing moving
-    float energy = 0.0F;          ///< E [J]
-    float hover_power = 0.0F;     ///< summed over segments [W]
+    float closeness = 0.0F;             ///< M [1/m]; infinity on contact, 0 with nothing moving
+    float energy = 0.0F;                ///< E [J]
+    float hover_power = 0.0F;           ///< summed over segments [W]
 };
 
 /// The same on [0, 1].
@@ -51,7 +51,7 @@ inline constexpr std::array<Weights, 7> kTriedWeights{{{0.20F, 0.10F, 0.70F},
 
 /// Bounds of the min-max normalisation of time and energy, one set per vehicle.
 struct Caps {
-    float time_low = 1.2530F, time_high = 7.0814F;    ///< [s]
+    float time_low = 1.2530F, time_high = 7.0814F;      ///< [s]
     float energy_low = 249.59F, energy_high = 1759.0F;  ///< [J]
 };
 /// Finite, low < 1.15 high for the time and low < high for the energy, lows >= 0.
@@ -70,19 +70,20 @@ struct MovingThreat {
 /// Sum of segment times [s].
 [[nodiscard]] float flight_time(const path::TimedPath& path) noexcept;
 
-/// Smoothness of a curve given in its own plane at abscissae `x` [m] with offsets `y` [m], equal lengths >= 3, x increasing
-/// (Pinheiro eq. 4.6 to 4.9).
+/// Smoothness of a curve given in its own plane at abscissae `x` [m] with offsets `y` [m], equal lengths >= 3, x
+/// increasing (Pinheiro eq. 4.6 to 4.9).
 ///
-/// Numerical as the source's: derivatives by central differences over the index, one-sided at both ends, the second one as the
-/// derivative of the first; the integral by the trapezoid rule. Of the exact integral for a flat curve 57 points give 93 % for a simple
-/// candidate and 91 % for a symmetric one: the one-sided differences flatten the ends. O(n).
+/// Numerical as the source's: derivatives by central differences over the index, one-sided at both ends, the second one
+/// as the derivative of the first; the integral by the trapezoid rule. Of the exact integral for a flat curve 57 points
+/// give 93 % for a simple candidate and 91 % for a symmetric one: the one-sided differences flatten the ends. O(n).
 [[nodiscard]] float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessMethod method) noexcept;
 
 /// S (1 + k_p |sin alpha|), alpha between the candidate's plane and the ground (Pinheiro eq. 4.10).
 [[nodiscard]] float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept;
 
-/// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the distances between the waypoints and the threat's centre
-/// less its radius; infinity when that bracket is <= 0. swept: distance to its whole path from 0 to `duration`. Path not empty. O(points).
+/// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the distances between the waypoints and the
+/// threat's centre less its radius; infinity when that bracket is <= 0. swept: distance to its whole path from 0 to
+/// `duration`. Path not empty. O(points).
 [[nodiscard]] float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
 /// M over threats (eq. 4.12): half the greatest plus half the mean; 0 for none.
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
@@ -90,7 +91,8 @@ struct MovingThreat {
 /// E = E1 + E2 (Pinheiro eq. 4.1 to 4.3, the formula as printed) [J].
 [[nodiscard]] float energy(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
 
-/// Rotor power at vertical speed `climb_rate` [m/s], positive up (momentum theory; Pinheiro 4.1.6 with the bracket mended) [W].
+/// Rotor power at vertical speed `climb_rate` [m/s], positive up (momentum theory; Pinheiro 4.1.6 with the bracket
+/// mended) [W].
 [[nodiscard]] float rotor_power(float climb_rate, const vehicle::Airframe& airframe) noexcept;
 /// Sum of `rotor_power` over the segments [W].
 [[nodiscard]] float hover_power(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
@@ -102,14 +104,16 @@ struct MovingThreat {
 
 /// Times and energies of the two stored reference paths flown by a vehicle.
 ///
-/// lower: main threat at D = 3 m on a level leg, R = 1 m; simple candidate, level plane, w = 2.1333 m. upper: D = 8.25 m ahead and
-/// 1.75 m below, R = 3 m; simple candidate, vertical plane, w = -9.6 m: its time is the nearest to the published cap of all
-/// candidates in that environment, and the only one that fits the source's number for it (path 39 when two planes of 13 symmetric
-/// and 13 simple candidates are counted through; 23 is the lower one in its first plane). 57 points, or kMaxPathPoints. O(points).
+/// lower: main threat at D = 3 m on a level leg, R = 1 m; simple candidate, level plane, w = 2.1333 m. upper: D = 8.25
+/// m ahead and 1.75 m below, R = 3 m; simple candidate, vertical plane, w = -9.6 m: its time is the nearest to the
+/// published cap of all candidates in that environment, and the only one that fits the source's number for it (path 39
+/// when two planes of 13 symmetric and 13 simple candidates are counted through; 23 is the lower one in its first
+/// plane). 57 points, or kMaxPathPoints. O(points).
 [[nodiscard]] Caps reference_flights(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
 
-/// Caps for another vehicle, off line: the published ones, each scaled by what `reference_flights` says of this vehicle against
-/// the default one. The default vehicle so keeps the published caps, which its own flights do not all meet (docs/reproduction.md).
+/// Caps for another vehicle, off line: the published ones, each scaled by what `reference_flights` says of this vehicle
+/// against the default one. The default vehicle so keeps the published caps, which its own flights do not all meet
+/// (docs/reproduction.md).
 [[nodiscard]] Caps caps_for(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
 
 }  // namespace jink::cost

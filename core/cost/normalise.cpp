@@ -52,7 +52,8 @@ NormalisedTerms normalise(const Terms& terms, const Caps& caps) noexcept
 
 float total(const NormalisedTerms& terms, const Weights& weights) noexcept
 {
-    return weights.smoothness * terms.smoothness_penalised + weights.time * terms.time + weights.closeness * terms.closeness;
+    return weights.smoothness * terms.smoothness_penalised + weights.time * terms.time +
+           weights.closeness * terms.closeness;
 }
 
 }  // namespace jink::cost

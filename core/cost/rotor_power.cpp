@@ -9,7 +9,8 @@ namespace {
 /// Real over ideal induced power (Pinheiro 4.1.6).
 constexpr float kInduced = 1.15F;
 
-/// Induced velocity over that of hover, in descent where momentum theory does not hold (Pinheiro eq. 4.23), q = V / v_h.
+/// Induced velocity over that of hover, in descent where momentum theory does not hold (Pinheiro eq. 4.23), q = V /
+/// v_h.
 float empirical_descent(float q) noexcept
 {
     return kInduced + q * (-1.125F + q * (-1.372F + q * (-1.718F + q * -0.655F)));

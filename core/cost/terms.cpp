@@ -81,20 +81,14 @@ float mean_second_derivative(std::span<const float> x, std::span<const float> y)
 
 }  // namespace
 
-float flight_time(const path::TimedPath& path) noexcept
-{
-    return path.duration();
-}
+float flight_time(const path::TimedPath& path) noexcept { return path.duration(); }
 
 float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessMethod method) noexcept
 {
     switch (method) {
-        case SmoothnessMethod::curvature:
-            return integral_of_squared_curvature(x, y);
-        case SmoothnessMethod::deviation:
-            return standard_deviation(y);
-        case SmoothnessMethod::second_derivative:
-            return mean_second_derivative(x, y);
+    case SmoothnessMethod::curvature: return integral_of_squared_curvature(x, y);
+    case SmoothnessMethod::deviation: return standard_deviation(y);
+    case SmoothnessMethod::second_derivative: return mean_second_derivative(x, y);
     }
     return 0.0F;
 }
@@ -106,7 +100,8 @@ float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noe
 
 float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept
 {
-    // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to the velocity.
+    // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to the
+    // velocity.
     const float speed_squared = threat.motion.velocity.squaredNorm();
     const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
     float least_squared = std::numeric_limits<float>::infinity();

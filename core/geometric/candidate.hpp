@@ -16,13 +16,13 @@ namespace jink::geometric {
 enum class Family : std::uint8_t { simple, symmetric };
 
 enum class CandidateStatus : std::uint8_t {
-    available,       ///< clear, not the cheapest
+    available,  ///< clear, not the cheapest
     chosen,
-    hits_static,     ///< touches a static threat or an obstacle, on its curve or as it would be flown
-    hits_moving,     ///< touches a moving threat, likewise
-    hits_airspace,   ///< leaves floor, ceiling or keep-in
-    not_flyable,     ///< asks for more acceleration than the vehicle has, or comes back to the leg too steeply
-    not_evaluated,   ///< the work budget ran out before its turn
+    hits_static,    ///< touches a static threat or an obstacle, on its curve or as it would be flown
+    hits_moving,    ///< touches a moving threat, likewise
+    hits_airspace,  ///< leaves floor, ceiling or keep-in
+    not_flyable,    ///< asks for more acceleration than the vehicle has, or comes back to the leg too steeply
+    not_evaluated,  ///< the work budget ran out before its turn
 };
 
 /// Right-handed frame of the manoeuvre: x along the leg, y horizontal, z = x cross y; columns of `axes`.
@@ -46,23 +46,24 @@ inline constexpr float kSymmetricLength = 2.0F;
 
 /// Curve of either family for D = 1, w = 1: 3u^2 - 2u^3, for symmetric mirrored about u = 1. O(1).
 [[nodiscard]] float unit_offset(Family family, float u) noexcept;
-/// Offset y [m] of the curve at abscissa s in [0, length_x] for a threat at distance D: w (3u^2 - 2u^3), mirrored for symmetric.
+/// Offset y [m] of the curve at abscissa s in [0, length_x] for a threat at distance D: w (3u^2 - 2u^3), mirrored for
+/// symmetric.
 [[nodiscard]] float curve_offset(const CandidateShape& shape, float distance, float s) noexcept;
 /// 1.5 D or 2 D.
 [[nodiscard]] float curve_length_x(Family family, float distance) noexcept;
 
-/// What became of one candidate. Checked in the order of the causes: not_flyable, airspace, static threats, obstacles, moving
-/// threats; so the status does not depend on the order of the threats.
+/// What became of one candidate. Checked in the order of the causes: not_flyable, airspace, static threats, obstacles,
+/// moving threats; so the status does not depend on the order of the threats.
 struct Candidate {
     CandidateShape shape;
     CandidateStatus status = CandidateStatus::not_evaluated;
-    float sin_alpha = 0.0F;          ///< sine of the angle between its plane and the ground, >= 0
-    float duration = 0.0F;           ///< [s]
-    world::ThreatRef hit;            ///< what it touches, where status says so
-    cost::Terms terms;               ///< valid when available or chosen
+    float sin_alpha = 0.0F;  ///< sine of the angle between its plane and the ground, >= 0
+    float duration = 0.0F;   ///< [s]
+    world::ThreatRef hit;    ///< what it touches, where status says so
+    cost::Terms terms;       ///< valid when available or chosen
     cost::NormalisedTerms normalised;
-    float total = 0.0F;              ///< [0, 1]
-    float flip_penalty = 0.0F;       ///< added to the total when candidates are compared; 0 on the side being flown
+    float total = 0.0F;         ///< [0, 1]
+    float flip_penalty = 0.0F;  ///< added to the total when candidates are compared; 0 on the side being flown
 };
 
 }  // namespace jink::geometric

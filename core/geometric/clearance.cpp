@@ -18,14 +18,17 @@ constexpr float kRounding = 1e-5F;
 
 bool is_moving(const Threat& threat) noexcept
 {
-    return threat.motion.velocity.x() != 0.0F || threat.motion.velocity.y() != 0.0F || threat.motion.velocity.z() != 0.0F;
+    return threat.motion.velocity.x() != 0.0F || threat.motion.velocity.y() != 0.0F ||
+           threat.motion.velocity.z() != 0.0F;
 }
 
 /// Whether two boxes, one of them grown by `half` + `radius`, are apart along some axis.
-bool apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b, const Vec3& half, float radius) noexcept
+bool apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b, const Vec3& half,
+           float radius) noexcept
 {
     for (int i = 0; i < 3; ++i) {
-        const float edge = (half[i] + radius) * (1.0F + kRounding) + kRounding * (1.0F + std::abs(low_b[i]) + std::abs(high_b[i]));
+        const float edge =
+            (half[i] + radius) * (1.0F + kRounding) + kRounding * (1.0F + std::abs(low_b[i]) + std::abs(high_b[i]));
         if (low_a[i] > high_b[i] + edge || high_a[i] < low_b[i] - edge) {
             return true;
         }
@@ -33,10 +36,7 @@ bool apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3&
     return false;
 }
 
-Extent about(const Vec3& a, const Vec3& b) noexcept
-{
-    return {a.cwiseMin(b), a.cwiseMax(b)};
-}
+Extent about(const Vec3& a, const Vec3& b) noexcept { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
 }  // namespace
 
@@ -71,7 +71,8 @@ Seconds Clearance::sweep_end(std::size_t index) const noexcept
         return t_max_;
     }
     const geometry::Motion& motion = problem_.threats[index].motion;
-    const Vec3 goal = problem_.frame.origin + problem_.distance * problem_.frame.axes.col(0) + problem_.main_centre_offset;
+    const Vec3 goal =
+        problem_.frame.origin + problem_.distance * problem_.frame.axes.col(0) + problem_.main_centre_offset;
     const float speed_squared = motion.velocity.squaredNorm();
     if (!(speed_squared > 0.0F)) {
         return t_max_;
@@ -92,7 +93,12 @@ float Clearance::shrink_at(float shrunk, Seconds t) const noexcept
 Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
 {
     const Threat& t = problem_.threats[threat];
-    return {t.motion.position - problem_.frame.origin, t.motion.velocity, half_, t.radius, t.radius_rate, t.radius_acceleration};
+    return {t.motion.position - problem_.frame.origin,
+            t.motion.velocity,
+            half_,
+            t.radius,
+            t.radius_rate,
+            t.radius_acceleration};
 }
 
 Clearance::Ball Clearance::ball_of(const geometry::Shape& shape) const noexcept
@@ -140,7 +146,8 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
     Item item{Kind::solid, static_cast<std::uint16_t>(index), 0.0F};
     if (settings_.escape_from_margin && !apart(centre, centre, Vec3::Zero(), Vec3::Zero(), half_, bound)) {
         const Vec3& start = problem_.frame.origin;
-        item.shrunk = shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget) - problem_.obstacle_clearance);
+        item.shrunk =
+            shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget) - problem_.obstacle_clearance);
     }
     items_.unchecked_push_back(item);
 }
@@ -183,7 +190,8 @@ bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk) cons
     Vec3 before = curve.position(0) - ball.position;
     for (std::size_t i = 0; i + 1 < curve.points; ++i) {
         const Vec3 after = curve.position(i + 1) - (ball.position + ball.velocity * curve.t[i + 1]);
-        // The size at the segment's end: never too small. Of the escape rule the start, as world::least_separation has it.
+        // The size at the segment's end: never too small. Of the escape rule the start, as world::least_separation has
+        // it.
         const float radius = ball.radius_at(curve.t[i + 1]) - shrink_at(shrunk, curve.t[i]);
         if (radius >= 0.0F) {
             const Extent piece = about(before, after);
@@ -236,10 +244,11 @@ bool Clearance::touches(const Curve& curve, const Extent& extent, const geometry
             continue;
         }
         const float left = shrink_at(shrunk, curve.t[i]);
-        const bool clear = left > 0.0F
-                               ? world::obstacle_margin(half_, origin + a, origin + b, shape, budget) - clearance + left >= 0.0F
-                               : geometry::swept_box_contact(half_, origin + a, origin + b, shape, clearance, budget) ==
-                                     geometry::Contact::clear;
+        const bool clear =
+            left > 0.0F
+                ? world::obstacle_margin(half_, origin + a, origin + b, shape, budget) - clearance + left >= 0.0F
+                : geometry::swept_box_contact(half_, origin + a, origin + b, shape, clearance, budget) ==
+                      geometry::Contact::clear;
         if (!clear) {
             return true;
         }
@@ -250,14 +259,10 @@ bool Clearance::touches(const Curve& curve, const Extent& extent, const geometry
 bool Clearance::touches(const Curve& curve, const Extent& extent, const Item& item, WorkBudget& budget) const noexcept
 {
     switch (item.kind) {
-        case Kind::static_ball:
-            return touches(curve, ball_of(item.index), item.shrunk);
-        case Kind::obstacle_ball:
-            return touches(curve, ball_of(problem_.obstacles[item.index].shape), item.shrunk);
-        case Kind::solid:
-            return touches(curve, extent, problem_.obstacles[item.index].shape, item.shrunk, budget);
-        case Kind::moving_ball:
-            break;
+    case Kind::static_ball: return touches(curve, ball_of(item.index), item.shrunk);
+    case Kind::obstacle_ball: return touches(curve, ball_of(problem_.obstacles[item.index].shape), item.shrunk);
+    case Kind::solid: return touches(curve, extent, problem_.obstacles[item.index].shape, item.shrunk, budget);
+    case Kind::moving_ball: break;
     }
     const Ball ball = ball_of(item.index);
     return settings_.security == SecurityMode::swept ? touches_swept(curve, extent, ball, sweep_end(item.index))

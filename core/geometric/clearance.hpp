@@ -28,17 +28,19 @@ public:
     /// All three outlive this.
     Clearance(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept;
 
-    /// Takes in what a curve within `reach` that lasts no longer than `longest` can meet; the rest is out of reach. Call before
-    /// `check`, for several curves at once or for each. Support calls for obstacles about the start. O(threats + obstacles).
+    /// Takes in what a curve within `reach` that lasts no longer than `longest` can meet; the rest is out of reach.
+    /// Call before `check`, for several curves at once or for each. Support calls for obstacles about the start.
+    /// O(threats + obstacles).
     void collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
 
     /// Volumes that moving threats sweep end at this time: the longest candidate's duration (swept mode).
     void sweep_until(Seconds t_max) noexcept { t_max_ = t_max; }
-    /// When the volume of threat `index` ends: then, or at the collision point for the main threat where the settings say so.
+    /// When the volume of threat `index` ends: then, or at the collision point for the main threat where the settings
+    /// say so.
     [[nodiscard]] Seconds sweep_end(std::size_t index) const noexcept;
 
-    /// First cause in the order airspace, static threats, obstacles, moving threats, each by index. When the budget runs out the
-    /// verdict is not_evaluated. O(points * (threats + obstacles)).
+    /// First cause in the order airspace, static threats, obstacles, moving threats, each by index. When the budget
+    /// runs out the verdict is not_evaluated. O(points * (threats + obstacles)).
     [[nodiscard]] Verdict check(const Curve& curve, WorkBudget& budget) const noexcept;
 
 private:
@@ -46,12 +48,15 @@ private:
     struct Ball {
         Vec3 position;  ///< relative to the start
         Vec3 velocity;
-        Vec3 half;      ///< own box as this one meets it
+        Vec3 half;  ///< own box as this one meets it
         float radius = 0.0F;
         float rate = 0.0F;
         float acceleration = 0.0F;
 
-        [[nodiscard]] float radius_at(Seconds t) const noexcept { return radius + t * (rate + 0.5F * acceleration * t); }
+        [[nodiscard]] float radius_at(Seconds t) const noexcept
+        {
+            return radius + t * (rate + 0.5F * acceleration * t);
+        }
     };
     enum class Kind : std::uint8_t { static_ball, obstacle_ball, solid, moving_ball };
     /// What is within reach, in the order of checking.
@@ -70,10 +75,12 @@ private:
     [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept;
     [[nodiscard]] world::ThreatKind left_airspace(const Curve& curve) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept;
-    [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end) const noexcept;
+    [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball,
+                                     Seconds end) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const geometry::Shape& shape, float shrunk,
                                WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const Item& item, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const Item& item,
+                               WorkBudget& budget) const noexcept;
 
     const Problem& problem_;
     const Settings& settings_;

@@ -91,7 +91,8 @@ void from_timed_path(const path::TimedPath& path, const Vec3& origin, Curve& out
 
 bool is_flyable(const Curve& curve, const Vec3& along, float speed, const vehicle::VehicleLimits& limits) noexcept
 {
-    // The first chord is reached half a segment after the start: from straight flight, that is the curvature at the start.
+    // The first chord is reached half a segment after the start: from straight flight, that is the curvature at the
+    // start.
     Vec3 before = vehicle::clamped_velocity(along, speed, limits);
     Seconds middle = 0.0F;
     for (std::size_t i = 0; i + 1 < curve.points; ++i) {

@@ -7,8 +7,8 @@
 #include "core/geometric/candidate.hpp"
 #include "core/path/timed_path.hpp"
 
-// One candidate as numbers: waypoints with times, coordinate by coordinate, about the start of the manoeuvre (so that far from the
-// world's origin nothing is lost). Private to this room.
+// One candidate as numbers: waypoints with times, coordinate by coordinate, about the start of the manoeuvre (so that
+// far from the world's origin nothing is lost). Private to this room.
 
 namespace jink::geometric::detail {
 
@@ -40,8 +40,8 @@ struct Curve {
 /// Unit vector, across the leg, in which positive offsets of a plane lie.
 [[nodiscard]] Vec3 plane_direction(const PathFrame& frame, float plane) noexcept;
 
-/// `side`: plane_direction of the candidate. Segment times by the rule of make_timed_path: as long as the cruise speed, the climb
-/// or the descent limit takes, whichever is longest. O(waypoints).
+/// `side`: plane_direction of the candidate. Segment times by the rule of make_timed_path: as long as the cruise speed,
+/// the climb or the descent limit takes, whichever is longest. O(waypoints).
 void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, float distance, float offset, float speed,
                 const vehicle::VehicleLimits& limits, Curve& out) noexcept;
 
@@ -50,8 +50,9 @@ void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out)
 /// A timed path about `origin` as a curve. O(points).
 void from_timed_path(const path::TimedPath& path, const Vec3& origin, Curve& out) noexcept;
 
-/// Within the acceleration limits all along, from flying along the leg at `speed` on, and back on the leg without a turn that would
-/// carry the vehicle more than kRejoinOvershoot past it. See Settings::check_acceleration. O(points).
-[[nodiscard]] bool is_flyable(const Curve& curve, const Vec3& along, float speed, const vehicle::VehicleLimits& limits) noexcept;
+/// Within the acceleration limits all along, from flying along the leg at `speed` on, and back on the leg without a
+/// turn that would carry the vehicle more than kRejoinOvershoot past it. See Settings::check_acceleration. O(points).
+[[nodiscard]] bool is_flyable(const Curve& curve, const Vec3& along, float speed,
+                              const vehicle::VehicleLimits& limits) noexcept;
 
 }  // namespace jink::geometric::detail

@@ -92,11 +92,16 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
     const float box_aside = half_extents.dot(side.cwiseAbs());
     const float left = smallest_clearing_offset(problem, settings, family, half_extents, side);
     const float right = smallest_clearing_offset(problem, settings, family, half_extents, -side);
+    const float widest = kLargestRatio * problem.distance;
     for (std::size_t k = per_side; k > 0; --k) {
-        out.unchecked_push_back(-clearing_offset(problem, right, box_aside, k - 1, per_side));
+        if (const float offset = clearing_offset(problem, right, box_aside, k - 1, per_side); offset <= widest) {
+            out.unchecked_push_back(-offset);
+        }
     }
     for (std::size_t k = 0; k < per_side; ++k) {
-        out.unchecked_push_back(clearing_offset(problem, left, box_aside, k, per_side));
+        if (const float offset = clearing_offset(problem, left, box_aside, k, per_side); offset <= widest) {
+            out.unchecked_push_back(offset);
+        }
     }
 }
 

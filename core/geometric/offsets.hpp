@@ -12,17 +12,20 @@ namespace jink::geometric::detail {
 using Offsets = StaticVector<float, 64>;
 
 /// Offsets w of a family's candidates in the plane whose positive side is `side` (unit vector), ascending. O(offsets).
-void offsets_of_plane(const Problem& problem, const Settings& settings, Family family, const Vec3& half_extents, const Vec3& side,
-                      Offsets& out) noexcept;
+void offsets_of_plane(const Problem& problem, const Settings& settings, Family family, const Vec3& half_extents,
+                      const Vec3& side, Offsets& out) noexcept;
 
-/// Smallest offset towards `side` with which a family's curve clears the main threat at rest, the box around it: the curve is on
-/// its way back when the box's corners leave the threat behind, so a little more than both extents. At least kLeastOffset.
+/// Smallest offset towards `side` with which a family's curve clears the main threat at rest, the box around it: the
+/// curve is on its way back when the box's corners leave the threat behind, so a little more than both extents. At
+/// least kLeastOffset.
 ///
-/// Of threats so near that the curve comes down upon them whatever its offset, the simple family's at 2.5 R foremost, the result
-/// says what would clear a third of the way: such candidates are then found out by the contact test. O(1).
+/// Of threats so near that the curve comes down upon them whatever its offset, the simple family's at 2.5 R foremost,
+/// the result says what would clear a third of the way: such candidates are then found out by the contact test. O(1).
 [[nodiscard]] float smallest_clearing_offset(const Problem& problem, const Settings& settings, Family family,
                                              const Vec3& half_extents, const Vec3& side) noexcept;
 
+/// Offsets beyond this share of the distance are left out: the source's go no further (3.2 R at D = 2.5 R).
+inline constexpr float kLargestRatio = 1.2801F;
 /// An offset below this is no way round anything [m].
 inline constexpr float kLeastOffset = 0.3F;
 /// Clearing offsets clear by this much [m].

@@ -52,6 +52,14 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     return problem;
 }
 
+bool applies(const Attempt& attempt, const Situation& situation, const Settings& settings) noexcept
+{
+    const bool slower = attempt.speed_share < 1.0F;
+    const bool wider = attempt.span_from > 0.0F;
+    return !(slower && situation.limits.kind == vehicle::VehicleKind::fixed_wing) &&
+           !(wider && settings.offset_rule == OffsetRule::source);
+}
+
 }  // namespace
 
 bool Planner::configure(const Settings& settings) noexcept
@@ -83,11 +91,15 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
-    const std::size_t tries = settings_.offset_rule == OffsetRule::clearing ? settings_.retries + std::size_t{1} : 1;
     PlanStatus status = PlanStatus::none_available;
-    for (std::size_t i = 0; i < tries && status == PlanStatus::none_available; ++i) {
-        problem.span_from = i == 0 ? 0.0F : kRetrySpans[i - 1];
-        problem.span_to = kRetrySpans[i];
+    for (std::size_t i = 0; i <= settings_.retries && status == PlanStatus::none_available; ++i) {
+        const Attempt& attempt = kAttempts[i];
+        if (!applies(attempt, situation, settings_)) {
+            continue;
+        }
+        problem.speed = attempt.speed_share * way.speed;
+        problem.span_from = attempt.span_from;
+        problem.span_to = attempt.span_to;
         status = solve(problem, settings_, situation.limits, situation.airframe, budget, result_);
     }
     if (status != PlanStatus::found) {

@@ -6,15 +6,12 @@
 namespace jink::geometric {
 namespace {
 
-bool not_negative(float value) noexcept
-{
-    return std::isfinite(value) && value >= 0.0F;
-}
+bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
 
 bool has_valid_counts(const Settings& s) noexcept
 {
     if (s.offsets < 2 || s.offsets > 64 || s.offsets % 2 != 0 || s.extra_planes > 31 || s.waypoints < 8 ||
-        s.waypoints > kMaxPathPoints || s.retries >= kRetrySpans.size()) {
+        s.waypoints > kMaxPathPoints || s.retries >= kAttempts.size()) {
         return false;
     }
     const std::size_t families = (s.simple ? 1U : 0U) + (s.symmetric ? 1U : 0U);

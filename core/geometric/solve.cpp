@@ -41,8 +41,9 @@ bool is_valid(const PathFrame& frame) noexcept
 bool has_valid_scales(const Problem& p) noexcept
 {
     return is_valid(p.frame) && positive(p.distance) && positive(p.main_radius) && positive(p.speed) &&
-           not_negative(p.obstacle_clearance) && not_negative(p.span_from) && not_negative(p.span_to) &&
-           is_finite(p.start_velocity) && is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
+           not_negative(p.obstacle_clearance) && not_negative(p.body_radius) && not_negative(p.span_from) &&
+           not_negative(p.span_to) && is_finite(p.start_velocity) && is_finite(p.preferred_side) &&
+           is_finite(p.main_centre_offset);
 }
 
 bool is_valid(const Problem& p) noexcept

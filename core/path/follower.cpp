@@ -7,15 +7,16 @@
 namespace jink::path {
 namespace {
 
-/// A rest of the path shorter than this share of a step is flown with the step before it: no point of `out` may be so near
-/// to the next one that the velocity between them is rounding.
+/// A rest of the path shorter than this share of a step is flown with the step before it: no point of `out` may be so
+/// near to the next one that the velocity between them is rounding.
 constexpr float kLeastStep = 1e-3F;
 
-/// A corner of the path is flown as a turn over this long on either side of it, or half a segment where that is shorter [s].
+/// A corner of the path is flown as a turn over this long on either side of it, or half a segment where that is shorter
+/// [s].
 constexpr Seconds kCornerTime = 0.25F;
 
-/// The path's velocity at `t`, blended linearly across the corners: with points close together it is the velocity of the smooth
-/// curve that the points were taken from, not that of its chords.
+/// The path's velocity at `t`, blended linearly across the corners: with points close together it is the velocity of
+/// the smooth curve that the points were taken from, not that of its chords.
 Vec3 smooth_velocity(const TimedPath& path, Seconds t) noexcept
 {
     const auto& points = path.points;

@@ -10,7 +10,8 @@
 namespace jink::path {
 
 /// A point of a timed path. The velocity holds from this point's time to the next one's, so the motion is piecewise
-/// straight: position(i+1) = position(i) + velocity(i) * (time(i+1) - time(i)). The last point repeats its predecessor's velocity.
+/// straight: position(i+1) = position(i) + velocity(i) * (time(i+1) - time(i)). The last point repeats its
+/// predecessor's velocity.
 struct PathPoint {
     Vec3 position = Vec3::Zero();  ///< [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
@@ -29,17 +30,18 @@ struct PathSample {
     Vec3 velocity = Vec3::Zero();
 };
 
-/// Where the path is at time `t` after its start; before the start its first point, past the end its last point with its
-/// last velocity. Path not empty. O(log points).
+/// Where the path is at time `t` after its start; before the start its first point, past the end its last point with
+/// its last velocity. Path not empty. O(log points).
 [[nodiscard]] PathSample sample(const TimedPath& path, Seconds t) noexcept;
 
 /// Sum of segment lengths [m]. O(points).
 [[nodiscard]] float arc_length(const TimedPath& path) noexcept;
 
-/// Fills `out` with the points `positions` (2..kMaxPathPoints, first at t = 0): velocities and times by the source's rule
-/// (`clamped_velocity` at `speed` > 0 along each segment; Pinheiro 3.3). A point nearer than 1e-6 m to the last one kept, or so
-/// near that its time would not differ in float, is dropped. False (out is then empty) when fewer than two points remain or
-/// there are too many. O(points).
+/// Fills `out` with the points `positions` (2..kMaxPathPoints, first at t = 0): velocities and times by the source's
+/// rule
+/// (`clamped_velocity` at `speed` > 0 along each segment; Pinheiro 3.3). A point nearer than 1e-6 m to the last one
+/// kept, or so near that its time would not differ in float, is dropped. False (out is then empty) when fewer than two
+/// points remain or there are too many. O(points).
 [[nodiscard]] bool make_timed_path(std::span<const Vec3> positions, float speed, const vehicle::VehicleLimits& limits,
                                    TimedPath& out) noexcept;
 

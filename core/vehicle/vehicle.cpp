@@ -7,15 +7,9 @@
 namespace jink::vehicle {
 namespace {
 
-bool positive(float value) noexcept
-{
-    return std::isfinite(value) && value > 0.0F;
-}
+bool positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
 
-bool not_negative(float value) noexcept
-{
-    return std::isfinite(value) && value >= 0.0F;
-}
+bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
 
 /// Size of a velocity error after dt, and its integral over dt.
 struct Decay {
@@ -23,8 +17,8 @@ struct Decay {
     float integral = 0.0F;  ///< [m]
 };
 
-/// An error that shrinks at rate min(error / lag, limit): a straight ramp down to limit * lag, an exponential from there.
-/// Its direction stays, so one number says it all.
+/// An error that shrinks at rate min(error / lag, limit): a straight ramp down to limit * lag, an exponential from
+/// there. Its direction stays, so one number says it all.
 Decay decay(float error, float lag, float limit, Seconds dt) noexcept
 {
     const float knee = limit * lag;
@@ -108,9 +102,10 @@ bool is_valid(const VehicleLimits& limits) noexcept
 
 bool is_valid(const Airframe& airframe) noexcept
 {
-    return positive(airframe.mass) && not_negative(airframe.drag_coefficient) && not_negative(airframe.effective_area) &&
-           not_negative(airframe.blade_drag_coefficient) && positive(airframe.tip_speed) && positive(airframe.blades) && positive(airframe.chord) && positive(airframe.rotor_radius) &&
-           positive(airframe.rotors) && positive(airframe.air_density);
+    return positive(airframe.mass) && not_negative(airframe.drag_coefficient) &&
+           not_negative(airframe.effective_area) && not_negative(airframe.blade_drag_coefficient) &&
+           positive(airframe.tip_speed) && positive(airframe.blades) && positive(airframe.chord) &&
+           positive(airframe.rotor_radius) && positive(airframe.rotors) && positive(airframe.air_density);
 }
 
 VehicleLimits uav2_limits() noexcept

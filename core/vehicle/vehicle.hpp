@@ -23,12 +23,12 @@ enum class VehicleKind : std::uint8_t { multirotor, fixed_wing };
 /// What the vehicle can do. Defaults: the source's default vehicle (Pinheiro tab. 1.1), ours where it says nothing.
 struct VehicleLimits {
     VehicleKind kind = VehicleKind::multirotor;
-    float cruise_speed = 5.0F;      ///< [m/s], > 0
-    float max_climb = 3.0F;         ///< rate of climb [m/s], > 0
-    float max_descent = 3.0F;       ///< rate of descent [m/s], > 0; ours, the source has one limit for both
-    float max_acceleration = 5.0F;  ///< horizontal, and the deceleration when braking [m/s2], > 0; ours
+    float cruise_speed = 5.0F;               ///< [m/s], > 0
+    float max_climb = 3.0F;                  ///< rate of climb [m/s], > 0
+    float max_descent = 3.0F;                ///< rate of descent [m/s], > 0; ours, the source has one limit for both
+    float max_acceleration = 5.0F;           ///< horizontal, and the deceleration when braking [m/s2], > 0; ours
     float max_vertical_acceleration = 3.0F;  ///< [m/s2], > 0; ours
-    float velocity_lag = 0.25F;     ///< time constant of the autopilot's velocity loop [s], >= 0; ours
+    float velocity_lag = 0.25F;              ///< time constant of the autopilot's velocity loop [s], >= 0; ours
     Vec3 half_extents = Vec3::Ones();  ///< safety box, world-aligned [m], > 0: body, position and tracking uncertainty
 };
 
@@ -41,14 +41,16 @@ struct Airframe {
     float chord = 0.035F;           ///< of a blade [m]
     float rotor_radius = 0.1905F;   ///< [m]
     float rotors = 4.0F;
-    float air_density = 1.225F;     ///< [kg/m3]
-    float blade_drag_coefficient = 0.5F;  ///< [-]; the source reads it from the same setting as the one above, which makes the
-                                          ///< profile power large: fit to compare paths, not to size a battery
-    float tip_speed = 272.2F;       ///< of a blade [m/s]; its bound by the source, 0.8 of the speed of sound (Pinheiro 4.1.6)
+    float air_density = 1.225F;  ///< [kg/m3]
+    float blade_drag_coefficient =
+        0.5F;  ///< [-]; the source reads it from the same setting as the one above, which makes the
+               ///< profile power large: fit to compare paths, not to size a battery
+    float tip_speed =
+        272.2F;  ///< of a blade [m/s]; its bound by the source, 0.8 of the speed of sound (Pinheiro 4.1.6)
 };
 
-/// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the climb or
-/// descent limit, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives zero. O(1).
+/// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the
+/// climb or descent limit, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives zero. O(1).
 [[nodiscard]] Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept;
 
 /// Slower than this counts as standing [m/s]: a first-order loop never stops entirely.
@@ -60,11 +62,12 @@ inline constexpr float kStandstillSpeed = 0.05F;
 /// Time until the vehicle is slower than kStandstillSpeed on the command zero. O(1).
 [[nodiscard]] Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept;
 
-/// One step of the vehicle model used for prediction: velocity follows `command` with the loop's lag (first order), its change
-/// bounded by the acceleration limits (horizontally as a vector, vertically by itself), the command's climb and descent bounded.
+/// One step of the vehicle model used for prediction: velocity follows `command` with the loop's lag (first order), its
+/// change bounded by the acceleration limits (horizontally as a vector, vertically by itself), the command's climb and
+/// descent bounded.
 ///
-/// Integrated in closed form, position too: a step of 2 dt equals two steps of dt, whatever dt > 0 (float rounding). The stamp
-/// moves on by dt. O(1), two exponentials.
+/// Integrated in closed form, position too: a step of 2 dt equals two steps of dt, whatever dt > 0 (float rounding).
+/// The stamp moves on by dt. O(1), two exponentials.
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept;
 
 /// All fields finite and within the ranges said above.

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-// The geometric planner's costs once more, in double and straight from the formulas (geometric planner, sections 2 to 6), for tests
-// to hold the product against. Shares no code with it.
+// The geometric planner's costs once more, in double and straight from the formulas (geometric planner, sections 2 to
+// 6), for tests to hold the product against. Shares no code with it.
 
 namespace jink::oracle {
 
@@ -178,10 +178,7 @@ inline double combine(const std::vector<double>& f)
     return 0.5 * *std::max_element(f.begin(), f.end()) + 0.5 * sum / static_cast<double>(f.size());
 }
 
-inline double clip(double value)
-{
-    return std::min(1.0, std::max(0.0, value));
-}
+inline double clip(double value) { return std::min(1.0, std::max(0.0, value)); }
 inline double normalised_smoothness_penalised(double s) { return clip((std::log(s) + 3.0) / 6.0); }
 inline double normalised_smoothness(double s) { return clip((std::log(s) + 3.0) / 5.5); }
 inline double normalised_closeness(double m) { return m > 0.0 ? clip((std::log(m) + 3.0) / 3.001) : 0.0; }

@@ -70,7 +70,8 @@ inline double swept_approach(const Flight& flight, std::size_t i, const P3& a, c
 {
     return least([&](double r) {
         const P3 point = a + r * (b - a);
-        return least([&](double s) { return box_distance(box, flight.p[i] + s * (flight.p[i + 1] - flight.p[i]) - point); });
+        return least(
+            [&](double s) { return box_distance(box, flight.p[i] + s * (flight.p[i + 1] - flight.p[i]) - point); });
     });
 }
 

@@ -62,8 +62,10 @@ TEST(CostLaws, TimeEnergyAndPowerAgreeWithTheFormulasInDouble)
         const Drawn d = draw(random);
         const double energy_expected = oracle::energy(d.flight, d.figures);
         const double power_expected = oracle::hover_power(d.flight, d.figures);
-        ASSERT_NEAR(static_cast<double>(flight_time(d.path)), d.flight.t.back(), 2e-4 * d.flight.t.back()) << "seed " << seed;
-        ASSERT_NEAR(static_cast<double>(energy(d.path, d.airframe)), energy_expected, 1e-3 * energy_expected) << "seed " << seed;
+        ASSERT_NEAR(static_cast<double>(flight_time(d.path)), d.flight.t.back(), 2e-4 * d.flight.t.back())
+            << "seed " << seed;
+        ASSERT_NEAR(static_cast<double>(energy(d.path, d.airframe)), energy_expected, 1e-3 * energy_expected)
+            << "seed " << seed;
         ASSERT_NEAR(static_cast<double>(hover_power(d.path, d.airframe)), power_expected, 1e-3 * power_expected)
             << "seed " << seed;
     }
@@ -75,12 +77,13 @@ TEST(CostLaws, ClosenessAgreesWithTheFormulaInDouble)
         Random random(seed);
         const Drawn d = draw(random);
         MovingThreat threat{{d.path.points[0].position + random_vector(random, 30.0F), random_vector(random, 5.0F)},
-                            random.uniform(0.0F, 4.0F), random.uniform(0.5F, 20.0F)};
+                            random.uniform(0.0F, 4.0F),
+                            random.uniform(0.5F, 20.0F)};
         if (random.uniform() < 0.1F) {
             threat.motion.velocity.setZero();
         }
-        const oracle::Moving moving{oracle::to_double(threat.motion.position), oracle::to_double(threat.motion.velocity),
-                                    static_cast<double>(threat.radius)};
+        const oracle::Moving moving{oracle::to_double(threat.motion.position),
+                                    oracle::to_double(threat.motion.velocity), static_cast<double>(threat.radius)};
         for (const auto method : {ClosenessMethod::swept, ClosenessMethod::time_aware}) {
             const double swept_for = method == ClosenessMethod::swept ? static_cast<double>(threat.duration) : -1.0;
             const double expected = 1.0 / oracle::closeness(d.flight, moving, swept_for);
@@ -115,7 +118,8 @@ TEST(CostLaws, SmoothnessAgreesScalesAndIsEven)
         std::vector<double> yd;
         for (int i = 0; i < waypoints; ++i) {
             xd.push_back((symmetric ? 2.0 : 1.5) * static_cast<double>(distance) * i / (waypoints - 1));
-            yd.push_back(oracle::curve(symmetric, static_cast<double>(offset), static_cast<double>(distance), xd.back()));
+            yd.push_back(
+                oracle::curve(symmetric, static_cast<double>(offset), static_cast<double>(distance), xd.back()));
             x.push_back(static_cast<float>(xd.back()));
             y.push_back(static_cast<float>(yd.back()));
             mirrored.push_back(-y.back());
@@ -126,7 +130,8 @@ TEST(CostLaws, SmoothnessAgreesScalesAndIsEven)
         const double expected = oracle::smoothness(xd, yd);
         ASSERT_NEAR(static_cast<double>(got), expected, 2e-3 * expected + 1e-7) << "seed " << seed;
         ASSERT_EQ(got, smoothness(x, mirrored, SmoothnessMethod::curvature)) << "seed " << seed;
-        ASSERT_NEAR(got, 2.0F * smoothness(x_twice, y_twice, SmoothnessMethod::curvature), 1e-5F * got) << "seed " << seed;
+        ASSERT_NEAR(got, 2.0F * smoothness(x_twice, y_twice, SmoothnessMethod::curvature), 1e-5F * got)
+            << "seed " << seed;
     }
 }
 
@@ -149,18 +154,21 @@ TEST(CostLaws, NormalisedTermsStayInRangeAndNeverFall)
         high.energy *= factor;
         const NormalisedTerms a = normalise(low, {});
         const NormalisedTerms b = normalise(high, {});
-        for (const auto field : {&NormalisedTerms::time, &NormalisedTerms::smoothness, &NormalisedTerms::smoothness_penalised,
-                                 &NormalisedTerms::closeness, &NormalisedTerms::energy}) {
+        for (const auto field :
+             {&NormalisedTerms::time, &NormalisedTerms::smoothness, &NormalisedTerms::smoothness_penalised,
+              &NormalisedTerms::closeness, &NormalisedTerms::energy}) {
             ASSERT_GE(a.*field, 0.0F) << "seed " << seed;
             ASSERT_LE(b.*field, 1.0F) << "seed " << seed;
             ASSERT_LE(a.*field, b.*field) << "seed " << seed;
         }
         ASSERT_GE(total(a, {}), 0.0F) << "seed " << seed;
         ASSERT_LE(total(b, {}), 1.00001F) << "seed " << seed;
-        ASSERT_NEAR(static_cast<double>(a.closeness), oracle::normalised_closeness(static_cast<double>(low.closeness)), 1e-5);
+        ASSERT_NEAR(static_cast<double>(a.closeness), oracle::normalised_closeness(static_cast<double>(low.closeness)),
+                    1e-5);
         ASSERT_NEAR(static_cast<double>(a.smoothness_penalised),
                     oracle::normalised_smoothness_penalised(static_cast<double>(low.smoothness_penalised)), 1e-5);
-        ASSERT_NEAR(static_cast<double>(a.smoothness), oracle::normalised_smoothness(static_cast<double>(low.smoothness)), 1e-5);
+        ASSERT_NEAR(static_cast<double>(a.smoothness),
+                    oracle::normalised_smoothness(static_cast<double>(low.smoothness)), 1e-5);
         ASSERT_NEAR(static_cast<double>(a.time), oracle::normalised_time(static_cast<double>(low.time)), 1e-5);
         ASSERT_NEAR(static_cast<double>(a.energy), oracle::normalised_energy(static_cast<double>(low.energy)), 1e-5);
     }
@@ -183,13 +191,15 @@ TEST(CostLaws, RotorPowerAgreesWithTheFormulas)
         figures.blade_drag = static_cast<double>(airframe.blade_drag_coefficient);
         figures.tip = static_cast<double>(airframe.tip_speed);
         const float rate = random.uniform(-25.0F, 10.0F);
-        const double hover = std::sqrt(figures.mass * 9.81 / (2.0 * figures.density * figures.rotors * std::numbers::pi *
-                                                              figures.rotor_radius * figures.rotor_radius));
+        const double hover = std::sqrt(
+            figures.mass * 9.81 /
+            (2.0 * figures.density * figures.rotors * std::numbers::pi * figures.rotor_radius * figures.rotor_radius));
         if (std::abs(static_cast<double>(rate) / hover + 2.0) < 1e-4) {
             continue;  // the formula jumps there
         }
         const double expected = oracle::rotor_power(static_cast<double>(rate), figures);
-        ASSERT_NEAR(static_cast<double>(rotor_power(rate, airframe)), expected, 2e-4 * (50.0 + std::abs(expected))) << "seed " << seed;
+        ASSERT_NEAR(static_cast<double>(rotor_power(rate, airframe)), expected, 2e-4 * (50.0 + std::abs(expected)))
+            << "seed " << seed;
     }
 }
 

@@ -63,7 +63,8 @@ TEST(Availability, TimeAwareAgreesWithMinimisationInDouble)
                 ASSERT_EQ(c.hit.kind, world::ThreatKind::track) << "seed " << seed;
                 ASSERT_LT(oracle::margin(flight, p.moving(i), p.box()), kGrazing) << "seed " << seed;
                 const bool moves = p.threats[i].motion.velocity.squaredNorm() > 0.0F;
-                ASSERT_EQ(c.status, moves ? CandidateStatus::hits_moving : CandidateStatus::hits_static) << "seed " << seed;
+                ASSERT_EQ(c.status, moves ? CandidateStatus::hits_moving : CandidateStatus::hits_static)
+                    << "seed " << seed;
             }
         }
         ASSERT_EQ(status, any ? world::PlanStatus::found : world::PlanStatus::none_available) << "seed " << seed;
@@ -102,7 +103,8 @@ TEST(Availability, GrowingThreatsAreNeverTouched)
                         const double t = flight.t[k] + s * (flight.t[k + 1] - flight.t[k]);
                         const oracle::P3 own = flight.p[k] + s * (flight.p[k + 1] - flight.p[k]);
                         const double radius = m.radius + rate * t + 0.5 * acceleration * t * t;
-                        ASSERT_GT(oracle::box_distance(p.box(), own - (m.p + t * m.v)) - radius, -kGrazing) << "seed " << seed;
+                        ASSERT_GT(oracle::box_distance(p.box(), own - (m.p + t * m.v)) - radius, -kGrazing)
+                            << "seed " << seed;
                         ++checked;
                     }
                 }
@@ -136,8 +138,10 @@ TEST(Availability, SweptAgreesWithMinimisationInDouble)
             const oracle::Flight flight = p.flight(c.shape, settings.waypoints);
             double worst = 1e9;
             for (std::size_t i = 0; i < p.threats.size(); ++i) {
-                // The generator lets the main threat reach the collision point when the vehicle would without a climb limit.
-                const double end = i == 0 && settings.main_swept_to_collision_point ? std::min(arrival, longest) : longest;
+                // The generator lets the main threat reach the collision point when the vehicle would without a climb
+                // limit.
+                const double end =
+                    i == 0 && settings.main_swept_to_collision_point ? std::min(arrival, longest) : longest;
                 worst = std::min(worst, oracle::swept_margin(flight, p.moving(i), end, p.box()));
             }
             if (available(c)) {
@@ -158,12 +162,11 @@ geometry::Shape random_solid(Random& random, const Vec3& near)
     const Vec3 a = near + RandomProblem::vector(random, 6.0F);
     const Vec3 b = a + RandomProblem::vector(random, 5.0F);
     switch (random.below(3)) {
-        case 0:
-            return geometry::make_box(a, Vec3(random.uniform(0.2F, 4.0F), random.uniform(0.2F, 4.0F), random.uniform(0.2F, 4.0F)));
-        case 1:
-            return geometry::make_capsule(a, b, random.uniform(0.1F, 2.0F));
-        default:
-            return geometry::make_cylinder(a, b, random.uniform(0.2F, 2.0F));
+    case 0:
+        return geometry::make_box(
+            a, Vec3(random.uniform(0.2F, 4.0F), random.uniform(0.2F, 4.0F), random.uniform(0.2F, 4.0F)));
+    case 1: return geometry::make_capsule(a, b, random.uniform(0.1F, 2.0F));
+    default: return geometry::make_cylinder(a, b, random.uniform(0.2F, 2.0F));
     }
 }
 
@@ -181,14 +184,10 @@ double solid_distance(const geometry::Shape& shape, const oracle::P3& point)
     const double along = std::max(std::abs(local[2]) - half[2], 0.0);
     const double aside = std::hypot(local[0], local[1]);
     switch (shape.kind) {
-        case geometry::ShapeKind::box:
-            return oracle::box_distance({half}, local);
-        case geometry::ShapeKind::capsule:
-            return std::hypot(aside, along) - radius;
-        case geometry::ShapeKind::cylinder:
-            return std::hypot(std::max(aside - radius, 0.0), along);
-        default:
-            return oracle::length(d) - radius;
+    case geometry::ShapeKind::box: return oracle::box_distance({half}, local);
+    case geometry::ShapeKind::capsule: return std::hypot(aside, along) - radius;
+    case geometry::ShapeKind::cylinder: return std::hypot(std::max(aside - radius, 0.0), along);
+    default: return oracle::length(d) - radius;
     }
 }
 
@@ -202,7 +201,8 @@ TEST(Availability, ObstaclesAreNeverTouched)
         Random random(seed * 65537);
         p.problem.obstacle_clearance = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 1.0F);
         for (std::uint64_t i = 0, n = 1 + random.below(4); i < n; ++i) {
-            const Vec3 on_leg = p.problem.frame.origin + random.uniform(0.2F, 2.0F) * p.problem.distance * p.problem.frame.axes.col(0);
+            const Vec3 on_leg =
+                p.problem.frame.origin + random.uniform(0.2F, 2.0F) * p.problem.distance * p.problem.frame.axes.col(0);
             p.obstacles.push_back({static_cast<world::ObstacleId>(i), random_solid(random, on_leg)});
         }
         p.problem.obstacles = p.obstacles;
@@ -223,10 +223,12 @@ TEST(Availability, ObstaclesAreNeverTouched)
                     for (int part = 0; part < 5; ++part) {
                         const oracle::P3 own = flight.p[k] + (part / 4.0) * (flight.p[k + 1] - flight.p[k]);
                         for (int n = 0; n < 27; ++n) {
-                            const oracle::P3 at{own[0] + (n % 3 - 1) * box.half[0], own[1] + (n / 3 % 3 - 1) * box.half[1],
+                            const oracle::P3 at{own[0] + (n % 3 - 1) * box.half[0],
+                                                own[1] + (n / 3 % 3 - 1) * box.half[1],
                                                 own[2] + (n / 9 - 1) * box.half[2]};
                             ASSERT_GT(solid_distance(obstacle.shape, at),
-                                      static_cast<double>(p.problem.obstacle_clearance) - kGrazing - (p.problem.obstacle_clearance > 0.0F ? 0.0 : kGrazing))
+                                      static_cast<double>(p.problem.obstacle_clearance) - kGrazing -
+                                          (p.problem.obstacle_clearance > 0.0F ? 0.0 : kGrazing))
                                 << "seed " << seed;
                         }
                     }
@@ -262,11 +264,13 @@ TEST(Availability, LibccdAndTheClosedFormBracketEachOther)
         RandomProblem p(seed);
         Random random(seed * 17);
         const Settings settings = bare(random);
-        const Vec3 centre = p.problem.frame.origin + p.problem.distance * p.problem.frame.axes.col(0) + RandomProblem::vector(random, 4.0F);
+        const Vec3 centre = p.problem.frame.origin + p.problem.distance * p.problem.frame.axes.col(0) +
+                            RandomProblem::vector(random, 4.0F);
         const float radius = random.uniform(0.5F, 3.0F);
         const std::vector<Vec3> inner = ball_vertices(radius);
         const std::vector<Vec3> outer = ball_vertices(1.3F * radius);
-        const auto solve_with = [&](std::vector<Threat> threats, std::vector<world::Obstacle> obstacles, Result& result) {
+        const auto solve_with = [&](std::vector<Threat> threats, std::vector<world::Obstacle> obstacles,
+                                    Result& result) {
             p.problem.threats = threats;
             p.problem.obstacles = obstacles;
             p.problem.main = kNoThreat;

@@ -65,11 +65,13 @@ TEST(CostOfPlan, EveryTermOfEveryAvailableCandidate)
                 y.push_back(oracle::curve(symmetric, static_cast<double>(c.shape.offset), distance, x.back()));
             }
             const double s = oracle::smoothness(x, y);
-            const double s_rp = s * (1.0 + static_cast<double>(settings.rotation_penalty) * expected_sin_alpha(p, c.shape.plane));
+            const double s_rp =
+                s * (1.0 + static_cast<double>(settings.rotation_penalty) * expected_sin_alpha(p, c.shape.plane));
             std::vector<double> f;
             for (std::size_t i = 0; i < p.threats.size(); ++i) {
                 if (p.threats[i].motion.velocity.squaredNorm() > 0.0F) {
-                    f.push_back(oracle::closeness(flight, p.moving(i), settings.closeness == cost::ClosenessMethod::swept ? longest : -1.0));
+                    f.push_back(oracle::closeness(flight, p.moving(i),
+                                                  settings.closeness == cost::ClosenessMethod::swept ? longest : -1.0));
                 }
             }
             const double m = oracle::combine(f);
@@ -83,9 +85,10 @@ TEST(CostOfPlan, EveryTermOfEveryAvailableCandidate)
             if (m < 20.0) {
                 expect_close(c.terms.closeness, m, 5e-3 * m, "closeness", seed);
             }
-            const double total = static_cast<double>(settings.weights.smoothness) * oracle::normalised_smoothness_penalised(s_rp) +
-                                 static_cast<double>(settings.weights.time) * oracle::normalised_time(flight.t.back()) +
-                                 static_cast<double>(settings.weights.closeness) * oracle::normalised_closeness(m);
+            const double total =
+                static_cast<double>(settings.weights.smoothness) * oracle::normalised_smoothness_penalised(s_rp) +
+                static_cast<double>(settings.weights.time) * oracle::normalised_time(flight.t.back()) +
+                static_cast<double>(settings.weights.closeness) * oracle::normalised_closeness(m);
             expect_close(c.total, total, 2e-3, "total", seed);
             expect_close(c.normalised.energy, oracle::normalised_energy(energy), 3e-3, "normalised energy", seed);
             cheapest = std::min(cheapest, total);

@@ -50,9 +50,11 @@ struct RandomProblem {
         threats.push_back({{point - arrival * main_velocity, main_velocity}, problem.main_radius});
         for (std::uint64_t i = 0, n = random.below(5); i < n; ++i) {
             const Vec3 velocity = random.uniform() < 0.3F ? Vec3(Vec3::Zero()) : vector(random, 5.0F);
-            const Vec3 near = problem.frame.origin + random.uniform(0.0F, 2.0F) * problem.distance * problem.frame.axes.col(0) +
+            const Vec3 near = problem.frame.origin +
+                              random.uniform(0.0F, 2.0F) * problem.distance * problem.frame.axes.col(0) +
                               vector(random, 8.0F);
-            threats.push_back({{near - random.uniform(0.0F, 2.0F) * arrival * velocity, velocity}, random.uniform(0.0F, 3.0F)});
+            threats.push_back(
+                {{near - random.uniform(0.0F, 2.0F) * arrival * velocity, velocity}, random.uniform(0.0F, 3.0F)});
         }
         problem.threats = threats;
     }
@@ -75,9 +77,11 @@ struct RandomProblem {
     }
     [[nodiscard]] oracle::Flight flight(const CandidateShape& shape, std::uint16_t waypoints) const
     {
-        return oracle::fly(oracle::candidate(oracle::to_double(problem.frame.origin), oracle::to_double(Vec3(problem.frame.axes.col(0))),
+        return oracle::fly(oracle::candidate(oracle::to_double(problem.frame.origin),
+                                             oracle::to_double(Vec3(problem.frame.axes.col(0))),
                                              static_cast<double>(problem.distance), shape.family == Family::symmetric,
-                                             static_cast<double>(shape.plane), static_cast<double>(shape.offset), waypoints),
+                                             static_cast<double>(shape.plane), static_cast<double>(shape.offset),
+                                             waypoints),
                            figures());
     }
 };

@@ -10,8 +10,8 @@
 #include "core/geometric/planner.hpp"
 #include "tests/oracle/planner_oracle.hpp"
 
-// `Planner::plan` on random situations: what it returns must pass the check of the supervisor, which measures by other means,
-// and must never touch a track that grows as world::threat_radius says.
+// `Planner::plan` on random situations: what it returns must pass the check of the supervisor, which measures by other
+// means, and must never touch a track that grows as world::threat_radius says.
 
 namespace jink::geometric {
 namespace {
@@ -29,7 +29,8 @@ struct RandomSituation {
     explicit RandomSituation(std::uint64_t seed)
     {
         Random random(seed);
-        own.position = Vec3(random.uniform(-100.0F, 100.0F), random.uniform(-100.0F, 100.0F), random.uniform(30.0F, 60.0F));
+        own.position =
+            Vec3(random.uniform(-100.0F, 100.0F), random.uniform(-100.0F, 100.0F), random.uniform(30.0F, 60.0F));
         own.sigma_position = random.uniform(0.0F, 0.2F);
         const float heading = random.uniform(-kPi, kPi);
         const Vec3 along(std::cos(heading), std::sin(heading), random.uniform(-0.3F, 0.3F));
@@ -43,7 +44,8 @@ struct RandomSituation {
             world::Track track;
             track.id = static_cast<world::TrackId>(i);
             track.stamp = now - random.uniform(0.0F, 0.5F);
-            track.velocity = Vec3(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F), random.uniform(-1.0F, 1.0F));
+            track.velocity =
+                Vec3(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F), random.uniform(-1.0F, 1.0F));
             const float t = random.uniform(2.0F, 8.0F);
             const Vec3 off(random.uniform(-4.0F, 4.0F), random.uniform(-4.0F, 4.0F), random.uniform(-3.0F, 3.0F));
             track.position = own.position + own.velocity * t + off - track.velocity * t;
@@ -56,10 +58,11 @@ struct RandomSituation {
         for (std::uint64_t i = 0, n = random.below(4); i < n; ++i) {
             const Vec3 at = own.position + own.velocity * random.uniform(3.0F, 8.0F) +
                             Vec3(random.uniform(-15.0F, 15.0F), random.uniform(-15.0F, 15.0F), 0.0F);
-            obstacles.push_back({static_cast<world::ObstacleId>(i),
-                                 random.uniform() < 0.5F
-                                     ? geometry::make_capsule(Vec3(at.x(), at.y(), 0.0F), Vec3(at.x(), at.y(), 80.0F), 0.5F)
-                                     : geometry::make_box(Vec3(at.x(), at.y(), 20.0F), Vec3(3.0F, 4.0F, 15.0F))});
+            obstacles.push_back(
+                {static_cast<world::ObstacleId>(i),
+                 random.uniform() < 0.5F
+                     ? geometry::make_capsule(Vec3(at.x(), at.y(), 0.0F), Vec3(at.x(), at.y(), 80.0F), 0.5F)
+                     : geometry::make_box(Vec3(at.x(), at.y(), 20.0F), Vec3(3.0F, 4.0F, 15.0F))});
         }
     }
 
@@ -72,7 +75,11 @@ struct RandomSituation {
 TEST(PlannerLaws, WhatIsFoundPassesTheFinalCheck)
 {
     static Planner planner{Settings{}};
+    Settings once;
+    once.retries = 0;
+    static Planner without_retries{once};
     std::size_t found = 0;
+    std::size_t found_at_once = 0;
     std::size_t none = 0;
     std::size_t rejected = 0;
     for (std::uint64_t seed = 1; seed <= 5000; ++seed) {
@@ -81,19 +88,25 @@ TEST(PlannerLaws, WhatIsFoundPassesTheFinalCheck)
         world::Manoeuvre manoeuvre;
         const world::PlanStatus status = planner.plan(s.view(), budget, manoeuvre);
         none += status == world::PlanStatus::none_available ? 1U : 0U;
+        world::Manoeuvre unused;
+        const bool at_once = without_retries.plan(s.view(), budget, unused) == world::PlanStatus::found;
+        found_at_once += at_once ? 1U : 0U;
+        ASSERT_TRUE(!at_once || status == world::PlanStatus::found) << "seed " << seed;
         if (status != world::PlanStatus::found) {
             ASSERT_NE(status, world::PlanStatus::bad_input) << "seed " << seed;
             continue;
         }
         ++found;
         const float planned = world::least_separation(s.view(), manoeuvre.path, 100.0F, budget).margin;
-        ASSERT_GE(planned, -0.051F) << "seed " << seed;  // libccd margins are told apart to 0.05 m
+        ASSERT_GE(planned, -0.06F) << "seed " << seed;  // distances of solids are told apart to 0.05 m
         rejected += avoid::check_manoeuvre(s.view(), manoeuvre, avoid::Settings{}, budget).margin < 0.0F ? 1U : 0U;
     }
-    EXPECT_GT(found, 1500U);
+    EXPECT_GT(found, 4000U);
     // The final check steps and pads differently; a rejection costs a replan, not safety.
     EXPECT_LE(rejected * 50, found);
-    std::printf("[ measured ] %zu plans, %zu rejected by the final check, %zu times nothing available\n", found, rejected, none);
+    std::printf("[ measured ] %zu plans, %zu of them at the first attempt; %zu rejected by the final check; %zu times "
+                "nothing\n",
+                found, found_at_once, rejected, none);
 }
 
 TEST(PlannerLaws, TracksAreNeverTouchedAsTheyGrow)
@@ -118,7 +131,8 @@ TEST(PlannerLaws, TracksAreNeverTouchedAsTheyGrow)
                 const Vec3 own = path::sample(manoeuvre.path, t).position;
                 const Vec3 apart = own - (track.position + track.velocity * t);
                 const double distance = oracle::box_distance(box, oracle::to_double(apart));
-                ASSERT_GT(distance, static_cast<double>(world::threat_radius(s.view(), track, t)) - 1e-3) << "seed " << seed;
+                ASSERT_GT(distance, static_cast<double>(world::threat_radius(s.view(), track, t)) - 1e-3)
+                    << "seed " << seed;
                 ++samples;
             }
         }

@@ -35,7 +35,8 @@ bool usable(const Candidate& c)
 }
 
 /// The threat that decides may be touched or missed by rounding; everything else must be equal.
-void expect_same(const RandomProblem& p, const Settings& settings, const Candidate& a, const Candidate& b, std::uint64_t seed)
+void expect_same(const RandomProblem& p, const Settings& settings, const Candidate& a, const Candidate& b,
+                 std::uint64_t seed)
 {
     if (usable(a) && usable(b)) {
         ASSERT_NEAR(a.total, b.total, 1e-3F) << "seed " << seed;
@@ -107,7 +108,8 @@ TEST(PlanLaws, PlaceDoesNotMatter)
         Random random(seed * 29);
         const Settings settings = settings_for(random);
         static_cast<void>(run(p, settings, first));
-        const Vec3 shift(random.uniform(-500.0F, 500.0F), random.uniform(-500.0F, 500.0F), random.uniform(-100.0F, 100.0F));
+        const Vec3 shift(random.uniform(-500.0F, 500.0F), random.uniform(-500.0F, 500.0F),
+                         random.uniform(-100.0F, 100.0F));
         p.problem.frame.origin += shift;
         for (Threat& threat : p.threats) {
             threat.motion.position += shift;
@@ -185,7 +187,8 @@ TEST(PlanLaws, LeftAndRightAreMirrorImages)
         }
         if (differences == 0 && status == world::PlanStatus::found) {
             ASSERT_EQ(mirrored, status) << "seed " << seed;
-            ASSERT_NEAR(first.candidates[first.chosen].total, second.candidates[second.chosen].total, 1e-3F) << "seed " << seed;
+            ASSERT_NEAR(first.candidates[first.chosen].total, second.candidates[second.chosen].total, 1e-3F)
+                << "seed " << seed;
         }
     }
 }

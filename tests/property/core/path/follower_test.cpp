@@ -12,7 +12,8 @@
 namespace jink::path {
 namespace {
 
-/// A curve of the geometric planner's kind: out by `offset` at `distance`, back at 1.5 times (simple) or twice that (symmetric).
+/// A curve of the geometric planner's kind: out by `offset` at `distance`, back at 1.5 times (simple) or twice that
+/// (symmetric).
 std::vector<Vec3> bump(float distance, float offset, float heading, float tilt, bool simple, std::size_t points)
 {
     std::vector<Vec3> positions;
@@ -56,8 +57,8 @@ TEST(FollowerLaws, StaysNearTheTimedPointOfAFeasibleCurve)
         const float heading = random.uniform(-kPi, kPi);
         const float tilt = random.uniform(-kPi, kPi);
         TimedPath path;
-        ASSERT_TRUE(make_timed_path(bump(distance, offset, heading, tilt, random.uniform() < 0.5F, 25), limits.cruise_speed,
-                                    limits, path));
+        ASSERT_TRUE(make_timed_path(bump(distance, offset, heading, tilt, random.uniform() < 0.5F, 25),
+                                    limits.cruise_speed, limits, path));
         const float demanded = demand(path, limits);
         if (demanded > 1.0F) {
             continue;
@@ -72,12 +73,14 @@ TEST(FollowerLaws, StaysNearTheTimedPointOfAFeasibleCurve)
         ASSERT_NEAR(flight.duration(), path.duration(), 1e-3F) << "seed " << seed;
         for (const PathPoint& point : flight.points) {
             const float error = (point.position - sample(path, point.time).position).norm();
-            (demanded <= 0.5F ? worst_modest : worst_full) = std::max(demanded <= 0.5F ? worst_modest : worst_full, error);
+            (demanded <= 0.5F ? worst_modest : worst_full) =
+                std::max(demanded <= 0.5F ? worst_modest : worst_full, error);
             ASSERT_LE(error, demanded <= 0.5F ? 0.25F : 0.45F) << "seed " << seed << " t " << point.time;
         }
     }
     EXPECT_GT(flown, 10000);
-    std::printf("[ measured ] worst tracking error %.3f m up to half, %.3f m up to all of the acceleration limits, %d flights\n",
+    std::printf("[ measured ] worst tracking error %.3f m up to half, %.3f m up to all of the acceleration limits, %d "
+                "flights\n",
                 static_cast<double>(worst_modest), static_cast<double>(worst_full), flown);
 }
 
@@ -106,7 +109,8 @@ TEST(SampleLaws, ContinuousAndOnThePath)
         Random random(seed);
         std::vector<Vec3> positions;
         for (std::uint64_t i = 0, n = 2 + random.below(kMaxPathPoints - 1); i < n; ++i) {
-            positions.emplace_back(random.uniform(-20.0F, 20.0F), random.uniform(-20.0F, 20.0F), random.uniform(-20.0F, 20.0F));
+            positions.emplace_back(random.uniform(-20.0F, 20.0F), random.uniform(-20.0F, 20.0F),
+                                   random.uniform(-20.0F, 20.0F));
         }
         TimedPath path;
         const vehicle::VehicleLimits limits;

@@ -26,10 +26,7 @@ path::TimedPath level(float length, int points = 5)
     return path;
 }
 
-TEST(FlightTime, LengthOverSpeed)
-{
-    EXPECT_FLOAT_EQ(flight_time(level(20.0F)), 4.0F);
-}
+TEST(FlightTime, LengthOverSpeed) { EXPECT_FLOAT_EQ(flight_time(level(20.0F)), 4.0F); }
 
 TEST(Energy, LevelFlightPaysDragAlone)
 {
@@ -42,7 +39,8 @@ TEST(Energy, ClimbAndDescentBothPay)
     path::TimedPath path;
     const std::vector<Vec3> up_and_down{Vec3::Zero(), Vec3(0.0F, 0.0F, 3.0F), Vec3::Zero()};
     ASSERT_TRUE(path::make_timed_path(up_and_down, 5.0F, vehicle::VehicleLimits{}, path));
-    // 3 m/s up, -3 m/s down: the kinetic energy stays, |m g dz| twice; the drag of the first segment vanishes with v1 + v0.
+    // 3 m/s up, -3 m/s down: the kinetic energy stays, |m g dz| twice; the drag of the first segment vanishes with v1 +
+    // v0.
     const float drag = 0.25F * 0.5F * 1.225F * 2.5F * 3.0F * 36.0F;
     EXPECT_NEAR(energy(path, vehicle::Airframe{}), 2.0F * 3.0F * 9.81F * 3.0F + drag, 0.01F);
 }
@@ -67,7 +65,8 @@ TEST(Smoothness, StraightLineIsZeroByEveryMethod)
 {
     const std::vector<float> x{0.0F, 1.0F, 2.0F, 3.0F};
     const std::vector<float> y(4, 2.0F);
-    for (const auto method : {SmoothnessMethod::curvature, SmoothnessMethod::deviation, SmoothnessMethod::second_derivative}) {
+    for (const auto method :
+         {SmoothnessMethod::curvature, SmoothnessMethod::deviation, SmoothnessMethod::second_derivative}) {
         EXPECT_EQ(smoothness(x, y, method), 0.0F);
     }
 }
@@ -88,7 +87,8 @@ TEST(Smoothness, MeanSecondDerivativeOfAParabola)
         y.push_back(x.back() * x.back());
     }
     // y'' = 2; the one-sided ends give 1 (derivative of the derivative there) in two places and 3/2 beside them.
-    EXPECT_NEAR(smoothness(x, y, SmoothnessMethod::second_derivative), (37.0F * 2.0F + 2.0F * 1.0F + 2.0F * 1.5F) / 41.0F, 1e-3F);
+    EXPECT_NEAR(smoothness(x, y, SmoothnessMethod::second_derivative),
+                (37.0F * 2.0F + 2.0F * 1.0F + 2.0F * 1.5F) / 41.0F, 1e-3F);
 }
 
 TEST(Smoothness, CurvatureOfACircle)
@@ -114,8 +114,8 @@ TEST(Smoothness, FlatCandidatesMeetTheClosedForm)
         std::vector<float> y;
         for (int i = 0; i < 57; ++i) {
             x.push_back((symmetric ? 2.0F : 1.5F) * distance * static_cast<float>(i) / 56.0F);
-            y.push_back(static_cast<float>(oracle::curve(symmetric, static_cast<double>(offset), static_cast<double>(distance),
-                                                         static_cast<double>(x.back()))));
+            y.push_back(static_cast<float>(oracle::curve(
+                symmetric, static_cast<double>(offset), static_cast<double>(distance), static_cast<double>(x.back()))));
         }
         const float exact = (symmetric ? 24.0F : 54.0F) * offset * offset / (distance * distance * distance);
         const float share = smoothness(x, y, SmoothnessMethod::curvature) / exact;
@@ -147,11 +147,13 @@ TEST(Closeness, SweptSeesThePathTimeAwareTheInstant)
 {
     // A threat that crosses the path at x = 10 after 8 s, when the vehicle is gone.
     const MovingThreat late{{Vec3(10.0F, -8.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F)}, 1.0F, 10.0F};
-    EXPECT_GT(closeness(level(20.0F), late, ClosenessMethod::swept), closeness(level(20.0F), late, ClosenessMethod::time_aware));
+    EXPECT_GT(closeness(level(20.0F), late, ClosenessMethod::swept),
+              closeness(level(20.0F), late, ClosenessMethod::time_aware));
     // Swept for 4 s only, its path ends 4 m short.
     MovingThreat brief = late;
     brief.duration = 4.0F;
-    EXPECT_LT(closeness(level(20.0F), brief, ClosenessMethod::swept), closeness(level(20.0F), late, ClosenessMethod::swept));
+    EXPECT_LT(closeness(level(20.0F), brief, ClosenessMethod::swept),
+              closeness(level(20.0F), late, ClosenessMethod::swept));
 }
 
 TEST(Closeness, ContactIsInfinity)
@@ -209,10 +211,7 @@ TEST(RotorPower, ClimbCostsMoreDescentInMomentumTheoryLess)
     EXPECT_LT(rotor_power(-15.0F, airframe), rotor_power(0.0F, airframe));
 }
 
-TEST(HoverPower, SumOverSegments)
-{
-    EXPECT_NEAR(hover_power(level(20.0F, 5), {}), 4.0F * rotor_power(0.0F, {}), 1.0F);
-}
+TEST(HoverPower, SumOverSegments) { EXPECT_NEAR(hover_power(level(20.0F, 5), {}), 4.0F * rotor_power(0.0F, {}), 1.0F); }
 
 TEST(Normalise, TableLimitsAndClipping)
 {
@@ -268,9 +267,9 @@ TEST(WeightsValid, TheSevenTriedAndTheBounds)
     for (const Weights& weights : kTriedWeights) {
         EXPECT_TRUE(is_valid(weights));
     }
-    EXPECT_FALSE(is_valid(Weights{0.30F, 0.20F, 0.40F}));    // sum
-    EXPECT_FALSE(is_valid(Weights{0.10F, 0.15F, 0.75F}));    // closeness
-    EXPECT_FALSE(is_valid(Weights{0.45F, 0.05F, 0.50F}));    // time
+    EXPECT_FALSE(is_valid(Weights{0.30F, 0.20F, 0.40F}));  // sum
+    EXPECT_FALSE(is_valid(Weights{0.10F, 0.15F, 0.75F}));  // closeness
+    EXPECT_FALSE(is_valid(Weights{0.45F, 0.05F, 0.50F}));  // time
     EXPECT_FALSE(is_valid(Weights{-0.10F, 0.60F, 0.50F}));
     EXPECT_FALSE(is_valid(Weights{0.80F, 0.30F, -0.10F}));
     EXPECT_FALSE(is_valid(Weights{kNan, 0.20F, 0.50F}));

@@ -35,7 +35,8 @@ TEST(CandidateStatuses, HitsObstacle)
     EXPECT_GT(scene.result.side.y(), -0.1F);
     std::size_t hits = 0;
     for (const Candidate& c : scene.result.candidates) {
-        hits += c.status == CandidateStatus::hits_static && c.hit == world::ThreatRef{ThreatKind::obstacle, 0} ? 1U : 0U;
+        hits +=
+            c.status == CandidateStatus::hits_static && c.hit == world::ThreatRef{ThreatKind::obstacle, 0} ? 1U : 0U;
     }
     EXPECT_GT(hits, 0U);
     // A clearance from obstacles takes more of them.
@@ -93,8 +94,9 @@ TEST(CandidateStatuses, HitsAirspace)
     for (const Candidate& c : scene.result.candidates) {
         floor = floor || c.hit.kind == ThreatKind::floor;
         ceiling = ceiling || c.hit.kind == ThreatKind::ceiling;
-        EXPECT_EQ(c.status == CandidateStatus::hits_airspace,
-                  c.hit.kind == ThreatKind::floor || c.hit.kind == ThreatKind::ceiling || c.hit.kind == ThreatKind::keep_in);
+        EXPECT_EQ(c.status == CandidateStatus::hits_airspace, c.hit.kind == ThreatKind::floor ||
+                                                                  c.hit.kind == ThreatKind::ceiling ||
+                                                                  c.hit.kind == ThreatKind::keep_in);
         if (c.shape.plane > 0.1F) {
             EXPECT_EQ(c.status, CandidateStatus::hits_airspace);
         }
@@ -142,7 +144,8 @@ TEST(CandidateStatuses, SteepReturnToTheLegIsNotFlyable)
 {
     Scene scene;
     ASSERT_EQ(scene.run(), PlanStatus::found);
-    // At D = 20 m and |w| > 2 m the simple candidate meets the leg at 24 degrees: it would overshoot by more than half a metre.
+    // At D = 20 m and |w| > 2 m the simple candidate meets the leg at 24 degrees: it would overshoot by more than half
+    // a metre.
     for (const Candidate& c : scene.result.candidates) {
         if (c.shape.family == Family::simple) {
             EXPECT_EQ(c.status, CandidateStatus::not_flyable);
@@ -231,8 +234,8 @@ TEST(EscapeFromMargin, AStartInsideAMarginHasAWayOut)
 
 TEST(EscapeFromMargin, ObstaclesAndAirspaceToo)
 {
-    for (const geometry::Shape& shape :
-         {geometry::make_box(Vec3(-2.0F, 0.0F, 50.0F), Vec3(1.5F, 3.0F, 3.0F)), geometry::make_sphere(Vec3(-2.0F, 0.0F, 50.0F), 1.5F)}) {
+    for (const geometry::Shape& shape : {geometry::make_box(Vec3(-2.0F, 0.0F, 50.0F), Vec3(1.5F, 3.0F, 3.0F)),
+                                         geometry::make_sphere(Vec3(-2.0F, 0.0F, 50.0F), 1.5F)}) {
         Scene scene;
         scene.obstacles = {{1, shape}};
         EXPECT_EQ(scene.run(), PlanStatus::found);

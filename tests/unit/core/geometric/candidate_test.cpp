@@ -63,7 +63,8 @@ TEST(Curve, MeetsItsDefinition)
             const float a = -2.0F * offset / (distance * distance * distance);
             const float b = 3.0F * offset / (distance * distance);
             EXPECT_NEAR(curve_offset(simple, distance, s), a * s * s * s + b * s * s, 1e-4F);
-            EXPECT_NEAR(curve_offset(symmetric, distance, 2.0F * distance - s), curve_offset(symmetric, distance, s), 1e-5F);
+            EXPECT_NEAR(curve_offset(symmetric, distance, 2.0F * distance - s), curve_offset(symmetric, distance, s),
+                        1e-5F);
             EXPECT_EQ(curve_offset({Family::simple, 0.0F, -offset}, distance, s), -curve_offset(simple, distance, s));
         }
     }

@@ -200,6 +200,7 @@ TEST(SolveStatus, BadInput)
     EXPECT_TRUE(refused([](Scene& s) { s.problem.distance = 0.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.main_radius = 0.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.speed = -1.0F; }));
+    EXPECT_TRUE(refused([](Scene& s) { s.problem.body_radius = -1.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.main = 1; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.obstacle_clearance = -1.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.span_from = kNan; }));
@@ -238,7 +239,10 @@ TEST(SettingsValid, EachRange)
     EXPECT_TRUE(invalid([](Settings& s) { s.simple = s.symmetric = false; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.waypoints = 7; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.waypoints = kMaxPathPoints + 1; }));
-    EXPECT_TRUE(invalid([](Settings& s) { s.offsets = 64; s.extra_planes = 31; }));  // more than kMaxCandidates
+    EXPECT_TRUE(invalid([](Settings& s) {
+        s.offsets = 64;
+        s.extra_planes = 31;
+    }));  // more than kMaxCandidates
     EXPECT_TRUE(invalid([](Settings& s) { s.source_drop_margin = -1.0F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.rotation_penalty = kNan; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.flip_penalty = -0.1F; }));
@@ -252,7 +256,7 @@ TEST(SettingsValid, EachRange)
     EXPECT_TRUE(invalid([](Settings& s) { s.gains.max_correction = kNan; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.lookahead = 0.5F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.lookahead = kNan; }));
-    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 3; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 5; }));
 }
 
 TEST(Solve, SettingsThatTakeTimeAwareAndSweptApart)

@@ -126,7 +126,8 @@ TEST(PredictFlight, FullIsWhereItStops)
 TEST(PredictFlight, StepOfTheOutputHardlyChangesTheFlight)
 {
     TimedPath path;
-    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(10.0F, 0.0F, 0.0F), Vec3(20.0F, 5.0F, 3.0F), Vec3(30.0F, 5.0F, 0.0F)};
+    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(10.0F, 0.0F, 0.0F), Vec3(20.0F, 5.0F, 3.0F),
+                                      Vec3(30.0F, 5.0F, 0.0F)};
     ASSERT_TRUE(make_timed_path(positions, 5.0F, vehicle::VehicleLimits{}, path));
     vehicle::VehicleState state;
     TimedPath fine;

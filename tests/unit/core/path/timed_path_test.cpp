@@ -40,7 +40,8 @@ TEST(MakeTimedPath, ClimbOfPinheiroFigure310)
 TEST(MakeTimedPath, NearlyEqualPointsAreDropped)
 {
     TimedPath path;
-    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(1e-7F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F)};
+    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(1e-7F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F),
+                                      Vec3(1.0F, 0.0F, 0.0F)};
     ASSERT_TRUE(make_timed_path(positions, 5.0F, vehicle::VehicleLimits{}, path));
     ASSERT_EQ(path.points.size(), 2U);
     EXPECT_EQ(path.points[0].position, Vec3::Zero());
@@ -50,7 +51,8 @@ TEST(MakeTimedPath, NearlyEqualPointsAreDropped)
 TEST(MakeTimedPath, TimesStayStrictlyIncreasing)
 {
     TimedPath path;  // 2e-6 m after 100 s at 5 m/s: 4e-7 s are lost in float
-    const std::vector<Vec3> positions{Vec3(500.0F, 0.0F, 0.0F), Vec3::Zero(), Vec3(2e-6F, 0.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F)};
+    const std::vector<Vec3> positions{Vec3(500.0F, 0.0F, 0.0F), Vec3::Zero(), Vec3(2e-6F, 0.0F, 0.0F),
+                                      Vec3(0.0F, 1.0F, 0.0F)};
     ASSERT_TRUE(make_timed_path(positions, 5.0F, vehicle::VehicleLimits{}, path));
     ASSERT_EQ(path.points.size(), 3U);
     EXPECT_GT(path.points[2].time, path.points[1].time);

@@ -139,9 +139,9 @@ TEST(IsValid, EachLimitIsChecked)
 {
     EXPECT_TRUE(is_valid(VehicleLimits{}));
     EXPECT_TRUE(is_valid(uav2_limits()));
-    const std::vector<float VehicleLimits::*> positives{
-        &VehicleLimits::cruise_speed, &VehicleLimits::max_climb, &VehicleLimits::max_descent,
-        &VehicleLimits::max_acceleration, &VehicleLimits::max_vertical_acceleration};
+    const std::vector<float VehicleLimits::*> positives{&VehicleLimits::cruise_speed, &VehicleLimits::max_climb,
+                                                        &VehicleLimits::max_descent, &VehicleLimits::max_acceleration,
+                                                        &VehicleLimits::max_vertical_acceleration};
     for (const auto field : positives) {
         for (const float bad : {0.0F, -1.0F, kNan, kInfinity}) {
             VehicleLimits limits;
@@ -169,7 +169,7 @@ TEST(IsValid, EachAirframeFigureIsChecked)
 {
     EXPECT_TRUE(is_valid(Airframe{}));
     EXPECT_TRUE(is_valid(uav2_airframe()));
-    const std::vector<float Airframe::*> positives{&Airframe::mass,   &Airframe::blades, &Airframe::chord,
+    const std::vector<float Airframe::*> positives{&Airframe::mass,         &Airframe::blades, &Airframe::chord,
                                                    &Airframe::rotor_radius, &Airframe::rotors, &Airframe::air_density,
                                                    &Airframe::tip_speed};
     for (const auto field : positives) {
@@ -179,7 +179,8 @@ TEST(IsValid, EachAirframeFigureIsChecked)
             EXPECT_FALSE(is_valid(airframe));
         }
     }
-    for (const auto field : {&Airframe::drag_coefficient, &Airframe::effective_area, &Airframe::blade_drag_coefficient}) {
+    for (const auto field :
+         {&Airframe::drag_coefficient, &Airframe::effective_area, &Airframe::blade_drag_coefficient}) {
         Airframe airframe;
         airframe.*field = 0.0F;
         EXPECT_TRUE(is_valid(airframe));
