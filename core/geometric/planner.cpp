@@ -52,15 +52,35 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     return problem;
 }
 
-bool applies(const Attempt& attempt, const Situation& situation, const Settings& settings) noexcept
+bool applies(const Attempt& attempt, const Settings& settings, vehicle::VehicleKind kind) noexcept
 {
     const bool slower = attempt.speed_share < 1.0F;
     const bool wider = attempt.span_from > 0.0F;
-    return !(slower && situation.limits.kind == vehicle::VehicleKind::fixed_wing) &&
+    return !(slower && kind == vehicle::VehicleKind::fixed_wing) &&
            !(wider && settings.offset_rule == OffsetRule::source);
 }
 
 }  // namespace
+
+PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
+                              const vehicle::Airframe& airframe, WorkBudget& budget, Result& result,
+                              std::size_t& attempts) noexcept
+{
+    PlanStatus status = PlanStatus::none_available;
+    Problem tried = problem;
+    attempts = 0;
+    for (std::size_t i = 0; i <= settings.retries && i < kAttempts.size() && status == PlanStatus::none_available; ++i) {
+        if (!applies(kAttempts[i], settings, limits.kind)) {
+            continue;
+        }
+        tried.speed = kAttempts[i].speed_share * problem.speed;
+        tried.span_from = kAttempts[i].span_from;
+        tried.span_to = kAttempts[i].span_to;
+        status = solve(tried, settings, limits, airframe, budget, result);
+        ++attempts;
+    }
+    return status;
+}
 
 bool Planner::configure(const Settings& settings) noexcept
 {
@@ -91,17 +111,9 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
-    PlanStatus status = PlanStatus::none_available;
-    for (std::size_t i = 0; i <= settings_.retries && status == PlanStatus::none_available; ++i) {
-        const Attempt& attempt = kAttempts[i];
-        if (!applies(attempt, situation, settings_)) {
-            continue;
-        }
-        problem.speed = attempt.speed_share * way.speed;
-        problem.span_from = attempt.span_from;
-        problem.span_to = attempt.span_to;
-        status = solve(problem, settings_, situation.limits, situation.airframe, budget, result_);
-    }
+    std::size_t attempts = 0;
+    const PlanStatus status =
+        solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget, result_, attempts);
     if (status != PlanStatus::found) {
         return status;
     }

@@ -139,6 +139,13 @@ struct Result {
                                       const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
                                       WorkBudget& budget, Result& result) noexcept;
 
+/// `solve`, and where nothing is available again as kAttempts says, up to Settings::retries times; `attempts` says how often.
+/// The problem's own span is ignored. `result` is that of the last attempt. All of it within `budget`.
+[[nodiscard]] world::PlanStatus solve_with_retries(const Problem& problem, const Settings& settings,
+                                                   const vehicle::VehicleLimits& limits,
+                                                   const vehicle::Airframe& airframe, WorkBudget& budget,
+                                                   Result& result, std::size_t& attempts) noexcept;
+
 /// The timed path of one candidate, as `solve` makes it: `waypoints` points at equal steps of the abscissa. False (out
 /// untouched) on bad input as above or fewer than 8 or more than kMaxPathPoints waypoints. O(waypoints).
 [[nodiscard]] bool make_candidate_path(const Problem& problem, const CandidateShape& shape, std::uint16_t waypoints,

@@ -310,17 +310,10 @@ std::unique_ptr<PlanOutcome> solve_problem(const ProblemFile& file, std::uint32_
 {
     auto outcome = std::make_unique<PlanOutcome>();
     ProblemStorage storage;
-    geometric::Problem problem = problem_of(file, storage);
+    const geometric::Problem problem = problem_of(file, storage);
     WorkBudget work(budget);
-    const std::size_t most =
-        file.settings.offset_rule == geometric::OffsetRule::clearing ? file.settings.retries + std::size_t{1} : 1;
-    do {
-        problem.span_from = outcome->tries == 0 ? 0.0F : geometric::kRetrySpans[outcome->tries - 1];
-        problem.span_to = geometric::kRetrySpans[outcome->tries];
-        ++outcome->tries;
-        outcome->status =
-            geometric::solve(problem, file.settings, file.vehicle.limits, file.vehicle.airframe, work, outcome->result);
-    } while (outcome->status == world::PlanStatus::none_available && outcome->tries < most);
+    outcome->status = geometric::solve_with_retries(problem, file.settings, file.vehicle.limits, file.vehicle.airframe,
+                                                    work, outcome->result, outcome->tries);
     outcome->work = work.spent();
     return outcome;
 }

@@ -66,7 +66,7 @@ void read_counts(YamlMap& map, geometric::Settings& settings)
     put_whole(settings.extra_planes, map.whole("n", {0.0F, 31.0F}));
     put_whole(settings.waypoints, map.whole("waypoints", {8.0F, static_cast<float>(kMaxPathPoints)}));
     put_whole(settings.closeness_nearest, map.whole("closeness_nearest", {0.0F, static_cast<float>(kMaxTracks)}));
-    put_whole(settings.retries, map.whole("retries", {0.0F, static_cast<float>(geometric::kRetrySpans.size() - 1)}));
+    put_whole(settings.retries, map.whole("retries", {0.0F, static_cast<float>(geometric::kAttempts.size() - 1)}));
 }
 
 void read_weights(YamlMap& map, geometric::Settings& settings)
