@@ -21,7 +21,7 @@ enum class TrackSource : std::uint8_t { adsb, own_sensor, datalink };
 /// A moving threat: a sphere with a straight motion and what is not known of it.
 struct Track {
     TrackId id = 0;
-    TimePoint stamp;                ///< of the newest measurement in it
+    TimePoint stamp{};              ///< of the newest measurement in it
     Vec3 position = Vec3::Zero();   ///< [m]; in a Situation: at Situation::now
     Vec3 velocity = Vec3::Zero();   ///< [m/s]
     float radius = 0.0F;            ///< of the body [m]
