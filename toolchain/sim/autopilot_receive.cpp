@@ -75,6 +75,7 @@ void Autopilot::handle(const Frame& frame)
         heard_.texts.push_back({world_.seconds(), text.severity, std::string(text_of(text.text))});
     } else if (decode(frame, collision)) {
         ++heard_.warnings;
+        heard_.last_warning = world_.now();
     } else {
         answer_mission(frame);
     }

@@ -11,6 +11,9 @@ namespace jink::sim {
 /// autopilot at its master end, stops it with SIGTERM and wants a clean exit. Takes as long as the flight; one thread,
 /// mostly asleep.
 ///
+/// Both run with real-time priority where that is permitted. A flight during which the machine stood still for 0.1 s is
+/// thrown away and flown again, at most twice.
+///
 /// @param daemon  the program
 /// @param folder  for what it prints (NAME.log) and its summary (NAME.json); must exist
 /// A program that does not start, dies, or does not stop cleanly makes the outcome `failed` and is named in

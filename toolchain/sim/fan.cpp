@@ -60,7 +60,7 @@ std::vector<FanCurve> fan_of(const app::Coprocessor& coprocessor, const app::Ste
             const Vec3 in_frame(s, y * std::cos(candidate.shape.plane), y * std::sin(candidate.shape.plane));
             curve.points.push_back((frame.origin + frame.axes * in_frame).cast<double>());
         }
-        if (i == plan.chosen) {
+        if (candidate.status == geometric::CandidateStatus::chosen) {
             chosen = describe(candidate);
         }
         fan.push_back(curve);

@@ -57,8 +57,11 @@ public:
         if (coprocessor_->supervisor_diagnostics().plans != plans) {
             plan_steps_.note(took.count());
         }
-        if (coprocessor_->supervisor_diagnostics().plans_found != found && fan_.empty()) {
+        const bool planned = coprocessor_->supervisor_diagnostics().plans != plans;
+        const bool succeeded = coprocessor_->supervisor_diagnostics().plans_found != found;
+        if ((succeeded && !found_) || (planned && fan_.empty())) {
             fan_ = fan_of(*coprocessor_, report, first_candidate_);
+            found_ = succeeded;
         }
     }
 
@@ -108,6 +111,7 @@ private:
     Stopwatch plan_steps_;
     std::string first_candidate_;
     std::vector<FanCurve> fan_;
+    bool found_ = false;
 };
 
 }  // namespace

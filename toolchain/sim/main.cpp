@@ -27,7 +27,7 @@ struct Options {
     std::string scenarios = JINK_SCENARIOS;
     unsigned count = 50;
     std::uint64_t seed = 1;
-    unsigned at_once = 8;
+    unsigned at_once = 24;
     bool quiet = false;
     bool judge = false;
 };

@@ -21,6 +21,9 @@ constexpr double kLongestGap = 0.5;
 /// Longest gap between the co-processor's heartbeats [s].
 constexpr double kHeartbeatGap = 1.5;
 
+/// A flight may end in external mode while a conflict was warned of this recently [s].
+constexpr double kStillWarned = 5.0;
+
 }  // namespace
 
 Plant::Plant(const Scenario& scenario)
@@ -153,7 +156,8 @@ void conclude(const Scenario& scenario, Record& record)
     check(!link_faulty && to_seconds(heard.longest_setpoint_gap) > kLongestGap,
           "the set-points paused in external mode");
     check(scenario.floor && record.lowest < *scenario.floor, "below the floor");
-    check(record.final_mode == Mode::external, "the external mode was not given back");
+    const bool still_warned = heard.last_warning >= 0 && record.duration - to_seconds(heard.last_warning) < kStillWarned;
+    check(record.final_mode == Mode::external && !still_warned, "the external mode was not given back");
 
     if (record.closest.surface < scenario.body_radius) {
         record.outcome = Outcome::collision;

@@ -55,11 +55,11 @@ Scenario random_scenario(std::uint64_t seed)
     s.name = "random_" + std::to_string(seed);
     s.seed = seed;
     s.stack = random.below(2) == 0 ? Stack::ardupilot : Stack::px4;
-    s.duration = 40.0;
+    s.duration = 60.0;
     const double course = uniform(random, -std::numbers::pi, std::numbers::pi);
     const double climb = random.below(3) == 0 ? uniform(random, -0.2, 0.3) : 0.0;
     s.mission = {Vec(0.0, 0.0, kHeight),
-                 Vec(0.0, 0.0, kHeight) + 220.0 * Vec(std::cos(course), std::sin(course), climb).normalized()};
+                 Vec(0.0, 0.0, kHeight) + 350.0 * Vec(std::cos(course), std::sin(course), climb).normalized()};
     s.start_position = s.mission[0];
     s.start_velocity = along(s.mission[1] - s.mission[0], s.vehicle.cruise, s.vehicle);
     s.floor = 2.7;

@@ -46,8 +46,8 @@ struct Inside {
              clock_relocks = 0;
     unsigned tracks_refused = 0, track_jumps = 0, frames_refused = 0, not_finite = 0, stale_stamp = 0, inbox_full = 0,
              outbox_full = 0;
-    std::string first_candidate;  ///< of the first plan found
-    std::vector<FanCurve> fan;    ///< of the first plan found
+    std::string first_candidate;  ///< of the first plan found; empty: none was
+    std::vector<FanCurve> fan;    ///< of the first plan found, else of the first one tried
 };
 
 /// Everything that is kept of a flight.
@@ -71,7 +71,9 @@ struct Record {
     double cross_track = 0.0;  ///< at the end [m]
     double lowest = 0.0;       ///< least height of the centre [m]
     Heard heard;
-    unsigned late_steps = 0;  ///< real time: steps begun more than a tick late
+    unsigned late_steps = 0;   ///< real time: steps begun more than a tick late
+    double latest_step = 0.0;  ///< real time: the latest of them [s]
+    unsigned repeats = 0;      ///< real time: flights thrown away before because the machine stood still
     std::vector<Vec> mission;
     std::vector<Threat> threats;
     std::vector<double> appeared;  ///< when each threat appeared; negative: never [s]

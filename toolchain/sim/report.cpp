@@ -190,6 +190,8 @@ Json json(const ReportedFlight& flight, bool machine_independent)
            {"lowest", rounded(r.lowest)}};
     if (!machine_independent) {
         j["late_steps"] = r.late_steps;
+        j["latest_step"] = rounded(r.latest_step);
+        j["repeats"] = r.repeats;
     }
     j["link"] = link_of(r);
     if (flight.judged) {
