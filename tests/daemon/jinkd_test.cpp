@@ -131,6 +131,8 @@ public:
             const int fd = open(output.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0644);
             dup2(fd, STDOUT_FILENO);
             dup2(fd, STDERR_FILENO);
+            // Else it would hold the cable's other end itself and never see it pulled.
+            close_range(STDERR_FILENO + 1, ~0U, 0);
             std::vector<char*> argv{const_cast<char*>("jinkd")};
             for (const std::string& a : arguments) {
                 argv.push_back(const_cast<char*>(a.c_str()));
