@@ -13,6 +13,7 @@ inline constexpr int kExitGood = 0;
 inline constexpr int kExitBadInput = 1;  ///< a file or a command line that is wrong
 inline constexpr int kExitStop = 2;      ///< the answer is "no": the plan says stop
 
+void add_campaign(CLI::App& jink);
 void add_check(CLI::App& jink);
 void add_plan(CLI::App& jink);
 void add_report(CLI::App& jink);

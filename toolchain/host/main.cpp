@@ -9,6 +9,7 @@ int main(int argc, char** argv)
     CLI::App app{"jink: plans, checks files, runs studies and writes reports on the host."};
     app.require_subcommand(1);
     try {
+        jink::host::add_campaign(app);
         jink::host::add_check(app);
         jink::host::add_plan(app);
         jink::host::add_report(app);
