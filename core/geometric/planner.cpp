@@ -69,7 +69,8 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
     PlanStatus status = PlanStatus::none_available;
     Problem tried = problem;
     attempts = 0;
-    for (std::size_t i = 0; i <= settings.retries && i < kAttempts.size() && status == PlanStatus::none_available; ++i) {
+    for (std::size_t i = 0; i <= settings.retries && i < kAttempts.size() && status == PlanStatus::none_available;
+         ++i) {
         if (!applies(kAttempts[i], settings, limits.kind)) {
             continue;
         }

@@ -139,8 +139,8 @@ struct Result {
                                       const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
                                       WorkBudget& budget, Result& result) noexcept;
 
-/// `solve`, and where nothing is available again as kAttempts says, up to Settings::retries times; `attempts` says how often.
-/// The problem's own span is ignored. `result` is that of the last attempt. All of it within `budget`.
+/// `solve`, and where nothing is available again as kAttempts says, up to Settings::retries times; `attempts` says how
+/// often. The problem's own span is ignored. `result` is that of the last attempt. All of it within `budget`.
 [[nodiscard]] world::PlanStatus solve_with_retries(const Problem& problem, const Settings& settings,
                                                    const vehicle::VehicleLimits& limits,
                                                    const vehicle::Airframe& airframe, WorkBudget& budget,

@@ -91,7 +91,8 @@ void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
     constexpr std::int64_t kLeast = 100'000;  // a pseudo-terminal does not tell, its reader needs a moment
     constexpr std::int64_t kMost = 1'000'000;
     const std::int64_t began = clock.now_us();
-    for (std::int64_t now = began; now - began < kLeast || (port.unsent() > 0 && now - began < kMost); now = clock.now_us()) {
+    for (std::int64_t now = began; now - began < kLeast || (port.unsent() > 0 && now - began < kMost);
+         now = clock.now_us()) {
         sleep_until(now + kTickMicroseconds);
     }
 }

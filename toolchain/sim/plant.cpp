@@ -156,7 +156,8 @@ void conclude(const Scenario& scenario, Record& record)
     check(!link_faulty && to_seconds(heard.longest_setpoint_gap) > kLongestGap,
           "the set-points paused in external mode");
     check(scenario.floor && record.lowest < *scenario.floor, "below the floor");
-    const bool still_warned = heard.last_warning >= 0 && record.duration - to_seconds(heard.last_warning) < kStillWarned;
+    const bool still_warned =
+        heard.last_warning >= 0 && record.duration - to_seconds(heard.last_warning) < kStillWarned;
     check(record.final_mode == Mode::external && !still_warned, "the external mode was not given back");
 
     if (record.closest.surface < scenario.body_radius) {
