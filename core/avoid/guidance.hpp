@@ -46,6 +46,7 @@ struct Guidance {
     world::PlanStatus plan_status =
         world::PlanStatus::no_conflict;  ///< of this tick's plan, no_conflict when none was made
     bool new_manoeuvre = false;
+    std::uint32_t work = 0;  ///< units that this update spent
 };
 
 /// Counts since start.

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <limits>
+
+#include "core/avoid/supervisor.hpp"
+#include "tests/unit/core/world/scene.hpp"
+
+namespace jink::avoid::test {
+
+using world::Manoeuvre;
+using world::PlanStatus;
+using world::Situation;
+
+/// A method that does as the test says.
+struct FakeMethod {
+    std::function<PlanStatus(const Situation&, WorkBudget&, Manoeuvre&)> answer;
+    int asked = 0;
+
+    PlanStatus plan(const Situation& situation, WorkBudget& budget, Manoeuvre& out) noexcept
+    {
+        ++asked;
+        return answer(situation, budget, out);
+    }
+};
+
+inline Manoeuvre along(const Situation& s, const std::vector<Vec3>& positions, const Vec3& side)
+{
+    Manoeuvre m;
+    m.kind = world::ManoeuvreKind::follow_path;
+    m.by = world::MethodId::geometric;
+    m.start = s.now;
+    m.side = side;
+    static_cast<void>(path::make_timed_path(positions, s.limits.cruise_speed, s.limits, m.path));
+    m.valid_until = s.now + m.path.duration();
+    return m;
+}
+
+/// Out to `side` by `width`, past and back to the leg, over `length` along the way.
+inline Manoeuvre detour(const Situation& s, const Vec3& side, float width, float length)
+{
+    const world::Way way = world::way_of(s);
+    std::vector<Vec3> positions;
+    for (int i = 0; i <= 24; ++i) {
+        const float u = static_cast<float>(i) / 24.0F;
+        const float out = 0.5F * (1.0F - std::cos(2.0F * kPi * u));
+        positions.push_back(way.origin + way.direction * (length * u) + side * (width * out));
+    }
+    return along(s, positions, side);
+}
+
+inline FakeMethod always(const Vec3& side, float width = 6.0F, float length = 60.0F)
+{
+    return {[=](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, side, width, length);
+        return PlanStatus::found;
+    }};
+}
+
+inline FakeMethod never(PlanStatus status = PlanStatus::none_available)
+{
+    return {[=](const Situation&, WorkBudget&, Manoeuvre&) { return status; }};
+}
+
+/// A vehicle on its leg to the east at 30 m height, 5 m/s, and the supervisor's clock.
+struct Flight {
+    Flight()
+    {
+        scene.leg(Vec3(0, 0, 30), Vec3(300, 0, 30), 5.0F);
+        scene.own.position = Vec3(0, 0, 30);
+        scene.own.velocity = Vec3(5, 0, 0);
+        scene.own.stamp = scene.now;
+    }
+
+    template <class S>
+    Guidance update(S& supervisor, bool in_control)
+    {
+        return supervisor.update(scene.situation(), in_control);
+    }
+    /// Time passes: the vehicle follows `command`, tracks fly straight on (and are seen at their place).
+    void pass(const Vec3& command, Seconds dt)
+    {
+        vehicle::advance(scene.own, command, scene.limits, dt);
+        scene.now = scene.now + dt;
+        scene.own.stamp = scene.now;
+        for (world::Track& t : scene.tracks) {
+            t.position += t.velocity * dt;
+            t.stamp = scene.now;
+        }
+    }
+
+    world::test::Scene scene;
+};
+
+}  // namespace jink::avoid::test

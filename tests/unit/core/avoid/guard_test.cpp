@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/guard.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/base/random.hpp"
+#include "tests/unit/core/avoid/fakes.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+using world::ManoeuvreKind;
+using world::test::kPlenty;
+
+Fallback fallback(const Flight& f, const Fallback* previous = nullptr, std::uint32_t units = kPlenty)
+{
+    WorkBudget budget(units);
+    const Situation s = f.scene.situation();
+    return choose_fallback(s, world::way_of(s), previous, Settings{}, budget);
+}
+
+float margin_of(const Flight& f, const Vec3& command)
+{
+    WorkBudget budget(kPlenty);
+    return command_margin(f.scene.situation(), command, Settings{}, budget);
+}
+
+TEST(CheckManoeuvre, LooksBeyondTheEndOfThePath)
+{
+    Flight f;
+    f.scene.track(Vec3(23, 0, 30), Vec3::Zero(), 1.0F);
+    const Situation s = f.scene.situation();
+    WorkBudget budget(kPlenty);
+    const auto margin = [&](float length) {
+        const Manoeuvre m = along(s, {s.own.position, s.own.position + Vec3(length, 0, 0)}, Vec3(0, 1, 0));
+        return check_manoeuvre(s, m, Settings{}, budget).margin;
+    };
+    EXPECT_GT(margin(16.0F), 0.0F);
+    EXPECT_LT(margin(20.0F), 0.0F) << "it takes more than a metre to stop from 5 m/s";
+}
+
+TEST(CheckManoeuvre, JudgesOnlyWhatIsLeftToFly)
+{
+    Flight f;
+    f.scene.track(Vec3(10, 0, 30), Vec3::Zero(), 1.0F);
+    Manoeuvre m = detour(f.scene.situation(), Vec3(0, 1, 0), 0.0F, 100.0F);
+    f.scene.own.position = Vec3(20, 0, 30);
+    m.start = f.scene.now - 4.0F;
+    WorkBudget budget(kPlenty);
+    EXPECT_GT(check_manoeuvre(f.scene.situation(), m, Settings{}, budget).margin, 5.0F);
+}
+
+TEST(CheckManoeuvre, FollowsFromWhereTheVehicleReallyIs)
+{
+    Flight f;
+    f.scene.track(Vec3(2, 4, 30), Vec3::Zero(), 1.0F);
+    const Manoeuvre m = detour(f.scene.situation(), Vec3(0, 1, 0), 0.0F, 100.0F);
+    f.scene.own.position = Vec3(0, 4.5F, 30);  // blown off
+    WorkBudget budget(kPlenty);
+    EXPECT_LT(check_manoeuvre(f.scene.situation(), m, Settings{}, budget).margin, 0.0F);
+}
+
+TEST(ChooseFallback, BrakesWhereThatIsClear)
+{
+    Flight f;
+    f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.0F);
+    const Fallback chosen = fallback(f);
+    EXPECT_EQ(chosen.kind, ManoeuvreKind::brake);
+    EXPECT_EQ(chosen.margin, margin_of(f, Vec3::Zero()));
+}
+
+TEST(ChooseFallback, PrefersABrakeThatIsClearToWhatWasFlown)
+{
+    Flight f;
+    f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.0F);
+    const Fallback before{ManoeuvreKind::velocity, Vec3(0, 5, 0), 1.0F};
+    EXPECT_EQ(fallback(f, &before).kind, ManoeuvreKind::brake);
+}
+
+TEST(ChooseFallback, KeepsAWayOutThatIsStillClear)
+{
+    Flight f;
+    f.scene.track(Vec3(14, 0.5F, 30), Vec3(-5, 0, 0), 1.0F);
+    const Fallback before{ManoeuvreKind::velocity, Vec3(0, 5, 0), 0.1F};
+    ASSERT_GE(margin_of(f, before.command), 0.0F);
+    const Fallback chosen = fallback(f, &before);
+    EXPECT_EQ(chosen.command, before.command);
+    EXPECT_EQ(chosen.margin, margin_of(f, before.command));
+}
+
+/// Holding on is for choices that are about as bad; a clear one always wins.
+TEST(ChooseFallback, DoesNotHoldOnToContactWhereAnotherIsClear)
+{
+    Random random(20260731);
+    int tried = 0;
+    for (int i = 0; i < 4000; ++i) {
+        Flight f;
+        f.scene.own.velocity = Vec3(random.uniform(-5, 5), random.uniform(-5, 5), 0);
+        for (int n = 0; n < 2; ++n) {
+            f.scene.track(
+                f.scene.own.position + Vec3(random.uniform(-12, 12), random.uniform(-12, 12), random.uniform(-4, 4)),
+                Vec3(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-1, 1)), random.uniform(0.5F, 2.0F));
+        }
+        const Fallback first = fallback(f);
+        const Fallback before{ManoeuvreKind::velocity,
+                              Vec3(random.uniform(-5, 5), random.uniform(-5, 5), random.uniform(-2, 2)), 0.0F};
+        const Fallback chosen = fallback(f, &before);
+        if (first.margin >= 0.0F) {
+            ++tried;
+            ASSERT_GE(chosen.margin, 0.0F) << "case " << i;
+        }
+        ASSERT_TRUE(chosen.margin >= 0.0F || chosen.margin >= first.margin - 0.31F) << "case " << i;
+        const float real =
+            chosen.kind == ManoeuvreKind::brake ? margin_of(f, Vec3::Zero()) : margin_of(f, chosen.command);
+        ASSERT_EQ(chosen.margin, real) << "case " << i;
+    }
+    EXPECT_GT(tried, 500);
+}
+
+TEST(ChooseFallback, WithoutABudgetItBrakes)
+{
+    Flight f;
+    f.scene.track(Vec3(3, 0, 30), Vec3(-5, 0, 0), 1.0F);
+    const Fallback chosen = fallback(f, nullptr, 0);
+    EXPECT_EQ(chosen.kind, ManoeuvreKind::brake);
+    EXPECT_LT(chosen.margin, 0.0F);
+}
+
+TEST(ChooseFallback, AFixedWingsMarginIsWhatItsTurnKeeps)
+{
+    Flight f;
+    f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    f.scene.limits.cruise_speed = 15.0F;
+    f.scene.own.velocity = Vec3(15, 0, 0);
+    f.scene.track(Vec3(40, -3, 30), Vec3::Zero(), 3.0F);
+    const Fallback first = fallback(f);
+    ASSERT_EQ(first.kind, ManoeuvreKind::hold_turn);
+    EXPECT_GT(first.command.z(), 0.0F) << "left";
+    const Fallback second = fallback(f, &first);
+    EXPECT_EQ(second.command, first.command);
+    EXPECT_EQ(second.margin, first.margin) << "holding on does not make it any clearer";
+}
+
+TEST(ChooseFallback, AFixedWingHoldsOnToATurnThatIsAboutAsGood)
+{
+    Flight f;
+    f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    f.scene.limits.cruise_speed = 15.0F;
+    f.scene.own.velocity = Vec3(15, 0, 0);
+    f.scene.track(Vec3(40, 0.05F, 30), Vec3::Zero(), 3.0F);
+    for (const float sense : {1.0F, -1.0F}) {
+        const Fallback before{ManoeuvreKind::hold_turn, Vec3(0, 0, sense), 0.0F};
+        EXPECT_EQ(fallback(f, &before).command.z(), sense);
+    }
+}
+
+/// The commanded turn is flown: within the acceleration limit, and around.
+TEST(TurnCommand, TurnsAtTheLateralLimit)
+{
+    for (const float sense : {1.0F, -1.0F}) {
+        vehicle::VehicleLimits limits;
+        limits.cruise_speed = 15.0F;
+        vehicle::VehicleState own;
+        own.velocity = Vec3(15, 0, 0);
+        float turned = 0.0F;
+        for (int i = 0; i < 100; ++i) {
+            const Vec3 before = own.velocity;
+            vehicle::advance(own, turn_command(own, limits, sense), limits, 0.05F);
+            turned +=
+                std::atan2(before.x() * own.velocity.y() - before.y() * own.velocity.x(), before.dot(own.velocity));
+        }
+        // 5 m/s2 at 15 m/s is a third of a radian each second.
+        EXPECT_NEAR(turned * sense, 5.0F * 5.0F / 15.0F, 0.25F);
+        EXPECT_NEAR(own.velocity.norm(), 15.0F, 0.8F);
+    }
+    vehicle::VehicleState still;
+    still.yaw = 0.5F * kPi;
+    EXPECT_GT(turn_command(still, {}, 1.0F).y(), 3.0F) << "standing, it turns from where it looks";
+}
+
+}  // namespace
+}  // namespace jink::avoid
