@@ -89,21 +89,37 @@ Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous
 {
     Fallback best{world::ManoeuvreKind::hold_turn, Vec3::Zero(), -world::kSeparationCap};
     bool first = true;
+    float best_rank = 0.0F;
     TimedPath flight;
     for (const float direction : {1.0F, -1.0F}) {
         predict_turn(s, direction, settings, flight);
-        float margin = world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
+        const float margin =
+            world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
         const bool kept = previous != nullptr && previous->kind == world::ManoeuvreKind::hold_turn &&
                           previous->command.z() * direction > 0.0F;
-        margin += kept ? kFallbackHysteresis : 0.0F;
-        if (first || margin > best.margin) {
+        const float rank = margin + (kept ? kFallbackHysteresis : 0.0F);
+        if (first || rank > best_rank) {
             // The sense of the turn travels in z: there is no vertical command in a hold turn.
             best.command = Vec3(0.0F, 0.0F, direction);
             best.margin = margin;
+            best_rank = rank;
             first = false;
         }
     }
     return best;
+}
+
+/// No method is trusted with this either: numbers, times that rise, a start that is not ahead.
+bool is_well_formed(const world::Manoeuvre& manoeuvre, TimePoint now) noexcept
+{
+    Seconds before = -1.0F;
+    for (const PathPoint& p : manoeuvre.path.points) {
+        if (!is_finite(p.position) || !is_finite(p.velocity) || !std::isfinite(p.time) || p.time <= before) {
+            return false;
+        }
+        before = p.time;
+    }
+    return !manoeuvre.path.points.empty() && manoeuvre.path.points.front().time >= 0.0F && manoeuvre.start <= now;
 }
 
 }  // namespace
@@ -121,8 +137,11 @@ bool is_valid(const Settings& s) noexcept
 }
 
 world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre,
-                                  const Settings& settings, WorkBudget& budget) noexcept
+                                  const Settings& settings, WorkBudget& budget, Seconds horizon) noexcept
 {
+    if (!is_well_formed(manoeuvre, s.now)) {
+        return {-world::kSeparationCap, 0.0F, {}};
+    }
     const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
     const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
     const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 2));
@@ -141,7 +160,7 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
                                        s.limits, tail);
         append(flight, tail);
     }
-    return world::least_separation(s, flight, flight.duration(), budget, settings.escape);
+    return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape);
 }
 
 float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings,
@@ -191,7 +210,8 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
             best = {world::ManoeuvreKind::velocity, command, margin};
         }
     }
-    if (kept_margin + kFallbackHysteresis >= best.margin && kept_margin > -world::kSeparationCap) {
+    const bool as_good = best.margin < 0.0F && kept_margin + kFallbackHysteresis >= best.margin;
+    if (as_good && kept_margin > -world::kSeparationCap) {
         return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
     }
     return best;

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
+
 #include "core/avoid/guidance.hpp"
 
 namespace jink::avoid {
 
-/// Least separation of a manoeuvre as it will really be flown from now on: the vehicle model follows the rest of it,
-/// and brakes at its end (a fixed wing flies on), so that a way that ends in a trap is not clear. O(points * threats).
+/// Least separation of a manoeuvre as it will really be flown from now on, within `horizon`: the vehicle model follows
+/// the rest of it, and brakes at its end (a fixed wing flies on), so that a way that ends in a trap is not clear. A
+/// manoeuvre without points, with numbers that are none, times that do not rise or a start ahead of now is contact.
+/// O(points * threats).
 [[nodiscard]] world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
-                                                const Settings& settings, WorkBudget& budget) noexcept;
+                                                const Settings& settings, WorkBudget& budget,
+                                                Seconds horizon = std::numeric_limits<Seconds>::infinity()) noexcept;
 
 /// The last rung: always an answer.
 struct Fallback {

@@ -72,10 +72,13 @@ bool Pilot::due(const Tick& tick, Seconds time_to_loss) const noexcept
     return time_to_loss <= settings_.commit || urgent(tick, time_to_loss);
 }
 
-bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept
+/// Nearer than this, it is time to stop.
+Seconds Pilot::last_moment(const Tick& tick) const noexcept
 {
-    return time_to_loss <= vehicle::stopping_time(tick.s.own.velocity.norm(), tick.s.limits) + settings_.reserve;
+    return vehicle::stopping_time(tick.s.own.velocity.norm(), tick.s.limits) + settings_.reserve;
 }
+
+bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept { return time_to_loss <= last_moment(tick); }
 
 /// Asks for a plan with room to spare; in a tight place for one without.
 bool Pilot::plan(Tick& tick) noexcept
@@ -216,7 +219,8 @@ void Pilot::avoid(Tick& tick) noexcept
     if (ahead.margin < 0.0F) {
         if (plan(tick)) {
             take(tick);
-        } else if (urgent(tick, ahead.when)) {
+        } else if (check_manoeuvre(tick.s, flying_, settings_, tick.budget, last_moment(tick)).margin < 0.0F) {
+            // What counts is when the margin is entered; its worst instant may lie far behind that.
             fall_back(tick);
         }
         return;
@@ -319,6 +323,7 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     case State::braking: brake(tick); break;
     }
     tick.out.state = state_;
+    tick.out.work = tick.budget.spent();
     last_update_ = situation.now;
     diagnostics_.budget_spent += tick.budget.exhausted() ? 1U : 0U;
     diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());

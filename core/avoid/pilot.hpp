@@ -42,6 +42,7 @@ private:
     void brake(Tick& tick) noexcept;
     [[nodiscard]] bool plan(Tick& tick) noexcept;
     [[nodiscard]] bool due(const Tick& tick, Seconds time_to_loss) const noexcept;
+    [[nodiscard]] Seconds last_moment(const Tick& tick) const noexcept;
     [[nodiscard]] bool urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
     void take(Tick& tick) noexcept;
     void fall_back(Tick& tick) noexcept;

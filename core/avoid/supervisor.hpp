@@ -45,7 +45,7 @@ private:
             return false;
         }
         margin = check_manoeuvre(situation, out, settings, budget).margin;
-        if (margin < 0.0F) {
+        if (!(margin >= 0.0F)) {
             ++diagnostics.answers_rejected;
             status = world::PlanStatus::none_available;
             return false;

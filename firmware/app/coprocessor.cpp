@@ -163,7 +163,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
         report.guidance = supervisor_.update(situation, takeover_.in_control());
-        report.work = supervisor_.diagnostics().most_work;
+        report.work = report.guidance.work;
     }
     TakeoverInput input;
     input.wants_control = report.guidance.wants_control;

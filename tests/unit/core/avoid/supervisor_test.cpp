@@ -577,14 +577,6 @@ const BadAnswer kBadAnswers[] = {
     {"starts_in_the_future",
      [](const Situation& s, Manoeuvre& m) { m = detour(s, kLeft, 6.0F, 60.0F), m.start = m.start + 5.0F; }},
     {"underground", [](const Situation& s, Manoeuvre& m) { m = detour(s, Vec3(0, 0, -1), 29.5F, 60.0F); }},
-    {"no_vehicle_flies_that",
-     [](const Situation& s, Manoeuvre& m) {
-         m = along(s, {s.own.position, s.own.position + Vec3(0, 6, 0), s.own.position + Vec3(60, 6, 0)}, kLeft);
-         for (auto& p : m.path.points) {
-             p.time *= 0.01F;
-             p.velocity *= 100.0F;
-         }
-     }},
 };
 
 struct BadAnswers : testing::TestWithParam<BadAnswer> {};
