@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Conflict prediction on recorded encounters of manned aircraft: what is predicted on the way against what the
+// recording then shows.
+//
+// Size: a sphere of 0.66 nmi about the intruder, the horizontal well-clear distance of DO-365; its 450 ft in height
+// cannot be said by a sphere, and the aircraft here fly at one height. The own box is 1 m, so that it counts for
+// nothing.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "core/world/conflict.hpp"
+#include "core/world/track_table.hpp"
+#include "tests/scenario/encounter_file.hpp"
+
+namespace jink::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kWellClear = 0.66F * 1852.0F;
+constexpr float kLookahead = 60.0F;
+constexpr int kSkipped = 77;
+
+fs::path folder()
+{
+    for (const char* name : {"JINK_ENCOUNTERS", "JINK_ENCOUNTERS_DEFAULT"}) {
+        if (const char* value = std::getenv(name); value != nullptr) {
+            return value;
+        }
+    }
+    return {};
+}
+
+std::vector<fs::path> files()
+{
+    std::vector<fs::path> all;
+    std::error_code missing;
+    for (const auto& entry : fs::directory_iterator(folder(), missing)) {
+        if (entry.path().extension() == ".daa") {
+            all.push_back(entry.path());
+        }
+    }
+    std::sort(all.begin(), all.end());
+    return all;
+}
+
+/// What the recording shows, by looking at it every 10 ms.
+struct Truth {
+    double closest_at = 0.0;
+    double miss = 1e12;
+    double loss_at = -1.0;  ///< first instant nearer than well clear; negative: never
+};
+
+Truth truth_of(const Aircraft& own, const Aircraft& other)
+{
+    Truth truth;
+    const double end = std::min(own.fixes.back().time, other.fixes.back().time);
+    for (double t = own.fixes.front().time; t <= end; t += 0.01) {
+        const double distance = (own.position_at(t) - other.position_at(t)).norm();
+        if (distance < truth.miss) {
+            truth.miss = distance;
+            truth.closest_at = t;
+        }
+        if (truth.loss_at < 0.0 && distance < static_cast<double>(kWellClear)) {
+            truth.loss_at = t;
+        }
+    }
+    return truth;
+}
+
+/// What is predicted at one time.
+struct Prediction {
+    double time = 0.0;
+    bool conflict = false;
+    world::Conflict what;
+};
+
+TimePoint at(double seconds) { return {static_cast<std::int64_t>(std::llround(seconds * 1e6)) + 1'000'000}; }
+
+/// Feeds the intruder through the track table at the recording's rate and asks for a conflict after each fix.
+std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, float k_sigma)
+{
+    world::TrackTableSettings settings;
+    settings.max_range = 200'000.0F;
+    world::TrackTable table(settings);
+    vehicle::VehicleLimits limits;
+    limits.max_climb = limits.max_descent = 100.0F;
+    const vehicle::Airframe airframe;
+    const world::Airspace airspace;
+    std::vector<Prediction> all;
+    for (std::size_t i = 0; i < std::min(own.fixes.size(), other.fixes.size()); ++i) {
+        const Fix& mine = own.fixes[i];
+        const Fix& theirs = other.fixes[i];
+        vehicle::VehicleState state;
+        state.stamp = at(mine.time);
+        state.position = mine.position.cast<float>();
+        state.velocity = mine.velocity.cast<float>();
+        world::TrackMeasurement seen;
+        seen.id = 1;
+        seen.stamp = at(theirs.time);
+        seen.position = theirs.position.cast<float>();
+        seen.velocity = theirs.velocity.cast<float>();
+        seen.has_velocity = true;
+        seen.radius = kWellClear;
+        seen.sigma_position = 10.0F;  // a GPS position
+        seen.sigma_velocity = 1.0F;
+        const world::TrackStatus status = table.update(seen, state, at(mine.time));
+        EXPECT_TRUE(status == world::TrackStatus::updated || status == world::TrackStatus::created) << mine.time;
+        world::Reference reference;
+        reference.valid = true;
+        limits.cruise_speed = reference.leg.speed = state.velocity.norm();
+        reference.leg.start = state.position;
+        reference.leg.end = state.position + state.velocity * 300.0F;
+        const world::Situation situation{
+            at(mine.time), state,   limits, airframe, reference, table.snapshot(at(mine.time)), {},
+            airspace,      nullptr, k_sigma};
+        Prediction prediction;
+        prediction.time = mine.time;
+        prediction.conflict =
+            world::predict_conflict(situation, world::way_of(situation), 0, kLookahead, prediction.what);
+        all.push_back(prediction);
+    }
+    return all;
+}
+
+class RecordedEncounter : public ::testing::TestWithParam<fs::path> {
+protected:
+    Encounter encounter = read_encounter(GetParam());
+    const Aircraft& own = encounter.aircraft[0];
+    const Aircraft& other = encounter.aircraft[1];
+    Truth truth = truth_of(own, other);
+};
+
+TEST_P(RecordedEncounter, BothAircraftAreRecordedTogether)
+{
+    ASSERT_GE(own.fixes.size(), 60U);
+    ASSERT_EQ(own.fixes.size(), other.fixes.size());
+    for (std::size_t i = 0; i < own.fixes.size(); ++i) {
+        ASSERT_EQ(own.fixes[i].time, other.fixes[i].time);
+    }
+    // Positions and velocities of the file belong together: a wrong unit or a wrong column would show here.
+    for (const Aircraft* aircraft : {&own, &other}) {
+        for (std::size_t i = 1; i < aircraft->fixes.size(); ++i) {
+            const Fix& a = aircraft->fixes[i - 1];
+            const Fix& b = aircraft->fixes[i];
+            const Eigen::Vector3d flown = (b.position - a.position) / (b.time - a.time);
+            ASSERT_LT((flown - 0.5 * (a.velocity + b.velocity)).norm(), 0.01 * a.velocity.norm())
+                << aircraft->name << " " << a.time;
+        }
+    }
+    std::cout << GetParam().filename().string() << ": closest " << truth.miss << " m at " << truth.closest_at
+              << " s, well clear lost at " << truth.loss_at << " s\n";
+}
+
+TEST_P(RecordedEncounter, TheClosestApproachIsPredictedAndTheErrorShrinks)
+{
+    double far_error = 0.0;
+    double near_error = 0.0;
+    int compared = 0;
+    for (const Prediction& p : predict(own, other, 0.0F)) {
+        const double left = truth.closest_at - p.time;
+        if (left <= 1.0 || left >= static_cast<double>(kLookahead) - 1.0) {
+            continue;
+        }
+        ++compared;
+        ASSERT_TRUE(p.conflict) << p.time;
+        const double time_error = std::abs(static_cast<double>(p.what.time_to_closest) - left);
+        const double miss_error = std::abs(static_cast<double>(p.what.miss_distance) - truth.miss);
+        // The recording flies great circles, the prediction straight lines of a local plane: 1 % of the time left, and
+        // 50 ms for the truth's raster and the file's rounding.
+        EXPECT_LE(time_error, 0.01 * left + 0.05) << p.time;
+        EXPECT_LE(miss_error, 1.0 * left + 5.0) << p.time;
+        (left > 30.0 ? far_error : near_error) = std::max(left > 30.0 ? far_error : near_error, miss_error);
+    }
+    EXPECT_GE(compared, 40);
+    EXPECT_LE(near_error, far_error + 1.0);
+    std::cout << GetParam().filename().string() << ": miss distance off by " << far_error
+              << " m at most before the last 30 s, by " << near_error << " m in them\n";
+}
+
+TEST_P(RecordedEncounter, TheLossIsSeenAsSoonAsItLiesWithinTheLookahead)
+{
+    ASSERT_GE(truth.loss_at, 0.0);
+    for (const Prediction& p : predict(own, other, 0.0F)) {
+        const double left = truth.loss_at - p.time;
+        if (left > static_cast<double>(kLookahead) + 1.0) {
+            EXPECT_FALSE(p.conflict) << p.time;
+        } else if (left > 0.0 && left < static_cast<double>(kLookahead) - 1.0) {
+            EXPECT_TRUE(p.conflict) << p.time;
+            EXPECT_NEAR(static_cast<double>(p.what.time_to_loss), left, 0.01 * left + 0.05) << p.time;
+        } else if (p.time > truth.closest_at + 1.0) {
+            EXPECT_FALSE(p.conflict) << p.time;
+        }
+    }
+}
+
+TEST_P(RecordedEncounter, WithItsUncertaintyTheLossIsNeverPredictedTooLate)
+{
+    int compared = 0;
+    for (const Prediction& p : predict(own, other, 3.0F)) {
+        const double left = truth.loss_at - p.time;
+        if (left > 0.0 && left < static_cast<double>(kLookahead) - 1.0) {
+            ++compared;
+            ASSERT_TRUE(p.conflict) << p.time;
+            EXPECT_LE(static_cast<double>(p.what.time_to_loss), left + 0.02) << p.time;
+        }
+    }
+    EXPECT_GE(compared, 40);
+}
+
+std::string name_of(const ::testing::TestParamInfo<fs::path>& info)
+{
+    std::string name = info.param.stem().string();
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, RecordedEncounter, ::testing::ValuesIn(files()), name_of);
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(RecordedEncounter);
+
+}  // namespace
+}  // namespace jink::test
+
+int main(int argc, char** argv)
+{
+    ::testing::InitGoogleTest(&argc, argv);
+    if (jink::test::files().empty()) {
+        std::cout << "No recorded encounters in '" << jink::test::folder().string()
+                  << "'; say where they are with JINK_ENCOUNTERS. Skipped.\n";
+        return jink::test::kSkipped;
+    }
+    return RUN_ALL_TESTS();
+}
