@@ -30,8 +30,8 @@ struct Attempt {
     float span_to = 1.0F;
 };
 /// What the Planner tries, in this order, until something is available: slower flight asks for less acceleration and
-/// lets crossing traffic pass; a wall of threats has its gap further out. Of 4810 random situations with a conflict
-/// (tests/property/core/geometric, WhatIsFoundPassesTheFinalCheck) the first alone solves half, all five 94 %. A fixed
+/// lets crossing traffic pass; a wall of threats has its gap further out. Of 4873 random situations with a conflict
+/// (tests/property/core/geometric, WhatIsFoundPassesTheFinalCheck) the first alone solves 2254, all five 4509. A fixed
 /// wing does not fly slower.
 inline constexpr std::array<Attempt, 5> kAttempts{
     {{1.0F, 0.0F, 1.0F}, {0.6F, 0.0F, 1.0F}, {1.0F, 1.0F, 2.0F}, {0.3F, 0.0F, 1.0F}, {1.0F, 2.0F, 3.5F}}};
