@@ -90,6 +90,16 @@ Case any_case(Random& random)
         c.own_to = c.own_from;
         c.own_to[static_cast<int>(random.below(3))] += size;
         break;
+    case 9: {  // a slender parallelogram pierced by, or passing closely, a box smaller than its width
+        const Vec3 own = c.own_to - c.own_from;
+        const Vec3 threat = random.uniform(-2.0F, 2.0F) * own +
+                            size * oracle::power_of_ten(random, -5.0F, -1.0F) * oracle::in_cube(random, 1.0F);
+        c.half *= oracle::power_of_ten(random, -7.0F, -2.0F);
+        c.threat_from = c.own_from + random.uniform() * own - random.uniform() * threat +
+                        size * oracle::power_of_ten(random, -7.0F, -2.0F) * oracle::in_cube(random, 1.0F);
+        c.threat_to = c.threat_from + threat;
+        break;
+    }
     default: break;
     }
     return c;

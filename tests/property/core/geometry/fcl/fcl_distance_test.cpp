@@ -132,7 +132,7 @@ TEST(FclMoving, ConservativeAdvancementAgreesOnTheCrossingScene)
         // see one.
         if (contact) {
             ++hits;
-            const double deep = least_distance(scene.half, c.own, c.threat, 1.0F).distance - scene.radius;
+            const double deep = double(least_distance(scene.half, c.own, c.threat, 1.0F).distance - scene.radius);
             ASSERT_TRUE(result.is_collide || deep > -1e-3) << deep;
             ASSERT_TRUE(!result.is_collide || std::abs(result.time_of_contact - double(contact->first)) < 3e-4 ||
                         deep > -1e-2);
