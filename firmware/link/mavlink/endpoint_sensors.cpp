@@ -27,6 +27,8 @@ constexpr float kCentimetre = 0.01F;
 constexpr float kDegree = kPi / 180.0F;
 /// Beam width taken for a range finder that does not say its own: half angle [rad].
 constexpr float kDefaultHalfAngle = 0.1F;
+/// A field of view below this is taken for not said [rad].
+constexpr float kLeastFieldOfView = 1e-3F;
 
 }  // namespace
 
@@ -162,7 +164,8 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     reading.range = m.current_distance > m.max_distance
                         ? RangeScan::kNothing
                         : static_cast<float>(std::max(m.current_distance, m.min_distance)) * kCentimetre;
-    reading.half_angle = m.horizontal_fov > 0.0F ? std::min(0.5F * m.horizontal_fov, 0.5F * kPi) : kDefaultHalfAngle;
+    reading.half_angle =
+        m.horizontal_fov >= kLeastFieldOfView ? std::min(0.5F * m.horizontal_fov, 0.5F * kPi) : kDefaultHalfAngle;
     if (level) {
         const float yaw = own_.yaw - static_cast<float>(m.orientation) * 45.0F * kDegree;
         reading.direction = Vec3(std::cos(yaw), std::sin(yaw), 0.0F);

@@ -312,6 +312,9 @@ TEST_F(MavlinkEndpointSensors, ReadingsAtTheEdges)
     m.horizontal_fov = -1.0F;
     from(kSystem, 154, m);
     EXPECT_GT(inbox->readings[2].half_angle, 0.0F);
+    m.horizontal_fov = std::numeric_limits<float>::denorm_min();
+    from(kSystem, 154, m);
+    EXPECT_GT(inbox->readings[3].half_angle, 0.01F);
 }
 
 TEST_F(MavlinkEndpointSensors, ReadingsThatMeanNothingAreRefused)
