@@ -102,9 +102,15 @@ std::optional<Inside> read_summary(const std::filesystem::path& file)
     }
     const auto count = [&](const char* key) { return json.value(key, 0U); };
     Inside inside;
-    inside.steps = {count("steps"), json.value("step_mean_us", 0.0), json.value("step_max_us", 0.0)};
-    inside.plan_steps = {count("plan_steps"), json.value("plan_step_mean_us", 0.0),
-                         json.value("plan_step_max_us", 0.0)};
+    inside.steps = {count("steps"), json.value("step_mean_us", 0.0), json.value("step_max_us", 0.0), {}};
+    inside.plan_steps = {
+        count("plan_steps"), json.value("plan_step_mean_us", 0.0), json.value("plan_step_max_us", 0.0), {}};
+    const auto bins = json.value("plan_step_bins_us", nlohmann::json::object());
+    for (const auto& [from, times] : bins.items()) {
+        constexpr double kHalfBin = 5.0;
+        const double middle = std::stod(from) + kHalfBin;
+        inside.plan_steps.times.insert(inside.plan_steps.times.end(), times.get<std::size_t>(), middle);
+    }
     inside.conflicts = count("conflicts");
     inside.plans = count("plans");
     inside.plans_found = count("plans_found");

@@ -31,6 +31,7 @@ public:
         durations_.worst = std::max(durations_.worst, us);
         durations_.mean = sum_ / static_cast<double>(durations_.count);
     }
+    void keep(double us) { durations_.times.push_back(us); }
     [[nodiscard]] const Durations& durations() const noexcept { return durations_; }
 
 private:
@@ -56,6 +57,7 @@ public:
         steps_.note(took.count());
         if (coprocessor_->supervisor_diagnostics().plans != plans) {
             plan_steps_.note(took.count());
+            plan_steps_.keep(took.count());
         }
         const bool planned = coprocessor_->supervisor_diagnostics().plans != plans;
         const bool succeeded = coprocessor_->supervisor_diagnostics().plans_found != found;

@@ -34,6 +34,7 @@ struct Durations {
     unsigned count = 0;
     double mean = 0.0;
     double worst = 0.0;
+    std::vector<double> times;  ///< each of them, where they are few; from the daemon to 10 us
 };
 
 /// What only shows from inside the co-processor.

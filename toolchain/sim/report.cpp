@@ -107,6 +107,9 @@ Json inside_of(const Inside& in, bool machine_independent)
     if (!machine_independent) {
         j["steps"] = json(in.steps);
         j["plan_steps"] = json(in.plan_steps);
+        for (const double us : in.plan_steps.times) {
+            j["plan_steps"]["times_us"].push_back(std::round(us));
+        }
     }
     j["conflicts"] = in.conflicts;
     j["plans"] = in.plans;
