@@ -42,7 +42,7 @@ struct Wider {
 
 struct Pilot::Tick {
     const world::Situation& s;
-    bool in_control;
+    bool in_control = false;
     const Ladder& ladder;
     WorkBudget budget;
     world::Way way;

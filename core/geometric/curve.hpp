@@ -15,6 +15,7 @@ namespace jink::geometric::detail {
 using Coordinates = std::array<float, kMaxPathPoints>;
 
 /// A family's curve for D = 1, w = 1: made once per plan.
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): entries past `points` are not read, zeroing them costs
 struct UnitCurve {
     std::size_t points = 0;
     Coordinates u;
@@ -23,6 +24,7 @@ struct UnitCurve {
 [[nodiscard]] UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept;
 
 /// Timed waypoints relative to the start. Entries past `points` hold nothing.
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): as above
 struct Curve {
     std::size_t points = 0;
     Coordinates x, y, z;
