@@ -61,9 +61,13 @@ std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
     switch (outcome.status) {
     case PlanStatus::found: {
         const Candidate& c = outcome.result.candidates[outcome.result.chosen];
-        return format("Fly candidate %zu: %s, plane %.1f deg, offset %+.2f m, %.2f s, cost %.4f.",
+        float fastest = 0.0F;
+        for (const path::PathPoint& point : outcome.result.path.points) {
+            fastest = std::max(fastest, point.velocity.norm());
+        }
+        return format("Fly candidate %zu: %s, plane %.1f deg, offset %+.2f m, %.2f s at up to %.2f m/s, cost %.4f.",
                       outcome.result.chosen, std::string(name_of(c.shape.family)).c_str(), degrees(c.shape.plane),
-                      wide(c.shape.offset), wide(c.duration), wide(c.total));
+                      wide(c.shape.offset), wide(c.duration), wide(fastest), wide(c.total));
     }
     case PlanStatus::too_close:
         return format("Stop: the main threat is %.2f m away, nearer than 2.5 of its radii (%.2f m).",
@@ -214,7 +218,7 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
     }
     out += "\n" + verdict(file, outcome) + "\n";
     out += format("%u units of work, %zu %s.\n", outcome.work, outcome.tries,
-                  outcome.tries == 1 ? "try" : "tries, each further out");
+                  outcome.tries == 1 ? "attempt" : "attempts, slower and further out");
     return out;
 }
 
