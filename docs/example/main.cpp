@@ -10,11 +10,16 @@ int main()
     const vehicle::VehicleLimits limits;  // 5 m/s cruise, 3 m/s climb, a safety box of 2 m
     const vehicle::Airframe airframe;
     const world::Reference way{true, {{0, 0, 30}, {100, 0, 30}, 5.0F}};  // a level leg eastwards
-    const world::Airspace airspace{.has_floor = true, .floor = 2.0F};
+    world::Airspace airspace;
+    airspace.has_floor = true;
+    airspace.floor = 2.0F;
     vehicle::VehicleState own;
     own.position = {0, 0, 30};
     own.velocity = {5, 0, 0};
-    const world::Track intruder{.id = 7, .position = {40, 0.5F, 30}, .velocity = {-5, 0, 0}, .radius = 1.0F};
+    world::Track intruder;
+    intruder.position = {40, 0.5F, 30};
+    intruder.velocity = {-5, 0, 0};
+    intruder.radius = 1.0F;
 
     geometric::Planner planner{geometric::Settings{}};
     avoid::Supervisor supervisor{avoid::Settings{}, planner};
