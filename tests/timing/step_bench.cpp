@@ -112,7 +112,7 @@ private:
         const Vec3 where = conflicting_
                                ? Vec3(random.uniform(-15.0F, 15.0F), 35.0F, 50.0F + random.uniform(-8.0F, 8.0F))
                                : Vec3(120.0F * std::cos(angle), 120.0F * std::sin(angle), 50.0F);
-        const GlobalPosition global = to_global(where, {470000000, 80000000, 0});
+        const GlobalPosition global = to_global(where, {470000000, 80000000, 0}).value();
         AdsbVehicle m;
         m.ICAO_address = id;
         m.lat = global.lat;
