@@ -7,8 +7,11 @@ using link::FlightMode;
 
 void Takeover::drop(bool by_fault) noexcept
 {
-    diagnostics_.lost_by_fault += by_fault && streaming() ? 1U : 0U;
-    owed_ = by_fault && (in_control() || (owed_ && control_ == Control::autopilot));
+    diagnostics_.lost_by_fault += by_fault && in_control() ? 1U : 0U;
+    if (!by_fault) {
+        claim_ = Claim::none;
+        tries_ = 0;
+    }
     control_ = Control::autopilot;
     mode_ = FlightMode::unknown;
 }
@@ -26,27 +29,54 @@ bool Takeover::foreign(const TakeoverInput& input) const noexcept
 TakeoverOutput Takeover::overrule() noexcept
 {
     control_ = Control::overruled;
+    claim_ = Claim::none;
+    tries_ = 0;
     ++diagnostics_.overruled;
     return {TakeoverAction::none, TakeoverEvent::overruled};
 }
 
+/// Another mode seen after the time for a confirmation: an external mode from now on is not due to us.
+void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
+{
+    if (input.has_report && mode_ != FlightMode::external && (claim_ == Claim::held || now - asked_ >= kConfirm)) {
+        claim_ = Claim::none;
+    }
+}
+
+/// The HEARTBEAT shows the external mode that we asked for.
+TakeoverOutput Takeover::take(TimePoint now) noexcept
+{
+    // Taken up again after a fault, the former mode may have been asked for just before it.
+    asked_back_ = asked_back_ && claim_ == Claim::held && now - since_ < kConfirm;
+    diagnostics_.taken += claim_ == Claim::asked ? 1U : 0U;
+    claim_ = Claim::held;
+    control_ = Control::ours;
+    tries_ = 0;
+    return {TakeoverAction::none, TakeoverEvent::took_over};
+}
+
 TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcept
 {
-    if (owed_ && input.has_report && mode_ != FlightMode::external) {
-        owed_ = false;
+    if (!input.in_conflict && !input.wants_control) {
+        tries_ = 0;
     }
-    if (owed_ && input.may_act && mode_ == FlightMode::external) {
-        // A fault of ours is over and nobody has changed the mode since: it is still ours to give back.
-        owed_ = false;
-        control_ = Control::ours;
-        return {TakeoverAction::none, TakeoverEvent::took_over};
+    if (claim_ != Claim::none && foreign(input)) {
+        // A loss of control has the application ask for the hold mode.
+        if (claim_ == Claim::asked || mode_ != FlightMode::hold) {
+            return overrule();
+        }
+        claim_ = Claim::none;
+    }
+    expire_claim(input, now);
+    if (claim_ != Claim::none && input.may_act && mode_ == FlightMode::external) {
+        // A fault of ours is over, or the grant came late, and nobody else has changed the mode: ours to give back.
+        return take(now);
     }
     const bool free = mode_ == FlightMode::mission && input.report.armed && !input.report.landed;
     if (input.wants_control && input.may_act && free) {
         control_ = Control::announcing;
         former_mode_ = input.report.custom_mode;
         since_ = now;
-        tries_ = 0;
     }
     return {};
 }
@@ -57,9 +87,10 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return overrule();
     }
     if (mode_ == FlightMode::external) {
-        control_ = Control::ours;
-        ++diagnostics_.taken;
-        return {TakeoverAction::none, TakeoverEvent::took_over};
+        return claim_ == Claim::none ? overrule() : take(now);
+    }
+    if (control_ == Control::announcing) {
+        expire_claim(input, now);
     }
     if (!input.wants_control && control_ == Control::announcing) {
         control_ = Control::autopilot;
@@ -76,7 +107,8 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         ++tries_;
         ++diagnostics_.requests;
         control_ = Control::requesting;
-        since_ = now;
+        claim_ = Claim::asked;
+        since_ = asked_ = now;
         return {TakeoverAction::request_external, TakeoverEvent::none};
     }
     control_ = Control::refused;
@@ -91,20 +123,24 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
         return overrule();
     }
     if (input.has_report && mode_ != FlightMode::external) {
-        // The former mode: ours to give while returning, the pilot's choice otherwise.
-        if (control_ == Control::ours) {
+        // The former mode: given back if we asked for it, the pilot's choice otherwise.
+        if (control_ == Control::ours && !asked_back_) {
             return overrule();
         }
         control_ = Control::autopilot;
+        claim_ = Claim::none;
         ++diagnostics_.given_back;
         return {TakeoverAction::none, TakeoverEvent::gave_back};
     }
     if (input.wants_control) {
+        // Still external after the time for a confirmation: the request was lost.
+        asked_back_ = asked_back_ && !(input.has_report && now - since_ >= kConfirm);
         control_ = Control::ours;
         return {};
     }
     if (control_ == Control::ours || now - since_ >= kConfirm) {
         control_ = Control::returning;
+        asked_back_ = true;
         since_ = now;
         return {TakeoverAction::request_former, TakeoverEvent::none};
     }
@@ -114,14 +150,19 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
 /// Refused: all that is left is to have the autopilot stop by itself before it is too late.
 TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noexcept
 {
-    if (input.has_report && mode_ == FlightMode::external) {
+    if (foreign(input)) {
+        if (tries_ == 0 || mode_ != FlightMode::hold || !input.report.armed) {
+            return overrule();
+        }
+        claim_ = Claim::none;  // the hold that we asked for: what follows it is somebody else's choice
+    }
+    if (mode_ == FlightMode::external && claim_ != Claim::none && input.may_act) {
         // Granted late, after we had given up waiting: without a stream the vehicle would stop there for good.
-        control_ = Control::ours;
-        return {TakeoverAction::none, TakeoverEvent::took_over};
+        return take(now);
     }
     if (!input.in_conflict && !input.wants_control) {
         control_ = Control::autopilot;
-        return {};
+        return idle(input, now);
     }
     const bool still_flying = mode_ == FlightMode::mission;
     if (input.urgent_hold && input.may_act && still_flying && tries_ < kTries &&
@@ -138,9 +179,16 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
     if (input.has_report) {
         mode_ = input.report.mode;
     }
-    if (streaming() && !input.may_act) {
+    const bool yields = foreign(input) || (in_control() && input.has_report && mode_ != FlightMode::external);
+    if (streaming() && !input.may_act && !yields) {
+        const bool flown = in_control();
         drop(true);
-        return {TakeoverAction::none, TakeoverEvent::lost};
+        if (flown) {
+            return {TakeoverAction::none, TakeoverEvent::lost};
+        }
+        // Control was never given, nothing is lost: fall silent; this tick's report still counts.
+        mode_ = input.has_report ? input.report.mode : FlightMode::unknown;
+        return idle(input, now);
     }
     switch (control_) {
     case Control::autopilot: return idle(input, now);

@@ -51,7 +51,8 @@ struct TakeoverDiagnostics {
 
 /// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT
 /// that shows it (1 s, two more tries), fly, ask for the former mode, stream until that is confirmed. Any other mode
-/// seen is the pilot's: stop at once.
+/// seen is the pilot's: stop at once. A mode asked for stays ours to fly or to give back when a fault of ours silences
+/// us meanwhile: as soon as acting is allowed again and the HEARTBEAT shows it.
 ///
 /// Pure: no messages, no clock; O(1) per tick.
 class Takeover {
@@ -89,13 +90,24 @@ private:
     [[nodiscard]] TakeoverOutput stand_by(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] bool foreign(const TakeoverInput& input) const noexcept;
     [[nodiscard]] TakeoverOutput overrule() noexcept;
+    [[nodiscard]] TakeoverOutput take(TimePoint now) noexcept;
+    void expire_claim(const TakeoverInput& input, TimePoint now) noexcept;
+
+    /// Why the autopilot may be, or come to be, in the external mode; outlasts a fault of ours.
+    enum class Claim : std::uint8_t {
+        none,   ///< an external mode would be somebody else's
+        asked,  ///< we asked for it and have not seen it
+        held,   ///< we asked for it and have seen it
+    };
 
     Control control_ = Control::autopilot;
     std::uint32_t former_mode_ = 0;
     link::FlightMode mode_ = link::FlightMode::unknown;
     TimePoint since_;
-    int tries_ = 0;
-    bool owed_ = false;  ///< a fault of ours interrupted the flight in a mode that we had asked for
+    TimePoint asked_;  ///< the last request of the external mode
+    int tries_ = 0;    ///< in this conflict: of the external mode, once refused of the hold mode
+    Claim claim_ = Claim::none;
+    bool asked_back_ = false;  ///< the former mode was asked for and its confirmation may still be on its way
     TakeoverDiagnostics diagnostics_;
 };
 
