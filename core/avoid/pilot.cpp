@@ -10,6 +10,8 @@ namespace {
 
 /// Below this speed the vehicle counts as standing [m/s].
 constexpr float kStanding = 0.3F;
+/// A way that is free but narrow is trusted after this many times the settling time.
+constexpr float kNarrowPatience = 3.0F;
 /// Sides further apart than this (cosine) are opposite ones.
 constexpr float kOppositeSide = -0.1F;
 
@@ -62,7 +64,7 @@ bool Pilot::configure(const Settings& settings) noexcept
 void Pilot::reset() noexcept
 {
     state_ = State::watching;
-    had_control_ = has_flying_ = has_fallback_ = standing_ = was_clear_ = false;
+    had_control_ = has_flying_ = has_fallback_ = standing_ = was_clear_ = was_free_ = false;
     ground_given_ = 0.0F;
 }
 
@@ -167,6 +169,9 @@ void Pilot::note_clearness(Tick& tick) noexcept
         clear_since_ = tick.s.now;
     }
     was_clear_ = tick.wide_clear;
+    const bool free = !tick.out.has_conflict;
+    free_since_ = free && !was_free_ ? tick.s.now : free_since_;
+    was_free_ = free;
 }
 
 bool Pilot::way_clear_for(const Tick& tick, Seconds span) const noexcept
@@ -281,7 +286,9 @@ void Pilot::give_ground(Tick& tick) noexcept
 
 void Pilot::brake(Tick& tick) noexcept
 {
-    if (way_clear_for(tick, settings_.settle)) {
+    // A way that stays free, but with little to spare, is not waited at for ever: it is tried after a longer look.
+    const bool narrow = was_free_ && tick.s.now - free_since_ >= kNarrowPatience * settings_.settle;
+    if (way_clear_for(tick, settings_.settle) || narrow) {
         enter_rejoining();
         rejoin(tick);
         return;

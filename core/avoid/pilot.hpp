@@ -59,9 +59,11 @@ private:
     bool in_conflict_ = false;
     bool has_flying_ = false;
     bool was_clear_ = false;
+    bool was_free_ = false;
     bool standing_ = false;
     bool has_fallback_ = false;
     TimePoint clear_since_;
+    TimePoint free_since_;
     TimePoint standing_since_;
     Seconds ground_given_ = 0.0F;
     TimePoint last_update_;

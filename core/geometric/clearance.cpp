@@ -85,6 +85,16 @@ float Clearance::shrink_to_clear(float start_margin) const noexcept
     return settings_.escape_from_margin && start_margin < 0.0F ? settings_.escape.slack - start_margin : 0.0F;
 }
 
+/// Parts of a segment so short that a surface growing back takes half the slack at most in each.
+int Clearance::escape_parts(Seconds duration) const noexcept
+{
+    constexpr Seconds kLeast = 0.02F;
+    const Seconds longest = settings_.escape.speed > 0.0F
+                                ? std::max(kLeast, 0.5F * settings_.escape.slack / settings_.escape.speed)
+                                : duration;
+    return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
+}
+
 float Clearance::shrink_at(float shrunk, Seconds t) const noexcept
 {
     return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
@@ -148,6 +158,8 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
         const Vec3& start = problem_.frame.origin;
         item.shrunk =
             shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget) - problem_.obstacle_clearance);
+        // Distances from solids are told apart no finer than this.
+        item.shrunk += item.shrunk > 0.0F ? world::kObstacleResolution : 0.0F;
     }
     items_.unchecked_push_back(item);
 }
@@ -190,15 +202,22 @@ bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk) cons
     Vec3 before = curve.position(0) - ball.position;
     for (std::size_t i = 0; i + 1 < curve.points; ++i) {
         const Vec3 after = curve.position(i + 1) - (ball.position + ball.velocity * curve.t[i + 1]);
-        // The size at the segment's end: never too small. Of the escape rule the start, as world::least_separation has
-        // it.
-        const float radius = ball.radius_at(curve.t[i + 1]) - shrink_at(shrunk, curve.t[i]);
-        if (radius >= 0.0F) {
-            const Extent piece = about(before, after);
-            if (!apart(Vec3::Zero(), Vec3::Zero(), piece.low, piece.high, ball.half, radius) &&
-                geometry::contact_interval(ball.half, {}, {-before, before - after}, radius, 1.0F)) {
-                return true;
+        const int parts = shrink_at(shrunk, curve.t[i]) > 0.0F ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1;
+        Vec3 from = before;
+        for (int part = 1; part <= parts; ++part) {
+            // The size at the part's end: never too small.
+            const float share = static_cast<float>(part) / static_cast<float>(parts);
+            const Vec3 to = before + share * (after - before);
+            const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
+            const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
+            if (radius >= 0.0F) {
+                const Extent piece = about(from, to);
+                if (!apart(Vec3::Zero(), Vec3::Zero(), piece.low, piece.high, ball.half, radius) &&
+                    geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F)) {
+                    return true;
+                }
             }
+            from = to;
         }
         before = after;
     }
@@ -226,6 +245,26 @@ bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ba
     return false;
 }
 
+/// Segment `i` keeps off a solid that the escape rule has shrunk and that grows back meanwhile.
+bool Clearance::leaves(const Curve& curve, std::size_t i, const geometry::Shape& shape, float shrunk,
+                       WorkBudget& budget) const noexcept
+{
+    const Vec3 a = problem_.frame.origin + curve.position(i);
+    const Vec3 step = curve.position(i + 1) - curve.position(i);
+    const Seconds duration = curve.t[i + 1] - curve.t[i];
+    const int parts = escape_parts(duration);
+    for (int part = 0; part < parts; ++part) {
+        const float from = static_cast<float>(part) / static_cast<float>(parts);
+        const float to = static_cast<float>(part + 1) / static_cast<float>(parts);
+        const float margin = world::obstacle_margin(half_, a + from * step, a + to * step, shape, budget) -
+                             problem_.obstacle_clearance + shrink_at(shrunk, curve.t[i] + to * duration);
+        if (budget.exhausted() || margin < 0.0F) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool Clearance::touches(const Curve& curve, const Extent& extent, const geometry::Shape& shape, float shrunk,
                         WorkBudget& budget) const noexcept
 {
@@ -243,13 +282,12 @@ bool Clearance::touches(const Curve& curve, const Extent& extent, const geometry
         if (apart(centre, centre, piece.low, piece.high, half_, bound)) {
             continue;
         }
-        const float left = shrink_at(shrunk, curve.t[i]);
-        const bool clear =
-            left > 0.0F
-                ? world::obstacle_margin(half_, origin + a, origin + b, shape, budget) - clearance + left >= 0.0F
-                : geometry::swept_box_contact(half_, origin + a, origin + b, shape, clearance, budget) ==
-                      geometry::Contact::clear;
-        if (!clear) {
+        if (shrink_at(shrunk, curve.t[i]) > 0.0F) {
+            if (!leaves(curve, i, shape, shrunk, budget)) {
+                return true;
+            }
+        } else if (geometry::swept_box_contact(half_, origin + a, origin + b, shape, clearance, budget) !=
+                   geometry::Contact::clear) {
             return true;
         }
     }

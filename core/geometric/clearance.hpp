@@ -73,6 +73,9 @@ private:
     void add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept;
     [[nodiscard]] float shrink_to_clear(float start_margin) const noexcept;
     [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept;
+    [[nodiscard]] int escape_parts(Seconds duration) const noexcept;
+    [[nodiscard]] bool leaves(const Curve& curve, std::size_t i, const geometry::Shape& shape, float shrunk,
+                              WorkBudget& budget) const noexcept;
     [[nodiscard]] world::ThreatKind left_airspace(const Curve& curve) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept;
     [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball,
