@@ -49,7 +49,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_K_T", 0.2F, 0.1F, 1, false, "weight of time"},
     {"GEO_K_P", 1, 0, 10, false, "penalty on planes that are not level"},
     {"GEO_FLIP", 0.15F, 0, 1, false, "penalty on changing sides"},
-    {"GEO_MAX_COST", 1, 0, 2, false, "a plan that costs more counts as not found"},
+    {"GEO_MAX_COST", 1, 0.01F, 1, false, "a plan that costs more counts as not found"},
     {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
 }};

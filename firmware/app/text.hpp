@@ -42,11 +42,15 @@ public:
         if (!(std::abs(value) < 1e8F)) {
             return *this << std::string_view("?");
         }
-        const auto tenths = static_cast<std::uint32_t>(std::lround(std::abs(value) * 10.0F));
-        if (value < 0.0F && tenths != 0) {
+        // The whole part apart: ten times a large value would be rounded.
+        auto whole = static_cast<std::uint32_t>(std::abs(value));
+        auto tenths = static_cast<std::uint32_t>(std::lround((std::abs(value) - static_cast<float>(whole)) * 10.0F));
+        whole += tenths / 10U;
+        tenths %= 10U;
+        if (value < 0.0F && (whole != 0 || tenths != 0)) {
             *this << std::string_view("-");
         }
-        return *this << tenths / 10U << std::string_view(".") << tenths % 10U;
+        return *this << whole << std::string_view(".") << tenths;
     }
 
     [[nodiscard]] std::string_view view() const noexcept { return {buffer_.data(), size_}; }

@@ -134,7 +134,6 @@ TEST(ApplyTogether, SaysWhichDoNotFit)
         {"GEO_K_S,0.9\nGEO_K_T,0.9", "their sum must be 0.3 to 1"},
         {"GEO_OFFSETS,5", "GEO_OFFSETS must be even"},
         {"GEO_OFFSETS,64\nGEO_PLANES,31", "candidates per family are more than"},
-        {"GEO_MAX_COST,0", "values do not fit together"},
     };
     for (const auto& c : cases) {
         Complaints complaints;
