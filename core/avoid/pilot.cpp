@@ -50,6 +50,7 @@ struct Pilot::Tick {
     world::Way way;
     Guidance out;
     bool wide_clear = false;
+    bool ran_out = false;  ///< of work, planning or altogether
 };
 
 bool Pilot::configure(const Settings& settings) noexcept
@@ -86,18 +87,25 @@ bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept { retu
 bool Pilot::plan(Tick& tick) noexcept
 {
     const Wider wider(tick.s, settings_.room);
+    WorkBudget planning(std::min(settings_.plan_budget, tick.budget.left()));
     float margin = 0.0F;
+    bool found = false;
     for (const world::Situation* s : {&wider.situation, &tick.s}) {
+        if (found || planning.exhausted()) {
+            break;
+        }
         ++diagnostics_.plans;
         tick.out.plan_status =
-            tick.ladder.plan(tick.ladder.self, *s, settings_, tick.budget, diagnostics_, answer_, margin);
-        if (tick.out.plan_status == world::PlanStatus::found) {
-            ++diagnostics_.plans_found;
-            tick.out.margin = margin;
-            return true;
-        }
+            tick.ladder.plan(tick.ladder.self, *s, settings_, planning, diagnostics_, answer_, margin);
+        found = tick.out.plan_status == world::PlanStatus::found;
     }
-    return false;
+    if (found) {
+        ++diagnostics_.plans_found;
+        tick.out.margin = margin;
+    }
+    tick.ran_out = tick.ran_out || planning.exhausted();
+    static_cast<void>(tick.budget.spend(planning.spent()));  // never more than was left
+    return found;
 }
 
 /// Makes the answer the manoeuvre that is flown (or offered, while not in control).
@@ -313,7 +321,7 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
 
     world::Situation situation = given;
     situation.flying = has_flying_ ? &flying_ : nullptr;
-    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false};
+    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false, false};
     tick.out.has_conflict =
         world::main_conflict(situation, tick.way, settings_.lookahead, tick.budget, tick.out.conflict);
     diagnostics_.conflicts += tick.out.has_conflict && !in_conflict_ ? 1U : 0U;
@@ -332,7 +340,7 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     tick.out.state = state_;
     tick.out.work = tick.budget.spent();
     last_update_ = situation.now;
-    diagnostics_.budget_spent += tick.budget.exhausted() ? 1U : 0U;
+    diagnostics_.budget_spent += tick.budget.exhausted() || tick.ran_out ? 1U : 0U;
     diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());
     return tick.out;
 }
