@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "firmware/app/takeover.hpp"
+
+namespace jink::app::test {
+
+using link::FlightMode;
+
+inline constexpr std::uint32_t kMission = 3, kExternal = 4, kLoiter = 5, kManual = 2;
+
+enum class Beat : std::uint8_t { none, former, external, manual, hold, disarmed };
+
+struct Step {
+    bool wants = false;
+    bool may_act = true;
+    Beat beat = Beat::none;
+    float dt = 0.02F;
+    bool denied = false;
+};
+
+inline std::string describe(const Step& s)
+{
+    static constexpr const char* kBeats[] = {"none", "former", "external", "manual", "hold", "disarmed"};
+    return std::string(s.wants ? "wants" : "calm") + (s.may_act ? "" : " fault") + (s.denied ? " denied" : "") + " " +
+           kBeats[static_cast<std::size_t>(s.beat)] + " +" + std::to_string(s.dt);
+}
+
+inline TakeoverInput input_of(const Step& s)
+{
+    TakeoverInput input;
+    input.wants_control = input.in_conflict = input.urgent_hold = s.wants;
+    input.may_act = s.may_act;
+    input.mode_denied = s.denied;
+    input.has_report = s.beat != Beat::none;
+    input.report.armed = s.beat != Beat::disarmed;
+    switch (s.beat) {
+    case Beat::none: break;
+    case Beat::former:
+    case Beat::disarmed:
+        input.report.mode = FlightMode::mission;
+        input.report.custom_mode = kMission;
+        break;
+    case Beat::external:
+        input.report.mode = FlightMode::external;
+        input.report.custom_mode = kExternal;
+        break;
+    case Beat::manual:
+        input.report.mode = FlightMode::manual;
+        input.report.custom_mode = kManual;
+        break;
+    case Beat::hold:
+        input.report.mode = FlightMode::hold;
+        input.report.custom_mode = kLoiter;
+        break;
+    }
+    return input;
+}
+
+/// A take-over with its clock. As in the application, the newest report stays in the input when none is new.
+struct Bench {
+    Takeover takeover;
+    TimePoint now{1'000'000};
+    link::AutopilotReport last;
+
+    TakeoverOutput step(const Step& s)
+    {
+        now = now + s.dt;
+        TakeoverInput input = input_of(s);
+        if (input.has_report) {
+            last = input.report;
+        }
+        input.report = last;
+        return takeover.update(input, now);
+    }
+    [[nodiscard]] Control control() const { return takeover.control(); }
+};
+
+inline constexpr Step kWant{true, true, Beat::none, 0.02F, false};
+inline constexpr Step kCalm{false, true, Beat::none, 0.02F, false};
+inline constexpr Step wants(Beat beat, float dt = 0.02F) { return {true, true, beat, dt, false}; }
+inline constexpr Step calm(Beat beat, float dt = 0.02F) { return {false, true, beat, dt, false}; }
+inline constexpr Step fault(Beat beat, float dt = 0.02F) { return {true, false, beat, dt, false}; }
+inline constexpr Step denied(float dt) { return {true, true, Beat::none, dt, true}; }
+
+}  // namespace jink::app::test
