@@ -14,7 +14,6 @@ namespace {
 
 using detail::Clearance;
 using detail::Curve;
-using detail::Extent;
 using detail::UnitCurve;
 using world::PlanStatus;
 
