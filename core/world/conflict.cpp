@@ -75,9 +75,10 @@ Seconds loss_within(const Situation& situation, const Phase& phase, const Track&
         return -1.0F;
     }
     const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
-    const Seconds length = grows ? kPiece : span;
-    for (Seconds t = 0.0F; t < span; t += length) {
-        const Seconds piece = std::min(length, span - t);
+    const int pieces = grows ? static_cast<int>(std::ceil(span / kPiece)) : 1;
+    const Seconds piece = span / static_cast<float>(pieces);
+    for (int i = 0; i < pieces; ++i) {
+        const Seconds t = piece * static_cast<float>(i);
         const Motion own{phase.own.position + phase.own.velocity * t, phase.own.velocity};
         const Motion other{threat.position + threat.velocity * t, threat.velocity};
         const float radius = threat_radius(situation, track, phase.start + t + piece);

@@ -227,7 +227,8 @@ TEST(PlanOutput, EveryWayToStop)
     EXPECT_EQ(none->tries, blocked.settings.retries + 1U) << "all attempts made";
     EXPECT_NE(plan_table(blocked, *none).find("Stop: no candidate is available."), std::string::npos);
     EXPECT_NE(plan_table(blocked, *none).find("5 attempts, slower and further out"), std::string::npos);
-    for (const auto& c : plan_json(blocked, *none, false)["candidates"]) {
+    const auto told = plan_json(blocked, *none, false);
+    for (const auto& c : told["candidates"]) {
         EXPECT_FALSE(c.contains("total"));
     }
 

@@ -21,6 +21,8 @@ constexpr TimePoint kStart{1'000'000'000};
 
 /// The filter as textbooks have it: 2 x 2 matrices in double precision, position and velocity taken in at once.
 struct Reference {
+    /// Up to three rows and columns, off the heap: the core's headers forbid Eigen to allocate.
+    using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3, 3>;
     Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
     Eigen::Matrix<double, 2, 3> state = Eigen::Matrix<double, 2, 3>::Zero();  // rows: position, velocity
 
@@ -40,16 +42,16 @@ struct Reference {
         state = f * state;
         covariance = f * covariance * f.transpose() + q * q * noise;
         const int rows = m.has_velocity ? 2 : 1;
-        const Eigen::MatrixXd h = Eigen::Matrix2d::Identity().topRows(rows);
-        Eigen::MatrixXd r = Eigen::MatrixXd::Zero(rows, rows);
-        Eigen::MatrixXd z(rows, 3);
+        const Small h = Eigen::Matrix2d::Identity().topRows(rows);
+        Small r = Small::Zero(rows, rows);
+        Small z(rows, 3);
         r(0, 0) = std::pow(double(m.sigma_position), 2);
         z.row(0) = m.position.cast<double>();
         if (m.has_velocity) {
             r(1, 1) = std::pow(double(m.sigma_velocity), 2);
             z.row(1) = m.velocity.cast<double>();
         }
-        const Eigen::MatrixXd gain = covariance * h.transpose() * (h * covariance * h.transpose() + r).inverse();
+        const Small gain = covariance * h.transpose() * (h * covariance * h.transpose() + r).inverse();
         state += gain * (z - h * state);
         covariance = (Eigen::Matrix2d::Identity() - gain * h) * covariance;
     }
