@@ -10,6 +10,11 @@
 #include "core/world/track_table.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
+#if defined(__GNUC__) && !defined(__clang__)
+// GCC 12 ends in an internal error (expand_LOOP_VECTORIZED) on the bounded matrices below.
+#pragma GCC optimize("no-tree-vectorize")
+#endif
+
 namespace jink::world {
 namespace {
 
