@@ -38,7 +38,7 @@ const std::vector<Record>& daemon_records()
         if (::mkdtemp(pattern.data()) == nullptr) {
             throw std::runtime_error("no folder for logs");
         }
-        std::vector<Record> flown = fly_daemons(scenarios(), JINKD_PATH, pattern, kAtOnce);
+        std::vector<Record> flown = fly_daemons(scenarios(), {JINKD_PATH, ""}, pattern, kAtOnce);
         std::error_code ignored;  // a folder left behind in /tmp fails no test
         fs::remove_all(pattern, ignored);
         return flown;

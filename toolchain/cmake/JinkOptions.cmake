@@ -3,7 +3,9 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT CMAKE_SYSTEM_NAME STREQUAL "Generic")
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+endif()
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
@@ -17,6 +19,8 @@ endif()
 
 # No contraction of a*b+c into one rounding: host and targets must agree (docs/architecture.md).
 add_compile_options(-ffp-contract=off)
+# Everything that sees a capacity has to see the same one.
+add_compile_definitions(${JINK_CAPACITIES})
 if(JINK_SANITIZE)
   add_compile_options(-fsanitize=${JINK_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   # The vptr check compares type information, which code built without RTTI does not have.

@@ -65,12 +65,13 @@ void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes
         waiting.insert(waiting.end(), fresh.begin(), fresh.end());
         waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(line.write(waiting)));
         if (!child.running()) {
-            notes.faults.push_back("jinkd ended in flight: " + child.ending());
+            notes.faults.push_back("the program ended in flight: " + child.ending());
             return;
         }
     }
 }
 
+/// jinkd is told so; a board just loses its power.
 void stop(Child& child, PseudoTerminal& line, Plant& plant, Record& notes)
 {
     child.ask_to_stop();
@@ -141,16 +142,30 @@ bool go_first()
     return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param) == 0;
 }
 
-Record fly_once(const Scenario& scenario, const std::filesystem::path& daemon, const std::filesystem::path& folder)
+std::string transport_of(const Computer& computer) { return computer.emulated() ? computer.machine : "daemon"; }
+
+std::vector<std::string> command_of(const Computer& computer, const std::string& line,
+                                    const std::filesystem::path& summary, bool realtime)
+{
+    if (computer.emulated()) {
+        return {"qemu-system-arm", "-M",      computer.machine, "-nographic", "-monitor",      "none",
+                "-chardev",        "serial,id=line,path=" + line, "-serial", "chardev:line", "-kernel",
+                computer.program.string()};
+    }
+    std::vector<std::string> command{computer.program.string(), "--serial",  line,            "--status-period", "1",
+                                     "--summary",               summary.string()};
+    if (realtime) {
+        command.insert(command.end(), {"--realtime", std::to_string(kDaemonPriority)});
+    }
+    return command;
+}
+
+Record fly_once(const Scenario& scenario, const Computer& computer, const std::filesystem::path& folder)
 {
     const std::filesystem::path summary = folder / (scenario.name + ".json");
     std::filesystem::remove(summary);
     PseudoTerminal line;
-    std::vector<std::string> command{daemon.string(), "--serial",      line.path(), "--status-period", "1",
-                                     "--summary",     summary.string()};
-    if (go_first()) {
-        command.insert(command.end(), {"--realtime", std::to_string(kDaemonPriority)});
-    }
+    const std::vector<std::string> command = command_of(computer, line.path(), summary, go_first());
     Plant plant(scenario);
     Record notes;
     Record record;
@@ -159,18 +174,19 @@ Record fly_once(const Scenario& scenario, const std::filesystem::path& daemon, c
         if (wait_for_life(child, line, plant)) {
             fly_on_time(plant, line, child, notes);
             record = plant.record();
-            if (child.running()) {
+            if (child.running() && !computer.emulated()) {
                 stop(child, line, plant, notes);
             }
         } else {
             record = plant.record();
-            notes.faults.push_back(child.running() ? "jinkd says nothing" : "jinkd did not start: " + child.ending());
+            notes.faults.push_back(child.running() ? "the program says nothing"
+                                                   : "the program did not start: " + child.ending());
         }
     }
     record.faults.insert(record.faults.end(), notes.faults.begin(), notes.faults.end());
     record.late_steps = notes.late_steps;
     record.latest_step = notes.latest_step;
-    record.transport = "daemon";
+    record.transport = transport_of(computer);
     record.inside = read_summary(summary);
     conclude(scenario, record);
     return record;
@@ -178,11 +194,11 @@ Record fly_once(const Scenario& scenario, const std::filesystem::path& daemon, c
 
 }  // namespace
 
-Record fly_daemon(const Scenario& scenario, const std::filesystem::path& daemon, const std::filesystem::path& folder)
+Record fly_daemon(const Scenario& scenario, const Computer& computer, const std::filesystem::path& folder)
 {
-    Record record = fly_once(scenario, daemon, folder);
+    Record record = fly_once(scenario, computer, folder);
     for (unsigned repeats = 1; repeats < kAttempts && record.latest_step > kStall; ++repeats) {
-        record = fly_once(scenario, daemon, folder);
+        record = fly_once(scenario, computer, folder);
         record.repeats = repeats;
     }
     if (record.latest_step > kStall) {
@@ -193,7 +209,7 @@ Record fly_daemon(const Scenario& scenario, const std::filesystem::path& daemon,
     return record;
 }
 
-std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const std::filesystem::path& daemon,
+std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Computer& computer,
                                 const std::filesystem::path& folder, unsigned at_once)
 {
     std::vector<Record> records(scenarios.size());
@@ -203,10 +219,10 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const st
         pilots.emplace_back([&] {
             for (std::size_t k = next++; k < scenarios.size(); k = next++) {
                 try {
-                    records[k] = fly_daemon(scenarios[k], daemon, folder);
+                    records[k] = fly_daemon(scenarios[k], computer, folder);
                 } catch (const std::exception& e) {
                     records[k].name = scenarios[k].name;
-                    records[k].transport = "daemon";
+                    records[k].transport = transport_of(computer);
                     records[k].faults.emplace_back(e.what());
                 }
             }

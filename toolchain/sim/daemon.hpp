@@ -7,23 +7,29 @@
 
 namespace jink::sim {
 
-/// Flies a scenario in real time against the real program: starts `jinkd --serial PTY` on a pseudo-terminal, plays the
-/// autopilot at its master end, stops it with SIGTERM and wants a clean exit. Takes as long as the flight; one thread,
-/// mostly asleep.
+/// What flies at the far end of the line.
+struct Computer {
+    std::filesystem::path program;  ///< jinkd; or the image for `machine`
+    std::string machine;            ///< qemu-system-arm's name of the board; empty: the program runs on this machine
+
+    [[nodiscard]] bool emulated() const noexcept { return !machine.empty(); }
+};
+
+/// Flies a scenario in real time against the real program: starts `jinkd --serial PTY` on a pseudo-terminal, or a board
+/// under emulation whose UART it is, plays the autopilot at its master end, stops jinkd with SIGTERM and wants a clean
+/// exit. Takes as long as the flight; one thread, mostly asleep.
 ///
 /// Both run with real-time priority where that is permitted. A flight during which the machine stood still for 0.1 s is
 /// thrown away and flown again, at most twice.
 ///
-/// @param daemon  the program
-/// @param folder  for what it prints (NAME.log) and its summary (NAME.json); must exist
+/// @param folder  for what it prints (NAME.log) and jinkd's summary (NAME.json); must exist
 /// A program that does not start, dies, or does not stop cleanly makes the outcome `failed` and is named in
 /// Record::faults.
-[[nodiscard]] Record fly_daemon(const Scenario& scenario, const std::filesystem::path& daemon,
+[[nodiscard]] Record fly_daemon(const Scenario& scenario, const Computer& computer,
                                 const std::filesystem::path& folder);
 
 /// Several at once, `at_once` of them, in the order of the scenarios.
-[[nodiscard]] std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios,
-                                              const std::filesystem::path& daemon, const std::filesystem::path& folder,
-                                              unsigned at_once);
+[[nodiscard]] std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Computer& computer,
+                                              const std::filesystem::path& folder, unsigned at_once);
 
 }  // namespace jink::sim

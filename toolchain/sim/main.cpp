@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 struct Options {
     std::vector<std::string> files;
     std::string daemon;
+    std::string image;
+    std::string machine;
     std::string out;
     std::string scenarios = JINK_SCENARIOS;
     unsigned count = 50;
@@ -129,17 +131,26 @@ fs::path log_folder(const Options& options)
     return folder;
 }
 
+Computer computer_of(const Options& options)
+{
+    if (!options.image.empty()) {
+        return {options.image, options.machine};
+    }
+    return {options.daemon.empty() ? find_daemon() : fs::path(options.daemon), ""};
+}
+
 int fly(const Options& options)
 {
     make_folder(options);
     std::vector<ReportedFlight> flights;
     const std::vector<Scenario> scenarios = load_all(options.files);
-    if (options.daemon.empty()) {
+    if (options.daemon.empty() && options.image.empty()) {
         for (const Scenario& scenario : scenarios) {
             flights.push_back(report_on(scenario, fly_in_process(scenario), options.judge));
         }
     } else {
-        std::vector<Record> records = fly_daemons(scenarios, options.daemon, log_folder(options), options.at_once);
+        std::vector<Record> records =
+            fly_daemons(scenarios, computer_of(options), log_folder(options), options.at_once);
         for (std::size_t i = 0; i < scenarios.size(); ++i) {
             flights.push_back(report_on(scenarios[i], std::move(records[i]), options.judge));
         }
@@ -151,15 +162,15 @@ int demo(const Options& options)
 {
     make_folder(options);
     const auto began = std::chrono::steady_clock::now();
-    const fs::path daemon = options.daemon.empty() ? find_daemon() : fs::path(options.daemon);
+    const Computer computer = computer_of(options);
     std::vector<std::string> files;
     for (const fs::path& file : scenario_files(options.scenarios)) {
         files.push_back(file.string());
     }
     const std::vector<Scenario> scenarios = load_all(files);
-    std::cout << scenarios.size() << " scenarios in real time against " << daemon.filename().string() << ", "
+    std::cout << scenarios.size() << " scenarios in real time against " << computer.program.filename().string() << ", "
               << options.at_once << " at once ..." << std::endl;
-    std::vector<Record> records = fly_daemons(scenarios, daemon, log_folder(options), options.at_once);
+    std::vector<Record> records = fly_daemons(scenarios, computer, log_folder(options), options.at_once);
     std::vector<ReportedFlight> flights;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         ReportedFlight flight = report_on(scenarios[i], std::move(records[i]), false);
@@ -207,7 +218,16 @@ int main(int argc, char** argv)
     CLI::App* random_command =
         cli.add_subcommand("random", "random encounters in process, each judged for avoidability");
     for (CLI::App* command : {fly_command, demo_command}) {
-        command->add_option("--daemon", options.daemon, "the program jinkd")->check(CLI::ExistingFile);
+        CLI::Option* const daemon =
+            command->add_option("--daemon", options.daemon, "the program jinkd")->check(CLI::ExistingFile);
+        CLI::Option* const image =
+            command->add_option("--image", options.image, "a bare-metal image, flown under qemu-system-arm")
+                ->check(CLI::ExistingFile)
+                ->excludes(daemon);
+        CLI::Option* const machine =
+            command->add_option("--machine", options.machine, "qemu's board for the image: mps2-an500, netduinoplus2");
+        image->needs(machine);
+        machine->needs(image);
         command->add_option("--at-once", options.at_once, "flights in real time at once")->check(CLI::Range(1, 64));
     }
     for (CLI::App* command : {random_command, demo_command}) {

@@ -55,7 +55,7 @@ struct Inside {
 struct Record {
     std::string name;
     std::string title;
-    std::string transport;  ///< "in process" or "daemon"
+    std::string transport;  ///< "in process", "daemon" or the board under emulation
     Stack stack = Stack::ardupilot;
     std::uint64_t seed = 0;
     double promise = 0.7;

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace jink::hal {
+
+/// Bytes from one writer to one reader that may interrupt each other: an interrupt handler and the main program.
+///
+/// Neither side waits. `head_` belongs to the writer and `tail_` to the reader; both only grow (and wrap with the word),
+/// so that full and empty differ. N is a power of two. N + 8 bytes.
+template <std::size_t N>
+class ByteRing {
+    static_assert(N >= 2 && (N & (N - 1)) == 0);
+
+public:
+    /// Writer. False (and the byte is lost) when full. O(1).
+    bool push(std::byte byte) noexcept
+    {
+        const std::uint32_t head = head_.load(std::memory_order_relaxed);
+        if (head - tail_.load(std::memory_order_acquire) == N) {
+            return false;
+        }
+        bytes_[head % N] = byte;
+        head_.store(head + 1, std::memory_order_release);
+        return true;
+    }
+
+    /// Writer. As many from the start of `from` as there is room for; returns how many. O(from.size()).
+    std::size_t push(std::span<const std::byte> from) noexcept
+    {
+        std::uint32_t head = head_.load(std::memory_order_relaxed);
+        const std::size_t room = N - (head - tail_.load(std::memory_order_acquire));
+        const std::size_t n = std::min(room, from.size());
+        for (std::size_t i = 0; i < n; ++i) {
+            bytes_[head++ % N] = from[i];
+        }
+        head_.store(head, std::memory_order_release);
+        return n;
+    }
+
+    /// Reader. False when empty. O(1).
+    bool pop(std::byte& byte) noexcept
+    {
+        const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
+        if (head_.load(std::memory_order_acquire) == tail) {
+            return false;
+        }
+        byte = bytes_[tail % N];
+        tail_.store(tail + 1, std::memory_order_release);
+        return true;
+    }
+
+    /// Reader. Fills `into` from its start; returns how many. O(into.size()).
+    std::size_t pop(std::span<std::byte> into) noexcept
+    {
+        std::uint32_t tail = tail_.load(std::memory_order_relaxed);
+        const std::size_t n = std::min<std::size_t>(head_.load(std::memory_order_acquire) - tail, into.size());
+        for (std::size_t i = 0; i < n; ++i) {
+            into[i] = bytes_[tail++ % N];
+        }
+        tail_.store(tail, std::memory_order_release);
+        return n;
+    }
+
+    /// Either side; the other one may change it at once.
+    [[nodiscard]] std::size_t size() const noexcept
+    {
+        return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_acquire);
+    }
+    [[nodiscard]] static constexpr std::size_t capacity() noexcept { return N; }
+
+private:
+    std::atomic<std::uint32_t> head_{0};
+    std::atomic<std::uint32_t> tail_{0};
+    std::array<std::byte, N> bytes_{};
+};
+
+}  // namespace jink::hal

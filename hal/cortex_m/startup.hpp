@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// From reset to main(), and what is left behind when the processor faults. Memory comes from the image's linker script:
+// _stack_bottom, _stack_top, _data_load, _data_start, _data_end, _bss_start, _bss_end, _init_array_start,
+// _init_array_end.
+
+namespace jink::hal::cortex_m {
+
+using Handler = void (*)();
+
+/// What the processor knew when it faulted, kept across the reset that follows.
+struct FaultRecord {
+    std::uint32_t magic;
+    std::uint32_t exception;  ///< number: 2 NMI (watchdog), 3 hard fault, 4 memory, 5 bus, 6 usage
+    std::uint32_t pc;
+    std::uint32_t lr;
+    std::uint32_t cause;    ///< CFSR
+    std::uint32_t address;  ///< BFAR or MMFAR, whichever the cause says is valid; else 0
+    std::uint32_t count;    ///< faults since power-on
+    std::uint32_t check;    ///< sum of the above, so that what RAM holds at power-on is not taken for one
+};
+
+/// The record of the fault that led to this start; false after power-on. It is marked as read.
+[[nodiscard]] bool take_fault_record(FaultRecord& out) noexcept;
+
+/// Bytes of stack that were ever used, by the paint that start-up left on it. O(stack).
+[[nodiscard]] std::size_t stack_used() noexcept;
+[[nodiscard]] std::size_t stack_size() noexcept;
+
+/// Sleeps until an interrupt comes.
+void wait_for_interrupt() noexcept;
+/// Starts the processor anew.
+[[noreturn]] void reset() noexcept;
+
+/// SysTick's interrupt every `ticks` (1..2^24) of the processor clock: something to wake up by.
+void start_systick(std::uint32_t ticks) noexcept;
+
+/// Called by the fault handler once its record is kept; the image sends its last words there. The reset follows.
+extern "C" void jink_on_fault(const FaultRecord& record);
+
+/// The image's program; it does not return. Not called main(), which C++ keeps to itself.
+extern "C" void jink_main();
+
+extern "C" [[noreturn]] void jink_reset_handler();
+extern "C" void jink_fault_handler();
+extern "C" void jink_systick_handler();
+extern "C" std::uint32_t _stack_top;
+
+}  // namespace jink::hal::cortex_m

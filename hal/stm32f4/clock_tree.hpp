@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "hal/register_block.hpp"
+
+namespace jink::hal::stm32f4 {
+
+enum class ClockSource : std::uint8_t {
+    crystal,      ///< 168 MHz from the crystal, as meant
+    internal_pll, ///< no crystal: 168 MHz from the internal 16 MHz oscillator, good to 1 % at room temperature
+    internal,     ///< no PLL either: 16 MHz
+    emulator,     ///< no clock control at all: an emulator's own 168 MHz
+};
+
+/// The clocks that came about [Hz].
+struct Clocks {
+    ClockSource source = ClockSource::internal;
+    std::uint32_t processor = 0;
+    std::uint32_t apb1 = 0;
+    std::uint32_t apb2 = 0;
+};
+
+/// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as it goes: every wait is bounded, and what came of
+/// it is told. The flash gets its wait states before the clock rises (ST RM0090, 3.5 and 7).
+///
+/// The control register never reads zero on the chip (the internal oscillator is on after a reset): one that does belongs
+/// to an emulator without it, where nothing is to be set.
+template <RegisterBlock Rcc, RegisterBlock Flash>
+[[nodiscard]] Clocks start_clocks(Rcc rcc, Flash flash) noexcept
+{
+    constexpr std::uint32_t kControl = 0x00;
+    constexpr std::uint32_t kPll = 0x04;
+    constexpr std::uint32_t kConfiguration = 0x08;
+    constexpr std::uint32_t kCrystalOn = 1U << 16U;
+    constexpr std::uint32_t kCrystalReady = 1U << 17U;
+    constexpr std::uint32_t kPllOn = 1U << 24U;
+    constexpr std::uint32_t kPllReady = 1U << 25U;
+    constexpr std::uint32_t kUseCrystal = 1U << 22U;
+    constexpr std::uint32_t kFiveWaitsAndCaches = 0x705;
+    constexpr std::uint32_t kUsePll = 2;
+    constexpr std::uint32_t kPllUsed = 2U << 2U;
+    constexpr std::uint32_t kPllMask = 3U << 2U;
+    constexpr std::uint32_t kApb1By4Apb2By2 = 5U << 10U | 4U << 13U;
+    constexpr std::uint32_t kPatience = 200'000;  // looks: over 20 ms at 16 MHz, a crystal takes 2
+    constexpr std::uint32_t kFull = 168'000'000;
+    constexpr std::uint32_t kInternal = 16'000'000;
+
+    const auto becomes = [&](std::uint32_t offset, std::uint32_t mask, std::uint32_t value) {
+        for (std::uint32_t i = 0; i < kPatience; ++i) {
+            if ((rcc.read(offset) & mask) == value) {
+                return true;
+            }
+        }
+        return false;
+    };
+
+    if (rcc.read(kControl) == 0) {
+        return {ClockSource::emulator, kFull, kFull / 4U, kFull / 2U};
+    }
+    rcc.write(kControl, rcc.read(kControl) | kCrystalOn);
+    const bool crystal = becomes(kControl, kCrystalReady, kCrystalReady);
+    // 336 MHz of 1 MHz steps (8 or 16 of them to the input), halved; 48 MHz for what needs it.
+    const std::uint32_t divider = crystal ? 8U : 16U;
+    rcc.write(kPll, divider | 336U << 6U | 7U << 24U | (crystal ? kUseCrystal : 0U));
+    rcc.write(kControl, rcc.read(kControl) | kPllOn);
+    if (!becomes(kControl, kPllReady, kPllReady)) {
+        return {ClockSource::internal, kInternal, kInternal, kInternal};
+    }
+    flash.write(0, kFiveWaitsAndCaches);
+    if (!(flash.read(0) == kFiveWaitsAndCaches)) {
+        return {ClockSource::internal, kInternal, kInternal, kInternal};  // too slow a flash for more
+    }
+    rcc.write(kConfiguration, kApb1By4Apb2By2);
+    rcc.write(kConfiguration, kApb1By4Apb2By2 | kUsePll);
+    if (!becomes(kConfiguration, kPllMask, kPllUsed)) {
+        return {ClockSource::internal, kInternal, kInternal / 4U, kInternal / 2U};
+    }
+    return {crystal ? ClockSource::crystal : ClockSource::internal_pll, kFull, kFull / 4U, kFull / 2U};
+}
+
+}  // namespace jink::hal::stm32f4
