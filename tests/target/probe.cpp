@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/target/probe.hpp"
+
+#include <cmath>
+
+#include "firmware/app/parameters.hpp"
+
+namespace jink::target {
+namespace {
+
+Vec3 vec(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
+
+bool fits(const ProbeRecord& r) noexcept
+{
+    return r.magic == kProbeMagic && r.track_count <= kProbeTracks && r.track_count <= kMaxTracks &&
+           r.obstacle_count <= kProbeObstacles && r.obstacle_count <= kMaxObstacles;
+}
+
+world::Track track_of(const ProbeTrack& t, std::uint32_t id) noexcept
+{
+    world::Track track;
+    track.id = id;
+    track.position = vec(t.position);
+    track.velocity = vec(t.velocity);
+    track.radius = t.radius;
+    track.sigma_position = t.sigma_position;
+    track.sigma_velocity = t.sigma_velocity;
+    track.max_acceleration = t.max_acceleration;
+    return track;
+}
+
+world::Obstacle obstacle_of(const ProbeObstacle& o, std::uint32_t id) noexcept
+{
+    switch (o.kind) {
+    case ProbeShape::box: {
+        Mat3 axes = Mat3::Identity();
+        axes(0, 0) = axes(1, 1) = std::cos(o.yaw);
+        axes(1, 0) = std::sin(o.yaw);
+        axes(0, 1) = -axes(1, 0);
+        return {id, geometry::make_box(vec(o.a), vec(o.b), axes)};
+    }
+    case ProbeShape::capsule: return {id, geometry::make_capsule(vec(o.a), vec(o.b), o.radius)};
+    case ProbeShape::cylinder: return {id, geometry::make_cylinder(vec(o.a), vec(o.b), o.radius)};
+    case ProbeShape::sphere: break;
+    }
+    return {id, geometry::make_sphere(vec(o.a), o.radius)};
+}
+
+app::Configuration configuration_of(const ProbeRecord& r) noexcept
+{
+    app::Configuration c = app::Parameters().configuration();
+    c.planner.offsets = static_cast<std::uint16_t>(r.offsets);
+    c.planner.extra_planes = static_cast<std::uint16_t>(r.extra_planes);
+    c.planner.simple = (r.families & 1U) != 0;
+    c.planner.symmetric = (r.families & 2U) != 0;
+    c.planner.retries = static_cast<std::uint8_t>(r.retries);
+    c.limits.half_extents = vec(r.half);
+    return c;
+}
+
+}  // namespace
+
+// Apart, and doing something: each has an address of its own.
+extern "C" __attribute__((noinline)) void jink_window_begin() { __asm volatile("" ::: "memory"); }
+extern "C" __attribute__((noinline)) void jink_window_end() { __asm volatile("nop" ::: "memory"); }
+
+struct Probe::World {
+    app::Configuration configuration;
+    vehicle::VehicleState own;
+    world::Reference reference;
+    world::Airspace airspace;
+    StaticVector<world::Track, kProbeTracks> tracks;
+    StaticVector<world::Obstacle, kProbeObstacles> obstacles;
+
+    explicit World(const ProbeRecord& r) noexcept : configuration(configuration_of(r))
+    {
+        own.position = vec(r.own_position);
+        own.velocity = vec(r.own_velocity);
+        own.sigma_position = r.own_sigma;
+        reference.valid = true;
+        reference.leg = {vec(r.leg_start), vec(r.leg_end), r.leg_speed};
+        airspace.has_floor = (r.bounds & 1U) != 0;
+        airspace.has_ceiling = (r.bounds & 2U) != 0;
+        airspace.has_keep_in = (r.bounds & 4U) != 0;
+        airspace.floor = r.floor;
+        airspace.ceiling = r.ceiling;
+        airspace.keep_in_radius = r.keep_in;
+        for (std::uint32_t i = 0; i < r.track_count; ++i) {
+            tracks.unchecked_push_back(track_of(r.tracks[i], i));
+        }
+        for (std::uint32_t i = 0; i < r.obstacle_count; ++i) {
+            obstacles.unchecked_push_back(obstacle_of(r.obstacles[i], i));
+        }
+    }
+};
+
+Probe::Probe() noexcept : planner_(geometric::Settings{}), supervisor_(avoid::Settings{}, planner_) {}
+
+void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
+{
+    out = {};
+    out.seed = record.seed;
+    if (!fits(record)) {
+        return;
+    }
+    static World world{record};  // not on the stack, which is to hold what the co-processor needs
+    world = World(record);
+    const world::Situation situation{{},
+                                     world.own,
+                                     world.configuration.limits,
+                                     world.configuration.airframe,
+                                     world.reference,
+                                     {world.tracks.data(), world.tracks.size()},
+                                     {world.obstacles.data(), world.obstacles.size()},
+                                     world.airspace,
+                                     nullptr,
+                                     world.configuration.k_sigma};
+    if (!planner_.configure(world.configuration.planner) || !supervisor_.configure(world.configuration.supervisor)) {
+        return;
+    }
+    supervisor_.reset();
+    out.magic = kProbeMagic;
+    if (record.kind == ProbeKind::plan) {
+        WorkBudget budget(world.configuration.supervisor.plan_budget);
+        jink_window_begin();
+        const world::PlanStatus status = planner_.plan(situation, budget, manoeuvre_);
+        jink_window_end();
+        out.status = static_cast<std::uint32_t>(status);
+        out.work = budget.spent();
+        if (status == world::PlanStatus::found) {
+            out.cost = manoeuvre_.cost;
+            const Vec3& v = manoeuvre_.path.points.front().velocity;
+            std::copy_n(v.data(), 3, out.velocity);
+        }
+    } else if (record.kind == ProbeKind::update) {
+        jink_window_begin();
+        const avoid::Guidance guidance = supervisor_.update(situation, false);
+        jink_window_end();
+        out.status = static_cast<std::uint32_t>(guidance.plan_status);
+        out.work = guidance.work;
+        out.state = static_cast<std::uint32_t>(guidance.kind);
+        out.margin = guidance.margin;
+        std::copy_n(guidance.velocity.data(), 3, out.velocity);
+    }
+    const geometric::Result& result = planner_.last();
+    out.candidates = static_cast<std::uint32_t>(result.candidates.size());
+    out.chosen = static_cast<std::uint32_t>(result.chosen);
+    for (const geometric::Candidate& c : result.candidates) {
+        out.available += c.status == geometric::CandidateStatus::available ? 1U : 0U;
+    }
+    out.stack_used = stack_used();
+}
+
+void serve() noexcept
+{
+    static Probe probe;
+    static ProbeRecord record;
+    ProbeAnswer answer;
+    while (read_all(&record, sizeof record)) {
+        probe.answer(record, answer);
+        write_all(&answer, sizeof answer);
+    }
+}
+
+}  // namespace jink::target

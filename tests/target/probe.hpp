@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/avoid/supervisor.hpp"
+#include "core/geometric/planner.hpp"
+#include "tests/target/probe_record.hpp"
+
+namespace jink::target {
+
+/// Computes cases one after the other, each from a clean start, with the settings that the co-processor has by default.
+///
+/// Between jink_window_begin() and jink_window_end() lies exactly what is to be counted: the plan, or the update.
+class Probe {
+public:
+    Probe() noexcept;
+
+    /// A record that is none (magic, counts, capacities) gives an answer with magic 0.
+    void answer(const ProbeRecord& record, ProbeAnswer& out) noexcept;
+
+private:
+    struct World;
+    geometric::Planner planner_;
+    avoid::Supervisor<geometric::Planner> supervisor_;
+    world::Manoeuvre manoeuvre_;
+};
+
+extern "C" void jink_window_begin();
+extern "C" void jink_window_end();
+
+/// Reads all of `bytes`; false at the end of the input. By the platform.
+[[nodiscard]] bool read_all(void* bytes, std::size_t count) noexcept;
+void write_all(const void* bytes, std::size_t count) noexcept;
+[[nodiscard]] std::uint32_t stack_used() noexcept;
+
+/// Answers record after record until the input ends.
+void serve() noexcept;
+
+}  // namespace jink::target

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "core/capacity.hpp"
+
+// What the host asks a target to compute, and what comes back: plain memory, little-endian, the same on every target, so
+// that one record replays exactly one case.
+
+namespace jink::target {
+
+inline constexpr std::uint32_t kProbeMagic = 0x4A504201;  // "JPB", layout 1
+inline constexpr std::size_t kProbeTracks = 32;
+inline constexpr std::size_t kProbeObstacles = 16;
+
+enum class ProbeKind : std::uint32_t {
+    plan,    ///< geometric::Planner::plan alone
+    update,  ///< avoid::Supervisor::update, not in control before
+    info,    ///< sizes; nothing is computed
+};
+
+struct ProbeTrack {
+    float position[3];
+    float velocity[3];
+    float radius;
+    float sigma_position;
+    float sigma_velocity;
+    float max_acceleration;
+};
+
+enum class ProbeShape : std::uint32_t { sphere, box, capsule, cylinder };
+
+struct ProbeObstacle {
+    ProbeShape kind;
+    float a[3];     ///< centre; capsule and cylinder: one end
+    float b[3];     ///< box: half extents; capsule and cylinder: the other end
+    float radius;
+    float yaw;      ///< of a box [rad]
+};
+
+/// One case. Everything in SI units, ENU.
+struct ProbeRecord {
+    std::uint32_t magic;
+    std::uint32_t seed;
+    ProbeKind kind;
+    std::uint32_t offsets;
+    std::uint32_t extra_planes;
+    std::uint32_t families;  ///< 1 simple, 2 symmetric, 3 both
+    std::uint32_t retries;
+    std::uint32_t bounds;  ///< 1 floor, 2 ceiling, 4 keep-in
+    float own_position[3];
+    float own_velocity[3];
+    float own_sigma;
+    float leg_start[3];
+    float leg_end[3];
+    float leg_speed;
+    float half[3];
+    float floor;
+    float ceiling;
+    float keep_in;
+    std::uint32_t track_count;
+    std::uint32_t obstacle_count;
+    ProbeTrack tracks[kProbeTracks];
+    ProbeObstacle obstacles[kProbeObstacles];
+};
+static_assert(std::is_trivially_copyable_v<ProbeRecord>);
+static_assert(sizeof(ProbeTrack) == 40 && sizeof(ProbeObstacle) == 36);
+static_assert(sizeof(ProbeRecord) == 8 * 4 + 20 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
+
+struct ProbeAnswer {
+    std::uint32_t magic;
+    std::uint32_t seed;
+    std::uint32_t status;      ///< world::PlanStatus; of `update` the one of its plan
+    std::uint32_t candidates;  ///< of the last attempt
+    std::uint32_t chosen;      ///< index
+    std::uint32_t work;        ///< units spent
+    std::uint32_t state;       ///< avoid::State, of `update`
+    std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told
+    float cost;
+    float velocity[3];  ///< command, of `update`; first velocity of the path, of `plan`
+    float margin;       ///< of `update`
+    std::uint32_t available;  ///< candidates that are, of the last attempt
+};
+static_assert(std::is_trivially_copyable_v<ProbeAnswer> && sizeof(ProbeAnswer) == 14 * 4);
+
+}  // namespace jink::target

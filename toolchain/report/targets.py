@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The probe (tests/target) on each target: records in, answers and instruction counts out."""
+import dataclasses
+import os
+import pathlib
+import struct
+import subprocess
+import tempfile
+
+MAGIC = 0x4A504201
+TRACKS = 32
+OBSTACLES = 16
+HEADER = struct.Struct("<8I20f2I")
+TRACK = struct.Struct("<10f")
+OBSTACLE = struct.Struct("<I8f")
+ANSWER = struct.Struct("<8I5fI")
+KINDS = {"plan": 0, "update": 1, "info": 2}
+STATUS = ["found", "no_conflict", "too_close", "none_available", "budget_spent", "bad_input"]
+
+
+@dataclasses.dataclass
+class Case:
+    """One case of tests/target/probe_record.hpp, in SI units."""
+
+    seed: int
+    kind: str = "plan"
+    offsets: int = 4
+    extra_planes: int = 3
+    families: int = 3
+    retries: int = 4
+    bounds: int = 0
+    own_position: tuple = (0.0, 0.0, 30.0)
+    own_velocity: tuple = (5.0, 0.0, 0.0)
+    own_sigma: float = 0.1
+    leg_start: tuple = (0.0, 0.0, 30.0)
+    leg_end: tuple = (100.0, 0.0, 30.0)
+    leg_speed: float = 5.0
+    half: tuple = (1.0, 1.0, 1.0)
+    floor: float = 0.0
+    ceiling: float = 120.0
+    keep_in: float = 500.0
+    tracks: list = dataclasses.field(default_factory=list)  # (position, velocity, radius, sigma p, sigma v, acceleration)
+    obstacles: list = dataclasses.field(default_factory=list)  # (kind, a, b, radius, yaw)
+
+    def pack(self):
+        out = HEADER.pack(MAGIC, self.seed, KINDS[self.kind], self.offsets, self.extra_planes, self.families, self.retries,
+                          self.bounds, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
+                          *self.leg_end, self.leg_speed, *self.half, self.floor, self.ceiling, self.keep_in,
+                          len(self.tracks), len(self.obstacles))
+        for position, velocity, *rest in self.tracks:
+            out += TRACK.pack(*position, *velocity, *rest)
+        out += bytes(TRACK.size * (TRACKS - len(self.tracks)))
+        for kind, a, b, radius, yaw in self.obstacles:
+            out += OBSTACLE.pack(kind, *a, *b, radius, yaw)
+        return out + bytes(OBSTACLE.size * (OBSTACLES - len(self.obstacles)))
+
+
+@dataclasses.dataclass
+class Answer:
+    seed: int
+    status: str
+    candidates: int
+    chosen: int
+    work: int
+    kind: int
+    stack_used: int
+    cost: float
+    velocity: tuple
+    margin: float
+    available: int
+    instructions: int = 0
+
+
+class Probe:
+    """The probe running on a target, for as many cases as one likes. Counts instructions where `plugin` is given."""
+
+    def __init__(self, name, command, program, plugin=None, symbols="nm"):
+        self.name = name
+        self.folder = tempfile.TemporaryDirectory()
+        self.counts = None
+        if plugin:
+            pipe = os.path.join(self.folder.name, "counts")
+            os.mkfifo(pipe)
+            begin, end = addresses(program, symbols, ["jink_window_begin", "jink_window_end"])
+            command = command[:1] + ["-plugin", f"{plugin},begin={begin:#x},end={end:#x},out={pipe}"] + command[1:]
+        self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        if plugin:
+            self.counts = open(pipe, encoding="ascii")
+
+    def ask(self, case):
+        self.process.stdin.write(case.pack())
+        self.process.stdin.flush()
+        data = self.process.stdout.read(ANSWER.size)
+        if len(data) < ANSWER.size:
+            raise RuntimeError(f"{self.name}: ended with status {self.process.wait()} in case {case.seed}")
+        magic, seed, status, candidates, chosen, work, kind, stack, cost, vx, vy, vz, margin, available = ANSWER.unpack(data)
+        if magic != MAGIC or seed != case.seed:
+            raise RuntimeError(f"{self.name}: refuses case {case.seed}")
+        count = int(self.counts.readline()) if self.counts and case.kind != "info" else 0
+        return Answer(seed, STATUS[status], candidates, chosen, work, kind, stack, cost, (vx, vy, vz), margin, available, count)
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait(timeout=10)
+        self.folder.cleanup()
+
+
+def addresses(program, nm, names):
+    text = subprocess.run([nm, program], check=True, capture_output=True, text=True).stdout
+    table = {line.split()[2]: int(line.split()[0], 16) for line in text.splitlines() if len(line.split()) == 3}
+    return [table[name] for name in names]
+
+
+def open_probe(target, build, plugin=None):
+    """`target`: a preset's name; `build`: the folder that holds the presets' builds."""
+    base = pathlib.Path(build) / target / "tests" / "target"
+    if target in ("mps2_an500", "stm32f405"):
+        program = base / "jink_probe.elf"
+        machine = {"mps2_an500": "mps2-an500", "stm32f405": "netduinoplus2"}[target]
+        command = ["qemu-system-arm", "-M", machine, "-display", "none", "-monitor", "none", "-serial", "null",
+                   "-semihosting-config", "enable=on,target=native", "-kernel", str(program)]
+    else:
+        program = base / "jink_probe"
+        emulator = {"armhf": ["qemu-arm"], "aarch64": ["qemu-aarch64"]}.get(target, [])
+        command = emulator + [str(program)]
+    return Probe(target, command, str(program), plugin)
