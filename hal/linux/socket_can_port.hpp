@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "hal/can_port.hpp"
+
+namespace jink::hal {
+
+/// Longest name of a network interface, terminator included (the kernel's IFNAMSIZ).
+inline constexpr std::size_t kMaxInterfaceName = 16;
+/// Filters of one port; a further one is refused.
+inline constexpr std::size_t kMaxCanFilters = 16;
+
+/// A frame passes when `(frame.id ^ id) & mask` is zero and it is as long as `extended` says.
+struct CanFilter {
+    std::uint32_t id = 0;
+    std::uint32_t mask = 0;
+    bool extended = true;
+};
+
+/// Why an interface could not be opened; zero is success.
+enum class CanOpenStatus : std::uint8_t {
+    ok,
+    bad_name,          ///< empty, or kMaxInterfaceName or more characters
+    too_many_filters,  ///< more than kMaxCanFilters
+    no_can,            ///< this kernel has no SocketCAN
+    no_interface,      ///< no interface of that name
+    not_can,           ///< one that is no CAN controller
+    no_fd,             ///< FD was asked for and the interface does not do it
+    access_denied,
+    failed,  ///< any other error of the system
+};
+
+struct SocketCanOptions {
+    bool fd = false;                        ///< FD frames too; the interface must be set up for them (its MTU is 72)
+    std::span<const CanFilter> filters{};   ///< none: everything
+    int receive_buffer = 0;                 ///< bytes, as the kernel counts them; 0: the system's default
+};
+
+/// CAN controller of Linux (SocketCAN, raw protocol): bit rate and restart time are the system's to set.
+///
+/// An interface that goes down keeps its socket and is back when it is up again; one that is deleted is opened again by
+/// service() when another of its name appears. Frames the kernel dropped for want of room are counted exactly
+/// (SO_RXQ_OVFL). Error frames of the controller become counters and the state, never frames.
+///
+/// Not for two threads. Allocation-free; about 400 bytes.
+class SocketCanPort final : public CanPort {
+public:
+    SocketCanPort() noexcept = default;
+    ~SocketCanPort();
+    SocketCanPort(const SocketCanPort&) = delete;
+    SocketCanPort& operator=(const SocketCanPort&) = delete;
+
+    /// Opens an interface by name; closes the one open before. After bad_name, too_many_filters, no_can, not_can and
+    /// no_fd the port is closed; after any other failure it is `down`, and service() goes on trying.
+    [[nodiscard]] CanOpenStatus open(std::string_view interface, const SocketCanOptions& options,
+                                     std::int64_t retry_period_us) noexcept;
+    void close() noexcept;
+
+    /// Notices an interface that came or went. Call once per tick. O(1) system calls.
+    void service(std::int64_t now_us) noexcept;
+
+    /// At most kErrorFramesPerCall error frames are worked off before the next data frame.
+    [[nodiscard]] bool receive(CanFrame& frame) noexcept override;
+    [[nodiscard]] bool send(const CanFrame& frame) noexcept override;
+    [[nodiscard]] CanHealth health() const noexcept override { return health_; }
+
+    /// For poll() and friends; -1 when not open. Changes with every new opening.
+    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    [[nodiscard]] CanOpenStatus open_status() const noexcept { return open_status_; }
+
+    static constexpr int kErrorFramesPerCall = 64;
+
+private:
+    enum class Read : std::uint8_t { nothing, data, error };
+
+    [[nodiscard]] CanOpenStatus try_open() noexcept;
+    [[nodiscard]] CanOpenStatus configure(int index) noexcept;
+    [[nodiscard]] Read read_one(CanFrame& frame) noexcept;
+    void note_error_frame(std::uint32_t id, const std::uint8_t* data) noexcept;
+    void note_error(int error) noexcept;
+    void become(CanState state) noexcept;
+    void release() noexcept;
+
+    std::array<char, kMaxInterfaceName> name_{};
+    std::array<CanFilter, kMaxCanFilters> filters_{};
+    std::size_t filter_count_ = 0;
+    bool fd_ = false;
+    int receive_buffer_ = 0;
+    std::int64_t retry_period_us_ = 0;
+    std::int64_t next_attempt_us_ = 0;
+    std::uint32_t dropped_ = 0;  ///< as the kernel told last
+    int descriptor_ = -1;
+    CanOpenStatus open_status_ = CanOpenStatus::ok;
+    CanHealth health_{};
+};
+
+}  // namespace jink::hal
