@@ -193,9 +193,10 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, flo
         const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
         const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
         if (radius >= 0.0F) {
-            const Extent piece = about(from, to);
-            if (!apart(Vec3::Zero(), Vec3::Zero(), piece.low, piece.high, ball.half, radius) &&
-                geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F)) {
+            const geometry::Glance glance = geometry::glance(ball.half, from, to, radius);
+            if (glance == geometry::Glance::touches ||
+                (glance == geometry::Glance::unclear &&
+                 geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F))) {
                 return true;
             }
         }
