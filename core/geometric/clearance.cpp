@@ -185,6 +185,10 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, flo
                         const Vec3& after) const noexcept
 {
     const int parts = shrink_at(shrunk, curve.t[i]) > 0.0F ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1;
+    // At its end and not shrunk the ball is larger than in any part.
+    if (parts > 1 && geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1])) == geometry::Glance::apart) {
+        return false;
+    }
     Vec3 from = before;
     for (int part = 1; part <= parts; ++part) {
         // The size at the part's end: never too small.
