@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry/convex.hpp"
+#include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/obstacle_distance.hpp"
 
@@ -96,11 +97,6 @@ int Clearance::escape_parts(Seconds duration) const noexcept
     return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
 }
 
-float Clearance::shrink_at(float shrunk, Seconds t) const noexcept
-{
-    return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
-}
-
 Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
 {
     const Threat& t = problem_.threats[threat];
@@ -184,11 +180,20 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
 bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
                         const Vec3& after) const noexcept
 {
-    const int parts = shrink_at(shrunk, curve.t[i]) > 0.0F ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1;
-    // At its end and not shrunk the ball is larger than in any part.
-    if (parts > 1 && geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1])) == geometry::Glance::apart) {
+    // At its end and not shrunk the ball is at its largest.
+    const geometry::Glance whole = geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1]));
+    if (whole == geometry::Glance::apart) {
         return false;
     }
+    const bool shrinks = shrink_at(shrunk, curve.t[i]) > 0.0F;
+    return (!shrinks && whole == geometry::Glance::touches) ||
+           touches_in_parts(curve, i, ball, shrunk, before, after,
+                            shrinks ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1);
+}
+
+bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+                                 const Vec3& after, int parts) const noexcept
+{
     Vec3 from = before;
     for (int part = 1; part <= parts; ++part) {
         // The size at the part's end: never too small.
@@ -196,13 +201,9 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, flo
         const Vec3 to = before + share * (after - before);
         const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
         const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
-        if (radius >= 0.0F) {
-            const geometry::Glance glance = geometry::glance(ball.half, from, to, radius);
-            if (glance == geometry::Glance::touches ||
-                (glance == geometry::Glance::unclear &&
-                 geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F))) {
-                return true;
-            }
+        if (radius >= 0.0F && geometry::glance(ball.half, from, to, radius) != geometry::Glance::apart &&
+            geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F)) {
+            return true;
         }
         from = to;
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include "core/geometric/curve.hpp"
 #include "core/geometric/planner.hpp"
 
@@ -132,7 +134,10 @@ private:
     void add_threats(const Extent& reach, Seconds longest, bool moving) noexcept;
     void add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept;
     [[nodiscard]] float shrink_to_clear(float start_margin) const noexcept;
-    [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept;
+    [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept
+    {
+        return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
+    }
     [[nodiscard]] int escape_parts(Seconds duration) const noexcept;
     [[nodiscard]] bool leaves(const Curve& curve, std::size_t i, const geometry::Shape& shape, float shrunk,
                               WorkBudget& budget) const noexcept;
@@ -145,6 +150,8 @@ private:
     [[nodiscard]] static Verdict verdict_of(const Item& item) noexcept;
     [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
                                const Vec3& after) const noexcept;
+    [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk,
+                                        const Vec3& before, const Vec3& after, int parts) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept;
     [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball,
                                      Seconds end) const noexcept;

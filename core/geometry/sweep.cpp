@@ -116,22 +116,6 @@ std::optional<TimeInterval> contact_interval(const Motion& own, const Motion& th
     return contact.first <= contact.last ? std::optional<TimeInterval>(contact) : std::nullopt;
 }
 
-Glance glance(const Vec3& half, const Vec3& from, const Vec3& to, float radius) noexcept
-{
-    // Sixteen times the slack of contact_interval, for both its rounding and the one here.
-    constexpr float kSlack = 16.0F * kSlackShare;
-    const Vec3 middle = 0.5F * (from + to);
-    const Vec3 off = middle - middle.cwiseMax(-half).cwiseMin(half);
-    const float off_squared = off.squaredNorm();
-    const float sizes = from.cwiseAbs().sum() + to.cwiseAbs().sum() + half.sum() + radius;
-    // The box lies behind the plane through its nearest point; `ends` is how far both ends lie before it, times |off|.
-    const float ends = off_squared - 0.5F * std::abs(off.dot(to - from));
-    if (ends > (radius + kSlack * sizes) * std::sqrt(off_squared)) {
-        return Glance::apart;
-    }
-    return off_squared <= radius * radius ? Glance::touches : Glance::unclear;
-}
-
 Approach least_distance(const Vec3& half, const Motion& own, const Motion& threat, Seconds horizon) noexcept
 {
     assert(half.minCoeff() >= 0.0F && horizon >= 0.0F);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <optional>
 
 #include "core/base/time.hpp"
@@ -52,14 +51,6 @@ struct Approach {
 /// The same for two spheres: `radius` is the sum of both. Same accuracy. O(1), one root.
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Motion& own, const Motion& threat, float radius,
                                                            Seconds horizon) noexcept;
-
-/// What a cheap look at one plane says of a point moving straight from `from` to `to` past the box rounded by `radius`
-/// (a box and a sphere, the point being the sphere's centre seen from the box).
-enum class Glance : std::uint8_t { touches, apart, unclear };
-
-/// `touches` and `apart` only where contact_interval says so too, over the same motion; most others are near misses.
-/// The plane is square to the way from the box to the middle of the motion. O(1), one root.
-[[nodiscard]] Glance glance(const Vec3& half, const Vec3& from, const Vec3& to, float radius) noexcept;
 
 /// Least distance in [0, horizon] between the box and the (moving) centre point of a threat; subtract the threat's
 /// radius for the margin. horizon >= 0.
