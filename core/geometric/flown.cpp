@@ -86,8 +86,7 @@ void Flown::fly_paths() noexcept
     for (std::size_t k = 0; k < lanes_in_use_; ++k) {
         Lane& lane = lanes_[k];
         const Seconds duration = lane.path.duration();
-        const Seconds step =
-            std::max(kFlightStep, duration / static_cast<float>(kMaxPathPoints - kTailPoints - 1));
+        const Seconds step = std::max(kFlightStep, duration / static_cast<float>(kMaxPathPoints - kTailPoints - 1));
         flights[k].emplace(state, lane.path, 0.0F, step, limits_, settings_.gains);
         lane.points = 1 + flights[k]->steps();
         lane.points = brakes_at_end(limits_) ? std::min(lane.points + kTailPoints - 1, kMaxPathPoints) : lane.points;
@@ -138,7 +137,9 @@ void Flown::fly_tails() noexcept
         const std::size_t last = flight.points - 1;
         const Vec3 velocity = last > 0 ? flight.velocity(last - 1) : start_velocity_;
         const Seconds span = std::max(vehicle::stopping_time(velocity.norm(), limits_), kFlightStep);
-        tails[k].emplace(Tail{flight.position(last), velocity, flight.t[last],
+        tails[k].emplace(Tail{flight.position(last),
+                              velocity,
+                              flight.t[last],
                               {span, span / static_cast<float>(kTailPoints - 1), kMaxPathPoints - 1},
                               &lane});
     }

@@ -12,9 +12,9 @@ namespace jink::geometric::detail {
 
 /// Flies a few candidates side by side, with braking to a stand at their ends, and says what each flight touches.
 ///
-/// Side by side because that takes little longer than one alone (path/flight.hpp). A flight that touches what is checked
-/// first is not flown on. Verdicts and units spent are those of one flight after the other, each flown to its end and
-/// then checked.
+/// Side by side because that takes little longer than one alone (path/flight.hpp). A flight that touches what is
+/// checked first is not flown on. Verdicts and units spent are those of one flight after the other, each flown to its
+/// end and then checked.
 ///
 /// Memory: kLanes * (a path and a curve), about 12 KB.
 class Flown {

@@ -16,8 +16,8 @@ namespace jink::path::detail {
 /// be so near that the velocity between them is rounding.
 inline constexpr float kLeastStep = 1e-3F;
 
-/// The grid of times of a flight over `length` in steps of `dt` > 0, the last one shortened, `most` steps at most. Steps
-/// are counted, not summed up: 60 steps of 0.1 s end at 6 s.
+/// The grid of times of a flight over `length` in steps of `dt` > 0, the last one shortened, `most` steps at most.
+/// Steps are counted, not summed up: 60 steps of 0.1 s end at 6 s.
 struct Steps {
     Seconds length;
     Seconds dt;
@@ -39,10 +39,7 @@ private:
     [[nodiscard]] Seconds time(std::size_t step) const noexcept { return static_cast<float>(step) * dt; }
     [[nodiscard]] Seconds left_after(std::size_t steps) const noexcept { return length - time(steps); }
     /// Not `length` where there was no room for all steps.
-    [[nodiscard]] Seconds end() const noexcept
-    {
-        return left_after(count) > kLeastStep * dt ? time(count) : length;
-    }
+    [[nodiscard]] Seconds end() const noexcept { return left_after(count) > kLeastStep * dt ? time(count) : length; }
 };
 
 /// The first point of `path`, from `next` on, that lies after `t`; its last one where none does.

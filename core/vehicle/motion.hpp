@@ -9,7 +9,8 @@
 
 #include "core/vehicle/vehicle.hpp"
 
-// The vehicle model of `advance`, inline for predictions that take it thousands of times. Private to rooms that predict.
+// The vehicle model of `advance`, inline for predictions that take it thousands of times. Private to rooms that
+// predict.
 
 namespace jink::vehicle::detail {
 
