@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry/convex.hpp"
+#include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/obstacle_distance.hpp"
 
@@ -15,12 +16,6 @@ using world::ThreatKind;
 
 /// Share by which boxes are grown before they are compared, so that rounding never passes over a contact.
 constexpr float kRounding = 1e-5F;
-
-bool is_moving(const Threat& threat) noexcept
-{
-    return threat.motion.velocity.x() != 0.0F || threat.motion.velocity.y() != 0.0F ||
-           threat.motion.velocity.z() != 0.0F;
-}
 
 /// Whether two boxes, one of them grown by `half` + `radius`, are apart along some axis.
 bool apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b, const Vec3& half,
@@ -40,6 +35,12 @@ Extent about(const Vec3& a, const Vec3& b) noexcept { return {a.cwiseMin(b), a.c
 
 }  // namespace
 
+bool is_moving(const Threat& threat) noexcept
+{
+    return threat.motion.velocity.x() != 0.0F || threat.motion.velocity.y() != 0.0F ||
+           threat.motion.velocity.z() != 0.0F;
+}
+
 Extent extent_of(const Curve& curve) noexcept
 {
     Extent extent{curve.position(0), curve.position(0)};
@@ -58,6 +59,7 @@ Clearance::Clearance(const Problem& problem, const Settings& settings, const veh
 void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept
 {
     items_.clear();
+    needs_extent_ = settings_.security == SecurityMode::swept;
     add_threats(reach, longest, false);
     for (std::size_t i = 0; i < problem_.obstacles.size(); ++i) {
         add_obstacle(i, reach, budget);
@@ -95,11 +97,6 @@ int Clearance::escape_parts(Seconds duration) const noexcept
     return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
 }
 
-float Clearance::shrink_at(float shrunk, Seconds t) const noexcept
-{
-    return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
-}
-
 Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
 {
     const Threat& t = problem_.threats[threat];
@@ -123,12 +120,28 @@ Clearance::Ball Clearance::ball_of(const geometry::Shape& shape) const noexcept
 
 void Clearance::add_ball(Kind kind, std::size_t index, const Ball& ball, const Extent& reach, Seconds longest) noexcept
 {
-    const Extent path = about(ball.position, ball.position + ball.velocity * longest);
-    if (apart(path.low, path.high, reach.low, reach.high, ball.half, ball.radius_at(longest))) {
-        return;
+    if (!out_of(reach, ball, longest)) {
+        items_.unchecked_push_back(as_item(kind, index, ball));
     }
+}
+
+bool Clearance::out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept
+{
+    const Extent path = about(ball.position, ball.position + ball.velocity * longest);
+    return apart(path.low, path.high, reach.low, reach.high, ball.half, ball.radius_at(longest));
+}
+
+bool Clearance::is_out_of(const Extent& reach, const geometry::Shape& solid) const noexcept
+{
+    const Vec3 centre = solid.centre - problem_.frame.origin;
+    const float bound = geometry::bounding_radius(solid) + problem_.obstacle_clearance;
+    return apart(centre, centre, reach.low, reach.high, half_, bound);
+}
+
+Clearance::Item Clearance::as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept
+{
     const float start = geometry::least_distance(ball.half, {}, {ball.position, Vec3::Zero()}, 0.0F).distance;
-    items_.unchecked_push_back({kind, static_cast<std::uint16_t>(index), shrink_to_clear(start - ball.radius)});
+    return {kind, static_cast<std::uint16_t>(index), shrink_to_clear(start - ball.radius)};
 }
 
 void Clearance::add_threats(const Extent& reach, Seconds longest, bool moving) noexcept
@@ -148,13 +161,11 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
         add_ball(Kind::obstacle_ball, index, ball_of(shape), reach, 0.0F);
         return;
     }
-    const Vec3 centre = shape.centre - problem_.frame.origin;
-    const float bound = geometry::bounding_radius(shape) + problem_.obstacle_clearance;
-    if (apart(centre, centre, reach.low, reach.high, half_, bound)) {
+    if (is_out_of(reach, shape)) {
         return;
     }
     Item item{Kind::solid, static_cast<std::uint16_t>(index), 0.0F};
-    if (settings_.escape_from_margin && !apart(centre, centre, Vec3::Zero(), Vec3::Zero(), half_, bound)) {
+    if (settings_.escape_from_margin && !is_out_of({}, shape)) {
         const Vec3& start = problem_.frame.origin;
         item.shrunk =
             shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget) - problem_.obstacle_clearance);
@@ -162,64 +173,65 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
         item.shrunk += item.shrunk > 0.0F ? world::kObstacleResolution : 0.0F;
     }
     items_.unchecked_push_back(item);
+    needs_extent_ = true;
 }
 
-world::ThreatKind Clearance::left_airspace(const Curve& curve) const noexcept
+/// Segment `i`, the curve being `before` and `after` from the ball's centre at its ends.
+bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+                        const Vec3& after) const noexcept
 {
-    if (problem_.airspace == nullptr) {
-        return ThreatKind::none;
+    // At its end and not shrunk the ball is at its largest.
+    const geometry::Glance whole = geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1]));
+    if (whole == geometry::Glance::apart) {
+        return false;
     }
-    const world::Airspace& air = *problem_.airspace;
-    const Vec3 home = air.home - problem_.frame.origin;
-    const float floor = air.floor + half_.z() - problem_.frame.origin.z();
-    const float ceiling = air.ceiling - half_.z() - problem_.frame.origin.z();
-    const float radius = air.keep_in_radius - std::sqrt(half_.x() * half_.x() + half_.y() * half_.y());
-    const float floor_shrunk = shrink_to_clear(-floor);
-    const float ceiling_shrunk = shrink_to_clear(ceiling);
-    const float keep_in_shrunk = shrink_to_clear(radius - home.head<2>().norm());
-    for (std::size_t i = 0; i < curve.points; ++i) {
-        const Seconds t = curve.t[i];
-        if (air.has_floor && curve.z[i] - floor + shrink_at(floor_shrunk, t) < 0.0F) {
-            return ThreatKind::floor;
+    const bool shrinks = shrink_at(shrunk, curve.t[i]) > 0.0F;
+    return (!shrinks && whole == geometry::Glance::touches) ||
+           touches_in_parts(curve, i, ball, shrunk, before, after,
+                            shrinks ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1);
+}
+
+bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+                                 const Vec3& after, int parts) const noexcept
+{
+    Vec3 from = before;
+    for (int part = 1; part <= parts; ++part) {
+        // The size at the part's end: never too small.
+        const float share = static_cast<float>(part) / static_cast<float>(parts);
+        const Vec3 to = before + share * (after - before);
+        const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
+        const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
+        if (radius >= 0.0F && geometry::glance(ball.half, from, to, radius) != geometry::Glance::apart &&
+            geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F)) {
+            return true;
         }
-        if (air.has_ceiling && ceiling - curve.z[i] + shrink_at(ceiling_shrunk, t) < 0.0F) {
-            return ThreatKind::ceiling;
-        }
-        if (air.has_keep_in) {
-            const float x = curve.x[i] - home.x();
-            const float y = curve.y[i] - home.y();
-            const float reach = radius + shrink_at(keep_in_shrunk, t);
-            if (reach < 0.0F || x * x + y * y > reach * reach) {
-                return ThreatKind::keep_in;
-            }
-        }
+        from = to;
     }
-    return ThreatKind::none;
+    return false;
 }
 
 bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept
 {
-    Vec3 before = curve.position(0) - ball.position;
-    for (std::size_t i = 0; i + 1 < curve.points; ++i) {
-        const Vec3 after = curve.position(i + 1) - (ball.position + ball.velocity * curve.t[i + 1]);
-        const int parts = shrink_at(shrunk, curve.t[i]) > 0.0F ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1;
-        Vec3 from = before;
-        for (int part = 1; part <= parts; ++part) {
-            // The size at the part's end: never too small.
-            const float share = static_cast<float>(part) / static_cast<float>(parts);
-            const Vec3 to = before + share * (after - before);
-            const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
-            const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
-            if (radius >= 0.0F) {
-                const Extent piece = about(from, to);
-                if (!apart(Vec3::Zero(), Vec3::Zero(), piece.low, piece.high, ball.half, radius) &&
-                    geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F)) {
-                    return true;
-                }
-            }
-            from = to;
+    Room room(curve.fastest, ball.velocity.cwiseAbs().maxCoeff(), ball.radius_at(curve.duration()), curve.duration());
+    std::size_t i = 0;
+    Vec3 before = ball.apart(curve, 0);
+    while (i + 1 < curve.points) {
+        room.look(before, ball.half, curve.t[i]);
+        std::size_t next = i;
+        while (next + 1 < curve.points && room.lasts_until(curve.t[next + 1])) {
+            ++next;
+        }
+        if (next > i) {
+            i = next;
+            before = ball.apart(curve, i);
+            continue;
+        }
+        const Vec3 after = ball.apart(curve, i + 1);
+        if (touches(curve, i, ball, shrunk, before, after)) {
+            return true;
         }
         before = after;
+        ++i;
     }
     return false;
 }
@@ -312,7 +324,7 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget) const noexcept
     if (const ThreatKind bound = left_airspace(curve); bound != ThreatKind::none) {
         return {CandidateStatus::hits_airspace, {bound, 0}};
     }
-    const Extent extent = extent_of(curve);
+    const Extent extent = needs_extent_ ? extent_of(curve) : Extent{};
     const auto segments = static_cast<std::uint32_t>(curve.points - 1);
     for (const Item& item : items_) {
         const bool hit = budget.spend(segments) && touches(curve, extent, item, budget);
@@ -320,12 +332,17 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget) const noexcept
             return {CandidateStatus::not_evaluated, {}};
         }
         if (hit) {
-            const bool of_threat = item.kind == Kind::static_ball || item.kind == Kind::moving_ball;
-            return {item.kind == Kind::moving_ball ? CandidateStatus::hits_moving : CandidateStatus::hits_static,
-                    {of_threat ? ThreatKind::track : ThreatKind::obstacle, item.index}};
+            return verdict_of(item);
         }
     }
     return {};
+}
+
+Verdict Clearance::verdict_of(const Item& item) noexcept
+{
+    const bool of_threat = item.kind == Kind::static_ball || item.kind == Kind::moving_ball;
+    return {item.kind == Kind::moving_ball ? CandidateStatus::hits_moving : CandidateStatus::hits_static,
+            {of_threat ? ThreatKind::track : ThreatKind::obstacle, item.index}};
 }
 
 }  // namespace jink::geometric::detail

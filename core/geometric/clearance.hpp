@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+
 #include "core/geometric/curve.hpp"
 #include "core/geometric/planner.hpp"
 
@@ -13,7 +15,41 @@ struct Extent {
     Vec3 low = Vec3::Zero();
     Vec3 high = Vec3::Zero();
 };
+[[nodiscard]] bool is_moving(const Threat& threat) noexcept;
+
 [[nodiscard]] Extent extent_of(const Curve& curve) noexcept;
+
+/// How far a curve and a ball are from meeting, by bounds on their speeds: segments are passed over while nothing can
+/// happen. Never hides what the exact test would find: the bounds leave more room than that test's rounding takes.
+class Room {
+public:
+    /// Of a curve whose coordinates change no faster than `fastest` [m/s] and that lasts `duration`, and a ball whose
+    /// coordinates change no faster than `ball_fastest` and that is never larger than `largest`.
+    Room(float fastest, float ball_fastest, float largest, Seconds duration) noexcept
+        : closing_(fastest + ball_fastest), largest_(largest), scale_(1.0F + closing_ * duration + largest)
+    {
+    }
+
+    /// Looks at where the ball's centre is from the curve, at `t`.
+    void look(const Vec3& apart, const Vec3& half, Seconds t) noexcept
+    {
+        const Vec3 size = apart.cwiseAbs();
+        looked_at_ = t;
+        room_ = (size - half).maxCoeff() - largest_ - kShare * (scale_ + size.maxCoeff() + half.maxCoeff());
+    }
+    /// No contact from the last look until `t`.
+    [[nodiscard]] bool lasts_until(Seconds t) const noexcept { return (t - looked_at_) * closing_ < room_; }
+
+private:
+    /// Of the lengths involved, for rounding: a hundred times what the exact test allows itself.
+    static constexpr float kShare = 1e-4F;
+
+    float closing_;
+    float largest_;
+    float scale_;
+    Seconds looked_at_ = 0.0F;
+    float room_ = -1.0F;
+};
 
 struct Verdict {
     CandidateStatus status = CandidateStatus::available;
@@ -43,6 +79,19 @@ public:
     /// runs out the verdict is not_evaluated. O(points * (threats + obstacles)).
     [[nodiscard]] Verdict check(const Curve& curve, WorkBudget& budget) const noexcept;
 
+    /// The first item in the order of checking that a flight within `reach` that lasts no longer than `longest` can
+    /// meet, where it is a ball: a flight that touches it needs not be flown on, nothing else can come before it but
+    /// the airspace. False where there is none such. O(threats + obstacles).
+    [[nodiscard]] bool find_first(const Extent& reach, Seconds longest) noexcept;
+    /// `look`ed at as the first item's Room asks for, for a curve of up to `duration`. After find_first.
+    [[nodiscard]] Room room_of_first(float fastest, Seconds duration) const noexcept;
+    /// Segment `i` touches the first item. `room` is kept from segment to segment. After find_first.
+    [[nodiscard]] bool touches_first(const Curve& curve, std::size_t i, Room& room) const noexcept;
+    /// What `check` says of a curve of `segments` that touches the first item and stays in the airspace.
+    [[nodiscard]] Verdict first_verdict(std::size_t segments, WorkBudget& budget) const noexcept;
+    /// The curve so far keeps within the airspace, and so does all that can follow `level` and `vertical` from its end.
+    [[nodiscard]] bool stays_in_airspace(const Curve& so_far, float level, float vertical) const noexcept;
+
 private:
     /// A static or moving sphere, or an obstacle with the sphere's closed form.
     struct Ball {
@@ -57,6 +106,11 @@ private:
         {
             return radius + t * (rate + 0.5F * acceleration * t);
         }
+        /// From point `i` of a curve.
+        [[nodiscard]] Vec3 apart(const Curve& curve, std::size_t i) const noexcept
+        {
+            return curve.position(i) - (position + velocity * curve.t[i]);
+        }
     };
     enum class Kind : std::uint8_t { static_ball, obstacle_ball, solid, moving_ball };
     /// What is within reach, in the order of checking.
@@ -66,17 +120,38 @@ private:
         float shrunk = 0.0F;      ///< by the escape rule, at t = 0
     };
 
+    /// Of the airspace, about the start, for the box's centre.
+    struct Bounds {
+        Vec3 home;
+        float floor = 0.0F;
+        float ceiling = 0.0F;
+        float radius = 0.0F;
+    };
+
     [[nodiscard]] Ball ball_of(std::size_t threat) const noexcept;
     [[nodiscard]] Ball ball_of(const geometry::Shape& shape) const noexcept;
     void add_ball(Kind kind, std::size_t index, const Ball& ball, const Extent& reach, Seconds longest) noexcept;
     void add_threats(const Extent& reach, Seconds longest, bool moving) noexcept;
     void add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept;
     [[nodiscard]] float shrink_to_clear(float start_margin) const noexcept;
-    [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept;
+    [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept
+    {
+        return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
+    }
     [[nodiscard]] int escape_parts(Seconds duration) const noexcept;
     [[nodiscard]] bool leaves(const Curve& curve, std::size_t i, const geometry::Shape& shape, float shrunk,
                               WorkBudget& budget) const noexcept;
     [[nodiscard]] world::ThreatKind left_airspace(const Curve& curve) const noexcept;
+    [[nodiscard]] static bool out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept;
+    [[nodiscard]] Item as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept;
+    [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid) const noexcept;
+    [[nodiscard]] Bounds bounds() const noexcept;
+    [[nodiscard]] bool first_threat(const Extent& reach, Seconds longest, bool moving) noexcept;
+    [[nodiscard]] static Verdict verdict_of(const Item& item) noexcept;
+    [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+                               const Vec3& after) const noexcept;
+    [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk,
+                                        const Vec3& before, const Vec3& after, int parts) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept;
     [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball,
                                      Seconds end) const noexcept;
@@ -90,6 +165,9 @@ private:
     const Vec3 half_;
     Seconds t_max_ = 0.0F;
     StaticVector<Item, kMaxTracks + kMaxObstacles> items_;
+    bool needs_extent_ = false;  ///< some item is tested against a curve's extent
+    Item first_;
+    Ball first_ball_;
 };
 
 }  // namespace jink::geometric::detail

@@ -12,6 +12,9 @@ namespace {
 /// Rounding of the finite differences that accelerations are taken from.
 constexpr float kRounding = 1.001F;
 
+/// A path frame may be that far from unitary (Problem's validity), and times are rounded.
+constexpr float kUnitTolerance = 1.01F;
+
 bool within(const Vec3& change, Seconds time, const vehicle::VehicleLimits& limits) noexcept
 {
     const float level = kRounding * limits.max_acceleration * time;
@@ -48,6 +51,7 @@ void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, floa
                 const vehicle::VehicleLimits& limits, Curve& out) noexcept
 {
     out.points = unit.points;
+    out.fastest = kUnitTolerance * speed;
     const Vec3 leg = distance * along;
     const Vec3 out_to = offset * side;
     for (std::size_t i = 0; i < unit.points; ++i) {
@@ -59,12 +63,16 @@ void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, floa
     const float per_climb = 1.0F / limits.max_climb;
     const float per_descent = -1.0F / limits.max_descent;
     const float advance = distance * (unit.u[1] - unit.u[0]);
-    out.t[0] = 0.0F;
+    Coordinates duration;
     for (std::size_t i = 0; i + 1 < unit.points; ++i) {
         const float aside = offset * (unit.f[i + 1] - unit.f[i]);
         const float rise = out.z[i + 1] - out.z[i];
         const float length = std::sqrt(advance * advance + aside * aside);
-        out.t[i + 1] = out.t[i] + std::max(length * per_speed, std::max(rise * per_climb, rise * per_descent));
+        duration[i] = std::max(length * per_speed, std::max(rise * per_climb, rise * per_descent));
+    }
+    out.t[0] = 0.0F;
+    for (std::size_t i = 0; i + 1 < unit.points; ++i) {
+        out.t[i + 1] = out.t[i] + duration[i];
     }
 }
 
@@ -74,18 +82,6 @@ void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out)
     for (std::size_t i = 0; i < curve.points; ++i) {
         const std::size_t segment = std::min(i, curve.points - 2);
         out.points[i] = {origin + curve.position(i), curve.velocity(segment), curve.t[i]};
-    }
-}
-
-void from_timed_path(const path::TimedPath& path, const Vec3& origin, Curve& out) noexcept
-{
-    out.points = path.points.size();
-    for (std::size_t i = 0; i < out.points; ++i) {
-        const Vec3 position = path.points[i].position - origin;
-        out.x[i] = position.x();
-        out.y[i] = position.y();
-        out.z[i] = position.z();
-        out.t[i] = path.points[i].time;
     }
 }
 

@@ -29,6 +29,7 @@ struct Curve {
     std::size_t points = 0;
     Coordinates x, y, z;
     Coordinates t;
+    float fastest = 0.0F;  ///< no coordinate changes faster than this [m/s]
 
     [[nodiscard]] Vec3 position(std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
     [[nodiscard]] Seconds duration() const noexcept { return t[points - 1]; }
@@ -49,8 +50,6 @@ void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, floa
 
 /// As a timed path about `origin`. O(points).
 void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out) noexcept;
-/// A timed path about `origin` as a curve. O(points).
-void from_timed_path(const path::TimedPath& path, const Vec3& origin, Curve& out) noexcept;
 
 /// Within the acceleration limits all along, from flying along the leg at `speed` on, and back on the leg without a
 /// turn that would carry the vehicle more than kRejoinOvershoot past it. See Settings::check_acceleration. O(points).

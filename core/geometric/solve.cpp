@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/geometric/clearance.hpp"
 #include "core/geometric/curve.hpp"
+#include "core/geometric/flown.hpp"
 #include "core/geometric/offsets.hpp"
 #include "core/geometric/planner.hpp"
 
@@ -16,11 +16,6 @@ using detail::Clearance;
 using detail::Curve;
 using detail::UnitCurve;
 using world::PlanStatus;
-
-/// Points that the braking tail of a verified flight takes.
-constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4);
-/// Step of a verified flight [s], longer where the path would not fit otherwise.
-constexpr Seconds kFlightStep = 0.2F;
 
 bool positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
 
@@ -61,7 +56,8 @@ public:
     Run(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
         const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept
         : problem_(problem), settings_(settings), limits_(limits), airframe_(airframe), budget_(budget),
-          result_(result), along_(problem.frame.axes.col(0)), clearance_(problem, settings, limits)
+          result_(result), along_(problem.frame.axes.col(0)), clearance_(problem, settings, limits),
+          flown_(problem, settings, limits, clearance_)
     {
     }
 
@@ -87,7 +83,18 @@ private:
     void list_moving() noexcept;
     void build(const CandidateShape& shape) noexcept;
     [[nodiscard]] Vec3 side_of(const CandidateShape& shape) const noexcept;
-    [[nodiscard]] bool verify(Candidate& candidate) noexcept;
+    /// Candidates still to be tried, a heap with the cheapest at its front, of equally cheap ones the first.
+    using Order = StaticVector<std::uint16_t, kMaxCandidates>;
+    [[nodiscard]] auto by_cost() const noexcept
+    {
+        return [this](std::uint16_t a, std::uint16_t b) {
+            const float cost_a = result_.candidates[a].total + result_.candidates[a].flip_penalty;
+            const float cost_b = result_.candidates[b].total + result_.candidates[b].flip_penalty;
+            return cost_b < cost_a || (cost_b == cost_a && b < a);
+        };
+    }
+    void next_cheapest(Order& order, bool first) noexcept;
+    void take(std::size_t index, const path::TimedPath& path) noexcept;
     [[nodiscard]] PlanStatus choose() noexcept;
 
     const Problem& problem_;
@@ -100,9 +107,11 @@ private:
     Seconds longest_ = 0.0F;         ///< duration of any candidate, where threats sweep volumes
     std::array<UnitCurve, 2> unit_;  ///< by family
     Clearance clearance_;
-    Curve curve_;                                          ///< of the candidate at hand
-    path::TimedPath path_;                                 ///< the same, about the start
-    StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start
+    detail::Flown flown_;
+    StaticVector<std::uint16_t, detail::Flown::kLanes> trial_;  ///< by lane of flown_
+    Curve curve_;                                               ///< of the candidate at hand
+    path::TimedPath path_;                                      ///< the same, about the start
+    StaticVector<cost::MovingThreat, kMaxTracks> moving_;       ///< about the start
     struct {
         CandidateShape shape;
         float value = -1.0F;
@@ -250,65 +259,59 @@ void Run::assess(Candidate& candidate) noexcept
         sign * side_of(candidate.shape).dot(problem_.preferred_side) < kOtherSide ? settings_.flip_penalty : 0.0F;
 }
 
-/// The flight that following the candidate gives, with braking at its end, must be clear too.
-bool Run::verify(Candidate& candidate) noexcept
+/// The next cheapest candidates, the cheapest alone at first: most often it passes.
+void Run::next_cheapest(Order& order, bool first) noexcept
 {
-    vehicle::VehicleState state;
-    state.velocity = problem_.start_velocity;
-    path::TimedPath flight;
-    const Seconds step = std::max(kFlightStep, path_.duration() / static_cast<float>(kMaxPathPoints - kTailPoints - 1));
-    path::predict_flight(state, path_, 0.0F, step, limits_, settings_.gains, flight);
-    if (limits_.kind == vehicle::VehicleKind::multirotor) {
-        state.position = flight.points.back().position;
-        state.velocity = flight.points.back().velocity;
-        const Seconds span = std::max(vehicle::stopping_time(state.velocity.norm(), limits_), kFlightStep);
-        path::TimedPath tail;
-        path::predict_velocity_command(state, Vec3::Zero(), span, span / static_cast<float>(kTailPoints - 1), limits_,
-                                       tail);
-        const Seconds end = flight.duration();
-        for (std::size_t i = 1; i < tail.points.size() && !flight.points.full(); ++i) {
-            path::PathPoint point = tail.points[i];
-            point.time += end;
-            flight.points.unchecked_push_back(point);
-        }
+    flown_.clear();
+    trial_.clear();
+    while (!order.empty() && !flown_.full() && !(first && flown_.size() == 1)) {
+        std::pop_heap(order.begin(), order.end(), by_cost());
+        const std::size_t index = order.back();
+        order.pop_back();
+        build(result_.candidates[index].shape);
+        detail::to_timed_path(curve_, Vec3::Zero(), flown_.add());
+        trial_.unchecked_push_back(static_cast<std::uint16_t>(index));
     }
-    detail::from_timed_path(flight, Vec3::Zero(), curve_);
-    clearance_.collect(detail::extent_of(curve_), curve_.duration(), budget_);
-    clearance_.sweep_until(std::max(longest_, curve_.duration()));
-    const detail::Verdict verdict = clearance_.check(curve_, budget_);
-    if (verdict.status != CandidateStatus::available) {
-        candidate.status = verdict.status;
-        candidate.hit = verdict.hit;
+}
+
+void Run::take(std::size_t index, const path::TimedPath& path) noexcept
+{
+    Candidate& best = result_.candidates[index];
+    best.status = CandidateStatus::chosen;
+    result_.chosen = index;
+    result_.side = std::copysign(1.0F, best.shape.offset) * side_of(best.shape);
+    result_.path = path;
+    for (path::PathPoint& point : result_.path.points) {
+        point.position += problem_.frame.origin;
     }
-    return verdict.status == CandidateStatus::available;
 }
 
 PlanStatus Run::choose() noexcept
 {
-    for (std::size_t tried = 0; tried < result_.candidates.size(); ++tried) {
-        Candidate* best = nullptr;
-        for (Candidate& candidate : result_.candidates) {
-            if (candidate.status == CandidateStatus::available && candidate.total <= settings_.max_cost &&
-                (best == nullptr || candidate.total + candidate.flip_penalty < best->total + best->flip_penalty)) {
-                best = &candidate;
+    Order order;
+    for (std::size_t i = 0; i < result_.candidates.size(); ++i) {
+        const Candidate& candidate = result_.candidates[i];
+        if (candidate.status == CandidateStatus::available && candidate.total <= settings_.max_cost) {
+            order.unchecked_push_back(static_cast<std::uint16_t>(i));
+        }
+    }
+    std::make_heap(order.begin(), order.end(), by_cost());
+    for (bool first = true; !order.empty(); first = false) {
+        next_cheapest(order, first);
+        if (settings_.verify_flight) {
+            flown_.fly();
+        }
+        for (std::size_t lane = 0; lane < flown_.size(); ++lane) {
+            Candidate& candidate = result_.candidates[trial_[lane]];
+            const detail::Verdict verdict =
+                settings_.verify_flight ? flown_.judge(lane, longest_, budget_) : detail::Verdict{};
+            if (verdict.status == CandidateStatus::available) {
+                take(trial_[lane], flown_.path(lane));
+                return PlanStatus::found;
             }
+            candidate.status = verdict.status;
+            candidate.hit = verdict.hit;
         }
-        if (best == nullptr) {
-            break;
-        }
-        build(best->shape);
-        detail::to_timed_path(curve_, Vec3::Zero(), path_);
-        if (settings_.verify_flight && !verify(*best)) {
-            continue;
-        }
-        best->status = CandidateStatus::chosen;
-        result_.chosen = static_cast<std::size_t>(best - result_.candidates.begin());
-        result_.side = std::copysign(1.0F, best->shape.offset) * side_of(best->shape);
-        result_.path = path_;
-        for (path::PathPoint& point : result_.path.points) {
-            point.position += problem_.frame.origin;
-        }
-        return PlanStatus::found;
     }
     return budget_.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
 }

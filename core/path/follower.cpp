@@ -4,28 +4,50 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/path/flight.hpp"
+
 namespace jink::path {
 namespace {
-
-/// A rest of the path shorter than this share of a step is flown with the step before it: no point of `out` may be so
-/// near to the next one that the velocity between them is rounding.
-constexpr float kLeastStep = 1e-3F;
 
 /// A corner of the path is flown as a turn over this long on either side of it, or half a segment where that is shorter
 /// [s].
 constexpr Seconds kCornerTime = 0.25F;
 
-/// The path's velocity at `t`, blended linearly across the corners: with points close together it is the velocity of
-/// the smooth curve that the points were taken from, not that of its chords.
-Vec3 smooth_velocity(const TimedPath& path, Seconds t) noexcept
+/// First point after `t`, but none before the second point and none past the last one. O(log points).
+std::size_t search(const TimedPath& path, Seconds t) noexcept
+{
+    const auto& points = path.points;
+    const PathPoint* const next =
+        std::upper_bound(points.begin(), points.end(), t, [](Seconds at, const PathPoint& p) { return at < p.time; });
+    const auto found = static_cast<std::size_t>(next - points.begin());
+    return std::max<std::size_t>(std::min(found, points.size() - 1), 1);
+}
+
+/// The path's position at `t`, `next` as search finds it.
+Vec3 position_at(const TimedPath& path, Seconds t, std::size_t next) noexcept
+{
+    const auto& points = path.points;
+    if (t <= points.front().time) {
+        return points.front().position;
+    }
+    if (t >= points.back().time) {
+        return points.back().position;
+    }
+    const PathPoint& from = points[next - 1];
+    const PathPoint& to = points[next];
+    const float share = (t - from.time) / (to.time - from.time);
+    return from.position + share * (to.position - from.position);
+}
+
+/// The path's velocity at `t`, blended linearly across the corners, `next` as search finds it: with points close
+/// together it is the velocity of the smooth curve that the points were taken from, not that of its chords.
+Vec3 smooth_velocity(const TimedPath& path, Seconds t, std::size_t next_index) noexcept
 {
     const auto& points = path.points;
     if (points.size() < 3) {
         return points.front().velocity;
     }
-    const PathPoint* const next = std::clamp(
-        std::upper_bound(points.begin(), points.end(), t, [](Seconds at, const PathPoint& p) { return at < p.time; }),
-        points.begin() + 1, points.end() - 1);
+    const PathPoint* const next = points.begin() + next_index;
     const PathPoint& from = *(next - 1);
     const Seconds half = 0.5F * (next->time - from.time);
     const bool late = t - from.time > half;
@@ -49,60 +71,63 @@ void append(TimedPath& out, const Vec3& position, Seconds time) noexcept
     out.points.unchecked_push_back({position, last.velocity, time});
 }
 
-/// Steps of `dt` from 0 to `length`, `fly(from, to)` flown in each and a point added after each.
-template <class Fly>
-void fly_steps(vehicle::VehicleState& state, Seconds length, Seconds dt, TimedPath& out, const Fly& fly) noexcept
-{
-    out.points.clear();
-    out.points.unchecked_push_back({state.position, state.velocity, 0.0F});
-    Seconds now = 0.0F;
-    while (!out.points.full() && length - now > kLeastStep * dt) {
-        const auto step = static_cast<float>(out.points.size());  // not summed up: 60 steps of 0.1 s end at 6 s
-        const Seconds next = length - step * dt > kLeastStep * dt ? step * dt : length;
-        fly(now, next);
-        append(out, state.position, next);
-        now = next;
-    }
-}
-
 }  // namespace
 
-Vec3 follow(const TimedPath& path, Seconds t, const Vec3& position, const vehicle::VehicleLimits& limits,
-            const FollowerGains& gains) noexcept
+namespace detail {
+
+Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t next_ahead, const Vec3& position,
+             const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
 {
-    Vec3 correction = gains.position_gain * (sample(path, t).position - position);
+    Vec3 correction = gains.position_gain * (position_at(path, t, next) - position);
     const float size = correction.norm();
     if (size > gains.max_correction) {
         correction *= gains.max_correction / size;
     }
     Vec3 command = correction;
     if (t < path.duration()) {
-        command += smooth_velocity(path, t + limits.velocity_lag);
+        command += smooth_velocity(path, t + limits.velocity_lag, next_ahead);
     }
     command.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
     return command;
 }
 
+}  // namespace detail
+
+Vec3 follow(const TimedPath& path, Seconds t, const Vec3& position, const vehicle::VehicleLimits& limits,
+            const FollowerGains& gains) noexcept
+{
+    return detail::command(path, t, search(path, t), search(path, t + limits.velocity_lag), position, limits, gains);
+}
+
 void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,
                     const vehicle::VehicleLimits& limits, const FollowerGains& gains, TimedPath& out) noexcept
 {
-    vehicle::VehicleState flown = state;
-    const int parts = std::max(1, static_cast<int>(std::ceil(dt / kFollowerPeriod - 1e-3F)));
-    fly_steps(flown, path.duration() - start, dt, out, [&](Seconds from, Seconds to) {
-        const Seconds part = (to - from) / static_cast<float>(parts);
-        for (int i = 0; i < parts; ++i) {
-            const Seconds t = start + from + static_cast<float>(i) * part;
-            vehicle::advance(flown, follow(path, t, flown.position, limits, gains), limits, part);
+    detail::Flight flight(state, path, start, dt, limits, gains);
+    vehicle::detail::Fading fading(limits.velocity_lag);
+    out.points.clear();
+    out.points.unchecked_push_back({state.position, state.velocity, 0.0F});
+    while (!flight.ended()) {
+        for (int i = 0; i < flight.parts(); ++i) {
+            flight.fly(i, fading);
         }
-    });
+        flight.end_step();
+        append(out, flight.position(), flight.time());
+    }
 }
 
 void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
                               const vehicle::VehicleLimits& limits, TimedPath& out) noexcept
 {
     vehicle::VehicleState flown = state;
-    fly_steps(flown, horizon, dt, out,
-              [&](Seconds from, Seconds to) { vehicle::advance(flown, command, limits, to - from); });
+    vehicle::detail::Fading fading(limits.velocity_lag);
+    const detail::Steps steps(horizon, dt, kMaxPathPoints - 1);
+    out.points.clear();
+    out.points.unchecked_push_back({state.position, state.velocity, 0.0F});
+    for (std::size_t step = 1; step <= steps.count; ++step) {
+        vehicle::detail::move(flown.position, flown.velocity, command, limits,
+                              steps.end_of(step) - out.points.back().time, fading);
+        append(out, flown.position, steps.end_of(step));
+    }
 }
 
 }  // namespace jink::path

@@ -4,41 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/vehicle/motion.hpp"
+
 namespace jink::vehicle {
 namespace {
 
 bool positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
 
 bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
-
-/// Size of a velocity error after dt, and its integral over dt.
-struct Decay {
-    float error = 0.0F;     ///< [m/s]
-    float integral = 0.0F;  ///< [m]
-};
-
-/// An error that shrinks at rate min(error / lag, limit): a straight ramp down to limit * lag, an exponential from
-/// there. Its direction stays, so one number says it all.
-Decay decay(float error, float lag, float limit, Seconds dt) noexcept
-{
-    const float knee = limit * lag;
-    float integral = 0.0F;
-    if (error > knee) {
-        const Seconds ramp = (error - knee) / limit;
-        if (ramp >= dt) {
-            const float left = error - limit * dt;
-            return {left, 0.5F * (error + left) * dt};
-        }
-        integral = 0.5F * (error + knee) * ramp;
-        error = knee;
-        dt -= ramp;
-    }
-    if (lag <= 0.0F) {
-        return {0.0F, integral};
-    }
-    const float rest = std::expm1(-dt / lag);  // exp - 1 in [-1, 0]
-    return {error + error * rest, integral - error * lag * rest};
-}
 
 }  // namespace
 
@@ -78,18 +51,8 @@ Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept
 
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept
 {
-    Vec3 goal = command;
-    goal.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
-    const Vec3 error = state.velocity - goal;
-
-    const float horizontal = std::sqrt(error.x() * error.x() + error.y() * error.y());
-    const Decay level = decay(horizontal, limits.velocity_lag, limits.max_acceleration, dt);
-    const Decay vertical = decay(std::abs(error.z()), limits.velocity_lag, limits.max_vertical_acceleration, dt);
-    const float per_metre = horizontal > 0.0F ? 1.0F / horizontal : 0.0F;
-    const Vec3 direction(error.x() * per_metre, error.y() * per_metre, std::copysign(1.0F, error.z()));
-
-    state.position += goal * dt + direction.cwiseProduct(Vec3(level.integral, level.integral, vertical.integral));
-    state.velocity = goal + direction.cwiseProduct(Vec3(level.error, level.error, vertical.error));
+    detail::Fading fading(limits.velocity_lag);
+    detail::move(state.position, state.velocity, command, limits, dt, fading);
     state.stamp = state.stamp + dt;
 }
 

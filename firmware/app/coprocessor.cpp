@@ -11,6 +11,8 @@ namespace {
 
 constexpr Seconds kHeartbeatPeriod = 1.0F;
 constexpr Seconds kCollisionPeriod = 0.5F;
+/// Set-points that a PX4 only has to see: it wants 2 Hz or more [s].
+constexpr Seconds kProvingPeriod = 0.2F;
 /// A step that comes this long after the last one means that we were not there when we should have been [s].
 constexpr Seconds kStall = 0.5F;
 /// Speed from which the own motion itself is taken for the way, where no leg is known [m/s].
@@ -130,23 +132,52 @@ std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexce
     return static_cast<std::uint16_t>(faults);
 }
 
+/// Of the stream that is due; 0: none.
+Seconds Coprocessor::setpoint_period() const noexcept
+{
+    if (takeover_.streaming()) {
+        return parameters_.configuration().setpoint_period;
+    }
+    return takeover_.proving() ? kProvingPeriod : 0.0F;
+}
+
 void Coprocessor::send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept
 {
-    if (!takeover_.streaming() || now - last_setpoint_ < parameters_.configuration().setpoint_period - 0.5F * kTick) {
+    const Seconds period = setpoint_period();
+    if (period <= 0.0F || now - last_setpoint_ < period - 0.5F * kTick) {
         return;
     }
     // Until the autopilot follows us, the stream says what it does anyway.
     const Vec3 velocity = takeover_.in_control() ? report.guidance.velocity : own.velocity;
-    if (!is_finite(velocity)) {
-        ++diagnostics_.setpoints_withheld;
-        report.faults = static_cast<std::uint16_t>(report.faults | bit(Fault::not_finite));
-        takeover_.drop(true);
-        return;
-    }
     link_.send_velocity(velocity, now);
     last_setpoint_ = now;
     report.setpoint_sent = true;
     ++diagnostics_.setpoints;
+}
+
+/// A request that waits for the line grows old like a set-point: nobody may be asked for a mode that was wanted a while
+/// ago, least of all when somebody else has chosen one.
+void Coprocessor::ask_autopilot(const TakeoverOutput& output, TimePoint now) noexcept
+{
+    if (output.event != TakeoverEvent::none || now - last_mode_request_ >= Takeover::kConfirm) {
+        link_.drop_mode_request();
+    }
+    switch (output.action) {
+    case TakeoverAction::request_external: link_.request_external_mode(); break;
+    case TakeoverAction::request_former: link_.request_mode(takeover_.former_mode()); break;
+    case TakeoverAction::request_hold: link_.request_hold_mode(); break;
+    case TakeoverAction::none: return;
+    }
+    last_mode_request_ = now;
+}
+
+/// The line may be open and take nothing: what is queued must not go out when it is no longer true.
+void Coprocessor::drop_stale(TimePoint now) noexcept
+{
+    const Seconds period = setpoint_period();
+    if (period <= 0.0F || now - last_setpoint_ >= period) {
+        link_.drop_setpoint();
+    }
 }
 
 void Coprocessor::control(TimePoint now, StepReport& report) noexcept
@@ -165,6 +196,10 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
         report.guidance = supervisor_.update(situation, takeover_.in_control());
         report.work = report.guidance.work;
     }
+    if (!is_finite(own.velocity) || !is_finite(report.guidance.velocity)) {
+        diagnostics_.setpoints_withheld += setpoint_period() > 0.0F ? 1U : 0U;
+        report.faults = static_cast<std::uint16_t>(report.faults | bit(Fault::not_finite));
+    }
     TakeoverInput input;
     input.wants_control = report.guidance.wants_control;
     input.in_conflict = report.guidance.has_conflict;
@@ -174,24 +209,17 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     input.has_report = new_autopilot_report_;
     input.report = autopilot_;
     input.mode_denied = mode_denied_;
-    const bool link_alive = (report.faults & bit(Fault::port_lost)) == 0;
+    input.mode_accepted = mode_accepted_;
+    input.keep_stream = c.standby_stream;
+    input.link_alive = (report.faults & bit(Fault::port_lost)) == 0;
     const TakeoverOutput output = takeover_.update(input, now);
-    switch (output.action) {
-    case TakeoverAction::request_external: link_.request_external_mode(); break;
-    case TakeoverAction::request_former: link_.request_mode(takeover_.former_mode()); break;
-    case TakeoverAction::request_hold: link_.request_hold_mode(); break;
-    case TakeoverAction::none: break;
-    }
-    if (output.event == TakeoverEvent::lost && link_alive) {
-        // CRITICAL first, then silence; and the vehicle should not coast on our last word.
-        link_.send_heartbeat(link::SystemState::critical);
-        link_.request_hold_mode();
-    }
+    ask_autopilot(output, now);
     if (output.event == TakeoverEvent::overruled) {
         supervisor_.reset();
     }
     announce(output.event);
     send_setpoint(now, own, report);
+    drop_stale(now);
     report.control = takeover_.control();
 }
 
@@ -244,6 +272,7 @@ void Coprocessor::announce(TakeoverEvent event) noexcept
     case TakeoverEvent::refused: link_.send_text(Severity::critical, "jink: control refused, advising only"); break;
     case TakeoverEvent::overruled: link_.send_text(Severity::warning, "jink: mode changed by others, hands off"); break;
     case TakeoverEvent::lost: link_.send_text(Severity::critical, "jink: fault while avoiding, control dropped"); break;
+    case TakeoverEvent::held: link_.send_text(Severity::warning, "jink: autopilot holds, as asked"); break;
     case TakeoverEvent::none: break;
     }
 }
@@ -308,6 +337,8 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
 void Coprocessor::shut_down(TimePoint now) noexcept
 {
     static_cast<void>(now);
+    link_.drop_setpoint();
+    link_.drop_mode_request();
     if (takeover_.in_control()) {
         link_.request_hold_mode();
     }

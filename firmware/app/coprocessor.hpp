@@ -48,7 +48,7 @@ struct Diagnostics {
     std::uint32_t steps = 0;
     std::uint32_t deadlines_missed = 0;
     std::uint32_t setpoints = 0;
-    std::uint32_t setpoints_withheld = 0;  ///< due, but nothing fresh to say
+    std::uint32_t setpoints_withheld = 0;  ///< ticks of the stream whose velocity was not a number
     std::uint32_t own_states = 0;
     std::uint32_t own_state_refused = 0;  ///< stamped in the future, or older than what is known
     std::uint32_t estimator_resets = 0;
@@ -122,7 +122,10 @@ private:
     [[nodiscard]] world::Reference reference_at(const vehicle::VehicleState& own) const noexcept;
     [[nodiscard]] world::Airspace airspace(TimePoint now) const noexcept;
     void control(TimePoint now, StepReport& report) noexcept;
+    [[nodiscard]] Seconds setpoint_period() const noexcept;
     void send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept;
+    void ask_autopilot(const TakeoverOutput& output, TimePoint now) noexcept;
+    void drop_stale(TimePoint now) noexcept;
     void tell(TimePoint now, const StepReport& report) noexcept;
     void announce(TakeoverEvent event) noexcept;
     void warn_of_conflict(TimePoint now, const StepReport& report) noexcept;
@@ -147,6 +150,7 @@ private:
     bool has_autopilot_ = false;
     bool new_autopilot_report_ = false;
     bool mode_denied_ = false;
+    bool mode_accepted_ = false;
     world::Leg leg_;
     bool has_leg_ = false;
     Vec3 home_ = Vec3::Zero();
@@ -161,6 +165,7 @@ private:
     TimePoint last_step_;
     TimePoint last_heartbeat_;
     TimePoint last_setpoint_;
+    TimePoint last_mode_request_;
     TimePoint last_collision_;
     bool heartbeat_sent_ = false;
     link::SystemState told_state_ = link::SystemState::boot;

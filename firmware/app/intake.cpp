@@ -213,6 +213,8 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     }
     mode_denied_ = std::any_of(inbox_.mode_answers.begin(), inbox_.mode_answers.end(),
                                [](const link::ModeAnswer& a) { return !a.accepted; });
+    mode_accepted_ = std::any_of(inbox_.mode_answers.begin(), inbox_.mode_answers.end(),
+                                 [](const link::ModeAnswer& a) { return a.accepted; });
     take_tracks(now);
     take_scan(now);
     take_readings();

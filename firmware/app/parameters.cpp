@@ -52,6 +52,8 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_MAX_COST", 1, 0.01F, 1, false, "a plan that costs more counts as not found"},
     {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
+    {"JNK_STANDBY", 1, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
+    {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -93,6 +95,8 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.own_age = at(Param::own_age);
     c.heartbeat_age = at(Param::heartbeat_age);
     c.setpoint_period = 1.0F / at(Param::rate);
+    c.standby_stream = whole(Param::standby) == 1;
+    c.ask_rates = whole(Param::ask_rates) == 1;
     geometric::Settings& g = c.planner;
     // What the supervisor sees as a conflict the planner has to see too.
     g.lookahead = c.supervisor.lookahead;

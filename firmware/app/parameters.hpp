@@ -62,6 +62,8 @@ enum class Param : std::uint8_t {
     max_cost,
     time_low,
     time_high,
+    standby,
+    ask_rates,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -102,6 +104,8 @@ struct Configuration {
     Seconds scan_keep = 1.0F;
     Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]
     Seconds setpoint_period = 0.05F;
+    bool standby_stream = true;
+    bool ask_rates = true;
 };
 
 /// Values with their checks. A refused change changes nothing.

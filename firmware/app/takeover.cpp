@@ -11,8 +11,11 @@ void Takeover::drop(bool by_fault) noexcept
     if (!by_fault) {
         claim_ = Claim::none;
         tries_ = 0;
+        hold_due_ = false;
+        hold_tries_ = 0;
     }
     control_ = Control::autopilot;
+    proving_ = false;
     mode_ = FlightMode::unknown;
 }
 
@@ -43,6 +46,34 @@ void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
     }
 }
 
+/// The hold mode, asked for when control was lost, until a HEARTBEAT shows that the external mode is over. A mode that
+/// a pilot chose is not fought: whatever it is, it ends this.
+TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept
+{
+    hold_due_ = hold_due_ && claim_ == Claim::held && !(input.has_report && mode_ != FlightMode::external);
+    hold_acked_ = hold_acked_ || input.mode_accepted;
+    if (!hold_due_ || !input.link_alive || hold_tries_ >= kHoldTries) {
+        return TakeoverAction::none;
+    }
+    const Seconds waited = now - hold_asked_;
+    const bool unanswered = !hold_acked_ && waited >= kHoldRepeat;
+    const bool unheeded = input.has_report && waited >= kConfirm;
+    if (hold_tries_ > 0 && !unanswered && !unheeded) {
+        return TakeoverAction::none;
+    }
+    ++hold_tries_;
+    ++diagnostics_.hold_requests;
+    hold_acked_ = false;
+    hold_asked_ = now;
+    return TakeoverAction::request_hold;
+}
+
+/// A hold seen now answers what was asked for at a loss.
+bool Takeover::hold_is_ours(TimePoint now) const noexcept
+{
+    return mode_ == FlightMode::hold && hold_tries_ > 0 && now - hold_asked_ < kConfirm;
+}
+
 /// The HEARTBEAT shows the external mode that we asked for.
 TakeoverOutput Takeover::take(TimePoint now) noexcept
 {
@@ -52,6 +83,7 @@ TakeoverOutput Takeover::take(TimePoint now) noexcept
     claim_ = Claim::held;
     control_ = Control::ours;
     tries_ = 0;
+    hold_due_ = false;
     return {TakeoverAction::none, TakeoverEvent::took_over};
 }
 
@@ -72,11 +104,15 @@ TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcep
         // A fault of ours is over, or the grant came late, and nobody else has changed the mode: ours to give back.
         return take(now);
     }
+    if (const TakeoverAction hold = insist_on_hold(input, now); hold != TakeoverAction::none) {
+        return {hold, TakeoverEvent::none};
+    }
     const bool free = mode_ == FlightMode::mission && input.report.armed && !input.report.landed;
     if (input.wants_control && input.may_act && free) {
         control_ = Control::announcing;
         former_mode_ = input.report.custom_mode;
         since_ = now;
+        hold_tries_ = 0;
     }
     return {};
 }
@@ -97,15 +133,19 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return {};
     }
     const Seconds waited = now - since_;
-    if (control_ == Control::announcing && waited < kAnnounce) {
+    if (control_ == Control::announcing && now - streaming_since_ < kAnnounce) {
         return {};
     }
-    if (control_ == Control::requesting && waited < kConfirm && !(input.mode_denied && waited >= kAnnounce)) {
+    denied_ = control_ == Control::requesting && (denied_ || input.mode_denied);
+    const bool unproven = input.report.stack == link::AutopilotStack::px4 && now - streaming_since_ < kProof;
+    const bool again = unproven ? denied_ && waited >= kAskAgain : input.mode_denied && waited >= kAnnounce;
+    if (control_ == Control::requesting && waited < kConfirm && !again) {
         return {};
     }
-    if (tries_ < kTries) {
-        ++tries_;
+    if (unproven || tries_ < kTries) {
+        tries_ += unproven ? 0 : 1;
         ++diagnostics_.requests;
+        denied_ = false;
         control_ = Control::requesting;
         claim_ = Claim::asked;
         since_ = asked_ = now;
@@ -120,7 +160,13 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
 TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
 {
     if (foreign(input)) {
-        return overrule();
+        if (!hold_is_ours(now) || !input.report.armed) {
+            return overrule();
+        }
+        control_ = Control::autopilot;
+        claim_ = Claim::none;
+        ++diagnostics_.held;
+        return {TakeoverAction::none, TakeoverEvent::held};
     }
     if (input.has_report && mode_ != FlightMode::external) {
         // The former mode: given back if we asked for it, the pilot's choice otherwise.
@@ -168,6 +214,7 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
     if (input.urgent_hold && input.may_act && still_flying && tries_ < kTries &&
         (tries_ == 0 || now - since_ >= kConfirm)) {
         ++tries_;
+        ++diagnostics_.hold_requests;
         since_ = now;
         return {TakeoverAction::request_hold, TakeoverEvent::none};
     }
@@ -175,6 +222,19 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
 }
 
 TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexcept
+{
+    const bool was_streaming = streaming() || proving_;
+    const TakeoverOutput output = decide(input, now);
+    proving_ = control_ == Control::autopilot && claim_ == Claim::none && input.keep_stream && input.may_act &&
+               input.report.stack == link::AutopilotStack::px4 && mode_ == FlightMode::mission && input.report.armed &&
+               !input.report.landed;
+    if (!was_streaming && (streaming() || proving_)) {
+        streaming_since_ = now;
+    }
+    return output;
+}
+
+TakeoverOutput Takeover::decide(const TakeoverInput& input, TimePoint now) noexcept
 {
     if (input.has_report) {
         mode_ = input.report.mode;
@@ -184,7 +244,10 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
         const bool flown = in_control();
         drop(true);
         if (flown) {
-            return {TakeoverAction::none, TakeoverEvent::lost};
+            hold_due_ = true;
+            hold_acked_ = false;
+            hold_tries_ = 0;
+            return {insist_on_hold(input, now), TakeoverEvent::lost};
         }
         // Control was never given, nothing is lost: fall silent; this tick's report still counts.
         mode_ = input.has_report ? input.report.mode : FlightMode::unknown;

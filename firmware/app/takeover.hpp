@@ -23,7 +23,15 @@ enum class Control : std::uint8_t {
 enum class TakeoverAction : std::uint8_t { none, request_external, request_former, request_hold };
 
 /// What happened, for STATUSTEXT and counters.
-enum class TakeoverEvent : std::uint8_t { none, took_over, gave_back, refused, overruled, lost };
+enum class TakeoverEvent : std::uint8_t {
+    none,
+    took_over,
+    gave_back,
+    refused,
+    overruled,
+    lost,  ///< a fault of ours while in control: silent, and the autopilot is asked to hold
+    held,  ///< the hold mode asked for at a loss came after control had been taken up again
+};
 
 struct TakeoverInput {
     bool wants_control = false;    ///< the supervisor has something to fly
@@ -33,6 +41,9 @@ struct TakeoverInput {
     bool has_report = false;       ///< a HEARTBEAT of the autopilot arrived since the last tick
     link::AutopilotReport report;  ///< the newest one
     bool mode_denied = false;      ///< a COMMAND_ACK refused the mode
+    bool mode_accepted = false;    ///< a COMMAND_ACK accepted the mode
+    bool link_alive = true;        ///< what is asked for can leave
+    bool keep_stream = false;      ///< prove the stream to a PX4 before it is needed
 };
 
 struct TakeoverOutput {
@@ -47,12 +58,22 @@ struct TakeoverDiagnostics {
     std::uint32_t refused = 0;
     std::uint32_t overruled = 0;
     std::uint32_t lost_by_fault = 0;  ///< control dropped because of a fault of ours
+    std::uint32_t hold_requests = 0;  ///< after a loss or a refusal
+    std::uint32_t held = 0;           ///< TakeoverEvent::held
 };
 
 /// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT
 /// that shows it (1 s, two more tries), fly, ask for the former mode, stream until that is confirmed. Any other mode
 /// seen is the pilot's: stop at once. A mode asked for stays ours to fly or to give back when a fault of ours silences
 /// us meanwhile: as soon as acting is allowed again and the HEARTBEAT shows it.
+///
+/// PX4 documents (up to v1.16) that it grants OFFBOARD only after more than a second of set-points; its sources since
+/// v1.14 ask for recent ones alone. A second may be all there is. So a slow stream runs beforehand (`keep_stream`),
+/// which PX4 takes note of and does not fly outside OFFBOARD (its MavlinkReceiver); and where there was none, it is
+/// asked early, and while it refuses and the stream is younger than that, asked again without counting tries.
+///
+/// A loss of control asks for the hold mode, again and again (kHoldTries) until a HEARTBEAT shows any other mode than
+/// the external one: the hold, or somebody else's choice.
 ///
 /// Pure: no messages, no clock; O(1) per tick.
 class Takeover {
@@ -70,6 +91,8 @@ public:
     {
         return control_ == Control::announcing || control_ == Control::requesting || in_control();
     }
+    /// A slow stream is due, so that a PX4 grants its external mode without delay.
+    [[nodiscard]] bool proving() const noexcept { return proving_; }
     /// The autopilot follows us.
     [[nodiscard]] bool in_control() const noexcept
     {
@@ -82,8 +105,16 @@ public:
     /// Wait this long for a confirmation [s].
     static constexpr Seconds kConfirm = 1.0F;
     static constexpr int kTries = 3;
+    /// A PX4 may refuse the external mode while the stream is younger than this [s].
+    static constexpr Seconds kProof = 1.3F;
+    /// And is asked again this long after it did [s].
+    static constexpr Seconds kAskAgain = 0.2F;
+    /// The hold mode is asked for again after this long without an answer, after kConfirm where it was accepted [s].
+    static constexpr Seconds kHoldRepeat = 0.5F;
+    static constexpr int kHoldTries = 5;
 
 private:
+    [[nodiscard]] TakeoverOutput decide(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput idle(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput ask(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput fly(const TakeoverInput& input, TimePoint now) noexcept;
@@ -92,6 +123,8 @@ private:
     [[nodiscard]] TakeoverOutput overrule() noexcept;
     [[nodiscard]] TakeoverOutput take(TimePoint now) noexcept;
     void expire_claim(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverAction insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] bool hold_is_ours(TimePoint now) const noexcept;
 
     /// Why the autopilot may be, or come to be, in the external mode; outlasts a fault of ours.
     enum class Claim : std::uint8_t {
@@ -108,6 +141,13 @@ private:
     int tries_ = 0;    ///< in this conflict: of the external mode, once refused of the hold mode
     Claim claim_ = Claim::none;
     bool asked_back_ = false;  ///< the former mode was asked for and its confirmation may still be on its way
+    bool proving_ = false;
+    TimePoint streaming_since_;
+    bool denied_ = false;      ///< the last request of the external mode
+    bool hold_due_ = false;    ///< control was lost, and no HEARTBEAT has shown that the external mode is over
+    bool hold_acked_ = false;  ///< the last request of the hold mode was accepted
+    int hold_tries_ = 0;       ///< since the loss
+    TimePoint hold_asked_;
     TakeoverDiagnostics diagnostics_;
 };
 

@@ -47,12 +47,19 @@ struct LinkDiagnostics {
     std::uint32_t inbox_full = 0;      ///< reports dropped because the inbox was full
     std::uint32_t clock_relocks = 0;   ///< jumps of the autopilot's clock followed
     std::uint32_t outbox_full = 0;     ///< frames not sent because the transmit buffer was full
+    // Queued on a line that took nothing, and taken back whole: out of date, or a newer one took their place.
+    std::uint32_t setpoints_dropped = 0;
+    std::uint32_t requests_dropped = 0;    ///< of a mode
+    std::uint32_t heartbeats_dropped = 0;  ///< ours
 };
 
 /// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
 ///
 /// Nothing here blocks or allocates. Sending is queued in a bounded transmit buffer; a message that finds no room is
 /// dropped whole and counted.
+///
+/// Of set-points, mode requests and heartbeats at most one whole frame each waits: a newer one takes the place of one
+/// of which nothing has been consumed. One that is partly consumed stays, so that the other end's framing survives.
 class Link {
 public:
     /// Takes bytes that arrived, at time `now`; fills the inbox. O(bytes).
@@ -65,6 +72,10 @@ public:
     virtual void consume(std::size_t n) noexcept = 0;
     /// Drops everything queued: on a lost port nothing stale may go out later.
     virtual void discard_pending() noexcept = 0;
+    /// Takes back the set-point that waits, if nothing of it has been consumed: it is out of date, or the stream ends.
+    virtual void drop_setpoint() noexcept = 0;
+    /// The same for the request of a mode.
+    virtual void drop_mode_request() noexcept = 0;
 
     virtual void send_heartbeat(SystemState state) noexcept = 0;
     /// Velocity set-point [m/s, ENU] for the autopilot's external mode.

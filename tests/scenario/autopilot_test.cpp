@@ -168,8 +168,12 @@ TEST(SimAutopilot, Px4RefusesOffboardWithoutASeenStream)
     line.send_velocity(0.0F, 3.0F, 0.0F);
     line.run(0.6);
     EXPECT_EQ(line.ask(6.0F), 1);  // seen, but too long ago
-    line.send_velocity(0.0F, 3.0F, 0.0F);
-    line.run(0.4);
+    line.run(0.9, true);
+    EXPECT_EQ(line.ask(6.0F), 1);  // not for more than a second
+    line.run(0.7);
+    line.run(0.5, true);
+    EXPECT_EQ(line.ask(6.0F), 1);  // with a gap
+    line.run(0.6, true);
     EXPECT_EQ(line.ask(6.0F), 0);
     EXPECT_EQ(line.autopilot.mode(), Mode::external);
     const auto heartbeat = line.heard<Heartbeat>();
@@ -181,7 +185,7 @@ TEST(SimAutopilot, Px4RefusesOffboardWithoutASeenStream)
 TEST(SimAutopilot, Px4LeavesOffboardOneSecondAfterTheLastSetpoint)
 {
     Line line(kPx4Flight);
-    line.run(0.5, true);
+    line.run(1.1, true);
     ASSERT_EQ(line.ask(6.0F), 0);
     line.run(5.0, true);
     EXPECT_EQ(line.autopilot.mode(), Mode::external);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One plan: the source's planner and the product's, 16 candidates and 3 threats as in the source's run-time study
-// (Pinheiro tab. 5.1), and many.
+// (Pinheiro tab. 5.1), and many. Then plans of which every attempt fails.
 #include <memory>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
+#include "core/base/random.hpp"
 #include "core/geometric/planner.hpp"
 
 namespace {
@@ -25,16 +26,44 @@ std::vector<Threat> threats(std::size_t count)
     return all;
 }
 
-void plan(benchmark::State& state, Settings settings, std::size_t threat_count)
+/// Main threat standing on the leg 10 m ahead; two more about the leg, 0.5 to 8 m large and growing, three in ten of
+/// them standing.
+std::vector<Threat> random_threats(std::uint64_t seed)
 {
-    const std::vector<Threat> all = threats(threat_count);
+    Random random(seed);
+    const auto in = [&](float low, float high) { return random.uniform(low, high); };
+    std::vector<Threat> all{{{Vec3(10.0F, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
+    for (int i = 0; i < 2; ++i) {
+        const float vx = in(-4.0F, 4.0F);
+        const float vy = in(-4.0F, 4.0F);
+        const float vz = in(-2.0F, 2.0F);
+        const Vec3 velocity = in(0.0F, 1.0F) < 0.3F ? Vec3(Vec3::Zero()) : Vec3(vx, vy, vz);
+        const float t = in(0.0F, 5.0F);
+        const float x = in(2.0F, 24.0F);
+        const float y = in(-4.0F, 4.0F);
+        const float z = in(-4.0F, 4.0F);
+        const float radius = in(0.5F, 8.0F);
+        all.push_back({{Vec3(x, y, z) - t * velocity, velocity}, radius, in(0.0F, 0.5F)});
+    }
+    return all;
+}
+
+Problem problem_with(const std::vector<Threat>& threats)
+{
     Problem problem;
     problem.frame = make_path_frame(Vec3::Zero(), Vec3::UnitX());
     problem.distance = 10.0F;
     problem.main_radius = 1.0F;
     problem.main = 0;
-    problem.threats = all;
+    problem.threats = threats;
     problem.start_velocity = Vec3(5.0F, 0.0F, 0.0F);
+    return problem;
+}
+
+void plan(benchmark::State& state, Settings settings, std::size_t threat_count)
+{
+    const std::vector<Threat> all = threats(threat_count);
+    const Problem problem = problem_with(all);
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
     const auto result = std::make_unique<Result>();
@@ -77,11 +106,46 @@ Settings many(Settings settings)
     return settings;
 }
 
+/// The first `count` random scenes, from `seed` on, in which all five attempts fail; one plan after the other.
+void refused(benchmark::State& state, std::uint64_t seed, std::size_t count)
+{
+    const Settings settings = sixteen(Settings{});
+    const vehicle::VehicleLimits limits;
+    const vehicle::Airframe airframe;
+    const auto result = std::make_unique<Result>();
+    std::size_t attempts = 0;
+    const auto fails = [&](const std::vector<Threat>& all) {
+        WorkBudget budget(1'000'000);
+        return solve_with_retries(problem_with(all), settings, limits, airframe, budget, *result, attempts) ==
+                   world::PlanStatus::none_available &&
+               attempts == kAttempts.size();
+    };
+    std::vector<std::vector<Threat>> scenes;
+    for (; scenes.size() < count; ++seed) {
+        if (std::vector<Threat> all = random_threats(seed); fails(all)) {
+            scenes.push_back(std::move(all));
+        }
+    }
+    std::size_t next = 0;
+    std::size_t failed = 0;
+    for (auto _ : state) {
+        failed += fails(scenes[next]) ? 1U : 0U;
+        next = next + 1 < scenes.size() ? next + 1 : 0;
+    }
+    state.counters["candidates"] = static_cast<double>(result->candidates.size());
+    state.counters["attempts"] = static_cast<double>(attempts);
+    state.counters["failed"] = benchmark::Counter(static_cast<double>(failed), benchmark::Counter::kAvgIterations);
+}
+
 BENCHMARK_CAPTURE(plan, source_16_candidates_3_threats, one_family(source_settings()), 3)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_16_candidates_3_threats, sixteen(Settings{}), 3)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_32_candidates_3_threats, thirty_two(Settings{}), 3)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_512_candidates_9_threats, many(Settings{}), 9)->Unit(benchmark::kMicrosecond);
+
+BENCHMARK_CAPTURE(refused, all_5_attempts_200_random_scenes, 1, 200)->Unit(benchmark::kMicrosecond);
+/// The costliest of the first 20 000 scenes.
+BENCHMARK_CAPTURE(refused, all_5_attempts_costliest_scene, 10013, 1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 

@@ -43,8 +43,9 @@ struct Heard {
 /// The other end of the link: ArduPilot Copter or PX4 as far as a companion can tell, flying the vehicle of a World.
 ///
 /// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/links.md): ArduPilot takes velocities in
-/// GUIDED only and stops 3 s after the last one; PX4 wants to have seen set-points before OFFBOARD and leaves it for
-/// AUTO.LOITER 1 s after the last one.
+/// GUIDED only and stops 3 s after the last one; PX4 goes into OFFBOARD only after more than a second of set-points
+/// that came at 2 Hz or more, as it documents (releases up to v1.14 and v1.16 grant it earlier in fact), and leaves it
+/// for AUTO.LOITER 1 s after the last one.
 class Autopilot {
 public:
     /// @param world  outlives the autopilot
@@ -128,6 +129,7 @@ private:
     unsigned takeovers_ = 0;
     Vec setpoint_ = Vec::Zero();
     Micros last_setpoint_ = -1;  ///< newest acceptable one
+    Micros stream_since_ = -1;   ///< first of those that came without a gap
     Micros last_followed_ = -1;  ///< in external mode: newest one, or the entry
     bool has_external_setpoint_ = false;
     Vec command_ = Vec::Zero();

@@ -27,8 +27,10 @@ constexpr std::uint8_t kJink = 196;
 /// Everything ignored but the velocity: links.md, B.1.
 constexpr std::uint16_t kVelocityMask = 0x0DC7;
 constexpr std::uint8_t kLocalNed = 1;
-/// PX4 wants to have seen set-points this recently before it goes into OFFBOARD [us].
-constexpr Micros kSeenRecently = kSecond / 2;
+/// PX4 goes into OFFBOARD after more than this of set-points [us], none of which came later than kStreamGap after the
+/// last (docs.px4.io v1.16, Offboard Mode).
+constexpr Micros kStreamProof = kSecond;
+constexpr Micros kStreamGap = kSecond / 2;
 /// Set-points that were under way when somebody chose a mode are forgiven [us].
 constexpr Micros kGrace = kSecond / 5;
 
@@ -101,6 +103,9 @@ void Autopilot::hear_setpoint(const SetPositionTargetLocalNed& target)
         ++heard_.bad_setpoints;
         return;
     }
+    if (last_setpoint_ < 0 || world_.now() - last_setpoint_ > kStreamGap) {
+        stream_since_ = world_.now();
+    }
     last_setpoint_ = world_.now();
     if (mode_ == Mode::external) {
         last_followed_ = world_.now();
@@ -127,7 +132,8 @@ std::uint8_t Autopilot::set_mode(const CommandLong& command)
         if (scenario_.faults.refuse_external) {
             return kDenied;
         }
-        const bool stream = last_setpoint_ >= 0 && world_.now() - last_setpoint_ <= kSeenRecently;
+        const bool stream = last_setpoint_ >= 0 && world_.now() - last_setpoint_ <= kStreamGap &&
+                            world_.now() - stream_since_ > kStreamProof;
         if (scenario_.stack == Stack::px4 && !stream) {
             return kTemporarilyRejected;
         }

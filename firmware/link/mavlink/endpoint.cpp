@@ -264,18 +264,32 @@ void Endpoint::service(TimePoint now) noexcept
     }
 }
 
+void Endpoint::take_back(Perishable kind) noexcept
+{
+    if (!transmit_.take_back(kind)) {
+        return;
+    }
+    switch (kind) {
+    case Perishable::setpoint: ++diagnostics_.setpoints_dropped; break;
+    case Perishable::mode_request: ++diagnostics_.requests_dropped; break;
+    case Perishable::heartbeat: ++diagnostics_.heartbeats_dropped; break;
+    case Perishable::no: break;
+    }
+}
+
 template <Message M>
-void Endpoint::send(const M& message) noexcept
+void Endpoint::send(const M& message, Perishable kind) noexcept
 {
     if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // nobody known yet to speak to
         return;
     }
+    take_back(kind);
     std::array<std::byte, kMaxFrame> frame;
     // 0 is nobody's id: until the autopilot is known, its usual one.
     const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence_};
     const std::size_t size =
         signing_ != nullptr ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
-    if (!transmit_.push({frame.data(), size})) {
+    if (!transmit_.push({frame.data(), size}, kind)) {
         ++diagnostics_.outbox_full;
         return;
     }
@@ -289,7 +303,7 @@ void Endpoint::send_heartbeat(SystemState state) noexcept
     m.type = kTypeOnboardController;
     m.autopilot = kAutopilotInvalid;
     m.system_status = clamp_enum(static_cast<std::uint32_t>(state));
-    send(m);
+    send(m, Perishable::heartbeat);
 }
 
 void Endpoint::send_velocity(const Vec3& velocity, TimePoint now) noexcept
@@ -304,7 +318,7 @@ void Endpoint::send_velocity(const Vec3& velocity, TimePoint now) noexcept
     m.target_system = system_;
     m.target_component = kAutopilotComponent;
     m.coordinate_frame = kLocalNed;
-    send(m);
+    send(m, Perishable::setpoint);
 }
 
 void Endpoint::send_collision(const CollisionWarning& warning) noexcept
@@ -362,7 +376,7 @@ void Endpoint::send_mode(std::uint32_t custom_mode) noexcept
     } else {
         m.param2 = static_cast<float>(custom_mode);
     }
-    send(m);
+    send(m, Perishable::mode_request);
 }
 
 void Endpoint::request_external_mode() noexcept { send_mode(external_mode(autopilot_.stack, vehicle_class_)); }

@@ -70,6 +70,8 @@ public:
     [[nodiscard]] std::span<const std::byte> pending() const noexcept override { return transmit_.pending(); }
     void consume(std::size_t n) noexcept override { transmit_.consume(n); }
     void discard_pending() noexcept override { transmit_.clear(); }
+    void drop_setpoint() noexcept override { take_back(Perishable::setpoint); }
+    void drop_mode_request() noexcept override { take_back(Perishable::mode_request); }
 
     void send_heartbeat(SystemState state) noexcept override;
     void send_velocity(const Vec3& velocity, TimePoint now) noexcept override;
@@ -129,7 +131,8 @@ private:
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
     template <Message M>
-    void send(const M& message) noexcept;
+    void send(const M& message, Perishable kind = Perishable::no) noexcept;
+    void take_back(Perishable kind) noexcept;
 
     EndpointOptions options_;
     Signing* signing_;

@@ -4,30 +4,63 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace jink::link::mavlink {
 
+/// Frames that are only worth sending while they are true. At most one whole frame of each kind waits.
+enum class Perishable : std::uint8_t { no, setpoint, mode_request, heartbeat };
+inline constexpr std::size_t kPerishables = 4;
+
 /// Bytes waiting to be written: whole frames go in, any number of bytes comes off. What waits is always contiguous.
+///
+/// A perishable frame can be taken back as long as none of its bytes has come off; one that is partly written is never
+/// touched, so that what the other end reads stays framed.
 template <std::size_t N>
 class TransmitBuffer {
 public:
-    /// All of `frame`, or nothing (false) when there is no room for all of it. O(N) at worst, when it has to close
-    /// ranks.
-    [[nodiscard]] bool push(std::span<const std::byte> frame) noexcept
+    /// All of `frame`, or nothing (false) when there is no room for all of it. A perishable frame should be preceded by
+    /// `take_back` of its kind; otherwise the older one can no longer be taken back. O(N) at worst, when it has to
+    /// close ranks.
+    [[nodiscard]] bool push(std::span<const std::byte> frame, Perishable kind = Perishable::no) noexcept
     {
         if (frame.size() > N - (end_ - begin_)) {
             return false;
         }
         if (frame.size() > N - end_) {
-            std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_),
-                      bytes_.begin() + static_cast<std::ptrdiff_t>(end_), bytes_.begin());
-            end_ -= begin_;
-            begin_ = 0;
+            close_ranks();
         }
         std::copy(frame.begin(), frame.end(), bytes_.begin() + static_cast<std::ptrdiff_t>(end_));
+        if (kind != Perishable::no) {
+            waiting_[static_cast<std::size_t>(kind)] = {end_, frame.size()};
+        }
         end_ += frame.size();
         return true;
+    }
+
+    /// Removes the whole frame of this kind that waits; false when there is none. O(N).
+    bool take_back(Perishable kind) noexcept
+    {
+        Place& place = waiting_[static_cast<std::size_t>(kind)];
+        if (place.size == 0) {
+            return false;
+        }
+        const Place gone = place;
+        place = {};
+        std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(gone.begin + gone.size),
+                  bytes_.begin() + static_cast<std::ptrdiff_t>(end_),
+                  bytes_.begin() + static_cast<std::ptrdiff_t>(gone.begin));
+        end_ -= gone.size;
+        for (Place& other : waiting_) {
+            other.begin -= other.begin > gone.begin ? gone.size : 0;
+        }
+        return true;
+    }
+
+    [[nodiscard]] bool holds(Perishable kind) const noexcept
+    {
+        return waiting_[static_cast<std::size_t>(kind)].size > 0;
     }
     [[nodiscard]] std::span<const std::byte> pending() const noexcept
     {
@@ -36,15 +69,39 @@ public:
     void consume(std::size_t n) noexcept
     {
         begin_ += std::min(n, end_ - begin_);
+        for (Place& place : waiting_) {
+            place = place.begin < begin_ ? Place{} : place;  // its first byte has gone
+        }
         if (begin_ == end_) {
             clear();
         }
     }
-    void clear() noexcept { begin_ = end_ = 0; }
+    void clear() noexcept
+    {
+        begin_ = end_ = 0;
+        waiting_ = {};
+    }
 
 private:
+    struct Place {
+        std::size_t begin = 0;
+        std::size_t size = 0;  ///< 0: nothing waits
+    };
+
+    void close_ranks() noexcept
+    {
+        std::copy(bytes_.begin() + static_cast<std::ptrdiff_t>(begin_),
+                  bytes_.begin() + static_cast<std::ptrdiff_t>(end_), bytes_.begin());
+        for (Place& place : waiting_) {
+            place.begin -= place.size > 0 ? begin_ : 0;
+        }
+        end_ -= begin_;
+        begin_ = 0;
+    }
+
     std::size_t begin_ = 0;
     std::size_t end_ = 0;
+    std::array<Place, kPerishables> waiting_{};
     std::array<std::byte, N> bytes_{};
 };
 

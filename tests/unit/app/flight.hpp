@@ -93,7 +93,7 @@ public:
         move();
         if (heartbeats && (ticks % 50 == 0 || mode != told_mode_)) {
             told_mode_ = mode;
-            feed(wire::heartbeat(mode, armed));
+            feed(wire::heartbeat(mode, armed, px4 ? 12 : 3));
         }
         if (ticks % 50 == 0) {
             feed(wire::origin());
@@ -101,7 +101,7 @@ public:
         if (own_state) {
             feed(wire::local_position(boot_ms(), position, velocity));
         }
-        if (ticks % 50 == 0 && mode == wire::kCopterAuto) {
+        if (ticks % 50 == 0 && mode == mission_mode()) {
             PositionTargetLocalNed target;
             target.time_boot_ms = boot_ms();
             target.x = 2000.0F;
@@ -128,12 +128,28 @@ public:
         port.clear_written();
         for (const SetPositionTargetLocalNed& m : said_of<SetPositionTargetLocalNed>()) {
             ++setpoints;
+            stream_since_ = now - last_heard_ > 0.5F ? now : stream_since_;
+            last_heard_ = now;
             command_ = Vec3(m.vy, m.vx, -m.vz);
         }
         for (const CommandLong& m : said_of<CommandLong>()) {
+            if (m.command != 176) {
+                continue;
+            }
             requested.push_back(m.param2);
-            if (m.command == 176 && obeys) {
-                mode = static_cast<std::uint32_t>(m.param2);
+            const auto number = static_cast<std::uint32_t>(m.param2);
+            const std::uint32_t asked = px4 ? px4_mode(number, static_cast<std::uint32_t>(m.param3)) : number;
+            // As PX4 documents it: more than a second of set-points, 2 Hz or more.
+            const bool seen = now - stream_since_ > 1.0F && now - last_heard_ <= 0.5F;
+            const bool granted = obeys && (!px4 || asked != external_mode() || seen);
+            mode = granted ? asked : mode;
+            if (acknowledges) {
+                CommandAck ack;
+                ack.command = 176;
+                ack.result = granted ? 0 : 1;
+                ack.target_system = wire::kSystem;
+                ack.target_component = wire::kUs;
+                feed(ack);
             }
         }
     }
@@ -177,6 +193,8 @@ public:
     {
         return all_of<M>(said);
     }
+    [[nodiscard]] std::uint32_t mission_mode() const { return px4 ? px4_mode(4, 4) : wire::kCopterAuto; }
+    [[nodiscard]] std::uint32_t external_mode() const { return px4 ? px4_mode(6, 0) : wire::kCopterGuided; }
     [[nodiscard]] std::uint32_t boot_ms() const { return static_cast<std::uint32_t>(boot_us / 1000); }
 
     TimePoint now{10'000'000};
@@ -184,7 +202,9 @@ public:
     int ticks = 0;
     bool heartbeats = true;
     bool own_state = true;
-    bool obeys = true;  ///< grants the modes it is asked for
+    bool obeys = true;          ///< grants the modes it is asked for
+    bool acknowledges = false;  ///< answers requests by COMMAND_ACK
+    bool px4 = false;           ///< a PX4; set `mode` too
     bool armed = true;
     std::uint32_t mode = wire::kCopterAuto;
     Vec3 position = Vec3(0.0F, 0.0F, 50.0F);
@@ -206,10 +226,10 @@ private:
     void move()
     {
         Vec3 wanted = Vec3::Zero();
-        if (mode == wire::kCopterAuto) {
+        if (mode == mission_mode()) {
             const auto back = [](float error) { return std::clamp(-0.5F * error, -2.0F, 2.0F); };
             wanted = Vec3(back(position.x()), 5.0F, back(position.z() - 50.0F));
-        } else if (mode == wire::kCopterGuided) {
+        } else if (mode == external_mode()) {
             wanted = command_;
         }
         constexpr float kDt = 0.02F;
@@ -237,6 +257,8 @@ private:
     }
 
     Vec3 command_ = Vec3::Zero();
+    TimePoint last_heard_;  ///< set-point
+    TimePoint stream_since_;
     std::uint32_t told_mode_ = 0xFFFFFFFF;
     std::uint8_t sequence_ = 0;
     Parser parser_;

@@ -19,6 +19,8 @@ struct Step {
     Beat beat = Beat::none;
     float dt = 0.02F;
     bool denied = false;
+    bool accepted = false;
+    bool alive = true;
 };
 
 inline std::string describe(const Step& s)
@@ -34,6 +36,8 @@ inline TakeoverInput input_of(const Step& s)
     input.wants_control = input.in_conflict = input.urgent_hold = s.wants;
     input.may_act = s.may_act;
     input.mode_denied = s.denied;
+    input.mode_accepted = s.accepted;
+    input.link_alive = s.alive;
     input.has_report = s.beat != Beat::none;
     input.report.armed = s.beat != Beat::disarmed;
     switch (s.beat) {
@@ -64,6 +68,7 @@ struct Bench {
     Takeover takeover;
     TimePoint now{1'000'000};
     link::AutopilotReport last;
+    link::AutopilotStack stack = link::AutopilotStack::unknown;
 
     TakeoverOutput step(const Step& s)
     {
@@ -73,6 +78,7 @@ struct Bench {
             last = input.report;
         }
         input.report = last;
+        input.report.stack = stack;
         return takeover.update(input, now);
     }
     [[nodiscard]] Control control() const { return takeover.control(); }

@@ -54,6 +54,9 @@ struct Witness {
                 return "asks too often";
             }
         }
+        if (out.action == TakeoverAction::request_hold && before.control() != Control::refused && !seen_external) {
+            return "asks to hold although the external mode is over";
+        }
         if (flies && !was_flying && (!seen_external || !due)) {
             return "takes control that was not given to it";
         }

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+
+#include "core/path/follower.hpp"
+#include "core/vehicle/motion.hpp"
+
+// A predicted flight, part by part: what predict_flight and predict_velocity_command are made of. Several flights flown
+// in turn, a part each, take little longer than one, because none has to wait for another's roots and divisions.
+// Private to this room and core/geometric.
+
+namespace jink::path::detail {
+
+/// A rest of the path shorter than this share of a step is flown with the step before it: no two points of a flight may
+/// be so near that the velocity between them is rounding.
+inline constexpr float kLeastStep = 1e-3F;
+
+/// The grid of times of a flight over `length` in steps of `dt` > 0, the last one shortened, `most` steps at most.
+/// Steps are counted, not summed up: 60 steps of 0.1 s end at 6 s.
+struct Steps {
+    Seconds length;
+    Seconds dt;
+    std::size_t count;
+
+    Steps(Seconds over, Seconds step, std::size_t most) noexcept : length(over), dt(step), count(0)
+    {
+        // The first guess is off by one at most, by rounding.
+        const float guess = std::min(std::floor(length / dt), static_cast<float>(most));
+        count = guess > 1.0F ? static_cast<std::size_t>(guess) - 1 : 0;
+        while (count < most && left_after(count) > kLeastStep * dt) {
+            ++count;
+        }
+    }
+    /// End of step `step`, counted from 1.
+    [[nodiscard]] Seconds end_of(std::size_t step) const noexcept { return step < count ? time(step) : end(); }
+
+private:
+    [[nodiscard]] Seconds time(std::size_t step) const noexcept { return static_cast<float>(step) * dt; }
+    [[nodiscard]] Seconds left_after(std::size_t steps) const noexcept { return length - time(steps); }
+    /// Not `length` where there was no room for all steps.
+    [[nodiscard]] Seconds end() const noexcept { return left_after(count) > kLeastStep * dt ? time(count) : length; }
+};
+
+/// The first point of `path`, from `next` on, that lies after `t`; its last one where none does.
+[[nodiscard]] inline std::size_t next_after(const TimedPath& path, std::size_t next, Seconds t) noexcept
+{
+    while (next + 1 < path.points.size() && path.points[next].time <= t) {
+        ++next;
+    }
+    return next;
+}
+
+/// `follow`, the points after `t` and after one loop lag later being known (next_after, 1 at least).
+[[nodiscard]] Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t next_ahead,
+                           const Vec3& position, const vehicle::VehicleLimits& limits,
+                           const FollowerGains& gains) noexcept;
+
+/// See predict_flight. `path`, `limits` and `gains` outlive this. 150 bytes.
+class Flight {
+public:
+    Flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,
+           const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
+        : path_(path), limits_(limits), gains_(gains), start_(start),
+          steps_(path.duration() - start, dt, kMaxPathPoints - 1),
+          parts_(std::max(1, static_cast<int>(std::ceil(dt / kFollowerPeriod - 1e-3F)))), position_(state.position),
+          velocity_(state.velocity)
+    {
+        part_ = part();
+    }
+
+    [[nodiscard]] std::size_t steps() const noexcept { return steps_.count; }
+    [[nodiscard]] std::size_t flown() const noexcept { return flown_; }
+    [[nodiscard]] bool ended() const noexcept { return flown_ == steps_.count; }
+    /// Parts of each step.
+    [[nodiscard]] int parts() const noexcept { return parts_; }
+    [[nodiscard]] const Vec3& position() const noexcept { return position_; }
+    /// Of `position`, since the start.
+    [[nodiscard]] Seconds time() const noexcept { return from_; }
+
+    /// Part `i` of the next step: all in turn, then `end_step`. Not after the end. O(1), amortised.
+    void fly(int i, vehicle::detail::Fading& fading) noexcept
+    {
+        const Seconds t = start_ + from_ + static_cast<float>(i) * part_;
+        next_ = next_after(path_, next_, t);
+        ahead_ = next_after(path_, ahead_, t + limits_.velocity_lag);
+        vehicle::detail::move(position_, velocity_, command(path_, t, next_, ahead_, position_, limits_, gains_),
+                              limits_, part_, fading);
+    }
+    void end_step() noexcept
+    {
+        ++flown_;
+        from_ = steps_.end_of(flown_);
+        part_ = part();
+    }
+
+private:
+    [[nodiscard]] Seconds part() const noexcept
+    {
+        return (steps_.end_of(flown_ + 1) - from_) / static_cast<float>(parts_);
+    }
+
+    const TimedPath& path_;
+    const vehicle::VehicleLimits& limits_;
+    const FollowerGains& gains_;
+    Seconds start_;
+    Steps steps_;
+    int parts_;
+    Vec3 position_;
+    Vec3 velocity_;
+    std::size_t flown_ = 0;
+    Seconds from_ = 0.0F;
+    Seconds part_ = 0.0F;
+    std::size_t next_ = 1;
+    std::size_t ahead_ = 1;
+};
+
+}  // namespace jink::path::detail
