@@ -63,8 +63,8 @@ bool applies(const Attempt& attempt, const Settings& settings, vehicle::VehicleK
 }  // namespace
 
 PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
-                              const vehicle::Airframe& airframe, WorkBudget& budget, Result& result,
-                              std::size_t& attempts) noexcept
+                              const vehicle::Airframe& airframe, WorkBudget& budget, Workspace& workspace,
+                              Result& result, std::size_t& attempts) noexcept
 {
     PlanStatus status = PlanStatus::none_available;
     Problem tried = problem;
@@ -77,7 +77,7 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
         tried.speed = kAttempts[i].speed_share * problem.speed;
         tried.span_from = kAttempts[i].span_from;
         tried.span_to = kAttempts[i].span_to;
-        status = solve(tried, settings, limits, airframe, budget, result);
+        status = solve(tried, settings, limits, airframe, budget, workspace, result);
         ++attempts;
     }
     return status;
@@ -114,7 +114,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     }
     std::size_t attempts = 0;
     const PlanStatus status =
-        solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget, result_, attempts);
+        solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget, workspace_, result_, attempts);
     if (status != PlanStatus::found) {
         return status;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
 
 #include "core/base/work_budget.hpp"
@@ -124,6 +125,19 @@ struct Result {
     Vec3 side = Vec3::Zero();                            ///< unit vector from the leg to its apex
 };
 
+/// Working memory of one `solve`, to be kept where there is room for it: a microcontroller's stack is no such place.
+/// Holds nothing from one call to the next. kBytes, about 18 KiB with the default capacities.
+class Workspace {
+public:
+    static constexpr std::size_t kBytes = kMaxPathPoints * (16 + (28 + 16) * (kFlightLanes + 1)) +
+                                          8 * (kMaxTracks + kMaxObstacles) + 48 * kMaxTracks + 2 * kMaxCandidates +
+                                          96 * kFlightLanes + 768;
+    [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }
+
+private:
+    alignas(std::max_align_t) std::array<std::byte, kBytes> bytes_;  // left as it is: `solve` fills what it reads
+};
+
 /// Solves one problem.
 ///
 /// Order of generation: simple before symmetric, then planes, then offsets ascending; of equally cheap candidates the
@@ -137,6 +151,10 @@ struct Result {
 /// O(candidates * waypoints * threats); with verify_flight that once more in the worst case.
 [[nodiscard]] world::PlanStatus solve(const Problem& problem, const Settings& settings,
                                       const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
+                                      WorkBudget& budget, Workspace& workspace, Result& result) noexcept;
+/// The same with the working memory on the stack.
+[[nodiscard]] world::PlanStatus solve(const Problem& problem, const Settings& settings,
+                                      const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
                                       WorkBudget& budget, Result& result) noexcept;
 
 /// `solve`, and where nothing is available again as kAttempts says, up to Settings::retries times; `attempts` says how
@@ -144,7 +162,8 @@ struct Result {
 [[nodiscard]] world::PlanStatus solve_with_retries(const Problem& problem, const Settings& settings,
                                                    const vehicle::VehicleLimits& limits,
                                                    const vehicle::Airframe& airframe, WorkBudget& budget,
-                                                   Result& result, std::size_t& attempts) noexcept;
+                                                   Workspace& workspace, Result& result,
+                                                   std::size_t& attempts) noexcept;
 
 /// The timed path of one candidate, as `solve` makes it: `waypoints` points at equal steps of the abscissa. False (out
 /// untouched) on bad input as above or fewer than 8 or more than kMaxPathPoints waypoints. O(waypoints).
@@ -153,7 +172,7 @@ struct Result {
 
 /// The method: satisfies world's AvoidanceMethod.
 ///
-/// Memory: sizeof(Result), about kMaxCandidates * 100 bytes. Reads the conflict with the leg out of the Situation
+/// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of the Situation
 /// (collision point = own position on the leg at the closest approach of the main threat, R = its grown radius then, at
 /// least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. When nothing is available
 /// it tries again as kAttempts says (source offsets: other speeds only).
@@ -177,6 +196,7 @@ public:
 private:
     Settings settings_;
     Result result_;
+    Workspace workspace_;
 };
 
 }  // namespace jink::geometric

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <new>
+#include <type_traits>
 
 #include "core/geometric/curve.hpp"
 #include "core/geometric/flown.hpp"
@@ -109,6 +111,7 @@ private:
     Clearance clearance_;
     detail::Flown flown_;
     StaticVector<std::uint16_t, detail::Flown::kLanes> trial_;  ///< by lane of flown_
+    Order order_;
     Curve curve_;                                               ///< of the candidate at hand
     path::TimedPath path_;                                      ///< the same, about the start
     StaticVector<cost::MovingThreat, kMaxTracks> moving_;       ///< about the start
@@ -288,7 +291,7 @@ void Run::take(std::size_t index, const path::TimedPath& path) noexcept
 
 PlanStatus Run::choose() noexcept
 {
-    Order order;
+    Order& order = order_;
     for (std::size_t i = 0; i < result_.candidates.size(); ++i) {
         const Candidate& candidate = result_.candidates[i];
         if (candidate.status == CandidateStatus::available && candidate.total <= settings_.max_cost) {
@@ -319,7 +322,7 @@ PlanStatus Run::choose() noexcept
 }  // namespace
 
 PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
-                 const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept
+                 const vehicle::Airframe& airframe, WorkBudget& budget, Workspace& workspace, Result& result) noexcept
 {
     result.candidates.clear();
     result.path.points.clear();
@@ -331,7 +334,16 @@ PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
-    return Run(problem, settings, limits, airframe, budget, result)();
+    static_assert(sizeof(Run) <= Workspace::kBytes && Workspace::kBytes <= sizeof(Run) + sizeof(Run) / 4 + 1024);
+    static_assert(alignof(Run) <= alignof(std::max_align_t) && std::is_trivially_destructible_v<Run>);
+    return (*new (workspace.bytes()) Run(problem, settings, limits, airframe, budget, result))();
+}
+
+PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
+                 const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept
+{
+    Workspace workspace;
+    return solve(problem, settings, limits, airframe, budget, workspace, result);
 }
 
 bool make_candidate_path(const Problem& problem, const CandidateShape& shape, std::uint16_t waypoints,

@@ -113,10 +113,11 @@ void refused(benchmark::State& state, std::uint64_t seed, std::size_t count)
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
     const auto result = std::make_unique<Result>();
+    const auto workspace = std::make_unique<Workspace>();
     std::size_t attempts = 0;
     const auto fails = [&](const std::vector<Threat>& all) {
         WorkBudget budget(1'000'000);
-        return solve_with_retries(problem_with(all), settings, limits, airframe, budget, *result, attempts) ==
+        return solve_with_retries(problem_with(all), settings, limits, airframe, budget, *workspace, *result, attempts) ==
                    world::PlanStatus::none_available &&
                attempts == kAttempts.size();
     };

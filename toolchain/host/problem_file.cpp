@@ -312,8 +312,9 @@ std::unique_ptr<PlanOutcome> solve_problem(const ProblemFile& file, std::uint32_
     ProblemStorage storage;
     const geometric::Problem problem = problem_of(file, storage);
     WorkBudget work(budget);
+    geometric::Workspace workspace;
     outcome->status = geometric::solve_with_retries(problem, file.settings, file.vehicle.limits, file.vehicle.airframe,
-                                                    work, outcome->result, outcome->tries);
+                                                    work, workspace, outcome->result, outcome->tries);
     outcome->work = work.spent();
     return outcome;
 }
