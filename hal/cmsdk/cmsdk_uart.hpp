@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "hal/byte_ring.hpp"
+#include "hal/ring.hpp"
 #include "hal/register_block.hpp"
 #include "hal/serial_port.hpp"
 

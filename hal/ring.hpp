@@ -7,62 +7,64 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 namespace jink::hal {
 
-/// Bytes from one writer to one reader that may interrupt each other: an interrupt handler and the main program.
+/// Items from one writer to one reader that may interrupt each other: an interrupt handler and the main program.
 ///
 /// Neither side waits. `head_` belongs to the writer and `tail_` to the reader; both only grow (and wrap with the word),
-/// so that full and empty differ. N is a power of two. N + 8 bytes.
-template <std::size_t N>
-class ByteRing {
+/// so that full and empty differ. N is a power of two. N * sizeof(T) + 8 bytes.
+template <class T, std::size_t N>
+class Ring {
     static_assert(N >= 2 && (N & (N - 1)) == 0);
+    static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// Writer. False (and the byte is lost) when full. O(1).
-    bool push(std::byte byte) noexcept
+    /// Writer. False (and the item is lost) when full. O(1).
+    bool push(const T& item) noexcept
     {
         const std::uint32_t head = head_.load(std::memory_order_relaxed);
         if (head - tail_.load(std::memory_order_acquire) == N) {
             return false;
         }
-        bytes_[head % N] = byte;
+        items_[head % N] = item;
         head_.store(head + 1, std::memory_order_release);
         return true;
     }
 
     /// Writer. As many from the start of `from` as there is room for; returns how many. O(from.size()).
-    std::size_t push(std::span<const std::byte> from) noexcept
+    std::size_t push(std::span<const T> from) noexcept
     {
         std::uint32_t head = head_.load(std::memory_order_relaxed);
         const std::size_t room = N - (head - tail_.load(std::memory_order_acquire));
         const std::size_t n = std::min(room, from.size());
         for (std::size_t i = 0; i < n; ++i) {
-            bytes_[head++ % N] = from[i];
+            items_[head++ % N] = from[i];
         }
         head_.store(head, std::memory_order_release);
         return n;
     }
 
     /// Reader. False when empty. O(1).
-    bool pop(std::byte& byte) noexcept
+    bool pop(T& item) noexcept
     {
         const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
         if (head_.load(std::memory_order_acquire) == tail) {
             return false;
         }
-        byte = bytes_[tail % N];
+        item = items_[tail % N];
         tail_.store(tail + 1, std::memory_order_release);
         return true;
     }
 
     /// Reader. Fills `into` from its start; returns how many. O(into.size()).
-    std::size_t pop(std::span<std::byte> into) noexcept
+    std::size_t pop(std::span<T> into) noexcept
     {
         std::uint32_t tail = tail_.load(std::memory_order_relaxed);
         const std::size_t n = std::min<std::size_t>(head_.load(std::memory_order_acquire) - tail, into.size());
         for (std::size_t i = 0; i < n; ++i) {
-            into[i] = bytes_[tail++ % N];
+            into[i] = items_[tail++ % N];
         }
         tail_.store(tail, std::memory_order_release);
         return n;
@@ -78,7 +80,10 @@ public:
 private:
     std::atomic<std::uint32_t> head_{0};
     std::atomic<std::uint32_t> tail_{0};
-    std::array<std::byte, N> bytes_{};
+    std::array<T, N> items_{};
 };
+
+template <std::size_t N>
+using ByteRing = Ring<std::byte, N>;
 
 }  // namespace jink::hal
