@@ -136,7 +136,8 @@ public:
     void on_status() noexcept
     {
         const std::uint32_t errors = registers_.read(kErrors);
-        if ((errors & kLastError) != 0) {
+        const std::uint32_t last = errors & kLastError;
+        if (last != 0 && last != kErrorSetBySoftware) {
             count(bus_errors_);
             registers_.write(kErrors, kErrorSetBySoftware);
         }
