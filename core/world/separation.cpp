@@ -269,7 +269,7 @@ float threat_radius(const Situation& situation, const Track& track, Seconds t) n
 }
 
 Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
-                            WorkBudget& budget, const EscapeRule& escape) noexcept
+                            WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
     Separation best;
     if (path.points.empty()) {
@@ -278,10 +278,16 @@ Separation least_separation(const Situation& situation, const path::TimedPath& p
     Flight flight;
     cut_into_pieces(path, horizon, flight);
     against_airspace(situation, flight, escape, best);
-    for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
-        against_track(situation, flight, i, escape, budget, best);
+    const bool track_first = cutoff.first.kind == ThreatKind::track && cutoff.first.index < situation.tracks.size();
+    if (track_first) {
+        against_track(situation, flight, cutoff.first.index, escape, budget, best);
     }
-    for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
+    for (std::size_t i = 0; i < situation.tracks.size() && best.margin >= cutoff.below; ++i) {
+        if (!track_first || i != cutoff.first.index) {
+            against_track(situation, flight, i, escape, budget, best);
+        }
+    }
+    for (std::size_t i = 0; i < situation.obstacles.size() && best.margin >= cutoff.below; ++i) {
         against_obstacle(situation, flight, i, escape, budget, best);
     }
     return best;
