@@ -213,20 +213,23 @@ void against_obstacle(const Situation& situation, const Flight& flight, std::siz
     }
 }
 
-/// Calls `judge(margin of a position, kind)` for each bound that is set.
+/// Calls `judge(margin of a position, kind)` for each bound that is set. Bounds are kept like obstacles: the own
+/// position is known no better towards them.
 template <class Judge>
 void for_each_bound(const Situation& situation, const Judge& judge) noexcept
 {
     const Airspace& air = situation.airspace;
     const Vec3& half = situation.limits.half_extents;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const float height = half.z() + extra;
     if (air.has_floor) {
-        judge([&](const Vec3& p) { return p.z() - half.z() - air.floor; }, ThreatKind::floor);
+        judge([&](const Vec3& p) { return p.z() - height - air.floor; }, ThreatKind::floor);
     }
     if (air.has_ceiling) {
-        judge([&](const Vec3& p) { return air.ceiling - p.z() - half.z(); }, ThreatKind::ceiling);
+        judge([&](const Vec3& p) { return air.ceiling - p.z() - height; }, ThreatKind::ceiling);
     }
     if (air.has_keep_in) {
-        const float corner = std::hypot(half.x(), half.y());
+        const float corner = std::hypot(half.x(), half.y()) + extra;
         judge(
             [&](const Vec3& p) {
                 return air.keep_in_radius - std::hypot(p.x() - air.home.x(), p.y() - air.home.y()) - corner;

@@ -41,7 +41,8 @@ struct Cutoff {
 /// Least separation along a timed path, from path time 0 (= Situation::now) to min(path end, `horizon`):
 /// exact and time-aware for tracks (relative motion per segment in closed form, the threat at the size it has at the
 /// segment's end, so never optimistic), swept and exact for obstacles (libccd under `budget`, a budget that runs out
-/// counts as contact), airspace bounds by their planes.
+/// counts as contact), airspace bounds by their planes. All of them are met k_sigma * sigma_position of the own
+/// position early.
 ///
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface, which
 /// is looked at in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
