@@ -82,18 +82,18 @@ float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
 /// The search for the command of greatest margin: each is looked at only until it is no better than the best so far.
 class LeastHarm {
 public:
-    LeastHarm(const world::Situation& s, const Settings& settings, WorkBudget& budget) noexcept
-        : s_(s), settings_(settings), budget_(budget),
-          step_(std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 2)))
+    LeastHarm(const world::Situation& s, const Settings& settings, Seconds horizon, WorkBudget& budget) noexcept
+        : s_(s), settings_(settings), budget_(budget), horizon_(horizon),
+          step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
     {
     }
 
     /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
     float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
     {
-        path::predict_velocity_command(s_.own, command, settings_.fallback_horizon, step_, s_.limits, flight_);
-        const world::Separation least = world::least_separation(s_, flight_, settings_.fallback_horizon, budget_,
-                                                                settings_.escape, {cut, nearest_});
+        path::predict_velocity_command(s_.own, command, horizon_, step_, s_.limits, flight_);
+        const world::Separation least =
+            world::least_separation(s_, flight_, horizon_, budget_, settings_.escape, {cut, nearest_});
         nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
         return least.margin;
     }
@@ -113,6 +113,7 @@ private:
     const world::Situation& s_;
     const Settings& settings_;
     WorkBudget& budget_;
+    Seconds horizon_;
     Seconds step_;
     world::ThreatRef nearest_;
     TimedPath flight_;
@@ -231,10 +232,16 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
     return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape);
 }
 
+float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,
+                     WorkBudget& budget) noexcept
+{
+    return LeastHarm(s, settings, horizon, budget).margin_of(command);
+}
+
 float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings,
                      WorkBudget& budget) noexcept
 {
-    return LeastHarm(s, settings, budget).margin_of(command);
+    return command_margin(s, command, settings.fallback_horizon, settings, budget);
 }
 
 Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, float direction) noexcept
@@ -256,7 +263,7 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
     if (s.limits.kind == vehicle::VehicleKind::fixed_wing) {
         return fixed_wing_fallback(s, previous, settings, budget);
     }
-    LeastHarm search(s, settings, budget);
+    LeastHarm search(s, settings, settings.fallback_horizon, budget);
     Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
     if (best.margin >= 0.0F) {
         return best;
