@@ -144,7 +144,7 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     constexpr std::uint8_t kDown = 25;
     constexpr std::uint8_t kInvalidSignal = 1;
     const bool level = m.orientation <= 7;
-    if (!std::isfinite(m.horizontal_fov)) {
+    if (!std::isfinite(m.horizontal_fov) || !std::isfinite(m.vertical_fov)) {
         ++diagnostics_.not_finite;
         return;
     }
@@ -164,8 +164,9 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     reading.range = m.current_distance > m.max_distance
                         ? RangeScan::kNothing
                         : static_cast<float>(std::max(m.current_distance, m.min_distance)) * kCentimetre;
-    reading.half_angle =
-        m.horizontal_fov >= kLeastFieldOfView ? std::min(0.5F * m.horizontal_fov, 0.5F * kPi) : kDefaultHalfAngle;
+    // Level, what is above or below does not matter; straight up or down, the wider of the two.
+    const float fov = level ? m.horizontal_fov : std::max(m.horizontal_fov, m.vertical_fov);
+    reading.half_angle = fov >= kLeastFieldOfView ? std::min(0.5F * fov, 0.5F * kPi) : kDefaultHalfAngle;
     if (level) {
         const float yaw = own_.yaw - static_cast<float>(m.orientation) * 45.0F * kDegree;
         reading.direction = Vec3(std::cos(yaw), std::sin(yaw), 0.0F);
