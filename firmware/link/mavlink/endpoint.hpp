@@ -30,7 +30,8 @@
 //   no_origin. Local plane: north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (the
 //   wrap at 180 degrees is handled). Above 85 degrees of latitude there is no origin.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
-//   128). Without coordinates and altitude: out_of_range. emitter_type 19 (point obstacle): at_rest, velocity zero.
+//   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
+//   emitter_type 19 (point obstacle): at_rest, velocity zero.
 //   Stamp = now - tslc (the application takes the assumed latency off).
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by a yaw not older than 1 s, else no_origin);
 //   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
