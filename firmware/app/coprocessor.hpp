@@ -62,7 +62,8 @@ struct Diagnostics {
     std::uint32_t readings = 0;
     std::uint32_t readings_refused = 0;  ///< not level, and wider than kWidestSteep
     std::uint32_t tracks_in = 0;
-    std::uint32_t faults = 0;  ///< times the state became CRITICAL
+    std::uint32_t legs_dropped = 0;  ///< the autopilot went on to a place that is not known: the own motion is the way
+    std::uint32_t faults = 0;        ///< times the state became CRITICAL
 };
 
 /// The co-processor: one call does everything the firmware does in a tick. Images own the ports and call it; so do the

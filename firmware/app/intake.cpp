@@ -241,6 +241,11 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     if (inbox_.has_home) {
         home_ = inbox_.home;
     }
+    if (inbox_.leg_lost) {
+        // Better the own motion than a leg that is flown no more.
+        diagnostics_.legs_dropped += has_leg_ ? 1U : 0U;
+        has_leg_ = false;
+    }
     if (inbox_.has_leg) {
         leg_ = inbox_.leg.leg;
         has_leg_ = true;

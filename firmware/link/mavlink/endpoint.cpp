@@ -61,8 +61,12 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
     diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
                                   p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
                                   p.stale_signature + p.signature_streams;
-    if (mission_.take_leg() || leg_waits_) {
+    const bool fetched = mission_.take_leg();
+    if (fetched || leg_waits_) {
         resolve_leg(inbox);
+    }
+    if (mission_.take_loss() || (fetched && !has_mission_leg_)) {
+        lose_leg(inbox);
     }
 }
 

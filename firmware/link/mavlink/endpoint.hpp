@@ -40,7 +40,8 @@
 // * Leg: POSITION_TARGET_LOCAL_NED (frame 1) while not in the external mode: from the position when it changed to the
 //   target; mission items: MISSION_CURRENT tells the sequence number, then MISSION_REQUEST_LIST / MISSION_COUNT /
 //   MISSION_REQUEST_INT for seq and seq - 1 / MISSION_ACK; frames 0, 3, 5, 6 (global, or relative to home) and 1; items
-//   without a place of their own give no leg; a mission leg wins over the position target.
+//   without a place of their own, or that cannot be placed, or do not come, end the leg that was told before; a
+//   mission leg wins over the position target.
 // * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
 //   plus the armed bit (128) as heard.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
@@ -129,6 +130,7 @@ private:
     void set_origin(const std::optional<GlobalPosition>& origin, int rank) noexcept;
     [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
     void resolve_leg(Inbox& inbox) noexcept;
+    void lose_leg(Inbox& inbox) noexcept;
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
     template <Message M>
