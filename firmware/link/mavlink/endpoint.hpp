@@ -9,6 +9,7 @@
 #include "firmware/link/mavlink/mission_client.hpp"
 #include "firmware/link/mavlink/modes.hpp"
 #include "firmware/link/mavlink/parser.hpp"
+#include "firmware/link/mavlink/stream_requests.hpp"
 #include "firmware/link/mavlink/transmit_buffer.hpp"
 
 // MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/links.md is the reference for
@@ -42,6 +43,7 @@
 //   MISSION_REQUEST_INT for seq and seq - 1 / MISSION_ACK; frames 0, 3, 5, 6 (global, or relative to home) and 1; items
 //   without a place of their own, or that cannot be placed, or do not come, end the leg that was told before; a
 //   mission leg wins over the position target.
+// * Rates: what comes too seldom is asked for by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
 // * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
 //   plus the armed bit (128) as heard.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
@@ -68,6 +70,7 @@ public:
 
     void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept override;
     void service(TimePoint now) noexcept override;
+    void ask_for_rates(bool on) noexcept override { asks_for_rates_ = on; }
 
     [[nodiscard]] std::span<const std::byte> pending() const noexcept override { return transmit_.pending(); }
     void consume(std::size_t n) noexcept override { transmit_.consume(n); }
@@ -133,6 +136,7 @@ private:
     void lose_leg(Inbox& inbox) noexcept;
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
+    void ask_for_streams(TimePoint now) noexcept;
     template <Message M>
     void send(const M& message, Perishable kind = Perishable::no) noexcept;
     void take_back(Perishable kind) noexcept;
@@ -144,6 +148,8 @@ private:
     LinkDiagnostics diagnostics_;
     ClockSync clock_;
     MissionClient mission_;
+    StreamRequests streams_;
+    bool asks_for_rates_ = false;
     std::uint8_t system_;
     std::uint8_t sequence_ = 0;
     TimePoint last_byte_;

@@ -198,7 +198,7 @@ TEST(CoprocessorMode, AdviseOnlyWarnsAndNeverSteers)
             EXPECT_EQ(m.action, static_cast<std::uint8_t>(link::CollisionAction::report));
         }
         ASSERT_TRUE(f->said_of<SetPositionTargetLocalNed>().empty());
-        ASSERT_TRUE(f->said_of<CommandLong>().empty());
+        ASSERT_TRUE(f->mode_requests().empty());
         ASSERT_EQ(f->last.control, Control::autopilot);
     }
     EXPECT_GE(collisions, 3U);
@@ -214,7 +214,7 @@ TEST(CoprocessorMode, OffSaysNothingOfConflicts)
         f->fly(1);
         ASSERT_TRUE(f->said_of<Collision>().empty());
         ASSERT_TRUE(f->said_of<SetPositionTargetLocalNed>().empty());
-        ASSERT_TRUE(f->said_of<CommandLong>().empty());
+        ASSERT_TRUE(f->mode_requests().empty());
     }
     EXPECT_EQ(f->last.state, link::SystemState::standby);
 }
