@@ -327,7 +327,8 @@ void Endpoint::resolve_leg(Inbox& inbox) noexcept
     has_mission_leg_ = false;
     Vec3 from = own_.position;
     Vec3 to;
-    leg_waits_ = !mission_.to().known || !has_local_ || !place(mission_.to(), to) || (mission_.from().known && !place(mission_.from(), from));
+    leg_waits_ = !mission_.to().known || !has_local_ || !place(mission_.to(), to) ||
+                 (mission_.from().known && !place(mission_.from(), from));
     if (leg_waits_) {
         return;
     }

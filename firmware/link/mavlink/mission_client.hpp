@@ -38,7 +38,8 @@ public:
 
     /// True once when both ends have arrived (`from().known` is false when the leg starts where the vehicle is).
     [[nodiscard]] bool take_leg() noexcept;
-    /// True once per current item when its fetch was given up, or it has no place: where the vehicle is going is not known.
+    /// True once per current item when its fetch was given up, or it has no place: where the vehicle is going is not
+    /// known.
     [[nodiscard]] bool take_loss() noexcept;
     [[nodiscard]] const MissionPoint& from() const noexcept { return from_; }
     [[nodiscard]] const MissionPoint& to() const noexcept { return to_; }
