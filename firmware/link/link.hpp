@@ -51,6 +51,7 @@ struct LinkDiagnostics {
     std::uint32_t setpoints_dropped = 0;
     std::uint32_t requests_dropped = 0;    ///< of a mode
     std::uint32_t heartbeats_dropped = 0;  ///< ours
+    std::uint32_t bytes_discarded = 0;     ///< that waited when the port was lost
     std::uint32_t rate_requests = 0;       ///< messages asked for
     std::uint32_t rates_refused = 0;       ///< answers that did not grant one
 };

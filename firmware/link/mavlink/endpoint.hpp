@@ -74,7 +74,11 @@ public:
 
     [[nodiscard]] std::span<const std::byte> pending() const noexcept override { return transmit_.pending(); }
     void consume(std::size_t n) noexcept override { transmit_.consume(n); }
-    void discard_pending() noexcept override { transmit_.clear(); }
+    void discard_pending() noexcept override
+    {
+        diagnostics_.bytes_discarded += static_cast<std::uint32_t>(transmit_.pending().size());
+        transmit_.clear();
+    }
     void drop_setpoint() noexcept override { take_back(Perishable::setpoint); }
     void drop_mode_request() noexcept override { take_back(Perishable::mode_request); }
 

@@ -225,7 +225,9 @@ TEST(CoprocessorPort, LostWhileAvoidingStopsTheStreamAndDropsWhatWasQueued)
     ASSERT_NO_FATAL_FAILURE(take_over(*f));
     f->port.room = 5;  // the line chokes: bytes pile up
     f->fly(10);
-    ASSERT_FALSE(f->endpoint.pending().empty());
+    const std::size_t waiting = f->endpoint.pending().size();
+    ASSERT_GT(waiting, 0U);
+    ASSERT_EQ(f->endpoint.diagnostics().bytes_discarded, 0U);
     f->port.room = 1U << 20U;
     f->port.state = hal::PortState::lost;
     const std::uint32_t sent = f->coprocessor.diagnostics().setpoints;
@@ -239,6 +241,7 @@ TEST(CoprocessorPort, LostWhileAvoidingStopsTheStreamAndDropsWhatWasQueued)
     }
     EXPECT_EQ(f->coprocessor.diagnostics().setpoints, sent);
     EXPECT_EQ(f->coprocessor.takeover_diagnostics().lost_by_fault, 1U);
+    EXPECT_GE(f->endpoint.diagnostics().bytes_discarded, waiting / 2);
 
     f->port.state = hal::PortState::open;
     const auto reopened = static_cast<std::uint32_t>(f->now.us / 1000);
