@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -29,6 +30,45 @@ TEST(Supervisors, TheWorkOfEachUpdateIsTold)
     f.scene.tracks.clear();
     EXPECT_LT(f.update(supervisor, false).work, 100U);
     EXPECT_EQ(supervisor.diagnostics().most_work, busy.work);
+}
+
+/// Whatever state it is in and whatever the methods say, what is commanded is what the vehicle may fly.
+TEST(Supervisors, CommandsStayWithinTheLimits)
+{
+    constexpr std::uint64_t kSeed = 20261125;
+    Random random(kSeed);
+    int in_state[4] = {};
+    for (int flight = 0; flight < 60; ++flight) {
+        Flight f;
+        f.scene.own.position += Vec3(0, random.uniform(-8, 8), random.uniform(-4, 4));
+        for (int n = 0; n < 3; ++n) {
+            const Seconds meets = random.uniform(2.0F, 12.0F);
+            const Vec3 velocity(random.uniform(-6, 6), random.uniform(-6, 6), random.uniform(-1, 1));
+            f.scene.track(f.scene.own.position + Vec3(5, 0, 0) * meets - velocity * meets, velocity, 1.5F);
+        }
+        FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+            const float angle = random.uniform(-kPi, kPi);
+            out = detour(s, Vec3(0, std::cos(angle), std::sin(angle)), random.uniform(3, 12), random.uniform(20, 60));
+            return random.below(3) == 0 ? PlanStatus::none_available : PlanStatus::found;
+        }};
+        Supervisor supervisor(quick(), method);
+        for (int i = 0; i < 300; ++i) {
+            const Guidance g = f.update(supervisor, true);
+            ++in_state[static_cast<int>(g.state)];
+            ASSERT_LE(g.velocity.norm(), f.scene.limits.cruise_speed * 1.00001F) << "seed " << kSeed << ' ' << flight;
+            ASSERT_LE(g.velocity.z(), f.scene.limits.max_climb * 1.00001F) << "seed " << kSeed << ' ' << flight;
+            ASSERT_GE(g.velocity.z(), -f.scene.limits.max_descent * 1.00001F) << "seed " << kSeed << ' ' << flight;
+            f.pass(g.velocity, 0.05F);
+        }
+        const Diagnostics& d = supervisor.diagnostics();
+        EXPECT_EQ(d.updates, 300U);
+        EXPECT_GE(d.plans, d.plans_found + d.answers_rejected);
+        EXPECT_GE(d.brakes, d.escapes > 0 ? 1U : 0U);
+        EXPECT_GE(d.replans, d.flips);
+    }
+    for (const int count : in_state) {
+        EXPECT_GT(count, 20);
+    }
 }
 
 TEST(Supervisors, LosingControlForgetsWhatIsFlown)
