@@ -85,6 +85,7 @@ public:
         in.flips = s.flips;
         in.brakes = s.brakes;
         in.escapes = s.escapes;
+        in.holds = s.holds;
         in.rejoined = s.rejoined;
         in.control_lost = s.control_lost;
         in.budget_spent = s.budget_spent;

@@ -120,6 +120,7 @@ Json inside_of(const Inside& in, bool machine_independent)
     j["flips"] = in.flips;
     j["brakes"] = in.brakes;
     j["escapes"] = in.escapes;
+    j["holds"] = in.holds;
     j["rejoined"] = in.rejoined;
     j["control_lost"] = in.control_lost;
     j["budget_spent"] = in.budget_spent;
