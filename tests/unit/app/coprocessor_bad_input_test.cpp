@@ -2,8 +2,8 @@
 // Bad frames at Coprocessor::step, through the ports of hal/memory, one test for each kind and in it every message: no
 // crash, nothing endless, the next good frame found, every refusal counted. The parser alone: property_link
 // MavlinkDamage.*.
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -319,9 +319,12 @@ TEST_F(BadInput, NoNumberInfinityDenormalAndHugeInEveryFloat)
             }
             for (unsigned k = 0; k < field.count; ++k) {
                 for (const float poison : {kNan, kInf, -kInf, 1e-42F, -1e-42F, 3e38F, -3e38F}) {
-                    M message{};
-                    std::memcpy(reinterpret_cast<std::byte*>(&message) + field.object_offset + 4U * k, &poison, 4);
-                    arrive(frame_of(message, {kSystem, kAutopilot, sequence++}));
+                    Bytes payload(M::kInfo.max_length);
+                    const auto bits = std::bit_cast<std::uint32_t>(poison);
+                    for (std::size_t b = 0; b < 4; ++b) {
+                        payload.at(field.wire_offset + 4U * k + b) = static_cast<std::byte>(bits >> (8U * b) & 0xFFU);
+                    }
+                    arrive(frame_of(from_payload<M>(payload), {kSystem, kAutopilot, sequence++}));
                     step();
                     ASSERT_TRUE(is_finite(coprocessor->own().position)) << M::kInfo.id;
                     ASSERT_TRUE(is_finite(coprocessor->own().velocity)) << M::kInfo.id;
