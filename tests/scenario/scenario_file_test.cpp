@@ -55,7 +55,7 @@ threats:
 traffic: {rate: 10, sigma_position: 0.1, sigma_velocity: 0.2, latency: 0.3, jitter: 0.4, dropout: 0.5}
 scan: {rate: 5, range: 20}
 parameters: {JNK_SETTLE: 2}
-faults: {pilot_takes_over: 3, pilot_mode: home, pilot_velocity: [1, 1, 1], refuse_external: true, reboot_at: 4, reboot_lasts: 2, clock_jump_at: 5, clock_jump_by: -3, cable_pulled_at: 6, cable_pulled_for: 1}
+faults: {pilot_takes_over: 3, pilot_mode: home, pilot_velocity: [1, 1, 1], refuse_external: true, offboard_proof: 1.5, reboot_at: 4, reboot_lasts: 2, clock_jump_at: 5, clock_jump_by: -3, cable_pulled_at: 6, cable_pulled_for: 1}
 expect: {outcome: [avoided, braked], given_back: true, final_mode: hold, flips_at_most: 2}
 )",
                                       "all.yaml");
@@ -89,6 +89,7 @@ expect: {outcome: [avoided, braked], given_back: true, final_mode: hold, flips_a
     EXPECT_EQ(s.faults.pilot_mode, Mode::home);
     EXPECT_EQ(s.faults.clock_jump_by, -3.0);
     EXPECT_TRUE(s.faults.refuse_external);
+    EXPECT_EQ(s.faults.offboard_proof, 1.5);
     EXPECT_EQ(s.faults.cable_pulled_for, 1.0);
     EXPECT_EQ(s.expect.outcomes.size(), 2U);
     EXPECT_EQ(s.expect.final_mode, Mode::hold);

@@ -65,6 +65,7 @@ void read_faults(YamlMap& root, Faults& faults)
         one_of(*map, "pilot_mode", std::array{Mode::hold, Mode::home, Mode::pilot}).value_or(faults.pilot_mode);
     vector(*map, "pilot_velocity", faults.pilot_velocity, kVelocity);
     faults.refuse_external = map->boolean("refuse_external").value_or(false);
+    number(*map, "offboard_proof", faults.offboard_proof, {0.0F, 10.0F});
     number(*map, "reboot_at", faults.reboot_at, kAnyTime);
     number(*map, "reboot_lasts", faults.reboot_lasts, {0.0F, 60.0F});
     number(*map, "clock_jump_at", faults.clock_jump_at, kAnyTime);
