@@ -2,7 +2,6 @@
 #include "core/avoid/guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace jink::avoid {
@@ -61,27 +60,96 @@ void predict_turn(const world::Situation& s, float direction, const Settings& se
     }
 }
 
-std::array<Vec3, 14> directions(const Vec3& forward) noexcept
+/// Level directions that are tried; and each of them climbing and descending.
+constexpr int kCourses = 8;
+
+/// A command at cruise speed: `climb` [m/s] of it upwards, the rest on a course (counter-clockwise from `ahead`).
+Vec3 command_on(const Vec3& ahead, float course, float climb, const vehicle::VehicleLimits& limits) noexcept
 {
-    Vec3 ahead(forward.x(), forward.y(), 0.0F);
+    const float level = std::sqrt(std::max(limits.cruise_speed * limits.cruise_speed - climb * climb, 0.0F));
+    const float c = level * std::cos(course);
+    const float s = level * std::sin(course);
+    return {c * ahead.x() - s * ahead.y(), s * ahead.x() + c * ahead.y(), climb};
+}
+
+/// A slanted command climbs as fast as the vehicle can, where that leaves at least as much for the level part.
+float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
+{
+    constexpr float kHalfAndHalf = 0.70710678F;
+    return std::min(limit, kHalfAndHalf * limits.cruise_speed);
+}
+
+/// The search for the command of greatest margin: each is looked at only until it is no better than the best so far.
+class LeastHarm {
+public:
+    LeastHarm(const world::Situation& s, const Settings& settings, Seconds horizon, WorkBudget& budget) noexcept
+        : s_(s), settings_(settings), budget_(budget), horizon_(horizon),
+          step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
+    {
+    }
+
+    /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
+    float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
+    {
+        path::predict_velocity_command(s_.own, command, horizon_, step_, s_.limits, flight_);
+        const world::Separation least =
+            world::least_separation(s_, flight_, horizon_, budget_, settings_.escape, {cut, nearest_});
+        nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
+        return least.margin;
+    }
+
+    /// True when it is the best now.
+    bool attempt(const Vec3& command, Fallback& best) noexcept
+    {
+        const float margin = margin_of(command, best.margin);
+        if (margin > best.margin) {
+            best = {world::ManoeuvreKind::velocity, command, margin};
+            return true;
+        }
+        return false;
+    }
+
+private:
+    const world::Situation& s_;
+    const Settings& settings_;
+    WorkBudget& budget_;
+    Seconds horizon_;
+    Seconds step_;
+    world::ThreatRef nearest_;
+    TimedPath flight_;
+};
+
+/// Eight level courses, each of them climbing and descending too, straight up and down; then half way to the courses
+/// beside the best.
+void search_ways_out(const world::Situation& s, const world::Way& way, LeastHarm& search, Fallback& best) noexcept
+{
+    Vec3 ahead(way.direction.x(), way.direction.y(), 0.0F);
     const float length = ahead.norm();
     ahead = length > 1e-3F ? Vec3(ahead / length) : Vec3::UnitX();
-    const Vec3 left(-ahead.y(), ahead.x(), 0.0F);
-    constexpr float k = 0.70710678F;
-    return {left,
-            -left,
-            k * (ahead + left),
-            k * (ahead - left),
-            k * (left - ahead),
-            k * (-left - ahead),
-            -ahead,
-            ahead,
-            Vec3::UnitZ(),
-            -Vec3::UnitZ(),
-            k * (left + Vec3::UnitZ()),
-            k * (Vec3::UnitZ() - left),
-            k * (left - Vec3::UnitZ()),
-            k * (-left - Vec3::UnitZ())};
+    const float up = slant(s.limits.max_climb, s.limits);
+    const float down = slant(s.limits.max_descent, s.limits);
+    constexpr float kTurn = 2.0F * kPi / static_cast<float>(kCourses);
+    float best_course = 0.0F;
+    bool on_course = false;
+    for (const float climb : {0.0F, up, -down}) {
+        for (int i = 0; i < kCourses; ++i) {
+            const float course = kTurn * static_cast<float>(i);
+            if (search.attempt(command_on(ahead, course, climb, s.limits), best)) {
+                best_course = course;
+                on_course = true;
+            }
+        }
+    }
+    const float fastest = s.limits.cruise_speed;
+    for (const float climb : {std::min(s.limits.max_climb, fastest), -std::min(s.limits.max_descent, fastest)}) {
+        on_course = !search.attempt(Vec3(0.0F, 0.0F, climb), best) && on_course;
+    }
+    if (on_course) {
+        const float climb = best.command.z();
+        for (const float beside : {-0.5F * kTurn, 0.5F * kTurn}) {
+            search.attempt(command_on(ahead, best_course + beside, climb, s.limits), best);
+        }
+    }
 }
 
 Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous, const Settings& settings,
@@ -164,14 +232,16 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
     return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape);
 }
 
+float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,
+                     WorkBudget& budget) noexcept
+{
+    return LeastHarm(s, settings, horizon, budget).margin_of(command);
+}
+
 float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings,
                      WorkBudget& budget) noexcept
 {
-    TimedPath flight;
-    const Seconds step =
-        std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 2));
-    path::predict_velocity_command(s.own, command, settings.fallback_horizon, step, s.limits, flight);
-    return world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
+    return command_margin(s, command, settings.fallback_horizon, settings, budget);
 }
 
 Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, float direction) noexcept
@@ -193,24 +263,19 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
     if (s.limits.kind == vehicle::VehicleKind::fixed_wing) {
         return fixed_wing_fallback(s, previous, settings, budget);
     }
-    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), command_margin(s, Vec3::Zero(), settings, budget)};
+    LeastHarm search(s, settings, settings.fallback_horizon, budget);
+    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
     if (best.margin >= 0.0F) {
         return best;
     }
     float kept_margin = -world::kSeparationCap;
     if (previous != nullptr && previous->kind == world::ManoeuvreKind::velocity) {
-        kept_margin = command_margin(s, previous->command, settings, budget);
+        kept_margin = search.margin_of(previous->command);
         if (kept_margin >= 0.0F) {
             return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
         }
     }
-    for (const Vec3& direction : directions(way.direction)) {
-        const Vec3 command = vehicle::clamped_velocity(direction, s.limits.cruise_speed, s.limits);
-        const float margin = command_margin(s, command, settings, budget);
-        if (margin > best.margin) {
-            best = {world::ManoeuvreKind::velocity, command, margin};
-        }
-    }
+    search_ways_out(s, way, search, best);
     const bool as_good = best.margin < 0.0F && kept_margin + kFallbackHysteresis >= best.margin;
     if (as_good && kept_margin > -world::kSeparationCap) {
         return {world::ManoeuvreKind::velocity, previous->command, kept_margin};

@@ -23,13 +23,17 @@ struct Fallback {
     float margin = 0.0F;              ///< least predicted over the horizon [m]
 };
 
-/// Brake (a fixed wing: hold turn) when that is clear; else the one of brake, 8 level directions, climb, descent and 4
-/// slanted ones with the greatest least margin; what was flown before (`previous`, may be null) keeps its place unless
-/// another is 0.3 m better. O(15 * points * threats).
+/// Brake (a fixed wing: hold turn) when that is clear; else the one with the greatest least margin of brake and 26 ways
+/// at cruise speed (8 courses level, climbing and descending; straight up and down), refined by half a step of course;
+/// what was flown before (`previous`, may be null) stays while it is clear, and where nothing is clear unless another
+/// is 0.3 m better. A way is looked at only until it is no better than the best so far. O(30 * points * threats).
 [[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
                                        const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 
-/// Least separation when `command` is held for the fallback horizon.
+/// Least separation when `command` is held for `horizon` [s] > 0; without one, for the fallback horizon. O(points *
+/// threats).
+[[nodiscard]] float command_margin(const world::Situation& situation, const Vec3& command, Seconds horizon,
+                                   const Settings& settings, WorkBudget& budget) noexcept;
 [[nodiscard]] float command_margin(const world::Situation& situation, const Vec3& command, const Settings& settings,
                                    WorkBudget& budget) noexcept;
 

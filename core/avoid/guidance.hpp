@@ -11,7 +11,7 @@ namespace jink::avoid {
 enum class State : std::uint8_t {
     watching,   ///< the autopilot flies; conflicts are looked for
     avoiding,   ///< a checked manoeuvre is flown
-    rejoining,  ///< back to the leg
+    rejoining,  ///< back to the leg, or beside it while the way back is not clear
     braking,    ///< nothing was safe: brake, hold turn, or the way of least harm
 };
 
@@ -63,6 +63,7 @@ struct Diagnostics {
     std::uint32_t flips = 0;             ///< replaced by one on the other side of the leg
     std::uint32_t brakes = 0;            ///< fallbacks begun
     std::uint32_t escapes = 0;           ///< fallbacks that had to move
+    std::uint32_t holds = 0;             ///< flights beside the leg begun, because the way back was not clear
     std::uint32_t rejoined = 0;
     std::uint32_t control_lost = 0;  ///< control ended while it was wanted
     std::uint32_t budget_spent = 0;  ///< updates that ran out of work budget

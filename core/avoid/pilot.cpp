@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/avoid/pilot.hpp"
-
 #include <algorithm>
 
-#include "core/geometry/sweep.hpp"
+#include "core/avoid/pilot_tick.hpp"
 
 namespace jink::avoid {
 namespace {
@@ -15,43 +13,22 @@ constexpr float kNarrowPatience = 3.0F;
 /// Sides further apart than this (cosine) are opposite ones.
 constexpr float kOppositeSide = -0.1F;
 
-float cross_track(const world::Situation& s) noexcept
+/// A manoeuvre whose mean speed is below this share of the way's is a slow one: a better one is looked for now and
+/// then.
+constexpr float kSlow = 0.8F;
+/// And taken when it is faster by this factor, and on the same side (cosine).
+constexpr float kFaster = 1.3F;
+constexpr float kSameSide = 0.5F;
+/// Time between two looks [s].
+constexpr Seconds kLookAgain = 1.0F;
+
+float mean_speed(const world::Manoeuvre& manoeuvre) noexcept
 {
-    return geometry::point_segment_distance(s.own.position, s.reference.leg.start, s.reference.leg.end);
+    const Seconds duration = manoeuvre.path.duration();
+    return duration > 0.0F ? path::arc_length(manoeuvre.path) / duration : 0.0F;
 }
 
-/// The same situation for a vehicle with `extra` more to every side.
-struct Wider {
-    vehicle::VehicleLimits limits;
-    world::Situation situation;
-
-    Wider(const world::Situation& s, float extra) noexcept
-        : limits(widened(s.limits, extra)), situation{s.now,    s.own,       limits,     s.airframe, s.reference,
-                                                      s.tracks, s.obstacles, s.airspace, s.flying,   s.k_sigma}
-    {
-    }
-    Wider(const Wider&) = delete;
-    Wider& operator=(const Wider&) = delete;
-
-    static vehicle::VehicleLimits widened(vehicle::VehicleLimits limits, float extra) noexcept
-    {
-        limits.half_extents += Vec3::Constant(extra);
-        return limits;
-    }
-};
-
 }  // namespace
-
-struct Pilot::Tick {
-    const world::Situation& s;
-    bool in_control = false;
-    const Ladder& ladder;
-    WorkBudget budget;
-    world::Way way;
-    Guidance out;
-    bool wide_clear = false;
-    bool ran_out = false;  ///< of work, planning or altogether
-};
 
 bool Pilot::configure(const Settings& settings) noexcept
 {
@@ -65,7 +42,7 @@ bool Pilot::configure(const Settings& settings) noexcept
 void Pilot::reset() noexcept
 {
     state_ = State::watching;
-    had_control_ = has_flying_ = has_fallback_ = standing_ = was_clear_ = was_free_ = false;
+    had_control_ = has_flying_ = has_fallback_ = standing_ = beside_ = was_clear_ = was_free_ = false;
     ground_given_ = 0.0F;
 }
 
@@ -122,8 +99,10 @@ void Pilot::take(Tick& tick) noexcept
         tick.out.new_manoeuvre = true;
     }
     flying_ = answer_;
+    is_slow_ = mean_speed(flying_) < kSlow * tick.way.speed;
+    looked_at_ = tick.s.now;
     has_flying_ = true;
-    has_fallback_ = false;
+    has_fallback_ = beside_ = false;
     tick.out.wants_control = true;
     tick.out.kind = flying_.kind;
     tick.out.velocity =
@@ -143,48 +122,13 @@ void Pilot::fall_back(Tick& tick) noexcept
     }
     fallback_ = chosen;
     has_fallback_ = true;
+    beside_ = false;
     tick.out.wants_control = true;
     tick.out.kind = chosen.kind;
     tick.out.margin = chosen.margin;
     tick.out.velocity = chosen.kind == world::ManoeuvreKind::hold_turn
                             ? turn_command(tick.s.own, tick.s.limits, chosen.command.z())
                             : chosen.command;
-}
-
-void Pilot::enter_rejoining() noexcept
-{
-    state_ = State::rejoining;
-    has_fallback_ = false;
-    standing_ = false;
-}
-
-void Pilot::follow_way(Tick& tick) noexcept
-{
-    tick.out.wants_control = true;
-    tick.out.kind = world::ManoeuvreKind::velocity;
-    tick.out.velocity = tick.way.length > 0.0F ? Vec3(tick.way.direction * tick.way.speed) : Vec3(Vec3::Zero());
-}
-
-/// How long the way has been clear, with something to spare.
-void Pilot::note_clearness(Tick& tick) noexcept
-{
-    if (!tick.out.has_conflict) {
-        const Wider wider(tick.s, settings_.clear_extra);
-        world::Conflict unused;
-        tick.wide_clear = !world::main_conflict(wider.situation, tick.way, settings_.lookahead, tick.budget, unused);
-    }
-    if (tick.wide_clear && !was_clear_) {
-        clear_since_ = tick.s.now;
-    }
-    was_clear_ = tick.wide_clear;
-    const bool free = !tick.out.has_conflict;
-    free_since_ = free && !was_free_ ? tick.s.now : free_since_;
-    was_free_ = free;
-}
-
-bool Pilot::way_clear_for(const Tick& tick, Seconds span) const noexcept
-{
-    return was_clear_ && tick.s.now - clear_since_ >= span;
 }
 
 void Pilot::watch(Tick& tick) noexcept
@@ -205,6 +149,10 @@ void Pilot::watch(Tick& tick) noexcept
         has_fallback_ = false;
         return;
     }
+    if (tick.in_control && keep_beside(tick)) {
+        enter_rejoining();
+        return;
+    }
     const Seconds left = tick.out.conflict.time_to_loss;
     if (due(tick, left) && plan(tick)) {
         take(tick);
@@ -214,6 +162,23 @@ void Pilot::watch(Tick& tick) noexcept
         enter_rejoining();
         follow_way(tick);
     }
+}
+
+/// What was planned slowly, because nothing faster was clear then, is not flown to its end when something faster is.
+bool Pilot::find_faster(Tick& tick) noexcept
+{
+    if (!is_slow_ || !tick.out.has_conflict || tick.s.now - looked_at_ < kLookAgain) {
+        return false;
+    }
+    looked_at_ = tick.s.now;
+    const float margin = tick.out.margin;
+    if (plan(tick) && mean_speed(answer_) > kFaster * mean_speed(flying_) &&
+        flying_.side.dot(answer_.side) >= kSameSide) {
+        take(tick);
+        return true;
+    }
+    tick.out.margin = margin;
+    return false;
 }
 
 void Pilot::avoid(Tick& tick) noexcept
@@ -229,6 +194,11 @@ void Pilot::avoid(Tick& tick) noexcept
     tick.out.wants_control = true;
     tick.out.kind = flying_.kind;
     tick.out.velocity = path::follow(flying_.path, flown, tick.s.own.position, tick.s.limits, settings_.gains);
+    const bool heads_back = tick.out.velocity.dot(beside_leg(tick.s).off) < 0.0F;
+    if ((ahead.margin < 0.0F || heads_back || is_slow_) && keep_beside(tick)) {
+        enter_rejoining();
+        return;
+    }
     if (ahead.margin < 0.0F) {
         if (plan(tick)) {
             take(tick);
@@ -238,32 +208,12 @@ void Pilot::avoid(Tick& tick) noexcept
         }
         return;
     }
+    if (find_faster(tick)) {
+        return;
+    }
     if (way_clear_for(tick, settings_.settle)) {
         enter_rejoining();
         rejoin(tick);
-    }
-}
-
-void Pilot::rejoin(Tick& tick) noexcept
-{
-    if (tick.out.has_conflict) {
-        if (due(tick, tick.out.conflict.time_to_loss) && plan(tick)) {
-            take(tick);
-            return;
-        }
-        if (urgent(tick, tick.out.conflict.time_to_loss)) {
-            fall_back(tick);
-            return;
-        }
-    }
-    follow_way(tick);
-    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg;
-    if (back && way_clear_for(tick, settings_.settle)) {
-        ++diagnostics_.rejoined;
-        state_ = State::watching;
-        has_flying_ = false;
-        // The velocity stays valid: it is flown until the autopilot has its mode back.
-        tick.out.wants_control = false;
     }
 }
 
@@ -319,6 +269,13 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     }
     had_control_ = in_control;
 
+    if (has_flying_) {
+        const Vec3 off = beside_leg(given).off;
+        const float far = off.norm();
+        if (far > settings_.on_leg) {
+            flying_.side = off / far;
+        }
+    }
     world::Situation situation = given;
     situation.flying = has_flying_ ? &flying_ : nullptr;
     Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false, false};

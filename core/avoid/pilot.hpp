@@ -15,8 +15,8 @@ struct Ladder {
 
 /// The state machine of the supervisor, free of the methods' types. See Supervisor.
 ///
-/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: one conflict search, at most one plan, at
-/// most two checks, at most one fallback choice; all under Settings::budget.
+/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: two conflict searches, at most
+/// one plan, two checks, one flight beside the leg and one fallback choice; all under Settings::budget.
 class Pilot {
 public:
     explicit Pilot(const Settings& settings) noexcept : settings_(settings) {}
@@ -49,6 +49,8 @@ private:
     void enter_rejoining() noexcept;
     [[nodiscard]] bool way_clear_for(const Tick& tick, Seconds span) const noexcept;
     void follow_way(Tick& tick) noexcept;
+    [[nodiscard]] bool keep_beside(Tick& tick) noexcept;
+    [[nodiscard]] bool find_faster(Tick& tick) noexcept;
     void give_ground(Tick& tick) noexcept;
     void note_clearness(Tick& tick) noexcept;
 
@@ -61,6 +63,9 @@ private:
     bool was_clear_ = false;
     bool was_free_ = false;
     bool standing_ = false;
+    bool beside_ = false;   ///< flying beside the leg
+    bool is_slow_ = false;  ///< what is flown
+    TimePoint looked_at_;   ///< when a faster one was looked for last
     bool has_fallback_ = false;
     TimePoint clear_since_;
     TimePoint free_since_;

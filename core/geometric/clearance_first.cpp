@@ -15,8 +15,10 @@ Clearance::Bounds Clearance::bounds() const noexcept
 {
     const world::Airspace& air = *problem_.airspace;
     const Vec3& origin = problem_.frame.origin;
-    return {air.home - origin, air.floor + half_.z() - origin.z(), air.ceiling - half_.z() - origin.z(),
-            air.keep_in_radius - std::sqrt(half_.x() * half_.x() + half_.y() * half_.y())};
+    const float extra = problem_.obstacle_clearance;  // bounds are kept like obstacles
+    const float height = half_.z() + extra;
+    return {air.home - origin, air.floor + height - origin.z(), air.ceiling - height - origin.z(),
+            air.keep_in_radius - std::sqrt(half_.x() * half_.x() + half_.y() * half_.y()) - extra};
 }
 
 world::ThreatKind Clearance::left_airspace(const Curve& curve) const noexcept

@@ -99,7 +99,7 @@ struct Problem {
     std::size_t main = kNoThreat;                ///< index of the main threat in `threats`, or kNoThreat
     std::span<const Threat> threats;             ///< at most kMaxTracks
     std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
-    float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles [m]
+    float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles and bounds [m]
     const world::Airspace* airspace = nullptr;
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]

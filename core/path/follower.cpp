@@ -84,11 +84,15 @@ Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t nex
         correction *= gains.max_correction / size;
     }
     Vec3 command = correction;
+    float fastest = limits.cruise_speed;
     if (t < path.duration()) {
-        command += smooth_velocity(path, t + limits.velocity_lag, next_ahead);
+        const Vec3 velocity = smooth_velocity(path, t + limits.velocity_lag, next_ahead);
+        command += velocity;
+        fastest = std::max(fastest, velocity.norm());
     }
     command.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
-    return command;
+    const float speed = command.norm();
+    return speed > fastest ? Vec3(command * (fastest / speed)) : command;
 }
 
 }  // namespace detail

@@ -9,8 +9,9 @@
 namespace jink::world {
 namespace {
 
-/// Halvings that find how much of the box must be taken off: 2^-6 of the half extents.
+/// Halvings that find how much of the box must be taken off.
 constexpr int kShrinkSteps = 6;
+static_assert(kOverlapResolution * static_cast<float>(1 << kShrinkSteps) == 1.0F);
 
 float overlap(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& shape,
               WorkBudget& budget) noexcept
@@ -57,7 +58,12 @@ float obstacle_margin(const Vec3& half, const Vec3& from, const Vec3& to, const 
     }
     const float distance =
         geometry::swept_box_distance(half, from, to, shape, kObstacleReach, kObstacleResolution, budget);
-    return distance > 0.0F ? distance : -overlap(half, from, to, shape, budget);
+    if (distance > 0.0F) {
+        return distance;
+    }
+    // Nearer than the resolution is not yet contact: that a plane fits between is proven apart from how far.
+    const bool clear = geometry::swept_box_contact(half, from, to, shape, 0.0F, budget) == geometry::Contact::clear;
+    return clear && !budget.exhausted() ? 0.0F : -overlap(half, from, to, shape, budget);
 }
 
 }  // namespace jink::world

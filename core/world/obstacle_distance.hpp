@@ -9,13 +9,20 @@ namespace jink::world {
 /// Separations from general convex obstacles are told apart up to here, and no finer than the resolution [m].
 inline constexpr float kObstacleReach = 8.0F;
 inline constexpr float kObstacleResolution = 0.05F;
+/// And overlaps no finer than this share of the largest half extent.
+inline constexpr float kOverlapResolution = 1.0F / 64.0F;
 
 /// Margin between the own box (half extents [m]) flown straight from `from` to `to` and an obstacle [m].
 ///
 /// Spheres and vertical capsules: closed form, exact; below 0 where they overlap (no deeper than the radius). Other
-/// shapes: libccd, a lower bound by at most kObstacleResolution, capped at kObstacleReach; overlap shows as minus the
-/// part of the box (largest half extent) that has to be taken off until it is clear. A budget that runs out gives the
-/// worst value. O(1), O(log) support queries otherwise.
+/// shapes, by libccd, never say more than there is, and with a rounding of 3e-5 * (sum of magnitudes of the offset, the
+/// way and `half` + bounding radius):
+/// * clear: the distance, at most kObstacleResolution + rounding too small, capped at kObstacleReach; not below 0
+/// unless
+///   the distance is within the rounding;
+/// * overlap: minus the part of the box (in terms of its largest half extent) that has to be taken off until it is
+///   clear, at most kOverlapResolution of that half extent too much.
+/// A budget that runs out gives the worst value. O(1), O(log) support queries otherwise.
 [[nodiscard]] float obstacle_margin(const Vec3& half, const Vec3& from, const Vec3& to, const geometry::Shape& shape,
                                     WorkBudget& budget) noexcept;
 

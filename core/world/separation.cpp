@@ -213,20 +213,23 @@ void against_obstacle(const Situation& situation, const Flight& flight, std::siz
     }
 }
 
-/// Calls `judge(margin of a position, kind)` for each bound that is set.
+/// Calls `judge(margin of a position, kind)` for each bound that is set. Bounds are kept like obstacles: the own
+/// position is known no better towards them.
 template <class Judge>
 void for_each_bound(const Situation& situation, const Judge& judge) noexcept
 {
     const Airspace& air = situation.airspace;
     const Vec3& half = situation.limits.half_extents;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const float height = half.z() + extra;
     if (air.has_floor) {
-        judge([&](const Vec3& p) { return p.z() - half.z() - air.floor; }, ThreatKind::floor);
+        judge([&](const Vec3& p) { return p.z() - height - air.floor; }, ThreatKind::floor);
     }
     if (air.has_ceiling) {
-        judge([&](const Vec3& p) { return air.ceiling - p.z() - half.z(); }, ThreatKind::ceiling);
+        judge([&](const Vec3& p) { return air.ceiling - p.z() - height; }, ThreatKind::ceiling);
     }
     if (air.has_keep_in) {
-        const float corner = std::hypot(half.x(), half.y());
+        const float corner = std::hypot(half.x(), half.y()) + extra;
         judge(
             [&](const Vec3& p) {
                 return air.keep_in_radius - std::hypot(p.x() - air.home.x(), p.y() - air.home.y()) - corner;
@@ -269,7 +272,7 @@ float threat_radius(const Situation& situation, const Track& track, Seconds t) n
 }
 
 Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
-                            WorkBudget& budget, const EscapeRule& escape) noexcept
+                            WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
     Separation best;
     if (path.points.empty()) {
@@ -278,10 +281,16 @@ Separation least_separation(const Situation& situation, const path::TimedPath& p
     Flight flight;
     cut_into_pieces(path, horizon, flight);
     against_airspace(situation, flight, escape, best);
-    for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
-        against_track(situation, flight, i, escape, budget, best);
+    const bool track_first = cutoff.first.kind == ThreatKind::track && cutoff.first.index < situation.tracks.size();
+    if (track_first) {
+        against_track(situation, flight, cutoff.first.index, escape, budget, best);
     }
-    for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
+    for (std::size_t i = 0; i < situation.tracks.size() && best.margin >= cutoff.below; ++i) {
+        if (!track_first || i != cutoff.first.index) {
+            against_track(situation, flight, i, escape, budget, best);
+        }
+    }
+    for (std::size_t i = 0; i < situation.obstacles.size() && best.margin >= cutoff.below; ++i) {
         against_obstacle(situation, flight, i, escape, budget, best);
     }
     return best;

@@ -32,20 +32,29 @@ struct EscapeRule {
     float speed = 0.5F;   ///< the surface grows back at this speed [m/s]
 };
 
+/// Where a search among many flights may stop looking at one: it is no better than what the search has.
+struct Cutoff {
+    float below = -kSeparationCap;  ///< a margin below this ends the look [m]
+    ThreatRef first;                ///< looked at before all others: what was nearest on the flight before
+};
+
 /// Least separation along a timed path, from path time 0 (= Situation::now) to min(path end, `horizon`):
 /// exact and time-aware for tracks (relative motion per segment in closed form, the threat at the size it has at the
 /// segment's end, so never optimistic), swept and exact for obstacles (libccd under `budget`, a budget that runs out
-/// counts as contact), airspace bounds by their planes.
+/// counts as contact), airspace bounds by their planes. All of them are met k_sigma * sigma_position of the own
+/// position early.
 ///
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface, which
 /// is looked at in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
 /// m more (kObstacleResolution, and pieces of 0.2 s). A margin that is no number is contact.
 ///
 /// Never above the truth by more than 1e-3 m within 100 m of the origin; below it by no more than what a track grows in
-/// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cost in budget: one unit per track or sphere
-/// and piece after culling, support calls for solids. O(points * (tracks + obstacles)).
+/// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below
+/// Cutoff::below, and no lower bound of the least. Cost in budget: one unit per track or sphere and piece after
+/// culling, support calls for solids. O(points * (tracks + obstacles)).
 [[nodiscard]] Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
-                                          WorkBudget& budget, const EscapeRule& escape = {}) noexcept;
+                                          WorkBudget& budget, const EscapeRule& escape = {},
+                                          const Cutoff& cutoff = {}) noexcept;
 
 /// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now.
 /// `position`: own box centre.

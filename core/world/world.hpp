@@ -37,7 +37,8 @@ struct Obstacle {
     geometry::Shape shape;
 };
 
-/// Bounds of the airspace, met like any obstacle by the own box. Heights above the world origin [m].
+/// Bounds of the airspace, met like any obstacle by the own box, own position uncertainty included. Heights above the
+/// world origin [m].
 struct Airspace {
     bool has_floor = false;
     bool has_ceiling = false;

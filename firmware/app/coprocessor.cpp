@@ -29,6 +29,7 @@ Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog&
       applied_generation_(parameters.generation()), planner_(parameters.configuration().planner),
       supervisor_(parameters.configuration().supervisor, planner_), tracks_(parameters.configuration().tracks)
 {
+    link_.ask_for_rates(parameters.configuration().ask_rates);
 }
 
 void Coprocessor::apply_configuration() noexcept
@@ -39,6 +40,7 @@ void Coprocessor::apply_configuration() noexcept
     applied_generation_ = parameters_.generation();
     const Configuration& c = parameters_.configuration();
     // Parameters admit only what both accept (fits_together).
+    link_.ask_for_rates(c.ask_rates);
     static_cast<void>(planner_.configure(c.planner));
     static_cast<void>(supervisor_.configure(c.supervisor));
     tracks_.configure(c.tracks);

@@ -60,8 +60,10 @@ struct Diagnostics {
     std::uint32_t commands_refused = 0;
     std::uint32_t scans = 0;
     std::uint32_t readings = 0;
+    std::uint32_t readings_refused = 0;  ///< not level, and wider than kWidestSteep
     std::uint32_t tracks_in = 0;
-    std::uint32_t faults = 0;  ///< times the state became CRITICAL
+    std::uint32_t legs_dropped = 0;  ///< the autopilot went on to a place that is not known: the own motion is the way
+    std::uint32_t faults = 0;        ///< times the state became CRITICAL
 };
 
 /// The co-processor: one call does everything the firmware does in a tick. Images own the ports and call it; so do the
@@ -115,8 +117,10 @@ private:
     void take_params() noexcept;
     void take_commands() noexcept;
     void apply_configuration() noexcept;
-    void place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle,
-                     TimePoint expires) noexcept;
+    void take_reading(const link::RangeReading& reading) noexcept;
+    void place(std::uint32_t id, const geometry::Shape& shape, TimePoint expires) noexcept;
+    void place_level(std::uint32_t first, float yaw, float range, float half_angle, TimePoint expires) noexcept;
+    void remove_obstacles(std::uint32_t first, std::size_t n) noexcept;
     [[nodiscard]] std::uint16_t find_faults(TimePoint now, bool late) const noexcept;
     [[nodiscard]] vehicle::VehicleState own_at(TimePoint now) const noexcept;
     [[nodiscard]] world::Reference reference_at(const vehicle::VehicleState& own) const noexcept;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/echo.hpp"
 
 namespace jink::app {
 namespace {
@@ -12,10 +13,11 @@ namespace {
 constexpr Seconds kFutureSlack = 0.05F;
 /// Velocity noise given to what stands still [m/s].
 constexpr float kRestSigma = 0.02F;
-/// Least radius of what a range sensor sees [m].
-constexpr float kLeastEchoRadius = 0.25F;
-/// Readings steeper downwards than this are the ground, not an obstacle.
+/// Sine of the elevation: what is steeper downwards is the ground; what is steeper upwards, a ceiling; what is flatter,
+/// level.
 constexpr float kDownwards = -0.7F;
+constexpr float kUpwards = 0.98F;
+constexpr float kLevel = 0.02F;
 
 constexpr std::uint32_t kScanIds = 0x01000000;
 constexpr std::uint32_t kReadingIds = 0x02000000;
@@ -91,15 +93,29 @@ void Coprocessor::take_tracks(TimePoint now) noexcept
     tracks_.expire(now);
 }
 
-/// An echo becomes an upright capsule: a level scan says nothing about height, so what it sees may be tall.
-void Coprocessor::place_range(std::uint32_t id, const Vec3& direction, float range, float half_angle,
-                              TimePoint expires) noexcept
+/// Each refusal is counted in the table.
+void Coprocessor::place(std::uint32_t id, const geometry::Shape& shape, TimePoint expires) noexcept
 {
-    const float radius = std::max(kLeastEchoRadius, range * std::sin(std::min(half_angle, 0.5F * kPi)));
-    const Vec3 centre = own_.position + direction * (range + radius);
-    const Vec3 tall = Vec3::UnitZ() * parameters_.configuration().scan_height;
-    const world::Obstacle echo{id, geometry::make_capsule(centre - tall, centre + tall, radius)};
-    static_cast<void>(obstacles_.update(echo, expires, own_.position));  // each refusal is counted there
+    static_cast<void>(obstacles_.update({id, shape}, expires, own_.position));
+}
+
+/// A level beam about `yaw`, in as many parts as its width asks for, under the ids from `first` on.
+void Coprocessor::place_level(std::uint32_t first, float yaw, float range, float half_angle, TimePoint expires) noexcept
+{
+    const std::size_t parts = echo_parts(half_angle);
+    const float part = half_angle / static_cast<float>(parts);
+    for (std::size_t k = 0; k < parts; ++k) {
+        const float aside = static_cast<float>(2 * k + 1) * part - half_angle;
+        place(first + static_cast<std::uint32_t>(k),
+              level_echo(own_.position, yaw + aside, range, part, parameters_.configuration().scan_height), expires);
+    }
+}
+
+void Coprocessor::remove_obstacles(std::uint32_t first, std::size_t n) noexcept
+{
+    for (std::size_t k = 0; k < n; ++k) {
+        static_cast<void>(obstacles_.remove(first + static_cast<std::uint32_t>(k)));
+    }
 }
 
 void Coprocessor::take_scan(TimePoint now) noexcept
@@ -111,15 +127,44 @@ void Coprocessor::take_scan(TimePoint now) noexcept
     ++diagnostics_.scans;
     const link::RangeScan& scan = inbox_.scan;
     const TimePoint expires = scan.stamp + parameters_.configuration().scan_keep;
+    const float half_angle = std::min(0.5F * std::abs(scan.increment), 0.5F * kPi);
+    const std::size_t parts = echo_parts(half_angle);
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
-        const std::uint32_t id = kScanIds + scan.sensor * 256U + static_cast<std::uint32_t>(i);
+        // 72 narrow sectors, or fewer wide ones in parts: at most 72 ids either way.
+        const std::uint32_t first = kScanIds + scan.sensor * 256U + static_cast<std::uint32_t>(i * parts);
         const float range = scan.ranges[i];
         if (range == link::RangeScan::kNothing) {
-            static_cast<void>(obstacles_.remove(id));
+            remove_obstacles(first, parts);
         } else if (range >= 0.0F) {
-            const float yaw = scan.yaw_first + scan.increment * static_cast<float>(i);
-            place_range(id, Vec3(std::cos(yaw), std::sin(yaw), 0.0F), range, 0.5F * std::abs(scan.increment), expires);
+            place_level(first, scan.yaw_first + scan.increment * static_cast<float>(i), range, half_angle, expires);
         }
+    }
+}
+
+void Coprocessor::take_reading(const link::RangeReading& reading) noexcept
+{
+    const TimePoint expires = reading.stamp + parameters_.configuration().scan_keep;
+    const std::uint32_t first = kReadingIds + reading.sensor * 32U;
+    static_assert(kMaxEchoParts <= 32);
+    const bool nothing = reading.range == link::RangeScan::kNothing;
+    const float steepness = reading.direction.z();
+    if (steepness < kDownwards) {
+        has_ground_ = !nothing;
+        ground_ = own_.position.z() + steepness * reading.range;
+        ground_expires_ = expires;
+    } else if (nothing) {
+        remove_obstacles(first, kMaxEchoParts);
+    } else if (std::abs(steepness) <= kLevel) {
+        const float yaw = std::atan2(reading.direction.y(), reading.direction.x());
+        place_level(first, yaw, reading.range, std::min(reading.half_angle, 0.5F * kPi), expires);
+    } else if (reading.half_angle > kWidestSteep) {
+        ++diagnostics_.readings_refused;
+    } else if (steepness > kUpwards) {
+        place(first,
+              ceiling_echo(own_.position, reading.range, reading.half_angle, parameters_.configuration().scan_height),
+              expires);
+    } else {
+        place(first, slanted_echo(own_.position, reading.direction, reading.range, reading.half_angle), expires);
     }
 }
 
@@ -130,18 +175,7 @@ void Coprocessor::take_readings() noexcept
             return;
         }
         ++diagnostics_.readings;
-        const TimePoint expires = reading.stamp + parameters_.configuration().scan_keep;
-        const std::uint32_t id = kReadingIds + reading.sensor;
-        const bool nothing = reading.range == link::RangeScan::kNothing;
-        if (reading.direction.z() < kDownwards) {
-            has_ground_ = !nothing;
-            ground_ = own_.position.z() + reading.direction.z() * reading.range;
-            ground_expires_ = expires;
-        } else if (nothing) {
-            static_cast<void>(obstacles_.remove(id));
-        } else {
-            place_range(id, reading.direction, reading.range, reading.half_angle, expires);
-        }
+        take_reading(reading);
     }
 }
 
@@ -206,6 +240,11 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     take_own_state(now);
     if (inbox_.has_home) {
         home_ = inbox_.home;
+    }
+    if (inbox_.leg_lost) {
+        // Better the own motion than a leg that is flown no more.
+        diagnostics_.legs_dropped += has_leg_ ? 1U : 0U;
+        has_leg_ = false;
     }
     if (inbox_.has_leg) {
         leg_ = inbox_.leg.leg;

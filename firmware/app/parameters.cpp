@@ -52,7 +52,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_MAX_COST", 1, 0.01F, 1, false, "a plan that costs more counts as not found"},
     {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
-    {"JNK_STANDBY", 1, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
+    {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
 }};
 

@@ -104,7 +104,7 @@ struct Configuration {
     Seconds scan_keep = 1.0F;
     Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]
     Seconds setpoint_period = 0.05F;
-    bool standby_stream = true;
+    bool standby_stream = false;
     bool ask_rates = true;
 };
 

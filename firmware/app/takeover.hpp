@@ -68,9 +68,9 @@ struct TakeoverDiagnostics {
 /// us meanwhile: as soon as acting is allowed again and the HEARTBEAT shows it.
 ///
 /// PX4 documents (up to v1.16) that it grants OFFBOARD only after more than a second of set-points; its sources since
-/// v1.14 ask for recent ones alone. A second may be all there is. So a slow stream runs beforehand (`keep_stream`),
-/// which PX4 takes note of and does not fly outside OFFBOARD (its MavlinkReceiver); and where there was none, it is
-/// asked early, and while it refuses and the stream is younger than that, asked again without counting tries.
+/// v1.14 ask for recent ones alone. So it is asked early, and while it refuses and the stream is younger than that,
+/// asked again without counting tries. A second may be all there is: with `keep_stream` a slow stream runs beforehand,
+/// which PX4 takes note of and does not fly outside OFFBOARD (its MavlinkReceiver).
 ///
 /// A loss of control asks for the hold mode, again and again (kHoldTries) until a HEARTBEAT shows any other mode than
 /// the external one: the hold, or somebody else's choice.

@@ -51,6 +51,9 @@ struct LinkDiagnostics {
     std::uint32_t setpoints_dropped = 0;
     std::uint32_t requests_dropped = 0;    ///< of a mode
     std::uint32_t heartbeats_dropped = 0;  ///< ours
+    std::uint32_t bytes_discarded = 0;     ///< that waited when the port was lost
+    std::uint32_t rate_requests = 0;       ///< messages asked for
+    std::uint32_t rates_refused = 0;       ///< answers that did not grant one
 };
 
 /// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
@@ -66,6 +69,9 @@ public:
     virtual void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept = 0;
     /// Periodic work of the link itself: time synchronisation requests, fetching the mission. Call every tick.
     virtual void service(TimePoint now) noexcept = 0;
+
+    /// Whether `service` may ask the autopilot for messages that come too seldom. Off at first.
+    virtual void ask_for_rates(bool on) noexcept = 0;
 
     /// Bytes waiting to go out (contiguous part), and taking `n` of them off once the port has accepted them.
     [[nodiscard]] virtual std::span<const std::byte> pending() const noexcept = 0;

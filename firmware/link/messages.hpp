@@ -133,6 +133,7 @@ struct Inbox {
     AutopilotReport autopilot;
     bool has_leg = false;
     LegReport leg;
+    bool leg_lost = false;  ///< the autopilot flies to where we do not know: what was told before is over
     bool has_home = false;
     Vec3 home = Vec3::Zero();
     bool has_scan = false;
@@ -145,7 +146,7 @@ struct Inbox {
 
     void clear() noexcept
     {
-        has_own_state = has_autopilot = has_leg = has_home = has_scan = false;
+        has_own_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
         own_state.estimator_reset = false;
         tracks.clear();
         readings.clear();

@@ -159,9 +159,23 @@ TEST(SimAutopilot, TelemetryComesAtItsRates)
                 1e-6);
 }
 
-TEST(SimAutopilot, Px4RefusesOffboardWithoutASeenStream)
+TEST(SimAutopilot, Px4RefusesOffboardWithoutARecentSetpoint)
 {
     Line line(kPx4Flight);
+    line.run(1.0);
+    EXPECT_EQ(line.ask(6.0F), 1);  // temporarily rejected
+    line.send_velocity(0.0F, 3.0F, 0.0F);
+    line.run(0.6);
+    EXPECT_EQ(line.ask(6.0F), 1);  // too long ago
+    line.run(0.1, true);
+    EXPECT_EQ(line.ask(6.0F), 0);
+}
+
+TEST(SimAutopilot, Px4AsDocumentedRefusesOffboardUntilTheStreamIsASecondOld)
+{
+    Scenario documented = kPx4Flight;
+    documented.faults.offboard_proof = 1.0;
+    Line line(documented);
     line.run(1.0);
     EXPECT_EQ(line.ask(6.0F), 1);  // temporarily rejected
     EXPECT_EQ(line.autopilot.mode(), Mode::mission);

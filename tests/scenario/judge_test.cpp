@@ -44,6 +44,27 @@ TEST(Judge, FindsAWayWhenThereIsRoomAndNoneWhenThereIsNot)
     EXPECT_LT(close.best, 0.7);
 }
 
+/// What is worst before the threat is told of is nobody's mistake: however good the manoeuvres from then on.
+TEST(Report, AThreatToldOfTooLateIsNoFailureToAvoid)
+{
+    Scenario s = with_standing_threat(30.0);
+    s.duration = 20.0;
+    s.threats[0].appears_when_own_within.reset();
+    for (const double appears : {10.0, 1e9}) {  // abeam at 8 s; later, or never
+        s.threats[0].appears_at = appears;
+        const ReportedFlight flight = report_on(s, fly_in_process(s), true);
+        ASSERT_LT(flight.record.closest.surface, s.promise);
+        EXPECT_TRUE(flight.told_too_late);
+        EXPECT_FALSE(flight.failed_avoidable);
+    }
+    s.threats[0].appears_at = 7.2;  // 4 m before its centre
+    const ReportedFlight late = report_on(s, fly_in_process(s), true);
+    ASSERT_LT(late.record.closest.surface, s.promise);
+    EXPECT_FALSE(late.told_too_late);
+    EXPECT_EQ(late.last_chance.tried, 721U);
+    EXPECT_FALSE(late.failed_avoidable);
+}
+
 TEST(Judge, SeesNoConflictBesideTheWay)
 {
     Scenario s = with_standing_threat(30.0);

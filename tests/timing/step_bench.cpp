@@ -57,8 +57,8 @@ public:
 /// An autopilot on a mission at 5 m/s, and traffic all around it.
 class Bench {
 public:
-    explicit Bench(bool conflicting)
-        : conflicting_(conflicting), coprocessor_(endpoint_, port_, watchdog_, app::Parameters{})
+    /// `ahead` [m]: 0 for no conflict.
+    explicit Bench(float ahead) : ahead_(ahead), coprocessor_(endpoint_, port_, watchdog_, app::Parameters{})
     {
         GpsGlobalOrigin origin;
         origin.latitude = 470000000;
@@ -105,12 +105,12 @@ private:
 
     AdsbVehicle traffic(std::uint32_t id) const
     {
-        // In conflict: all of them come head-on through a gate 30 m wide, 35 m ahead. Quiet: flying off on a ring of
-        // 120 m.
+        // In conflict: all of them come head-on through a gate 30 m wide. Quiet: flying off on a ring of 120 m.
         Random random(id);
         const float angle = random.uniform(0.0F, 2.0F * kPi);
-        const Vec3 where = conflicting_
-                               ? Vec3(random.uniform(-15.0F, 15.0F), 35.0F, 50.0F + random.uniform(-8.0F, 8.0F))
+        const bool conflicting = ahead_ > 0.0F;
+        const Vec3 where = conflicting
+                               ? Vec3(random.uniform(-15.0F, 15.0F), ahead_, 50.0F + random.uniform(-8.0F, 8.0F))
                                : Vec3(120.0F * std::cos(angle), 120.0F * std::sin(angle), 50.0F);
         const GlobalPosition global = to_global(where, {470000000, 80000000, 0}).value();
         AdsbVehicle m;
@@ -120,13 +120,12 @@ private:
         m.altitude = global.alt;
         m.flags = 1 | 2 | 4 | 8 | 128;
         m.hor_velocity = 300;
-        m.heading = conflicting_
-                        ? 18000
-                        : static_cast<std::uint16_t>(std::fmod(450.0F - angle * 180.0F / kPi, 360.0F) * 100.0F);
+        m.heading =
+            conflicting ? 18000 : static_cast<std::uint16_t>(std::fmod(450.0F - angle * 180.0F / kPi, 360.0F) * 100.0F);
         return m;
     }
 
-    bool conflicting_;
+    float ahead_;
     TimePoint now_{1'000'000};
     int ticks_ = 0;
     BenchPort port_;
@@ -135,23 +134,27 @@ private:
     app::Coprocessor coprocessor_;
 };
 
-void step(benchmark::State& state, bool conflicting)
+void step(benchmark::State& state, float ahead)
 {
-    const auto bench = std::make_unique<Bench>(conflicting);
+    const auto bench = std::make_unique<Bench>(ahead);
     std::size_t tracks = 0;
+    std::size_t fallbacks = 0;
     for (auto _ : state) {
         const app::StepReport report = bench->tick();
         tracks = report.tracks;
+        fallbacks += report.guidance.wants_control && report.guidance.plan_status != world::PlanStatus::found ? 1U : 0U;
         benchmark::DoNotOptimize(report.guidance.velocity.x());
     }
     state.counters["tracks"] = static_cast<double>(tracks);
+    state.counters["fallbacks_per_step"] = static_cast<double>(fallbacks) / static_cast<double>(state.iterations());
     state.counters["plans_per_step"] = static_cast<double>(bench->coprocessor().supervisor_diagnostics().plans) /
                                        static_cast<double>(bench->coprocessor().diagnostics().steps);
     state.counters["most_work"] = bench->coprocessor().supervisor_diagnostics().most_work;
 }
 
-BENCHMARK_CAPTURE(step, quiet, false)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(step, planning_every_tick, true)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, quiet, 0.0F)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, planning_every_tick, 35.0F)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(step, plan_and_fallback_every_tick, 14.0F)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <string>
 
 #include "firmware/linux/param_file.hpp"
@@ -38,16 +37,7 @@ files::Complaints check_scenario(const std::filesystem::path& path)
         static_cast<void>(sim::load_scenario(path));
         return {};
     } catch (const sim::BadScenario& error) {
-        // "file:line: why", or "file: why"
-        std::string why = error.what();
-        const std::string file = path.string();
-        files::Complaint complaint{0, 0, why, file};
-        if (why.starts_with(file + ":")) {
-            why.erase(0, file.size() + 1);
-            const auto [end, bad] = std::from_chars(why.data(), why.data() + why.size(), complaint.line);
-            complaint.text = why.substr(bad == std::errc{} ? static_cast<std::size_t>(end - why.data()) + 2 : 1);
-        }
-        return {complaint};
+        return error.complaints();
     } catch (const std::exception& error) {
         return {{0, 0, error.what(), path.string()}};
     }

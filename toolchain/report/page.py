@@ -5,7 +5,7 @@ import html
 import figures
 
 OUTCOMES = {
-    "clear": ("good", "no manoeuvre was needed, none was flown"),
+    "clear": ("good", "control was not taken: nothing was in the way, or the autopilot refused and was asked to hold"),
     "avoided": ("good", "jink took control and kept the distance it promises"),
     "braked": ("good", "the same, and it held still for a while"),
     "breach": ("bad", "nearer than the promise, no contact"),

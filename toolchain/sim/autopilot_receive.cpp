@@ -27,9 +27,9 @@ constexpr std::uint8_t kJink = 196;
 /// Everything ignored but the velocity: links.md, B.1.
 constexpr std::uint16_t kVelocityMask = 0x0DC7;
 constexpr std::uint8_t kLocalNed = 1;
-/// PX4 goes into OFFBOARD after more than this of set-points [us], none of which came later than kStreamGap after the
-/// last (docs.px4.io v1.16, Offboard Mode).
-constexpr Micros kStreamProof = kSecond;
+/// PX4 goes into OFFBOARD when it has set-points, the last not older than this [us] (offboardCheck.cpp since v1.14);
+/// its documentation wants them to have come for a second, none later than this after the one before (Offboard Mode,
+/// v1.16): Faults::offboard_proof.
 constexpr Micros kStreamGap = kSecond / 2;
 /// Set-points that were under way when somebody chose a mode are forgiven [us].
 constexpr Micros kGrace = kSecond / 5;
@@ -133,7 +133,7 @@ std::uint8_t Autopilot::set_mode(const CommandLong& command)
             return kDenied;
         }
         const bool stream = last_setpoint_ >= 0 && world_.now() - last_setpoint_ <= kStreamGap &&
-                            world_.now() - stream_since_ > kStreamProof;
+                            world_.now() - stream_since_ >= to_micros(scenario_.faults.offboard_proof);
         if (scenario_.stack == Stack::px4 && !stream) {
             return kTemporarilyRejected;
         }

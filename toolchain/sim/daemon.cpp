@@ -121,6 +121,7 @@ std::optional<Inside> read_summary(const std::filesystem::path& file)
     inside.flips = count("flips");
     inside.brakes = count("brakes");
     inside.escapes = count("escapes");
+    inside.holds = count("holds");
     inside.rejoined = count("rejoined");
     inside.budget_spent = count("budget_spent");
     inside.deadlines_missed = count("deadlines_missed");

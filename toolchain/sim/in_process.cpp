@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <ctime>
 #include <memory>
 
 #include "firmware/app/coprocessor.hpp"
@@ -39,6 +39,14 @@ private:
     double sum_ = 0.0;
 };
 
+/// Of this thread: a step that is interrupted by other work of the machine is not thereby a long one.
+double cpu_microseconds()
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
+}
+
 /// The co-processor with its own watch on it.
 class Bench {
 public:
@@ -51,13 +59,13 @@ public:
     {
         const std::uint32_t plans = coprocessor_->supervisor_diagnostics().plans;
         const std::uint32_t found = coprocessor_->supervisor_diagnostics().plans_found;
-        const auto began = std::chrono::steady_clock::now();
+        const double began = cpu_microseconds();
         const app::StepReport report = coprocessor_->step(now);
-        const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - began;
-        steps_.note(took.count());
+        const double took = cpu_microseconds() - began;
+        steps_.note(took);
         if (coprocessor_->supervisor_diagnostics().plans != plans) {
-            plan_steps_.note(took.count());
-            plan_steps_.keep(took.count());
+            plan_steps_.note(took);
+            plan_steps_.keep(took);
         }
         const bool planned = coprocessor_->supervisor_diagnostics().plans != plans;
         const bool succeeded = coprocessor_->supervisor_diagnostics().plans_found != found;
@@ -85,6 +93,7 @@ public:
         in.flips = s.flips;
         in.brakes = s.brakes;
         in.escapes = s.escapes;
+        in.holds = s.holds;
         in.rejoined = s.rejoined;
         in.control_lost = s.control_lost;
         in.budget_spent = s.budget_spent;

@@ -100,9 +100,13 @@ int finish(const Options& options, const std::vector<ReportedFlight>& flights)
     for (const ReportedFlight& f : flights) {
         if (f.judged && f.record.closest.surface < f.record.promise) {
             std::cout << f.record.name << ": " << f.record.closest.surface << " m from " << f.record.closest_threat
-                      << " at " << f.record.closest.time << " s; " << f.last_chance.keep << " of "
-                      << f.last_chance.tried << " manoeuvres from " << f.last_chance.detected
-                      << " s on kept the promise\n";
+                      << " at " << f.record.closest.time << " s; ";
+            if (f.told_too_late) {
+                std::cout << "nobody was told of it before\n";
+            } else {
+                std::cout << f.last_chance.keep << " of " << f.last_chance.tried << " manoeuvres from "
+                          << f.last_chance.detected << " s on kept the promise\n";
+            }
         }
     }
     if (!options.out.empty()) {

@@ -42,7 +42,7 @@ struct Inside {
     Durations steps;       ///< Coprocessor::step
     Durations plan_steps;  ///< of these, the ones that asked the planner
     unsigned conflicts = 0, plans = 0, plans_found = 0, answers_rejected = 0, manoeuvres = 0, replans = 0, flips = 0,
-             brakes = 0, escapes = 0, rejoined = 0, control_lost = 0, budget_spent = 0, most_work = 0;
+             brakes = 0, escapes = 0, holds = 0, rejoined = 0, control_lost = 0, budget_spent = 0, most_work = 0;
     unsigned deadlines_missed = 0, setpoints_withheld = 0, own_state_refused = 0, autopilot_reboots = 0,
              clock_relocks = 0;
     unsigned tracks_refused = 0, track_jumps = 0, frames_refused = 0, not_finite = 0, stale_stamp = 0, inbox_full = 0,

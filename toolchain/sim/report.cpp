@@ -120,6 +120,7 @@ Json inside_of(const Inside& in, bool machine_independent)
     j["flips"] = in.flips;
     j["brakes"] = in.brakes;
     j["escapes"] = in.escapes;
+    j["holds"] = in.holds;
     j["rejoined"] = in.rejoined;
     j["control_lost"] = in.control_lost;
     j["budget_spent"] = in.budget_spent;
@@ -232,7 +233,12 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
     flight.verdict = judge(scenario);
     const Record& r = flight.record;
     if (r.closest.surface < scenario.promise) {
+        const bool never_told = r.appeared[r.closest.threat] < 0.0;
         const double told = r.appeared[r.closest.threat] + scenario.traffic.latency;
+        flight.told_too_late = never_told || r.closest.time <= told;
+        if (flight.told_too_late) {
+            return flight;
+        }
         const double in_sight = std::max(told, flight.verdict.conflict ? flight.verdict.detected : 0.0);
         const Sample& then =
             *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= in_sight; });

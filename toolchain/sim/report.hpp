@@ -22,7 +22,8 @@ struct ReportedFlight {
     /// The promise was broken, and from where the vehicle was when the first sighting of the threat arrived (or the
     /// first conflict came into sight, if that was later) one of the judge's manoeuvres would have kept it.
     bool failed_avoidable = false;
-    Verdict last_chance;  ///< of that instant, where the promise was broken
+    bool told_too_late = false;  ///< the promise was broken before anybody was told of the threat, and worst then
+    Verdict last_chance;         ///< of that instant, where the promise was broken afterwards
 };
 
 /// Adds what can be found out after a flight: the expectation, the flight alone and, when `with_judge`, the verdict.

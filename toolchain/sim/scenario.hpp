@@ -53,6 +53,7 @@ struct Faults {
     Mode pilot_mode = Mode::hold;            ///< hold, home or pilot
     Vec pilot_velocity = Vec::Zero();        ///< flown in pilot mode [m/s]
     bool refuse_external = false;            ///< every request of the external mode is denied
+    double offboard_proof = 0.0;             ///< a PX4 that wants to have seen set-points for longer than this [s]
     std::optional<double> reboot_at;         ///< the autopilot falls silent, then its boot clock starts again
     double reboot_lasts = 1.0;
     std::optional<double> clock_jump_at;  ///< the boot clock jumps

@@ -3,287 +3,208 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
+#include <charconv>
+#include <tuple>
 
 #include "firmware/app/parameters.hpp"
-#include "toolchain/sim/yaml_reader.hpp"
+#include "toolchain/sim/scenario_parts.hpp"
 
 namespace jink::sim {
 namespace {
 
-constexpr double kFar = 1e4;  // [m], [s]: beyond any scenario
-
-template <class T, std::size_t N>
-T one_of(YamlMap& map, const YAML::Node& node, const std::array<T, N>& values)
-{
-    const auto text = node.IsScalar() ? node.as<std::string>() : std::string();
-    std::string allowed;
-    for (const T value : values) {
-        if (to_string(value) == text) {
-            return value;
-        }
-        allowed += (allowed.empty() ? "" : ", ") + std::string(to_string(value));
-    }
-    map.fail(node, "expected one of: " + allowed);
-}
-
-void read_vehicle(YamlMap map, TruthLimits& v)
-{
-    map.number("cruise", v.cruise, 0.5, 100.0);
-    map.number("omega", v.omega, 0.5, 50.0);
-    map.number("damping", v.damping, 0.3, 3.0);
-    map.number("max_acceleration", v.max_acceleration, 0.2, 50.0);
-    map.number("max_vertical_acceleration", v.max_vertical_acceleration, 0.2, 50.0);
-    map.number("max_climb", v.max_climb, 0.1, 50.0);
-    map.number("max_descent", v.max_descent, 0.1, 50.0);
-    map.number("max_yaw_rate", v.max_yaw_rate, 0.05, 20.0);
-    map.number("max_course_rate", v.max_course_rate, 0.0, 20.0);
-    map.finish();
-}
-
-void read_traffic(YamlMap map, TrafficSensor& t)
-{
-    map.number("rate", t.rate, 0.1, 200.0);
-    map.number("sigma_position", t.sigma_position, 0.0, 100.0);
-    map.number("sigma_velocity", t.sigma_velocity, 0.0, 100.0);
-    map.number("latency", t.latency, 0.0, 5.0);
-    map.number("jitter", t.jitter, 0.0, 5.0);
-    map.number("dropout", t.dropout, 0.0, 1.0);
-    map.finish();
-}
-
-void read_turns(YamlMap& map, Threat& threat)
-{
-    const YAML::Node list = map.at("turns");
-    if (!list.IsSequence()) {
-        map.fail(list, "expected a list of {at, velocity}");
-    }
-    double last = 0.0;
-    for (const YAML::Node& node : list) {
-        YamlMap item(node, map.file());
-        Turn turn;
-        turn.at = item.get<double>("at");
-        turn.velocity = item.vector("velocity");
-        if (turn.at <= last) {
-            item.fail(node, "turns come in order of time, after 0");
-        }
-        last = turn.at;
-        item.finish();
-        threat.turns.push_back(turn);
-    }
-}
-
-/// `position` at time 0, or the point that is passed at a time.
-void read_place(YamlMap& map, Threat& threat)
-{
-    if (map.has("position") == map.has("passes")) {
-        map.fail(map.node(), "a threat has either 'position' or 'passes'");
-    }
-    if (map.has("position")) {
-        threat.position = map.vector("position");
-        return;
-    }
-    YamlMap passes = map.map("passes");
-    const Vec point = passes.vector("point");
-    const auto at = passes.get<double>("at");
-    passes.finish();
-    threat.position = point - threat.velocity * at;
-    if (!threat.turns.empty() && threat.turns.front().at < at) {
-        map.fail(map.node(), "'passes' speaks of the time before the first turn");
-    }
-}
-
-void read_grid(YamlMap& map, const Threat& first, std::vector<Threat>& threats)
-{
-    YamlMap grid = map.map("grid");
-    const auto across = grid.get<int>("across");
-    const auto up = grid.get<int>("up");
-    const auto step = grid.get<double>("step");
-    const Vec direction = grid.vector("direction");
-    grid.finish();
-    if (across < 1 || up < 1 || across * up > 64 || direction.norm() == 0.0) {
-        map.fail(map.node(), "a grid has 1 to 64 threats and a direction");
-    }
-    for (int row = 0; row < up; ++row) {
-        for (int column = 0; column < across; ++column) {
-            Threat threat = first;
-            threat.name = first.name + "_" + std::to_string(row) + "_" + std::to_string(column);
-            threat.position += direction.normalized() * (step * (column - 0.5 * (across - 1))) +
-                               Vec::UnitZ() * (step * (row - 0.5 * (up - 1)));
-            threats.push_back(threat);
-        }
-    }
-}
-
-void read_threat(YamlMap map, Scenario& scenario)
-{
-    Threat threat;
-    threat.name = "threat_" + std::to_string(scenario.threats.size() + 1);
-    map.read("name", threat.name);
-    map.number("radius", threat.radius, 0.05, 500.0);
-    map.number("half_height", threat.half_height, 0.0, 500.0);
-    if (map.has("velocity")) {
-        threat.velocity = map.vector("velocity");
-    }
-    if (map.has("turns")) {
-        read_turns(map, threat);
-    }
-    read_place(map, threat);
-    threat.sensed_by = threat.at_rest() ? SensedBy::point : SensedBy::traffic;
-    if (map.has("sensed_by")) {
-        threat.sensed_by =
-            one_of(map, map.at("sensed_by"), std::array{SensedBy::traffic, SensedBy::point, SensedBy::scan});
-    }
-    if (threat.sensed_by != SensedBy::traffic && !threat.at_rest()) {
-        map.fail(map.node(), "what moves is sensed by traffic");
-    }
-    if (threat.half_height > 0.0 && threat.sensed_by != SensedBy::scan) {
-        map.fail(map.node(), "only a scan sees something tall; traffic and points are spheres");
-    }
-    map.number("appears_at", threat.appears_at, 0.0, kFar);
-    if (map.has("appears_when_own_within")) {
-        threat.appears_when_own_within = map.get<double>("appears_when_own_within");
-        threat.collision_point = map.vector("collision_point");
-    }
-    if (map.has("grid")) {
-        read_grid(map, threat, scenario.threats);
-    } else {
-        scenario.threats.push_back(threat);
-    }
-    map.finish();
-}
-
-template <class T>
-void optional_number(YamlMap& map, const std::string& key, std::optional<T>& value)
-{
-    if (map.has(key)) {
-        value = map.get<T>(key);
-    }
-}
+using namespace detail;
 
 constexpr std::array kModes{Mode::mission, Mode::external, Mode::hold, Mode::brake, Mode::home, Mode::pilot};
+constexpr std::array kOutcomes{Outcome::clear,  Outcome::avoided,   Outcome::braked,
+                               Outcome::breach, Outcome::collision, Outcome::failed};
 
-void read_faults(YamlMap map, Faults& faults)
+void read_vehicle(YamlMap& root, TruthLimits& v)
 {
-    optional_number(map, "pilot_takes_over", faults.pilot_takes_over);
-    if (map.has("pilot_mode")) {
-        faults.pilot_mode = one_of(map, map.at("pilot_mode"), std::array{Mode::hold, Mode::home, Mode::pilot});
+    auto map = root.map("vehicle");
+    if (!map) {
+        return;
     }
-    if (map.has("pilot_velocity")) {
-        faults.pilot_velocity = map.vector("pilot_velocity");
+    number(*map, "cruise", v.cruise, {0.5F, 100.0F});
+    number(*map, "omega", v.omega, {0.5F, 50.0F});
+    number(*map, "damping", v.damping, {0.3F, 3.0F});
+    number(*map, "max_acceleration", v.max_acceleration, {0.2F, 50.0F});
+    number(*map, "max_vertical_acceleration", v.max_vertical_acceleration, {0.2F, 50.0F});
+    number(*map, "max_climb", v.max_climb, {0.1F, 50.0F});
+    number(*map, "max_descent", v.max_descent, {0.1F, 50.0F});
+    number(*map, "max_yaw_rate", v.max_yaw_rate, {0.05F, 20.0F});
+    number(*map, "max_course_rate", v.max_course_rate, {0.0F, 20.0F});
+    map->finish();
+}
+
+void read_sensors(YamlMap& root, Scenario& s)
+{
+    if (auto map = root.map("traffic")) {
+        number(*map, "rate", s.traffic.rate, {0.1F, 200.0F});
+        number(*map, "sigma_position", s.traffic.sigma_position, {0.0F, 100.0F});
+        number(*map, "sigma_velocity", s.traffic.sigma_velocity, {0.0F, 100.0F});
+        number(*map, "latency", s.traffic.latency, {0.0F, 5.0F});
+        number(*map, "jitter", s.traffic.jitter, {0.0F, 5.0F});
+        number(*map, "dropout", s.traffic.dropout, {0.0F, 1.0F});
+        map->finish();
     }
-    map.read("refuse_external", faults.refuse_external);
-    optional_number(map, "reboot_at", faults.reboot_at);
-    map.number("reboot_lasts", faults.reboot_lasts, 0.0, 60.0);
-    optional_number(map, "clock_jump_at", faults.clock_jump_at);
-    map.number("clock_jump_by", faults.clock_jump_by, -50.0, kFar);
-    optional_number(map, "cable_pulled_at", faults.cable_pulled_at);
-    map.number("cable_pulled_for", faults.cable_pulled_for, 0.0, kFar);
+    if (auto map = root.map("scan")) {
+        number(*map, "rate", s.scan.rate, {1.0F, 50.0F});
+        number(*map, "range", s.scan.range, {1.0F, 600.0F});
+        map->finish();
+    }
+}
+
+void read_faults(YamlMap& root, Faults& faults)
+{
+    auto map = root.map("faults");
+    if (!map) {
+        return;
+    }
+    number(*map, "pilot_takes_over", faults.pilot_takes_over, kAnyTime);
+    faults.pilot_mode =
+        one_of(*map, "pilot_mode", std::array{Mode::hold, Mode::home, Mode::pilot}).value_or(faults.pilot_mode);
+    vector(*map, "pilot_velocity", faults.pilot_velocity, kVelocity);
+    faults.refuse_external = map->boolean("refuse_external").value_or(false);
+    number(*map, "offboard_proof", faults.offboard_proof, {0.0F, 10.0F});
+    number(*map, "reboot_at", faults.reboot_at, kAnyTime);
+    number(*map, "reboot_lasts", faults.reboot_lasts, {0.0F, 60.0F});
+    number(*map, "clock_jump_at", faults.clock_jump_at, kAnyTime);
+    number(*map, "clock_jump_by", faults.clock_jump_by, {-50.0F, 1e4F});
+    number(*map, "cable_pulled_at", faults.cable_pulled_at, kAnyTime);
+    number(*map, "cable_pulled_for", faults.cable_pulled_for, kAnyTime);
+    map->finish();
+}
+
+void read_outcomes(YamlMap& map, Expectation& expect)
+{
+    const auto node = map.node("outcome", kNeed);
+    if (!node) {
+        return;
+    }
+    const std::vector<YAML::Node> given =
+        node->IsSequence() ? std::vector<YAML::Node>(node->begin(), node->end()) : std::vector<YAML::Node>{*node};
+    for (const YAML::Node& one : given) {
+        if (const auto outcome = one_of(map, "outcome", one.IsScalar() ? one.Scalar() : "a list", kOutcomes)) {
+            expect.outcomes.push_back(*outcome);
+        }
+    }
+    if (given.empty()) {
+        map.complain("outcome", "is empty");
+    }
+}
+
+void read_expectation(YamlMap& root, Expectation& expect)
+{
+    auto map = root.map("expect", kNeed);
+    if (!map) {
+        return;
+    }
+    read_outcomes(*map, expect);
+    expect.given_back = map->boolean("given_back");
+    if (const auto flips = map->whole("flips_at_most", {0.0F, 1000.0F})) {
+        expect.flips_at_most = static_cast<int>(*flips);
+    }
+    expect.final_mode = one_of(*map, "final_mode", kModes);
+    map->finish();
+}
+
+void read_mission(YamlMap& map, Scenario& s, Complaints& complaints)
+{
+    if (const auto list = map.list("mission", kNeed)) {
+        for (std::size_t i = 0; i < list->size(); ++i) {
+            const YAML::Node& node = (*list)[i];
+            if (files::vector_of(node, kPlace, item_name("mission", i), map.file(), complaints)) {
+                s.mission.push_back(to_vec(node));
+            }
+        }
+        if (list->size() < 2) {
+            map.complain("mission", "a mission has at least two waypoints");
+        }
+    }
+    if (s.mission.size() >= 2) {
+        s.start_position = s.mission[0];
+        s.start_velocity = along(s.mission[1] - s.mission[0], s.vehicle.cruise, s.vehicle);
+    }
+    if (auto start = map.map("start")) {
+        vector(*start, "position", s.start_position, kPlace);
+        vector(*start, "velocity", s.start_velocity, kVelocity);
+        start->finish();
+    }
+}
+
+void read_parameters(YamlMap& root, Scenario& s, Complaints& complaints)
+{
+    const auto node = root.node("parameters");
+    if (!node) {
+        return;
+    }
+    YamlMap map(*node, "parameters", root.file(), complaints);
+    for (const app::ParamInfo& info : app::param_table()) {
+        const std::string name(info.name);
+        if (map.has(name)) {
+            number(map, name, s.parameters[name], {-1e9F, 1e9F});
+        }
+    }
     map.finish();
 }
 
-void read_expectation(YamlMap map, Expectation& expect)
+void read_seed(YamlMap& map, Scenario& s)
 {
-    constexpr std::array kOutcomes{Outcome::clear,  Outcome::avoided,   Outcome::braked,
-                                   Outcome::breach, Outcome::collision, Outcome::failed};
-    const YAML::Node outcome = map.at("outcome");
-    if (outcome.IsSequence()) {
-        for (const YAML::Node& node : outcome) {
-            expect.outcomes.push_back(one_of(map, node, kOutcomes));
-        }
-    } else {
-        expect.outcomes.push_back(one_of(map, outcome, kOutcomes));
-    }
-    optional_number(map, "given_back", expect.given_back);
-    optional_number(map, "flips_at_most", expect.flips_at_most);
-    if (map.has("final_mode")) {
-        expect.final_mode = one_of(map, map.at("final_mode"), kModes);
-    }
-    map.finish();
-}
-
-void read_mission(YamlMap& map, Scenario& scenario)
-{
-    const YAML::Node list = map.at("mission");
-    if (!list.IsSequence() || list.size() < 2) {
-        map.fail(list, "a mission has at least two waypoints");
-    }
-    for (const YAML::Node& node : list) {
-        scenario.mission.push_back(map.vector(node));
-    }
-    scenario.start_position = scenario.mission[0];
-    scenario.start_velocity =
-        along(scenario.mission[1] - scenario.mission[0], scenario.vehicle.cruise, scenario.vehicle);
-    if (map.has("start")) {
-        YamlMap start = map.map("start");
-        if (start.has("position")) {
-            scenario.start_position = start.vector("position");
-        }
-        if (start.has("velocity")) {
-            scenario.start_velocity = start.vector("velocity");
-        }
-        start.finish();
-    }
-}
-
-void read_parameters(YamlMap& map, Scenario& scenario)
-{
-    const YAML::Node list = map.at("parameters");
-    for (const auto& entry : list) {
-        const auto name = entry.first.as<std::string>();
-        if (app::Parameters::find(name) == app::kParamCount) {
-            map.fail(entry.first, "there is no parameter '" + name + "'");
-        }
-        try {
-            scenario.parameters[name] = entry.second.as<double>();
-        } catch (const YAML::Exception&) {
-            map.fail(entry.second, "expected a number");
+    if (const auto text = map.text("seed")) {
+        const auto [end, bad] = std::from_chars(text->data(), text->data() + text->size(), s.seed);
+        if (bad != std::errc{} || end != text->data() + text->size()) {
+            map.complain("seed", files::in_quotes(*text) + " is not a whole number from 0 to 18446744073709551615");
         }
     }
 }
 
-Scenario read_scenario(YamlMap map, const std::string& stem)
+Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name, Complaints& complaints)
 {
     Scenario s;
-    s.name = stem;
-    map.read("title", s.title);
-    map.read("seed", s.seed);
-    if (map.has("stack")) {
-        s.stack = one_of(map, map.at("stack"), std::array{Stack::ardupilot, Stack::px4});
+    s.name = name.stem().string();
+    YamlMap map(node, "", name.string(), complaints);
+    if (!map.is_map()) {
+        return s;
     }
-    map.number("duration", s.duration, 1.0, 600.0);
-    map.number("promise", s.promise, 0.0, 100.0);
-    map.number("body_radius", s.body_radius, 0.0, 100.0);
-    optional_number(map, "floor", s.floor);
-    if (map.has("vehicle")) {
-        read_vehicle(map.map("vehicle"), s.vehicle);
-    }
-    read_mission(map, s);
-    if (map.has("threats")) {
-        for (const YAML::Node& node : map.at("threats")) {
-            read_threat({node, map.file()}, s);
-        }
-    }
-    if (map.has("traffic")) {
-        read_traffic(map.map("traffic"), s.traffic);
-    }
-    if (map.has("scan")) {
-        YamlMap scan = map.map("scan");
-        scan.number("rate", s.scan.rate, 1.0, 50.0);
-        scan.number("range", s.scan.range, 1.0, 600.0);
-        scan.finish();
-    }
-    if (map.has("parameters")) {
-        read_parameters(map, s);
-    }
-    if (map.has("faults")) {
-        read_faults(map.map("faults"), s.faults);
-    }
-    read_expectation(map.map("expect"), s.expect);
+    s.title = map.text("title").value_or("");
+    read_seed(map, s);
+    s.stack = one_of(map, "stack", std::array{Stack::ardupilot, Stack::px4}).value_or(s.stack);
+    number(map, "duration", s.duration, {1.0F, 600.0F});
+    number(map, "promise", s.promise, {0.0F, 100.0F});
+    number(map, "body_radius", s.body_radius, {0.0F, 100.0F});
+    number(map, "floor", s.floor, kPlace);
+    read_vehicle(map, s.vehicle);
+    read_mission(map, s, complaints);
+    read_threats(map, s.threats, complaints);
+    read_sensors(map, s);
+    read_parameters(map, s, complaints);
+    read_faults(map, s.faults);
+    read_expectation(map, s.expect);
     map.finish();
     default_radii(s);
     return s;
+}
+
+std::string all_of(const Complaints& complaints)
+{
+    std::string text;
+    for (const files::Complaint& complaint : complaints) {
+        text += text.empty() ? "" : "\n";
+        text += files::to_string(complaint);
+    }
+    return text;
+}
+
+Scenario checked(const std::optional<YAML::Node>& node, const std::filesystem::path& name, Complaints& complaints)
+{
+    Scenario scenario = node ? read_scenario(*node, name, complaints) : Scenario{};
+    std::stable_sort(complaints.begin(), complaints.end(), [](const files::Complaint& a, const files::Complaint& b) {
+        return std::tie(a.line, a.column) < std::tie(b.line, b.column);
+    });
+    if (!complaints.empty()) {
+        throw BadScenario(std::move(complaints));
+    }
+    return scenario;
 }
 
 }  // namespace
@@ -305,24 +226,21 @@ void default_radii(Scenario& scenario)
     }
 }
 
+BadScenario::BadScenario(files::Complaints complaints)
+    : std::runtime_error(all_of(complaints)), complaints_(std::move(complaints))
+{
+}
+
 Scenario parse_scenario(const std::string& text, const std::filesystem::path& name)
 {
-    try {
-        return read_scenario({YAML::Load(text), name.string()}, name.stem().string());
-    } catch (const YAML::Exception& e) {
-        throw BadScenario(name.string() + ":" + std::to_string(e.mark.line + 1) + ": " + e.msg);
-    }
+    Complaints complaints;
+    return checked(files::parse_yaml(text, name.string(), complaints), name, complaints);
 }
 
 Scenario load_scenario(const std::filesystem::path& file)
 {
-    std::ifstream in(file);
-    if (!in) {
-        throw BadScenario(file.string() + ": cannot be read");
-    }
-    std::ostringstream text;
-    text << in.rdbuf();
-    return parse_scenario(text.str(), file);
+    Complaints complaints;
+    return checked(files::load_yaml(file, complaints), file, complaints);
 }
 
 std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder)

@@ -5,14 +5,21 @@
 #include <stdexcept>
 #include <vector>
 
+#include "firmware/linux/complaint.hpp"
 #include "toolchain/sim/scenario.hpp"
 
 namespace jink::sim {
 
-/// A scenario file that cannot be used; what() reads "file:line: why".
+/// A scenario file that cannot be used; what() has a line "file:line:column: why" for everything that is wrong with it.
 class BadScenario : public std::runtime_error {
 public:
-    using std::runtime_error::runtime_error;
+    explicit BadScenario(files::Complaints complaints);
+
+    /// In the order of the file; at least one.
+    [[nodiscard]] const files::Complaints& complaints() const noexcept { return complaints_; }
+
+private:
+    files::Complaints complaints_;
 };
 
 /// Reads a scenario file (format: tests/scenario/README.md). Unknown keys, wrong types, missing and impossible values

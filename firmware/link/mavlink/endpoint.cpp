@@ -22,6 +22,7 @@ constexpr std::uint8_t kArmed = 128;
 constexpr std::uint8_t kCustomModeEnabled = 1;
 constexpr std::uint8_t kLocalNed = 1;
 constexpr std::uint16_t kDoSetMode = 176;
+constexpr std::uint16_t kSetMessageInterval = 511;
 constexpr std::uint16_t kVelocityOnly = 0x0DC7;
 constexpr std::uint8_t kReal32 = 9;
 constexpr Seconds kTimesyncPeriod = 1.0F;
@@ -61,8 +62,12 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
     diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
                                   p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
                                   p.stale_signature + p.signature_streams;
-    if (mission_.take_leg() || leg_waits_) {
+    const bool fetched = mission_.take_leg();
+    if (fetched || leg_waits_) {
         resolve_leg(inbox);
+    }
+    if (mission_.take_loss() || (fetched && !has_mission_leg_)) {
+        lose_leg(inbox);
     }
 }
 
@@ -85,6 +90,7 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
         dispatch_sensors(c);
         return;
     }
+    streams_.heard(c.frame.message_id);
     switch (c.frame.message_id) {
     case LocalPositionNed::kInfo.id: on_local_position(c); break;
     case AttitudeQuaternion::kInfo.id: on_attitude(c); break;
@@ -159,6 +165,7 @@ void Endpoint::note(ClockEvent event) noexcept
         has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_target_ = has_mission_leg_ = leg_waits_ = false;
         origin_rank_ = 0;
         mission_.forget();
+        streams_.restart();
     }
 }
 
@@ -212,14 +219,35 @@ void Endpoint::on_timesync(const Context& c) noexcept
 void Endpoint::on_command_ack(const Context& c) noexcept
 {
     CommandAck m;
-    if (!decode(c.frame, m) || m.command != kDoSetMode ||
-        (m.target_system != 0 && !for_us(m.target_system, m.target_component))) {
+    const bool known = decode(c.frame, m) && (m.command == kDoSetMode || m.command == kSetMessageInterval);
+    if (!known || (m.target_system != 0 && !for_us(m.target_system, m.target_component))) {
         ++diagnostics_.frames_ignored;
         return;
     }
     constexpr std::uint8_t kInProgress = 5;
+    if (m.command == kSetMessageInterval) {
+        diagnostics_.rates_refused += m.result == 0 || m.result == kInProgress ? 0U : 1U;
+        return;
+    }
     if (m.result != kInProgress && !c.inbox.mode_answers.try_push_back({m.result == 0, m.result})) {
         ++diagnostics_.inbox_full;
+    }
+}
+
+void Endpoint::ask_for_streams(TimePoint now) noexcept
+{
+    if (!asks_for_rates_ || autopilot_.stack == AutopilotStack::unknown) {
+        return;
+    }
+    if (const std::optional<StreamRequest> request = streams_.next(now)) {
+        CommandLong m;
+        m.command = kSetMessageInterval;
+        m.target_system = system_;
+        m.target_component = kAutopilotComponent;
+        m.param1 = static_cast<float>(request->message_id);
+        m.param2 = static_cast<float>(request->interval_us);
+        send(m);
+        ++diagnostics_.rate_requests;
     }
 }
 
@@ -237,6 +265,7 @@ void Endpoint::service(TimePoint now) noexcept
         request.target_component = kAutopilotComponent;
         send(request);
     }
+    ask_for_streams(now);
     switch (mission_.next(now)) {
     case MissionStep::list: {
         MissionRequestList m;

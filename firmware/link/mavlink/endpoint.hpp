@@ -9,6 +9,7 @@
 #include "firmware/link/mavlink/mission_client.hpp"
 #include "firmware/link/mavlink/modes.hpp"
 #include "firmware/link/mavlink/parser.hpp"
+#include "firmware/link/mavlink/stream_requests.hpp"
 #include "firmware/link/mavlink/transmit_buffer.hpp"
 
 // MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/links.md is the reference for
@@ -30,7 +31,8 @@
 //   no_origin. Local plane: north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (the
 //   wrap at 180 degrees is handled). Above 85 degrees of latitude there is no origin.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
-//   128). Without coordinates and altitude: out_of_range. emitter_type 19 (point obstacle): at_rest, velocity zero.
+//   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
+//   emitter_type 19 (point obstacle): at_rest, velocity zero.
 //   Stamp = now - tslc (the application takes the assumed latency off).
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by a yaw not older than 1 s, else no_origin);
 //   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
@@ -39,7 +41,9 @@
 // * Leg: POSITION_TARGET_LOCAL_NED (frame 1) while not in the external mode: from the position when it changed to the
 //   target; mission items: MISSION_CURRENT tells the sequence number, then MISSION_REQUEST_LIST / MISSION_COUNT /
 //   MISSION_REQUEST_INT for seq and seq - 1 / MISSION_ACK; frames 0, 3, 5, 6 (global, or relative to home) and 1; items
-//   without a place of their own give no leg; a mission leg wins over the position target.
+//   without a place of their own, or that cannot be placed, or do not come, end the leg that was told before; a
+//   mission leg wins over the position target.
+// * Rates: what comes too seldom is asked for by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
 // * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
 //   plus the armed bit (128) as heard.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
@@ -66,10 +70,15 @@ public:
 
     void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept override;
     void service(TimePoint now) noexcept override;
+    void ask_for_rates(bool on) noexcept override { asks_for_rates_ = on; }
 
     [[nodiscard]] std::span<const std::byte> pending() const noexcept override { return transmit_.pending(); }
     void consume(std::size_t n) noexcept override { transmit_.consume(n); }
-    void discard_pending() noexcept override { transmit_.clear(); }
+    void discard_pending() noexcept override
+    {
+        diagnostics_.bytes_discarded += static_cast<std::uint32_t>(transmit_.pending().size());
+        transmit_.clear();
+    }
     void drop_setpoint() noexcept override { take_back(Perishable::setpoint); }
     void drop_mode_request() noexcept override { take_back(Perishable::mode_request); }
 
@@ -128,8 +137,10 @@ private:
     void set_origin(const std::optional<GlobalPosition>& origin, int rank) noexcept;
     [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
     void resolve_leg(Inbox& inbox) noexcept;
+    void lose_leg(Inbox& inbox) noexcept;
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
+    void ask_for_streams(TimePoint now) noexcept;
     template <Message M>
     void send(const M& message, Perishable kind = Perishable::no) noexcept;
     void take_back(Perishable kind) noexcept;
@@ -141,6 +152,8 @@ private:
     LinkDiagnostics diagnostics_;
     ClockSync clock_;
     MissionClient mission_;
+    StreamRequests streams_;
+    bool asks_for_rates_ = false;
     std::uint8_t system_;
     std::uint8_t sequence_ = 0;
     TimePoint last_byte_;

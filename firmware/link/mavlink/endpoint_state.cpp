@@ -314,11 +314,21 @@ bool Endpoint::place(const MissionPoint& point, Vec3& local) const noexcept
     return true;
 }
 
+/// The autopilot flies on to a place that is not known: the leg before it is over.
+void Endpoint::lose_leg(Inbox& inbox) noexcept
+{
+    has_mission_leg_ = has_target_ = false;
+    inbox.has_leg = false;
+    inbox.leg_lost = true;
+}
+
 void Endpoint::resolve_leg(Inbox& inbox) noexcept
 {
+    has_mission_leg_ = false;
     Vec3 from = own_.position;
     Vec3 to;
-    leg_waits_ = !has_local_ || !place(mission_.to(), to) || (mission_.from().known && !place(mission_.from(), from));
+    leg_waits_ = !mission_.to().known || !has_local_ || !place(mission_.to(), to) ||
+                 (mission_.from().known && !place(mission_.from(), from));
     if (leg_waits_) {
         return;
     }

@@ -22,6 +22,14 @@ void MissionClient::ask(State state) noexcept
     tries_ = 0;
 }
 
+void MissionClient::give_up(TimePoint now) noexcept
+{
+    state_ = State::given_up;
+    asked_ = now;
+    lost_ = !told_lost_;
+    told_lost_ = true;
+}
+
 void MissionClient::current(std::uint16_t sequence) noexcept
 {
     if (has_current_ && sequence == current_) {
@@ -30,7 +38,7 @@ void MissionClient::current(std::uint16_t sequence) noexcept
     has_current_ = true;
     current_ = sequence;
     from_ = to_ = {};
-    leg_ready_ = false;
+    leg_ready_ = told_lost_ = false;
     ask(State::ask_list);
 }
 
@@ -40,8 +48,7 @@ void MissionClient::count(std::uint16_t count, TimePoint now) noexcept
         return;
     }
     if (current_ >= count) {
-        state_ = State::given_up;
-        asked_ = now;
+        give_up(now);
         return;
     }
     wanted_ = current_;
@@ -56,8 +63,7 @@ bool MissionClient::item(std::uint16_t sequence, std::uint16_t command, const Mi
     }
     if (sequence == current_) {
         if (!has_place(command)) {
-            state_ = State::given_up;
-            asked_ = now;
+            give_up(now);
             return true;
         }
         to_ = point;
@@ -94,8 +100,7 @@ MissionStep MissionClient::next(TimePoint now) noexcept
     case State::await_item:
         if (now - asked_ >= kAnswerTime) {
             if (tries_ >= kTries) {
-                state_ = State::given_up;
-                asked_ = now;
+                give_up(now);
                 return MissionStep::none;
             }
             state_ = state_ == State::await_count ? State::ask_list : State::ask_item;
@@ -122,6 +127,13 @@ bool MissionClient::take_leg() noexcept
     const bool ready = leg_ready_;
     leg_ready_ = false;
     return ready;
+}
+
+bool MissionClient::take_loss() noexcept
+{
+    const bool lost = lost_;
+    lost_ = false;
+    return lost;
 }
 
 }  // namespace jink::link::mavlink

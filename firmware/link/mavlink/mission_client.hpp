@@ -38,6 +38,9 @@ public:
 
     /// True once when both ends have arrived (`from().known` is false when the leg starts where the vehicle is).
     [[nodiscard]] bool take_leg() noexcept;
+    /// True once per current item when its fetch was given up, or it has no place: where the vehicle is going is not
+    /// known.
+    [[nodiscard]] bool take_loss() noexcept;
     [[nodiscard]] const MissionPoint& from() const noexcept { return from_; }
     [[nodiscard]] const MissionPoint& to() const noexcept { return to_; }
 
@@ -46,10 +49,13 @@ public:
 private:
     enum class State : std::uint8_t { idle, ask_list, await_count, ask_item, await_item, done, given_up };
     void ask(State state) noexcept;
+    void give_up(TimePoint now) noexcept;
 
     State state_ = State::idle;
     bool has_current_ = false;
     bool leg_ready_ = false;
+    bool lost_ = false;
+    bool told_lost_ = false;
     std::uint16_t current_ = 0;
     std::uint16_t wanted_ = 0;
     int tries_ = 0;

@@ -99,6 +99,7 @@ public:
         }
     }
     void service(TimePoint now) noexcept override { honest_.service(now); }
+    void ask_for_rates(bool on) noexcept override { honest_.ask_for_rates(on); }
     std::span<const std::byte> pending() const noexcept override { return honest_.pending(); }
     void consume(std::size_t n) noexcept override { honest_.consume(n); }
     void discard_pending() noexcept override { honest_.discard_pending(); }

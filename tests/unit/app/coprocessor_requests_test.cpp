@@ -220,6 +220,25 @@ TEST_F(CoprocessorRequests, SetTakesEffectInThePlannerAtOnce)
     EXPECT_EQ(f.last.state, link::SystemState::standby);
 }
 
+TEST_F(CoprocessorRequests, AsksForRatesUntilToldNotTo)
+{
+    const auto asked = [&] {
+        std::size_t n = 0;
+        for (int i = 0; i < 100; ++i) {
+            f.fly(1);
+            for (const CommandLong& m : f.said_of<CommandLong>()) {
+                n += m.command == 511 ? 1U : 0U;
+            }
+        }
+        return n;
+    };
+    EXPECT_GT(asked(), 0U) << "this autopilot tells no attitude";
+    EXPECT_EQ(set("JNK_ASK_RATES", 0.0F).size(), 1U);
+    EXPECT_EQ(asked(), 0U);
+    EXPECT_EQ(set("JNK_ASK_RATES", 1.0F).size(), 1U);
+    EXPECT_GT(asked(), 0U);
+}
+
 TEST_F(CoprocessorRequests, HeartbeatIsSentOnRequestAndOtherCommandsAreUnsupported)
 {
     const auto answer = [&](std::uint16_t command, float param1) {

@@ -193,6 +193,13 @@ public:
     {
         return all_of<M>(said);
     }
+    /// Requests of a mode, in the last tick.
+    [[nodiscard]] std::vector<CommandLong> mode_requests() const
+    {
+        std::vector<CommandLong> found = said_of<CommandLong>();
+        std::erase_if(found, [](const CommandLong& m) { return m.command != 176; });
+        return found;
+    }
     [[nodiscard]] std::uint32_t mission_mode() const { return px4 ? px4_mode(4, 4) : wire::kCopterAuto; }
     [[nodiscard]] std::uint32_t external_mode() const { return px4 ? px4_mode(6, 0) : wire::kCopterGuided; }
     [[nodiscard]] std::uint32_t boot_ms() const { return static_cast<std::uint32_t>(boot_us / 1000); }

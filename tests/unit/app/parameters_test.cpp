@@ -260,7 +260,7 @@ std::vector<Route> routes()
         same(Param::reserve, 0.9F, [](C c) { return c.supervisor.reserve; }),
         same(Param::settle, 1.9F, [](C c) { return c.supervisor.settle; }),
         {Param::rate, 10, [](C c) { return c.setpoint_period; }, 0.1F},
-        {Param::standby, 0, [](C c) { return c.standby_stream ? 1.0F : 0.0F; }, 0},
+        {Param::standby, 1, [](C c) { return c.standby_stream ? 1.0F : 0.0F; }, 1},
         {Param::ask_rates, 0, [](C c) { return c.ask_rates ? 1.0F : 0.0F; }, 0},
         same(Param::track_radius, 2.1F, [](C c) { return c.track_radius; }),
         same(Param::point_radius, 2.2F, [](C c) { return c.point_radius; }),

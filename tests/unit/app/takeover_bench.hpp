@@ -69,6 +69,7 @@ struct Bench {
     TimePoint now{1'000'000};
     link::AutopilotReport last;
     link::AutopilotStack stack = link::AutopilotStack::unknown;
+    bool keep_stream = false;
 
     TakeoverOutput step(const Step& s)
     {
@@ -79,6 +80,7 @@ struct Bench {
         }
         input.report = last;
         input.report.stack = stack;
+        input.keep_stream = keep_stream;
         return takeover.update(input, now);
     }
     [[nodiscard]] Control control() const { return takeover.control(); }

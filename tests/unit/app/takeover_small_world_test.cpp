@@ -14,13 +14,15 @@ using namespace test;
 
 /// What must hold whatever happens, kept by a witness that sees inputs and outputs only.
 struct Witness {
-    bool hands_off = false;       ///< overruled in this conflict
-    bool due = false;             ///< the external mode, once seen, is ours to fly
-    bool flown = false;           ///< and was confirmed
-    int requests = 0;             ///< in this conflict, since last in control
+    bool hands_off = false;  ///< overruled in this conflict
+    bool due = false;        ///< the external mode, once seen, is ours to fly
+    bool flown = false;      ///< and was confirmed
+    int requests = 0;        ///< in this conflict, since last in control
+    int most_requests = Takeover::kTries;
     TimePoint streaming_since{};  ///< meaningful while streaming
     TimePoint requested{};
     bool seen_external = false;  ///< as the newest report
+    bool was_seen = false;       ///< a stream of either kind
 
     /// Empty, or what is broken.
     std::string watch(const Bench& before, const Bench& after, const Step& s, const TakeoverOutput& out)
@@ -40,6 +42,9 @@ struct Witness {
         if (streams && !s.may_act) {
             return "streams in spite of a fault";
         }
+        if (after.takeover.proving() && (!s.may_act || control != Control::autopilot || seen_external || foreign)) {
+            return "proves a stream where it may not act";
+        }
         if (was_streaming && foreign && (streams || out.action != TakeoverAction::none)) {
             return "does not yield to the pilot at once";
         }
@@ -50,7 +55,7 @@ struct Witness {
             if (!was_streaming || after.now - streaming_since < Takeover::kAnnounce) {
                 return "asks for the external mode before the stream began";
             }
-            if (++requests > Takeover::kTries) {
+            if (++requests > most_requests) {
                 return "asks too often";
             }
         }
@@ -79,9 +84,11 @@ struct Witness {
     void note(Control before, const Bench& after, const Step& s, const TakeoverOutput& out, bool foreign,
               bool was_streaming)
     {
-        if (after.takeover.streaming() && !was_streaming) {
+        const bool seen = after.takeover.streaming() || after.takeover.proving();
+        if (seen && !was_seen) {
             streaming_since = after.now;
         }
+        was_seen = seen;
         hands_off = (hands_off || out.event == TakeoverEvent::overruled) && s.wants;
         if (after.takeover.in_control()) {
             requests = 0;
@@ -135,10 +142,10 @@ struct Search {
     }
 
     /// Walks a given way first, under the same rules.
-    bool explore_after(const std::vector<Step>& way, int depth)
+    bool explore_after(const std::vector<Step>& way, int depth, const Bench& first = {}, const Witness& watch = {})
     {
-        Bench bench;
-        Witness witness;
+        Bench bench = first;
+        Witness witness = watch;
         trail = way;
         for (const Step& s : way) {
             const Bench before = bench;
@@ -200,6 +207,23 @@ TEST(TakeoverSmallWorld, EverySequenceOfStepsFromEveryState)
         search.alphabet = whole_alphabet();
         ASSERT_TRUE(search.explore_after(way, 4));
     }
+}
+
+/// A PX4 may be asked more often, while the stream is young and it refuses.
+TEST(TakeoverSmallWorld, EverySequenceOfSixStepsWithAPx4)
+{
+    Search search;
+    search.alphabet = {wants(Beat::none, 1.0F), wants(Beat::former),   wants(Beat::external), wants(Beat::manual),
+                       calm(Beat::none, 1.0F),  calm(Beat::former),    calm(Beat::external),  denied(0.1F),
+                       fault(Beat::none),       fault(Beat::external), denied(0.25F),         wants(Beat::hold)};
+    Bench px4;
+    px4.stack = link::AutopilotStack::px4;
+    Witness witness;
+    witness.most_requests = Takeover::kTries + static_cast<int>(Takeover::kProof / Takeover::kAskAgain) + 1;
+    ASSERT_TRUE(search.explore_after({wants(Beat::former)}, 6, px4, witness));
+    px4.keep_stream = true;
+    ASSERT_TRUE(search.explore_after({calm(Beat::former)}, 6, px4, witness));
+    EXPECT_GT(search.reached[static_cast<std::size_t>(Control::refused)], 0U);
 }
 
 TEST(TakeoverSmallWorld, EverySequenceOfSevenSteps)

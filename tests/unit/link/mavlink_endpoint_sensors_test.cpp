@@ -95,6 +95,21 @@ TEST_F(MavlinkEndpointSensors, TrafficVelocityNeedsHeadingAndSpeed)
     }
 }
 
+TEST_F(MavlinkEndpointSensors, TrafficOfUnknownClimbIsNotTakenForLevel)
+{
+    origin();
+    AdsbVehicle m = traffic();
+    from(kSystem, 156, m);
+    EXPECT_EQ(inbox->tracks[0].sigma_velocity, 0.0F) << "not said";
+    m.flags = static_cast<std::uint16_t>(m.flags & ~128U);
+    from(kSystem, 156, m);
+    EXPECT_EQ(inbox->tracks[1].velocity.z(), 0.0F);
+    EXPECT_GE(inbox->tracks[1].sigma_velocity, 5.0F);
+    m.emitter_type = 19;
+    from(kSystem, 156, m);
+    EXPECT_EQ(inbox->tracks[2].sigma_velocity, 0.0F) << "stands";
+}
+
 TEST_F(MavlinkEndpointSensors, StandingObstaclesOfTrafficReceiversStandStill)
 {
     origin();

@@ -148,15 +148,16 @@ inline double solid_distance(const Scene& scene, const path::TimedPath& path, co
 inline double bound_margin_at(const Scene& scene, const Vec3d& own, ThreatKind kind)
 {
     const Airspace& air = scene.airspace;
+    const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);
     const Vec3d half = scene.limits.half_extents.cast<double>();
     switch (kind) {
-    case ThreatKind::floor: return own.z() - half.z() - double(air.floor);
-    case ThreatKind::ceiling: return double(air.ceiling) - own.z() - half.z();
+    case ThreatKind::floor: return own.z() - half.z() - double(air.floor) - extra;
+    case ThreatKind::ceiling: return double(air.ceiling) - own.z() - half.z() - extra;
     default: break;
     }
     const Vec3d home = air.home.cast<double>();
     return double(air.keep_in_radius) - std::hypot(own.x() - home.x(), own.y() - home.y()) -
-           std::hypot(half.x(), half.y());
+           std::hypot(half.x(), half.y()) - extra;
 }
 
 inline double bound_margin(const Scene& scene, const path::TimedPath& path, ThreatKind kind, double horizon,

@@ -93,4 +93,28 @@ struct Flight {
     world::test::Scene scene;
 };
 
+inline const Vec3 kLeft(0, 1, 0);
+
+inline Settings quick()
+{
+    Settings s;
+    s.settle = 0.5F;
+    return s;
+}
+
+/// A threat that comes head on and is `ahead` metres away.
+inline void head_on(Flight& f, float ahead = 40.0F)
+{
+    f.scene.track(f.scene.own.position + Vec3(ahead, 0, 0), Vec3(-5, 0, 0), 1.0F);
+}
+
+/// Brings a supervisor to `avoiding` around a head-on threat.
+template <class S>
+Guidance avoid_head_on(Flight& f, S& supervisor)
+{
+    head_on(f);
+    static_cast<void>(f.update(supervisor, false));
+    return f.update(supervisor, true);
+}
+
 }  // namespace jink::avoid::test

@@ -78,6 +78,71 @@ TEST(ChooseFallback, PrefersABrakeThatIsClearToWhatWasFlown)
     EXPECT_EQ(fallback(f, &before).kind, ManoeuvreKind::brake);
 }
 
+/// Coming at a slow vehicle from ahead and above: neither back nor down alone is fast enough.
+TEST(ChooseFallback, BacksAwayAndDown)
+{
+    Flight f;
+    f.scene.own.velocity = Vec3(1, 0, 0);
+    f.scene.track(Vec3(4.7F, 0.3F, 31.6F), Vec3(-3.5F, 0, 0), 2.0F);
+    for (const Vec3& plain : {Vec3(-5, 0, 0), Vec3(0, 0, -3), Vec3(0, -5, 0), Vec3(0, -4, -3), Vec3(0, 0, 0)}) {
+        ASSERT_LT(margin_of(f, plain), 0.0F);
+    }
+    const Fallback chosen = fallback(f);
+    EXPECT_GT(chosen.margin, 0.2F);
+    EXPECT_LT(chosen.command.x(), -3.0F);
+    EXPECT_LT(chosen.command.z(), -2.9F);
+}
+
+TEST(ChooseFallback, CommandsWhatTheVehicleCanFly)
+{
+    Random random(20261122);
+    for (int i = 0; i < 300; ++i) {
+        Flight f;
+        f.scene.limits.cruise_speed = random.uniform(1.0F, 20.0F);
+        f.scene.limits.max_climb = random.uniform(0.5F, 25.0F);
+        f.scene.limits.max_descent = random.uniform(0.5F, 25.0F);
+        f.scene.track(f.scene.own.position + Vec3(random.uniform(2, 6), random.uniform(-3, 3), random.uniform(-3, 3)),
+                      Vec3(random.uniform(-9, 9), random.uniform(-3, 3), 0), 1.5F);
+        const Vec3 command = fallback(f).command;
+        ASSERT_LE(command.norm(), f.scene.limits.cruise_speed * 1.00001F) << "case " << i;
+        ASSERT_LE(command.z(), f.scene.limits.max_climb * 1.00001F) << "case " << i;
+        ASSERT_GE(command.z(), -f.scene.limits.max_descent * 1.00001F) << "case " << i;
+    }
+}
+
+/// Looking at a way only until it is no better changes nothing in what is found.
+TEST(CheckSeparation, ACutOffSearchTellsTheSameSideOfTheCut)
+{
+    Random random(20261123);
+    int cut_off = 0;
+    for (int i = 0; i < 2000; ++i) {
+        Flight f;
+        for (int n = 0; n < 6; ++n) {
+            f.scene.track(Vec3(random.uniform(-20, 20), random.uniform(-20, 20), random.uniform(25, 35)),
+                          Vec3(random.uniform(-5, 5), random.uniform(-5, 5), 0), 1.0F);
+        }
+        f.scene.obstacle(geometry::make_sphere(Vec3(random.uniform(-20, 20), random.uniform(-20, 20), 30), 2.0F));
+        const Situation s = f.scene.situation();
+        path::TimedPath flight;
+        path::predict_velocity_command(f.scene.own, Vec3(0, 5, 0), 4.0F, 0.2F, f.scene.limits, flight);
+        WorkBudget whole(kPlenty);
+        WorkBudget part(kPlenty);
+        const float least = world::least_separation(s, flight, 4.0F, whole).margin;
+        const float cut = random.uniform(-3.0F, 6.0F);
+        const auto first = static_cast<std::uint16_t>(random.below(8));  // 6 and 7: no such track
+        const world::Separation found =
+            world::least_separation(s, flight, 4.0F, part, {}, {cut, {world::ThreatKind::track, first}});
+        if (least >= cut) {
+            ASSERT_EQ(found.margin, least) << "case " << i;
+        } else {
+            ASSERT_LT(found.margin, cut) << "case " << i;
+            ASSERT_GE(found.margin, least) << "case " << i;
+            cut_off += part.spent() < whole.spent() ? 1 : 0;
+        }
+    }
+    EXPECT_GT(cut_off, 100);
+}
+
 TEST(ChooseFallback, KeepsAWayOutThatIsStillClear)
 {
     Flight f;

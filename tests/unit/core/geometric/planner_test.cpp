@@ -104,6 +104,30 @@ TEST(Planner, WallIsFlownOver)
     EXPECT_GT(flight.out.side.z(), 0.5F);
 }
 
+/// Bounds are kept as early as the own position is uncertain: no plan that the final check refuses for them.
+TEST(Planner, BoundsAreKeptWithOwnUncertainty)
+{
+    int found = 0;
+    for (int i = 0; i < 60; ++i) {
+        Flight flight;
+        flight.own.sigma_position = 0.4F;
+        flight.airspace.has_ceiling = true;
+        flight.airspace.ceiling = 53.0F + 0.1F * static_cast<float>(i);
+        flight.airspace.has_floor = true;
+        flight.airspace.floor = 48.0F - 0.1F * static_cast<float>(i);
+        flight.airspace.has_keep_in = true;
+        flight.airspace.keep_in_radius = 62.0F + 0.1F * static_cast<float>(i);
+        flight.obstacles = {{1, geometry::make_sphere(Vec3(30.0F, 0.0F, 50.0F), 1.0F)}};
+        if (flight.plan() == PlanStatus::found) {
+            ++found;
+            WorkBudget budget(1'000'000);
+            ASSERT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, budget).margin, -1e-3F)
+                << "case " << i;
+        }
+    }
+    EXPECT_GT(found, 5);
+}
+
 TEST(PlannerStatus, NoConflict)
 {
     Flight flight;

@@ -36,19 +36,40 @@ TEST(Follow, LooksOneLagAhead)
 
 TEST(Follow, CorrectionIsBounded)
 {
-    const TimedPath path = straight(20.0F);
-    const Vec3 command = follow(path, 1.0F, Vec3(5.0F, 100.0F, 0.0F), {}, FollowerGains{1.0F, 2.0F});
-    EXPECT_LT((command - Vec3(5.0F, -2.0F, 0.0F)).norm(), 1e-5F);
-    const Vec3 gentle = follow(path, 1.0F, Vec3(5.0F, 1.0F, 0.0F), {}, FollowerGains{0.5F, 2.0F});
-    EXPECT_LT((gentle - Vec3(5.0F, -0.5F, 0.0F)).norm(), 1e-5F);
+    TimedPath path;
+    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(20.0F, 0.0F, 0.0F)};
+    ASSERT_TRUE(make_timed_path(positions, 4.0F, vehicle::VehicleLimits{}, path));
+    const Vec3 command = follow(path, 1.0F, Vec3(4.0F, 100.0F, 0.0F), {}, FollowerGains{1.0F, 2.0F});
+    EXPECT_LT((command - Vec3(4.0F, -2.0F, 0.0F)).norm(), 1e-5F);
+    const Vec3 gentle = follow(path, 1.0F, Vec3(4.0F, 1.0F, 0.0F), {}, FollowerGains{0.5F, 2.0F});
+    EXPECT_LT((gentle - Vec3(4.0F, -0.5F, 0.0F)).norm(), 1e-5F);
 }
 
 TEST(Follow, ClimbAndDescentWithinLimits)
 {
-    const TimedPath path = straight(20.0F);
+    TimedPath path;
+    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(20.0F, 0.0F, 0.0F)};
+    ASSERT_TRUE(make_timed_path(positions, 4.0F, vehicle::VehicleLimits{}, path));
     const FollowerGains hard{1.0F, 50.0F};
-    EXPECT_FLOAT_EQ(follow(path, 1.0F, Vec3(5.0F, 0.0F, -40.0F), {}, hard).z(), 3.0F);
-    EXPECT_FLOAT_EQ(follow(path, 1.0F, Vec3(5.0F, 0.0F, 40.0F), {}, hard).z(), -3.0F);
+    EXPECT_FLOAT_EQ(follow(path, 1.0F, Vec3(4.0F, 0.0F, -40.0F), {}, hard).z(), 3.0F);
+    EXPECT_FLOAT_EQ(follow(path, 1.0F, Vec3(4.0F, 0.0F, 40.0F), {}, hard).z(), -3.0F);
+}
+
+/// Late on a path at cruise speed, it does not catch up; late on a slower one it does, up to cruise speed.
+TEST(Follow, NeverFasterThanCruiseSpeed)
+{
+    const TimedPath path = straight(20.0F);
+    EXPECT_LT((follow(path, 1.0F, Vec3(1.0F, 0.0F, 0.0F), {}, {}) - Vec3(5.0F, 0.0F, 0.0F)).norm(), 1e-5F);
+    const Vec3 aside = follow(path, 1.0F, Vec3(5.0F, 100.0F, 0.0F), {}, {});
+    EXPECT_NEAR(aside.norm(), 5.0F, 1e-5F);
+    EXPECT_NEAR(aside.y() / aside.x(), -2.0F / 5.0F, 1e-5F);
+    TimedPath slow;
+    const std::vector<Vec3> positions{Vec3::Zero(), Vec3(20.0F, 0.0F, 0.0F)};
+    ASSERT_TRUE(make_timed_path(positions, 3.5F, vehicle::VehicleLimits{}, slow));
+    EXPECT_LT((follow(slow, 1.0F, Vec3::Zero(), {}, {}) - Vec3(5.0F, 0.0F, 0.0F)).norm(), 1e-5F);
+    TimedPath fast;  // the mission's speed, above ours
+    ASSERT_TRUE(make_timed_path(positions, 8.0F, vehicle::VehicleLimits{}, fast));
+    EXPECT_LT((follow(fast, 1.0F, Vec3::Zero(), {}, {}) - Vec3(8.0F, 0.0F, 0.0F)).norm(), 1e-5F);
 }
 
 TEST(Follow, PastTheEndTheEndIsHeld)

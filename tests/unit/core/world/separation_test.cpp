@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/world/separation.hpp"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 #include "core/world/obstacle_distance.hpp"
@@ -60,6 +62,36 @@ TEST(LeastSeparation, OnlyUpToTheHorizonAndToThePathsEnd)
     EXPECT_NEAR(separation(scene, path, 0.0F).margin, 18.0F, 1e-4F);
     EXPECT_NEAR(separation(scene, flight({Vec3::Zero(), Vec3(10, 0, 0)}, 2.0F)).margin, 8.0F, 1e-4F);
     EXPECT_NEAR(separation(scene, flight({Vec3::Zero()}, 1.0F)).margin, 18.0F, 1e-4F) << "a single point is an instant";
+}
+
+/// Whatever is met, it is met as early as the own position is uncertain.
+TEST(LeastSeparation, OwnUncertaintyCountsTowardsEverything)
+{
+    using Place = void (*)(Scene&);
+    const std::pair<ThreatKind, Place> places[] = {
+        {ThreatKind::floor, [](Scene& s) { s.airspace.has_floor = true, s.airspace.floor = -10.0F; }},
+        {ThreatKind::ceiling, [](Scene& s) { s.airspace.has_ceiling = true, s.airspace.ceiling = 10.0F; }},
+        {ThreatKind::keep_in, [](Scene& s) { s.airspace.has_keep_in = true, s.airspace.keep_in_radius = 20.0F; }},
+        {ThreatKind::track, [](Scene& s) { s.track(Vec3(5, 8, 0), Vec3::Zero(), 1.0F); }},
+        {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_sphere(Vec3(5, 8, 0), 1.0F)); }},
+        {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_box(Vec3(5, 6, 0), Vec3(2, 2, 2))); }},
+    };
+    const path::TimedPath path = flight({Vec3::Zero(), Vec3(10, 0, 0)}, 2.0F);
+    for (const auto& [kind, place] : places) {
+        Scene scene;
+        place(scene);
+        const Separation sure = separation(scene, path);
+        scene.own.sigma_position = 0.5F;  // 1.5 m at three standard deviations
+        EXPECT_EQ(sure.against.kind, kind);
+        EXPECT_NEAR(separation(scene, path).margin, sure.margin - 1.5F, 1e-5F) << static_cast<int>(kind);
+        WorkBudget budget(kPlenty);
+        const Vec3 end(10, 0, 0);
+        const float there = separation_at(scene.situation(), end, 2.0F, budget).margin;
+        scene.own.sigma_position = 0.0F;
+        EXPECT_NEAR(there, separation_at(scene.situation(), end, 2.0F, budget).margin - 1.5F,
+                    2.0F * kObstacleResolution)
+            << static_cast<int>(kind);
+    }
 }
 
 TEST(LeastSeparation, NamesWhatItIsMeasuredAgainst)

@@ -230,6 +230,34 @@ TEST_F(TrackTables, ExpiryByAge)
     EXPECT_TRUE(table.snapshot(kNow).empty());
 }
 
+/// Each status has a sighting that provokes it, and moves its own counter and no other.
+TEST_F(TrackTables, EachStatusCountsAsItself)
+{
+    using Counter = std::uint32_t TrackDiagnostics::*;
+    const auto provoke = [&](const TrackMeasurement& m, TrackStatus status, Counter counter) {
+        const TrackDiagnostics before = table.diagnostics();
+        EXPECT_EQ(table.update(m, own, kNow), status);
+        EXPECT_EQ(table.diagnostics().*counter, before.*counter + 1);
+        EXPECT_EQ(sum(table.diagnostics()), sum(before) + 1);
+    };
+    const Vec3 near(100, 0, 0);
+    const TimePoint earlier = kNow - 0.2F;
+    provoke(sighting(0, near, earlier), TrackStatus::created, &TrackDiagnostics::created);
+    provoke(sighting(0, near), TrackStatus::updated, &TrackDiagnostics::updated);
+    provoke(sighting(0, near), TrackStatus::stale, &TrackDiagnostics::stale);
+    provoke(sighting(1, near, kNow - 10.0F), TrackStatus::stale, &TrackDiagnostics::stale);
+    provoke(sighting(1, near, kNow + 10.0F), TrackStatus::future, &TrackDiagnostics::future);
+    provoke(sighting(1, Vec3(kNan, 0, 0)), TrackStatus::not_finite, &TrackDiagnostics::not_finite);
+    provoke(sighting(1, Vec3(1e6F, 0, 0)), TrackStatus::out_of_range, &TrackDiagnostics::out_of_range);
+    for (std::size_t i = 1; i < kMaxTracks; ++i) {
+        provoke(sighting(static_cast<TrackId>(i), near), TrackStatus::created, &TrackDiagnostics::created);
+    }
+    provoke(sighting(900, Vec3(500, 0, 0)), TrackStatus::full, &TrackDiagnostics::full);
+    provoke(sighting(901, Vec3(50, 0, 0)), TrackStatus::replaced, &TrackDiagnostics::replaced);
+    EXPECT_EQ(table.diagnostics().jumps, 0U);
+    EXPECT_EQ(table.diagnostics().expired, 0U);
+}
+
 /// Tracks standing around at growing distances; the table must hold the nearest.
 TEST_F(TrackTables, CapacityLessOneFullAndOneMore)
 {

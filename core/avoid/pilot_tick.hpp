@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/avoid/pilot.hpp"
+
+// What the sources of Pilot share and nobody else sees.
+
+namespace jink::avoid {
+
+/// Distance from the leg [m]. O(1).
+[[nodiscard]] float cross_track(const world::Situation& situation) noexcept;
+
+/// Flight along the leg, beside it where the vehicle is.
+struct Beside {
+    Vec3 off = Vec3::Zero();      ///< from the leg's line to the vehicle [m]
+    Vec3 command = Vec3::Zero();  ///< [m/s]
+    float left = 0.0F;            ///< until abeam of the leg's end [m]
+};
+
+/// A leg without a length gives zeros. O(1).
+[[nodiscard]] Beside beside_leg(const world::Situation& situation) noexcept;
+
+/// The same situation for a vehicle with `extra` more to every side.
+struct Wider {
+    vehicle::VehicleLimits limits;
+    world::Situation situation;
+
+    Wider(const world::Situation& s, float extra) noexcept
+        : limits(widened(s.limits, extra)), situation{s.now,    s.own,       limits,     s.airframe, s.reference,
+                                                      s.tracks, s.obstacles, s.airspace, s.flying,   s.k_sigma}
+    {
+    }
+    Wider(const Wider&) = delete;
+    Wider& operator=(const Wider&) = delete;
+
+    static vehicle::VehicleLimits widened(vehicle::VehicleLimits limits, float extra) noexcept
+    {
+        limits.half_extents += Vec3::Constant(extra);
+        return limits;
+    }
+};
+
+struct Pilot::Tick {
+    const world::Situation& s;
+    bool in_control = false;
+    const Ladder& ladder;
+    WorkBudget budget;
+    world::Way way;
+    Guidance out;
+    bool wide_clear = false;
+    bool ran_out = false;  ///< of work, planning or altogether
+};
+
+}  // namespace jink::avoid

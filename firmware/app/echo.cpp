@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/echo.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::app {
+namespace {
+
+/// Radius in half widths of the beam at the range. The smallest disc over an arc has 1 and bulges towards the sensor by
+/// half the arc's width; larger ones bulge less and reach farther aside. For a scan the gaps between obstacles count.
+constexpr float kLevelRadius = 1.25F;
+constexpr float kSlantedRadius = 2.0F;
+
+struct Disc {
+    float distance;  ///< of its centre, along the beam [m]
+    float radius;    ///< [m]
+};
+
+/// Disc (or ball) through the ends of the arc at `range`, its middle inside.
+Disc over_arc(float range, float half_angle, float widths) noexcept
+{
+    const float half_width = range * std::sin(half_angle);
+    const float radius = std::max(kLeastEchoRadius, widths * half_width);
+    return {range * std::cos(half_angle) + std::sqrt(radius * radius - half_width * half_width), radius};
+}
+
+}  // namespace
+
+std::size_t echo_parts(float half_angle) noexcept
+{
+    const auto parts = static_cast<std::size_t>(std::ceil(2.0F * half_angle / kWidestPart - 1e-3F));
+    return std::clamp<std::size_t>(parts, 1, kMaxEchoParts);
+}
+
+geometry::Shape level_echo(const Vec3& origin, float yaw, float range, float half_angle, float half_height) noexcept
+{
+    const Disc disc = over_arc(range, half_angle, kLevelRadius);
+    const Vec3 centre = origin + disc.distance * Vec3(std::cos(yaw), std::sin(yaw), 0.0F);
+    const Vec3 tall = half_height * Vec3::UnitZ();
+    return geometry::make_capsule(centre - tall, centre + tall, disc.radius);
+}
+
+geometry::Shape slanted_echo(const Vec3& origin, const Vec3& direction, float range, float half_angle) noexcept
+{
+    const Disc ball = over_arc(range, half_angle, kSlantedRadius);
+    return geometry::make_sphere(origin + ball.distance * direction, ball.radius);
+}
+
+geometry::Shape ceiling_echo(const Vec3& origin, float range, float half_angle, float half_width) noexcept
+{
+    const float half = std::max(half_width, range * std::sin(half_angle));
+    const Vec3 centre = origin + Vec3(0.0F, 0.0F, range * std::cos(half_angle) + half);
+    return geometry::make_box(centre, Vec3(half, half, half));
+}
+
+}  // namespace jink::app

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The last rung against a search that is thirty times as fine.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "core/avoid/guard.hpp"
+#include "core/base/random.hpp"
+#include "tests/unit/core/avoid/fakes.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+using world::test::kPlenty;
+
+/// More margin than this is not sought [m].
+constexpr float kPlentyOfRoom = 3.0F;
+
+/// The i-th of `n` directions spread evenly over the sphere (a Fibonacci lattice).
+Vec3 direction(int i, int n)
+{
+    const float z = 1.0F - (2.0F * static_cast<float>(i) + 1.0F) / static_cast<float>(n);
+    const float azimuth = static_cast<float>(i) * kPi * (3.0F - std::sqrt(5.0F));
+    const float r = std::sqrt(1.0F - z * z);
+    return {r * std::cos(azimuth), r * std::sin(azimuth), z};
+}
+
+/// Greatest least margin of 240 directions at three speeds, and of braking.
+float best_of_721(const Situation& s, Vec3& command)
+{
+    float best = -1e9F;
+    const auto attempt = [&](const Vec3& c) {
+        WorkBudget budget(kPlenty);
+        const float margin = command_margin(s, c, Settings{}, budget);
+        if (margin > best) {
+            best = margin;
+            command = c;
+        }
+    };
+    attempt(Vec3::Zero());
+    for (const float share : {1.0F, 0.6F, 0.3F}) {
+        for (int i = 0; i < 240; ++i) {
+            attempt(vehicle::clamped_velocity(direction(i, 240), share * s.limits.cruise_speed, s.limits));
+        }
+    }
+    return best;
+}
+
+/// Threats so near that braking alone is not clear.
+Flight close_call(Random& random)
+{
+    Flight f;
+    const float course = random.uniform(-kPi, kPi);
+    f.scene.own.velocity = random.uniform(0.0F, 5.0F) * Vec3(std::cos(course), std::sin(course), 0.0F);
+    f.scene.own.velocity.z() = random.uniform(-1.0F, 1.0F);
+    const int count = 1 + static_cast<int>(random.below(2));
+    for (int n = 0; n < count; ++n) {
+        const float meets = random.uniform(0.3F, 2.5F);
+        Vec3 velocity(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F), random.uniform(-3.0F, 3.0F));
+        velocity *= random.below(3) == 0 ? 0.0F : 1.0F;
+        const Vec3 miss(random.uniform(-1.5F, 1.5F), random.uniform(-1.5F, 1.5F), random.uniform(-1.5F, 1.5F));
+        f.scene.track(f.scene.own.position + f.scene.own.velocity * meets + miss - velocity * meets, velocity,
+                      random.uniform(0.5F, 2.0F));
+    }
+    return f;
+}
+
+TEST(FallbackAgainstAFineSearch, FindsAWayOutWhereThereIsOne)
+{
+    constexpr std::uint64_t kSeed = 20261121;
+    Random random(kSeed);
+    int tried = 0;
+    int missed = 0;
+    double sum = 0.0;
+    for (int i = 0; i < 600; ++i) {
+        const Flight f = close_call(random);
+        const Situation s = f.scene.situation();
+        Vec3 command = Vec3::Zero();
+        WorkBudget budget(kPlenty);
+        const Fallback chosen = choose_fallback(s, world::way_of(s), nullptr, Settings{}, budget);
+        if (chosen.kind == world::ManoeuvreKind::brake && chosen.margin >= 0.0F) {
+            continue;
+        }
+        const float fine = best_of_721(s, command);
+        const float behind = std::min(fine, kPlentyOfRoom) - chosen.margin;
+        ++tried;
+        missed += fine >= 0.1F && chosen.margin < 0.0F ? 1 : 0;
+        sum += std::max(behind, 0.0F);
+        EXPECT_LT(behind, 0.5F) << "seed " << kSeed << ", case " << i << ": (" << command.x() << ", " << command.y()
+                                << ", " << command.z() << ") keeps " << fine << ", chosen " << chosen.margin;
+    }
+    EXPECT_GT(tried, 300);
+    EXPECT_EQ(missed, 0) << "seed " << kSeed;
+    EXPECT_LT(sum / tried, 0.03) << "mean [m]";
+}
+
+}  // namespace
+}  // namespace jink::avoid

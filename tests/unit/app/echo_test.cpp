@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a range sensor saw, as solids: every point at the measured range within the beam is covered, nothing reaches
+// much nearer, and nothing holds the vehicle. Distances to the solids are computed here, in double precision.
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "core/base/random.hpp"
+#include "firmware/app/echo.hpp"
+#include "tests/unit/app/flight.hpp"
+
+namespace jink::app::test {
+namespace {
+
+using Point = Eigen::Vector3d;
+
+/// Distance of a point from the solid's surface; below 0 inside.
+double distance(const geometry::Shape& s, const Point& p)
+{
+    const Point local = s.axes.cast<double>().transpose() * (p - s.centre.cast<double>());
+    const Point half = s.half.cast<double>();
+    switch (s.kind) {
+    case geometry::ShapeKind::sphere: return local.norm() - static_cast<double>(s.radius);
+    case geometry::ShapeKind::capsule: {
+        const Point axis(0.0, 0.0, std::clamp(local.z(), -half.z(), half.z()));
+        return (local - axis).norm() - static_cast<double>(s.radius);
+    }
+    case geometry::ShapeKind::box: {
+        const Point q = local.cwiseAbs() - half;
+        return q.cwiseMax(0.0).norm() + std::min(0.0, q.maxCoeff());
+    }
+    default: ADD_FAILURE() << "not an echo"; return 0.0;
+    }
+}
+
+constexpr int kRounds = 20'000;
+constexpr double kRounding = 1e-3;
+
+struct Draw {
+    explicit Draw(std::uint64_t seed) : random(seed) {}
+    double within(double low, double high) { return low + (high - low) * static_cast<double>(random.uniform()); }
+    Random random;
+};
+
+TEST(Echo, LevelPartCoversItsArcAndReachesLittleNearer)
+{
+    Draw draw(11);
+    for (int i = 0; i < kRounds; ++i) {
+        const Vec3 origin(static_cast<float>(draw.within(-500, 500)), static_cast<float>(draw.within(-500, 500)),
+                          static_cast<float>(draw.within(0, 200)));
+        const double yaw = draw.within(-7.0, 7.0);
+        const double range = draw.within(0.0, 40.0);
+        const double half = draw.within(0.002, 0.5 * static_cast<double>(kWidestPart));
+        const geometry::Shape s =
+            level_echo(origin, static_cast<float>(yaw), static_cast<float>(range), static_cast<float>(half), 10.0F);
+        const Point from = origin.cast<double>();
+        for (int k = 0; k <= 10; ++k) {
+            const double at = yaw + half * (0.2 * k - 1.0);
+            const Point p = from + range * Point(std::cos(at), std::sin(at), 0.0);
+            ASSERT_LE(distance(s, p), kRounding) << "seed 11, round " << i << ", " << k;
+        }
+        const double nearest = range * (std::cos(half) - 0.5 * std::sin(half));
+        ASSERT_GE(distance(s, from), nearest - kRounding) << "seed 11, round " << i;
+    }
+}
+
+TEST(Echo, PartsTileTheBeam)
+{
+    for (int tenth = 1; tenth <= 900; ++tenth) {
+        const float half = static_cast<float>(tenth) * 0.1F * kPi / 180.0F;
+        const std::size_t n = echo_parts(half);
+        ASSERT_GE(n, 1U);
+        ASSERT_LE(n, kMaxEchoParts);
+        ASSERT_LE(2.0F * half / static_cast<float>(n), kWidestPart * 1.002F) << tenth;
+    }
+}
+
+/// A direction `away` from `axis`, turned by `about` around it.
+Point within_beam(const Point& axis, double away, double about)
+{
+    const Point side = axis.unitOrthogonal();
+    const Point up = axis.cross(side);
+    return std::cos(away) * axis + std::sin(away) * (std::cos(about) * side + std::sin(about) * up);
+}
+
+TEST(Echo, SlantedBallCoversItsCapAndReachesLittleNearer)
+{
+    Draw draw(12);
+    for (int i = 0; i < kRounds; ++i) {
+        const double elevation = draw.within(-0.77, 1.37);
+        const double yaw = draw.within(-3.2, 3.2);
+        const Point axis(std::cos(elevation) * std::cos(yaw), std::cos(elevation) * std::sin(yaw), std::sin(elevation));
+        const double range = draw.within(0.0, 40.0);
+        const double half = draw.within(0.002, static_cast<double>(kWidestSteep));
+        const geometry::Shape s =
+            slanted_echo(Vec3(1, 2, 3), axis.cast<float>(), static_cast<float>(range), static_cast<float>(half));
+        const Point from(1, 2, 3);
+        for (int k = 0; k < 10; ++k) {
+            const Point p = from + range * within_beam(axis, draw.within(0.0, half), draw.within(0.0, 6.3));
+            ASSERT_LE(distance(s, p), kRounding) << "seed 12, round " << i;
+        }
+        ASSERT_GE(distance(s, from), range * (std::cos(half) - 0.27 * std::sin(half)) - kRounding) << "round " << i;
+    }
+}
+
+TEST(Echo, CeilingCoversItsCapAndLiesWhollyAtTheRangeOrBehindIt)
+{
+    Draw draw(13);
+    for (int i = 0; i < kRounds; ++i) {
+        const double range = draw.within(0.0, 40.0);
+        const double half = draw.within(0.002, static_cast<double>(kWidestSteep));
+        const geometry::Shape s =
+            ceiling_echo(Vec3(1, 2, 3), static_cast<float>(range), static_cast<float>(half), 10.0F);
+        const Point from(1, 2, 3);
+        for (int k = 0; k < 10; ++k) {
+            const Point p = from + range * within_beam(Point::UnitZ(), draw.within(0.0, half), draw.within(0.0, 6.3));
+            ASSERT_LE(distance(s, p), kRounding) << "seed 13, round " << i;
+        }
+        ASSERT_GE(distance(s, from), range * std::cos(half) - kRounding) << "seed 13, round " << i;
+        ASSERT_GT(distance(s, from + Point(5.0, -5.0, range * std::cos(half) - 0.5)), 0.4) << "a slab, not a column";
+    }
+}
+
+class RangeSensors : public ::testing::Test {
+protected:
+    void SetUp() override
+    {
+        ASSERT_TRUE(f.until([](const StepReport& r) { return r.faults == 0; }, 200));
+        f.fly(60);
+    }
+    void see(std::uint8_t orientation, float range, float fov = 0.0F)
+    {
+        f.feed(wire::attitude(f.boot_ms(), 0.5F * kPi));
+        DistanceSensor m;
+        m.time_boot_ms = f.boot_ms();
+        m.min_distance = 10;
+        m.max_distance = 4000;
+        m.current_distance = static_cast<std::uint16_t>(range * 100.0F);
+        m.orientation = orientation;
+        m.horizontal_fov = fov;
+        f.feed(m);
+        f.fly(1);
+    }
+    Flight f;
+};
+
+TEST_F(RangeSensors, ACeilingAboveDoesNotStandInTheWay)
+{
+    for (int i = 0; i < 50; ++i) {
+        see(24, 3.0F);
+        ASSERT_EQ(f.last.obstacles, 1U);
+        ASSERT_FALSE(f.last.guidance.has_conflict) << "flying level, 2 m below it";
+    }
+    EXPECT_EQ(f.setpoints, 0);
+}
+
+TEST_F(RangeSensors, WhatIsAheadDoes)
+{
+    see(0, 20.0F);
+    EXPECT_GE(f.last.obstacles, 1U);
+    EXPECT_TRUE(f.last.guidance.has_conflict);
+}
+
+TEST_F(RangeSensors, AWideBeamAheadIsPlacedInPartsAndForgottenWhole)
+{
+    see(0, 20.0F, 1.0F);
+    EXPECT_EQ(f.last.obstacles, 6U);
+    EXPECT_TRUE(f.last.guidance.has_conflict);
+    see(0, 60.0F, 1.0F);  // beyond max_distance: nothing there
+    EXPECT_EQ(f.last.obstacles, 0U);
+}
+
+TEST_F(RangeSensors, AnUpwardBeamTooWideToBePlacedIsRefusedAndCounted)
+{
+    see(24, 3.0F, 2.2F);
+    EXPECT_EQ(f.last.obstacles, 0U);
+    EXPECT_EQ(f.coprocessor.diagnostics().readings_refused, 1U);
+    EXPECT_EQ(f.coprocessor.diagnostics().readings, 1U);
+}
+
+/// A scanner of eight sectors: what is 20 m away somewhere in the forward one stands in the way, and nobody is in it.
+TEST_F(RangeSensors, WideSectorsOfAScanAreCoveredToTheirEdges)
+{
+    f.feed(wire::attitude(f.boot_ms(), 0.5F * kPi));
+    ObstacleDistance m;
+    m.distances.fill(4001);
+    m.distances[0] = 2000;
+    m.min_distance = 20;
+    m.max_distance = 4000;
+    m.increment = 45;
+    m.frame = 12;
+    f.feed(m);
+    f.fly(1);
+    EXPECT_EQ(f.last.obstacles, 5U);
+    EXPECT_TRUE(f.last.guidance.has_conflict);
+    EXPECT_GT(f.last.guidance.conflict.time_to_loss, 2.5F) << "20 m less 5 % and the own box, at 5 m/s";
+    m.distances[0] = 4001;
+    f.feed(m);
+    f.fly(1);
+    EXPECT_EQ(f.last.obstacles, 0U);
+}
+
+TEST_F(RangeSensors, AScanAllAroundAtTheWidestSectorsLeavesTheVehicleOutside)
+{
+    for (const std::uint8_t increment : {10, 11, 45, 90, 180}) {
+        f.feed(wire::attitude(f.boot_ms(), 0.5F * kPi));
+        ObstacleDistance m;
+        m.distances.fill(3900);
+        m.min_distance = 20;
+        m.max_distance = 4000;
+        m.increment = increment;
+        m.frame = 12;
+        f.feed(m);
+        f.fly(1);
+        ASSERT_TRUE(f.last.guidance.has_conflict) << int(increment);
+        EXPECT_GT(f.last.guidance.conflict.time_to_loss, 6.5F) << int(increment);
+        f.fly(60);  // forgotten
+    }
+}
+
+}  // namespace
+}  // namespace jink::app::test

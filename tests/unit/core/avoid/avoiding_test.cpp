@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/supervisor.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/core/avoid/fakes.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+using world::ManoeuvreKind;
+
+TEST(Avoiding, BeginsWithControl)
+{
+    Flight f;
+    FakeMethod method = always(kLeft);
+    Supervisor supervisor(quick(), method);
+    const Guidance g = avoid_head_on(f, supervisor);
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_TRUE(g.new_manoeuvre);
+    EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
+    EXPECT_EQ(supervisor.diagnostics().replans, 0U);
+}
+
+TEST(Avoiding, KeepsWhatItFliesWhileThatIsSafe)
+{
+    Flight f;
+    FakeMethod method = always(kLeft);
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    const TimePoint begun = supervisor.flying()->start;
+    const int asked = method.asked;
+    for (int i = 0; i < 30; ++i) {
+        f.pass(g.velocity, 0.1F);
+        g = f.update(supervisor, true);
+        ASSERT_EQ(g.state, State::avoiding) << "step " << i;
+        ASSERT_FALSE(g.new_manoeuvre);
+        ASSERT_GE(g.margin, 0.0F);
+    }
+    EXPECT_EQ(supervisor.flying()->start, begun);
+    EXPECT_EQ(method.asked, asked);
+}
+
+/// A method that changes its mind each time is not asked while the picture stays.
+TEST(Avoiding, DoesNotFlipWhileThePictureStays)
+{
+    Flight f;
+    float sign = 1.0F;
+    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        sign = -sign;
+        out = detour(s, sign * kLeft, 6.0F, 60.0F);
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    const Vec3 side = supervisor.flying()->side;
+    for (int i = 0; i < 60 && g.state == State::avoiding; ++i) {
+        f.pass(g.velocity, 0.1F);
+        g = f.update(supervisor, true);
+        if (supervisor.flying() != nullptr) {
+            ASSERT_EQ(supervisor.flying()->side, side) << "step " << i;
+        }
+    }
+    EXPECT_EQ(supervisor.diagnostics().flips, 0U);
+}
+
+TEST(Avoiding, ReplansWhenThePictureChangesAndCountsTheFlip)
+{
+    Flight f;
+    Vec3 side = kLeft;
+    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, side, 6.0F, 60.0F);
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    f.pass(g.velocity, 0.1F);
+    f.scene.track(Vec3(22, 6, 30), Vec3::Zero(), 2.0F);  // in the way of the detour
+    side = -kLeft;
+    g = f.update(supervisor, true);
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_TRUE(g.new_manoeuvre);
+    EXPECT_EQ(supervisor.flying()->side, -kLeft);
+    EXPECT_EQ(supervisor.diagnostics().replans, 1U);
+    EXPECT_EQ(supervisor.diagnostics().flips, 1U);
+    EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
+}
+
+TEST(Avoiding, AReplanOnTheSameSideIsNoFlip)
+{
+    Flight f;
+    float width = 6.0F;
+    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, width, 60.0F);
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    f.pass(g.velocity, 0.1F);
+    f.scene.track(Vec3(30, 6, 30), Vec3::Zero(), 1.0F);
+    width = 11.0F;
+    g = f.update(supervisor, true);
+    EXPECT_TRUE(g.new_manoeuvre);
+    EXPECT_EQ(supervisor.diagnostics().replans, 1U);
+    EXPECT_EQ(supervisor.diagnostics().flips, 0U);
+}
+
+TEST(Avoiding, UnsafeWithoutAnotherPlanItFliesOnUntilItMustBrake)
+{
+    Flight f;
+    bool finds = true;
+    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return finds ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    finds = false;
+    f.pass(g.velocity, 0.1F);
+    f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // met in 6 s, on the detour and beside the leg
+    g = f.update(supervisor, true);
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_LT(g.margin, 0.0F) << "and says so";
+    while (g.state == State::avoiding) {
+        f.pass(g.velocity, 0.05F);
+        g = f.update(supervisor, true);
+        WorkBudget budget(world::test::kPlenty);
+        ASSERT_GE(world::separation_at(f.scene.situation(), f.scene.own.position, 0.0F, budget).margin, 0.0F);
+    }
+    EXPECT_EQ(g.state, State::braking);
+    EXPECT_EQ(supervisor.diagnostics().brakes, 1U);
+}
+
+/// What counts is when the margin is entered, not when it is at its worst: behind the surface of a large threat that is
+/// late.
+TEST(Avoiding, BrakesBeforeTheSurfaceOfALargeThreatNotBeforeItsMiddle)
+{
+    Flight f;
+    bool finds = true;
+    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return finds ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    finds = false;
+    f.pass(g.velocity, 0.1F);
+    f.scene.tracks.clear();
+    f.scene.track(Vec3(45, 5, 30), Vec3::Zero(), 15.0F);
+    for (int i = 0; i < 400; ++i) {
+        g = f.update(supervisor, true);
+        WorkBudget budget(world::test::kPlenty);
+        ASSERT_GE(world::separation_at(f.scene.situation(), f.scene.own.position, 0.0F, budget).margin, 0.0F)
+            << "step " << i;
+        f.pass(g.velocity, 0.05F);
+    }
+    EXPECT_GE(supervisor.diagnostics().brakes, 1U);
+}
+
+TEST(Avoiding, EndsWithThePath)
+{
+    Flight f;
+    FakeMethod method = always(kLeft);
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    f.scene.tracks[0].position = Vec3(400, 0, 30);
+    f.scene.now = f.scene.now + 100.0F;
+    g = f.update(supervisor, true);
+    EXPECT_EQ(g.state, State::rejoining);
+}
+
+TEST(Avoiding, EndsEarlyWhenTheWayHasBeenClearForAWhile)
+{
+    Flight f;
+    FakeMethod method = always(kLeft);
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    f.scene.tracks.clear();
+    for (int i = 0; i < 4; ++i) {
+        f.pass(g.velocity, 0.1F);
+        g = f.update(supervisor, true);
+        EXPECT_EQ(g.state, State::avoiding) << "not yet trusted";
+    }
+    f.pass(g.velocity, 0.3F);
+    g = f.update(supervisor, true);
+    EXPECT_NE(g.state, State::avoiding);
+}
+
+}  // namespace
+}  // namespace jink::avoid
