@@ -17,9 +17,7 @@ set(CCD_DOUBLE ON)
 set(BUILD_SHARED_LIBS OFF)
 set(BUILD_TESTING OFF)
 set(BUILD_DOCUMENTATION OFF)
-if(CMAKE_SYSTEM_NAME STREQUAL "Generic")
-  set(LIBM_LIBRARY m)  # its search looks for a library file, which a compiler without a system has not got
-endif()
+set(LIBM_LIBRARY m)  # its search looks for a library file in the host's folders
 set(CMAKE_POLICY_DEFAULT_CMP0077 NEW)  # the settings above are taken as they are
 set(CMAKE_WARN_DEPRECATED OFF)
 add_subdirectory("${JINK_CCD_SOURCE}" "${PROJECT_BINARY_DIR}/third_party/libccd" EXCLUDE_FROM_ALL SYSTEM)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The same planning problems on every target: the choice must be the same, costs may differ by rounding.
+
+Usage: same_choice.py BUILD_FOLDER COUNT [TARGET ...]
+
+BUILD_FOLDER holds one build per preset. The first target is the reference. A choice that differs is accepted, and
+counted, only as a tie: both targets' costs of their choices within TIE of each other.
+"""
+import pathlib
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
+import cases  # noqa: E402
+import targets  # noqa: E402
+
+TIE = 1e-4
+
+
+def case_of(seed):
+    kind = "update" if seed % 5 == 4 else "plan"
+    return cases.random_case(seed, kind, tracks=1 + seed % 6, obstacles=(seed // 6) % 4, offsets=2 + 2 * (seed % 2))
+
+
+def main(build, count, names):
+    probes = [targets.open_probe(name, build) for name in names]
+    ties, differing, largest, found = 0, [], 0.0, 0
+    for seed in range(count):
+        case = case_of(seed)
+        answers = [probe.ask(case) for probe in probes]
+        reference = answers[0]
+        found += reference.status == "found"
+        for probe, answer in zip(probes[1:], answers[1:]):
+            difference = abs(answer.cost - reference.cost)
+            largest = max(largest, difference)
+            if (answer.status, answer.chosen, answer.kind) == (reference.status, reference.chosen, reference.kind):
+                continue
+            if answer.status == reference.status == "found" and difference <= TIE:
+                ties += 1
+            else:
+                differing.append(f"case {seed} on {probe.name}: {answer} against {reference}")
+    for probe in probes:
+        probe.close()
+    print(f"{count} problems on {', '.join(names)}: {found} found on {names[0]}; largest difference of costs {largest:.3g}; "
+          f"{ties} ties within {TIE:g} chosen otherwise; {len(differing)} others chosen otherwise")
+    print("\n".join(differing[:20]))
+    return 1 if differing else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 5:
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(sys.argv[1], int(sys.argv[2]), sys.argv[3:]))
