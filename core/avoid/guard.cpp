@@ -25,23 +25,6 @@ vehicle::VehicleState end_state(const vehicle::VehicleState& own, const TimedPat
     return end;
 }
 
-void append(TimedPath& flight, const TimedPath& tail) noexcept
-{
-    if (flight.points.empty()) {
-        flight = tail;
-        return;
-    }
-    const Seconds offset = flight.duration();
-    flight.points.back().velocity = tail.points.front().velocity;
-    for (std::size_t i = 1; i < tail.points.size(); ++i) {
-        PathPoint p = tail.points[i];
-        p.time += offset;
-        if (!flight.points.try_push_back(p)) {
-            break;
-        }
-    }
-}
-
 /// Flight under a turn that never ends, by the vehicle model.
 void predict_turn(const world::Situation& s, float direction, const Settings& settings, TimedPath& out) noexcept
 {
@@ -223,11 +206,9 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
         const vehicle::VehicleState end = end_state(s.own, flight);
         const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
         const Seconds span = vehicle::stopping_time(end.velocity.norm(), s.limits);
-        TimedPath tail;
-        path::predict_velocity_command(end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
-                                       std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)),
-                                       s.limits, tail);
-        append(flight, tail);
+        path::extend_by_velocity_command(
+            end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
+            std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)), s.limits, flight);
     }
     return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape);
 }

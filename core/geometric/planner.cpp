@@ -103,12 +103,12 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!world::main_conflict(situation, way, settings_.lookahead, budget, conflict)) {
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
     }
-    StaticVector<Threat, kMaxTracks> threats;
+    threats_.clear();
     for (const world::Track& track : situation.tracks) {
-        threats.unchecked_push_back(threat_of(situation, track));
+        threats_.unchecked_push_back(threat_of(situation, track));
     }
     Problem problem = problem_of(situation, way, conflict);
-    problem.threats = {threats.data(), threats.size()};
+    problem.threats = {threats_.data(), threats_.size()};
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }

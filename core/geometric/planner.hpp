@@ -196,6 +196,7 @@ public:
 private:
     Settings settings_;
     Result result_;
+    StaticVector<Threat, kMaxTracks> threats_;  ///< of the plan under way
     Workspace workspace_;
 };
 

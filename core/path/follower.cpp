@@ -119,19 +119,28 @@ void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, S
     }
 }
 
-void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
-                              const vehicle::VehicleLimits& limits, TimedPath& out) noexcept
+void extend_by_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
+                                const vehicle::VehicleLimits& limits, TimedPath& out) noexcept
 {
     vehicle::VehicleState flown = state;
     vehicle::detail::Fading fading(limits.velocity_lag);
+    const Seconds begin = out.duration();
     const detail::Steps steps(horizon, dt, kMaxPathPoints - 1);
+    Seconds from = 0.0F;
+    for (std::size_t step = 1; step <= steps.count && !out.points.full(); ++step) {
+        const Seconds to = steps.end_of(step);
+        vehicle::detail::move(flown.position, flown.velocity, command, limits, to - from, fading);
+        append(out, flown.position, begin + to);
+        from = to;
+    }
+}
+
+void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
+                              const vehicle::VehicleLimits& limits, TimedPath& out) noexcept
+{
     out.points.clear();
     out.points.unchecked_push_back({state.position, state.velocity, 0.0F});
-    for (std::size_t step = 1; step <= steps.count; ++step) {
-        vehicle::detail::move(flown.position, flown.velocity, command, limits,
-                              steps.end_of(step) - out.points.back().time, fading);
-        append(out, flown.position, steps.end_of(step));
-    }
+    extend_by_velocity_command(state, command, horizon, dt, limits, out);
 }
 
 }  // namespace jink::path

@@ -39,35 +39,55 @@ struct Bounds {
     std::size_t last;  ///< one past the last piece
 };
 
-struct Flight {
-    StaticVector<Piece, kMaxPathPoints> pieces;
-    StaticVector<Bounds, kMaxChunks + 1> chunks;
-};
+/// A path until `horizon` as the pieces it is made of, and boxes about some of them at a time.
+class Flight {
+public:
+    Flight(const path::TimedPath& path, Seconds horizon) noexcept : path_(path), horizon_(horizon)
+    {
+        const auto& points = path.points;
+        while (count_ + 1 < points.size() && points[count_].time < horizon) {
+            ++count_;
+        }
+        stands_ = count_ == 0;
+        count_ = std::max<std::size_t>(count_, 1);
+        for (std::size_t first = 0; first < count_; first += kChunk) {
+            chunks_.unchecked_push_back(bounds(first, std::min(first + kChunk, count_)));
+        }
+    }
 
-void cut_into_pieces(const path::TimedPath& path, Seconds horizon, Flight& flight) noexcept
-{
-    const auto& points = path.points;
-    for (std::size_t i = 0; i + 1 < points.size() && points[i].time < horizon; ++i) {
-        const Seconds end = std::min(points[i + 1].time, horizon);
-        flight.pieces.unchecked_push_back(
-            {points[i].position, points[i].velocity, points[i].time, end - points[i].time});
+    [[nodiscard]] std::size_t size() const noexcept { return count_; }
+    [[nodiscard]] Piece piece(std::size_t i) const noexcept
+    {
+        const path::PathPoint& from = path_.points[i];
+        if (stands_) {
+            return {from.position, Vec3::Zero(), 0.0F, 0.0F};
+        }
+        return {from.position, from.velocity, from.time, std::min(path_.points[i + 1].time, horizon_) - from.time};
     }
-    if (flight.pieces.empty() && !points.empty()) {
-        flight.pieces.unchecked_push_back({points.front().position, Vec3::Zero(), 0.0F, 0.0F});
-    }
-    for (std::size_t first = 0; first < flight.pieces.size(); first += kChunk) {
-        const std::size_t last = std::min(first + kChunk, flight.pieces.size());
-        Bounds b{flight.pieces[first].from, flight.pieces[first].from, flight.pieces[first].start, 0.0F, first, last};
+    [[nodiscard]] const Vec3& begin() const noexcept { return path_.points.front().position; }
+    [[nodiscard]] const auto& chunks() const noexcept { return chunks_; }
+
+private:
+    [[nodiscard]] Bounds bounds(std::size_t first, std::size_t last) const noexcept
+    {
+        const Piece begin = piece(first);
+        Bounds b{begin.from, begin.from, begin.start, 0.0F, first, last};
         for (std::size_t i = first; i < last; ++i) {
-            const Piece& p = flight.pieces[i];
+            const Piece p = piece(i);
             const Vec3 to = p.from + p.velocity * p.duration;
             b.low = b.low.cwiseMin(p.from).cwiseMin(to);
             b.high = b.high.cwiseMax(p.from).cwiseMax(to);
             b.end = p.start + p.duration;
         }
-        flight.chunks.unchecked_push_back(b);
+        return b;
     }
-}
+
+    const path::TimedPath& path_;
+    Seconds horizon_;
+    std::size_t count_ = 0;
+    bool stands_ = false;
+    StaticVector<Bounds, kMaxChunks + 1> chunks_;
+};
 
 /// Distance between two boxes given by their corners.
 float box_distance(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b) noexcept
@@ -106,14 +126,14 @@ template <class RadiusAt>
 void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bool grows, const RadiusAt& radius_at,
                   ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
 {
-    const Vec3& begin = flight.pieces.front().from;
+    const Vec3& begin = flight.begin();
     const float start_margin =
         geometry::least_distance(half, {begin, Vec3::Zero()}, {ball.position, Vec3::Zero()}, 0.0F).distance -
         radius_at(0.0F);
     const float shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
     const Seconds growth_piece = grows ? kGrowthPiece : std::numeric_limits<Seconds>::infinity();
 
-    for (const Bounds& chunk : flight.chunks) {
+    for (const Bounds& chunk : flight.chunks()) {
         const Vec3 a = ball.position + ball.velocity * chunk.start;
         const Vec3 b = ball.position + ball.velocity * chunk.end;
         const float bound =
@@ -122,7 +142,7 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
             continue;
         }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
-            const Piece& p = flight.pieces[i];
+            const Piece p = flight.piece(i);
             const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
             const int parts =
                 parts_of(p.duration, escapes ? std::min(growth_piece, escape_piece(escape)) : growth_piece);
@@ -164,20 +184,20 @@ void against_solid(const Situation& situation, const Flight& flight, const geome
     const float reach = geometry::bounding_radius(shape);
     float shrunk = -1.0F;  // found when the first piece near the obstacle is met
 
-    for (const Bounds& chunk : flight.chunks) {
+    for (const Bounds& chunk : flight.chunks()) {
         const float bound =
             box_distance(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach - extra;
         if (bound >= best.margin) {
             continue;
         }
         if (shrunk < 0.0F) {
-            const Vec3& begin = flight.pieces.front().from;
+            const Vec3& begin = flight.begin();
             const float start = obstacle_margin(half, begin, begin, shape, budget) - extra;
             const float slack = escape.slack + kObstacleResolution + escape.speed * kSolidEscapePiece;
             shrunk = start < 0.0F ? slack - start : 0.0F;
         }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
-            const Piece& p = flight.pieces[i];
+            const Piece p = flight.piece(i);
             const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
             const int parts = escapes ? parts_of(p.duration, kSolidEscapePiece) : 1;
             const Seconds length = p.duration / static_cast<float>(parts);
@@ -244,10 +264,11 @@ void against_airspace(const Situation& situation, const Flight& flight, const Es
                       Separation& best) noexcept
 {
     for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {
-        const float start = margin_of(flight.pieces.front().from);
+        const float start = margin_of(flight.begin());
         const float shrunk = start < 0.0F ? escape.slack - start : 0.0F;
         const Seconds whole = escape.speed > 0.0F ? shrunk / escape.speed : 0.0F;
-        for (const Piece& p : flight.pieces) {
+        for (std::size_t i = 0; i < flight.size(); ++i) {
+            const Piece p = flight.piece(i);
             const auto judge = [&](Seconds t) {
                 const float margin = margin_of(p.from + p.velocity * (t - p.start));
                 consider(best, margin + shrink_at(shrunk, escape, t), t, {kind, 0});
@@ -278,8 +299,7 @@ Separation least_separation(const Situation& situation, const path::TimedPath& p
     if (path.points.empty()) {
         return best;
     }
-    Flight flight;
-    cut_into_pieces(path, horizon, flight);
+    const Flight flight(path, horizon);
     against_airspace(situation, flight, escape, best);
     const bool track_first = cutoff.first.kind == ThreatKind::track && cutoff.first.index < situation.tracks.size();
     if (track_first) {

@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Deepest stack of a bare-metal image, from the compiler's call graphs (-fcallgraph-info=su).
+
+Usage: stack.py BUILD_FOLDER [ENTRY]
+
+Refuses recursion, frames whose size is not fixed, and calls through pointers that INDIRECT does not explain. Functions of
+the C library have no figure of their own and count LIBRARY bytes each.
+"""
+import pathlib
+import re
+import sys
+
+NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
+EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
+# A constructor under its two names is shown as calling itself.
+CONSTRUCTOR = re.compile(r"C[12]E")
+BYTES = re.compile(r"\\n(\d+) bytes \(([^)]+)\)")
+# sinf, cosf, memcpy and the like, measured by painting the stack: none needs more.
+LIBRARY = 200
+# Who can be reached through a pointer, by the mangled name of the caller.
+INDIRECT = [
+    (r"5Pilot4plan", [r"10Supervisor.*6ladder"]),
+    (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
+    (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"CmsdkUart", r"5Usart", r"Watchdog"]),
+    (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
+    (r"MemorySerialLink|MemoryLine|memory", []),
+]
+
+
+class Graph:
+    def __init__(self, build):
+        self.frames = {}
+        self.calls = {}
+        self.names = {}
+        self.problems = []
+        for file in sorted(pathlib.Path(build).rglob("*.ci")):
+            text = file.read_text(encoding="utf-8")
+            for title, label in NODE.findall(text):
+                title = self.unique(title)
+                found = BYTES.search(label)
+                if found:
+                    self.frames[title] = max(self.frames.get(title, 0), int(found[1]))
+                    self.names[title] = label.split("\\n")[0]
+                    if found[2] not in ("static", "dynamic,bounded"):
+                        self.problems.append(f"{label.split(chr(92))[0]}: {found[2]} frame")
+            for source, target in EDGE.findall(text):
+                if source != target or not CONSTRUCTOR.search(source):
+                    self.calls.setdefault(self.unique(source), set()).add(self.unique(target))
+
+    @staticmethod
+    def unique(title):
+        """Functions of one file only are named with their file in front by the compiler."""
+        return title.split(":")[-1] if ":" in title else title
+
+    def targets(self, function):
+        for target in sorted(self.calls.get(function, ())):
+            if target != "__indirect_call":
+                yield target
+                continue
+            for caller, patterns in INDIRECT:
+                if re.search(caller, function):
+                    for pattern in patterns:
+                        yield from (f for f in sorted(self.frames) if re.search(pattern, f))
+                    break
+            else:
+                self.problems.append(f"{self.names.get(function, function)}: a call through a pointer to nobody knows whom")
+
+    def deepest(self, entry):
+        """(bytes, chain of functions); a recursion counts as a problem."""
+        done = {}
+        on_way = []
+
+        def visit(function):
+            if function in done:
+                return done[function]
+            if function in on_way:
+                self.problems.append("recursion: " + " -> ".join(on_way[on_way.index(function):] + [function]))
+                return 0, []
+            on_way.append(function)
+            best, chain = 0, []
+            for target in self.targets(function):
+                depth, below = visit(target)
+                if depth > best:
+                    best, chain = depth, below
+            on_way.pop()
+            own = self.frames.get(function, LIBRARY)
+            done[function] = (own + best, [(function, own)] + chain)
+            return done[function]
+
+        sys.setrecursionlimit(10000)
+        return visit(entry)
+
+
+def main(build, entry="jink_main"):
+    graph = Graph(build)
+    depth, chain = graph.deepest(entry)
+    for function, own in chain:
+        print(f"{own:6d}  {graph.names.get(function, function)}")
+    print(f"{depth:6d}  bytes in all")
+    for problem in sorted(set(graph.problems)):
+        print("not bounded: " + problem)
+    return 1 if graph.problems else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (2, 3):
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(*sys.argv[1:]))
