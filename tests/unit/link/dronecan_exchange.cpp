@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The other end of dronecan_check.py: reads frames from standard input, one transfer a line ("node id#data id#data ..."),
-// and answers with the type's id and kind, its fields, and the frames that our own encoder makes of them.
+// The other end of dronecan_check.py: reads frames from standard input, one transfer a line ("node id#data id#data
+// ..."), and answers with the type's id and kind, its fields, and the frames that our own encoder makes of them.
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
@@ -15,11 +15,23 @@ using namespace jink::link::dronecan;
 using namespace jink::link::dronecan::test;
 
 constexpr std::array kAll{
-    NodeStatus::kType,           GetNodeInfoRequest::kType,    GetNodeInfoResponse::kType, GetSetRequest::kType,
-    GetSetResponse::kType,       ExecuteOpcodeRequest::kType,  ExecuteOpcodeResponse::kType,
-    GlobalTimeSync::kType,       Allocation::kType,            LogMessage::kType,          RangeMeasurement::kType,
-    Proximity::kType,            TrafficReport::kType,         Fix2::kType,                AhrsSolution::kType,
-    TunnelTargetted::kType,      TunnelBroadcast::kType,
+    NodeStatus::kType,
+    GetNodeInfoRequest::kType,
+    GetNodeInfoResponse::kType,
+    GetSetRequest::kType,
+    GetSetResponse::kType,
+    ExecuteOpcodeRequest::kType,
+    ExecuteOpcodeResponse::kType,
+    GlobalTimeSync::kType,
+    Allocation::kType,
+    LogMessage::kType,
+    RangeMeasurement::kType,
+    Proximity::kType,
+    TrafficReport::kType,
+    Fix2::kType,
+    AhrsSolution::kType,
+    TunnelTargetted::kType,
+    TunnelBroadcast::kType,
 };
 
 std::string answer(const Transfer& transfer, std::uint8_t destination)
