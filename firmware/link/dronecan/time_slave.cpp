@@ -16,9 +16,9 @@ void TimeSlave::receive(std::uint8_t master, std::uint8_t transfer, std::uint64_
         return;
     }
     const bool known = master == current;
-    if (!known && master != master_) {
-        ++diagnostics_.master_changes;
+    if (!known) {  // after a silence its clock may be another
         has_offset_ = false;
+        diagnostics_.master_changes += master_ != 0 && master != master_ ? 1U : 0U;
     }
     const bool pair =
         known && transfer == ((transfer_ + 1U) & kTransferMask) && previous != 0 && arrived - arrived_ <= kLongestPair;
