@@ -68,7 +68,7 @@ struct NodeDiagnostics {
 /// * Follows GlobalTimeSync.
 /// * Another node with our id makes health at least `warning` for 3 s after it was heard.
 ///
-/// Memory: about 8 KiB, most of it the receiver's and the transmit queue's.
+/// Memory: 6.7 KiB, most of it the receiver's and the transmit queue's.
 class Node {
 public:
     static constexpr Seconds kStatusPeriod = 1.0F;

@@ -8,7 +8,7 @@
 namespace jink::link::dronecan {
 
 /// Streams of transfers that are followed at once: one per sender and type. 32 covers a status from ten nodes and 22
-/// streams of sensors, traffic and requests; 40 bytes each. When full, the one that has been silent for longest gives
+/// streams of sensors, traffic and requests; 24 bytes each. When full, the one that has been silent for longest gives
 /// way, and only its memory of the last transfer id is lost: a repetition would be taken for new.
 inline constexpr std::size_t kSessions = 32;
 /// Transfers of several frames that are put together at once: senders that interleave. 8 covers each kind of long
@@ -60,7 +60,7 @@ struct ReceiverDiagnostics {
 /// protocol can tell: what it cannot is two or more whole frames missing from (or changed about within) one transfer in
 /// such a way that toggle bits and the 16 bits of CRC come out right.
 ///
-/// Memory: 40 * kSessions + 400 * kAssemblies bytes, about 4.5 KiB. Nothing is allocated.
+/// Memory: 24 * kSessions + 400 * kAssemblies bytes and some, 4.1 KiB in all. Nothing is allocated.
 class Receiver {
 public:
     /// @param wanted  types to deliver; the list has to outlive the receiver

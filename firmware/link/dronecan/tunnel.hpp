@@ -22,7 +22,9 @@ struct TunnelDiagnostics {
 /// is a CAN bus instead of a serial line. Used as a serial port is: bytes are read and written, never waited for.
 ///
 /// Written bytes go out as they come, up to 120 in a transfer. Of a lost transfer all bytes are missing; MAVLink's own
-/// framing finds that. Memory: 1 KiB.
+/// framing finds that. What has been written cannot be taken back: a Link, which takes back set-points that are out of
+/// date, should be asked for bytes only while no frame waits (`Node::outgoing().front()` is nullptr), so that on a bus
+/// that takes nothing they wait in the Link. Memory: 1.1 KiB.
 class Tunnel {
 public:
     /// Bytes received and not read yet: what 1 Mbit/s of CAN brings in one step of 20 ms, less its framing.

@@ -104,7 +104,7 @@ protected:
 
 void expect_near(const Vec3& got, const Vec3& expected, float tolerance)
 {
-    EXPECT_LE((got - expected).norm(), tolerance) << got.transpose() << " instead of " << expected.transpose();
+    EXPECT_LE((got - expected).norm(), tolerance) << got.x() << " " << got.y() << " " << got.z();
 }
 
 TEST_F(DronecanEndpoint, OwnStateIsPlacedAboutTheOrigin)
@@ -278,7 +278,7 @@ TEST_F(DronecanEndpoint, ProximityLooksWhereTheBodyDoes)
 {
     give(proximity(0.0F, 5.0F));
     EXPECT_EQ(seen().no_origin, 1U);  // no attitude
-    give(attitude(kHalfPi));        // nose to the east
+    give(attitude(kHalfPi));          // nose to the east
     give(proximity(0.0F, 5.0F));
     give(proximity(90.0F, 6.0F));        // right of the nose: south
     give(proximity(0.0F, 7.0F, 90.0F));  // up
