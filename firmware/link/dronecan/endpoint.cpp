@@ -30,7 +30,7 @@ template <class Range>
     return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
 
-/// Standard deviation from the largest of three variances: 0 when they are not given or make none.
+/// Standard deviation from the largest of three variances: 0 when one is not given or is none.
 [[nodiscard]] float sigma_of(const StaticVector<float, 36>& covariance, std::size_t first) noexcept
 {
     // One number for all, six on the diagonal, the upper triangle, or all of it.
@@ -42,7 +42,7 @@ template <class Range>
                                : covariance.size() == 21 ? kTriangle[i]
                                : covariance.size() == 36 ? 7 * i
                                                          : covariance.size();
-        if (at >= covariance.size() || !std::isfinite(covariance[at]) || covariance[at] <= 0.0F) {
+        if (at >= covariance.size() || !std::isfinite(covariance[at]) || covariance[at] < 0.0F) {
             return 0.0F;
         }
         largest = std::max(largest, covariance[at]);

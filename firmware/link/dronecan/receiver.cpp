@@ -8,8 +8,6 @@ namespace {
 
 constexpr std::size_t kCrcBytes = 2;
 constexpr std::uint32_t kHighestId = 0x1FFFFFFF;
-/// Types that an anonymous message can name.
-constexpr std::uint16_t kAnonymousTypes = 4;
 
 [[nodiscard]] constexpr std::uint32_t key_of(const FrameId& id) noexcept
 {
@@ -50,9 +48,9 @@ const TypeInfo* Receiver::find_type(const FrameId& id) const noexcept
     if (service && id.destination != node_) {
         return nullptr;
     }
-    const bool anonymous = id.source == kAnonymous;
+    // Of an anonymous message's type two bits are said: only types 0 .. 3 can be meant.
     for (const TypeInfo& type : wanted_) {
-        if (type.kind == id.kind && type.id == id.type && (!anonymous || type.id < kAnonymousTypes)) {
+        if (type.kind == id.kind && type.id == id.type) {
             return &type;
         }
     }

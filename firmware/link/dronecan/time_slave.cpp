@@ -20,8 +20,7 @@ void TimeSlave::receive(std::uint8_t master, std::uint8_t transfer, std::uint64_
         has_offset_ = false;
         diagnostics_.master_changes += master_ != 0 && master != master_ ? 1U : 0U;
     }
-    const bool pair =
-        known && transfer == ((transfer_ + 1U) & kTransferMask) && previous != 0 && arrived - arrived_ <= kLongestPair;
+    const bool pair = known && transfer == ((transfer_ + 1U) & kTransferMask) && previous != 0;
     if (pair) {
         const std::int64_t offset = arrived_.us - static_cast<std::int64_t>(previous);
         const std::int64_t moved = offset > offset_ ? offset - offset_ : offset_ - offset;

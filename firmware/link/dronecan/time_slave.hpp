@@ -10,7 +10,7 @@ namespace jink::link::dronecan {
 
 struct TimeSlaveDiagnostics {
     std::uint32_t updates = 0;        ///< of the offset
-    std::uint32_t not_a_pair = 0;     ///< no earlier message, a gap in the transfer ids, too old, or told nothing
+    std::uint32_t not_a_pair = 0;     ///< no earlier message, a gap in the transfer ids, or told nothing
     std::uint32_t other_masters = 0;  ///< messages of a master that is outranked
     std::uint32_t master_changes = 0;
     std::uint32_t jumps = 0;  ///< of the common clock by more than kJump
@@ -25,8 +25,7 @@ struct TimeSlaveDiagnostics {
 class TimeSlave {
 public:
     static constexpr Seconds kMasterTimeout = 2.2F;  ///< twice the longest period at which a master speaks
-    static constexpr Seconds kLongestPair = 2.2F;
-    static constexpr std::int64_t kJump = 200'000;  ///< [us]
+    static constexpr std::int64_t kJump = 200'000;   ///< [us]
 
     /// A message of `master` whose first frame arrived at `arrived`; `previous`: what it says [us].
     void receive(std::uint8_t master, std::uint8_t transfer, std::uint64_t previous, TimePoint arrived) noexcept;

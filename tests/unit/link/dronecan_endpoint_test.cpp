@@ -149,6 +149,14 @@ TEST_F(DronecanEndpoint, CovariancesOfEachForm)
         }
     }
     Fix2 m = fix();
+    m.covariance.resize(6);
+    std::fill(m.covariance.begin(), m.covariance.end(), 4.0F);
+    m.covariance[1] = 0.0F;  // the others stand
+    give(m);
+    EXPECT_EQ(inbox.own_state.state.sigma_position, 2.0F);
+    m.covariance[1] = -1.0F;
+    give(m);
+    EXPECT_EQ(inbox.own_state.state.sigma_position, 0.0F);
     for (const float bad : {kNaN, -1.0F, 0.0F, kInfinity}) {
         m.covariance.resize(1);
         m.covariance[0] = bad;
@@ -324,6 +332,18 @@ TEST_F(DronecanEndpoint, BadProximityIsRefused)
     EXPECT_TRUE(inbox.readings.empty());
 }
 
+TEST_F(DronecanEndpoint, DirectionsAreUnitVectorsThoughTheWireRounds)
+{
+    AhrsSolution m = attitude(0.7, 0.3, -0.2);
+    for (float& x : m.orientation) {
+        x *= 1.04F;
+    }
+    give(m);
+    give(proximity(30.0F, 5.0F));
+    ASSERT_EQ(inbox.readings.size(), 1U);
+    EXPECT_NEAR(inbox.readings[0].direction.norm(), 1.0F, 1e-5F);
+}
+
 TEST_F(DronecanEndpoint, BadAttitudesAreRefused)
 {
     AhrsSolution m = attitude(0.0);
@@ -412,15 +432,23 @@ TEST_F(DronecanEndpoint, EachDirectionOfEachSensorHasItsOwnNumber)
         EXPECT_EQ(number(static_cast<float>(i) * 15.0F + 5.0F, 20), first);
         EXPECT_EQ(++used[first], 1) << i;
     }
-    for (int i = 0; i < 23; ++i) {
+    for (int i = 0; i < 22; ++i) {
         EXPECT_EQ(++used[number(static_cast<float>(i) * 15.0F, 21)], 1) << i;
     }
-    inbox.clear();
-    give(measurement(), 20);  // the 48th
-    EXPECT_EQ(++used[inbox.readings[0].sensor], 1);
-    EXPECT_EQ(endpoint.beams_evicted(), 0U);
+    RangeMeasurement m = measurement();
+    for (const std::uint8_t sensor : {std::uint8_t{3}, std::uint8_t{7}}) {  // 7 is the proximity sensor's id too
+        inbox.clear();
+        m.sensor = sensor;
+        give(m, 20);
+        EXPECT_EQ(++used[inbox.readings[0].sensor], 1);
+    }
+    EXPECT_EQ(endpoint.beams_evicted(), 0U);  // 48
     now = now + 0.01F;
-    EXPECT_EQ(++used[number(0.0F, 22)], 2);  // one more: that not heard for longest gives way
+    const std::uint8_t first = number(0.0F, 20);
+    now = now + 0.01F;
+    const std::uint8_t evicting = number(0.0F, 22);  // one more: one not heard for longest gives way
+    EXPECT_NE(evicting, first);
+    EXPECT_EQ(used[evicting], 1);
     EXPECT_EQ(endpoint.beams_evicted(), 1U);
 }
 

@@ -462,6 +462,13 @@ TEST_F(DronecanAllocation, OthersStartTheWaitAnewAndTheirIdsAreNotOurs)
     EXPECT_EQ(node.id(), kAnonymous);
 }
 
+TEST_F(DronecanAllocation, AFixedIdStays)
+{
+    Node node(fixed());
+    give(node, confirmed(16, 61));
+    EXPECT_EQ(node.id(), kOwn);
+}
+
 TEST_F(DronecanAllocation, UntilThenNothingElseIsSaid)
 {
     Node node(dynamic());
@@ -628,6 +635,10 @@ TEST_F(DronecanTunnel, OfOthersIsNotOurs)
     give_tunnel(node, tunnel, gps);
     EXPECT_EQ(tunnel.diagnostics().not_ours, 4U);
     EXPECT_EQ(read_all(tunnel), "");
+    Tunnel open;
+    give_tunnel(node, open, packet("f", kOwn, -1));  // a port that there is not
+    EXPECT_EQ(open.diagnostics().not_ours, 1U);
+    EXPECT_EQ(open.peer(), kAnonymous);
     give_tunnel(node, tunnel, packet("e"));
     EXPECT_EQ(read_all(tunnel), "e");
 }

@@ -279,6 +279,28 @@ TEST_F(DronecanReceiver, ARepeatedTransferIsDeliveredOnce)
     EXPECT_NE(take(single), nullptr);
 }
 
+TEST_F(DronecanReceiver, ARepetitionIsJudgedFromTheFirstFrame)
+{
+    const std::vector<Frame> frames = log_frames(9, 0);
+    EXPECT_EQ(feed({frames.begin(), frames.begin() + 5}), 0);
+    now = now + 1.5F;
+    EXPECT_EQ(feed({frames.begin() + 5, frames.end()}), 1);
+    now = now + 0.5F;
+    EXPECT_EQ(feed(frames), 0);
+    now = now + 0.001F;
+    EXPECT_EQ(feed(frames), 1);
+}
+
+TEST_F(DronecanReceiver, AFirstFrameThatLooksLikeTheLastOneIsNoRepetitionOfIt)
+{
+    const Frame first = log_frames(9, 0)[0];
+    Frame second = first;
+    second.data[7] = pack(Tail{false, false, true, 0});
+    EXPECT_EQ(feed({first, second, first}), 0);
+    EXPECT_EQ(seen().duplicates, 0U);
+    EXPECT_EQ(seen().interrupted, 1U);
+}
+
 TEST_F(DronecanReceiver, FramesDeliveredTwiceByTheControllerChangeNothing)
 {
     std::vector<Frame> doubled;
@@ -341,6 +363,20 @@ TEST_F(DronecanReceiver, AnEvictedSessionTakesItsAssemblyAlong)
     EXPECT_EQ(seen().assemblies_evicted, 1U);
     EXPECT_EQ(feed({frames.begin() + 2, frames.end()}), 0);
     EXPECT_EQ(seen().missed_start, 4U);
+}
+
+TEST_F(DronecanReceiver, EveryFrameKeepsItsSession)
+{
+    const std::vector<Frame> frames = log_frames(100, 0);
+    EXPECT_EQ(take(frames[0]), nullptr);
+    for (std::size_t s = 1; s < kSessions; ++s) {
+        now = now + 0.001F;
+        EXPECT_NE(take(frames_of(NodeStatus{}, static_cast<std::uint8_t>(s))[0]), nullptr);
+    }
+    EXPECT_EQ(take(frames[1]), nullptr);
+    EXPECT_NE(take(frames_of(NodeStatus{}, 101)[0]), nullptr);  // takes the place of the first status
+    EXPECT_EQ(seen().sessions_evicted, 1U);
+    EXPECT_EQ(feed({frames.begin() + 2, frames.end()}), 1);
 }
 
 TEST(DronecanTransmitQueue, DropsTheOldestTransfersWholeWhenFull)
