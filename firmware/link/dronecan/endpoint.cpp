@@ -16,6 +16,8 @@ constexpr float kLargestSpeed = 400.0F;
 constexpr float kLargestHeight = 1e6F;
 /// Ranges seen from the body are placed by an attitude no older than this [s].
 constexpr Seconds kAttitudeFresh = 1.0F;
+/// A node that is followed for what several say gives way after this silence [s].
+constexpr Seconds kSourceSilence = 1.0F;
 /// Stamps this far ahead of arrival still count as now [s].
 constexpr Seconds kFutureSlack = 0.05F;
 /// Beam width taken for a sensor that does not say its own: half angle [rad].
@@ -99,6 +101,18 @@ bool Endpoint::stamp_of(std::uint64_t wire, const Context& c, TimePoint& stamp) 
     return true;
 }
 
+bool Endpoint::follow(Source& source, const Context& c, bool& changed) noexcept
+{
+    const std::uint8_t node = c.transfer.source;
+    if (source.node != kAnonymous && source.node != node && c.now - source.heard <= kSourceSilence) {
+        ++diagnostics_.frames_ignored;
+        return false;
+    }
+    changed = source.node != kAnonymous && source.node != node;
+    source = {node, c.now};
+    return true;
+}
+
 void Endpoint::on_fix(const Context& c) noexcept
 {
     Fix2 m;
@@ -127,14 +141,18 @@ void Endpoint::on_fix(const Context& c) noexcept
     if (!stamp_of(m.stamp, c, stamp)) {
         return;
     }
-    if (!options_.has_origin) {
-        options_.origin = where;
-        options_.has_origin = true;
-    }
-    const Vec3 position = mavlink::to_local(where, options_.origin);
+    const Vec3 position = options_.has_origin ? mavlink::to_local(where, options_.origin) : Vec3(Vec3::Zero());
     if (position.norm() > kLargestPosition) {
         ++diagnostics_.out_of_range;
         return;
+    }
+    bool changed = false;
+    if (!follow(fix_from_, c, changed)) {
+        return;
+    }
+    if (!options_.has_origin) {
+        options_.origin = where;
+        options_.has_origin = true;
     }
     own_.stamp = stamp;
     own_.position = position;
@@ -142,6 +160,7 @@ void Endpoint::on_fix(const Context& c) noexcept
     own_.sigma_position = sigma_of(m.covariance, 0);
     own_.sigma_velocity = sigma_of(m.covariance, 3);
     c.inbox.own_state.state = own_;
+    c.inbox.own_state.estimator_reset = c.inbox.own_state.estimator_reset || changed;
     c.inbox.has_own_state = true;
 }
 
@@ -163,6 +182,10 @@ void Endpoint::on_attitude(const Context& c) noexcept
     }
     TimePoint stamp;
     if (!stamp_of(m.stamp, c, stamp)) {
+        return;
+    }
+    bool changed = false;
+    if (!follow(attitude_from_, c, changed)) {
         return;
     }
     for (float& x : q) {

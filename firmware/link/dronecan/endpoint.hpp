@@ -10,6 +10,8 @@
 // * gnss.Fix2 with a 3D fix: own position and velocity, sigmas from the covariance when there is one. Placed about the
 //   origin that the application sets, else about the first fix. Without a 3D fix, off the earth or beyond 85 degrees of
 //   latitude, faster than 400 m/s or farther than 200 km: out_of_range.
+//   Of several receivers the first is followed, until it has given no good fix for a second; a change counts as a reset
+//   of the estimator. The others' fixes are frames_ignored. The same goes for attitudes.
 // * ahrs.Solution: attitude, taken as the turn from body (FRD) to world (NED). Not of length 1: out_of_range.
 // * trafficmonitor.TrafficReport: a track. Without a valid position or an altitude: out_of_range; before there is an
 //   origin: no_origin. traffic_type 19 (point obstacle): at_rest. Stamp = now - tslc.
@@ -73,6 +75,11 @@ private:
         TimePoint now;
         Inbox& inbox;
     };
+    /// The node that is followed of several that say the same thing.
+    struct Source {
+        std::uint8_t node = kAnonymous;
+        TimePoint heard;
+    };
     /// One direction of one sensor.
     struct Beam {
         bool used = false;
@@ -86,12 +93,16 @@ private:
     void on_measurement(const Context& c) noexcept;
     void on_proximity(const Context& c) noexcept;
     void place(const Context& c, RangeReading& reading, const Vec3& body, std::uint32_t sensor) noexcept;
+    /// False, and counted, while another node is followed. `changed`: from one node to another.
+    [[nodiscard]] bool follow(Source& source, const Context& c, bool& changed) noexcept;
     [[nodiscard]] bool stamp_of(std::uint64_t wire, const Context& c, TimePoint& stamp) noexcept;
     [[nodiscard]] std::uint8_t beam_of(std::uint32_t key, TimePoint now) noexcept;
 
     Node node_;
     EndpointOptions options_;
     vehicle::VehicleState own_;
+    Source fix_from_;
+    Source attitude_from_;
     bool has_attitude_ = false;
     TimePoint attitude_heard_;
     std::array<float, 4> attitude_{};  ///< x, y, z, w

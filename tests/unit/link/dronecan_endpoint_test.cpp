@@ -187,6 +187,34 @@ TEST_F(DronecanEndpoint, WithoutAnOriginTheFirstFixIsIt)
     expect_near(inbox.own_state.state.position, Vec3::Zero(), 1e-6F);
 }
 
+TEST_F(DronecanEndpoint, OneOfSeveralReceiversIsFollowed)
+{
+    give(fix(), 20);
+    give(fix(1000), 21);
+    EXPECT_EQ(seen().frames_ignored, 1U);
+    EXPECT_LT(inbox.own_state.state.position.y(), 1.0F);
+    EXPECT_FALSE(inbox.own_state.estimator_reset);
+    now = now + 0.6F;
+    Fix2 lost = fix();
+    lost.status = Fix2::Status::no_fix;
+    give(lost, 20);  // a receiver without a fix is as good as none
+    now = now + 0.6F;
+    give(fix(1000), 21);
+    EXPECT_GT(inbox.own_state.state.position.y(), 10.0F);
+    EXPECT_TRUE(inbox.own_state.estimator_reset);
+    inbox.clear();
+    give(fix(1000), 21);
+    EXPECT_FALSE(inbox.own_state.estimator_reset);
+    give(fix(), 20);
+    EXPECT_EQ(seen().frames_ignored, 2U);
+
+    give(attitude(0.0), 20);
+    give(attitude(kHalfPi), 21);
+    give(proximity(0.0F, 5.0F));
+    expect_near(inbox.readings[0].direction, {0.0F, 1.0F, 0.0F}, 2e-3F);
+    EXPECT_EQ(seen().frames_ignored, 3U);
+}
+
 TEST_F(DronecanEndpoint, BadFixesAreRefused)
 {
     std::uint32_t refused = 0;
