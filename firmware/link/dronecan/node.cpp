@@ -206,7 +206,7 @@ void Node::on_get_set(const Transfer& request) noexcept
     reply.initial = value_of<ParamValue>(entry.initial, entry.integer);
     reply.high = value_of<NumericValue>(entry.high, entry.integer);
     reply.low = value_of<NumericValue>(entry.low, entry.integer);
-    const auto end = std::find(entry.name.begin(), entry.name.end(), '\0');
+    const auto* const end = std::find(entry.name.begin(), entry.name.end(), '\0');
     assign(reply.name, {entry.name.data(), static_cast<std::size_t>(end - entry.name.begin())});
     answer(reply, request);
 }

@@ -65,7 +65,8 @@ std::size_t Tunnel::write(Node& node, std::span<const std::byte> bytes) noexcept
         message.protocol = options_.protocol;
         message.target = options_.peer;
         message.serial = std::max<std::int8_t>(options_.serial, 0);
-        for (const std::byte byte : bytes.subspan(taken).first(std::min(bytes.size() - taken, message.kBytes))) {
+        for (const std::byte byte :
+             bytes.subspan(taken).first(std::min(bytes.size() - taken, TunnelTargetted::kBytes))) {
             message.bytes.unchecked_push_back(std::to_integer<std::uint8_t>(byte));
         }
         if (!node.send(message, Priority::medium)) {
