@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Laws of the bit codec over random values; float16 against an oracle in double precision, every pattern.
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames lost, doubled, out of order, with wrong toggle bits and transfer ids, too late, cut short, and of senders that
 // interleave: what the receiver delivers was sent, whole, by that sender; anything else is dropped.
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <map>
