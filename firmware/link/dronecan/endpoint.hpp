@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "firmware/link/dronecan/node.hpp"
+#include "firmware/link/mavlink/geodesy.hpp"
+
+// DroneCAN side of an inbox: what sensors and traffic receivers on the bus say, in the terms of messages.hpp (ENU, SI).
+// docs/dronecan.md is the reference for users; this is what it does with each message:
+//
+// * gnss.Fix2 with a 3D fix: own position and velocity, sigmas from the covariance when there is one. Placed about the
+//   origin that the application sets, else about the first fix. Without a 3D fix, off the earth or beyond 85 degrees of
+//   latitude, faster than 400 m/s or farther than 200 km: out_of_range.
+//   Of several receivers the first is followed, until it has given no good fix for a second; a change counts as a reset
+//   of the estimator. The others' fixes are frames_ignored. The same goes for attitudes.
+// * ahrs.Solution: attitude, taken as the turn from body (FRD) to world (NED). Not of length 1: out_of_range.
+// * trafficmonitor.TrafficReport: a track. Without a valid position or an altitude: out_of_range; before there is an
+//   origin: no_origin. traffic_type 19 (point obstacle): at_rest. Stamp = now - tslc.
+// * range_sensor.Measurement, proximity_sensor.Proximity: a reading along the beam, turned by the attitude, which may
+//   not be older than 1 s (no_origin). "Too close" stands at what it says, at 0 where that is no distance; "too far" is
+//   nothing seen; undefined, no data, not connected, or a beam of undefined orientation: out_of_range.
+//   A sensor that looks about names one id for all directions: readings get a number per sensor and direction (steps of
+//   15 degrees), so that one does not take the place of another; see kBeams.
+// * Stamps on the wire are not believed unless EndpointOptions says so: many sensors write their own clock there.
+
+namespace jink::link::dronecan {
+
+/// Directions of sensors that are told apart: a ring of 24 and some fixed ones. When full, the one that was not heard
+/// for longest gives its number away, and `beams_evicted` counts it. 8 bytes each and a stamp.
+inline constexpr std::size_t kBeams = 48;
+/// RangeReading::sensor of the first: apart from the ids that MAVLink's sensors use in practice.
+inline constexpr std::uint8_t kFirstBeam = 128;
+static_assert(kBeams >= 24 && kFirstBeam + kBeams <= 256);
+
+struct EndpointOptions {
+    bool has_origin = false;
+    mavlink::GlobalPosition origin;  ///< of the local frame
+    bool believe_stamps = false;     ///< all sensors follow GlobalTimeSync
+    float max_stamp_age = 1.0F;      ///< older stamps, where they are believed, are refused [s]
+};
+
+class Endpoint {
+public:
+    Endpoint(const NodeOptions& node, const EndpointOptions& options, ParamServer* params = nullptr) noexcept
+        : node_(node, params), options_(options)
+    {
+    }
+
+    /// Takes a frame that arrived, at time `now`; fills the inbox.
+    ///
+    /// @return a transfer of a tunnel, valid until the next call (see Tunnel); nullptr: none
+    [[nodiscard]] const Transfer* receive(const Frame& frame, TimePoint now, Inbox& inbox) noexcept;
+    /// Periodic work. Call every step, with the state as it is.
+    void service(TimePoint now, SystemState state) noexcept { node_.service(now, state); }
+
+    /// The frame that waits to go out (nullptr: none), and taking it off once the port has accepted it.
+    [[nodiscard]] const Frame* pending() const noexcept { return node_.outgoing().front(); }
+    void consume() noexcept
+    {
+        node_.outgoing().pop();
+        ++diagnostics_.frames_out;
+    }
+    /// Drops everything queued: on a lost port nothing stale may go out later.
+    void discard_pending() noexcept { node_.outgoing().clear(); }
+
+    void send_text(Severity severity, std::string_view text) noexcept { node_.send_text(severity, text); }
+
+    [[nodiscard]] Node& node() noexcept { return node_; }
+    [[nodiscard]] bool has_origin() const noexcept { return options_.has_origin; }
+    [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept { return diagnostics_; }
+    [[nodiscard]] std::uint32_t beams_evicted() const noexcept { return beams_evicted_; }
+
+private:
+    struct Context {
+        const Transfer& transfer;
+        TimePoint now;
+        Inbox& inbox;
+    };
+    /// The node that is followed of several that say the same thing.
+    struct Source {
+        std::uint8_t node = kAnonymous;
+        TimePoint heard;
+    };
+    /// One direction of one sensor.
+    struct Beam {
+        bool used = false;
+        std::uint32_t key = 0;
+        TimePoint heard;
+    };
+
+    void on_fix(const Context& c) noexcept;
+    void on_attitude(const Context& c) noexcept;
+    void on_traffic(const Context& c) noexcept;
+    void on_measurement(const Context& c) noexcept;
+    void on_proximity(const Context& c) noexcept;
+    void place(const Context& c, RangeReading& reading, const Vec3& body, std::uint32_t sensor) noexcept;
+    /// False, and counted, while another node is followed. `changed`: from one node to another.
+    [[nodiscard]] bool follow(Source& source, const Context& c, bool& changed) noexcept;
+    [[nodiscard]] bool stamp_of(std::uint64_t wire, const Context& c, TimePoint& stamp) noexcept;
+    [[nodiscard]] std::uint8_t beam_of(std::uint32_t key, TimePoint now) noexcept;
+
+    Node node_;
+    EndpointOptions options_;
+    vehicle::VehicleState own_;
+    Source fix_from_;
+    Source attitude_from_;
+    bool has_attitude_ = false;
+    TimePoint attitude_heard_;
+    std::array<float, 4> attitude_{};  ///< x, y, z, w
+    std::array<Beam, kBeams> beams_{};
+    std::uint32_t beams_evicted_ = 0;
+    LinkDiagnostics diagnostics_;
+};
+
+}  // namespace jink::link::dronecan

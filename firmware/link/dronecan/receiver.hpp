@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/base/time.hpp"
+#include "firmware/link/dronecan/checksum.hpp"
+#include "firmware/link/dronecan/codec.hpp"
+
+namespace jink::link::dronecan {
+
+/// Streams of transfers that are followed at once: one per sender and type. 32 covers a status from ten nodes and 22
+/// streams of sensors, traffic and requests; 24 bytes each. When full, the one that has been silent for longest gives
+/// way, and only its memory of the last transfer id is lost: a repetition would be taken for new.
+inline constexpr std::size_t kSessions = 32;
+/// Transfers of several frames that are put together at once: senders that interleave. 8 covers each kind of long
+/// message that is taken in from one sender, and a request; 400 bytes each. When full, the one begun first is dropped.
+inline constexpr std::size_t kAssemblies = 8;
+static_assert(kSessions >= 1 && kSessions <= 128 && kAssemblies >= 1 && kAssemblies <= 64);
+
+/// A transfer has to be complete this long after its first frame, and the same transfer id is a repetition for as long.
+inline constexpr Seconds kTransferTimeout = 2.0F;
+
+/// A whole payload as it was sent.
+struct Transfer {
+    TypeInfo type{};
+    std::uint8_t source = kAnonymous;
+    std::uint8_t transfer = 0;  ///< transfer id
+    std::uint8_t priority = 0;
+    TimePoint stamp;  ///< arrival of the first frame
+    std::span<const std::byte> payload;
+};
+
+/// What became of the frames. Each frame that leads to nothing is counted under one cause.
+struct ReceiverDiagnostics {
+    std::uint32_t frames = 0;
+    std::uint32_t transfers = 0;  ///< delivered
+    std::uint32_t ignored = 0;    ///< types not wanted, services for others
+    // Frames that are none of DroneCAN's:
+    std::uint32_t standard_id = 0;  ///< 11 bits
+    std::uint32_t remote = 0;
+    std::uint32_t bad_length = 0;  ///< no byte, or more than eight
+    std::uint32_t bad_id = 0;      ///< over 29 bits, or a service from or to nobody
+    // Frames that do not fit into a transfer; but for the first, the transfer that was begun is dropped:
+    std::uint32_t missed_start = 0;
+    std::uint32_t wrong_toggle = 0;  ///< a frame is missing, or Cyphal's
+    std::uint32_t wrong_transfer = 0;
+    std::uint32_t short_frame = 0;  ///< not full, though others follow, or without payload
+    std::uint32_t too_long = 0;     ///< for its type
+    std::uint32_t bad_crc = 0;
+    std::uint32_t timed_out = 0;
+    std::uint32_t interrupted = 0;        ///< a new one began before the end
+    std::uint32_t anonymous_refused = 0;  ///< of more than one frame
+    // Repetitions, ignored:
+    std::uint32_t duplicates = 0;
+    // Full pools:
+    std::uint32_t sessions_evicted = 0;
+    std::uint32_t assemblies_evicted = 0;
+};
+
+/// Puts frames together to transfers. A transfer is delivered once and exactly as sent, or not at all, as far as the
+/// protocol can tell: what it cannot is two or more whole frames missing from (or changed about within) one transfer in
+/// such a way that toggle bits and the 16 bits of CRC come out right.
+///
+/// Memory: 24 * kSessions + 400 * kAssemblies bytes and some, 4.1 KiB in all. Nothing is allocated.
+class Receiver {
+public:
+    /// @param wanted  types to deliver; the list has to outlive the receiver
+    explicit Receiver(std::span<const TypeInfo> wanted) noexcept : wanted_(wanted) {}
+
+    /// Services are taken for this node; none while it is kAnonymous.
+    void set_node(std::uint8_t node) noexcept { node_ = node; }
+
+    /// Takes one frame.
+    ///
+    /// @return the transfer that it completes, valid until the next call; nullptr: none
+    /// O(wanted + kSessions + kAssemblies), and the checksum over the payload with its last frame.
+    [[nodiscard]] const Transfer* accept(const Frame& frame, TimePoint now) noexcept;
+
+    [[nodiscard]] const ReceiverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
+
+private:
+    static constexpr std::uint8_t kNone = 255;
+
+    /// Transfers of one type from one node.
+    struct Session {
+        bool used = false;
+        bool heard = false;             ///< a transfer was delivered
+        std::uint8_t transfer = 0;      ///< id of the last one delivered
+        std::uint8_t assembly = kNone;  ///< index of what is being put together
+        std::uint32_t key = 0;
+        TimePoint began;    ///< the last one delivered
+        TimePoint touched;  ///< last frame
+    };
+    struct Assembly {
+        bool used = false;
+        bool toggle = false;  ///< of the frame that has to come
+        std::uint8_t transfer = 0;
+        std::uint8_t session = 0;
+        std::uint16_t length = 0;
+        TimePoint began;
+        std::array<std::byte, kMaxPayload + 2> bytes;  ///< CRC and payload
+    };
+    /// What is known of a frame before its session.
+    struct Piece {
+        const Frame& frame;
+        const TypeInfo& type;
+        FrameId id;
+        Tail tail;
+        TimePoint now;
+        [[nodiscard]] std::span<const std::byte> payload() const noexcept
+        {
+            return std::span(frame.data).first(frame.length - 1U);
+        }
+    };
+
+    [[nodiscard]] bool is_sound(const Frame& frame, const FrameId& id) noexcept;
+    [[nodiscard]] const TypeInfo* find_type(const FrameId& id) const noexcept;
+    [[nodiscard]] Session* find_session(std::uint32_t key) noexcept;
+    [[nodiscard]] Session& make_session(std::uint32_t key, TimePoint now) noexcept;
+    [[nodiscard]] Assembly& make_assembly(Session& session, TimePoint now) noexcept;
+    void drop(Session& session) noexcept;
+    [[nodiscard]] static bool is_repetition(const Session& session, const Piece& piece) noexcept;
+
+    [[nodiscard]] const Transfer* accept_anonymous(const Piece& piece) noexcept;
+    [[nodiscard]] const Transfer* begin(const Piece& piece) noexcept;
+    /// Clears the way for a new transfer; false where its first frame is not to be taken.
+    [[nodiscard]] bool make_way(Session& session, const Piece& piece) noexcept;
+    [[nodiscard]] const Transfer* go_on(const Piece& piece) noexcept;
+    [[nodiscard]] const Transfer* add(Session& session, Assembly& assembly, const Piece& piece) noexcept;
+    [[nodiscard]] const Transfer* deliver(const Piece& piece, TimePoint began,
+                                          std::span<const std::byte> payload) noexcept;
+
+    std::span<const TypeInfo> wanted_;
+    std::uint8_t node_ = kAnonymous;
+    std::array<Session, kSessions> sessions_{};
+    std::array<Assembly, kAssemblies> assemblies_{};
+    std::array<std::byte, Frame::kBytes> single_{};
+    Transfer transfer_;
+    ReceiverDiagnostics diagnostics_;
+};
+
+}  // namespace jink::link::dronecan
