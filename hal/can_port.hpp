@@ -14,12 +14,12 @@ struct CanFrame {
     static constexpr std::uint32_t kStandardMask = 0x7FF;
     static constexpr std::uint32_t kExtendedMask = 0x1FFFFFFF;
 
-    std::uint32_t id = 0;         ///< 11 or 29 bits
-    bool extended = false;        ///< 29 bits
-    bool remote = false;          ///< a request for data: no data of its own
-    bool fd = false;              ///< CAN FD: up to 64 bytes
-    bool bit_rate_switch = false; ///< FD: the data at the higher rate
-    std::uint8_t length = 0;      ///< bytes; FD knows 0..8, 12, 16, 20, 24, 32, 48, 64 only
+    std::uint32_t id = 0;          ///< 11 or 29 bits
+    bool extended = false;         ///< 29 bits
+    bool remote = false;           ///< a request for data: no data of its own
+    bool fd = false;               ///< CAN FD: up to 64 bytes
+    bool bit_rate_switch = false;  ///< FD: the data at the higher rate
+    std::uint8_t length = 0;       ///< bytes; FD knows 0..8, 12, 16, 20, 24, 32, 48, 64 only
     std::array<std::byte, kFdBytes> data{};
 };
 
@@ -37,7 +37,8 @@ struct CanFrame {
 [[nodiscard]] constexpr bool is_valid(const CanFrame& frame) noexcept
 {
     return frame.id <= (frame.extended ? CanFrame::kExtendedMask : CanFrame::kStandardMask) &&
-           is_valid_length(frame.fd, frame.length) && !(frame.fd && frame.remote) && (frame.fd || !frame.bit_rate_switch);
+           is_valid_length(frame.fd, frame.length) && !(frame.fd && frame.remote) &&
+           (frame.fd || !frame.bit_rate_switch);
 }
 
 enum class CanState : std::uint8_t {
@@ -59,11 +60,11 @@ struct CanHealth {
     std::uint64_t overruns = 0;        ///< received frames lost for want of room
     std::uint64_t bus_errors = 0;      ///< errors that the controller reported: bits, stuffing, acknowledgement, ...
     std::uint64_t bus_offs = 0;
-    std::uint64_t restarts = 0;        ///< back from bus off
+    std::uint64_t restarts = 0;  ///< back from bus off
     std::uint64_t read_errors = 0;
     std::uint64_t write_errors = 0;
-    std::uint64_t downs = 0;           ///< times the interface went away
-    std::uint64_t ups = 0;             ///< times it came back
+    std::uint64_t downs = 0;  ///< times the interface went away
+    std::uint64_t ups = 0;    ///< times it came back
 };
 
 /// A CAN controller.

@@ -9,13 +9,19 @@ namespace jink::hal {
 /// The 32-bit registers of one peripheral, by their offset from its base [bytes]. Drivers are templates over it: on the
 /// target it is the memory itself and costs nothing, in tests a model of the hardware that acts on what it is told.
 template <class T>
-concept RegisterBlock = requires(T& block, std::uint32_t offset, std::uint32_t value) {
-    { block.read(offset) } -> std::same_as<std::uint32_t>;
+concept RegisterBlock = requires(T& block, std::uint32_t offset, std::uint32_t value)
+{
+    {
+        block.read(offset)
+        } -> std::same_as<std::uint32_t>;
     block.write(offset, value);
 };
 
 /// Raises an interrupt of the driver by hand.
 template <class T>
-concept InterruptWake = requires(T& wake) { wake(); };
+concept InterruptWake = requires(T& wake)
+{
+    wake();
+};
 
 }  // namespace jink::hal

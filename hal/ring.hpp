@@ -13,8 +13,8 @@ namespace jink::hal {
 
 /// Items from one writer to one reader that may interrupt each other: an interrupt handler and the main program.
 ///
-/// Neither side waits. `head_` belongs to the writer and `tail_` to the reader; both only grow (and wrap with the word),
-/// so that full and empty differ. N is a power of two. N * sizeof(T) + 8 bytes.
+/// Neither side waits. `head_` belongs to the writer and `tail_` to the reader; both only grow (and wrap with the
+/// word), so that full and empty differ. N is a power of two. N * sizeof(T) + 8 bytes.
 template <class T, std::size_t N>
 class Ring {
     static_assert(N >= 2 && (N & (N - 1)) == 0);

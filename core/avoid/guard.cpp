@@ -206,9 +206,9 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
         const vehicle::VehicleState end = end_state(s.own, flight);
         const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
         const Seconds span = vehicle::stopping_time(end.velocity.norm(), s.limits);
-        path::extend_by_velocity_command(
-            end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
-            std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)), s.limits, flight);
+        path::extend_by_velocity_command(end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
+                                         std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)),
+                                         s.limits, flight);
     }
     return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape);
 }

@@ -113,8 +113,8 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
         return PlanStatus::too_close;
     }
     std::size_t attempts = 0;
-    const PlanStatus status =
-        solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget, workspace_, result_, attempts);
+    const PlanStatus status = solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget,
+                                                 workspace_, result_, attempts);
     if (status != PlanStatus::found) {
         return status;
     }

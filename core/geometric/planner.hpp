@@ -172,10 +172,10 @@ private:
 
 /// The method: satisfies world's AvoidanceMethod.
 ///
-/// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of the Situation
-/// (collision point = own position on the leg at the closest approach of the main threat, R = its grown radius then, at
-/// least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. When nothing is available
-/// it tries again as kAttempts says (source offsets: other speeds only).
+/// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
+/// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
+/// radius then, at least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. When
+/// nothing is available it tries again as kAttempts says (source offsets: other speeds only).
 class Planner {
 public:
     /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with

@@ -112,9 +112,9 @@ private:
     detail::Flown flown_;
     StaticVector<std::uint16_t, detail::Flown::kLanes> trial_;  ///< by lane of flown_
     Order order_;
-    Curve curve_;                                               ///< of the candidate at hand
-    path::TimedPath path_;                                      ///< the same, about the start
-    StaticVector<cost::MovingThreat, kMaxTracks> moving_;       ///< about the start
+    Curve curve_;                                          ///< of the candidate at hand
+    path::TimedPath path_;                                 ///< the same, about the start
+    StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start
     struct {
         CandidateShape shape;
         float value = -1.0F;

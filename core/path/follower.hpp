@@ -35,9 +35,9 @@ inline constexpr Seconds kFollowerPeriod = 0.1F;
 void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,
                     const vehicle::VehicleLimits& limits, const FollowerGains& gains, TimedPath& out) noexcept;
 
-/// Adds to `out`, which ends where `state` is, the flight from there on when `command` is held for `horizon` > 0 seconds:
-/// steps of `dt`, the last one shortened, or until `out` is full. The velocity of the point that it ends with becomes
-/// that of its first step. O(steps).
+/// Adds to `out`, which ends where `state` is, the flight from there on when `command` is held for `horizon` > 0
+/// seconds: steps of `dt`, the last one shortened, or until `out` is full. The velocity of the point that it ends with
+/// becomes that of its first step. O(steps).
 void extend_by_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
                                 const vehicle::VehicleLimits& limits, TimedPath& out) noexcept;
 

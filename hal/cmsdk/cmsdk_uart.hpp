@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "hal/ring.hpp"
 #include "hal/register_block.hpp"
+#include "hal/ring.hpp"
 #include "hal/serial_port.hpp"
 
 namespace jink::hal {
 
 /// Serial port on the CMSDK APB UART (ARM DDI 0479), fed by interrupts in both directions.
 ///
-/// The UART holds one byte each way: at 921600 baud its receive handler has to run within 10.8 us, or a byte is lost and
-/// counted in `overruns`, as is one that finds the ring full. The rings hold 4 KiB in and 1 KiB out: 44 ms and 11 ms of
-/// a full line at 921600 baud.
+/// The UART holds one byte each way: at 921600 baud its receive handler has to run within 10.8 us, or a byte is lost
+/// and counted in `overruns`, as is one that finds the ring full. The rings hold 4 KiB in and 1 KiB out: 44 ms and 11
+/// ms of a full line at 921600 baud.
 ///
 /// Only the handlers touch the data register; read() and write() touch the rings alone, so neither needs interrupts to
 /// be off. Memory: 5.2 KiB.

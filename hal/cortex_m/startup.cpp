@@ -105,9 +105,7 @@ extern "C" [[noreturn]] void jink_note_fault(const std::uint32_t* frame)
     kept.pc = in_stack ? frame[6] : 0;
     kept.lr = in_stack ? frame[5] : 0;
     kept.cause = cause;
-    kept.address = (cause & kBusValid) != 0      ? at(kBusAddress)
-                   : (cause & kMemoryValid) != 0 ? at(kMemoryAddress)
-                                                 : 0;
+    kept.address = (cause & kBusValid) != 0 ? at(kBusAddress) : (cause & kMemoryValid) != 0 ? at(kMemoryAddress) : 0;
     kept.count = count + 1;
     kept.check = sum_of(kept);
     jink_on_fault(kept);
@@ -117,11 +115,10 @@ extern "C" [[noreturn]] void jink_note_fault(const std::uint32_t* frame)
 /// On a stack of its own start: what faulted may have been the stack.
 extern "C" __attribute__((naked)) void jink_fault_handler()
 {
-    __asm volatile(
-        "mrs r0, msp\n"
-        "ldr r1, =_stack_top\n"
-        "mov sp, r1\n"
-        "b jink_note_fault\n");
+    __asm volatile("mrs r0, msp\n"
+                   "ldr r1, =_stack_top\n"
+                   "mov sp, r1\n"
+                   "b jink_note_fault\n");
 }
 
 extern "C" void jink_reset_handler()

@@ -79,7 +79,7 @@ CanOpenStatus SocketCanPort::open(std::string_view interface, const SocketCanOpt
     retry_period_us_ = retry_period_us;
     next_attempt_us_ = 0;
     open_status_ = try_open();
-    health_.state = is_final(open_status_) ? CanState::closed
+    health_.state = is_final(open_status_)                                                   ? CanState::closed
                     : open_status_ == CanOpenStatus::ok && health_.state == CanState::active ? CanState::active
                                                                                              : CanState::down;
     return open_status_;

@@ -12,8 +12,9 @@ namespace jink::hal::stm32f4 {
 /// CAN controller of the STM32F4 (bxCAN; ST RM0090, 32) behind the CAN port: classic frames, fed by interrupts.
 ///
 /// Received frames come through FIFO 0, three deep; its handler has to run within the time of three frames (201 us at
-/// 1 Mbit/s, shortest frames) or the newest is lost and counted, as is one that finds the ring full. Frames leave in the
-/// order of send(), as multi-frame transfers want it (TXFP). Bus off is left by itself after 128 quiet stretches (ABOM).
+/// 1 Mbit/s, shortest frames) or the newest is lost and counted, as is one that finds the ring full. Frames leave in
+/// the order of send(), as multi-frame transfers want it (TXFP). Bus off is left by itself after 128 quiet stretches
+/// (ABOM).
 ///
 /// Memory: 32 frames in and 16 out, 16 bytes each: 0.9 KiB.
 template <RegisterBlock Registers, InterruptWake Wake>
@@ -202,7 +203,8 @@ private:
     static constexpr std::uint32_t kFifoOverrun = 1U << 4U;
     static constexpr std::uint32_t kFifoRelease = 1U << 5U;
     /// Mailbox empty, FIFO 0 pending and overrun, passive, bus off, error code.
-    static constexpr std::uint32_t kInterruptsOn = 1U << 0U | 1U << 1U | 1U << 3U | 1U << 9U | 1U << 10U | 1U << 11U | 1U << 15U;
+    static constexpr std::uint32_t kInterruptsOn =
+        1U << 0U | 1U << 1U | 1U << 3U | 1U << 9U | 1U << 10U | 1U << 11U | 1U << 15U;
     static constexpr std::uint32_t kErrorPassive = 1U << 1U;  // of kErrors
     static constexpr std::uint32_t kBusOff = 1U << 2U;
     static constexpr std::uint32_t kLastError = 7U << 4U;

@@ -6,10 +6,10 @@
 namespace jink::hal::stm32f4 {
 
 enum class ClockSource : std::uint8_t {
-    crystal,      ///< 168 MHz from the crystal, as meant
-    internal_pll, ///< no crystal: 168 MHz from the internal 16 MHz oscillator, good to 1 % at room temperature
-    internal,     ///< no PLL either: 16 MHz
-    emulator,     ///< no clock control at all: an emulator's own 168 MHz
+    crystal,       ///< 168 MHz from the crystal, as meant
+    internal_pll,  ///< no crystal: 168 MHz from the internal 16 MHz oscillator, good to 1 % at room temperature
+    internal,      ///< no PLL either: 16 MHz
+    emulator,      ///< no clock control at all: an emulator's own 168 MHz
 };
 
 /// The clocks that came about [Hz].
@@ -20,11 +20,11 @@ struct Clocks {
     std::uint32_t apb2 = 0;
 };
 
-/// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as it goes: every wait is bounded, and what came of
-/// it is told. The flash gets its wait states before the clock rises (ST RM0090, 3.5 and 7).
+/// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as it goes: every wait is bounded, and what came
+/// of it is told. The flash gets its wait states before the clock rises (ST RM0090, 3.5 and 7).
 ///
-/// The control register never reads zero on the chip (the internal oscillator is on after a reset): one that does belongs
-/// to an emulator without it, where nothing is to be set.
+/// The control register never reads zero on the chip (the internal oscillator is on after a reset): one that does
+/// belongs to an emulator without it, where nothing is to be set.
 template <RegisterBlock Rcc, RegisterBlock Flash>
 [[nodiscard]] Clocks start_clocks(Rcc rcc, Flash flash) noexcept
 {

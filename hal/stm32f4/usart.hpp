@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "hal/ring.hpp"
 #include "hal/register_block.hpp"
+#include "hal/ring.hpp"
 #include "hal/serial_port.hpp"
 
 namespace jink::hal::stm32f4 {
@@ -10,8 +10,8 @@ namespace jink::hal::stm32f4 {
 /// Serial port on a USART of the STM32F4 (ST RM0090, 30), fed by its interrupt in both directions.
 ///
 /// The receiver holds one byte behind its shift register: at 921600 baud the handler has to run within 10.8 us, or a
-/// byte is lost. Overruns of the receiver and bytes that find the ring full are counted in `overruns`, framing, noise and
-/// parity errors in `line_errors`. The rings hold 4 KiB in and 1 KiB out.
+/// byte is lost. Overruns of the receiver and bytes that find the ring full are counted in `overruns`, framing, noise
+/// and parity errors in `line_errors`. The rings hold 4 KiB in and 1 KiB out.
 ///
 /// Only the handler touches the USART after start(); read() and write() touch the rings alone. Memory: 5.2 KiB.
 template <RegisterBlock Registers, InterruptWake Wake>
@@ -23,8 +23,8 @@ public:
     /// @param wake  raises the USART's interrupt
     Usart(Registers registers, Wake wake) noexcept : registers_(registers), wake_(wake) {}
 
-    /// 8N1 at `baud`, both directions. False, and the port stays closed, where the divider does not give the rate within
-    /// 2 % or is below the hardware's least (16, oversampling by 16).
+    /// 8N1 at `baud`, both directions. False, and the port stays closed, where the divider does not give the rate
+    /// within 2 % or is below the hardware's least (16, oversampling by 16).
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t baud) noexcept
     {
         const std::uint32_t divider = baud > 0 ? (peripheral_clock_hz + baud / 2U) / baud : 0;
@@ -70,7 +70,8 @@ public:
         return health;
     }
 
-    /// From the interrupt's handler. O(bytes that come and go), both rings' sizes at most: what is left raises it again.
+    /// From the interrupt's handler. O(bytes that come and go), both rings' sizes at most: what is left raises it
+    /// again.
     void on_interrupt() noexcept
     {
         receive();

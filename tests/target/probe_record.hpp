@@ -7,8 +7,8 @@
 
 #include "core/capacity.hpp"
 
-// What the host asks a target to compute, and what comes back: plain memory, little-endian, the same on every target, so
-// that one record replays exactly one case.
+// What the host asks a target to compute, and what comes back: plain memory, little-endian, the same on every target,
+// so that one record replays exactly one case.
 
 namespace jink::target {
 
@@ -35,10 +35,10 @@ enum class ProbeShape : std::uint32_t { sphere, box, capsule, cylinder };
 
 struct ProbeObstacle {
     ProbeShape kind;
-    float a[3];     ///< centre; capsule and cylinder: one end
-    float b[3];     ///< box: half extents; capsule and cylinder: the other end
+    float a[3];  ///< centre; capsule and cylinder: one end
+    float b[3];  ///< box: half extents; capsule and cylinder: the other end
     float radius;
-    float yaw;      ///< of a box [rad]
+    float yaw;  ///< of a box [rad]
 };
 
 /// One case. Everything in SI units, ENU.
@@ -80,8 +80,8 @@ struct ProbeAnswer {
     std::uint32_t state;       ///< avoid::State, of `update`
     std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told
     float cost;
-    float velocity[3];  ///< command, of `update`; first velocity of the path, of `plan`
-    float margin;       ///< of `update`
+    float velocity[3];        ///< command, of `update`; first velocity of the path, of `plan`
+    float margin;             ///< of `update`
     std::uint32_t available;  ///< candidates that are, of the last attempt
 };
 static_assert(std::is_trivially_copyable_v<ProbeAnswer> && sizeof(ProbeAnswer) == 14 * 4);

@@ -117,8 +117,8 @@ void refused(benchmark::State& state, std::uint64_t seed, std::size_t count)
     std::size_t attempts = 0;
     const auto fails = [&](const std::vector<Threat>& all) {
         WorkBudget budget(1'000'000);
-        return solve_with_retries(problem_with(all), settings, limits, airframe, budget, *workspace, *result, attempts) ==
-                   world::PlanStatus::none_available &&
+        return solve_with_retries(problem_with(all), settings, limits, airframe, budget, *workspace, *result,
+                                  attempts) == world::PlanStatus::none_available &&
                attempts == kAttempts.size();
     };
     std::vector<std::vector<Threat>> scenes;

@@ -38,7 +38,8 @@ private:
 /// A program that was started, and is killed when nobody stopped it before.
 class Child {
 public:
-    /// Starts `arguments[0]`, from the PATH where it names no folder, with its output in `log`. @throws std::runtime_error when it cannot be started
+    /// Starts `arguments[0]`, from the PATH where it names no folder, with its output in `log`. @throws
+    /// std::runtime_error when it cannot be started
     Child(const std::vector<std::string>& arguments, const std::filesystem::path& log);
     ~Child();
     Child(const Child&) = delete;

@@ -149,12 +149,12 @@ std::vector<std::string> command_of(const Computer& computer, const std::string&
                                     const std::filesystem::path& summary, bool realtime)
 {
     if (computer.emulated()) {
-        return {"qemu-system-arm", "-M",      computer.machine, "-nographic", "-monitor",      "none",
-                "-chardev",        "serial,id=line,path=" + line, "-serial", "chardev:line", "-kernel",
-                computer.program.string()};
+        return {"qemu-system-arm", "-M",           computer.machine, "-nographic",
+                "-monitor",        "none",         "-chardev",       "serial,id=line,path=" + line,
+                "-serial",         "chardev:line", "-kernel",        computer.program.string()};
     }
-    std::vector<std::string> command{computer.program.string(), "--serial",  line,            "--status-period", "1",
-                                     "--summary",               summary.string()};
+    std::vector<std::string> command{computer.program.string(), "--serial", line, "--status-period", "1", "--summary",
+                                     summary.string()};
     if (realtime) {
         command.insert(command.end(), {"--realtime", std::to_string(kDaemonPriority)});
     }

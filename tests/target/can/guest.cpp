@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first and only process of a guest: loads the CAN modules, sets interfaces up, tries SocketCanPort against the real
-// kernel, says RESULT PASS or RESULT FAIL, and switches the machine off.
+// The first and only process of a guest: loads the CAN modules, sets interfaces up, tries SocketCanPort against the
+// real kernel, says RESULT PASS or RESULT FAIL, and switches the machine off.
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -324,8 +324,8 @@ void try_controllers(Netlink& links)
         EXPECT(b.send(f));
         EXPECT(receive_soon(a, got) && same(got, f));
     }
-    // A burst nobody reads meanwhile: what is lost, in the controller or the socket's queue, is told, and what arrives is
-    // whole and in order.
+    // A burst nobody reads meanwhile: what is lost, in the controller or the socket's queue, is told, and what arrives
+    // is whole and in order.
     unsigned sent = 0;
     for (unsigned i = 0; i < 2000; ++i) {
         CanFrame f = frame(i, true, 8);

@@ -32,7 +32,8 @@ struct Netlink::Message {
         if (size > 0) {
             std::memcpy(RTA_DATA(attribute), data, size);
         }
-        header()->nlmsg_len = static_cast<std::uint32_t>(NLMSG_ALIGN(header()->nlmsg_len) + RTA_ALIGN(RTA_LENGTH(size)));
+        header()->nlmsg_len =
+            static_cast<std::uint32_t>(NLMSG_ALIGN(header()->nlmsg_len) + RTA_ALIGN(RTA_LENGTH(size)));
         return attribute;
     }
     rtattr* open(std::uint16_t type) { return add(type, nullptr, 0); }

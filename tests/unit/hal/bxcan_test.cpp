@@ -55,7 +55,8 @@ struct Model {
             }
             return value;
         }
-        case 0x00C: return static_cast<std::uint32_t>(fifo.size()) | (fifo.size() == 3 ? 8U : 0U) | (overrun ? 16U : 0U);
+        case 0x00C:
+            return static_cast<std::uint32_t>(fifo.size()) | (fifo.size() == 3 ? 8U : 0U) | (overrun ? 16U : 0U);
         case 0x014: return interrupts;
         case 0x018: return errors;
         case 0x01C: return timing;
@@ -129,7 +130,7 @@ struct Model {
         unsigned index = 0;
         for (unsigned i = 0; i < 3; ++i) {
             if (boxes[i].pending && (next == nullptr || ((master & 4U) != 0 ? boxes[i].order < next->order
-                                                                           : boxes[i].words[0] < next->words[0]))) {
+                                                                            : boxes[i].words[0] < next->words[0]))) {
                 next = &boxes[i];
                 index = i;
             }

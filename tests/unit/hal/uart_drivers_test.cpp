@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The interrupt-fed UART drivers against models of their hardware. The models are written from the manuals (ARM DDI 0479,
-// 4.3; ST RM0090, 30), not from the drivers, and lose bytes where the hardware would.
+// The interrupt-fed UART drivers against models of their hardware. The models are written from the manuals (ARM DDI
+// 0479, 4.3; ST RM0090, 30), not from the drivers, and lose bytes where the hardware would.
 #include <deque>
 #include <string>
 #include <vector>
