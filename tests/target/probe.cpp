@@ -72,8 +72,12 @@ struct Probe::World {
     StaticVector<world::Track, kProbeTracks> tracks;
     StaticVector<world::Obstacle, kProbeObstacles> obstacles;
 
-    explicit World(const ProbeRecord& r) noexcept : configuration(configuration_of(r))
+    /// In place: there is no room for two on a small stack.
+    void take(const ProbeRecord& r) noexcept
     {
+        configuration = configuration_of(r);
+        tracks.clear();
+        obstacles.clear();
         own.position = vec(r.own_position);
         own.velocity = vec(r.own_velocity);
         own.sigma_position = r.own_sigma;
@@ -103,8 +107,8 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     if (!fits(record)) {
         return;
     }
-    static World world{record};  // not on the stack, which is to hold what the co-processor needs
-    world = World(record);
+    static World world;  // not on the stack, which is to hold what the co-processor needs
+    world.take(record);
     const world::Situation situation{{},
                                      world.own,
                                      world.configuration.limits,

@@ -22,7 +22,12 @@ def case_of(seed):
 
 
 def main(build, count, names):
+    missing = [name for name in names if not targets.is_there(name, build)]
+    if missing:
+        print(f"not built: {', '.join(missing)}: skipped")
+        return 77
     probes = [targets.open_probe(name, build) for name in names]
+    names = [probe.name for probe in probes]
     ties, differing, largest, found = 0, [], 0.0, 0
     for seed in range(count):
         case = case_of(seed)

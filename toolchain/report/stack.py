@@ -21,19 +21,21 @@ LIBRARY = 200
 INDIRECT = [
     (r"5Pilot4plan", [r"10Supervisor.*6ladder"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
-    (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"CmsdkUart", r"5Usart", r"Watchdog"]),
+    (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
     (r"MemorySerialLink|MemoryLine|memory", []),
 ]
 
 
 class Graph:
-    def __init__(self, build):
+    def __init__(self, build, skip="tests/"):
         self.frames = {}
         self.calls = {}
         self.names = {}
         self.problems = []
         for file in sorted(pathlib.Path(build).rglob("*.ci")):
+            if file.relative_to(build).as_posix().startswith(skip):
+                continue
             text = file.read_text(encoding="utf-8")
             for title, label in NODE.findall(text):
                 title = self.unique(title)
@@ -43,9 +45,10 @@ class Graph:
                     self.names[title] = label.split("\\n")[0]
                     if found[2] not in ("static", "dynamic,bounded"):
                         self.problems.append(f"{label.split(chr(92))[0]}: {found[2]} frame")
-            for source, target in EDGE.findall(text):
+            for pair in EDGE.findall(text):
+                source, target = map(self.unique, pair)
                 if source != target or not CONSTRUCTOR.search(source):
-                    self.calls.setdefault(self.unique(source), set()).add(self.unique(target))
+                    self.calls.setdefault(source, set()).add(target)
 
     @staticmethod
     def unique(title):

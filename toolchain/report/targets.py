@@ -111,16 +111,25 @@ def addresses(program, nm, names):
     return [table[name] for name in names]
 
 
+def program_of(target, build):
+    bare = target in ("mps2_an500", "stm32f405")
+    return pathlib.Path(build) / target / "tests" / "target" / ("jink_probe.elf" if bare else "jink_probe")
+
+
+def is_there(target, build):
+    return os.sep in target or program_of(target, build).exists()
+
+
 def open_probe(target, build, plugin=None):
-    """`target`: a preset's name; `build`: the folder that holds the presets' builds."""
-    base = pathlib.Path(build) / target / "tests" / "target"
+    """`target`: a preset's name, or a program's path; `build`: the folder that holds the presets' builds."""
+    if os.sep in target:  # a program of this machine
+        return Probe("host", [target], target)
+    program = program_of(target, build)
     if target in ("mps2_an500", "stm32f405"):
-        program = base / "jink_probe.elf"
         machine = {"mps2_an500": "mps2-an500", "stm32f405": "netduinoplus2"}[target]
         command = ["qemu-system-arm", "-M", machine, "-display", "none", "-monitor", "none", "-serial", "null",
                    "-semihosting-config", "enable=on,target=native", "-kernel", str(program)]
     else:
-        program = base / "jink_probe"
         emulator = {"armhf": ["qemu-arm"], "aarch64": ["qemu-aarch64"]}.get(target, [])
         command = emulator + [str(program)]
     return Probe(target, command, str(program), plugin)

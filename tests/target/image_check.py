@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What an image must be: small enough, without an allocator, with a stack that its call graph cannot overflow.
+
+Usage: image_check.py BUILD_FOLDER IMAGE
+
+Exit status 77 (skipped) where the image was not built.
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
+import stack  # noqa: E402
+
+MOST_FLASH = 256 * 1024
+MOST_STATIC_RAM = 64 * 1024
+MOST_STACK = 8 * 1024
+ALLOCATORS = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
+
+
+def tool(name, *arguments):
+    return subprocess.run(["arm-none-eabi-" + name, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def main(build, image):
+    folder = pathlib.Path(build)
+    elf = folder / "firmware" / image / f"{image}.elf"
+    if not elf.exists():
+        print(f"{elf} was not built: skipped")
+        return 77
+    text, data, bss = map(int, tool("size", str(elf)).splitlines()[1].split()[:3])
+    symbols = tool("nm", "-C", str(elf))
+    allocators = sorted(set(line for line in symbols.splitlines() if ALLOCATORS.search(line)))
+    sizes = {line.split()[2]: int(line.split()[0], 16) for line in symbols.splitlines() if len(line.split()) == 3}
+    reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
+    graph = stack.Graph(build, skip="tests/")
+    deepest, chain = graph.deepest("jink_main")
+    handlers = max(graph.deepest(name)[0] for name in graph.frames if re.search(r"^jink_(uart|usart|systick)", name))
+    # An interrupt pushes 8 words, or 26 with the floating-point registers, and one more to align.
+    interrupt = handlers + 27 * 4
+    rows = [
+        ("flash: code, constants, initial values", text + data, MOST_FLASH),
+        ("static RAM, stack included", data + bss, MOST_STATIC_RAM),
+        ("stack by call graph: program", deepest, None),
+        ("stack by call graph: an interrupt on top", interrupt, None),
+        ("stack in all", deepest + interrupt, min(reserved, MOST_STACK)),
+    ]
+    failed = len(allocators)
+    for name, value, most in rows:
+        bad = most is not None and value > most
+        failed += bad
+        print(f"{image}: {name:42s} {value:7d} bytes" + (f" of {most}" if most else "") + (" TOO MUCH" if bad else ""))
+    print("deepest chain: " + " > ".join(graph.names.get(f, f).split("(")[0].split()[-1] + f" {own}" for f, own in chain))
+    for problem in sorted(set(graph.problems)):
+        print("not bounded: " + problem)
+        failed += 1
+    print("allocators in the image: " + (", ".join(allocators) or "none"))
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(sys.argv[1], sys.argv[2]))
