@@ -81,9 +81,10 @@ TEST(ObstacleMargin, OfSolidsIsWithinItsFiguresOfTheTruth)
     EXPECT_GT(clear, cases / 30);
     EXPECT_GT(near_miss, cases / 150);
     EXPECT_GT(overlapping, cases / 60);
-    std::printf("[ measured ] at most %.4f m below the distance; %zu clear, %zu of them nearer than the resolution, %zu "
-                "overlaps\n",
-                most_below, clear, near_miss, overlapping);
+    std::printf(
+        "[ measured ] at most %.4f m below the distance; %zu clear, %zu of them nearer than the resolution, %zu "
+        "overlaps\n",
+        most_below, clear, near_miss, overlapping);
 }
 
 }  // namespace
