@@ -75,6 +75,19 @@ bool Flown::stops(const Lane& lane, Room& room) noexcept
     return clearance_.stays_in_airspace(flight, fastest_ * rest, fastest_vertical_ * rest);
 }
 
+/// The lane at the start of a flight of `steps`, and of its tail.
+void Flown::start(Lane& lane, std::size_t steps) const noexcept
+{
+    lane.points = 1 + steps;
+    if (brakes_at_end(limits_)) {
+        lane.points = std::min(lane.points + kTailPoints - 1, kMaxPathPoints);
+    }
+    lane.stopped = false;
+    lane.flight.points = 0;
+    lane.flight.fastest = fastest_;
+    append(lane.flight, Vec3::Zero(), 0.0F);
+}
+
 void Flown::fly_paths() noexcept
 {
     vehicle::VehicleState state;
@@ -88,12 +101,7 @@ void Flown::fly_paths() noexcept
         const Seconds duration = lane.path.duration();
         const Seconds step = std::max(kFlightStep, duration / static_cast<float>(kMaxPathPoints - kTailPoints - 1));
         flights[k].emplace(state, lane.path, 0.0F, step, limits_, settings_.gains);
-        lane.points = 1 + flights[k]->steps();
-        lane.points = brakes_at_end(limits_) ? std::min(lane.points + kTailPoints - 1, kMaxPathPoints) : lane.points;
-        lane.stopped = false;
-        lane.flight.points = 0;
-        lane.flight.fastest = fastest_;
-        append(lane.flight, state.position, 0.0F);
+        start(lane, flights[k]->steps());
         rooms[k] = clearance_.room_of_first(fastest_, duration + longest_tail_);
         parts = std::max(parts, flights[k]->parts());
         flying += flights[k]->ended() ? 0U : 1U;

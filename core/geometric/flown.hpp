@@ -47,6 +47,7 @@ private:
         bool stopped = false;    ///< it has touched the first item
     };
 
+    void start(Lane& lane, std::size_t steps) const noexcept;
     void fly_paths() noexcept;
     void fly_tails() noexcept;
     [[nodiscard]] bool stops(const Lane& lane, Room& room) noexcept;
