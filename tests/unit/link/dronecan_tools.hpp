@@ -133,7 +133,7 @@ public:
         add(std::to_string(static_cast<std::int64_t>(value)));
     }
     void operator()(Float16, const float& value) { (*this)(f32, value); }
-    void operator()(Float32, const float& value) { add("f" + std::to_string(std::bit_cast<std::uint32_t>(value))); }
+    void operator()(Float32, const float& value) { add('f', std::to_string(std::bit_cast<std::uint32_t>(value))); }
     template <class M>
     void operator()(Nested, const M& m)
     {
@@ -154,7 +154,7 @@ public:
     template <class How, class T, std::size_t N>
     void operator()(List<How>, const StaticVector<T, N>& values)
     {
-        add("[" + std::to_string(values.size()) + "]");
+        add('[', std::to_string(values.size()).append("]"));
         for (const T& value : values) {
             (*this)(How{}, value);
         }
@@ -168,13 +168,15 @@ public:
     template <unsigned Bits, class Tag>
     bool tag(const Tag& value, Tag)
     {
-        add("t" + std::to_string(static_cast<unsigned>(value)));
+        add('t', std::to_string(static_cast<unsigned>(value)));
         return true;
     }
 
     std::string text;
 
 private:
+    /// Not "f" + word: GCC 12 sees an overlap in that which is not there (GCC bug 105329).
+    void add(char kind, const std::string& word) { add(std::string(1, kind).append(word)); }
     void add(const std::string& word) { text += (text.empty() ? "" : " ") + word; }
 };
 
