@@ -132,10 +132,12 @@ public:
     static constexpr std::size_t kBytes = kMaxPathPoints * (16 + (28 + 16) * (kFlightLanes + 1)) +
                                           8 * (kMaxTracks + kMaxObstacles) + 48 * kMaxTracks + 2 * kMaxCandidates +
                                           96 * kFlightLanes + 768;
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
+    Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }
 
 private:
-    alignas(std::max_align_t) std::array<std::byte, kBytes> bytes_;  // left as it is: `solve` fills what it reads
+    alignas(std::max_align_t) std::array<std::byte, kBytes> bytes_;
 };
 
 /// Solves one problem.
