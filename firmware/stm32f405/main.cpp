@@ -6,7 +6,7 @@
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cortex_m/cortex_m.hpp"
 #include "hal/cortex_m/startup.hpp"
-#include "hal/cortex_m/systick_clock.hpp"
+#include "hal/counter_clock.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
 #include "hal/stm32f4/independent_watchdog.hpp"
 #include "hal/stm32f4/usart.hpp"
@@ -23,7 +23,7 @@ constexpr std::uintptr_t kFlash = 0x40023C00;
 constexpr std::uintptr_t kGpioA = 0x40020000;
 constexpr std::uintptr_t kUsart1 = 0x40011000;
 constexpr std::uintptr_t kWatchdog = 0x40003000;
-constexpr std::uintptr_t kSystick = 0xE000E010;
+constexpr std::uintptr_t kTimer2 = 0x40000000;
 constexpr unsigned kUsart1Interrupt = 37;
 
 constexpr std::uint32_t kBaud = 921600;
@@ -32,7 +32,6 @@ constexpr std::int64_t kTickMicroseconds = 20'000;
 constexpr std::uint32_t kWatchdogMilliseconds = 250;
 
 using Usart = hal::stm32f4::Usart<MappedRegisters, hal::cortex_m::Pend>;
-using SystickClock = hal::cortex_m::SystickClock<MappedRegisters>;
 
 Usart& usart() noexcept
 {
@@ -40,10 +39,22 @@ Usart& usart() noexcept
     return port;
 }
 
-SystickClock& systick() noexcept
+/// TIM2 counts microseconds, all 32 bits of them. Not SysTick: whose interrupt is held off for a millisecond loses one.
+void start_timer(const hal::stm32f4::Clocks& clocks) noexcept
 {
-    static SystickClock clock{MappedRegisters{kSystick}};
-    return clock;
+    constexpr std::uint32_t kApb1Enable = 0x40;
+    constexpr std::uint32_t kTimer2On = 1U << 0U;
+    constexpr std::uint32_t kControl = 0x00;
+    constexpr std::uint32_t kEvent = 0x14;
+    constexpr std::uint32_t kPrescaler = 0x28;
+    constexpr std::uint32_t kReload = 0x2C;
+    const MappedRegisters rcc{kRcc};
+    const MappedRegisters timer{kTimer2};
+    rcc.write(kApb1Enable, rcc.read(kApb1Enable) | kTimer2On);
+    timer.write(kPrescaler, clocks.timer / 1'000'000U - 1U);
+    timer.write(kReload, 0xFFFFFFFF);
+    timer.write(kEvent, 1);  // takes the prescaler over
+    timer.write(kControl, 1);
 }
 
 /// PA9 and PA10 to USART1, and the clocks of both.
@@ -67,10 +78,7 @@ void start_pins() noexcept
 
 }  // namespace
 
-extern "C" {
-void jink_usart1() { usart().on_interrupt(); }
-void jink_systick() { systick().on_interrupt(); }
-}
+extern "C" void jink_usart1() { usart().on_interrupt(); }
 
 namespace {
 
@@ -90,7 +98,7 @@ constexpr VectorTable make_vectors() noexcept
     VectorTable table{&hal::cortex_m::_stack_top, {}};
     table.handlers.fill(&hal::cortex_m::jink_fault_handler);
     table.handlers[kReset] = &hal::cortex_m::jink_reset_handler;
-    table.handlers[kSystickException] = &jink_systick;
+    table.handlers[kSystickException] = &hal::cortex_m::jink_systick_handler;
     table.handlers[kFirstInterrupt + kUsart1Interrupt] = &jink_usart1;
     return table;
 }
@@ -105,7 +113,10 @@ extern "C" void hal::cortex_m::jink_main()
 {
     const hal::stm32f4::Clocks clocks = hal::stm32f4::start_clocks(MappedRegisters{kRcc}, MappedRegisters{kFlash});
     start_pins();
-    systick().start(clocks.processor);
+    start_timer(clocks);
+    hal::cortex_m::start_systick(clocks.processor / 1000U);  // to wake up by
+    constexpr std::uintptr_t kCount = 0x24;
+    static hal::CounterClock clock(hal::cortex_m::at(kTimer2 + kCount), hal::CounterClock::Direction::up, 1'000'000);
     static link::mavlink::Endpoint endpoint;
     static hal::stm32f4::IndependentWatchdog watchdog{MappedRegisters{kWatchdog}};
     static app::Coprocessor coprocessor(endpoint, usart(), watchdog, app::Parameters());
@@ -114,9 +125,9 @@ extern "C" void hal::cortex_m::jink_main()
     hal::cortex_m::enable_interrupt(kUsart1Interrupt);
     watchdog.start(kWatchdogMilliseconds);
 
-    std::int64_t next = systick().now_us();
+    std::int64_t next = clock.now_us();
     for (;;) {
-        const std::int64_t now = systick().now_us();
+        const std::int64_t now = clock.now_us();
         if (now < next) {
             hal::cortex_m::wait_for_interrupt();
             continue;

@@ -18,6 +18,7 @@ struct Clocks {
     std::uint32_t processor = 0;
     std::uint32_t apb1 = 0;
     std::uint32_t apb2 = 0;
+    std::uint32_t timer = 0;  ///< of the timers on APB1: twice the bus where that is divided
 };
 
 /// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as it goes: every wait is bounded, and what came
@@ -44,6 +45,7 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     constexpr std::uint32_t kPatience = 200'000;  // looks: over 20 ms at 16 MHz, a crystal takes 2
     constexpr std::uint32_t kFull = 168'000'000;
     constexpr std::uint32_t kInternal = 16'000'000;
+    constexpr std::uint32_t kEmulatedTimer = 1'000'000'000;  // qemu's
 
     const auto becomes = [&](std::uint32_t offset, std::uint32_t mask, std::uint32_t value) {
         for (std::uint32_t i = 0; i < kPatience; ++i) {
@@ -55,7 +57,7 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     };
 
     if (rcc.read(kControl) == 0) {
-        return {ClockSource::emulator, kFull, kFull / 4U, kFull / 2U};
+        return {ClockSource::emulator, kFull, kFull / 4U, kFull / 2U, kEmulatedTimer};
     }
     rcc.write(kControl, rcc.read(kControl) | kCrystalOn);
     const bool crystal = becomes(kControl, kCrystalReady, kCrystalReady);
@@ -64,18 +66,18 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     rcc.write(kPll, divider | 336U << 6U | 7U << 24U | (crystal ? kUseCrystal : 0U));
     rcc.write(kControl, rcc.read(kControl) | kPllOn);
     if (!becomes(kControl, kPllReady, kPllReady)) {
-        return {ClockSource::internal, kInternal, kInternal, kInternal};
+        return {ClockSource::internal, kInternal, kInternal, kInternal, kInternal};
     }
     flash.write(0, kFiveWaitsAndCaches);
     if (!(flash.read(0) == kFiveWaitsAndCaches)) {
-        return {ClockSource::internal, kInternal, kInternal, kInternal};  // too slow a flash for more
+        return {ClockSource::internal, kInternal, kInternal, kInternal, kInternal};  // too slow a flash for more
     }
     rcc.write(kConfiguration, kApb1By4Apb2By2);
     rcc.write(kConfiguration, kApb1By4Apb2By2 | kUsePll);
     if (!becomes(kConfiguration, kPllMask, kPllUsed)) {
-        return {ClockSource::internal, kInternal, kInternal / 4U, kInternal / 2U};
+        return {ClockSource::internal, kInternal, kInternal / 4U, kInternal / 2U, kInternal / 2U};
     }
-    return {crystal ? ClockSource::crystal : ClockSource::internal_pll, kFull, kFull / 4U, kFull / 2U};
+    return {crystal ? ClockSource::crystal : ClockSource::internal_pll, kFull, kFull / 4U, kFull / 2U, kFull / 2U};
 }
 
 }  // namespace jink::hal::stm32f4

@@ -36,7 +36,7 @@ def main(build, image):
     reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
     graph = stack.Graph(build, skip="tests/")
     deepest, chain = graph.deepest("jink_main")
-    handlers = max(graph.deepest(name)[0] for name in graph.frames if re.search(r"^jink_(uart|usart|systick)", name))
+    handlers = max(graph.deepest(name)[0] for name in graph.frames if re.search(r"^jink_(uart|usart)", name))
     # An interrupt pushes 8 words, or 26 with the floating-point registers, and one more to align.
     interrupt = handlers + 27 * 4
     rows = [

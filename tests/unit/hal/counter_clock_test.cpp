@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "hal/cortex_m/systick_clock.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
 #include "hal/stm32f4/independent_watchdog.hpp"
 
@@ -33,47 +32,6 @@ TEST(CounterClock, CountsSlowTicksWhole)
     CounterClock clock(counter, CounterClock::Direction::up, 1000);
     counter = 3;
     EXPECT_EQ(clock.now_us(), 3000);
-}
-
-/// Memory with what the hardware does to it.
-struct SystickModel {
-    std::uint32_t value = 0, reload = 0, control = 0;
-    std::uint32_t read(std::uint32_t) const { return value; }
-    void write(std::uint32_t offset, std::uint32_t v) { (offset == 0 ? control : offset == 4 ? reload : value) = v; }
-};
-struct BySystick {
-    SystickModel* model;
-    std::uint32_t read(std::uint32_t offset) const { return model->read(offset); }
-    void write(std::uint32_t offset, std::uint32_t v) const { model->write(offset, v); }
-};
-
-TEST(SystickClock, IsMilliseconsAndWhatIsLeftOfThem)
-{
-    SystickModel model;
-    cortex_m::SystickClock<BySystick> clock{BySystick{&model}};
-    clock.start(168'000'000);
-    EXPECT_EQ(model.reload, 167'999U);
-    EXPECT_EQ(model.control, 7U);
-    model.value = 167'999;
-    EXPECT_EQ(clock.now_us(), 0);
-    model.value = 168'000 - 168 * 300;
-    EXPECT_EQ(clock.now_us(), 300 - 1 + 0);  // rounded down
-    clock.on_interrupt();
-    model.value = 0;
-    EXPECT_EQ(clock.now_us(), 1999);
-}
-
-TEST(SystickClock, NeverRunsBackwardsWhereTheInterruptIsLate)
-{
-    SystickModel model;
-    cortex_m::SystickClock<BySystick> clock{BySystick{&model}};
-    clock.start(168'000'000);
-    model.value = 10;
-    const std::int64_t before = clock.now_us();
-    model.value = 167'990;  // started anew, its interrupt still under way
-    EXPECT_EQ(clock.now_us(), before);
-    clock.on_interrupt();
-    EXPECT_GE(clock.now_us(), before);
 }
 
 /// Clock control that comes up as far as it is told to.
@@ -134,6 +92,7 @@ TEST(ClockTree, ReachesFullSpeedFromTheCrystal)
     EXPECT_EQ(clocks.processor, 168'000'000U);
     EXPECT_EQ(clocks.apb1, 42'000'000U);
     EXPECT_EQ(clocks.apb2, 84'000'000U);
+    EXPECT_EQ(clocks.timer, 84'000'000U);
     EXPECT_DOUBLE_EQ(pll_output(model), 168e6);
     EXPECT_TRUE(model.flash_was_ready);
     EXPECT_EQ((model.configuration >> 10U) & 7U, 5U);  // APB1 by 4
@@ -154,6 +113,7 @@ TEST(ClockTree, GoesOnWithoutACrystalWithoutAPllAndWithoutClockControl)
     EXPECT_EQ(slow.source, stm32f4::ClockSource::internal);
     EXPECT_EQ(slow.processor, 16'000'000U);
     EXPECT_EQ(slow.apb2, 16'000'000U);
+    EXPECT_EQ(slow.timer, 16'000'000U);
 
     RccModel no_switch;
     no_switch.switches = false;
