@@ -46,7 +46,7 @@ std::string answer(const Transfer& transfer, std::uint8_t destination)
         text = std::to_string(M::kType.id) + "|" + print(message) + "|";
         for (const Frame& frame : frames_of(message, transfer.source, transfer.transfer,
                                             static_cast<Priority>(transfer.priority), destination)) {
-            text += " " + text_of(frame);
+            text.append(" ").append(text_of(frame));
         }
     });
     return text;

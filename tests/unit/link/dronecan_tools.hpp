@@ -177,7 +177,7 @@ public:
 private:
     /// Not "f" + word: GCC 12 sees an overlap in that which is not there (GCC bug 105329).
     void add(char kind, const std::string& word) { add(std::string(1, kind).append(word)); }
-    void add(const std::string& word) { text += (text.empty() ? "" : " ") + word; }
+    void add(const std::string& word) { text.append(text.empty() ? "" : " ").append(word); }
 };
 
 template <Described M>
