@@ -18,9 +18,6 @@
 #ifndef JINK_MAX_CANDIDATES
 #define JINK_MAX_CANDIDATES 512
 #endif
-#ifndef JINK_FLIGHT_LANES
-#define JINK_FLIGHT_LANES 4
-#endif
 #ifndef JINK_MAX_HULL_VERTICES
 #define JINK_MAX_HULL_VERTICES 64
 #endif
@@ -44,11 +41,6 @@ static_assert(kMaxPathPoints >= 8 && kMaxPathPoints <= 1024);
 /// Candidates of one geometric plan: l (n + 1) per family. A setting that asks for more is refused as a whole.
 inline constexpr std::size_t kMaxCandidates = JINK_MAX_CANDIDATES;
 static_assert(kMaxCandidates >= 8 && kMaxCandidates <= 4096);
-
-/// Candidates that are flown side by side before the cheapest of them is taken. On a processor that does several things
-/// at once four take little longer than one; on a microcontroller one is right, and saves 2.9 KiB for each left out.
-inline constexpr std::size_t kFlightLanes = JINK_FLIGHT_LANES;
-static_assert(kFlightLanes >= 1 && kFlightLanes <= 16);
 
 /// Vertices of one convex hull in a constant table; a larger one is refused.
 inline constexpr std::size_t kMaxHullVertices = JINK_MAX_HULL_VERTICES;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/base/work_units.hpp"
 
 namespace jink::avoid {
 namespace {
@@ -16,6 +19,15 @@ constexpr float kFallbackHysteresis = 0.3F;
 constexpr std::size_t kTailPoints = 12;
 constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
 
+/// Units of a prediction over `span` in steps of `step`, each of `each`: more than any budget for a span beyond
+/// measure.
+std::uint32_t prediction_units(Seconds span, Seconds step, std::uint32_t each) noexcept
+{
+    constexpr float kBeyondMeasure = 1e9F;
+    const float units = std::ceil(span / step) * static_cast<float>(each);
+    return units < kBeyondMeasure ? static_cast<std::uint32_t>(units) : std::numeric_limits<std::uint32_t>::max();
+}
+
 /// State at the end of a predicted flight.
 vehicle::VehicleState end_state(const vehicle::VehicleState& own, const TimedPath& flight) noexcept
 {
@@ -25,8 +37,9 @@ vehicle::VehicleState end_state(const vehicle::VehicleState& own, const TimedPat
     return end;
 }
 
-/// Flight under a turn that never ends, by the vehicle model.
-void predict_turn(const world::Situation& s, float direction, const Settings& settings, TimedPath& out) noexcept
+/// Flight under a turn that never ends, by the vehicle model. False, and nothing predicted, without the units for it.
+bool predict_turn(const world::Situation& s, float direction, const Settings& settings, WorkBudget& budget,
+                  TimedPath& out) noexcept
 {
     vehicle::VehicleState state = s.own;
     out.points.clear();
@@ -34,6 +47,9 @@ void predict_turn(const world::Situation& s, float direction, const Settings& se
     out.points.unchecked_push_back({state.position, state.velocity, t});
     const Seconds step =
         std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 1));
+    if (!budget.spend(prediction_units(settings.fallback_horizon, step, units::kTurnStep))) {
+        return false;
+    }
     while (t < settings.fallback_horizon && !out.points.full()) {
         const Vec3 from = state.position;
         vehicle::advance(state, turn_command(state, s.limits, direction), s.limits, step);
@@ -41,6 +57,7 @@ void predict_turn(const world::Situation& s, float direction, const Settings& se
         t += step;
         out.points.unchecked_push_back({state.position, out.points.back().velocity, t});
     }
+    return true;
 }
 
 /// Level directions that are tried; and each of them climbing and descending.
@@ -74,9 +91,12 @@ public:
     /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
     float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
     {
+        if (!budget_.spend(prediction_units(horizon_, step_, units::kCommandStep))) {
+            return -world::kSeparationCap;
+        }
         path::predict_velocity_command(s_.own, command, horizon_, step_, s_.limits, flight_);
-        const world::Separation least =
-            world::least_separation(s_, flight_, horizon_, budget_, settings_.escape, {cut, nearest_});
+        const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, settings_.escape,
+                                                                {cut, world::kSeparationCap, nearest_});
         nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
         return least.margin;
     }
@@ -143,9 +163,10 @@ Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous
     float best_rank = 0.0F;
     TimedPath flight;
     for (const float direction : {1.0F, -1.0F}) {
-        predict_turn(s, direction, settings, flight);
         const float margin =
-            world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin;
+            predict_turn(s, direction, settings, budget, flight)
+                ? world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin
+                : -world::kSeparationCap;
         const bool kept = previous != nullptr && previous->kind == world::ManoeuvreKind::hold_turn &&
                           previous->command.z() * direction > 0.0F;
         const float rank = margin + (kept ? kFallbackHysteresis : 0.0F);
@@ -189,7 +210,8 @@ bool is_valid(const Settings& s) noexcept
 }
 
 world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre,
-                                  const Settings& settings, WorkBudget& budget, Seconds horizon) noexcept
+                                  const Settings& settings, WorkBudget& budget, Seconds horizon,
+                                  const world::Cutoff& cutoff) noexcept
 {
     if (!is_well_formed(manoeuvre, s.now)) {
         return {-world::kSeparationCap, 0.0F, {}};
@@ -197,6 +219,10 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
     const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
     const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
     const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 2));
+    if (!budget.spend(prediction_units(rest + step, std::min(step, path::kFollowerPeriod), units::kFlightPart)) ||
+        !budget.spend(kTailPoints * units::kCommandStep)) {
+        return {-world::kSeparationCap, 0.0F, {}};
+    }
     TimedPath flight;
     path::predict_flight(s.own, manoeuvre.path, start, step, s.limits, settings.gains, flight);
     while (flight.points.size() > kFlightPoints) {
@@ -210,7 +236,7 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
                                          std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)),
                                          s.limits, flight);
     }
-    return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape);
+    return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape, cutoff);
 }
 
 float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,

@@ -9,11 +9,12 @@ namespace jink::avoid {
 
 /// Least separation of a manoeuvre as it will really be flown from now on, within `horizon`: the vehicle model follows
 /// the rest of it, and brakes at its end (a fixed wing flies on), so that a way that ends in a trap is not clear. A
-/// manoeuvre without points, with numbers that are none, times that do not rise or a start ahead of now is contact.
-/// O(points * threats).
+/// manoeuvre without points, with numbers that are none, times that do not rise or a start ahead of now is contact,
+/// and so is one that `budget` does not last for. O(points * threats).
 [[nodiscard]] world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
                                                 const Settings& settings, WorkBudget& budget,
-                                                Seconds horizon = std::numeric_limits<Seconds>::infinity()) noexcept;
+                                                Seconds horizon = std::numeric_limits<Seconds>::infinity(),
+                                                const world::Cutoff& cutoff = {}) noexcept;
 
 /// The last rung: always an answer.
 struct Fallback {
@@ -26,7 +27,8 @@ struct Fallback {
 /// Brake (a fixed wing: hold turn) when that is clear; else the one with the greatest least margin of brake and 26 ways
 /// at cruise speed (8 courses level, climbing and descending; straight up and down), refined by half a step of course;
 /// what was flown before (`previous`, may be null) stays while it is clear, and where nothing is clear unless another
-/// is 0.3 m better. A way is looked at only until it is no better than the best so far. O(30 * points * threats).
+/// is 0.3 m better. A way is looked at only until it is no better than the best so far, and counts as the worst when
+/// `budget` runs out. O(30 * points * threats).
 [[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
                                        const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 

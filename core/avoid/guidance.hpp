@@ -28,9 +28,9 @@ struct Settings {
     Seconds blocked_patience = 2.0F;    ///< standing in front of something this long, the vehicle gives ground [s]
     float give_ground_speed = 1.0F;     ///< backwards, 0: never [m/s]
     Seconds give_ground_limit = 10.0F;  ///< per conflict, at most [s]
-    std::uint32_t plan_budget =
-        12000;  ///< of it at most for the plans of one update, so that checks and fallbacks have theirs
-    std::uint32_t budget = 120000;  ///< units of work per update
+    /// Of the units below at most for the plans of one update, so that checks and fallbacks have theirs.
+    std::uint32_t plan_budget = 20000;
+    std::uint32_t budget = 60000;  ///< units of work per update (WorkBudget): what bounds a step's time on every target
     path::FollowerGains gains;
     world::EscapeRule escape;
 };

@@ -19,6 +19,8 @@ constexpr float kSlow = 0.8F;
 /// And taken when it is faster by this factor, and on the same side (cosine).
 constexpr float kFaster = 1.3F;
 constexpr float kSameSide = 0.5F;
+/// Clear or not is all that is asked.
+constexpr world::Cutoff kSignAlone{0.0F, 0.0F, {}};
 /// Time between two looks [s].
 constexpr Seconds kLookAgain = 1.0F;
 
@@ -202,7 +204,8 @@ void Pilot::avoid(Tick& tick) noexcept
     if (ahead.margin < 0.0F) {
         if (plan(tick)) {
             take(tick);
-        } else if (check_manoeuvre(tick.s, flying_, settings_, tick.budget, last_moment(tick)).margin < 0.0F) {
+        } else if (check_manoeuvre(tick.s, flying_, settings_, tick.budget, last_moment(tick), kSignAlone).margin <
+                   0.0F) {
             // What counts is when the margin is entered; its worst instant may lie far behind that.
             fall_back(tick);
         }

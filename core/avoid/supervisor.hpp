@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <limits>
 #include <tuple>
 
 #include "core/avoid/pilot.hpp"
@@ -44,7 +45,9 @@ private:
         if (status != world::PlanStatus::found) {
             return false;
         }
-        margin = check_manoeuvre(situation, out, settings, budget).margin;
+        constexpr world::Cutoff kClearOrNot{0.0F, world::kSeparationCap, {}};
+        constexpr Seconds kAllOfIt = std::numeric_limits<Seconds>::infinity();
+        margin = check_manoeuvre(situation, out, settings, budget, kAllOfIt, kClearOrNot).margin;
         if (!(margin >= 0.0F)) {
             ++diagnostics.answers_rejected;
             status = world::PlanStatus::none_available;

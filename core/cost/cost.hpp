@@ -67,6 +67,11 @@ struct MovingThreat {
     Seconds duration = 0.0F;  ///< swept: how long its path is followed [s]
 };
 
+/// Waypoints of a path, coordinate by coordinate [m], and when they are reached [s]: equal lengths, not empty.
+struct Waypoints {
+    std::span<const float> x, y, z, t;
+};
+
 /// Sum of segment times [s].
 [[nodiscard]] float flight_time(const path::TimedPath& path) noexcept;
 
@@ -78,6 +83,9 @@ struct MovingThreat {
 /// give 93 % for a simple candidate and 91 % for a symmetric one: the one-sided differences flatten the ends. O(n).
 [[nodiscard]] float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessMethod method) noexcept;
 
+/// The same where the abscissae lie `step` > 0 [m] apart: a third of the work, equal but for rounding. O(n).
+[[nodiscard]] float smoothness(float step, std::span<const float> y, SmoothnessMethod method) noexcept;
+
 /// S (1 + k_p |sin alpha|), alpha between the candidate's plane and the ground (Pinheiro eq. 4.10).
 [[nodiscard]] float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept;
 
@@ -85,6 +93,8 @@ struct MovingThreat {
 /// threat's centre less its radius; infinity when that bracket is <= 0. swept: distance to its whole path from 0 to
 /// `duration`. Path not empty. O(points).
 [[nodiscard]] float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
+/// The same to the bit.
+[[nodiscard]] float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
 /// M over threats (eq. 4.12): half the greatest plus half the mean; 0 for none.
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
 

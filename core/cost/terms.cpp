@@ -53,6 +53,46 @@ float integral_of_squared_curvature(std::span<const float> x, std::span<const fl
     return integral;
 }
 
+/// Calls `visit` with the first and second derivatives of each point in turn, each slope taken once.
+template <class Visit>
+void derive_all(std::span<const float> values, const Visit& visit) noexcept
+{
+    const std::size_t last = values.size() - 1;
+    float before = values[1] - values[0];
+    float here = 0.5F * (values[2] - values[0]);
+    visit(before, here - before);
+    for (std::size_t i = 1; i < last; ++i) {
+        const float after = i + 1 < last ? 0.5F * (values[i + 2] - values[i]) : values[last] - values[last - 1];
+        visit(here, 0.5F * (after - before));
+        before = here;
+        here = after;
+    }
+    visit(here, here - before);
+}
+
+/// At equal steps the abscissa's first derivative is the step, its second one nothing.
+float integral_of_squared_curvature(float step, std::span<const float> y) noexcept
+{
+    const float squared_step = step * step;
+    float sum = 0.0F;
+    float first = -1.0F;
+    float last = 0.0F;
+    derive_all(y, [&](float slope, float bend) {
+        const float stretch = squared_step + slope * slope;
+        last = bend * bend / (stretch * stretch * stretch);
+        first = first < 0.0F ? last : first;
+        sum += last;
+    });
+    return step * squared_step * (sum - 0.5F * (first + last));
+}
+
+float mean_second_derivative(float step, std::span<const float> y) noexcept
+{
+    float sum = 0.0F;
+    derive_all(y, [&](float, float bend) { sum += std::abs(bend); });
+    return sum / (step * step * static_cast<float>(y.size()));
+}
+
 float standard_deviation(std::span<const float> y) noexcept
 {
     const auto n = static_cast<float>(y.size());
@@ -79,6 +119,32 @@ float mean_second_derivative(std::span<const float> x, std::span<const float> y)
     return sum / static_cast<float>(x.size());
 }
 
+/// `closeness` of `count` points.
+template <class Position, class Time>
+float closeness_of(std::size_t count, const Position& position, const Time& time, const MovingThreat& threat,
+                   ClosenessMethod method) noexcept
+{
+    const Vec3 velocity = threat.motion.velocity;
+    // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to the
+    // velocity.
+    const float speed_squared = velocity.squaredNorm();
+    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
+    float least_squared = std::numeric_limits<float>::infinity();
+    float sum = 0.0F;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec3 apart = position(i) - threat.motion.position;
+        const Seconds t = method == ClosenessMethod::time_aware
+                              ? time(i)
+                              : std::clamp(apart.dot(velocity) * per_speed, 0.0F, threat.duration);
+        const float squared = (apart - t * velocity).squaredNorm();
+        sum += std::sqrt(squared);
+        least_squared = std::min(least_squared, squared);
+    }
+    const float mean = sum / static_cast<float>(count);
+    const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared) - threat.radius;
+    return bracket > 0.0F ? 1.0F / bracket : std::numeric_limits<float>::infinity();
+}
+
 }  // namespace
 
 float flight_time(const path::TimedPath& path) noexcept { return path.duration(); }
@@ -93,6 +159,16 @@ float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessM
     return 0.0F;
 }
 
+float smoothness(float step, std::span<const float> y, SmoothnessMethod method) noexcept
+{
+    switch (method) {
+    case SmoothnessMethod::curvature: return integral_of_squared_curvature(step, y);
+    case SmoothnessMethod::deviation: return standard_deviation(y);
+    case SmoothnessMethod::second_derivative: return mean_second_derivative(step, y);
+    }
+    return 0.0F;
+}
+
 float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept
 {
     return smoothness * (1.0F + penalty * std::abs(sin_alpha));
@@ -100,24 +176,16 @@ float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noe
 
 float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept
 {
-    // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to the
-    // velocity.
-    const float speed_squared = threat.motion.velocity.squaredNorm();
-    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
-    float least_squared = std::numeric_limits<float>::infinity();
-    float sum = 0.0F;
-    for (const path::PathPoint& point : path.points) {
-        const Vec3 apart = point.position - threat.motion.position;
-        const Seconds t = method == ClosenessMethod::time_aware
-                              ? point.time
-                              : std::clamp(apart.dot(threat.motion.velocity) * per_speed, 0.0F, threat.duration);
-        const float squared = (apart - t * threat.motion.velocity).squaredNorm();
-        sum += std::sqrt(squared);
-        least_squared = std::min(least_squared, squared);
-    }
-    const float mean = sum / static_cast<float>(path.points.size());
-    const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared) - threat.radius;
-    return bracket > 0.0F ? 1.0F / bracket : std::numeric_limits<float>::infinity();
+    return closeness_of(
+        path.points.size(), [&](std::size_t i) { return path.points[i].position; },
+        [&](std::size_t i) { return path.points[i].time; }, threat, method);
+}
+
+float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept
+{
+    return closeness_of(
+        path.t.size(), [&](std::size_t i) { return Vec3(path.x[i], path.y[i], path.z[i]); },
+        [&](std::size_t i) { return path.t[i]; }, threat, method);
 }
 
 float combined_closeness(std::span<const float> per_threat) noexcept

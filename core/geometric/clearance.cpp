@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
@@ -31,6 +32,9 @@ bool apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3&
     return false;
 }
 
+/// With more items than these it pays to see first which of them a curve is far from.
+constexpr std::size_t kFew = 4;
+
 Extent about(const Vec3& a, const Vec3& b) noexcept { return {a.cwiseMin(b), a.cwiseMax(b)}; }
 
 }  // namespace
@@ -52,7 +56,7 @@ Extent extent_of(const Curve& curve) noexcept
 }
 
 Clearance::Clearance(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
-    : problem_(problem), settings_(settings), half_(limits.half_extents)
+    : problem_(problem), settings_(settings), half_(limits.half_extents), bounds_(bounds_of(problem, half_))
 {
 }
 
@@ -60,11 +64,19 @@ void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget
 {
     items_.clear();
     needs_extent_ = settings_.security == SecurityMode::swept;
+    static_cast<void>(budget.spend(units::kCollected *
+                                   static_cast<std::uint32_t>(problem_.threats.size() + problem_.obstacles.size())));
     add_threats(reach, longest, false);
     for (std::size_t i = 0; i < problem_.obstacles.size(); ++i) {
         add_obstacle(i, reach, budget);
     }
     add_threats(reach, longest, true);
+}
+
+std::uint32_t Clearance::solids() const noexcept
+{
+    return static_cast<std::uint32_t>(
+        std::count_if(items_.begin(), items_.end(), [](const Item& item) { return item.kind == Kind::solid; }));
 }
 
 Seconds Clearance::sweep_end(std::size_t index) const noexcept
@@ -140,7 +152,7 @@ bool Clearance::is_out_of(const Extent& reach, const geometry::Shape& solid) con
 
 Clearance::Item Clearance::as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept
 {
-    const float start = geometry::least_distance(ball.half, {}, {ball.position, Vec3::Zero()}, 0.0F).distance;
+    const float start = geometry::box_distance(ball.half, ball.position);
     return {kind, static_cast<std::uint16_t>(index), shrink_to_clear(start - ball.radius)};
 }
 
@@ -168,7 +180,7 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
     if (settings_.escape_from_margin && !is_out_of({}, shape)) {
         const Vec3& start = problem_.frame.origin;
         item.shrunk =
-            shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget) - problem_.obstacle_clearance);
+            shrink_to_clear(world::obstacle_margin(half_, start, start, shape, budget, problem_.obstacle_clearance));
         // Distances from solids are told apart no finer than this.
         item.shrunk += item.shrunk > 0.0F ? world::kObstacleResolution : 0.0F;
     }
@@ -178,7 +190,7 @@ void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget&
 
 /// Segment `i`, the curve being `before` and `after` from the ball's centre at its ends.
 bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
-                        const Vec3& after) const noexcept
+                        const Vec3& after, WorkBudget& budget) const noexcept
 {
     // At its end and not shrunk the ball is at its largest.
     const geometry::Glance whole = geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1]));
@@ -188,11 +200,11 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, flo
     const bool shrinks = shrink_at(shrunk, curve.t[i]) > 0.0F;
     return (!shrinks && whole == geometry::Glance::touches) ||
            touches_in_parts(curve, i, ball, shrunk, before, after,
-                            shrinks ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1);
+                            shrinks ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1, budget);
 }
 
 bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
-                                 const Vec3& after, int parts) const noexcept
+                                 const Vec3& after, int parts, WorkBudget& budget) const noexcept
 {
     Vec3 from = before;
     for (int part = 1; part <= parts; ++part) {
@@ -201,8 +213,12 @@ bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& 
         const Vec3 to = before + share * (after - before);
         const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
         const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
+        if (!budget.spend(units::kBallLookPart)) {
+            return true;
+        }
         if (radius >= 0.0F && geometry::glance(ball.half, from, to, radius) != geometry::Glance::apart &&
-            geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F)) {
+            (!budget.spend(units::kBallContact) ||
+             geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F))) {
             return true;
         }
         from = to;
@@ -210,24 +226,32 @@ bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& 
     return false;
 }
 
-bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept
+bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk, WorkBudget& budget) const noexcept
 {
     Room room(curve.fastest, ball.velocity.cwiseAbs().maxCoeff(), ball.radius_at(curve.duration()), curve.duration());
     std::size_t i = 0;
     Vec3 before = ball.apart(curve, 0);
+    bool near = false;
     while (i + 1 < curve.points) {
-        room.look(before, ball.half, curve.t[i]);
-        std::size_t next = i;
-        while (next + 1 < curve.points && room.lasts_until(curve.t[next + 1])) {
-            ++next;
+        // Where there was no room a segment before there will hardly be any.
+        if (!near) {
+            room.look(before, ball.half, curve.t[i]);
+            std::size_t next = i;
+            while (next + 1 < curve.points && room.lasts_until(curve.t[next + 1])) {
+                ++next;
+            }
+            if (next > i) {
+                i = next;
+                before = ball.apart(curve, i);
+                continue;
+            }
         }
-        if (next > i) {
-            i = next;
-            before = ball.apart(curve, i);
-            continue;
+        near = !near;
+        if (!budget.spend(units::kBallLook)) {
+            return true;
         }
         const Vec3 after = ball.apart(curve, i + 1);
-        if (touches(curve, i, ball, shrunk, before, after)) {
+        if (touches(curve, i, ball, shrunk, before, after, budget)) {
             return true;
         }
         before = after;
@@ -236,7 +260,8 @@ bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk) cons
     return false;
 }
 
-bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end) const noexcept
+bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end,
+                              WorkBudget& budget) const noexcept
 {
     const Vec3 to = ball.position + ball.velocity * end;
     const float radius = ball.radius_at(end);
@@ -249,8 +274,12 @@ bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ba
         const Vec3 a = curve.position(i);
         const Vec3 b = curve.position(i + 1);
         const Extent piece = about(a, b);
+        if (!budget.spend(units::kBallLookPart)) {
+            return true;
+        }
         if (!apart(path.low, path.high, piece.low, piece.high, ball.half, radius) &&
-            geometry::swept_distance(ball.half, a, b, ball.position, to) <= radius + slack) {
+            (!budget.spend(units::kCapsuleQuery) ||
+             geometry::swept_distance(ball.half, a, b, ball.position, to) <= radius + slack)) {
             return true;
         }
     }
@@ -268,8 +297,9 @@ bool Clearance::leaves(const Curve& curve, std::size_t i, const geometry::Shape&
     for (int part = 0; part < parts; ++part) {
         const float from = static_cast<float>(part) / static_cast<float>(parts);
         const float to = static_cast<float>(part + 1) / static_cast<float>(parts);
-        const float margin = world::obstacle_margin(half_, a + from * step, a + to * step, shape, budget) -
-                             problem_.obstacle_clearance + shrink_at(shrunk, curve.t[i] + to * duration);
+        const float margin =
+            world::obstacle_margin(half_, a + from * step, a + to * step, shape, budget, problem_.obstacle_clearance) +
+            shrink_at(shrunk, curve.t[i] + to * duration);
         if (budget.exhausted() || margin < 0.0F) {
             return false;
         }
@@ -309,14 +339,14 @@ bool Clearance::touches(const Curve& curve, const Extent& extent, const geometry
 bool Clearance::touches(const Curve& curve, const Extent& extent, const Item& item, WorkBudget& budget) const noexcept
 {
     switch (item.kind) {
-    case Kind::static_ball: return touches(curve, ball_of(item.index), item.shrunk);
-    case Kind::obstacle_ball: return touches(curve, ball_of(problem_.obstacles[item.index].shape), item.shrunk);
+    case Kind::static_ball: return touches(curve, ball_of(item.index), item.shrunk, budget);
+    case Kind::obstacle_ball: return touches(curve, ball_of(problem_.obstacles[item.index].shape), item.shrunk, budget);
     case Kind::solid: return touches(curve, extent, problem_.obstacles[item.index].shape, item.shrunk, budget);
     case Kind::moving_ball: break;
     }
     const Ball ball = ball_of(item.index);
-    return settings_.security == SecurityMode::swept ? touches_swept(curve, extent, ball, sweep_end(item.index))
-                                                     : touches(curve, ball, item.shrunk);
+    return settings_.security == SecurityMode::swept ? touches_swept(curve, extent, ball, sweep_end(item.index), budget)
+                                                     : touches(curve, ball, item.shrunk, budget);
 }
 
 Verdict Clearance::check(const Curve& curve, WorkBudget& budget) const noexcept
@@ -324,10 +354,18 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget) const noexcept
     if (const ThreatKind bound = left_airspace(curve); bound != ThreatKind::none) {
         return {CandidateStatus::hits_airspace, {bound, 0}};
     }
-    const Extent extent = needs_extent_ ? extent_of(curve) : Extent{};
-    const auto segments = static_cast<std::uint32_t>(curve.points - 1);
+    const bool many = items_.size() > kFew;
+    const Extent extent = needs_extent_ || many ? extent_of(curve) : Extent{};
     for (const Item& item : items_) {
-        const bool hit = budget.spend(segments) && touches(curve, extent, item, budget);
+        if (many && item.kind != Kind::solid) {
+            if (!budget.spend(units::kFarItem)) {
+                return {CandidateStatus::not_evaluated, {}};
+            }
+            if (is_ball_out_of(extent, item, curve.duration())) {
+                continue;
+            }
+        }
+        const bool hit = budget.spend(units_of(item, curve)) && touches(curve, extent, item, budget);
         if (budget.exhausted()) {
             return {CandidateStatus::not_evaluated, {}};
         }
@@ -336,6 +374,23 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget) const noexcept
         }
     }
     return {};
+}
+
+bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept
+{
+    if (item.kind == Kind::moving_ball && settings_.security == SecurityMode::swept) {
+        return false;  // its volume ends when others say
+    }
+    const Ball ball =
+        item.kind == Kind::obstacle_ball ? ball_of(problem_.obstacles[item.index].shape) : ball_of(item.index);
+    return out_of(extent, ball, duration);
+}
+
+/// Of passing over what is far; closer looks come on top.
+std::uint32_t Clearance::units_of(const Item& item, const Curve& curve) noexcept
+{
+    return item.kind == Kind::solid ? units::kSolidSegment * static_cast<std::uint32_t>(curve.points - 1)
+                                    : units::kItem;
 }
 
 Verdict Clearance::verdict_of(const Item& item) noexcept

@@ -75,22 +75,11 @@ public:
     /// say so.
     [[nodiscard]] Seconds sweep_end(std::size_t index) const noexcept;
 
+    /// Solids that no closed form knows, of what was collected.
+    [[nodiscard]] std::uint32_t solids() const noexcept;
     /// First cause in the order airspace, static threats, obstacles, moving threats, each by index. When the budget
     /// runs out the verdict is not_evaluated. O(points * (threats + obstacles)).
     [[nodiscard]] Verdict check(const Curve& curve, WorkBudget& budget) const noexcept;
-
-    /// The first item in the order of checking that a flight within `reach` that lasts no longer than `longest` can
-    /// meet, where it is a ball: a flight that touches it needs not be flown on, nothing else can come before it but
-    /// the airspace. False where there is none such. O(threats + obstacles).
-    [[nodiscard]] bool find_first(const Extent& reach, Seconds longest) noexcept;
-    /// `look`ed at as the first item's Room asks for, for a curve of up to `duration`. After find_first.
-    [[nodiscard]] Room room_of_first(float fastest, Seconds duration) const noexcept;
-    /// Segment `i` touches the first item. `room` is kept from segment to segment. After find_first.
-    [[nodiscard]] bool touches_first(const Curve& curve, std::size_t i, Room& room) const noexcept;
-    /// What `check` says of a curve of `segments` that touches the first item and stays in the airspace.
-    [[nodiscard]] Verdict first_verdict(std::size_t segments, WorkBudget& budget) const noexcept;
-    /// The curve so far keeps within the airspace, and so does all that can follow `level` and `vertical` from its end.
-    [[nodiscard]] bool stays_in_airspace(const Curve& so_far, float level, float vertical) const noexcept;
 
 private:
     /// A static or moving sphere, or an obstacle with the sphere's closed form.
@@ -145,16 +134,18 @@ private:
     [[nodiscard]] static bool out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept;
     [[nodiscard]] Item as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept;
     [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid) const noexcept;
-    [[nodiscard]] Bounds bounds() const noexcept;
-    [[nodiscard]] bool first_threat(const Extent& reach, Seconds longest, bool moving) noexcept;
+    [[nodiscard]] static Bounds bounds_of(const Problem& problem, const Vec3& half) noexcept;
     [[nodiscard]] static Verdict verdict_of(const Item& item) noexcept;
+    [[nodiscard]] bool is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept;
+    [[nodiscard]] static std::uint32_t units_of(const Item& item, const Curve& curve) noexcept;
     [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
-                               const Vec3& after) const noexcept;
+                               const Vec3& after, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk,
-                                        const Vec3& before, const Vec3& after, int parts) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk) const noexcept;
-    [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball,
-                                     Seconds end) const noexcept;
+                                        const Vec3& before, const Vec3& after, int parts,
+                                        WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end,
+                                     WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const geometry::Shape& shape, float shrunk,
                                WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const Item& item,
@@ -163,11 +154,10 @@ private:
     const Problem& problem_;
     const Settings& settings_;
     const Vec3 half_;
+    const Bounds bounds_;
     Seconds t_max_ = 0.0F;
     StaticVector<Item, kMaxTracks + kMaxObstacles> items_;
     bool needs_extent_ = false;  ///< some item is tested against a curve's extent
-    Item first_;
-    Ball first_ball_;
 };
 
 }  // namespace jink::geometric::detail

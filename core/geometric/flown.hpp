@@ -1,69 +1,47 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <cstdint>
 
 #include "core/geometric/clearance.hpp"
 #include "core/vehicle/motion.hpp"
 
-// Candidates as the vehicle would fly them. Private to this room.
+// A candidate as the vehicle would fly it. Private to this room.
 
 namespace jink::geometric::detail {
 
-/// Flies a few candidates side by side, with braking to a stand at their ends, and says what each flight touches.
+/// Flies a candidate, with braking to a stand at its end, and says what the flight touches.
 ///
-/// Side by side because that takes little longer than one alone (path/flight.hpp). A flight that touches what is
-/// checked first is not flown on. Verdicts and units spent are those of one flight after the other, each flown to its
-/// end and then checked.
+/// Once the vehicle has had kSettled to find the path, the flight is predicted in parts of kSettledPart: on the path
+/// the command hardly changes from one part to the next. What is chosen is checked in the finer parts of predict_flight
+/// before it is flown (avoid/guard.hpp); how far both lie apart is measured in tests/property/core/geometric
+/// (CoarseFlight).
 ///
-/// Memory: kLanes * (a path and a curve), 2.9 KiB each with 64 points.
+/// Memory: a curve and a Clearance, 2.1 KiB with the default capacities.
 class Flown {
 public:
-    static constexpr std::size_t kLanes = kFlightLanes;
+    static constexpr Seconds kSettled = 3.0F;
+    static constexpr Seconds kSettledPart = 0.25F;
 
     /// All outlive this.
-    Flown(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
-          Clearance& clearance) noexcept;
+    Flown(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept;
 
-    void clear() noexcept { lanes_in_use_ = 0; }
-    [[nodiscard]] bool full() const noexcept { return lanes_in_use_ == kLanes; }
-    [[nodiscard]] std::size_t size() const noexcept { return lanes_in_use_; }
-    /// A lane more, its path about the start to be filled by the caller. Not when full.
-    [[nodiscard]] path::TimedPath& add() noexcept;
-    [[nodiscard]] const path::TimedPath& path(std::size_t lane) const noexcept { return lanes_[lane].path; }
-
-    /// Flies all lanes. O(lanes * points).
-    void fly() noexcept;
-    /// What the flight of a lane touches; volumes that threats sweep end at `longest` or with the flight. After `fly`.
+    /// What the flight along `path`, about the start, touches; volumes that threats sweep end at `swept_until` or with
+    /// the flight. not_evaluated, with the budget spent, where it does not allow for flying it to its end.
     /// O(points * (threats + obstacles)).
-    [[nodiscard]] Verdict judge(std::size_t lane, Seconds longest, WorkBudget& budget) noexcept;
+    [[nodiscard]] Verdict judge(const path::TimedPath& path, Seconds swept_until, WorkBudget& budget) noexcept;
 
 private:
-    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): paths and curves are filled before they are read
-    struct Lane {
-        path::TimedPath path;
-        Curve flight;
-        std::size_t points = 0;  ///< of the whole flight
-        bool stopped = false;    ///< it has touched the first item
-    };
-
-    void start(Lane& lane, std::size_t steps) const noexcept;
-    void fly_paths() noexcept;
-    void fly_tails() noexcept;
-    [[nodiscard]] bool stops(const Lane& lane, Room& room) noexcept;
+    [[nodiscard]] bool fly(const path::TimedPath& path, WorkBudget& budget) noexcept;
+    void brake(WorkBudget& budget) noexcept;
 
     const vehicle::VehicleLimits& limits_;
     const Settings& settings_;
-    Clearance& clearance_;
+    Clearance clearance_;
     const Vec3 start_velocity_;
-    float fastest_;           ///< of any flight [m/s]
-    float fastest_vertical_;  ///< [m/s]
-    Seconds longest_tail_;
+    float fastest_;  ///< of any flight [m/s]
     vehicle::detail::Fading fading_;
-    Seconds reach_time_ = -1.0F;  ///< longest path that find_first was asked for
-    bool has_first_ = false;
-    std::size_t lanes_in_use_ = 0;
-    std::array<Lane, kLanes> lanes_;
+    Curve flight_;
 };
 
 }  // namespace jink::geometric::detail

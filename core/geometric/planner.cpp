@@ -69,6 +69,7 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
     PlanStatus status = PlanStatus::none_available;
     Problem tried = problem;
     attempts = 0;
+    bool cut_short = false;
     for (std::size_t i = 0; i <= settings.retries && i < kAttempts.size() && status == PlanStatus::none_available;
          ++i) {
         if (!applies(kAttempts[i], settings, limits.kind)) {
@@ -79,7 +80,9 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
         tried.span_to = kAttempts[i].span_to;
         status = solve(tried, settings, limits, airframe, budget, workspace, result);
         ++attempts;
+        cut_short = cut_short || result.cut_short;
     }
+    result.cut_short = cut_short;
     return status;
 }
 
@@ -95,6 +98,8 @@ bool Planner::configure(const Settings& settings) noexcept
 PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::Manoeuvre& out) noexcept
 {
     result_.candidates.clear();
+    result_.chosen = 0;
+    result_.cut_short = false;
     if (!situation.reference.valid || !is_valid(settings_) || situation.tracks.size() > kMaxTracks) {
         return PlanStatus::bad_input;
     }

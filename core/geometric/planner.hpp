@@ -37,9 +37,12 @@ struct Attempt {
 inline constexpr std::array<Attempt, 5> kAttempts{
     {{1.0F, 0.0F, 1.0F}, {0.6F, 0.0F, 1.0F}, {1.0F, 1.0F, 2.0F}, {0.3F, 0.0F, 1.0F}, {1.0F, 2.0F, 3.5F}}};
 
+/// Planes of candidates about the leg.
+inline constexpr std::size_t kMaxPlanes = 32;
+
 struct Settings {
     std::uint16_t offsets = 4;       ///< l, even, 2..64
-    std::uint16_t extra_planes = 3;  ///< n, 0..31
+    std::uint16_t extra_planes = 3;  ///< n, 0..kMaxPlanes - 1
     bool simple = true;
     bool symmetric = true;
     std::uint16_t waypoints = 25;  ///< per candidate, 8..kMaxPathPoints
@@ -57,9 +60,18 @@ struct Settings {
     /// The cheapest must also be clear as the vehicle will fly it (path::predict_flight, then braking to a stand at the
     /// end), or else the next cheapest is tried; off in source mode.
     bool verify_flight = true;
+    /// Every candidate is checked as a curve before the first is flown, so that Result says of each what it touches.
+    /// Otherwise costs come first, and no candidate dearer than the chosen one is looked at: the choice is the same.
+    bool evaluate_all = false;
+    /// Work that one attempt may spend on checking candidates, cheapest first, as curves (but with evaluate_all) and in
+    /// flight; as much again for each solid within reach that no closed form knows. Those that it does not reach are
+    /// not taken.
+    std::uint32_t check_units = 1600;
     cost::SmoothnessMethod smoothness = cost::SmoothnessMethod::curvature;
     cost::ClosenessMethod closeness = cost::ClosenessMethod::time_aware;
     float rotation_penalty = 1.0F;  ///< k_p
+    /// Energy and hover power of each candidate too, which are told but do not count; 0 otherwise.
+    bool all_terms = false;
     cost::Weights weights;
     cost::Caps caps;
     float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of what is being flown
@@ -121,17 +133,17 @@ struct Problem {
 struct Result {
     StaticVector<Candidate, kMaxCandidates> candidates;  ///< in the order of generation
     std::size_t chosen = 0;                              ///< index, valid on PlanStatus::found
-    path::TimedPath path;                                ///< of the chosen one
-    Vec3 side = Vec3::Zero();                            ///< unit vector from the leg to its apex
+    bool cut_short = false;    ///< work has ended before a candidate that was found to do, or before all were looked at
+    path::TimedPath path;      ///< of the chosen one
+    Vec3 side = Vec3::Zero();  ///< unit vector from the leg to its apex
 };
 
 /// Working memory of one `solve`, to be kept where there is room for it: a microcontroller's stack is no such place.
 /// Holds nothing from one call to the next. kBytes, about 18 KiB with the default capacities.
 class Workspace {
 public:
-    static constexpr std::size_t kBytes = kMaxPathPoints * (16 + (28 + 16) * (kFlightLanes + 1)) +
-                                          8 * (kMaxTracks + kMaxObstacles) + 48 * kMaxTracks + 2 * kMaxCandidates +
-                                          96 * kFlightLanes + 768;
+    static constexpr std::size_t kBytes = kMaxPathPoints * (16 + 28 + 2 * 16) + 16 * (kMaxTracks + kMaxObstacles) +
+                                          48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1024;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }
@@ -143,9 +155,9 @@ private:
 /// Solves one problem.
 ///
 /// Order of generation: simple before symmetric, then planes, then offsets ascending; of equally cheap candidates the
-/// first is chosen. Budget: one unit per candidate segment and threat or obstacle near the candidates, support calls
-/// for obstacles that are no spheres. When it runs out, what has been found available until then is still fully checked
-/// and may be chosen.
+/// first is chosen. Budget (base/work_budget.hpp): curves, contact tests, costs and flights, support calls for
+/// obstacles that are no spheres. When it runs out, what has been found available until then is still fully checked and
+/// may be chosen: up to half of it, Settings::check_units at most, is kept for that.
 ///
 /// @return found; too_close (D < 2.5 R); none_available; budget_spent (nothing available until then); bad_input
 ///         (settings, limits or problem not finite or out of range). `result.candidates` is filled as far as evaluated

@@ -10,7 +10,7 @@ bool not_negative(float value) noexcept { return std::isfinite(value) && value >
 
 bool has_valid_counts(const Settings& s) noexcept
 {
-    if (s.offsets < 2 || s.offsets > 64 || s.offsets % 2 != 0 || s.extra_planes > 31 || s.waypoints < 8 ||
+    if (s.offsets < 2 || s.offsets > 64 || s.offsets % 2 != 0 || s.extra_planes >= kMaxPlanes || s.waypoints < 8 ||
         s.waypoints > kMaxPathPoints || s.retries >= kAttempts.size()) {
         return false;
     }
@@ -30,6 +30,8 @@ Settings source_settings() noexcept
     s.check_acceleration = false;
     s.verify_flight = false;
     s.closeness = cost::ClosenessMethod::swept;
+    s.all_terms = true;
+    s.evaluate_all = true;
     s.escape_from_margin = false;
     s.retries = 0;
     return s;

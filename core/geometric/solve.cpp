@@ -6,6 +6,7 @@
 #include <new>
 #include <type_traits>
 
+#include "core/base/work_units.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometric/flown.hpp"
 #include "core/geometric/offsets.hpp"
@@ -52,6 +53,8 @@ bool is_valid(const Problem& p) noexcept
            (p.main_shape == nullptr || geometry::is_valid(*p.main_shape));
 }
 
+float angle_of(int plane, int planes) noexcept { return kPi * static_cast<float>(plane) / static_cast<float>(planes); }
+
 /// One run of `solve`: what its steps share.
 class Run {
 public:
@@ -59,7 +62,7 @@ public:
         const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept
         : problem_(problem), settings_(settings), limits_(limits), airframe_(airframe), budget_(budget),
           result_(result), along_(problem.frame.axes.col(0)), clearance_(problem, settings, limits),
-          flown_(problem, settings, limits, clearance_)
+          flown_(problem, settings, limits)
     {
     }
 
@@ -67,24 +70,43 @@ public:
     {
         generate();
         prepare();
+        // What has been found must not be left unchecked.
+        const std::uint32_t kept = std::min(units_of_checks(), budget_.left() / 2);
+        WorkBudget curves(budget_.left() - kept);
         for (Candidate& candidate : result_.candidates) {
-            if (!evaluate(candidate)) {
+            if (!evaluate(candidate, curves)) {
                 break;
             }
         }
+        static_cast<void>(budget_.spend(curves.spent()));  // never more than was left
+        spent_ = curves.exhausted();
         return choose();
     }
 
 private:
     void generate() noexcept;
     void prepare() noexcept;
-    [[nodiscard]] bool evaluate(Candidate& candidate) noexcept;
+    [[nodiscard]] bool evaluate(Candidate& candidate, WorkBudget& budget) noexcept;
     void assess(Candidate& candidate) noexcept;
-    [[nodiscard]] float smoothness_of(const CandidateShape& shape) noexcept;
-    [[nodiscard]] float closeness_of(const path::TimedPath& path) const noexcept;
+    [[nodiscard]] std::uint32_t units_of_checks() const noexcept
+    {
+        constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+        const std::uint64_t shares = 1 + std::uint64_t{units::kSolidShares} * clearance_.solids();
+        return static_cast<std::uint32_t>(std::min(kMost, settings_.check_units * shares));
+    }
+    [[nodiscard]] std::uint32_t units_of_costs() const noexcept
+    {
+        return units::kCostPoint * settings_.waypoints + units::closeness_units(settings_.waypoints, moving_.size());
+    }
+    [[nodiscard]] float smoothness_of(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] float closeness() const noexcept;
     void list_moving() noexcept;
     void build(const CandidateShape& shape) noexcept;
-    [[nodiscard]] Vec3 side_of(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
+    {
+        const float planes = static_cast<float>(settings_.extra_planes) + 1.0F;
+        return sides_[static_cast<std::size_t>(std::lround(shape.plane * (planes / kPi)))];
+    }
     /// Candidates still to be tried, a heap with the cheapest at its front, of equally cheap ones the first.
     using Order = StaticVector<std::uint16_t, kMaxCandidates>;
     [[nodiscard]] auto by_cost() const noexcept
@@ -95,8 +117,9 @@ private:
             return cost_b < cost_a || (cost_b == cost_a && b < a);
         };
     }
-    void next_cheapest(Order& order, bool first) noexcept;
-    void take(std::size_t index, const path::TimedPath& path) noexcept;
+    [[nodiscard]] bool try_in_turn(WorkBudget& budget) noexcept;
+    [[nodiscard]] detail::Verdict verdict_of(const CandidateShape& shape, WorkBudget& budget) noexcept;
+    void take(std::size_t index) noexcept;
     [[nodiscard]] PlanStatus choose() noexcept;
 
     const Problem& problem_;
@@ -106,25 +129,17 @@ private:
     WorkBudget& budget_;
     Result& result_;
     const Vec3 along_;
+    bool spent_ = false;             ///< the budget has ended before all candidates were looked at
     Seconds longest_ = 0.0F;         ///< duration of any candidate, where threats sweep volumes
     std::array<UnitCurve, 2> unit_;  ///< by family
+    std::array<Vec3, kMaxPlanes> sides_;
     Clearance clearance_;
     detail::Flown flown_;
-    StaticVector<std::uint16_t, detail::Flown::kLanes> trial_;  ///< by lane of flown_
     Order order_;
     Curve curve_;                                          ///< of the candidate at hand
     path::TimedPath path_;                                 ///< the same, about the start
     StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start
-    struct {
-        CandidateShape shape;
-        float value = -1.0F;
-    } last_smoothness_;
 };
-
-Vec3 Run::side_of(const CandidateShape& shape) const noexcept
-{
-    return detail::plane_direction(problem_.frame, shape.plane);
-}
 
 void Run::build(const CandidateShape& shape) noexcept
 {
@@ -135,6 +150,9 @@ void Run::build(const CandidateShape& shape) noexcept
 void Run::generate() noexcept
 {
     const int planes = settings_.extra_planes + 1;
+    for (int i = 0; i < planes; ++i) {
+        sides_[static_cast<std::size_t>(i)] = detail::plane_direction(problem_.frame, angle_of(i, planes));
+    }
     for (const Family family : {Family::simple, Family::symmetric}) {
         if (!(family == Family::simple ? settings_.simple : settings_.symmetric)) {
             continue;
@@ -143,7 +161,7 @@ void Run::generate() noexcept
         for (int i = 0; i < planes; ++i) {
             Candidate candidate;
             candidate.shape.family = family;
-            candidate.shape.plane = kPi * static_cast<float>(i) / static_cast<float>(planes);
+            candidate.shape.plane = angle_of(i, planes);
             const Vec3 side = side_of(candidate.shape);
             candidate.sin_alpha = std::min(std::sqrt(along_.z() * along_.z() + side.z() * side.z()), 1.0F);
             detail::Offsets offsets;
@@ -198,44 +216,47 @@ void Run::list_moving() noexcept
     }
 }
 
-bool Run::evaluate(Candidate& candidate) noexcept
+bool Run::evaluate(Candidate& candidate, WorkBudget& budget) noexcept
 {
+    if (!budget.spend(units::kCandidatePoint * settings_.waypoints)) {
+        candidate.status = CandidateStatus::not_evaluated;
+        return false;
+    }
     build(candidate.shape);
     candidate.duration = curve_.duration();
     if (settings_.check_acceleration && !detail::is_flyable(curve_, along_, problem_.speed, limits_)) {
         candidate.status = CandidateStatus::not_flyable;
         return true;
     }
-    const detail::Verdict verdict = clearance_.check(curve_, budget_);
-    candidate.status = verdict.status;
-    candidate.hit = verdict.hit;
-    if (verdict.status == CandidateStatus::available) {
+    candidate.status = CandidateStatus::available;  // for all that is known without evaluate_all
+    if (settings_.evaluate_all) {
+        const detail::Verdict verdict = clearance_.check(curve_, budget);
+        candidate.status = verdict.status;
+        candidate.hit = verdict.hit;
+    }
+    if (candidate.status == CandidateStatus::available && !budget.spend(units_of_costs())) {
+        candidate.status = CandidateStatus::not_evaluated;
+    }
+    if (candidate.status == CandidateStatus::available) {
         assess(candidate);
     }
-    return verdict.status != CandidateStatus::not_evaluated;
+    return candidate.status != CandidateStatus::not_evaluated;
 }
 
-float Run::smoothness_of(const CandidateShape& shape) noexcept
+float Run::smoothness_of(const CandidateShape& shape) const noexcept
 {
-    // Even in the offset and blind to the plane, so neighbours often share it.
-    if (last_smoothness_.value >= 0.0F && last_smoothness_.shape.family == shape.family &&
-        std::abs(last_smoothness_.shape.offset) == std::abs(shape.offset)) {
-        return last_smoothness_.value;
-    }
     const UnitCurve& unit = unit_[static_cast<std::size_t>(shape.family)];
-    detail::Coordinates x;
     detail::Coordinates y;
     for (std::size_t i = 0; i < unit.points; ++i) {
-        x[i] = problem_.distance * unit.u[i];
         y[i] = std::abs(shape.offset) * unit.f[i];
     }
-    last_smoothness_.shape = shape;
-    last_smoothness_.value = cost::smoothness({x.data(), unit.points}, {y.data(), unit.points}, settings_.smoothness);
-    return last_smoothness_.value;
+    return cost::smoothness(problem_.distance * unit.u[1], {y.data(), unit.points}, settings_.smoothness);
 }
 
-float Run::closeness_of(const path::TimedPath& path) const noexcept
+float Run::closeness() const noexcept
 {
+    const auto all = [this](const detail::Coordinates& c) { return std::span<const float>(c.data(), curve_.points); };
+    const cost::Waypoints path{all(curve_.x), all(curve_.y), all(curve_.z), all(curve_.t)};
     std::array<float, kMaxTracks> per_threat{};
     for (std::size_t i = 0; i < moving_.size(); ++i) {
         per_threat[i] = cost::closeness(path, moving_[i], settings_.closeness);
@@ -245,45 +266,35 @@ float Run::closeness_of(const path::TimedPath& path) const noexcept
 
 void Run::assess(Candidate& candidate) noexcept
 {
-    detail::to_timed_path(curve_, Vec3::Zero(), path_);
     cost::Terms& terms = candidate.terms;
-    terms.time = cost::flight_time(path_);
+    terms.time = curve_.duration();
     terms.smoothness = smoothness_of(candidate.shape);
     terms.smoothness_penalised =
         cost::penalised_smoothness(terms.smoothness, candidate.sin_alpha, settings_.rotation_penalty);
-    terms.closeness = closeness_of(path_);
-    terms.energy = cost::energy(path_, airframe_);
-    terms.hover_power = cost::hover_power(path_, airframe_);
+    terms.closeness = closeness();
+    if (settings_.all_terms) {
+        detail::to_timed_path(curve_, Vec3::Zero(), path_);
+        terms.energy = cost::energy(path_, airframe_);
+        terms.hover_power = cost::hover_power(path_, airframe_);
+    }
     candidate.normalised = cost::normalise(terms, settings_.caps);
     candidate.total = std::min(cost::total(candidate.normalised, settings_.weights), 1.0F);
+    if (problem_.preferred_side == Vec3::Zero()) {
+        return;
+    }
     const float sign = std::copysign(1.0F, candidate.shape.offset);
     constexpr float kOtherSide = -1e-3F;  // a plane at right angles to what is flown is on neither side
     candidate.flip_penalty =
         sign * side_of(candidate.shape).dot(problem_.preferred_side) < kOtherSide ? settings_.flip_penalty : 0.0F;
 }
 
-/// The next cheapest candidates, the cheapest alone at first: most often it passes.
-void Run::next_cheapest(Order& order, bool first) noexcept
-{
-    flown_.clear();
-    trial_.clear();
-    while (!order.empty() && !flown_.full() && !(first && flown_.size() == 1)) {
-        std::pop_heap(order.begin(), order.end(), by_cost());
-        const std::size_t index = order.back();
-        order.pop_back();
-        build(result_.candidates[index].shape);
-        detail::to_timed_path(curve_, Vec3::Zero(), flown_.add());
-        trial_.unchecked_push_back(static_cast<std::uint16_t>(index));
-    }
-}
-
-void Run::take(std::size_t index, const path::TimedPath& path) noexcept
+void Run::take(std::size_t index) noexcept
 {
     Candidate& best = result_.candidates[index];
     best.status = CandidateStatus::chosen;
     result_.chosen = index;
     result_.side = std::copysign(1.0F, best.shape.offset) * side_of(best.shape);
-    result_.path = path;
+    result_.path = path_;
     for (path::PathPoint& point : result_.path.points) {
         point.position += problem_.frame.origin;
     }
@@ -291,32 +302,66 @@ void Run::take(std::size_t index, const path::TimedPath& path) noexcept
 
 PlanStatus Run::choose() noexcept
 {
-    Order& order = order_;
     for (std::size_t i = 0; i < result_.candidates.size(); ++i) {
-        const Candidate& candidate = result_.candidates[i];
-        if (candidate.status == CandidateStatus::available && candidate.total <= settings_.max_cost) {
-            order.unchecked_push_back(static_cast<std::uint16_t>(i));
+        Candidate& candidate = result_.candidates[i];
+        if (candidate.status != CandidateStatus::available) {
+            continue;
+        }
+        if (candidate.total <= settings_.max_cost) {
+            order_.unchecked_push_back(static_cast<std::uint16_t>(i));
+        } else if (!settings_.evaluate_all) {
+            candidate.status = CandidateStatus::not_evaluated;
         }
     }
-    std::make_heap(order.begin(), order.end(), by_cost());
-    for (bool first = true; !order.empty(); first = false) {
-        next_cheapest(order, first);
-        if (settings_.verify_flight) {
-            flown_.fly();
+    std::make_heap(order_.begin(), order_.end(), by_cost());
+    WorkBudget checks(std::min(units_of_checks(), budget_.left()));
+    const bool is_short = checks.left() < units_of_checks();
+    const bool found = try_in_turn(checks);
+    static_cast<void>(budget_.spend(checks.spent()));  // never more than was left
+    result_.cut_short = spent_ || checks.exhausted();
+    if (found) {
+        return PlanStatus::found;
+    }
+    return spent_ || (checks.exhausted() && is_short) ? PlanStatus::budget_spent : PlanStatus::none_available;
+}
+
+/// The candidates of order_, cheapest first, until one is clear. Those that are not reached are not evaluated.
+bool Run::try_in_turn(WorkBudget& budget) noexcept
+{
+    bool found = false;
+    while (!order_.empty()) {
+        std::pop_heap(order_.begin(), order_.end(), by_cost());
+        const std::size_t index = order_.back();
+        order_.pop_back();
+        Candidate& candidate = result_.candidates[index];
+        if (found || budget.exhausted()) {
+            candidate.status = found && settings_.evaluate_all ? candidate.status : CandidateStatus::not_evaluated;
+            continue;
         }
-        for (std::size_t lane = 0; lane < flown_.size(); ++lane) {
-            Candidate& candidate = result_.candidates[trial_[lane]];
-            const detail::Verdict verdict =
-                settings_.verify_flight ? flown_.judge(lane, longest_, budget_) : detail::Verdict{};
-            if (verdict.status == CandidateStatus::available) {
-                take(trial_[lane], flown_.path(lane));
-                return PlanStatus::found;
-            }
-            candidate.status = verdict.status;
-            candidate.hit = verdict.hit;
+        const detail::Verdict verdict = verdict_of(candidate.shape, budget);
+        candidate.status = verdict.status;
+        candidate.hit = verdict.hit;
+        if (verdict.status == CandidateStatus::available) {
+            take(index);
+            found = true;
         }
     }
-    return budget_.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
+    return found;
+}
+
+/// Of a candidate as a curve, where that is not known yet, and in flight. Its path is in path_ where it is available.
+detail::Verdict Run::verdict_of(const CandidateShape& shape, WorkBudget& budget) noexcept
+{
+    if (!budget.spend(units::kCandidatePoint * settings_.waypoints)) {
+        return {CandidateStatus::not_evaluated, {}};
+    }
+    build(shape);
+    const detail::Verdict curve = settings_.evaluate_all ? detail::Verdict{} : clearance_.check(curve_, budget);
+    if (curve.status != CandidateStatus::available) {
+        return curve;
+    }
+    detail::to_timed_path(curve_, Vec3::Zero(), path_);
+    return settings_.verify_flight ? flown_.judge(path_, longest_, budget) : detail::Verdict{};
 }
 
 }  // namespace
@@ -328,6 +373,7 @@ PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle
     result.path.points.clear();
     result.side = Vec3::Zero();
     result.chosen = 0;
+    result.cut_short = false;
     if (!is_valid(settings) || !vehicle::is_valid(limits) || !vehicle::is_valid(airframe) || !is_valid(problem)) {
         return PlanStatus::bad_input;
     }

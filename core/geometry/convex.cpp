@@ -18,8 +18,9 @@ using detail::kRounding;
 
 /// What the support functions learn on their way. Its own object: libccd hands the query itself over as const.
 struct Progress {
+    WorkBudget& budget;
+    std::uint32_t turn = 0;  ///< units of two calls, one of either solid
     std::uint32_t calls = 0;
-    std::uint32_t calls_allowed = 0;
     bool ended = false;        ///< nothing more to be learnt, or no call left
     bool parted = false;       ///< some direction has proven to separate the two
     ccd_real_t own_along = 0;  ///< last own support value
@@ -57,7 +58,8 @@ void own_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* an
 {
     const Query& query = query_of(object);
     Progress& progress = *query.progress;
-    progress.ended = progress.parted || progress.calls + 2 > progress.calls_allowed;
+    progress.ended =
+        progress.parted || progress.calls + 2 > kSupportCallsPerQuery / 2 || !progress.budget.spend(progress.turn);
     if (progress.ended) {
         answer_wrongly(*direction, *answer);
         return;
@@ -131,8 +133,7 @@ Query make_query(const detail::SweptBox& box, const Shape& shape, float clearanc
 Contact search_plane(const detail::SweptBox& box, const Shape& shape, float clearance, WorkBudget& budget) noexcept
 {
     Query query = make_query(box, shape, clearance);
-    Progress progress;
-    progress.calls_allowed = std::min(kSupportCallsPerQuery / 2, budget.left());
+    Progress progress{budget, units::kExactTurn + units::hull_units(shape.vertices.size())};
     query.progress = &progress;
     ccd_t ccd;
     CCD_INIT(&ccd);
@@ -141,7 +142,7 @@ Contact search_plane(const detail::SweptBox& box, const Shape& shape, float clea
     ccd.support2 = other_support;
     ccd.max_iterations = kSupportCallsPerQuery;
     (void)ccdGJKIntersect(&query, &query, &ccd);
-    if (!budget.spend(progress.calls)) {
+    if (budget.exhausted()) {
         return Contact::budget_spent;
     }
     if (progress.parted) {
@@ -165,10 +166,13 @@ Contact swept_box_contact(const Vec3& half, const Vec3& from, const Vec3& to, co
     const detail::SweptBox box{half, from, to};
     const float near = clearance + box.slack(shape);
     if (detail::has_closed_form(shape)) {
-        if (!budget.spend()) {
+        if (!budget.spend(detail::closed_form_units(shape))) {
             return Contact::budget_spent;
         }
         return box.closed_form_distance(shape) <= near ? Contact::contact : Contact::clear;
+    }
+    if (!budget.spend(units::kSolidQuery)) {
+        return Contact::budget_spent;
     }
     if (box.distance_to(shape.centre) - bounding_radius(shape) > near) {
         return Contact::clear;

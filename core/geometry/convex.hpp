@@ -4,6 +4,8 @@
 #include <cstdint>
 
 #include "core/base/work_budget.hpp"
+#include "core/base/work_units.hpp"
+#include "core/capacity.hpp"
 #include "core/geometry/shape.hpp"
 
 // The own safety box, swept along a segment, against any convex shape. Spheres and capsules have closed forms
@@ -25,12 +27,17 @@ enum class Contact : std::uint8_t { clear, contact, budget_spent };
 /// contact.
 inline constexpr std::uint32_t kSupportCallsPerQuery = 128;
 
+/// Units of work that no query takes more than: libccd's share in its turns, all calls in those of the distance search.
+inline constexpr std::uint32_t kUnitsPerQuery =
+    units::kSolidQuery + kSupportCallsPerQuery / 4 * (units::kExactTurn + units::hull_units(kMaxHullVertices)) +
+    kSupportCallsPerQuery / 2 * (units::kSearchTurn + units::hull_units(kMaxHullVertices));
+
 /// Does the box (half extents [m], world-aligned) swept from `from` to `to` come within `clearance` [m] >= 0 of
 /// `shape`?
 ///
-/// Touching counts as contact. `budget_spent`: `budget` was too small; must be treated as contact. One unit of `budget`
-/// is one support call or one closed form; a query takes what it used, none when the bounding sphere is clear, and
-/// leaves the budget marked as exhausted when that was too small. Accuracy: `clear` is always true; `contact` means
+/// Touching counts as contact. `budget_spent`: `budget` was too small; must be treated as contact. A query takes from
+/// `budget` what core/base/work_units.hpp says of a closed form, or of a solid and of each turn of a search, and leaves
+/// it marked as exhausted when that was too small. Accuracy: `clear` is always true; `contact` means
 /// within 1e-5 * (sum of magnitudes of the offset, the way and `half` + bounding radius + clearance) of it.
 /// O(kSupportCallsPerQuery * vertices).
 [[nodiscard]] Contact swept_box_contact(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape,
@@ -40,8 +47,8 @@ inline constexpr std::uint32_t kSupportCallsPerQuery = 128;
 ///
 /// Proven by a separating plane (own GJK distance search in float; libccd gives none), so never above the true
 /// distance, and at most `resolution` [m] >= 0 below it, plus 3e-5 * (sum of magnitudes of the offset, the way and
-/// `half` + bounding radius). 0 when in contact or when the budget ran out. A coarse resolution saves rounds. One unit
-/// of `budget` is one support call or one closed form, none when the bounding sphere is beyond `reach`.
+/// `half` + bounding radius). 0 when in contact or when the budget ran out. A coarse resolution saves rounds.
+/// `budget` as above.
 /// O(kSupportCallsPerQuery * vertices).
 [[nodiscard]] float swept_box_distance(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape,
                                        float reach, float resolution, WorkBudget& budget) noexcept;

@@ -70,8 +70,9 @@ float detail::proven_distance(const SweptBox& box, const Shape& shape, const Sea
     float upper = std::numeric_limits<float>::max();
     float proven = 0.0F;
     int stalls = 0;
+    const std::uint32_t turn = units::kSearchTurn + units::hull_units(shape.vertices.size());
     for (std::uint32_t calls = 2; calls <= limits.calls; calls += 2) {
-        if (!budget.spend(2)) {
+        if (!budget.spend(turn)) {
             return 0.0F;
         }
         const Vec3 next = difference.support(-nearest);
@@ -99,10 +100,13 @@ float swept_box_distance(const Vec3& half, const Vec3& from, const Vec3& to, con
     const SweptBox box{half, from, to};
     const float slack = box.slack(shape);
     if (detail::has_closed_form(shape)) {
-        if (!budget.spend()) {
+        if (!budget.spend(detail::closed_form_units(shape))) {
             return 0.0F;
         }
         return std::clamp(box.closed_form_distance(shape) - slack, 0.0F, reach);
+    }
+    if (!budget.spend(units::kSolidQuery)) {
+        return 0.0F;
     }
     if (box.distance_to(shape.centre) - bounding_radius(shape) - slack >= reach) {
         return reach;

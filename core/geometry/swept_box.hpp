@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/base/work_budget.hpp"
+#include "core/base/work_units.hpp"
 #include "core/geometry/shape.hpp"
 #include "core/geometry/sweep.hpp"
 
@@ -61,6 +62,12 @@ struct SearchLimits {
 [[nodiscard]] inline bool has_closed_form(const Shape& shape) noexcept
 {
     return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule;
+}
+
+/// Units of a query in closed form.
+[[nodiscard]] inline std::uint32_t closed_form_units(const Shape& shape) noexcept
+{
+    return shape.kind == ShapeKind::sphere ? units::kSphereQuery : units::kCapsuleQuery;
 }
 
 }  // namespace jink::geometry::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "core/path/follower.hpp"
 #include "core/vehicle/motion.hpp"
@@ -51,20 +52,26 @@ private:
     return next;
 }
 
-/// `follow`, the points after `t` and after one loop lag later being known (next_after, 1 at least).
-[[nodiscard]] Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t next_ahead,
+/// `follow`, but with the path's velocity of `ahead` instead of one loop lag after `t`; the points after `t` and after
+/// `ahead` being known (next_after, 1 at least).
+[[nodiscard]] Vec3 command(const TimedPath& path, Seconds t, std::size_t next, Seconds ahead, std::size_t next_ahead,
                            const Vec3& position, const vehicle::VehicleLimits& limits,
                            const FollowerGains& gains) noexcept;
 
-/// See predict_flight. `path`, `limits` and `gains` outlive this. 150 bytes.
+/// A flight may be predicted in coarser parts once the vehicle has found the path.
+struct Fineness {
+    Seconds settled = std::numeric_limits<Seconds>::infinity();  ///< parts of kFollowerPeriod at most until then
+    Seconds afterwards = kFollowerPeriod;                        ///< and of this much from the step that begins then on
+};
+
+/// See predict_flight. `path`, `limits` and `gains` outlive this. 160 bytes.
 class Flight {
 public:
     Flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,
-           const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
-        : path_(path), limits_(limits), gains_(gains), start_(start),
-          steps_(path.duration() - start, dt, kMaxPathPoints - 1),
-          parts_(std::max(1, static_cast<int>(std::ceil(dt / kFollowerPeriod - 1e-3F)))), position_(state.position),
-          velocity_(state.velocity)
+           const vehicle::VehicleLimits& limits, const FollowerGains& gains, const Fineness& fineness = {}) noexcept
+        : path_(path), limits_(limits), gains_(gains), start_(start), settled_(fineness.settled),
+          steps_(path.duration() - start, dt, kMaxPathPoints - 1), parts_(parts_of(dt, kFollowerPeriod)),
+          later_parts_(parts_of(dt, fineness.afterwards)), position_(state.position), velocity_(state.velocity)
     {
         part_ = part();
     }
@@ -72,8 +79,18 @@ public:
     [[nodiscard]] std::size_t steps() const noexcept { return steps_.count; }
     [[nodiscard]] std::size_t flown() const noexcept { return flown_; }
     [[nodiscard]] bool ended() const noexcept { return flown_ == steps_.count; }
-    /// Parts of each step.
+    /// Parts of the next step.
     [[nodiscard]] int parts() const noexcept { return parts_; }
+    /// Parts of all steps.
+    [[nodiscard]] std::size_t all_parts() const noexcept
+    {
+        std::size_t early = 0;
+        while (early < steps_.count && !(early > 0 && steps_.end_of(early) >= settled_)) {
+            ++early;
+        }
+        return early * static_cast<std::size_t>(parts_) +
+               (steps_.count - early) * static_cast<std::size_t>(later_parts_);
+    }
     [[nodiscard]] const Vec3& position() const noexcept { return position_; }
     /// Of `position`, since the start.
     [[nodiscard]] Seconds time() const noexcept { return from_; }
@@ -82,30 +99,42 @@ public:
     void fly(int i, vehicle::detail::Fading& fading) noexcept
     {
         const Seconds t = start_ + from_ + static_cast<float>(i) * part_;
+        // A command that is held for longer than the follower's period would come later on average.
+        const Seconds lead = part_ > kFollowerPeriod ? 0.5F * (part_ - kFollowerPeriod) : 0.0F;
+        const Seconds ahead = t + limits_.velocity_lag + lead;
         next_ = next_after(path_, next_, t);
-        ahead_ = next_after(path_, ahead_, t + limits_.velocity_lag);
-        vehicle::detail::move(position_, velocity_, command(path_, t, next_, ahead_, position_, limits_, gains_),
+        ahead_ = next_after(path_, ahead_, ahead);
+        vehicle::detail::move(position_, velocity_, command(path_, t, next_, ahead, ahead_, position_, limits_, gains_),
                               limits_, part_, fading);
     }
     void end_step() noexcept
     {
         ++flown_;
         from_ = steps_.end_of(flown_);
+        parts_ = from_ >= settled_ ? later_parts_ : parts_;
         part_ = part();
     }
 
 private:
+    [[nodiscard]] static int parts_of(Seconds step, Seconds longest) noexcept
+    {
+        return std::max(1, static_cast<int>(std::ceil(step / longest - 1e-3F)));
+    }
+    /// The same for all whole steps, to the bit: what fades in it is then remembered (vehicle::detail::Fading).
     [[nodiscard]] Seconds part() const noexcept
     {
-        return (steps_.end_of(flown_ + 1) - from_) / static_cast<float>(parts_);
+        const Seconds step = flown_ + 1 < steps_.count ? steps_.dt : steps_.end_of(flown_ + 1) - from_;
+        return step / static_cast<float>(parts_);
     }
 
     const TimedPath& path_;
     const vehicle::VehicleLimits& limits_;
     const FollowerGains& gains_;
     Seconds start_;
+    Seconds settled_;
     Steps steps_;
     int parts_;
+    int later_parts_;
     Vec3 position_;
     Vec3 velocity_;
     std::size_t flown_ = 0;

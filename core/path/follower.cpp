@@ -75,8 +75,8 @@ void append(TimedPath& out, const Vec3& position, Seconds time) noexcept
 
 namespace detail {
 
-Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t next_ahead, const Vec3& position,
-             const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
+Vec3 command(const TimedPath& path, Seconds t, std::size_t next, Seconds ahead, std::size_t next_ahead,
+             const Vec3& position, const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
 {
     Vec3 correction = gains.position_gain * (position_at(path, t, next) - position);
     const float size = correction.norm();
@@ -86,7 +86,7 @@ Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t nex
     Vec3 command = correction;
     float fastest = limits.cruise_speed;
     if (t < path.duration()) {
-        const Vec3 velocity = smooth_velocity(path, t + limits.velocity_lag, next_ahead);
+        const Vec3 velocity = smooth_velocity(path, ahead, next_ahead);
         command += velocity;
         fastest = std::max(fastest, velocity.norm());
     }
@@ -100,7 +100,8 @@ Vec3 command(const TimedPath& path, Seconds t, std::size_t next, std::size_t nex
 Vec3 follow(const TimedPath& path, Seconds t, const Vec3& position, const vehicle::VehicleLimits& limits,
             const FollowerGains& gains) noexcept
 {
-    return detail::command(path, t, search(path, t), search(path, t + limits.velocity_lag), position, limits, gains);
+    const Seconds ahead = t + limits.velocity_lag;
+    return detail::command(path, t, search(path, t), ahead, search(path, ahead), position, limits, gains);
 }
 
 void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/obstacle_distance.hpp"
@@ -20,7 +21,7 @@ constexpr Seconds kPiece = 0.5F;
 constexpr float kOnLeg = 0.25F;
 /// Pieces that one track is looked at in, inside a margin: 60 s of them at a quarter of a second, twice. Spent is a
 /// conflict.
-constexpr std::uint32_t kDrawingApartBudget = 480;
+constexpr std::uint32_t kDrawingApartBudget = 480 * units::kBallPart;
 /// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro
 /// tab. 4.1).
 constexpr float kLargestRadius = 3.0F;
@@ -64,8 +65,8 @@ Seconds closest_time(const std::array<Phase, 2>& phases, const Track& track) noe
     return best_time;
 }
 
-/// First loss of separation within one phase; negative when there is none.
-Seconds loss_within(const Situation& situation, const Phase& phase, const Track& track) noexcept
+/// First loss of separation within one phase; negative when there is none, 0 when the budget ran out.
+Seconds loss_within(const Situation& situation, const Phase& phase, const Track& track, WorkBudget& budget) noexcept
 {
     const Vec3& half = situation.limits.half_extents;
     const Seconds span = phase.end - phase.start;
@@ -78,6 +79,9 @@ Seconds loss_within(const Situation& situation, const Phase& phase, const Track&
     const int pieces = grows ? static_cast<int>(std::ceil(span / kPiece)) : 1;
     const Seconds piece = span / static_cast<float>(pieces);
     for (int i = 0; i < pieces; ++i) {
+        if (!budget.spend(units::kConflictPart)) {
+            return 0.0F;
+        }
         const Seconds t = piece * static_cast<float>(i);
         const Motion own{phase.own.position + phase.own.velocity * t, phase.own.velocity};
         const Motion other{threat.position + threat.velocity * t, threat.velocity};
@@ -116,12 +120,25 @@ bool draws_apart(const Situation& situation, std::span<const Track> tracks, std:
     const Situation alone{
         situation.now, situation.own, situation.limits, situation.airframe, situation.reference, tracks,
         obstacles,     open,          nullptr,          situation.k_sigma};
-    return least_separation(alone, path, path.duration(), budget, kDrawingApart).margin >= 0.0F;
+    const Cutoff sign_alone{0.0F, 0.0F, {}};
+    return least_separation(alone, path, path.duration(), budget, kDrawingApart, sign_alone).margin >= 0.0F;
+}
+
+/// What could not be looked at to the end is met now. True.
+bool met_now(const Conflict& conflict, Conflict& out) noexcept
+{
+    out = conflict;
+    out.time_to_loss = 0.0F;
+    out.margin = -kSeparationCap;
+    return true;
 }
 
 bool sphere_like_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, const Vec3& half,
-                          float radius, Seconds lookahead, Conflict& out) noexcept
+                          float radius, Seconds lookahead, WorkBudget& budget, Conflict& out) noexcept
 {
+    if (!budget.spend(units::kConflictBall)) {
+        return met_now({}, out);
+    }
     const Phase phase = phases_of(way, lookahead)[0];
     const Motion still{shape.centre, Vec3::Zero()};
     const float grown = radius + situation.k_sigma * situation.own.sigma_position;
@@ -131,6 +148,9 @@ bool sphere_like_conflict(const Situation& situation, const Way& way, const geom
     const auto touch = geometry::contact_interval(half, phase.own, still, grown, phase.end);
     if (!touch) {
         return false;
+    }
+    if (!budget.spend(units::kConflictMet)) {
+        return met_now({}, out);
     }
     const geometry::Approach near = geometry::least_distance(half, phase.own, still, phase.end);
     out.time_to_loss = touch->first;
@@ -142,6 +162,9 @@ bool sphere_like_conflict(const Situation& situation, const Way& way, const geom
 bool general_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, Seconds lookahead,
                       WorkBudget& budget, Conflict& out) noexcept
 {
+    if (!budget.spend(units::kConflictSolid)) {
+        return met_now({}, out);
+    }
     const Vec3& half = situation.limits.half_extents;
     const float extra = situation.k_sigma * situation.own.sigma_position;
     const Vec3 end = way_position(way, lookahead);
@@ -158,7 +181,7 @@ bool general_conflict(const Situation& situation, const Way& way, const geometry
     }
     const float length = (end - way.origin).norm();
     out.time_to_loss = way.speed > 0.0F ? clear * length / way.speed : 0.0F;
-    out.margin = obstacle_margin(half, way.origin, end, shape, budget) - extra;
+    out.margin = obstacle_margin(half, way.origin, end, shape, budget, extra);
     out.radius_at_closest = std::min(geometry::bounding_radius(shape), kLargestRadius) + extra;
     return true;
 }
@@ -170,7 +193,7 @@ bool obstacle_conflict(const Situation& situation, const Way& way, std::size_t i
     Vec3 half;
     float radius = 0.0F;
     const bool found = as_sphere(shape, situation.limits.half_extents, half, radius)
-                           ? sphere_like_conflict(situation, way, shape, half, radius, lookahead, out)
+                           ? sphere_like_conflict(situation, way, shape, half, radius, lookahead, budget, out)
                            : general_conflict(situation, way, shape, lookahead, budget, out);
     if (!found) {
         return false;
@@ -220,21 +243,24 @@ Way way_of(const Situation& situation) noexcept
 }
 
 bool predict_conflict(const Situation& situation, const Way& way, std::size_t track_index, Seconds lookahead,
-                      Conflict& out) noexcept
+                      WorkBudget& budget, Conflict& out) noexcept
 {
     const Track& track = situation.tracks[track_index];
     const std::array<Phase, 2> phases = phases_of(way, lookahead);
-    Seconds loss = loss_within(situation, phases[0], track);
+    Seconds loss = budget.spend(units::kConflict) ? loss_within(situation, phases[0], track, budget) : 0.0F;
     if (loss < 0.0F) {
-        loss = loss_within(situation, phases[1], track);
+        loss = loss_within(situation, phases[1], track, budget);
     }
     if (loss < 0.0F) {
         return false;
     }
     const Seconds closest = closest_time(phases, track);
     if (loss <= 0.0F) {
-        WorkBudget budget(kDrawingApartBudget);
-        if (draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, path_of(phases, true), budget)) {
+        WorkBudget apart(std::min(kDrawingApartBudget, budget.left()));
+        const bool leaves =
+            draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, path_of(phases, true), apart);
+        static_cast<void>(budget.spend(apart.spent()));  // never more than was left
+        if (leaves) {
             return false;
         }
     }
@@ -245,9 +271,7 @@ bool predict_conflict(const Situation& situation, const Way& way, std::size_t tr
     out.threat_at_closest = track.position + track.velocity * out.time_to_closest;
     out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
     out.radius_at_closest = threat_radius(situation, track, out.time_to_closest);
-    out.margin = geometry::least_distance(situation.limits.half_extents, {out.own_at_closest, Vec3::Zero()},
-                                          {out.threat_at_closest, Vec3::Zero()}, 0.0F)
-                     .distance -
+    out.margin = geometry::box_distance(situation.limits.half_extents, out.threat_at_closest - out.own_at_closest) -
                  out.radius_at_closest;
     return true;
 }
@@ -264,13 +288,19 @@ bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead
     };
     Conflict conflict;
     for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
-        if (predict_conflict(situation, way, i, lookahead, conflict)) {
+        if (predict_conflict(situation, way, i, lookahead, budget, conflict)) {
             consider(conflict);
+        }
+        if (budget.exhausted()) {
+            return met_now(conflict, out);
         }
     }
     for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
         if (obstacle_conflict(situation, way, i, lookahead, budget, conflict)) {
             consider(conflict);
+        }
+        if (budget.exhausted()) {
+            return met_now(conflict, out);
         }
     }
     return found;

@@ -40,13 +40,14 @@ inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 
 /// Conflict of one track with the way within `lookahead` seconds: exact closest approach and loss times with the radius
 /// the threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the true one).
-/// O(lookahead).
+/// A budget that runs out means a conflict now. O(lookahead).
 [[nodiscard]] bool predict_conflict(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
-                                    Conflict& out) noexcept;
+                                    WorkBudget& budget, Conflict& out) noexcept;
 
 /// The main threat: of all tracks and obstacles in conflict with the way within `lookahead`, the one whose loss of
 /// separation comes first (ties: the smaller margin, then the smaller index). False when there is none. Airspace bounds
-/// are no threats: candidates obey them, but a leg outside them is the mission's business. O(tracks + obstacles).
+/// are no threats: candidates obey them, but a leg outside them is the mission's business. When the budget runs out,
+/// the threat that it ran out at is the main one, its loss of separation now. O(tracks + obstacles).
 [[nodiscard]] bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                                  Conflict& out) noexcept;
 

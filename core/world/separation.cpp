@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
+#include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/obstacle_distance.hpp"
 
@@ -90,7 +92,7 @@ private:
 };
 
 /// Distance between two boxes given by their corners.
-float box_distance(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b) noexcept
+float boxes_apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b) noexcept
 {
     return (low_a - high_b).cwiseMax(low_b - high_a).cwiseMax(0.0F).norm();
 }
@@ -121,28 +123,57 @@ void consider(Separation& best, float margin, Seconds when, ThreatRef against) n
     }
 }
 
+/// Takes units; without them the threat counts as met, at `when`.
+bool paid(WorkBudget& budget, std::size_t units, Separation& best, Seconds when, ThreatRef ref) noexcept
+{
+    if (budget.spend(static_cast<std::uint32_t>(units))) {
+        return true;
+    }
+    consider(best, -kSeparationCap, when, ref);
+    return false;
+}
+
+/// Whether a sphere of `radius` that goes from `from` to `to`, seen from the own box, certainly stays farther off than
+/// `margin`.
+bool stays_beyond(float margin, const Vec3& half, const Vec3& from, const Vec3& to, float radius) noexcept
+{
+    const float reach = margin + radius;
+    return reach < 0.0F || geometry::glance(half, from, to, reach) == geometry::Glance::apart;
+}
+
 /// A sphere in straight motion, as large as `radius_at` says at an instant.
 template <class RadiusAt>
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): three nested loops, each of them paid for where it begins
 void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bool grows, const RadiusAt& radius_at,
                   ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
 {
-    const Vec3& begin = flight.begin();
-    const float start_margin =
-        geometry::least_distance(half, {begin, Vec3::Zero()}, {ball.position, Vec3::Zero()}, 0.0F).distance -
-        radius_at(0.0F);
+    if (!paid(budget, units::kThreat + flight.chunks().size() * units::kThreatChunk, best, 0.0F, ref)) {
+        return;
+    }
+    const float start_margin = geometry::box_distance(half, ball.position - flight.begin()) - radius_at(0.0F);
     const float shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
     const Seconds growth_piece = grows ? kGrowthPiece : std::numeric_limits<Seconds>::infinity();
-
     for (const Bounds& chunk : flight.chunks()) {
         const Vec3 a = ball.position + ball.velocity * chunk.start;
         const Vec3 b = ball.position + ball.velocity * chunk.end;
         const float bound =
-            box_distance(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) - radius_at(chunk.end);
+            boxes_apart(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) - radius_at(chunk.end);
         if (bound >= best.margin) {
             continue;
         }
+        if (!paid(budget, (chunk.last - chunk.first) * units::kThreatPiece, best, chunk.start, ref)) {
+            return;
+        }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
             const Piece p = flight.piece(i);
+            const Seconds end = p.start + p.duration;
+            const Vec3 from = ball.position + ball.velocity * p.start - p.from;
+            const Vec3 along = ball.velocity - p.velocity;
+            // The surface is largest at the end of the piece: growth adds to it, and what was shrunk has grown back.
+            if (stays_beyond(best.margin, half, from, from + along * p.duration,
+                             radius_at(end) - shrink_at(shrunk, escape, end))) {
+                continue;
+            }
             const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
             const int parts =
                 parts_of(p.duration, escapes ? std::min(growth_piece, escape_piece(escape)) : growth_piece);
@@ -150,14 +181,17 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
             for (int part = 0; part < parts; ++part) {
                 const Seconds offset = length * static_cast<float>(part);
                 const Seconds start = p.start + offset;
-                if (!budget.spend()) {
-                    consider(best, -kSeparationCap, start, ref);
+                if (!paid(budget, units::kBallPart, best, start, ref)) {
                     return;
                 }
                 const Motion own{p.from + p.velocity * offset, p.velocity};
                 const Motion other{ball.position + ball.velocity * start, ball.velocity};
-                const geometry::Approach near = geometry::least_distance(half, own, other, length);
                 const float radius = radius_at(start + length) - shrink_at(shrunk, escape, start + length);
+                if (parts > 1 &&
+                    stays_beyond(best.margin, half, from + along * offset, from + along * (offset + length), radius)) {
+                    continue;
+                }
+                const geometry::Approach near = geometry::least_distance(half, own, other, length);
                 consider(best, near.distance - radius, start + near.when, ref);
             }
         }
@@ -177,27 +211,40 @@ void against_track(const Situation& situation, const Flight& flight, std::size_t
 
 /// Margins of solids are told apart no finer than kObstacleResolution, and one query costs hundreds of support calls:
 /// the shrunk surface clears the start by that much more, and grows back in coarser pieces.
+// NOLINTNEXTLINE(readability-function-cognitive-complexity): as above
 void against_solid(const Situation& situation, const Flight& flight, const geometry::Shape& shape, float extra,
                    ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
 {
+    if (!paid(budget, units::kThreat + flight.chunks().size() * units::kThreatChunk, best, 0.0F, ref)) {
+        return;
+    }
     const Vec3& half = situation.limits.half_extents;
     const float reach = geometry::bounding_radius(shape);
     float shrunk = -1.0F;  // found when the first piece near the obstacle is met
-
+    const auto shrunk_at_start = [&] {
+        const Vec3& begin = flight.begin();
+        const float start = obstacle_margin(half, begin, begin, shape, budget, extra);
+        const float slack = escape.slack + kObstacleResolution + escape.speed * kSolidEscapePiece;
+        return start < 0.0F ? slack - start : 0.0F;
+    };
     for (const Bounds& chunk : flight.chunks()) {
         const float bound =
-            box_distance(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach - extra;
+            boxes_apart(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach - extra;
         if (bound >= best.margin) {
             continue;
         }
-        if (shrunk < 0.0F) {
-            const Vec3& begin = flight.begin();
-            const float start = obstacle_margin(half, begin, begin, shape, budget) - extra;
-            const float slack = escape.slack + kObstacleResolution + escape.speed * kSolidEscapePiece;
-            shrunk = start < 0.0F ? slack - start : 0.0F;
+        if (!paid(budget, (chunk.last - chunk.first) * units::kThreatPiece, best, chunk.start, ref)) {
+            return;
         }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
             const Piece p = flight.piece(i);
+            const Vec3 to_centre = shape.centre - p.from;
+            if (stays_beyond(best.margin, half, to_centre, to_centre - p.velocity * p.duration, reach + extra)) {
+                continue;
+            }
+            if (shrunk < 0.0F) {
+                shrunk = shrunk_at_start();
+            }
             const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
             const int parts = escapes ? parts_of(p.duration, kSolidEscapePiece) : 1;
             const Seconds length = p.duration / static_cast<float>(parts);
@@ -205,7 +252,7 @@ void against_solid(const Situation& situation, const Flight& flight, const geome
                 const Seconds offset = length * static_cast<float>(part);
                 const Seconds start = p.start + offset;
                 const Vec3 from = p.from + p.velocity * offset;
-                const float margin = obstacle_margin(half, from, from + p.velocity * length, shape, budget) - extra;
+                const float margin = obstacle_margin(half, from, from + p.velocity * length, shape, budget, extra);
                 if (budget.exhausted()) {
                     consider(best, -kSeparationCap, start, ref);
                     return;
@@ -295,8 +342,13 @@ float threat_radius(const Situation& situation, const Track& track, Seconds t) n
 Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
                             WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
-    Separation best;
+    Separation best{cutoff.above, 0.0F, {}};
     if (path.points.empty()) {
+        return best;
+    }
+    const Airspace& air = situation.airspace;
+    const std::size_t bounds = (air.has_floor ? 1U : 0U) + (air.has_ceiling ? 1U : 0U) + (air.has_keep_in ? 1U : 0U);
+    if (!paid(budget, path.points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
         return best;
     }
     const Flight flight(path, horizon);
@@ -322,19 +374,23 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
     const Vec3& half = situation.limits.half_extents;
     for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
         const Track& track = situation.tracks[i];
+        const ThreatRef ref{ThreatKind::track, static_cast<std::uint16_t>(i)};
+        if (!paid(budget, units::kThreat, best, t, ref)) {
+            return best;
+        }
         const Vec3 centre = track.position + track.velocity * t;
-        const float distance =
-            geometry::least_distance(half, {position, Vec3::Zero()}, {centre, Vec3::Zero()}, 0.0F).distance;
-        consider(best, distance - threat_radius(situation, track, t), t,
-                 {ThreatKind::track, static_cast<std::uint16_t>(i)});
+        consider(best, geometry::box_distance(half, centre - position) - threat_radius(situation, track, t), t, ref);
     }
     for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
         const geometry::Shape& shape = situation.obstacles[i].shape;
+        const ThreatRef ref{ThreatKind::obstacle, static_cast<std::uint16_t>(i)};
+        if (!paid(budget, units::kThreat, best, t, ref)) {
+            return best;
+        }
         const float extra = situation.k_sigma * situation.own.sigma_position;
         const float near = (position - shape.centre).norm() - geometry::bounding_radius(shape) - half.norm() - extra;
         if (near < best.margin) {
-            consider(best, obstacle_margin(half, position, position, shape, budget) - extra, t,
-                     {ThreatKind::obstacle, static_cast<std::uint16_t>(i)});
+            consider(best, obstacle_margin(half, position, position, shape, budget, extra), t, ref);
         }
     }
     for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {

@@ -32,9 +32,10 @@ struct EscapeRule {
     float speed = 0.5F;   ///< the surface grows back at this speed [m/s]
 };
 
-/// Where a search among many flights may stop looking at one: it is no better than what the search has.
+/// How closely a flight has to be looked at.
 struct Cutoff {
-    float below = -kSeparationCap;  ///< a margin below this ends the look [m]
+    float below = -kSeparationCap;  ///< a margin below this ends the look: it is no better than what a search has [m]
+    float above = kSeparationCap;   ///< margins from here on are not told apart: this is the answer [m]
     ThreatRef first;                ///< looked at before all others: what was nearest on the flight before
 };
 
@@ -50,14 +51,15 @@ struct Cutoff {
 ///
 /// Never above the truth by more than 1e-3 m within 100 m of the origin; below it by no more than what a track grows in
 /// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below
-/// Cutoff::below, and no lower bound of the least. Cost in budget: one unit per track or sphere and piece after
-/// culling, support calls for solids. O(points * (tracks + obstacles)).
+/// Cutoff::below, and no lower bound of the least. Cost in budget: core/base/work_units.hpp, by piece of the path,
+/// threat, piece near a threat, and part of it; queries for solids. O(points * (tracks + obstacles)).
 [[nodiscard]] Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
                                           WorkBudget& budget, const EscapeRule& escape = {},
                                           const Cutoff& cutoff = {}) noexcept;
 
 /// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now.
-/// `position`: own box centre.
+/// `position`: own box centre. A budget that runs out counts as
+/// contact.
 [[nodiscard]] Separation separation_at(const Situation& situation, const Vec3& position, Seconds t,
                                        WorkBudget& budget) noexcept;
 

@@ -81,6 +81,13 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
     return entry;
 }
 
+void TrackTable::move(const Vec3& by) noexcept
+{
+    for (Entry& entry : entries_) {
+        entry.track.position += by;
+    }
+}
+
 void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
 {
     const Seconds dt = m.stamp - e.track.stamp;

@@ -74,6 +74,8 @@ public:
     /// Id of track `index` of the last snapshot.
     [[nodiscard]] TrackId id_in_snapshot(std::size_t index) const noexcept { return snapshot_[index].id; }
 
+    /// The frame's origin turned out to lie elsewhere, or was moved: every track goes by as much [m]. O(kMaxTracks).
+    void move(const Vec3& by) noexcept;
     void clear() noexcept { entries_.clear(); }
     void configure(const TrackTableSettings& settings) noexcept { settings_ = settings; }
     [[nodiscard]] std::size_t size() const noexcept { return entries_.size(); }

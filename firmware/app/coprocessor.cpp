@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/app/text.hpp"
-
 namespace jink::app {
 namespace {
 
@@ -23,13 +21,17 @@ constexpr std::uint16_t bit(Fault fault) noexcept { return static_cast<std::uint
 
 }  // namespace
 
-Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog,
-                         const Parameters& parameters) noexcept
-    : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters),
+Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog, const Parameters& parameters,
+                         link::SensorBus* bus) noexcept
+    : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters), bus_(bus),
       applied_generation_(parameters.generation()), planner_(parameters.configuration().planner),
-      supervisor_(parameters.configuration().supervisor, planner_), tracks_(parameters.configuration().tracks)
+      supervisor_(parameters.configuration().supervisor, planner_), tracks_(parameters.configuration().tracks),
+      param_service_(parameters_, diagnostics_.params_set, diagnostics_.params_refused)
 {
     link_.ask_for_rates(parameters.configuration().ask_rates);
+    if (bus_ != nullptr) {
+        bus_->serve(param_service_);
+    }
 }
 
 void Coprocessor::apply_configuration() noexcept
@@ -102,15 +104,18 @@ world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
 {
     const Configuration& c = parameters_.configuration();
     world::Airspace air;
-    air.has_floor = c.floor_on;
-    air.has_ceiling = c.ceiling_on;
-    air.has_keep_in = c.keep_in_on;
+    // Without an autopilot there is no home that bounds could refer to; the ground is what it is.
+    const bool sees_ground = c.floor_on && has_ground_ && now <= ground_expires_;
+    air.has_floor = c.floor_on && (has_autopilot_ || sees_ground);
+    air.has_ceiling = c.ceiling_on && has_autopilot_;
+    air.has_keep_in = c.keep_in_on && has_autopilot_;
     air.floor = home_.z() + c.floor;
     air.ceiling = home_.z() + c.ceiling;
     air.home = home_;
     air.keep_in_radius = c.keep_in;
-    if (c.floor_on && has_ground_ && now <= ground_expires_) {
-        air.floor = std::max(air.floor, ground_ + std::max(c.floor, 0.0F));
+    if (sees_ground) {
+        const float ground = ground_ + std::max(c.floor, 0.0F);
+        air.floor = has_autopilot_ ? std::max(air.floor, ground) : ground;
     }
     return air;
 }
@@ -118,17 +123,18 @@ world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
 std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexcept
 {
     const Configuration& c = parameters_.configuration();
-    unsigned faults = 0;
+    unsigned faults = passive_ ? bit(Fault::passive) : 0U;
     faults |= port_.health().state == hal::PortState::open ? 0U : bit(Fault::port_lost);
+    faults |= bus_ != nullptr && bus_->is_lost() ? bit(Fault::bus_lost) : 0U;
     faults |= stalled ? bit(Fault::late) : 0U;
     if (!has_autopilot_) {
         faults |= bit(Fault::no_autopilot);
     } else if (now - autopilot_.stamp > c.heartbeat_age) {
         faults |= bit(Fault::autopilot_silent);
     }
-    if (!has_own_) {
+    if (!has_autopilot_own_) {
         faults |= bit(Fault::own_state_missing);
-    } else if (now - own_.stamp > c.own_age) {
+    } else if (now - autopilot_own_ > c.own_age) {
         faults |= bit(Fault::own_state_stale);
     }
     return static_cast<std::uint16_t>(faults);
@@ -185,9 +191,10 @@ void Coprocessor::drop_stale(TimePoint now) noexcept
 void Coprocessor::control(TimePoint now, StepReport& report) noexcept
 {
     const Configuration& c = parameters_.configuration();
-    const bool fresh = (report.faults & (bit(Fault::own_state_missing) | bit(Fault::own_state_stale))) == 0;
+    const bool fresh = has_own_ && now - own_.stamp <= c.own_age;
+    report.own_source = fresh ? own_source_ : OwnSource::none;
     const vehicle::VehicleState own = own_at(now);
-    if (fresh && c.mode != ActMode::off) {
+    if (fresh && c.mode != ActMode::off && !passive_) {
         const world::Reference reference = reference_at(own);
         const world::Airspace air = airspace(now);
         const world::Situation situation{
@@ -235,13 +242,19 @@ StepReport Coprocessor::step(TimePoint now) noexcept
     last_step_ = now;
     has_stepped_ = true;
 
+    read_bus(now);
+    const std::size_t bus_tracks = inbox_.tracks.size();
     read_port(now, report);
+    follow_origin();
+    settle_frame(bus_tracks);
     take_inbox(now);
     link_.service(now);
     report.faults = find_faults(now, gap > kStall);
     control(now, report);
     report.state = system_state(report);
     tell(now, report);
+    prepare_last_words();
+    tell_bus(now, report);
     write_port(report);
     if ((report.faults & (bit(Fault::not_finite) | bit(Fault::late))) == 0) {
         watchdog_.feed();
@@ -252,7 +265,8 @@ StepReport Coprocessor::step(TimePoint now) noexcept
 
 link::SystemState Coprocessor::system_state(const StepReport& report) const noexcept
 {
-    const unsigned never_ready = bit(Fault::no_autopilot) | bit(Fault::own_state_missing);
+    const unsigned never_ready = bit(Fault::no_autopilot) | bit(Fault::own_state_missing) |
+                                 (bus_was_up_ ? 0U : static_cast<unsigned>(bit(Fault::bus_lost)));
     if (report.faults != 0) {
         const bool only_waiting = (report.faults & ~never_ready) == 0;
         return only_waiting ? link::SystemState::boot : link::SystemState::critical;
@@ -269,12 +283,12 @@ void Coprocessor::announce(TakeoverEvent event) noexcept
 {
     using link::Severity;
     switch (event) {
-    case TakeoverEvent::took_over: link_.send_text(Severity::warning, "jink: avoiding, has control"); break;
-    case TakeoverEvent::gave_back: link_.send_text(Severity::notice, "jink: clear, mission resumed"); break;
-    case TakeoverEvent::refused: link_.send_text(Severity::critical, "jink: control refused, advising only"); break;
-    case TakeoverEvent::overruled: link_.send_text(Severity::warning, "jink: mode changed by others, hands off"); break;
-    case TakeoverEvent::lost: link_.send_text(Severity::critical, "jink: fault while avoiding, control dropped"); break;
-    case TakeoverEvent::held: link_.send_text(Severity::warning, "jink: autopilot holds, as asked"); break;
+    case TakeoverEvent::took_over: say(Severity::warning, "jink: avoiding, has control"); break;
+    case TakeoverEvent::gave_back: say(Severity::notice, "jink: clear, mission resumed"); break;
+    case TakeoverEvent::refused: say(Severity::critical, "jink: control refused, advising only"); break;
+    case TakeoverEvent::overruled: say(Severity::warning, "jink: mode changed by others, hands off"); break;
+    case TakeoverEvent::lost: say(Severity::critical, "jink: fault while avoiding, control dropped"); break;
+    case TakeoverEvent::held: say(Severity::warning, "jink: autopilot holds, as asked"); break;
     case TakeoverEvent::none: break;
     }
 }
@@ -306,7 +320,7 @@ void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noex
     if (!told_conflict_) {
         Text text;
         text << (is_track ? "jink: conflict, traffic in " : "jink: conflict, obstacle in ") << c.time_to_loss << " s";
-        link_.send_text(link::Severity::warning, text.view());
+        say(link::Severity::warning, text.view());
     }
 }
 
@@ -317,7 +331,7 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
         ++diagnostics_.faults;
         Text text;
         text << "jink: fault " << static_cast<std::uint32_t>(report.faults);
-        link_.send_text(link::Severity::critical, text.view());
+        say(link::Severity::critical, text.view());
     }
     if (!heartbeat_sent_ || changed || now - last_heartbeat_ >= kHeartbeatPeriod) {
         link_.send_heartbeat(report.state);
@@ -325,20 +339,43 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
         last_heartbeat_ = now;
         told_state_ = report.state;
     }
+    tell_notices();
     const avoid::Guidance& g = report.guidance;
     if (g.has_conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
         warn_of_conflict(now, report);
     }
     told_conflict_ = g.has_conflict;
     if (g.state != told_guidance_ && g.state == avoid::State::braking) {
-        link_.send_text(link::Severity::critical, "jink: nothing safe, braking");
+        say(link::Severity::critical, "jink: nothing safe, braking");
     }
     told_guidance_ = g.state;
 }
 
+/// Before anything of this step goes out, so that they are newer than all of it.
+void Coprocessor::prepare_last_words() noexcept
+{
+    if (last_words_ == nullptr) {
+        return;
+    }
+    const bool hold = takeover_.in_control();
+    const std::string_view text = passive_ ? ""  // told by then, and again and again in a row of faults
+                                  : hold   ? "jink: processor fault, hold asked, restarting"
+                                           : "jink: processor fault, restarting";
+    last_words_->publish(link_.compose_last_words(last_words_->draft(), hold, text));
+}
+
+void Coprocessor::tell_notices() noexcept
+{
+    if (has_autopilot_) {
+        for (const Notice& notice : notices_) {
+            say(notice.severity, notice.text.view());
+        }
+        notices_.clear();
+    }
+}
+
 void Coprocessor::shut_down(TimePoint now) noexcept
 {
-    static_cast<void>(now);
     link_.drop_setpoint();
     link_.drop_mode_request();
     if (takeover_.in_control()) {
@@ -346,7 +383,10 @@ void Coprocessor::shut_down(TimePoint now) noexcept
     }
     takeover_.drop(false);
     link_.send_heartbeat(link::SystemState::critical);
-    link_.send_text(link::Severity::notice, "jink: stopped");
+    say(link::Severity::notice, "jink: stopped");
+    if (bus_ != nullptr) {
+        bus_->service(now, {link::SystemState::critical, false, last_faults_});
+    }
     StepReport report;
     write_port(report);
 }

@@ -3,14 +3,19 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/world/obstacle_table.hpp"
 #include "core/world/track_table.hpp"
+#include "firmware/app/param_service.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/app/takeover.hpp"
+#include "firmware/app/text.hpp"
 #include "firmware/link/link.hpp"
+#include "firmware/link/sensor_bus.hpp"
+#include "hal/last_words.hpp"
 #include "hal/serial_port.hpp"
 #include "hal/watchdog.hpp"
 
@@ -19,14 +24,19 @@ namespace jink::app {
 /// Why the co-processor is not fit to act; a bit set.
 enum class Fault : std::uint16_t {
     none = 0,
-    no_autopilot = 1,      ///< never heard
-    autopilot_silent = 2,  ///< HEARTBEAT too old
-    own_state_missing = 4,
+    no_autopilot = 1,       ///< never heard
+    autopilot_silent = 2,   ///< HEARTBEAT too old
+    own_state_missing = 4,  ///< the autopilot's; that of a receiver on the bus is good for advice alone
     own_state_stale = 8,
     port_lost = 16,
     late = 32,        ///< the last step came later than two ticks after the one before
     not_finite = 64,  ///< a command that is not a number: never sent
+    passive = 128,    ///< told to plan and ask nothing (stay_passive)
+    bus_lost = 256,   ///< the sensor bus is not there: nothing seen does not mean that there is nothing
 };
+
+/// Whose own state the picture of the world is drawn about.
+enum class OwnSource : std::uint8_t { none, autopilot, bus };
 
 /// What one step did and cost.
 struct StepReport {
@@ -40,6 +50,7 @@ struct StepReport {
     std::uint16_t tracks = 0;
     std::uint16_t obstacles = 0;
     Control control = Control::autopilot;
+    OwnSource own_source = OwnSource::none;
     avoid::Guidance guidance;
 };
 
@@ -64,10 +75,30 @@ struct Diagnostics {
     std::uint32_t tracks_in = 0;
     std::uint32_t legs_dropped = 0;  ///< the autopilot went on to a place that is not known: the own motion is the way
     std::uint32_t faults = 0;        ///< times the state became CRITICAL
+    std::uint32_t bus_states = 0;    ///< own states of the bus that were used: the autopilot's was missing or old
+    std::uint32_t bus_states_beside = 0;    ///< that were not needed
+    std::uint32_t bus_states_refused = 0;   ///< stamped in the future, or older than what is known
+    std::uint32_t bus_reports_dropped = 0;  ///< reports of the bus, placed before the frame changed within the step
+    std::uint32_t places_disagree = 0;      ///< times the autopilot's and the bus's own place came to differ too much
+    std::uint32_t frame_changes = 0;        ///< from the bus's own frame to the autopilot's: all places forgotten
+    std::uint32_t origin_changes = 0;       ///< the link knows better, or another: traffic goes by as much
+    std::uint32_t tracks_not_moved = 0;     ///< and was forgotten: by more than the map reaches
+    std::uint32_t near_told = 0;            ///< NearObjects that went out
 };
 
 /// The co-processor: one call does everything the firmware does in a tick. Images own the ports and call it; so do the
 /// tests and the simulator.
+///
+/// A sensor bus beside the link is optional. Its traffic and ranges count like the link's. Frames:
+/// * Until an autopilot is heard, places are in the bus's own frame (about its first fix), nobody is there to be
+///   steered, and there are no bounds, because there is no home they could refer to.
+/// * From the first HEARTBEAT on there is one frame, the autopilot's. The bus places by the origin that the link knows,
+///   and nothing while it knows none; what was known in the bus's own frame is forgotten.
+/// * Another origin (of a better source, or moved by the autopilot) moves the tracks by as much within the step: they
+///   are known by their place on the globe. Own state, home, echoes and ground were told in the local frame itself and
+///   stay; a frame that jumps under them is told as an estimator's reset. The link places the leg anew.
+/// * Own state is the autopilot's while that is fresh (OWN_AGE). Otherwise the bus's, for advice alone: faults are
+///   about the autopilot's, and in a fault nothing is steered.
 ///
 /// Memory: sizeof(Coprocessor), about 110 KiB with the default capacities (most of it candidate reports;
 /// JINK_MAX_CANDIDATES shrinks them). No allocation after construction, none in it. step() is O(bytes + candidates *
@@ -78,12 +109,22 @@ public:
     static constexpr std::size_t kMaxBytesPerStep = 4096;
     static constexpr Seconds kTick = 0.02F;
 
-    Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog,
-                const Parameters& parameters) noexcept;
+    Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog& watchdog, const Parameters& parameters,
+                link::SensorBus* bus = nullptr) noexcept;
     Coprocessor(const Coprocessor&) = delete;
     Coprocessor& operator=(const Coprocessor&) = delete;
 
     StepReport step(TimePoint now) noexcept;
+
+    /// From here on every step prepares what a fault handler is to say, before it sends anything. They outlive this.
+    void keep_last_words(hal::LastWords& words) noexcept { last_words_ = &words; }
+    /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
+    void stay_passive() noexcept { passive_ = true; }
+    /// A text that waits until an autopilot is heard, kMostNotices of them; false when there is no room.
+    [[nodiscard]] bool tell_when_heard(link::Severity severity, const Text& text) noexcept
+    {
+        return notices_.try_push_back({severity, text});
+    }
 
     /// Says CRITICAL and stops streaming: called before an image stops on purpose. The bytes are written as far as the
     /// port takes them.
@@ -109,6 +150,16 @@ private:
     void read_port(TimePoint now, StepReport& report) noexcept;
     void write_port(StepReport& report) noexcept;
     void take_inbox(TimePoint now) noexcept;
+    void read_bus(TimePoint now) noexcept;
+    void follow_origin() noexcept;
+    void settle_frame(std::size_t bus_tracks) noexcept;
+    void take_bus_state(TimePoint now) noexcept;
+    void compare_places(const vehicle::VehicleState& fix) noexcept;
+    void tell_bus(TimePoint now, const StepReport& report) noexcept;
+    void tell_near(TimePoint now, const StepReport& report) noexcept;
+    void say(link::Severity severity, std::string_view text) noexcept;
+    void forget_places() noexcept;
+    void use_own(const link::OwnStateReport& report, OwnSource source) noexcept;
     void take_own_state(TimePoint now) noexcept;
     void take_autopilot(TimePoint now) noexcept;
     void take_tracks(TimePoint now) noexcept;
@@ -117,6 +168,8 @@ private:
     void take_params() noexcept;
     void take_commands() noexcept;
     void apply_configuration() noexcept;
+    void prepare_last_words() noexcept;
+    void tell_notices() noexcept;
     void take_reading(const link::RangeReading& reading) noexcept;
     void place(std::uint32_t id, const geometry::Shape& shape, TimePoint expires) noexcept;
     void place_level(std::uint32_t first, float yaw, float range, float half_angle, TimePoint expires) noexcept;
@@ -135,10 +188,18 @@ private:
     void warn_of_conflict(TimePoint now, const StepReport& report) noexcept;
     [[nodiscard]] link::SystemState system_state(const StepReport& report) const noexcept;
 
+    struct Notice {
+        link::Severity severity = link::Severity::info;
+        Text text;
+    };
+    /// What a start has to tell of the one before: two lines of a fault, one of what follows from it.
+    static constexpr std::size_t kMostNotices = 3;
+
     link::Link& link_;
     hal::SerialPort& port_;
     hal::Watchdog& watchdog_;
     Parameters parameters_;
+    link::SensorBus* bus_;
     std::uint32_t applied_generation_ = 0;
     geometric::Planner planner_;
     avoid::Supervisor<geometric::Planner> supervisor_;
@@ -150,6 +211,18 @@ private:
 
     vehicle::VehicleState own_;
     bool has_own_ = false;
+    bool own_yaw_known_ = false;
+    OwnSource own_source_ = OwnSource::none;
+    bool has_autopilot_own_ = false;
+    TimePoint autopilot_own_;  ///< stamp of the autopilot's newest
+    TimePoint bus_own_;        ///< and of the bus's
+    bool follows_origin_ = false;
+    std::optional<link::GlobalPosition> origin_;     ///< that the bus was told
+    std::optional<link::GlobalPosition> placed_by_;  ///< that the tracks were placed by
+    bool places_differ_ = false;
+    bool bus_was_up_ = false;
+    bool told_alone_ = false;
+    TimePoint last_near_;
     link::AutopilotReport autopilot_;
     bool has_autopilot_ = false;
     bool new_autopilot_report_ = false;
@@ -176,6 +249,10 @@ private:
     avoid::State told_guidance_ = avoid::State::watching;
     bool told_conflict_ = false;
     Diagnostics diagnostics_;
+    hal::LastWords* last_words_ = nullptr;
+    StaticVector<Notice, kMostNotices> notices_;
+    bool passive_ = false;
+    ParamService param_service_;
 };
 
 }  // namespace jink::app

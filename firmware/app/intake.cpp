@@ -30,20 +30,18 @@ void Coprocessor::take_own_state(TimePoint now) noexcept
         return;
     }
     const vehicle::VehicleState& heard = inbox_.own_state.state;
-    if (heard.stamp > now + kFutureSlack || (has_own_ && heard.stamp < own_.stamp)) {
+    if (heard.stamp > now + kFutureSlack || (has_autopilot_own_ && heard.stamp < autopilot_own_)) {
         ++diagnostics_.own_state_refused;
         return;
     }
     if (inbox_.own_state.estimator_reset && has_own_) {
         // The local frame has jumped: paths and places in it mean nothing any more.
         ++diagnostics_.estimator_resets;
-        supervisor_.reset();
-        tracks_.clear();
-        obstacles_.clear();
-        has_ground_ = false;
+        forget_places();
     }
-    own_ = heard;
-    has_own_ = true;
+    use_own(inbox_.own_state, OwnSource::autopilot);
+    autopilot_own_ = heard.stamp;
+    has_autopilot_own_ = true;
     ++diagnostics_.own_states;
 }
 
@@ -58,11 +56,9 @@ void Coprocessor::take_autopilot(TimePoint now) noexcept
     has_autopilot_ = true;
     if (autopilot_.rebooted) {
         ++diagnostics_.autopilot_reboots;
-        supervisor_.reset();
         takeover_.drop(false);
-        tracks_.clear();
-        obstacles_.clear();
-        has_own_ = has_leg_ = has_ground_ = false;
+        forget_places();
+        has_own_ = has_autopilot_own_ = has_leg_ = false;
     }
 }
 
@@ -238,6 +234,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
 {
     take_autopilot(now);
     take_own_state(now);
+    take_bus_state(now);
     if (inbox_.has_home) {
         home_ = inbox_.home;
     }

@@ -54,6 +54,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
     {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
+    {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -97,6 +98,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.setpoint_period = 1.0F / at(Param::rate);
     c.standby_stream = whole(Param::standby) == 1;
     c.ask_rates = whole(Param::ask_rates) == 1;
+    c.tell_near = whole(Param::tell_near) == 1;
     geometric::Settings& g = c.planner;
     // What the supervisor sees as a conflict the planner has to see too.
     g.lookahead = c.supervisor.lookahead;

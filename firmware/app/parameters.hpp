@@ -64,6 +64,7 @@ enum class Param : std::uint8_t {
     time_high,
     standby,
     ask_rates,
+    tell_near,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -106,6 +107,7 @@ struct Configuration {
     Seconds setpoint_period = 0.05F;
     bool standby_stream = false;
     bool ask_rates = true;
+    bool tell_near = false;
 };
 
 /// Values with their checks. A refused change changes nothing.

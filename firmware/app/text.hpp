@@ -8,6 +8,11 @@
 
 namespace jink::app {
 
+/// Eight hexadecimal digits.
+struct Hex {
+    std::uint32_t value;
+};
+
 /// Builds a STATUSTEXT of at most 50 characters without the C library's formatting, which would bring an allocator into
 /// images. What does not fit is cut off.
 class Text {
@@ -32,6 +37,14 @@ public:
         } while (value != 0 && n < digits.size());
         while (n > 0) {
             *this << std::string_view(&digits[--n], 1);
+        }
+        return *this;
+    }
+
+    Text& operator<<(Hex hex) noexcept
+    {
+        for (unsigned shift = 32; shift > 0; shift -= 4) {
+            *this << std::string_view("0123456789ABCDEF").substr(hex.value >> (shift - 4U) & 0xFU, 1);
         }
         return *this;
     }

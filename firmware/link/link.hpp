@@ -2,15 +2,24 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
+#include "firmware/link/global_position.hpp"
 #include "firmware/link/messages.hpp"
 
 namespace jink::link {
 
 /// Health as told to the autopilot and ground station (MAV_STATE of the HEARTBEAT).
 enum class SystemState : std::uint8_t { boot = 1, standby = 3, active = 4, critical = 5, emergency = 6 };
+
+/// How the application is, as it tells a bus.
+struct BusStatus {
+    SystemState state = SystemState::boot;
+    bool advising_only = false;  ///< at work, but nobody is there whom it could steer
+    std::uint16_t faults = 0;    ///< the application's own bits, for whoever looks closer
+};
 
 enum class Severity : std::uint8_t { critical = 2, error = 3, warning = 4, notice = 5, info = 6 };
 
@@ -97,6 +106,18 @@ public:
     virtual void request_mode(std::uint32_t custom_mode) noexcept = 0;
     /// Asks for the stack's holding mode (BRAKE/LOITER, AUTO.LOITER).
     virtual void request_hold_mode() noexcept = 0;
+
+    /// Where the autopilot's local frame has its origin; nothing while that is not known.
+    [[nodiscard]] virtual std::optional<GlobalPosition> origin() const noexcept = 0;
+
+    /// Writes what is to be said when the processor faults, as the wire carries it: HEARTBEAT (EMERGENCY with `hold`,
+    /// else CRITICAL), the request of the hold mode if `hold`, twice, and `text` unless it is empty. Nothing is queued.
+    ///
+    /// To be called anew in every step before its frames go to the port: the numbers and signatures follow on those
+    /// that were sent so far, and a signature that is not newer than the last one sent is refused.
+    /// @return bytes written; 0 where `out` is too small
+    [[nodiscard]] virtual std::size_t compose_last_words(std::span<std::byte> out, bool hold,
+                                                         std::string_view text) noexcept = 0;
 
     [[nodiscard]] virtual const LinkDiagnostics& diagnostics() const noexcept = 0;
 

@@ -41,9 +41,10 @@ struct AutopilotReport {
     bool rebooted = false;  ///< its boot clock or sequence started again since the last report
 };
 
-/// Own state as the autopilot estimates it. Fields not known keep their last value.
+/// Own state. Fields not known keep their last value.
 struct OwnStateReport {
     vehicle::VehicleState state;
+    bool has_yaw = false;          ///< the heading was heard within the last second
     bool estimator_reset = false;  ///< position jumped by a reset of the estimator
 };
 
@@ -128,7 +129,9 @@ struct ModeAnswer {
 /// Everything heard since the last tick. Filled by the link, emptied by the application. About 5 KiB.
 struct Inbox {
     bool has_own_state = false;
-    OwnStateReport own_state;
+    OwnStateReport own_state;  ///< as the autopilot estimates it
+    bool has_bus_state = false;
+    OwnStateReport bus_state;  ///< as a receiver on the sensor bus measures it
     bool has_autopilot = false;
     AutopilotReport autopilot;
     bool has_leg = false;
@@ -146,8 +149,8 @@ struct Inbox {
 
     void clear() noexcept
     {
-        has_own_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
-        own_state.estimator_reset = false;
+        has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
+        own_state.estimator_reset = bus_state.estimator_reset = false;
         tracks.clear();
         readings.clear();
         params.clear();

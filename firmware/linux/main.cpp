@@ -11,17 +11,21 @@
 #include <cstring>
 #include <ctime>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 
+#include "firmware/app/can_bus.hpp"
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/complaint.hpp"
+#include "firmware/linux/node_identity.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/status.hpp"
 #include "hal/linux/linux_watchdog.hpp"
+#include "hal/linux/socket_can_port.hpp"
 #include "hal/linux/system_clock.hpp"
 #include "hal/linux/termios_serial_port.hpp"
 
@@ -39,12 +43,14 @@ extern "C" void request_stop(int /*signal*/) { stop_requested = 1; }
 
 struct Options {
     std::string serial;
+    std::string can;
     std::string vehicle_file;
     std::string param_file;
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;
     int system_id = 0;
+    int node_id = 0;
     int realtime = 0;
     bool quiet = false;
 };
@@ -112,20 +118,80 @@ const char* text_of(hal::OpenStatus status)
     return "cannot be opened";
 }
 
+const char* text_of(hal::CanOpenStatus status)
+{
+    switch (status) {
+    case hal::CanOpenStatus::ok: return "open";
+    case hal::CanOpenStatus::bad_name: return "not a name that an interface can have";
+    case hal::CanOpenStatus::no_can: return "this kernel has no SocketCAN (AF_CAN); the modules are can and can-raw";
+    case hal::CanOpenStatus::no_interface: return "no such interface";
+    case hal::CanOpenStatus::not_can: return "not a CAN interface";
+    case hal::CanOpenStatus::access_denied: return "no permission";
+    case hal::CanOpenStatus::too_many_filters:
+    case hal::CanOpenStatus::no_fd:
+    case hal::CanOpenStatus::failed: break;
+    }
+    return "cannot be opened";
+}
+
+/// False, and said why, where time cannot mend it.
+bool open_serial(hal::TermiosSerialPort& port, const std::string& device, std::uint32_t baud)
+{
+    const hal::OpenStatus opened = port.open(device, baud, kReconnectPeriod);
+    const bool is_final = opened == hal::OpenStatus::bad_path || opened == hal::OpenStatus::bad_baud ||
+                          opened == hal::OpenStatus::not_a_serial_device || opened == hal::OpenStatus::settings_refused;
+    if (opened != hal::OpenStatus::ok) {
+        std::fprintf(stderr, "jinkd: %s: %s%s\n", device.c_str(), text_of(opened), is_final ? "" : "; going on trying");
+    }
+    return !is_final;
+}
+
+/// The same for a CAN interface. One that is down is open, and waited for.
+bool open_can(hal::SocketCanPort& port, const std::string& interface)
+{
+    const hal::CanOpenStatus opened = port.open(interface, {}, kReconnectPeriod);
+    const bool is_final = opened != hal::CanOpenStatus::ok && port.health().state == hal::CanState::closed;
+    if (opened != hal::CanOpenStatus::ok) {
+        std::fprintf(stderr, "jinkd: %s: %s%s\n", interface.c_str(), text_of(opened),
+                     is_final ? "" : "; going on trying");
+    } else if (port.health().state == hal::CanState::down) {
+        std::fprintf(stderr, "jinkd: %s: down; waiting until it is set up\n", interface.c_str());
+    }
+    return !is_final;
+}
+
+link::dronecan::NodeOptions node_options(const Options& options)
+{
+    link::dronecan::NodeOptions node;
+    node.node = static_cast<std::uint8_t>(options.node_id);
+    const host::NodeIdentity identity = host::node_identity("/etc/machine-id", options.can);
+    node.unique_id = identity.unique_id;
+    node.seed = identity.seed;
+    node.software.major = JINK_VERSION_MAJOR;
+    node.software.minor = JINK_VERSION_MINOR;
+    if (!identity.lasting) {
+        std::fprintf(stderr, "jinkd: no /etc/machine-id: the node's unique id is another at each start\n");
+    }
+    return node;
+}
+
 int run(const Options& options, const app::Parameters& parameters, const std::string& device, std::uint32_t baud)
 {
     hal::SystemClock clock;
-    hal::TermiosSerialPort port;
+    hal::TermiosSerialPort serial;
+    hal::SocketCanPort can;
+    std::optional<app::CanBus> bus;
     hal::LinuxWatchdog watchdog;
-    const hal::OpenStatus opened = port.open(device, baud, kReconnectPeriod);
-    if (opened == hal::OpenStatus::bad_path || opened == hal::OpenStatus::bad_baud ||
-        opened == hal::OpenStatus::not_a_serial_device || opened == hal::OpenStatus::settings_refused) {
-        std::fprintf(stderr, "jinkd: %s: %s\n", device.c_str(), text_of(opened));
+    if (!device.empty() && !open_serial(serial, device, baud)) {
         return EXIT_FAILURE;
     }
-    if (opened != hal::OpenStatus::ok) {
-        std::fprintf(stderr, "jinkd: %s: %s; going on trying\n", device.c_str(), text_of(opened));
+    if (!options.can.empty()) {
+        if (!open_can(can, options.can)) {
+            return EXIT_FAILURE;
+        }
+        bus.emplace(can, node_options(options));
     }
+    hal::SerialPort& port = device.empty() ? bus->serial() : serial;
     constexpr int kWatchdogSeconds = 5;
     if (!options.watchdog.empty() &&
         watchdog.open_device(options.watchdog, kWatchdogSeconds) != hal::WatchdogStatus::ok) {
@@ -141,15 +207,18 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
     link::mavlink::EndpointOptions link_options;
     link_options.system_id = static_cast<std::uint8_t>(options.system_id);
     link::mavlink::Endpoint endpoint(link_options);
-    const auto coprocessor = std::make_unique<app::Coprocessor>(endpoint, port, watchdog, parameters);
+    const auto coprocessor =
+        std::make_unique<app::Coprocessor>(endpoint, port, watchdog, parameters, bus ? &*bus : nullptr);
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
+    const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr};
 
     std::int64_t next = clock.now_us();
     while (stop_requested == 0) {
         const std::int64_t began = clock.now_us();
-        port.service(began);
+        serial.service(began);
+        can.service(began);
         const app::StepReport report = coprocessor->step({began});
-        log.note(report, *coprocessor, endpoint, port.health(), began, clock.now_us() - began);
+        log.note(report, watched, began, clock.now_us() - began);
         next += kTickMicroseconds;
         const std::int64_t now = clock.now_us();
         if (next < now) {
@@ -158,13 +227,13 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         sleep_until(next);
     }
     coprocessor->shut_down({clock.now_us()});
-    let_go_out(port, clock);
+    let_go_out(serial, clock);
     watchdog.close();
-    port.close();
+    serial.close();
     if (!options.quiet) {
         std::fprintf(stderr, "jinkd: stopped\n");
     }
-    if (!options.summary.empty() && !log.write_summary(options.summary, *coprocessor, endpoint, port.health())) {
+    if (!options.summary.empty() && !log.write_summary(options.summary, watched)) {
         std::fprintf(stderr, "jinkd: %s cannot be written\n", options.summary.c_str());
         return EXIT_FAILURE;
     }
@@ -176,10 +245,19 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
 int main(int argc, char** argv)
 {
     Options options;
-    CLI::App cli{"jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line.\n"
-                 "Runs until SIGTERM or SIGINT."};
-    cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given")
-        ->required();
+    CLI::App cli{
+        "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
+        "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT."};
+    CLI::Option* const serial =
+        cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given");
+    CLI::Option* const can = cli.add_option("--can", options.can,
+                                            "CAN interface with a DroneCAN bus; without --serial MAVLink goes through "
+                                            "it. Its bit rate and queue are set by\n"
+                                            "the system, not here: ip link set can0 type can bitrate 1000000 "
+                                            "restart-ms 100; ip link set can0 txqueuelen 128 up");
+    cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
+        ->check(CLI::Range(0, 127))
+        ->needs(can);
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
     cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
     cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
@@ -193,9 +271,17 @@ int main(int argc, char** argv)
     cli.add_flag("--quiet", options.quiet, "errors only");
     CLI11_PARSE(cli, argc, argv);
 
+    if (serial->empty() && can->empty()) {
+        std::fprintf(stderr, "jinkd: --serial or --can is needed\n");
+        return EXIT_FAILURE;
+    }
     std::string device;
     std::uint32_t baud = 0;
-    if (!split_device(options.serial, device, baud)) {
+    if (!can->empty() && options.can.empty()) {
+        std::fprintf(stderr, "jinkd: --can: the name of an interface is needed\n");
+        return EXIT_FAILURE;
+    }
+    if (!serial->empty() && !split_device(options.serial, device, baud)) {
         std::fprintf(stderr, "jinkd: --serial %s: expected DEV[:BAUD]\n", options.serial.c_str());
         return EXIT_FAILURE;
     }

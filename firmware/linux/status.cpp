@@ -55,12 +55,62 @@ const char* name_of(hal::PortState state)
     return "?";
 }
 
+const char* name_of(hal::CanState state)
+{
+    switch (state) {
+    case hal::CanState::closed: return "closed";
+    case hal::CanState::active: return "active";
+    case hal::CanState::error_passive: return "passive";
+    case hal::CanState::bus_off: return "off";
+    case hal::CanState::down: return "down";
+    }
+    return "?";
+}
+
+std::uint32_t refused_by(const link::dronecan::ReceiverDiagnostics& d)
+{
+    return d.standard_id + d.remote + d.bad_length + d.bad_id + d.anonymous_refused + d.missed_start + d.wrong_toggle +
+           d.wrong_transfer + d.short_frame + d.too_long + d.bad_crc + d.timed_out + d.interrupted;
+}
+
+void write_bus(std::FILE* f, const app::CanBus& bus)
+{
+    const hal::CanHealth h = bus.health();
+    const app::CanBusDiagnostics& b = bus.diagnostics();
+    const link::LinkDiagnostics& l = bus.endpoint().diagnostics();
+    const link::dronecan::Node& node = bus.endpoint().node();
+    const link::dronecan::NodeDiagnostics& n = node.diagnostics();
+    const link::dronecan::TunnelDiagnostics& t = bus.tunnel().diagnostics();
+    const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::fprintf(f, "  \"can\": {\"state\": \"%s\", \"node\": %u, \"tunnel_peer\": %u,\n", name_of(h.state), node.id(),
+                 bus.tunnel().peer());
+    std::fprintf(f,
+                 "    \"frames_in\": %llu, \"frames_out\": %llu, \"frames_refused\": %llu, \"overruns\": %llu, "
+                 "\"bus_errors\": %llu,\n    \"bus_offs\": %llu, \"restarts\": %llu, \"downs\": %llu, \"ups\": %llu,\n",
+                 u(h.frames_in), u(h.frames_out), u(h.frames_refused), u(h.overruns), u(h.bus_errors), u(h.bus_offs),
+                 u(h.restarts), u(h.downs), u(h.ups));
+    std::fprintf(f,
+                 "    \"transfers_in\": %u, \"transfer_errors\": %u, \"transfers_out\": %u, \"transfers_dropped\": %u, "
+                 "\"answers\": %u, \"id_conflicts\": %u,\n",
+                 node.receiver_diagnostics().transfers, refused_by(node.receiver_diagnostics()),
+                 node.outgoing().diagnostics().transfers, node.outgoing().diagnostics().transfers_dropped, n.answers,
+                 n.id_conflicts);
+    std::fprintf(f,
+                 "    \"not_finite\": %u, \"out_of_range\": %u, \"no_origin\": %u, \"stale_stamps\": %u, "
+                 "\"inbox_full\": %u,\n",
+                 l.not_finite, l.out_of_range, l.no_origin, l.stale_stamp, l.inbox_full);
+    std::fprintf(
+        f, "    \"full_steps\": %u, \"frames_late\": %u, \"stalls\": %u, \"losses\": %u, \"near_not_sent\": %u,\n",
+        b.full_steps, b.frames_late, b.stalls, b.losses, b.near_not_sent);
+    std::fprintf(f, "    \"tunnel_in\": %u, \"tunnel_out\": %u, \"tunnel_overwritten\": %u, \"tunnel_dropped\": %u},\n",
+                 t.transfers_in, t.transfers_out, t.bytes_overwritten, b.tunnel_dropped);
+}
+
 }  // namespace
 
-void StatusLog::note(const app::StepReport& report, const app::Coprocessor& coprocessor,
-                     const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port, std::int64_t now_us,
-                     std::int64_t took_us)
+void StatusLog::note(const app::StepReport& report, const Watched& watched, std::int64_t now_us, std::int64_t took_us)
 {
+    const app::Coprocessor& coprocessor = watched.coprocessor;
     ++steps_;
     total_us_ += took_us;
     longest_us_ = std::max(longest_us_, took_us);
@@ -81,22 +131,29 @@ void StatusLog::note(const app::StepReport& report, const app::Coprocessor& copr
     last_line_us_ = now_us;
     const avoid::Guidance& g = report.guidance;
     std::printf("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
-                name_of(port.state), name_of(report.control), name_of(g.state), report.tracks, report.obstacles);
+                name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
+                report.obstacles);
     if (g.has_conflict) {
         std::printf("conflict in %.1f s ", static_cast<double>(g.conflict.time_to_loss));
     }
     if (report.faults != 0) {
         std::printf("faults 0x%x ", report.faults);
     }
-    const link::LinkDiagnostics& l = endpoint.diagnostics();
+    if (watched.bus != nullptr) {
+        const hal::CanHealth h = watched.bus->health();
+        std::printf("can %s node %u frames %llu/%llu ", name_of(h.state), watched.bus->endpoint().node().id(),
+                    static_cast<unsigned long long>(h.frames_in), static_cast<unsigned long long>(h.frames_out));
+    }
+    const link::LinkDiagnostics& l = watched.endpoint.diagnostics();
     std::printf("frames %u/%u refused %u step max %lld us\n", l.frames_in, l.frames_out, l.frames_refused,
                 static_cast<long long>(longest_us_));
     std::fflush(stdout);
 }
 
-bool StatusLog::write_summary(const std::string& path, const app::Coprocessor& coprocessor,
-                              const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port) const
+bool StatusLog::write_summary(const std::string& path, const Watched& watched) const
 {
+    const app::Coprocessor& coprocessor = watched.coprocessor;
+    const hal::PortHealth port = watched.port.health();
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "w"), &std::fclose);
     if (!file) {
         return false;
@@ -106,7 +163,7 @@ bool StatusLog::write_summary(const std::string& path, const app::Coprocessor& c
     const avoid::Diagnostics& s = coprocessor.supervisor_diagnostics();
     const app::TakeoverDiagnostics& t = coprocessor.takeover_diagnostics();
     const world::TrackDiagnostics& k = coprocessor.track_diagnostics();
-    const link::LinkDiagnostics& l = endpoint.diagnostics();
+    const link::LinkDiagnostics& l = watched.endpoint.diagnostics();
     const auto mean = [](std::int64_t sum, std::uint64_t n) {
         return n > 0 ? static_cast<double>(sum) / static_cast<double>(n) : 0.0;
     };
@@ -148,6 +205,14 @@ bool StatusLog::write_summary(const std::string& path, const app::Coprocessor& c
                  "  \"frames_in\": %u, \"frames_out\": %u, \"frames_refused\": %u, \"stale_stamps\": %u, "
                  "\"clock_relocks\": %u,\n",
                  l.frames_in, l.frames_out, l.frames_refused, l.stale_stamp, l.clock_relocks);
+    std::fprintf(
+        f,
+        "  \"bus_states\": %u, \"bus_states_beside\": %u, \"bus_reports_dropped\": %u, \"places_disagree\": %u, "
+        "\"near_told\": %u,\n",
+        d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_told);
+    if (watched.bus != nullptr) {
+        write_bus(f, *watched.bus);
+    }
     std::fprintf(f, "  \"port_disconnects\": %llu, \"port_reconnects\": %llu\n}\n",
                  static_cast<unsigned long long>(port.disconnects), static_cast<unsigned long long>(port.reconnects));
     return std::ferror(f) == 0;

@@ -5,11 +5,20 @@
 #include <cstdint>
 #include <string>
 
+#include "firmware/app/can_bus.hpp"
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
-#include "hal/port_health.hpp"
+#include "hal/serial_port.hpp"
 
 namespace jink::host {
+
+/// What is told of.
+struct Watched {
+    const app::Coprocessor& coprocessor;
+    const link::mavlink::Endpoint& endpoint;
+    const hal::SerialPort& port;  ///< MAVLink's
+    const app::CanBus* bus;       ///< nullptr: there is none
+};
 
 /// The daemon's status line and the summary that it leaves behind.
 class StatusLog {
@@ -17,13 +26,10 @@ public:
     /// @param period  seconds between status lines on standard output; 0: none
     explicit StatusLog(double period) : period_us_(static_cast<std::int64_t>(period * 1e6)) {}
 
-    void note(const app::StepReport& report, const app::Coprocessor& coprocessor,
-              const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port, std::int64_t now_us,
-              std::int64_t took_us);
+    void note(const app::StepReport& report, const Watched& watched, std::int64_t now_us, std::int64_t took_us);
 
     /// JSON; false when the file cannot be written.
-    [[nodiscard]] bool write_summary(const std::string& path, const app::Coprocessor& coprocessor,
-                                     const link::mavlink::Endpoint& endpoint, const hal::PortHealth& port) const;
+    [[nodiscard]] bool write_summary(const std::string& path, const Watched& watched) const;
 
 private:
     /// Step times in bins of 10 us; the last one takes all that is longer.

@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink on the MPS2 board with the AN500 image: Cortex-M7, 25 MHz, MAVLink on UART0.
-#include <array>
-
-#include "firmware/app/coprocessor.hpp"
+#include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cmsdk/cmsdk_uart.hpp"
 #include "hal/cmsdk/cmsdk_watchdog.hpp"
 #include "hal/cortex_m/cortex_m.hpp"
 #include "hal/cortex_m/startup.hpp"
+#include "hal/cortex_m/vector_table.hpp"
 #include "hal/counter_clock.hpp"
+#include "hal/last_words.hpp"
 
 namespace {
 
 using namespace jink;
-using hal::cortex_m::Handler;
 using hal::cortex_m::MappedRegisters;
 
 // Addresses, interrupts: ARM application note AN500 (and AN385, whose memory map it keeps).
@@ -26,7 +25,6 @@ constexpr unsigned kUartTransmit = 1;
 constexpr unsigned kUartOverrun = 12;
 
 constexpr std::uint32_t kBaud = 921600;
-constexpr std::int64_t kTickMicroseconds = 20'000;
 /// A step that is this late has failed.
 constexpr std::uint32_t kWatchdogTicks = kClockHz / 4;
 
@@ -56,30 +54,8 @@ void jink_uart_overrun() { uart().on_overrun(); }
 
 namespace {
 
-constexpr std::size_t kInterrupts = 32;
-
-struct VectorTable {
-    std::uint32_t* stack;
-    std::array<Handler, 15 + kInterrupts> handlers;
-};
-
-/// Whatever nobody expects is a fault.
-constexpr VectorTable make_vectors() noexcept
-{
-    constexpr std::size_t kReset = 0;
-    constexpr std::size_t kSystick = 14;
-    constexpr std::size_t kFirstInterrupt = 15;
-    VectorTable table{&hal::cortex_m::_stack_top, {}};
-    table.handlers.fill(&hal::cortex_m::jink_fault_handler);
-    table.handlers[kReset] = &hal::cortex_m::jink_reset_handler;
-    table.handlers[kSystick] = &hal::cortex_m::jink_systick_handler;
-    table.handlers[kFirstInterrupt + kUartReceive] = &jink_uart_receive;
-    table.handlers[kFirstInterrupt + kUartTransmit] = &jink_uart_transmit;
-    table.handlers[kFirstInterrupt + kUartOverrun] = &jink_uart_overrun;
-    return table;
-}
-
-__attribute__((section(".vectors"), used)) constinit const VectorTable vectors = make_vectors();
+__attribute__((section(".vectors"), used)) constinit const auto vectors = hal::cortex_m::make_vectors<32>(
+    {{kUartReceive, &jink_uart_receive}, {kUartTransmit, &jink_uart_transmit}, {kUartOverrun, &jink_uart_overrun}});
 
 link::mavlink::Endpoint& endpoint() noexcept
 {
@@ -89,7 +65,14 @@ link::mavlink::Endpoint& endpoint() noexcept
 
 }  // namespace
 
-extern "C" void hal::cortex_m::jink_on_fault(const FaultRecord& /*record*/) {}
+// A reset leaves it alone: nothing of it is used before it is cleared.
+__attribute__((section(".noinit"))) hal::LastWords last_words;
+
+extern "C" void hal::cortex_m::jink_on_fault(const FaultRecord& /*record*/)
+{
+    static_cast<void>(say_last_words<Uart>(MappedRegisters{kUart}, uart().to_send(), last_words.valid(),
+                                           link::mavlink::kMaxFrame, firmware::kPatience));
+}
 
 extern "C" void hal::cortex_m::jink_main()
 {
@@ -99,20 +82,14 @@ extern "C" void hal::cortex_m::jink_main()
     static app::Coprocessor coprocessor(endpoint(), uart(), watchdog, app::Parameters());
 
     static_cast<void>(uart().start(kClockHz, kBaud));
+    last_words.clear();
+    coprocessor.keep_last_words(last_words);
+    hal::cortex_m::let_faults_speak();
     for (const unsigned irq : {kUartReceive, kUartTransmit, kUartOverrun}) {
         hal::cortex_m::enable_interrupt(irq);
     }
     hal::cortex_m::start_systick(kClockHz / 1000U);
+    const bool passive = firmware::settle_faults(coprocessor, clock);
     watchdog.start(kWatchdogTicks);
-
-    std::int64_t next = clock.now_us();
-    for (;;) {
-        const std::int64_t now = clock.now_us();
-        if (now < next) {
-            hal::cortex_m::wait_for_interrupt();
-            continue;
-        }
-        static_cast<void>(coprocessor.step({now}));
-        next = next + kTickMicroseconds < now ? now : next + kTickMicroseconds;
-    }
+    firmware::fly(coprocessor, clock, passive, [] {});
 }

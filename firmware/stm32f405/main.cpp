@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink on an STM32F405 (Cortex-M4F, a flight controller's chip): MAVLink on USART1, PA9 and PA10.
-#include <array>
+// jink on an STM32F405 (Cortex-M4F, a flight controller's chip): MAVLink on USART1, PA9 and PA10; a DroneCAN bus of
+// 1 Mbit/s on CAN1, PB8 and PB9: of the pins that CAN1 can have, the smallest package has these and those of USB.
+#include <new>
 
-#include "firmware/app/coprocessor.hpp"
+#include "firmware/app/can_bus.hpp"
+#include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cortex_m/cortex_m.hpp"
 #include "hal/cortex_m/startup.hpp"
+#include "hal/cortex_m/step_guard.hpp"
+#include "hal/cortex_m/vector_table.hpp"
 #include "hal/counter_clock.hpp"
+#include "hal/last_words.hpp"
+#include "hal/stm32f4/bxcan.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
 #include "hal/stm32f4/independent_watchdog.hpp"
+#include "hal/stm32f4/reset_cause.hpp"
 #include "hal/stm32f4/usart.hpp"
 
 namespace {
 
 using namespace jink;
-using hal::cortex_m::Handler;
 using hal::cortex_m::MappedRegisters;
 
 // Addresses, interrupts: ST RM0090, 2.3 and 12.2.
@@ -24,12 +30,21 @@ constexpr std::uintptr_t kGpioA = 0x40020000;
 constexpr std::uintptr_t kUsart1 = 0x40011000;
 constexpr std::uintptr_t kWatchdog = 0x40003000;
 constexpr std::uintptr_t kTimer2 = 0x40000000;
+constexpr std::uintptr_t kGpioB = 0x40020400;
+constexpr std::uintptr_t kCan1 = 0x40006400;
+constexpr std::uintptr_t kUniqueId = 0x1FFF7A10;  // 96 bits (39.1)
+constexpr unsigned kCan1TransmitInterrupt = 19;
+constexpr unsigned kCan1ReceiveInterrupt = 20;
+constexpr unsigned kCan1StatusInterrupt = 22;
 constexpr unsigned kUsart1Interrupt = 37;
 
 constexpr std::uint32_t kBaud = 921600;
-constexpr std::int64_t kTickMicroseconds = 20'000;
+constexpr std::uint32_t kCanBitRate = 1'000'000;
 /// A step that is this late has failed.
 constexpr std::uint32_t kWatchdogMilliseconds = 250;
+/// And one that is this late is stopped with last words, before the watchdog at its quickest (0.68 of the above) does
+/// it without. Ticks of SysTick.
+constexpr std::uint32_t kGuardMilliseconds = 150;
 
 using Usart = hal::stm32f4::Usart<MappedRegisters, hal::cortex_m::Pend>;
 
@@ -37,6 +52,84 @@ Usart& usart() noexcept
 {
     static Usart port(MappedRegisters{kUsart1}, hal::cortex_m::Pend(kUsart1Interrupt));
     return port;
+}
+
+using Can = hal::stm32f4::BxCan<MappedRegisters, hal::cortex_m::Pend>;
+
+/// Core-coupled memory: no bus master but the processor reaches it, and CAN needs none. Nothing clears it at the start,
+/// and nothing lies in it before start_can().
+alignas(Can) __attribute__((section(".ccm"))) std::byte can_memory[sizeof(Can)];
+alignas(app::CanBus) __attribute__((section(".ccm"))) std::byte bus_memory[sizeof(app::CanBus)];
+Can* can = nullptr;  ///< nullptr: there is none
+
+/// Two neighbouring pins for a peripheral.
+struct PinPair {
+    std::uintptr_t gpio;
+    std::uint32_t gpio_on;        ///< in AHB1ENR
+    std::uint32_t enable;         ///< offset of the peripheral's clock register in RCC
+    std::uint32_t peripheral_on;  ///< in that register
+    std::uint32_t first;          ///< the lower pin, 8 .. 14; the other is the next
+    std::uint32_t alternate;      ///< function of both
+    std::uint32_t pulled_up;      ///< the pin that is held high while nobody drives it
+};
+
+/// The pins to the peripheral, and the clocks of both.
+void start_pins(const PinPair& pins) noexcept
+{
+    const MappedRegisters rcc{kRcc};
+    const MappedRegisters gpio{pins.gpio};
+    constexpr std::uint32_t kAhb1Enable = 0x30;
+    constexpr std::uint32_t kMode = 0x00;
+    constexpr std::uint32_t kPull = 0x0C;
+    constexpr std::uint32_t kAlternateHigh = 0x24;
+    const std::uint32_t at = 2U * pins.first;                   // two bits a pin
+    const std::uint32_t at_alternate = 4U * (pins.first - 8U);  // four bits a pin, from pin 8
+    const std::uint32_t functions = (pins.alternate * 0x11U) << at_alternate;
+    rcc.write(kAhb1Enable, rcc.read(kAhb1Enable) | pins.gpio_on);
+    rcc.write(pins.enable, rcc.read(pins.enable) | pins.peripheral_on);
+    gpio.write(kAlternateHigh, (gpio.read(kAlternateHigh) & ~(0xFFU << at_alternate)) | functions);
+    gpio.write(kPull, (gpio.read(kPull) & ~(0xFU << at)) | 1U << (2U * pins.pulled_up));
+    gpio.write(kMode, (gpio.read(kMode) & ~(0xFU << at)) | 0xAU << at);
+}
+
+/// PB8 and PB9; without a transceiver PB8 reads as recessive.
+constexpr PinPair kCanPins{kGpioB, 1U << 1U, 0x40, 1U << 25U, 8, 9, 8};
+/// PA9 and PA10; an open line at PA10 reads as idle.
+constexpr PinPair kUsartPins{kGpioA, 1U << 0U, 0x44, 1U << 4U, 9, 7, 10};
+
+/// The chip's own number, and a node id from the bus's allocator.
+link::dronecan::NodeOptions node_options() noexcept
+{
+    constexpr std::size_t kBytes = 12;
+    link::dronecan::NodeOptions options;
+    const MappedRegisters unique{kUniqueId};
+    std::uint64_t seed = 0;
+    for (std::uint32_t word = 0; word < kBytes / 4; ++word) {
+        const std::uint32_t bits = unique.read(4 * word);
+        seed = (seed ^ bits) * 0x9E3779B97F4A7C15ULL;
+        for (std::uint32_t i = 0; i < 4; ++i) {
+            options.unique_id[4 * word + i] = static_cast<std::uint8_t>(bits >> (8U * i));
+        }
+    }
+    options.seed = seed;
+    options.name = "org.jink.stm32f405";
+    return options;
+}
+
+/// A controller that takes part in a bus, or nullptr. The internal oscillator is off by up to 1 %, and CAN at 1 Mbit/s
+/// bears a third of that: without the crystal it would only disturb the others.
+app::CanBus* start_can(const hal::stm32f4::Clocks& clocks) noexcept
+{
+    if (clocks.source != hal::stm32f4::ClockSource::crystal) {
+        return nullptr;
+    }
+    start_pins(kCanPins);
+    can = new (can_memory) Can(MappedRegisters{kCan1}, hal::cortex_m::Pend(kCan1TransmitInterrupt));
+    if (!can->start(clocks.apb1, kCanBitRate)) {
+        can = nullptr;
+        return nullptr;
+    }
+    return new (bus_memory) app::CanBus(*can, node_options());
 }
 
 /// TIM2 counts microseconds, all 32 bits of them. Not SysTick: whose interrupt is held off for a millisecond loses one.
@@ -57,82 +150,88 @@ void start_timer(const hal::stm32f4::Clocks& clocks) noexcept
     timer.write(kControl, 1);
 }
 
-/// PA9 and PA10 to USART1, and the clocks of both.
-void start_pins() noexcept
-{
-    const MappedRegisters rcc{kRcc};
-    const MappedRegisters gpio{kGpioA};
-    constexpr std::uint32_t kAhb1Enable = 0x30;
-    constexpr std::uint32_t kApb2Enable = 0x44;
-    constexpr std::uint32_t kGpioAOn = 1U << 0U;
-    constexpr std::uint32_t kUsart1On = 1U << 4U;
-    constexpr std::uint32_t kMode = 0x00;
-    constexpr std::uint32_t kPull = 0x0C;
-    constexpr std::uint32_t kAlternateHigh = 0x24;
-    rcc.write(kAhb1Enable, rcc.read(kAhb1Enable) | kGpioAOn);
-    rcc.write(kApb2Enable, rcc.read(kApb2Enable) | kUsart1On);
-    gpio.write(kAlternateHigh, (gpio.read(kAlternateHigh) & ~0xFF0U) | 0x770U);
-    gpio.write(kPull, (gpio.read(kPull) & ~(0xFU << 18U)) | 1U << 20U);  // an open line reads as idle
-    gpio.write(kMode, (gpio.read(kMode) & ~(0xFU << 18U)) | 0xAU << 18U);
-}
-
 }  // namespace
 
 extern "C" void jink_usart1() { usart().on_interrupt(); }
+// Enabled once `can` is there.
+extern "C" void jink_can1_transmit() { can->on_transmit(); }
+extern "C" void jink_can1_receive() { can->on_receive(); }
+extern "C" void jink_can1_status() { can->on_status(); }
 
 namespace {
 
-constexpr std::size_t kInterrupts = 82;
-
-struct VectorTable {
-    std::uint32_t* stack;
-    std::array<Handler, 15 + kInterrupts> handlers;
-};
-
-/// Whatever nobody expects is a fault.
-constexpr VectorTable make_vectors() noexcept
-{
-    constexpr std::size_t kReset = 0;
-    constexpr std::size_t kSystickException = 14;
-    constexpr std::size_t kFirstInterrupt = 15;
-    VectorTable table{&hal::cortex_m::_stack_top, {}};
-    table.handlers.fill(&hal::cortex_m::jink_fault_handler);
-    table.handlers[kReset] = &hal::cortex_m::jink_reset_handler;
-    table.handlers[kSystickException] = &hal::cortex_m::jink_systick_handler;
-    table.handlers[kFirstInterrupt + kUsart1Interrupt] = &jink_usart1;
-    return table;
-}
-
-__attribute__((section(".vectors"), used)) constinit const VectorTable vectors = make_vectors();
+__attribute__((section(".vectors"), used)) constinit const auto vectors =
+    hal::cortex_m::make_vectors<82>({{kUsart1Interrupt, &jink_usart1},
+                                     {kCan1TransmitInterrupt, &jink_can1_transmit},
+                                     {kCan1ReceiveInterrupt, &jink_can1_receive},
+                                     {kCan1StatusInterrupt, &jink_can1_status}},
+                                    &hal::cortex_m::jink_guard_handler);
 
 }  // namespace
 
-extern "C" void hal::cortex_m::jink_on_fault(const FaultRecord& /*record*/) {}
+// A reset leaves it alone: nothing of it is used before it is cleared, but after a reset without warning.
+__attribute__((section(".noinit"))) hal::LastWords last_words;
+
+namespace {
+
+void say_words() noexcept
+{
+    static_cast<void>(say_last_words<Usart>(MappedRegisters{kUsart1}, usart().to_send(), last_words.valid(),
+                                            link::mavlink::kMaxFrame, firmware::kPatience));
+}
+
+/// The watchdog gave no time for last words: they are said now, as they were prepared in the last step.
+void settle_reset(hal::stm32f4::ResetCause cause) noexcept
+{
+    using hal::stm32f4::ResetCause;
+    if (cause == ResetCause::power || cause == ResetCause::pin) {
+        hal::cortex_m::forget_faults();
+    } else if (cause == ResetCause::independent_watchdog && hal::cortex_m::note_silent_reset()) {
+        say_words();
+    }
+    last_words.clear();
+}
+
+}  // namespace
+
+extern "C" void hal::cortex_m::jink_on_fault(const FaultRecord& /*record*/) { say_words(); }
 
 extern "C" void hal::cortex_m::jink_main()
 {
+    const hal::stm32f4::ResetCause cause = hal::stm32f4::take_reset_cause(MappedRegisters{kRcc});
     const hal::stm32f4::Clocks clocks = hal::stm32f4::start_clocks(MappedRegisters{kRcc}, MappedRegisters{kFlash});
-    start_pins();
+    start_pins(kUsartPins);
     start_timer(clocks);
     hal::cortex_m::start_systick(clocks.processor / 1000U);  // to wake up by
     constexpr std::uintptr_t kCount = 0x24;
     static hal::CounterClock clock(hal::cortex_m::at(kTimer2 + kCount), hal::CounterClock::Direction::up, 1'000'000);
     static link::mavlink::Endpoint endpoint;
     static hal::stm32f4::IndependentWatchdog watchdog{MappedRegisters{kWatchdog}};
-    static app::Coprocessor coprocessor(endpoint, usart(), watchdog, app::Parameters());
+    static hal::cortex_m::GuardedWatchdog guarded(watchdog, kGuardMilliseconds);
+    app::CanBus* const bus = start_can(clocks);
+    static app::Coprocessor coprocessor(endpoint, usart(), guarded, app::Parameters(), bus);
 
     static_cast<void>(usart().start(clocks.apb2, kBaud));
+    settle_reset(cause);
+    coprocessor.keep_last_words(last_words);
+    hal::cortex_m::let_faults_speak();
     hal::cortex_m::enable_interrupt(kUsart1Interrupt);
-    watchdog.start(kWatchdogMilliseconds);
-
-    std::int64_t next = clock.now_us();
-    for (;;) {
-        const std::int64_t now = clock.now_us();
-        if (now < next) {
-            hal::cortex_m::wait_for_interrupt();
-            continue;
+    if (bus != nullptr) {
+        for (const unsigned irq : {kCan1TransmitInterrupt, kCan1ReceiveInterrupt, kCan1StatusInterrupt}) {
+            hal::cortex_m::enable_interrupt(irq);
         }
-        static_cast<void>(coprocessor.step({now}));
-        next = next + kTickMicroseconds < now ? now : next + kTickMicroseconds;
     }
+    const bool passive = firmware::settle_faults(coprocessor, clock);
+    if (bus == nullptr) {
+        app::Text text;
+        text << "jink: no CAN bus, going on without";
+        static_cast<void>(coprocessor.tell_when_heard(link::Severity::notice, text));
+    }
+    watchdog.start(kWatchdogMilliseconds);
+    guarded.feed();
+    firmware::fly(coprocessor, clock, passive, [] {
+        if (can != nullptr) {
+            can->service();
+        }
+    });
 }

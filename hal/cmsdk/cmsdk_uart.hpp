@@ -1,83 +1,43 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "hal/register_block.hpp"
-#include "hal/ring.hpp"
-#include "hal/serial_port.hpp"
+#include "hal/interrupt_serial_port.hpp"
 
 namespace jink::hal {
 
-/// Serial port on the CMSDK APB UART (ARM DDI 0479), fed by interrupts in both directions.
+/// Serial port on the CMSDK APB UART (ARM DDI 0479), fed by interrupts in both directions
+/// (hal/interrupt_serial_port.hpp).
 ///
 /// The UART holds one byte each way: at 921600 baud its receive handler has to run within 10.8 us, or a byte is lost
-/// and counted in `overruns`, as is one that finds the ring full. The rings hold 4 KiB in and 1 KiB out: 44 ms and 11
-/// ms of a full line at 921600 baud.
-///
-/// Only the handlers touch the data register; read() and write() touch the rings alone, so neither needs interrupts to
-/// be off. Memory: 5.2 KiB.
+/// and counted.
 template <RegisterBlock Registers, InterruptWake Wake>
-class CmsdkUart final : public SerialPort {
-public:
-    static constexpr std::size_t kReceiveBytes = 4096;
-    static constexpr std::size_t kTransmitBytes = 1024;
+class CmsdkUart final : public InterruptSerialPort<Wake> {
+    using Base = InterruptSerialPort<Wake>;
 
+public:
     /// @param wake_transmit  raises the transmit interrupt
-    CmsdkUart(Registers registers, Wake wake_transmit) noexcept : registers_(registers), wake_transmit_(wake_transmit)
-    {
-    }
+    CmsdkUart(Registers registers, Wake wake_transmit) noexcept : Base(wake_transmit), registers_(registers) {}
 
     /// Sets the baud rate and starts both directions. False, and the port stays closed, where the divider does not give
     /// the rate within 2 % or is below the hardware's least (16).
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t baud) noexcept
     {
-        const std::uint32_t divider = baud > 0 ? (peripheral_clock_hz + baud / 2U) / baud : 0;
-        if (divider < kLeastDivider) {
-            return false;
-        }
-        const std::uint32_t rate = peripheral_clock_hz / divider;
-        const std::uint32_t error = rate > baud ? rate - baud : baud - rate;
-        if (error > baud / kBaudTolerance) {
+        const std::uint32_t divider = baud_divider(peripheral_clock_hz, baud, kLeastDivider, kLargestDivider);
+        if (divider == 0) {
             return false;
         }
         registers_.write(kDivider, divider);
         registers_.write(kControl, kAllOn);
-        health_.state = PortState::open;
+        this->opened();
         return true;
-    }
-
-    [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override
-    {
-        const std::size_t n = received_.pop(into);
-        health_.bytes_in += n;
-        return n;
-    }
-
-    [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override
-    {
-        const std::size_t n = health_.state == PortState::open ? to_send_.push(from) : 0;
-        health_.bytes_out += n;
-        health_.bytes_refused += from.size() - n;
-        if (n > 0) {
-            wake_transmit_();
-        }
-        return n;
-    }
-
-    [[nodiscard]] PortHealth health() const noexcept override
-    {
-        PortHealth health = health_;
-        health.overruns = overruns_.load(std::memory_order_relaxed);
-        return health;
     }
 
     /// From the receive interrupt's handler. O(bytes there), kReceiveBytes at most: what is left raises it again.
     void on_receive() noexcept
     {
         registers_.write(kInterrupts, kReceiveInterrupt);  // before the byte: one that comes in between raises it again
-        for (std::size_t i = 0; i < kReceiveBytes && (registers_.read(kState) & kReceiveFull) != 0; ++i) {
-            if (!received_.push(static_cast<std::byte>(registers_.read(kData) & 0xFFU))) {
-                count_overrun();
-            }
+        for (std::size_t i = 0; i < Base::kReceiveBytes && (registers_.read(kState) & kReceiveFull) != 0; ++i) {
+            this->store(static_cast<std::byte>(registers_.read(kData) & 0xFFU));
         }
     }
 
@@ -86,9 +46,8 @@ public:
     {
         registers_.write(kInterrupts, kTransmitInterrupt);
         std::byte byte{};
-        for (std::size_t i = 0;
-             i < kTransmitBytes && (registers_.read(kState) & kTransmitFull) == 0 && to_send_.pop(byte); ++i) {
-            registers_.write(kData, std::to_integer<std::uint32_t>(byte));
+        for (std::size_t i = 0; i < Base::kTransmitBytes && has_room(registers_) && this->to_send().pop(byte); ++i) {
+            put(registers_, byte);
         }
     }
 
@@ -96,20 +55,24 @@ public:
     void on_overrun() noexcept
     {
         if ((registers_.read(kState) & kReceiveOverrun) != 0) {
-            count_overrun();
+            this->count_overrun();
         }
         registers_.write(kInterrupts, kOverrunInterrupts);
     }
 
-    /// Writes by waiting for room, `patience` looks per byte at most: for a fault handler, when nothing else runs any
-    /// more. What is in the ring is left out. O(from.size() * patience).
+    [[nodiscard]] static bool has_room(Registers& registers) noexcept
+    {
+        return (registers.read(kState) & kTransmitFull) == 0;
+    }
+    static void put(Registers& registers, std::byte byte) noexcept
+    {
+        registers.write(kData, std::to_integer<std::uint32_t>(byte));
+    }
+
+    /// send_waiting() on its own registers; what is in the ring is left out.
     void write_waiting(std::span<const std::byte> from, std::uint32_t patience) noexcept
     {
-        for (const std::byte byte : from) {
-            for (std::uint32_t i = 0; i < patience && (registers_.read(kState) & kTransmitFull) != 0; ++i) {
-            }
-            registers_.write(kData, std::to_integer<std::uint32_t>(byte));
-        }
+        static_cast<void>(send_waiting<CmsdkUart>(registers_, from, patience));
     }
 
 private:
@@ -127,21 +90,9 @@ private:
     /// Both directions, their interrupts, and the one of a receive overrun.
     static constexpr std::uint32_t kAllOn = 0x2F;
     static constexpr std::uint32_t kLeastDivider = 16;
-    /// One part in so many: the two ends of an asynchronous line may be 4 % apart, and the other end needs half of it.
-    static constexpr std::uint32_t kBaudTolerance = 50;
-
-    /// Two handlers may do so, of one priority.
-    void count_overrun() noexcept
-    {
-        overruns_.store(overruns_.load(std::memory_order_relaxed) + 1U, std::memory_order_relaxed);
-    }
+    static constexpr std::uint32_t kLargestDivider = 0xFFFFF;
 
     Registers registers_;
-    Wake wake_transmit_;
-    ByteRing<kReceiveBytes> received_;
-    ByteRing<kTransmitBytes> to_send_;
-    PortHealth health_;  ///< the main program's side of it
-    std::atomic<std::uint32_t> overruns_{0};
 };
 
 }  // namespace jink::hal

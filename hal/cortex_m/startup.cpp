@@ -2,6 +2,7 @@
 #include "hal/cortex_m/startup.hpp"
 
 #include "hal/cortex_m/cortex_m.hpp"
+#include "hal/cortex_m/step_guard.hpp"
 
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier): the linker script's names
@@ -23,23 +24,66 @@ namespace {
 constexpr std::uintptr_t kSystickControl = 0xE000E010;
 constexpr std::uintptr_t kSystickReload = 0xE000E014;
 constexpr std::uintptr_t kSystickValue = 0xE000E018;
-constexpr std::uintptr_t kResetControl = 0xE000ED0C;  // AIRCR
-constexpr std::uintptr_t kFaultCause = 0xE000ED28;    // CFSR
+constexpr std::uintptr_t kResetControl = 0xE000ED0C;          // AIRCR
+constexpr std::uintptr_t kConfigurationControl = 0xE000ED14;  // CCR
+constexpr std::uintptr_t kFaultCause = 0xE000ED28;            // CFSR
 constexpr std::uintptr_t kMemoryAddress = 0xE000ED34;
 constexpr std::uintptr_t kBusAddress = 0xE000ED38;
 constexpr std::uintptr_t kCoprocessors = 0xE000ED88;  // CPACR
+constexpr std::uintptr_t kFloatContext = 0xE000EF34;  // FPCCR
+constexpr std::uintptr_t kProtectionType = 0xE000ED90;
+constexpr std::uintptr_t kProtectionControl = 0xE000ED94;
+constexpr std::uintptr_t kProtectionRegion = 0xE000ED98;
+constexpr std::uintptr_t kProtectionBase = 0xE000ED9C;
+constexpr std::uintptr_t kProtectionSize = 0xE000EDA0;
 
 constexpr std::uint32_t kPaint = 0xC5C5C5C5;
 constexpr std::uint32_t kMagic = 0x4A494E4B;
 
 __attribute__((section(".noinit"))) FaultRecord kept;
 
+/// How far this start has come. Kept out of what start-up clears: a fault may come before that.
+enum Stage : std::uint32_t { kStarting = 0, kReady = 0x52454459, kFaulting = 0x46415554 };
+__attribute__((section(".noinit"))) volatile std::uint32_t stage;
+
 std::uint32_t sum_of(const FaultRecord& r) noexcept
 {
-    return r.magic + r.exception + r.pc + r.lr + r.cause + r.address + r.count;
+    return r.magic + r.exception + r.pc + r.lr + r.cause + r.address + r.count + r.streak;
 }
 
 bool holds_record() noexcept { return kept.magic == kMagic && kept.check == sum_of(kept); }
+
+/// A record of one more fault; the rest is to be filled in, and the check sum.
+void begin_record(std::uint32_t exception) noexcept
+{
+    const bool known = holds_record();
+    const std::uint32_t count = known ? kept.count : 0;
+    const std::uint32_t streak = known ? kept.streak : 0;
+    kept = {};
+    kept.magic = kMagic;
+    kept.exception = exception;
+    kept.count = count + 1;
+    kept.streak = streak + 1;
+}
+
+/// Nobody may touch the megabyte below the stack: what lies there may swallow an overflow instead of refusing it. Fault
+/// handlers may (HFNMIENA off). Only where the stack begins on a megabyte and there is a protection unit (ARMv7-M,
+/// B3.5).
+void guard_stack() noexcept
+{
+    constexpr std::uint32_t kBytes = 1U << 20U;
+    constexpr std::uint32_t kNoAccess = 1U << 28U | (20U - 1U) << 1U | 1U;  // never executed either; 2^20 bytes; on
+    constexpr std::uint32_t kOnWithDefaults = 5;
+    const std::uintptr_t bottom = reinterpret_cast<std::uintptr_t>(&_stack_bottom);
+    if (bottom % kBytes != 0 || (at(kProtectionType) & 0xFF00U) == 0) {
+        return;
+    }
+    at(kProtectionRegion) = 0;
+    at(kProtectionBase) = static_cast<std::uint32_t>(bottom) - kBytes;
+    at(kProtectionSize) = kNoAccess;
+    at(kProtectionControl) = kOnWithDefaults;
+    __asm volatile("dsb\nisb" ::: "memory");
+}
 
 }  // namespace
 
@@ -53,6 +97,28 @@ bool take_fault_record(FaultRecord& out) noexcept
     kept.check = sum_of(kept);
     return true;
 }
+
+bool note_silent_reset() noexcept
+{
+    if (holds_record() && kept.exception != 0) {
+        return false;
+    }
+    begin_record(kSilentReset);
+    kept.check = sum_of(kept);
+    return true;
+}
+
+void forgive_faults() noexcept
+{
+    if (holds_record()) {
+        kept.streak = 0;
+        kept.check = sum_of(kept);
+    }
+}
+
+void forget_faults() noexcept { kept = {}; }
+
+void let_faults_speak() noexcept { stage = kReady; }
 
 std::size_t stack_size() noexcept
 {
@@ -94,38 +160,64 @@ extern "C" [[noreturn]] void jink_note_fault(const std::uint32_t* frame)
 {
     constexpr std::uint32_t kMemoryValid = 1U << 7U;
     constexpr std::uint32_t kBusValid = 1U << 15U;
+    constexpr std::uint32_t kLazySavePending = 1U << 0U;
+    constexpr std::uint32_t kIgnoreBusFaults = 1U << 8U;  // of data, in fault handlers
+    const std::uint32_t before = stage;
+    stage = kFaulting;
+    if (before == kFaulting) {
+        reset();  // what the handler was doing had better not be tried again
+    }
+    at(kFloatContext) = at(kFloatContext) & ~kLazySavePending;  // nothing is to be saved where the stack overflowed
+    const std::uint32_t cause = at(kFaultCause);
+    at(kConfigurationControl) = at(kConfigurationControl) | kIgnoreBusFaults;
     std::uint32_t exception = 0;
     __asm volatile("mrs %0, ipsr" : "=r"(exception));
     const bool in_stack = frame >= &_stack_bottom && frame + 8 <= &_stack_top;  // not where the stack itself overflowed
-    const std::uint32_t count = holds_record() ? kept.count : 0;
-    const std::uint32_t cause = at(kFaultCause);
-    kept = {};
-    kept.magic = kMagic;
-    kept.exception = exception & 0x1FFU;
+    begin_record(exception & 0x1FFU);
     kept.pc = in_stack ? frame[6] : 0;
     kept.lr = in_stack ? frame[5] : 0;
     kept.cause = cause;
     kept.address = (cause & kBusValid) != 0 ? at(kBusAddress) : (cause & kMemoryValid) != 0 ? at(kMemoryAddress) : 0;
-    kept.count = count + 1;
     kept.check = sum_of(kept);
-    jink_on_fault(kept);
+    if (before == kReady) {
+        jink_on_fault(kept);
+    }
     reset();
 }
 
 /// On a stack of its own start: what faulted may have been the stack.
 extern "C" __attribute__((naked)) void jink_fault_handler()
 {
-    __asm volatile("mrs r0, msp\n"
+    __asm volatile("cpsid i\n"
+                   "mrs r0, msp\n"
                    "ldr r1, =_stack_top\n"
                    "mov sp, r1\n"
                    "b jink_note_fault\n");
 }
 
+extern "C" {
+volatile std::uint32_t jink_guard_left = 0;
+
+/// Nothing of its own on the stack: jink_fault_handler has to find the frame of what was interrupted.
+__attribute__((naked)) void jink_guard_handler()
+{
+    __asm volatile("ldr r0, =jink_guard_left\n"
+                   "ldr r1, [r0]\n"
+                   "cbz r1, 1f\n"
+                   "subs r1, #1\n"
+                   "str r1, [r0]\n"
+                   "beq jink_fault_handler\n"
+                   "1: bx lr\n");
+}
+}
+
 extern "C" void jink_reset_handler()
 {
+    stage = kStarting;
     constexpr std::uint32_t kFpuOn = 0xFU << 20U;
     at(kCoprocessors) = at(kCoprocessors) | kFpuOn;
     __asm volatile("dsb\nisb" ::: "memory");
+    guard_stack();
 
     const std::uint32_t* from = &_data_load;
     for (std::uint32_t* to = &_data_start; to < &_data_end; ++to, ++from) {

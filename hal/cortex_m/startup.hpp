@@ -15,17 +15,30 @@ using Handler = void (*)();
 /// What the processor knew when it faulted, kept across the reset that follows.
 struct FaultRecord {
     std::uint32_t magic;
-    std::uint32_t exception;  ///< number: 2 NMI (watchdog), 3 hard fault, 4 memory, 5 bus, 6 usage
+    std::uint32_t exception;  ///< number: 2 NMI (watchdog), 3 hard fault, 15 SysTick (step_guard); kSilentReset
     std::uint32_t pc;
     std::uint32_t lr;
     std::uint32_t cause;    ///< CFSR
     std::uint32_t address;  ///< BFAR or MMFAR, whichever the cause says is valid; else 0
     std::uint32_t count;    ///< faults since power-on
+    std::uint32_t streak;   ///< of them since forgive_faults()
     std::uint32_t check;    ///< sum of the above, so that what RAM holds at power-on is not taken for one
 };
 
-/// The record of the fault that led to this start; false after power-on. It is marked as read.
+/// FaultRecord::exception of a reset that came without a fault: the processor knew nothing.
+inline constexpr std::uint32_t kSilentReset = 0x200;
+
+/// The record of the fault that led to this start; false after power-on. It is marked as read; the counts stay.
 [[nodiscard]] bool take_fault_record(FaultRecord& out) noexcept;
+/// Enters a watchdog's reset into the record; false where a fault has done so before it.
+[[nodiscard]] bool note_silent_reset() noexcept;
+/// The streak of faults is over: this start has proved itself.
+void forgive_faults() noexcept;
+/// No fault since power-on: the counts start again.
+void forget_faults() noexcept;
+
+/// From here on, until the next start, a fault calls jink_on_fault: what that needs is there.
+void let_faults_speak() noexcept;
 
 /// Bytes of stack that were ever used, by the paint that start-up left on it. O(stack).
 [[nodiscard]] std::size_t stack_used() noexcept;
@@ -39,7 +52,9 @@ void wait_for_interrupt() noexcept;
 /// SysTick's interrupt every `ticks` (1..2^24) of the processor clock: something to wake up by.
 void start_systick(std::uint32_t ticks) noexcept;
 
-/// Called by the fault handler once its record is kept; the image sends its last words there. The reset follows.
+/// Called by the fault handler once its record is kept, with interrupts off, on an empty stack, if let_faults_speak()
+/// was called since the start; the image sends its last words there. The reset follows. A fault within it, or before
+/// let_faults_speak(), leads to the reset at once.
 extern "C" void jink_on_fault(const FaultRecord& record);
 
 /// The image's program; it does not return. Not called main(), which C++ keeps to itself.

@@ -156,11 +156,16 @@ public:
         registers_.write(kMasterStatus, kErrorInterrupt);
     }
 
-    /// Looks at the state when no interrupt tells: the return from bus off raises none. Once per tick. O(1).
+    /// Looks at the state when no interrupt tells: the return from bus off raises none, nor does that from error
+    /// passive. Once per tick. O(1).
     void service() noexcept
     {
-        if (state_.load(std::memory_order_relaxed) == CanState::bus_off && (registers_.read(kErrors) & kBusOff) == 0) {
+        const CanState before = state_.load(std::memory_order_relaxed);
+        const std::uint32_t errors = registers_.read(kErrors);
+        if (before == CanState::bus_off && (errors & kBusOff) == 0) {
             count(restarts_);
+            state_.store(CanState::active, std::memory_order_relaxed);
+        } else if (before == CanState::error_passive && (errors & (kBusOff | kErrorPassive)) == 0) {
             state_.store(CanState::active, std::memory_order_relaxed);
         }
     }

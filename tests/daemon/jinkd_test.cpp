@@ -4,10 +4,12 @@
 #include <poll.h>
 #include <pty.h>
 #include <signal.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -187,7 +189,8 @@ TEST(Jinkd, HelpNamesEveryOptionOfTheReadme)
     Daemon daemon({"--help"}, scratch / "out");
     EXPECT_EQ(daemon.wait(kPatience), 0);
     const std::string help = text_of(scratch / "out");
-    for (const char* option : {"--serial", "--vehicle", "--params", "--summary", "--watchdog", "--system-id"}) {
+    for (const char* option :
+         {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog", "--system-id"}) {
         EXPECT_NE(help.find(option), std::string::npos) << option;
     }
 }
@@ -208,6 +211,13 @@ TEST(Jinkd, RefusesWhatItCannotUse)
         {"--serial", "/dev/ptmx", "--params", file + "-that-is-not-there"},
         {"--serial", "/dev/ptmx", "--vehicle", file},
         {"--serial", "/dev/ptmx", "--system-id", "256"},
+        {"--can", ""},
+        {"--can", "a_name_that_no_interface_can_have"},
+        {"--node-id", "42"},
+        {"--serial", "/dev/ptmx", "--node-id", "42"},
+        {"--can", "can0", "--node-id", "128"},
+        {"--can", "can0", "--node-id", "-1"},
+        {"--can", "can0", "--can-bitrate", "1000000"},
     };
     for (const auto& arguments : cases) {
         Daemon daemon(arguments, scratch / "out");
@@ -222,6 +232,26 @@ TEST(Jinkd, RefusesWhatItCannotUse)
     const std::string said = text_of(scratch / "out");
     EXPECT_NE(said.find("bad.param:1"), std::string::npos) << said;
     EXPECT_NE(said.find("bad.param:2"), std::string::npos) << said;
+}
+
+TEST(Jinkd, SaysWhatIsMissingForCan)
+{
+    const int s = socket(PF_CAN, SOCK_RAW, 1);
+    const bool kernel_has_it = s >= 0 || errno != EAFNOSUPPORT;
+    if (s >= 0) {
+        close(s);
+    }
+    Scratch scratch;
+    Daemon daemon({"--can", "jink_none0"}, scratch / "out");
+    if (kernel_has_it) {
+        EXPECT_EQ(daemon.wait(milliseconds(300)), -1) << "it may come";
+        EXPECT_NE(text_of(scratch / "out").find("no such interface; going on trying"), std::string::npos);
+        daemon.signal(SIGTERM);
+        EXPECT_EQ(daemon.wait(kPatience), 0);
+    } else {
+        EXPECT_EQ(daemon.wait(kPatience), 1);
+        EXPECT_NE(text_of(scratch / "out").find("no SocketCAN (AF_CAN)"), std::string::npos);
+    }
 }
 
 TEST(Jinkd, SaysCriticalAndLeavesOnSigterm)

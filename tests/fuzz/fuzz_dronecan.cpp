@@ -66,8 +66,8 @@ private:
 
 void check(const Inbox& inbox)
 {
-    if (inbox.has_own_state) {
-        const vehicle::VehicleState& own = inbox.own_state.state;
+    if (inbox.has_bus_state) {
+        const vehicle::VehicleState& own = inbox.bus_state.state;
         JINK_FUZZ_CHECK(is_finite(own.position) && is_finite(own.velocity) && std::isfinite(own.yaw));
         JINK_FUZZ_CHECK(own.sigma_position >= 0.0F && std::isfinite(own.sigma_position));
         JINK_FUZZ_CHECK(own.sigma_velocity >= 0.0F && std::isfinite(own.sigma_velocity));

@@ -71,6 +71,7 @@ TEST(PlanOutput, JsonAgreesWithThePlanner)
     hand.problem.main_centre_offset = file.main_centre_offset;
     EXPECT_NEAR((file.main_centre_offset - Vec3(20.0F - 5.0F * when, 6.0F - 2.0F * when, 0)).norm(), 0.0F, 1e-4F);
     geometric::Settings settings;
+    settings.evaluate_all = settings.all_terms = true;
     auto result = std::make_unique<geometric::Result>();
     WorkBudget budget(120000);
     const PlanStatus status =

@@ -120,8 +120,9 @@ std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, floa
             airspace,      nullptr, k_sigma};
         Prediction prediction;
         prediction.time = mine.time;
+        WorkBudget budget(100'000);
         prediction.conflict =
-            world::predict_conflict(situation, world::way_of(situation), 0, kLookahead, prediction.what);
+            world::predict_conflict(situation, world::way_of(situation), 0, kLookahead, budget, prediction.what);
         all.push_back(prediction);
     }
     return all;

@@ -15,12 +15,23 @@ import stack  # noqa: E402
 
 MOST_FLASH = 256 * 1024
 MOST_STATIC_RAM = 64 * 1024
+MOST_COUPLED = 64 * 1024
 MOST_STACK = 8 * 1024
 ALLOCATORS = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
 
 
 def tool(name, *arguments):
     return subprocess.run(["arm-none-eabi-" + name, *arguments], check=True, capture_output=True, text=True).stdout
+
+
+def interrupt_stack(graph):
+    """The deepest handler, and what an interrupt pushes: 26 words with the floating-point registers, one more to align."""
+    return max(graph.deepest(name)[0] for name in graph.frames if re.search(r"^jink_(uart|usart|can|guard)", name)) + 27 * 4
+
+
+def stack_bound(build):
+    graph = stack.Graph(build, skip="tests/")
+    return graph.deepest("jink_main")[0] + interrupt_stack(graph)
 
 
 def main(build, image):
@@ -30,18 +41,20 @@ def main(build, image):
         print(f"{elf} was not built: skipped")
         return 77
     text, data, bss = map(int, tool("size", str(elf)).splitlines()[1].split()[:3])
+    # Memory apart from the rest, where there is some: only the processor reaches it.
+    coupled = sum(int(line.split()[1]) for line in tool("size", "-A", str(elf)).splitlines() if line.startswith(".ccm "))
+    bss -= coupled
     symbols = tool("nm", "-C", str(elf))
     allocators = sorted(set(line for line in symbols.splitlines() if ALLOCATORS.search(line)))
     sizes = {line.split()[2]: int(line.split()[0], 16) for line in symbols.splitlines() if len(line.split()) == 3}
     reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
     graph = stack.Graph(build, skip="tests/")
     deepest, chain = graph.deepest("jink_main")
-    handlers = max(graph.deepest(name)[0] for name in graph.frames if re.search(r"^jink_(uart|usart)", name))
-    # An interrupt pushes 8 words, or 26 with the floating-point registers, and one more to align.
-    interrupt = handlers + 27 * 4
+    interrupt = interrupt_stack(graph)
     rows = [
         ("flash: code, constants, initial values", text + data, MOST_FLASH),
         ("static RAM, stack included", data + bss, MOST_STATIC_RAM),
+        ("core-coupled memory", coupled, MOST_COUPLED),
         ("stack by call graph: program", deepest, None),
         ("stack by call graph: an interrupt on top", interrupt, None),
         ("stack in all", deepest + interrupt, min(reserved, MOST_STACK)),

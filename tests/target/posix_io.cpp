@@ -2,7 +2,7 @@
 // The probe as a Linux program: records on standard input, answers on standard output.
 #include <unistd.h>
 
-#include "tests/target/probe.hpp"
+#include "tests/target/probe_io.hpp"
 
 namespace jink::target {
 

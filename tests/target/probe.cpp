@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "firmware/app/parameters.hpp"
+#include "tests/target/probe_io.hpp"
+#include "tests/target/window.hpp"
 
 namespace jink::target {
 namespace {
@@ -54,15 +56,21 @@ app::Configuration configuration_of(const ProbeRecord& r) noexcept
     c.planner.simple = (r.families & 1U) != 0;
     c.planner.symmetric = (r.families & 2U) != 0;
     c.planner.retries = static_cast<std::uint8_t>(r.retries);
+    c.planner.waypoints = static_cast<std::uint16_t>(r.waypoints);
+    c.planner.security = r.swept != 0 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
+    c.planner.lookahead = c.supervisor.lookahead = r.lookahead;
+    c.k_sigma = r.k_sigma;
     c.limits.half_extents = vec(r.half);
+    c.limits.cruise_speed = r.cruise_speed;
+    c.limits.max_climb = r.max_climb;
+    c.limits.max_descent = r.max_descent;
+    c.limits.max_acceleration = r.max_acceleration;
+    c.limits.max_vertical_acceleration = r.max_vertical_acceleration;
+    c.limits.velocity_lag = r.velocity_lag;
     return c;
 }
 
 }  // namespace
-
-// Apart, and doing something: each has an address of its own.
-extern "C" __attribute__((noinline)) void jink_window_begin() { __asm volatile("" ::: "memory"); }
-extern "C" __attribute__((noinline)) void jink_window_end() { __asm volatile("nop" ::: "memory"); }
 
 struct Probe::World {
     app::Configuration configuration;
@@ -149,9 +157,7 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     const geometric::Result& result = planner_.last();
     out.candidates = static_cast<std::uint32_t>(result.candidates.size());
     out.chosen = static_cast<std::uint32_t>(result.chosen);
-    for (const geometric::Candidate& c : result.candidates) {
-        out.available += c.status == geometric::CandidateStatus::available ? 1U : 0U;
-    }
+    out.cut_short = result.cut_short ? 1U : 0U;
     out.stack_used = stack_used();
 }
 

@@ -24,15 +24,4 @@ private:
     world::Manoeuvre manoeuvre_;
 };
 
-extern "C" void jink_window_begin();
-extern "C" void jink_window_end();
-
-/// Reads all of `bytes`; false at the end of the input. By the platform.
-[[nodiscard]] bool read_all(void* bytes, std::size_t count) noexcept;
-void write_all(const void* bytes, std::size_t count) noexcept;
-[[nodiscard]] std::uint32_t stack_used() noexcept;
-
-/// Answers record after record until the input ends.
-void serve() noexcept;
-
 }  // namespace jink::target

@@ -12,9 +12,9 @@
 
 namespace jink::target {
 
-inline constexpr std::uint32_t kProbeMagic = 0x4A504201;  // "JPB", layout 1
+inline constexpr std::uint32_t kProbeMagic = 0x4A504202;  // "JPB", layout 2
 inline constexpr std::size_t kProbeTracks = 32;
-inline constexpr std::size_t kProbeObstacles = 16;
+inline constexpr std::size_t kProbeObstacles = 96;
 
 enum class ProbeKind : std::uint32_t {
     plan,    ///< geometric::Planner::plan alone
@@ -61,6 +61,16 @@ struct ProbeRecord {
     float floor;
     float ceiling;
     float keep_in;
+    std::uint32_t waypoints;
+    std::uint32_t swept;  ///< 0 time-aware security, 1 swept
+    float lookahead;
+    float k_sigma;
+    float cruise_speed;  ///< and on: the vehicle's limits
+    float max_climb;
+    float max_descent;
+    float max_acceleration;
+    float max_vertical_acceleration;
+    float velocity_lag;
     std::uint32_t track_count;
     std::uint32_t obstacle_count;
     ProbeTrack tracks[kProbeTracks];
@@ -68,7 +78,7 @@ struct ProbeRecord {
 };
 static_assert(std::is_trivially_copyable_v<ProbeRecord>);
 static_assert(sizeof(ProbeTrack) == 40 && sizeof(ProbeObstacle) == 36);
-static_assert(sizeof(ProbeRecord) == 8 * 4 + 20 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
+static_assert(sizeof(ProbeRecord) == 8 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
 
 struct ProbeAnswer {
     std::uint32_t magic;
@@ -82,7 +92,7 @@ struct ProbeAnswer {
     float cost;
     float velocity[3];        ///< command, of `update`; first velocity of the path, of `plan`
     float margin;             ///< of `update`
-    std::uint32_t available;  ///< candidates that are, of the last attempt
+    std::uint32_t cut_short;  ///< 1: work has ended before all candidates of the last plan were looked at
 };
 static_assert(std::is_trivially_copyable_v<ProbeAnswer> && sizeof(ProbeAnswer) == 14 * 4);
 

@@ -4,9 +4,11 @@
 Usage: same_choice.py BUILD_FOLDER COUNT [TARGET ...]
 
 BUILD_FOLDER holds one build per preset. The first target is the reference. A choice that differs is accepted, and
-counted, only as a tie: both targets' costs of their choices within TIE of each other.
+counted, only as a tie: both targets' costs of their choices within TIE of each other; and on a target with doubles in
+software where solids that go through libccd are near and work has ended a plan (core/base/work_units.hpp).
 """
 import pathlib
+import re
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
@@ -14,11 +16,26 @@ import cases  # noqa: E402
 import targets  # noqa: E402
 
 TIE = 1e-4
+SOFT_DOUBLES = ("stm32f405",)
+# ProbeShape: box, capsule (one that leans and overlaps the start), cylinder.
+THROUGH_LIBCCD = (1, 2, 3)
+SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/guidance.hpp"
+PLAN_BUDGET = int(re.search(r"\bplan_budget = (\d+);", SETTINGS.read_text(encoding="utf-8"))[1])
+
+
+def ran_out(probe, case, *answers):
+    """Whether work has ended a plan on the target or on the reference, which weigh libccd's doubles differently."""
+    return (probe.name in SOFT_DOUBLES and any(a.cut_short or a.work >= PLAN_BUDGET for a in answers) and
+            any(obstacle[0] in THROUGH_LIBCCD for obstacle in case.obstacles))
 
 
 def case_of(seed):
     kind = "update" if seed % 5 == 4 else "plan"
     return cases.random_case(seed, kind, tracks=1 + seed % 6, obstacles=(seed // 6) % 4, offsets=2 + 2 * (seed % 2))
+
+
+def choice(answer):
+    return answer.status, answer.kind, answer.chosen
 
 
 def main(build, count, names):
@@ -28,7 +45,7 @@ def main(build, count, names):
         return 77
     probes = [targets.open_probe(name, build) for name in names]
     names = [probe.name for probe in probes]
-    ties, differing, largest, found = 0, [], 0.0, 0
+    ties, differing, largest, found, spent = 0, [], 0.0, 0, 0
     for seed in range(count):
         case = case_of(seed)
         answers = [probe.ask(case) for probe in probes]
@@ -36,9 +53,13 @@ def main(build, count, names):
         found += reference.status == "found"
         for probe, answer in zip(probes[1:], answers[1:]):
             difference = abs(answer.cost - reference.cost)
-            largest = max(largest, difference)
-            if (answer.status, answer.chosen, answer.kind) == (reference.status, reference.chosen, reference.kind):
+            if choice(answer) == choice(reference):
+                largest = max(largest, difference)
                 continue
+            if ran_out(probe, case, answer, reference):
+                spent += 1
+                continue
+            largest = max(largest, difference)
             if answer.status == reference.status == "found" and difference <= TIE:
                 ties += 1
             else:
@@ -46,7 +67,7 @@ def main(build, count, names):
     for probe in probes:
         probe.close()
     print(f"{count} problems on {', '.join(names)}: {found} found on {names[0]}; largest difference of costs {largest:.3g}; "
-          f"{ties} ties within {TIE:g} chosen otherwise; {len(differing)} others chosen otherwise")
+          f"{ties} ties within {TIE:g} chosen otherwise; {spent} where doubles in software have spent the budget; {len(differing)} others chosen otherwise")
     print("\n".join(differing[:20]))
     return 1 if differing else 0
 

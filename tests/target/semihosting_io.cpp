@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 
-#include "hal/cortex_m/startup.hpp"
-#include "tests/target/probe.hpp"
+#include "hal/cortex_m/vector_table.hpp"
+#include "tests/target/probe_io.hpp"
 
 namespace jink::target {
 namespace {
@@ -64,20 +64,7 @@ void leave(std::uint32_t code) noexcept
     jink::target::call(jink::target::kExit, block.data());
 }
 
-struct VectorTable {
-    std::uint32_t* stack;
-    std::array<jink::hal::cortex_m::Handler, 15> handlers;
-};
-
-constexpr VectorTable make_vectors() noexcept
-{
-    VectorTable table{&jink::hal::cortex_m::_stack_top, {}};
-    table.handlers.fill(&jink::hal::cortex_m::jink_fault_handler);
-    table.handlers[0] = &jink::hal::cortex_m::jink_reset_handler;
-    return table;
-}
-
-__attribute__((section(".vectors"), used)) constinit const VectorTable vectors = make_vectors();
+__attribute__((section(".vectors"), used)) constinit const auto vectors = jink::hal::cortex_m::make_vectors<0>({});
 
 }  // namespace
 
@@ -89,6 +76,7 @@ extern "C" void jink::hal::cortex_m::jink_on_fault(const FaultRecord& record)
 
 extern "C" void jink::hal::cortex_m::jink_main()
 {
+    let_faults_speak();
     jink::target::serve();
     leave(0);
 }

@@ -39,6 +39,8 @@ HAL_PLATFORMS = ("hal/linux", "hal/memory", "hal/cmsdk", "hal/stm32f4")
 # The processor that several platforms share.
 HAL_SHARED = ("hal/cortex_m",)
 HAL_INTERFACES = ("hal",)
+# What the images of one processor share.
+IMAGES_SHARED = ("firmware/cortex_m",)
 
 # System headers that flashed code may include. No heap, no I/O, no clock, no threads behind any of them; <new> for
 # placement alone, which the images' lack of an allocator sees to.
@@ -114,7 +116,7 @@ def quoted_error(room, target, known):
     if room in known:
         return None if room_of(target) in known[room] else f"{room} may not know {room_of(target)}"
     if room.startswith("firmware/"):  # an image: all of firmware/app and what that knows, one platform
-        allowed = known["firmware/app"] | {room, *HAL_PLATFORMS, *HAL_SHARED}
+        allowed = known["firmware/app"] | {room, *HAL_PLATFORMS, *HAL_SHARED, *IMAGES_SHARED}
         return None if room_of(target) in allowed else f"{room} may not know {room_of(target)}"
     return f"{room} is not in the table of toolchain/checks/layering.py"
 

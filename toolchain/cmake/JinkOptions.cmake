@@ -12,13 +12,17 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 find_program(JINK_CCACHE ccache)
-if(JINK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+# Not for images: it does not keep the call graphs that their stack is computed from (-fcallgraph-info).
+if(JINK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT CMAKE_SYSTEM_NAME STREQUAL "Generic")
   set(CMAKE_CXX_COMPILER_LAUNCHER "${JINK_CCACHE}")
   set(CMAKE_C_COMPILER_LAUNCHER "${JINK_CCACHE}")
 endif()
 
 # No contraction of a*b+c into one rounding: host and targets must agree (docs/architecture.md).
 add_compile_options(-ffp-contract=off)
+if(CMAKE_CROSSCOMPILING)
+  add_compile_options(-g1)  # lines of code, for toolchain/report/timing; changes no instruction, and none of it is flashed
+endif()
 # Everything that sees a capacity has to see the same one.
 add_compile_definitions(${JINK_CAPACITIES})
 if(JINK_SANITIZE)

@@ -313,8 +313,10 @@ std::unique_ptr<PlanOutcome> solve_problem(const ProblemFile& file, std::uint32_
     const geometric::Problem problem = problem_of(file, storage);
     WorkBudget work(budget);
     geometric::Workspace workspace;
-    outcome->status = geometric::solve_with_retries(problem, file.settings, file.vehicle.limits, file.vehicle.airframe,
-                                                    work, workspace, outcome->result, outcome->tries);
+    geometric::Settings settings = file.settings;
+    settings.all_terms = settings.evaluate_all = true;  // to be printed
+    outcome->status = geometric::solve_with_retries(problem, settings, file.vehicle.limits, file.vehicle.airframe, work,
+                                                    workspace, outcome->result, outcome->tries);
     outcome->work = work.spent();
     return outcome;
 }

@@ -385,7 +385,7 @@ def plan_times(flights):
     axes.axvline(LATE_MS, color=PROMISE, lw=1.2, ls="--", label=f"a step is due every {LATE_MS:g} ms")
     axes.set_xscale("log")
     axes.xaxis.set_major_formatter(matplotlib.ticker.FormatStrFormatter("%g"))
-    axes.set_xlabel("wall time of a step that planned, on the machine that ran the demo [ms]")
+    axes.set_xlabel("time of a step that planned, on the machine that ran the demo [ms]")
     axes.set_ylabel("steps" if single else "flights")
     axes.legend(loc="upper center", fontsize=8.5)
     return _svg(figure)

@@ -106,7 +106,7 @@ def cards(flights):
         (f"{kept} of {len(told)}", "kept the promised distance"),
         (crashes, "of them would have collided without jink"),
         (metres(least), "smallest distance of any flight with jink"),
-        (milliseconds(longest), "longest step that planned (wall time)"),
+        (milliseconds(longest), "longest step that planned"),
     ))
 
 

@@ -21,7 +21,9 @@ LIBRARY = 200
 INDIRECT = [
     (r"5Pilot4plan", [r"10Supervisor.*6ladder"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
-    (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI"]),
+    (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
+    (r"3app6CanBus", [r"5BxCanI"]),
+    (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
     (r"MemorySerialLink|MemoryLine|memory", []),
 ]
@@ -32,7 +34,8 @@ class Graph:
         self.frames = {}
         self.calls = {}
         self.names = {}
-        self.problems = []
+        self.problems = [f"{file}: no call graph beside it" for file in sorted(pathlib.Path(build).rglob("*.obj"))
+                         if not file.relative_to(build).as_posix().startswith(skip) and not file.with_suffix(".ci").exists()]
         for file in sorted(pathlib.Path(build).rglob("*.ci")):
             if file.relative_to(build).as_posix().startswith(skip):
                 continue

@@ -7,10 +7,10 @@ import struct
 import subprocess
 import tempfile
 
-MAGIC = 0x4A504201
+MAGIC = 0x4A504202
 TRACKS = 32
-OBSTACLES = 16
-HEADER = struct.Struct("<8I20f2I")
+OBSTACLES = 96
+HEADER = struct.Struct("<8I20f2I8f2I")
 TRACK = struct.Struct("<10f")
 OBSTACLE = struct.Struct("<I8f")
 ANSWER = struct.Struct("<8I5fI")
@@ -39,6 +39,11 @@ class Case:
     floor: float = 0.0
     ceiling: float = 120.0
     keep_in: float = 500.0
+    waypoints: int = 25
+    swept: int = 0
+    lookahead: float = 8.0
+    k_sigma: float = 3.0
+    limits: tuple = (5.0, 3.0, 3.0, 5.0, 3.0, 0.25)  # cruise, climb, descent, acceleration, vertical acceleration, lag
     tracks: list = dataclasses.field(default_factory=list)  # (position, velocity, radius, sigma p, sigma v, acceleration)
     obstacles: list = dataclasses.field(default_factory=list)  # (kind, a, b, radius, yaw)
 
@@ -46,7 +51,7 @@ class Case:
         out = HEADER.pack(MAGIC, self.seed, KINDS[self.kind], self.offsets, self.extra_planes, self.families, self.retries,
                           self.bounds, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
                           *self.leg_end, self.leg_speed, *self.half, self.floor, self.ceiling, self.keep_in,
-                          len(self.tracks), len(self.obstacles))
+                          self.waypoints, self.swept, self.lookahead, self.k_sigma, *self.limits, len(self.tracks), len(self.obstacles))
         for position, velocity, *rest in self.tracks:
             out += TRACK.pack(*position, *velocity, *rest)
         out += bytes(TRACK.size * (TRACKS - len(self.tracks)))
@@ -67,14 +72,17 @@ class Answer:
     cost: float
     velocity: tuple
     margin: float
-    available: int
+    cut_short: int
     instructions: int = 0
+    by_stage: list = dataclasses.field(default_factory=list)  # in the order of the plugin's stages, where it was given any
 
 
 class Probe:
     """The probe running on a target, for as many cases as one likes. Counts instructions where `plugin` is given."""
 
-    def __init__(self, name, command, program, plugin=None, symbols="nm"):
+    PROGRAM = "jink_probe"
+
+    def __init__(self, name, command, program, plugin=None, symbols="nm", stages=None):
         self.name = name
         self.folder = tempfile.TemporaryDirectory()
         self.counts = None
@@ -82,7 +90,8 @@ class Probe:
             pipe = os.path.join(self.folder.name, "counts")
             os.mkfifo(pipe)
             begin, end = addresses(program, symbols, ["jink_window_begin", "jink_window_end"])
-            command = command[:1] + ["-plugin", f"{plugin},begin={begin:#x},end={end:#x},out={pipe}"] + command[1:]
+            told = f"{plugin},begin={begin:#x},end={end:#x},out={pipe}" + (f",stages={stages}" if stages else "")
+            command = command[:1] + ["-plugin", told] + command[1:]
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         if plugin:
             self.counts = open(pipe, encoding="ascii")
@@ -93,11 +102,12 @@ class Probe:
         data = self.process.stdout.read(ANSWER.size)
         if len(data) < ANSWER.size:
             raise RuntimeError(f"{self.name}: ended with status {self.process.wait()} in case {case.seed}")
-        magic, seed, status, candidates, chosen, work, kind, stack, cost, vx, vy, vz, margin, available = ANSWER.unpack(data)
+        magic, seed, status, candidates, chosen, work, kind, stack, cost, vx, vy, vz, margin, cut_short = ANSWER.unpack(data)
         if magic != MAGIC or seed != case.seed:
             raise RuntimeError(f"{self.name}: refuses case {case.seed}")
-        count = int(self.counts.readline()) if self.counts and case.kind != "info" else 0
-        return Answer(seed, STATUS[status], candidates, chosen, work, kind, stack, cost, (vx, vy, vz), margin, available, count)
+        count, *stages = map(int, self.counts.readline().split()) if self.counts and case.kind != "info" else (0,)
+        return Answer(seed, STATUS[status], candidates, chosen, work, kind, stack, cost, (vx, vy, vz), margin, cut_short, count,
+                      stages)
 
     def close(self):
         self.process.stdin.close()
@@ -111,20 +121,20 @@ def addresses(program, nm, names):
     return [table[name] for name in names]
 
 
-def program_of(target, build):
+def program_of(target, build, program="jink_probe"):
     bare = target in ("mps2_an500", "stm32f405")
-    return pathlib.Path(build) / target / "tests" / "target" / ("jink_probe.elf" if bare else "jink_probe")
+    return pathlib.Path(build) / target / "tests" / "target" / (program + ".elf" if bare else program)
 
 
-def is_there(target, build):
-    return os.sep in target or program_of(target, build).exists()
+def is_there(target, build, kind=Probe):
+    return os.sep in target or program_of(target, build, kind.PROGRAM).exists()
 
 
-def open_probe(target, build, plugin=None):
+def open_probe(target, build, plugin=None, stages=None, kind=Probe):
     """`target`: a preset's name, or a program's path; `build`: the folder that holds the presets' builds."""
     if os.sep in target:  # a program of this machine
-        return Probe("host", [target], target)
-    program = program_of(target, build)
+        return kind("host", [target], target)
+    program = program_of(target, build, kind.PROGRAM)
     if target in ("mps2_an500", "stm32f405"):
         machine = {"mps2_an500": "mps2-an500", "stm32f405": "netduinoplus2"}[target]
         command = ["qemu-system-arm", "-M", machine, "-display", "none", "-monitor", "none", "-serial", "null",
@@ -132,4 +142,4 @@ def open_probe(target, build, plugin=None):
     else:
         emulator = {"armhf": ["qemu-arm"], "aarch64": ["qemu-aarch64"]}.get(target, [])
         command = emulator + [str(program)]
-    return Probe(target, command, str(program), plugin)
+    return kind(target, command, str(program), plugin, stages=stages)

@@ -213,7 +213,7 @@ void Autopilot::send_scan()
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
         any = any || (scenario_.threats[i].sensed_by == SensedBy::scan && world_.visible(i));
     }
-    if (!any || !due(to_micros(1.0 / scenario_.scan.rate))) {
+    if (!any || !due(to_micros(1.0 / scenario_.scan.rate), scenario_.scan.phase)) {
         return;
     }
     ObstacleDistance message;

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 #include <fcntl.h>
@@ -92,6 +93,22 @@ bool Child::running()
         ended_ = true;
     }
     return !ended_;
+}
+
+Child::Processor Child::look(const Processor& before) const
+{
+    const std::string folder = "/proc/" + std::to_string(pid_);
+    double ran = 0.0;
+    double waited = 0.0;
+    std::ifstream(folder + "/schedstat") >> ran >> waited;
+    // PID (NAME) STATE ...
+    std::string stat;
+    std::getline(std::ifstream(folder + "/stat"), stat);
+    const std::size_t name_ends = stat.rfind(')');
+    const bool ready = name_ends != std::string::npos && stat.compare(name_ends, 3, ") R") == 0;
+    Processor now{ran * 1e-9, waited * 1e-9, false};
+    now.waiting = ready && now.ran == before.ran;
+    return now;
 }
 
 void Child::ask_to_stop() const { ::kill(pid_, SIGTERM); }

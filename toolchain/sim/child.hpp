@@ -48,6 +48,15 @@ public:
     /// True while it runs.
     [[nodiscard]] bool running();
     void ask_to_stop() const;
+    /// What the machine did to it, not what it did itself (/proc/PID/schedstat, of its first thread; nothing where the
+    /// system does not tell).
+    struct Processor {
+        double ran = 0.0;      ///< [s]
+        double waited = 0.0;   ///< ready to run, until it last got a processor [s]
+        bool waiting = false;  ///< for one at present, since the look before or longer
+    };
+    /// At present; `before`: what the look before gave.
+    [[nodiscard]] Processor look(const Processor& before) const;
     /// How it ended, in words; empty: it exited with 0. Only when it no longer runs.
     [[nodiscard]] std::string ending() const;
 

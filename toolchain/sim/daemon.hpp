@@ -15,12 +15,15 @@ struct Computer {
     [[nodiscard]] bool emulated() const noexcept { return !machine.empty(); }
 };
 
-/// Flies a scenario in real time against the real program: starts `jinkd --serial PTY` on a pseudo-terminal, or a board
-/// under emulation whose UART it is, plays the autopilot at its master end, stops jinkd with SIGTERM and wants a clean
-/// exit. Takes as long as the flight; one thread, mostly asleep.
+/// Flies a scenario against the real program. jinkd, in real time: starts `jinkd --serial PTY` on a pseudo-terminal,
+/// plays the autopilot at its master end, stops jinkd with SIGTERM and wants a clean exit; takes as long as the flight;
+/// one thread, mostly asleep; both run with real-time priority where that is permitted. An image: in a board under
+/// emulation, by the board's clock (board_flight.hpp).
 ///
-/// Both run with real-time priority where that is permitted. A flight during which the machine stood still for 0.1 s is
-/// thrown away and flown again, at most twice.
+/// A flight during which the machine stood still for 0.1 s is thrown away and flown again, at most three times; so is
+/// one that did not end as expected while the machine held a step up by more than 15 ms. What the machine did is
+/// measured at the simulator's own steps and by how long the system had the program wait for a processor: a program
+/// that is late by itself is not excused by it.
 ///
 /// @param folder  for what it prints (NAME.log) and jinkd's summary (NAME.json); must exist
 /// A program that does not start, dies, or does not stop cleanly makes the outcome `failed` and is named in

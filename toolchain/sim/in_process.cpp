@@ -5,6 +5,7 @@
 #include <array>
 #include <ctime>
 #include <memory>
+#include <ostream>
 
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -12,15 +13,14 @@
 #include "hal/memory/manual_clock.hpp"
 #include "hal/memory/memory_serial_link.hpp"
 #include "toolchain/sim/fan.hpp"
+#include "toolchain/sim/step_record.hpp"
+#include "toolchain/sim/tunnel_line.hpp"
 
 namespace jink::sim {
 namespace {
 
-constexpr Micros kTick = 20'000;
 /// The co-processor's clock has nothing to do with the autopilot's.
 constexpr std::int64_t kClockStart = 1'234'567'890;
-/// 921600 baud carry a report of 40 bytes in 0.4 ms; USB adapters add a few.
-constexpr std::int64_t kLineLatency = 1'000;
 
 class Stopwatch {
 public:
@@ -47,11 +47,53 @@ double cpu_microseconds()
     return static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
 }
 
+/// Listens in on a line: what each step reads and writes.
+class Tap final : public hal::SerialPort {
+public:
+    Tap(hal::SerialPort& line, std::ostream* steps) : line_(line), steps_(steps) {}
+
+    [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override
+    {
+        const std::size_t n = line_.read(into);
+        in_.insert(in_.end(), into.begin(), into.begin() + static_cast<std::ptrdiff_t>(n));
+        return n;
+    }
+    [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override
+    {
+        const std::size_t n = line_.write(from);
+        out_.insert(out_.end(), from.begin(), from.begin() + static_cast<std::ptrdiff_t>(n));
+        return n;
+    }
+    [[nodiscard]] hal::PortHealth health() const noexcept override { return line_.health(); }
+
+    /// Ends a step's record.
+    void note(TimePoint now)
+    {
+        if (steps_ != nullptr) {
+            const StepRecord record{kStepMagic, first_ ? 1U : 0U, now.us, static_cast<std::uint32_t>(in_.size()),
+                                    static_cast<std::uint32_t>(out_.size())};
+            steps_->write(reinterpret_cast<const char*>(&record), sizeof record);
+            steps_->write(reinterpret_cast<const char*>(in_.data()), static_cast<std::streamsize>(in_.size()));
+            steps_->write(reinterpret_cast<const char*>(out_.data()), static_cast<std::streamsize>(out_.size()));
+        }
+        first_ = false;
+        in_.clear();
+        out_.clear();
+    }
+
+private:
+    hal::SerialPort& line_;
+    std::ostream* steps_;
+    bool first_ = true;
+    std::vector<std::byte> in_;
+    std::vector<std::byte> out_;
+};
+
 /// The co-processor with its own watch on it.
 class Bench {
 public:
-    Bench(hal::SerialPort& port, hal::Watchdog& watchdog)
-        : coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, app::Parameters()))
+    Bench(hal::SerialPort& port, hal::Watchdog& watchdog, link::SensorBus* bus)
+        : coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, app::Parameters(), bus))
     {
     }
 
@@ -125,39 +167,115 @@ private:
     bool found_ = false;
 };
 
-}  // namespace
+class Cable final : public LineEnd {
+public:
+    Cable(hal::Clock& clock, std::uint64_t seed, const Timing& timing)
+        : link_(clock, seed), there_(timing, kThere), back_(timing, kBack), port_(*this)
+    {
+    }
+    std::size_t read(std::span<std::byte> into) override { return link_.a().read(into); }
+    bool write(std::span<const std::byte> bytes) override
+    {
+        set_latency(link_.a_to_b(), there_);
+        return link_.a().write(bytes) == bytes.size();
+    }
+    hal::SerialPort& port() { return port_; }
 
-Record fly_in_process(const Scenario& scenario)
+private:
+    static constexpr std::uint64_t kThere = 1;
+    static constexpr std::uint64_t kBack = 2;
+
+    /// The co-processor's end.
+    class Port final : public hal::SerialPort {
+    public:
+        explicit Port(Cable& cable) : cable_(cable) {}
+        [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override
+        {
+            return cable_.link_.b().read(into);
+        }
+        [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override
+        {
+            set_latency(cable_.link_.b_to_a(), cable_.back_);
+            return cable_.link_.b().write(from);
+        }
+        [[nodiscard]] hal::PortHealth health() const noexcept override { return cable_.link_.b().health(); }
+
+    private:
+        Cable& cable_;
+    };
+
+    static void set_latency(hal::MemoryLine& line, Delays& delays)
+    {
+        hal::LineFaults faults;
+        faults.latency_us = delays.next();
+        line.set_faults(faults);
+    }
+
+    hal::MemorySerialLink link_;
+    Delays there_;
+    Delays back_;
+    Port port_;
+};
+
+void to(hal::ManualClock& clock, Micros flown) { clock.advance(kClockStart + flown - clock.now_us()); }
+
+Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clock, LineEnd& line, Bench& bench,
+           Tap& tap)
 {
-    hal::ManualClock clock(kClockStart);
-    const auto cable = std::make_unique<hal::MemorySerialLink>(clock, scenario.seed);
-    hal::LineFaults line;
-    line.latency_us = kLineLatency;
-    cable->a_to_b().set_faults(line);
-    cable->b_to_a().set_faults(line);
-    hal::CountingWatchdog watchdog;
-    Bench bench(cable->b(), watchdog);
     Plant plant(scenario);
+    Ticks ticks(timing);
     std::array<std::byte, 4096> buffer{};
     bool overflow = false;
-
     while (!plant.finished()) {
-        plant.deliver({buffer.data(), cable->a().read(buffer)});
+        plant.deliver({buffer.data(), line.read(buffer)});
         plant.step();
-        const std::vector<std::byte> out = plant.collect();
-        overflow = overflow || cable->a().write(out) != out.size();
-        clock.advance(kStep);
-        if (plant.now() % kTick == 0) {
+        overflow = !line.write(plant.collect()) || overflow;
+        for (; ticks.next() <= plant.now(); ticks.begin()) {
+            to(clock, ticks.next());
             bench.step({clock.now_us()});
+            tap.note({clock.now_us()});
         }
+        to(clock, plant.now());
     }
     Record record = plant.record();
     record.transport = "in process";
     record.inside = bench.inside();
     if (overflow) {
-        record.faults.emplace_back("the cable could not carry the autopilot's telemetry");
+        record.faults.emplace_back("the line could not carry the autopilot's telemetry");
     }
     conclude(scenario, record);
+    return record;
+}
+
+}  // namespace
+
+Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream* steps)
+{
+    Scenario scenario = given;
+    scenario.scan.phase = timing.scan_phase;
+    scenario.traffic.phase = timing.traffic_phase;
+    hal::ManualClock clock(kClockStart);
+    hal::CountingWatchdog watchdog;
+    const auto cable = std::make_unique<Cable>(clock, scenario.seed, timing);
+    Tap tap(cable->port(), steps);
+    Bench bench(tap, watchdog, nullptr);
+    return fly(scenario, timing, clock, *cable, bench, tap);
+}
+
+Record fly_in_process(const Scenario& scenario, std::ostream* steps)
+{
+    return fly_in_process(scenario, Timing{}, steps);
+}
+
+Record fly_through_tunnel(const Scenario& scenario)
+{
+    hal::ManualClock clock(kClockStart);
+    hal::CountingWatchdog watchdog;
+    const auto line = std::make_unique<TunnelLine>(clock, scenario.seed);
+    Tap tap(line->bus().serial(), nullptr);
+    Bench bench(tap, watchdog, &line->bus());
+    Record record = fly(scenario, Timing{}, clock, *line, bench, tap);
+    record.transport = "tunnel";
     return record;
 }
 

@@ -4,13 +4,18 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iomanip>
 #include <iostream>
+#include <map>
 #include <thread>
 
 #include <CLI/CLI.hpp>
 
 #include "toolchain/sim/daemon.hpp"
+#include "toolchain/sim/envelope.hpp"
 #include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/phases.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/report.hpp"
 #include "toolchain/sim/scenario_file.hpp"
@@ -26,12 +31,16 @@ struct Options {
     std::string image;
     std::string machine;
     std::string out;
+    std::string link = "serial";
+    std::string steps;
     std::string scenarios = JINK_SCENARIOS;
     unsigned count = 50;
     std::uint64_t seed = 1;
     unsigned at_once = 24;
     bool quiet = false;
     bool judge = false;
+    bool within_phases = false;
+    Spread spread;
 };
 
 /// jinkd beside this program, or where a build folder has it.
@@ -53,6 +62,23 @@ std::vector<Scenario> load_all(const std::vector<std::string>& files)
         scenarios.push_back(load_scenario(file));
     }
     return scenarios;
+}
+
+/// In process; with a folder given, NAME.steps is left there.
+Record fly_recorded(const Scenario& scenario, const std::string& folder)
+{
+    if (folder.empty()) {
+        return fly_in_process(scenario);
+    }
+    fs::create_directories(folder);
+    const fs::path file = fs::path(folder) / (scenario.name + ".steps");
+    std::ofstream steps(file, std::ios::binary);
+    Record record = fly_in_process(scenario, &steps);
+    steps.close();
+    if (!steps) {
+        throw std::runtime_error(file.string() + " cannot be written");
+    }
+    return record;
 }
 
 /// Random flights in process, on `threads` threads, in the order of their seeds.
@@ -148,18 +174,59 @@ int fly(const Options& options)
     make_folder(options);
     std::vector<ReportedFlight> flights;
     const std::vector<Scenario> scenarios = load_all(options.files);
+    const bool tunnel = options.link == "tunnel";
     if (options.daemon.empty() && options.image.empty()) {
         for (const Scenario& scenario : scenarios) {
-            flights.push_back(report_on(scenario, fly_in_process(scenario), options.judge));
+            Record record = tunnel ? fly_through_tunnel(scenario) : fly_recorded(scenario, options.steps);
+            flights.push_back(report_on(scenario, std::move(record), options.judge));
         }
     } else {
         std::vector<Record> records =
             fly_daemons(scenarios, computer_of(options), log_folder(options), options.at_once);
         for (std::size_t i = 0; i < scenarios.size(); ++i) {
+            const std::vector<std::string> differs =
+                options.within_phases ? outside_phases(scenarios[i], records[i]) : std::vector<std::string>();
             flights.push_back(report_on(scenarios[i], std::move(records[i]), options.judge));
+            std::vector<std::string>& missing = flights.back().unmet;
+            missing.insert(missing.end(), differs.begin(), differs.end());
         }
     }
     return finish(options, flights);
+}
+
+/// Every scenario in many timings: how often each end comes, and how near it went.
+int phases(const Options& options)
+{
+    unsigned unexpected = 0;
+    for (const Scenario& scenario : load_all(options.files)) {
+        const std::vector<Record> flights = fly_phases(scenario, options.seed, options.count, options.spread);
+        std::map<std::string, unsigned> ends;
+        std::vector<double> least;
+        for (std::size_t i = 0; i < flights.size(); ++i) {
+            const Record& flight = flights[i];
+            std::string end(to_string(flight.outcome));
+            end.append(flight.given_back ? ", given back" : "").append(", ").append(to_string(flight.final_mode));
+            ++ends[end];
+            least.push_back(flight.closest.surface);
+            const std::vector<std::string> missing = unmet(scenario, flight);
+            unexpected += missing.empty() ? 0U : 1U;
+            for (const std::string& what : missing) {
+                std::cout << scenario.name << ", seed " << options.seed + i << ": " << what << "\n";
+            }
+        }
+        std::sort(least.begin(), least.end());
+        std::cout << std::left << std::setw(24) << scenario.name << std::right << std::fixed << std::setprecision(2);
+        if (!least.empty()) {
+            std::cout << " least " << std::setw(6) << least.front() << " median " << std::setw(6)
+                      << least[least.size() / 2] << " most " << std::setw(6) << least.back() << " m:";
+        }
+        for (const auto& [end, n] : ends) {
+            std::cout << "  " << n << " x " << end << ";";
+        }
+        std::cout << std::endl;
+    }
+    std::cout << unexpected << " not as expected\n";
+    return unexpected == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
 }
 
 int demo(const Options& options)
@@ -202,6 +269,17 @@ int random(const Options& options)
     return finish(options, fly_random(options.seed, options.count, 2));
 }
 
+int crowd(const Options& options)
+{
+    make_folder(options);
+    std::vector<ReportedFlight> flights;
+    for (unsigned i = 0; i < options.count; ++i) {
+        const Scenario scenario = crowded_scenario(options.seed + i);
+        flights.push_back(report_on(scenario, fly_recorded(scenario, options.steps), false));
+    }
+    return finish(options, flights);
+}
+
 }  // namespace
 
 int main(int argc, char** argv)
@@ -215,12 +293,26 @@ int main(int argc, char** argv)
         ->required()
         ->check(CLI::ExistingFile);
     fly_command->add_flag("--judge", options.judge, "search for a manoeuvre that keeps the promise, and go by that");
+    CLI::App* phases_command = cli.add_subcommand(
+        "phases", "fly scenario files in process, each of them in many phases of ticks, line and sensors");
+    phases_command->add_option("files", options.files, "scenario files")->required()->check(CLI::ExistingFile);
+    phases_command->add_flag("--sensors,!--sensors-fixed", options.spread.sensors, "vary their phases, or not");
+    phases_command->add_option("--held-up", options.spread.held_up_share, "share of ticks held up by 20 ms and more")
+        ->check(CLI::Range(0.0, 1.0));
+    phases_command->add_option("--held-up-most", options.spread.held_up_most, "and by at most this [us]")
+        ->check(CLI::Range(20'000, 1'000'000));
     CLI::App* demo_command =
         cli.add_subcommand("demo", "all scenarios against jinkd, then random encounters in process");
     demo_command->add_option("--scenarios", options.scenarios, "folder of scenario files")
         ->check(CLI::ExistingDirectory);
     CLI::App* random_command =
         cli.add_subcommand("random", "random encounters in process, each judged for avoidability");
+    CLI::App* crowd_command = cli.add_subcommand(
+        "crowd", "32 intruders at once in a ring of pillars, in process: the fullest world, not the fairest");
+    for (CLI::App* command : {fly_command, crowd_command}) {
+        command->add_option("--record-steps", options.steps,
+                            "in process: folder for NAME.steps, what each step read and wrote");
+    }
     for (CLI::App* command : {fly_command, demo_command}) {
         CLI::Option* const daemon =
             command->add_option("--daemon", options.daemon, "the program jinkd")->check(CLI::ExistingFile);
@@ -232,19 +324,41 @@ int main(int argc, char** argv)
             command->add_option("--machine", options.machine, "qemu's board for the image: mps2-an500, netduinoplus2");
         image->needs(machine);
         machine->needs(image);
+        if (command == fly_command) {
+            command
+                ->add_flag("--within-phases", options.within_phases,
+                           "real time: has to lie within the envelope of flights in process in many phases")
+                ->excludes("--judge");
+            command
+                ->add_option("--link", options.link,
+                             "in process: MAVLink over a serial cable, or through the tunnel of a DroneCAN bus")
+                ->check(CLI::IsMember({"serial", "tunnel"}))
+                ->excludes(daemon)
+                ->excludes(image);
+        }
         command->add_option("--at-once", options.at_once, "flights in real time at once")->check(CLI::Range(1, 64));
     }
-    for (CLI::App* command : {random_command, demo_command}) {
-        command->add_option("--count", options.count, "random encounters")->check(CLI::Range(0, 1000000));
+    for (CLI::App* command : {random_command, demo_command, crowd_command, phases_command}) {
+        command->add_option("--count", options.count, "random encounters, or phases")->check(CLI::Range(0, 1000000));
         command->add_option("--seed", options.seed, "of the first one");
     }
-    for (CLI::App* command : {fly_command, demo_command, random_command}) {
+    for (CLI::App* command : {fly_command, demo_command, random_command, crowd_command}) {
         command->add_option("--out", options.out, "folder for run.json and the daemon's logs");
         command->add_flag("--quiet", options.quiet, "no table");
     }
     CLI11_PARSE(cli, argc, argv);
     try {
-        return fly_command->parsed() ? fly(options) : demo_command->parsed() ? demo(options) : random(options);
+        if (fly_command->parsed()) {
+            const bool plain = options.daemon.empty() && options.image.empty() && options.link == "serial";
+            if (!options.steps.empty() && !plain) {
+                throw std::runtime_error("--record-steps is for flights in process, over the serial cable");
+            }
+            return fly(options);
+        }
+        if (phases_command->parsed()) {
+            return phases(options);
+        }
+        return demo_command->parsed() ? demo(options) : crowd_command->parsed() ? crowd(options) : random(options);
     } catch (const std::exception& e) {
         std::cerr << "jink-sim: " << e.what() << "\n";
         return EXIT_FAILURE;

@@ -46,7 +46,43 @@ Threat intruder(Random& random, const Scenario& scenario, std::size_t index)
     return threat;
 }
 
+/// Pillars shoulder to shoulder around `centre`.
+void add_ring(Scenario& s, const Vec& centre, double ring_radius)
+{
+    constexpr double kPillar = 1.0;
+    const auto count = static_cast<int>(std::ceil(std::numbers::pi * ring_radius / kPillar));
+    for (int i = 0; i < count; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / count;
+        Threat pillar;
+        pillar.name = "pillar_" + std::to_string(i + 1);
+        pillar.radius = kPillar;
+        pillar.half_height = 8.0;
+        pillar.position = centre + ring_radius * Vec(std::cos(angle), std::sin(angle), 0.0);
+        pillar.sensed_by = SensedBy::scan;
+        s.threats.push_back(pillar);
+    }
+}
+
 }  // namespace
+
+Scenario crowded_scenario(std::uint64_t seed)
+{
+    constexpr std::size_t kIntruders = 32;
+    constexpr double kMeets = 11.5;  // [s], the middle of the intruders' times
+    Random random(seed * 104729U + 29U);
+    Scenario s = random_scenario(seed);
+    s.name = "crowd_" + std::to_string(seed);
+    s.title = "32 intruders at once in a ring of pillars, seed " + std::to_string(seed);
+    s.duration = 25.0;
+    s.threats.clear();
+    for (std::size_t i = 0; i < kIntruders; ++i) {
+        s.threats.push_back(intruder(random, s, i));
+    }
+    add_ring(s, s.start_position + s.start_velocity * kMeets, uniform(random, 8.0, 20.0));
+    s.expect.outcomes = {Outcome::clear, Outcome::avoided, Outcome::braked, Outcome::breach, Outcome::collision};
+    default_radii(s);
+    return s;
+}
 
 Scenario random_scenario(std::uint64_t seed)
 {

@@ -11,4 +11,8 @@ namespace jink::sim {
 /// stack. The same seed gives the same scenario on every machine.
 [[nodiscard]] Scenario random_scenario(std::uint64_t seed);
 
+/// The fullest world that the link can bring: 32 intruders as above at once, inside a ring of pillars that fills every
+/// sector of the range scan. There may be no way out: only a broken rule of the protocol counts as unexpected.
+[[nodiscard]] Scenario crowded_scenario(std::uint64_t seed);
+
 }  // namespace jink::sim

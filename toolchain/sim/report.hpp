@@ -36,7 +36,7 @@ void print_table(std::ostream& out, const std::vector<ReportedFlight>& flights);
 /// cannot be written.
 [[nodiscard]] bool write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights);
 
-/// The same as text, without wall times when `machine_independent`: equal for equal seeds, byte by byte.
+/// The same as text, without times of steps when `machine_independent`: equal for equal seeds, byte by byte.
 [[nodiscard]] std::string run_text(const std::vector<ReportedFlight>& flights, bool machine_independent);
 
 }  // namespace jink::sim

@@ -39,12 +39,14 @@ struct TrafficSensor {
     double latency = 0.1;         ///< from measurement to arrival [s]
     double jitter = 0.0;          ///< on top, uniform [s]
     double dropout = 0.0;         ///< share of sightings that never arrive
+    Micros phase = 0;             ///< first sighting after a threat appears; not in files: timing.hpp
 };
 
 /// Level range scan.
 struct ScanSensor {
     double rate = 10.0;   ///< [Hz]
     double range = 30.0;  ///< [m]
+    Micros phase = 0;     ///< of its clock, below its period; not in files: timing.hpp
 };
 
 /// What goes wrong on purpose. Times in [s]; those left out do not happen.

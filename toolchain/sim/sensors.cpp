@@ -75,7 +75,7 @@ std::vector<Sighting> TrafficReceiver::poll()
         if (world_.scenario().threats[i].sensed_by == SensedBy::scan || !world_.visible(i)) {
             continue;
         }
-        channel.next = channel.next < 0 ? world_.appeared(i) : channel.next;
+        channel.next = channel.next < 0 ? world_.appeared(i) + world_.scenario().traffic.phase : channel.next;
         if (world_.now() >= channel.next) {
             sight(i, channel);
             channel.next += period;

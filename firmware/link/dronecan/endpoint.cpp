@@ -137,6 +137,10 @@ void Endpoint::on_fix(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         return;
     }
+    if (!options_.has_origin && !options_.first_fix_is_origin) {
+        ++diagnostics_.no_origin;
+        return;
+    }
     TimePoint stamp;
     if (!stamp_of(m.stamp, c, stamp)) {
         return;
@@ -150,7 +154,7 @@ void Endpoint::on_fix(const Context& c) noexcept
     if (!follow(fix_from_, c, changed)) {
         return;
     }
-    if (!options_.has_origin) {
+    if (!options_.has_origin) {  // and it may be the first fix itself
         options_.origin = where;
         options_.has_origin = true;
     }
@@ -159,9 +163,10 @@ void Endpoint::on_fix(const Context& c) noexcept
     own_.velocity = velocity;
     own_.sigma_position = sigma_of(m.covariance, 0);
     own_.sigma_velocity = sigma_of(m.covariance, 3);
-    c.inbox.own_state.state = own_;
-    c.inbox.own_state.estimator_reset = c.inbox.own_state.estimator_reset || changed;
-    c.inbox.has_own_state = true;
+    c.inbox.bus_state.state = own_;
+    c.inbox.bus_state.has_yaw = has_attitude_ && c.now - attitude_heard_ <= kAttitudeFresh;
+    c.inbox.bus_state.estimator_reset = c.inbox.bus_state.estimator_reset || changed;
+    c.inbox.has_bus_state = true;
 }
 
 void Endpoint::on_attitude(const Context& c) noexcept

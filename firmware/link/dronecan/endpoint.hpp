@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "firmware/link/dronecan/node.hpp"
 #include "firmware/link/mavlink/geodesy.hpp"
 
 // DroneCAN side of an inbox: what sensors and traffic receivers on the bus say, in the terms of messages.hpp (ENU, SI).
 // docs/dronecan.md is the reference for users; this is what it does with each message:
 //
-// * gnss.Fix2 with a 3D fix: own position and velocity, sigmas from the covariance when there is one. Placed about the
-//   origin that the application sets, else about the first fix. Without a 3D fix, off the earth or beyond 85 degrees of
-//   latitude, faster than 400 m/s or farther than 200 km: out_of_range.
+// * gnss.Fix2 with a 3D fix: own position and velocity (Inbox::bus_state), sigmas from the covariance when there is
+// one.
+//   Placed about the origin that the application sets; else about the first fix, or not at all (no_origin). Without a
+//   3D fix, off the earth or beyond 85 degrees of latitude, faster than 400 m/s or farther than 200 km: out_of_range.
 //   Of several receivers the first is followed, until it has given no good fix for a second; a change counts as a reset
 //   of the estimator. The others' fixes are frames_ignored. The same goes for attitudes.
 // * ahrs.Solution: attitude, taken as the turn from body (FRD) to world (NED). Not of length 1: out_of_range.
@@ -33,9 +36,10 @@ static_assert(kBeams >= 24 && kFirstBeam + kBeams <= 256);
 
 struct EndpointOptions {
     bool has_origin = false;
-    mavlink::GlobalPosition origin;  ///< of the local frame
-    bool believe_stamps = false;     ///< all sensors follow GlobalTimeSync
-    float max_stamp_age = 1.0F;      ///< older stamps, where they are believed, are refused [s]
+    GlobalPosition origin;            ///< of the local frame
+    bool believe_stamps = false;      ///< all sensors follow GlobalTimeSync
+    float max_stamp_age = 1.0F;       ///< older stamps, where they are believed, are refused [s]
+    bool first_fix_is_origin = true;  ///< where no other is given
 };
 
 class Endpoint {
@@ -50,7 +54,17 @@ public:
     /// @return a transfer of a tunnel, valid until the next call (see Tunnel); nullptr: none
     [[nodiscard]] const Transfer* receive(const Frame& frame, TimePoint now, Inbox& inbox) noexcept;
     /// Periodic work. Call every step, with the state as it is.
+    void service(TimePoint now, const BusStatus& status) noexcept { node_.service(now, status); }
     void service(TimePoint now, SystemState state) noexcept { node_.service(now, state); }
+
+    /// From now on positions are relative to `origin`, and never again to a fix of our own choosing; without one
+    /// nothing is placed (no_origin). What was told before is the caller's to forget.
+    void follow_origin(const std::optional<GlobalPosition>& origin) noexcept
+    {
+        options_.first_fix_is_origin = false;
+        options_.has_origin = origin.has_value();
+        options_.origin = origin.value_or(GlobalPosition{});
+    }
 
     /// The frame that waits to go out (nullptr: none), and taking it off once the port has accepted it.
     [[nodiscard]] const Frame* pending() const noexcept { return node_.outgoing().front(); }
@@ -65,6 +79,7 @@ public:
     void send_text(Severity severity, std::string_view text) noexcept { node_.send_text(severity, text); }
 
     [[nodiscard]] Node& node() noexcept { return node_; }
+    [[nodiscard]] const Node& node() const noexcept { return node_; }
     [[nodiscard]] bool has_origin() const noexcept { return options_.has_origin; }
     [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept { return diagnostics_; }
     [[nodiscard]] std::uint32_t beams_evicted() const noexcept { return beams_evicted_; }

@@ -124,7 +124,7 @@ const Transfer* Node::receive(const Frame& frame, TimePoint now) noexcept
     }
 }
 
-void Node::service(TimePoint now, SystemState state) noexcept
+void Node::service(TimePoint now, const BusStatus& own) noexcept
 {
     if (!started_) {
         started_ = true;
@@ -139,8 +139,9 @@ void Node::service(TimePoint now, SystemState state) noexcept
     conflict_ = conflict_ && now - last_conflict_ <= kConflictShown;
     NodeStatus status;
     status.uptime = static_cast<std::uint32_t>((now.us - start_.us) / 1'000'000);
-    status.health = std::max(health_of(state), conflict_ ? Health::warning : Health::ok);
-    status.mode = state == SystemState::boot ? Mode::initialization : Mode::operational;
+    status.health = std::max(health_of(own.state), conflict_ || own.advising_only ? Health::warning : Health::ok);
+    status.mode = own.state == SystemState::boot && !own.advising_only ? Mode::initialization : Mode::operational;
+    status.vendor_status = own.faults;
     const bool changed = status.health != status_.health || status.mode != status_.mode;
     status_ = status;
     if (!status_sent_ || changed || now - last_status_ >= kStatusPeriod) {

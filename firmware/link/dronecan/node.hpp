@@ -5,12 +5,12 @@
 
 #include "firmware/link/dronecan/allocation_client.hpp"
 #include "firmware/link/dronecan/messages.hpp"
-#include "firmware/link/dronecan/param_server.hpp"
 #include "firmware/link/dronecan/receiver.hpp"
 #include "firmware/link/dronecan/sensor_messages.hpp"
 #include "firmware/link/dronecan/time_slave.hpp"
 #include "firmware/link/dronecan/transmit_queue.hpp"
 #include "firmware/link/link.hpp"
+#include "firmware/link/param_server.hpp"
 
 namespace jink::link::dronecan {
 
@@ -79,8 +79,12 @@ public:
 
     /// Takes a frame. A transfer that is not the node's own business is returned, valid until the next call.
     [[nodiscard]] const Transfer* receive(const Frame& frame, TimePoint now) noexcept;
-    /// Periodic work. Call every step, with the state as it is.
-    void service(TimePoint now, SystemState state) noexcept;
+    /// Periodic work. Call every step, with the state as it is. Faults go out as the status' vendor-specific code, a
+    /// change of them with the next status; advising only is health `warning` at least, and operational.
+    void service(TimePoint now, const BusStatus& status) noexcept;
+    void service(TimePoint now, SystemState state) noexcept { service(now, BusStatus{state, false, 0}); }
+    /// Who answers for parameters from now on; has to outlive the node.
+    void serve(ParamServer& params) noexcept { params_ = &params; }
 
     /// Queues a message of a type in kSent. False, and counted, where there is no node id yet or a number does not fit.
     template <Described M>

@@ -1,37 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reception of what the autopilot says about itself, and sending. Sensors, traffic and requests: endpoint_sensors.cpp,
-// endpoint_requests.cpp.
+// Reception: who speaks, in which mode, by which clock. Own state and leg: endpoint_state.cpp. Sensors, traffic and
+// requests: endpoint_sensors.cpp. Sending: endpoint_sending.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
-#include <cmath>
 
-#include "firmware/link/mavlink/text.hpp"
+#include "firmware/link/mavlink/numbers.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
-constexpr std::uint8_t kAutopilotComponent = 1;
-constexpr std::uint8_t kUsualSystem = 1;
-constexpr std::uint8_t kAutopilotInvalid = 8;
 constexpr std::uint8_t kAutopilotArduPilot = 3;
 constexpr std::uint8_t kAutopilotPx4 = 12;
 constexpr std::uint8_t kTypeFixedWing = 1;
-constexpr std::uint8_t kTypeOnboardController = 18;
-constexpr std::uint8_t kArmed = 128;
-constexpr std::uint8_t kCustomModeEnabled = 1;
-constexpr std::uint8_t kLocalNed = 1;
-constexpr std::uint16_t kDoSetMode = 176;
-constexpr std::uint16_t kSetMessageInterval = 511;
-constexpr std::uint16_t kVelocityOnly = 0x0DC7;
-constexpr std::uint8_t kReal32 = 9;
-constexpr Seconds kTimesyncPeriod = 1.0F;
 /// A line this long without a byte is not in the middle of a frame any more: 20 bytes take less at 2400 baud [s].
 constexpr Seconds kSilence = 0.1F;
 /// A stamp may lie this far ahead of our clock: resolution of the wire and of the mapping [s].
 constexpr Seconds kFutureSlack = 0.03F;
-
-constexpr std::uint8_t clamp_enum(std::uint32_t value) noexcept { return static_cast<std::uint8_t>(value & 0xFFU); }
 
 }  // namespace
 
@@ -62,7 +47,8 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
     diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
                                   p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
                                   p.stale_signature + p.signature_streams;
-    const bool fetched = mission_.take_leg();
+    const bool fetched = mission_.take_leg() || leg_moved_;
+    leg_moved_ = false;
     if (fetched || leg_waits_) {
         resolve_leg(inbox);
     }
@@ -162,7 +148,8 @@ void Endpoint::note(ClockEvent event) noexcept
     ++diagnostics_.clock_relocks;
     if (event == ClockEvent::relocked_backward) {
         rebooted_ = true;
-        has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_target_ = has_mission_leg_ = leg_waits_ = false;
+        has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_target_ = has_mission_leg_ = leg_waits_ = leg_moved_ =
+            false;
         origin_rank_ = 0;
         mission_.forget();
         streams_.restart();
@@ -187,35 +174,6 @@ bool Endpoint::stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) n
     return true;
 }
 
-void Endpoint::on_timesync(const Context& c) noexcept
-{
-    Timesync m;
-    if (!decode(c.frame, m)) {
-        return;
-    }
-    const bool addressed = m.target_system == 0 || for_us(m.target_system, m.target_component);
-    if (!addressed || !from_autopilot(c.frame)) {
-        ++diagnostics_.frames_ignored;
-        return;
-    }
-    if (m.tc1 == 0) {
-        Timesync answer;
-        answer.tc1 = c.now.us * 1000;
-        answer.ts1 = m.ts1;
-        answer.target_system = c.frame.header.system_id;
-        answer.target_component = c.frame.header.component_id;
-        send(answer);
-        return;
-    }
-    // Only the answer to our newest request: others carry times that we never sent.
-    if (!timesync_asked_ || m.ts1 != last_timesync_.us * 1000) {
-        ++diagnostics_.frames_ignored;
-        return;
-    }
-    timesync_asked_ = false;
-    note(clock_.round_trip(last_timesync_.us, m.tc1 / 1000, c.now.us));
-}
-
 void Endpoint::on_command_ack(const Context& c) noexcept
 {
     CommandAck m;
@@ -233,183 +191,5 @@ void Endpoint::on_command_ack(const Context& c) noexcept
         ++diagnostics_.inbox_full;
     }
 }
-
-void Endpoint::ask_for_streams(TimePoint now) noexcept
-{
-    if (!asks_for_rates_ || autopilot_.stack == AutopilotStack::unknown) {
-        return;
-    }
-    if (const std::optional<StreamRequest> request = streams_.next(now)) {
-        CommandLong m;
-        m.command = kSetMessageInterval;
-        m.target_system = system_;
-        m.target_component = kAutopilotComponent;
-        m.param1 = static_cast<float>(request->message_id);
-        m.param2 = static_cast<float>(request->interval_us);
-        send(m);
-        ++diagnostics_.rate_requests;
-    }
-}
-
-void Endpoint::service(TimePoint now) noexcept
-{
-    if (system_ == 0) {
-        return;
-    }
-    if (now - last_timesync_ >= kTimesyncPeriod || last_timesync_.us == 0) {
-        last_timesync_ = now;
-        timesync_asked_ = true;
-        Timesync request;
-        request.ts1 = now.us * 1000;
-        request.target_system = system_;
-        request.target_component = kAutopilotComponent;
-        send(request);
-    }
-    ask_for_streams(now);
-    switch (mission_.next(now)) {
-    case MissionStep::list: {
-        MissionRequestList m;
-        m.target_system = system_;
-        m.target_component = kAutopilotComponent;
-        send(m);
-        break;
-    }
-    case MissionStep::item: {
-        MissionRequestInt m;
-        m.seq = mission_.wanted();
-        m.target_system = system_;
-        m.target_component = kAutopilotComponent;
-        send(m);
-        break;
-    }
-    case MissionStep::finish: {
-        MissionAck m;
-        m.target_system = system_;
-        m.target_component = kAutopilotComponent;
-        send(m);
-        break;
-    }
-    case MissionStep::none: break;
-    }
-}
-
-void Endpoint::take_back(Perishable kind) noexcept
-{
-    if (!transmit_.take_back(kind)) {
-        return;
-    }
-    switch (kind) {
-    case Perishable::setpoint: ++diagnostics_.setpoints_dropped; break;
-    case Perishable::mode_request: ++diagnostics_.requests_dropped; break;
-    case Perishable::heartbeat: ++diagnostics_.heartbeats_dropped; break;
-    case Perishable::no: break;
-    }
-}
-
-template <Message M>
-void Endpoint::send(const M& message, Perishable kind) noexcept
-{
-    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // nobody known yet to speak to
-        return;
-    }
-    take_back(kind);
-    std::array<std::byte, kMaxFrame> frame;
-    // 0 is nobody's id: until the autopilot is known, its usual one.
-    const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence_};
-    const std::size_t size =
-        signing_ != nullptr ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
-    if (!transmit_.push({frame.data(), size}, kind)) {
-        ++diagnostics_.outbox_full;
-        return;
-    }
-    ++sequence_;
-    ++diagnostics_.frames_out;
-}
-
-void Endpoint::send_heartbeat(SystemState state) noexcept
-{
-    Heartbeat m;
-    m.type = kTypeOnboardController;
-    m.autopilot = kAutopilotInvalid;
-    m.system_status = clamp_enum(static_cast<std::uint32_t>(state));
-    send(m, Perishable::heartbeat);
-}
-
-void Endpoint::send_velocity(const Vec3& velocity, TimePoint now) noexcept
-{
-    const Vec3 ned = swap_ned_enu(velocity);
-    SetPositionTargetLocalNed m;
-    m.time_boot_ms = static_cast<std::uint32_t>(now.us / 1000);
-    m.vx = ned.x();
-    m.vy = ned.y();
-    m.vz = ned.z();
-    m.type_mask = kVelocityOnly;
-    m.target_system = system_;
-    m.target_component = kAutopilotComponent;
-    m.coordinate_frame = kLocalNed;
-    send(m, Perishable::setpoint);
-}
-
-void Endpoint::send_collision(const CollisionWarning& warning) noexcept
-{
-    Collision m;
-    m.id = warning.id;
-    m.time_to_minimum_delta = warning.time_to_closest;
-    m.altitude_minimum_delta = warning.vertical_miss;
-    m.horizontal_minimum_delta = warning.horizontal_miss;
-    m.src = 0;  // from ADS-B and own sensing alike: MAV_COLLISION_SRC knows no other that fits
-    m.action = static_cast<std::uint8_t>(warning.action);
-    m.threat_level = static_cast<std::uint8_t>(warning.level);
-    send(m);
-}
-
-void Endpoint::send_text(Severity severity, std::string_view text) noexcept
-{
-    Statustext m;
-    m.severity = static_cast<std::uint8_t>(severity);
-    static_cast<void>(set_text(m.text, text));  // cutting is what the contract says
-    send(m);
-}
-
-void Endpoint::send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept
-{
-    ParamValue m;
-    m.param_value = value;
-    m.param_count = count;
-    m.param_index = index;
-    m.param_id = name;
-    m.param_type = kReal32;
-    send(m);
-}
-
-void Endpoint::acknowledge(const CommandRequest& request, CommandResult result) noexcept
-{
-    CommandAck m;
-    m.command = request.command;
-    m.result = static_cast<std::uint8_t>(result);
-    m.target_system = request.from_system;
-    m.target_component = request.from_component;
-    send(m);
-}
-
-void Endpoint::send_mode(std::uint32_t custom_mode) noexcept
-{
-    CommandLong m;
-    m.command = kDoSetMode;
-    m.target_system = system_;
-    m.target_component = kAutopilotComponent;
-    m.param1 = static_cast<float>(autopilot_.armed ? kCustomModeEnabled | kArmed : kCustomModeEnabled);
-    if (autopilot_.stack == AutopilotStack::px4) {
-        m.param2 = static_cast<float>(px4_main(custom_mode));
-        m.param3 = static_cast<float>(px4_sub(custom_mode));
-    } else {
-        m.param2 = static_cast<float>(custom_mode);
-    }
-    send(m, Perishable::mode_request);
-}
-
-void Endpoint::request_external_mode() noexcept { send_mode(external_mode(autopilot_.stack, vehicle_class_)); }
-void Endpoint::request_mode(std::uint32_t custom_mode) noexcept { send_mode(custom_mode); }
-void Endpoint::request_hold_mode() noexcept { send_mode(hold_mode(autopilot_.stack, vehicle_class_)); }
 
 }  // namespace jink::link::mavlink

@@ -29,7 +29,8 @@
 // * Origin of the local frame: GPS_GLOBAL_ORIGIN; else HOME_POSITION (its lat/lon/alt less its local x, y, z); else
 //   GLOBAL_POSITION_INT less LOCAL_POSITION_NED when both are younger than 0.2 s. Until known, ADSB_VEHICLE counts
 //   no_origin. Local plane: north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (the
-//   wrap at 180 degrees is handled). Above 85 degrees of latitude there is no origin.
+//   wrap at 180 degrees is handled). Above 85 degrees of latitude there is no origin. Another origin places the mission
+//   leg anew, and moves the traffic that waits in the inbox; what was taken out of it before is the application's.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
 //   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
 //   emitter_type 19 (point obstacle): at_rest, velocity zero.
@@ -91,7 +92,14 @@ public:
     void request_external_mode() noexcept override;
     void request_mode(std::uint32_t custom_mode) noexcept override;
     void request_hold_mode() noexcept override;
+    /// O(bytes), and a SHA-256 per frame where frames are signed.
+    [[nodiscard]] std::size_t compose_last_words(std::span<std::byte> out, bool hold,
+                                                 std::string_view text) noexcept override;
 
+    [[nodiscard]] std::optional<GlobalPosition> origin() const noexcept override
+    {
+        return origin_rank_ > 0 ? std::optional(origin_) : std::nullopt;
+    }
     [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept override { return diagnostics_; }
     [[nodiscard]] const ParserDiagnostics& parser_diagnostics() const noexcept { return parser_.diagnostics(); }
     /// 0 until an autopilot was heard.
@@ -134,12 +142,15 @@ private:
     [[nodiscard]] bool stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) noexcept;
     void note_heading(float heading, TimePoint now) noexcept;
     [[nodiscard]] bool knows_yaw(TimePoint now) const noexcept;
-    void set_origin(const std::optional<GlobalPosition>& origin, int rank) noexcept;
+    void set_origin(const std::optional<GlobalPosition>& origin, int rank, Inbox& inbox) noexcept;
     [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
     void resolve_leg(Inbox& inbox) noexcept;
     void lose_leg(Inbox& inbox) noexcept;
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
+    [[nodiscard]] CommandLong mode_command(std::uint32_t custom_mode) const noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
+    template <Message M>
+    [[nodiscard]] std::size_t encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept;
     void ask_for_streams(TimePoint now) noexcept;
     template <Message M>
     void send(const M& message, Perishable kind = Perishable::no) noexcept;
@@ -182,6 +193,7 @@ private:
     Vec3 target_ = Vec3::Zero();
     bool has_mission_leg_ = false;
     bool leg_waits_ = false;  ///< both ends are here, but cannot be placed yet
+    bool leg_moved_ = false;  ///< it was placed by an origin that holds no more
 };
 
 }  // namespace jink::link::mavlink

@@ -4,13 +4,10 @@
 #include <cmath>
 
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/link/mavlink/numbers.hpp"
 
 namespace jink::link::mavlink {
 namespace {
-
-constexpr std::uint8_t kFrameGlobal = 0;
-constexpr std::uint8_t kFrameLocalNed = 1;
-constexpr std::uint8_t kFrameBodyFrd = 12;
 
 // ADSB_FLAGS and ADSB_EMITTER_TYPE
 constexpr unsigned kValidCoordinates = 1;
@@ -22,8 +19,6 @@ constexpr std::uint8_t kPointObstacle = 19;
 /// Noise of a velocity whose vertical part is not known, one standard deviation [m/s]: that of a track without any
 /// (world::TrackTableSettings). Three of them hold climbs of 15 m/s; the sightings that follow narrow it down.
 constexpr float kUnknownClimb = 5.0F;
-
-constexpr std::uint8_t kReal32 = 9;
 
 constexpr std::uint16_t kUnknownDistance = 65535;
 constexpr float kCentimetre = 0.01F;

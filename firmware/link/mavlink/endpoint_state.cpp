@@ -7,17 +7,15 @@
 #include <Eigen/Geometry>
 
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/link/mavlink/numbers.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
-constexpr std::uint8_t kFrameGlobal = 0;
-constexpr std::uint8_t kFrameLocalNed = 1;
 constexpr std::uint8_t kFrameGlobalRelative = 3;
 constexpr std::uint8_t kFrameGlobalInt = 5;
 constexpr std::uint8_t kFrameGlobalRelativeInt = 6;
 constexpr std::uint8_t kFrameBodyNed = 8;
-constexpr std::uint8_t kFrameBodyFrd = 12;
 /// Own positions and speeds beyond these are no vehicle's of ours [m, m/s].
 constexpr float kLargestPosition = 200000.0F;
 constexpr float kLargestSpeed = 400.0F;
@@ -77,6 +75,7 @@ void Endpoint::deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept
     own_.stamp = stamp;
     const bool reset = inbox.own_state.estimator_reset;
     inbox.own_state.state = own_;
+    inbox.own_state.has_yaw = knows_yaw(stamp);
     inbox.own_state.estimator_reset = reset;
     inbox.has_own_state = true;
 }
@@ -191,16 +190,24 @@ void Endpoint::on_odometry(const Context& c) noexcept
     deliver_own_state(c.inbox, stamp);
 }
 
-void Endpoint::set_origin(const std::optional<GlobalPosition>& origin, int rank) noexcept
+void Endpoint::set_origin(const std::optional<GlobalPosition>& origin, int rank, Inbox& inbox) noexcept
 {
     if (!origin || !is_on_earth(*origin) || std::abs(origin->lat) > kHighestLatitude) {
         ++diagnostics_.out_of_range;
         return;
     }
-    if (rank >= origin_rank_) {
-        origin_ = *origin;
-        origin_rank_ = rank;
+    if (rank < origin_rank_) {
+        return;
     }
+    if (origin_rank_ > 0 && *origin != origin_) {
+        const Vec3 by = to_local(origin_, *origin);
+        for (TrackReport& track : inbox.tracks) {
+            track.position += by;
+        }
+        leg_moved_ = has_mission_leg_;
+    }
+    origin_ = *origin;
+    origin_rank_ = rank;
 }
 
 void Endpoint::on_global_position(const Context& c) noexcept
@@ -216,7 +223,7 @@ void Endpoint::on_global_position(const Context& c) noexcept
         return;
     }
     if (origin_rank_ == 0) {
-        set_origin(to_global(-own_.position, own), 1);
+        set_origin(to_global(-own_.position, own), 1, c.inbox);
     }
 }
 
@@ -224,7 +231,7 @@ void Endpoint::on_origin(const Context& c) noexcept
 {
     GpsGlobalOrigin m;
     static_cast<void>(decode(c.frame, m));
-    set_origin(GlobalPosition{m.latitude, m.longitude, m.altitude}, 3);
+    set_origin(GlobalPosition{m.latitude, m.longitude, m.altitude}, 3, c.inbox);
 }
 
 void Endpoint::on_home(const Context& c) noexcept
@@ -242,7 +249,7 @@ void Endpoint::on_home(const Context& c) noexcept
         return;
     }
     if (origin_rank_ < 2) {
-        set_origin(to_global(-local, home), 2);
+        set_origin(to_global(-local, home), 2, c.inbox);
     }
     home_ = local;
     has_home_ = true;

@@ -6,15 +6,11 @@
 #include <optional>
 
 #include "core/base/vec3.hpp"
+#include "firmware/link/global_position.hpp"
 
 namespace jink::link::mavlink {
 
-/// Position on the wire: degrees * 1e7, millimetres above mean sea level.
-struct GlobalPosition {
-    std::int32_t lat = 0;
-    std::int32_t lon = 0;
-    std::int32_t alt = 0;
-};
+using link::GlobalPosition;
 
 inline constexpr float kEarthRadius = 6378137.0F;  ///< [m]
 
@@ -37,6 +33,8 @@ inline constexpr std::int32_t kHighestLatitude = 850000000;
 /// [m].
 inline constexpr float kMapError = 0.05F;      ///< up to 60 degrees of latitude
 inline constexpr float kPolarMapError = 1.0F;  ///< up to kHighestLatitude
+/// And that is how far from the origin they hold [m].
+inline constexpr float kMapReach = 10'000.0F;
 
 /// Position relative to `origin` [m, ENU], on a sphere, to second order in the distance: see kMapError. Differences are
 /// taken in integers, so nothing is lost to rounding. PX4 takes a radius that is 0.11 % smaller than ours and

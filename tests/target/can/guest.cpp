@@ -21,6 +21,8 @@
 #include <unistd.h>
 
 #include "hal/linux/socket_can_port.hpp"
+#include "tests/target/can/check.hpp"
+#include "tests/target/can/daemon.hpp"
 #include "tests/target/can/netlink.hpp"
 
 namespace {
@@ -30,16 +32,6 @@ using jink::target::Netlink;
 
 int failures = 0;
 int checks = 0;
-
-void expect(bool ok, const char* what, int line)
-{
-    ++checks;
-    if (!ok) {
-        ++failures;
-        std::printf("FAILED line %d: %s\n", line, what);
-    }
-}
-#define EXPECT(condition) expect((condition), #condition, __LINE__)
 
 std::int64_t now_us()
 {
@@ -355,6 +347,15 @@ void try_controllers(Netlink& links)
 
 }  // namespace
 
+void jink::target::expect(bool ok, const char* what, int line)
+{
+    ++checks;
+    if (!ok) {
+        ++failures;
+        std::printf("FAILED line %d: %s\n", line, what);
+    }
+}
+
 int main()
 {
     ::mount("none", "/dev", "devtmpfs", 0, nullptr);
@@ -378,6 +379,9 @@ int main()
     try_down_and_up(links);
     try_refusals(links);
     try_controllers(links);
+    const bool daemon =
+        jink::target::try_daemon(links, "vcan0") && (!controllers || jink::target::try_daemon(links, "can0"));
+    std::printf("jinkd: %s\n", daemon ? "tried" : "not here, not tried");
     std::printf("%d checks, %d failed\nRESULT %s\n", checks, failures, failures == 0 ? "PASS" : "FAIL");
     ::sync();
     ::reboot(RB_POWER_OFF);

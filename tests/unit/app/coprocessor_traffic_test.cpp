@@ -44,5 +44,58 @@ TEST(CoprocessorTraffic, OfUnknownClimbIsAConflictAsEarlyAsOfKnown)
     }
 }
 
+/// A copter whose autopilot has told its home alone: `aside` metres east of where it truly lies. Something stands 40 m
+/// ahead in its way.
+struct MisplacedHome {
+    explicit MisplacedHome(float aside)
+    {
+        f.ticks = 1;  // the origin is a second away
+        f.feed(wire::heartbeat(wire::kCopterAuto, true, 3));
+        const GlobalPosition home = to_global(Vec3(aside, 0.0F, 0.0F), kOrigin).value();
+        HomePosition m;
+        m.latitude = home.lat;
+        m.longitude = home.lon;
+        m.altitude = home.alt;
+        f.feed(m);
+        f.fly(10);
+        AdsbVehicle mast = wire::adsb(9, to_global(f.position + Vec3(0.0F, 40.0F, 0.0F), kOrigin).value());
+        mast.emitter_type = 19;
+        mast.hor_velocity = mast.ver_velocity = 0;
+        f.feed(mast, 156);
+        f.fly(5);
+    }
+    static constexpr GlobalPosition kOrigin{473977420, 85455940, 488000};
+    Flight f;
+};
+
+TEST(CoprocessorTraffic, MovesWithTheOriginWithoutAnotherReport)
+{
+    for (const float aside : {30.0F, -30.0F, 200.0F}) {
+        MisplacedHome m(aside);
+        ASSERT_EQ(m.f.last.tracks, 1U);
+        ASSERT_FALSE(m.f.last.guidance.has_conflict) << "as far as can be known";
+        m.f.feed(wire::origin());
+        m.f.fly(3);
+        EXPECT_EQ(m.f.last.tracks, 1U);
+        EXPECT_TRUE(m.f.last.guidance.has_conflict) << aside;
+        EXPECT_EQ(m.f.coprocessor.diagnostics().origin_changes, 1U);
+        EXPECT_EQ(m.f.coprocessor.diagnostics().tracks_not_moved, 0U);
+        m.f.feed(wire::origin());
+        m.f.fly(3);
+        EXPECT_EQ(m.f.coprocessor.diagnostics().origin_changes, 1U) << "the same one again";
+    }
+}
+
+TEST(CoprocessorTraffic, FromBeyondTheMapIsForgottenAndCounted)
+{
+    MisplacedHome m(link::mavlink::kMapReach + 500.0F);
+    ASSERT_EQ(m.f.last.tracks, 1U);
+    m.f.feed(wire::origin());
+    m.f.fly(1);
+    EXPECT_EQ(m.f.last.tracks, 0U);
+    EXPECT_EQ(m.f.coprocessor.diagnostics().origin_changes, 1U);
+    EXPECT_EQ(m.f.coprocessor.diagnostics().tracks_not_moved, 1U);
+}
+
 }  // namespace
 }  // namespace jink::app::test

@@ -84,7 +84,11 @@ class Flight {
 public:
     static constexpr std::int64_t kTickUs = 20'000;
 
-    explicit Flight(const Parameters& parameters = {}) : coprocessor(endpoint, port, watchdog, parameters) {}
+    /// @param line  nullptr: the port of this flight
+    explicit Flight(const Parameters& parameters = {}, link::SensorBus* bus = nullptr, hal::SerialPort* line = nullptr)
+        : coprocessor(endpoint, line != nullptr ? *line : port, watchdog, parameters, bus)
+    {
+    }
 
     void prepare()
     {

@@ -262,6 +262,7 @@ std::vector<Route> routes()
         {Param::rate, 10, [](C c) { return c.setpoint_period; }, 0.1F},
         {Param::standby, 1, [](C c) { return c.standby_stream ? 1.0F : 0.0F; }, 1},
         {Param::ask_rates, 0, [](C c) { return c.ask_rates ? 1.0F : 0.0F; }, 0},
+        {Param::tell_near, 1, [](C c) { return c.tell_near ? 1.0F : 0.0F; }, 1},
         same(Param::track_radius, 2.1F, [](C c) { return c.track_radius; }),
         same(Param::point_radius, 2.2F, [](C c) { return c.point_radius; }),
         same(Param::track_sigma_p, 2.3F, [](C c) { return c.track_sigma_position; }),

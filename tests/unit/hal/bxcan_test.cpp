@@ -306,6 +306,13 @@ TEST_F(BxCanTest, ErrorsBusOffAndTheReturnAreSeenAndCountedOnce)
     model.errors = 2U;
     can.on_status();
     EXPECT_EQ(can.health().state, CanState::error_passive);
+    can.service();
+    EXPECT_EQ(can.health().state, CanState::error_passive);
+    model.errors = 0;
+    can.service();  // no interrupt tells of that
+    EXPECT_EQ(can.health().state, CanState::active);
+    model.errors = 2U;
+    can.on_status();
     model.errors = 4U | 2U | 1U;
     can.on_status();
     can.on_status();

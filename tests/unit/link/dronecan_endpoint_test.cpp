@@ -1,111 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From transfers to the inbox: places, directions and refusals; and MAVLink through the tunnel.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
-
 #include "firmware/link/mavlink/endpoint.hpp"
-#include "tests/unit/link/dronecan_tools.hpp"
+#include "tests/unit/link/dronecan_endpoint_fixture.hpp"
 
 namespace jink::link::dronecan {
 namespace {
 
 using namespace test;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr double kHalfPi = 1.5707963267948966;
-constexpr std::int32_t kLatitude = 474000000;
-constexpr std::int32_t kLongitude = 85000000;
-
-NodeOptions options_of(std::uint8_t id)
-{
-    NodeOptions options;
-    options.node = id;
-    return options;
-}
-
-class DronecanEndpoint : public testing::Test {
-protected:
-    template <Described M>
-    void give(const M& message, std::uint8_t source = 20)
-    {
-        std::uint8_t& transfer = transfers_[source];
-        for (const Frame& frame : frames_of(message, source, transfer)) {
-            static_cast<void>(endpoint.receive(frame, now, inbox));
-        }
-        transfer = static_cast<std::uint8_t>((transfer + 1U) % kTransferIds);
-    }
-    /// 111 m north of the origin per 1e-3 degrees.
-    static Fix2 fix(std::int64_t north = 0, std::int64_t east = 0)
-    {
-        Fix2 m;
-        m.latitude = (std::int64_t{kLatitude} + north) * 10;
-        m.longitude = (std::int64_t{kLongitude} + east) * 10;
-        m.height_msl = 500'000;
-        m.velocity = {3.0F, 1.0F, -0.5F};
-        m.status = Fix2::Status::fix_3d;
-        return m;
-    }
-    /// Turned by yaw (clockwise from north), then pitch (nose up), then roll (right wing down) [rad].
-    static AhrsSolution attitude(double yaw, double pitch = 0.0, double roll = 0.0)
-    {
-        const double cy = std::cos(yaw / 2), sy = std::sin(yaw / 2);
-        const double cp = std::cos(pitch / 2), sp = std::sin(pitch / 2);
-        const double cr = std::cos(roll / 2), sr = std::sin(roll / 2);
-        AhrsSolution m;
-        m.orientation = {
-            static_cast<float>(sr * cp * cy - cr * sp * sy), static_cast<float>(cr * sp * cy + sr * cp * sy),
-            static_cast<float>(cr * cp * sy - sr * sp * cy), static_cast<float>(cr * cp * cy + sr * sp * sy)};
-        return m;
-    }
-    static TrafficReport traffic()
-    {
-        TrafficReport m;
-        m.icao = 0xABCDEF;
-        m.tslc = 2;
-        m.latitude = kLatitude + 10000;  // 111.3 m north
-        m.longitude = kLongitude;
-        m.altitude = 530.0F;
-        m.velocity = {10.0F, -20.0F, 2.0F};
-        m.position_valid = m.velocity_valid = m.vertical_velocity_valid = true;
-        return m;
-    }
-    static Proximity proximity(float yaw, float distance, float pitch = 0.0F)
-    {
-        Proximity m;
-        m.sensor = 7;
-        m.reading = Proximity::Reading::good;
-        m.yaw = yaw;
-        m.pitch = pitch;
-        m.distance = distance;
-        return m;
-    }
-    static RangeMeasurement measurement(std::int8_t pitch = 0, std::int8_t yaw = 0)
-    {
-        RangeMeasurement m;
-        m.sensor = 3;
-        m.roll_pitch_yaw = {0, pitch, yaw};
-        m.orientation_defined = true;
-        m.field_of_view = 0.2F;
-        m.reading = RangeMeasurement::Reading::valid;
-        m.range = 8.0F;
-        return m;
-    }
-    const LinkDiagnostics& seen() { return endpoint.diagnostics(); }
-
-    EndpointOptions options_{true, {kLatitude, kLongitude, 480'000}, false, 1.0F};
-    Endpoint endpoint{options_of(42), options_};
-    Inbox inbox;
-    TimePoint now{10'000'000};
-    std::array<std::uint8_t, 128> transfers_{};
-};
-
-void expect_near(const Vec3& got, const Vec3& expected, float tolerance)
-{
-    EXPECT_LE((got - expected).norm(), tolerance) << got.x() << " " << got.y() << " " << got.z();
-}
 
 TEST_F(DronecanEndpoint, OwnStateIsPlacedAboutTheOrigin)
 {
@@ -115,8 +17,8 @@ TEST_F(DronecanEndpoint, OwnStateIsPlacedAboutTheOrigin)
     const float variances[] = {4.0F, 4.0F, 9.0F, 0.25F, 0.25F, 0.16F};
     std::copy(std::begin(variances), std::end(variances), m.covariance.begin());
     give(m);
-    ASSERT_TRUE(inbox.has_own_state);
-    const vehicle::VehicleState& own = inbox.own_state.state;
+    ASSERT_TRUE(inbox.has_bus_state);
+    const vehicle::VehicleState& own = inbox.bus_state.state;
     const float metres = 1e-3F * kPi / 180.0F * mavlink::kEarthRadius;
     expect_near(own.position, {metres * std::cos(47.4F * kPi / 180.0F), metres, 20.0F}, 0.05F);
     expect_near(own.velocity, {1.0F, 3.0F, 0.5F}, 1e-6F);
@@ -144,8 +46,8 @@ TEST_F(DronecanEndpoint, CovariancesOfEachForm)
             m.covariance[form.diagonal[i]] = 16.0F;
             give(m);
             const bool all = form.size == 1;
-            EXPECT_EQ(inbox.own_state.state.sigma_position, i < 3 || all ? 4.0F : 1.0F) << form.size;
-            EXPECT_EQ(inbox.own_state.state.sigma_velocity, i >= 3 || all ? 4.0F : 1.0F) << form.size;
+            EXPECT_EQ(inbox.bus_state.state.sigma_position, i < 3 || all ? 4.0F : 1.0F) << form.size;
+            EXPECT_EQ(inbox.bus_state.state.sigma_velocity, i >= 3 || all ? 4.0F : 1.0F) << form.size;
         }
     }
     Fix2 m = fix();
@@ -153,19 +55,19 @@ TEST_F(DronecanEndpoint, CovariancesOfEachForm)
     std::fill(m.covariance.begin(), m.covariance.end(), 4.0F);
     m.covariance[1] = 0.0F;  // the others stand
     give(m);
-    EXPECT_EQ(inbox.own_state.state.sigma_position, 2.0F);
+    EXPECT_EQ(inbox.bus_state.state.sigma_position, 2.0F);
     m.covariance[1] = -1.0F;
     give(m);
-    EXPECT_EQ(inbox.own_state.state.sigma_position, 0.0F);
+    EXPECT_EQ(inbox.bus_state.state.sigma_position, 0.0F);
     for (const float bad : {kNaN, -1.0F, 0.0F, kInfinity}) {
         m.covariance.resize(1);
         m.covariance[0] = bad;
         give(m);
-        EXPECT_EQ(inbox.own_state.state.sigma_position, 0.0F);
+        EXPECT_EQ(inbox.bus_state.state.sigma_position, 0.0F);
     }
     m.covariance.resize(5);
     give(m);
-    EXPECT_EQ(inbox.own_state.state.sigma_position, 0.0F);
+    EXPECT_EQ(inbox.bus_state.state.sigma_position, 0.0F);
 }
 
 TEST_F(DronecanEndpoint, WithoutAnOriginTheFirstFixIsIt)
@@ -184,7 +86,7 @@ TEST_F(DronecanEndpoint, WithoutAnOriginTheFirstFixIsIt)
         static_cast<void>(fresh.receive(frame, now, inbox));
     }
     EXPECT_TRUE(fresh.has_origin());
-    expect_near(inbox.own_state.state.position, Vec3::Zero(), 1e-6F);
+    expect_near(inbox.bus_state.state.position, Vec3::Zero(), 1e-6F);
 }
 
 TEST_F(DronecanEndpoint, OneOfSeveralReceiversIsFollowed)
@@ -192,19 +94,19 @@ TEST_F(DronecanEndpoint, OneOfSeveralReceiversIsFollowed)
     give(fix(), 20);
     give(fix(1000), 21);
     EXPECT_EQ(seen().frames_ignored, 1U);
-    EXPECT_LT(inbox.own_state.state.position.y(), 1.0F);
-    EXPECT_FALSE(inbox.own_state.estimator_reset);
+    EXPECT_LT(inbox.bus_state.state.position.y(), 1.0F);
+    EXPECT_FALSE(inbox.bus_state.estimator_reset);
     now = now + 0.6F;
     Fix2 lost = fix();
     lost.status = Fix2::Status::no_fix;
     give(lost, 20);  // a receiver without a fix is as good as none
     now = now + 0.6F;
     give(fix(1000), 21);
-    EXPECT_GT(inbox.own_state.state.position.y(), 10.0F);
-    EXPECT_TRUE(inbox.own_state.estimator_reset);
+    EXPECT_GT(inbox.bus_state.state.position.y(), 10.0F);
+    EXPECT_TRUE(inbox.bus_state.estimator_reset);
     inbox.clear();
     give(fix(1000), 21);
-    EXPECT_FALSE(inbox.own_state.estimator_reset);
+    EXPECT_FALSE(inbox.bus_state.estimator_reset);
     give(fix(), 20);
     EXPECT_EQ(seen().frames_ignored, 2U);
 
@@ -246,7 +148,7 @@ TEST_F(DronecanEndpoint, BadFixesAreRefused)
         give(m);
     }
     EXPECT_EQ(seen().not_finite, 2U);
-    EXPECT_FALSE(inbox.has_own_state);
+    EXPECT_FALSE(inbox.has_bus_state);
 }
 
 TEST_F(DronecanEndpoint, Traffic)
@@ -310,68 +212,6 @@ TEST_F(DronecanEndpoint, TheInboxHasItsLimits)
     EXPECT_EQ(seen().inbox_full, 3U);
 }
 
-TEST_F(DronecanEndpoint, ProximityLooksWhereTheBodyDoes)
-{
-    give(proximity(0.0F, 5.0F));
-    EXPECT_EQ(seen().no_origin, 1U);  // no attitude
-    give(attitude(kHalfPi));          // nose to the east
-    give(proximity(0.0F, 5.0F));
-    give(proximity(90.0F, 6.0F));        // right of the nose: south
-    give(proximity(0.0F, 7.0F, 90.0F));  // up
-    give(proximity(-90.0F, 0.0F));       // touching
-    ASSERT_EQ(inbox.readings.size(), 4U);
-    expect_near(inbox.readings[0].direction, {1.0F, 0.0F, 0.0F}, 2e-3F);
-    EXPECT_EQ(inbox.readings[0].range, 5.0F);
-    expect_near(inbox.readings[1].direction, {0.0F, -1.0F, 0.0F}, 2e-3F);
-    expect_near(inbox.readings[2].direction, {0.0F, 0.0F, 1.0F}, 2e-3F);
-    expect_near(inbox.readings[3].direction, {0.0F, 1.0F, 0.0F}, 2e-3F);
-    EXPECT_EQ(inbox.readings[3].range, 0.0F);
-
-    inbox.clear();
-    give(attitude(0.0, 0.5));  // nose up
-    give(proximity(0.0F, 5.0F));
-    expect_near(inbox.readings[0].direction, {0.0F, std::cos(0.5F), std::sin(0.5F)}, 2e-3F);
-    inbox.clear();
-    give(attitude(0.0, 0.0, 0.5));  // right wing down
-    give(proximity(90.0F, 5.0F));
-    expect_near(inbox.readings[0].direction, {std::cos(0.5F), 0.0F, -std::sin(0.5F)}, 2e-3F);
-
-    now = now + 1.001F;
-    give(proximity(0.0F, 5.0F));
-    EXPECT_EQ(seen().no_origin, 2U);  // the attitude is too old
-}
-
-TEST_F(DronecanEndpoint, BadProximityIsRefused)
-{
-    give(attitude(0.0));
-    Proximity m = proximity(0.0F, 5.0F);
-    m.reading = Proximity::Reading::no_data;
-    give(m);
-    m.reading = Proximity::Reading::not_connected;
-    give(m);
-    give(proximity(0.0F, -1.0F));
-    give(proximity(361.0F, 5.0F));
-    give(proximity(0.0F, 5.0F, 91.0F));
-    EXPECT_EQ(seen().out_of_range, 5U);
-    give(proximity(kNaN, 5.0F));
-    give(proximity(0.0F, kInfinity));
-    give(proximity(0.0F, 5.0F, kNaN));
-    EXPECT_EQ(seen().not_finite, 3U);
-    EXPECT_TRUE(inbox.readings.empty());
-}
-
-TEST_F(DronecanEndpoint, DirectionsAreUnitVectorsThoughTheWireRounds)
-{
-    AhrsSolution m = attitude(0.7, 0.3, -0.2);
-    for (float& x : m.orientation) {
-        x *= 1.04F;
-    }
-    give(m);
-    give(proximity(30.0F, 5.0F));
-    ASSERT_EQ(inbox.readings.size(), 1U);
-    EXPECT_NEAR(inbox.readings[0].direction.norm(), 1.0F, 1e-5F);
-}
-
 TEST_F(DronecanEndpoint, BadAttitudesAreRefused)
 {
     AhrsSolution m = attitude(0.0);
@@ -385,99 +225,6 @@ TEST_F(DronecanEndpoint, BadAttitudesAreRefused)
     EXPECT_EQ(seen().not_finite, 1U);
     give(proximity(0.0F, 5.0F));
     EXPECT_EQ(seen().no_origin, 1U);
-}
-
-TEST_F(DronecanEndpoint, RangeFinders)
-{
-    give(attitude(0.0));
-    give(measurement());
-    give(measurement(-6));     // nose down by 90 degrees: to the ground
-    give(measurement(0, -6));  // left: west
-    ASSERT_EQ(inbox.readings.size(), 3U);
-    expect_near(inbox.readings[0].direction, {0.0F, 1.0F, 0.0F}, 1e-6F);
-    EXPECT_EQ(inbox.readings[0].range, 8.0F);
-    EXPECT_NEAR(inbox.readings[0].half_angle, 0.1F, 1e-4F);
-    expect_near(inbox.readings[1].direction, {0.0F, 0.0F, -1.0F}, 1e-6F);
-    expect_near(inbox.readings[2].direction, {-1.0F, 0.0F, 0.0F}, 1e-6F);
-
-    inbox.clear();
-    RangeMeasurement m = measurement();
-    m.reading = RangeMeasurement::Reading::too_far;
-    m.range = 40.0F;
-    give(m);
-    EXPECT_EQ(inbox.readings[0].range, RangeScan::kNothing);
-    EXPECT_EQ(inbox.readings[0].max_range, 40.0F);
-    m.reading = RangeMeasurement::Reading::too_close;
-    m.range = 0.2F;
-    give(m);
-    EXPECT_NEAR(inbox.readings[1].range, 0.2F, 1e-4F);
-    for (const float unsaid : {kNaN, -1.0F, kInfinity}) {
-        m.range = unsaid;
-        give(m);
-        EXPECT_EQ(inbox.readings.back().range, 0.0F);  // nearer than it can see is no reason to vanish
-    }
-    m = measurement();
-    m.field_of_view = 0.0F;
-    give(m);
-    EXPECT_GT(inbox.readings.back().half_angle, 0.0F);
-}
-
-TEST_F(DronecanEndpoint, BadRangesAreRefused)
-{
-    give(attitude(0.0));
-    RangeMeasurement m = measurement();
-    m.orientation_defined = false;
-    give(m);
-    m = measurement();
-    m.reading = RangeMeasurement::Reading::undefined;
-    give(m);
-    m.reading = static_cast<RangeMeasurement::Reading>(7);
-    give(m);
-    m = measurement();
-    m.range = -0.5F;
-    give(m);
-    EXPECT_EQ(seen().out_of_range, 4U);
-    m.range = kNaN;
-    give(m);
-    m = measurement();
-    m.field_of_view = kInfinity;
-    give(m);
-    EXPECT_EQ(seen().not_finite, 2U);
-    EXPECT_TRUE(inbox.readings.empty());
-}
-
-TEST_F(DronecanEndpoint, EachDirectionOfEachSensorHasItsOwnNumber)
-{
-    give(attitude(0.0));
-    std::array<int, 256> used{};
-    const auto number = [&](float yaw, std::uint8_t source) {
-        inbox.clear();
-        give(proximity(yaw, 5.0F), source);
-        return inbox.readings[0].sensor;
-    };
-    for (int i = 0; i < 24; ++i) {
-        const std::uint8_t first = number(static_cast<float>(i) * 15.0F, 20);
-        EXPECT_EQ(number(static_cast<float>(i) * 15.0F + 5.0F, 20), first);
-        EXPECT_EQ(++used[first], 1) << i;
-    }
-    for (int i = 0; i < 22; ++i) {
-        EXPECT_EQ(++used[number(static_cast<float>(i) * 15.0F, 21)], 1) << i;
-    }
-    RangeMeasurement m = measurement();
-    for (const std::uint8_t sensor : {std::uint8_t{3}, std::uint8_t{7}}) {  // 7 is the proximity sensor's id too
-        inbox.clear();
-        m.sensor = sensor;
-        give(m, 20);
-        EXPECT_EQ(++used[inbox.readings[0].sensor], 1);
-    }
-    EXPECT_EQ(endpoint.beams_evicted(), 0U);  // 48
-    now = now + 0.01F;
-    const std::uint8_t first = number(0.0F, 20);
-    now = now + 0.01F;
-    const std::uint8_t evicting = number(0.0F, 22);  // one more: one not heard for longest gives way
-    EXPECT_NE(evicting, first);
-    EXPECT_EQ(used[evicting], 1);
-    EXPECT_EQ(endpoint.beams_evicted(), 1U);
 }
 
 TEST_F(DronecanEndpoint, StampsAreBelievedOnRequestOnly)
@@ -496,8 +243,8 @@ TEST_F(DronecanEndpoint, StampsAreBelievedOnRequestOnly)
         for (const Frame& frame : frames_of(m, 20)) {
             static_cast<void>(e.receive(frame, {10'000'000}, box));
         }
-        EXPECT_EQ(e.diagnostics().stale_stamp, box.has_own_state ? 0U : 1U);
-        return box.has_own_state ? box.own_state.state.stamp.us : -1;
+        EXPECT_EQ(e.diagnostics().stale_stamp, box.has_bus_state ? 0U : 1U);
+        return box.has_bus_state ? box.bus_state.state.stamp.us : -1;
     };
     EXPECT_EQ(run(false, 300'000), 10'000'000);
     EXPECT_EQ(run(true, 300'000), 9'700'000);

@@ -32,6 +32,16 @@ inline Bytes from_hex(std::string_view hex)
     return bytes;
 }
 
+/// A payload that tells its sender and number.
+inline Bytes long_payload(std::uint8_t number, std::size_t length = 40)
+{
+    Bytes payload(length);
+    for (std::size_t i = 0; i < length; ++i) {
+        payload[i] = static_cast<std::byte>(number + i);
+    }
+    return payload;
+}
+
 inline std::string to_hex(std::span<const std::byte> bytes)
 {
     constexpr std::string_view kDigits = "0123456789ABCDEF";

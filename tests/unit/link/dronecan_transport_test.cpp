@@ -12,16 +12,6 @@ using namespace test;
 constexpr std::array kWanted{LogMessage::kType, NodeStatus::kType, Allocation::kType, GetNodeInfoRequest::kType,
                              GetSetRequest::kType};
 
-/// A payload that tells its sender and number.
-Bytes long_payload(std::uint8_t number, std::size_t length = 40)
-{
-    Bytes payload(length);
-    for (std::size_t i = 0; i < length; ++i) {
-        payload[i] = static_cast<std::byte>(number + i);
-    }
-    return payload;
-}
-
 std::vector<Frame> log_frames(std::uint8_t source, std::uint8_t transfer, std::size_t length = 40)
 {
     return frames_of(TransferHead{LogMessage::kType, Priority::medium, source, 0, transfer},
@@ -377,52 +367,6 @@ TEST_F(DronecanReceiver, EveryFrameKeepsItsSession)
     EXPECT_NE(take(frames_of(NodeStatus{}, 101)[0]), nullptr);  // takes the place of the first status
     EXPECT_EQ(seen().sessions_evicted, 1U);
     EXPECT_EQ(feed({frames.begin() + 2, frames.end()}), 1);
-}
-
-TEST(DronecanTransmitQueue, DropsTheOldestTransfersWholeWhenFull)
-{
-    const auto push = [](TransmitQueue& queue, std::uint8_t transfer, std::size_t length) {
-        return queue.push(TransferHead{LogMessage::kType, Priority::medium, 1, 0, transfer}, long_payload(1, length));
-    };
-    for (const std::size_t count : {kTransmitFrames - 1, kTransmitFrames, kTransmitFrames + 1}) {
-        TransmitQueue queue;
-        for (std::size_t i = 0; i < count; ++i) {
-            EXPECT_TRUE(push(queue, static_cast<std::uint8_t>(i % kTransferIds), 5));
-        }
-        EXPECT_EQ(queue.size(), std::min(count, kTransmitFrames));
-        EXPECT_EQ(queue.diagnostics().transfers_dropped, count > kTransmitFrames ? 1U : 0U);
-        EXPECT_EQ(unpack(queue.front()->data[5]).transfer, count > kTransmitFrames ? 1 : 0);
-    }
-    // One of which a part has gone goes with all that is left of it.
-    TransmitQueue queue;
-    EXPECT_TRUE(push(queue, 0, 40));  // 6 frames
-    queue.pop();
-    for (std::size_t i = queue.size(); i < kTransmitFrames; ++i) {
-        EXPECT_TRUE(push(queue, 1, 5));
-    }
-    EXPECT_TRUE(push(queue, 2, 5));
-    EXPECT_EQ(queue.size(), kTransmitFrames - 4);
-    EXPECT_TRUE(unpack(queue.front()->data[5]).start);
-    EXPECT_EQ(unpack(queue.front()->data[5]).transfer, 1);
-    EXPECT_EQ(queue.diagnostics().transfers_dropped, 1U);
-    EXPECT_EQ(queue.diagnostics().frames, 1U);
-    queue.clear();
-    EXPECT_EQ(queue.front(), nullptr);
-    queue.pop();
-    EXPECT_EQ(queue.diagnostics().frames, 1U);
-}
-
-TEST(DronecanTransmitQueue, RefusesWhatCannotBeSent)
-{
-    TransmitQueue queue;
-    EXPECT_FALSE(queue.push({GetNodeInfoResponse::kType, Priority::medium, 1, 2, 0}, Bytes(kMaxPayload + 1)));
-    EXPECT_FALSE(queue.push({Allocation::kType, Priority::medium, kAnonymous, 0, 0}, Bytes(8)));
-    EXPECT_FALSE(queue.push({GetNodeInfoRequest::kType, Priority::medium, kAnonymous, 2, 0}, {}));
-    EXPECT_EQ(queue.diagnostics().transfers_refused, 3U);
-    EXPECT_EQ(queue.size(), 0U);
-    EXPECT_TRUE(queue.push({GetNodeInfoResponse::kType, Priority::medium, 1, 2, 0}, Bytes(kMaxPayload)));
-    EXPECT_EQ(queue.size(), kMaxFramesOfTransfer);
-    EXPECT_TRUE(queue.push({Allocation::kType, Priority::medium, kAnonymous, 0, 0}, Bytes(7)));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <vector>
 
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "tests/unit/link/mavlink_tools.hpp"
@@ -107,6 +108,40 @@ protected:
     Parser ears;
     TimePoint now{100'000'000};
     std::uint8_t sequence = 0;
+};
+
+/// The same, with the autopilot heard already.
+class HeardEndpointTest : public EndpointTest {
+protected:
+    void SetUp() override
+    {
+        heartbeat();
+        clear();
+    }
+    /// Runs `service` at 50 Hz for a while and collects all that was sent.
+    std::vector<Received> serve(float seconds)
+    {
+        std::vector<Received> all;
+        for (float t = 0.0F; t < seconds; t += 0.02F) {
+            wait(0.02F);
+            endpoint->service(now);
+            const auto frames = sent();
+            all.insert(all.end(), frames.begin(), frames.end());
+        }
+        return all;
+    }
+    template <Message M>
+    static std::vector<M> only(const std::vector<Received>& frames)
+    {
+        std::vector<M> found;
+        for (const Received& f : frames) {
+            M m;
+            if (decode(f.frame(), m)) {
+                found.push_back(m);
+            }
+        }
+        return found;
+    }
 };
 
 }  // namespace jink::link::mavlink::test

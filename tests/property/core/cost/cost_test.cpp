@@ -71,6 +71,27 @@ TEST(CostLaws, TimeEnergyAndPowerAgreeWithTheFormulasInDouble)
     }
 }
 
+TEST(CostLaws, SmoothnessAtEqualStepsIsThatOfTheCurve)
+{
+    for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+        Random random(seed);
+        const float step = random.uniform(0.05F, 5.0F);
+        const float size = random.uniform(0.1F, 20.0F);
+        std::vector<float> x;
+        std::vector<float> y;
+        for (std::uint64_t i = 0, n = 3 + random.below(60); i < n; ++i) {
+            x.push_back(step * static_cast<float>(i));
+            y.push_back(size * std::sin(0.2F * static_cast<float>(i)) + random.uniform(-0.1F, 0.1F));
+        }
+        for (const SmoothnessMethod method :
+             {SmoothnessMethod::curvature, SmoothnessMethod::deviation, SmoothnessMethod::second_derivative}) {
+            const float expected = smoothness(x, y, method);
+            ASSERT_NEAR(smoothness(step, y, method), expected, 2e-3F * expected + 1e-6F)
+                << "seed " << seed << " method " << static_cast<int>(method);
+        }
+    }
+}
+
 TEST(CostLaws, ClosenessAgreesWithTheFormulaInDouble)
 {
     for (std::uint64_t seed = 1; seed <= 3000; ++seed) {

@@ -19,6 +19,7 @@ Settings bare(Random& random)
     Settings settings;
     settings.check_acceleration = false;
     settings.verify_flight = false;
+    settings.evaluate_all = true;
     settings.escape_from_margin = false;
     settings.waypoints = static_cast<std::uint16_t>(8 + random.below(8));
     settings.offsets = 4;

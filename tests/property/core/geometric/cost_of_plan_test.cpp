@@ -37,6 +37,8 @@ TEST(CostOfPlan, EveryTermOfEveryAvailableCandidate)
         Settings settings;
         settings.check_acceleration = false;
         settings.verify_flight = false;
+        settings.all_terms = true;
+        settings.evaluate_all = true;
         settings.rotation_penalty = random.uniform(0.0F, 2.0F);
         settings.weights = cost::kTriedWeights[random.below(7)];
         settings.closeness = random.uniform() < 0.5F ? cost::ClosenessMethod::swept : cost::ClosenessMethod::time_aware;

@@ -8,9 +8,10 @@
 #include "core/cost/cost.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/geometry/sweep.hpp"
+#include "core/path/flight.hpp"
 
 // `solve` without anything that makes it fast: every candidate against every ball on every segment by contact_interval,
-// every flight flown alone to its end by `follow` and `advance`, then checked. Time-aware, threats and airspace, the
+// every flight flown by `follow` and `advance`, then checked. Time-aware, threats and airspace, the
 // start of the manoeuvre in the world's origin. Which candidates there are is taken over from `solve`.
 
 namespace jink::geometric {
@@ -74,13 +75,10 @@ private:
 
     float cost_of(const Candidate& c, const path::TimedPath& path) const
     {
-        std::vector<float> x;
         std::vector<float> y;
         const float step = curve_length_x(c.shape.family, 1.0F) / static_cast<float>(settings_.waypoints - 1);
         for (int i = 0; i < settings_.waypoints; ++i) {
-            const float u = step * static_cast<float>(i);
-            x.push_back(problem_.distance * u);
-            y.push_back(std::abs(c.shape.offset) * unit_offset(c.shape.family, u));
+            y.push_back(std::abs(c.shape.offset) * unit_offset(c.shape.family, step * static_cast<float>(i)));
         }
         std::vector<float> closeness;
         for (const Threat& t : problem_.threats) {
@@ -90,8 +88,9 @@ private:
         }
         cost::Terms terms;
         terms.time = path.duration();
-        terms.smoothness_penalised = cost::penalised_smoothness(cost::smoothness(x, y, settings_.smoothness),
-                                                                c.sin_alpha, settings_.rotation_penalty);
+        terms.smoothness_penalised =
+            cost::penalised_smoothness(cost::smoothness(problem_.distance * step, y, settings_.smoothness), c.sin_alpha,
+                                       settings_.rotation_penalty);
         terms.closeness = cost::combined_closeness(closeness);
         return std::min(cost::total(cost::normalise(terms, settings_.caps), settings_.weights), 1.0F);
     }
@@ -103,7 +102,9 @@ private:
         vehicle::VehicleState state;
         state.velocity = problem_.start_velocity;
         const float dt = std::max(0.2F, path.duration() / static_cast<float>(kMaxPathPoints - 13));
-        const int parts = std::max(1, static_cast<int>(std::ceil(dt / path::kFollowerPeriod - 1e-3F)));
+        const auto parts_of = [](float step, float longest) {
+            return std::max(1, static_cast<int>(std::ceil(step / longest - 1e-3F)));
+        };
         const float length = path.duration();
         const auto add = [&](float t) {
             out.back().velocity = (state.position - out.back().position) / (t - out.back().time);
@@ -112,10 +113,12 @@ private:
         for (int k = 1; length - out.back().time > kLeast * dt; ++k) {
             const float from = out.back().time;
             const float to = length - static_cast<float>(k) * dt > kLeast * dt ? static_cast<float>(k) * dt : length;
-            const float part = (to - from) / static_cast<float>(parts);
+            const int parts = parts_of(dt, from >= 3.0F ? 0.25F : path::kFollowerPeriod);
+            // Whole steps are all of the same length, whatever their ends are rounded to.
+            const float part = (to == length ? to - from : dt) / static_cast<float>(parts);
             for (int i = 0; i < parts; ++i) {
                 const float t = from + static_cast<float>(i) * part;
-                vehicle::advance(state, path::follow(path, t, state.position, limits_, settings_.gains), limits_, part);
+                vehicle::advance(state, command(path, t, part, state.position), limits_, part);
             }
             add(to);
         }
@@ -133,6 +136,23 @@ private:
             add(to + end);
         }
         return out;
+    }
+
+    /// `follow`, or what it says on average of a part that is longer than the follower's.
+    Vec3 command(const path::TimedPath& path, float t, float part, const Vec3& position) const
+    {
+        if (part <= path::kFollowerPeriod) {
+            return path::follow(path, t, position, limits_, settings_.gains);
+        }
+        const float ahead = t + limits_.velocity_lag + 0.5F * (part - path::kFollowerPeriod);
+        const auto after = [&](float at) {
+            std::size_t next = 1;
+            while (next + 1 < path.points.size() && path.points[next].time <= at) {
+                ++next;
+            }
+            return next;
+        };
+        return path::detail::command(path, t, after(t), ahead, after(ahead), position, limits_, settings_.gains);
     }
 
     CandidateStatus verdict(const path::TimedPath& path, world::ThreatRef& hit) const

@@ -24,6 +24,8 @@ Settings any_settings(Random& random)
     s.escape_from_margin = random.uniform() < 0.7F;
     s.verify_flight = random.uniform() < 0.9F;
     s.gains.max_correction = random.uniform(0.0F, 4.0F);
+    s.evaluate_all = true;
+    s.check_units = 100'000'000;
     return s;
 }
 
@@ -108,6 +110,49 @@ TEST(PlainPlanner, EveryAnswerIsTheSameToTheBit)
     for (const std::size_t status : {0U, 1U, 2U, 3U, 4U}) {
         EXPECT_GT(seen[status], 1000U) << status;
     }
+}
+
+TEST(PlainPlanner, TheChoiceIsTheSameWhereDearerCandidatesAreNotLookedAt)
+{
+    static Result all;
+    static Result few;
+    std::size_t found = 0;
+    std::size_t not_looked_at = 0;
+    for (std::uint64_t seed = 1; seed <= 20000; ++seed) {
+        RandomProblem p(seed);
+        Random random(seed * 15485863);
+        make_harder(p, random);
+        Settings settings = any_settings(random);
+        settings.check_acceleration = random.uniform() < 0.2F;
+        settings.all_terms = random.uniform() < 0.5F;
+        settings.max_cost = random.uniform() < 0.2F ? random.uniform(0.3F, 1.0F) : 1.0F;
+        WorkBudget ample(100'000'000);
+        const world::PlanStatus status = solve(p.problem, settings, p.limits, p.airframe, ample, all);
+        settings.evaluate_all = false;
+        WorkBudget as_ample(100'000'000);
+        ASSERT_EQ(solve(p.problem, settings, p.limits, p.airframe, as_ample, few), status) << "seed " << seed;
+        if (status != world::PlanStatus::found) {
+            continue;
+        }
+        ++found;
+        ASSERT_EQ(few.chosen, all.chosen) << "seed " << seed;
+        ASSERT_EQ(few.candidates[few.chosen].total, all.candidates[all.chosen].total) << "seed " << seed;
+        ASSERT_EQ(few.side, all.side) << "seed " << seed;
+        for (std::size_t k = 0; k < few.path.points.size(); ++k) {
+            ASSERT_EQ(few.path.points[k].position, all.path.points[k].position) << "seed " << seed;
+        }
+        for (std::size_t i = 0; i < few.candidates.size(); ++i) {
+            // What was looked at is judged as it is with all; nothing passes for available unseen.
+            const CandidateStatus said = few.candidates[i].status;
+            ASSERT_NE(said, CandidateStatus::available) << "seed " << seed;
+            not_looked_at += said == CandidateStatus::not_evaluated ? 1U : 0U;
+            if (said != CandidateStatus::not_evaluated) {
+                ASSERT_EQ(said, all.candidates[i].status) << "seed " << seed << " candidate " << i;
+            }
+        }
+    }
+    EXPECT_GT(found, 1000U);
+    EXPECT_GT(not_looked_at, 1000U);
 }
 
 }  // namespace

@@ -20,6 +20,8 @@ Settings settings_for(Random& random)
     settings.offset_rule = random.uniform() < 0.5F ? OffsetRule::source : OffsetRule::clearing;
     settings.check_acceleration = random.uniform() < 0.5F;
     settings.verify_flight = settings.check_acceleration;
+    settings.evaluate_all = true;
+    settings.check_units = 100'000'000;  // what is not reached depends on the order
     return settings;
 }
 

@@ -113,7 +113,7 @@ TEST_F(Convex, ContactAgreesWithLeastNormPointsInDouble)
         WorkBudget budget(10'000);
         const Contact found = swept_box_contact(c.half, c.from, c.to, c.shape, clearance, budget);
         tally.most_calls = std::max(tally.most_calls, budget.spent());
-        ASSERT_LE(budget.spent(), kSupportCallsPerQuery);
+        ASSERT_LE(budget.spent(), kUnitsPerQuery);
         tally.judge(c, clearance, found, truth.lower, truth.upper - truth.lower);
     }
     tally.report("swept_box_contact");
@@ -143,9 +143,8 @@ TEST_F(Convex, DistanceIsALowerBoundWithinItsResolution)
             ASSERT_EQ(found, 0.0F);
         }
     }
-    std::cout << "swept_box_distance: worst shortfall beyond the resolution " << worst
-              << " of the band, support calls: mean " << units / oracle::case_count(50'000) << " most " << most_units
-              << "\n";
+    std::cout << "swept_box_distance: worst shortfall beyond the resolution " << worst << " of the band, units: mean "
+              << units / oracle::case_count(50'000) << " most " << most_units << "\n";
 }
 
 TEST_F(Convex, ASpentBudgetIsNeverClear)
@@ -155,9 +154,9 @@ TEST_F(Convex, ASpentBudgetIsNeverClear)
         Case c;
         fill(random, c, kKinds[random.below(5)]);
         const float clearance = random.uniform(0.0F, c.size);
-        WorkBudget ample(10'000);
+        WorkBudget ample(kUnitsPerQuery);
         const Contact full = swept_box_contact(c.half, c.from, c.to, c.shape, clearance, ample);
-        const auto units = static_cast<std::uint32_t>(random.below(11));
+        const auto units = static_cast<std::uint32_t>(random.below(12 * units::kExactTurn));
         WorkBudget budget(units);
         const Contact found = swept_box_contact(c.half, c.from, c.to, c.shape, clearance, budget);
         ASSERT_LE(budget.spent(), units);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "core/base/work_units.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -130,8 +131,8 @@ TEST(CheckSeparation, ACutOffSearchTellsTheSameSideOfTheCut)
         const float least = world::least_separation(s, flight, 4.0F, whole).margin;
         const float cut = random.uniform(-3.0F, 6.0F);
         const auto first = static_cast<std::uint16_t>(random.below(8));  // 6 and 7: no such track
-        const world::Separation found =
-            world::least_separation(s, flight, 4.0F, part, {}, {cut, {world::ThreatKind::track, first}});
+        const world::Separation found = world::least_separation(
+            s, flight, 4.0F, part, {}, {cut, world::kSeparationCap, {world::ThreatKind::track, first}});
         if (least >= cut) {
             ASSERT_EQ(found.margin, least) << "case " << i;
         } else {
@@ -181,6 +182,67 @@ TEST(ChooseFallback, DoesNotHoldOnToContactWhereAnotherIsClear)
         ASSERT_EQ(chosen.margin, real) << "case " << i;
     }
     EXPECT_GT(tried, 500);
+}
+
+/// Predicting costs units too; what was not looked at to the end is contact.
+TEST(CheckManoeuvre, IsPaidForAndContactWithout)
+{
+    Flight f;
+    const Situation s = f.scene.situation();
+    const Manoeuvre m = along(s, {s.own.position, s.own.position + Vec3(10, 0, 0)}, Vec3(0, 1, 0));
+    WorkBudget ample(kPlenty);
+    ASSERT_GT(check_manoeuvre(s, m, Settings{}, ample).margin, 0.0F);
+    const auto parts = static_cast<std::uint32_t>(m.path.duration() / path::kFollowerPeriod);
+    ASSERT_GE(ample.spent(), parts * units::kFlightPart);
+    WorkBudget held(kPlenty);
+    ASSERT_GT(command_margin(s, Vec3(1, 0, 0), Settings{}, held), 0.0F);
+    ASSERT_GE(held.spent(), 20 * units::kCommandStep) << "4 s in steps of 0.2 s";
+    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
+        WorkBudget budget(n);
+        ASSERT_LT(check_manoeuvre(s, m, Settings{}, budget).margin, 0.0F) << n;
+    }
+    for (std::uint32_t n = 0; n < held.spent(); ++n) {
+        WorkBudget budget(n);
+        ASSERT_LT(command_margin(s, Vec3(1, 0, 0), Settings{}, budget), 0.0F) << n;
+    }
+}
+
+TEST(CheckManoeuvre, APathBeyondMeasureIsContact)
+{
+    Flight f;
+    const Situation s = f.scene.situation();
+    Manoeuvre m = along(s, {s.own.position, s.own.position + Vec3(10, 0, 0)}, Vec3(0, 1, 0));
+    m.path.points.back().time = 1e30F;
+    WorkBudget budget(kPlenty);
+    EXPECT_LT(check_manoeuvre(s, m, Settings{}, budget).margin, 0.0F);
+    EXPECT_TRUE(budget.exhausted());
+}
+
+TEST(ChooseFallback, AFixedWingsTurnIsPaidForAndNotTrustedWithout)
+{
+    Flight f;
+    f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    EXPECT_GT(fallback(f).margin, 0.0F);
+    const Fallback chosen = fallback(f, nullptr, 20 * units::kTurnStep - 1);
+    EXPECT_EQ(chosen.kind, ManoeuvreKind::hold_turn);
+    EXPECT_LT(chosen.margin, 0.0F);
+}
+
+/// However small the budget: never a margin above that of the same command looked at to the end.
+TEST(ChooseFallback, ASpentBudgetNeverMakesACommandBetter)
+{
+    Flight f;
+    for (const Vec3& at : {Vec3(3, 0, 30), Vec3(-4, 1, 31), Vec3(0, 4, 29), Vec3(1, -4, 30)}) {
+        f.scene.track(at, -0.5F * (at - f.scene.own.position), 1.0F);
+    }
+    WorkBudget ample(kPlenty);
+    const Situation s = f.scene.situation();
+    static_cast<void>(choose_fallback(s, world::way_of(s), nullptr, Settings{}, ample));
+    ASSERT_GT(ample.spent(), 1000U);
+    for (std::uint32_t n = 0; n <= ample.spent(); n += 7) {
+        const Fallback chosen = fallback(f, nullptr, n);
+        ASSERT_LE(chosen.margin, margin_of(f, chosen.command)) << n;
+    }
 }
 
 TEST(ChooseFallback, WithoutABudgetItBrakes)

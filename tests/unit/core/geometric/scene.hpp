@@ -8,13 +8,22 @@
 
 namespace jink::geometric {
 
+/// Each candidate looked at, as far as it can be.
+inline Settings every_candidate()
+{
+    Settings settings;
+    settings.evaluate_all = settings.all_terms = true;
+    settings.check_units = 1'000'000;
+    return settings;
+}
+
 /// Level leg along x at 50 m height, a main threat of radius 1 on it 20 m ahead.
 struct Scene {
     std::vector<Threat> threats{still(Vec3(20.0F, 0.0F, 50.0F), 1.0F)};
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
     Problem problem;
-    Settings settings;
+    Settings settings = every_candidate();
     vehicle::VehicleLimits limits;
     vehicle::Airframe airframe;
     Result result;

@@ -167,10 +167,58 @@ TEST(SolveStatus, WhatWasFoundBeforeTheBudgetEndedMayBeChosen)
     Scene scene;
     scene.settings.verify_flight = false;
     ASSERT_EQ(scene.run(), PlanStatus::found);
-    scene.budget = WorkBudget{24 * 9};
+    scene.budget = WorkBudget{scene.budget.spent()};  // half of it is kept
     ASSERT_EQ(scene.run(), PlanStatus::found);
     EXPECT_GT(scene.count(CandidateStatus::not_evaluated), 0U);
-    EXPECT_TRUE(scene.budget.exhausted());
+}
+
+TEST(SolveStatus, WhatIsKeptForCheckingIsEnoughForTheBestSoFar)
+{
+    // However early the budget ends among the candidates: once one of them is known to be clear it can still be flown.
+    Scene whole;
+    ASSERT_EQ(whole.run(), PlanStatus::found);
+    const std::uint32_t all = whole.budget.spent();
+    std::size_t chosen = 0;
+    for (std::uint32_t units = all / 2; units < all; units += 17) {
+        Scene scene;
+        scene.budget = WorkBudget{units};
+        const PlanStatus status = scene.run();
+        EXPECT_TRUE(status == PlanStatus::found || status == PlanStatus::budget_spent);
+        EXPECT_LE(scene.budget.spent(), units);
+        chosen += status == PlanStatus::found ? 1U : 0U;
+    }
+    EXPECT_GT(chosen, 0U);
+}
+
+TEST(CheckUnits, OneThatIsTooSmallTakesNothing)
+{
+    Scene scene;
+    scene.settings.check_units = 100;
+    EXPECT_EQ(scene.run(), PlanStatus::none_available);
+    EXPECT_GT(scene.count(CandidateStatus::not_evaluated), 0U);
+    EXPECT_EQ(scene.count(CandidateStatus::chosen), 0U);
+    EXPECT_TRUE(scene.result.cut_short);
+    scene.settings.check_units = 1000;
+    EXPECT_EQ(scene.run(), PlanStatus::found);
+    EXPECT_FALSE(scene.result.cut_short);
+}
+
+TEST(CheckUnits, BoundTheWorkOfCheckingWhateverIsInTheWay)
+{
+    Scene scene;
+    scene.settings.evaluate_all = scene.settings.all_terms = false;
+    scene.settings.simple = false;
+    scene.obstacles = {{1, geometry::make_box(Vec3(43.0F, 0.0F, 50.0F), Vec3(1.0F, 60.0F, 60.0F))}};
+    std::uint32_t before = 0;
+    for (const std::uint32_t units : {0U, 300U, 1000U, 3000U}) {
+        scene.settings.check_units = units;
+        scene.budget = WorkBudget{1'000'000};
+        EXPECT_EQ(scene.run(), PlanStatus::none_available) << units;
+        const std::uint32_t spent = scene.budget.spent();
+        EXPECT_GE(spent, before);
+        before = units == 0 ? spent : before;  // what comes before the checks
+        EXPECT_LE(spent, before + 2 * units);  // twice for one solid
+    }
 }
 
 TEST(SolveStatus, EveryBudgetGivesAnAnswerThatIsSafe)

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -25,13 +26,13 @@ std::array<Shape, 5> one_of_each(const Vec3& centre)
 
 Contact contact(const Vec3& from, const Vec3& to, const Shape& shape, float clearance = 0.0F)
 {
-    WorkBudget budget(kSupportCallsPerQuery);
+    WorkBudget budget(kUnitsPerQuery);
     return swept_box_contact(kHalf, from, to, shape, clearance, budget);
 }
 
 float distance(const Vec3& from, const Vec3& to, const Shape& shape, float reach = 100.0F, float resolution = 1e-4F)
 {
-    WorkBudget budget(kSupportCallsPerQuery);
+    WorkBudget budget(kUnitsPerQuery);
     return swept_box_distance(kHalf, from, to, shape, reach, resolution, budget);
 }
 
@@ -105,9 +106,9 @@ TEST(SweptBoxContact, ABudgetTooSmallIsSpentAndNeverClear)
     // Slanted and close, so that no first direction parts them.
     const Mat3 axes = Eigen::AngleAxisf(0.6F, Vec3(1.0F, 1.0F, 0.3F).normalized()).toRotationMatrix();
     const Shape shape = make_box({1.7F, 1.5F, 1.1F}, {1.0F, 0.6F, 0.4F}, axes);
-    WorkBudget ample(kSupportCallsPerQuery);
+    WorkBudget ample(kUnitsPerQuery);
     const Contact full = swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, ample);
-    ASSERT_GE(ample.spent(), 4U);
+    ASSERT_GE(ample.spent(), units::kSolidQuery + 2 * units::kExactTurn);
     for (std::uint32_t units = 0; units < ample.spent(); ++units) {
         WorkBudget budget(units);
         EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, budget), Contact::budget_spent) << units;
@@ -119,27 +120,53 @@ TEST(SweptBoxContact, ABudgetTooSmallIsSpentAndNeverClear)
     EXPECT_FALSE(exact.exhausted());
 }
 
-TEST(SweptBoxContact, ClosedFormsTakeOneUnit)
+TEST(SweptBoxContact, ClosedFormsTakeTheirWeight)
 {
-    for (const Shape& shape :
-         {make_sphere({3.0F, 0.0F, 0.0F}, 1.0F), make_capsule({3.0F, 0.0F, 0.0F}, {4.0F, 0.0F, 0.0F}, 1.0F)}) {
-        WorkBudget none(0);
-        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, none), Contact::budget_spent);
-        EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, shape, 10.0F, 0.01F, none), 0.0F);
-        WorkBudget one(1);
-        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, one), Contact::clear);
-        EXPECT_EQ(one.spent(), 1U);
+    const std::array<std::pair<Shape, std::uint32_t>, 2> weighed{
+        {{make_sphere({3.0F, 0.0F, 0.0F}, 1.0F), units::kSphereQuery},
+         {make_capsule({3.0F, 0.0F, 0.0F}, {4.0F, 0.0F, 0.0F}, 1.0F), units::kCapsuleQuery}}};
+    for (const auto& [shape, weight] : weighed) {
+        WorkBudget less(weight - 1);
+        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, less), Contact::budget_spent);
+        less = WorkBudget(weight - 1);
+        EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, shape, 10.0F, 0.01F, less), 0.0F);
+        WorkBudget exact(weight);
+        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, exact), Contact::clear);
+        EXPECT_EQ(exact.spent(), weight);
+        EXPECT_FALSE(exact.exhausted());
     }
 }
 
-TEST(SweptBoxContact, BeyondTheBoundingSphereNothingIsSpent)
+TEST(SweptBoxContact, BeyondTheBoundingSphereNoSearchIsPaidFor)
 {
-    WorkBudget none(0);
-    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, make_box({9.0F, 0.0F, 0.0F}, Vec3::Ones()), 1.0F, none),
-              Contact::clear);
-    EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, make_box({9.0F, 0.0F, 0.0F}, Vec3::Ones()), 5.0F, 0.01F, none),
-              5.0F);
-    EXPECT_FALSE(none.exhausted());
+    const Shape far = make_box({9.0F, 0.0F, 0.0F}, Vec3::Ones());
+    WorkBudget exact(2 * units::kSolidQuery);
+    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, far, 1.0F, exact), Contact::clear);
+    EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, far, 5.0F, 0.01F, exact), 5.0F);
+    EXPECT_FALSE(exact.exhausted());
+    EXPECT_EQ(exact.left(), 0U);
+    WorkBudget less(units::kSolidQuery - 1);
+    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, far, 1.0F, less), Contact::budget_spent);
+    less = WorkBudget(units::kSolidQuery - 1);
+    EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, far, 5.0F, 0.01F, less), 0.0F);
+}
+
+TEST(SweptBoxContact, AHullPaysForItsVertices)
+{
+    std::array<Vec3, 16> many;
+    for (std::size_t i = 0; i < many.size(); ++i) {
+        many[i] = kWedge[i % kWedge.size()];
+    }
+    const auto spent = [](const Shape& shape) {
+        WorkBudget budget(kUnitsPerQuery);
+        EXPECT_GT(swept_box_distance(kHalf, kZero, kZero, shape, 10.0F, 0.0F, budget), 0.0F);
+        return budget.spent() - units::kSolidQuery;
+    };
+    const Vec3 at(1.5F, 1.7F, 0.4F);
+    const std::uint32_t few = spent(make_hull(kWedge, at));
+    EXPECT_EQ(few % (units::kSearchTurn + 1), 0U);
+    EXPECT_EQ(spent(make_hull(many, at)), few / (units::kSearchTurn + 1) * (units::kSearchTurn + 4))
+        << "the same search";
 }
 
 TEST(SweptBoxDistance, OfEachKind)
@@ -168,7 +195,7 @@ TEST(SweptBoxDistance, IsZeroInContactAndCappedAtReach)
 TEST(SweptBoxDistance, IsZeroWhenTheBudgetRunsOut)
 {
     const Shape shape = make_cylinder({2.5F, -1.0F, 0.3F}, {2.0F, 2.0F, 3.0F}, 0.7F);
-    WorkBudget ample(1000);
+    WorkBudget ample(kUnitsPerQuery);
     ASSERT_GT(swept_box_distance(kHalf, kZero, Vec3::UnitZ(), shape, 10.0F, 0.0F, ample), 0.0F);
     for (std::uint32_t units = 0; units < ample.spent(); ++units) {
         WorkBudget budget(units);

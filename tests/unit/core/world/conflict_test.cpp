@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/work_units.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -106,9 +107,10 @@ struct Conflicts : testing::Test {
         scene.leg(Vec3::Zero(), Vec3(200, 0, 0), 5.0F);
         scene.own.velocity = Vec3(5, 0, 0);
     }
-    bool predict(Seconds lookahead = kAhead)
+    bool predict(Seconds lookahead = kAhead, std::uint32_t units = kPlenty)
     {
-        return predict_conflict(scene.situation(), way_of(scene.situation()), 0, lookahead, conflict);
+        WorkBudget budget(units);
+        return predict_conflict(scene.situation(), way_of(scene.situation()), 0, lookahead, budget, conflict);
     }
     bool find(std::uint32_t units = kPlenty)
     {
@@ -290,6 +292,58 @@ TEST_F(Conflicts, AWallMetAtOnceIsOneWhereverItsMiddleLies)
     scene.own.position = Vec3(40, 1.51F, 0);
     scene.obstacle(geometry::make_box(Vec3::Zero(), Vec3(100, 0.5F, 20)));
     ASSERT_TRUE(find());
+}
+
+/// Every track and every obstacle that is looked at is paid for; what was not looked at to the end is met now.
+TEST_F(Conflicts, WhereTheBudgetRunsOutThereIsOneNow)
+{
+    for (int i = 0; i < 4; ++i) {
+        scene.track(Vec3(30.0F + static_cast<float>(i), 40, 0), Vec3(0, 1, 0), 1.0F).sigma_velocity = 0.1F;
+        scene.obstacle(geometry::make_sphere(Vec3(10, -30, static_cast<float>(i)), 1.0F));
+    }
+    scene.obstacle(geometry::make_box(Vec3(-20, 3, 0), Vec3(40, 0.5F, 1)));
+    WorkBudget ample(kPlenty);
+    ASSERT_FALSE(main_conflict(scene.situation(), way_of(scene.situation()), kAhead, ample, conflict));
+    ASSERT_GE(ample.spent(), 4 * (units::kConflict + units::kConflictBall) + units::kConflictSolid);
+    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
+        ASSERT_TRUE(find(n)) << n;
+        ASSERT_EQ(conflict.time_to_loss, 0.0F) << n;
+        ASSERT_LT(conflict.margin, 0.0F) << n;
+        if (n < 4 * units::kConflict) {
+            ASSERT_EQ(conflict.threat.index, n / units::kConflict);
+            ASSERT_EQ(conflict.threat.kind, ThreatKind::track);
+        }
+    }
+    EXPECT_FALSE(find(ample.spent()));
+}
+
+TEST_F(Conflicts, ALaterConflictThatWasFoundHidesNothing)
+{
+    scene.track(Vec3(40, 0, 0), Vec3(-5, 0, 0), 1.0F);
+    ASSERT_TRUE(find());
+    ASSERT_GT(conflict.time_to_loss, 3.0F);
+    scene.track(Vec3(200, 0, 0), Vec3::Zero(), 1.0F);
+    WorkBudget first(kPlenty);
+    ASSERT_TRUE(predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, first, conflict));
+    ASSERT_TRUE(find(first.spent() + units::kConflict - 1));
+    EXPECT_EQ(conflict.time_to_loss, 0.0F);
+    EXPECT_EQ(conflict.threat.index, 1);
+    ASSERT_TRUE(find(first.spent() + units::kConflict));
+    EXPECT_EQ(conflict.threat.index, 0);
+}
+
+TEST_F(Conflicts, DrawingApartIsPaidForAndNotBelievedWithout)
+{
+    scene.track(Vec3(-1.5F, 0, 0), Vec3(-5, 0, 0), 1.0F);
+    ASSERT_FALSE(predict());
+    WorkBudget ample(kPlenty);
+    static_cast<void>(predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, ample, conflict));
+    ASSERT_GE(ample.spent(), units::kConflict + units::kConflictPart + units::kBallPart);
+    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
+        ASSERT_TRUE(predict(kAhead, n)) << n;
+        ASSERT_EQ(conflict.time_to_loss, 0.0F);
+    }
+    EXPECT_FALSE(predict(kAhead, ample.spent()));
 }
 
 TEST_F(Conflicts, ASpentBudgetIsAConflict)

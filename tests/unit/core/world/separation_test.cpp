@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/world/separation.hpp"
 
+#include <cmath>
 #include <utility>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "core/base/work_units.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
@@ -40,6 +43,58 @@ TEST(LeastSeparation, NothingAnywhereIsTheCap)
     EXPECT_EQ(found.against.kind, ThreatKind::none);
     scene.track(Vec3::Zero(), Vec3::Zero());
     EXPECT_EQ(separation(scene, {}).margin, kSeparationCap) << "an empty path goes nowhere";
+}
+
+std::uint32_t spent_on(const Scene& scene, const path::TimedPath& path)
+{
+    WorkBudget budget(kPlenty);
+    static_cast<void>(least_separation(scene.situation(), path, 100.0F, budget));
+    return budget.spent();
+}
+
+/// What costs no unit is not bounded: each piece, bound, threat, chunk of pieces and part has its weight.
+TEST(LeastSeparation, EachLoopIsPaidFor)
+{
+    const path::TimedPath path = flight({Vec3::Zero(), Vec3(1, 0, 0), Vec3(2, 0, 0)}, 1.0F);
+    Scene scene;
+    std::uint32_t spent = 3 * units::kPathPiece;
+    EXPECT_EQ(spent_on(scene, path), spent);
+    scene.airspace.has_ceiling = scene.airspace.has_floor = true;
+    scene.airspace.floor = -20.0F;
+    scene.airspace.ceiling = 20.0F;
+    spent += 3 * 2 * units::kBoundPiece;
+    EXPECT_EQ(spent_on(scene, path), spent);
+    scene.track(Vec3(900, 0, 0), Vec3::Zero());
+    scene.obstacle(geometry::make_sphere(Vec3(-900, 0, 0), 1.0F));
+    scene.obstacle(geometry::make_box(Vec3(0, 900, 0), Vec3::Ones()));
+    spent += 3 * (units::kThreat + units::kThreatChunk);
+    EXPECT_EQ(spent_on(scene, path), spent) << "far away";
+    scene.track(Vec3(1, 5, 0), Vec3::Zero());
+    spent += units::kThreat + units::kThreatChunk + 2 * units::kThreatPiece + 2 * units::kBallPart;
+    EXPECT_EQ(spent_on(scene, path), spent) << "two pieces near";
+    scene.tracks.back().sigma_velocity = 0.1F;
+    EXPECT_EQ(spent_on(scene, path), spent + 6 * units::kBallPart) << "four parts of each, while it grows";
+}
+
+TEST(LeastSeparation, LooksAtNothingWithoutABudget)
+{
+    const path::TimedPath path = flight({Vec3::Zero(), Vec3(1, 0, 0)}, 1.0F);
+    WorkBudget less(2 * units::kPathPiece - 1);
+    EXPECT_EQ(least_separation(Scene().situation(), path, 100.0F, less).margin, -kSeparationCap);
+    EXPECT_TRUE(less.exhausted());
+}
+
+TEST(SeparationAt, ASpentBudgetIsContact)
+{
+    Scene scene;
+    scene.track(Vec3(50, 0, 0), Vec3::Zero());
+    scene.obstacle(geometry::make_sphere(Vec3(0, 50, 0), 1.0F));
+    WorkBudget ample(kPlenty);
+    ASSERT_GT(separation_at(scene.situation(), Vec3::Zero(), 0.0F, ample).margin, 40.0F);
+    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
+        WorkBudget budget(n);
+        ASSERT_LT(separation_at(scene.situation(), Vec3::Zero(), 0.0F, budget).margin, 0.0F) << n;
+    }
 }
 
 TEST(LeastSeparation, HeadOnMeetsInTheMiddle)
@@ -262,29 +317,73 @@ TEST(EscapeRule, AFlightThatStartsOutsideGetsNoCredit)
     EXPECT_LT(separation(scene, straight(Vec3(1, 0, 0), 0.01F, 1.0F, 1)).margin, 0.0F);
 }
 
+/// A mast 400 m tall whose top leans 8 cm towards the flight. What it would be as an upright, thicker one must not
+/// count as a start inside: the flight starts 1 mm clear, and has no credit to go 4 cm in with.
+TEST(EscapeRule, AStartThatIsClearOfALeaningMastGetsNoCredit)
+{
+    Scene scene;
+    const Vec3 axis(-4e-4F, 0, 1.0F);
+    scene.obstacle(geometry::make_capsule(-200.0F * axis, 200.0F * axis, 0.5F));
+    const Vec3 start(-(1.0F + 0.5F + 4e-4F * 196.0F + 1e-3F), 0, 195.0F);
+    scene.limits.half_extents = Vec3::Ones();
+    EXPECT_GE(separation(scene, flight({start, start}, 1.0F)).margin, 0.0F);
+    EXPECT_LE(separation(scene, flight({start, start + Vec3(0.04F, 0, 0), start}, 0.02F)).margin, -0.03F);
+}
+
+/// Distances from solids are told apart no finer than kObstacleResolution; which side a flight starts on, is.
+TEST(EscapeRule, AStartThatIsBarelyClearOfASolidsClearanceGetsNoCredit)
+{
+    Scene scene;
+    scene.limits.half_extents = Vec3(0.5F, 0.7F, 0.3F);
+    scene.own.sigma_position = 0.3F;
+    const float clearance = scene.k_sigma * scene.own.sigma_position;
+    for (int i = 0; i < 400; ++i) {
+        const float turn = 0.37F * static_cast<float>(i);
+        const Mat3 axes = (Eigen::AngleAxisf(turn, Vec3::UnitZ()) * Eigen::AngleAxisf(0.61F * turn, Vec3::UnitX()) *
+                           Eigen::AngleAxisf(1.3F * turn, Vec3::UnitY()))
+                              .toRotationMatrix();
+        const Vec3 normal = axes.col(0);
+        const Vec3& half = scene.limits.half_extents;
+        const Vec3 corner(std::copysign(half.x(), -normal.x()), std::copysign(half.y(), -normal.y()),
+                          std::copysign(half.z(), -normal.z()));
+        const Vec3 foot = corner - (clearance + 2.0F + 5e-3F) * normal;  // 5 mm from a tower's side
+        scene.obstacles.clear();
+        scene.obstacle(geometry::make_cylinder(foot - 5.0F * axes.col(2), foot + 5.0F * axes.col(2), 2.0F));
+        ASSERT_GE(separation(scene, flight({Vec3::Zero(), 1e-3F * normal}, 1.0F)).margin, 0.0F) << i;
+        const Vec3 in = -0.03F * normal;
+        ASSERT_LE(separation(scene, flight({Vec3::Zero(), in, Vec3::Zero()}, 0.03F)).margin, -0.025F + 1e-3F) << i;
+    }
+}
+
 // --- obstacle_margin
 // -----------------------------------------------------------------------------------------------------------
 
-TEST(ObstacleMargin, ATiltedCapsuleTakenForUprightIsNoThinner)
+TEST(ObstacleMargin, OfALeaningMastIsThatOfItsTop)
 {
     const float reach = 300.0F;
     const Vec3 axis(0.0009F, 0, 1.0F);
     const geometry::Shape mast = geometry::make_capsule(-axis * reach, axis * reach, 0.5F);
-    Vec3 half;
-    float radius = 0.0F;
-    ASSERT_TRUE(as_sphere(mast, Vec3::Ones(), half, radius));
     WorkBudget budget(kPlenty);
     // At its top the axis stands 0.27 m off.
     const float margin = obstacle_margin(Vec3::Ones(), Vec3(5, 0, 295), Vec3(5, 0, 295), mast, budget);
-    EXPECT_LE(margin, 5.0F - 1.0F - 0.5F - 0.0009F * 295.0F + 1e-4F);
+    const float truth = 5.0F - 1.0F - 0.5F - 0.0009F * 296.0F;
+    EXPECT_LE(margin, truth + 1e-4F);
+    EXPECT_GE(margin, truth - 2e-3F);
 }
 
 TEST(ObstacleMargin, ASpentBudgetIsContact)
 {
-    WorkBudget none(0);
-    EXPECT_LT(obstacle_margin(Vec3::Ones(), Vec3(5, 0, 0), Vec3(6, 0, 0),
-                              geometry::make_box(Vec3::Zero(), Vec3::Ones()), none),
-              0.0F);
+    for (const geometry::Shape& shape :
+         {geometry::make_box(Vec3::Zero(), Vec3::Ones()), geometry::make_sphere(Vec3::Zero(), 1.0F)}) {
+        WorkBudget none(0);
+        EXPECT_LT(obstacle_margin(Vec3::Ones(), Vec3(5, 0, 0), Vec3(6, 0, 0), shape, none), 0.0F);
+        EXPECT_TRUE(none.exhausted());
+    }
+    WorkBudget exact(units::kSphereQuery);
+    EXPECT_GT(
+        obstacle_margin(Vec3::Ones(), Vec3(5, 0, 0), Vec3(6, 0, 0), geometry::make_sphere(Vec3::Zero(), 1.0F), exact),
+        0.0F);
+    EXPECT_EQ(exact.left(), 0U);
 }
 
 }  // namespace

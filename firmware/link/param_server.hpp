@@ -5,19 +5,19 @@
 
 #include "firmware/link/messages.hpp"
 
-namespace jink::link::dronecan {
+namespace jink::link {
 
 struct ParamEntry {
     ParamName name{};
     float value = 0.0F;
-    float initial = 0.0F;
+    float initial = 0.0F;  ///< what `erase` brings back
     float low = 0.0F;
     float high = 0.0F;
     bool integer = false;
 };
 
-/// What the node asks of whoever keeps the parameters, while it handles the request of another node. Numbers from the
-/// bus that are not finite or not exact in a float never get here.
+/// What a bus asks of whoever keeps the parameters, while it handles a request. Numbers that are not finite or not
+/// exact in a float never get here.
 class ParamServer {
 public:
     /// False: there is no parameter `index`.
@@ -35,4 +35,4 @@ protected:
     ~ParamServer() = default;
 };
 
-}  // namespace jink::link::dronecan
+}  // namespace jink::link

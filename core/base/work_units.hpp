@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+// What work costs, in the units of WorkBudget: about 100 instructions of a Cortex-M7 each, and never more than 150.
+// A weight is what the costliest way through its code takes, not the usual one. toolchain/report/units counts them
+// anew.
+
+namespace jink::units {
+
+/// Doubles are computed in software: the Cortex-M4F's floating-point unit knows floats alone. Such a target pays more
+/// for what libccd does, so that a budget bounds its time too; all others pay the same and decide the same.
+#if defined(__ARM_FP) && (__ARM_FP & 8) == 0
+inline constexpr bool kSoftDoubles = true;
+#else
+inline constexpr bool kSoftDoubles = false;
+#endif
+
+// --- shapes (core/geometry) ---
+inline constexpr std::uint32_t kSphereQuery = 10;   ///< box along a segment against a sphere or an upright capsule
+inline constexpr std::uint32_t kCapsuleQuery = 28;  ///< against a capsule of any direction
+inline constexpr std::uint32_t kSolidQuery = 11;    ///< against any other solid, before the first support call
+/// One turn of libccd's loops: a support call of either solid, and what is made of them, in doubles.
+inline constexpr std::uint32_t kExactTurn = kSoftDoubles ? 330 : 12;
+inline constexpr std::uint32_t kSearchTurn = 8;  ///< the same of the distance search, in floats
+/// What each turn of either costs more for a hull.
+constexpr std::uint32_t hull_units(std::size_t vertices) noexcept
+{
+    constexpr std::size_t kVerticesPerUnit = 4;
+    return static_cast<std::uint32_t>((vertices + kVerticesPerUnit - 1) / kVerticesPerUnit);
+}
+
+// --- separation along a path (core/world/separation) ---
+inline constexpr std::uint32_t kPathPiece = 2;    ///< of a path that is looked at
+inline constexpr std::uint32_t kBoundPiece = 1;   ///< and each bound of the airspace
+inline constexpr std::uint32_t kThreat = 3;       ///< track or obstacle
+inline constexpr std::uint32_t kThreatChunk = 2;  ///< and eight pieces at once
+inline constexpr std::uint32_t kThreatPiece = 3;  ///< and one piece of eight that may be near
+inline constexpr std::uint32_t kBallPart = 8;     ///< and part of a piece, where the threat is a sphere
+
+// --- conflicts (core/world/conflict) ---
+inline constexpr std::uint32_t kConflict = 16;       ///< of the way with a track
+inline constexpr std::uint32_t kConflictPart = 8;    ///< and each half second in which it grows
+inline constexpr std::uint32_t kConflictBall = 8;    ///< of the way with a sphere or an upright capsule
+inline constexpr std::uint32_t kConflictMet = 24;    ///< and what is told of it when it is met
+inline constexpr std::uint32_t kConflictSolid = 10;  ///< with any other obstacle, but for its queries
+
+// --- flights predicted by the supervisor (core/avoid) ---
+inline constexpr std::uint32_t kFlightPart = 4;   ///< a tenth of a second along a path
+inline constexpr std::uint32_t kCommandStep = 3;  ///< a step under a command that is held
+inline constexpr std::uint32_t kTurnStep = 8;     ///< a step of a turn
+
+// --- candidates (core/geometric) ---
+inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is made, each waypoint
+inline constexpr std::uint32_t kCostPoint = 1;       ///< of a curve that is costed
+/// Each waypoint and moving threat of one that is costed: a third of a unit.
+constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) noexcept
+{
+    return static_cast<std::uint32_t>(points * moving + 2) / 3;
+}
+inline constexpr std::uint32_t kCollected = 1;     ///< threat or obstacle that is seen to be within reach or not
+inline constexpr std::uint32_t kItem = 4;          ///< ball that a curve is checked against, all of it far
+inline constexpr std::uint32_t kFarItem = 2;       ///< and one that the whole curve is seen to be out of reach of
+inline constexpr std::uint32_t kBallLook = 2;      ///< a closer look at a segment and a ball
+inline constexpr std::uint32_t kBallLookPart = 1;  ///< and each part of a segment that is looked at by itself
+inline constexpr std::uint32_t kBallContact = 7;   ///< and an exact contact test
+inline constexpr std::uint32_t kSolidSegment = 1;  ///< segment and solid, before any query
+/// By how many shares a solid lengthens the checks of an attempt: as many turns everywhere.
+inline constexpr std::uint32_t kSolidShares = kSoftDoubles ? 28 : 1;
+inline constexpr std::uint32_t kCandidatePart = 3;  ///< part of a candidate's flight
+inline constexpr std::uint32_t kCandidateStep = 1;  ///< and each of its points
+
+}  // namespace jink::units

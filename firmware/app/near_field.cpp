@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/near_field.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace jink::app {
+namespace {
+
+class Nearest {
+public:
+    explicit Nearest(float yaw) noexcept : yaw_(yaw) { best_.fill({0.0F, 0.0F, kNearReach}); }
+
+    /// @param offset    from the vehicle, world frame: towards the thing, of any length
+    /// @param distance  to its surface [m]; below 0 inside
+    void add(const Vec3& offset, float distance) noexcept
+    {
+        const float level = std::hypot(offset.x(), offset.y());
+        const float turn = std::remainder(yaw_ - std::atan2(offset.y(), offset.x()), 2.0F * kPi);
+        constexpr float kPerTurn = static_cast<float>(kNearSectors) / (2.0F * kPi);
+        const auto sector =
+            static_cast<std::size_t>(std::lround(turn * kPerTurn) + static_cast<long>(kNearSectors)) % kNearSectors;
+        if (distance < best_[sector].distance) {
+            best_[sector] = {turn, std::atan2(offset.z(), level), std::max(distance, kNearLeast)};
+        }
+    }
+
+    [[nodiscard]] NearObjects found() const noexcept
+    {
+        NearObjects objects;
+        for (const link::NearObject& object : best_) {
+            if (object.distance < kNearReach) {
+                objects.unchecked_push_back(object);
+            }
+        }
+        return objects;
+    }
+
+private:
+    float yaw_;
+    std::array<link::NearObject, kNearSectors> best_{};
+};
+
+/// `from` pulled to within `radius` of `core`.
+[[nodiscard]] Vec3 on_ball(const Vec3& core, float radius, const Vec3& from) noexcept
+{
+    const Vec3 out = from - core;
+    const float distance = out.norm();
+    return distance <= radius ? from : Vec3(core + out * (radius / distance));
+}
+
+}  // namespace
+
+Vec3 nearest_point(const geometry::Shape& shape, const Vec3& from) noexcept
+{
+    using geometry::ShapeKind;
+    const Vec3 local = shape.axes.transpose() * (from - shape.centre);
+    switch (shape.kind) {
+    case ShapeKind::sphere: return on_ball(shape.centre, shape.radius, from);
+    case ShapeKind::capsule: {
+        const float along = std::clamp(local.z(), -shape.half.z(), shape.half.z());
+        return on_ball(shape.centre + shape.axes.col(2) * along, shape.radius, from);
+    }
+    case ShapeKind::box: return shape.centre + shape.axes * local.cwiseMax(-shape.half).cwiseMin(shape.half);
+    case ShapeKind::cylinder:
+    case ShapeKind::hull: break;
+    }
+    return on_ball(shape.centre, geometry::bounding_radius(shape), from);
+}
+
+NearObjects find_near(const vehicle::VehicleState& own, std::span<const world::Track> tracks,
+                      std::span<const world::Obstacle> obstacles, float k_sigma) noexcept
+{
+    Nearest nearest(own.yaw);
+    for (const world::Track& track : tracks) {
+        const Vec3 offset = track.position - own.position;
+        nearest.add(offset, offset.norm() - track.radius - k_sigma * track.sigma_position);
+    }
+    for (const world::Obstacle& obstacle : obstacles) {
+        const Vec3 offset = nearest_point(obstacle.shape, own.position) - own.position;
+        const float distance = offset.norm();
+        nearest.add(distance > 0.0F ? offset : Vec3(obstacle.shape.centre - own.position), distance);
+    }
+    return nearest.found();
+}
+
+}  // namespace jink::app

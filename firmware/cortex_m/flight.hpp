@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "firmware/app/coprocessor.hpp"
+#include "hal/cortex_m/periodic.hpp"
+#include "hal/cortex_m/startup.hpp"
+
+// What the flight images of all boards do alike: the step every 20 ms, and what a start has to say of the faults
+// before.
+
+namespace jink::firmware {
+
+inline constexpr std::int64_t kTickMicroseconds = 20'000;
+/// So many faults, each within kProvenMicroseconds of its start, and the next start stays passive until power-on: a
+/// co-processor that keeps taking over and dropping the controls is worse than none.
+inline constexpr std::uint32_t kFaultsInARow = 3;
+inline constexpr std::int64_t kProvenMicroseconds = 60'000'000;
+/// A passive start waits this long before its first step, so that even faults in each step do not flood the line.
+inline constexpr std::int64_t kPassiveWait = 1'000'000;
+
+/// Looks for room in a UART per byte of the last words: above 0.5 ms on every board, 40 bytes' time at 921600 baud.
+inline constexpr std::uint32_t kPatience = 20'000;
+
+/// What happened, in two lines of a STATUSTEXT.
+struct FaultStory {
+    app::Text what;
+    app::Text where;
+};
+[[nodiscard]] FaultStory tell_story(const hal::cortex_m::FaultRecord& record) noexcept;
+
+/// Reads the record of the fault before this start and has it told: each of the first kFaultsInARow, then those whose
+/// count is a power of two. True where this start is to be passive; then it returns after kPassiveWait only. For the
+/// time before the watchdog is started.
+[[nodiscard]] bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept;
+
+/// Steps for ever; `before_step` is what the ports want once per tick.
+template <class Clock, class BeforeStep>
+[[noreturn]] void fly(app::Coprocessor& coprocessor, Clock& clock, bool passive, BeforeStep before_step) noexcept
+{
+    const std::int64_t start = clock.now_us();
+    hal::cortex_m::run_every(kTickMicroseconds, clock, [&, proven = passive](std::int64_t now) mutable {
+        before_step();
+        static_cast<void>(coprocessor.step({now}));
+        if (!proven && now - start >= kProvenMicroseconds) {
+            proven = true;
+            hal::cortex_m::forgive_faults();
+        }
+    });
+}
+
+}  // namespace jink::firmware

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// All that goes out: time, rates and the mission asked for, modes, set-points, answers, last words.
+#include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/link/mavlink/numbers.hpp"
+#include "firmware/link/mavlink/own_messages.hpp"
+
+namespace jink::link::mavlink {
+namespace {
+
+constexpr std::uint8_t kUsualSystem = 1;
+constexpr std::uint8_t kCustomModeEnabled = 1;
+constexpr std::uint16_t kVelocityOnly = 0x0DC7;
+constexpr Seconds kTimesyncPeriod = 1.0F;
+
+}  // namespace
+
+void Endpoint::take_back(Perishable kind) noexcept
+{
+    if (!transmit_.take_back(kind)) {
+        return;
+    }
+    switch (kind) {
+    case Perishable::setpoint: ++diagnostics_.setpoints_dropped; break;
+    case Perishable::mode_request: ++diagnostics_.requests_dropped; break;
+    case Perishable::heartbeat: ++diagnostics_.heartbeats_dropped; break;
+    case Perishable::no: break;
+    }
+}
+
+template <Message M>
+std::size_t Endpoint::encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept
+{
+    // 0 is nobody's id: until the autopilot is known, its usual one.
+    const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence};
+    return signing_ != nullptr ? encode_signed(message, header, *signing_, out) : encode(message, header, out);
+}
+
+template <Message M>
+void Endpoint::send(const M& message, Perishable kind) noexcept
+{
+    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // nobody known yet to speak to
+        return;
+    }
+    take_back(kind);
+    std::array<std::byte, kMaxFrame> frame;
+    const std::size_t size = encode_as(message, sequence_, frame);
+    if (!transmit_.push({frame.data(), size}, kind)) {
+        ++diagnostics_.outbox_full;
+        return;
+    }
+    ++sequence_;
+    ++diagnostics_.frames_out;
+}
+
+void Endpoint::on_timesync(const Context& c) noexcept
+{
+    Timesync m;
+    if (!decode(c.frame, m)) {
+        return;
+    }
+    const bool addressed = m.target_system == 0 || for_us(m.target_system, m.target_component);
+    if (!addressed || !from_autopilot(c.frame)) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    if (m.tc1 == 0) {
+        Timesync answer;
+        answer.tc1 = c.now.us * 1000;
+        answer.ts1 = m.ts1;
+        answer.target_system = c.frame.header.system_id;
+        answer.target_component = c.frame.header.component_id;
+        send(answer);
+        return;
+    }
+    // Only the answer to our newest request: others carry times that we never sent.
+    if (!timesync_asked_ || m.ts1 != last_timesync_.us * 1000) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    timesync_asked_ = false;
+    note(clock_.round_trip(last_timesync_.us, m.tc1 / 1000, c.now.us));
+}
+
+void Endpoint::ask_for_streams(TimePoint now) noexcept
+{
+    if (!asks_for_rates_ || autopilot_.stack == AutopilotStack::unknown) {
+        return;
+    }
+    if (const std::optional<StreamRequest> request = streams_.next(now)) {
+        CommandLong m;
+        m.command = kSetMessageInterval;
+        m.target_system = system_;
+        m.target_component = kAutopilotComponent;
+        m.param1 = static_cast<float>(request->message_id);
+        m.param2 = static_cast<float>(request->interval_us);
+        send(m);
+        ++diagnostics_.rate_requests;
+    }
+}
+
+void Endpoint::service(TimePoint now) noexcept
+{
+    if (system_ == 0) {
+        return;
+    }
+    if (now - last_timesync_ >= kTimesyncPeriod || last_timesync_.us == 0) {
+        last_timesync_ = now;
+        timesync_asked_ = true;
+        Timesync request;
+        request.ts1 = now.us * 1000;
+        request.target_system = system_;
+        request.target_component = kAutopilotComponent;
+        send(request);
+    }
+    ask_for_streams(now);
+    switch (mission_.next(now)) {
+    case MissionStep::list: {
+        MissionRequestList m;
+        m.target_system = system_;
+        m.target_component = kAutopilotComponent;
+        send(m);
+        break;
+    }
+    case MissionStep::item: {
+        MissionRequestInt m;
+        m.seq = mission_.wanted();
+        m.target_system = system_;
+        m.target_component = kAutopilotComponent;
+        send(m);
+        break;
+    }
+    case MissionStep::finish: {
+        MissionAck m;
+        m.target_system = system_;
+        m.target_component = kAutopilotComponent;
+        send(m);
+        break;
+    }
+    case MissionStep::none: break;
+    }
+}
+
+void Endpoint::send_heartbeat(SystemState state) noexcept { send(heartbeat_of(state), Perishable::heartbeat); }
+
+void Endpoint::send_velocity(const Vec3& velocity, TimePoint now) noexcept
+{
+    const Vec3 ned = swap_ned_enu(velocity);
+    SetPositionTargetLocalNed m;
+    m.time_boot_ms = static_cast<std::uint32_t>(now.us / 1000);
+    m.vx = ned.x();
+    m.vy = ned.y();
+    m.vz = ned.z();
+    m.type_mask = kVelocityOnly;
+    m.target_system = system_;
+    m.target_component = kAutopilotComponent;
+    m.coordinate_frame = kFrameLocalNed;
+    send(m, Perishable::setpoint);
+}
+
+void Endpoint::send_collision(const CollisionWarning& warning) noexcept
+{
+    Collision m;
+    m.id = warning.id;
+    m.time_to_minimum_delta = warning.time_to_closest;
+    m.altitude_minimum_delta = warning.vertical_miss;
+    m.horizontal_minimum_delta = warning.horizontal_miss;
+    m.src = 0;  // from ADS-B and own sensing alike: MAV_COLLISION_SRC knows no other that fits
+    m.action = static_cast<std::uint8_t>(warning.action);
+    m.threat_level = static_cast<std::uint8_t>(warning.level);
+    send(m);
+}
+
+void Endpoint::send_text(Severity severity, std::string_view text) noexcept { send(text_of_severity(severity, text)); }
+
+void Endpoint::send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept
+{
+    ParamValue m;
+    m.param_value = value;
+    m.param_count = count;
+    m.param_index = index;
+    m.param_id = name;
+    m.param_type = kReal32;
+    send(m);
+}
+
+void Endpoint::acknowledge(const CommandRequest& request, CommandResult result) noexcept
+{
+    CommandAck m;
+    m.command = request.command;
+    m.result = static_cast<std::uint8_t>(result);
+    m.target_system = request.from_system;
+    m.target_component = request.from_component;
+    send(m);
+}
+
+CommandLong Endpoint::mode_command(std::uint32_t custom_mode) const noexcept
+{
+    CommandLong m;
+    m.command = kDoSetMode;
+    m.target_system = system_;
+    m.target_component = kAutopilotComponent;
+    m.param1 = static_cast<float>(autopilot_.armed ? kCustomModeEnabled | kArmed : kCustomModeEnabled);
+    if (autopilot_.stack == AutopilotStack::px4) {
+        m.param2 = static_cast<float>(px4_main(custom_mode));
+        m.param3 = static_cast<float>(px4_sub(custom_mode));
+    } else {
+        m.param2 = static_cast<float>(custom_mode);
+    }
+    return m;
+}
+
+void Endpoint::send_mode(std::uint32_t custom_mode) noexcept
+{
+    send(mode_command(custom_mode), Perishable::mode_request);
+}
+
+void Endpoint::request_external_mode() noexcept { send_mode(external_mode(autopilot_.stack, vehicle_class_)); }
+void Endpoint::request_mode(std::uint32_t custom_mode) noexcept { send_mode(custom_mode); }
+void Endpoint::request_hold_mode() noexcept { send_mode(hold_mode(autopilot_.stack, vehicle_class_)); }
+
+std::size_t Endpoint::compose_last_words(std::span<std::byte> out, bool hold, std::string_view text) noexcept
+{
+    const bool known = system_ != 0;
+    std::uint8_t number = sequence_;
+    std::size_t size = 0;
+    bool fits = true;
+    const auto add = [&](const auto& message) {
+        const std::size_t n = encode_as(message, number++, out.subspan(size));
+        fits = fits && n > 0;
+        size += n;
+    };
+    CommandLong request = mode_command(hold_mode(autopilot_.stack, vehicle_class_));
+    if (known && hold) {
+        add(request);
+    }
+    add(heartbeat_of(hold ? SystemState::emergency : SystemState::critical));
+    if (known && !text.empty()) {
+        add(text_of_severity(Severity::critical, text));
+    }
+    if (known && hold) {
+        request.confirmation = 1;
+        add(request);
+    }
+    return fits ? size : 0;
+}
+
+}  // namespace jink::link::mavlink

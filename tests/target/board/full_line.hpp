@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "firmware/link/mavlink/encoder.hpp"
+#include "firmware/link/mavlink/messages.hpp"
+#include "toolchain/sim/plant.hpp"
+
+namespace jink::target {
+
+/// 921600 baud, ten bits a byte.
+inline constexpr std::uint32_t kLineBytesPerSecond = 92'160;
+
+/// So much is on its way or unread at most: 33 ms of the line.
+inline constexpr std::uint64_t kMostUnread = 3'000;
+/// What each of our TIMESYNC requests carries: this, and the bytes in front of it. The answer brings it back.
+inline constexpr std::int64_t kPlaceMark = std::int64_t{1} << 62;
+
+/// 32 aircraft, one after the other on a collision course, all of them in sight all the time.
+[[nodiscard]] sim::Scenario crowd_for(double seconds);
+
+/// The autopilot's end of a line that never pauses: the simulator's autopilot in the crowd above, a range scan that
+/// sees something in all of its 72 sectors, requests by the score, and ODOMETRY in what is left. Whole frames, back to
+/// back, numbered per sender without a gap.
+///
+/// Its time is that of the bytes on the line, so what the board has to take within a step does not depend on how evenly
+/// the machine runs. The rates leave room in the board's inbox for a step that reads kMostUnread bytes at once.
+class FullLine {
+public:
+    struct Requests {
+        std::uint32_t params = 0;
+        std::uint32_t commands = 0;
+        std::uint32_t timesyncs = 0;
+        std::uint32_t own_timesyncs = 0;  ///< that the simulator's autopilot asks for by itself
+    };
+
+    /// @param scenario  outlives it
+    explicit FullLine(const sim::Scenario& scenario) : plant_(scenario) {}
+
+    /// At least `n` bytes of what comes next, whole frames.
+    [[nodiscard]] std::span<const std::byte> ahead(std::size_t n);
+    void take(std::size_t n);
+    /// What the board said.
+    void deliver(std::span<const std::byte> bytes) { plant_.deliver(bytes); }
+
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }  ///< made so far
+    [[nodiscard]] std::uint32_t frames() const noexcept { return frames_; }
+    [[nodiscard]] const Requests& requests() const noexcept { return requests_; }
+    [[nodiscard]] const sim::Plant& plant() const noexcept { return plant_; }
+
+private:
+    void add_next();
+    [[nodiscard]] bool due(double rate, std::uint32_t sent) const noexcept;
+    void add_telemetry();
+    void add_scan();
+    void add_odometry();
+    void add(std::span<const std::byte> frame);
+    template <link::mavlink::Message M>
+    void write(const M& message, sim::Sender sender)
+    {
+        std::array<std::byte, link::mavlink::kMaxFrame> frame{};
+        const std::size_t n = link::mavlink::encode(message, {sender.system, sender.component, 0}, frame);
+        add({frame.data(), n});
+    }
+
+    sim::Plant plant_;
+    std::vector<std::byte> telemetry_;  ///< of the plant, whole frames
+    std::vector<std::byte> waiting_;
+    std::map<std::pair<std::byte, std::byte>, std::uint8_t> sequences_;
+    std::uint64_t bytes_ = 0;
+    std::uint32_t frames_ = 0;
+    std::uint32_t scans_ = 0;
+    Requests requests_;
+};
+
+}  // namespace jink::target

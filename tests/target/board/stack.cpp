@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The stack of a flight image after a flight: the paint that start-up left on it is read by the board's debugger, so
+// that the image is the one that is flashed.
+//
+//   jink_board_stack IMAGE MACHINE SCENARIO
+//
+// Prints "stack BYTES", and the takeovers of the flight.
+#include <algorithm>
+#include <cstdio>
+
+#include <unistd.h>
+
+#include "tests/target/board/board.hpp"
+#include "toolchain/sim/scenario_file.hpp"
+
+int main(int argc, char** argv)
+{
+    using namespace jink;
+    if (argc != 4) {
+        std::fprintf(stderr, "usage: %s IMAGE MACHINE SCENARIO\n", argv[0]);
+        return 2;
+    }
+    constexpr std::uint8_t kPaint = 0xC5;
+    std::string folder_name = "/tmp/jink_board_XXXXXX";
+    const std::filesystem::path folder = ::mkdtemp(folder_name.data());
+    int status = 1;
+    try {
+        const sim::Scenario scenario = sim::load_scenario(argv[3]);
+        target::Board board(argv[1], argv[2], scenario, folder);
+        board.debugger().go();
+        static_cast<void>(board.fly_until([&] { return board.plant().finished(); }, 1e9));
+        board.debugger().halt();
+        const std::uint32_t bottom = board.symbol("_stack_bottom");
+        const auto bytes = board.debugger().read(bottom, board.symbol("_stack_top") - bottom);
+        const auto touched = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b != kPaint; });
+        std::printf("stack %td\ntakeovers %u\n", bytes.end() - touched, board.plant().autopilot().takeovers());
+        status = touched == bytes.end() ? 1 : 0;  // nothing used: that was no flight
+    } catch (const std::exception& e) {
+        std::printf("%s: %s\n", argv[3], e.what());
+    }
+    std::filesystem::remove_all(folder);
+    return status;
+}

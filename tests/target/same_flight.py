@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every scenario's flight, run again on every target from what went over its line: the same decisions step by step.
+
+Usage: same_flight.py JINK_SIM BUILD_FOLDER TARGET ...
+
+The flights are flown in process and recorded; the first target (the program of this machine) has to write the very same
+bytes again. On the others every state, fault, plan, chosen candidate and count of work has to be the same in every step;
+commands and margins may differ by rounding (TOLERANCE) and the largest difference is printed.
+
+Where two candidates cost the same within TIE, as left and right of a wall straight ahead, rounding may choose between
+them. Such a choice is counted, and that flight is not followed further on that target: what comes after it belongs to the
+other way.
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
+import flights  # noqa: E402
+import targets  # noqa: E402
+
+TOLERANCE = 1e-3  # [m/s], [m]
+TIE = 1e-4  # of costs, as for same_choice.py
+FOUND = targets.STATUS.index("found")
+
+
+class Comparison:
+    def __init__(self, name):
+        self.name, self.differing, self.velocity, self.margin, self.same_bytes = name, [], 0.0, 0.0, 0
+        self.ties, self.left, self.steps = [], None, 0
+
+    @staticmethod
+    def is_tie(answer, reference):
+        return (answer.plan_status == reference.plan_status == FOUND and answer.plans == reference.plans and
+                answer.chosen != reference.chosen and abs(answer.cost - reference.cost) <= TIE)
+
+    def add(self, flight, where, answer, reference):
+        if self.left == flight:
+            return
+        if self.is_tie(answer, reference):
+            self.left = flight
+            self.ties.append(f"{where} on {self.name}: candidate {answer.chosen} at {answer.cost:.6f}, {reference.chosen} at "
+                             f"{reference.cost:.6f}")
+            return
+        self.steps += 1
+        self.velocity = max(self.velocity, *(abs(a - b) for a, b in zip(answer.velocity, reference.velocity)))
+        self.margin = max(self.margin, abs(answer.margin - reference.margin))
+        self.same_bytes += answer.bytes_out == reference.bytes_out
+        if answer.discrete != reference.discrete or len(answer.bytes_out) != len(reference.bytes_out):
+            other = [f"{name} {a} against {b}" for name, a, b in
+                     zip(flights.DISCRETE, answer.discrete, reference.discrete) if a != b]
+            self.differing.append(f"{where} on {self.name}: {', '.join(other) or 'another number of bytes'}")
+
+
+def record(sim, folder):
+    files = sorted(str(f) for f in pathlib.Path(__file__).resolve().parents[1].joinpath("scenario").glob("*.yaml"))
+    subprocess.run([sim, "fly", *files, "--record-steps", folder, "--quiet"], check=True)
+    return {path.stem: flights.read(path) for path in sorted(pathlib.Path(folder).glob("*.steps"))}
+
+
+def main(sim, build, names):
+    missing = [name for name in names if not targets.is_there(name, build, flights.StepProbe)]
+    if missing:
+        print(f"not built: {', '.join(missing)}: skipped")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        recorded = record(sim, folder)
+    probes = [targets.open_probe(name, build, kind=flights.StepProbe) for name in names]
+    others = [Comparison(probe.name) for probe in probes[1:]]
+    steps = plans = manoeuvres = 0
+    faults = []
+    for name, flight in recorded.items():
+        reference = None
+        for i, step in enumerate(flight):
+            where = f"{name}, step {i}"
+            reference, *answers = [probe.ask(step) for probe in probes]
+            if reference.bytes_out != step.bytes_out:
+                faults.append(f"{where}: {probes[0].name} does not write what it wrote in the flight")
+            for comparison, answer in zip(others, answers):
+                comparison.add(name, where, answer, reference)
+        steps += len(flight)
+        plans += reference.plans
+        manoeuvres += reference.manoeuvres
+    for probe in probes:
+        probe.close()
+    print(f"{len(recorded)} flights, {steps} steps, {plans} plans, {manoeuvres} manoeuvres")
+    for c in others:
+        print(f"{c.name}: {c.steps} steps compared, {len(c.differing)} decided otherwise; {len(c.ties)} flights left at a tie; largest difference of a command {c.velocity:.3g} m/s, "
+              f"of a margin {c.margin:.3g} m; {c.same_bytes} steps wrote the same bytes")
+        for tie in c.ties:
+            print(tie)
+        faults += c.differing
+        if max(c.velocity, c.margin) > TOLERANCE:
+            faults.append(f"{c.name}: differs by more than {TOLERANCE:g}")
+    print("\n".join(faults[:20]))
+    if plans == 0 or manoeuvres == 0:
+        faults.append("nothing was decided in any flight")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) < 5:
+        print(__doc__, file=sys.stderr)
+        sys.exit(2)
+    sys.exit(main(sys.argv[1], sys.argv[2], sys.argv[3:]))

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a unit of work stands for: one kind of counted work at a time, on random input, and the units that it took.
+// Requests on the way in, answers on the way out; toolchain/report/units counts the instructions of each.
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/Geometry>
+
+#include "core/avoid/guard.hpp"
+#include "core/base/random.hpp"
+#include "core/geometry/convex.hpp"
+#include "core/world/obstacle_distance.hpp"
+#include "tests/target/probe_io.hpp"
+#include "tests/target/window.hpp"
+
+namespace jink::target {
+namespace {
+
+constexpr std::uint32_t kMagic = 0x4A555001;
+constexpr std::uint32_t kAmple = 100'000'000;
+
+/// As toolchain/report/units names them.
+enum class Work : std::uint32_t {
+    contact_closed,
+    contact_solid,
+    distance_closed,
+    distance_solid,
+    margin_closed,
+    margin_solid,
+    separation_tracks,
+    separation_spheres,
+    separation_solids,
+    conflict_tracks,
+    conflict_spheres,
+    conflict_solids,
+    check,
+    command,
+    fallback,
+    count,
+};
+
+struct Request {
+    std::uint32_t magic;
+    std::uint32_t seed;
+    std::uint32_t work;
+};
+
+struct Answer {
+    std::uint32_t magic;
+    std::uint32_t seed;
+    std::uint32_t units;
+};
+
+class UnitProbe {
+public:
+    std::uint32_t units_of(Work work, std::uint32_t seed) noexcept;
+
+private:
+    std::size_t below(std::size_t n) noexcept { return static_cast<std::size_t>(random_.below(n)); }
+    Vec3 within(float size) noexcept
+    {
+        const float x = random_.uniform(-size, size);
+        const float y = random_.uniform(-size, size);
+        return {x, y, random_.uniform(-size, size)};
+    }
+    Vec3 sized(float low, float high) noexcept
+    {
+        const float x = random_.uniform(low, high);
+        const float y = random_.uniform(low, high);
+        return {x, y, random_.uniform(low, high)};
+    }
+    Mat3 turned() noexcept
+    {
+        Mat3 axes;
+        axes.col(2) = (within(1.0F) + Vec3(0.0F, 0.0F, 1.5F)).normalized();
+        axes.col(0) = axes.col(2).cross(within(1.0F) + Vec3(1.5F, 0.0F, 0.0F)).normalized();
+        axes.col(1) = axes.col(2).cross(axes.col(0));
+        return axes;
+    }
+    geometry::Shape closed(const Vec3& at) noexcept
+    {
+        const float radius = random_.uniform(0.1F, 3.0F);
+        return below(2) == 0 ? geometry::make_sphere(at, radius)
+                             : geometry::make_capsule(at, at + within(6.0F), radius);
+    }
+    geometry::Shape upright(const Vec3& at) noexcept
+    {
+        return geometry::make_capsule(at, at + Vec3(0.0F, 0.0F, random_.uniform(0.0F, 9.0F)),
+                                      random_.uniform(0.1F, 3.0F));
+    }
+    geometry::Shape solid(const Vec3& at) noexcept;
+    void scene(Work work) noexcept;
+    void path() noexcept;
+    [[nodiscard]] world::Situation situation() const noexcept
+    {
+        return {{},
+                own_,
+                limits_,
+                airframe_,
+                reference_,
+                {tracks_.data(), tracks_.size()},
+                {obstacles_.data(), obstacles_.size()},
+                airspace_,
+                nullptr,
+                3.0F};
+    }
+    void geometry(Work work, WorkBudget& budget) noexcept;
+
+    Random random_{0};
+    std::array<Vec3, kMaxHullVertices> vertices_{};
+    vehicle::VehicleState own_;
+    vehicle::VehicleLimits limits_;
+    vehicle::Airframe airframe_;
+    world::Reference reference_;
+    world::Airspace airspace_;
+    StaticVector<world::Track, kMaxTracks> tracks_;
+    StaticVector<world::Obstacle, kMaxObstacles> obstacles_;
+    world::Manoeuvre manoeuvre_;
+    volatile float sink_ = 0.0F;
+};
+
+geometry::Shape UnitProbe::solid(const Vec3& at) noexcept
+{
+    switch (below(3)) {
+    case 0: {
+        const Vec3 half = sized(0.1F, 3.0F);
+        return geometry::make_box(at, half, turned());
+    }
+    case 1: return geometry::make_cylinder(at, at + within(5.0F), random_.uniform(0.1F, 3.0F));
+    default: break;
+    }
+    const std::size_t count = 4 + below(kMaxHullVertices - 3);
+    for (std::size_t i = 0; i < count; ++i) {
+        vertices_[i] = within(3.0F);
+    }
+    return geometry::make_hull({vertices_.data(), count}, at, turned());
+}
+
+void UnitProbe::path() noexcept
+{
+    manoeuvre_ = {};
+    manoeuvre_.kind = world::ManoeuvreKind::follow_path;
+    const std::size_t points = 2 + below(kMaxPathPoints - 1);
+    const Seconds step = random_.uniform(0.05F, 0.6F);
+    Vec3 at = own_.position;
+    Vec3 velocity = own_.velocity;
+    for (std::size_t i = 0; i < points; ++i) {
+        manoeuvre_.path.points.unchecked_push_back({at, velocity, step * static_cast<float>(i)});
+        at += velocity * step;
+        velocity = 0.9F * velocity + 0.1F * within(5.0F);
+    }
+}
+
+void UnitProbe::scene(Work work) noexcept
+{
+    own_ = {};
+    own_.position = within(50.0F);
+    own_.velocity = within(4.0F);
+    own_.sigma_position = below(2) == 0 ? 0.0F : 0.1F;
+    limits_ = {};
+    limits_.half_extents = sized(0.2F, 1.5F);
+    if (work == Work::fallback && below(3) == 0) {
+        limits_.kind = vehicle::VehicleKind::fixed_wing;
+    }
+    airspace_ = {};
+    airspace_.has_floor = below(2) == 0;
+    airspace_.has_ceiling = below(2) == 0;
+    airspace_.has_keep_in = below(2) == 0;
+    airspace_.floor = -60.0F;
+    airspace_.ceiling = 60.0F;
+    airspace_.keep_in_radius = 200.0F;
+    reference_.valid = true;
+    reference_.leg = {own_.position, own_.position + within(50.0F), 5.0F};
+    tracks_.clear();
+    obstacles_.clear();
+    path();
+
+    const bool tracks = work == Work::separation_tracks || work == Work::conflict_tracks || work == Work::fallback;
+    const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback;
+    const bool solids = work == Work::separation_solids || work == Work::conflict_solids;
+    const float spread = random_.uniform(1.0F, 60.0F);
+    for (std::size_t i = 0, n = tracks ? below(kMaxTracks + 1) : 0; i < n; ++i) {
+        world::Track track;
+        track.id = static_cast<std::uint32_t>(i);
+        track.position = own_.position + within(spread);
+        track.velocity = below(3) == 0 ? own_.velocity : within(6.0F);
+        track.radius = random_.uniform(0.2F, 4.0F);
+        track.sigma_velocity = below(2) == 0 ? 0.0F : 0.2F;
+        track.max_acceleration = below(3) == 0 ? 0.3F : 0.0F;
+        tracks_.unchecked_push_back(track);
+    }
+    for (std::size_t i = 0, n = spheres ? below(kMaxObstacles + 1) : 0; i < n; ++i) {
+        obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), upright(own_.position + within(spread))});
+    }
+    for (std::size_t i = 0, n = solids ? below(6) : 0; i < n; ++i) {
+        const Vec3 at = own_.position + within(spread);
+        obstacles_.unchecked_push_back({static_cast<world::ObstacleId>(i), below(4) == 0 ? closed(at) : solid(at)});
+    }
+}
+
+void UnitProbe::geometry(Work work, WorkBudget& budget) noexcept
+{
+    const Vec3 half = sized(0.2F, 2.0F);
+    const Vec3 from = within(5.0F);
+    const Vec3 to = from + within(random_.uniform(0.0F, 8.0F));
+    const float clearance = below(2) == 0 ? 0.0F : 0.5F;
+    const Vec3 at = within(random_.uniform(1.0F, 20.0F));
+    const bool closed_form =
+        work == Work::contact_closed || work == Work::distance_closed || work == Work::margin_closed;
+    const geometry::Shape shape = closed_form ? closed(at) : solid(at);
+    jink_window_begin();
+    if (work == Work::contact_closed || work == Work::contact_solid) {
+        const geometry::Contact contact = geometry::swept_box_contact(half, from, to, shape, clearance, budget);
+        sink_ = contact == geometry::Contact::clear ? 1.0F : 0.0F;
+    } else if (work == Work::distance_closed || work == Work::distance_solid) {
+        sink_ = geometry::swept_box_distance(half, from, to, shape, 20.0F, world::kObstacleResolution, budget);
+    } else {
+        sink_ = world::obstacle_margin(half, from, to, shape, budget);
+    }
+    jink_window_end();
+}
+
+std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
+{
+    random_ = Random(seed * 977ULL + static_cast<std::uint32_t>(work));
+    WorkBudget budget(kAmple);
+    if (work <= Work::margin_solid) {
+        geometry(work, budget);
+        return budget.spent();
+    }
+    scene(work);
+    const world::Situation s = situation();
+    const avoid::Settings settings;
+    const world::Way way = world::way_of(s);
+    const Vec3 command = within(3.0F);
+    world::Conflict conflict;
+    jink_window_begin();
+    switch (work) {
+    case Work::conflict_tracks:
+    case Work::conflict_spheres:
+    case Work::conflict_solids:
+        sink_ = world::main_conflict(s, way, settings.lookahead, budget, conflict) ? 1.0F : 0.0F;
+        break;
+    case Work::check: sink_ = avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; break;
+    case Work::command: sink_ = avoid::command_margin(s, command, settings, budget); break;
+    case Work::fallback: sink_ = avoid::choose_fallback(s, way, nullptr, settings, budget).margin; break;
+    default: sink_ = world::least_separation(s, manoeuvre_.path, 40.0F, budget).margin; break;
+    }
+    jink_window_end();
+    return budget.spent();
+}
+
+}  // namespace
+
+void serve() noexcept
+{
+    static UnitProbe probe;
+    Request request{};
+    while (read_all(&request, sizeof request)) {
+        Answer answer{};
+        if (request.magic == kMagic && request.work < static_cast<std::uint32_t>(Work::count)) {
+            answer = {kMagic, request.seed, probe.units_of(static_cast<Work>(request.work), request.seed)};
+        }
+        write_all(&answer, sizeof answer);
+    }
+}
+
+}  // namespace jink::target

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""How often the loops of a plan turn, by capacities and settings; and what is never called in a scene.
+
+Each rule: a pattern for the place of a loop (file, function and text of the line that jumps back, innermost function
+first, as many callers as the compiler has inlined), whether its turns are counted each time the loop is entered or in all
+in one call, and how many they are. The first rule that fits the innermost place that any fits is taken.
+"""
+import math
+import pathlib
+import re
+import subprocess
+
+import bound
+import flights
+import stages
+import targets
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+
+
+def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64, lookahead=8.0, cruise=5.0, climb=3.0, slowest=1.0):
+    """What the rules count with. The longest candidate: at most 2 D along the leg and twice 1.2801 D across, D being at
+    most what is flown within the lookahead, at the speed of the leg (1.6 of cruise speed at most) or of climb where that is less."""
+    speed = 1.6 * cruise
+    longest = (2.0 + 2.0 * 1.2801) * lookahead * max(1.0, speed / climb) / slowest
+    steps = points - min(12, points // 4)
+    step = max(0.2, longest / (steps - 1))
+    early = math.ceil(3.0 / step) + 1
+    parts = early * math.ceil(step / 0.1) + (steps - early) * math.ceil(step / 0.25)
+    return {"candidates": candidates, "tracks": tracks, "obstacles": obstacles, "attempts": attempts, "waypoints": waypoints,
+            "points": points, "steps": steps, "flight parts": parts,
+            # Where the escape rule shrinks a ball: pieces of 0.05 s (half of 0.05 m at 0.5 m/s), spread over as many
+            # segments as any curve is taken to have.
+            "escape parts": math.ceil(longest / 0.05 / (points - 1)) + 1,
+            # Conflict search asks for the separation of one track from a way of two pieces, in 480 parts at most.
+            "checked tracks": 1, "pieces of a path": 2, "chunks": 1, "paid parts": 480,
+            "pieces": math.ceil(lookahead / 0.5)}
+
+
+RULES = [
+    (r"conflict\.cpp:.*if \(obstacle_conflict", "each", lambda p: p["obstacles"]),
+    (r"conflict\.cpp:.*if \(predict_conflict", "each", lambda p: p["tracks"]),
+    (r"conflict\.cpp:.*obstacle_conflict.*touching", "each", lambda p: 8),
+    (r"separation\.cpp:.*part < parts", "in all", lambda p: p["paid parts"]),
+    (r"shape\.vertices|Matrix<float, 3, 1, 0, 3, 1> const\*, std::span", "each", lambda p: 0),  # no hulls
+    (r"next \+ 1 < curve\.points", "in all", lambda p: p["points"]),
+    (r"next \+ 1 < path\.points", "in all", lambda p: p["flight parts"] + p["points"]),
+    (r"flown\.cpp:.*fly.*flight\.ended|flight\.hpp:.*early", "in all", lambda p: p["steps"] + 1),
+    (r"flown\.cpp:.*fly.*i < flight\.parts|flight\.hpp:.*Flight::fly\(int", "in all", lambda p: p["flight parts"]),
+    (r"flown\.cpp:.*kTailPoints|flown\.cpp:.*brake", "in all", lambda p: 12),
+    (r"flight\.hpp:.*(count < most|Steps::Steps)", "each", lambda p: 3),
+    (r"touches_in_parts|Clearance::leaves", "each", lambda p: p["escape parts"]),
+    (r"conflict\.cpp:.*pieces", "each", lambda p: p["pieces"]),
+    (r"conflict\.cpp:.*i < 8", "each", lambda p: 8),
+    (r"separation\.cpp:.*situation\.tracks", "each", lambda p: p["checked tracks"]),
+    (r"separation\.cpp:.*situation\.obstacles", "each", lambda p: p["obstacles"]),
+    (r"separation\.cpp:.*(chunks\(\)|first < count_|first \+= kChunk)", "each", lambda p: p["chunks"]),
+    (r"separation\.cpp:.*(chunk\.last|i < last)", "each", lambda p: min(8, p["pieces of a path"])),
+    (r"separation\.cpp", "each", lambda p: p["pieces of a path"]),
+    (r"kShrinkSteps", "each", lambda p: 6),
+    (r"situation\.tracks|problem_\.threats|moving_\.size|per_threat|geometric::Threat", "each", lambda p: p["tracks"]),
+    (r"obstacles\.size|obstacles\(\)|problem_\.obstacles|world::Obstacle|obstacle\.shape", "each", lambda p: p["obstacles"]),
+    (r"settings\.retries", "each", lambda p: p["attempts"]),
+    (r"clearance\.cpp:.*check.*items_", "each", lambda p: p["tracks"] + p["obstacles"]),
+    (r"stl_heap\.h.*__(adjust|push)_heap|stl_heap\.h:(229|140)", "each", lambda p: math.ceil(math.log2(max(2, p["candidates"]))) + 1),
+    (r"stl_heap\.h", "each", lambda p: p["candidates"]),
+    (r"solve\.cpp:.*(result_\.path\.points|unit\.points)|operator=|StaticVector|std::array|static_vector", "each", lambda p: 128),
+    (r"solve\.cpp:.*(candidates|order_?\.empty|planes|offset|evaluate\()|offsets\.cpp", "each", lambda p: p["candidates"]),
+    (r"solve\.cpp:.*Family", "each", lambda p: 2),
+    (r"curve\.cpp|^core/cost/|solve\.cpp:.*(max_element|closeness_nearest)", "each", lambda p: max(p["waypoints"], p["tracks"])),
+    (r"clearance(_airspace)?\.cpp", "each", lambda p: p["points"] - 1),
+    (r"memcpy|memset|memmove", "each", lambda p: 128),
+]
+# With time-aware security and without solids; the predicted flight instead of the check of accelerations. Angles are below
+# 2 pi, far from where newlib's reduction of large ones begins.
+NEVER = [r"touches_swept", r"is_flyable", r"Clearance6leaves", r"Clearance7touchesERKNS1_5CurveERKNS1_6ExtentERKNS_8geometry5Shape",
+         r"swept_box_(contact|distance)", r"obstacle_margin", r"general_conflict", r"13local_support", r"__kernel_rem_pio2f", r"__assert", r"abort"]
+
+# libgcc's doubles in software, which shares code between functions: an allowance for each call, far above what they take.
+LIBRARY = [(r"^__aeabi_", 1000)]
+
+
+class Turns:
+    """The turns of a loop, as bound.weights asks for them."""
+
+    def __init__(self, program, prefix, values):
+        self.program, self.prefix, self.values, self.lines, self.used = program, prefix, values, {}, []
+
+    def places(self, addresses):
+        out = subprocess.run([self.prefix + "addr2line", "-i", "-f", "-C", "-e", self.program], check=True, capture_output=True, text=True,
+                             input="\n".join(map(hex, sorted(addresses)))).stdout.splitlines()
+        for function, where in zip(out[::2], out[1::2]):
+            file, line = where.split(" ")[0].rsplit(":", 1)
+            ours = stages.PLACE.search(file + ":")
+            text = ""
+            if ours and line.isdigit():
+                if ours[1] not in self.lines:
+                    self.lines[ours[1]] = (TOP / ours[1]).read_text(encoding="utf-8").splitlines()
+                text = self.lines[ours[1]][int(line) - 1].strip()
+            yield f"{ours[1] if ours else pathlib.Path(file).name + ':' + line}:{function}: {text}"
+
+    def __call__(self, function, addresses):
+        places = list(self.places(addresses))
+        for place in places + [function.name]:
+            for pattern, how, turns in RULES:
+                if re.search(pattern, place):
+                    self.used.append((function.name, place, how, turns(self.values)))
+                    return how, turns(self.values)
+        raise bound.Refused(f"{function.name}: a loop that no rule knows: {' < '.join(places)[:300]}")
+
+
+ROOT = "_ZN4jink9geometric7Planner4planERKNS_5world9SituationERNS_10WorkBudgetERNS2_9ManoeuvreE"
+IMAGES = ("mps2_an500", "stm32f405")
+SCENES = {"plan_16_3": dict(candidates=16, tracks=3, obstacles=0, attempts=1),
+          "plan_16_3_retries": dict(candidates=16, tracks=3, obstacles=0, attempts=5, slowest=0.3)}
+
+
+def of_plan(program, scene):
+    """(bound, what is not bounded, the turns that were used) of a plan in a Cortex-M image's probe."""
+    turns = Turns(str(program), "arm-none-eabi-", parameters(**SCENES[scene]))
+    whole = bound.Bound(str(program), "arm-none-eabi-", turns, NEVER, LIBRARY)
+    return whole.of(ROOT), sorted(set(whole.problems)), turns.used
+
+
+def all_plans(program_of):
+    """{scene: {image: instructions}}, and what is not bounded."""
+    out, problems = {}, []
+    for scene in SCENES:
+        out[scene] = {}
+        for image in IMAGES:
+            out[scene][image], unbounded, _ = of_plan(program_of(image), scene)
+            problems += [f"{image}, {scene}: not bounded: {problem}" for problem in unbounded]
+    return out, problems

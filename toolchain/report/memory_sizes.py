@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the memory report measures."""
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+import cases
+import records
+import scenes
+import stack
+import targets
+
+IMAGES = ["mps2_an500", "stm32f405"]
+PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf": "arm-linux-gnueabihf-", "aarch64": "aarch64-linux-gnu-"}
+LIMITS = {"flash": 256 * 1024, "static RAM with its stack": 64 * 1024, "stack": 8 * 1024, "core-coupled": 64 * 1024}
+ALLOCATOR = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
+# Entry points whose stack is of interest to somebody who links the core: (name, mangled name).
+ENTRIES = [("image: the program", r"^jink_main$"), ("image: deepest interrupt", r"^jink_(uart|usart|can|guard)"),
+           ("Coprocessor::step", r"N4jink3app11Coprocessor4stepE"), ("Pilot::update (of Supervisor)", r"N4jink5avoid5Pilot6updateE"),
+           ("geometric::Planner::plan", r"N4jink9geometric7Planner4planE")]
+# Capacities of the formula, another value for each, and a set to try the formula on.
+BASE = {"JINK_MAX_TRACKS": 32, "JINK_MAX_OBSTACLES": 96, "JINK_MAX_PATH_POINTS": 64, "JINK_MAX_CANDIDATES": 32,
+        "JINK_MAX_HULL_VERTICES": 16}
+TRIED = {"JINK_MAX_TRACKS": 64, "JINK_MAX_OBSTACLES": 192, "JINK_MAX_PATH_POINTS": 128, "JINK_MAX_CANDIDATES": 512,
+         "JINK_MAX_HULL_VERTICES": 64}
+PROOF = {"JINK_MAX_TRACKS": 16, "JINK_MAX_OBSTACLES": 40, "JINK_MAX_PATH_POINTS": 96, "JINK_MAX_CANDIDATES": 128,
+         "JINK_MAX_HULL_VERTICES": 32}
+TOP = pathlib.Path(__file__).resolve().parents[2]
+
+
+def run(*command, **more):
+    return subprocess.run(command, check=True, capture_output=True, text=True, **more).stdout
+
+
+def image_of(build, target):
+    return pathlib.Path(build) / target / "firmware" / target / f"{target}.elf"
+
+
+KEPT = (".text", ".rodata", ".vectors", ".init_array", ".ARM.exidx", ".data", ".bss", ".noinit", "COMMON", ".ccm")
+
+
+def by_room(build, target):
+    """{room: {flash, ram}} out of the linker's map. Objects are found by their names in the archives of the build."""
+    folder = pathlib.Path(build) / target
+    rooms = {}
+    for place, prefix in (("core", "core"), ("firmware", "firmware"), ("hal", "hal")):
+        for obj in folder.glob(f"{place}/CMakeFiles/*.dir/**/*.obj"):
+            inside = obj.relative_to(folder / place / "CMakeFiles").as_posix().split("/")
+            rooms.setdefault(obj.name, set()).add("/".join([prefix, *inside[1:-1]]))
+    text = (folder / "firmware" / target / f"{target}.map").read_text(encoding="utf-8").split("Linker script and memory map")[1]
+    out = {}
+    pattern = re.compile(r"^ (\.?[\w.$*-]+)?\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) (\S.*)$")
+    joined = re.sub(r"^( [\w.$*-]+)\n +(0x)", r"\1 \2", text, flags=re.M)  # long names stand on a line of their own
+    placed = sorted((int(m[2], 16), int(m[3], 16), m[1], m[4]) for m in map(pattern.match, joined.splitlines()) if m and m[1] and int(m[3], 16) and
+                    m[1].startswith(KEPT))
+    for (address, size, name, file), (following, *_) in zip(placed, placed[1:] + [(1 << 64,)]):
+        size = min(size, following - address) if following > address else size  # constants that were merged are told twice
+        kind = next((k for k, p in (("flash", (".text", ".rodata", ".vectors", ".init_array", ".ARM.exidx")), ("data", (".data",)),
+                                    ("ram", (".bss", ".noinit", "COMMON", ".ccm"))) if name.startswith(p)), None)
+        if kind is None:
+            continue
+        member = re.search(r"\(([^)]+)\)$", file)
+        leaf = member[1] if member else pathlib.Path(file).name
+        if "libccd" in file:
+            room = "libccd"
+        elif re.search(r"/lib(c|m|gcc|g|stdc\+\+)(_nano)?\.a", file):
+            room = "C and C++ library"
+        elif "libjink" in file:
+            known = {r for r in rooms.get(leaf, ()) if r.startswith("core") == ("libjink_core" in file) and
+                     r.startswith("hal") == ("libjink_hal" in file) and ("/link" in r) == ("libjink_link" in file)}
+            room = sorted(known)[0] if known else "?"
+        else:
+            room = f"firmware/{target}"
+        entry = out.setdefault(room, {"flash": 0, "ram": 0})
+        entry["flash"] += size if kind in ("flash", "data") else 0
+        entry["ram"] += size if kind in ("data", "ram") else 0
+    return dict(sorted(out.items()))
+
+
+def of_image(build, target, faults):
+    folder = pathlib.Path(build) / target
+    elf = str(image_of(build, target))
+    text, data, bss = map(int, run("arm-none-eabi-size", elf).splitlines()[1].split()[:3])
+    # Memory apart from the rest, where there is some: only the processor reaches it.
+    coupled = sum(int(line.split()[1]) for line in run("arm-none-eabi-size", "-A", elf).splitlines() if line.startswith(".ccm "))
+    bss -= coupled
+    symbols = run("arm-none-eabi-nm", "-C", elf)
+    sizes = {line.split()[2]: int(line.split()[0], 16) for line in symbols.splitlines() if len(line.split()) == 3}
+    reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
+    allocators = [line for line in symbols.splitlines() if ALLOCATOR.search(line)]
+    graph = stack.Graph(folder, skip="tests/")
+    stacks = {}
+    for name, pattern in ENTRIES:
+        found = [f for f in graph.frames if re.search(pattern, f)]
+        stacks[name] = max(graph.deepest(f)[0] for f in found) if found else 0
+    deepest = stacks[ENTRIES[0][0]] + stacks[ENTRIES[1][0]] + 27 * 4  # an interrupt's frame, registers of the FPU included
+    result = {"flash": text + data, "static RAM with its stack": data + bss, "data": data, "bss": bss - reserved, "stack reserved": reserved, "core-coupled": coupled,
+              "stack": deepest, "stack by call graph": stacks, "painted stack of the probe": painted(build, target),
+              "allocators": len(allocators), "rooms": by_room(build, target)}
+    for name, most in LIMITS.items():
+        if result[name] > most:
+            faults.append(f"{target}: {name}: {result[name]} bytes of {most}: TOO MUCH")
+    faults += [f"{target}: an allocator: {line}" for line in allocators]
+    faults += [f"{target}: stack not bounded: {problem}" for problem in sorted(set(graph.problems))]
+    if not negative_link(folder, target):
+        faults.append(f"{target}: an image that allocates links: the proof does not hold")
+    return result
+
+
+def painted(build, target):
+    """Deepest stack that the probe saw, over random problems of every kind and all records [bytes]."""
+    probe = targets.open_probe(target, build)
+    deepest = 0
+    for sample in scenes.SAMPLES.values():
+        deepest = max([deepest] + [probe.ask(sample[2](seed)).stack_used for seed in range(60)])
+    for path in sorted((TOP / "tests/timing/records").glob("*.*.json")):
+        if not path.name.startswith("step_"):
+            deepest = max(deepest, probe.ask(records.read_case(path)[1]).stack_used)
+    probe.close()
+    return deepest
+
+
+def negative_link(folder, target):
+    """The image links as it is, and does not with a function in it that allocates."""
+    commands = run("ninja", "-C", str(folder), "-t", "commands", f"firmware/{target}/{target}.elf").splitlines()
+    link = next(c for c in commands if f"-o firmware/{target}/{target}.elf" in c)
+    command = shlex.split(link.split("&&")[1])
+    compiler = command[0]
+    with tempfile.TemporaryDirectory() as name:
+        source = pathlib.Path(name) / "allocates.cpp"
+        verdicts = []
+        for body in ("return nullptr;", "return new int[n];"):
+            source.write_text(f"int* volatile kept; int* make(unsigned n) {{ static_cast<void>(n); {body} }}\n"
+                              "__attribute__((constructor, used)) static void use() { kept = make(3); }\n", encoding="utf-8")
+            flags = [f for f in command if f.startswith("-m") and not f.startswith("-mt=")]
+            subprocess.run([compiler, *flags, "-O1", "-fno-exceptions", "-c", str(source), "-o", str(source) + ".o"], check=True)
+            changed = [str(pathlib.Path(name) / "image.elf") if a == f"firmware/{target}/{target}.elf" else a for a in command]
+            changed = [re.sub(r"-Map=\S+", f"-Map={name}/image.map", a) for a in changed]
+            linked = subprocess.run([*changed, str(source) + ".o"], cwd=folder, capture_output=True, text=True)
+            verdicts.append((linked.returncode == 0, "_sbrk" in linked.stderr))
+    return verdicts[0][0] and not verdicts[1][0] and verdicts[1][1]
+
+
+def of_linux(build, target):
+    folder = pathlib.Path(build) / target
+    out = {}
+    for name, path in (("core", "core/libjink_core.a"), ("link", "firmware/libjink_link.a"), ("application", "firmware/libjink_app.a")):
+        if not (folder / path).exists():
+            continue
+        rows = [line.split() for line in run(PREFIX[target] + "size", str(folder / path)).splitlines()[1:]]
+        out[name] = {"flash": sum(int(r[0]) for r in rows), "data": sum(int(r[1]) for r in rows), "bss": sum(int(r[2]) for r in rows)}
+    return out
+
+
+def sizeof(capacities):
+    """Bytes of the types that hold the memory, on the Cortex-M7."""
+    defines = [f"-D{k}={v}" for k, v in capacities.items()]
+    with tempfile.TemporaryDirectory() as name:
+        obj = f"{name}/sizes.o"
+        run("arm-none-eabi-g++", "-std=c++20", "-Os", "-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard", "-mthumb", "-fno-exceptions",
+            "-fno-rtti", "-Wno-psabi", "-DEIGEN_MAX_ALIGN_BYTES=8", "-DEIGEN_NO_MALLOC", "-DEIGEN_NO_IO", *defines, "-I", str(TOP), "-isystem",
+            "/usr/include/eigen3", "-c", str(TOP / "tests/timing/sizes.cpp"), "-o", obj)
+        lines = run("arm-none-eabi-nm", "-S", obj).splitlines()
+    return {line.split()[3][len("size_of_"):]: int(line.split()[1], 16) for line in lines if "size_of_" in line}
+
+
+def formula(faults):
+    """{type: {capacity: bytes each, "fixed": bytes}} out of sizes with one capacity changed at a time, tried on a third set."""
+    base = sizeof(BASE)
+    alone = {c: sizeof({**BASE, c: value}) for c, value in TRIED.items()}
+    out = {t: {} for t in base}
+    for t, size in base.items():
+        for c in TRIED:
+            out[t][c] = (alone[c][t] - size) / (TRIED[c] - BASE[c])
+        out[t]["fixed"] = 0.0
+        out[t]["fixed"] = size - told(out[t], BASE)
+    proof = sizeof(PROOF)
+    for t, size in proof.items():
+        if abs(told(out[t], PROOF) - size) > 16:  # alignment
+            faults.append(f"the formula for {t} says {told(out[t], PROOF):.0f} bytes with {PROOF}, it has {size}")
+    out = {t: {c: each for c, each in terms.items() if each} for t, terms in out.items()}
+    return {"base": base, "each": out, "tried": {"sizes": proof}}
+
+
+def told(terms, capacities):
+    total = 0.0
+    for name, each in terms.items():
+        total += each * capacities.get(name, 1)
+    return total
+
+
+def measure(build, faults):
+    result = {"compilers": {t: records.compiler(t) for t in records.TARGETS}, "targets": {}}
+    for target in IMAGES:
+        result["targets"][target] = of_image(build, target, faults)
+    for target in ("armhf", "aarch64"):
+        result["targets"][target] = of_linux(build, target)
+    result["targets"]["formula"] = formula(faults)
+    return result

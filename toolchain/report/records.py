@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Recorded cases and their counts: kept in files that a person can read, replayed exactly."""
+import concurrent.futures
+import dataclasses
+import json
+import pathlib
+import statistics
+import struct
+import subprocess
+import tempfile
+
+import flights
+import scenes
+import stages
+import targets
+
+TARGETS = ["mps2_an500", "stm32f405", "armhf", "aarch64"]
+COMPILERS = {"mps2_an500": "arm-none-eabi-g++", "stm32f405": "arm-none-eabi-g++", "armhf": "arm-linux-gnueabihf-g++",
+             "aarch64": "aarch64-linux-gnu-g++"}
+STAGED = "mps2_an500"  # counted stage by stage; the other targets in all, which takes half the time
+# core/base/work_budget.hpp: instructions that one unit of work may stand for.
+MOST_PER_UNIT = 150
+PER_DECADE = 20  # bins of a histogram; from 10^4 instructions on
+DECADES = 4
+
+
+def short(x):
+    """Shortest decimal that gives the same single-precision number."""
+    if isinstance(x, (list, tuple)):
+        return [short(y) for y in x]
+    if not isinstance(x, float):
+        return x
+    exact = struct.unpack("<f", struct.pack("<f", x))[0]
+    for digits in range(1, 10):
+        text = f"{exact:.{digits}g}"
+        if struct.unpack("<f", struct.pack("<f", float(text)))[0] == exact:
+            return float(text)
+    return exact
+
+
+def write_case(path, scene, found, how):
+    fields = {f.name: short(getattr(found.case, f.name)) for f in dataclasses.fields(targets.Case)}
+    record = {"scene": scene, "how": how, "case": fields}
+    text = json.dumps(record, indent=1)
+    pathlib.Path(path).write_text(_compact(text) + "\n", encoding="utf-8")
+
+
+def compact_json(kept):
+    """Indented, with what is innermost on one line."""
+    def lines(value, depth):
+        if isinstance(value, dict) and any(isinstance(v, (dict, list)) for v in value.values()):
+            inner = ",\n".join(f"{' ' * (depth + 1)}{json.dumps(k)}: {lines(v, depth + 1)}" for k, v in value.items())
+            return "{\n" + inner + "\n" + " " * depth + "}"
+        if isinstance(value, list) and any(isinstance(v, dict) for v in value):
+            return "[\n" + ",\n".join(" " * (depth + 1) + json.dumps(v) for v in value) + "\n" + " " * depth + "]"
+        return json.dumps(value)
+    return lines(kept, 0) + "\n"
+
+
+def _compact(text):
+    """Lists of numbers on one line."""
+    out, depth = [], 0
+    for line in text.splitlines():
+        inner = line.strip()
+        if depth:
+            out[-1] += inner if inner[0] in "]" else (" " if out[-1][-1] == "," else "") + inner
+        else:
+            out.append(line)
+        if inner.endswith("[") and ("\"tracks\"" not in inner and "\"obstacles\"" not in inner or depth):
+            depth += 1
+        elif depth and inner[0] == "]":
+            depth -= 1
+    return "\n".join(out)
+
+
+def read_case(path):
+    record = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+    values = {k: tuple(tuple(y) if isinstance(y, list) else y for y in v) if isinstance(v, list) else v
+              for k, v in record["case"].items()}
+    for name in ("tracks", "obstacles"):
+        values[name] = [tuple(tuple(y) if isinstance(y, list) else y for y in item) for item in record["case"][name]]
+    return record, targets.Case(**values)
+
+
+def compiler(target):
+    """Version of the compiler that is here for a target."""
+    try:
+        return subprocess.run([COMPILERS[target], "-dumpfullversion"], check=True, capture_output=True, text=True).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "none"
+
+
+def distribution(counts):
+    ordered = sorted(counts)
+    bins = [0] * (PER_DECADE * DECADES)
+    for count in counts:
+        i = 0
+        while i + 1 < len(bins) and count >= 10 ** (4 + (i + 1) / PER_DECADE):
+            i += 1
+        bins[i] += 1
+    return {"cases": len(counts), "least": ordered[0], "median": ordered[len(counts) // 2], "mean": round(statistics.mean(counts)),
+            "p99": ordered[-1 - len(counts) // 100], "most": ordered[-1], "most_seed": counts.index(ordered[-1]), "bins": bins}
+
+
+class Bench:
+    """Everything that is recorded, counted on the targets."""
+
+    def __init__(self, build, plugin, folder, sim):
+        self.build, self.plugin, self.folder, self.sim = build, plugin, pathlib.Path(folder), sim
+        self.files = sorted(p for p in self.folder.glob("*.json") if p.name != "counts.json")
+
+    def one(self, target, case, stage_file=None):
+        """Always in a fresh probe: no count may depend on what was counted before."""
+        probe = targets.open_probe(target, self.build, self.plugin, stage_file)
+        answer = probe.ask(case)
+        probe.close()
+        return answer
+
+    def step(self, target, record, folder, stage_file=None):
+        """The step of a recorded flight that its record names."""
+        flight, index = record["flight"], record["step"]
+        probe = targets.open_probe(target, self.build, self.plugin, stage_file, kind=flights.StepProbe)
+        answer = [probe.ask(step) for step in flights.read(pathlib.Path(folder) / f"{flight}.steps")[:index + 1]][-1]
+        probe.close()
+        return answer
+
+    def fly(self, folder, crowds=()):
+        """Flies what steps are counted of, in process, and leaves what went over the line in `folder`."""
+        scenario = pathlib.Path(__file__).resolve().parents[2] / "tests/scenario"
+        files = [str(scenario / f"{name}.yaml") for name in scenes.FLIGHTS]
+        subprocess.run([self.sim, "fly", *files, "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        for seed in crowds:
+            # Whether a crowd ends well is not asked here.
+            subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", "--record-steps", folder, "--quiet"], check=False,
+                           stdout=subprocess.DEVNULL)
+
+    def crowds(self):
+        """Seeds of the crowds that records need."""
+        return sorted({json.loads(p.read_text(encoding="utf-8"))["crowd"] for p in self.files if p.name.startswith("step_")})
+
+    def _records(self, target, result, stage_files, folder):
+        for path in self.files:
+            record = json.loads(path.read_text(encoding="utf-8"))
+            if "case" in record:
+                answer = self.one(target, read_case(path)[1], stage_files[0])
+                status = answer.status
+            else:
+                answer = self.step(target, record, folder, stage_files[1])
+                status = f"{answer.tracks} tracks, {answer.obstacles} obstacles"
+            result["records"][path.stem] = {"instructions": answer.instructions, "status": status, "work": answer.work}
+            if answer.by_stage:
+                result["stages"][path.stem] = {n: c for n, c in zip(stages.NAMES, answer.by_stage) if c}
+
+    def _sample(self, name, answers, result):
+        counts = len(answers)
+        result["typical"][name] = distribution([a.instructions for a in answers])
+        # What the work budget does not count, or counts too low: beyond the most that a unit may stand for.
+        result["typical"][name]["uncounted"] = max(0, *(a.instructions - MOST_PER_UNIT * a.work for a in answers))
+        if not answers[0].by_stage:
+            return
+        sums = [sum(c) for c in zip(*(a.by_stage for a in answers))]
+        result["typical_stages"][name] = {n: round(c / counts) for n, c in zip(stages.NAMES, sums) if c >= counts}
+
+    def of_target(self, target, flown):
+        result = {"records": {}, "stages": {}, "typical": {}, "typical_stages": {}}
+        with tempfile.TemporaryDirectory() as folder:
+            stage_files = [str(pathlib.Path(folder) / name) for name in ("plan", "step")]
+            if target == STAGED:
+                stages.write(targets.program_of(target, self.build), target, stage_files[0])
+                stages.write(targets.program_of(target, self.build, flights.StepProbe.PROGRAM), target, stage_files[1])
+            else:
+                stage_files = [None, None]
+            self._records(target, result, stage_files, flown)
+            for name, (_, count, case_of) in scenes.SAMPLES.items():
+                probe = targets.open_probe(target, self.build, self.plugin, stage_files[0])
+                self._sample(name, [probe.ask(case_of(seed)) for seed in range(count)], result)
+                probe.close()
+            probe = targets.open_probe(target, self.build, self.plugin, stage_files[1], kind=flights.StepProbe)
+            steps = {"step_flights": scenes.FLIGHTS, "step_crowd": [f"crowd_{seed}" for seed in self.crowds()[:1]]}
+            for name, names in steps.items():
+                answers = [probe.ask(step) for flight in names for step in flights.read(pathlib.Path(flown) / f"{flight}.steps")]
+                if answers:
+                    self._sample(name, answers, result)
+            probe.close()
+        return result
+
+    def all(self, names):
+        with tempfile.TemporaryDirectory() as flown, concurrent.futures.ThreadPoolExecutor(2) as pool:
+            self.fly(flown, self.crowds())
+            return dict(zip(names, pool.map(lambda t: self.of_target(t, flown), names)))
+
+    def hunt_steps(self, target, seed, count, report):
+        """The costliest step of `count` crowds: (instructions, crowd, step)."""
+        worst = (0, 0, 0)
+        for crowd in range(seed, seed + count):
+            with tempfile.TemporaryDirectory() as folder:
+                self.fly(folder, [crowd])
+                probe = targets.open_probe(target, self.build, self.plugin, kind=flights.StepProbe)
+                answers = [probe.ask(step) for step in flights.read(pathlib.Path(folder) / f"crowd_{crowd}.steps")]
+                probe.close()
+            most = max((a.instructions, crowd, i) for i, a in enumerate(answers))
+            worst = max(worst, most)
+            report(f"crowd {crowd}: {len(answers)} steps, the costliest {most[0]} instructions (step {most[2]})")
+        return worst
+
+
+def write_step(folder, worst, how):
+    instructions, crowd, step = worst
+    path = pathlib.Path(folder) / f"step_full.crowd_{crowd}.json"
+    record = {"scene": "step_full", "how": how, "crowd": crowd, "flight": f"crowd_{crowd}", "step": step}
+    path.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
+    return path

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+// What went through a co-processor's line in each step of a flight, so that the flight can be run again on any target
+// (tests/target/step_probe.cpp): plain memory, little-endian. A file is one StepRecord after the other, each followed
+// by its bytes in, then its bytes out.
+
+namespace jink::sim {
+
+inline constexpr std::uint32_t kStepMagic = 0x4A535201;  // "JSR", layout 1
+/// As many bytes at most in either direction: those that one step reads, and the transmit buffer's.
+inline constexpr std::uint32_t kStepBytes = 4096;
+
+struct StepRecord {
+    std::uint32_t magic;
+    std::uint32_t start;      ///< 1: the co-processor starts anew before this step
+    std::int64_t now_us;      ///< the step's time
+    std::uint32_t bytes_in;   ///< read by the step
+    std::uint32_t bytes_out;  ///< written by it in the recorded flight
+};
+static_assert(std::is_trivially_copyable_v<StepRecord> && sizeof(StepRecord) == 24);
+
+/// What a target answers; followed by its own bytes out.
+struct StepAnswer {
+    std::uint32_t magic;
+    std::uint32_t state;        ///< link::SystemState
+    std::uint32_t faults;       ///< app::Fault bits
+    std::uint32_t control;      ///< app::Control
+    std::uint32_t guidance;     ///< avoid::State
+    std::uint32_t kind;         ///< world::ManoeuvreKind
+    std::uint32_t plan_status;  ///< world::PlanStatus of this step's plan
+    std::uint32_t plans;        ///< asked for since start
+    std::uint32_t chosen;       ///< index of the chosen candidate in the last plan
+    std::uint32_t candidates;   ///< of the last plan's last attempt
+    std::uint32_t manoeuvres;   ///< begun since start
+    std::uint32_t work;         ///< units of the supervisor's budget
+    std::uint32_t tracks;
+    std::uint32_t obstacles;
+    std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told
+    std::uint32_t bytes_out;
+    float velocity[3];  ///< command [m/s, ENU]
+    float margin;       ///< [m]
+    float cost;         ///< of the chosen candidate in the last plan
+};
+static_assert(std::is_trivially_copyable_v<StepAnswer> && sizeof(StepAnswer) == 84);
+
+}  // namespace jink::sim
