@@ -275,6 +275,8 @@ int run_nested(Board& board)
 
 int run_loop(Board& board)
 {
+    // The image tells what it has to once it hears the autopilot, which beats each second.
+    constexpr double kHeartbeats = 1.5;
     Test test(board, "crash_loop");
     board.debugger().go();
     board.fly_for(1.5);
@@ -299,13 +301,16 @@ int run_loop(Board& board)
     const std::size_t passive_from = board.heard().size();
     const double since = board.seconds();
     const unsigned requests = board.plant().autopilot().heard().external_requests;
-    // The sixth and seventh are not told: neither within the first three nor a power of two.
+    // The fourth is told, a power of two; those from the fifth to the seventh are not.
     for (int i = 4; i <= 7; ++i) {
         board.fly_for(0.1);
         crash();
         const std::size_t from = first;
         test.expect(board.fly_until([&] { return test.count<Heartbeat>(from) >= 2; }, board.seconds() + 5.0),
                     "is heard again");
+        board.fly_for(kHeartbeats);
+        const std::string line = std::string("jink: restart ").append(1, static_cast<char>('0' + i));
+        test.expect(test.heard_text(from, line) == (i == 4), (i == 4 ? "tells: " : "does not tell: ") + line);
     }
     board.fly_for(8.0);
     test.expect(board.plant().autopilot().heard().external_requests == requests && test.mode() == sim::Mode::mission,
