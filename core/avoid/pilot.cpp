@@ -175,7 +175,7 @@ bool Pilot::find_faster(Tick& tick) noexcept
     looked_at_ = tick.s.now;
     const float margin = tick.out.margin;
     if (plan(tick) && mean_speed(answer_) > kFaster * mean_speed(flying_) &&
-        flying_.side.dot(answer_.side) >= kSameSide) {
+        (flying_.side == Vec3::Zero() || flying_.side.dot(answer_.side) >= kSameSide)) {
         take(tick);
         return true;
     }

@@ -2,6 +2,7 @@
 #include "core/geometric/candidate.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace jink::geometric {
@@ -9,6 +10,9 @@ namespace {
 
 /// A leg within this of the vertical has no horizontal normal worth the name [rad].
 constexpr float kVertical = 1e-4F;
+
+/// From 0 to 1 with no slope and no curvature at either end.
+float least_jerk(float v) noexcept { return v * v * v * (10.0F + v * (6.0F * v - 15.0F)); }
 
 }  // namespace
 
@@ -28,10 +32,29 @@ PathFrame make_path_frame(const Vec3& origin, const Vec3& direction) noexcept
     return frame;
 }
 
+std::string_view to_string(Family family) noexcept
+{
+    switch (family) {
+    case Family::simple: return "simple";
+    case Family::symmetric: return "symmetric";
+    case Family::smooth: return "smooth";
+    case Family::plateau: return "plateau";
+    case Family::wait: return "wait";
+    }
+    return "";
+}
+
 float unit_offset(Family family, float u) noexcept
 {
-    const float v = family == Family::symmetric && u > 1.0F ? 2.0F - u : u;
-    return v * v * (3.0F - 2.0F * v);
+    const float back = family != Family::simple && u > 1.0F ? 2.0F - u : u;
+    switch (family) {
+    case Family::simple:
+    case Family::symmetric: return back * back * (3.0F - 2.0F * back);
+    case Family::smooth: return least_jerk(back);
+    case Family::plateau: return least_jerk(std::min(back * (1.0F / kPlateauRise), 1.0F));
+    case Family::wait: break;
+    }
+    return 0.0F;
 }
 
 float curve_offset(const CandidateShape& shape, float distance, float s) noexcept
@@ -41,7 +64,7 @@ float curve_offset(const CandidateShape& shape, float distance, float s) noexcep
 
 float curve_length_x(Family family, float distance) noexcept
 {
-    return (family == Family::simple ? kSimpleLength : kSymmetricLength) * distance;
+    return (family == Family::simple || family == Family::wait ? kSimpleLength : kSymmetricLength) * distance;
 }
 
 }  // namespace jink::geometric

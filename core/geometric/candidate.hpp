@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "core/base/static_vector.hpp"
 #include "core/capacity.hpp"
@@ -13,7 +15,16 @@
 
 namespace jink::geometric {
 
-enum class Family : std::uint8_t { simple, symmetric };
+/// simple, symmetric: the source's. smooth: the quintic of least jerk, out and back (T. Flash, N. Hogan, J. Neurosci. 5
+/// (1985), 1688-1703): it leaves the leg and meets it again along it and without curvature, so that acceleration has no
+/// jump anywhere. plateau: the same, but out within kPlateauRise of D and as far from the leg until as much before its
+/// end: climb (or step aside) first, then pass. wait: stays on the leg, slows down or stands until something has
+/// passed.
+enum class Family : std::uint8_t { simple, symmetric, smooth, plateau, wait };
+inline constexpr std::array kFamilies{Family::simple, Family::symmetric, Family::smooth, Family::plateau, Family::wait};
+/// Those that leave the leg.
+inline constexpr std::array kCurves{Family::simple, Family::symmetric, Family::smooth, Family::plateau};
+[[nodiscard]] std::string_view to_string(Family family) noexcept;
 
 enum class CandidateStatus : std::uint8_t {
     available,  ///< clear, not the cheapest
@@ -33,23 +44,26 @@ struct PathFrame {
 /// Frame at `origin` with x towards `direction` (length > 0); y = world z cross x, and world north for a vertical leg.
 [[nodiscard]] PathFrame make_path_frame(const Vec3& origin, const Vec3& direction) noexcept;
 
-/// One curve: family, plane and offset say everything but the scale D.
+/// One candidate: family, plane and offset say everything of a curve but the scale D.
 struct CandidateShape {
     Family family = Family::simple;
-    float plane = 0.0F;   ///< theta [rad], rotation about the leg
-    float offset = 0.0F;  ///< w [m], signed
+    float plane = 0.0F;    ///< theta [rad], rotation about the leg
+    float offset = 0.0F;   ///< w [m], signed
+    float share = 0.0F;    ///< wait: of the leg's speed, until then
+    Seconds until = 0.0F;  ///< wait [s]
 };
 
 /// Length of a curve along the leg, over the threat's distance D (Pinheiro eq. 3.7 and 3.1.2).
 inline constexpr float kSimpleLength = 1.5F;
-inline constexpr float kSymmetricLength = 2.0F;
+inline constexpr float kSymmetricLength = 2.0F;  ///< of smooth and plateau too
+inline constexpr float kPlateauRise = 0.4F;
 
-/// Curve of either family for D = 1, w = 1: 3u^2 - 2u^3, for symmetric mirrored about u = 1. O(1).
+/// Curve of a family for D = 1, w = 1: 3u^2 - 2u^3, for symmetric mirrored about u = 1; 10v^3 - 15v^4 + 6v^5 so
+/// mirrored for smooth, v = u, and plateau, v = u / kPlateauRise up to 1; 0 for wait. O(1).
 [[nodiscard]] float unit_offset(Family family, float u) noexcept;
-/// Offset y [m] of the curve at abscissa s in [0, length_x] for a threat at distance D: w (3u^2 - 2u^3), mirrored for
-/// symmetric.
+/// Offset y [m] of the curve at abscissa s in [0, length_x] for a threat at distance D: w unit_offset(s / D).
 [[nodiscard]] float curve_offset(const CandidateShape& shape, float distance, float s) noexcept;
-/// 1.5 D or 2 D.
+/// 1.5 D or 2 D; of wait 1.5 D.
 [[nodiscard]] float curve_length_x(Family family, float distance) noexcept;
 
 /// What became of one candidate. Checked in the order of the causes: not_flyable, airspace, static threats, obstacles,

@@ -34,10 +34,9 @@ UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept
 {
     UnitCurve unit;
     unit.points = waypoints;
-    const float step = curve_length_x(family, 1.0F) / static_cast<float>(waypoints - 1);
+    unit.step = curve_length_x(family, 1.0F) / static_cast<float>(waypoints - 1);
     for (std::size_t i = 0; i < unit.points; ++i) {
-        unit.u[i] = step * static_cast<float>(i);
-        unit.f[i] = unit_offset(family, unit.u[i]);
+        unit.f[i] = unit_offset(family, unit.step * static_cast<float>(i));
     }
     return unit;
 }
@@ -55,14 +54,15 @@ void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, floa
     const Vec3 leg = distance * along;
     const Vec3 out_to = offset * side;
     for (std::size_t i = 0; i < unit.points; ++i) {
-        out.x[i] = unit.u[i] * leg.x() + unit.f[i] * out_to.x();
-        out.y[i] = unit.u[i] * leg.y() + unit.f[i] * out_to.y();
-        out.z[i] = unit.u[i] * leg.z() + unit.f[i] * out_to.z();
+        const float u = unit.step * static_cast<float>(i);
+        out.x[i] = u * leg.x() + unit.f[i] * out_to.x();
+        out.y[i] = u * leg.y() + unit.f[i] * out_to.y();
+        out.z[i] = u * leg.z() + unit.f[i] * out_to.z();
     }
     const float per_speed = 1.0F / speed;
     const float per_climb = 1.0F / limits.max_climb;
     const float per_descent = -1.0F / limits.max_descent;
-    const float advance = distance * (unit.u[1] - unit.u[0]);
+    const float advance = distance * unit.step;
     Coordinates duration;
     for (std::size_t i = 0; i + 1 < unit.points; ++i) {
         const float aside = offset * (unit.f[i + 1] - unit.f[i]);
@@ -73,6 +73,33 @@ void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, floa
     out.t[0] = 0.0F;
     for (std::size_t i = 0; i + 1 < unit.points; ++i) {
         out.t[i + 1] = out.t[i] + duration[i];
+    }
+}
+
+void make_waiting_curve(const Wait& wait, const Vec3& along, std::size_t waypoints, Curve& out) noexcept
+{
+    const float slow = wait.share * wait.speed;
+    const float change = wait.start_speed > slow ? -wait.acceleration : wait.acceleration;
+    const Seconds settled = std::min(wait.until, (slow - wait.start_speed) / change);
+    const float slowest = wait.start_speed + change * settled;
+    const auto speed_at = [&](Seconds t) {
+        return t <= wait.until ? wait.start_speed + change * std::min(t, settled)
+                               : std::min(wait.speed, slowest + wait.acceleration * (t - wait.until));
+    };
+    const float waited = 0.5F * (wait.start_speed + slowest) * settled + slowest * (wait.until - settled);
+    const Seconds speeding_up = std::max(0.0F, wait.speed - slowest) / wait.acceleration;
+    const Seconds total = wait.until + speeding_up + std::max(0.0F, wait.length - waited) / wait.speed;
+    const Seconds step = total / static_cast<float>(waypoints - 1);
+    out.points = waypoints;
+    out.fastest = kUnitTolerance * std::max(wait.start_speed, wait.speed);
+    float way = 0.0F;
+    for (std::size_t i = 0; i < waypoints; ++i) {
+        const Seconds t = step * static_cast<float>(i);
+        way += i > 0 ? 0.5F * step * (speed_at(t - step) + speed_at(t)) : 0.0F;
+        out.x[i] = way * along.x();
+        out.y[i] = way * along.y();
+        out.z[i] = way * along.z();
+        out.t[i] = t;
     }
 }
 

@@ -18,7 +18,7 @@ using Coordinates = std::array<float, kMaxPathPoints>;
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): entries past `points` are not read, zeroing them costs
 struct UnitCurve {
     std::size_t points = 0;
-    Coordinates u;
+    float step = 0.0F;  ///< of u, which begins with 0
     Coordinates f;
 };
 [[nodiscard]] UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept;
@@ -47,6 +47,18 @@ struct Curve {
 /// the climb or the descent limit takes, whichever is longest. O(waypoints).
 void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, float distance, float offset, float speed,
                 const vehicle::VehicleLimits& limits, Curve& out) noexcept;
+
+/// A candidate of the family wait along a leg of `length` [m]: from `start_speed` [m/s] to `share` of `speed` until
+/// `until` [s], then on at `speed` to its end, speeding up and slowing down at `acceleration` [m/s2] > 0. O(waypoints).
+struct Wait {
+    float length = 0.0F;
+    float start_speed = 0.0F;
+    float speed = 0.0F;
+    float share = 0.0F;
+    Seconds until = 0.0F;
+    float acceleration = 1.0F;
+};
+void make_waiting_curve(const Wait& wait, const Vec3& along, std::size_t waypoints, Curve& out) noexcept;
 
 /// As a timed path about `origin`. O(points).
 void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out) noexcept;

@@ -70,8 +70,8 @@ float smallest_clearing_offset(const Problem& problem, const Settings& settings,
     const float behind = sphere ? problem.main_radius : std::max(main_extent(problem, along), 0.0F);
     for (const float part : {0.0F, 0.25F, 0.5F, 0.75F, 1.0F}) {
         const float drop = sphere ? problem.main_radius * (1.0F - std::sqrt(1.0F - part * part)) : 0.0F;
-        const float u_before = 1.0F - (box_along + part * before) / problem.distance;
-        const float u_behind = 1.0F + (box_along + part * behind) / problem.distance;
+        const float u_before = (problem.distance - box_along - part * before) / scale_of(problem);
+        const float u_behind = (problem.distance + box_along + part * behind) / scale_of(problem);
         const float share = std::min(unit_offset(family, std::max(u_before, 0.0F)),
                                      unit_offset(family, std::min(u_behind, curve_length_x(family, 1.0F))));
         smallest =
@@ -92,7 +92,7 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
     const float box_aside = half_extents.dot(side.cwiseAbs());
     const float left = smallest_clearing_offset(problem, settings, family, half_extents, side);
     const float right = smallest_clearing_offset(problem, settings, family, half_extents, -side);
-    const float widest = kLargestRatio * problem.distance;
+    const float widest = kLargestRatio * scale_of(problem);
     for (std::size_t k = per_side; k > 0; --k) {
         if (const float offset = clearing_offset(problem, right, box_aside, k - 1, per_side); offset <= widest) {
             out.unchecked_push_back(-offset);

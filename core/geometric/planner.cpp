@@ -14,14 +14,14 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// The track with its growth as a polynomial of time from now: equal to world::threat_radius, and never below it where
-/// the track's stamp lies ahead of now.
-Threat threat_of(const Situation& situation, const world::Track& track) noexcept
+/// The track `lead` from now, with its growth as a polynomial of time from then: equal to world::threat_radius, and
+/// never below it where the track's stamp lies ahead of now.
+Threat threat_of(const Situation& situation, const world::Track& track, Seconds lead) noexcept
 {
-    const Seconds age = std::max(situation.now - track.stamp, 0.0F);
+    const Seconds age = std::max(situation.now - track.stamp, 0.0F) + lead;
     Threat threat;
-    threat.motion = {track.position, track.velocity};
-    threat.radius = world::threat_radius(situation, track, 0.0F);
+    threat.motion = {track.position + track.velocity * lead, track.velocity};
+    threat.radius = world::threat_radius(situation, track, lead);
     threat.radius_rate = situation.k_sigma * track.sigma_velocity + track.max_acceleration * age;
     threat.radius_acceleration = track.max_acceleration;
     return threat;
@@ -52,12 +52,62 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     return problem;
 }
 
-bool applies(const Attempt& attempt, const Settings& settings, vehicle::VehicleKind kind) noexcept
+/// Moves the start to where the vehicle is when it answers. How long that takes, 0 where it is not moved [s].
+Seconds move_start(const Situation& situation, const Vec3& collision_point, const Settings& settings, Problem& problem,
+                   WorkBudget& budget) noexcept
 {
-    const bool slower = attempt.speed_share < 1.0F;
-    const bool wider = attempt.span_from > 0.0F;
-    return !(slower && kind == vehicle::VehicleKind::fixed_wing) &&
-           !(wider && settings.offset_rule == OffsetRule::source);
+    const Seconds latency = settings.latency;
+    const Vec3 way = problem.start_velocity * latency;
+    const Vec3 left = collision_point - problem.frame.origin - way;
+    const float least = std::max(Planner::kLeastLeadRatio * way.norm(), kLeastDistanceInRadii * scale_radius(problem));
+    if (!(way.squaredNorm() > 0.0F) || left.norm() < least || settings.waypoints >= kMaxPathPoints) {
+        return 0.0F;
+    }
+    // Within a margin the escape rule counts from where the vehicle is.
+    if (world::separation_at(situation, problem.frame.origin + way, latency, budget).margin < 0.0F) {
+        return 0.0F;
+    }
+    problem.frame = make_path_frame(problem.frame.origin + way, left);
+    problem.distance = left.norm();
+    return latency;
+}
+
+/// `path` from its start, with the way to there before it.
+void join(const Vec3& from, const Vec3& velocity, Seconds lead, const path::TimedPath& path,
+          path::TimedPath& out) noexcept
+{
+    out.points.clear();
+    if (lead > 0.0F) {
+        out.points.unchecked_push_back({from, velocity, 0.0F});
+    }
+    for (path::PathPoint point : path.points) {
+        point.time += lead;
+        out.points.unchecked_push_back(point);  // move_start has looked for room for one more
+    }
+}
+
+/// The settings of one attempt; false where it has nothing to add.
+bool apply(const Attempt& attempt, vehicle::VehicleKind kind, Settings& settings) noexcept
+{
+    using Kind = Attempt::Kind;
+    const bool waits = attempt.kind == Kind::wait;
+    if (kind == vehicle::VehicleKind::fixed_wing && (attempt.speed_share < 1.0F || waits)) {
+        return false;
+    }
+    if (settings.offset_rule == OffsetRule::source && (attempt.span_from > 0.0F || attempt.kind != Kind::as_set)) {
+        return false;
+    }
+    if (attempt.kind == Kind::plateau || waits) {
+        settings.simple = settings.symmetric = settings.smooth = false;
+        settings.plateau = !waits;
+        settings.wait = waits;
+        settings.extra_planes = waits ? 0 : settings.extra_planes;
+    }
+    if (attempt.kind == Kind::more_planes) {
+        settings.extra_planes = static_cast<std::uint16_t>(2U * settings.extra_planes + 1U);
+        settings.offsets = static_cast<std::uint16_t>(std::max(settings.offsets / 4 * 2, 2));
+    }
+    return is_valid(settings);
 }
 
 }  // namespace
@@ -67,18 +117,22 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
                               Result& result, std::size_t& attempts) noexcept
 {
     PlanStatus status = PlanStatus::none_available;
-    Problem tried = problem;
     attempts = 0;
     bool cut_short = false;
     for (std::size_t i = 0; i <= settings.retries && i < kAttempts.size() && status == PlanStatus::none_available;
          ++i) {
-        if (!applies(kAttempts[i], settings, limits.kind)) {
+        const Attempt& attempt = kAttempts[i];
+        Settings with = settings;
+        if (!apply(attempt, limits.kind, with)) {
             continue;
         }
-        tried.speed = kAttempts[i].speed_share * problem.speed;
-        tried.span_from = kAttempts[i].span_from;
-        tried.span_to = kAttempts[i].span_to;
-        status = solve(tried, settings, limits, airframe, budget, workspace, result);
+        Problem tried = problem;
+        tried.speed = attempt.speed_share * problem.speed;
+        tried.span_from = attempt.span_from;
+        tried.span_to = attempt.span_to;
+        tried.apex_share = attempt.apex_share * problem.apex_share;
+        status = solve(tried, with, limits, airframe, budget, workspace, result);
+        result.attempt = i;
         ++attempts;
         cut_short = cut_short || result.cut_short;
     }
@@ -108,15 +162,16 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!world::main_conflict(situation, way, settings_.lookahead, budget, conflict)) {
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
     }
-    threats_.clear();
-    for (const world::Track& track : situation.tracks) {
-        threats_.unchecked_push_back(threat_of(situation, track));
-    }
     Problem problem = problem_of(situation, way, conflict);
-    problem.threats = {threats_.data(), threats_.size()};
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
+    const Seconds lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);
+    threats_.clear();
+    for (const world::Track& track : situation.tracks) {
+        threats_.unchecked_push_back(threat_of(situation, track, lead));
+    }
+    problem.threats = {threats_.data(), threats_.size()};
     std::size_t attempts = 0;
     const PlanStatus status = solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget,
                                                  workspace_, result_, attempts);
@@ -126,11 +181,11 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     out.kind = world::ManoeuvreKind::follow_path;
     out.by = world::MethodId::geometric;
     out.start = situation.now;
-    out.valid_until = situation.now + result_.path.duration();
     out.command = Vec3::Zero();
     out.side = result_.side;
     out.cost = result_.candidates[result_.chosen].total;
-    out.path = result_.path;
+    join(situation.own.position, situation.own.velocity, lead, result_.path, out.path);
+    out.valid_until = situation.now + out.path.duration();
     return status;
 }
 

@@ -24,18 +24,41 @@ enum class OffsetRule : std::uint8_t { clearing, source };
 inline constexpr float kRejoinOvershoot = 0.5F;
 /// Nearest distance to the main threat that is planned for, in its radii (Pinheiro 3.1.1).
 inline constexpr float kLeastDistanceInRadii = 2.5F;
-/// One go at a problem: a share of the leg's speed, and the part of the span of clearing offsets that is tried.
+/// One go at a problem: which candidates, at a share of the leg's speed, over which part of the span of clearing
+/// offsets.
 struct Attempt {
+    /// as_set: as the Settings say. plateau: that family instead of theirs. more_planes: twice the planes with half the
+    /// offsets. wait: that family instead of theirs.
+    enum class Kind : std::uint8_t { as_set, plateau, more_planes, wait };
+    Kind kind = Kind::as_set;
     float speed_share = 1.0F;
     float span_from = 0.0F;
     float span_to = 1.0F;
+    float apex_share = 1.0F;  ///< the apex lies so many D from the start, and the end point with it
 };
 /// What the Planner tries, in this order, until something is available: slower flight asks for less acceleration and
-/// lets crossing traffic pass; a wall of threats has its gap further out. Of 4873 random situations with a conflict
-/// (tests/property/core/geometric, WhatIsFoundPassesTheFinalCheck) the first alone solves 2254, all five 4509. A fixed
-/// wing does not fly slower.
-inline constexpr std::array<Attempt, 5> kAttempts{
-    {{1.0F, 0.0F, 1.0F}, {0.6F, 0.0F, 1.0F}, {1.0F, 1.0F, 2.0F}, {0.3F, 0.0F, 1.0F}, {1.0F, 2.0F, 3.5F}}};
+/// lets crossing traffic pass; an end point further out makes curves gentler; a wall of threats has its gap further
+/// out, or is climbed over at once; what only passes is waited for. A fixed wing does not fly slower, nor wait. How
+/// many of random situations each one solves is told by tests/property/core/geometric (WhatEachAttemptAdds).
+inline constexpr std::array<Attempt, 9> kAttempts{{
+    {},
+    {.speed_share = 0.6F},
+    {.apex_share = 1.5F},
+    {.span_from = 1.0F, .span_to = 2.0F},
+    {.speed_share = 0.3F},
+    {.kind = Attempt::Kind::plateau, .speed_share = 0.6F, .apex_share = 1.5F},
+    {.span_from = 2.0F, .span_to = 3.5F},
+    {.kind = Attempt::Kind::wait},
+    {.kind = Attempt::Kind::more_planes},
+}};
+
+/// Waiting candidates: down to each of these shares of the leg's speed, until each of these times the time to the
+/// collision point.
+inline constexpr std::array kWaitShares{0.6F, 0.3F, 0.0F};
+inline constexpr std::array kWaitTimes{0.75F, 1.0F, 1.5F, 2.0F};
+inline constexpr std::size_t kWaits = kWaitShares.size() * kWaitTimes.size();
+/// They slow down and speed up with this share of the greatest acceleration.
+inline constexpr float kWaitAcceleration = 0.7F;
 
 /// Planes of candidates about the leg.
 inline constexpr std::size_t kMaxPlanes = 32;
@@ -45,6 +68,9 @@ struct Settings {
     std::uint16_t extra_planes = 3;  ///< n, 0..kMaxPlanes - 1
     bool simple = true;
     bool symmetric = true;
+    bool smooth = false;
+    bool plateau = false;
+    bool wait = false;             ///< kWaits candidates more; multirotors only
     std::uint16_t waypoints = 25;  ///< per candidate, 8..kMaxPathPoints
     SecurityMode security = SecurityMode::time_aware;
     OffsetRule offset_rule = OffsetRule::clearing;
@@ -83,11 +109,18 @@ struct Settings {
     world::EscapeRule escape;
     path::FollowerGains gains;  ///< for verify_flight
     Seconds lookahead = 10.0F;  ///< Planner: conflicts are looked for this far ahead, 1..60 [s]
-    std::uint8_t retries = 4;   ///< Planner: further attempts when nothing is available, 0..4
+    std::uint8_t retries = 8;   ///< Planner: further attempts when nothing is available, 0..8
+    /// Planner: until the vehicle answers, planning and the way to the autopilot included, it flies on as it does; the
+    /// manoeuvre begins where it then is, 0..1 [s].
+    Seconds latency = 0.1F;
 };
 /// The source's planner: swept security ending at the collision point, source offsets, no feasibility, swept closeness.
 [[nodiscard]] Settings source_settings() noexcept;
-/// Everything in range and finite, a family chosen, and l (n + 1) candidates per family within kMaxCandidates.
+/// Which member says whether a family is used.
+[[nodiscard]] bool Settings::*flag_of(Family family) noexcept;
+/// At most, l (n + 1) for each curve and kWaits for waiting; fewer where offsets are dropped.
+[[nodiscard]] std::size_t count_of_candidates(const Settings& settings) noexcept;
+/// Everything in range and finite, and 1 to kMaxCandidates candidates.
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;
 
 /// A threat of the planning problem. Static when its velocity is zero.
@@ -119,10 +152,14 @@ struct Problem {
     Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
                                              ///< [m]; clearing offsets account for it
     const geometry::Shape* main_shape =
-        nullptr;             ///< of a main threat that is an obstacle; null: a sphere of main_radius
-    float span_from = 0.0F;  ///< clearing offsets: where they begin and end in the span from smallest to largest,
-    float span_to = 1.0F;    ///< beyond 1 further out; with span_from > 0 the first one lies past it
+        nullptr;              ///< of a main threat that is an obstacle; null: a sphere of main_radius
+    float span_from = 0.0F;   ///< clearing offsets: where they begin and end in the span from smallest to largest,
+    float span_to = 1.0F;     ///< beyond 1 further out; with span_from > 0 the first one lies past it
+    float apex_share = 1.0F;  ///< the apex of a curve lies so many D from the start; 1: at the collision point
 };
+
+/// What curves scale with [m].
+[[nodiscard]] inline float scale_of(const Problem& problem) noexcept { return problem.apex_share * problem.distance; }
 
 /// R of the clearing fan and of the 2.5 R rule [m].
 [[nodiscard]] inline float scale_radius(const Problem& problem) noexcept
@@ -134,6 +171,7 @@ struct Result {
     StaticVector<Candidate, kMaxCandidates> candidates;  ///< in the order of generation
     std::size_t chosen = 0;                              ///< index, valid on PlanStatus::found
     bool cut_short = false;    ///< work has ended before a candidate that was found to do, or before all were looked at
+    std::size_t attempt = 0;   ///< solve_with_retries: the last one made, an index of kAttempts
     path::TimedPath path;      ///< of the chosen one
     Vec3 side = Vec3::Zero();  ///< unit vector from the leg to its apex
 };
@@ -142,7 +180,7 @@ struct Result {
 /// Holds nothing from one call to the next. kBytes, about 18 KiB with the default capacities.
 class Workspace {
 public:
-    static constexpr std::size_t kBytes = kMaxPathPoints * (16 + 28 + 2 * 16) + 16 * (kMaxTracks + kMaxObstacles) +
+    static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) + 16 * (kMaxTracks + kMaxObstacles) +
                                           48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1024;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
@@ -154,7 +192,7 @@ private:
 
 /// Solves one problem.
 ///
-/// Order of generation: simple before symmetric, then planes, then offsets ascending; of equally cheap candidates the
+/// Order of generation: families as in kFamilies, then planes, then offsets ascending; of equally cheap candidates the
 /// first is chosen. Budget (base/work_budget.hpp): curves, contact tests, costs and flights, support calls for
 /// obstacles that are no spheres. When it runs out, what has been found available until then is still fully checked and
 /// may be chosen: up to half of it, Settings::check_units at most, is kept for that.
@@ -180,7 +218,8 @@ private:
                                                    std::size_t& attempts) noexcept;
 
 /// The timed path of one candidate, as `solve` makes it: `waypoints` points at equal steps of the abscissa. False (out
-/// untouched) on bad input as above or fewer than 8 or more than kMaxPathPoints waypoints. O(waypoints).
+/// untouched) on bad input as above, for a candidate that waits, or with fewer than 8 or more than kMaxPathPoints
+/// waypoints. O(waypoints).
 [[nodiscard]] bool make_candidate_path(const Problem& problem, const CandidateShape& shape, std::uint16_t waypoints,
                                        const vehicle::VehicleLimits& limits, path::TimedPath& out) noexcept;
 
@@ -188,13 +227,18 @@ private:
 ///
 /// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
 /// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
-/// radius then, at least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. When
-/// nothing is available it tries again as kAttempts says (source offsets: other speeds only).
+/// radius then, at least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. It begins
+/// with what the vehicle flies during Settings::latency, so that it is joined without a jump; threats are met where and
+/// as large as they are from then on. The start is not moved where that would bring the collision point nearer than
+/// kLeastLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
+///
+/// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).
 class Planner {
 public:
     /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with
     /// [m].
     static constexpr float kLeastMainRadius = 0.5F;
+    static constexpr float kLeastLeadRatio = 4.0F;
 
     explicit Planner(const Settings& settings) noexcept : settings_(settings) {}
 

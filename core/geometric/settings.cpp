@@ -14,8 +14,7 @@ bool has_valid_counts(const Settings& s) noexcept
         s.waypoints > kMaxPathPoints || s.retries >= kAttempts.size()) {
         return false;
     }
-    const std::size_t families = (s.simple ? 1U : 0U) + (s.symmetric ? 1U : 0U);
-    const std::size_t candidates = families * s.offsets * (s.extra_planes + std::size_t{1});
+    const std::size_t candidates = count_of_candidates(s);
     return candidates >= 1 && candidates <= kMaxCandidates;
 }
 
@@ -34,7 +33,30 @@ Settings source_settings() noexcept
     s.evaluate_all = true;
     s.escape_from_margin = false;
     s.retries = 0;
+    s.latency = 0.0F;
     return s;
+}
+
+bool Settings::*flag_of(Family family) noexcept
+{
+    switch (family) {
+    case Family::simple: return &Settings::simple;
+    case Family::symmetric: return &Settings::symmetric;
+    case Family::smooth: return &Settings::smooth;
+    case Family::plateau: return &Settings::plateau;
+    case Family::wait: break;
+    }
+    return &Settings::wait;
+}
+
+std::size_t count_of_candidates(const Settings& settings) noexcept
+{
+    const std::size_t each = settings.offsets * (settings.extra_planes + std::size_t{1});
+    std::size_t count = settings.wait ? kWaits : 0;
+    for (const Family family : kCurves) {
+        count += settings.*flag_of(family) ? each : 0;
+    }
+    return count;
 }
 
 bool is_valid(const Settings& s) noexcept
@@ -43,7 +65,7 @@ bool is_valid(const Settings& s) noexcept
            not_negative(s.flip_penalty) && cost::is_valid(s.weights) && cost::is_valid(s.caps) && s.max_cost > 0.0F &&
            s.max_cost <= 1.0F && not_negative(s.escape.slack) && not_negative(s.escape.speed) &&
            not_negative(s.gains.position_gain) && not_negative(s.gains.max_correction) && s.lookahead >= 1.0F &&
-           s.lookahead <= 60.0F;
+           s.lookahead <= 60.0F && not_negative(s.latency) && s.latency <= 1.0F;
 }
 
 }  // namespace jink::geometric

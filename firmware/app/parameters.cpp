@@ -42,8 +42,8 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"VEH_AREA", 2.5F, 0.001F, 500, false, "effective area [m2]"},
     {"GEO_OFFSETS", 4, 2, 64, true, "candidates per plane and family, even"},
     {"GEO_PLANES", 3, 0, 31, true, "planes beyond the first"},
-    {"GEO_FAMILIES", 3, 1, 3, true, "sum of: 1 simple, 2 symmetric"},
-    {"GEO_WAYPOINTS", 25, 8, static_cast<float>(kMaxPathPoints), true, "points per candidate"},
+    {"GEO_FAMILIES", 3, 1, 31, true, "sum of: 1 simple, 2 symmetric, 4 smooth, 8 plateau, 16 wait"},
+    {"GEO_WAYPOINTS", 25, 8, static_cast<float>(kMaxPathPoints - 1), true, "points per candidate"},
     {"GEO_SWEPT", 0, 0, 1, true, "0 time-aware security, 1 swept as the source"},
     {"GEO_K_S", 0.3F, 0, 0.9F, false, "weight of smoothness; closeness gets what is left of 1"},
     {"GEO_K_T", 0.2F, 0.1F, 1, false, "weight of time"},
@@ -52,6 +52,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_MAX_COST", 1, 0.01F, 1, false, "a plan that costs more counts as not found"},
     {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
+    {"GEO_LATENCY", 0.1F, 0, 1, false, "from planning until the vehicle answers: plan, link and autopilot [s]"},
     {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
@@ -108,6 +109,9 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.extra_planes = static_cast<std::uint16_t>(whole(Param::planes));
     g.simple = (whole(Param::families) & 1U) != 0;
     g.symmetric = (whole(Param::families) & 2U) != 0;
+    g.smooth = (whole(Param::families) & 4U) != 0;
+    g.plateau = (whole(Param::families) & 8U) != 0;
+    g.wait = (whole(Param::families) & 16U) != 0;
     g.waypoints = static_cast<std::uint16_t>(whole(Param::waypoints));
     g.security = whole(Param::swept) == 1 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
     g.weights.smoothness = at(Param::weight_smoothness);
@@ -118,6 +122,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.max_cost = at(Param::max_cost);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);
+    g.latency = at(Param::latency);
     return c;
 }
 

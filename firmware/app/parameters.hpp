@@ -62,6 +62,7 @@ enum class Param : std::uint8_t {
     max_cost,
     time_low,
     time_high,
+    latency,
     standby,
     ask_rates,
     tell_near,

@@ -85,7 +85,7 @@ TEST(PlanOutput, JsonAgreesWithThePlanner)
     for (std::size_t i = 0; i < result->candidates.size(); ++i) {
         const geometric::Candidate& c = result->candidates[i];
         const auto& j = json["candidates"][i];
-        EXPECT_EQ(j["kind"], name_of(c.shape.family));
+        EXPECT_EQ(j["kind"], to_string(c.shape.family));
         EXPECT_EQ(j["offset"].get<float>(), c.shape.offset);
         EXPECT_EQ(j["status"], name_of(c.status));
         EXPECT_EQ(j["duration"].get<float>(), c.duration);

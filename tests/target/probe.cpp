@@ -55,6 +55,9 @@ app::Configuration configuration_of(const ProbeRecord& r) noexcept
     c.planner.extra_planes = static_cast<std::uint16_t>(r.extra_planes);
     c.planner.simple = (r.families & 1U) != 0;
     c.planner.symmetric = (r.families & 2U) != 0;
+    c.planner.smooth = (r.families & 4U) != 0;
+    c.planner.plateau = (r.families & 8U) != 0;
+    c.planner.wait = (r.families & 16U) != 0;
     c.planner.retries = static_cast<std::uint8_t>(r.retries);
     c.planner.waypoints = static_cast<std::uint16_t>(r.waypoints);
     c.planner.security = r.swept != 0 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;

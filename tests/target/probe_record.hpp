@@ -48,7 +48,7 @@ struct ProbeRecord {
     ProbeKind kind;
     std::uint32_t offsets;
     std::uint32_t extra_planes;
-    std::uint32_t families;  ///< 1 simple, 2 symmetric, 3 both
+    std::uint32_t families;  ///< sum of: 1 simple, 2 symmetric, 4 smooth, 8 plateau, 16 wait
     std::uint32_t retries;
     std::uint32_t bounds;  ///< 1 floor, 2 ceiling, 4 keep-in
     float own_position[3];

@@ -66,7 +66,7 @@ std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
             fastest = std::max(fastest, point.velocity.norm());
         }
         return format("Fly candidate %zu: %s, plane %.1f deg, offset %+.2f m, %.2f s at up to %.2f m/s, cost %.4f.",
-                      outcome.result.chosen, std::string(name_of(c.shape.family)).c_str(), degrees(c.shape.plane),
+                      outcome.result.chosen, std::string(to_string(c.shape.family)).c_str(), degrees(c.shape.plane),
                       wide(c.shape.offset), wide(c.duration), wide(fastest), wide(c.total));
     }
     case PlanStatus::too_close:
@@ -99,7 +99,7 @@ ordered_json json_of(const ProblemFile& file, const world::ThreatRef& hit)
 
 ordered_json json_of(const ProblemFile& file, const Candidate& c)
 {
-    ordered_json out{{"kind", name_of(c.shape.family)},
+    ordered_json out{{"kind", to_string(c.shape.family)},
                      {"plane_deg", json_of(static_cast<float>(degrees(c.shape.plane)))},
                      {"offset", json_of(c.shape.offset)},
                      {"elevation_deg", json_of(static_cast<float>(degrees(std::asin(c.sin_alpha))))},
@@ -165,11 +165,6 @@ std::string_view name_of(CandidateStatus status)
     return "?";
 }
 
-std::string_view name_of(geometric::Family family)
-{
-    return family == geometric::Family::simple ? "simple" : "symmetric";
-}
-
 std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit)
 {
     switch (hit.kind) {
@@ -205,7 +200,7 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
         if (c.hit.kind != world::ThreatKind::none) {
             status += " " + hit_name(file, c.hit);
         }
-        out += format("%3zu  %-9s  %5.1f  %+6.2f  %-20.40s  %6.3f", i, std::string(name_of(c.shape.family)).c_str(),
+        out += format("%3zu  %-9s  %5.1f  %+6.2f  %-20.40s  %6.3f", i, std::string(to_string(c.shape.family)).c_str(),
                       degrees(c.shape.plane), wide(c.shape.offset), status.c_str(), wide(c.duration));
         if (has_cost(c)) {
             out += format(" %7.4f %7.4f %7.4f %8.2f %9.1f | %.3f %.3f %.3f %.3f | %.4f", wide(c.terms.smoothness),
@@ -233,7 +228,7 @@ std::string plan_csv(const ProblemFile& file, const PlanOutcome& outcome)
         for (std::size_t at = hit.find('"'); at != std::string::npos; at = hit.find('"', at + 2)) {
             hit.insert(at, 1, '"');
         }
-        out += format("%zu,%s,%.6g,%.9g,%s,", i, std::string(name_of(c.shape.family)).c_str(), degrees(c.shape.plane),
+        out += format("%zu,%s,%.6g,%.9g,%s,", i, std::string(to_string(c.shape.family)).c_str(), degrees(c.shape.plane),
                       wide(c.shape.offset), std::string(name_of(c.status)).c_str());
         out += hit.empty() ? std::string() : "\"" + hit + "\"";
         out += format(",%.9g", wide(c.duration));

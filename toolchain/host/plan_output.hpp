@@ -15,7 +15,6 @@ namespace jink::host {
 
 [[nodiscard]] std::string_view name_of(world::PlanStatus status);
 [[nodiscard]] std::string_view name_of(geometric::CandidateStatus status);
-[[nodiscard]] std::string_view name_of(geometric::Family family);
 /// Name of what a candidate touches, as the file has it; empty for none.
 [[nodiscard]] std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit);
 

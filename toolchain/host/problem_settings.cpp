@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cmath>
 
 #include "toolchain/host/problem_parts.hpp"
@@ -25,10 +26,23 @@ void read_kinds(YamlMap& map, geometric::Settings& settings, files::Complaints& 
     if (!node) {
         return;
     }
+    const auto use = [&](std::string_view word) {
+        for (const geometric::Family family : geometric::kFamilies) {
+            const bool is_meant =
+                word == to_string(family) || (word == "both" && family <= geometric::Family::symmetric);
+            settings.*flag_of(family) = settings.*flag_of(family) || is_meant;
+        }
+    };
+    const std::initializer_list<std::string_view> words{"simple", "symmetric", "smooth", "plateau", "wait", "both"};
+    const auto clear = [&] {
+        for (const geometric::Family family : geometric::kFamilies) {
+            settings.*flag_of(family) = false;
+        }
+    };
     if (node->IsScalar()) {
-        if (const auto kind = map.choice("kinds", {"simple", "symmetric", "both"})) {
-            settings.simple = *kind != 1;
-            settings.symmetric = *kind != 0;
+        if (const auto kind = map.choice("kinds", words)) {
+            clear();
+            use(*(words.begin() + *kind));
         }
         return;
     }
@@ -36,22 +50,19 @@ void read_kinds(YamlMap& map, geometric::Settings& settings, files::Complaints& 
     if (!list) {
         return;
     }
-    settings.simple = false;
-    settings.symmetric = false;
+    clear();
     for (const YAML::Node& kind : *list) {
         const std::string word = kind.IsScalar() ? kind.Scalar() : std::string();
-        if (word == "simple") {
-            settings.simple = true;
-        } else if (word == "symmetric") {
-            settings.symmetric = true;
+        if (std::find(words.begin(), words.end() - 1, word) != words.end() - 1) {
+            use(word);
         } else {
             complaints.push_back(files::complaint_at(kind.Mark(), map.file(),
                                                      map.name("kinds") + ": " + files::in_quotes(word) +
-                                                         " is none of: simple, symmetric"));
+                                                         " is none of: simple, symmetric, smooth, plateau, wait"));
         }
     }
     if (list->empty()) {
-        map.complain("kinds", "at least one of simple, symmetric is wanted");
+        map.complain("kinds", "at least one of simple, symmetric, smooth, plateau, wait is wanted");
     }
 }
 
@@ -137,8 +148,7 @@ void read_settings(YamlMap& root, const cost::Caps& caps, geometric::Settings& s
     put(settings.source_drop_margin, map->number("source_drop_margin", {0.0F, 10.0F}));
     map->finish();
 
-    const std::size_t kinds = (settings.simple ? 1U : 0U) + (settings.symmetric ? 1U : 0U);
-    const std::size_t candidates = kinds * settings.offsets * (settings.extra_planes + std::size_t{1});
+    const std::size_t candidates = geometric::count_of_candidates(settings);
     if (complaints.size() == before && candidates > kMaxCandidates) {
         root.complain("settings", std::to_string(candidates) + " candidates, l (n + 1) for each kind, are more than " +
                                       std::to_string(kMaxCandidates));

@@ -28,7 +28,7 @@ std::string describe(const geometric::Candidate& candidate)
 {
     std::ostringstream text;
     text.precision(3);
-    text << (candidate.shape.family == geometric::Family::simple ? "simple" : "symmetric") << ", plane "
+    text << to_string(candidate.shape.family) << ", plane "
          << static_cast<double>(candidate.shape.plane) * 180.0 / 3.14159265358979 << " deg, offset "
          << static_cast<double>(candidate.shape.offset) << " m, cost " << static_cast<double>(candidate.total);
     return text.str();

@@ -289,6 +289,9 @@ std::vector<Route> routes()
         same(Param::planes, 2, [](C c) { return static_cast<float>(c.planner.extra_planes); }),
         {Param::families, 1, [](C c) { return c.planner.simple && !c.planner.symmetric ? 1.0F : 0.0F; }, 1},
         {Param::families, 2, [](C c) { return !c.planner.simple && c.planner.symmetric ? 1.0F : 0.0F; }, 1},
+        {Param::families, 4, [](C c) { return !c.planner.symmetric && c.planner.smooth ? 1.0F : 0.0F; }, 1},
+        {Param::families, 8, [](C c) { return !c.planner.smooth && c.planner.plateau ? 1.0F : 0.0F; }, 1},
+        {Param::families, 16, [](C c) { return !c.planner.plateau && c.planner.wait ? 1.0F : 0.0F; }, 1},
         same(Param::waypoints, 21, [](C c) { return static_cast<float>(c.planner.waypoints); }),
         {Param::swept, 1, [](C c) { return c.planner.security == geometric::SecurityMode::swept ? 1.0F : 0.0F; }, 1},
         {Param::swept, 0, [](C c) { return c.planner.security == geometric::SecurityMode::time_aware ? 1.0F : 0.0F; },
@@ -301,6 +304,7 @@ std::vector<Route> routes()
         same(Param::max_cost, 0.55F, [](C c) { return c.planner.max_cost; }),
         same(Param::time_low, 1.5F, [](C c) { return c.planner.caps.time_low; }),
         same(Param::time_high, 9.5F, [](C c) { return c.planner.caps.time_high; }),
+        same(Param::latency, 0.2F, [](C c) { return c.planner.latency; }),
     };
 }
 

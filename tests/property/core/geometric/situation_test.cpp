@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -107,6 +108,60 @@ TEST(PlannerLaws, WhatIsFoundPassesTheFinalCheck)
     std::printf("[ measured ] %zu plans, %zu of them at the first attempt; %zu rejected by the final check; %zu times "
                 "nothing\n",
                 found, found_at_once, rejected, none);
+}
+
+TEST(PlannerLaws, WhatEachAttemptAdds)
+{
+    static Planner planner{Settings{}};
+    std::array<std::size_t, kAttempts.size()> solved{};
+    for (std::uint64_t seed = 1; seed <= 5000; ++seed) {
+        const RandomSituation s(seed);
+        WorkBudget budget(1'000'000);
+        world::Manoeuvre manoeuvre;
+        if (planner.plan(s.view(), budget, manoeuvre) == world::PlanStatus::found) {
+            ++solved[planner.last().attempt];
+        }
+    }
+    std::printf("[ measured ] solved by attempt:");
+    for (const std::size_t count : solved) {
+        std::printf(" %zu", count);
+    }
+    std::printf("\n");
+    EXPECT_GT(solved[0], 2000U);
+    for (const std::size_t attempt : {1U, 2U, 3U, 4U, 5U, 7U}) {
+        EXPECT_GT(solved[attempt], 0U) << "attempt " << attempt;
+    }
+}
+
+/// Until the vehicle answers the path is what it flies; threats are met as they then are.
+TEST(PlannerLaws, BeginsWithWhatIsFlownDuringTheLatency)
+{
+    static Planner planner{Settings{}};
+    std::size_t moved = 0;
+    for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+        const RandomSituation s(seed);
+        Settings settings;
+        settings.latency = 0.05F + 0.3F * static_cast<float>(seed % 7) / 6.0F;
+        ASSERT_TRUE(planner.configure(settings));
+        WorkBudget budget(1'000'000);
+        world::Manoeuvre manoeuvre;
+        if (planner.plan(s.view(), budget, manoeuvre) != world::PlanStatus::found) {
+            continue;
+        }
+        const path::TimedPath& path = manoeuvre.path;
+        ASSERT_EQ(path.points.front().position, s.own.position) << "seed " << seed;
+        ASSERT_EQ(path.points.front().time, 0.0F);
+        if (path.points.size() == settings.waypoints) {
+            continue;  // within a margin, or too near
+        }
+        ++moved;
+        ASSERT_EQ(path.points.size(), settings.waypoints + 1U) << "seed " << seed;
+        ASSERT_EQ(path.points.front().velocity, s.own.velocity) << "seed " << seed;
+        ASSERT_NEAR(path.points[1].time, settings.latency, 1e-6F) << "seed " << seed;
+        const Vec3 answered = s.own.position + settings.latency * s.own.velocity;
+        ASSERT_LT((path.points[1].position - answered).norm(), 1e-4F) << "seed " << seed;
+    }
+    EXPECT_GT(moved, 1000U);
 }
 
 TEST(PlannerLaws, TracksAreNeverTouchedAsTheyGrow)

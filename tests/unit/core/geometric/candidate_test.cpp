@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/geometric/planner.hpp"
@@ -75,17 +76,56 @@ TEST(Curve, MeetsItsDefinition)
 TEST(Curve, ContinuousWithItsSlope)
 {
     const float h = 1e-3F;
-    for (const Family family : {Family::simple, Family::symmetric}) {
+    for (const Family family : kCurves) {
+        // |y''| is 12 at most on the simple curve, 10 / sqrt(3) on the smooth one, and that over kPlateauRise^2.
+        const float bend = family == Family::plateau ? 38.0F : 13.0F;
         const float end = curve_length_x(family, 1.0F);
         for (float u = 2.0F * h; u < end - 2.0F * h; u += h) {
             const float before = (unit_offset(family, u) - unit_offset(family, u - h)) / h;
             const float after = (unit_offset(family, u + h) - unit_offset(family, u)) / h;
-            ASSERT_LT(std::abs(after - before), 13.0F * h) << "u " << u;  // |y''| <= 12 on the simple curve
+            ASSERT_LT(std::abs(after - before), bend * h) << to_string(family) << " at u " << u;
         }
         EXPECT_NEAR(unit_offset(family, h) / h, 0.0F, 4.0F * h);
     }
     // It meets the leg again at a slope of -4.5 w / D (simple).
     EXPECT_NEAR((unit_offset(Family::simple, 1.5F) - unit_offset(Family::simple, 1.5F - h)) / h, -4.5F, 0.02F);
+}
+
+double unit_offset_in_double(Family family, double u)
+{
+    const double back = u > 1.0 ? 2.0 - u : u;
+    const double v = family == Family::plateau ? std::min(back / static_cast<double>(kPlateauRise), 1.0) : back;
+    return std::pow(v, 3.0) * (10.0 - 15.0 * v + 6.0 * v * v);
+}
+
+TEST(Curve, SmoothAndPlateauLeaveAndMeetTheLegAlongItAndWithoutCurvature)
+{
+    for (const Family family : {Family::smooth, Family::plateau}) {
+        constexpr double kStep = 1e-4;
+        const auto f = [&](double u) { return unit_offset_in_double(family, u); };
+        for (double u = 0.0; u <= 2.0; u += 0.01) {
+            ASSERT_NEAR(static_cast<double>(unit_offset(family, static_cast<float>(u))), f(u), 3e-6) << u;
+        }
+        EXPECT_EQ(unit_offset(family, 0.0F), 0.0F);
+        EXPECT_EQ(unit_offset(family, 1.0F), 1.0F);
+        EXPECT_EQ(unit_offset(family, 2.0F), 0.0F);
+        for (const double end : {0.0, 2.0}) {
+            const double inwards = end > 0.0 ? -1.0 : 1.0;
+            const double slope = (f(end + inwards * kStep) - f(end)) / kStep;
+            const double bend =
+                (f(end + 2.0 * inwards * kStep) - 2.0 * f(end + inwards * kStep) + f(end)) / (kStep * kStep);
+            EXPECT_NEAR(slope, 0.0, 1e-5) << to_string(family) << " at " << end;
+            EXPECT_NEAR(bend, 0.0, 0.2) << to_string(family) << " at " << end;  // 60 kStep / kPlateauRise^3 at most
+        }
+        // Without a jump of curvature anywhere: third derivatives stay below 60 / kPlateauRise^3.
+        for (double u = 3.0 * kStep; u < 2.0 - 3.0 * kStep; u += 0.003) {
+            const auto second = [&](double x) { return (f(x + kStep) - 2.0 * f(x) + f(x - kStep)) / (kStep * kStep); };
+            ASSERT_LT(std::abs(second(u + kStep) - second(u)) / kStep, 1000.0) << to_string(family) << " at " << u;
+        }
+    }
+    EXPECT_EQ(unit_offset(Family::plateau, 0.7F), 1.0F);
+    EXPECT_EQ(unit_offset(Family::plateau, 1.5F), 1.0F);
+    EXPECT_EQ(unit_offset(Family::wait, 0.7F), 0.0F);
 }
 
 TEST(MakeCandidatePath, IsThePathOfTheRule)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -254,6 +255,83 @@ TEST(PlannerRetry, SlowerFlightTurnsWhereFastFlightCannot)
     EXPECT_LT(flight.out.path.points[12].velocity.norm(), 3.1F);
     flight.limits.kind = vehicle::VehicleKind::fixed_wing;
     EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+}
+
+/// An avenue of balloons about the leg, under a ceiling, that something crosses.
+Flight avenue()
+{
+    Flight flight;
+    for (int i = 0; i < 13; ++i) {
+        for (const float side : {-1.0F, 1.0F}) {
+            flight.add(Vec3(3.0F + 3.0F * static_cast<float>(i), 3.6F * side, 50.0F), Vec3::Zero(), 2.0F);
+        }
+    }
+    flight.airspace.has_ceiling = flight.airspace.has_floor = true;
+    flight.airspace.ceiling = 52.0F;
+    flight.airspace.floor = 48.0F;
+    flight.add(Vec3(25.0F, -10.0F, 50.0F), Vec3(0.0F, 2.0F, 0.0F), 1.0F);
+    return flight;
+}
+
+TEST(PlannerRetry, InAnAvenueWhatCrossesIsWaitedFor)
+{
+    Flight flight = avenue();
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    const Candidate& chosen = flight.planner.last().candidates[flight.planner.last().chosen];
+    EXPECT_EQ(chosen.shape.family, Family::wait);
+    EXPECT_EQ(kAttempts[flight.planner.last().attempt].kind, Attempt::Kind::wait);
+    EXPECT_EQ(flight.out.side, Vec3::Zero()) << "no side: nothing to keep to";
+    float slowest = 5.0F;
+    for (const path::PathPoint& point : flight.out.path.points) {
+        EXPECT_NEAR(point.position.y(), 0.0F, 1e-4F);
+        EXPECT_NEAR(point.position.z(), 50.0F, 1e-4F);
+        EXPECT_LE(point.velocity.norm(), 5.0F + 1e-3F);
+        slowest = std::min(slowest, point.velocity.norm());
+    }
+    EXPECT_LT(slowest, 3.1F);
+    EXPECT_NEAR(flight.out.path.points.back().velocity.norm(), 5.0F, 0.05F) << "and on";
+    EXPECT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, flight.budget).margin, 0.0F);
+}
+
+TEST(PlannerRetry, WhatStandsIsNotWaitedForAndFixedWingsDoNotWait)
+{
+    Flight standing = avenue();
+    standing.tracks.back().velocity = Vec3::Zero();
+    standing.tracks.back().position.y() = 0.0F;
+    EXPECT_EQ(standing.plan(), PlanStatus::none_available);
+    Flight winged = avenue();
+    winged.limits.kind = vehicle::VehicleKind::fixed_wing;
+    EXPECT_EQ(winged.plan(), PlanStatus::none_available);
+}
+
+TEST(PlannerRetry, ALongHouseIsClimbedOverFirst)
+{
+    Flight flight;
+    flight.obstacles = {{1, geometry::make_box(Vec3(38.0F, 0.0F, 27.0F), Vec3(14.0F, 60.0F, 27.0F))}};
+    flight.airspace.has_ceiling = true;
+    flight.airspace.ceiling = 57.0F;
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    const Candidate& chosen = flight.planner.last().candidates[flight.planner.last().chosen];
+    EXPECT_EQ(chosen.shape.family, Family::plateau);
+    EXPECT_GT(flight.out.side.z(), 0.5F);
+    EXPECT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, flight.budget).margin, -0.06F);
+}
+
+TEST(PlannerRetry, AnEndFurtherOutMakesCurvesGentler)
+{
+    Flight flight;
+    flight.limits.max_acceleration = 0.8F;
+    flight.limits.max_vertical_acceleration = 0.5F;
+    flight.limits.kind = vehicle::VehicleKind::fixed_wing;  // does not fly slower
+    flight.add(Vec3(20.0F, 0.0F, 50.0F), Vec3::Zero(), 1.5F);
+    Settings settings;
+    settings.retries = 1;
+    ASSERT_TRUE(flight.planner.configure(settings));
+    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+    settings.retries = 2;
+    ASSERT_TRUE(flight.planner.configure(settings));
+    ASSERT_EQ(flight.plan(), PlanStatus::found);
+    EXPECT_GT(flight.planner.last().candidates[flight.planner.last().chosen].duration, 1.4F * 30.0F / 5.0F);
 }
 
 TEST(Planner, SmallThreatsArePlannedForAsIfHalfAMetre)

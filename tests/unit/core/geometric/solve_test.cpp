@@ -304,7 +304,10 @@ TEST(SettingsValid, EachRange)
     EXPECT_TRUE(invalid([](Settings& s) { s.gains.max_correction = kNan; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.lookahead = 0.5F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.lookahead = kNan; }));
-    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 5; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.latency = -0.1F; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.latency = 1.1F; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.latency = kNan; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 9; }));
 }
 
 TEST(Solve, SettingsThatTakeTimeAwareAndSweptApart)

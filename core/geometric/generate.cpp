@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/geometric/offsets.hpp"
+#include "core/geometric/run.hpp"
+
+// The candidates of a run, and what they may meet.
+
+namespace jink::geometric::detail {
+namespace {
+
+float angle_of(int plane, int planes) noexcept { return kPi * static_cast<float>(plane) / static_cast<float>(planes); }
+
+}  // namespace
+
+Wait Run::waiting(float share, Seconds until) const noexcept
+{
+    Wait wait;
+    wait.length = curve_length_x(Family::wait, scale_of(problem_));
+    wait.speed = vehicle::clamped_velocity(along_, problem_.speed, limits_).norm();
+    wait.start_speed = std::clamp(problem_.start_velocity.dot(along_), 0.0F, wait.speed);
+    wait.share = share;
+    wait.until = until;
+    const float level = std::sqrt(std::max(0.0F, 1.0F - along_.z() * along_.z()));
+    const float steep = std::abs(along_.z());
+    wait.acceleration =
+        kWaitAcceleration / std::max(level / limits_.max_acceleration, steep / limits_.max_vertical_acceleration);
+    return wait;
+}
+
+void Run::build(const CandidateShape& shape) noexcept
+{
+    if (shape.family == Family::wait) {
+        make_waiting_curve(waiting(shape.share, shape.until), along_, settings_.waypoints, curve_);
+        return;
+    }
+    make_curve(unit_[static_cast<std::size_t>(shape.family)], along_, side_of(shape), scale_of(problem_), shape.offset,
+               problem_.speed, limits_, curve_);
+}
+
+void Run::generate_curves(Family family) noexcept
+{
+    unit_[static_cast<std::size_t>(family)] = make_unit_curve(family, settings_.waypoints);
+    const int planes = settings_.extra_planes + 1;
+    for (int i = 0; i < planes; ++i) {
+        Candidate candidate;
+        candidate.shape.family = family;
+        candidate.shape.plane = angle_of(i, planes);
+        const Vec3 side = side_of(candidate.shape);
+        candidate.sin_alpha = std::min(std::sqrt(along_.z() * along_.z() + side.z() * side.z()), 1.0F);
+        Offsets offsets;
+        offsets_of_plane(problem_, settings_, family, limits_.half_extents, side, offsets);
+        for (const float offset : offsets) {
+            candidate.shape.offset = offset;
+            result_.candidates.unchecked_push_back(candidate);  // is_valid(Settings) has counted them
+        }
+    }
+}
+
+void Run::generate_waits() noexcept
+{
+    const Seconds arrival = problem_.distance / problem_.speed;
+    for (const float share : kWaitShares) {
+        for (const float times : kWaitTimes) {
+            Candidate candidate;
+            candidate.shape.family = Family::wait;
+            candidate.shape.share = share;
+            candidate.shape.until = times * arrival;
+            result_.candidates.unchecked_push_back(candidate);  // is_valid(Settings) has counted them
+        }
+    }
+}
+
+void Run::generate() noexcept
+{
+    const int planes = settings_.extra_planes + 1;
+    for (int i = 0; i < planes; ++i) {
+        sides_[static_cast<std::size_t>(i)] = plane_direction(problem_.frame, angle_of(i, planes));
+    }
+    for (const Family family : kCurves) {
+        if (settings_.*flag_of(family)) {
+            generate_curves(family);
+        }
+    }
+    if (settings_.wait && limits_.kind == vehicle::VehicleKind::multirotor) {
+        generate_waits();
+    }
+}
+
+void Run::prepare() noexcept
+{
+    float widest = 0.0F;
+    for (const Candidate& candidate : result_.candidates) {
+        widest = std::max(widest, std::abs(candidate.shape.offset));
+    }
+    const bool mirrored = settings_.symmetric || settings_.smooth || settings_.plateau;
+    float length = curve_length_x(mirrored ? Family::symmetric : Family::simple, scale_of(problem_));
+    const float slowest = std::min({problem_.speed, limits_.max_climb, limits_.max_descent});
+    Seconds longest = (length + 2.0F * widest) / slowest;
+    if (settings_.wait) {
+        const Wait wait = waiting(0.0F, kWaitTimes.back() * problem_.distance / problem_.speed);
+        const Seconds change = wait.speed / wait.acceleration;
+        length = std::max(length, wait.speed * wait.until) + wait.speed * change;
+        longest = std::max(longest, wait.until + change + wait.length / wait.speed);
+    }
+    const Vec3 end = length * along_;
+    const Vec3 aside = Vec3::Constant(widest);
+    clearance_.collect({end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside}, longest, budget_);
+    if (settings_.security == SecurityMode::swept || settings_.closeness == cost::ClosenessMethod::swept) {
+        for (const Candidate& candidate : result_.candidates) {
+            build(candidate.shape);
+            longest_ = std::max(longest_, curve_.duration());
+        }
+        clearance_.sweep_until(longest_);
+    }
+    list_moving();
+}
+
+void Run::list_moving() noexcept
+{
+    std::array<float, kMaxTracks> distance{};
+    for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
+        const Threat& threat = problem_.threats[i];
+        if (threat.motion.velocity.squaredNorm() > 0.0F) {
+            const Vec3 position = threat.motion.position - problem_.frame.origin;
+            distance[moving_.size()] = position.norm() - threat.radius;
+            moving_.unchecked_push_back({{position, threat.motion.velocity}, threat.radius, clearance_.sweep_end(i)});
+        }
+    }
+    while (settings_.closeness_nearest > 0 && moving_.size() > settings_.closeness_nearest) {
+        const auto count = static_cast<std::ptrdiff_t>(moving_.size());
+        const auto farthest =
+            static_cast<std::size_t>(std::max_element(distance.begin(), distance.begin() + count) - distance.begin());
+        distance[farthest] = distance[moving_.size() - 1];
+        moving_.swap_erase(farthest);
+    }
+}
+
+}  // namespace jink::geometric::detail

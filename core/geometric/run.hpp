@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "core/base/work_units.hpp"
+#include "core/geometric/clearance.hpp"
+#include "core/geometric/curve.hpp"
+#include "core/geometric/flown.hpp"
+#include "core/geometric/planner.hpp"
+
+// Private to this room.
+
+namespace jink::geometric::detail {
+
+/// One run of `solve`: what its steps share.
+class Run {
+public:
+    Run(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits,
+        const vehicle::Airframe& airframe, WorkBudget& budget, Result& result) noexcept
+        : problem_(problem), settings_(settings), limits_(limits), airframe_(airframe), budget_(budget),
+          result_(result), along_(problem.frame.axes.col(0)), clearance_(problem, settings, limits),
+          flown_(problem, settings, limits)
+    {
+    }
+
+    world::PlanStatus operator()() noexcept
+    {
+        generate();
+        prepare();
+        // What has been found must not be left unchecked.
+        const std::uint32_t kept = std::min(units_of_checks(), budget_.left() / 2);
+        WorkBudget curves(budget_.left() - kept);
+        for (Candidate& candidate : result_.candidates) {
+            if (!evaluate(candidate, curves)) {
+                break;
+            }
+        }
+        static_cast<void>(budget_.spend(curves.spent()));  // never more than was left
+        spent_ = curves.exhausted();
+        return choose();
+    }
+
+private:
+    void generate() noexcept;
+    void generate_curves(Family family) noexcept;
+    void generate_waits() noexcept;
+    void prepare() noexcept;
+    [[nodiscard]] Wait waiting(float share, Seconds until) const noexcept;
+    [[nodiscard]] bool evaluate(Candidate& candidate, WorkBudget& budget) noexcept;
+    void assess(Candidate& candidate) noexcept;
+    [[nodiscard]] std::uint32_t units_of_checks() const noexcept
+    {
+        constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+        const std::uint64_t shares = 1 + std::uint64_t{units::kSolidShares} * clearance_.solids();
+        return static_cast<std::uint32_t>(std::min(kMost, settings_.check_units * shares));
+    }
+    [[nodiscard]] std::uint32_t units_of_costs() const noexcept
+    {
+        return units::kCostPoint * settings_.waypoints + units::closeness_units(settings_.waypoints, moving_.size());
+    }
+    [[nodiscard]] float smoothness_of(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] float closeness() const noexcept;
+    void list_moving() noexcept;
+    void build(const CandidateShape& shape) noexcept;
+    /// Of a curve.
+    [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
+    {
+        const float planes = static_cast<float>(settings_.extra_planes) + 1.0F;
+        return sides_[static_cast<std::size_t>(std::lround(shape.plane * (planes / kPi)))];
+    }
+    /// Candidates still to be tried, a heap with the cheapest at its front, of equally cheap ones the first.
+    using Order = StaticVector<std::uint16_t, kMaxCandidates>;
+    [[nodiscard]] auto by_cost() const noexcept
+    {
+        return [this](std::uint16_t a, std::uint16_t b) {
+            const float cost_a = result_.candidates[a].total + result_.candidates[a].flip_penalty;
+            const float cost_b = result_.candidates[b].total + result_.candidates[b].flip_penalty;
+            return cost_b < cost_a || (cost_b == cost_a && b < a);
+        };
+    }
+    [[nodiscard]] bool try_in_turn(WorkBudget& budget) noexcept;
+    [[nodiscard]] Verdict verdict_of(const CandidateShape& shape, WorkBudget& budget) noexcept;
+    void take(std::size_t index) noexcept;
+    [[nodiscard]] world::PlanStatus choose() noexcept;
+
+    const Problem& problem_;
+    const Settings& settings_;
+    const vehicle::VehicleLimits& limits_;
+    const vehicle::Airframe& airframe_;
+    WorkBudget& budget_;
+    Result& result_;
+    const Vec3 along_;
+    bool spent_ = false;                          ///< the budget has ended before all candidates were looked at
+    Seconds longest_ = 0.0F;                      ///< duration of any candidate, where threats sweep volumes
+    std::array<UnitCurve, kCurves.size()> unit_;  ///< by family
+    std::array<Vec3, kMaxPlanes> sides_;
+    Clearance clearance_;
+    Flown flown_;
+    Order order_;
+    Curve curve_;                                          ///< of the candidate at hand
+    path::TimedPath path_;                                 ///< the same, about the start
+    StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start
+};
+
+}  // namespace jink::geometric::detail
