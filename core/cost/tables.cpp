@@ -12,8 +12,6 @@ namespace jink::cost::tables {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// A ratio is a quotient of rounded numbers.
-constexpr float kRatioRounding = 1.0F + 1e-5F;
 /// A path frame may be that far from unitary.
 constexpr float kUnitTolerance = 1.01F;
 
@@ -265,8 +263,8 @@ bool covers(const Tables& tables, const CurveQuery& query) noexcept
 {
     const float steepness = query.along_z * query.along_z + query.side_z * query.side_z;
     return query.family < tables.families.size() && query.distance > 0.0F && query.distance < kInfinity &&
-           std::abs(query.offset) <= kLargestRatio * kRatioRounding * query.distance && query.speed > 0.0F &&
-           query.speed < kInfinity && steepness <= kUnitTolerance;
+           std::abs(query.offset) <= kLargestRatio * query.distance && query.speed > 0.0F && query.speed < kInfinity &&
+           steepness <= kUnitTolerance;
 }
 
 std::optional<Estimate> estimate(const Tables& tables, const CurveQuery& query) noexcept

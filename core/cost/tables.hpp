@@ -27,8 +27,9 @@
 
 namespace jink::cost::tables {
 
-/// Largest |r| = |w| / D: 3.2 radii aside at the least distance of 2.5 radii. No candidate lies further out.
-inline constexpr float kLargestRatio = 1.28F;
+/// Largest |r| = |w| / D: 3.2 radii aside at the least distance of 2.5 radii, and what rounding makes of it. No
+/// candidate lies further out.
+inline constexpr float kLargestRatio = 1.2801F;
 /// Steps from 0 to kLargestRatio. Columns are one more, and one beyond each end for the interpolation.
 inline constexpr std::size_t kArcSteps = 16;
 inline constexpr std::size_t kBendSteps = 32;
@@ -83,7 +84,7 @@ struct Tables {
 /// A curve on a leg. Only the vertical components of the unit vectors along the leg and towards positive offsets count.
 struct CurveQuery {
     std::size_t family = 0;  ///< index in Tables::families
-    float offset = 0.0F;     ///< w, signed, |w| <= kLargestRatio D (and a rounding) [m]
+    float offset = 0.0F;     ///< w, signed, |w| <= kLargestRatio D [m]
     float distance = 0.0F;   ///< D > 0 [m]
     float speed = 0.0F;      ///< along the curve > 0 [m/s]
     float along_z = 0.0F;    ///< of the leg, up: along_z^2 + side_z^2 <= 1 (and what a path frame may be off)
