@@ -136,15 +136,23 @@ void find_bound(const UnitFlight& flight, const Tangents& tangents, float rate, 
     const std::size_t before = out.size();
     std::size_t begin = 0;
     for (const std::size_t end : flight.family.runs) {
-        const bool grows = flight.family.slope[begin] < flight.family.slope[end - 1];
-        const auto below = [&](std::size_t i) {
+        const float first_tangent = flight.tangent_of(begin);
+        const float last_tangent = flight.tangent_of(end - 1);
+        const bool grows = first_tangent < last_tangent;
+        if (!(std::max(first_tangent, last_tangent) > tangents.low &&
+              std::min(first_tangent, last_tangent) < tangents.high)) {
+            begin = end;
+            continue;
+        }
+        // Most runs are bound from one of their ends on: only what is not known already is searched for.
+        const auto past_near = [&](std::size_t i) {
             return grows ? flight.tangent_of(i) <= tangents.low : flight.tangent_of(i) >= tangents.high;
         };
-        const std::size_t first = partition(begin, end, below);
-        const auto within = [&](std::size_t i) {
+        const auto before_far = [&](std::size_t i) {
             return grows ? flight.tangent_of(i) < tangents.high : flight.tangent_of(i) > tangents.low;
         };
-        const std::size_t last = partition(first, end, within);
+        const std::size_t first = past_near(begin) ? partition(begin + 1, end, past_near) : begin;
+        const std::size_t last = before_far(end - 1) ? end : partition(first, end - 1, before_far);
         if (last > first) {
             if (out.size() > before && out.back().end == first) {
                 out.back().end = last;
