@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What plans of different numbers of waypoints find and cost.
 #include <algorithm>
-#include <chrono>
-#include <cmath>
+#include <ctime>
 #include <memory>
 
 #include "core/base/random.hpp"
@@ -89,17 +88,15 @@ std::vector<WaypointPlans> waypoint_plans(const files::Vehicle& vehicle, const s
         for (std::size_t i = 0; i < problems; ++i) {
             row.same_choice += plan(scenes[i], count, row) == finest[i] ? 1U : 0U;
         }
-        std::vector<double> took;
+        double least = 1e300;
         for (std::size_t k = 0; k < kRepetitions; ++k) {
-            const auto began = std::chrono::steady_clock::now();
+            const std::clock_t began = std::clock();
             for (const Scene& scene : scenes) {
                 plan(scene, count, unused);
             }
-            const std::chrono::duration<double, std::micro> all = std::chrono::steady_clock::now() - began;
-            took.push_back(all.count() / static_cast<double>(problems));
+            least = std::min(least, static_cast<double>(std::clock() - began));
         }
-        std::nth_element(took.begin(), took.begin() + kRepetitions / 2, took.end());
-        row.microseconds = took[kRepetitions / 2];
+        row.microseconds = 1e6 * least / (static_cast<double>(CLOCKS_PER_SEC) * static_cast<double>(problems));
     }
     return out;
 }

@@ -35,7 +35,7 @@ struct WaypointPlans {
     std::size_t same_choice =
         0;                      ///< family, plane and offset number as with kMaxPathPoints waypoints (or both nothing)
     double units = 0.0;         ///< mean work of a plan
-    double microseconds = 0.0;  ///< median of the mean over the problems, on this machine
+    double microseconds = 0.0;  ///< CPU time on this machine: least of nine means over the problems
 };
 
 [[nodiscard]] WaypointErrors waypoint_errors(const files::Vehicle& vehicle, std::size_t waypoints);
