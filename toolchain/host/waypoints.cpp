@@ -36,7 +36,7 @@ files::Vehicle read(const std::string& file)
 void run(const Options& options)
 {
     const files::Vehicle vehicle = read(options.file);
-    const double distance = 2.0 * static_cast<double>(vehicle.limits.cruise_speed);
+    const auto distance = static_cast<double>(study_distance(vehicle.limits));
     std::printf("%s, main threat %.0f m ahead; largest errors against %zu waypoints in double precision:\n",
                 vehicle.name.c_str(), distance, kReferenceWaypoints);
     std::printf("%9s %9s %9s %9s %9s | %9s %9s | %12s %12s | %7s %7s %7s %8s\n", "waypoints", "time", "smooth.",

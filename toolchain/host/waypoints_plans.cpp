@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kRepetitions = 9;
 
-/// Main threat on the leg two seconds ahead, a tenth of the way large; two more move about the leg and grow.
+/// Main threat on the leg ahead, a tenth of the way large; two more move about the leg and grow.
 struct Scene {
     std::vector<geometric::Threat> threats;
     geometric::Problem problem;
@@ -24,7 +24,7 @@ Scene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
     Random random(seed);
     Scene scene;
     const float speed = limits.cruise_speed;
-    const float distance = 2.0F * speed;
+    const float distance = study_distance(limits);
     const float climb = random.uniform(-0.3F, 0.3F);
     geometric::Problem& problem = scene.problem;
     problem.frame = geometric::make_path_frame(Vec3::Zero(), Vec3(1.0F, 0.0F, climb));
@@ -42,7 +42,7 @@ Scene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
         const float vx = random.uniform(-0.8F, 0.8F);
         const float vy = random.uniform(-0.8F, 0.8F);
         const Vec3 velocity = speed * Vec3(vx, vy, random.uniform(-0.3F, 0.3F));
-        const float met = random.uniform(0.0F, 4.0F);
+        const float met = random.uniform(0.0F, 2.0F) * distance / speed;
         scene.threats.push_back({{at - met * velocity, velocity}, distance * random.uniform(0.05F, 0.25F), 0.1F});
     }
     return scene;

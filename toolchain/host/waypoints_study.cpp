@@ -12,8 +12,6 @@
 namespace jink::host {
 namespace {
 
-/// Of collision ahead [s]: what the distance of the study is at cruise speed.
-constexpr double kAhead = 2.0;
 constexpr std::array<double, 8> kRatios{0.16, 0.32, 0.48, 0.64, 0.8, 0.96, 1.12, 1.28};
 constexpr std::array<double, 3> kElevations{-30.0, 0.0, 30.0};
 constexpr std::array<double, 4> kPlanes{0.0, 45.0, 90.0, 135.0};
@@ -67,7 +65,7 @@ double closeness(const ExactCurve& curve, const ExactQuery& query, const Shape& 
 Costs costs_of(const ExactCurve& curve, const files::Vehicle& vehicle, const Shape& shape)
 {
     ExactQuery query = query_for(vehicle.limits, vehicle.airframe);
-    query.distance = kAhead * query.speed;
+    query.distance = static_cast<double>(study_distance(vehicle.limits));
     query.offset = shape.ratio * query.distance;
     query.along_z = sine(shape.elevation);
     query.side_z = cosine(shape.elevation) * sine(shape.plane);
@@ -99,6 +97,11 @@ double apart(const Point& p, const Point& from, const Point& to)
 }
 
 }  // namespace
+
+float study_distance(const vehicle::VehicleLimits& limits)
+{
+    return 2.0F * limits.cruise_speed * std::max(1.0F, limits.cruise_speed / limits.max_acceleration);
+}
 
 double chord_distance(std::size_t family, std::size_t waypoints, double ratio)
 {

@@ -14,6 +14,9 @@ namespace jink::host {
 
 inline constexpr std::size_t kReferenceWaypoints = 1000;
 
+/// Of the main threat [m]: two seconds of flight, or where that leaves no time to turn, twice v^2 / a.
+[[nodiscard]] float study_distance(const vehicle::VehicleLimits& limits);
+
 /// Of all curves of the study: three families, |r| from 0.16 to 1.28, legs of -30, 0 and 30 degrees, planes every 45,
 /// and a threat that flies past.
 struct WaypointErrors {
