@@ -60,6 +60,8 @@ constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) 
 {
     return static_cast<std::uint32_t>(points * moving + 2) / 3;
 }
+inline constexpr std::uint32_t kTableLookUp = 8;   ///< length, duration and smoothness of a curve out of the tables
+inline constexpr std::uint32_t kTableEnergy = 24;  ///< its energy, limits binding on all of it
 inline constexpr std::uint32_t kCollected = 1;     ///< threat or obstacle that is seen to be within reach or not
 inline constexpr std::uint32_t kItem = 4;          ///< ball that a curve is checked against, all of it far
 inline constexpr std::uint32_t kFarItem = 2;       ///< and one that the whole curve is seen to be out of reach of

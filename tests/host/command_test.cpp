@@ -264,4 +264,50 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
     EXPECT_NE(python.err.find("/nowhere/python3 cannot be started"), std::string::npos) << python.err;
 }
 
+TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
+{
+    const Scratch scratch;
+    const std::string vehicles = JINK_SOURCES "/firmware/vehicles/";
+    const Ran made = jink(scratch, "tables " + vehicles + "uav2.yaml --out made.hpp");
+    EXPECT_EQ(made.status, 0) << made.err;
+    EXPECT_NE(made.out.find("uav2: 25 waypoints, 4892 bytes in 3 families"), std::string::npos) << made.out;
+    EXPECT_EQ(slurp(scratch.path() / "made.hpp"), slurp(JINK_SOURCES "/core/cost/tables_uav2.hpp"));
+
+    const std::string good = slurp(vehicles + "uav2.yaml");
+    const auto refused = [&](const std::string& file, const std::string& options, const std::string& why) {
+        const Ran ran = jink(scratch, "tables " + file + options + " --out none.hpp");
+        EXPECT_EQ(ran.status, 1) << file << options;
+        EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
+        EXPECT_FALSE(std::filesystem::exists(scratch.path() / "none.hpp"));
+    };
+    static_cast<void>(scratch.write("no_mass.yaml", good.substr(0, good.find("mass: 10"))));
+    refused("no_mass.yaml", "", "mass");
+    static_cast<void>(scratch.write("not_a_number.yaml", good + "air_density: .nan\n"));
+    refused("not_a_number.yaml", "", "air_density");
+    static_cast<void>(scratch.write("cut.yaml", good + "rotors: {count: 4"));
+    refused("cut.yaml", "", "cut.yaml:");
+    std::string named = good;
+    static_cast<void>(scratch.write("name.yaml", named.replace(named.find("name: uav2"), 10, "name: '4\"'")));
+    refused("name.yaml", "", "no C++ name");
+    refused("nowhere.yaml", "", "no such file");
+    refused(vehicles + "uav2.yaml", " --waypoints 7", "waypoints");
+    refused(vehicles + "uav2.yaml", " --waypoints 65", "waypoints");
+    const Ran unwritten = jink(scratch, "tables " + vehicles + "uav2.yaml --out no_folder/a.hpp");
+    EXPECT_EQ(unwritten.status, 1);
+    EXPECT_NE(unwritten.err.find("cannot be written"), std::string::npos);
+}
+
+TEST(Command, WaypointsPrintsARowForEachNumber)
+{
+    const Scratch scratch;
+    const Ran ran = jink(scratch, "waypoints --waypoints 12 25 --problems 5");
+    EXPECT_EQ(ran.status, 0) << ran.err;
+    EXPECT_NE(ran.out.find("\n       12 "), std::string::npos) << ran.out;
+    EXPECT_NE(ran.out.find("  default\n"), std::string::npos) << ran.out;
+    EXPECT_EQ(jink(scratch, "waypoints --waypoints 7").status, 1);
+    const Ran none = jink(scratch, "waypoints none.yaml");
+    EXPECT_EQ(none.status, 1);
+    EXPECT_EQ(none.err, "none.yaml: no such file\n");
+}
+
 }  // namespace

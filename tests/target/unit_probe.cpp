@@ -9,6 +9,10 @@
 
 #include "core/avoid/guard.hpp"
 #include "core/base/random.hpp"
+#include "core/base/work_units.hpp"
+#include "core/cost/tables.hpp"
+#include "core/cost/tables_default.hpp"
+#include "core/geometric/curve.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "tests/target/probe_io.hpp"
@@ -37,6 +41,10 @@ enum class Work : std::uint32_t {
     check,
     command,
     fallback,
+    curve_exact,
+    curve_table,
+    energy_exact,
+    energy_table,
     count,
 };
 
@@ -106,6 +114,7 @@ private:
                 3.0F};
     }
     void geometry(Work work, WorkBudget& budget) noexcept;
+    void curve(Work work, WorkBudget& budget) noexcept;
 
     Random random_{0};
     std::array<Vec3, kMaxHullVertices> vertices_{};
@@ -221,12 +230,70 @@ void UnitProbe::geometry(Work work, WorkBudget& budget) noexcept
     jink_window_end();
 }
 
+/// Duration and smoothness of a candidate, or its energy: by its waypoints, as the planner does, and out of the tables.
+void UnitProbe::curve(Work work, WorkBudget& budget) noexcept
+{
+    using namespace geometric;
+    const std::uint16_t waypoints = cost::tables::kDefault.waypoints;
+    const Family family = below(2) == 0 ? Family::simple : Family::symmetric;
+    const float distance = random_.uniform(2.5F, 40.0F);
+    const float offset = random_.uniform(-1.28F, 1.28F) * distance;
+    constexpr std::array<float, 3> kShares{1.0F, 0.6F, 0.3F};
+    const float speed = kShares[below(3)] * limits_.cruise_speed;
+    // A level leg in every other case.
+    const float climb = below(2) == 0 ? 0.0F : random_.uniform(-1.0F, 1.0F);
+    const PathFrame frame = make_path_frame(Vec3::Zero(), Vec3(1.0F, 0.0F, climb));
+    const Vec3 along = frame.axes.col(0);
+    const Vec3 side = detail::plane_direction(frame, 0.25F * kPi * static_cast<float>(below(4)));
+    const detail::UnitCurve unit = detail::make_unit_curve(family, waypoints);
+    const cost::tables::CurveQuery query{
+        static_cast<std::size_t>(family), offset, distance, speed, along.z(), side.z()};
+    detail::Curve made;
+    detail::Coordinates y;
+    path::TimedPath& timed = manoeuvre_.path;
+    jink_window_begin();
+    switch (work) {
+    case Work::curve_exact:
+        static_cast<void>(budget.spend((units::kCandidatePoint + units::kCostPoint) * waypoints));
+        detail::make_curve(unit, along, side, distance, offset, speed, limits_, made);
+        for (std::size_t i = 0; i < unit.points; ++i) {
+            y[i] = std::abs(offset) * unit.f[i];
+        }
+        sink_ = made.duration();
+        sink_ = cost::smoothness(distance * unit.u[1], {y.data(), unit.points}, cost::SmoothnessMethod::curvature);
+        break;
+    case Work::energy_exact:
+        static_cast<void>(budget.spend((units::kCandidatePoint + units::kCostPoint) * waypoints));
+        detail::make_curve(unit, along, side, distance, offset, speed, limits_, made);
+        detail::to_timed_path(made, Vec3::Zero(), timed);
+        sink_ = cost::energy(timed, airframe_);
+        break;
+    case Work::curve_table:
+        static_cast<void>(budget.spend(units::kTableLookUp));
+        if (const auto found = cost::tables::estimate(cost::tables::kDefault, query)) {
+            sink_ = found->time;
+            sink_ = found->smoothness;
+        }
+        break;
+    default:
+        static_cast<void>(budget.spend(units::kTableEnergy));
+        sink_ = cost::tables::energy(cost::tables::kDefault, query).value_or(0.0F);
+        break;
+    }
+    jink_window_end();
+}
+
 std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
 {
     random_ = Random(seed * 977ULL + static_cast<std::uint32_t>(work));
     WorkBudget budget(kAmple);
     if (work <= Work::margin_solid) {
         geometry(work, budget);
+        return budget.spent();
+    }
+    if (work >= Work::curve_exact) {
+        limits_ = {};
+        curve(work, budget);
         return budget.spent();
     }
     scene(work);
