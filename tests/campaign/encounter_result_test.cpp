@@ -106,7 +106,8 @@ EncounterResult ended(std::uint64_t seed, Outcome outcome, double separation, bo
 
 TEST(EncounterSummary, RanksAvoidableFirstThenBrokenRulesThenSeparation)
 {
-    std::vector<EncounterResult> results{ended(1, Outcome::avoided, 3.0, false), ended(2, Outcome::collision, -1.0, false),
+    std::vector<EncounterResult> results{ended(1, Outcome::avoided, 3.0, false),
+                                         ended(2, Outcome::collision, -1.0, false),
                                          ended(3, Outcome::breach, 0.6, true), ended(4, Outcome::failed, 5.0, false),
                                          ended(5, Outcome::avoided, 3.0, false)};
     const std::vector<EncounterResult> worst = worst_of(results);
@@ -125,8 +126,9 @@ TEST(EncounterSummary, CountsWhatItSays)
 {
     FolderSetup setup;
     setup.seeds_text = "from 1";
-    const std::vector<EncounterResult> results{ended(1, Outcome::avoided, 3.0, false), ended(2, Outcome::collision, -1.0, false),
-                                               ended(3, Outcome::breach, 0.6, true), ended(4, Outcome::avoided, 5.0, false)};
+    const std::vector<EncounterResult> results{
+        ended(1, Outcome::avoided, 3.0, false), ended(2, Outcome::collision, -1.0, false),
+        ended(3, Outcome::breach, 0.6, true), ended(4, Outcome::avoided, 5.0, false)};
     const std::string text = summary_text(setup, results);
     // 1 of 4: Wilson gives 4.5587 % to 69.9358 %; 2 of 4: 15.0039 % to 84.9961 %; none of 4: up to 3 in 4.
     EXPECT_NE(text.find("1 of        4    25.0000 %  [4.5587, 69.9358]"), std::string::npos) << text;

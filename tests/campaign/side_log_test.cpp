@@ -11,7 +11,10 @@ const std::vector<Vec> kLeg{Vec(0, 0, 30), Vec(100, 0, 30)};
 /// Notes commands that stand for a side: where the vehicle will be in a second, level and off the leg along east.
 struct Flight {
     SideLog log{kLeg};
-    void side(double time, double left, unsigned takeover = 1) { log.note(time, takeover, Vec(time, 0, 30), Vec(5, left, 0)); }
+    void side(double time, double left, unsigned takeover = 1)
+    {
+        log.note(time, takeover, Vec(time, 0, 30), Vec(5, left, 0));
+    }
 };
 
 TEST(SideLog, CountsAChangeOnlyBeyondTheDeadBand)

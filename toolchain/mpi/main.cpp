@@ -41,9 +41,8 @@ int encounters(Crew& crew, const sim::EncountersOptions& options)
 {
     int status = EXIT_SUCCESS;
     if (!options.summary.empty()) {
-        const bool good = lead(crew, [&] {
-            status = sim::conclude_encounters(sim::BlockFolder(options.summary), options.quiet);
-        });
+        const bool good =
+            lead(crew, [&] { status = sim::conclude_encounters(sim::BlockFolder(options.summary), options.quiet); });
         return good ? status : kRefused;
     }
     sim::EncounterSetup setup;
@@ -91,8 +90,9 @@ int campaign(Crew& crew, const host::CampaignOptions& options)
 int main(int argc, char** argv)
 {
     Crew crew(argc, argv);
-    CLI::App cli{"jink-sim-mpi: campaigns shared by the processes of an MPI run (mpirun -n PROCESSES jink-sim-mpi ...), "
-                 "with the results of one process alone."};
+    CLI::App cli{
+        "jink-sim-mpi: campaigns shared by the processes of an MPI run (mpirun -n PROCESSES jink-sim-mpi ...), "
+        "with the results of one process alone."};
     cli.require_subcommand(1);
     sim::EncountersOptions encounters_options;
     host::CampaignOptions campaign_options;

@@ -162,9 +162,7 @@ std::string encounter_columns()
 {
     std::string line;
     EncounterResult any;
-    each_column(any, [&](std::string_view name, const auto&) {
-        line.append(line.empty() ? "" : " ").append(name);
-    });
+    each_column(any, [&](std::string_view name, const auto&) { line.append(line.empty() ? "" : " ").append(name); });
     return line;
 }
 

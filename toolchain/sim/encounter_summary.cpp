@@ -143,7 +143,7 @@ void put_sides(std::string& text, const Results& results)
 void put_intruders(std::string& text, const Results& results)
 {
     line(text, "\n%9s %8s %7s %9s %7s %10s %9s %9s %10s %10s %10s %10s %10s", "Intruders", "flights", "braked",
-         "breaches", "hits", "avoidable", "too late", "failed", "least [m]", "5 %% [m]", "50 %% [m]", "same pict.",
+         "breaches", "hits", "avoidable", "too late", "failed", "least [m]", "5 % [m]", "50 % [m]", "same pict.",
          "changed p.");
     for (unsigned intruders = 1; intruders <= kMostIntruders; ++intruders) {
         Results some;

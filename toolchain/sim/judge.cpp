@@ -81,7 +81,8 @@ Verdict judge_from(const Scenario& scenario, const Truth& start, double at, doub
     verdict.best = -1e9;
     const auto attempt = [&](const Vec& command) {
         const double least = least_separation(
-            scenario, start, at, horizon, enough, [&](const Vec&) { return command; }, [](std::size_t) { return true; });
+            scenario, start, at, horizon, enough, [&](const Vec&) { return command; },
+            [](std::size_t) { return true; });
         ++verdict.tried;
         verdict.keep += least >= scenario.promise ? 1U : 0U;
         if (least > verdict.best && least >= enough) {

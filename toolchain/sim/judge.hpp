@@ -26,8 +26,7 @@ enum class Trials : std::uint8_t {
 /// detection, then from there each of 240 directions at three speeds, and braking, as constant velocity commands
 /// through the true vehicle model against the true motion of all threats for `horizon` seconds. O(commands * steps *
 /// threats).
-[[nodiscard]] Verdict judge(const Scenario& scenario, double horizon = 12.0,
-                            Trials trials = Trials::to_the_end);
+[[nodiscard]] Verdict judge(const Scenario& scenario, double horizon = 12.0, Trials trials = Trials::to_the_end);
 
 /// The same manoeuvres from a given true state at a given time.
 [[nodiscard]] Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon = 12.0,

@@ -11,8 +11,8 @@ namespace jink::sim {
 /// stack. The same seed gives the same scenario on every machine.
 [[nodiscard]] Scenario random_scenario(std::uint64_t seed);
 
-/// An encounter of the campaign (encounter_campaign.hpp): the same, but for one to eight intruders, each count as likely
-/// as the other, at 0 to 15 m/s. Of another stream of numbers than random_scenario of the same seed.
+/// An encounter of the campaign (encounter_campaign.hpp): the same, but for one to eight intruders, each count as
+/// likely as the other, at 0 to 15 m/s. Of another stream of numbers than random_scenario of the same seed.
 [[nodiscard]] Scenario open_encounter(std::uint64_t seed);
 
 /// The fullest world that the link can bring: 32 intruders as above at once, inside a ring of pillars that fills every

@@ -244,8 +244,8 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
         const double in_sight = std::max(told, flight.verdict.conflict ? flight.verdict.detected : 0.0);
         const Sample& then =
             *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= in_sight; });
-        flight.last_chance = judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time,
-                                        kJudged, trials);
+        flight.last_chance =
+            judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time, kJudged, trials);
         flight.failed_avoidable = flight.last_chance.avoidable;
     }
     return flight;

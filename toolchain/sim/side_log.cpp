@@ -13,8 +13,7 @@ constexpr double kAhead = 1.0;
 
 }  // namespace
 
-SideLog::SideLog(const std::vector<Vec>& mission)
-    : start_(mission[0]), forward_((mission[1] - mission[0]).normalized())
+SideLog::SideLog(const std::vector<Vec>& mission) : start_(mission[0]), forward_((mission[1] - mission[0]).normalized())
 {
 }
 
@@ -49,8 +48,8 @@ SideCounts SideLog::counts(const std::vector<double>& told) const
             end_conflict();
             continue;
         }
-        const bool changed = std::any_of(
-            told.begin(), told.end(), [&](double at) { return at > taken_[i - 1].time && at <= taken_[i].time; });
+        const bool changed = std::any_of(told.begin(), told.end(),
+                                         [&](double at) { return at > taken_[i - 1].time && at <= taken_[i].time; });
         (changed ? counts.changed_picture : counts.same_picture) += 1;
         same += changed ? 0U : 1U;
     }
