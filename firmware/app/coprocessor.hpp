@@ -143,6 +143,8 @@ public:
     [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const geometric::Planner& planner() const noexcept { return planner_; }
+    /// For studies on a bench: settings that no parameter reaches. The next change of a parameter takes them back.
+    [[nodiscard]] geometric::Planner& planner() noexcept { return planner_; }
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
     [[nodiscard]] const vehicle::VehicleState& own() const noexcept { return own_; }
 

@@ -56,4 +56,32 @@ TEST(Campaign, DistributionStudyAgreesWithTheSourceWhereItsTextIsComplete)
     EXPECT_NEAR(ours("intercept"), 0.0496, 0.001);
 }
 
+/// Blocks that were flown in another order, and went through bytes, merge to the same figures, bit by bit.
+TEST(Campaign, BlocksComeBackFromBytesAndMergeInTheirOwnOrder)
+{
+    using namespace jink::host;
+    std::vector<StudyBlock> flown(kStudyBlocks);
+    std::vector<StudyBlock> received(kStudyBlocks);
+    for (const std::size_t index : {std::size_t{224}, std::size_t{7}, std::size_t{24}, std::size_t{100}}) {
+        flown[index] = fly_study_block(index, index == 7);
+        const std::string bytes = packed(index, flown[index]);
+        unpack(bytes, received);
+        EXPECT_EQ(received[index].rows, flown[index].rows);
+        EXPECT_EQ(received[index].environments_skipped, flown[index].environments_skipped);
+        std::vector<StudyBlock> cut(kStudyBlocks);
+        EXPECT_THROW(unpack(std::string_view(bytes).substr(0, bytes.size() - 1), cut), std::runtime_error);
+    }
+    EXPECT_FALSE(flown[7].rows.empty());
+    EXPECT_GT(flown[224].times.size(), 1000U);
+    EXPECT_EQ(flown[24].environments_skipped, kStudyEnvironments);  // 3 m from a radius of 3 m
+    const CampaignResult one = merge_study(flown);
+    const CampaignResult other = merge_study(received);
+    ASSERT_EQ(one.figures.size(), other.figures.size());
+    for (std::size_t i = 0; i < one.figures.size(); ++i) {
+        EXPECT_EQ(one.figures[i].ours, other.figures[i].ours) << one.figures[i].name;
+    }
+    EXPECT_EQ(one.closeness_median, other.closeness_median);
+    EXPECT_THROW(unpack(packed(0, flown[7]).replace(0, 8, 8, '\xff'), received), std::out_of_range);
+}
+
 }  // namespace

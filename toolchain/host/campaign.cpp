@@ -4,11 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <ostream>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <type_traits>
+#include <utility>
 
 #include "core/cost/cost.hpp"
 #include "core/geometric/planner.hpp"
+#include "toolchain/sim/statistics.hpp"
 
 namespace jink::host {
 namespace {
@@ -34,18 +41,6 @@ struct Environment {
     geometric::Threat moving;
 };
 
-struct Sample {
-    float time;
-    float energy;
-};
-
-/// What all environments add to.
-struct Study {
-    std::vector<Sample> samples;
-    std::vector<float> closeness;
-    std::ostream* csv = nullptr;
-};
-
 Environment make_environment(float distance, float elevation, float radius, const Vec3& moving, float moving_radius)
 {
     const Vec3 main(distance, 0.0F, elevation);
@@ -62,7 +57,8 @@ Environment make_environment(float distance, float elevation, float radius, cons
     return e;
 }
 
-void fly(const Environment& e, const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe, Study& study)
+void fly(const Environment& e, const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
+         StudyBlock& block, std::ostream* rows)
 {
     path::TimedPath path;
     for (const geometric::Family family : {geometric::Family::simple, geometric::Family::symmetric}) {
@@ -76,29 +72,19 @@ void fly(const Environment& e, const vehicle::VehicleLimits& limits, const vehic
                 if (!geometric::make_candidate_path(e.problem, shape, kWaypoints, limits, path)) {
                     continue;
                 }
-                const Sample sample{cost::flight_time(path), cost::energy(path, airframe)};
                 const cost::MovingThreat threat{e.moving.motion, e.moving.radius, path.duration()};
-                study.samples.push_back(sample);
-                study.closeness.push_back(cost::closeness(path, threat, cost::ClosenessMethod::swept));
-                if (study.csv != nullptr) {
-                    *study.csv << e.problem.distance << ',' << e.problem.main_radius << ','
-                               << (family == geometric::Family::simple ? "simple" : "symmetric") << ',' << 15 * plane
-                               << ',' << offset << ',' << sample.time << ',' << sample.energy << ','
-                               << study.closeness.back() << '\n';
+                block.times.push_back(cost::flight_time(path));
+                block.energies.push_back(cost::energy(path, airframe));
+                block.closeness.push_back(cost::closeness(path, threat, cost::ClosenessMethod::swept));
+                if (rows != nullptr) {
+                    *rows << e.problem.distance << ',' << e.problem.main_radius << ','
+                          << (family == geometric::Family::simple ? "simple" : "symmetric") << ',' << 15 * plane << ','
+                          << offset << ',' << block.times.back() << ',' << block.energies.back() << ','
+                          << block.closeness.back() << '\n';
                 }
             }
         }
     }
-}
-
-/// Value below which a share of the sorted values lies, between neighbours by straight line.
-double percentile(const std::vector<float>& sorted, double share)
-{
-    const double at = share * static_cast<double>(sorted.size() - 1);
-    const auto below = static_cast<std::size_t>(at);
-    const std::size_t above = std::min(below + 1, sorted.size() - 1);
-    return std::lerp(static_cast<double>(sorted[below]), static_cast<double>(sorted[above]),
-                     at - static_cast<double>(below));
 }
 
 struct Line {
@@ -107,14 +93,14 @@ struct Line {
 
 /// Least squares of normalised time over normalised energy (Pinheiro 4.3.1, with the caps and the factor of 4.2.2.1,
 /// clipped).
-Line fit(const std::vector<Sample>& samples)
+Line fit(const std::vector<float>& times, const std::vector<float>& energies)
 {
     const cost::Caps caps;
     double sx = 0, sy = 0, sxx = 0, syy = 0, sxy = 0;
-    for (const Sample& s : samples) {
+    for (std::size_t i = 0; i < times.size(); ++i) {
         cost::Terms terms;
-        terms.time = s.time;
-        terms.energy = s.energy;
+        terms.time = times[i];
+        terms.energy = energies[i];
         const cost::NormalisedTerms n = cost::normalise(terms, caps);
         const double x = static_cast<double>(n.energy);
         const double y = static_cast<double>(n.time);
@@ -124,81 +110,167 @@ Line fit(const std::vector<Sample>& samples)
         syy += y * y;
         sxy += x * y;
     }
-    const auto count = static_cast<double>(samples.size());
+    const auto count = static_cast<double>(times.size());
     const double vx = sxx - sx * sx / count;
     const double vy = syy - sy * sy / count;
     const double c = sxy - sx * sy / count;
     return {c / std::sqrt(vx * vy), c / vx, (sy - c / vx * sx) / count};
 }
 
-std::vector<CampaignFigure> figures_of(const Study& study)
+std::vector<CampaignFigure> figures_of(std::vector<float> times, std::vector<float> energies)
 {
-    std::vector<float> times, energies;
-    for (const Sample& s : study.samples) {
-        times.push_back(s.time);
-        energies.push_back(s.energy);
-    }
+    const Line line = fit(times, energies);
     std::sort(times.begin(), times.end());
     std::sort(energies.begin(), energies.end());
     constexpr double kShare = 0.995;
-    const Line line = fit(study.samples);
     return {
         {"energy, least", "J", 249.59, static_cast<double>(energies.front()), true},
-        {"energy, 99.5 %", "J", 1759.0, percentile(energies, kShare), false},
+        {"energy, 99.5 %", "J", 1759.0, sim::quantile(energies, kShare), false},
         {"energy, greatest", "J", 2028.5, static_cast<double>(energies.back()), false},
         {"time, least", "s", 1.2530, static_cast<double>(times.front()), false},
-        {"time, 99.5 %", "s", 7.0814, percentile(times, kShare), true},
+        {"time, 99.5 %", "s", 7.0814, sim::quantile(times, kShare), true},
         {"time, greatest", "s", 8.9620, static_cast<double>(times.back()), false},
         {"correlation of time and energy", "", 0.9120, line.correlation, false},
         {"slope of time over energy", "", 1.0013, line.slope, false},
         {"intercept", "", 0.0060, line.intercept, false},
-        {"candidates", "", 1062285.0, static_cast<double>(study.samples.size()), false},
+        {"candidates", "", 1062285.0, static_cast<double>(times.size()), false},
     };
 }
 
+/// The main threat of a block: distance, elevation and radius in the order in which they vary, the last one fastest.
+struct Main {
+    float distance, elevation, radius;
+};
+
+Main main_threat_of(std::size_t index)
+{
+    const std::size_t radius = index % kMainRadii.size();
+    const std::size_t elevation = index / kMainRadii.size() % kMainElevations;
+    const std::size_t distance = index / kMainRadii.size() / kMainElevations;
+    return {kMainDistances[distance], -7.0F + 1.75F * static_cast<float>(elevation), kMainRadii[radius]};
+}
+
+template <class Value>
+void append_bytes(std::string& bytes, const Value* values, std::size_t count)
+{
+    static_assert(std::is_trivially_copyable_v<Value>);
+    if (count > 0) {
+        bytes.append(reinterpret_cast<const char*>(values), count * sizeof(Value));
+    }
+}
+
+/// Takes values off the front of `bytes`.
+template <class Value>
+void take_bytes(std::string_view& bytes, Value* values, std::size_t count)
+{
+    if (bytes.size() / sizeof(Value) < count) {
+        throw std::runtime_error("a packed block of the study ends early");
+    }
+    if (count > 0) {
+        std::memcpy(values, bytes.data(), count * sizeof(Value));
+    }
+    bytes.remove_prefix(count * sizeof(Value));
+}
+
+/// What a packed block begins with.
+struct Head {
+    std::uint64_t index, skipped, candidates, row_bytes;
+};
+
 }  // namespace
 
-CampaignResult run_campaign(const std::function<void(std::size_t, std::size_t)>& progress, std::ostream* csv)
+static_assert(kStudyBlocks == kMainDistances.size() * kMainElevations * kMainRadii.size());
+
+StudyBlock fly_study_block(std::size_t index, bool with_rows)
 {
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
-    Study study;
-    study.csv = csv;
-    if (csv != nullptr) {
-        *csv << "distance_m,radius_m,family,plane_deg,offset_m,time_s,energy_j,closeness_1_per_m\n";
+    const Main threat = main_threat_of(index);
+    StudyBlock block;
+    if (std::hypot(threat.distance, threat.elevation) < geometric::kLeastDistanceInRadii * threat.radius) {
+        block.environments_skipped = kStudyEnvironments;
+        return block;
     }
-    CampaignResult result;
-    const std::size_t per_main = kMovingDistances.size() * kMovingElevations * kMovingRadii.size();
-    const std::size_t all = kMainDistances.size() * kMainElevations * kMainRadii.size() * per_main;
-    for (const float distance : kMainDistances) {
-        for (int i = 0; i < kMainElevations; ++i) {
-            const float elevation = -7.0F + 1.75F * static_cast<float>(i);
-            for (const float radius : kMainRadii) {
-                progress(result.environments, all);
-                result.environments += per_main;
-                if (std::hypot(distance, elevation) < geometric::kLeastDistanceInRadii * radius) {
-                    result.environments_skipped += per_main;
-                    continue;
-                }
-                for (const float moving_distance : kMovingDistances) {
-                    for (int k = 0; k < kMovingElevations; ++k) {
-                        const Vec3 moving(moving_distance, 0.0F, -10.0F + 3.33F * static_cast<float>(k));
-                        for (const float moving_radius : kMovingRadii) {
-                            fly(make_environment(distance, elevation, radius, moving, moving_radius), limits, airframe,
-                                study);
-                        }
-                    }
-                }
+    std::ostringstream rows;
+    for (const float moving_distance : kMovingDistances) {
+        for (int k = 0; k < kMovingElevations; ++k) {
+            const Vec3 moving(moving_distance, 0.0F, -10.0F + 3.33F * static_cast<float>(k));
+            for (const float moving_radius : kMovingRadii) {
+                fly(make_environment(threat.distance, threat.elevation, threat.radius, moving, moving_radius), limits,
+                    airframe, block, with_rows ? &rows : nullptr);
             }
         }
     }
-    progress(all, all);
-    result.candidates = study.samples.size();
-    result.figures = figures_of(study);
-    const auto middle = study.closeness.begin() + static_cast<std::ptrdiff_t>(study.closeness.size() / 2);
-    std::nth_element(study.closeness.begin(), middle, study.closeness.end());
+    block.rows = rows.str();
+    return block;
+}
+
+std::string packed(std::size_t index, const StudyBlock& block)
+{
+    const Head head{index, block.environments_skipped, block.times.size(), block.rows.size()};
+    std::string bytes;
+    append_bytes(bytes, &head, 1);
+    append_bytes(bytes, block.times.data(), block.times.size());
+    append_bytes(bytes, block.energies.data(), block.energies.size());
+    append_bytes(bytes, block.closeness.data(), block.closeness.size());
+    return bytes.append(block.rows);
+}
+
+void unpack(std::string_view bytes, std::vector<StudyBlock>& blocks)
+{
+    Head head{};
+    take_bytes(bytes, &head, 1);
+    StudyBlock& block = blocks.at(head.index);
+    block.environments_skipped = head.skipped;
+    for (std::vector<float>* values : {&block.times, &block.energies, &block.closeness}) {
+        values->resize(std::min<std::size_t>(head.candidates, bytes.size() / sizeof(float)));
+        take_bytes(bytes, values->data(), head.candidates);
+    }
+    block.rows.resize(std::min<std::size_t>(head.row_bytes, bytes.size()));
+    take_bytes(bytes, block.rows.data(), head.row_bytes);
+}
+
+CampaignResult merge_study(const std::vector<StudyBlock>& blocks)
+{
+    CampaignResult result;
+    std::vector<float> times, energies, closeness;
+    for (const StudyBlock& block : blocks) {
+        result.environments += kStudyEnvironments;
+        result.environments_skipped += block.environments_skipped;
+        times.insert(times.end(), block.times.begin(), block.times.end());
+        energies.insert(energies.end(), block.energies.begin(), block.energies.end());
+        closeness.insert(closeness.end(), block.closeness.begin(), block.closeness.end());
+    }
+    result.candidates = times.size();
+    result.figures = figures_of(std::move(times), std::move(energies));
+    const auto middle = closeness.begin() + static_cast<std::ptrdiff_t>(closeness.size() / 2);
+    std::nth_element(closeness.begin(), middle, closeness.end());
     result.closeness_median = static_cast<double>(*middle);
     return result;
+}
+
+void write_rows(std::ostream& csv, const std::vector<StudyBlock>& blocks)
+{
+    csv << "distance_m,radius_m,family,plane_deg,offset_m,time_s,energy_j,closeness_1_per_m\n";
+    for (const StudyBlock& block : blocks) {
+        csv << block.rows;
+    }
+}
+
+std::vector<StudyBlock> fly_study(const std::function<void(std::size_t, std::size_t)>& progress, bool with_rows)
+{
+    std::vector<StudyBlock> blocks;
+    for (std::size_t i = 0; i < kStudyBlocks; ++i) {
+        progress(i * kStudyEnvironments, kStudyBlocks * kStudyEnvironments);
+        blocks.push_back(fly_study_block(i, with_rows));
+    }
+    progress(kStudyBlocks * kStudyEnvironments, kStudyBlocks * kStudyEnvironments);
+    return blocks;
+}
+
+CampaignResult run_campaign(const std::function<void(std::size_t, std::size_t)>& progress)
+{
+    return merge_study(fly_study(progress, false));
 }
 
 }  // namespace jink::host

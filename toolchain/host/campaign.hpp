@@ -6,6 +6,7 @@
 #include <functional>
 #include <iosfwd>
 #include <string>
+#include <string_view>
 #include <vector>
 
 // The distribution study of the planner's source (Pinheiro 4.2, tab. 4.1): candidates over a grid of environments,
@@ -34,9 +35,36 @@ struct CampaignResult {
     std::vector<CampaignFigure> figures;
 };
 
-/// Flies all 16 200 environments. `progress(done, all)` is called now and then. A row per candidate goes to `csv` where
-/// it is given. Deterministic; a few seconds on one core.
-[[nodiscard]] CampaignResult run_campaign(const std::function<void(std::size_t, std::size_t)>& progress,
-                                          std::ostream* csv = nullptr);
+/// The study comes in blocks, one to a main threat: they can be flown by anybody in any order, and are merged in their
+/// own, so that sums and sorted values are those of one process, bit by bit.
+inline constexpr std::size_t kStudyBlocks = 225;
+inline constexpr std::size_t kStudyEnvironments = 72;  ///< in each: places and radii of the moving threat
+
+struct StudyBlock {
+    std::size_t environments_skipped = 0;
+    std::vector<float> times;      ///< of each candidate [s]
+    std::vector<float> energies;   ///< the same [J]
+    std::vector<float> closeness;  ///< the same [1/m]
+    std::string rows;              ///< of the CSV file, where they were asked for
+};
+
+/// @param index  below kStudyBlocks
+[[nodiscard]] StudyBlock fly_study_block(std::size_t index, bool with_rows);
+
+/// A block as bytes, for another process of the same build; 12 bytes to a candidate, and the rows.
+[[nodiscard]] std::string packed(std::size_t index, const StudyBlock& block);
+/// Puts a packed block in its place. @throws std::runtime_error, std::out_of_range when it is none
+void unpack(std::string_view bytes, std::vector<StudyBlock>& blocks);
+
+/// @param blocks  all of them, in order
+[[nodiscard]] CampaignResult merge_study(const std::vector<StudyBlock>& blocks);
+void write_rows(std::ostream& csv, const std::vector<StudyBlock>& blocks);
+
+/// All blocks, one after the other. `progress(done, all)` is called before each with the environments flown.
+[[nodiscard]] std::vector<StudyBlock> fly_study(const std::function<void(std::size_t, std::size_t)>& progress,
+                                                bool with_rows);
+
+/// Flies all 16 200 environments. Deterministic; a few seconds on one core.
+[[nodiscard]] CampaignResult run_campaign(const std::function<void(std::size_t, std::size_t)>& progress);
 
 }  // namespace jink::host

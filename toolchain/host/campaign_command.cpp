@@ -11,16 +11,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "toolchain/host/campaign.hpp"
+#include "toolchain/host/campaign_command.hpp"
 #include "toolchain/host/commands.hpp"
 
 namespace jink::host {
 namespace {
-
-struct Options {
-    std::string csv;
-    bool json = false;
-};
 
 void print_table(const CampaignResult& result, double seconds)
 {
@@ -50,15 +45,12 @@ void print_json(const CampaignResult& result, double seconds)
     std::printf("%s\n", out.dump(2).c_str());
 }
 
-void run(const Options& options)
+void run(const CampaignOptions& options)
 {
-    std::ofstream csv;
-    if (!options.csv.empty()) {
-        csv.open(options.csv);
-        if (!csv) {
-            std::fprintf(stderr, "jink campaign: %s cannot be written\n", options.csv.c_str());
-            throw CLI::RuntimeError(kExitBadInput);
-        }
+    // Better now than after the flights.
+    if (!options.csv.empty() && !std::ofstream(options.csv)) {
+        std::fprintf(stderr, "campaign: %s cannot be written\n", options.csv.c_str());
+        throw CLI::RuntimeError(kExitBadInput);
     }
     const bool watched = isatty(STDERR_FILENO) != 0;
     const auto began = std::chrono::steady_clock::now();
@@ -73,32 +65,50 @@ void run(const Options& options)
             std::fprintf(stderr, "%zu of %zu environments\n", done, all);
         }
     };
-    const CampaignResult result = run_campaign(progress, options.csv.empty() ? nullptr : &csv);
+    const std::vector<StudyBlock> blocks = fly_study(progress, !options.csv.empty());
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
-    (options.json ? print_json : print_table)(result, took.count());
-    csv.flush();
-    if (!options.csv.empty() && !csv) {
-        std::fprintf(stderr, "jink campaign: %s could not be written to its end\n", options.csv.c_str());
-        throw CLI::RuntimeError(kExitBadInput);
-    }
-    for (const CampaignFigure& f : result.figures) {
-        if (f.expected_to_agree && std::abs(f.deviation()) > kCampaignTolerance) {
-            throw CLI::RuntimeError(kExitStop);
-        }
+    const int status = conclude_campaign(options, blocks, took.count());
+    if (status != kExitGood) {
+        throw CLI::RuntimeError(status);
     }
 }
 
 }  // namespace
 
+CLI::App& add_campaign_options(CLI::App& cli, CampaignOptions& options)
+{
+    CLI::App* command =
+        cli.add_subcommand("campaign", "the distribution study of the planner's source: 16 200 environments; "
+                                       "exit status 2 when a figure that must agree does not");
+    command->add_option("--csv", options.csv, "write a row per candidate to this file");
+    command->add_flag("--json", options.json, "print JSON instead of a table");
+    return *command;
+}
+
+int conclude_campaign(const CampaignOptions& options, const std::vector<StudyBlock>& blocks, double seconds)
+{
+    const CampaignResult result = merge_study(blocks);
+    (options.json ? print_json : print_table)(result, seconds);
+    if (!options.csv.empty()) {
+        std::ofstream csv(options.csv);
+        write_rows(csv, blocks);
+        if (!csv.flush()) {
+            std::fprintf(stderr, "campaign: %s could not be written to its end\n", options.csv.c_str());
+            return kExitBadInput;
+        }
+    }
+    for (const CampaignFigure& f : result.figures) {
+        if (f.expected_to_agree && std::abs(f.deviation()) > kCampaignTolerance) {
+            return kExitStop;
+        }
+    }
+    return kExitGood;
+}
+
 void add_campaign(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App* command =
-        jink.add_subcommand("campaign", "the distribution study of the planner's source: 16 200 environments; "
-                                        "exit status 2 when a figure that must agree does not");
-    command->add_option("--csv", options->csv, "write a row per candidate to this file");
-    command->add_flag("--json", options->json, "print JSON instead of a table");
-    command->callback([options] { run(*options); });
+    auto options = std::make_shared<CampaignOptions>();
+    add_campaign_options(jink, *options).callback([options] { run(*options); });
 }
 
 }  // namespace jink::host

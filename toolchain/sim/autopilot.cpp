@@ -20,7 +20,9 @@ constexpr double kStopped = 0.3;  // [m/s]
 
 }  // namespace
 
-Autopilot::Autopilot(World& world) : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world)
+Autopilot::Autopilot(World& world)
+    : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world),
+      told_(scenario_.threats.size(), -1)
 {
     for (const auto& [name, value] : scenario_.parameters) {
         wanted_.push_back({name, static_cast<float>(value), false});

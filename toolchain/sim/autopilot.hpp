@@ -71,6 +71,8 @@ public:
     /// When the last parameter was verified [us]; -1: not yet.
     [[nodiscard]] Micros parameters_verified() const noexcept { return parameters_verified_; }
     [[nodiscard]] std::vector<std::string> parameters_missing() const;
+    /// When the first message that tells of a threat was sent [us]; -1: not yet. A scan's do not count.
+    [[nodiscard]] Micros told(std::size_t threat) const { return told_[threat]; }
 
 private:
     struct Wanted {
@@ -120,6 +122,7 @@ private:
     Heard heard_;
     std::vector<Wanted> wanted_;
     Micros parameters_verified_ = -1;
+    std::vector<Micros> told_;
 
     Mode mode_ = Mode::mission;
     Micros mode_since_ = 0;

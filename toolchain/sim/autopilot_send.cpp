@@ -204,6 +204,7 @@ void Autopilot::send_traffic()
         vehicle.hor_velocity = static_cast<std::uint16_t>(std::lround(speed * 100.0));
         vehicle.ver_velocity = centi(seen.velocity.z());
         writer_.write(vehicle, kAdsbReceiver);
+        told_[seen.threat] = told_[seen.threat] < 0 ? world_.now() : told_[seen.threat];
     }
 }
 

@@ -253,6 +253,11 @@ Record fly_daemon(const Scenario& scenario, const Computer& computer, const std:
 std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Computer& computer,
                                 const std::filesystem::path& folder, unsigned at_once)
 {
+    for (const Scenario& scenario : scenarios) {
+        if (scenario.planner != PlannerKind::product) {
+            throw std::runtime_error(scenario.name + ": 'planner: source' is flown in process only");
+        }
+    }
     std::vector<Record> records(scenarios.size());
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> pilots;

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <memory>
 #include <ostream>
+#include <stdexcept>
 
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -92,9 +93,11 @@ private:
 /// The co-processor with its own watch on it.
 class Bench {
 public:
-    Bench(hal::SerialPort& port, hal::Watchdog& watchdog, link::SensorBus* bus)
-        : coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, app::Parameters(), bus))
+    Bench(hal::SerialPort& port, hal::Watchdog& watchdog, link::SensorBus* bus, PlannerKind planner)
+        : coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, app::Parameters(), bus)),
+          planner_(planner)
     {
+        hand_over_settings();
     }
 
     void step(TimePoint now)
@@ -104,6 +107,10 @@ public:
         const double began = cpu_microseconds();
         const app::StepReport report = coprocessor_->step(now);
         const double took = cpu_microseconds() - began;
+        if (coprocessor_->parameters().generation() != generation_) {
+            foreign_plans_ += coprocessor_->supervisor_diagnostics().plans - plans;
+            hand_over_settings();
+        }
         steps_.note(took);
         if (coprocessor_->supervisor_diagnostics().plans != plans) {
             plan_steps_.note(took);
@@ -115,6 +122,13 @@ public:
             fan_ = fan_of(*coprocessor_, report, first_candidate_);
             found_ = succeeded;
         }
+    }
+
+    /// Plans that went by the parameters' settings although others were handed over: those of a step that took a
+    /// parameter. A flight as it is meant has none.
+    [[nodiscard]] unsigned foreign_plans() const noexcept
+    {
+        return planner_ == PlannerKind::product ? 0U : foreign_plans_;
     }
 
     [[nodiscard]] Inside inside() const
@@ -158,8 +172,25 @@ public:
     }
 
 private:
+    /// A change of a parameter gives the planner the product's settings again.
+    void hand_over_settings()
+    {
+        generation_ = coprocessor_->parameters().generation();
+        if (planner_ == PlannerKind::source) {
+            geometric::Settings settings = geometric::source_settings();
+            // What the supervisor sees as a conflict the planner has to see too.
+            settings.lookahead = coprocessor_->parameters().configuration().planner.lookahead;
+            if (!coprocessor_->planner().configure(settings)) {
+                throw std::logic_error("the planner refuses the source's settings");
+            }
+        }
+    }
+
     link::mavlink::Endpoint endpoint_;
     std::unique_ptr<app::Coprocessor> coprocessor_;
+    PlannerKind planner_;
+    std::uint32_t generation_ = 0;
+    unsigned foreign_plans_ = 0;
     Stopwatch steps_;
     Stopwatch plan_steps_;
     std::string first_candidate_;
@@ -243,6 +274,9 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
     if (overflow) {
         record.faults.emplace_back("the line could not carry the autopilot's telemetry");
     }
+    if (bench.foreign_plans() > 0) {
+        record.faults.emplace_back("plans by other settings than the scenario's planner");
+    }
     conclude(scenario, record);
     return record;
 }
@@ -258,7 +292,7 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
     hal::CountingWatchdog watchdog;
     const auto cable = std::make_unique<Cable>(clock, scenario.seed, timing);
     Tap tap(cable->port(), steps);
-    Bench bench(tap, watchdog, nullptr);
+    Bench bench(tap, watchdog, nullptr, scenario.planner);
     return fly(scenario, timing, clock, *cable, bench, tap);
 }
 
@@ -273,7 +307,7 @@ Record fly_through_tunnel(const Scenario& scenario)
     hal::CountingWatchdog watchdog;
     const auto line = std::make_unique<TunnelLine>(clock, scenario.seed);
     Tap tap(line->bus().serial(), nullptr);
-    Bench bench(tap, watchdog, &line->bus());
+    Bench bench(tap, watchdog, &line->bus(), scenario.planner);
     Record record = fly(scenario, Timing{}, clock, *line, bench, tap);
     record.transport = "tunnel";
     return record;

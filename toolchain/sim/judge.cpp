@@ -19,6 +19,8 @@ constexpr double kLookahead = 12.0;
 constexpr Micros kAskEvery = 50'000;
 /// Step of the manoeuvres that are tried [s].
 constexpr double kTrialStep = 0.01;
+/// A separation that no flight falls below [m].
+constexpr double kNeverEnough = -1e8;
 
 /// Least separation of the rest of the flight under `command(position)`, from `start` on, towards the threats that
 /// `counts`; ends early once it is below `enough`.
@@ -31,7 +33,7 @@ double least_separation(const Scenario& scenario, Truth truth, double start, dou
     for (int i = 0; i < steps && least >= enough; ++i) {
         const Vec before = truth.position;
         const double t = start + i * kTrialStep;
-        fly(truth, command(before), scenario.vehicle, kTrialStep);
+        move(truth, command(before), scenario.vehicle, kTrialStep);
         if (scenario.floor && truth.position.z() < *scenario.floor) {
             return -1e9;
         }
@@ -70,18 +72,20 @@ Vec direction(int i)
 
 }  // namespace
 
-Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon)
+Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon, Trials trials)
 {
+    const double enough = trials == Trials::until_broken ? scenario.promise : kNeverEnough;
     Verdict verdict;
     verdict.conflict = true;
     verdict.detected = at;
     verdict.best = -1e9;
     const auto attempt = [&](const Vec& command) {
         const double least = least_separation(
-            scenario, start, at, horizon, -1e8, [&](const Vec&) { return command; }, [](std::size_t) { return true; });
+            scenario, start, at, horizon, enough, [&](const Vec&) { return command; },
+            [](std::size_t) { return true; });
         ++verdict.tried;
         verdict.keep += least >= scenario.promise ? 1U : 0U;
-        if (least > verdict.best) {
+        if (least > verdict.best && least >= enough) {
             verdict.best = least;
             verdict.best_command = command;
         }
@@ -96,13 +100,13 @@ Verdict judge_from(const Scenario& scenario, const Truth& start, double at, doub
     return verdict;
 }
 
-Verdict judge(const Scenario& scenario, double horizon)
+Verdict judge(const Scenario& scenario, double horizon, Trials trials)
 {
     World world(scenario);
     MissionPilot mission(scenario);
     while (world.now() < to_micros(scenario.duration)) {
         if (world.now() % kAskEvery == 0 && conflict_in_sight(scenario, world, mission)) {
-            return judge_from(scenario, world.own(), world.seconds(), horizon);
+            return judge_from(scenario, world.own(), world.seconds(), horizon, trials);
         }
         world.step(mission.command(world.own().position));
     }

@@ -16,13 +16,20 @@ struct Verdict {
     Vec best_command = Vec::Zero();
 };
 
+/// How far the manoeuvres are flown. What keeps the promise, and how many do, is the same.
+enum class Trials : std::uint8_t {
+    to_the_end,    ///< all of them: `best` is known whatever it is
+    until_broken,  ///< as far as each keeps the promise, a third of the work: `best` is of those that keep it
+};
+
 /// Judges a scenario with perfect knowledge and without core's code: flies the mission alone to the instant of
 /// detection, then from there each of 240 directions at three speeds, and braking, as constant velocity commands
 /// through the true vehicle model against the true motion of all threats for `horizon` seconds. O(commands * steps *
 /// threats).
-[[nodiscard]] Verdict judge(const Scenario& scenario, double horizon = 12.0);
+[[nodiscard]] Verdict judge(const Scenario& scenario, double horizon = 12.0, Trials trials = Trials::to_the_end);
 
 /// The same manoeuvres from a given true state at a given time.
-[[nodiscard]] Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon = 12.0);
+[[nodiscard]] Verdict judge_from(const Scenario& scenario, const Truth& start, double at, double horizon = 12.0,
+                                 Trials trials = Trials::to_the_end);
 
 }  // namespace jink::sim

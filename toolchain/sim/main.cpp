@@ -13,6 +13,7 @@
 #include <CLI/CLI.hpp>
 
 #include "toolchain/sim/daemon.hpp"
+#include "toolchain/sim/encounters_command.hpp"
 #include "toolchain/sim/envelope.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/phases.hpp"
@@ -24,6 +25,9 @@ namespace {
 
 using namespace jink::sim;
 namespace fs = std::filesystem;
+
+/// Exit status for a command line that is wrong, and of `encounters` for a folder or a list that is of no use.
+constexpr int kRefused = 2;
 
 struct Options {
     std::vector<std::string> files;
@@ -346,8 +350,17 @@ int main(int argc, char** argv)
         command->add_option("--out", options.out, "folder for run.json and the daemon's logs");
         command->add_flag("--quiet", options.quiet, "no table");
     }
-    CLI11_PARSE(cli, argc, argv);
+    EncountersOptions encounters;
+    const CLI::App& encounters_command = add_encounters(cli, encounters, true);
     try {
+        cli.parse(argc, argv);
+    } catch (const CLI::ParseError& e) {
+        return cli.exit(e) == 0 ? EXIT_SUCCESS : kRefused;
+    }
+    try {
+        if (encounters_command.parsed()) {
+            return run_encounters(encounters);
+        }
         if (fly_command->parsed()) {
             const bool plain = options.daemon.empty() && options.image.empty() && options.link == "serial";
             if (!options.steps.empty() && !plain) {
@@ -361,6 +374,6 @@ int main(int argc, char** argv)
         return demo_command->parsed() ? demo(options) : crowd_command->parsed() ? crowd(options) : random(options);
     } catch (const std::exception& e) {
         std::cerr << "jink-sim: " << e.what() << "\n";
-        return EXIT_FAILURE;
+        return encounters_command.parsed() ? kRefused : EXIT_FAILURE;
     }
 }

@@ -27,7 +27,7 @@ constexpr double kStillWarned = 5.0;
 }  // namespace
 
 Plant::Plant(const Scenario& scenario)
-    : scenario_(scenario), world_(scenario), autopilot_(world_), flips_(scenario.mission)
+    : scenario_(scenario), world_(scenario), autopilot_(world_), flips_(scenario.mission), sides_(scenario.mission)
 {
     take_notes();
 }
@@ -74,6 +74,7 @@ void Plant::step()
     autopilot_.step();
     if (autopilot_.mode() == Mode::external) {
         flips_.note(world_.own().position, autopilot_.command());
+        sides_.note(world_.seconds(), autopilot_.takeovers(), world_.own().position, autopilot_.command());
         held_ = autopilot_.command().norm() < kStill ? held_ + kStep : 0;
         longest_hold_ = std::max(longest_hold_, held_);
     } else {
@@ -129,7 +130,9 @@ Record Plant::record() const
     record.threats = scenario_.threats;
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
         record.appeared.push_back(world_.appeared(i) < 0 ? -1.0 : to_seconds(world_.appeared(i)));
+        record.told.push_back(autopilot_.told(i) < 0 ? -1.0 : to_seconds(autopilot_.told(i)));
     }
+    record.sides = sides_.counts(record.told);
     record.samples = samples_;
     for (const std::string& name : autopilot_.parameters_missing()) {
         record.faults.push_back("parameter " + name + " was not taken");

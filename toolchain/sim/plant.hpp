@@ -42,6 +42,7 @@ private:
     World world_;
     Autopilot autopilot_;
     FlipCounter flips_;
+    SideLog sides_;
     std::vector<Sample> samples_;
     Micros held_ = 0;
     Micros longest_hold_ = 0;

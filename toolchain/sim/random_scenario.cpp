@@ -25,7 +25,7 @@ Vec any_direction(Random& random)
     return {r * std::cos(azimuth), r * std::sin(azimuth), z};
 }
 
-Threat intruder(Random& random, const Scenario& scenario, std::size_t index)
+Threat intruder(Random& random, const Scenario& scenario, std::size_t index, double fastest = 12.0)
 {
     Threat threat;
     threat.name = "intruder_" + std::to_string(index + 1);
@@ -36,7 +36,7 @@ Threat intruder(Random& random, const Scenario& scenario, std::size_t index)
                    any_direction(random) * uniform(random, 0.0, index == 0 ? 0.5 : 1.5);
     Vec direction = any_direction(random);
     direction.z() *= 0.5;  // aircraft climb less steeply than they turn
-    const double speed = uniform(random, 0.0, 12.0);
+    const double speed = uniform(random, 0.0, fastest);
     // Slower than this is a thing that hovers: it stands.
     constexpr double kHovers = 0.5;
     threat.velocity = speed < kHovers ? Vec(Vec::Zero()) : Vec(direction.normalized() * speed);
@@ -63,6 +63,42 @@ void add_ring(Scenario& s, const Vec& centre, double ring_radius)
     }
 }
 
+/// How many intruders there are at most, and how fast.
+struct Traffic {
+    std::size_t most = 1;
+    double fastest = 0.0;  ///< [m/s]
+};
+
+Scenario drawn(Random& random, const std::string& kind, std::uint64_t seed, const Traffic& traffic)
+{
+    Scenario s;
+    s.name = kind + std::to_string(seed);
+    s.seed = seed;
+    s.stack = random.below(2) == 0 ? Stack::ardupilot : Stack::px4;
+    s.duration = 60.0;
+    const double course = uniform(random, -std::numbers::pi, std::numbers::pi);
+    const double climb = random.below(3) == 0 ? uniform(random, -0.2, 0.3) : 0.0;
+    s.mission = {Vec(0.0, 0.0, kHeight),
+                 Vec(0.0, 0.0, kHeight) + 350.0 * Vec(std::cos(course), std::sin(course), climb).normalized()};
+    s.start_position = s.mission[0];
+    s.start_velocity = along(s.mission[1] - s.mission[0], s.vehicle.cruise, s.vehicle);
+    s.floor = 2.7;
+    const std::size_t count = 1 + random.below(traffic.most);
+    for (std::size_t i = 0; i < count; ++i) {
+        s.threats.push_back(intruder(random, s, i, traffic.fastest));
+    }
+    s.title = std::to_string(count) + (count == 1 ? " intruder" : " intruders") + " on conflicting courses, seed " +
+              std::to_string(seed);
+    s.traffic.sigma_position = 0.3;
+    s.traffic.sigma_velocity = 0.2;
+    s.traffic.latency = 0.1;
+    s.traffic.jitter = 0.05;
+    s.traffic.dropout = 0.05;
+    s.expect.outcomes = {Outcome::clear, Outcome::avoided, Outcome::braked};
+    default_radii(s);
+    return s;
+}
+
 }  // namespace
 
 Scenario crowded_scenario(std::uint64_t seed)
@@ -87,32 +123,13 @@ Scenario crowded_scenario(std::uint64_t seed)
 Scenario random_scenario(std::uint64_t seed)
 {
     Random random(seed * 7919U + 17U);
-    Scenario s;
-    s.name = "random_" + std::to_string(seed);
-    s.seed = seed;
-    s.stack = random.below(2) == 0 ? Stack::ardupilot : Stack::px4;
-    s.duration = 60.0;
-    const double course = uniform(random, -std::numbers::pi, std::numbers::pi);
-    const double climb = random.below(3) == 0 ? uniform(random, -0.2, 0.3) : 0.0;
-    s.mission = {Vec(0.0, 0.0, kHeight),
-                 Vec(0.0, 0.0, kHeight) + 350.0 * Vec(std::cos(course), std::sin(course), climb).normalized()};
-    s.start_position = s.mission[0];
-    s.start_velocity = along(s.mission[1] - s.mission[0], s.vehicle.cruise, s.vehicle);
-    s.floor = 2.7;
-    const std::size_t count = 1 + random.below(3);
-    for (std::size_t i = 0; i < count; ++i) {
-        s.threats.push_back(intruder(random, s, i));
-    }
-    s.title = std::to_string(count) + (count == 1 ? " intruder" : " intruders") + " on conflicting courses, seed " +
-              std::to_string(seed);
-    s.traffic.sigma_position = 0.3;
-    s.traffic.sigma_velocity = 0.2;
-    s.traffic.latency = 0.1;
-    s.traffic.jitter = 0.05;
-    s.traffic.dropout = 0.05;
-    s.expect.outcomes = {Outcome::clear, Outcome::avoided, Outcome::braked};
-    default_radii(s);
-    return s;
+    return drawn(random, "random_", seed, {3, 12.0});
+}
+
+Scenario open_encounter(std::uint64_t seed)
+{
+    Random random(seed * 15485863U + 101U);
+    return drawn(random, "encounter_", seed, {8, 15.0});
 }
 
 }  // namespace jink::sim

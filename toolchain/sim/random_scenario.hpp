@@ -11,6 +11,10 @@ namespace jink::sim {
 /// stack. The same seed gives the same scenario on every machine.
 [[nodiscard]] Scenario random_scenario(std::uint64_t seed);
 
+/// An encounter of the campaign (encounter_campaign.hpp): the same, but for one to eight intruders, each count as
+/// likely as the other, at 0 to 15 m/s. Of another stream of numbers than random_scenario of the same seed.
+[[nodiscard]] Scenario open_encounter(std::uint64_t seed);
+
 /// The fullest world that the link can bring: 32 intruders as above at once, inside a ring of pillars that fills every
 /// sector of the range scan. There may be no way out: only a broken rule of the protocol counts as unexpected.
 [[nodiscard]] Scenario crowded_scenario(std::uint64_t seed);

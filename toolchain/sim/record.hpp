@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "toolchain/sim/autopilot.hpp"
+#include "toolchain/sim/side_log.hpp"
 
 namespace jink::sim {
 
@@ -78,6 +79,8 @@ struct Record {
     std::vector<Vec> mission;
     std::vector<Threat> threats;
     std::vector<double> appeared;  ///< when each threat appeared; negative: never [s]
+    std::vector<double> told;      ///< when the first message of each left the autopilot's end; negative: never [s]
+    SideCounts sides;              ///< conflict by conflict
     std::vector<Sample> samples;
     std::optional<Inside> inside;
 };

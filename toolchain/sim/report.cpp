@@ -20,6 +20,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kStride = 5;
 /// Separations beyond this are not worth a number [m].
 constexpr double kNobody = 1e8;
+/// The judge's manoeuvres last this long [s].
+constexpr double kJudged = 12.0;
 
 /// Millimetres, so that files stay small and readable.
 double rounded(double value) { return std::round(value * 1e3) / 1e3 + 0.0; }
@@ -219,7 +221,7 @@ Json json(const ReportedFlight& flight, bool machine_independent)
 
 }  // namespace
 
-ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge)
+ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge, Trials trials)
 {
     ReportedFlight flight;
     flight.scenario = scenario;
@@ -230,7 +232,7 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
     if (!with_judge) {
         return flight;
     }
-    flight.verdict = judge(scenario);
+    flight.verdict = judge(scenario, kJudged, trials);
     const Record& r = flight.record;
     if (r.closest.surface < scenario.promise) {
         const bool never_told = r.appeared[r.closest.threat] < 0.0;
@@ -242,7 +244,8 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
         const double in_sight = std::max(told, flight.verdict.conflict ? flight.verdict.detected : 0.0);
         const Sample& then =
             *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= in_sight; });
-        flight.last_chance = judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time);
+        flight.last_chance =
+            judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time, kJudged, trials);
         flight.failed_avoidable = flight.last_chance.avoidable;
     }
     return flight;

@@ -27,7 +27,8 @@ struct ReportedFlight {
 };
 
 /// Adds what can be found out after a flight: the expectation, the flight alone and, when `with_judge`, the verdict.
-[[nodiscard]] ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge);
+[[nodiscard]] ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge,
+                                       Trials trials = Trials::to_the_end);
 
 /// Table for people: name, outcome, least separation with time and threat, longest step with a plan.
 void print_table(std::ostream& out, const std::vector<ReportedFlight>& flights);

@@ -29,6 +29,11 @@ std::string_view to_string(Mode mode) noexcept
     return "pilot";
 }
 
+std::string_view to_string(PlannerKind planner) noexcept
+{
+    return planner == PlannerKind::product ? "product" : "source";
+}
+
 std::string_view to_string(Stack stack) noexcept { return stack == Stack::ardupilot ? "ardupilot" : "px4"; }
 
 }  // namespace jink::sim

@@ -15,6 +15,12 @@ namespace jink::sim {
 
 enum class Stack : std::uint8_t { ardupilot, px4 };
 
+/// Whose settings the co-processor's planner goes by.
+enum class PlannerKind : std::uint8_t {
+    product,  ///< as flashed: what its parameters say
+    source,   ///< geometric::source_settings(), with the co-processor's look-ahead; in process only
+};
+
 /// What the autopilot is doing, whatever its stack calls it.
 enum class Mode : std::uint8_t { mission, external, hold, brake, home, pilot };
 
@@ -30,6 +36,7 @@ enum class Outcome : std::uint8_t {
 [[nodiscard]] std::string_view to_string(Outcome outcome) noexcept;
 [[nodiscard]] std::string_view to_string(Mode mode) noexcept;
 [[nodiscard]] std::string_view to_string(Stack stack) noexcept;
+[[nodiscard]] std::string_view to_string(PlannerKind planner) noexcept;
 
 /// What traffic looks like when it arrives.
 struct TrafficSensor {
@@ -77,6 +84,7 @@ struct Scenario {
     std::string title;
     std::uint64_t seed = 1;
     Stack stack = Stack::ardupilot;
+    PlannerKind planner = PlannerKind::product;
     double duration = 20.0;       ///< at most [s]
     double promise = 0.7;         ///< least distance from the vehicle's centre to a true surface [m]
     double body_radius = 0.5;     ///< of the vehicle [m]

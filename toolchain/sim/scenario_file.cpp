@@ -169,6 +169,7 @@ Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name
     s.title = map.text("title").value_or("");
     read_seed(map, s);
     s.stack = one_of(map, "stack", std::array{Stack::ardupilot, Stack::px4}).value_or(s.stack);
+    s.planner = one_of(map, "planner", std::array{PlannerKind::product, PlannerKind::source}).value_or(s.planner);
     number(map, "duration", s.duration, {1.0F, 600.0F});
     number(map, "promise", s.promise, {0.0F, 100.0F});
     number(map, "body_radius", s.body_radius, {0.0F, 100.0F});

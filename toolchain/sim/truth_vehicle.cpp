@@ -47,7 +47,7 @@ void turn_nose(Truth& truth, const TruthLimits& limits, double dt) noexcept
 
 }  // namespace
 
-void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept
+void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept
 {
     Vec goal = command;
     goal.z() = std::clamp(goal.z(), -limits.max_descent, limits.max_climb);
@@ -62,6 +62,11 @@ void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt)
         truth.acceleration.z() = 0.0;
     }
     truth.position += 0.5 * dt * (before + truth.velocity);
+}
+
+void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept
+{
+    move(truth, command, limits, dt);
     turn_nose(truth, limits, dt);
 }
 

@@ -30,6 +30,10 @@ struct Truth {
 /// turn rates. Accurate for dt well below 1 / omega; the simulator uses kStep. O(1).
 void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept;
 
+/// The same but for the nose, which stays: where the vehicle goes does not depend on it. For those who fly many ways
+/// and ask for places alone; half the work.
+void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept;
+
 /// Velocity along `direction` at `speed`, slowed where the climb or descent limit asks for it, so that the direction
 /// stays.
 [[nodiscard]] Vec along(const Vec& direction, double speed, const TruthLimits& limits) noexcept;

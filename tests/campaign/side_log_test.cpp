@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/side_log.hpp"
+
+#include <gtest/gtest.h>
+
+namespace jink::sim {
+namespace {
+
+const std::vector<Vec> kLeg{Vec(0, 0, 30), Vec(100, 0, 30)};
+
+/// Notes commands that stand for a side: where the vehicle will be in a second, level and off the leg along east.
+struct Flight {
+    SideLog log{kLeg};
+    void side(double time, double left, unsigned takeover = 1)
+    {
+        log.note(time, takeover, Vec(time, 0, 30), Vec(5, left, 0));
+    }
+};
+
+TEST(SideLog, CountsAChangeOnlyBeyondTheDeadBand)
+{
+    Flight flight;
+    flight.side(1.0, 0.4);   // no side yet
+    flight.side(2.0, 2.0);   // left
+    flight.side(3.0, -0.4);  // within the band
+    flight.side(4.0, 2.0);
+    EXPECT_EQ(flight.log.counts({0.5}).same_picture, 0U);
+    flight.side(5.0, -0.6);
+    EXPECT_EQ(flight.log.counts({0.5}).same_picture, 1U);
+    EXPECT_EQ(flight.log.counts({0.5}).changed_picture, 0U);
+    EXPECT_EQ(flight.log.counts({0.5}).broken, 0U);
+}
+
+TEST(SideLog, APictureChangesWhenSomebodyNewIsToldOfSinceTheSideBefore)
+{
+    Flight flight;
+    flight.side(2.0, 2.0);
+    flight.side(5.0, -2.0);
+    flight.side(7.0, 2.0);
+    flight.side(9.0, -2.0);
+    // Known before the first side, or after the change: the same picture. Never told of does not count.
+    EXPECT_EQ(flight.log.counts({1.0, 2.0, 9.1, -1.0}).same_picture, 3U);
+    EXPECT_EQ(flight.log.counts({1.0, 2.0, 9.1, -1.0}).broken, 1U);
+    // One at 4 s explains the change at 5 s alone.
+    const SideCounts one = flight.log.counts({1.0, 4.0});
+    EXPECT_EQ(one.changed_picture, 1U);
+    EXPECT_EQ(one.same_picture, 2U);
+    EXPECT_EQ(one.most_same, 2U);
+    EXPECT_EQ(one.broken, 1U);
+    // One more at the instant of the change at 9 s: a single change is left, which the promise allows.
+    const SideCounts two = flight.log.counts({1.0, 4.0, 9.0});
+    EXPECT_EQ(two.changed_picture, 2U);
+    EXPECT_EQ(two.most_same, 1U);
+    EXPECT_EQ(two.broken, 0U);
+}
+
+TEST(SideLog, EachStretchOfControlIsAConflictOfItsOwn)
+{
+    Flight flight;
+    flight.side(1.0, 2.0, 1);
+    flight.side(2.0, -2.0, 1);
+    flight.side(3.0, 2.0, 2);  // the first side of the second: no change
+    flight.side(4.0, -2.0, 2);
+    const SideCounts counts = flight.log.counts({0.5});
+    EXPECT_EQ(counts.conflicts, 2U);
+    EXPECT_EQ(counts.same_picture, 2U);
+    EXPECT_EQ(counts.most_same, 1U);
+    EXPECT_EQ(counts.broken, 0U);
+}
+
+TEST(SideLog, UpAndDownAreSidesToo)
+{
+    SideLog log(kLeg);
+    log.note(1.0, 1, Vec(0, 0, 30), Vec(5, 0, 2));
+    log.note(2.0, 1, Vec(5, 0, 30), Vec(5, 2, 0));  // a quarter turn about the leg is no change
+    log.note(3.0, 1, Vec(10, 0, 30), Vec(5, 0, -2));
+    EXPECT_EQ(log.counts({}).same_picture, 1U);
+}
+
+}  // namespace
+}  // namespace jink::sim

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/encounter_campaign.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <exception>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "toolchain/sim/encounter_summary.hpp"
+#include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/scenario_writer.hpp"
+#include "toolchain/sim/source_digest.hpp"
+
+namespace jink::sim {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKind = "jink encounters 1";
+
+std::string number(std::uint64_t value)
+{
+    std::ostringstream text;
+    text << value;
+    return text.str();
+}
+
+template <class Number>
+bool read(const std::string& text, Number& value)
+{
+    const auto [end, bad] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return bad == std::errc{} && end == text.data() + text.size() && !text.empty();
+}
+
+std::vector<std::uint64_t> seeds_of(const fs::path& file)
+{
+    std::ifstream in(file);
+    if (!in) {
+        throw std::runtime_error(file.string() + " cannot be read");
+    }
+    std::vector<std::uint64_t> seeds;
+    std::set<std::uint64_t> known;
+    std::size_t at = 0;
+    for (std::string line; std::getline(in, line);) {
+        ++at;
+        std::istringstream words(line.substr(0, line.find('#')));
+        std::string word, more;
+        if (!(words >> word)) {
+            continue;
+        }
+        std::uint64_t seed = 0;
+        if (!read(word, seed) || words >> more) {
+            throw std::runtime_error(file.string() + ":" + number(at) + ": not one seed");
+        }
+        if (!known.insert(seed).second) {
+            throw std::runtime_error(file.string() + ":" + number(at) + ": this seed comes twice");
+        }
+        seeds.push_back(seed);
+    }
+    if (seeds.empty()) {
+        throw std::runtime_error(file.string() + " lists no seeds");
+    }
+    return seeds;
+}
+
+std::string fly_block(const EncounterSetup& setup, std::size_t index, const std::function<void()>& pause)
+{
+    std::string text = encounter_columns() + "\n";
+    const std::size_t end = std::min((index + 1) * setup.block, setup.seeds.size());
+    for (std::size_t i = index * setup.block; i < end; ++i) {
+        text.append(to_line(fly_encounter(setup.seeds[i], setup.planner))).append("\n");
+        pause();
+    }
+    return text;
+}
+
+/// A file that replays one of the worst encounters: it is expected to end as it did.
+void write_replay(const BlockFolder& folder, PlannerKind planner, const EncounterResult& result)
+{
+    Scenario scenario = encounter_scenario(result.seed, planner);
+    scenario.expect.outcomes = {result.outcome};
+    folder.write_file("worst/" + scenario.name + ".yaml",
+                      scenario_text(scenario, encounter_columns() + "\n" + to_line(result)));
+}
+
+void write_worst(const BlockFolder& folder, const FolderSetup& setup, const std::vector<EncounterResult>& results)
+{
+    std::error_code bad;
+    fs::remove_all(folder.path() / "worst", bad);
+    fs::create_directories(folder.path() / "worst", bad);
+    for (const EncounterResult& result : worst_of(results)) {
+        write_replay(folder, setup.planner, result);
+    }
+}
+
+}  // namespace
+
+std::string EncounterSetup::manifest() const
+{
+    std::ostringstream text;
+    text << kKind << "\nplanner " << to_string(planner) << "\nseeds " << seeds_text << "\ncount " << seeds.size()
+         << "\nblock " << block << "\nsources " << source_digest() << "\n";
+    return text.str();
+}
+
+EncounterSetup consecutive_setup(std::uint64_t from, std::size_t count)
+{
+    EncounterSetup setup;
+    for (std::size_t i = 0; i < count; ++i) {
+        setup.seeds.push_back(from + i);
+    }
+    setup.seeds_text = "from " + number(from);
+    return setup;
+}
+
+EncounterSetup listed_setup(const fs::path& file)
+{
+    EncounterSetup setup;
+    setup.seeds = seeds_of(file);
+    std::string all;
+    for (const std::uint64_t seed : setup.seeds) {
+        all.append(number(seed)).append("\n");
+    }
+    setup.seeds_text = "listed, checksum " + number(checksum(all));
+    return setup;
+}
+
+FolderSetup read_setup(const BlockFolder& folder)
+{
+    std::istringstream lines(folder.manifest());
+    std::string kind;
+    std::getline(lines, kind);
+    std::map<std::string, std::string> values;
+    for (std::string line; std::getline(lines, line);) {
+        values[line.substr(0, line.find(' '))] = line.substr(std::min(line.size(), line.find(' ') + 1));
+    }
+    FolderSetup setup;
+    const bool good = kind == kKind && (values["planner"] == "product" || values["planner"] == "source") &&
+                      read(values["count"], setup.count) && read(values["block"], setup.block) && setup.block > 0;
+    if (!good) {
+        throw BadFolder(folder.path().string() + " is no folder of encounters");
+    }
+    setup.planner = values["planner"] == "product" ? PlannerKind::product : PlannerKind::source;
+    setup.seeds_text = values["seeds"];
+    setup.same_sources = values["sources"] == source_digest();
+    return setup;
+}
+
+void fly_blocks(const BlockFolder& folder, const EncounterSetup& setup,
+                const std::function<std::optional<std::size_t>()>& next, const std::function<void()>& pause)
+{
+    for (std::optional<std::size_t> index = next(); index; index = next()) {
+        folder.write(*index, fly_block(setup, *index, pause));
+    }
+}
+
+void fly_missing(const BlockFolder& folder, const EncounterSetup& setup, unsigned threads,
+                 const std::function<void(std::size_t done, std::size_t all)>& done)
+{
+    const std::vector<std::size_t> missing = folder.missing(setup.blocks());
+    std::size_t begun = 0;
+    std::size_t finished = 0;
+    std::exception_ptr failure;
+    std::mutex mutex;
+    const auto work = [&] {
+        bool busy = false;
+        try {
+            fly_blocks(
+                folder, setup,
+                [&]() -> std::optional<std::size_t> {
+                    const std::lock_guard lock(mutex);
+                    if (busy) {
+                        done(++finished, missing.size());
+                    }
+                    const std::size_t at = failure ? missing.size() : begun++;
+                    busy = at < missing.size();
+                    return busy ? std::optional(missing[at]) : std::nullopt;
+                },
+                [] {});
+        } catch (...) {
+            const std::lock_guard lock(mutex);
+            failure = std::current_exception();
+        }
+    };
+    std::vector<std::thread> workers;
+    for (unsigned i = 0; i < threads; ++i) {
+        workers.emplace_back(work);
+    }
+    for (std::thread& worker : workers) {
+        worker.join();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+}
+
+std::vector<EncounterResult> read_results(const BlockFolder& folder, const FolderSetup& setup)
+{
+    const std::size_t blocks = (setup.count + setup.block - 1) / setup.block;
+    const std::vector<std::size_t> missing = folder.missing(blocks);
+    if (!missing.empty()) {
+        throw BadFolder(folder.path().string() + ": " + number(missing.size()) + " of " + number(blocks) +
+                        " blocks are missing; the same command as before flies them");
+    }
+    std::vector<EncounterResult> results;
+    for (std::size_t i = 0; i < blocks; ++i) {
+        std::istringstream lines(folder.read(i).value_or(""));
+        std::string line;
+        std::getline(lines, line);
+        bool good = line == encounter_columns();
+        while (good && std::getline(lines, line)) {
+            const std::optional<EncounterResult> result = parse_line(line);
+            good = result.has_value();
+            if (result) {
+                results.push_back(*result);
+            }
+        }
+        if (!good || results.size() != std::min((i + 1) * setup.block, setup.count)) {
+            throw BadFolder(folder.path().string() + ": block " + number(i) + " is none of this program's");
+        }
+    }
+    return results;
+}
+
+std::size_t count_avoidable(const std::vector<EncounterResult>& results)
+{
+    return static_cast<std::size_t>(
+        std::count_if(results.begin(), results.end(), [](const EncounterResult& r) { return r.failed_avoidable; }));
+}
+
+std::string summarise(const BlockFolder& folder, const FolderSetup& setup, const std::vector<EncounterResult>& results)
+{
+    const std::string text = summary_text(setup, results);
+    folder.write_file("summary.txt", text);
+    if (setup.same_sources) {
+        write_worst(folder, setup, results);
+    }
+    return text;
+}
+
+}  // namespace jink::sim

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "toolchain/sim/encounter_campaign.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace jink::sim {
+
+/// The command `encounters` of jink-sim and jink-sim-mpi.
+struct EncountersOptions {
+    std::uint64_t from = 1;
+    std::size_t count = 1000;
+    std::size_t block = 100;
+    std::string seed_file;
+    std::string planner = "product";
+    std::string out;
+    std::string summary;   ///< a folder to be summarised; nothing is flown
+    unsigned threads = 0;  ///< 0: as many as the machine has cores
+    bool quiet = false;
+};
+
+/// Adds the command's options. @param with_threads  not where processes share the work
+CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads);
+
+/// @throws std::runtime_error when options contradict each other or the seed file is of no use
+[[nodiscard]] EncounterSetup setup_of(const EncountersOptions& options);
+
+/// Reads the folder, writes its summary, prints it, and says how it ended: 0; 1 when a promise was broken that could
+/// have been kept, or a rule. @throws BadFolder
+int conclude_encounters(const BlockFolder& folder, bool quiet);
+
+/// The whole command in one process; exit status as above. @throws BadFolder, std::runtime_error
+int run_encounters(const EncountersOptions& options);
+
+}  // namespace jink::sim
