@@ -35,7 +35,7 @@ constexpr std::size_t kPerDecade = 20;
 constexpr std::size_t kBins = 5 * kPerDecade;  // from 1 us to 100 ms
 constexpr std::size_t kAgain = 500;
 
-/// 16 candidates, up to five attempts, and three threats by the leg, the first of them in the way.
+/// 16 candidates, up to nine attempts, and three threats by the leg, the first of them in the way.
 struct Scene {
     geometric::Settings settings;
     vehicle::VehicleLimits limits;

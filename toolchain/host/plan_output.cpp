@@ -213,7 +213,7 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
     }
     out += "\n" + verdict(file, outcome) + "\n";
     out += format("%u units of work, %zu %s.\n", outcome.work, outcome.tries,
-                  outcome.tries == 1 ? "attempt" : "attempts, slower and further out");
+                  outcome.tries == 1 ? "attempt" : "attempts, slower, further out and waiting");
     return out;
 }
 

@@ -64,10 +64,10 @@ RULES = [
     (r"clearance\.cpp:.*check.*items_", "each", lambda p: p["tracks"] + p["obstacles"]),
     (r"stl_heap\.h.*__(adjust|push)_heap|stl_heap\.h:(229|140)", "each", lambda p: math.ceil(math.log2(max(2, p["candidates"]))) + 1),
     (r"stl_heap\.h", "each", lambda p: p["candidates"]),
-    (r"solve\.cpp:.*(result_\.path\.points|unit\.points)|operator=|StaticVector|std::array|static_vector", "each", lambda p: 128),
-    (r"solve\.cpp:.*(candidates|order_?\.empty|planes|offset|evaluate\()|offsets\.cpp", "each", lambda p: p["candidates"]),
-    (r"solve\.cpp:.*Family", "each", lambda p: 2),
-    (r"curve\.cpp|^core/cost/|solve\.cpp:.*(max_element|closeness_nearest)", "each", lambda p: max(p["waypoints"], p["tracks"])),
+    (r"(solve|choose|generate)\.cpp:.*(result_\.path\.points|unit\.points)|operator=|StaticVector|std::array|static_vector", "each", lambda p: 128),
+    (r"(solve|choose|generate)\.cpp:.*(candidates|order_?\.empty|planes|offset|evaluate\()|offsets\.cpp", "each", lambda p: p["candidates"]),
+    (r"(solve|choose|generate)\.cpp:.*Family", "each", lambda p: 4),
+    (r"curve\.cpp|^core/cost/|(solve|choose|generate)\.cpp:.*(max_element|closeness_nearest)", "each", lambda p: max(p["waypoints"], p["tracks"])),
     (r"clearance(_airspace)?\.cpp", "each", lambda p: p["points"] - 1),
     (r"memcpy|memset|memmove", "each", lambda p: 128),
 ]
@@ -112,7 +112,7 @@ class Turns:
 ROOT = "_ZN4jink9geometric7Planner4planERKNS_5world9SituationERNS_10WorkBudgetERNS2_9ManoeuvreE"
 IMAGES = ("mps2_an500", "stm32f405")
 SCENES = {"plan_16_3": dict(candidates=16, tracks=3, obstacles=0, attempts=1),
-          "plan_16_3_retries": dict(candidates=16, tracks=3, obstacles=0, attempts=5, slowest=0.3)}
+          "plan_16_3_retries": dict(candidates=16, tracks=3, obstacles=0, attempts=9, slowest=0.3)}
 
 
 def of_plan(program, scene):

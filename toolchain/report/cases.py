@@ -42,7 +42,7 @@ def _obstacle(r, case):
     return (kind, centre, _add(centre, _vector(r, 6.0)), r.uniform(0.2, 2.0), 0.0)
 
 
-def random_case(seed, kind="plan", tracks=3, obstacles=0, offsets=2, retries=4):
+def random_case(seed, kind="plan", tracks=3, obstacles=0, offsets=2, retries=8):
     """A leg in any direction, a threat on it, and the others near it."""
     r = random.Random(seed)
     heading = r.uniform(-math.pi, math.pi)

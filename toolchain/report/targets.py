@@ -27,7 +27,7 @@ class Case:
     offsets: int = 4
     extra_planes: int = 3
     families: int = 3
-    retries: int = 4
+    retries: int = 8
     bounds: int = 0
     own_position: tuple = (0.0, 0.0, 30.0)
     own_velocity: tuple = (5.0, 0.0, 0.0)
