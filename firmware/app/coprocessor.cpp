@@ -11,6 +11,8 @@ constexpr Seconds kHeartbeatPeriod = 1.0F;
 constexpr Seconds kCollisionPeriod = 0.5F;
 /// Set-points that a PX4 only has to see: it wants 2 Hz or more [s].
 constexpr Seconds kProvingPeriod = 0.2F;
+/// A command further than this from the last one sent goes out at once [m/s].
+constexpr float kNewCommand = 1.0F;
 /// A step that comes this long after the last one means that we were not there when we should have been [s].
 constexpr Seconds kStall = 0.5F;
 /// Speed from which the own motion itself is taken for the way, where no leg is known [m/s].
@@ -152,13 +154,17 @@ Seconds Coprocessor::setpoint_period() const noexcept
 void Coprocessor::send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept
 {
     const Seconds period = setpoint_period();
-    if (period <= 0.0F || now - last_setpoint_ < period - 0.5F * kTick) {
+    // Until the autopilot follows us, the stream says what it does anyway.
+    const bool leads = takeover_.in_control();
+    const Vec3 velocity = leads ? report.guidance.velocity : own.velocity;
+    // What is decided anew does not wait for its turn: a tenth of a second is half a metre at cruise speed.
+    const bool anew = leads && (velocity - last_velocity_).squaredNorm() > kNewCommand * kNewCommand;
+    if (period <= 0.0F || (!anew && now - last_setpoint_ < period - 0.5F * kTick)) {
         return;
     }
-    // Until the autopilot follows us, the stream says what it does anyway.
-    const Vec3 velocity = takeover_.in_control() ? report.guidance.velocity : own.velocity;
     link_.send_velocity(velocity, now);
     last_setpoint_ = now;
+    last_velocity_ = velocity;
     report.setpoint_sent = true;
     ++diagnostics_.setpoints;
 }

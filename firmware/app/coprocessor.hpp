@@ -244,6 +244,7 @@ private:
     TimePoint last_step_;
     TimePoint last_heartbeat_;
     TimePoint last_setpoint_;
+    Vec3 last_velocity_ = Vec3::Zero();  ///< of the last set-point [m/s]
     TimePoint last_mode_request_;
     TimePoint last_collision_;
     bool heartbeat_sent_ = false;

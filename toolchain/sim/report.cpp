@@ -235,9 +235,8 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
     flight.verdict = judge(scenario, kJudged, trials);
     const Record& r = flight.record;
     if (r.closest.surface < scenario.promise) {
-        const bool never_told = r.appeared[r.closest.threat] < 0.0;
-        const double told = r.appeared[r.closest.threat] + scenario.traffic.latency;
-        flight.told_too_late = never_told || r.closest.time <= told;
+        const double told = r.told[r.closest.threat];  // jitter and dropouts included: nobody knows before
+        flight.told_too_late = told < 0.0 || r.closest.time <= told;
         if (flight.told_too_late) {
             return flight;
         }

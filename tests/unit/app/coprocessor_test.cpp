@@ -281,5 +281,32 @@ TEST(CoprocessorReboot, ForgetsEverythingThatTheOldAutopilotSaidAndRecovers)
     EXPECT_EQ(f->coprocessor.takeover_diagnostics().taken, 2U);
 }
 
+/// The stream has its rate, but what is decided anew does not wait for its turn.
+TEST(CoprocessorStream, ANewCommandGoesOutInTheStepThatDecidesIt)
+{
+    const auto f = make_flight({{Param::rate, 10.0F}});
+    ASSERT_NO_FATAL_FAILURE(take_over(*f));
+    Vec3 sent = Vec3::Zero();
+    TimePoint sent_at{};
+    int early = 0;
+    for (int i = 0; i < 400 && f->last.control == Control::ours; ++i) {
+        if (i == 60) {  // something else in the way, near
+            f->obstacles.push_back(f->position + f->velocity.normalized() * 9.0F);
+        }
+        f->fly(1);
+        const auto said = f->said_of<SetPositionTargetLocalNed>();
+        const bool leads = f->last.control == Control::ours;
+        if (leads && i > 10 && (f->last.guidance.velocity - sent).norm() > 1.01F) {
+            ASSERT_FALSE(said.empty()) << "tick " << i;
+            early += f->now - sent_at < 0.09F ? 1 : 0;
+        }
+        if (!said.empty()) {
+            sent = Vec3(said.back().vy, said.back().vx, -said.back().vz);
+            sent_at = f->now;
+        }
+    }
+    EXPECT_GT(early, 0) << "nothing was ever decided between two turns: this says nothing";
+}
+
 }  // namespace
 }  // namespace jink::app::test
