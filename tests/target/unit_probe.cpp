@@ -260,7 +260,7 @@ void UnitProbe::curve(Work work, WorkBudget& budget) noexcept
             y[i] = std::abs(offset) * unit.f[i];
         }
         sink_ = made.duration();
-        sink_ = cost::smoothness(distance * unit.u[1], {y.data(), unit.points}, cost::SmoothnessMethod::curvature);
+        sink_ = cost::smoothness(distance * unit.step, {y.data(), unit.points}, cost::SmoothnessMethod::curvature);
         break;
     case Work::energy_exact:
         static_cast<void>(budget.spend((units::kCandidatePoint + units::kCostPoint) * waypoints));

@@ -67,7 +67,7 @@ public:
         for (std::size_t i = 0; i < unit.points; ++i) {
             y_[i] = std::abs(d.query.offset) * unit.f[i];
         }
-        return curve_.duration() + cost::smoothness(d.query.distance * unit.u[1], {y_.data(), unit.points},
+        return curve_.duration() + cost::smoothness(d.query.distance * unit.step, {y_.data(), unit.points},
                                                     cost::SmoothnessMethod::curvature);
     }
     float energy(const Drawn& d)
