@@ -51,7 +51,7 @@ class Finder:
     def __init__(self, wanted, texts):
         self.wanted, self.texts = wanted, texts  # {path as clang prints it: name}, {name: bytes}
         self.file = None
-        self.sites, self.left_out, self.seen = {}, {}, set()
+        self.sites, self.left_out, self.seen, self.passed_over = {}, {}, set(), set()
 
     def _place(self, location):
         """(file, offset, length), or None inside of a macro."""
@@ -105,9 +105,7 @@ class Finder:
             parts = [parts[1], parts[-1]]
         elif kind == "ForStmt":
             counter = {part.get("id") for part in parts[0].get("inner", [])} if parts[0] else set()
-            if self.is_counted(parts[2], counter):
-                self.count("loop counters", parts[2])
-                parts = parts[:2] + parts[2].get("inner", []) + parts[3:]
+            self.pass_over_counters(parts[2], counter)
         elif kind == "IfStmt" and node.get("isConstexpr"):
             parts = parts[1:]
         for part in parts:
@@ -119,12 +117,22 @@ class Finder:
             node = node["inner"][0]
         return node
 
-    def is_counted(self, condition, counter):
-        """Whether a for loop's condition compares a variable of the loop itself."""
-        if not condition or condition.get("kind") not in ("BinaryOperator", "CXXOperatorCallExpr"):
-            return False
-        operands = [self.stripped(part) for part in condition.get("inner", [])]
-        return any(o.get("kind") == "DeclRefExpr" and o.get("referencedDecl", {}).get("id") in counter for o in operands)
+    def pass_over_counters(self, condition, counter):
+        """Passes over what compares a variable of the for loop itself, or one step beside it, in its condition."""
+        condition = self.stripped(condition)
+        if condition.get("opcode") in CONNECTIVES:
+            for part in condition["inner"]:
+                self.pass_over_counters(part, counter)
+        elif condition.get("kind") in ("BinaryOperator", "CXXOperatorCallExpr"):
+            if any(self.is_counter(operand, counter) for operand in condition["inner"]):
+                self.count("loop counters", condition)
+                self.passed_over.add(condition.get("id"))
+
+    def is_counter(self, node, counter):
+        node = self.stripped(node)
+        if node.get("kind") == "BinaryOperator" and node.get("opcode") in ("+", "-"):
+            return any(self.is_counter(operand, counter) for operand in node["inner"])
+        return node.get("kind") == "DeclRefExpr" and node.get("referencedDecl", {}).get("id") in counter
 
     def count(self, why, node):
         if node.get("span") and node["span"][0] in self.wanted:
@@ -135,6 +143,8 @@ class Finder:
     def look(self, node, function, constant):
         kind = node["kind"]
         inner = node.get("inner", [])
+        if node.get("id") in self.passed_over:
+            return
         if kind in ("BinaryOperator", "CXXOperatorCallExpr"):
             self.look_at_operator(node, function, constant)
         elif kind == "UnaryOperator" and node.get("opcode") == "!":
