@@ -45,13 +45,16 @@ is_far | !kIsNear | ! -> negation dropped
 is_below | x < limits.low | < -> <=
 is_below | x < limits.low | < -> >=
 """
-# The gaps: at the upper limit; a maximum below 0. And what no test could notice: kIsNear is always true, so that the
-# operand it makes may go; above kStep nothing depends on the magnitude once the lower side is known.
+# The gaps: at the upper limit; a maximum below 0.
 GAPS = """
 is_within | x > limits.high | > -> >=
 limited | std::max(limits.high, 0.0F) | min max clamp -> first alone
 """
+# What no test could notice: kIsNear is always true, so that the operand it makes may go; what is below the lower limit is
+# far by its magnitude as well.
 NO_DIFFERENCE = """
+is_far | is_low | condition -> false
+is_below | x < limits.low | < -> <=
 is_far | std::abs(x) > kStep || -x == kStep || !kIsNear | || -> left alone
 """
 
@@ -97,6 +100,7 @@ class SelfTest(unittest.TestCase):
         self.assertEqual(set(found), keys(GAPS) | keys(NO_DIFFERENCE), done.stdout)
         self.assertEqual(set(found.values()), {"NOT LISTED"})
         self.assertEqual(done.returncode, 1)
+        self.assertIn("a hang 1", done.stdout)
         self.assertIn("left out: 1 constexpr functions, 1 loop counters", done.stderr)
 
     def test_3_takes_known_survivors_with_a_reason_or_on_the_list(self):

@@ -50,7 +50,7 @@ class Outcome:
         self.surviving = [m for m in mutants if by_key[m.key]["how"] == "survived"]
 
     def _row(self, name, mutants):
-        survivors = [m for m in mutants if m in set(self.surviving)]
+        survivors = [m for m in mutants if self.by_key[m.key]["how"] == "survived"]
         equivalent = sum(m.key in self.lists.equivalent for m in survivors)
         killed, total = len(mutants) - len(survivors), len(mutants)
         share = 100.0 * killed / total

@@ -42,16 +42,16 @@ class Test:
     def run(self, seconds, **environment):
         """(how it ended, processor seconds): passed, failed, crashed or hung."""
         command = ["prlimit", f"--cpu={int(seconds)}", f"--as={BYTES}", "--core=0", *NICE, str(self.program),
-                   f"--gtest_filter={self.name}", "--gtest_brief=1"]
+                   f"--gtest_filter={self.name}", "--gtest_break_on_failure"]
         variables = {k: v for k, v in os.environ.items() if not k.startswith(("GTEST_", "JINK_"))}
         child = subprocess.Popen(command, env={**variables, **environment}, stdout=subprocess.DEVNULL,
                                  stderr=subprocess.DEVNULL)
         _, status, used = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
-        if child.returncode in (-24, -9):  # SIGXCPU, SIGKILL
+        if child.returncode in (-24, -9):  # SIGXCPU, SIGKILL; -5: SIGTRAP, at the first failed assertion
             how = "hung"
         else:
-            how = {0: "passed", 1: "failed"}.get(child.returncode, "crashed")
+            how = {0: "passed", 1: "failed", -5: "failed"}.get(child.returncode, "crashed")
         return how, used.ru_utime + used.ru_stime
 
 
@@ -132,7 +132,7 @@ def judge(mutant, tests, results):
         test = order(left, room)[0]
         left.remove(test)
         test.tries += 1
-        how, _ = test.run(3 + 10 * test.seconds, JINK_MUTANT=str(mutant.number))
+        how, _ = test.run(2 + 10 * test.seconds, JINK_MUTANT=str(mutant.number))
         if how != "passed":
             test.kills += 1
             results.add(mutant.key, how, test.full_name())
