@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <initializer_list>
+#include <type_traits>
+
+// What mutated sources call in place of an operator (toolchain/mutation/mutate). Never part of a product.
+//
+// Every function computes the operator as written, and the one wrong answer that JINK_MUTANT asks for. While recording,
+// it notes of each of its mutants whether its answer has ever differed from the right one: a test in which it never has
+// cannot tell the mutant apart, whatever it checks, and need not be run against it.
+
+namespace jink_mutation {
+
+extern const int active;         ///< number of the mutant at work; 0: none
+extern const bool recording;     ///< JINK_MUTATION_RECORD names a file for what differed
+extern unsigned char differs[];  ///< by mutant
+
+/// As a value: an Eigen expression is evaluated, so that two of different types can take each other's place.
+template <class T>
+[[nodiscard]] constexpr auto value(const T& x)
+{
+    if constexpr (requires { x.eval(); }) {
+        return x.eval();
+    } else {
+        return x;
+    }
+}
+
+template <class T>
+[[nodiscard]] bool are_different(const T& a, const T& b)
+{
+    if constexpr (requires { (a.array() != b.array()).any(); }) {
+        return (a.array() != b.array()).any();
+    } else {
+        return !(a == b);
+    }
+}
+
+template <int kMutant, class T>
+void note(const T& right, const T& wrong)
+{
+    if (are_different(right, wrong)) {
+        differs[kMutant] = 1;
+    }
+}
+
+/// One mutant.
+template <int kMutant, class T>
+[[nodiscard]] T one(const T& right, const T& wrong)
+{
+    if (recording) {
+        note<kMutant>(right, wrong);
+    }
+    return active == kMutant ? wrong : right;
+}
+
+/// Two mutants, kMutant and the next.
+template <int kMutant, class T>
+[[nodiscard]] T two(const T& right, const T& wrong, const T& other)
+{
+    if (recording) {
+        note<kMutant>(right, wrong);
+        note<kMutant + 1>(right, other);
+    }
+    return active == kMutant ? wrong : active == kMutant + 1 ? other : right;
+}
+
+template <int kMutant, class A, class B>
+[[nodiscard]] auto less(const A& a, const B& b)
+{
+    return two<kMutant>(value(a < b), value(a <= b), value(a >= b));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto less_equal(const A& a, const B& b)
+{
+    return two<kMutant>(value(a <= b), value(a < b), value(a > b));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto greater(const A& a, const B& b)
+{
+    return two<kMutant>(value(a > b), value(a >= b), value(a <= b));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto greater_equal(const A& a, const B& b)
+{
+    return two<kMutant>(value(a >= b), value(a > b), value(a < b));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] bool equal(const A& a, const B& b)
+{
+    return two<kMutant>(static_cast<bool>(a == b), true, false);
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] bool not_equal(const A& a, const B& b)
+{
+    return two<kMutant>(static_cast<bool>(a != b), true, false);
+}
+
+/// a && b. Mutants: a alone, b alone. `b` alone may be asked what `a` guards it from; only the mutant does that.
+template <int kMutant, class A, class B>
+[[nodiscard]] bool both(const A& a, const B& b)
+{
+    if (active == kMutant + 1) {
+        return b();
+    }
+    const bool first = a();
+    if (recording && !first) {
+        differs[kMutant + 1] = 1;  // may differ
+    }
+    if (!first || active == kMutant) {
+        return first;
+    }
+    const bool second = b();
+    if (recording && !second) {
+        differs[kMutant] = 1;
+    }
+    return second;
+}
+/// a || b, likewise.
+template <int kMutant, class A, class B>
+[[nodiscard]] bool either(const A& a, const B& b)
+{
+    if (active == kMutant + 1) {
+        return b();
+    }
+    const bool first = a();
+    if (recording && first) {
+        differs[kMutant + 1] = 1;  // may differ
+    }
+    if (first || active == kMutant) {
+        return first;
+    }
+    const bool second = b();
+    if (recording && second) {
+        differs[kMutant] = 1;
+    }
+    return second;
+}
+/// The same of arrays, element by element.
+template <int kMutant, class A, class B>
+[[nodiscard]] auto both_of(const A& a, const B& b)
+{
+    return two<kMutant>(value(a && b), value(a), value(b));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto either_of(const A& a, const B& b)
+{
+    return two<kMutant>(value(a || b), value(a), value(b));
+}
+
+template <int kMutant>
+[[nodiscard]] bool negation(bool a)
+{
+    return one<kMutant>(!a, a);
+}
+/// A condition that is not an operator: taken, not taken.
+template <int kMutant>
+[[nodiscard]] bool condition(bool a)
+{
+    return two<kMutant>(a, true, false);
+}
+
+/// Bounds dropped.
+template <int kMutant, class T>
+[[nodiscard]] T min(const T& a, const T& b)
+{
+    return two<kMutant>(std::min(a, b), a, b);
+}
+template <int kMutant, class T>
+[[nodiscard]] T max(const T& a, const T& b)
+{
+    return two<kMutant>(std::max(a, b), a, b);
+}
+template <int kMutant, class T>
+[[nodiscard]] T clamp(const T& x, const T& low, const T& high)
+{
+    return two<kMutant>(std::clamp(x, low, high), std::min(x, high), std::max(x, low));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto cwise_min(const A& a, const B& b)
+{
+    return one<kMutant>(value(a.cwiseMin(b)), value(a));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto cwise_max(const A& a, const B& b)
+{
+    return one<kMutant>(value(a.cwiseMax(b)), value(a));
+}
+/// Arrays' names of the same.
+template <int kMutant, class A, class B>
+[[nodiscard]] auto array_min(const A& a, const B& b)
+{
+    return one<kMutant>(value(a.min(b)), value(a));
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto array_max(const A& a, const B& b)
+{
+    return one<kMutant>(value(a.max(b)), value(a));
+}
+template <int kMutant, class A>
+[[nodiscard]] auto min_coefficient(const A& a)
+{
+    return one<kMutant>(a.minCoeff(), a.maxCoeff());
+}
+template <int kMutant, class A>
+[[nodiscard]] auto max_coefficient(const A& a)
+{
+    return one<kMutant>(a.maxCoeff(), a.minCoeff());
+}
+/// Mutant kMutant + i leaves element i out; of two elements at least.
+template <int kMutant, class T, class Choose>
+[[nodiscard]] T of_list(std::initializer_list<T> list, const Choose& choose)
+{
+    const T right = choose(list.begin(), list.end(), list.end());
+    T answer = right;
+    for (const T* left_out = list.begin(); left_out != list.end(); ++left_out) {
+        const int mutant = kMutant + static_cast<int>(left_out - list.begin());
+        const T wrong = choose(list.begin(), list.end(), left_out);
+        if (recording && are_different(right, wrong)) {
+            differs[mutant] = 1;
+        }
+        answer = active == mutant ? wrong : answer;
+    }
+    return answer;
+}
+template <int kMutant, class T>
+[[nodiscard]] T min(std::initializer_list<T> list)
+{
+    return of_list<kMutant>(list, [](const T* i, const T* end, const T* without) {
+        i += i == without ? 1 : 0;
+        T least = *i;
+        for (; i != end; ++i) {
+            least = i == without ? least : std::min(least, *i);
+        }
+        return least;
+    });
+}
+template <int kMutant, class T>
+[[nodiscard]] T max(std::initializer_list<T> list)
+{
+    return of_list<kMutant>(list, [](const T* i, const T* end, const T* without) {
+        i += i == without ? 1 : 0;
+        T most = *i;
+        for (; i != end; ++i) {
+            most = i == without ? most : std::max(most, *i);
+        }
+        return most;
+    });
+}
+
+/// Signs.
+template <int kMutant, class A>
+[[nodiscard]] auto minus(const A& a)
+{
+    return one<kMutant>(value(-a), value(a));
+}
+template <int kMutant, class A>
+[[nodiscard]] auto magnitude(const A& a)
+{
+    return one<kMutant>(std::abs(a), a);
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto sum(const A& a, const B& b)
+{
+    return one<kMutant>(a + b, a - b);
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] auto difference(const A& a, const B& b)
+{
+    return one<kMutant>(a - b, a + b);
+}
+
+}  // namespace jink_mutation
