@@ -10,15 +10,15 @@ namespace jink::geometric::detail {
 namespace {
 
 /// Rounding of the finite differences that accelerations are taken from.
-constexpr float kRounding = 1.001F;
+constexpr float kDifferenceRounding = 1.001F;
 
 /// A path frame may be that far from unitary (Problem's validity), and times are rounded.
 constexpr float kUnitTolerance = 1.01F;
 
 bool within(const Vec3& change, Seconds time, const vehicle::VehicleLimits& limits) noexcept
 {
-    const float level = kRounding * limits.max_acceleration * time;
-    const float vertical = kRounding * limits.max_vertical_acceleration * time;
+    const float level = kDifferenceRounding * limits.max_acceleration * time;
+    const float vertical = kDifferenceRounding * limits.max_vertical_acceleration * time;
     return change.x() * change.x() + change.y() * change.y() <= level * level && std::abs(change.z()) <= vertical;
 }
 

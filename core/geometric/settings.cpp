@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <cmath>
-
+#include "core/base/finite.hpp"
 #include "core/geometric/planner.hpp"
 
 namespace jink::geometric {
 namespace {
-
-bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
 
 bool has_valid_counts(const Settings& s) noexcept
 {
@@ -61,11 +58,11 @@ std::size_t count_of_candidates(const Settings& settings) noexcept
 
 bool is_valid(const Settings& s) noexcept
 {
-    return has_valid_counts(s) && not_negative(s.source_drop_margin) && not_negative(s.rotation_penalty) &&
-           not_negative(s.flip_penalty) && cost::is_valid(s.weights) && cost::is_valid(s.caps) && s.max_cost > 0.0F &&
-           s.max_cost <= 1.0F && not_negative(s.escape.slack) && not_negative(s.escape.speed) &&
-           not_negative(s.gains.position_gain) && not_negative(s.gains.max_correction) && s.lookahead >= 1.0F &&
-           s.lookahead <= 60.0F && not_negative(s.latency) && s.latency <= 1.0F;
+    return has_valid_counts(s) && is_not_negative(s.source_drop_margin) && is_not_negative(s.rotation_penalty) &&
+           is_not_negative(s.flip_penalty) && cost::is_valid(s.weights) && cost::is_valid(s.caps) && s.max_cost > 0.0F &&
+           s.max_cost <= 1.0F && is_not_negative(s.escape.slack) && is_not_negative(s.escape.speed) &&
+           is_not_negative(s.gains.position_gain) && is_not_negative(s.gains.max_correction) && s.lookahead >= 1.0F &&
+           s.lookahead <= 60.0F && is_not_negative(s.latency) && s.latency <= 1.0F;
 }
 
 }  // namespace jink::geometric

@@ -6,6 +6,7 @@
 #include <new>
 #include <type_traits>
 
+#include "core/base/finite.hpp"
 #include "core/geometric/run.hpp"
 
 namespace jink::geometric {
@@ -15,14 +16,10 @@ using detail::Curve;
 using detail::Run;
 using world::PlanStatus;
 
-bool positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
-
-bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
-
 bool is_valid(const Threat& t) noexcept
 {
-    return is_finite(t.motion.position) && is_finite(t.motion.velocity) && not_negative(t.radius) &&
-           not_negative(t.radius_rate) && not_negative(t.radius_acceleration);
+    return is_finite(t.motion.position) && is_finite(t.motion.velocity) && is_not_negative(t.radius) &&
+           is_not_negative(t.radius_rate) && is_not_negative(t.radius_acceleration);
 }
 
 bool is_valid(const PathFrame& frame) noexcept
@@ -32,9 +29,9 @@ bool is_valid(const PathFrame& frame) noexcept
 
 bool has_valid_scales(const Problem& p) noexcept
 {
-    return is_valid(p.frame) && positive(p.distance) && positive(p.main_radius) && positive(p.speed) &&
-           not_negative(p.obstacle_clearance) && not_negative(p.body_radius) && not_negative(p.span_from) &&
-           not_negative(p.span_to) && positive(p.apex_share) && is_finite(p.start_velocity) &&
+    return is_valid(p.frame) && is_positive(p.distance) && is_positive(p.main_radius) && is_positive(p.speed) &&
+           is_not_negative(p.obstacle_clearance) && is_not_negative(p.body_radius) && is_not_negative(p.span_from) &&
+           is_not_negative(p.span_to) && is_positive(p.apex_share) && is_finite(p.start_velocity) &&
            is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 

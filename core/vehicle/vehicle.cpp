@@ -4,17 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/finite.hpp"
 #include "core/vehicle/motion.hpp"
 
 namespace jink::vehicle {
-namespace {
-
-bool positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
-
-bool not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
-
-}  // namespace
-
 Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept
 {
     const float largest = direction.cwiseAbs().maxCoeff();
@@ -58,17 +51,17 @@ void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limi
 
 bool is_valid(const VehicleLimits& limits) noexcept
 {
-    return positive(limits.cruise_speed) && positive(limits.max_climb) && positive(limits.max_descent) &&
-           positive(limits.max_acceleration) && positive(limits.max_vertical_acceleration) &&
-           not_negative(limits.velocity_lag) && is_finite(limits.half_extents) && limits.half_extents.minCoeff() > 0.0F;
+    return is_positive(limits.cruise_speed) && is_positive(limits.max_climb) && is_positive(limits.max_descent) &&
+           is_positive(limits.max_acceleration) && is_positive(limits.max_vertical_acceleration) &&
+           is_not_negative(limits.velocity_lag) && is_finite(limits.half_extents) && limits.half_extents.minCoeff() > 0.0F;
 }
 
 bool is_valid(const Airframe& airframe) noexcept
 {
-    return positive(airframe.mass) && not_negative(airframe.drag_coefficient) &&
-           not_negative(airframe.effective_area) && not_negative(airframe.blade_drag_coefficient) &&
-           positive(airframe.tip_speed) && positive(airframe.blades) && positive(airframe.chord) &&
-           positive(airframe.rotor_radius) && positive(airframe.rotors) && positive(airframe.air_density);
+    return is_positive(airframe.mass) && is_not_negative(airframe.drag_coefficient) &&
+           is_not_negative(airframe.effective_area) && is_not_negative(airframe.blade_drag_coefficient) &&
+           is_positive(airframe.tip_speed) && is_positive(airframe.blades) && is_positive(airframe.chord) &&
+           is_positive(airframe.rotor_radius) && is_positive(airframe.rotors) && is_positive(airframe.air_density);
 }
 
 VehicleLimits uav2_limits() noexcept
