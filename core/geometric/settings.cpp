@@ -59,10 +59,11 @@ std::size_t count_of_candidates(const Settings& settings) noexcept
 bool is_valid(const Settings& s) noexcept
 {
     return has_valid_counts(s) && is_not_negative(s.source_drop_margin) && is_not_negative(s.rotation_penalty) &&
-           is_not_negative(s.flip_penalty) && cost::is_valid(s.weights) && cost::is_valid(s.caps) && s.max_cost > 0.0F &&
-           s.max_cost <= 1.0F && is_not_negative(s.escape.slack) && is_not_negative(s.escape.speed) &&
-           is_not_negative(s.gains.position_gain) && is_not_negative(s.gains.max_correction) && s.lookahead >= 1.0F &&
-           s.lookahead <= 60.0F && is_not_negative(s.latency) && s.latency <= 1.0F;
+           is_not_negative(s.flip_penalty) && cost::is_valid(s.weights) && cost::is_valid(s.caps) &&
+           s.max_cost > 0.0F && s.max_cost <= 1.0F && is_not_negative(s.escape.slack) &&
+           is_not_negative(s.escape.speed) && is_not_negative(s.gains.position_gain) &&
+           is_not_negative(s.gains.max_correction) && s.lookahead >= 1.0F && s.lookahead <= 60.0F &&
+           is_not_negative(s.latency) && s.latency <= 1.0F;
 }
 
 }  // namespace jink::geometric

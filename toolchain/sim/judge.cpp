@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "toolchain/sim/mission_pilot.hpp"
 #include "toolchain/sim/world.hpp"
@@ -22,12 +23,39 @@ constexpr double kTrialStep = 0.01;
 /// A separation that no flight falls below [m].
 constexpr double kNeverEnough = -1e8;
 
+/// What rounding may add to distances of kilometres [m].
+constexpr double kRounding = 1e-6;
+
+/// The greatest speed that a threat ever has [m/s].
+double most_speed(const Threat& threat)
+{
+    double most = threat.velocity.norm();
+    for (const Turn& turn : threat.turns) {
+        most = std::max(most, turn.velocity.norm());
+    }
+    return most;
+}
+
+/// A threat that counts in a trial.
+struct Counted {
+    const Threat* threat = nullptr;
+    double in_step = 0.0;  ///< how far it goes in one step at most [m]
+    double slack = 0.0;    ///< so far can both still go before it could be nearer than anything was [m]
+};
+
 /// Least separation of the rest of the flight under `command(position)`, from `start` on, towards the threats that
-/// `counts`; ends early once it is below `enough`.
+/// `counts`; ends early once it is below `enough`. A threat is looked at again only when it could be nearer than
+/// anything was before, which leaves the result as it is.
 template <class Command, class Counts>
 double least_separation(const Scenario& scenario, Truth truth, double start, double horizon, double enough,
                         Command&& command, Counts&& counts)
 {
+    std::vector<Counted> counted;
+    for (std::size_t k = 0; k < scenario.threats.size(); ++k) {
+        if (counts(k)) {
+            counted.push_back({&scenario.threats[k], most_speed(scenario.threats[k]) * kTrialStep, 0.0});
+        }
+    }
     double least = 1e9;
     const auto steps = static_cast<int>(horizon / kTrialStep);
     for (int i = 0; i < steps && least >= enough; ++i) {
@@ -37,13 +65,16 @@ double least_separation(const Scenario& scenario, Truth truth, double start, dou
         if (scenario.floor && truth.position.z() < *scenario.floor) {
             return -1e9;
         }
-        for (std::size_t k = 0; k < scenario.threats.size(); ++k) {
-            const Threat& threat = scenario.threats[k];
-            if (counts(k)) {
-                const Nearest near = nearest_in_step(threat, threat.position_at(t), threat.position_at(t + kTrialStep),
-                                                     before, truth.position);
-                least = std::min(least, near.distance);
+        const double way = (truth.position - before).norm();
+        for (Counted& c : counted) {
+            c.slack -= way + c.in_step;
+            if (c.slack > 0.0) {
+                continue;
             }
+            const Vec from = c.threat->position_at(t);
+            const Vec to = c.threat->position_at(t + kTrialStep);
+            least = std::min(least, nearest_in_step(*c.threat, from, to, before, truth.position).distance);
+            c.slack = surface_distance(*c.threat, to, truth.position) - least - kRounding;
         }
     }
     return least;
