@@ -38,9 +38,9 @@ TEST(OpenEncounter, IsWhatItsHeaderSays)
 
 TEST(EncounterResult, RepeatsAndReadsBackBitByBit)
 {
-    const EncounterResult flown = fly_encounter(22, PlannerKind::product);
+    const EncounterResult flown = fly_encounter(22, {});
     const std::string line = to_line(flown);
-    EXPECT_EQ(to_line(fly_encounter(22, PlannerKind::product)), line);
+    EXPECT_EQ(to_line(fly_encounter(22, {})), line);
     const std::optional<EncounterResult> read = parse_line(line);
     ASSERT_TRUE(read);
     EXPECT_EQ(to_line(*read), line);
@@ -72,7 +72,7 @@ TEST(EncounterResult, TheShortTrialsCountAsTheLongOnes)
 /// A flight straight along x at 2 m off, then on: what is measured of it can be done by hand.
 TEST(EncounterResult, MeasuresDeviationAndEffort)
 {
-    const Scenario s = encounter_scenario(3, PlannerKind::product);
+    const Scenario s = encounter_scenario(3, {});
     Record record = fly_in_process(s);
     const Vec forward = (s.mission[1] - s.mission[0]).normalized();
     const Vec aside = Vec(-forward.y(), forward.x(), 0.0).normalized();

@@ -22,7 +22,7 @@ TEST(ScenarioWriter, ReplaysEncountersOfBothPlannersToTheSameRecord)
 {
     for (const std::uint64_t seed : {std::uint64_t{22}, std::uint64_t{179}, std::uint64_t{8'000'000'003}}) {
         for (const PlannerKind planner : {PlannerKind::product, PlannerKind::source}) {
-            const Scenario drawn = encounter_scenario(seed, planner);
+            const Scenario drawn = encounter_scenario(seed, {planner, {}});
             const Scenario read = parse_scenario(scenario_text(drawn, "two\nlines"), drawn.name + ".yaml");
             EXPECT_EQ(read.planner, planner);
             EXPECT_EQ(record_of(read), record_of(drawn)) << drawn.name;

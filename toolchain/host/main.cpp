@@ -14,6 +14,7 @@ int main(int argc, char** argv)
         jink::host::add_plan(app);
         jink::host::add_report(app);
         jink::host::add_tables(app);
+        jink::host::add_tune(app);
         jink::host::add_waypoints(app);
         app.parse(argc, argv);
         return jink::host::kExitGood;

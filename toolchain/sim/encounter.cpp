@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "firmware/app/parameters.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/report.hpp"
@@ -116,10 +117,33 @@ void measure(const Scenario& scenario, const std::vector<Sample>& samples, Encou
 
 }  // namespace
 
-Scenario encounter_scenario(std::uint64_t seed, PlannerKind planner)
+std::string refusal_of(const Variant& variant)
+{
+    app::Parameters parameters;
+    // What is refused now may fit once another one is set: the autopilot asks again and again.
+    std::string refused;
+    for (std::size_t round = 0; round <= variant.parameters.size(); ++round) {
+        refused.clear();
+        for (const auto& [name, value] : variant.parameters) {
+            const app::ParamStatus status = parameters.set(name, static_cast<float>(value));
+            if (status == app::ParamStatus::unknown_name) {
+                return name + " is no parameter";
+            }
+            if (status != app::ParamStatus::ok && refused.empty()) {
+                refused = name + " = " + text_of(value) + " is refused";
+            }
+        }
+    }
+    return refused;
+}
+
+Scenario encounter_scenario(std::uint64_t seed, const Variant& variant)
 {
     Scenario scenario = open_encounter(seed);
-    scenario.planner = planner;
+    scenario.planner = variant.planner;
+    for (const auto& [name, value] : variant.parameters) {
+        scenario.parameters[name] = value;
+    }
     return scenario;
 }
 
@@ -152,9 +176,9 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     return r;
 }
 
-EncounterResult fly_encounter(std::uint64_t seed, PlannerKind planner)
+EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant)
 {
-    const Scenario scenario = encounter_scenario(seed, planner);
+    const Scenario scenario = encounter_scenario(seed, variant);
     return result_of(scenario, fly_in_process(scenario));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,11 +43,25 @@ struct EncounterResult {
     double away = 0.0;              ///< time under the co-processor's control [s]
 };
 
-/// Flies open_encounter(seed) in process and judges it (Trials::until_broken).
-[[nodiscard]] EncounterResult fly_encounter(std::uint64_t seed, PlannerKind planner);
+/// Who flies an encounter: the co-processor with one of the planners, set up like this.
+struct Variant {
+    PlannerKind planner = PlannerKind::product;
+    /// Of the co-processor by name, beyond those that the encounter sets itself. The autopilot sends them in the order
+    /// of their names, and again until they are taken.
+    std::map<std::string, double> parameters;
 
-/// open_encounter(seed) for one planner.
-[[nodiscard]] Scenario encounter_scenario(std::uint64_t seed, PlannerKind planner);
+    bool operator==(const Variant&) const = default;
+};
+
+/// What is wrong with a variant's parameters, in words: an unknown name, or a value that the co-processor refuses
+/// however often it is asked. Empty when all of them are taken. O(n^2) for n parameters.
+[[nodiscard]] std::string refusal_of(const Variant& variant);
+
+/// Flies open_encounter(seed) in process and judges it (Trials::until_broken).
+[[nodiscard]] EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant);
+
+/// open_encounter(seed) for one variant.
+[[nodiscard]] Scenario encounter_scenario(std::uint64_t seed, const Variant& variant);
 
 /// What is kept of a flight that was made already; it is judged here.
 [[nodiscard]] EncounterResult result_of(const Scenario& scenario, Record record);

@@ -2,7 +2,9 @@
 #include "toolchain/sim/encounter_campaign.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <map>
@@ -73,16 +75,16 @@ std::string fly_block(const EncounterSetup& setup, std::size_t index, const std:
     std::string text = encounter_columns() + "\n";
     const std::size_t end = std::min((index + 1) * setup.block, setup.seeds.size());
     for (std::size_t i = index * setup.block; i < end; ++i) {
-        text.append(to_line(fly_encounter(setup.seeds[i], setup.planner))).append("\n");
+        text.append(to_line(fly_encounter(setup.seeds[i], setup.variant))).append("\n");
         pause();
     }
     return text;
 }
 
 /// A file that replays one of the worst encounters: it is expected to end as it did.
-void write_replay(const BlockFolder& folder, PlannerKind planner, const EncounterResult& result)
+void write_replay(const BlockFolder& folder, const Variant& variant, const EncounterResult& result)
 {
-    Scenario scenario = encounter_scenario(result.seed, planner);
+    Scenario scenario = encounter_scenario(result.seed, variant);
     scenario.expect.outcomes = {result.outcome};
     folder.write_file("worst/" + scenario.name + ".yaml",
                       scenario_text(scenario, encounter_columns() + "\n" + to_line(result)));
@@ -94,17 +96,38 @@ void write_worst(const BlockFolder& folder, const FolderSetup& setup, const std:
     fs::remove_all(folder.path() / "worst", bad);
     fs::create_directories(folder.path() / "worst", bad);
     for (const EncounterResult& result : worst_of(results)) {
-        write_replay(folder, setup.planner, result);
+        write_replay(folder, setup.variant, result);
     }
 }
 
 }  // namespace
 
+std::string parameters_text(const Variant& variant)
+{
+    std::string text;
+    for (const auto& [name, value] : variant.parameters) {
+        std::array<char, 32> buffer{};
+        const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
+        text.append(" ").append(name).append("=").append(buffer.data(), end);
+    }
+    return text;
+}
+
+std::pair<std::string, double> parse_parameter(const std::string& text)
+{
+    const std::size_t equals = text.find('=');
+    double value = 0.0;
+    if (equals == std::string::npos || equals == 0 || !read(text.substr(equals + 1), value) || !std::isfinite(value)) {
+        throw std::runtime_error("'" + text + "' is not NAME=VALUE");
+    }
+    return {text.substr(0, equals), value};
+}
+
 std::string EncounterSetup::manifest() const
 {
     std::ostringstream text;
-    text << kKind << "\nplanner " << to_string(planner) << "\nseeds " << seeds_text << "\ncount " << seeds.size()
-         << "\nblock " << block << "\nsources " << source_digest() << "\n";
+    text << kKind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << "\nseeds "
+         << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources " << source_digest() << "\n";
     return text.str();
 }
 
@@ -145,7 +168,12 @@ FolderSetup read_setup(const BlockFolder& folder)
     if (!good) {
         throw BadFolder(folder.path().string() + " is no folder of encounters");
     }
-    setup.planner = values["planner"] == "product" ? PlannerKind::product : PlannerKind::source;
+    setup.variant.planner = values["planner"] == "product" ? PlannerKind::product : PlannerKind::source;
+    std::istringstream parameters(values["set"]);
+    for (std::string word; parameters >> word;) {
+        const auto [name, value] = parse_parameter(word);
+        setup.variant.parameters[name] = value;
+    }
     setup.seeds_text = values["seeds"];
     setup.same_sources = values["sources"] == source_digest();
     return setup;

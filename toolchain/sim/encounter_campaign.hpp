@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "toolchain/sim/block_folder.hpp"
@@ -18,7 +19,7 @@ namespace jink::sim {
 
 /// What a folder holds; the manifest in other words.
 struct EncounterSetup {
-    PlannerKind planner = PlannerKind::product;
+    Variant variant;
     std::vector<std::uint64_t> seeds;
     std::string seeds_text;  ///< how the manifest names them
     std::size_t block = 100;
@@ -28,6 +29,11 @@ struct EncounterSetup {
     [[nodiscard]] std::string manifest() const;
 };
 
+/// " NAME=VALUE" for each of a variant's parameters, in the order of their names.
+[[nodiscard]] std::string parameters_text(const Variant& variant);
+/// @throws std::runtime_error  when it is not NAME=VALUE with a finite value
+[[nodiscard]] std::pair<std::string, double> parse_parameter(const std::string& text);
+
 /// `count` seeds from `from` on.
 [[nodiscard]] EncounterSetup consecutive_setup(std::uint64_t from, std::size_t count);
 /// Those listed in a file, one to a line; what follows '#' is passed over.
@@ -36,7 +42,7 @@ struct EncounterSetup {
 
 /// What can be told of a folder by its manifest alone.
 struct FolderSetup {
-    PlannerKind planner = PlannerKind::product;
+    Variant variant;
     std::size_t count = 0;
     std::size_t block = 1;
     std::string seeds_text;

@@ -208,8 +208,8 @@ Results worst_of(Results results)
 std::string summary_text(const FolderSetup& setup, const Results& results)
 {
     std::string text;
-    line(text, "%zu encounters, seeds %s, planner %s\n", results.size(), setup.seeds_text.c_str(),
-         std::string(to_string(setup.planner)).c_str());
+    line(text, "%zu encounters, seeds %s, planner %s%s\n", results.size(), setup.seeds_text.c_str(),
+         std::string(to_string(setup.variant.planner)).c_str(), parameters_text(setup.variant).c_str());
     if (results.empty()) {
         return text;
     }

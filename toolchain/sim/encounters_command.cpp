@@ -30,12 +30,14 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     CLI::Option* const planner =
         command->add_option("--planner", options.planner, "the product's, or with the settings of its source")
             ->check(CLI::IsMember({"product", "source"}));
+    CLI::Option* const set = command->add_option("--set", options.parameters,
+                                                 "NAME=VALUE: a parameter of the co-processor, any number of them");
     CLI::Option* const out =
         command->add_option("--out", options.out, "folder of the blocks; what is finished there stays as it is");
     CLI::Option* const summary =
         command->add_option("--summary", options.summary, "flies nothing: summarises the blocks of this folder anew")
             ->check(CLI::ExistingDirectory);
-    for (CLI::Option* const other : {from, count, seeds, block, planner, out}) {
+    for (CLI::Option* const other : {from, count, seeds, block, planner, set, out}) {
         summary->excludes(other);
     }
     if (with_threads) {
@@ -55,7 +57,15 @@ EncounterSetup setup_of(const EncountersOptions& options)
     EncounterSetup setup =
         options.seed_file.empty() ? consecutive_setup(options.from, options.count) : listed_setup(options.seed_file);
     setup.block = options.block;
-    setup.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
+    setup.variant.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
+    for (const std::string& text : options.parameters) {
+        const auto [name, value] = parse_parameter(text);
+        setup.variant.parameters[name] = value;
+    }
+    const std::string refusal = refusal_of(setup.variant);
+    if (!refusal.empty()) {
+        throw std::runtime_error("encounters: --set: " + refusal);
+    }
     return setup;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "toolchain/sim/encounter_campaign.hpp"
 
@@ -20,6 +21,7 @@ struct EncountersOptions {
     std::size_t block = 100;
     std::string seed_file;
     std::string planner = "product";
+    std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;
     std::string summary;   ///< a folder to be summarised; nothing is flown
     unsigned threads = 0;  ///< 0: as many as the machine has cores
