@@ -104,6 +104,10 @@ def refusals(programs, top):
         check(said in text, f"{arguments}: '{said}' is not said:\n{text}")
 
     refused([*small, "--out", folder, "--planner", "source"], "'planner product' there, 'planner source' asked for")
+    refused([*small, "--out", folder, "--set", "GEO_K_T=0.3"], "'set' there, 'set GEO_K_T=0.3' asked for")
+    refused([*small, "--out", top / "new", "--set", "GEO_K_T"], "'GEO_K_T' is not NAME=VALUE")
+    refused([*small, "--out", top / "new", "--set", "GEO_K_Q=1"], "GEO_K_Q is no parameter")
+    refused([*small, "--out", top / "new", "--set", "GEO_K_S=0.95"], "GEO_K_S = 0.95 is refused")
     refused(["--from", "2", "--count", "2", "--block", "1", "--out", folder], "'seeds from 1' there, 'seeds from 2'")
     refused(["--from", "1", "--count", "3", "--block", "1", "--out", folder], "'count 2' there, 'count 3'")
     refused(["--from", "1", "--count", "2", "--block", "2", "--out", folder], "'block 1' there, 'block 2'")

@@ -160,7 +160,8 @@ FolderSetup read_setup(const BlockFolder& folder)
     std::getline(lines, kind);
     std::map<std::string, std::string> values;
     for (std::string line; std::getline(lines, line);) {
-        values[line.substr(0, line.find(' '))] = line.substr(std::min(line.size(), line.find(' ') + 1));
+        const std::size_t blank = std::min(line.find(' '), line.size());
+        values[line.substr(0, blank)] = line.substr(std::min(blank + 1, line.size()));
     }
     FolderSetup setup;
     const bool good = kind == kKind && (values["planner"] == "product" || values["planner"] == "source") &&
