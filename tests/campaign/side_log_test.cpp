@@ -54,6 +54,26 @@ TEST(SideLog, APictureChangesWhenSomebodyNewIsToldOfSinceTheSideBefore)
     EXPECT_EQ(two.broken, 0U);
 }
 
+TEST(SideLog, ChosenSidesChangeWithAManoeuvreThatPointsTheOtherWay)
+{
+    SideLog log(kLeg);
+    log.choose(1.0, 1, Vec(0, 1, 0));
+    log.choose(2.0, 1, Vec(0, 0.1, 0.9));    // over instead: not away from the one before
+    log.choose(3.0, 1, Vec::Zero());         // along the leg: none
+    log.choose(4.0, 1, Vec(0, -0.9, -0.2));  // away from it: a change
+    log.choose(5.0, 1, Vec(0, 0.9, 0.1));    // and another
+    EXPECT_EQ(log.chosen({0.5}).conflicts, 1U);
+    EXPECT_EQ(log.chosen({0.5}).same_picture, 2U);
+    EXPECT_EQ(log.chosen({0.5}).broken, 1U);
+    EXPECT_EQ(log.chosen({0.5, 4.5}).same_picture, 1U);
+    EXPECT_EQ(log.chosen({0.5, 4.5}).changed_picture, 1U);
+    EXPECT_EQ(log.chosen({0.5, 4.5}).broken, 0U);
+    log.choose(9.0, 2, Vec(0, -1, 0));  // another stretch of control begins without a side
+    EXPECT_EQ(log.chosen({0.5}).conflicts, 2U);
+    EXPECT_EQ(log.chosen({0.5}).same_picture, 2U);
+    EXPECT_EQ(log.counts({0.5}).conflicts, 0U) << "nothing was flown";
+}
+
 TEST(SideLog, EachStretchOfControlIsAConflictOfItsOwn)
 {
     Flight flight;

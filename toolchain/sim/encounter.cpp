@@ -39,6 +39,11 @@ void each_column(Result& r, Visit&& visit)
     visit("flips_changed", r.sides.changed_picture);
     visit("flips_most_same", r.sides.most_same);
     visit("promises_of_side_broken", r.sides.broken);
+    visit("choices", r.chosen_sides.conflicts);
+    visit("chosen_same", r.chosen_sides.same_picture);
+    visit("chosen_changed", r.chosen_sides.changed_picture);
+    visit("chosen_most_same", r.chosen_sides.most_same);
+    visit("choices_broken", r.chosen_sides.broken);
     visit("brakes", r.brakes);
     visit("escapes", r.escapes);
     visit("faults", r.faults);
@@ -164,6 +169,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.duration = record.duration;
     r.takeovers = record.takeovers;
     r.sides = record.sides;
+    r.chosen_sides = record.chosen_sides;
     r.brakes = record.inside ? record.inside->brakes : 0;
     r.escapes = record.inside ? record.inside->escapes : 0;
     r.faults = static_cast<unsigned>(record.faults.size());

@@ -27,12 +27,13 @@ struct EncounterResult {
     double alone = 0.0;       ///< least separation of the same mission without a co-processor [m]
     double duration = 0.0;    ///< of the flight [s]
     unsigned takeovers = 0;
-    SideCounts sides;
-    unsigned brakes = 0;    ///< the supervisor's last rungs: brake,
-    unsigned escapes = 0;   ///< and way of least harm
-    unsigned faults = 0;    ///< rules of the protocol or of the airspace that were broken
-    bool conflict = false;  ///< the mission, flown on, breaks the promise towards a threat that was told of
-    unsigned keep = 0;      ///< manoeuvres of the judge that keep it from when that was so; 0: none, or no conflict
+    SideCounts sides;         ///< as flown
+    SideCounts chosen_sides;  ///< as chosen
+    unsigned brakes = 0;      ///< the supervisor's last rungs: brake,
+    unsigned escapes = 0;     ///< and way of least harm
+    unsigned faults = 0;      ///< rules of the protocol or of the airspace that were broken
+    bool conflict = false;    ///< the mission, flown on, breaks the promise towards a threat that was told of
+    unsigned keep = 0;        ///< manoeuvres of the judge that keep it from when that was so; 0: none, or no conflict
     bool told_too_late = false;     ///< the promise was broken before anybody could tell, and worst then (report.hpp)
     bool failed_avoidable = false;  ///< the promise was broken, and a manoeuvre of the judge would have kept it
     unsigned last_keep = 0;         ///< how many would, from the first sighting or the first conflict on

@@ -119,21 +119,28 @@ void put_measures(std::string& text, const Results& results)
     put_quantiles(text, results, "duration [s]", [](const EncounterResult& r) { return r.duration; });
 }
 
+void put_side_counts(std::string& text, const Results& results, const char* which, SideCounts EncounterResult::*counts)
+{
+    SideCounts sum;
+    for (const EncounterResult& r : results) {
+        const SideCounts& one = r.*counts;
+        sum.conflicts += one.conflicts;
+        sum.same_picture += one.same_picture;
+        sum.changed_picture += one.changed_picture;
+        sum.broken += one.broken;
+        sum.most_same = std::max(sum.most_same, one.most_same);
+    }
+    line(text, "  %s: stretches of control %u, changes with a changed picture %u, with the same picture %u", which,
+         sum.conflicts, sum.changed_picture, sum.same_picture);
+    put_share(text, "... stretches with two or more of the same picture", sum.broken, sum.conflicts);
+    line(text, "  ... most of the same picture in one stretch: %u", sum.most_same);
+}
+
 void put_sides(std::string& text, const Results& results)
 {
-    const auto total = [&](const Value& value) { return static_cast<std::size_t>(sum_of(results, value)); };
-    const std::size_t conflicts = total([](const EncounterResult& r) { return r.sides.conflicts; });
     line(text, "\nChanges of side (side_log.hpp)");
-    line(text, "  stretches of control %zu, changes with a changed picture %zu, with the same picture %zu", conflicts,
-         total([](const EncounterResult& r) { return r.sides.changed_picture; }),
-         total([](const EncounterResult& r) { return r.sides.same_picture; }));
-    put_share(text, "stretches with two or more of the same picture",
-              total([](const EncounterResult& r) { return r.sides.broken; }), conflicts);
-    unsigned most = 0;
-    for (const EncounterResult& r : results) {
-        most = std::max(most, r.sides.most_same);
-    }
-    line(text, "  most of the same picture in one stretch: %u", most);
+    put_side_counts(text, results, "chosen, the promise", &EncounterResult::chosen_sides);
+    put_side_counts(text, results, "flown, with steep ways back to the leg", &EncounterResult::sides);
     put_share(text, "flights longer than 40 s",
               count_if(results, [](const EncounterResult& r) { return r.duration > 40.0; }), results.size());
     put_share(text, "flights that took control more than once",

@@ -5,6 +5,7 @@
 #include <array>
 #include <ctime>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <stdexcept>
 
@@ -107,6 +108,10 @@ public:
         const double began = cpu_microseconds();
         const app::StepReport report = coprocessor_->step(now);
         const double took = cpu_microseconds() - began;
+        chosen_.reset();
+        if (report.guidance.new_manoeuvre && coprocessor_->flying() != nullptr) {
+            chosen_ = coprocessor_->flying()->side.cast<double>();
+        }
         if (coprocessor_->parameters().generation() != generation_) {
             foreign_plans_ += coprocessor_->supervisor_diagnostics().plans - plans;
             hand_over_settings();
@@ -130,6 +135,9 @@ public:
     {
         return planner_ == PlannerKind::product ? 0U : foreign_plans_;
     }
+
+    /// Side of the manoeuvre that the last step took.
+    [[nodiscard]] const std::optional<Vec>& chosen() const noexcept { return chosen_; }
 
     [[nodiscard]] Inside inside() const
     {
@@ -196,6 +204,7 @@ private:
     std::string first_candidate_;
     std::vector<FanCurve> fan_;
     bool found_ = false;
+    std::optional<Vec> chosen_;
 };
 
 class Cable final : public LineEnd {
@@ -265,6 +274,9 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
             to(clock, ticks.next());
             bench.step({clock.now_us()});
             tap.note({clock.now_us()});
+            if (bench.chosen()) {
+                plant.note_choice(*bench.chosen());
+            }
         }
         to(clock, plant.now());
     }

@@ -85,6 +85,13 @@ void Plant::step()
     }
 }
 
+void Plant::note_choice(const Vec& side)
+{
+    if (autopilot_.mode() == Mode::external) {
+        sides_.choose(world_.seconds(), autopilot_.takeovers(), side);
+    }
+}
+
 bool Plant::faults_over() const
 {
     const Faults& faults = scenario_.faults;
@@ -133,6 +140,7 @@ Record Plant::record() const
         record.told.push_back(autopilot_.told(i) < 0 ? -1.0 : to_seconds(autopilot_.told(i)));
     }
     record.sides = sides_.counts(record.told);
+    record.chosen_sides = sides_.chosen(record.told);
     record.samples = samples_;
     for (const std::string& name : autopilot_.parameters_missing()) {
         record.faults.push_back("parameter " + name + " was not taken");

@@ -22,6 +22,8 @@ public:
     void deliver(std::span<const std::byte> bytes);
     /// One kStep of time.
     void step();
+    /// The co-processor has taken a manoeuvre of this side just now.
+    void note_choice(const Vec& side);
     [[nodiscard]] std::vector<std::byte> collect();
 
     /// The time is up, or everything is over and settled.

@@ -80,7 +80,8 @@ struct Record {
     std::vector<Threat> threats;
     std::vector<double> appeared;  ///< when each threat appeared; negative: never [s]
     std::vector<double> told;      ///< when the first message of each left the autopilot's end; negative: never [s]
-    SideCounts sides;              ///< conflict by conflict
+    SideCounts sides;              ///< as flown, conflict by conflict
+    SideCounts chosen_sides;       ///< as chosen; in process alone
     std::vector<Sample> samples;
     std::optional<Inside> inside;
 };

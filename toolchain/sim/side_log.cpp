@@ -33,27 +33,54 @@ void SideLog::note(double time, unsigned takeover, const Vec& position, const Ve
     }
 }
 
-SideCounts SideLog::counts(const std::vector<double>& told) const
+void SideLog::choose(double time, unsigned takeover, const Vec& side)
+{
+    if (side.norm() == 0.0) {
+        return;
+    }
+    const bool first = chosen_.empty() || chosen_.back().takeover != takeover;
+    if (first || side.dot(chosen_side_) < 0.0) {
+        chosen_.push_back({time, takeover});
+    }
+    chosen_side_ = side;
+}
+
+SideCounts SideLog::count(const std::vector<Taken>& taken, const std::vector<double>& told)
 {
     SideCounts counts;
-    counts.conflicts = conflicts_;
     unsigned same = 0;
     const auto end_conflict = [&] {
         counts.most_same = std::max(counts.most_same, same);
         counts.broken += same > 1 ? 1U : 0U;
         same = 0;
     };
-    for (std::size_t i = 1; i < taken_.size(); ++i) {
-        if (taken_[i].takeover != taken_[i - 1].takeover) {
+    for (std::size_t i = 1; i < taken.size(); ++i) {
+        if (taken[i].takeover != taken[i - 1].takeover) {
             end_conflict();
             continue;
         }
         const bool changed = std::any_of(told.begin(), told.end(),
-                                         [&](double at) { return at > taken_[i - 1].time && at <= taken_[i].time; });
+                                         [&](double at) { return at > taken[i - 1].time && at <= taken[i].time; });
         (changed ? counts.changed_picture : counts.same_picture) += 1;
         same += changed ? 0U : 1U;
     }
     end_conflict();
+    return counts;
+}
+
+SideCounts SideLog::counts(const std::vector<double>& told) const
+{
+    SideCounts counts = count(taken_, told);
+    counts.conflicts = conflicts_;
+    return counts;
+}
+
+SideCounts SideLog::chosen(const std::vector<double>& told) const
+{
+    SideCounts counts = count(chosen_, told);
+    for (std::size_t i = 0; i < chosen_.size(); ++i) {
+        counts.conflicts += i == 0 || chosen_[i].takeover != chosen_[i - 1].takeover ? 1U : 0U;
+    }
     return counts;
 }
 
