@@ -86,6 +86,12 @@ Settings sixteen(Settings settings)
     return settings;
 }
 
+Settings one_attempt(Settings settings)
+{
+    settings.retries = 0;
+    return settings;
+}
+
 Settings one_family(Settings settings)
 {
     settings.symmetric = false;
@@ -138,11 +144,74 @@ void refused(benchmark::State& state, std::uint64_t seed, std::size_t count)
     state.counters["failed"] = benchmark::Counter(static_cast<double>(failed), benchmark::Counter::kAvgIterations);
 }
 
+/// Random scenes as they come, one plan after the other, with the further attempts that each needs.
+void random_scenes(benchmark::State& state, Settings settings, std::size_t count)
+{
+    const vehicle::VehicleLimits limits;
+    const vehicle::Airframe airframe;
+    const auto result = std::make_unique<Result>();
+    const auto workspace = std::make_unique<Workspace>();
+    std::vector<std::vector<Threat>> scenes;
+    for (std::size_t i = 0; i < count; ++i) {
+        scenes.push_back(random_threats(i + 1));
+    }
+    std::size_t next = 0;
+    std::size_t found = 0;
+    std::size_t attempts_of_all = 0;
+    for (auto _ : state) {
+        WorkBudget budget(1'000'000);
+        std::size_t attempts = 0;
+        const world::PlanStatus status = solve_with_retries(problem_with(scenes[next]), settings, limits, airframe,
+                                                            budget, *workspace, *result, attempts);
+        found += status == world::PlanStatus::found ? 1U : 0U;
+        attempts_of_all += attempts;
+        next = next + 1 < scenes.size() ? next + 1 : 0;
+    }
+    const auto mean = [](std::size_t n) {
+        return benchmark::Counter(static_cast<double>(n), benchmark::Counter::kAvgIterations);
+    };
+    state.counters["found"] = mean(found);
+    state.counters["attempts"] = mean(attempts_of_all);
+}
+
+/// Every candidate against every threat, none passed over because a cheaper one is available.
+void all_checks(benchmark::State& state)
+{
+    Settings settings = many(Settings{});
+    settings.evaluate_all = true;
+    const std::vector<Threat> all = threats(9);
+    const Problem problem = problem_with(all);
+    const vehicle::VehicleLimits limits;
+    const vehicle::Airframe airframe;
+    const auto result = std::make_unique<Result>();
+    for (auto _ : state) {
+        WorkBudget budget(10'000'000);
+        benchmark::DoNotOptimize(solve(problem, settings, limits, airframe, budget, *result));
+    }
+    std::size_t clear = 0;
+    for (const Candidate& candidate : result->candidates) {
+        clear += candidate.status == CandidateStatus::available ? 1U : 0U;
+    }
+    const auto candidates = static_cast<double>(result->candidates.size());
+    state.counters["candidates"] = candidates;
+    state.counters["clear"] = static_cast<double>(clear);
+    // Of those that are clear every threat was looked at; of the others, those before the one that is met.
+    state.counters["checks"] = benchmark::Counter(static_cast<double>(clear) * static_cast<double>(all.size()),
+                                                  benchmark::Counter::kIsIterationInvariantRate);
+}
+
 BENCHMARK_CAPTURE(plan, source_16_candidates_3_threats, one_family(source_settings()), 3)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_16_candidates_3_threats, sixteen(Settings{}), 3)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_32_candidates_3_threats, thirty_two(Settings{}), 3)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_512_candidates_9_threats, many(Settings{}), 9)->Unit(benchmark::kMicrosecond);
+
+BENCHMARK_CAPTURE(random_scenes, product_16_candidates_3_threats, one_attempt(sixteen(Settings{})), 1000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(random_scenes, product_all_attempts, sixteen(Settings{}), 1000)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(random_scenes, source_16_candidates_3_threats, one_family(source_settings()), 1000)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK(all_checks)->Unit(benchmark::kMicrosecond);
 
 BENCHMARK_CAPTURE(refused, all_attempts_200_random_scenes, 1, 200)->Unit(benchmark::kMicrosecond);
 /// The costliest of the first 20 000 scenes.
