@@ -58,7 +58,9 @@ TEST(SideLog, ChosenSidesChangeWithAManoeuvreThatPointsTheOtherWay)
 {
     SideLog log(kLeg);
     log.choose(1.0, 1, Vec(0, 1, 0));
-    log.choose(2.0, 1, Vec(0, 0.1, 0.9));    // over instead: not away from the one before
+    log.choose(2.0, 1, Vec(0, 0.1, 0.9));   // over instead: not away from the one before
+    log.choose(2.5, 1, Vec(0, 0.9, -0.1));  // at right angles, but for a little
+    log.choose(2.7, 1, Vec(0, 0.1, 0.9));
     log.choose(3.0, 1, Vec::Zero());         // along the leg: none
     log.choose(4.0, 1, Vec(0, -0.9, -0.2));  // away from it: a change
     log.choose(5.0, 1, Vec(0, 0.9, 0.1));    // and another

@@ -10,6 +10,8 @@ namespace {
 constexpr double kDeadBand = 0.5;
 /// How far ahead the commanded track is looked at [s].
 constexpr double kAhead = 1.0;
+/// Product of two unit vectors from which on they are opposite sides.
+constexpr double kOpposite = -0.1;
 
 }  // namespace
 
@@ -39,7 +41,7 @@ void SideLog::choose(double time, unsigned takeover, const Vec& side)
         return;
     }
     const bool first = chosen_.empty() || chosen_.back().takeover != takeover;
-    if (first || side.dot(chosen_side_) < 0.0) {
+    if (first || side.dot(chosen_side_) < kOpposite) {
         chosen_.push_back({time, takeover});
     }
     chosen_side_ = side;

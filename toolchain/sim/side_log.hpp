@@ -12,8 +12,9 @@ namespace jink::sim {
 /// * A conflict is one stretch of control: from where the autopilot gives the velocity to the co-processor until it
 ///   takes it back. Each begins without a side. (FlipCounter, in record.hpp, carries the side from one to the next.)
 /// * The side that is chosen is that of a manoeuvre when it is taken, as the planner names it: across the leg. It
-///   changes with a manoeuvre whose side points away from the one before (negative product), whatever was flown in
-///   between. Manoeuvres along the leg have none. Known of flights in process alone.
+///   changes with a manoeuvre whose side points away from the one before, whatever was flown in between: product of the
+///   unit vectors below -0.1, so that planes at right angles are no change. Manoeuvres along the leg have none. Known
+///   of flights in process alone.
 /// * The side that is flown is where the vehicle will be one second on under the command in force, seen along the first
 ///   leg: taken once that lies more than 0.5 m off the leg, changed once it lies more than 0.5 m off on the opposite
 ///   side (negative component along the side taken last).
