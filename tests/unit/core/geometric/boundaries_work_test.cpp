@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "core/base/work_units.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
@@ -107,6 +109,43 @@ TEST(WorkBorder, AStartInsideOfMargins)
     scene.threats.erase(scene.threats.begin() + 1);
     scene.obstacles = {{1, geometry::make_box(Vec3(-1.6F, -1.0F, 50.0F), Vec3(1.0F, 0.5F, 0.7F), axes)}};
     expect_same_or_none(scene, 7);
+}
+
+/// Units of a run of two symmetric level candidates, 9.6 m to either side, checked as curves.
+std::uint32_t spent_on(const std::vector<world::Obstacle>& obstacles, bool escape)
+{
+    Scene scene;
+    scene.settings.simple = false;
+    scene.settings.extra_planes = 0;
+    scene.settings.offset_rule = OffsetRule::source;
+    scene.settings.offsets = 2;
+    scene.settings.verify_flight = scene.settings.check_acceleration = false;
+    scene.settings.escape_from_margin = escape;
+    scene.settings.check_units = 1'000;
+    scene.problem.distance = 60.0F;
+    scene.problem.main_radius = 3.0F;
+    scene.problem.main = kNoThreat;
+    scene.threats.clear();
+    scene.obstacles = obstacles;
+    EXPECT_EQ(scene.run(), PlanStatus::found);
+    EXPECT_EQ(scene.result.candidates.size(), 2U);
+    return scene.budget.spent();
+}
+
+TEST(WorkBorder, ASolidCostsWhatItsPlaceSays)
+{
+    const std::uint32_t none = spent_on({}, true);
+    const auto more = [&](const Vec3& at, bool escape) {
+        return spent_on({{1, geometry::make_box(at, Vec3::Ones())}}, escape) - none;
+    };
+    // Out of reach: seen to be.
+    EXPECT_EQ(more(Vec3(60.0F, 100.0F, 50.0F), true), units::kCollected);
+    // Within what all candidates together may reach, far from each, and from the start: segments are counted.
+    const std::uint32_t beside = units::kCollected + 2 * 24 * units::kSolidSegment;
+    EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), true), beside);
+    EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), false), beside);
+    // Beside the start: the escape rule asks how near.
+    EXPECT_GT(more(Vec3(-2.6F, 0.0F, 50.0F), true), more(Vec3(-2.6F, 0.0F, 50.0F), false));
 }
 
 }  // namespace
