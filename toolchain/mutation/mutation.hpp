@@ -100,9 +100,9 @@ template <int kMutant, class A, class B>
     return two<kMutant>(static_cast<bool>(a != b), true, false);
 }
 
-/// a && b (kSettles: false) or a || b (true), which `a` settles when it is kSettles. Mutants: a alone, b alone. `b` alone
-/// may be asked what `a` guards it from; only the mutant does that. kActs: an operand does something (spends a budget),
-/// so that leaving it out may be noticed whatever it answers.
+/// a && b (kSettles: false) or a || b (true), which `a` settles when it is kSettles. Mutants: a alone, b alone. `b`
+/// alone may be asked what `a` guards it from; only the mutant does that. kActs: an operand does something (spends a
+/// budget), so that leaving it out may be noticed whatever it answers.
 template <int kMutant, bool kSettles, bool kActs, class A, class B>
 [[nodiscard]] bool connected(const A& a, const B& b)
 {

@@ -111,10 +111,9 @@ TEST(Touching, OfAPointIsContactForTheClosedForms)
         ASSERT_TRUE(contact_interval(scene.half, own, still, radius, 1.0F)) << "seed " << seed;
         ASSERT_TRUE(contact_interval(scene.half, {}, {centre - scene.from, scene.from - scene.to}, radius, 1.0F))
             << "seed " << seed;
-        ASSERT_NE(glance(scene.half, centre - scene.from, centre - scene.to, radius), Glance::apart)
-            << "seed " << seed;
-        const float size = (centre - scene.from).cwiseAbs().sum() + (scene.to - scene.from).cwiseAbs().sum() +
-                           scene.half.sum();
+        ASSERT_NE(glance(scene.half, centre - scene.from, centre - scene.to, radius), Glance::apart) << "seed " << seed;
+        const float size =
+            (centre - scene.from).cwiseAbs().sum() + (scene.to - scene.from).cwiseAbs().sum() + scene.half.sum();
         ASSERT_NEAR(least_distance(scene.half, own, still, 1.0F).distance, radius, 5e-7F * size) << "seed " << seed;
         ASSERT_NEAR(swept_distance(scene.half, scene.from, scene.to, centre, centre), radius, 5e-7F * size)
             << "seed " << seed;
@@ -160,10 +159,8 @@ TEST(Scale, APowerOfTwoChangesNeitherAnswersNorWork)
                     scaled[i] = scale * vertices[i];
                 }
                 WorkBudget budget(2 * kUnitsPerQuery);
-                const Contact contact =
-                    swept_box_contact(scene.half, scene.from, scene.to, shape, gap, budget);
-                const float distance =
-                    swept_box_distance(scene.half, scene.from, scene.to, shape, 2.0F, 0.0F, budget);
+                const Contact contact = swept_box_contact(scene.half, scene.from, scene.to, shape, gap, budget);
+                const float distance = swept_box_distance(scene.half, scene.from, scene.to, shape, 2.0F, 0.0F, budget);
                 shape.centre *= scale;
                 shape.radius *= scale;
                 shape.half *= scale;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What candidates touch, at the border: solids that touch exactly, or by less than the bounds allow that pass them over;
-// airspace that is used up to its last number; volumes that end where they are said to; what looking at it all costs.
+// What candidates touch, at the border: solids that touch exactly, or by less than the bounds allow that pass them
+// over; airspace that is used up to its last number; volumes that end where they are said to; what looking at it all
+// costs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +34,7 @@ struct StraightScene : Scene {
         threats.clear();
         problem.main = kNoThreat;
         problem.frame = make_path_frame(Vec3::Zero(), direction);
-            problem.start_velocity = 5.0F * direction;
+        problem.start_velocity = 5.0F * direction;
         airspace = {};
     }
     /// Where the cheapest candidate ends; it stays the cheapest whatever does not move.
@@ -166,7 +167,9 @@ TEST(ContactBorder, AStartOutsideOfTheAirspaceHasAWayIn)
     // Two metres beyond each bound, and a leg that comes back at once: the bound moves out to the start and returns at
     // the escape rule's speed.
     for (int bound = 0; bound < 3; ++bound) {
-        const Vec3 back = bound == 0 ? Vec3(0.0F, 0.0F, 1.0F) : bound == 1 ? Vec3(0.0F, 0.0F, -1.0F) : Vec3(-1.0F, 0.0F, 0.0F);
+        const Vec3 back = bound == 0   ? Vec3(0.0F, 0.0F, 1.0F)
+                          : bound == 1 ? Vec3(0.0F, 0.0F, -1.0F)
+                                       : Vec3(-1.0F, 0.0F, 0.0F);
         for (const bool escape : {false, true}) {
             for (const float way : {1.0F, -1.0F}) {
                 StraightScene scene(way * back);

@@ -29,6 +29,18 @@ TEST(InputBorder, CountsAreRefusedWhateverElseThereIsToTry)
     EXPECT_TRUE(is_valid(settings));
 }
 
+TEST(InputBorder, TheApexLiesAheadAndSomewhere)
+{
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const float share : {0.0F, -1.0F, kInfinity, std::numeric_limits<float>::quiet_NaN()}) {
+        Scene scene;
+        scene.problem.apex_share = share;
+        path::TimedPath path;
+        EXPECT_FALSE(make_candidate_path(scene.problem, {Family::simple, 0.0F, 3.0F}, 25, scene.limits, path)) << share;
+        EXPECT_EQ(scene.run(), PlanStatus::bad_input) << share;
+    }
+}
+
 TEST(InputBorder, AWaitHasNoCurve)
 {
     const Scene scene;

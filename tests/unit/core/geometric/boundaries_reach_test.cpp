@@ -101,7 +101,8 @@ TEST(ReachBorder, TheWidestCandidateIsWatchedOnWhicheverSideItIs)
 TEST(ReachBorder, VolumesLastAsLongAsTheLongestCandidate)
 {
     for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
-        for (const cost::ClosenessMethod closeness : {cost::ClosenessMethod::time_aware, cost::ClosenessMethod::swept}) {
+        for (const cost::ClosenessMethod closeness :
+             {cost::ClosenessMethod::time_aware, cost::ClosenessMethod::swept}) {
             CurveScene scene(Family::symmetric);
             scene.settings.simple = true;
             scene.settings.extra_planes = 0;
@@ -148,7 +149,8 @@ TEST(ReachBorder, ThePlanesAngleToTheGroundIsToldOfAnyLeg)
                 // The normal of the plane that the leg and its side span, against the vertical.
                 const Vec3 side = std::cos(c.shape.plane) * axes.col(1) + std::sin(c.shape.plane) * axes.col(2);
                 const float level = axes(0, 0) * side.y() - axes(1, 0) * side.x();
-                const float expected = std::sqrt(std::max(0.0F, 1.0F - level * level / (scale * scale * scale * scale)));
+                const float expected =
+                    std::sqrt(std::max(0.0F, 1.0F - level * level / (scale * scale * scale * scale)));
                 ASSERT_NEAR(c.sin_alpha, expected, 2e-3F);
                 ASSERT_LE(c.sin_alpha, 1.0F);
             }

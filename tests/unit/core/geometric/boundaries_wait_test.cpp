@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Candidates that wait: where the vehicle is, how fast, and how long it all takes, against the rule in double precision.
+// Candidates that wait: where the vehicle is, how fast, and how long it all takes, against the rule in double
+// precision.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,7 +30,8 @@ public:
         if (t > until_) {
             return std::min(speed_, at(until_) + acceleration_ * (t - until_));
         }
-        return start_ > slow_ ? std::max(slow_, start_ - acceleration_ * t) : std::min(slow_, start_ + acceleration_ * t);
+        return start_ > slow_ ? std::max(slow_, start_ - acceleration_ * t)
+                              : std::min(slow_, start_ + acceleration_ * t);
     }
     double way(double t) const
     {
@@ -52,15 +54,15 @@ private:
 
 std::vector<Wait> waits()
 {
-    return {{30.0F, 5.0F, 5.0F, 0.6F, 4.0F, 3.5F},    // slows down, waits, goes on
-            {30.0F, 5.0F, 5.0F, 0.0F, 6.0F, 3.5F},    // stands
-            {30.0F, 0.0F, 5.0F, 0.6F, 4.0F, 3.5F},    // speeds up to less than it will
-            {30.0F, 0.0F, 5.0F, 0.0F, 4.0F, 3.5F},    // stands from the beginning
-            {30.0F, 3.0F, 5.0F, 0.6F, 4.0F, 3.5F},    // is as slow already
-            {30.0F, 5.0F, 5.0F, 0.0F, 3.0F, 0.7F},    // still slowing down when the wait is over
-            {30.0F, 1.0F, 5.0F, 0.6F, 1.5F, 0.7F},    // still speeding up
-            {12.0F, 9.0F, 9.0F, 0.3F, 4.0F, 1.0F},    // comes past the end meanwhile
-            {30.0F, 5.0F, 5.0F, 1.0F, 4.0F, 3.5F}};   // no wait at all
+    return {{30.0F, 5.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // slows down, waits, goes on
+            {30.0F, 5.0F, 5.0F, 0.0F, 6.0F, 3.5F},   // stands
+            {30.0F, 0.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // speeds up to less than it will
+            {30.0F, 0.0F, 5.0F, 0.0F, 4.0F, 3.5F},   // stands from the beginning
+            {30.0F, 3.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // is as slow already
+            {30.0F, 5.0F, 5.0F, 0.0F, 3.0F, 0.7F},   // still slowing down when the wait is over
+            {30.0F, 1.0F, 5.0F, 0.6F, 1.5F, 0.7F},   // still speeding up
+            {12.0F, 9.0F, 9.0F, 0.3F, 4.0F, 1.0F},   // comes past the end meanwhile
+            {30.0F, 5.0F, 5.0F, 1.0F, 4.0F, 3.5F}};  // no wait at all
 }
 
 TEST(WaitingCurve, IsWhereTheRuleSaysAndAsFast)
@@ -71,8 +73,8 @@ TEST(WaitingCurve, IsWhereTheRuleSaysAndAsFast)
         detail::make_waiting_curve(wait, along, kMaxPathPoints, curve);
         ASSERT_EQ(curve.points, kMaxPathPoints);
         const Rule rule(wait);
-        EXPECT_NEAR(double(curve.duration()), rule.total(), 2e-3) << "start " << wait.start_speed << " share "
-                                                                  << wait.share << " until " << wait.until;
+        EXPECT_NEAR(double(curve.duration()), rule.total(), 2e-3)
+            << "start " << wait.start_speed << " share " << wait.share << " until " << wait.until;
         // Between its points a curve is straight: each bend of the speed costs an eighth of a step's change.
         const double step = double(curve.duration()) / (kMaxPathPoints - 1);
         const double bend = 4.0 * double(wait.acceleration) * step * step / 8.0 + 1e-3;
@@ -123,8 +125,8 @@ TEST(Waiting, TakesWhatTheVehicleCanDoAlongAnyLeg)
     for (const Vec3& direction : {Vec3(1.0F, 0.0F, 0.0F), Vec3(3.0F, 1.0F, 2.0F), Vec3(3.0F, 1.0F, -2.0F),
                                   Vec3(0.0F, 0.0F, 1.0F), Vec3(0.0F, 0.0F, -1.0F), Vec3(1.0F, 0.0F, -5.0F)}) {
         const Vec3 along = direction.normalized();
-        for (const Vec3& velocity : {Vec3(5.0F * along), Vec3(2.0F * along), Vec3(-3.0F * along), Vec3(9.0F * along),
-                                     Vec3(Vec3::Zero())}) {
+        for (const Vec3& velocity :
+             {Vec3(5.0F * along), Vec3(2.0F * along), Vec3(-3.0F * along), Vec3(9.0F * along), Vec3(Vec3::Zero())}) {
             WaitScene scene(direction);
             scene.problem.start_velocity = velocity;
             ASSERT_EQ(scene.run(), PlanStatus::found);
@@ -214,7 +216,8 @@ TEST(Waiting, FindsWhatCrossesItsEndAsLateAsItIsThere)
         WaitScene scene(Vec3::UnitX());
         scene.settings.max_cost = 1.0F;
         // At `then` it is where the candidate ends, whatever it comes past before.
-        Wait wait{30.0F, 5.0F, 5.0F, free.result.candidates[i].shape.share, free.result.candidates[i].shape.until, 3.5F};
+        Wait wait{30.0F, 5.0F, 5.0F, free.result.candidates[i].shape.share, free.result.candidates[i].shape.until,
+                  3.5F};
         const float there = static_cast<float>(Rule(wait).way(double(then)));
         const Vec3 velocity(0.0F, -8.0F, 0.0F);
         scene.threats = {{{Vec3(there, 0.0F, 50.0F) - then * velocity, velocity}, 0.2F}};

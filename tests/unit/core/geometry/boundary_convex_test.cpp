@@ -118,9 +118,8 @@ TEST(ConvexBorder, BeyondTheReachByItsBoundingSphereAlone)
 TEST(ConvexBorder, SpheresAndCapsulesAreTouchedUpToTheirSlack)
 {
     const detail::SweptBox box{kHalf, kZero, kZero};
-    for (const Shape& shape :
-         {make_sphere(Vec3(0.0F, 0.0F, 4.0F), 1.0F),
-          make_capsule(Vec3(-1.0F, 0.0F, 4.0F), Vec3(1.0F, 0.0F, 4.0F), 1.0F)}) {
+    for (const Shape& shape : {make_sphere(Vec3(0.0F, 0.0F, 4.0F), 1.0F),
+                               make_capsule(Vec3(-1.0F, 0.0F, 4.0F), Vec3(1.0F, 0.0F, 4.0F), 1.0F)}) {
         ASSERT_EQ(box.closed_form_distance(shape), 2.0F);
         const float slack = box.slack(shape);
         const float clearance = 2.0F - slack;
@@ -141,8 +140,8 @@ TEST(ConvexBorder, TwoPointsAtOnePlaceAreNoWork)
 
 TEST(ConvexBorder, TheSearchEndsAtItsLimits)
 {
-    // The nearest points are two corners, (2, 3, 6) apart, which the first turn finds; its plane, across the line of the
-    // centres, proves less than their distance of 7 m.
+    // The nearest points are two corners, (2, 3, 6) apart, which the first turn finds; its plane, across the line of
+    // the centres, proves less than their distance of 7 m.
     const Shape shape = make_box(Vec3(3.5F, 7.0F, 7.5F), Vec3(0.5F, 3.0F, 0.5F));
     const detail::SweptBox box{kHalf, kZero, kZero};
     const float slack = box.slack(shape);
@@ -218,9 +217,8 @@ TEST(ConvexBorder, SearchesEndByThemselves)
         const Vec3 at = from + random.uniform() * (to - from) + any(4.0F);
         const Mat3 axes = Eigen::AngleAxisf(random.uniform(0.0F, 3.0F), any(1.0F).normalized()).toRotationMatrix();
         const Vec3 size = any(2.0F).cwiseAbs();
-        for (const Shape& shape :
-             {make_box(at, size, axes), make_cylinder(at, at + any(3.0F), size.x()),
-              make_cylinder(at, at + 1e-3F * any(3.0F), size.x())}) {
+        for (const Shape& shape : {make_box(at, size, axes), make_cylinder(at, at + any(3.0F), size.x()),
+                                   make_cylinder(at, at + 1e-3F * any(3.0F), size.x())}) {
             WorkBudget budget(kUnitsPerQuery);
             ASSERT_GE(swept_box_distance(half, from, to, shape, 1e4F, 0.0F, budget), 0.0F);
             most = std::max(most, (budget.spent() - units::kSolidQuery) / units::kSearchTurn);

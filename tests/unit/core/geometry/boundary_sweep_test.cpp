@@ -12,8 +12,8 @@
 #include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/geometry/glance.hpp"
-#include "core/geometry/swept_box.hpp"
 #include "core/geometry/sweep.hpp"
+#include "core/geometry/swept_box.hpp"
 
 namespace jink::geometry {
 namespace {
