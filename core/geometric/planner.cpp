@@ -123,7 +123,7 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
          ++i) {
         const Attempt& attempt = kAttempts[i];
         Settings with = settings;
-        if (!apply(attempt, limits.kind, with)) {
+        if (i > 0 && !apply(attempt, limits.kind, with)) {  // the first is as set: `solve` refuses what is invalid
             continue;
         }
         Problem tried = problem;

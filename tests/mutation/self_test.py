@@ -121,6 +121,10 @@ class SelfTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"is listed and killed: {killed}", done.stderr)
         self.assertIn("is listed and does not exist: core/bound/bound.cpp | gone", done.stderr)
+        # A sample tells of the latter too, whatever it draws.
+        done = mutate("--check", "--sample", "1")
+        self.assertEqual(done.returncode, 1)
+        self.assertIn("is listed and does not exist: core/bound/bound.cpp | gone", done.stderr)
 
     def test_5_draws_the_same_sample_twice(self):
         one, two, other = (mutate("--list", "--sample", "5", "--seed", seed).stdout for seed in ("7", "7", "8"))

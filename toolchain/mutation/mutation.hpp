@@ -100,45 +100,47 @@ template <int kMutant, class A, class B>
     return two<kMutant>(static_cast<bool>(a != b), true, false);
 }
 
-/// a && b. Mutants: a alone, b alone. `b` alone may be asked what `a` guards it from; only the mutant does that.
-template <int kMutant, class A, class B>
-[[nodiscard]] bool both(const A& a, const B& b)
+/// a && b (kSettles: false) or a || b (true), which `a` settles when it is kSettles. Mutants: a alone, b alone. `b`
+/// alone may be asked what `a` guards it from; only the mutant does that. kActs: an operand does something (spends a
+/// budget), so that leaving it out may be noticed whatever it answers.
+template <int kMutant, bool kSettles, bool kActs, class A, class B>
+[[nodiscard]] bool connected(const A& a, const B& b)
 {
     if (active == kMutant + 1) {
         return b();
     }
     const bool first = a();
-    if (recording && !first) {
+    if (recording && (kActs || first == kSettles)) {
         differs[kMutant + 1] = 1;  // may differ
     }
-    if (!first || active == kMutant) {
+    if (first == kSettles || active == kMutant) {
         return first;
     }
     const bool second = b();
-    if (recording && !second) {
+    if (recording && (kActs || second == kSettles)) {
         differs[kMutant] = 1;
     }
     return second;
 }
-/// a || b, likewise.
+template <int kMutant, class A, class B>
+[[nodiscard]] bool both(const A& a, const B& b)
+{
+    return connected<kMutant, false, false>(a, b);
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] bool both_acting(const A& a, const B& b)
+{
+    return connected<kMutant, false, true>(a, b);
+}
 template <int kMutant, class A, class B>
 [[nodiscard]] bool either(const A& a, const B& b)
 {
-    if (active == kMutant + 1) {
-        return b();
-    }
-    const bool first = a();
-    if (recording && first) {
-        differs[kMutant + 1] = 1;  // may differ
-    }
-    if (first || active == kMutant) {
-        return first;
-    }
-    const bool second = b();
-    if (recording && second) {
-        differs[kMutant] = 1;
-    }
-    return second;
+    return connected<kMutant, true, false>(a, b);
+}
+template <int kMutant, class A, class B>
+[[nodiscard]] bool either_acting(const A& a, const B& b)
+{
+    return connected<kMutant, true, true>(a, b);
 }
 /// The same of arrays, element by element.
 template <int kMutant, class A, class B>

@@ -42,10 +42,11 @@ class Lists:
 
 
 class Outcome:
-    """What became of `mutants`; `rooms` were mutated, the tests of `above` ran too; whole: these are all mutants."""
+    """What became of `mutants`, which are some of `all_mutants` of `rooms`; the tests of `above` ran too."""
 
-    def __init__(self, mutants, by_key, lists, rooms, above, whole):
-        self.mutants, self.by_key, self.lists, self.rooms, self.whole = mutants, by_key, lists, rooms, whole
+    def __init__(self, mutants, all_mutants, by_key, lists, rooms, above):
+        self.mutants, self.by_key, self.lists, self.rooms = mutants, by_key, lists, rooms
+        self.existing = {m.key for m in all_mutants}
         self.known = lists.survivors | set(lists.equivalent) | (set() if above else lists.above)
         self.surviving = [m for m in mutants if by_key[m.key]["how"] == "survived"]
 
@@ -88,19 +89,20 @@ class Outcome:
             print(f"mutate: {complaint}", file=sys.stderr)
 
     def complaints(self):
-        """Survivors that are on no list; in a run of all mutants also lines of the lists that are not survivors."""
+        """Survivors that are on no list; lines of the lists that were run and killed, or that are no mutants (any more)."""
         surviving = {m.key for m in self.surviving}
         out = [f"no test notices: {key}" for key in sorted(surviving - self.known)]
         run = {m.key for m in self.mutants}
         dead = (self.known - self.lists.above) & run - surviving
         out += [f"is listed and killed: {key} by {self.by_key[key]['by']}" for key in sorted(dead)]
-        if self.whole:
-            mine = {key for key in self.known if key.split("/")[1:2] and key.split("/")[1] in self.rooms}
-            out += [f"is listed and does not exist: {key}" for key in sorted(mine - run)]
-        return out
+        listed = self.known | self.lists.above
+        mine = {key for key in listed if key.split("/")[1:2] and key.split("/")[1] in self.rooms}
+        return out + [f"is listed and does not exist: {key}" for key in sorted(mine - self.existing)]
 
     def write_survivors(self):
-        keys = [m.key for m in self.surviving if m.key not in self.lists.equivalent]
+        listed = [*self.lists.survivors, *(ABOVE + key for key in self.lists.above)]
+        keys = sorted(line for line in listed if line.removeprefix(ABOVE).split("/")[1] not in self.rooms)
+        keys += [m.key for m in self.surviving if m.key not in self.lists.equivalent]
         for m in self.mutants:
             killer = self.by_key[m.key]["by"].partition(".")[0]
             if killer and killer.partition("_")[2] != m.site.file.split("/")[1]:

@@ -9,7 +9,7 @@ import re
 import subprocess
 import threading
 
-NICE = ["nice", "-n", "19"]
+nice = ["nice", "-n", "19"]  # --nice
 BYTES = 4 << 30  # of address space: a mutant that grows without end is a crash
 
 
@@ -24,7 +24,7 @@ def build(repository, root, folder, mutants, rooms, programs, jobs):
                  f"-DJINK_ROOT={root}", f"-DJINK_SOURCES={folder / 'source'}", f"-DJINK_MUTANTS={mutants}",
                  f"-DJINK_ROOMS={';'.join(rooms)}", f"-DJINK_PROGRAMS={';'.join(programs)}", "-DCMAKE_BUILD_TYPE=Release"]
     for command in (configure, ["cmake", "--build", out, "--parallel", str(jobs)]):
-        done = subprocess.run([*NICE, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run([*nice, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:
             raise Failed(f"the mutated sources do not build:\n{done.stdout[-6000:]}")
     return out
@@ -41,7 +41,7 @@ class Test:
 
     def run(self, seconds, **environment):
         """(how it ended, processor seconds): passed, failed, crashed or hung."""
-        command = ["prlimit", f"--cpu={int(seconds)}", f"--as={BYTES}", "--core=0", *NICE, str(self.program),
+        command = ["prlimit", f"--cpu={int(seconds)}", f"--as={BYTES}", "--core=0", *nice, str(self.program),
                    f"--gtest_filter={self.name}", "--gtest_break_on_failure"]
         variables = {k: v for k, v in os.environ.items() if not k.startswith(("GTEST_", "JINK_"))}
         child = subprocess.Popen(command, env={**variables, **environment}, stdout=subprocess.DEVNULL,

@@ -33,6 +33,8 @@ FUNCTIONS = {"FunctionDecl", "CXXMethodDecl", "CXXConstructorDecl", "CXXDestruct
 NOT_RUN = {"StaticAssertDecl", "ConstantExpr", "CXXNoexceptExpr", "UnaryExprOrTypeTraitExpr", "CXXDefaultArgExpr",
            "CXXDefaultInitExpr", "TypeTraitExpr"}
 REAL = {"float", "double"}
+# What does something besides answering, in these rooms: spends a budget, writes a variable.
+ACTS = re.compile(rb"\bbudget|\bspend\b|\+\+|--|(?<![=!<>])=(?!=)")
 COMMENT = re.compile(rb"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
 
@@ -177,12 +179,18 @@ class Finder:
             self.add(node, function, constant, kind, call, operands, mutants, operator)
         elif operator in CONNECTIVES and len(operands) == 2:
             call = CONNECTIVES[operator][0 if built_in else 1]
+            if built_in and self.acts(node):
+                call += "_acting"
             self.add(node, function, constant, operator, call, operands, ("left alone", "right alone"), operator, built_in)
         elif operator == "-" and len(operands) == 1:
             self.add(node, function, constant, "unary -", "minus", operands, ("sign dropped",))
         elif built_in and operator in "+-" and self.type_of(node) in REAL:
             call = "sum" if operator == "+" else "difference"
             self.add(node, function, constant, "binary + -", call, operands, ("-" if operator == "+" else "+",), operator)
+
+    def acts(self, node):
+        span = node.get("span")
+        return bool(span and span[0] in self.wanted and ACTS.search(self.texts[self.wanted[span[0]]], span[1], span[2]))
 
     def look_at_condition(self, node, function, constant):
         plain = self.stripped(node)

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which attempts are made, for whom, and what each of them tries.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "tests/unit/core/geometric/scene.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+
+/// Nothing is ever available: a ball round all that can be flown.
+struct Hopeless : Scene {
+    Workspace workspace;
+    std::size_t attempts = 0;
+
+    Hopeless()
+    {
+        settings.verify_flight = false;
+        settings.check_acceleration = false;
+        settings.escape_from_margin = false;
+        threats.push_back(Scene::still(Vec3(0.0F, 0.0F, 50.0F), 500.0F));
+    }
+    PlanStatus run_all()
+    {
+        problem.threats = threats;
+        return solve_with_retries(problem, settings, limits, airframe, budget, workspace, result, attempts);
+    }
+    std::size_t count_of(Family family) const
+    {
+        return static_cast<std::size_t>(std::count_if(result.candidates.begin(), result.candidates.end(),
+                                                      [=](const Candidate& c) { return c.shape.family == family; }));
+    }
+    std::size_t planes() const
+    {
+        std::set<float> angles;
+        for (const Candidate& c : result.candidates) {
+            angles.insert(c.shape.plane);
+        }
+        return angles.size();
+    }
+};
+
+TEST(Attempts, AsManyAsHaveSomethingToAdd)
+{
+    struct Case {
+        vehicle::VehicleKind kind;
+        OffsetRule rule;
+        std::size_t attempts;
+        std::size_t last;
+    };
+    // planner.hpp: a fixed wing does not fly slower, nor wait; source offsets know other speeds and ends only.
+    for (const Case& c : {Case{vehicle::VehicleKind::multirotor, OffsetRule::clearing, 9, 8},
+                          Case{vehicle::VehicleKind::fixed_wing, OffsetRule::clearing, 5, 8},
+                          Case{vehicle::VehicleKind::multirotor, OffsetRule::source, 4, 4},
+                          Case{vehicle::VehicleKind::fixed_wing, OffsetRule::source, 2, 2}}) {
+        Hopeless scene;
+        scene.limits.kind = c.kind;
+        scene.settings.offset_rule = c.rule;
+        EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+        EXPECT_EQ(scene.attempts, c.attempts);
+        EXPECT_EQ(scene.result.attempt, c.last);
+        EXPECT_FALSE(scene.result.cut_short);
+    }
+}
+
+TEST(Attempts, NoMoreThanAreAskedFor)
+{
+    for (std::size_t retries = 0; retries < kAttempts.size(); ++retries) {
+        Hopeless scene;
+        scene.settings.retries = static_cast<std::uint8_t>(retries);
+        EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+        EXPECT_EQ(scene.attempts, retries + 1);
+        EXPECT_EQ(scene.result.attempt, retries);
+    }
+}
+
+TEST(Attempts, EachTriesWhatItSays)
+{
+    for (std::size_t i = 0; i < kAttempts.size(); ++i) {
+        Hopeless scene;
+        scene.settings.offsets = 8;
+        scene.settings.retries = static_cast<std::uint8_t>(i);
+        EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+        ASSERT_EQ(scene.result.attempt, i);
+        const auto kind = kAttempts[i].kind;
+        const bool as_set = kind == Attempt::Kind::as_set || kind == Attempt::Kind::more_planes;
+        EXPECT_EQ(scene.count_of(Family::simple) > 0, as_set) << i;
+        EXPECT_EQ(scene.count_of(Family::symmetric) > 0, as_set) << i;
+        EXPECT_EQ(scene.count_of(Family::plateau) > 0, kind == Attempt::Kind::plateau) << i;
+        EXPECT_EQ(scene.count_of(Family::wait), kind == Attempt::Kind::wait ? kWaits : 0) << i;
+        const std::size_t planes = kind == Attempt::Kind::more_planes ? 8 : kind == Attempt::Kind::wait ? 1 : 4;
+        EXPECT_EQ(scene.planes(), planes) << i;
+        if (kind == Attempt::Kind::more_planes) {
+            EXPECT_EQ(scene.result.candidates.size(), 2U * 8U * 4U) << "half the offsets on twice the planes";
+        }
+    }
+}
+
+TEST(Attempts, HalfOfTwoOffsetsAreTwo)
+{
+    Hopeless scene;
+    scene.settings.offsets = 2;
+    EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+    EXPECT_EQ(scene.attempts, kAttempts.size());
+    EXPECT_EQ(scene.result.candidates.size(), 2U * 8U * 2U);
+}
+
+TEST(Attempts, AnyThatWasCutShortIsTold)
+{
+    Hopeless scene;
+    scene.threats.pop_back();
+    scene.settings.check_units = 1;
+    EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+    EXPECT_TRUE(scene.result.cut_short);
+    scene.settings.retries = 0;
+    EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+    EXPECT_TRUE(scene.result.cut_short);
+}
+
+TEST(Attempts, BadSettingsAreRefusedHoweverOftenTheyAreTried)
+{
+    for (const std::uint8_t retries : {std::uint8_t{0}, std::uint8_t{8}, std::uint8_t{9}, std::uint8_t{255}}) {
+        Hopeless scene;
+        scene.settings.retries = retries;
+        scene.settings.max_cost = 2.0F;
+        EXPECT_EQ(scene.run_all(), PlanStatus::bad_input) << int(retries);
+        EXPECT_TRUE(scene.result.candidates.empty());
+    }
+}
+
+}  // namespace
+}  // namespace jink::geometric

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Candidates as they are flown and as a Planner makes them: how long limits make them, what bounds a flight's speed,
+// when the start moves, how many tracks and how much work there may be.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/path/timed_path.hpp"
+#include "tests/unit/core/geometric/scene.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+
+TEST(FlightBorder, ClimbAndDescentTakeTheirTimeEach)
+{
+    Problem problem;
+    problem.distance = 12.0F;
+    problem.main_radius = 1.0F;
+    struct Limits {
+        float climb;
+        float descent;
+    };
+    for (const Limits& of : {Limits{3.0F, 3.0F}, Limits{0.5F, 3.0F}, Limits{3.0F, 0.5F}, Limits{0.4F, 0.7F}}) {
+        vehicle::VehicleLimits limits;
+        limits.max_climb = of.climb;
+        limits.max_descent = of.descent;
+        for (const float offset : {-4.0F, 4.0F}) {
+            const CandidateShape shape{Family::symmetric, 0.5F * kPi, offset};
+            path::TimedPath path;
+            ASSERT_TRUE(make_candidate_path(problem, shape, 25, limits, path));
+            std::vector<Vec3> positions;
+            for (const path::PathPoint& point : path.points) {
+                positions.push_back(point.position);
+            }
+            path::TimedPath expected;
+            ASSERT_TRUE(path::make_timed_path(positions, problem.speed, limits, expected));
+            for (std::size_t i = 0; i < positions.size(); ++i) {
+                ASSERT_NEAR(path.points[i].time, expected.points[i].time, 1e-3F) << i;
+            }
+        }
+    }
+}
+
+/// Symmetric candidates, flown.
+struct FlownScene : Scene {
+    FlownScene()
+    {
+        settings.simple = false;
+        settings.extra_planes = 0;
+        settings.escape_from_margin = false;
+    }
+};
+
+TEST(FlightBorder, OnlyWhatCanStandBrakesAtTheEnd)
+{
+    FlownScene scene;
+    scene.obstacles = {{1, geometry::make_box(Vec3(43.0F, 0.0F, 50.0F), Vec3(1.0F, 60.0F, 60.0F))}};
+    EXPECT_EQ(scene.run(), PlanStatus::none_available);
+    scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    EXPECT_EQ(scene.run(), PlanStatus::found);
+}
+
+TEST(FlightBorder, NoFlightIsFasterThanItsBound)
+{
+    // Faster aside than any candidate: something small is passed before its curve would ever come near.
+    FlownScene aside;
+    aside.settings.check_acceleration = false;
+    aside.problem.start_velocity = Vec3(5.0F, 12.0F, 0.0F);
+    ASSERT_EQ(aside.run(), PlanStatus::found);
+    aside.threats.push_back(Scene::still(Vec3(4.6F, 9.0F, 50.0F), 0.1F));
+    EXPECT_EQ(aside.run(), PlanStatus::none_available);
+    EXPECT_EQ(aside.count(CandidateStatus::hits_static), aside.result.candidates.size());
+}
+
+/// On a level leg of 200 m eastwards at 5 m/s.
+struct Leg {
+    TimePoint now{1'000'000};
+    vehicle::VehicleState own;
+    vehicle::VehicleLimits limits;
+    vehicle::Airframe airframe;
+    world::Reference reference;
+    std::vector<world::Track> tracks;
+    world::Airspace airspace;
+    Settings settings;
+    WorkBudget budget{1'000'000};
+    world::Manoeuvre out;
+
+    Leg()
+    {
+        own.stamp = now;
+        own.position = Vec3(0.0F, 0.0F, 50.0F);
+        own.velocity = Vec3(5.0F, 0.0F, 0.0F);
+        reference.valid = true;
+        reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
+    }
+    world::Track& add(const Vec3& position, float radius)
+    {
+        world::Track track;
+        track.id = static_cast<world::TrackId>(tracks.size() + 1);
+        track.stamp = now;
+        track.position = position;
+        track.radius = radius;
+        tracks.push_back(track);
+        return tracks.back();
+    }
+    PlanStatus plan()
+    {
+        Planner planner{settings};
+        return planner.plan({now, own, limits, airframe, reference, tracks, {}, airspace, nullptr, 3.0F}, budget, out);
+    }
+    std::size_t points() const { return out.path.points.size(); }
+};
+
+TEST(FlightBorder, AStandingVehiclesStartStaysWhereItIs)
+{
+    Leg leg;
+    leg.add(Vec3(30.0F, 0.0F, 50.0F), 1.0F);
+    ASSERT_EQ(leg.plan(), PlanStatus::found);
+    EXPECT_EQ(leg.points(), 26U) << "what is flown meanwhile comes first";
+    EXPECT_EQ(leg.out.path.points[1].time, leg.settings.latency);
+    leg.own.velocity = Vec3::Zero();
+    ASSERT_EQ(leg.plan(), PlanStatus::found);
+    EXPECT_EQ(leg.points(), 25U);
+    EXPECT_GT(leg.out.path.points[1].time, 0.0F);
+    // Nor is there room for one more.
+    leg.own.velocity = Vec3(5.0F, 0.0F, 0.0F);
+    leg.settings.waypoints = kMaxPathPoints - 1;
+    ASSERT_EQ(leg.plan(), PlanStatus::found);
+    EXPECT_EQ(leg.points(), kMaxPathPoints);
+    leg.settings.waypoints = kMaxPathPoints;
+    ASSERT_EQ(leg.plan(), PlanStatus::found);
+    EXPECT_EQ(leg.points(), kMaxPathPoints);
+    EXPECT_EQ(leg.out.path.points[0].position, leg.own.position);
+    for (std::size_t i = 0; i + 1 < leg.points(); ++i) {
+        EXPECT_LT(leg.out.path.points[i].time, leg.out.path.points[i + 1].time);
+    }
+}
+
+TEST(FlightBorder, TheStartIsNotMovedTooNear)
+{
+    // Four times the way on are left at least.
+    Leg leg;
+    leg.settings.check_acceleration = false;
+    leg.settings.verify_flight = false;
+    leg.settings.latency = 1.0F;
+    leg.add(Vec3(22.0F, 0.0F, 50.0F), 0.5F);
+    ASSERT_EQ(leg.plan(), PlanStatus::found);
+    EXPECT_EQ(leg.points(), 25U) << "the closest approach comes before the threat: less than 20 m are left after 5 m";
+    leg.tracks[0].position.x() = 40.0F;
+    ASSERT_EQ(leg.plan(), PlanStatus::found);
+    EXPECT_EQ(leg.points(), 26U);
+}
+
+TEST(FlightBorder, AnUncertainThreatIsAsNearAsItsBody)
+{
+    Leg leg;
+    world::Track& track = leg.add(Vec3(16.0F, 0.0F, 50.0F), 0.5F);
+    track.sigma_position = 1.5F;
+    EXPECT_NE(leg.plan(), PlanStatus::too_close);
+}
+
+TEST(FlightBorder, AsManyTracksAsThereIsRoomForAndNoMore)
+{
+    Leg leg;
+    leg.add(Vec3(30.0F, 0.0F, 50.0F), 1.0F);
+    while (leg.tracks.size() < kMaxTracks) {
+        leg.add(Vec3(30.0F, 400.0F, 50.0F), 1.0F);
+    }
+    EXPECT_EQ(leg.plan(), PlanStatus::found);
+    leg.add(Vec3(30.0F, 400.0F, 50.0F), 1.0F);
+    EXPECT_EQ(leg.plan(), PlanStatus::bad_input);
+}
+
+TEST(FlightBorder, WithoutWorkNobodyKnowsThatThereIsNoConflict)
+{
+    Leg leg;
+    leg.add(Vec3(30.0F, 0.0F, 50.0F), 1.0F);
+    for (std::uint32_t units = 0; units < 60; ++units) {
+        leg.budget = WorkBudget{units};
+        EXPECT_EQ(leg.plan(), PlanStatus::budget_spent) << units;
+    }
+}
+
+}  // namespace
+}  // namespace jink::geometric

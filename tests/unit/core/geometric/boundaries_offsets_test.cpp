@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Clearing offsets: the innermost one clears the main threat, whatever it is and however near, and by no more than it
+// has to; the outermost one goes as far as it is said to.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/geometry/convex.hpp"
+#include "tests/unit/core/geometric/scene.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+
+/// Nothing but what offsets depend on.
+struct OffsetScene : Scene {
+    OffsetScene(Family family, float distance)
+    {
+        settings.simple = family == Family::simple;
+        settings.symmetric = family == Family::symmetric;
+        settings.smooth = family == Family::smooth;
+        settings.check_acceleration = settings.verify_flight = false;
+        settings.waypoints = kMaxPathPoints;
+        problem.distance = distance;
+        threats.clear();
+        problem.main = kNoThreat;
+    }
+    void set_main(const geometry::Shape& shape, float radius)
+    {
+        obstacles = {{1, shape}};
+        problem.main_shape = shape.kind == geometry::ShapeKind::sphere ? nullptr : &obstacles[0].shape;
+        problem.main_radius = radius;
+    }
+    std::vector<float> offsets(float plane)
+    {
+        static_cast<void>(run());
+        std::vector<float> out;
+        for (const Candidate& c : result.candidates) {
+            if (std::abs(c.shape.plane - plane) < 1e-4F) {
+                out.push_back(c.shape.offset);
+            }
+        }
+        return out;
+    }
+    /// Least distance of the vehicle's box along a candidate from the main threat.
+    float margin(const CandidateShape& shape) const
+    {
+        path::TimedPath path;
+        EXPECT_TRUE(make_candidate_path(problem, shape, settings.waypoints, limits, path));
+        float least = 1e9F;
+        for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+            WorkBudget units(geometry::kUnitsPerQuery);
+            least = std::min(least, geometry::swept_box_distance(limits.half_extents, path.points[i].position,
+                                                                 path.points[i + 1].position, obstacles[0].shape, 1e6F,
+                                                                 1e-3F, units));
+        }
+        return least;
+    }
+};
+
+/// The innermost offset on either side: clear, and a share less of it would not be.
+void expect_tight(OffsetScene& scene, Family family, float plane, float clearance, float share)
+{
+    const std::vector<float> offsets = scene.offsets(plane);
+    ASSERT_GE(offsets.size(), 2U);
+    for (const bool left : {false, true}) {
+        float innermost = left ? 1e9F : -1e9F;
+        for (const float offset : offsets) {
+            innermost = left ? (offset > 0.0F ? std::min(innermost, offset) : innermost)
+                             : (offset < 0.0F ? std::max(innermost, offset) : innermost);
+        }
+        ASSERT_LT(std::abs(innermost), 1e8F) << "no offset on this side";
+        EXPECT_GE(scene.margin({family, plane, innermost}), clearance) << innermost;
+        EXPECT_LT(scene.margin({family, plane, share * innermost}), clearance + 1e-3F) << innermost;
+    }
+}
+
+TEST(OffsetBorder, ASphereIsClearedAndByNoMoreThanItHasToBe)
+{
+    for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {
+        for (const float radius : {1.0F, 3.0F}) {
+            for (const float distance : {12.0F * radius, 30.0F * radius}) {
+                OffsetScene scene(family, distance);
+                scene.set_main(geometry::make_sphere(Vec3(distance, 0.0F, 50.0F), radius), radius);
+                expect_tight(scene, family, 0.0F, 0.0F, 0.90F);
+                expect_tight(scene, family, 0.5F * kPi, 0.0F, 0.90F);
+            }
+        }
+    }
+}
+
+TEST(OffsetBorder, AWallIsClearedOnEitherSide)
+{
+    // Long across, long along before the collision point, or behind it; off the leg to one side.
+    struct Wall {
+        Vec3 centre;
+        Vec3 half;
+    };
+    for (const Wall& wall : {Wall{Vec3(40.0F, 2.0F, 50.0F), Vec3(1.0F, 5.0F, 20.0F)},
+                             Wall{Vec3(37.0F, 0.0F, 50.0F), Vec3(6.0F, 1.0F, 20.0F)},
+                             Wall{Vec3(44.0F, -1.0F, 50.0F), Vec3(6.0F, 2.0F, 20.0F)},
+                             Wall{Vec3(40.0F, 0.0F, 50.0F), Vec3(0.5F, 0.5F, 20.0F)}}) {
+        for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {
+            OffsetScene scene(family, 40.0F);
+            scene.set_main(geometry::make_box(wall.centre, wall.half), wall.half.x());
+            scene.problem.main_centre_offset = wall.centre - Vec3(40.0F, 0.0F, 50.0F);
+            expect_tight(scene, family, 0.0F, 0.0F, 0.80F);
+            scene.problem.obstacle_clearance = 1.5F;
+            expect_tight(scene, family, 0.0F, 1.5F, 0.80F);
+        }
+    }
+}
+
+TEST(OffsetBorder, WhatIsHardlyInTheWayIsLeftAtTheLeastOffset)
+{
+    // A sphere far to the left: on the right there is nothing to clear, and an offset of nothing is no way round.
+    OffsetScene scene(Family::symmetric, 40.0F);
+    scene.set_main(geometry::make_sphere(Vec3(40.0F, 8.0F, 50.0F), 1.0F), 1.0F);
+    scene.problem.main_centre_offset = Vec3(0.0F, 8.0F, 0.0F);
+    const std::vector<float> offsets = scene.offsets(0.0F);
+    ASSERT_EQ(offsets.size(), 4U);
+    EXPECT_FLOAT_EQ(offsets[1], -0.3F);
+    EXPECT_GT(offsets[2], 10.0F);
+    // The fan ends at 3.2 R of the body, or one box width past the first where that is more.
+    EXPECT_NEAR(offsets[0], -0.3F - (3.2F - 0.3F), 1e-4F);
+    EXPECT_NEAR(offsets[3] - offsets[2], 2.0F, 1e-4F);
+    // What lies there is cleared by as much as anywhere.
+    scene.problem.main_centre_offset = Vec3(0.0F, 1.75F, 0.0F);
+    const std::vector<float> near = scene.offsets(0.0F);
+    EXPECT_NEAR(near[1], -0.3F, 0.02F) << "R + 1 m - 1.75 m + 5 cm is as much";
+}
+
+TEST(OffsetBorder, OneOffsetOfASideIsTheInnermost)
+{
+    OffsetScene scene(Family::symmetric, 40.0F);
+    scene.set_main(geometry::make_sphere(Vec3(40.0F, 0.0F, 50.0F), 1.0F), 1.0F);
+    scene.settings.offsets = 4;
+    const std::vector<float> four = scene.offsets(0.0F);
+    ASSERT_EQ(four.size(), 4U);
+    scene.settings.offsets = 2;
+    const std::vector<float> two = scene.offsets(0.0F);
+    ASSERT_EQ(two.size(), 2U);
+    EXPECT_EQ(two[0], four[1]);
+    EXPECT_EQ(two[1], four[2]);
+    // Equal steps from the innermost to the outermost.
+    scene.settings.offsets = 10;
+    const std::vector<float> ten = scene.offsets(0.0F);
+    ASSERT_EQ(ten.size(), 10U);
+    EXPECT_EQ(ten[5], four[2]);
+    EXPECT_EQ(ten[9], four[3]);
+    for (std::size_t i = 6; i < 9; ++i) {
+        EXPECT_NEAR(ten[i] - ten[i - 1], (ten[9] - ten[5]) / 4.0F, 1e-4F);
+    }
+}
+
+TEST(OffsetBorder, NoOffsetIsBeyondItsShareOfTheDistanceAndOneOnItStays)
+{
+    // Widened spans reach 1.28 D; the last offset within it is kept, the first one beyond it is not.
+    OffsetScene scene(Family::symmetric, 10.0F);
+    scene.set_main(geometry::make_sphere(Vec3(10.0F, 0.0F, 50.0F), 1.0F), 1.0F);
+    scene.problem.span_from = 0.0F;
+    scene.settings.offsets = 2;
+    const float widest = 1.2801F * 10.0F;
+    // The only offset of a side is where the span begins to end.
+    scene.problem.span_from = 1.0F;
+    std::size_t kept = 0;
+    std::size_t dropped = 0;
+    for (int i = 0; i < 4000; ++i) {
+        scene.problem.span_to = 5.0F + 1e-3F * static_cast<float>(i);
+        const std::vector<float> offsets = scene.offsets(0.0F);
+        for (const float offset : offsets) {
+            EXPECT_LE(std::abs(offset), widest);
+        }
+        (offsets.size() == 2 ? kept : dropped) += 1;
+        ASSERT_TRUE(offsets.size() == 2 || offsets.empty());
+    }
+    EXPECT_GT(kept, 0U);
+    EXPECT_GT(dropped, 0U);
+}
+
+TEST(OffsetBorder, NearAndFarEndsOfACurveAreNotAskedToClear)
+{
+    // So near that the box is over the threat at the start, so long behind that the curve has ended: some offset all
+    // the same, and never less than straight past would need.
+    for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {
+        for (const float along : {3.0F, 9.0F, 30.0F}) {
+            OffsetScene scene(family, 10.0F);
+            scene.set_main(geometry::make_box(Vec3(10.0F, 0.0F, 50.0F), Vec3(along, 0.5F, 20.0F)), 0.5F);
+            const std::vector<float> offsets = scene.offsets(0.0F);
+            ASSERT_GE(offsets.size(), 2U) << along;
+            for (const float offset : offsets) {
+                EXPECT_TRUE(std::isfinite(offset));
+                EXPECT_GE(std::abs(offset), 1.5F);
+                EXPECT_LE(std::abs(offset), 1.2801F * 10.0F);
+            }
+            if (along > 8.0F) {
+                // Over the ends nothing would help: what would clear a third of the way is offered, three times 1.55 m.
+                EXPECT_NEAR(offsets[offsets.size() / 2], 4.65F, 0.01F) << along;
+            }
+        }
+    }
+}
+
+TEST(OffsetBorder, SourceOffsetsOnTheLimitAreKept)
+{
+    // 3.2 R + 6.4 R i / l with l = 32: offsets of 0.2 R steps; R + margin = 1.2 R exactly is kept.
+    Scene scene;
+    scene.settings = source_settings();
+    scene.settings.simple = false;
+    scene.settings.offsets = 32;
+    scene.settings.extra_planes = 0;
+    scene.settings.source_drop_margin = 0.2F;
+    static_cast<void>(scene.run());
+    EXPECT_EQ(scene.result.candidates.size(), 22U);  // 1.2, 1.4 ... 3.2 on either side
+    scene.settings.source_drop_margin = 0.2001F;
+    static_cast<void>(scene.run());
+    EXPECT_EQ(scene.result.candidates.size(), 20U);
+}
+
+}  // namespace
+}  // namespace jink::geometric
