@@ -131,6 +131,17 @@ struct Threat {
     float radius_acceleration = 0.0F;  ///< growth by unknown acceleration [m/s2], as radius += a t^2 / 2
 };
 
+/// Moving solids of one problem. They come from problem files and callers of `solve`; a Situation's tracks are spheres.
+inline constexpr std::size_t kMaxMovingSolids = 4;
+/// A convex solid that moves without turning and without end.
+struct MovingSolid {
+    geometry::Shape shape;             ///< where it is at t = 0
+    Vec3 velocity = Vec3::Zero();      ///< [m/s]
+    float uncertainty = 0.0F;          ///< kept from its surface at t = 0, own uncertainty included [m]
+    float radius_rate = 0.0F;          ///< its growth, as a Threat's [m/s]
+    float radius_acceleration = 0.0F;  ///< [m/s2]
+};
+
 /// Problem::main when the main threat is none of the moving or static spheres.
 inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
@@ -144,6 +155,9 @@ struct Problem {
     std::size_t main = kNoThreat;                ///< index of the main threat in `threats`, or kNoThreat
     std::span<const Threat> threats;             ///< at most kMaxTracks
     std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
+    /// At most kMaxMovingSolids. Time-aware: met exactly, as seen from them; swept: as the ball about them. A candidate
+    /// that touches one says hits_moving and ThreatKind::obstacle.
+    std::span<const MovingSolid> moving_solids;
     float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles and bounds [m]
     const world::Airspace* airspace = nullptr;
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]

@@ -25,6 +25,12 @@ bool is_valid(const Threat& t) noexcept
            not_negative(t.radius_rate) && not_negative(t.radius_acceleration);
 }
 
+bool is_valid(const MovingSolid& s) noexcept
+{
+    return geometry::is_valid(s.shape) && is_finite(s.velocity) && not_negative(s.uncertainty) &&
+           not_negative(s.radius_rate) && not_negative(s.radius_acceleration);
+}
+
 bool is_valid(const PathFrame& frame) noexcept
 {
     return is_finite(frame.origin) && frame.axes.allFinite() && frame.axes.isUnitary(1e-3F);
@@ -41,6 +47,9 @@ bool has_valid_scales(const Problem& p) noexcept
 bool is_valid(const Problem& p) noexcept
 {
     return has_valid_scales(p) && p.threats.size() <= kMaxTracks && p.obstacles.size() <= kMaxObstacles &&
+           p.moving_solids.size() <= kMaxMovingSolids &&
+           std::all_of(p.moving_solids.begin(), p.moving_solids.end(),
+                       [](const MovingSolid& s) { return is_valid(s); }) &&
            (p.main == kNoThreat || p.main < p.threats.size()) &&
            std::all_of(p.threats.begin(), p.threats.end(), [](const Threat& t) { return is_valid(t); }) &&
            std::all_of(p.obstacles.begin(), p.obstacles.end(),
