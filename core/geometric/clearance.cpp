@@ -24,6 +24,19 @@ bool is_moving(const Threat& threat) noexcept
            threat.motion.velocity.z() != 0.0F;
 }
 
+Threat threat_at_start(const Problem& problem, std::size_t index) noexcept
+{
+    Threat threat = problem.threats[index];
+    const Seconds t = problem.begins;
+    if (t <= 0.0F) {
+        return threat;
+    }
+    threat.motion.position += t * threat.motion.velocity;
+    threat.radius += t * (threat.radius_rate + 0.5F * threat.radius_acceleration * t);
+    threat.radius_rate += threat.radius_acceleration * t;
+    return threat;
+}
+
 Clearance::Clearance(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
     : problem_(problem), settings_(settings), half_(limits.half_extents), bounds_(bounds_of(problem, half_))
 {
@@ -59,7 +72,7 @@ Seconds Clearance::sweep_end(std::size_t index) const noexcept
     if (!settings_.main_swept_to_collision_point || index != problem_.main) {
         return t_max_;
     }
-    const geometry::Motion& motion = problem_.threats[index].motion;
+    const geometry::Motion motion = threat_at_start(problem_, index).motion;
     const Vec3 goal =
         problem_.frame.origin + problem_.distance * problem_.frame.axes.col(0) + problem_.main_centre_offset;
     const float speed_squared = motion.velocity.squaredNorm();
@@ -86,7 +99,7 @@ int Clearance::escape_parts(Seconds duration) const noexcept
 
 Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
 {
-    const Threat& t = problem_.threats[threat];
+    const Threat t = threat_at_start(problem_, threat);
     return {t.motion.position - problem_.frame.origin,
             t.motion.velocity,
             half_,
@@ -177,21 +190,24 @@ void Clearance::add_solid(Kind kind, std::size_t index, const Solid& solid, Work
     needs_extent_ = true;
 }
 
-Clearance::Solid Clearance::solid_of(const MovingSolid& solid, float shrunk) noexcept
+Clearance::Solid Clearance::solid_of(const MovingSolid& solid, float shrunk) const noexcept
 {
-    return {solid.shape, shrunk, solid.uncertainty, solid.radius_rate, solid.radius_acceleration};
+    const Seconds t = problem_.begins;
+    return {solid.shape, shrunk, solid.uncertainty + t * (solid.radius_rate + 0.5F * solid.radius_acceleration * t),
+            solid.radius_rate + solid.radius_acceleration * t, solid.radius_acceleration};
 }
 
 /// Of a moving solid, the ball about it.
 Clearance::Ball Clearance::ball_about(std::size_t index) const noexcept
 {
     const MovingSolid& solid = problem_.moving_solids[index];
-    return {solid.shape.centre - problem_.frame.origin,
+    const Solid grown = solid_of(solid, 0.0F);
+    return {solid.shape.centre + problem_.begins * solid.velocity - problem_.frame.origin,
             solid.velocity,
             half_,
-            geometry::bounding_radius(solid.shape) + solid.uncertainty,
-            solid.radius_rate,
-            solid.radius_acceleration};
+            geometry::bounding_radius(solid.shape) + grown.clearance,
+            grown.rate,
+            grown.acceleration};
 }
 
 bool Clearance::touches_moving_solid(const View& view, const Item& item, WorkBudget& budget) const noexcept
@@ -203,7 +219,7 @@ bool Clearance::touches_moving_solid(const View& view, const Item& item, WorkBud
         return true;
     }
     const MovingSolid& solid = problem_.moving_solids[item.index];
-    const View seen = view_of(view.curve, solid.velocity);
+    const View seen = view_of(view.curve, solid.velocity, problem_.begins);
     return touches(seen, solid_of(solid, item.shrunk), budget);
 }
 
@@ -234,7 +250,7 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) cons
     const std::size_t first = part == Part::deferred ? near_items_ : 0;
     const std::size_t end = part == Part::near ? near_items_ : items_.size();
     const bool many = end - first > kFew;
-    const View view = needs_extent_ || many ? view_of(curve, Vec3::Zero()) : View{curve, Vec3::Zero(), {}};
+    const View view = needs_extent_ || many ? view_of(curve) : View{curve};
     for (std::size_t i = first; i < end; ++i) {
         const Item& item = items_[i];
         if (many && !is_solid(item)) {

@@ -12,6 +12,8 @@
 namespace jink::geometric::detail {
 
 [[nodiscard]] bool is_moving(const Threat& threat) noexcept;
+/// Where a threat is, and how large, when the manoeuvre begins.
+[[nodiscard]] Threat threat_at_start(const Problem& problem, std::size_t index) noexcept;
 
 /// How far a curve and a ball are from meeting, by bounds on their speeds: segments are passed over while nothing can
 /// happen. Never hides what the exact test would find: the bounds leave more room than that test's rounding takes.
@@ -141,7 +143,7 @@ private:
     void add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept;
     void add_moving_solid(std::size_t index, const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
     void add_solid(Kind kind, std::size_t index, const Solid& solid, WorkBudget& budget) noexcept;
-    [[nodiscard]] static Solid solid_of(const MovingSolid& solid, float shrunk) noexcept;
+    [[nodiscard]] Solid solid_of(const MovingSolid& solid, float shrunk) const noexcept;
     [[nodiscard]] Ball ball_about(std::size_t index) const noexcept;
     [[nodiscard]] static bool is_solid(const Item& item) noexcept
     {

@@ -12,9 +12,9 @@
 
 namespace jink::geometric::detail {
 
-View view_of(const Curve& curve, const Vec3& velocity) noexcept
+View view_of(const Curve& curve, const Vec3& velocity, Seconds begins) noexcept
 {
-    View view{curve, velocity, {}};
+    View view{curve, velocity, begins, {}};
     view.extent = {view.position(0), view.position(0)};
     for (std::size_t i = 1; i < curve.points; ++i) {
         const Vec3 p = view.position(i);

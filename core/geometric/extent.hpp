@@ -42,19 +42,20 @@ struct Extent {
 struct View {
     const Curve& curve;
     Vec3 velocity = Vec3::Zero();
-    Extent extent;  ///< of all points
+    Seconds begins = 0.0F;  ///< so long it has moved when the curve begins
+    Extent extent{};        ///< of all points
 
     [[nodiscard]] std::size_t last() const noexcept { return curve.points - 1; }
-    [[nodiscard]] Vec3 position(std::size_t i) const noexcept { return curve.position(i) - curve.t[i] * velocity; }
+    [[nodiscard]] Vec3 position(std::size_t i) const noexcept { return curve.position(i) - (begins + curve.t[i]) * velocity; }
 };
 /// With its extent. O(points).
-[[nodiscard]] View view_of(const Curve& curve, const Vec3& velocity) noexcept;
+[[nodiscard]] View view_of(const Curve& curve, const Vec3& velocity = Vec3::Zero(), Seconds begins = 0.0F) noexcept;
 /// Last point of the longest run from point `i` on that is straight along `along` (unit vector), forwards and within
 /// kStraight; i + 1 at least. O(run).
 [[nodiscard]] std::size_t straight_until(const View& view, std::size_t i, const Vec3& along) noexcept;
 /// What is that straight counts as straight [m].
 inline constexpr float kStraight = 1e-4F;
 
-[[nodiscard]] inline Extent extent_of(const Curve& curve) noexcept { return view_of(curve, Vec3::Zero()).extent; }
+[[nodiscard]] inline Extent extent_of(const Curve& curve) noexcept { return view_of(curve).extent; }
 
 }  // namespace jink::geometric::detail

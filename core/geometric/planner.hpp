@@ -28,8 +28,9 @@ inline constexpr float kLeastDistanceInRadii = 2.5F;
 /// offsets.
 struct Attempt {
     /// as_set: as the Settings say. plateau: that family instead of theirs. more_planes: twice the planes with half the
-    /// offsets. wait: that family instead of theirs.
-    enum class Kind : std::uint8_t { as_set, plateau, more_planes, wait };
+    /// offsets, or without the family simple where there is but one a side. wait: that family instead of theirs. in_a_row: around the main threat, and from beside it around what
+    /// then is in the way back to the leg.
+    enum class Kind : std::uint8_t { as_set, plateau, more_planes, wait, in_a_row };
     Kind kind = Kind::as_set;
     float speed_share = 1.0F;
     float span_from = 0.0F;
@@ -40,7 +41,7 @@ struct Attempt {
 /// lets crossing traffic pass; an end point further out makes curves gentler; a wall of threats has its gap further
 /// out, or is climbed over at once; what only passes is waited for. A fixed wing does not fly slower, nor wait. How
 /// many of random situations each one solves is told by tests/property/core/geometric (WhatEachAttemptAdds).
-inline constexpr std::array<Attempt, 9> kAttempts{{
+inline constexpr std::array<Attempt, 10> kAttempts{{
     {},
     {.speed_share = 0.6F},
     {.apex_share = 1.5F},
@@ -50,6 +51,7 @@ inline constexpr std::array<Attempt, 9> kAttempts{{
     {.span_from = 2.0F, .span_to = 3.5F},
     {.kind = Attempt::Kind::wait},
     {.kind = Attempt::Kind::more_planes},
+    {.kind = Attempt::Kind::in_a_row, .speed_share = 0.6F, .apex_share = 1.5F},
 }};
 
 /// Waiting candidates: down to each of these shares of the leg's speed, until each of these times the time to the
@@ -103,13 +105,18 @@ struct Settings {
     float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of what is being flown
     std::uint16_t closeness_nearest =
         0;                  ///< only the k moving threats nearest to the start count for closeness; 0: all
+    /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
+    /// candidates are looked at against those first: the others are looked at once, for the candidate that would be
+    /// taken, so that what is found is clear of all (as avoid/guard.hpp sees to once more). The main threat is among
+    /// them. 0: all.
+    std::uint16_t moving_nearest = 0;
     float max_cost = 1.0F;  ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
     /// Time-aware mode: a start inside a margin is judged by this rule, so that there is a way out. Off in source mode.
     bool escape_from_margin = true;
     world::EscapeRule escape;
     path::FollowerGains gains;  ///< for verify_flight
     Seconds lookahead = 10.0F;  ///< Planner: conflicts are looked for this far ahead, 1..60 [s]
-    std::uint8_t retries = 8;   ///< Planner: further attempts when nothing is available, 0..8
+    std::uint8_t retries = 9;   ///< Planner: further attempts when nothing is available, 0..9
     /// Planner: until the vehicle answers, planning and the way to the autopilot included, it flies on as it does; the
     /// manoeuvre begins where it then is, 0..1 [s].
     Seconds latency = 0.1F;
@@ -170,6 +177,8 @@ struct Problem {
     float span_from = 0.0F;   ///< clearing offsets: where they begin and end in the span from smallest to largest,
     float span_to = 1.0F;     ///< beyond 1 further out; with span_from > 0 the first one lies past it
     float apex_share = 1.0F;  ///< the apex of a curve lies so many D from the start; 1: at the collision point
+    bool ends_at_top = false;  ///< curves end there, beside the main threat and along the leg
+    Seconds begins = 0.0F;     ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
 };
 
 /// What curves scale with [m].

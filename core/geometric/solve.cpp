@@ -40,7 +40,7 @@ bool has_valid_scales(const Problem& p) noexcept
 {
     return is_valid(p.frame) && positive(p.distance) && positive(p.main_radius) && positive(p.speed) &&
            not_negative(p.obstacle_clearance) && not_negative(p.body_radius) && not_negative(p.span_from) &&
-           not_negative(p.span_to) && positive(p.apex_share) && is_finite(p.start_velocity) &&
+           not_negative(p.span_to) && positive(p.apex_share) && not_negative(p.begins) && is_finite(p.start_velocity) &&
            is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
