@@ -282,12 +282,13 @@ bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds d
     return out_of(extent, ball, duration);
 }
 
-Verdict Clearance::verdict_of(const Item& item) noexcept
+Verdict Clearance::verdict_of(const Item& item) const noexcept
 {
     const bool of_threat = item.kind == Kind::static_ball || item.kind == Kind::moving_ball;
+    const std::size_t behind = item.kind == Kind::moving_solid ? problem_.obstacles.size() : 0;
     const bool moves = item.kind == Kind::moving_solid || item.kind == Kind::moving_ball;
     return {moves ? CandidateStatus::hits_moving : CandidateStatus::hits_static,
-            {of_threat ? ThreatKind::track : ThreatKind::obstacle, item.index}};
+            {of_threat ? ThreatKind::track : ThreatKind::obstacle, static_cast<std::uint16_t>(item.index + behind)}};
 }
 
 }  // namespace jink::geometric::detail

@@ -164,7 +164,7 @@ private:
     [[nodiscard]] Item as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept;
     [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid, float clearance) const noexcept;
     [[nodiscard]] static Bounds bounds_of(const Problem& problem, const Vec3& half) noexcept;
-    [[nodiscard]] static Verdict verdict_of(const Item& item) noexcept;
+    [[nodiscard]] Verdict verdict_of(const Item& item) const noexcept;
     [[nodiscard]] bool is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept;
     [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
                                const Vec3& after, WorkBudget& budget) const noexcept;

@@ -163,7 +163,7 @@ struct Problem {
     std::span<const Threat> threats;             ///< at most kMaxTracks
     std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
     /// At most kMaxMovingSolids. Time-aware: met exactly, as seen from them; swept: as the ball about them. A candidate
-    /// that touches one says hits_moving and ThreatKind::obstacle.
+    /// that touches one says hits_moving and ThreatKind::obstacle, with the obstacles counted before it.
     std::span<const MovingSolid> moving_solids;
     float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles and bounds [m]
     const world::Airspace* airspace = nullptr;

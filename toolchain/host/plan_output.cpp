@@ -52,7 +52,9 @@ std::string_view words_of(CandidateStatus status)
 
 const std::string& main_name(const ProblemFile& file)
 {
-    return file.main_is_obstacle ? file.obstacles[file.main].name : file.threats[file.main].name;
+    return file.main_is_moving_solid ? file.moving_solids[file.main].name
+           : file.main_is_obstacle   ? file.obstacles[file.main].name
+                                     : file.threats[file.main].name;
 }
 
 std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
@@ -174,7 +176,13 @@ std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit)
 {
     switch (hit.kind) {
     case world::ThreatKind::track: return hit.index < file.threats.size() ? file.threats[hit.index].name : "?";
-    case world::ThreatKind::obstacle: return hit.index < file.obstacles.size() ? file.obstacles[hit.index].name : "?";
+    case world::ThreatKind::obstacle: {
+        const std::size_t at_rest = file.obstacles.size();
+        const std::size_t moving = hit.index - at_rest;  // counted behind those at rest
+        return hit.index < at_rest                  ? file.obstacles[hit.index].name
+               : moving < file.moving_solids.size() ? file.moving_solids[moving].name
+                                                    : "?";
+    }
     case world::ThreatKind::floor: return "floor";
     case world::ThreatKind::ceiling: return "ceiling";
     case world::ThreatKind::keep_in: return "keep-in distance";

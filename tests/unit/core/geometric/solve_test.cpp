@@ -307,7 +307,7 @@ TEST(SettingsValid, EachRange)
     EXPECT_TRUE(invalid([](Settings& s) { s.latency = -0.1F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.latency = 1.1F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.latency = kNan; }));
-    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 9; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 10; }));
 }
 
 TEST(Solve, SettingsThatTakeTimeAwareAndSweptApart)
