@@ -105,10 +105,10 @@ struct Waypoints {
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
 
 /// How one moving threat is passed (the source's collision angle as a cost, Pinheiro 6.2): where the vehicle is at the
-/// waypoint nearest to the threat at that instant, seen from the threat along its velocity, (1 + cosine) / 2: 0 straight
-/// behind it, 1 straight in front. The offset at the closest approach is square to the relative velocity, so that the
-/// angle between both courses says how much there is to choose: head-on (180 degrees) and overtaking give one half on
-/// every side, crossing at 90 degrees with equal speeds 0.15 or 0.85.
+/// waypoint nearest to the threat at that instant, seen from the threat along its velocity, (1 + cosine) / 2: 0
+/// straight behind it, 1 straight in front. The offset at the closest approach is square to the relative velocity, so
+/// that the angle between both courses says how much there is to choose: head-on (180 degrees) and overtaking give one
+/// half on every side, crossing at 90 degrees with equal speeds 0.15 or 0.85.
 struct Passing {
     float share = 0.5F;
     float gap = 0.0F;  ///< from the threat's surface there [m]; not above 0 on contact

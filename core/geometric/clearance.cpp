@@ -46,9 +46,9 @@ void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget
 {
     items_.clear();
     needs_extent_ = settings_.security == SecurityMode::swept;
-    static_cast<void>(
-        budget.spend(units::kCollected * static_cast<std::uint32_t>(problem_.threats.size() + problem_.obstacles.size() +
-                                                                    problem_.moving_solids.size())));
+    static_cast<void>(budget.spend(units::kCollected *
+                                   static_cast<std::uint32_t>(problem_.threats.size() + problem_.obstacles.size() +
+                                                              problem_.moving_solids.size())));
     add_threats(reach, longest, Which::at_rest);
     for (std::size_t i = 0; i < problem_.obstacles.size(); ++i) {
         add_obstacle(i, reach, budget);
@@ -63,8 +63,9 @@ void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget
 
 std::uint32_t Clearance::solids() const noexcept
 {
-    return static_cast<std::uint32_t>(
-        std::count_if(items_.begin(), items_.end(), [](const Item& item) { return item.kind == Kind::solid || item.kind == Kind::moving_solid; }));
+    return static_cast<std::uint32_t>(std::count_if(items_.begin(), items_.end(), [](const Item& item) {
+        return item.kind == Kind::solid || item.kind == Kind::moving_solid;
+    }));
 }
 
 Seconds Clearance::sweep_end(std::size_t index) const noexcept

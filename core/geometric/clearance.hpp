@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bitset>
+#include <array>
 
 #include "core/geometric/extent.hpp"
 #include "core/geometric/planner.hpp"
@@ -47,6 +47,9 @@ private:
     float room_ = -1.0F;
 };
 
+/// Threats of a problem, by index.
+using ThreatSet = std::array<bool, kMaxTracks>;
+
 class Planes;
 
 struct Verdict {
@@ -68,7 +71,7 @@ public:
     void collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
 
     /// Moving threats, by index, that are looked at apart from the others: see `check`. None until this is called.
-    void defer(const std::bitset<kMaxTracks>& threats) noexcept { deferred_ = threats; }
+    void defer(const ThreatSet& threats) noexcept { deferred_ = threats; }
 
     /// Volumes that moving threats sweep end at this time: the longest candidate's duration (swept mode).
     void sweep_until(Seconds t_max) noexcept { t_max_ = t_max; }
@@ -183,10 +186,10 @@ private:
     const Vec3 half_;
     const Bounds bounds_;
     Seconds t_max_ = 0.0F;
-    std::bitset<kMaxTracks> deferred_;
+    ThreatSet deferred_{};
     StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids> items_;
-    std::size_t near_items_ = 0;   ///< the deferred ones come after these
-    bool needs_extent_ = false;  ///< some item is tested against a curve's extent
+    std::size_t near_items_ = 0;  ///< the deferred ones come after these
+    bool needs_extent_ = false;   ///< some item is tested against a curve's extent
 };
 
 }  // namespace jink::geometric::detail

@@ -70,21 +70,17 @@ bool Clearance::meets(const View& view, std::size_t i, std::size_t end, const So
     const Vec3& origin = problem_.frame.origin;
     const float off = end > i + 1 ? kStraight : 0.0F;
     return geometry::swept_box_contact(half_, origin + view.position(i), origin + view.position(end), solid.shape,
-                                       solid.clearance_at(view.curve.t[end]) + off,
-                                       budget) != geometry::Contact::clear;
+                                       solid.clearance_at(view.curve.t[end]) + off, budget) != geometry::Contact::clear;
 }
 
 /// Where candidates are farthest from the leg: whoever flies into a wall is in it there.
 bool Clearance::touches_at_its_top(const View& view, const Planes& planes, const Solid& solid) const noexcept
 {
-    for (const std::size_t top : {view.last() / 2, 2 * view.last() / 3}) {
+    const auto is_in_it = [&](std::size_t top) {
         const Seconds t = view.curve.t[top];
-        if (shrink_at(solid.shrunk, t) <= 0.0F &&
-            planes.touch(view.position(top), half_, solid.clearance_at(t))) {
-            return true;
-        }
-    }
-    return false;
+        return shrink_at(solid.shrunk, t) <= 0.0F && planes.touch(view.position(top), half_, solid.clearance_at(t));
+    };
+    return is_in_it(view.last() / 2) || is_in_it(2 * view.last() / 3);
 }
 
 bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget) const noexcept

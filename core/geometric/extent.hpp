@@ -46,7 +46,10 @@ struct View {
     Extent extent{};        ///< of all points
 
     [[nodiscard]] std::size_t last() const noexcept { return curve.points - 1; }
-    [[nodiscard]] Vec3 position(std::size_t i) const noexcept { return curve.position(i) - (begins + curve.t[i]) * velocity; }
+    [[nodiscard]] Vec3 position(std::size_t i) const noexcept
+    {
+        return curve.position(i) - (begins + curve.t[i]) * velocity;
+    }
 };
 /// With its extent. O(points).
 [[nodiscard]] View view_of(const Curve& curve, const Vec3& velocity = Vec3::Zero(), Seconds begins = 0.0F) noexcept;

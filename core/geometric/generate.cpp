@@ -42,7 +42,7 @@ void Run::build(const CandidateShape& shape) noexcept
 
 void Run::generate_curves(Family family) noexcept
 {
-    unit_[static_cast<std::size_t>(family)] = 
+    unit_[static_cast<std::size_t>(family)] =
         make_unit_curve(family, settings_.waypoints, problem_.ends_at_top ? 1.0F : curve_length_x(family, 1.0F));
     const int planes = settings_.extra_planes + 1;
     for (int i = 0; i < planes; ++i) {

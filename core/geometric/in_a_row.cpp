@@ -51,7 +51,8 @@ bool first_met(const Problem& problem, const geometry::Motion& own, const Vec3& 
                WorkBudget& budget, Meeting& out) noexcept
 {
     bool met = false;
-    const auto look = [&](std::size_t index, const geometry::Motion& motion, const Vec3& box, float radius, float rate) {
+    const auto look = [&](std::size_t index, const geometry::Motion& motion, const Vec3& box, float radius,
+                          float rate) {
         const auto touch = geometry::contact_interval(box, own, motion, radius + rate * horizon, horizon);
         if (touch && (!met || touch->first < out.when)) {
             met = true;
@@ -184,8 +185,8 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
     Settings beginning = settings;
     beginning.waypoints = static_cast<std::uint16_t>(std::max(settings.waypoints / 2 + 1, 8));
     Settings end = settings;
-    end.waypoints = static_cast<std::uint16_t>(
-        std::min<std::size_t>(settings.waypoints, kMaxPathPoints - beginning.waypoints));
+    end.waypoints =
+        static_cast<std::uint16_t>(std::min<std::size_t>(settings.waypoints, kMaxPathPoints - beginning.waypoints));
     end.escape_from_margin = false;  // the whole is judged by it
     PlanStatus status = PlanStatus::none_available;
     for (int part = 0; part < kFirstParts; ++part) {
@@ -200,8 +201,7 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
         if (second_part(problem, first, limits, budget, rest)) {
             status = solve(rest, end, limits, airframe, budget, workspace, result);
         }
-        if (status == PlanStatus::found &&
-            join_parts(problem, settings, limits, first, budget, workspace, result)) {
+        if (status == PlanStatus::found && join_parts(problem, settings, limits, first, budget, workspace, result)) {
             return status;
         }
         to_top.preferred_side = -first.side;

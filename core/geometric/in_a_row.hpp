@@ -14,8 +14,7 @@ namespace jink::geometric::detail {
 /// of the dearer part. At most kMaxPathPoints points. O(two times two `solve` and one flight), at most
 /// 4 Settings::check_units for checks, and as much for the flights of the whole.
 [[nodiscard]] world::PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings,
-                                               const vehicle::VehicleLimits& limits,
-                                               const vehicle::Airframe& airframe, WorkBudget& budget,
-                                               Workspace& workspace, Result& result) noexcept;
+                                               const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
+                                               WorkBudget& budget, Workspace& workspace, Result& result) noexcept;
 
 }  // namespace jink::geometric::detail

@@ -25,9 +25,9 @@ float closest_gap(const Vec3& velocity, const Vec3& start, const Threat& threat,
 
 /// The moving threats but for the nearest ones; of equally near ones the first is nearer. None where all count.
 /// O(threats * threats).
-std::bitset<kMaxTracks> Run::far_threats(Seconds longest) noexcept
+ThreatSet Run::far_threats(Seconds longest) noexcept
 {
-    std::bitset<kMaxTracks> far;
+    ThreatSet far{};
     if (settings_.moving_nearest == 0) {
         return far;
     }

@@ -21,7 +21,8 @@ public:
         solid_.centre = Vec3::Zero();
         bound_ = geometry::bounding_radius(solid_);
         for (int k = first_face(); k < 3; ++k) {
-            extents_[static_cast<std::size_t>(k)] = geometry::support(solid_, solid_.axes.col(k)).dot(solid_.axes.col(k));
+            extents_[static_cast<std::size_t>(k)] =
+                geometry::support(solid_, solid_.axes.col(k)).dot(solid_.axes.col(k));
         }
     }
 
@@ -59,8 +60,8 @@ public:
     /// The same of all of a view, by the planes that are known beforehand. O(points).
     [[nodiscard]] bool part(const View& view, const Vec3& half, float clearance) const noexcept
     {
-        const float reach = view.extent.low.cwiseAbs().sum() + view.extent.high.cwiseAbs().sum() +
-                            2.0F * centre_.cwiseAbs().sum();
+        const float reach =
+            view.extent.low.cwiseAbs().sum() + view.extent.high.cwiseAbs().sum() + 2.0F * centre_.cwiseAbs().sum();
         const float room = clearance * kUnit + kExtentRounding * (1.0F + reach + half.sum() + bound_);
         for (int k = first_face(); k < 3; ++k) {
             const Vec3 axis = solid_.axes.col(k);

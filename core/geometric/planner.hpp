@@ -28,8 +28,8 @@ inline constexpr float kLeastDistanceInRadii = 2.5F;
 /// offsets.
 struct Attempt {
     /// as_set: as the Settings say. plateau: that family instead of theirs. more_planes: twice the planes with half the
-    /// offsets, or without the family simple where there is but one a side. wait: that family instead of theirs. in_a_row: around the main threat, and from beside it around what
-    /// then is in the way back to the leg.
+    /// offsets, or without the family simple where there is but one a side. wait: that family instead of theirs.
+    /// in_a_row: around the main threat, and from beside it around what then is in the way back to the leg.
     enum class Kind : std::uint8_t { as_set, plateau, more_planes, wait, in_a_row };
     Kind kind = Kind::as_set;
     float speed_share = 1.0F;
@@ -104,7 +104,7 @@ struct Settings {
     cost::Caps caps;
     float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of what is being flown
     std::uint16_t closeness_nearest =
-        0;                  ///< only the k moving threats nearest to the start count for closeness; 0: all
+        0;  ///< only the k moving threats nearest to the start count for closeness; 0: all
     /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
     /// candidates are looked at against those first: the others are looked at once, for the candidate that would be
     /// taken, so that what is found is clear of all (as avoid/guard.hpp sees to once more). The main threat is among
@@ -165,7 +165,7 @@ struct Problem {
     /// At most kMaxMovingSolids. Time-aware: met exactly, as seen from them; swept: as the ball about them. A candidate
     /// that touches one says hits_moving and ThreatKind::obstacle, with the obstacles counted before it.
     std::span<const MovingSolid> moving_solids;
-    float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles and bounds [m]
+    float obstacle_clearance = 0.0F;  ///< own position uncertainty, kept from obstacles and bounds [m]
     const world::Airspace* airspace = nullptr;
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
@@ -173,10 +173,10 @@ struct Problem {
     Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
                                              ///< [m]; clearing offsets account for it
     const geometry::Shape* main_shape =
-        nullptr;              ///< of a main threat that is an obstacle; null: a sphere of main_radius
-    float span_from = 0.0F;   ///< clearing offsets: where they begin and end in the span from smallest to largest,
-    float span_to = 1.0F;     ///< beyond 1 further out; with span_from > 0 the first one lies past it
-    float apex_share = 1.0F;  ///< the apex of a curve lies so many D from the start; 1: at the collision point
+        nullptr;               ///< of a main threat that is an obstacle; null: a sphere of main_radius
+    float span_from = 0.0F;    ///< clearing offsets: where they begin and end in the span from smallest to largest,
+    float span_to = 1.0F;      ///< beyond 1 further out; with span_from > 0 the first one lies past it
+    float apex_share = 1.0F;   ///< the apex of a curve lies so many D from the start; 1: at the collision point
     bool ends_at_top = false;  ///< curves end there, beside the main threat and along the leg
     Seconds begins = 0.0F;     ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
 };

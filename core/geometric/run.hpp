@@ -70,7 +70,7 @@ private:
     [[nodiscard]] float closeness() const noexcept;
     [[nodiscard]] float passing() const noexcept;
     void list_moving() noexcept;
-    [[nodiscard]] std::bitset<kMaxTracks> far_threats(Seconds longest) noexcept;
+    [[nodiscard]] ThreatSet far_threats(Seconds longest) noexcept;
     void build(const CandidateShape& shape) noexcept;
     /// Of a curve.
     [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
@@ -106,10 +106,10 @@ private:
     std::array<Vec3, kMaxPlanes> sides_;
     Clearance clearance_;
     Flown flown_;
-    std::bitset<kMaxTracks> far_;  ///< moving threats beyond Settings::moving_nearest
+    ThreatSet far_{};  ///< moving threats beyond Settings::moving_nearest
     Order order_;
-    Curve curve_;                                          ///< of the candidate at hand
-    path::TimedPath path_;                                 ///< the same, about the start
+    Curve curve_;           ///< of the candidate at hand
+    path::TimedPath path_;  ///< the same, about the start
     /// Threats and solids, about the start; a solid as the ball about it.
     static constexpr std::size_t kMaxMoving = kMaxTracks + kMaxMovingSolids;
     StaticVector<cost::MovingThreat, kMaxMoving> moving_;

@@ -37,8 +37,9 @@ double least_margin(const ProblemFile& file, const path::TimedPath& path)
         for (const NamedThreat& named : file.threats) {
             const geometric::Threat& threat = named.threat;
             const Vec3 apart = threat.motion.position + t * threat.motion.velocity - own;
-            least = std::min(least, static_cast<double>(geometry::box_distance(file.vehicle.limits.half_extents, apart) -
-                                                        threat.radius));
+            least =
+                std::min(least, static_cast<double>(geometry::box_distance(file.vehicle.limits.half_extents, apart) -
+                                                    threat.radius));
         }
     }
     return least;
@@ -105,20 +106,22 @@ INSTANTIATE_TEST_SUITE_P(
                       Named{"attempt_wait", 7, Family::wait, {}}, Named{"attempt_more_planes", 8, {}, {}},
                       Named{"attempt_in_a_row", 9, Family::symmetric, {}}),
     [](const auto& tested) { return std::string(tested.param.file); });
-INSTANTIATE_TEST_SUITE_P(
-    Families, NamedProblem,
-    ::testing::Values(Named{"family_simple", 0, Family::simple, {}}, Named{"family_symmetric", 0, Family::symmetric, {}},
-                      Named{"family_smooth", 0, Family::smooth, {}}, Named{"family_plateau", 0, Family::plateau, {}},
-                      Named{"family_wait", 0, Family::wait, {}}),
-    [](const auto& tested) { return std::string(tested.param.file); });
-INSTANTIATE_TEST_SUITE_P(
-    Shapes, NamedProblem,
-    ::testing::Values(Named{"shape_sphere", 0, {}, ShapeKind::sphere}, Named{"shape_box", 0, {}, ShapeKind::box},
-                      Named{"shape_capsule", 0, {}, ShapeKind::capsule},
-                      Named{"shape_cylinder", 0, {}, ShapeKind::cylinder}, Named{"shape_hull", 0, {}, ShapeKind::hull},
-                      Named{"shape_moving_capsule", 0, {}, ShapeKind::capsule, true},
-                      Named{"shape_moving_box", 0, {}, ShapeKind::box, true}),
-    [](const auto& tested) { return std::string(tested.param.file); });
+INSTANTIATE_TEST_SUITE_P(Families, NamedProblem,
+                         ::testing::Values(Named{"family_simple", 0, Family::simple, {}},
+                                           Named{"family_symmetric", 0, Family::symmetric, {}},
+                                           Named{"family_smooth", 0, Family::smooth, {}},
+                                           Named{"family_plateau", 0, Family::plateau, {}},
+                                           Named{"family_wait", 0, Family::wait, {}}),
+                         [](const auto& tested) { return std::string(tested.param.file); });
+INSTANTIATE_TEST_SUITE_P(Shapes, NamedProblem,
+                         ::testing::Values(Named{"shape_sphere", 0, {}, ShapeKind::sphere},
+                                           Named{"shape_box", 0, {}, ShapeKind::box},
+                                           Named{"shape_capsule", 0, {}, ShapeKind::capsule},
+                                           Named{"shape_cylinder", 0, {}, ShapeKind::cylinder},
+                                           Named{"shape_hull", 0, {}, ShapeKind::hull},
+                                           Named{"shape_moving_capsule", 0, {}, ShapeKind::capsule, true},
+                                           Named{"shape_moving_box", 0, {}, ShapeKind::box, true}),
+                         [](const auto& tested) { return std::string(tested.param.file); });
 
 TEST(NamedProblems, EveryAttemptAndFamilyHasOne)
 {

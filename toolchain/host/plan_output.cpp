@@ -251,9 +251,9 @@ std::string plan_csv(const ProblemFile& file, const PlanOutcome& outcome)
             out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", wide(c.terms.time), wide(c.terms.smoothness),
                           wide(c.terms.smoothness_penalised), wide(c.terms.closeness), wide(c.terms.energy),
                           wide(c.terms.hover_power));
-            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", wide(normalised.time),
-                          wide(normalised.smoothness), wide(normalised.smoothness_penalised),
-                          wide(normalised.closeness), wide(normalised.energy), wide(c.total), wide(c.flip_penalty));
+            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", wide(normalised.time), wide(normalised.smoothness),
+                          wide(normalised.smoothness_penalised), wide(normalised.closeness), wide(normalised.energy),
+                          wide(c.total), wide(c.flip_penalty));
         } else {
             out += ",,,,,,,,,,,,,\n";
         }

@@ -192,7 +192,7 @@ bool find_main(Reader& reader)
     out.main_is_obstacle = flagged == 1 ? reader.main_threats.empty() : out.threats.empty();
     out.main_is_moving_solid = flagged == 1 ? !solids.moving.empty() : !out.moving_solids.empty();
     if (flagged == 1) {
-        out.main = !out.main_is_obstacle     ? reader.main_threats.front()
+        out.main = !out.main_is_obstacle      ? reader.main_threats.front()
                    : out.main_is_moving_solid ? solids.moving.front()
                                               : solids.at_rest.front();
     }

@@ -50,7 +50,7 @@ struct ProblemFile {
     Vec3 velocity = Vec3::Zero();    ///< own, at the start [m/s]
     float distance = 0.0F;           ///< D, given or from the closest approach on the leg [m]
     float main_radius = 0.0F;        ///< R [m]
-    bool main_is_obstacle = false;  ///< or a moving solid
+    bool main_is_obstacle = false;   ///< or a moving solid
     bool main_is_moving_solid = false;
     std::size_t main = 0;  ///< index in threats, obstacles or moving solids
     Seconds meets_main = 0.0F;

@@ -98,9 +98,8 @@ void read_weights(YamlMap& map, geometric::Settings& settings)
     if (smoothness && time && closeness) {
         settings.weights = {*smoothness, *time, *closeness, passing, beyond};
         if (!cost::is_valid(settings.weights)) {
-            map.complain("weights",
-                         "k_S + k_T + k_C + k_A + k_B must be 1, not " +
-                             files::to_text(*smoothness + *time + *closeness + passing + beyond));
+            map.complain("weights", "k_S + k_T + k_C + k_A + k_B must be 1, not " +
+                                        files::to_text(*smoothness + *time + *closeness + passing + beyond));
         }
     }
 }

@@ -21,7 +21,8 @@ void crowd(RandomProblem& p, Random& random)
                           random.uniform(0.0F, 2.0F) * p.problem.distance * p.problem.frame.axes.col(0) +
                           RandomProblem::vector(random, 25.0F);
         p.threats.push_back({{near - random.uniform(0.0F, 2.0F) * arrival * velocity, velocity},
-                             random.uniform(0.2F, 2.0F), random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.2F)});
+                             random.uniform(0.2F, 2.0F),
+                             random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.2F)});
     }
     p.problem.threats = p.threats;
 }
@@ -110,13 +111,14 @@ TEST(MovingNearest, WhatIsFoundWithFewIsClearOfAllAndTakesLessWork)
         }
         const oracle::Box box = p.box();
         for (const Threat& threat : p.threats) {
-            const double start = oracle::box_distance(
-                box, oracle::to_double(Vec3(threat.motion.position - p.problem.frame.origin)));
+            const double start =
+                oracle::box_distance(box, oracle::to_double(Vec3(threat.motion.position - p.problem.frame.origin)));
             if (start < static_cast<double>(threat.radius)) {
                 continue;  // a start inside a margin is judged by the escape rule
             }
             for (float t = 0.0F; t < few.path.duration(); t += 0.05F) {
-                const Vec3 apart = path::sample(few.path, t).position - (threat.motion.position + t * threat.motion.velocity);
+                const Vec3 apart =
+                    path::sample(few.path, t).position - (threat.motion.position + t * threat.motion.velocity);
                 ASSERT_GT(oracle::box_distance(box, oracle::to_double(apart)),
                           static_cast<double>(threat.radius + t * threat.radius_rate) - 2e-3)
                     << "seed " << seed;

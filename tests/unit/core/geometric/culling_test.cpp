@@ -21,8 +21,8 @@ std::vector<world::Obstacle> tunnel(const Vec3& start, float gap, float yaw)
     const Mat3 turned = Eigen::AngleAxisf(yaw, Vec3::UnitZ()).toRotationMatrix();
     const float middle = gap + 0.5F;
     std::vector<world::Obstacle> walls;
-    for (const Vec3& side : {Vec3(0.0F, middle, 0.0F), Vec3(0.0F, -middle, 0.0F), Vec3(0.0F, 0.0F, middle),
-                             Vec3(0.0F, 0.0F, -middle)}) {
+    for (const Vec3& side :
+         {Vec3(0.0F, middle, 0.0F), Vec3(0.0F, -middle, 0.0F), Vec3(0.0F, 0.0F, middle), Vec3(0.0F, 0.0F, -middle)}) {
         const Vec3 half = side.y() != 0.0F ? Vec3(150.0F, 0.5F, 8.0F) : Vec3(150.0F, 8.0F, 0.5F);
         walls.push_back({static_cast<world::ObstacleId>(walls.size()),
                          geometry::make_box(start + turned * (Vec3(100.0F, 0.0F, 0.0F) + side), half, turned)});
@@ -132,11 +132,11 @@ TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
         scene.obstacles = {{1, geometry::make_box(beside, Vec3(200.0F, 1.0F, 40.0F), turned)}};
         const std::uint32_t with_wall = units_of(scene);
         static_cast<void>(scene.run());
-        const auto looked_at = static_cast<std::uint32_t>(scene.result.candidates.size() -
-                                                          scene.count(CandidateStatus::not_evaluated));
+        const auto looked_at =
+            static_cast<std::uint32_t>(scene.result.candidates.size() - scene.count(CandidateStatus::not_evaluated));
         // Each as a curve and in flight: two looks and all points once.
-        const std::uint32_t each = units::kCollected + 4 * units::kSolidLook + units::points_units(25) +
-                                   units::points_units(kMaxPathPoints);
+        const std::uint32_t each =
+            units::kCollected + 4 * units::kSolidLook + units::points_units(25) + units::points_units(kMaxPathPoints);
         EXPECT_LE(with_wall, alone + units::kCollected + looked_at * each) << yaw;
     }
 }
