@@ -180,32 +180,36 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
                           const vehicle::Airframe& airframe, WorkBudget& budget, Workspace& workspace,
                           Result& result) noexcept
 {
-    Problem to_top = problem;
-    to_top.ends_at_top = true;
-    Settings beginning = settings;
-    beginning.waypoints = static_cast<std::uint16_t>(std::max(settings.waypoints / 2 + 1, 8));
-    Settings end = settings;
-    end.waypoints =
-        static_cast<std::uint16_t>(std::min<std::size_t>(settings.waypoints, kMaxPathPoints - beginning.waypoints));
-    end.escape_from_margin = false;  // the whole is judged by it
+    // One of each for both parts: a microcontroller's stack is small.
+    Problem part_of = problem;
+    Settings with = settings;
+    const auto first_points = static_cast<std::uint16_t>(std::max(settings.waypoints / 2 + 1, 8));
     PlanStatus status = PlanStatus::none_available;
+    Vec3 side = problem.preferred_side;
     for (int part = 0; part < kFirstParts; ++part) {
-        status = solve(to_top, beginning, limits, airframe, budget, workspace, result);
+        part_of = problem;
+        part_of.ends_at_top = true;
+        part_of.preferred_side = side;
+        with.waypoints = first_points;
+        with.escape_from_margin = settings.escape_from_margin;
+        status = solve(part_of, with, limits, airframe, budget, workspace, result);
         if (status != PlanStatus::found) {
             break;
         }
         const Candidate& chosen = result.candidates[result.chosen];
-        const Beginning first{chosen.shape, result.side, chosen.duration, chosen.total, beginning.waypoints};
-        Problem rest;
+        const Beginning first{chosen.shape, result.side, chosen.duration, chosen.total, first_points};
         status = PlanStatus::none_available;
-        if (second_part(problem, first, limits, budget, rest)) {
-            status = solve(rest, end, limits, airframe, budget, workspace, result);
+        if (second_part(problem, first, limits, budget, part_of)) {
+            with.waypoints =
+                static_cast<std::uint16_t>(std::min<std::size_t>(settings.waypoints, kMaxPathPoints - first_points));
+            with.escape_from_margin = false;  // the whole is judged by it
+            status = solve(part_of, with, limits, airframe, budget, workspace, result);
         }
         if (status == PlanStatus::found && join_parts(problem, settings, limits, first, budget, workspace, result)) {
             return status;
         }
-        to_top.preferred_side = -first.side;
-        beginning.flip_penalty = kOtherSide;
+        side = -first.side;
+        with.flip_penalty = kOtherSide;
     }
     result.path.points.clear();
     return status == PlanStatus::budget_spent || budget.exhausted() ? PlanStatus::budget_spent
