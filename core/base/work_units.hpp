@@ -68,7 +68,11 @@ inline constexpr std::uint32_t kFarItem = 2;       ///< and one that the whole c
 inline constexpr std::uint32_t kBallLook = 2;      ///< a closer look at a segment and a ball
 inline constexpr std::uint32_t kBallLookPart = 1;  ///< and each part of a segment that is looked at by itself
 inline constexpr std::uint32_t kBallContact = 7;   ///< and an exact contact test
-inline constexpr std::uint32_t kSolidSegment = 1;  ///< segment and solid, before any query
+inline constexpr std::uint32_t kSolidLook = 3;     ///< solid that a curve is checked against, all of it far
+inline constexpr std::uint32_t kSolidSegment = 1;  ///< and each segment of one that may be near
+inline constexpr std::uint32_t kSolidPlanes = 3;   ///< and a closer look at one of these, before any query
+/// All points of a curve against a solid's planes.
+constexpr std::uint32_t points_units(std::size_t points) noexcept { return static_cast<std::uint32_t>(points / 3 + 1); }
 /// By how many shares a solid lengthens the checks of an attempt: as many turns everywhere.
 inline constexpr std::uint32_t kSolidShares = kSoftDoubles ? 28 : 1;
 inline constexpr std::uint32_t kCandidatePart = 3;  ///< part of a candidate's flight

@@ -26,18 +26,24 @@ struct Terms {
     float closeness = 0.0F;             ///< M [1/m]; infinity on contact, 0 with nothing moving
     float energy = 0.0F;                ///< E [J]
     float hover_power = 0.0F;           ///< summed over segments [W]
+    float passing = 0.0F;               ///< where moving threats are passed: 0 behind them, 1 in front of them
+    float beyond = 0.0F;                ///< time from abeam of the collision point until the end [s]
 };
 
 /// The same on [0, 1].
 struct NormalisedTerms {
     float time = 0.0F, smoothness = 0.0F, smoothness_penalised = 0.0F, closeness = 0.0F, energy = 0.0F;
+    float passing = 0.0F, beyond = 0.0F;
 };
 
-/// Weights of S_rp, T and M (Pinheiro eq. 4.35): their sum is 1, closeness <= 0.7, time >= 0.1.
+/// Weights of S_rp, T and M (Pinheiro eq. 4.35), and of two terms that the source leaves for later: the sum of all is
+/// 1, closeness <= 0.7, time >= 0.1.
 struct Weights {
     float smoothness = 0.30F;
     float time = 0.20F;
     float closeness = 0.50F;
+    float passing = 0.0F;
+    float beyond = 0.0F;
 };
 [[nodiscard]] bool is_valid(const Weights& weights) noexcept;
 /// The seven combinations that the source tried, in its order (Pinheiro tab. 4.8); the fifth is the default.
@@ -98,6 +104,38 @@ struct Waypoints {
 /// M over threats (eq. 4.12): half the greatest plus half the mean; 0 for none.
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
 
+/// How one moving threat is passed (the source's collision angle as a cost, Pinheiro 6.2): where the vehicle is at the
+/// waypoint nearest to the threat at that instant, seen from the threat along its velocity, (1 + cosine) / 2: 0
+/// straight behind it, 1 straight in front. The offset at the closest approach is square to the relative velocity, so
+/// that the angle between both courses says how much there is to choose: head-on (180 degrees) and overtaking give one
+/// half on every side, crossing at 90 degrees with equal speeds 0.15 or 0.85.
+struct Passing {
+    float share = 0.5F;
+    float gap = 0.0F;  ///< from the threat's surface there [m]; not above 0 on contact
+};
+/// Path not empty. One half where threat and vehicle are at one point, or the threat stands. O(points).
+[[nodiscard]] Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept;
+/// Over threats, the nearer the more: mean weighted by 1 / gap, gaps of at least kLeastGap; 0 for none.
+class PassingMean {
+public:
+    static constexpr float kLeastGap = 0.1F;
+    void add(const Passing& threat) noexcept
+    {
+        const float weight = 1.0F / (threat.gap > kLeastGap ? threat.gap : kLeastGap);
+        sum_ += weight * threat.share;
+        weights_ += weight;
+    }
+    [[nodiscard]] float value() const noexcept { return weights_ > 0.0F ? sum_ / weights_ : 0.0F; }
+
+private:
+    float sum_ = 0.0F;
+    float weights_ = 0.0F;
+};
+
+/// Time from where the path first is abeam of the collision point, `distance` [m] from the origin along `along` (unit
+/// vector), until its end [s]; 0 where it does not come there. Path not empty. O(points).
+[[nodiscard]] float time_beyond(const Waypoints& path, const Vec3& along, float distance) noexcept;
+
 /// E = E1 + E2 (Pinheiro eq. 4.1 to 4.3, the formula as printed) [J].
 [[nodiscard]] float energy(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
 
@@ -107,9 +145,9 @@ struct Waypoints {
 /// Sum of `rotor_power` over the segments [W].
 [[nodiscard]] float hover_power(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
 
-/// Section 6: natural logarithm, clipped to [0, 1].
+/// Section 6: natural logarithm, clipped to [0, 1]. Time beyond the collision point: over the upper cap of the time.
 [[nodiscard]] NormalisedTerms normalise(const Terms& terms, const Caps& caps) noexcept;
-/// k_S S_rp + k_T T + k_C M on normalised terms.
+/// k_S S_rp + k_T T + k_C M on normalised terms, and the weights' other two.
 [[nodiscard]] float total(const NormalisedTerms& terms, const Weights& weights) noexcept;
 
 /// Times and energies of the two stored reference paths flown by a vehicle.

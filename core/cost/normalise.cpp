@@ -29,9 +29,10 @@ float min_max(float value, float low, float high) noexcept
 bool is_valid(const Weights& weights) noexcept
 {
     constexpr float kRounding = 1e-4F;
-    const float sum = weights.smoothness + weights.time + weights.closeness;
+    const float sum = weights.smoothness + weights.time + weights.closeness + weights.passing + weights.beyond;
     return std::abs(sum - 1.0F) <= kRounding && weights.smoothness >= 0.0F && weights.closeness >= 0.0F &&
-           weights.closeness <= 0.7F + kRounding && weights.time >= 0.1F - kRounding;
+           weights.closeness <= 0.7F + kRounding && weights.time >= 0.1F - kRounding && weights.passing >= 0.0F &&
+           weights.beyond >= 0.0F;
 }
 
 bool is_valid(const Caps& caps) noexcept
@@ -47,13 +48,16 @@ NormalisedTerms normalise(const Terms& terms, const Caps& caps) noexcept
             .smoothness = log_scale(terms.smoothness, -3.0F, 2.5F),
             .smoothness_penalised = log_scale(terms.smoothness_penalised, -3.0F, 3.0F),
             .closeness = log_scale(terms.closeness, -3.0F, 0.001F),
-            .energy = min_max(terms.energy, caps.energy_low, caps.energy_high)};
+            .energy = min_max(terms.energy, caps.energy_low, caps.energy_high),
+            .passing = std::clamp(terms.passing, 0.0F, 1.0F),
+            .beyond = min_max(terms.beyond, 0.0F, kTimeHeadroom * caps.time_high)};
 }
 
 float total(const NormalisedTerms& terms, const Weights& weights) noexcept
 {
-    return weights.smoothness * terms.smoothness_penalised + weights.time * terms.time +
-           weights.closeness * terms.closeness;
+    const float source = weights.smoothness * terms.smoothness_penalised + weights.time * terms.time +
+                         weights.closeness * terms.closeness;
+    return source + weights.passing * terms.passing + weights.beyond * terms.beyond;
 }
 
 }  // namespace jink::cost

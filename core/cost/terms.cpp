@@ -202,6 +202,43 @@ float combined_closeness(std::span<const float> per_threat) noexcept
     return 0.5F * greatest + 0.5F * sum / static_cast<float>(per_threat.size());
 }
 
+Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept
+{
+    const Vec3 velocity = threat.motion.velocity;
+    const auto apart_at = [&](std::size_t i) {
+        return Vec3(Vec3(path.x[i], path.y[i], path.z[i]) - threat.motion.position - path.t[i] * velocity);
+    };
+    std::size_t nearest = 0;
+    float least_squared = std::numeric_limits<float>::infinity();
+    for (std::size_t i = 0; i < path.t.size(); ++i) {
+        const float squared = apart_at(i).squaredNorm();
+        if (squared < least_squared) {
+            least_squared = squared;
+            nearest = i;
+        }
+    }
+    const float distance = std::sqrt(least_squared);
+    const float lengths = distance * velocity.norm();
+    const float cosine = lengths > 0.0F ? apart_at(nearest).dot(velocity) / lengths : 0.0F;
+    return {0.5F + 0.5F * std::clamp(cosine, -1.0F, 1.0F), distance - threat.radius};
+}
+
+float time_beyond(const Waypoints& path, const Vec3& along, float distance) noexcept
+{
+    const auto abscissa = [&](std::size_t i) { return Vec3(path.x[i], path.y[i], path.z[i]).dot(along); };
+    for (std::size_t i = 0; i < path.t.size(); ++i) {
+        const float here = abscissa(i);
+        if (here < distance) {
+            continue;
+        }
+        const float before = i > 0 ? abscissa(i - 1) : here;
+        const float share = here > before ? (here - distance) / (here - before) : 0.0F;
+        const Seconds step = i > 0 ? path.t[i] - path.t[i - 1] : 0.0F;
+        return path.t.back() - (path.t[i] - share * step);
+    }
+    return 0.0F;
+}
+
 float energy(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept
 {
     const float drag = 0.25F * airframe.drag_coefficient * airframe.air_density * airframe.effective_area;

@@ -71,11 +71,10 @@ inline constexpr float kPlateauRise = 0.4F;
 struct Candidate {
     CandidateShape shape;
     CandidateStatus status = CandidateStatus::not_evaluated;
-    float sin_alpha = 0.0F;  ///< sine of the angle between its plane and the ground, >= 0
-    float duration = 0.0F;   ///< [s]
-    world::ThreatRef hit;    ///< what it touches, where status says so
-    cost::Terms terms;       ///< valid when available or chosen
-    cost::NormalisedTerms normalised;
+    float sin_alpha = 0.0F;     ///< sine of the angle between its plane and the ground, >= 0
+    float duration = 0.0F;      ///< [s]
+    world::ThreatRef hit;       ///< what it touches, where status says so
+    cost::Terms terms;          ///< valid when available or chosen; on 0 to 1: cost::normalise with the settings' caps
     float total = 0.0F;         ///< [0, 1]
     float flip_penalty = 0.0F;  ///< added to the total when candidates are compared; 0 on the side being flown
 };

@@ -51,15 +51,28 @@ float Run::smoothness_of(const CandidateShape& shape) const noexcept
     return cost::smoothness(scale_of(problem_) * unit.step, {y.data(), unit.points}, settings_.smoothness);
 }
 
-float Run::closeness() const noexcept
+cost::Waypoints Run::waypoints() const noexcept
 {
     const auto all = [this](const Coordinates& c) { return std::span<const float>(c.data(), curve_.points); };
-    const cost::Waypoints path{all(curve_.x), all(curve_.y), all(curve_.z), all(curve_.t)};
-    std::array<float, kMaxTracks> per_threat{};
+    return {all(curve_.x), all(curve_.y), all(curve_.z), all(curve_.t)};
+}
+
+float Run::closeness() const noexcept
+{
+    std::array<float, kMaxMoving> per_threat{};
     for (std::size_t i = 0; i < moving_.size(); ++i) {
-        per_threat[i] = cost::closeness(path, moving_[i], settings_.closeness);
+        per_threat[i] = cost::closeness(waypoints(), moving_[i], settings_.closeness);
     }
     return cost::combined_closeness({per_threat.data(), moving_.size()});
+}
+
+float Run::passing() const noexcept
+{
+    cost::PassingMean mean;
+    for (const cost::MovingThreat& threat : moving_) {
+        mean.add(cost::passing(waypoints(), threat));
+    }
+    return mean.value();
 }
 
 void Run::assess(Candidate& candidate) noexcept
@@ -70,13 +83,18 @@ void Run::assess(Candidate& candidate) noexcept
     terms.smoothness_penalised =
         cost::penalised_smoothness(terms.smoothness, candidate.sin_alpha, settings_.rotation_penalty);
     terms.closeness = closeness();
+    if (settings_.weights.passing > 0.0F || settings_.all_terms) {
+        terms.passing = passing();
+    }
+    if (settings_.weights.beyond > 0.0F || settings_.all_terms) {
+        terms.beyond = cost::time_beyond(waypoints(), along_, problem_.distance);
+    }
     if (settings_.all_terms) {
         to_timed_path(curve_, Vec3::Zero(), path_);
         terms.energy = cost::energy(path_, airframe_);
         terms.hover_power = cost::hover_power(path_, airframe_);
     }
-    candidate.normalised = cost::normalise(terms, settings_.caps);
-    candidate.total = std::min(cost::total(candidate.normalised, settings_.weights), 1.0F);
+    candidate.total = std::min(cost::total(cost::normalise(terms, settings_.caps), settings_.weights), 1.0F);
     if (problem_.preferred_side == Vec3::Zero() || candidate.shape.family == Family::wait) {
         return;
     }
@@ -156,12 +174,17 @@ Verdict Run::verdict_of(const CandidateShape& shape, WorkBudget& budget) noexcep
         return {CandidateStatus::not_evaluated, {}};
     }
     build(shape);
-    const Verdict curve = settings_.evaluate_all ? Verdict{} : clearance_.check(curve_, budget);
+    const Verdict curve = settings_.evaluate_all ? Verdict{} : clearance_.check(curve_, budget, Clearance::Part::near);
     if (curve.status != CandidateStatus::available) {
         return curve;
     }
     to_timed_path(curve_, Vec3::Zero(), path_);
-    return settings_.verify_flight ? flown_.judge(path_, longest_, budget) : Verdict{};
+    const Verdict flight = settings_.verify_flight ? flown_.judge(path_, longest_, budget) : Verdict{};
+    if (flight.status != CandidateStatus::available || settings_.evaluate_all) {
+        return flight;
+    }
+    const Verdict far = clearance_.check(curve_, budget, Clearance::Part::deferred);
+    return far.status == CandidateStatus::available && settings_.verify_flight ? flown_.judge_deferred(budget) : far;
 }
 
 }  // namespace jink::geometric::detail

@@ -2,22 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 
-#include "core/geometric/curve.hpp"
+#include "core/geometric/extent.hpp"
 #include "core/geometric/planner.hpp"
 
 // What a curve touches. Private to this room.
 
 namespace jink::geometric::detail {
 
-/// Axis-aligned box about the start of the manoeuvre [m].
-struct Extent {
-    Vec3 low = Vec3::Zero();
-    Vec3 high = Vec3::Zero();
-};
 [[nodiscard]] bool is_moving(const Threat& threat) noexcept;
-
-[[nodiscard]] Extent extent_of(const Curve& curve) noexcept;
+/// Where a threat is, and how large, when the manoeuvre begins.
+[[nodiscard]] Threat threat_at_start(const Problem& problem, std::size_t index) noexcept;
 
 /// How far a curve and a ball are from meeting, by bounds on their speeds: segments are passed over while nothing can
 /// happen. Never hides what the exact test would find: the bounds leave more room than that test's rounding takes.
@@ -51,6 +47,11 @@ private:
     float room_ = -1.0F;
 };
 
+/// Threats of a problem, by index.
+using ThreatSet = std::array<bool, kMaxTracks>;
+
+class Planes;
+
 struct Verdict {
     CandidateStatus status = CandidateStatus::available;
     world::ThreatRef hit;
@@ -69,6 +70,9 @@ public:
     /// O(threats + obstacles).
     void collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
 
+    /// Moving threats, by index, that are looked at apart from the others: see `check`. None until this is called.
+    void defer(const ThreatSet& threats) noexcept { deferred_ = threats; }
+
     /// Volumes that moving threats sweep end at this time: the longest candidate's duration (swept mode).
     void sweep_until(Seconds t_max) noexcept { t_max_ = t_max; }
     /// When the volume of threat `index` ends: then, or at the collision point for the main threat where the settings
@@ -77,9 +81,11 @@ public:
 
     /// Solids that no closed form knows, of what was collected.
     [[nodiscard]] std::uint32_t solids() const noexcept;
-    /// First cause in the order airspace, static threats, obstacles, moving threats, each by index. When the budget
-    /// runs out the verdict is not_evaluated. O(points * (threats + obstacles)).
-    [[nodiscard]] Verdict check(const Curve& curve, WorkBudget& budget) const noexcept;
+    /// near: all but deferred threats.
+    enum class Part : std::uint8_t { all, near, deferred };
+    /// First cause in the order airspace, static threats, obstacles, moving threats, moving solids, deferred threats,
+    /// each by index. When the budget runs out the verdict is not_evaluated. O(points * (threats + obstacles)).
+    [[nodiscard]] Verdict check(const Curve& curve, WorkBudget& budget, Part part = Part::all) const noexcept;
 
 private:
     /// A static or moving sphere, or an obstacle with the sphere's closed form.
@@ -101,12 +107,27 @@ private:
             return curve.position(i) - (position + velocity * curve.t[i]);
         }
     };
-    enum class Kind : std::uint8_t { static_ball, obstacle_ball, solid, moving_ball };
+    enum class Kind : std::uint8_t { static_ball, obstacle_ball, solid, moving_solid, moving_ball };
     /// What is within reach, in the order of checking.
     struct Item {
         Kind kind = Kind::solid;
         std::uint16_t index = 0;  ///< of the threat or obstacle
         float shrunk = 0.0F;      ///< by the escape rule, at t = 0
+    };
+
+    /// An obstacle or a moving solid, where that was at t = 0.
+    struct Solid {
+        const geometry::Shape& shape;
+        float shrunk = 0.0F;  ///< by the escape rule, at t = 0
+        float clearance = 0.0F;
+        float rate = 0.0F;
+        float acceleration = 0.0F;
+
+        [[nodiscard]] bool grows() const noexcept { return rate > 0.0F || acceleration > 0.0F; }
+        [[nodiscard]] float clearance_at(Seconds t) const noexcept
+        {
+            return clearance + t * (rate + 0.5F * acceleration * t);
+        }
     };
 
     /// Of the airspace, about the start, for the box's centre.
@@ -120,24 +141,34 @@ private:
     [[nodiscard]] Ball ball_of(std::size_t threat) const noexcept;
     [[nodiscard]] Ball ball_of(const geometry::Shape& shape) const noexcept;
     void add_ball(Kind kind, std::size_t index, const Ball& ball, const Extent& reach, Seconds longest) noexcept;
-    void add_threats(const Extent& reach, Seconds longest, bool moving) noexcept;
+    enum class Which : std::uint8_t { at_rest, moving, deferred };
+    void add_threats(const Extent& reach, Seconds longest, Which which) noexcept;
     void add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept;
+    void add_moving_solid(std::size_t index, const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
+    void add_solid(Kind kind, std::size_t index, const Solid& solid, WorkBudget& budget) noexcept;
+    [[nodiscard]] Solid solid_of(const MovingSolid& solid, float shrunk) const noexcept;
+    [[nodiscard]] Ball ball_about(std::size_t index) const noexcept;
+    [[nodiscard]] static bool is_solid(const Item& item) noexcept
+    {
+        return item.kind == Kind::solid || item.kind == Kind::moving_solid;
+    }
     [[nodiscard]] float shrink_to_clear(float start_margin) const noexcept;
     [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept
     {
         return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
     }
     [[nodiscard]] int escape_parts(Seconds duration) const noexcept;
-    [[nodiscard]] bool leaves(const Curve& curve, std::size_t i, const geometry::Shape& shape, float shrunk,
-                              WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool leaves(const View& view, std::size_t i, const Solid& solid, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches_at_its_top(const View& view, const Planes& planes, const Solid& solid) const noexcept;
+    [[nodiscard]] bool meets(const View& view, std::size_t i, std::size_t end, const Solid& solid,
+                             WorkBudget& budget) const noexcept;
     [[nodiscard]] world::ThreatKind left_airspace(const Curve& curve) const noexcept;
     [[nodiscard]] static bool out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept;
     [[nodiscard]] Item as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept;
-    [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid) const noexcept;
+    [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid, float clearance) const noexcept;
     [[nodiscard]] static Bounds bounds_of(const Problem& problem, const Vec3& half) noexcept;
-    [[nodiscard]] static Verdict verdict_of(const Item& item) noexcept;
+    [[nodiscard]] Verdict verdict_of(const Item& item) const noexcept;
     [[nodiscard]] bool is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept;
-    [[nodiscard]] static std::uint32_t units_of(const Item& item, const Curve& curve) noexcept;
     [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
                                const Vec3& after, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk,
@@ -146,18 +177,19 @@ private:
     [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end,
                                      WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const geometry::Shape& shape, float shrunk,
-                               WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, const Extent& extent, const Item& item,
-                               WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches(const View& view, const Solid& solid, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches_moving_solid(const View& view, const Item& item, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches(const View& view, const Item& item, WorkBudget& budget) const noexcept;
 
     const Problem& problem_;
     const Settings& settings_;
     const Vec3 half_;
     const Bounds bounds_;
     Seconds t_max_ = 0.0F;
-    StaticVector<Item, kMaxTracks + kMaxObstacles> items_;
-    bool needs_extent_ = false;  ///< some item is tested against a curve's extent
+    ThreatSet deferred_{};
+    StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids> items_;
+    std::size_t near_items_ = 0;  ///< the deferred ones come after these
+    bool needs_extent_ = false;   ///< some item is tested against a curve's extent
 };
 
 }  // namespace jink::geometric::detail

@@ -30,11 +30,11 @@ float overshoot(float speed, float acceleration, Seconds lag) noexcept
 
 }  // namespace
 
-UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept
+UnitCurve make_unit_curve(Family family, std::uint16_t waypoints, float length) noexcept
 {
     UnitCurve unit;
     unit.points = waypoints;
-    unit.step = curve_length_x(family, 1.0F) / static_cast<float>(waypoints - 1);
+    unit.step = length / static_cast<float>(waypoints - 1);
     for (std::size_t i = 0; i < unit.points; ++i) {
         unit.f[i] = unit_offset(family, unit.step * static_cast<float>(i));
     }

@@ -21,7 +21,12 @@ struct UnitCurve {
     float step = 0.0F;  ///< of u, which begins with 0
     Coordinates f;
 };
-[[nodiscard]] UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept;
+/// `length`: of it, over D.
+[[nodiscard]] UnitCurve make_unit_curve(Family family, std::uint16_t waypoints, float length) noexcept;
+[[nodiscard]] inline UnitCurve make_unit_curve(Family family, std::uint16_t waypoints) noexcept
+{
+    return make_unit_curve(family, waypoints, curve_length_x(family, 1.0F));
+}
 
 /// Timed waypoints relative to the start. Entries past `points` hold nothing.
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): as above

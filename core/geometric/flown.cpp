@@ -99,7 +99,7 @@ Verdict Flown::judge(const path::TimedPath& path, Seconds swept_until, WorkBudge
     }
     clearance_.collect(extent_of(flight_), flight_.duration(), budget);
     clearance_.sweep_until(std::max(swept_until, flight_.duration()));
-    return clearance_.check(flight_, budget);
+    return clearance_.check(flight_, budget, Clearance::Part::near);
 }
 
 }  // namespace jink::geometric::detail

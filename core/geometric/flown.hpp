@@ -26,10 +26,19 @@ public:
     /// All outlive this.
     Flown(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept;
 
+    /// Moving threats, by index, that `judge` leaves out and `judge_deferred` takes in.
+    void defer(const ThreatSet& threats) noexcept { clearance_.defer(threats); }
+
     /// What the flight along `path`, about the start, touches; volumes that threats sweep end at `swept_until` or with
     /// the flight. not_evaluated, with the budget spent, where it does not allow for flying it to its end.
     /// O(points * (threats + obstacles)).
     [[nodiscard]] Verdict judge(const path::TimedPath& path, Seconds swept_until, WorkBudget& budget) noexcept;
+
+    /// What the flight judged last touches of those that were left out then.
+    [[nodiscard]] Verdict judge_deferred(WorkBudget& budget) const noexcept
+    {
+        return clearance_.check(flight_, budget, Clearance::Part::deferred);
+    }
 
 private:
     [[nodiscard]] bool fly(const path::TimedPath& path, WorkBudget& budget) noexcept;

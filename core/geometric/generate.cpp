@@ -42,7 +42,8 @@ void Run::build(const CandidateShape& shape) noexcept
 
 void Run::generate_curves(Family family) noexcept
 {
-    unit_[static_cast<std::size_t>(family)] = make_unit_curve(family, settings_.waypoints);
+    unit_[static_cast<std::size_t>(family)] =
+        make_unit_curve(family, settings_.waypoints, problem_.ends_at_top ? 1.0F : curve_length_x(family, 1.0F));
     const int planes = settings_.extra_planes + 1;
     for (int i = 0; i < planes; ++i) {
         Candidate candidate;
@@ -107,6 +108,11 @@ void Run::prepare() noexcept
     }
     const Vec3 end = length * along_;
     const Vec3 aside = Vec3::Constant(widest);
+    far_ = far_threats(longest);
+    if (!settings_.evaluate_all) {
+        clearance_.defer(far_);
+        flown_.defer(far_);
+    }
     clearance_.collect({end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside}, longest, budget_);
     if (settings_.security == SecurityMode::swept || settings_.closeness == cost::ClosenessMethod::swept) {
         for (const Candidate& candidate : result_.candidates) {
@@ -120,14 +126,20 @@ void Run::prepare() noexcept
 
 void Run::list_moving() noexcept
 {
-    std::array<float, kMaxTracks> distance{};
+    std::array<float, kMaxMoving> distance{};
     for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
-        const Threat& threat = problem_.threats[i];
-        if (threat.motion.velocity.squaredNorm() > 0.0F) {
+        const Threat threat = threat_at_start(problem_, i);
+        if (threat.motion.velocity.squaredNorm() > 0.0F && !far_[i]) {
             const Vec3 position = threat.motion.position - problem_.frame.origin;
             distance[moving_.size()] = position.norm() - threat.radius;
             moving_.unchecked_push_back({{position, threat.motion.velocity}, threat.radius, clearance_.sweep_end(i)});
         }
+    }
+    for (const MovingSolid& solid : problem_.moving_solids) {
+        const Vec3 position = solid.shape.centre + problem_.begins * solid.velocity - problem_.frame.origin;
+        const float radius = geometry::bounding_radius(solid.shape) + solid.uncertainty;
+        distance[moving_.size()] = position.norm() - radius;
+        moving_.unchecked_push_back({{position, solid.velocity}, radius, longest_});
     }
     while (settings_.closeness_nearest > 0 && moving_.size() > settings_.closeness_nearest) {
         const auto count = static_cast<std::ptrdiff_t>(moving_.size());

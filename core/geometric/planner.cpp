@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/geometric/in_a_row.hpp"
 #include "core/world/conflict.hpp"
 #include "core/world/method.hpp"
 
@@ -97,13 +98,20 @@ bool apply(const Attempt& attempt, vehicle::VehicleKind kind, Settings& settings
     if (settings.offset_rule == OffsetRule::source && (attempt.span_from > 0.0F || attempt.kind != Kind::as_set)) {
         return false;
     }
-    if (attempt.kind == Kind::plateau || waits) {
-        settings.simple = settings.symmetric = settings.smooth = false;
-        settings.plateau = !waits;
+    const bool in_a_row = attempt.kind == Kind::in_a_row;
+    if (in_a_row && settings.security == SecurityMode::swept) {
+        return false;
+    }
+    if (attempt.kind == Kind::plateau || waits || in_a_row) {
+        settings.simple = settings.symmetric = settings.smooth = settings.wait = false;
+        settings.symmetric = in_a_row;
+        settings.plateau = attempt.kind == Kind::plateau;
         settings.wait = waits;
         settings.extra_planes = waits ? 0 : settings.extra_planes;
     }
     if (attempt.kind == Kind::more_planes) {
+        // As many candidates as before: where there is one offset a side already, one of the source's families.
+        settings.simple = settings.simple && (settings.offsets > 2 || !settings.symmetric);
         settings.extra_planes = static_cast<std::uint16_t>(2U * settings.extra_planes + 1U);
         settings.offsets = static_cast<std::uint16_t>(std::max(settings.offsets / 4 * 2, 2));
     }
@@ -131,7 +139,9 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
         tried.span_from = attempt.span_from;
         tried.span_to = attempt.span_to;
         tried.apex_share = attempt.apex_share * problem.apex_share;
-        status = solve(tried, with, limits, airframe, budget, workspace, result);
+        status = attempt.kind == Attempt::Kind::in_a_row
+                     ? detail::solve_in_a_row(tried, with, limits, airframe, budget, workspace, result)
+                     : solve(tried, with, limits, airframe, budget, workspace, result);
         result.attempt = i;
         ++attempts;
         cut_short = cut_short || result.cut_short;

@@ -28,8 +28,9 @@ inline constexpr float kLeastDistanceInRadii = 2.5F;
 /// offsets.
 struct Attempt {
     /// as_set: as the Settings say. plateau: that family instead of theirs. more_planes: twice the planes with half the
-    /// offsets. wait: that family instead of theirs.
-    enum class Kind : std::uint8_t { as_set, plateau, more_planes, wait };
+    /// offsets, or without the family simple where there is but one a side. wait: that family instead of theirs.
+    /// in_a_row: around the main threat, and from beside it around what then is in the way back to the leg.
+    enum class Kind : std::uint8_t { as_set, plateau, more_planes, wait, in_a_row };
     Kind kind = Kind::as_set;
     float speed_share = 1.0F;
     float span_from = 0.0F;
@@ -40,7 +41,7 @@ struct Attempt {
 /// lets crossing traffic pass; an end point further out makes curves gentler; a wall of threats has its gap further
 /// out, or is climbed over at once; what only passes is waited for. A fixed wing does not fly slower, nor wait. How
 /// many of random situations each one solves is told by tests/property/core/geometric (WhatEachAttemptAdds).
-inline constexpr std::array<Attempt, 9> kAttempts{{
+inline constexpr std::array<Attempt, 10> kAttempts{{
     {},
     {.speed_share = 0.6F},
     {.apex_share = 1.5F},
@@ -50,6 +51,7 @@ inline constexpr std::array<Attempt, 9> kAttempts{{
     {.span_from = 2.0F, .span_to = 3.5F},
     {.kind = Attempt::Kind::wait},
     {.kind = Attempt::Kind::more_planes},
+    {.kind = Attempt::Kind::in_a_row, .speed_share = 0.6F, .apex_share = 1.5F},
 }};
 
 /// Waiting candidates: down to each of these shares of the leg's speed, until each of these times the time to the
@@ -102,14 +104,19 @@ struct Settings {
     cost::Caps caps;
     float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of what is being flown
     std::uint16_t closeness_nearest =
-        0;                  ///< only the k moving threats nearest to the start count for closeness; 0: all
+        0;  ///< only the k moving threats nearest to the start count for closeness; 0: all
+    /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
+    /// candidates are looked at against those first: the others are looked at once, for the candidate that would be
+    /// taken, so that what is found is clear of all (as avoid/guard.hpp sees to once more). The main threat is among
+    /// them. 0: all.
+    std::uint16_t moving_nearest = 0;
     float max_cost = 1.0F;  ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
     /// Time-aware mode: a start inside a margin is judged by this rule, so that there is a way out. Off in source mode.
     bool escape_from_margin = true;
     world::EscapeRule escape;
     path::FollowerGains gains;  ///< for verify_flight
     Seconds lookahead = 10.0F;  ///< Planner: conflicts are looked for this far ahead, 1..60 [s]
-    std::uint8_t retries = 8;   ///< Planner: further attempts when nothing is available, 0..8
+    std::uint8_t retries = 9;   ///< Planner: further attempts when nothing is available, 0..9
     /// Planner: until the vehicle answers, planning and the way to the autopilot included, it flies on as it does; the
     /// manoeuvre begins where it then is, 0..1 [s].
     Seconds latency = 0.1F;
@@ -131,6 +138,17 @@ struct Threat {
     float radius_acceleration = 0.0F;  ///< growth by unknown acceleration [m/s2], as radius += a t^2 / 2
 };
 
+/// Moving solids of one problem. They come from problem files and callers of `solve`; a Situation's tracks are spheres.
+inline constexpr std::size_t kMaxMovingSolids = 4;
+/// A convex solid that moves without turning and without end.
+struct MovingSolid {
+    geometry::Shape shape;             ///< where it is at t = 0
+    Vec3 velocity = Vec3::Zero();      ///< [m/s]
+    float uncertainty = 0.0F;          ///< kept from its surface at t = 0, own uncertainty included [m]
+    float radius_rate = 0.0F;          ///< its growth, as a Threat's [m/s]
+    float radius_acceleration = 0.0F;  ///< [m/s2]
+};
+
 /// Problem::main when the main threat is none of the moving or static spheres.
 inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
@@ -144,7 +162,10 @@ struct Problem {
     std::size_t main = kNoThreat;                ///< index of the main threat in `threats`, or kNoThreat
     std::span<const Threat> threats;             ///< at most kMaxTracks
     std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
-    float obstacle_clearance = 0.0F;             ///< own position uncertainty, kept from obstacles and bounds [m]
+    /// At most kMaxMovingSolids. Time-aware: met exactly, as seen from them; swept: as the ball about them. A candidate
+    /// that touches one says hits_moving and ThreatKind::obstacle, with the obstacles counted before it.
+    std::span<const MovingSolid> moving_solids;
+    float obstacle_clearance = 0.0F;  ///< own position uncertainty, kept from obstacles and bounds [m]
     const world::Airspace* airspace = nullptr;
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
@@ -152,10 +173,12 @@ struct Problem {
     Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
                                              ///< [m]; clearing offsets account for it
     const geometry::Shape* main_shape =
-        nullptr;              ///< of a main threat that is an obstacle; null: a sphere of main_radius
-    float span_from = 0.0F;   ///< clearing offsets: where they begin and end in the span from smallest to largest,
-    float span_to = 1.0F;     ///< beyond 1 further out; with span_from > 0 the first one lies past it
-    float apex_share = 1.0F;  ///< the apex of a curve lies so many D from the start; 1: at the collision point
+        nullptr;               ///< of a main threat that is an obstacle; null: a sphere of main_radius
+    float span_from = 0.0F;    ///< clearing offsets: where they begin and end in the span from smallest to largest,
+    float span_to = 1.0F;      ///< beyond 1 further out; with span_from > 0 the first one lies past it
+    float apex_share = 1.0F;   ///< the apex of a curve lies so many D from the start; 1: at the collision point
+    bool ends_at_top = false;  ///< curves end there, beside the main threat and along the leg
+    Seconds begins = 0.0F;     ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
 };
 
 /// What curves scale with [m].

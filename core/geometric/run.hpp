@@ -61,11 +61,16 @@ private:
     }
     [[nodiscard]] std::uint32_t units_of_costs() const noexcept
     {
-        return units::kCostPoint * settings_.waypoints + units::closeness_units(settings_.waypoints, moving_.size());
+        const std::size_t each = settings_.weights.passing > 0.0F ? 2 : 1;
+        return units::kCostPoint * settings_.waypoints +
+               units::closeness_units(settings_.waypoints, each * moving_.size());
     }
     [[nodiscard]] float smoothness_of(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] cost::Waypoints waypoints() const noexcept;
     [[nodiscard]] float closeness() const noexcept;
+    [[nodiscard]] float passing() const noexcept;
     void list_moving() noexcept;
+    [[nodiscard]] ThreatSet far_threats(Seconds longest) noexcept;
     void build(const CandidateShape& shape) noexcept;
     /// Of a curve.
     [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
@@ -101,10 +106,13 @@ private:
     std::array<Vec3, kMaxPlanes> sides_;
     Clearance clearance_;
     Flown flown_;
+    ThreatSet far_{};  ///< moving threats beyond Settings::moving_nearest
     Order order_;
-    Curve curve_;                                          ///< of the candidate at hand
-    path::TimedPath path_;                                 ///< the same, about the start
-    StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start
+    Curve curve_;           ///< of the candidate at hand
+    path::TimedPath path_;  ///< the same, about the start
+    /// Threats and solids, about the start; a solid as the ball about it.
+    static constexpr std::size_t kMaxMoving = kMaxTracks + kMaxMovingSolids;
+    StaticVector<cost::MovingThreat, kMaxMoving> moving_;
 };
 
 }  // namespace jink::geometric::detail

@@ -22,6 +22,12 @@ bool is_valid(const Threat& t) noexcept
            is_not_negative(t.radius_rate) && is_not_negative(t.radius_acceleration);
 }
 
+bool is_valid(const MovingSolid& s) noexcept
+{
+    return geometry::is_valid(s.shape) && is_finite(s.velocity) && is_not_negative(s.uncertainty) &&
+           is_not_negative(s.radius_rate) && is_not_negative(s.radius_acceleration);
+}
+
 bool is_valid(const PathFrame& frame) noexcept
 {
     return is_finite(frame.origin) && frame.axes.allFinite() && frame.axes.isUnitary(1e-3F);
@@ -31,13 +37,16 @@ bool has_valid_scales(const Problem& p) noexcept
 {
     return is_valid(p.frame) && is_positive(p.distance) && is_positive(p.main_radius) && is_positive(p.speed) &&
            is_not_negative(p.obstacle_clearance) && is_not_negative(p.body_radius) && is_not_negative(p.span_from) &&
-           is_not_negative(p.span_to) && is_positive(p.apex_share) && is_finite(p.start_velocity) &&
-           is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
+           is_not_negative(p.span_to) && is_positive(p.apex_share) && is_not_negative(p.begins) &&
+           is_finite(p.start_velocity) && is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
 bool is_valid(const Problem& p) noexcept
 {
     return has_valid_scales(p) && p.threats.size() <= kMaxTracks && p.obstacles.size() <= kMaxObstacles &&
+           p.moving_solids.size() <= kMaxMovingSolids &&
+           std::all_of(p.moving_solids.begin(), p.moving_solids.end(),
+                       [](const MovingSolid& s) { return is_valid(s); }) &&
            (p.main == kNoThreat || p.main < p.threats.size()) &&
            std::all_of(p.threats.begin(), p.threats.end(), [](const Threat& t) { return is_valid(t); }) &&
            std::all_of(p.obstacles.begin(), p.obstacles.end(),

@@ -174,8 +174,10 @@ TEST(ProblemFile, EverySettingReachesThePlanner)
         kHead + kThreat +
         "collision_box_side: 3\n"
         "settings:\n  l: 6\n  n: 5\n  kinds: [symmetric]\n  waypoints: 31\n  security: swept\n  offset_rule: source\n"
-        "  closeness: swept\n  smoothness: deviation\n  weights: {k_S: 0.4, k_T: 0.1, k_C: 0.5}\n  k_p: 0.5\n"
+        "  closeness: swept\n  smoothness: deviation\n  weights: {k_S: 0.3, k_T: 0.1, k_C: 0.4, k_A: 0.15, k_B: "
+        "0.05}\n  k_p: 0.5\n"
         "  flip_penalty: 0.2\n  max_cost: 0.8\n  source_drop_margin: 1\n  closeness_nearest: 2\n  retries: 1\n"
+        "  moving_nearest: 3\n  check_units: 777\n"
         "  main_swept_to_collision_point: true\n  check_acceleration: false\n  verify_flight: false\n"
         "  escape_from_margin: false\n");
     const geometric::Settings& s = p.settings;
@@ -188,9 +190,13 @@ TEST(ProblemFile, EverySettingReachesThePlanner)
     EXPECT_EQ(s.offset_rule, geometric::OffsetRule::source);
     EXPECT_EQ(s.closeness, cost::ClosenessMethod::swept);
     EXPECT_EQ(s.smoothness, cost::SmoothnessMethod::deviation);
-    EXPECT_EQ(s.weights.smoothness, 0.4F);
+    EXPECT_EQ(s.weights.smoothness, 0.3F);
     EXPECT_EQ(s.weights.time, 0.1F);
-    EXPECT_EQ(s.weights.closeness, 0.5F);
+    EXPECT_EQ(s.weights.closeness, 0.4F);
+    EXPECT_EQ(s.weights.passing, 0.15F);
+    EXPECT_EQ(s.weights.beyond, 0.05F);
+    EXPECT_EQ(s.moving_nearest, 3);
+    EXPECT_EQ(s.check_units, 777U);
     EXPECT_EQ(s.rotation_penalty, 0.5F);
     EXPECT_EQ(s.flip_penalty, 0.2F);
     EXPECT_EQ(s.max_cost, 0.8F);
@@ -334,7 +340,8 @@ TEST(ProblemFile, EveryComplaint)
         {setting("kinds: []"), "settings.kinds: at least one of simple, symmetric, smooth, plateau, wait is wanted"},
         {setting("kinds: all"), "settings.kinds: 'all' is none of: simple, symmetric, smooth, plateau, wait, both"},
         {setting("kinds: {a: 1}"), "settings.kinds: a list is wanted, not a mapping"},
-        {setting("weights: {k_S: 0.3, k_T: 0.2, k_C: 0.6}"), "settings.weights: k_S + k_T + k_C must be 1, not 1.1"},
+        {setting("weights: {k_S: 0.3, k_T: 0.2, k_C: 0.6}"),
+         "settings.weights: k_S + k_T + k_C + k_A + k_B must be 1, not 1.1"},
         {setting("weights: {k_S: 0.3, k_T: 0.2}"), "missing key 'settings.weights.k_C'"},
         {setting("weights: {k_S: 0.1, k_T: 0.1, k_C: 0.8}"), "settings.weights.k_C: '0.8' is out of range: 0 to 0.7"},
         {setting("weights: {k_S: 0.35, k_T: 0.05, k_C: 0.6}"),

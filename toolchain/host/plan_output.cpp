@@ -52,7 +52,9 @@ std::string_view words_of(CandidateStatus status)
 
 const std::string& main_name(const ProblemFile& file)
 {
-    return file.main_is_obstacle ? file.obstacles[file.main].name : file.threats[file.main].name;
+    return file.main_is_moving_solid ? file.moving_solids[file.main].name
+           : file.main_is_obstacle   ? file.obstacles[file.main].name
+                                     : file.threats[file.main].name;
 }
 
 std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
@@ -112,12 +114,17 @@ ordered_json json_of(const ProblemFile& file, const Candidate& c)
                         {"smoothness_penalised", json_of(c.terms.smoothness_penalised)},
                         {"closeness", json_of(c.terms.closeness)},
                         {"energy", json_of(c.terms.energy)},
-                        {"hover_power", json_of(c.terms.hover_power)}};
-        out["normalised"] = {{"time", json_of(c.normalised.time)},
-                             {"smoothness", json_of(c.normalised.smoothness)},
-                             {"smoothness_penalised", json_of(c.normalised.smoothness_penalised)},
-                             {"closeness", json_of(c.normalised.closeness)},
-                             {"energy", json_of(c.normalised.energy)}};
+                        {"hover_power", json_of(c.terms.hover_power)},
+                        {"passing", json_of(c.terms.passing)},
+                        {"beyond", json_of(c.terms.beyond)}};
+        const cost::NormalisedTerms normalised = cost::normalise(c.terms, file.settings.caps);
+        out["normalised"] = {{"time", json_of(normalised.time)},
+                             {"smoothness", json_of(normalised.smoothness)},
+                             {"smoothness_penalised", json_of(normalised.smoothness_penalised)},
+                             {"closeness", json_of(normalised.closeness)},
+                             {"energy", json_of(normalised.energy)},
+                             {"passing", json_of(normalised.passing)},
+                             {"beyond", json_of(normalised.beyond)}};
         out["total"] = json_of(c.total);
         out["flip_penalty"] = json_of(c.flip_penalty);
     }
@@ -169,7 +176,13 @@ std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit)
 {
     switch (hit.kind) {
     case world::ThreatKind::track: return hit.index < file.threats.size() ? file.threats[hit.index].name : "?";
-    case world::ThreatKind::obstacle: return hit.index < file.obstacles.size() ? file.obstacles[hit.index].name : "?";
+    case world::ThreatKind::obstacle: {
+        const std::size_t at_rest = file.obstacles.size();
+        const std::size_t moving = hit.index - at_rest;  // counted behind those at rest
+        return hit.index < at_rest                  ? file.obstacles[hit.index].name
+               : moving < file.moving_solids.size() ? file.moving_solids[moving].name
+                                                    : "?";
+    }
     case world::ThreatKind::floor: return "floor";
     case world::ThreatKind::ceiling: return "ceiling";
     case world::ThreatKind::keep_in: return "keep-in distance";
@@ -203,10 +216,11 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
         out += format("%3zu  %-9s  %5.1f  %+6.2f  %-20.40s  %6.3f", i, std::string(to_string(c.shape.family)).c_str(),
                       degrees(c.shape.plane), wide(c.shape.offset), status.c_str(), wide(c.duration));
         if (has_cost(c)) {
+            const cost::NormalisedTerms normalised = cost::normalise(c.terms, file.settings.caps);
             out += format(" %7.4f %7.4f %7.4f %8.2f %9.1f | %.3f %.3f %.3f %.3f | %.4f", wide(c.terms.smoothness),
                           wide(c.terms.smoothness_penalised), wide(c.terms.closeness), wide(c.terms.energy),
-                          wide(c.terms.hover_power), wide(c.normalised.time), wide(c.normalised.smoothness_penalised),
-                          wide(c.normalised.closeness), wide(c.normalised.energy), wide(c.total));
+                          wide(c.terms.hover_power), wide(normalised.time), wide(normalised.smoothness_penalised),
+                          wide(normalised.closeness), wide(normalised.energy), wide(c.total));
             out += c.flip_penalty > 0.0F ? format(" +%.2f side change", wide(c.flip_penalty)) : std::string();
         }
         out += "\n";
@@ -233,12 +247,13 @@ std::string plan_csv(const ProblemFile& file, const PlanOutcome& outcome)
         out += hit.empty() ? std::string() : "\"" + hit + "\"";
         out += format(",%.9g", wide(c.duration));
         if (has_cost(c)) {
+            const cost::NormalisedTerms normalised = cost::normalise(c.terms, file.settings.caps);
             out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", wide(c.terms.time), wide(c.terms.smoothness),
                           wide(c.terms.smoothness_penalised), wide(c.terms.closeness), wide(c.terms.energy),
                           wide(c.terms.hover_power));
-            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", wide(c.normalised.time),
-                          wide(c.normalised.smoothness), wide(c.normalised.smoothness_penalised),
-                          wide(c.normalised.closeness), wide(c.normalised.energy), wide(c.total), wide(c.flip_penalty));
+            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", wide(normalised.time), wide(normalised.smoothness),
+                          wide(normalised.smoothness_penalised), wide(normalised.closeness), wide(normalised.energy),
+                          wide(c.total), wide(c.flip_penalty));
         } else {
             out += ",,,,,,,,,,,,,\n";
         }

@@ -23,7 +23,7 @@ struct Reader {
     Complaints& complaints;
     ProblemFile out;
     std::vector<std::size_t> main_threats;
-    std::vector<std::size_t> main_obstacles;
+    detail::MainObstacles main_obstacles;
     bool has_distance = false;
     bool has_main_radius = false;
     float leg_length = 0.0F;
@@ -175,8 +175,9 @@ void read_airspace(Reader& reader)
 bool find_main(Reader& reader)
 {
     ProblemFile& out = reader.out;
-    const std::size_t flagged = reader.main_threats.size() + reader.main_obstacles.size();
-    const std::size_t all = out.threats.size() + out.obstacles.size();
+    const detail::MainObstacles& solids = reader.main_obstacles;
+    const std::size_t flagged = reader.main_threats.size() + solids.at_rest.size() + solids.moving.size();
+    const std::size_t all = out.threats.size() + out.obstacles.size() + out.moving_solids.size();
     if (all == 0) {
         reader.complaints.push_back(
             {0, 0, "no threat and no obstacle: there is nothing to plan around", reader.root.file()});
@@ -188,8 +189,13 @@ bool find_main(Reader& reader)
              reader.root.file()});
         return false;
     }
-    out.main_is_obstacle = flagged == 1 ? !reader.main_obstacles.empty() : out.threats.empty();
-    out.main = flagged == 0 ? 0 : (out.main_is_obstacle ? reader.main_obstacles.front() : reader.main_threats.front());
+    out.main_is_obstacle = flagged == 1 ? reader.main_threats.empty() : out.threats.empty();
+    out.main_is_moving_solid = flagged == 1 ? !solids.moving.empty() : !out.moving_solids.empty();
+    if (flagged == 1) {
+        out.main = !out.main_is_obstacle      ? reader.main_threats.front()
+                   : out.main_is_moving_solid ? solids.moving.front()
+                                              : solids.at_rest.front();
+    }
     return true;
 }
 
@@ -199,7 +205,9 @@ void meet_main(Reader& reader)
 {
     ProblemFile& out = reader.out;
     geometry::Motion motion;
-    if (out.main_is_obstacle) {
+    if (out.main_is_moving_solid) {
+        motion = {out.moving_solids[out.main].solid.shape.centre, out.moving_solids[out.main].solid.velocity};
+    } else if (out.main_is_obstacle) {
         motion.position = out.obstacles[out.main].obstacle.shape.centre;
     } else {
         motion = out.threats[out.main].threat.motion;
@@ -217,11 +225,14 @@ void meet_main(Reader& reader)
             return;
         }
     }
+    out.meets_main = when;
     out.main_centre_offset = motion.position + when * motion.velocity - (out.start + out.distance * out.direction);
     if (reader.has_main_radius) {
         return;
     }
-    if (out.main_is_obstacle) {
+    if (out.main_is_moving_solid) {
+        out.main_radius = geometry::bounding_radius(out.moving_solids[out.main].solid.shape);
+    } else if (out.main_is_obstacle) {
         out.main_radius = geometry::bounding_radius(out.obstacles[out.main].obstacle.shape);
     } else {
         const geometric::Threat& threat = out.threats[out.main].threat;
@@ -281,13 +292,18 @@ geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
 {
     storage.threats.clear();
     storage.obstacles.clear();
+    storage.moving_solids.clear();
     for (const NamedThreat& threat : file.threats) {
         storage.threats.push_back(threat.threat);
     }
     for (const NamedObstacle& obstacle : file.obstacles) {
         storage.obstacles.push_back(obstacle.obstacle);
     }
+    for (const NamedMovingSolid& solid : file.moving_solids) {
+        storage.moving_solids.push_back(solid.solid);
+    }
     geometric::Problem problem;
+    problem.moving_solids = storage.moving_solids;
     problem.frame = geometric::make_path_frame(file.start, file.direction);
     problem.distance = file.distance;
     problem.main_radius = file.main_radius;
@@ -300,6 +316,10 @@ geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
     problem.main_centre_offset = file.main_centre_offset;
     if (!file.main_is_obstacle) {
         problem.main = file.main;
+    } else if (file.main_is_moving_solid) {
+        storage.main_shape = file.moving_solids[file.main].solid.shape;
+        storage.main_shape.centre += file.meets_main * file.moving_solids[file.main].solid.velocity;
+        problem.main_shape = &storage.main_shape;
     } else if (storage.obstacles[file.main].shape.kind != geometry::ShapeKind::sphere) {
         problem.main_shape = &storage.obstacles[file.main].shape;
     }

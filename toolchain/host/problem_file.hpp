@@ -26,13 +26,20 @@ struct NamedObstacle {
     world::Obstacle obstacle;
 };
 
+/// An obstacle of the file that has a velocity.
+struct NamedMovingSolid {
+    std::string name;
+    geometric::MovingSolid solid;
+};
+
 /// What a file says, checked: `problem_of` turns it into what the planner solves. Copies share the vertices of hulls.
 struct ProblemFile {
     std::string title;
     files::Vehicle vehicle;
     geometric::Settings settings;
     std::vector<NamedThreat> threats;
-    std::vector<NamedObstacle> obstacles;
+    std::vector<NamedObstacle> obstacles;  ///< at rest
+    std::vector<NamedMovingSolid> moving_solids;
     std::vector<std::shared_ptr<const std::vector<Vec3>>> hulls;  ///< vertices that obstacles refer to
     bool has_airspace = false;
     world::Airspace airspace;
@@ -43,8 +50,10 @@ struct ProblemFile {
     Vec3 velocity = Vec3::Zero();    ///< own, at the start [m/s]
     float distance = 0.0F;           ///< D, given or from the closest approach on the leg [m]
     float main_radius = 0.0F;        ///< R [m]
-    bool main_is_obstacle = false;
-    std::size_t main = 0;  ///< index in threats or obstacles
+    bool main_is_obstacle = false;   ///< or a moving solid
+    bool main_is_moving_solid = false;
+    std::size_t main = 0;  ///< index in threats, obstacles or moving solids
+    Seconds meets_main = 0.0F;
     Vec3 main_centre_offset = Vec3::Zero();
     Vec3 flown_side = Vec3::Zero();
 };
@@ -59,6 +68,8 @@ struct ProblemFile {
 struct ProblemStorage {
     std::vector<geometric::Threat> threats;
     std::vector<world::Obstacle> obstacles;
+    std::vector<geometric::MovingSolid> moving_solids;
+    geometry::Shape main_shape;  ///< of a moving solid, where it is met
 };
 /// The problem as the planner wants it. It refers to `file` and `storage`, which outlive it.
 [[nodiscard]] geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage);

@@ -80,7 +80,7 @@ geometry::Shape read_shape(std::size_t kind, YamlMap& map, const std::string& fi
 
 }  // namespace
 
-void read_obstacles(YamlMap& root, ProblemFile& out, std::vector<std::size_t>& mains, files::Complaints& complaints)
+void read_obstacles(YamlMap& root, ProblemFile& out, MainObstacles& mains, files::Complaints& complaints)
 {
     const std::string& file = root.file();
     const auto list = root.list("obstacles");
@@ -101,8 +101,10 @@ void read_obstacles(YamlMap& root, ProblemFile& out, std::vector<std::size_t>& m
         NamedObstacle obstacle;
         obstacle.name = map.text("name").value_or("obstacle " + std::to_string(i));
         obstacle.obstacle.id = static_cast<world::ObstacleId>(i);
+        const Vec3 velocity = map.vector("velocity", kVelocity).value_or(Vec3::Zero());
+        const bool moves = velocity != Vec3::Zero();
         if (map.boolean("main").value_or(false)) {
-            mains.push_back(i);
+            (moves ? mains.moving : mains.at_rest).push_back(moves ? out.moving_solids.size() : out.obstacles.size());
         }
         std::size_t shapes = 0;
         for (std::size_t kind = 0; kind < kShapes.size(); ++kind) {
@@ -123,7 +125,15 @@ void read_obstacles(YamlMap& root, ProblemFile& out, std::vector<std::size_t>& m
         if (complaints.size() == before && !geometry::is_valid(obstacle.obstacle.shape)) {
             complaints.push_back(files::complaint_at((*list)[i].Mark(), file, where + ": is no solid"));
         }
-        out.obstacles.push_back(std::move(obstacle));
+        if (moves) {
+            out.moving_solids.push_back({std::move(obstacle.name), {obstacle.obstacle.shape, velocity}});
+        } else {
+            out.obstacles.push_back(std::move(obstacle));
+        }
+    }
+    if (out.moving_solids.size() > geometric::kMaxMovingSolids) {
+        root.complain("obstacles", std::to_string(out.moving_solids.size()) + " of them move, more than " +
+                                       std::to_string(geometric::kMaxMovingSolids));
     }
 }
 

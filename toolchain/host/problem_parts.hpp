@@ -16,7 +16,11 @@ inline constexpr files::Range kSize{0.01F, 1000.0F};
 
 void read_settings(files::YamlMap& root, const cost::Caps& caps, geometric::Settings& settings,
                    files::Complaints& complaints);
-void read_obstacles(files::YamlMap& root, ProblemFile& out, std::vector<std::size_t>& mains,
-                    files::Complaints& complaints);
+/// Which of them say that they are the main threat.
+struct MainObstacles {
+    std::vector<std::size_t> at_rest;
+    std::vector<std::size_t> moving;
+};
+void read_obstacles(files::YamlMap& root, ProblemFile& out, MainObstacles& mains, files::Complaints& complaints);
 
 }  // namespace jink::host::detail

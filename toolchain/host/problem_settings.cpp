@@ -77,6 +77,8 @@ void read_counts(YamlMap& map, geometric::Settings& settings)
     put_whole(settings.extra_planes, map.whole("n", {0.0F, 31.0F}));
     put_whole(settings.waypoints, map.whole("waypoints", {8.0F, static_cast<float>(kMaxPathPoints)}));
     put_whole(settings.closeness_nearest, map.whole("closeness_nearest", {0.0F, static_cast<float>(kMaxTracks)}));
+    put_whole(settings.moving_nearest, map.whole("moving_nearest", {0.0F, static_cast<float>(kMaxTracks)}));
+    put_whole(settings.check_units, map.whole("check_units", {0.0F, 1e6F}));
     put_whole(settings.retries, map.whole("retries", {0.0F, static_cast<float>(geometric::kAttempts.size() - 1)}));
 }
 
@@ -90,12 +92,14 @@ void read_weights(YamlMap& map, geometric::Settings& settings)
     const auto smoothness = weights->number("k_S", {0.0F, 1.0F}, kNeed);
     const auto time = weights->number("k_T", {0.1F, 1.0F}, kNeed);
     const auto closeness = weights->number("k_C", {0.0F, 0.7F}, kNeed);
+    const float passing = weights->number("k_A", {0.0F, 0.9F}).value_or(0.0F);
+    const float beyond = weights->number("k_B", {0.0F, 0.9F}).value_or(0.0F);
     weights->finish();
     if (smoothness && time && closeness) {
-        settings.weights = {*smoothness, *time, *closeness};
+        settings.weights = {*smoothness, *time, *closeness, passing, beyond};
         if (!cost::is_valid(settings.weights)) {
-            map.complain("weights",
-                         "k_S + k_T + k_C must be 1, not " + files::to_text(*smoothness + *time + *closeness));
+            map.complain("weights", "k_S + k_T + k_C + k_A + k_B must be 1, not " +
+                                        files::to_text(*smoothness + *time + *closeness + passing + beyond));
         }
     }
 }

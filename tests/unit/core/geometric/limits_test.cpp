@@ -6,6 +6,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <limits>
+#include <vector>
 
 #include "core/geometric/planner.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
@@ -101,6 +102,11 @@ TEST(SettingsLimits, CostAndLookaheadHaveTheirRanges)
     expect_settings<float>(false, lookahead, {below(1.0F), above(60.0F), kInfinity, kNan});
     const auto weight = [](Settings& s, float x) { s.weights.time = x; };
     expect_settings<float>(false, weight, {kNan});
+    const auto passing = [](Settings& s, float x) { s.weights.passing = x; };
+    expect_settings<float>(true, passing, {0.0F});
+    expect_settings<float>(false, passing, {0.1F, -0.1F, kInfinity, kNan});
+    const auto beyond = [](Settings& s, float x) { s.weights.beyond = x; };
+    expect_settings<float>(false, beyond, {0.1F, -0.1F, kInfinity, kNan});
     const auto cap = [](Settings& s, float x) { s.caps.energy_low = x; };
     expect_settings<float>(false, cap, {kNan});
 }
@@ -132,6 +138,30 @@ TEST(ProblemLimits, ScalesArePositiveAndFinite)
     const auto speed = [](Scene& s, float x) { s.problem.speed = x; };
     expect_problem<float>(true, speed, {0.1F, 9.0F});
     expect_problem<float>(false, speed, {0.0F, -1.0F, kInfinity, kNan});
+}
+
+TEST(ProblemLimits, MovingSolidsAreAsManyAsFitAndSolids)
+{
+    const auto status_with = [](std::size_t count, const MovingSolid& solid) {
+        Scene scene;
+        const std::vector<MovingSolid> solids(count, solid);
+        scene.problem.moving_solids = solids;
+        return scene.run();
+    };
+    MovingSolid far{geometry::make_box(Vec3(0.0F, 90.0F, 50.0F), Vec3::Ones()), Vec3::UnitX()};
+    EXPECT_EQ(status_with(kMaxMovingSolids, far), PlanStatus::found);
+    EXPECT_EQ(status_with(kMaxMovingSolids + 1, far), PlanStatus::bad_input);
+    for (float MovingSolid::*amount :
+         {&MovingSolid::uncertainty, &MovingSolid::radius_rate, &MovingSolid::radius_acceleration}) {
+        for (const float bad : {-kLeast, kInfinity, kNan}) {
+            MovingSolid solid = far;
+            solid.*amount = bad;
+            EXPECT_EQ(status_with(1, solid), PlanStatus::bad_input) << bad;
+        }
+    }
+    far.velocity.x() = kNan;
+    EXPECT_EQ(status_with(1, far), PlanStatus::bad_input);
+    EXPECT_EQ(status_with(1, {geometry::make_sphere(Vec3::Zero(), -1.0F), Vec3::UnitX()}), PlanStatus::bad_input);
 }
 
 TEST(ProblemLimits, AmountsAreZeroOrMoreAndFinite)

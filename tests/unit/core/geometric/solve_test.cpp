@@ -24,7 +24,7 @@ TEST(Solve, FindsAWayRoundOneStaticThreat)
     const Candidate& chosen = scene.result.candidates[scene.result.chosen];
     EXPECT_EQ(chosen.status, CandidateStatus::chosen);
     EXPECT_EQ(chosen.shape.plane, 0.0F);  // level costs least
-    EXPECT_EQ(chosen.normalised.closeness, 0.0F);
+    EXPECT_EQ(cost::normalise(chosen.terms, scene.settings.caps).closeness, 0.0F);
     EXPECT_EQ(scene.result.path.points.size(), 25U);
     EXPECT_EQ(scene.result.path.points.front().position, Vec3(0.0F, 0.0F, 50.0F));
     EXPECT_FLOAT_EQ(scene.result.path.duration(), chosen.duration);
@@ -307,7 +307,7 @@ TEST(SettingsValid, EachRange)
     EXPECT_TRUE(invalid([](Settings& s) { s.latency = -0.1F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.latency = 1.1F; }));
     EXPECT_TRUE(invalid([](Settings& s) { s.latency = kNan; }));
-    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 9; }));
+    EXPECT_TRUE(invalid([](Settings& s) { s.retries = 10; }));
 }
 
 TEST(Solve, SettingsThatTakeTimeAwareAndSweptApart)

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Spheres, at rest or moving, and what is a sphere to a taller box.
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/work_units.hpp"
+#include "core/geometric/clearance.hpp"
+#include "core/geometry/glance.hpp"
+#include "core/geometry/sweep.hpp"
+
+namespace jink::geometric::detail {
+
+/// Segment `i`, the curve being `before` and `after` from the ball's centre at its ends.
+bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+                        const Vec3& after, WorkBudget& budget) const noexcept
+{
+    // At its end and not shrunk the ball is at its largest.
+    const geometry::Glance whole = geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1]));
+    if (whole == geometry::Glance::apart) {
+        return false;
+    }
+    const bool shrinks = shrink_at(shrunk, curve.t[i]) > 0.0F;
+    return (!shrinks && whole == geometry::Glance::touches) ||
+           touches_in_parts(curve, i, ball, shrunk, before, after,
+                            shrinks ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1, budget);
+}
+
+bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+                                 const Vec3& after, int parts, WorkBudget& budget) const noexcept
+{
+    Vec3 from = before;
+    for (int part = 1; part <= parts; ++part) {
+        // The size at the part's end: never too small.
+        const float share = static_cast<float>(part) / static_cast<float>(parts);
+        const Vec3 to = before + share * (after - before);
+        const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
+        const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
+        if (!budget.spend(units::kBallLookPart)) {
+            return true;
+        }
+        if (radius >= 0.0F && geometry::glance(ball.half, from, to, radius) != geometry::Glance::apart &&
+            (!budget.spend(units::kBallContact) ||
+             geometry::contact_interval(ball.half, {}, {-from, from - to}, radius, 1.0F))) {
+            return true;
+        }
+        from = to;
+    }
+    return false;
+}
+
+bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk, WorkBudget& budget) const noexcept
+{
+    Room room(curve.fastest, ball.velocity.cwiseAbs().maxCoeff(), ball.radius_at(curve.duration()), curve.duration());
+    std::size_t i = 0;
+    Vec3 before = ball.apart(curve, 0);
+    bool near = false;
+    while (i + 1 < curve.points) {
+        // Where there was no room a segment before there will hardly be any.
+        if (!near) {
+            room.look(before, ball.half, curve.t[i]);
+            std::size_t next = i;
+            while (next + 1 < curve.points && room.lasts_until(curve.t[next + 1])) {
+                ++next;
+            }
+            if (next > i) {
+                i = next;
+                before = ball.apart(curve, i);
+                continue;
+            }
+        }
+        near = !near;
+        if (!budget.spend(units::kBallLook)) {
+            return true;
+        }
+        const Vec3 after = ball.apart(curve, i + 1);
+        if (touches(curve, i, ball, shrunk, before, after, budget)) {
+            return true;
+        }
+        before = after;
+        ++i;
+    }
+    return false;
+}
+
+bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end,
+                              WorkBudget& budget) const noexcept
+{
+    const Vec3 to = ball.position + ball.velocity * end;
+    const float radius = ball.radius_at(end);
+    const Extent path = about(ball.position, to);
+    if (apart(path.low, path.high, extent.low, extent.high, ball.half, radius)) {
+        return false;
+    }
+    const float slack = kExtentRounding * (1.0F + path.low.cwiseAbs().cwiseMax(path.high.cwiseAbs()).maxCoeff());
+    for (std::size_t i = 0; i + 1 < curve.points; ++i) {
+        const Vec3 a = curve.position(i);
+        const Vec3 b = curve.position(i + 1);
+        const Extent piece = about(a, b);
+        if (!budget.spend(units::kBallLookPart)) {
+            return true;
+        }
+        if (!apart(path.low, path.high, piece.low, piece.high, ball.half, radius) &&
+            (!budget.spend(units::kCapsuleQuery) ||
+             geometry::swept_distance(ball.half, a, b, ball.position, to) <= radius + slack)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace jink::geometric::detail

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a plan costs, in units of its budget: it grows with what is near, not with what there is.
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include <Eigen/Geometry>
+
+#include "core/base/work_units.hpp"
+#include "tests/unit/core/geometric/scene.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+
+/// Walls, roof and ground of a straight tunnel about the leg, 300 m long, `gap` from the leg's line; turned about the
+/// leg's start by `yaw`.
+std::vector<world::Obstacle> tunnel(const Vec3& start, float gap, float yaw)
+{
+    const Mat3 turned = Eigen::AngleAxisf(yaw, Vec3::UnitZ()).toRotationMatrix();
+    const float middle = gap + 0.5F;
+    std::vector<world::Obstacle> walls;
+    for (const Vec3& side :
+         {Vec3(0.0F, middle, 0.0F), Vec3(0.0F, -middle, 0.0F), Vec3(0.0F, 0.0F, middle), Vec3(0.0F, 0.0F, -middle)}) {
+        const Vec3 half = side.y() != 0.0F ? Vec3(150.0F, 0.5F, 8.0F) : Vec3(150.0F, 8.0F, 0.5F);
+        walls.push_back({static_cast<world::ObstacleId>(walls.size()),
+                         geometry::make_box(start + turned * (Vec3(100.0F, 0.0F, 0.0F) + side), half, turned)});
+    }
+    return walls;
+}
+
+/// A tunnel that something crosses through (walls do not stop it), on a leg at `yaw` from x.
+Scene crossed_tunnel(float yaw)
+{
+    Scene scene;
+    const Vec3 along(std::cos(yaw), std::sin(yaw), 0.0F);
+    scene.settings = Settings{};
+    scene.problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), along);
+    scene.problem.start_velocity = 5.0F * along;
+    const Vec3 across(-along.y(), along.x(), 0.0F);
+    scene.threats = {{{scene.problem.frame.origin + 20.0F * along - 12.0F * across, 3.0F * across}, 1.0F}};
+    scene.obstacles = tunnel(scene.problem.frame.origin, 2.5F, yaw);
+    return scene;
+}
+
+PlanStatus run_with_retries(Scene& scene, std::size_t& attempts)
+{
+    static Workspace workspace;
+    scene.problem.threats = scene.threats;
+    scene.problem.obstacles = scene.obstacles;
+    return solve_with_retries(scene.problem, scene.settings, scene.limits, scene.airframe, scene.budget, workspace,
+                              scene.result, attempts);
+}
+
+TEST(Culling, ATunnelOfLongBoxesIsWaitedInWithinOneAttemptsWork)
+{
+    for (const float yaw : {0.0F, 0.7F, -2.2F}) {
+        Scene scene = crossed_tunnel(yaw);
+        scene.settings.simple = scene.settings.symmetric = false;
+        scene.settings.wait = true;
+        scene.settings.check_units /= 5;  // one share, not the five of four solids
+        scene.problem.threats = scene.threats;
+        ASSERT_EQ(scene.run(), PlanStatus::found) << yaw;
+        EXPECT_EQ(scene.result.candidates[scene.result.chosen].shape.family, Family::wait);
+        EXPECT_FALSE(scene.result.cut_short);
+        for (const path::PathPoint& point : scene.result.path.points) {
+            const Vec3 off = point.position - scene.problem.frame.origin;
+            EXPECT_LT((off - off.dot(scene.problem.frame.axes.col(0)) * scene.problem.frame.axes.col(0)).norm(), 1e-3F);
+        }
+    }
+}
+
+TEST(Culling, ATunnelIsPlannedInWithTheCoprocessorsBudget)
+{
+    for (const float yaw : {0.0F, 0.7F, -2.2F}) {
+        Scene scene = crossed_tunnel(yaw);
+        scene.budget = WorkBudget{20'000};
+        std::size_t attempts = 0;
+        ASSERT_EQ(run_with_retries(scene, attempts), PlanStatus::found) << yaw;
+        EXPECT_EQ(scene.result.candidates[scene.result.chosen].shape.family, Family::wait);
+        EXPECT_FALSE(scene.result.cut_short);
+    }
+}
+
+/// Units of a plan, and that it ended.
+std::uint32_t units_of(Scene scene)
+{
+    EXPECT_EQ(scene.run(), PlanStatus::found);
+    EXPECT_FALSE(scene.result.cut_short);
+    return scene.budget.spent();
+}
+
+/// How often threats are collected: once for all curves and once for each flight.
+constexpr std::uint32_t kMostCollections = 1 + 32;
+
+TEST(Culling, WhatIsFarCostsItsBoundingTest)
+{
+    Scene scene;
+    scene.settings = Settings{};
+    const std::uint32_t alone = units_of(scene);
+    const std::array<geometry::Shape, 4> far{
+        geometry::make_sphere(Vec3(20.0F, 400.0F, 50.0F), 5.0F),
+        geometry::make_box(Vec3(20.0F, -400.0F, 50.0F), Vec3(40.0F, 5.0F, 5.0F)),
+        geometry::make_capsule(Vec3(0.0F, 300.0F, 50.0F), Vec3(60.0F, 310.0F, 70.0F), 3.0F),
+        geometry::make_cylinder(Vec3(0.0F, -300.0F, 50.0F), Vec3(60.0F, -310.0F, 70.0F), 3.0F)};
+    for (std::size_t i = 0; i < kMaxObstacles; ++i) {
+        scene.obstacles.push_back({static_cast<world::ObstacleId>(i), far[i % far.size()]});
+    }
+    const std::uint32_t with_obstacles = units_of(scene);
+    EXPECT_GT(with_obstacles, alone);
+    EXPECT_LE(with_obstacles, alone + kMostCollections * units::kCollected * kMaxObstacles);
+    const std::size_t still = kMaxTracks - scene.threats.size();
+    for (std::size_t i = 0; i < still; ++i) {
+        scene.threats.push_back(Scene::still(Vec3(20.0F, 500.0F + static_cast<float>(i), 50.0F), 1.0F));
+    }
+    EXPECT_LE(units_of(scene), with_obstacles + kMostCollections * units::kCollected * still);
+}
+
+/// A long wall beside the leg, within reach of its candidates by any ball about it, is seen to be far by its faces.
+TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
+{
+    for (const float yaw : {0.0F, 0.4F, 2.0F}) {
+        Scene scene;
+        scene.settings = Settings{};
+        const Mat3 turned = Eigen::AngleAxisf(yaw, Vec3::UnitZ()).toRotationMatrix();
+        scene.problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), turned.col(0));
+        scene.problem.start_velocity = 5.0F * turned.col(0);
+        scene.threats = {Scene::still(Vec3(0.0F, 0.0F, 50.0F) + 20.0F * turned.col(0), 1.0F)};
+        const std::uint32_t alone = units_of(scene);
+        const Vec3 beside = scene.problem.frame.origin + turned * Vec3(0.0F, 12.0F, 0.0F);
+        scene.obstacles = {{1, geometry::make_box(beside, Vec3(200.0F, 1.0F, 40.0F), turned)}};
+        const std::uint32_t with_wall = units_of(scene);
+        static_cast<void>(scene.run());
+        const auto looked_at =
+            static_cast<std::uint32_t>(scene.result.candidates.size() - scene.count(CandidateStatus::not_evaluated));
+        // Each as a curve and in flight: two looks and all points once.
+        const std::uint32_t each =
+            units::kCollected + 4 * units::kSolidLook + units::points_units(25) + units::points_units(kMaxPathPoints);
+        EXPECT_LE(with_wall, alone + units::kCollected + looked_at * each) << yaw;
+    }
+}
+
+/// Of a candidate on a straight line, whatever its speed: one query for each solid that bounds do not part from it.
+TEST(Culling, AStraightCandidateTakesOneQueryForASolid)
+{
+    std::array<Vec3, 6> prism{};
+    for (std::size_t i = 0; i < prism.size(); ++i) {
+        const float angle = kPi * static_cast<float>(i) / 3.0F + 0.3F;
+        prism[i] = Vec3(i % 2 == 0 ? 12.0F : -12.0F, 2.0F * std::cos(angle), 2.0F * std::sin(angle));
+    }
+    const auto units_for = [&](std::uint16_t waypoints) {
+        Scene scene;
+        scene.settings = Settings{};
+        scene.settings.simple = scene.settings.symmetric = false;
+        scene.settings.wait = scene.settings.evaluate_all = true;
+        scene.settings.verify_flight = false;
+        scene.settings.waypoints = waypoints;
+        scene.threats = {{{Vec3(20.0F, -12.0F, 50.0F), Vec3(0.0F, 3.0F, 0.0F)}, 1.0F}};
+        const std::uint32_t alone = units_of(scene);
+        scene.obstacles = {{1, geometry::make_hull(prism, Vec3(15.0F, 2.2F, 53.0F))}};
+        return units_of(scene) - alone;
+    };
+    // Without one query for all of the way, each further waypoint would bring a query for each of the candidates.
+    const std::uint32_t few = units_for(13);
+    const std::uint32_t many = units_for(61);
+    EXPECT_GT(few, kWaits * (units::kSolidQuery + units::kExactTurn)) << "a query it is";
+    EXPECT_LE(many, few + 48 * kWaits * (units::kSolidSegment + 1));
+}
+
+}  // namespace
+}  // namespace jink::geometric
