@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/geometric/along_reference.hpp"
 #include "core/world/conflict.hpp"
 #include "core/world/method.hpp"
 
@@ -49,6 +50,9 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
         const geometry::Shape& shape = situation.obstacles[conflict.threat.index].shape;
         problem.main_shape = shape.kind == geometry::ShapeKind::sphere ? nullptr : &shape;
     }
+    if (way.ahead.route != nullptr) {
+        detail::follow_route(situation, way, conflict, problem);
+    }
     return problem;
 }
 
@@ -66,6 +70,9 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     // Within a margin the escape rule counts from where the vehicle is.
     if (world::separation_at(situation, problem.frame.origin + way, latency, budget).margin < 0.0F) {
         return 0.0F;
+    }
+    if (problem.ahead.route != nullptr) {
+        return detail::move_start_along(situation, way, least, problem) ? latency : 0.0F;
     }
     problem.frame = make_path_frame(problem.frame.origin + way, left);
     problem.distance = left.norm();
@@ -154,7 +161,8 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     result_.candidates.clear();
     result_.chosen = 0;
     result_.cut_short = false;
-    if (!situation.reference.valid || !is_valid(settings_) || situation.tracks.size() > kMaxTracks) {
+    const path::Route* const route = situation.reference.route;
+    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) || situation.tracks.size() > kMaxTracks) {
         return PlanStatus::bad_input;
     }
     const world::Way way = world::way_of(situation);

@@ -8,6 +8,7 @@
 #include "core/base/work_budget.hpp"
 #include "core/geometric/candidate.hpp"
 #include "core/path/follower.hpp"
+#include "core/path/route.hpp"
 #include "core/world/world.hpp"
 
 namespace jink::geometric {
@@ -136,8 +137,12 @@ inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
 /// One planning problem on its own, free of Situation: what `jink plan`, the campaign and the reproduction tests solve.
 struct Problem {
-    PathFrame frame;           ///< start of the manoeuvre and leg direction
-    float distance = 0.0F;     ///< D: start to the collision point [m]
+    /// Start of the manoeuvre and direction of the leg, or of the way at the start. Whatever y is: planes count from it.
+    PathFrame frame;
+    /// Null route: the leg is straight. Otherwise what the manoeuvre follows: straight along x, then the route, on which
+    /// it ends. Outlives the solving.
+    path::RouteAhead ahead;
+    float distance = 0.0F;     ///< D: along the leg, or the reference, from the start to the collision point [m]
     float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets [m]
     float body_radius = 0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan and the 2.5 R
                                ///< rule [m]; 0: main_radius
@@ -157,6 +162,15 @@ struct Problem {
     float span_to = 1.0F;     ///< beyond 1 further out; with span_from > 0 the first one lies past it
     float apex_share = 1.0F;  ///< the apex of a curve lies so many D from the start; 1: at the collision point
 };
+
+/// Along what `ahead` says.
+[[nodiscard]] Vec3 collision_point_along(const Problem& problem) noexcept;
+/// Where the leg or the reference is at D [m].
+[[nodiscard]] inline Vec3 collision_point(const Problem& problem) noexcept
+{
+    return problem.ahead.route == nullptr ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
+                                          : collision_point_along(problem);
+}
 
 /// What curves scale with [m].
 [[nodiscard]] inline float scale_of(const Problem& problem) noexcept { return problem.apex_share * problem.distance; }

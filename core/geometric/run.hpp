@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/work_units.hpp"
+#include "core/geometric/along_reference.hpp"
 #include "core/geometric/clearance.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometric/flown.hpp"
@@ -47,7 +48,8 @@ public:
 
 private:
     void generate() noexcept;
-    void generate_curves(Family family) noexcept;
+    void generate_curves(const Problem& seen) noexcept;
+    void generate_curves(Family family, const Problem& seen) noexcept;
     void generate_waits() noexcept;
     void prepare() noexcept;
     [[nodiscard]] Wait waiting(float share, Seconds until) const noexcept;
@@ -63,10 +65,18 @@ private:
     {
         return units::kCostPoint * settings_.waypoints + units::closeness_units(settings_.waypoints, moving_.size());
     }
+    [[nodiscard]] std::uint32_t units_of_curve() const noexcept
+    {
+        const std::uint32_t each = units::kCandidatePoint + (problem_.ahead.route != nullptr ? units::kRoutePoint : 0);
+        return each * settings_.waypoints;
+    }
     [[nodiscard]] float smoothness_of(const CandidateShape& shape) const noexcept;
     [[nodiscard]] float closeness() const noexcept;
     void list_moving() noexcept;
     void build(const CandidateShape& shape) noexcept;
+    void build_along(const CandidateShape& shape) noexcept;
+    [[nodiscard]] bool can_be_flown(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] bool is_flyable_along(const CandidateShape& shape) const noexcept;
     /// Of a curve.
     [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
     {
@@ -102,6 +112,7 @@ private:
     Clearance clearance_;
     Flown flown_;
     Order order_;
+    BaseCurve base_;                                       ///< with a route
     Curve curve_;                                          ///< of the candidate at hand
     path::TimedPath path_;                                 ///< the same, about the start
     StaticVector<cost::MovingThreat, kMaxTracks> moving_;  ///< about the start

@@ -30,9 +30,15 @@ bool is_valid(const PathFrame& frame) noexcept
     return is_finite(frame.origin) && frame.axes.allFinite() && frame.axes.isUnitary(1e-3F);
 }
 
+bool is_valid(const path::RouteAhead& ahead) noexcept
+{
+    return ahead.route == nullptr ||
+           (!ahead.route->empty() && not_negative(ahead.straight) && not_negative(ahead.joined_at));
+}
+
 bool has_valid_scales(const Problem& p) noexcept
 {
-    return is_valid(p.frame) && positive(p.distance) && positive(p.main_radius) && positive(p.speed) &&
+    return is_valid(p.frame) && is_valid(p.ahead) && positive(p.distance) && positive(p.main_radius) && positive(p.speed) &&
            not_negative(p.obstacle_clearance) && not_negative(p.body_radius) && not_negative(p.span_from) &&
            not_negative(p.span_to) && positive(p.apex_share) && is_finite(p.start_velocity) &&
            is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
@@ -84,9 +90,16 @@ bool make_candidate_path(const Problem& problem, const CandidateShape& shape, st
         return false;
     }
     Curve curve;
-    detail::make_curve(detail::make_unit_curve(shape.family, waypoints), problem.frame.axes.col(0),
-                       detail::plane_direction(problem.frame, shape.plane), scale_of(problem), shape.offset,
-                       problem.speed, limits, curve);
+    const detail::UnitCurve unit = detail::make_unit_curve(shape.family, waypoints);
+    const Vec3 along = problem.frame.axes.col(0);
+    const Vec3 side = detail::plane_direction(problem.frame, shape.plane);
+    if (problem.ahead.route == nullptr) {
+        detail::make_curve(unit, along, side, scale_of(problem), shape.offset, problem.speed, limits, curve);
+    } else {
+        detail::BaseCurve base;
+        detail::make_base(unit, problem, limits, base);
+        detail::make_curve_along(unit, base, along, side, shape.offset, problem.speed, limits, curve);
+    }
     detail::to_timed_path(curve, problem.frame.origin, out);
     return true;
 }
