@@ -41,7 +41,7 @@ inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 ///
 /// With a route: on a straight leg of it as above, but ending with that leg; on an arc of radius R, `off` metres beside
 /// it, the way aims at the point sqrt(R) + 2 off ahead, kRejoinLookahead at most. Near a segment's end it aims at that
-/// end, but 1 m or 2 off ahead at least, and from there on it is the route. A route of one leg gives the leg's way.
+/// end, but 1 m or 2 off ahead at least, and from there on it is the route. On a route of one leg it is the leg's way.
 /// O(segments).
 [[nodiscard]] Way way_of(const Situation& situation) noexcept;
 /// The same from another position, with a reference that has a route.
