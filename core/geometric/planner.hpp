@@ -91,7 +91,7 @@ struct Settings {
     /// Otherwise costs come first, and no candidate dearer than the chosen one is looked at: the choice is the same.
     bool evaluate_all = false;
     /// Work that one attempt may spend on checking candidates, cheapest first, as curves (but with evaluate_all) and in
-    /// flight; as much again for each solid within reach that no closed form knows. Those that it does not reach are
+    /// flight; as much again for each solid within reach that no closed form knows, and along a route. Those that it does not reach are
     /// not taken.
     std::uint32_t check_units = 1600;
     cost::SmoothnessMethod smoothness = cost::SmoothnessMethod::curvature;

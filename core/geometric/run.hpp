@@ -58,7 +58,9 @@ private:
     [[nodiscard]] std::uint32_t units_of_checks() const noexcept
     {
         constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-        const std::uint64_t shares = 1 + std::uint64_t{units::kSolidShares} * clearance_.solids();
+        // Curves along a route are dearer: one share more.
+        const std::uint64_t shares =
+            (problem_.ahead.route != nullptr ? 2U : 1U) + std::uint64_t{units::kSolidShares} * clearance_.solids();
         return static_cast<std::uint32_t>(std::min(kMost, settings_.check_units * shares));
     }
     [[nodiscard]] std::uint32_t units_of_costs() const noexcept
