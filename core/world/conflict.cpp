@@ -17,18 +17,19 @@ using detail::draws_apart;
 using detail::met_now;
 using detail::path_of;
 using detail::Phase;
+using detail::Phases;
 using geometry::Motion;
 
 /// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro
 /// tab. 4.1).
 constexpr float kLargestRadius = 3.0F;
 
-std::array<Phase, 2> phases_of(const Way& way, Seconds lookahead) noexcept
+Phases phases_of(const Way& way, Seconds lookahead) noexcept
 {
     const Seconds arrival = way.speed > 0.0F ? std::min(way.length / way.speed, lookahead) : 0.0F;
     const Vec3 velocity = way.direction * way.speed;
     const Vec3 end = way.origin + velocity * arrival;
-    return {Phase{{way.origin, velocity}, 0.0F, arrival}, Phase{{end, Vec3::Zero()}, arrival, lookahead}};
+    return {{Phase{{way.origin, velocity}, 0.0F, arrival}, Phase{{end, Vec3::Zero()}, arrival, lookahead}}};
 }
 
 Vec3 way_position(const Way& way, Seconds t) noexcept
@@ -112,8 +113,9 @@ bool detail::obstacle_conflict(const Situation& situation, const Way& way, std::
     if (out.time_to_loss > 0.0F) {
         return true;
     }
-    const path::TimedPath path = path_of(phases_of(way, lookahead), false);
-    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), path, budget);
+    const auto points = path_of(phases_of(way, lookahead), false);
+    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), {points.data(), points.size()},
+                        budget);
 }
 
 Way way_of(const Situation& situation) noexcept

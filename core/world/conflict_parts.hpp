@@ -25,9 +25,14 @@ struct Phase {
     Seconds end;
 };
 
+/// Flown to its end, then hovering there.
+struct Phases : std::array<Phase, 2> {
+    static constexpr std::size_t kMost = 2;
+};
+
 /// Closest approach of the two centres over all phases.
-template <class Phases>
-Seconds closest_time(const Phases& phases, const Track& track) noexcept
+template <class Parts>
+Seconds closest_time(const Parts& phases, const Track& track) noexcept
 {
     Seconds best_time = 0.0F;
     float best = (track.position - phases[0].own.position).squaredNorm();
@@ -74,36 +79,36 @@ Seconds loss_within(const Situation& situation, const Piece& phase, const Track&
     return -1.0F;
 }
 
-/// The way as a path: flown to its end, and hovered there until `until` where `hovers`.
-template <class Phases>
-path::TimedPath path_of(const Phases& phases, bool hovers) noexcept
+/// The way as points of a path: flown to its end, and hovered there until `until` where `hovers`.
+template <class Parts>
+auto path_of(const Parts& phases, bool hovers) noexcept
 {
-    path::TimedPath path;
+    StaticVector<path::PathPoint, Parts::kMost + 1> points;
     for (const auto& phase : phases) {
         if (phase.end > phase.start) {
-            path.points.unchecked_push_back({phase.own.position, phase.own.velocity, phase.start});
+            points.unchecked_push_back({phase.own.position, phase.own.velocity, phase.start});
         }
         if (!hovers) {
             break;
         }
     }
     const auto& last = phases[hovers ? phases.size() - 1 : 0];
-    const Vec3 velocity = path.points.empty() ? Vec3(Vec3::Zero()) : path.points.back().velocity;
+    const Vec3 velocity = points.empty() ? Vec3(Vec3::Zero()) : points.back().velocity;
     const Seconds span = last.end - last.start;
-    path.points.unchecked_push_back({last.own.position + last.own.velocity * span, velocity, last.end});
-    return path;
+    points.unchecked_push_back({last.own.position + last.own.velocity * span, velocity, last.end});
+    return points;
 }
 
 /// A way that starts inside a margin and draws apart from this one threat for good. Nothing on it could mend the start.
 inline bool draws_apart(const Situation& situation, std::span<const Track> tracks, std::span<const Obstacle> obstacles,
-                 const path::TimedPath& path, WorkBudget& budget) noexcept
+                        std::span<const path::PathPoint> points, WorkBudget& budget) noexcept
 {
     const Airspace open;
     const Situation alone{
         situation.now, situation.own, situation.limits, situation.airframe, situation.reference, tracks,
         obstacles,     open,          nullptr,          situation.k_sigma};
     const Cutoff sign_alone{0.0F, 0.0F, {}};
-    return least_separation(alone, path, path.duration(), budget, kDrawingApart, sign_alone).margin >= 0.0F;
+    return least_separation(alone, points, points.back().time, budget, kDrawingApart, sign_alone).margin >= 0.0F;
 }
 
 /// What could not be looked at to the end is met now. True.
@@ -125,8 +130,8 @@ inline bool comes_first(const Conflict& a, const Conflict& b) noexcept
 
 /// Of one track with a way, flown as `phases` say, the own position on it at a time being `position_at`. Two phases are
 /// a unit of units::kConflict.
-template <class Phases, class PositionAt>
-bool predict(const Situation& situation, const Phases& phases, const PositionAt& position_at, std::size_t track_index,
+template <class Parts, class PositionAt>
+bool predict(const Situation& situation, const Parts& phases, const PositionAt& position_at, std::size_t track_index,
              WorkBudget& budget, Conflict& out) noexcept
 {
     const Track& track = situation.tracks[track_index];
@@ -141,8 +146,9 @@ bool predict(const Situation& situation, const Phases& phases, const PositionAt&
     const Seconds closest = closest_time(phases, track);
     if (loss <= 0.0F) {
         WorkBudget apart(std::min(kDrawingApartBudget, budget.left()));
-        const bool leaves =
-            draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, path_of(phases, true), apart);
+        const auto points = path_of(phases, true);
+        const bool leaves = draws_apart(situation, situation.tracks.subspan(track_index, 1), {},
+                                        {points.data(), points.size()}, apart);
         static_cast<void>(budget.spend(apart.spent()));  // never more than was left
         if (leaves) {
             return false;

@@ -17,6 +17,7 @@ inline constexpr float kChordAngle = 0.4F;
 inline constexpr std::size_t kWayChords = 10;
 /// Straight beginning, segments, chords of arcs, and hovering at the end.
 inline constexpr std::size_t kWayPieces = kMaxRouteSegments + kWayChords + 2;
+static_assert(kWayPieces < kMaxPathPoints, "a path along a route has to fit");
 /// What a chord flown evenly is off the arc more than its middle, and rounding [m].
 inline constexpr float kChordSlack = 2e-3F;
 
@@ -31,6 +32,8 @@ struct WayPiece {
 /// A way with a route for `lookahead` seconds. 36 bytes per piece.
 class RoutePieces {
 public:
+    static constexpr std::size_t kMost = kWayPieces;
+
     RoutePieces(const Situation& situation, const Way& way, Seconds lookahead) noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept { return pieces_.size(); }
