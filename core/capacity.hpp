@@ -41,7 +41,8 @@ static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
 static_assert(kMaxPathPoints >= 8 && kMaxPathPoints <= 1024);
 
-/// Legs and arcs of a route: the one being flown and those that a manoeuvre may reach past its end. One more is refused.
+/// Legs and arcs of a route: the one being flown and those that a manoeuvre may reach past its end. One more is
+/// refused.
 inline constexpr std::size_t kMaxRouteSegments = JINK_MAX_ROUTE_SEGMENTS;
 static_assert(kMaxRouteSegments >= 1 && kMaxRouteSegments <= 16);
 

@@ -125,8 +125,8 @@ void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& 
         const Vec3 position = base.position(i) + (offset * unit.f[i]) * carried;
         if (i > 0) {
             const Vec3 step = position - before;
-            now += std::max({step.norm() / speed, step.z() / limits.max_climb, -step.z() / limits.max_descent,
-                             kLeastDuration});
+            now += std::max(
+                {step.norm() / speed, step.z() / limits.max_climb, -step.z() / limits.max_descent, kLeastDuration});
         }
         out.x[i] = position.x();
         out.y[i] = position.y();

@@ -10,10 +10,10 @@ namespace jink::geometric::detail {
 namespace {
 
 /// Farthest end of a curve in D: twice the scale, with the farthest apex of all attempts.
-constexpr float kFarthestEnd = kSymmetricLength * std::max_element(kAttempts.begin(), kAttempts.end(),
-                                                                   [](const Attempt& a, const Attempt& b) {
-                                                                       return a.apex_share < b.apex_share;
-                                                                   })->apex_share;
+constexpr float kFarthestEnd =
+    kSymmetricLength * std::max_element(kAttempts.begin(), kAttempts.end(), [](const Attempt& a, const Attempt& b) {
+                           return a.apex_share < b.apex_share;
+                       })->apex_share;
 
 }  // namespace
 
@@ -35,9 +35,8 @@ bool move_start_along(const world::Situation& situation, const Vec3& by, float l
     const world::Way way = world::way_along(situation, start);
     const Vec3 threat = collision_point(problem) + problem.main_centre_offset;
     const float on_route = problem.distance - problem.ahead.straight + problem.ahead.joined_at;
-    const float distance = on_route >= way.ahead.joined_at
-                               ? way.ahead.straight + (on_route - way.ahead.joined_at)
-                               : (collision_point(problem) - start).dot(way.direction);
+    const float distance = on_route >= way.ahead.joined_at ? way.ahead.straight + (on_route - way.ahead.joined_at)
+                                                           : (collision_point(problem) - start).dot(way.direction);
     if (!(distance > 0.0F) || distance < least) {
         return false;
     }

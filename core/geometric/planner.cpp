@@ -162,7 +162,8 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     result_.chosen = 0;
     result_.cut_short = false;
     const path::Route* const route = situation.reference.route;
-    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) || situation.tracks.size() > kMaxTracks) {
+    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
+        situation.tracks.size() > kMaxTracks) {
         return PlanStatus::bad_input;
     }
     const world::Way way = world::way_of(situation);

@@ -91,8 +91,8 @@ struct Settings {
     /// Otherwise costs come first, and no candidate dearer than the chosen one is looked at: the choice is the same.
     bool evaluate_all = false;
     /// Work that one attempt may spend on checking candidates, cheapest first, as curves (but with evaluate_all) and in
-    /// flight; as much again for each solid within reach that no closed form knows, and along a route. Those that it does not reach are
-    /// not taken.
+    /// flight; as much again for each solid within reach that no closed form knows, and along a route. Those that it
+    /// does not reach are not taken.
     std::uint32_t check_units = 1600;
     cost::SmoothnessMethod smoothness = cost::SmoothnessMethod::curvature;
     cost::ClosenessMethod closeness = cost::ClosenessMethod::time_aware;
@@ -137,10 +137,11 @@ inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
 /// One planning problem on its own, free of Situation: what `jink plan`, the campaign and the reproduction tests solve.
 struct Problem {
-    /// Start of the manoeuvre and direction of the leg, or of the way at the start. Whatever y is: planes count from it.
+    /// Start of the manoeuvre and direction of the leg, or of the way at the start. Whatever y is: planes count from
+    /// it.
     PathFrame frame;
-    /// Null route: the leg is straight. Otherwise what the manoeuvre follows: straight along x, then the route, on which
-    /// it ends. Outlives the solving.
+    /// Null route: the leg is straight. Otherwise what the manoeuvre follows: straight along x, then the route, on
+    /// which it ends. Outlives the solving.
     path::RouteAhead ahead;
     float distance = 0.0F;     ///< D: along the leg, or the reference, from the start to the collision point [m]
     float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets [m]

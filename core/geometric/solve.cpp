@@ -38,10 +38,10 @@ bool is_valid(const path::RouteAhead& ahead) noexcept
 
 bool has_valid_scales(const Problem& p) noexcept
 {
-    return is_valid(p.frame) && is_valid(p.ahead) && positive(p.distance) && positive(p.main_radius) && positive(p.speed) &&
-           not_negative(p.obstacle_clearance) && not_negative(p.body_radius) && not_negative(p.span_from) &&
-           not_negative(p.span_to) && positive(p.apex_share) && is_finite(p.start_velocity) &&
-           is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
+    return is_valid(p.frame) && is_valid(p.ahead) && positive(p.distance) && positive(p.main_radius) &&
+           positive(p.speed) && not_negative(p.obstacle_clearance) && not_negative(p.body_radius) &&
+           not_negative(p.span_from) && not_negative(p.span_to) && positive(p.apex_share) &&
+           is_finite(p.start_velocity) && is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
 bool is_valid(const Problem& p) noexcept

@@ -8,10 +8,7 @@
 namespace jink::path {
 namespace {
 
-bool is_near(const Vec3& point) noexcept
-{
-    return is_finite(point) && point.cwiseAbs().maxCoeff() <= Route::kFarthest;
-}
+bool is_near(const Vec3& point) noexcept { return is_finite(point) && point.cwiseAbs().maxCoeff() <= Route::kFarthest; }
 
 /// Arc length of the point of a segment that is nearest to `position`.
 float nearest_on(const RouteSegment& segment, const Vec3& position) noexcept
@@ -48,8 +45,7 @@ RoutePoint point_of(const RouteSegment& segment, float arc_length) noexcept
 
 bool Route::meets_end(const Vec3& start) const noexcept
 {
-    return segments_.empty() ||
-           (point_of(segments_.back(), segments_.back().length).position - start).norm() <= kJoin;
+    return segments_.empty() || (point_of(segments_.back(), segments_.back().length).position - start).norm() <= kJoin;
 }
 
 RouteStatus Route::add(const RouteSegment& segment) noexcept

@@ -22,11 +22,11 @@ enum class RouteStatus : std::uint8_t {
 
 /// A straight leg or a circular arc.
 struct RouteSegment {
-    Vec3 start = Vec3::Zero();     ///< [m]
-    Vec3 along = Vec3::UnitX();    ///< unit tangent at the start
-    Vec3 towards = Vec3::Zero();   ///< arc: unit vector from the start to the centre
-    float radius = 0.0F;           ///< arc: [m]; 0: straight
-    float length = 0.0F;           ///< [m]
+    Vec3 start = Vec3::Zero();    ///< [m]
+    Vec3 along = Vec3::UnitX();   ///< unit tangent at the start
+    Vec3 towards = Vec3::Zero();  ///< arc: unit vector from the start to the centre
+    float radius = 0.0F;          ///< arc: [m]; 0: straight
+    float length = 0.0F;          ///< [m]
 
     [[nodiscard]] bool is_arc() const noexcept { return radius > 0.0F; }
 };
@@ -62,8 +62,8 @@ public:
 
     /// Nothing is added unless the answer is ok. O(1).
     [[nodiscard]] RouteStatus add_leg(const Vec3& start, const Vec3& end) noexcept;
-    /// Circle about `centre` in the plane across `axis` (any length > 0), `angle` [rad], at most a full turn either way:
-    /// counter-clockwise seen from where the axis points to, clockwise where it is negative. O(1).
+    /// Circle about `centre` in the plane across `axis` (any length > 0), `angle` [rad], at most a full turn either
+    /// way: counter-clockwise seen from where the axis points to, clockwise where it is negative. O(1).
     [[nodiscard]] RouteStatus add_arc(const Vec3& start, const Vec3& centre, const Vec3& axis, float angle) noexcept;
 
     [[nodiscard]] std::span<const RouteSegment> segments() const noexcept

@@ -114,8 +114,7 @@ bool detail::obstacle_conflict(const Situation& situation, const Way& way, std::
         return true;
     }
     const auto points = path_of(phases_of(way, lookahead), false);
-    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), {points.data(), points.size()},
-                        budget);
+    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), {points.data(), points.size()}, budget);
 }
 
 Way way_of(const Situation& situation) noexcept
@@ -133,7 +132,8 @@ Way way_of(const Situation& situation) noexcept
 
     Way way;
     way.origin = own;
-    const Vec3 aim = off <= detail::kOnLeg ? leg.end : Vec3(leg.start + forward * std::min(along + kRejoinLookahead, length));
+    const Vec3 aim =
+        off <= detail::kOnLeg ? leg.end : Vec3(leg.start + forward * std::min(along + kRejoinLookahead, length));
     const Vec3 to_aim = aim - own;
     const float distance = to_aim.norm();
     way.direction = distance > 1e-3F ? Vec3(to_aim / distance) : forward;

@@ -13,9 +13,10 @@ namespace {
 class Course {
 public:
     Course(const Situation& s, const Way& way, Seconds lookahead) noexcept
-        : way_(way), pieces_(s, way, lookahead), limits_(widened(s.limits, pieces_.off())),
-          situation_{s.now,    s.own,       limits_,    s.airframe, s.reference,
-                     s.tracks, s.obstacles, s.airspace, s.flying,   s.k_sigma}
+        : way_(way), pieces_(s, way, lookahead),
+          limits_(widened(s.limits, pieces_.off())), situation_{s.now,       s.own,    limits_,     s.airframe,
+                                                                s.reference, s.tracks, s.obstacles, s.airspace,
+                                                                s.flying,    s.k_sigma}
     {
     }
     Course(const Course&) = delete;
@@ -110,8 +111,8 @@ bool main_conflict_along(const Situation& situation, const Way& way, Seconds loo
     Conflict conflict;
     const std::size_t tracks = situation.tracks.size();
     for (std::size_t i = 0; i < tracks + situation.obstacles.size(); ++i) {
-        const bool meets = i < tracks ? course.meets_track(i, budget, conflict)
-                                      : course.meets_obstacle(i - tracks, budget, conflict);
+        const bool meets =
+            i < tracks ? course.meets_track(i, budget, conflict) : course.meets_obstacle(i - tracks, budget, conflict);
         if (meets && (!found || comes_first(conflict, out))) {
             out = conflict;
             found = true;

@@ -147,8 +147,8 @@ bool predict(const Situation& situation, const Parts& phases, const PositionAt& 
     if (loss <= 0.0F) {
         WorkBudget apart(std::min(kDrawingApartBudget, budget.left()));
         const auto points = path_of(phases, true);
-        const bool leaves = draws_apart(situation, situation.tracks.subspan(track_index, 1), {},
-                                        {points.data(), points.size()}, apart);
+        const bool leaves =
+            draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, {points.data(), points.size()}, apart);
         static_cast<void>(budget.spend(apart.spent()));  // never more than was left
         if (leaves) {
             return false;

@@ -48,8 +48,9 @@ TEST(ProblemFile, FindsTheCollisionPointOnALeg)
     EXPECT_EQ(p.main, 0U);
 }
 
-const std::string kBend = "vehicle: default\nreference:\n  start: [0, 0, 20]\n  speed: 5\n  segments: [{to: [10, 0, 20]}, "
-                          "{centre: [10, 20, 20], turn: 90}, {to: [30, 60, 20]}]\n";
+const std::string kBend =
+    "vehicle: default\nreference:\n  start: [0, 0, 20]\n  speed: 5\n  segments: [{to: [10, 0, 20]}, "
+    "{centre: [10, 20, 20], turn: 90}, {to: [30, 60, 20]}]\n";
 
 TEST(ProblemFile, FindsTheCollisionPointOnAReference)
 {
@@ -76,7 +77,8 @@ TEST(ProblemFile, FindsTheCollisionPointOnAReference)
 TEST(ProblemFile, FrameIsAnInput)
 {
     ProblemStorage storage;
-    const ProblemFile p = problem(kBend + "frame_y: [0.5, 0, 0.25]\n" + "obstacles: [{sphere: {centre: [12, 0, 20], radius: 1}}]\n");
+    const ProblemFile p =
+        problem(kBend + "frame_y: [0.5, 0, 0.25]\n" + "obstacles: [{sphere: {centre: [12, 0, 20], radius: 1}}]\n");
     const Mat3 axes = problem_of(p, storage).frame.axes;
     EXPECT_LE((axes.col(0) - Vec3(1, 0, 0)).norm(), 1e-6F);
     EXPECT_LE((axes.col(1) - Vec3(0, 0, 1)).norm(), 1e-6F);
@@ -350,7 +352,8 @@ TEST(ProblemFile, EveryComplaint)
          "reference.segments[0].to: has no length"},
         {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{centre: [0, 5, 21], turn: 90}]}\n" + kThreat,
          "reference.segments[0].centre: is no arc"},
-        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{centre: [0, 5, 20], to: [1, 1, 1], turn: 9}]}\n" +
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{centre: [0, 5, 20], to: [1, 1, 1], turn: "
+         "9}]}\n" +
              kThreat,
          "reference.segments[0].to: does not go with `centre`"},
         {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{to: [9, 0, 20]}, {to: [9, 9, 20]}, {to: [0, 9, "

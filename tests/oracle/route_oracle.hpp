@@ -75,7 +75,10 @@ struct TwinRoute {
     }
     [[nodiscard]] Vec3d end() const { return pieces.back().at(pieces.back().length); }
     /// Past the end straight on.
-    [[nodiscard]] Vec3d at(double s) const { return told(s, [](const RoutePiece& p, double on) { return p.at(on); }); }
+    [[nodiscard]] Vec3d at(double s) const
+    {
+        return told(s, [](const RoutePiece& p, double on) { return p.at(on); });
+    }
     [[nodiscard]] Vec3d along(double s) const
     {
         for (const RoutePiece& piece : pieces) {

@@ -56,9 +56,8 @@ Flown fly(const TwinRoute& twin, std::vector<world::Track> tracks, Seconds durat
         vehicle::advance(own, in_control ? guidance.velocity : mission, limits, kTick);
         for (world::Track& track : tracks) {
             track.position += track.velocity * kTick;
-            flown.least = std::min(flown.least,
-                                   geometry::box_distance(limits.half_extents, track.position - own.position) -
-                                       track.radius);
+            flown.least = std::min(
+                flown.least, geometry::box_distance(limits.half_extents, track.position - own.position) - track.radius);
         }
         const path::Abeam abeam = twin.route.abeam_of(own.position, reference.segment);
         flown.off = std::max(flown.off, abeam.off);
@@ -79,7 +78,8 @@ world::Track traffic(const Vec3& position, const Vec3& velocity)
     return track;
 }
 
-/// Traffic comes down the second leg and is met where the mission turns: behind the corner nobody looks along the first.
+/// Traffic comes down the second leg and is met where the mission turns: behind the corner nobody looks along the
+/// first.
 TEST(RouteFlight, TrafficBehindTheCornerIsAvoided)
 {
     TwinRoute twin;
@@ -130,8 +130,8 @@ TEST(RouteFlight, RandomRoutesWithTraffic)
         touched += flown.least < 0.0F ? 1U : 0U;
         back += flown.off_at_end <= 1.5F ? 1U : 0U;
     }
-    std::printf("[ measured ] %zu flights, %zu with manoeuvres, %zu touched, %zu back on the route\n", flights, met, touched,
-                back);
+    std::printf("[ measured ] %zu flights, %zu with manoeuvres, %zu touched, %zu back on the route\n", flights, met,
+                touched, back);
     EXPECT_GT(met * 2, flights);
     EXPECT_EQ(touched, 0U);
     EXPECT_GT(back * 10, flights * 8);

@@ -255,8 +255,7 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
     std::size_t bent = 0;
     std::size_t rejected = 0;
     for (std::size_t i = 0; i < case_count(3000); ++i) {
-        const TwinRoute twin =
-            jink::oracle::random_route(random, Vec3(0.0F, 0.0F, 60.0F), random.below(2) == 0, 1.0F);
+        const TwinRoute twin = jink::oracle::random_route(random, Vec3(0.0F, 0.0F, 60.0F), random.below(2) == 0, 1.0F);
         vehicle::VehicleState own;
         vehicle::VehicleLimits limits;
         world::Reference reference{true, {}, &twin.route};
@@ -268,16 +267,16 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
         own.velocity = vehicle::clamped_velocity(from.along, reference.leg.speed, limits);
         std::vector<world::Track> tracks(1 + random.below(3));
         const world::Airspace airspace;
-        const world::Situation situation{TimePoint{50'000'000}, own, limits, {}, reference, tracks, {}, airspace,
-                                         nullptr, 3.0F};
+        const world::Situation situation{
+            TimePoint{50'000'000}, own, limits, {}, reference, tracks, {}, airspace, nullptr, 3.0F};
         const world::Way way = world::way_of(situation);
         for (world::Track& track : tracks) {
             track.stamp = situation.now;
             track.velocity = random.below(3) == 0 ? Vec3(Vec3::Zero()) : RandomProblem::vector(random, 5.0F);
             const float t = random.uniform(2.0F, 8.0F);
             const float there = std::min(way.speed * t, way.length);
-            track.position = path::point_of(way.ahead, way.origin, way.direction, there).position -
-                             t * track.velocity + RandomProblem::vector(random, 2.0F);
+            track.position = path::point_of(way.ahead, way.origin, way.direction, there).position - t * track.velocity +
+                             RandomProblem::vector(random, 2.0F);
             track.radius = random.uniform(0.2F, 1.5F);
             track.sigma_velocity = random.uniform(0.0F, 0.1F);
         }

@@ -133,7 +133,8 @@ TEST(RouteConflict, FindsEachLossAndNeverTooLate)
         ASSERT_LE(least, kWider * c.slack() + grown + 0.02) << "case " << i << ": nothing there";
         const double closest = double(conflict.time_to_closest);
         past_bend += conflict.way_at_closest > c.way.ahead.straight ? 1U : 0U;
-        ASSERT_NEAR(double(conflict.way_at_closest), std::min(double(c.way.speed) * closest, double(c.way.length)), 5e-3);
+        ASSERT_NEAR(double(conflict.way_at_closest), std::min(double(c.way.speed) * closest, double(c.way.length)),
+                    5e-3);
         ASSERT_LE((conflict.own_at_closest.cast<double>() - c.at(closest)).norm(), 6e-3) << "case " << i;
         ASSERT_EQ(main.time_to_loss, conflict.time_to_loss);
     }
