@@ -13,9 +13,7 @@ namespace jink::world {
 namespace {
 
 using detail::comes_first;
-using detail::draws_apart;
 using detail::met_now;
-using detail::path_of;
 using detail::Phase;
 using detail::Phases;
 using geometry::Motion;

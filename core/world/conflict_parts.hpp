@@ -21,8 +21,8 @@ inline constexpr std::uint32_t kDrawingApartBudget = 480 * units::kBallPart;
 /// The way in time: flown until its end, then hovering there.
 struct Phase {
     geometry::Motion own;  ///< position at `start`
-    Seconds start;
-    Seconds end;
+    Seconds start = 0.0F;
+    Seconds end = 0.0F;
 };
 
 /// Flown to its end, then hovering there.
