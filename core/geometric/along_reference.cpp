@@ -29,7 +29,15 @@ constexpr float kTangentShare = 0.02F;
 /// A path frame may be that far from unitary (Problem's validity), and times are rounded.
 constexpr float kUnitTolerance = 1.01F;
 /// Points by which the reach of curves is found.
-constexpr int kReachPoints = 24;
+constexpr int kReachPoints = 16;
+
+/// Half way between two unit vectors, as long as sqrt(2); nowhere between opposite ones.
+Vec3 half_way(const Vec3& from, const Vec3& to) noexcept
+{
+    constexpr float kOpposite = 1e-4F;
+    const float both = 1.0F + from.dot(to);  // half the square of their sum
+    return both > kOpposite ? Vec3((from + to) / std::sqrt(both)) : Vec3(Vec3::Zero());
+}
 
 /// Unit vector between the neighbours of a point.
 Vec3 tangent_of(const BaseCurve& base, std::size_t i) noexcept
@@ -105,29 +113,36 @@ void make_base(const UnitCurve& unit, const Problem& problem, const vehicle::Veh
         base.y[i] = position.y();
         base.z[i] = position.z();
     }
+    Vec3 tangent = problem.frame.axes.col(0);
+    for (std::size_t i = 0; i < unit.points; ++i) {
+        const bool is_last = i + 1 == unit.points;
+        const Vec3 next = i == 0 ? tangent : is_last ? base.rejoin : tangent_of(base, i);
+        const Vec3 half = half_way(tangent, next);
+        base.half_x[i] = half.x();
+        base.half_y[i] = half.y();
+        base.half_z[i] = half.z();
+        tangent = next;
+    }
 }
 
-void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& along, const Vec3& side, float offset,
-                      float speed, const vehicle::VehicleLimits& limits, Curve& out) noexcept
+void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& side, float offset, float speed,
+                      const vehicle::VehicleLimits& limits, Curve& out) noexcept
 {
     out.points = unit.points;
     out.fastest = kUnitTolerance * speed;
-    Vec3 tangent = along;
+    const float per_speed = 1.0F / speed;
+    const float per_climb = 1.0F / limits.max_climb;
+    const float per_descent = -1.0F / limits.max_descent;
     Vec3 carried = side;
-    Vec3 before = Vec3::Zero();
+    Vec3 before = base.position(0) + (offset * unit.f[0]) * side;
     Seconds now = 0.0F;
     for (std::size_t i = 0; i < unit.points; ++i) {
-        if (i > 0) {
-            const Vec3 next = i + 1 < unit.points ? tangent_of(base, i) : base.rejoin;
-            carried = path::carried(carried, tangent, next);
-            tangent = next;
-        }
+        carried = base.carried(carried, i);
         const Vec3 position = base.position(i) + (offset * unit.f[i]) * carried;
-        if (i > 0) {
-            const Vec3 step = position - before;
-            now += std::max(
-                {step.norm() / speed, step.z() / limits.max_climb, -step.z() / limits.max_descent, kLeastDuration});
-        }
+        const Vec3 step = position - before;
+        const Seconds needed =
+            std::max(step.norm() * per_speed, std::max(step.z() * per_climb, step.z() * per_descent));
+        now += i > 0 ? std::max(needed, kLeastDuration) : 0.0F;
         out.x[i] = position.x();
         out.y[i] = position.y();
         out.z[i] = position.z();

@@ -49,16 +49,23 @@ struct BaseCurve {
     float end = 0.0F;  ///< of the reference ahead [m]; 0: not made
     Vec3 rejoin;       ///< unit tangent there
     Coordinates x, y, z;
+    Coordinates half_x, half_y, half_z;  ///< half way from the tangent before to the one here, as long as sqrt(2)
 
     [[nodiscard]] Vec3 position(std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
+    /// Turns a side across the tangent before as path::carried does: by reflection, as it is across that tangent.
+    [[nodiscard]] Vec3 carried(const Vec3& side, std::size_t i) const noexcept
+    {
+        const Vec3 half(half_x[i], half_y[i], half_z[i]);
+        return side - side.dot(half) * half;
+    }
 };
 /// Nothing is done where `base` ends with the curve already. O(waypoints * segments).
 void make_base(const UnitCurve& unit, const Problem& problem, const vehicle::VehicleLimits& limits,
                BaseCurve& base) noexcept;
 
 /// make_curve about `base`, with the side at its start. O(waypoints).
-void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& along, const Vec3& side, float offset,
-                      float speed, const vehicle::VehicleLimits& limits, Curve& out) noexcept;
+void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& side, float offset, float speed,
+                      const vehicle::VehicleLimits& limits, Curve& out) noexcept;
 
 /// Bends a curve that was made along the x axis to follow the reference ahead. O(points * segments).
 void bend_along(const ReferenceAhead& ahead, Curve& curve) noexcept;

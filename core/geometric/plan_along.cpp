@@ -57,7 +57,7 @@ void Run::build_along(const CandidateShape& shape) noexcept
     }
     const UnitCurve& unit = unit_[static_cast<std::size_t>(shape.family)];
     make_base(unit, problem_, limits_, base_);
-    make_curve_along(unit, base_, along_, side_of(shape), shape.offset, problem_.speed, limits_, curve_);
+    make_curve_along(unit, base_, side_of(shape), shape.offset, problem_.speed, limits_, curve_);
 }
 
 /// A wait along a bend turns while it slows down, and may climb where the way does not at its start.

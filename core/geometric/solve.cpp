@@ -98,7 +98,7 @@ bool make_candidate_path(const Problem& problem, const CandidateShape& shape, st
     } else {
         detail::BaseCurve base;
         detail::make_base(unit, problem, limits, base);
-        detail::make_curve_along(unit, base, along, side, shape.offset, problem.speed, limits, curve);
+        detail::make_curve_along(unit, base, side, shape.offset, problem.speed, limits, curve);
     }
     detail::to_timed_path(curve, problem.frame.origin, out);
     return true;
