@@ -134,7 +134,7 @@ TEST(Route, NothingOnTheSegmentIsNearerThanAbeam)
             ASSERT_GE(least[abeam.segment + 1] + 0.02, least[abeam.segment]) << "case " << i << ": the next is nearer";
         }
     }
-    EXPECT_GT(later, 50U);
+    EXPECT_GT(later, case_count(3000) / 60);
 }
 
 /// Carried along a closed circle a side comes back as it was; along any route it stays across, and turns no more than
