@@ -15,6 +15,9 @@
 #ifndef JINK_MAX_PATH_POINTS
 #define JINK_MAX_PATH_POINTS 64
 #endif
+#ifndef JINK_MAX_ROUTE_SEGMENTS
+#define JINK_MAX_ROUTE_SEGMENTS 4
+#endif
 #ifndef JINK_MAX_CANDIDATES
 #define JINK_MAX_CANDIDATES 512
 #endif
@@ -37,6 +40,11 @@ static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
 /// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
 static_assert(kMaxPathPoints >= 8 && kMaxPathPoints <= 1024);
+
+/// Legs and arcs of a route: the one being flown and those that a manoeuvre may reach past its end. One more is
+/// refused.
+inline constexpr std::size_t kMaxRouteSegments = JINK_MAX_ROUTE_SEGMENTS;
+static_assert(kMaxRouteSegments >= 1 && kMaxRouteSegments <= 16);
 
 /// Candidates of one geometric plan: l (n + 1) per family. A setting that asks for more is refused as a whole.
 inline constexpr std::size_t kMaxCandidates = JINK_MAX_CANDIDATES;

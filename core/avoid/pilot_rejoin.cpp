@@ -7,11 +7,34 @@ namespace jink::avoid {
 
 float cross_track(const world::Situation& s) noexcept
 {
+    if (s.reference.route != nullptr) {
+        return s.reference.route->abeam_of(s.own.position, s.reference.segment).off;
+    }
     return geometry::point_segment_distance(s.own.position, s.reference.leg.start, s.reference.leg.end);
 }
 
+namespace {
+
+/// Along the tangent where the vehicle is abeam of the route.
+Beside beside_route(const world::Situation& s) noexcept
+{
+    const path::Route& route = *s.reference.route;
+    const path::Abeam abeam = route.abeam_of(s.own.position, s.reference.segment);
+    const Vec3 from_route = s.own.position - abeam.point.position;
+    Beside beside;
+    beside.left = route.length() - abeam.arc_length;
+    beside.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
+    beside.command = vehicle::clamped_velocity(abeam.point.along, s.reference.leg.speed, s.limits);
+    return beside;
+}
+
+}  // namespace
+
 Beside beside_leg(const world::Situation& s) noexcept
 {
+    if (s.reference.route != nullptr) {
+        return beside_route(s);
+    }
     const world::Leg& leg = s.reference.leg;
     const Vec3 span = leg.end - leg.start;
     const float length = span.norm();

@@ -7,7 +7,7 @@
 
 namespace jink::avoid {
 
-/// Distance from the leg [m]. O(1).
+/// Distance from the leg [m], or from the route. O(1), O(segments).
 [[nodiscard]] float cross_track(const world::Situation& situation) noexcept;
 
 /// Flight along the leg, beside it where the vehicle is.
@@ -17,7 +17,8 @@ struct Beside {
     float left = 0.0F;            ///< until abeam of the leg's end [m]
 };
 
-/// A leg without a length gives zeros. O(1).
+/// A leg without a length gives zeros. With a route: along its tangent abeam of the vehicle, left until its end. O(1),
+/// O(segments).
 [[nodiscard]] Beside beside_leg(const world::Situation& situation) noexcept;
 
 /// The same situation for a vehicle with `extra` more to every side.

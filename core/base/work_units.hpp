@@ -54,6 +54,8 @@ inline constexpr std::uint32_t kTurnStep = 8;     ///< a step of a turn
 
 // --- candidates (core/geometric) ---
 inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is made, each waypoint
+inline constexpr std::uint32_t kRoutePoint = 4;      ///< more, where it follows a route
+inline constexpr std::uint32_t kRoute = 100;         ///< what an attempt along a route looks at before its curves
 inline constexpr std::uint32_t kCostPoint = 1;       ///< of a curve that is costed
 /// Each waypoint and moving threat of one that is costed: a third of a unit.
 constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) noexcept

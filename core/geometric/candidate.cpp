@@ -32,6 +32,18 @@ PathFrame make_path_frame(const Vec3& origin, const Vec3& direction) noexcept
     return frame;
 }
 
+PathFrame make_path_frame(const Vec3& origin, const Vec3& direction, const Vec3& across) noexcept
+{
+    PathFrame frame;
+    const Vec3 x = (direction / direction.cwiseAbs().maxCoeff()).normalized();
+    const Vec3 scaled = across / across.cwiseAbs().maxCoeff();
+    frame.origin = origin;
+    frame.axes.col(0) = x;
+    frame.axes.col(1) = (scaled - scaled.dot(x) * x).normalized();
+    frame.axes.col(2) = x.cross(Vec3(frame.axes.col(1)));
+    return frame;
+}
+
 std::string_view to_string(Family family) noexcept
 {
     switch (family) {

@@ -43,6 +43,8 @@ struct PathFrame {
 };
 /// Frame at `origin` with x towards `direction` (length > 0); y = world z cross x, and world north for a vertical leg.
 [[nodiscard]] PathFrame make_path_frame(const Vec3& origin, const Vec3& direction) noexcept;
+/// The same with y towards `across`, which is not along `direction`; what it has along it does not count.
+[[nodiscard]] PathFrame make_path_frame(const Vec3& origin, const Vec3& direction, const Vec3& across) noexcept;
 
 /// One candidate: family, plane and offset say everything of a curve but the scale D.
 struct CandidateShape {

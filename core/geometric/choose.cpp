@@ -10,16 +10,24 @@ namespace jink::geometric::detail {
 
 using world::PlanStatus;
 
+bool Run::can_be_flown(const CandidateShape& shape) const noexcept
+{
+    if (problem_.ahead.route != nullptr) {
+        return is_flyable_along(shape);
+    }
+    return shape.family == Family::wait ||  // it is made of what the vehicle can do
+           is_flyable(curve_, vehicle::clamped_velocity(along_, problem_.speed, limits_), along_, limits_);
+}
+
 bool Run::evaluate(Candidate& candidate, WorkBudget& budget) noexcept
 {
-    if (!budget.spend(units::kCandidatePoint * settings_.waypoints)) {
+    if (!budget.spend(units_of_curve())) {
         candidate.status = CandidateStatus::not_evaluated;
         return false;
     }
     build(candidate.shape);
     candidate.duration = curve_.duration();
-    const bool is_curve = candidate.shape.family != Family::wait;  // a wait is made of what the vehicle can do
-    if (is_curve && settings_.check_acceleration && !is_flyable(curve_, along_, problem_.speed, limits_)) {
+    if (settings_.check_acceleration && !can_be_flown(candidate.shape)) {
         candidate.status = CandidateStatus::not_flyable;
         return true;
     }
@@ -170,7 +178,7 @@ bool Run::try_in_turn(WorkBudget& budget) noexcept
 /// Of a candidate as a curve, where that is not known yet, and in flight. Its path is in path_ where it is available.
 Verdict Run::verdict_of(const CandidateShape& shape, WorkBudget& budget) noexcept
 {
-    if (!budget.spend(units::kCandidatePoint * settings_.waypoints)) {
+    if (!budget.spend(units_of_curve())) {
         return {CandidateStatus::not_evaluated, {}};
     }
     build(shape);

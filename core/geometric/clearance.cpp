@@ -74,8 +74,7 @@ Seconds Clearance::sweep_end(std::size_t index) const noexcept
         return t_max_;
     }
     const geometry::Motion motion = threat_at_start(problem_, index).motion;
-    const Vec3 goal =
-        problem_.frame.origin + problem_.distance * problem_.frame.axes.col(0) + problem_.main_centre_offset;
+    const Vec3 goal = collision_point(problem_) + problem_.main_centre_offset;
     const float speed_squared = motion.velocity.squaredNorm();
     if (!(speed_squared > 0.0F)) {
         return t_max_;

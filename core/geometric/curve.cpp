@@ -112,11 +112,12 @@ void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out)
     }
 }
 
-bool is_flyable(const Curve& curve, const Vec3& along, float speed, const vehicle::VehicleLimits& limits) noexcept
+bool is_flyable(const Curve& curve, const Vec3& velocity_before, const Vec3& rejoin,
+                const vehicle::VehicleLimits& limits) noexcept
 {
     // The first chord is reached half a segment after the start: from straight flight, that is the curvature at the
     // start.
-    Vec3 before = vehicle::clamped_velocity(along, speed, limits);
+    Vec3 before = velocity_before;
     Seconds middle = 0.0F;
     for (std::size_t i = 0; i + 1 < curve.points; ++i) {
         const Vec3 velocity = curve.velocity(i);
@@ -127,7 +128,7 @@ bool is_flyable(const Curve& curve, const Vec3& along, float speed, const vehicl
         before = velocity;
         middle = next_middle;
     }
-    const Vec3 across = before - before.dot(along) * along;
+    const Vec3 across = before - before.dot(rejoin) * rejoin;
     const float level = std::sqrt(across.x() * across.x() + across.y() * across.y());
     return overshoot(level, limits.max_acceleration, limits.velocity_lag) <= kRejoinOvershoot &&
            overshoot(std::abs(across.z()), limits.max_vertical_acceleration, limits.velocity_lag) <= kRejoinOvershoot;

@@ -68,9 +68,10 @@ void make_waiting_curve(const Wait& wait, const Vec3& along, std::size_t waypoin
 /// As a timed path about `origin`. O(points).
 void to_timed_path(const Curve& curve, const Vec3& origin, path::TimedPath& out) noexcept;
 
-/// Within the acceleration limits all along, from flying along the leg at `speed` on, and back on the leg without a
-/// turn that would carry the vehicle more than kRejoinOvershoot past it. See Settings::check_acceleration. O(points).
-[[nodiscard]] bool is_flyable(const Curve& curve, const Vec3& along, float speed,
+/// Within the acceleration limits all along, from flying at `velocity_before` on, and back on the leg, whose direction
+/// is `rejoin` there, without a turn that would carry the vehicle more than kRejoinOvershoot past it. See
+/// Settings::check_acceleration. O(points).
+[[nodiscard]] bool is_flyable(const Curve& curve, const Vec3& velocity_before, const Vec3& rejoin,
                               const vehicle::VehicleLimits& limits) noexcept;
 
 }  // namespace jink::geometric::detail

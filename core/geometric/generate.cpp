@@ -32,6 +32,10 @@ Wait Run::waiting(float share, Seconds until) const noexcept
 
 void Run::build(const CandidateShape& shape) noexcept
 {
+    if (problem_.ahead.route != nullptr) {
+        build_along(shape);
+        return;
+    }
     if (shape.family == Family::wait) {
         make_waiting_curve(waiting(shape.share, shape.until), along_, settings_.waypoints, curve_);
         return;
@@ -40,7 +44,8 @@ void Run::build(const CandidateShape& shape) noexcept
                problem_.speed, limits_, curve_);
 }
 
-void Run::generate_curves(Family family) noexcept
+/// `seen`: the problem itself, or what it looks like at the collision point.
+void Run::generate_curves(Family family, const Problem& seen) noexcept
 {
     unit_[static_cast<std::size_t>(family)] =
         make_unit_curve(family, settings_.waypoints, problem_.ends_at_top ? 1.0F : curve_length_x(family, 1.0F));
@@ -52,7 +57,9 @@ void Run::generate_curves(Family family) noexcept
         const Vec3 side = side_of(candidate.shape);
         candidate.sin_alpha = std::min(std::sqrt(along_.z() * along_.z() + side.z() * side.z()), 1.0F);
         Offsets offsets;
-        offsets_of_plane(problem_, settings_, family, limits_.half_extents, side, offsets);
+        const bool is_straight = &seen == &problem_;
+        offsets_of_plane(seen, settings_, family, limits_.half_extents,
+                         is_straight ? side : plane_direction(seen.frame, candidate.shape.plane), offsets);
         for (const float offset : offsets) {
             candidate.shape.offset = offset;
             result_.candidates.unchecked_push_back(candidate);  // is_valid(Settings) has counted them
@@ -74,16 +81,25 @@ void Run::generate_waits() noexcept
     }
 }
 
+void Run::generate_curves(const Problem& seen) noexcept
+{
+    for (const Family family : kCurves) {
+        if (settings_.*flag_of(family)) {
+            generate_curves(family, seen);
+        }
+    }
+}
+
 void Run::generate() noexcept
 {
     const int planes = settings_.extra_planes + 1;
     for (int i = 0; i < planes; ++i) {
         sides_[static_cast<std::size_t>(i)] = plane_direction(problem_.frame, angle_of(i, planes));
     }
-    for (const Family family : kCurves) {
-        if (settings_.*flag_of(family)) {
-            generate_curves(family);
-        }
+    if (problem_.ahead.route == nullptr) {
+        generate_curves(problem_);
+    } else {
+        generate_curves(seen_at_collision(problem_, limits_));
     }
     if (settings_.wait && limits_.kind == vehicle::VehicleKind::multirotor) {
         generate_waits();
@@ -113,7 +129,12 @@ void Run::prepare() noexcept
         clearance_.defer(far_);
         flown_.defer(far_);
     }
-    clearance_.collect({end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside}, longest, budget_);
+    Extent reach{end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside};
+    if (problem_.ahead.route != nullptr) {
+        static_cast<void>(budget_.spend(units::kRoute));
+        reach_along(problem_, length, widest, slowest, reach, longest);
+    }
+    clearance_.collect(reach, longest, budget_);
     if (settings_.security == SecurityMode::swept || settings_.closeness == cost::ClosenessMethod::swept) {
         for (const Candidate& candidate : result_.candidates) {
             build(candidate.shape);

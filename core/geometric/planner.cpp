@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/geometric/along_reference.hpp"
 #include "core/geometric/in_a_row.hpp"
 #include "core/world/conflict.hpp"
 #include "core/world/method.hpp"
@@ -50,6 +51,9 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
         const geometry::Shape& shape = situation.obstacles[conflict.threat.index].shape;
         problem.main_shape = shape.kind == geometry::ShapeKind::sphere ? nullptr : &shape;
     }
+    if (way.ahead.route != nullptr) {
+        detail::follow_route(situation, way, conflict, problem);
+    }
     return problem;
 }
 
@@ -67,6 +71,9 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     // Within a margin the escape rule counts from where the vehicle is.
     if (world::separation_at(situation, problem.frame.origin + way, latency, budget).margin < 0.0F) {
         return 0.0F;
+    }
+    if (problem.ahead.route != nullptr) {
+        return detail::move_start_along(situation, way, least, problem) ? latency : 0.0F;
     }
     problem.frame = make_path_frame(problem.frame.origin + way, left);
     problem.distance = left.norm();
@@ -134,14 +141,17 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
         if (i > 0 && !apply(attempt, limits.kind, with)) {  // the first is as set: `solve` refuses what is invalid
             continue;
         }
+        const bool in_a_row = attempt.kind == Attempt::Kind::in_a_row;
+        if (in_a_row && problem.ahead.route != nullptr) {
+            continue;  // both of its parts are about a straight leg
+        }
         Problem tried = problem;
         tried.speed = attempt.speed_share * problem.speed;
         tried.span_from = attempt.span_from;
         tried.span_to = attempt.span_to;
         tried.apex_share = attempt.apex_share * problem.apex_share;
-        status = attempt.kind == Attempt::Kind::in_a_row
-                     ? detail::solve_in_a_row(tried, with, limits, airframe, budget, workspace, result)
-                     : solve(tried, with, limits, airframe, budget, workspace, result);
+        status = in_a_row ? detail::solve_in_a_row(tried, with, limits, airframe, budget, workspace, result)
+                          : solve(tried, with, limits, airframe, budget, workspace, result);
         result.attempt = i;
         ++attempts;
         cut_short = cut_short || result.cut_short;
@@ -164,7 +174,9 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     result_.candidates.clear();
     result_.chosen = 0;
     result_.cut_short = false;
-    if (!situation.reference.valid || !is_valid(settings_) || situation.tracks.size() > kMaxTracks) {
+    const path::Route* const route = situation.reference.route;
+    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
+        situation.tracks.size() > kMaxTracks) {
         return PlanStatus::bad_input;
     }
     const world::Way way = world::way_of(situation);

@@ -8,6 +8,7 @@
 #include "core/base/work_budget.hpp"
 #include "core/geometric/candidate.hpp"
 #include "core/path/follower.hpp"
+#include "core/path/route.hpp"
 #include "core/world/world.hpp"
 
 namespace jink::geometric {
@@ -92,8 +93,8 @@ struct Settings {
     /// Otherwise costs come first, and no candidate dearer than the chosen one is looked at: the choice is the same.
     bool evaluate_all = false;
     /// Work that one attempt may spend on checking candidates, cheapest first, as curves (but with evaluate_all) and in
-    /// flight; as much again for each solid within reach that no closed form knows. Those that it does not reach are
-    /// not taken.
+    /// flight; as much again for each solid within reach that no closed form knows, and along a route. Those that it
+    /// does not reach are not taken.
     std::uint32_t check_units = 1600;
     cost::SmoothnessMethod smoothness = cost::SmoothnessMethod::curvature;
     cost::ClosenessMethod closeness = cost::ClosenessMethod::time_aware;
@@ -154,8 +155,13 @@ inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
 
 /// One planning problem on its own, free of Situation: what `jink plan`, the campaign and the reproduction tests solve.
 struct Problem {
-    PathFrame frame;           ///< start of the manoeuvre and leg direction
-    float distance = 0.0F;     ///< D: start to the collision point [m]
+    /// Start of the manoeuvre and direction of the leg, or of the way at the start. Whatever y is: planes count from
+    /// it.
+    PathFrame frame;
+    /// Null route: the leg is straight. Otherwise what the manoeuvre follows: straight along x, then the route, on
+    /// which it ends. Outlives the solving.
+    path::RouteAhead ahead;
+    float distance = 0.0F;     ///< D: along the leg, or the reference, from the start to the collision point [m]
     float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets [m]
     float body_radius = 0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan and the 2.5 R
                                ///< rule [m]; 0: main_radius
@@ -181,6 +187,15 @@ struct Problem {
     Seconds begins = 0.0F;     ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
 };
 
+/// Along what `ahead` says.
+[[nodiscard]] Vec3 collision_point_along(const Problem& problem) noexcept;
+/// Where the leg or the reference is at D [m].
+[[nodiscard]] inline Vec3 collision_point(const Problem& problem) noexcept
+{
+    return problem.ahead.route == nullptr ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
+                                          : collision_point_along(problem);
+}
+
 /// What curves scale with [m].
 [[nodiscard]] inline float scale_of(const Problem& problem) noexcept { return problem.apex_share * problem.distance; }
 
@@ -204,7 +219,7 @@ struct Result {
 class Workspace {
 public:
     static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) + 16 * (kMaxTracks + kMaxObstacles) +
-                                          48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1024;
+                                          48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1280;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "core/base/work_units.hpp"
+#include "core/geometric/along_reference.hpp"
 #include "core/geometric/clearance.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometric/flown.hpp"
@@ -47,7 +48,8 @@ public:
 
 private:
     void generate() noexcept;
-    void generate_curves(Family family) noexcept;
+    void generate_curves(const Problem& seen) noexcept;
+    void generate_curves(Family family, const Problem& seen) noexcept;
     void generate_waits() noexcept;
     void prepare() noexcept;
     [[nodiscard]] Wait waiting(float share, Seconds until) const noexcept;
@@ -56,7 +58,9 @@ private:
     [[nodiscard]] std::uint32_t units_of_checks() const noexcept
     {
         constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-        const std::uint64_t shares = 1 + std::uint64_t{units::kSolidShares} * clearance_.solids();
+        // Curves along a route are dearer: one share more.
+        const std::uint64_t shares =
+            (problem_.ahead.route != nullptr ? 2U : 1U) + std::uint64_t{units::kSolidShares} * clearance_.solids();
         return static_cast<std::uint32_t>(std::min(kMost, settings_.check_units * shares));
     }
     [[nodiscard]] std::uint32_t units_of_costs() const noexcept
@@ -65,6 +69,11 @@ private:
         return units::kCostPoint * settings_.waypoints +
                units::closeness_units(settings_.waypoints, each * moving_.size());
     }
+    [[nodiscard]] std::uint32_t units_of_curve() const noexcept
+    {
+        const std::uint32_t each = units::kCandidatePoint + (problem_.ahead.route != nullptr ? units::kRoutePoint : 0);
+        return each * settings_.waypoints;
+    }
     [[nodiscard]] float smoothness_of(const CandidateShape& shape) const noexcept;
     [[nodiscard]] cost::Waypoints waypoints() const noexcept;
     [[nodiscard]] float closeness() const noexcept;
@@ -72,6 +81,9 @@ private:
     void list_moving() noexcept;
     [[nodiscard]] ThreatSet far_threats(Seconds longest) noexcept;
     void build(const CandidateShape& shape) noexcept;
+    void build_along(const CandidateShape& shape) noexcept;
+    [[nodiscard]] bool can_be_flown(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] bool is_flyable_along(const CandidateShape& shape) const noexcept;
     /// Of a curve.
     [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
     {
@@ -108,6 +120,7 @@ private:
     Flown flown_;
     ThreatSet far_{};  ///< moving threats beyond Settings::moving_nearest
     Order order_;
+    BaseCurve base_;        ///< with a route
     Curve curve_;           ///< of the candidate at hand
     path::TimedPath path_;  ///< the same, about the start
     /// Threats and solids, about the start; a solid as the ball about it.

@@ -33,12 +33,19 @@ bool is_valid(const PathFrame& frame) noexcept
     return is_finite(frame.origin) && frame.axes.allFinite() && frame.axes.isUnitary(1e-3F);
 }
 
+bool is_valid(const path::RouteAhead& ahead) noexcept
+{
+    return ahead.route == nullptr ||
+           (!ahead.route->empty() && is_not_negative(ahead.straight) && is_not_negative(ahead.joined_at));
+}
+
 bool has_valid_scales(const Problem& p) noexcept
 {
-    return is_valid(p.frame) && is_positive(p.distance) && is_positive(p.main_radius) && is_positive(p.speed) &&
-           is_not_negative(p.obstacle_clearance) && is_not_negative(p.body_radius) && is_not_negative(p.span_from) &&
-           is_not_negative(p.span_to) && is_positive(p.apex_share) && is_not_negative(p.begins) &&
-           is_finite(p.start_velocity) && is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
+    return is_valid(p.frame) && is_valid(p.ahead) && is_positive(p.distance) && is_positive(p.main_radius) &&
+           is_positive(p.speed) && is_not_negative(p.obstacle_clearance) && is_not_negative(p.body_radius) &&
+           is_not_negative(p.span_from) && is_not_negative(p.span_to) && is_positive(p.apex_share) &&
+           is_not_negative(p.begins) && is_finite(p.start_velocity) && is_finite(p.preferred_side) &&
+           is_finite(p.main_centre_offset);
 }
 
 bool is_valid(const Problem& p) noexcept
@@ -90,9 +97,16 @@ bool make_candidate_path(const Problem& problem, const CandidateShape& shape, st
         return false;
     }
     Curve curve;
-    detail::make_curve(detail::make_unit_curve(shape.family, waypoints), problem.frame.axes.col(0),
-                       detail::plane_direction(problem.frame, shape.plane), scale_of(problem), shape.offset,
-                       problem.speed, limits, curve);
+    const detail::UnitCurve unit = detail::make_unit_curve(shape.family, waypoints);
+    const Vec3 along = problem.frame.axes.col(0);
+    const Vec3 side = detail::plane_direction(problem.frame, shape.plane);
+    if (problem.ahead.route == nullptr) {
+        detail::make_curve(unit, along, side, scale_of(problem), shape.offset, problem.speed, limits, curve);
+    } else {
+        detail::BaseCurve base;
+        detail::make_base(unit, problem, limits, base);
+        detail::make_curve_along(unit, base, side, shape.offset, problem.speed, limits, curve);
+    }
     detail::to_timed_path(curve, problem.frame.origin, out);
     return true;
 }

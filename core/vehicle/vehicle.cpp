@@ -53,7 +53,8 @@ bool is_valid(const VehicleLimits& limits) noexcept
 {
     return is_positive(limits.cruise_speed) && is_positive(limits.max_climb) && is_positive(limits.max_descent) &&
            is_positive(limits.max_acceleration) && is_positive(limits.max_vertical_acceleration) &&
-           is_not_negative(limits.velocity_lag) && is_finite(limits.half_extents) && limits.half_extents.minCoeff() > 0.0F;
+           is_not_negative(limits.velocity_lag) && is_finite(limits.half_extents) &&
+           limits.half_extents.minCoeff() > 0.0F;
 }
 
 bool is_valid(const Airframe& airframe) noexcept

@@ -15,15 +15,17 @@ struct Conflict {
     Vec3 own_at_closest = Vec3::Zero();     ///< the collision point: own position on the way then [m]
     Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then [m]
     float radius_at_closest = 0.0F;         ///< threat's grown radius then [m]
+    float way_at_closest = 0.0F;            ///< along the way until then; a way with a route alone [m]
 };
 
-/// The straight way that the vehicle takes when nothing is in it: from its position back to and along the leg at the
-/// leg's speed.
+/// The way that the vehicle takes when nothing is in it: straight from its position back to and along the leg at the
+/// leg's speed; or back to a route, and along it.
 struct Way {
     Vec3 origin = Vec3::Zero();      ///< own position [m]
-    Vec3 direction = Vec3::UnitX();  ///< unit vector
-    float speed = 0.0F;              ///< after climb and descent limits [m/s]
-    float length = 0.0F;             ///< to the end of the leg [m]
+    Vec3 direction = Vec3::UnitX();  ///< unit vector; with a route at the start
+    float speed = 0.0F;              ///< after climb and descent limits [m/s]; likewise
+    float length = 0.0F;             ///< to the end of the leg, or the route [m]
+    path::RouteAhead ahead{};        ///< with a route: what comes after the straight beginning
 };
 
 /// Off the leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer
@@ -36,11 +38,22 @@ inline constexpr float kRejoinLookahead = 12.0F;
 inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 
 /// The way for a situation with a valid reference. Within 1e-3 m of the leg's end: the leg's direction, length 0. O(1).
+///
+/// With a route: on a straight leg of it as above, but ending with that leg; on an arc of radius R, `off` metres beside
+/// it, the way aims at the point sqrt(R) + 2 off ahead, kRejoinLookahead at most. Near a segment's end it aims at that
+/// end, but 1 m or 2 off ahead at least, and from there on it is the route. On a route of one leg it is the leg's way.
+/// O(segments).
 [[nodiscard]] Way way_of(const Situation& situation) noexcept;
+/// The same from another position, with a reference that has a route.
+[[nodiscard]] Way way_along(const Situation& situation, const Vec3& position) noexcept;
 
 /// Conflict of one track with the way within `lookahead` seconds: exact closest approach and loss times with the radius
 /// the threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the true one).
 /// A budget that runs out means a conflict now. O(lookahead).
+///
+/// A way with a route is taken in straight pieces, each at the speed that the climb limits leave it: legs as they are,
+/// corners and all, arcs in chords, and the own box larger to every side by as much as they lie off the arc: 2 % of the
+/// radius at most while the way turns by less than 4 rad in the time looked ahead (kWayPieces).
 [[nodiscard]] bool predict_conflict(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
                                     WorkBudget& budget, Conflict& out) noexcept;
 

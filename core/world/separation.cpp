@@ -44,9 +44,8 @@ struct Bounds {
 /// A path until `horizon` as the pieces it is made of, and boxes about some of them at a time.
 class Flight {
 public:
-    Flight(const path::TimedPath& path, Seconds horizon) noexcept : path_(path), horizon_(horizon)
+    Flight(std::span<const path::PathPoint> points, Seconds horizon) noexcept : points_(points), horizon_(horizon)
     {
-        const auto& points = path.points;
         while (count_ + 1 < points.size() && points[count_].time < horizon) {
             ++count_;
         }
@@ -60,13 +59,13 @@ public:
     [[nodiscard]] std::size_t size() const noexcept { return count_; }
     [[nodiscard]] Piece piece(std::size_t i) const noexcept
     {
-        const path::PathPoint& from = path_.points[i];
+        const path::PathPoint& from = points_[i];
         if (stands_) {
             return {from.position, Vec3::Zero(), 0.0F, 0.0F};
         }
-        return {from.position, from.velocity, from.time, std::min(path_.points[i + 1].time, horizon_) - from.time};
+        return {from.position, from.velocity, from.time, std::min(points_[i + 1].time, horizon_) - from.time};
     }
-    [[nodiscard]] const Vec3& begin() const noexcept { return path_.points.front().position; }
+    [[nodiscard]] const Vec3& begin() const noexcept { return points_.front().position; }
     [[nodiscard]] const auto& chunks() const noexcept { return chunks_; }
 
 private:
@@ -84,7 +83,7 @@ private:
         return b;
     }
 
-    const path::TimedPath& path_;
+    std::span<const path::PathPoint> points_;
     Seconds horizon_;
     std::size_t count_ = 0;
     bool stands_ = false;
@@ -339,19 +338,19 @@ float threat_radius(const Situation& situation, const Track& track, Seconds t) n
            0.5F * track.max_acceleration * age * age;
 }
 
-Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
+Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points, Seconds horizon,
                             WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
     Separation best{cutoff.above, 0.0F, {}};
-    if (path.points.empty()) {
+    if (points.empty()) {
         return best;
     }
     const Airspace& air = situation.airspace;
     const std::size_t bounds = (air.has_floor ? 1U : 0U) + (air.has_ceiling ? 1U : 0U) + (air.has_keep_in ? 1U : 0U);
-    if (!paid(budget, path.points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
+    if (!paid(budget, points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
         return best;
     }
-    const Flight flight(path, horizon);
+    const Flight flight(points, horizon);
     against_airspace(situation, flight, escape, best);
     const bool track_first = cutoff.first.kind == ThreatKind::track && cutoff.first.index < situation.tracks.size();
     if (track_first) {

@@ -53,9 +53,16 @@ struct Cutoff {
 /// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below
 /// Cutoff::below, and no lower bound of the least. Cost in budget: core/base/work_units.hpp, by piece of the path,
 /// threat, piece near a threat, and part of it; queries for solids. O(points * (tracks + obstacles)).
-[[nodiscard]] Separation least_separation(const Situation& situation, const path::TimedPath& path, Seconds horizon,
-                                          WorkBudget& budget, const EscapeRule& escape = {},
+[[nodiscard]] Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points,
+                                          Seconds horizon, WorkBudget& budget, const EscapeRule& escape = {},
                                           const Cutoff& cutoff = {}) noexcept;
+[[nodiscard]] inline Separation least_separation(const Situation& situation, const path::TimedPath& path,
+                                                 Seconds horizon, WorkBudget& budget, const EscapeRule& escape = {},
+                                                 const Cutoff& cutoff = {}) noexcept
+{
+    return least_separation(situation, std::span(path.points.data(), path.points.size()), horizon, budget, escape,
+                            cutoff);
+}
 
 /// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now.
 /// `position`: own box centre. A budget that runs out counts as

@@ -6,6 +6,7 @@
 
 #include "core/base/time.hpp"
 #include "core/geometry/shape.hpp"
+#include "core/path/route.hpp"
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
 
@@ -56,10 +57,12 @@ struct Leg {
     float speed = 5.0F;  ///< [m/s], > 0
 };
 
-/// Where the vehicle means to go.
+/// Where the vehicle means to go: along the leg, or at its speed along the route where there is one.
 struct Reference {
     bool valid = false;
-    Leg leg;
+    Leg leg;                             ///< with a route its speed alone counts
+    const path::Route* route = nullptr;  ///< outlives the Situation, not empty
+    std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
 };
 
 enum class MethodId : std::uint8_t { none, supervisor, geometric };

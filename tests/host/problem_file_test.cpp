@@ -48,6 +48,63 @@ TEST(ProblemFile, FindsTheCollisionPointOnALeg)
     EXPECT_EQ(p.main, 0U);
 }
 
+const std::string kBend =
+    "vehicle: default\nreference:\n  start: [0, 0, 20]\n  speed: 5\n  segments: [{to: [10, 0, 20]}, "
+    "{centre: [10, 20, 20], turn: 90}, {to: [30, 60, 20]}]\n";
+
+TEST(ProblemFile, FindsTheCollisionPointOnAReference)
+{
+    // Half way round the arc, 2 m outside of it.
+    const float half = 10.0F + 20.0F * 0.25F * kPi;
+    const Vec3 point = Vec3(10, 20, 20) + 20.0F * Vec3(std::sqrt(0.5F), -std::sqrt(0.5F), 0);
+    const Vec3 outside = 2.0F * Vec3(std::sqrt(0.5F), -std::sqrt(0.5F), 0);
+    const auto still = [](const Vec3& at) {
+        return "threats: [{position: [" + files::to_text(at.x()) + ", " + files::to_text(at.y()) + ", " +
+               files::to_text(at.z()) + "], radius: 1}]\n";
+    };
+    const ProblemFile p = problem(kBend + still(point + outside));
+    EXPECT_NEAR(p.distance, half, 2e-3F);
+    EXPECT_LE((p.main_centre_offset - outside).norm(), 5e-3F);
+    EXPECT_LE((p.velocity - Vec3(5, 0, 0)).norm(), 1e-5F);
+    ProblemStorage storage;
+    const geometric::Problem q = problem_of(p, storage);
+    ASSERT_EQ(q.ahead.route, &p.route);
+    EXPECT_NEAR(q.ahead.route->length(), 10.0F + 20.0F * 0.5F * kPi + 40.0F, 1e-3F);
+    EXPECT_LE((geometric::collision_point(q) - point).norm(), 3e-3F);
+    EXPECT_EQ(Vec3(q.frame.axes.col(1)), Vec3(0, 1, 0));
+}
+
+TEST(ProblemFile, FrameIsAnInput)
+{
+    ProblemStorage storage;
+    const ProblemFile p =
+        problem(kBend + "frame_y: [0.5, 0, 0.25]\n" + "obstacles: [{sphere: {centre: [12, 0, 20], radius: 1}}]\n");
+    const Mat3 axes = problem_of(p, storage).frame.axes;
+    EXPECT_LE((axes.col(0) - Vec3(1, 0, 0)).norm(), 1e-6F);
+    EXPECT_LE((axes.col(1) - Vec3(0, 0, 1)).norm(), 1e-6F);
+    EXPECT_LE((axes.col(2) - Vec3(0, -1, 0)).norm(), 1e-6F);
+}
+
+/// tests/scenario/problems: the manoeuvre begins at the start, ends on the reference past its bend, and clears what it
+/// is planned around.
+TEST(ProblemFile, NamedReferencesAreFollowed)
+{
+    for (const char* name : {"bend", "corner"}) {
+        auto read = read_problem(std::string(JINK_SOURCES "/tests/scenario/problems/") + name + ".yaml");
+        ASSERT_TRUE(std::holds_alternative<ProblemFile>(read)) << name;
+        const auto& file = std::get<ProblemFile>(read);
+        const auto outcome = solve_problem(file, 60'000);
+        ASSERT_EQ(outcome->status, world::PlanStatus::found) << name;
+        const auto& points = outcome->result.path.points;
+        EXPECT_LE((points.front().position - file.start).norm(), 1e-3F) << name;
+        const path::Abeam end = file.route.abeam_of(points.back().position);
+        EXPECT_LE(end.off, 0.01F) << name;
+        EXPECT_GE(end.segment, 1U) << name << ": ends before the bend";
+        const geometric::Candidate& chosen = outcome->result.candidates[outcome->result.chosen];
+        EXPECT_NEAR(end.arc_length, geometric::curve_length_x(chosen.shape.family, file.distance), 0.02F) << name;
+    }
+}
+
 TEST(ProblemFile, CollisionPointIsTheClosestApproachOfTheFlight)
 {
     const std::uint64_t seed = 99;
@@ -294,6 +351,25 @@ TEST(ProblemFile, EveryComplaint)
          "nearest on it, but beyond its end"},
         {kHead + "threats: [{position: [20, 0, 20], velocity: [5, 0, 0], radius: 1}]\n",
          "nearest on it, but at or before its start"},
+        {kBend + "leg: {start: [0, 0, 20], end: [60, 0, 20]}\n" + kThreat, "reference: does not go with `leg`"},
+        {kBend + "distance: 3\n" + kThreat, "distance: does not go with `reference`"},
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: []}\n" + kThreat, "reference: has no segments"},
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{to: [0, 0, 20]}]}\n" + kThreat,
+         "reference.segments[0].to: has no length"},
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{centre: [0, 5, 21], turn: 90}]}\n" + kThreat,
+         "reference.segments[0].centre: is no arc"},
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{centre: [0, 5, 20], to: [1, 1, 1], turn: "
+         "9}]}\n" +
+             kThreat,
+         "reference.segments[0].to: does not go with `centre`"},
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{to: [9, 0, 20]}, {to: [9, 9, 20]}, {to: [0, 9, "
+         "20]}, {to: [0, 20, 20]}, {to: [0, 40, 20]}]}\n" +
+             kThreat,
+         "reference: segments are more than 4"},
+        {"vehicle: default\nreference: {start: [0, 0, 20], segments: [{to: [9, 0, 20]}]}\n"
+         "threats: [{position: [20, 1, 20], radius: 1}]\n",
+         "reference: the main threat is not nearest on it"},
+        {kHead + kThreat + "frame_y: [1, 0, 0]\n", "frame_y: lies along the way"},
         {kHead, "no threat and no obstacle"},
         {kHead + two, "exactly one threat or obstacle must say `main: true`, not 0"},
         {kHead + "threats: [{position: [20, 0, 20], radius: 1, main: true}]\nobstacles: [{main: true, sphere: {centre: "

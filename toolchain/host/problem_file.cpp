@@ -13,7 +13,7 @@ namespace {
 using files::Complaints;
 using files::YamlMap;
 constexpr auto kNeed = YamlMap::Need::required;
-constexpr files::Range kSpeed{0.5F, 100.0F};
+using detail::kSpeed;
 constexpr std::array<std::string_view, 2> kBuiltInVehicles{"default", "uav2"};
 constexpr float kShortest = 1e-3F;  // of a leg or a direction
 
@@ -80,18 +80,22 @@ void read_leg(Reader& reader, YamlMap& leg)
     }
 }
 
-/// Either `leg`, whose collision point is computed, or `start`, `direction` and `distance` to the collision point.
+/// Either `leg` or `reference`, whose collision point is computed, or `start`, `direction` and `distance` to the
+/// collision point.
 void read_way(Reader& reader)
 {
     YamlMap& root = reader.root;
     ProblemFile& out = reader.out;
-    if (root.has("leg")) {
-        for (const std::string_view key : {"start", "direction", "distance", "speed"}) {
-            if (root.has(key)) {
-                root.complain(key, "does not go with `leg`");
+    const std::string_view way = root.has("leg") ? "leg" : "reference";
+    if (root.has(way)) {
+        for (const std::string_view key : {"start", "direction", "distance", "speed", "reference"}) {
+            if (key != way && root.has(key)) {
+                root.complain(key, "does not go with `" + std::string(way) + "`");
             }
         }
-        if (auto leg = root.map("leg")) {
+        if (way == "reference") {
+            detail::read_reference(root, out, reader.complaints);
+        } else if (auto leg = root.map("leg")) {
             read_leg(reader, *leg);
         }
     } else {
@@ -103,6 +107,7 @@ void read_way(Reader& reader)
         out.speed = root.number("speed", kSpeed).value_or(out.vehicle.limits.cruise_speed);
         reader.has_distance = true;
     }
+    detail::read_frame(root, out);
     out.velocity = root.vector("velocity", detail::kVelocity)
                        .value_or(vehicle::clamped_velocity(out.direction, out.speed, out.vehicle.limits));
     out.flown_side = root.vector("flown_side", {-1.0F, 1.0F}).value_or(Vec3::Zero());
@@ -199,8 +204,8 @@ bool find_main(Reader& reader)
     return true;
 }
 
-/// Collision point and what depends on it: closest approach of the centres while the vehicle flies along the leg, or
-/// the distance given.
+/// Collision point and what depends on it: closest approach of the centres while the vehicle flies along the leg or the
+/// reference, or the distance given.
 void meet_main(Reader& reader)
 {
     ProblemFile& out = reader.out;
@@ -214,7 +219,15 @@ void meet_main(Reader& reader)
     }
     const Vec3 own = vehicle::clamped_velocity(out.direction, out.speed, out.vehicle.limits);
     Seconds when = out.distance / own.norm();
-    if (!reader.has_distance) {
+    if (!out.route.empty()) {
+        const auto distance = detail::nearest_on_reference(out, motion);
+        if (!distance) {
+            reader.root.complain("reference", "the main threat is not nearest on it, but at its start or its end");
+            return;
+        }
+        out.distance = *distance;
+        when = out.distance / out.speed;
+    } else if (!reader.has_distance) {
         const Vec3 closing = own - motion.velocity;
         const float closing2 = closing.squaredNorm();
         when = closing2 > 1e-6F ? (motion.position - out.start).dot(closing) / closing2 : 0.0F;
@@ -226,7 +239,9 @@ void meet_main(Reader& reader)
         }
     }
     out.meets_main = when;
-    out.main_centre_offset = motion.position + when * motion.velocity - (out.start + out.distance * out.direction);
+    const Vec3 point =
+        out.route.empty() ? Vec3(out.start + out.distance * out.direction) : out.route.at(out.distance).position;
+    out.main_centre_offset = motion.position + when * motion.velocity - point;
     if (reader.has_main_radius) {
         return;
     }
@@ -305,6 +320,10 @@ geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
     geometric::Problem problem;
     problem.moving_solids = storage.moving_solids;
     problem.frame = geometric::make_path_frame(file.start, file.direction);
+    if (file.frame_y != Vec3::Zero()) {
+        problem.frame = geometric::make_path_frame(file.start, file.direction, file.frame_y);
+    }
+    problem.ahead.route = file.route.empty() ? nullptr : &file.route;
     problem.distance = file.distance;
     problem.main_radius = file.main_radius;
     problem.threats = storage.threats;

@@ -46,6 +46,8 @@ struct ProblemFile {
 
     Vec3 start = Vec3::Zero();
     Vec3 direction = Vec3::UnitX();  ///< unit vector
+    path::Route route;               ///< the reference, where it is told by segments; empty: straight
+    Vec3 frame_y = Vec3::Zero();     ///< of the path frame, unit vector across `direction`; zero: horizontal
     float speed = 5.0F;              ///< cruise speed along the candidates [m/s]
     Vec3 velocity = Vec3::Zero();    ///< own, at the start [m/s]
     float distance = 0.0F;           ///< D, given or from the closest approach on the leg [m]
@@ -71,7 +73,7 @@ struct ProblemStorage {
     std::vector<geometric::MovingSolid> moving_solids;
     geometry::Shape main_shape;  ///< of a moving solid, where it is met
 };
-/// The problem as the planner wants it. It refers to `file` and `storage`, which outlive it.
+/// The problem as the planner wants it, its route included. It refers to `file` and `storage`, which outlive it.
 [[nodiscard]] geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage);
 
 /// What became of a problem.

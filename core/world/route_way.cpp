@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/world/route_way.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::world {
+namespace {
+
+/// Nearer than this, two points give no direction [m].
+constexpr float kNoDistance = 1e-3F;
+/// The way aims at least this far ahead, past the end of a segment if need be [m].
+constexpr float kLeastAhead = 1.0F;
+
+float ahead_of(const path::RouteSegment& segment, const path::Abeam& abeam) noexcept
+{
+    const bool on_leg = !segment.is_arc() && abeam.off <= detail::kOnLeg;
+    const float least = std::min(kRejoinLookahead, std::max(kLeastAhead, 2.0F * abeam.off));
+    const float wanted = on_leg             ? abeam.left
+                         : segment.is_arc() ? std::min(kRejoinLookahead, std::sqrt(segment.radius) + 2.0F * abeam.off)
+                                            : kRejoinLookahead;
+    return std::max(std::min(wanted, abeam.left), least);
+}
+
+}  // namespace
+
+Way way_along(const Situation& situation, const Vec3& position) noexcept
+{
+    const Reference& reference = situation.reference;
+    const path::Route& route = *reference.route;
+    const path::Abeam abeam = route.abeam_of(position, reference.segment);
+    const float length = route.length();
+    const float joined = std::min(abeam.arc_length + ahead_of(route.segments()[abeam.segment], abeam), length);
+    const path::RoutePoint aim = route.at(joined);
+    const Vec3 to_aim = aim.position - position;
+    const float distance = to_aim.norm();
+    Way way;
+    way.origin = position;
+    way.direction = distance > kNoDistance ? Vec3(to_aim / distance) : aim.along;
+    way.length = distance > kNoDistance || joined < length ? distance + (length - joined) : 0.0F;
+    way.speed = vehicle::clamped_velocity(way.direction, reference.leg.speed, situation.limits).norm();
+    way.ahead = {&route, distance, joined};
+    return way;
+}
+
+namespace detail {
+
+RoutePieces::RoutePieces(const Situation& situation, const Way& way, Seconds lookahead) noexcept
+    : way_(way), limits_(situation.limits), speed_(situation.reference.leg.speed), lookahead_(lookahead)
+{
+    const std::span<const path::RouteSegment> segments = way.ahead.route->segments();
+    // What is reached at most, and how far the way turns in it.
+    const float reach = way.ahead.joined_at + std::max(0.0F, speed_ * lookahead - way.ahead.straight);
+    float turn = 0.0F;
+    float start = 0.0F;
+    for (const path::RouteSegment& segment : segments) {
+        const float from = std::clamp(way.ahead.joined_at - start, 0.0F, segment.length);
+        const float to = std::clamp(reach - start, from, segment.length);
+        turn += segment.is_arc() ? (to - from) / segment.radius : 0.0F;
+        start += segment.length;
+    }
+    chord_angle_ = std::max(kChordAngle, turn * (1.001F / static_cast<float>(kWayChords)));
+
+    add(way.origin, way.origin + way.direction * way.ahead.straight, way.ahead.straight);
+    start = 0.0F;
+    for (const path::RouteSegment& segment : segments) {
+        const float from = std::clamp(way.ahead.joined_at - start, 0.0F, segment.length);
+        if (now_ < lookahead_) {
+            add_segment(segment, from, std::clamp(reach - start, from, segment.length));
+        }
+        start += segment.length;
+    }
+    if (now_ < lookahead_ || pieces_.empty()) {
+        const Vec3 end = way.length > 0.0F ? way.ahead.route->at(start).position : way.origin;
+        pieces_.unchecked_push_back({{end, Vec3::Zero()}, now_, lookahead_, flown_});
+    }
+}
+
+void RoutePieces::add_segment(const path::RouteSegment& segment, float from, float to) noexcept
+{
+    const float span = to - from;
+    const int chords =
+        segment.is_arc() ? std::max(1, static_cast<int>(std::ceil(span / (segment.radius * chord_angle_)))) : 1;
+    const float chord = span / static_cast<float>(chords);
+    Vec3 position = path::point_of(segment, from).position;
+    for (int i = 1; i <= chords && now_ < lookahead_; ++i) {
+        const Vec3 next = path::point_of(segment, from + chord * static_cast<float>(i)).position;
+        add(position, next, chord);
+        position = next;
+    }
+    if (segment.is_arc()) {
+        const float half = std::sin(0.25F * chord / segment.radius);
+        off_ = std::max(off_, kChordSlack + 1.01F * segment.radius * 2.0F * half * half);
+    }
+}
+
+/// Flown evenly in the time that `length` takes; shortened to end with the time that is looked ahead.
+void RoutePieces::add(const Vec3& from, const Vec3& to, float length) noexcept
+{
+    const Vec3 span = to - from;
+    if (!(length > kNoDistance) || !(span.squaredNorm() > 0.0F)) {
+        flown_ += length;
+        return;
+    }
+    const float speed = vehicle::clamped_velocity(span, speed_, limits_).norm();
+    const Seconds duration = length / speed;
+    const Seconds end = std::min(now_ + duration, lookahead_);
+    pieces_.unchecked_push_back({{from, span / duration}, now_, end, flown_});
+    now_ = end;
+    flown_ += length;
+}
+
+float RoutePieces::way_at(Seconds t) const noexcept
+{
+    std::size_t i = 0;
+    while (i + 1 < pieces_.size() && t >= pieces_[i + 1].start) {
+        ++i;
+    }
+    const WayPiece& piece = pieces_[i];
+    const float next = i + 1 < pieces_.size() ? pieces_[i + 1].way : way_.length;
+    if (piece.own.velocity == Vec3::Zero()) {
+        return piece.way;
+    }
+    const float speed = vehicle::clamped_velocity(piece.own.velocity, speed_, limits_).norm();
+    return std::min(piece.way + speed * (t - piece.start), next);
+}
+
+}  // namespace detail
+}  // namespace jink::world
