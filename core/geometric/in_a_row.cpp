@@ -94,6 +94,9 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
     // Twice: where it ends on the leg depends on what is met, and that on the way there.
     float back = top;
     for (int look = 0; look < 2; ++look) {
+        if (top + back > problem.straight) {
+            return false;  // it would end where the way goes elsewhere
+        }
         const Vec3 way = back * along - aside * first.side;
         const Vec3 velocity = vehicle::clamped_velocity(way, problem.speed, limits);
         const float speed = velocity.norm();

@@ -21,6 +21,7 @@ void follow_route(const world::Situation& situation, const world::Way& way, cons
                   Problem& problem) noexcept
 {
     if (way.ahead.straight >= kFarthestEnd * conflict.way_at_closest) {
+        problem.straight = way.ahead.straight;
         return;
     }
     problem.ahead = way.ahead;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <span>
 
 #include "core/base/work_budget.hpp"
@@ -184,7 +185,9 @@ struct Problem {
     float span_to = 1.0F;      ///< beyond 1 further out; with span_from > 0 the first one lies past it
     float apex_share = 1.0F;   ///< the apex of a curve lies so many D from the start; 1: at the collision point
     bool ends_at_top = false;  ///< curves end there, beside the main threat and along the leg
-    Seconds begins = 0.0F;     ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
+    /// Without a route: so far along x the leg goes on, >= 0; manoeuvres of two parts end before it does [m].
+    float straight = std::numeric_limits<float>::infinity();
+    Seconds begins = 0.0F;  ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
 };
 
 /// Along what `ahead` says.

@@ -44,8 +44,8 @@ bool has_valid_scales(const Problem& p) noexcept
     return is_valid(p.frame) && is_valid(p.ahead) && is_positive(p.distance) && is_positive(p.main_radius) &&
            is_positive(p.speed) && is_not_negative(p.obstacle_clearance) && is_not_negative(p.body_radius) &&
            is_not_negative(p.span_from) && is_not_negative(p.span_to) && is_positive(p.apex_share) &&
-           is_not_negative(p.begins) && is_finite(p.start_velocity) && is_finite(p.preferred_side) &&
-           is_finite(p.main_centre_offset);
+           is_not_negative(p.begins) && p.straight >= 0.0F && is_finite(p.start_velocity) &&
+           is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
 bool is_valid(const Problem& p) noexcept

@@ -227,7 +227,7 @@ TEST(ChoiceBorder, NoTotalIsAboveOne)
     std::size_t worst = 0;
     for (const Candidate& c : scene.result.candidates) {
         EXPECT_LE(c.total, 1.0F);
-        const cost::NormalisedTerms& n = c.normalised;
+        const cost::NormalisedTerms n = cost::normalise(c.terms, scene.settings.caps);
         worst += n.time == 1.0F && n.smoothness_penalised == 1.0F && n.closeness == 1.0F ? 1U : 0U;
     }
     EXPECT_GT(worst, 0U);

@@ -140,8 +140,8 @@ TEST(WorkBorder, ASolidCostsWhatItsPlaceSays)
     };
     // Out of reach: seen to be.
     EXPECT_EQ(more(Vec3(60.0F, 100.0F, 50.0F), true), units::kCollected);
-    // Within what all candidates together may reach, far from each, and from the start: segments are counted.
-    const std::uint32_t beside = units::kCollected + 2 * 24 * units::kSolidSegment;
+    // Within what all candidates together may reach, far from each, and from the start: one look for each.
+    const std::uint32_t beside = units::kCollected + 2 * units::kSolidLook;
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), true), beside);
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), false), beside);
     // Beside the start: the escape rule asks how near.
