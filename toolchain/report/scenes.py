@@ -258,7 +258,7 @@ def _echo(kind, a, b, radius, yaw):
 
 SCENES = {scene.name: scene for scene in (
     Scene("plan_16_3", "plan, 16 candidates, 3 threats", "plan", (3, 3), (0, 0), SIXTEEN, 0, False),
-    Scene("plan_16_3_retries", "plan, 16 candidates, 3 threats, up to 8 further attempts", "plan", (3, 3), (0, 0), SIXTEEN, 8, False),
+    Scene("plan_16_3_retries", "plan, 16 candidates, 3 threats, up to 9 further attempts", "plan", (3, 3), (0, 0), SIXTEEN, 8, False),
     Scene("plan_16_3_study", "plan, 16 candidates, 3 threats, one standing 10 m ahead as in the source's run-time study", "plan", (3, 3), (0, 0), SIXTEEN,
           0, False, study=True),
     Scene("plan_16_3_solids", "plan, 16 candidates, 3 threats of any shape", "plan", (3, 3), (0, 0), SIXTEEN, 0, False, True, True),
@@ -276,7 +276,7 @@ def _sample(scene, seed, tracks, obstacles, offsets, retries):
 # Random problems whose counts are a distribution: (title, how many, case of a seed).
 SAMPLES = {
     "plan_16_3": ("plan, 16 candidates, 3 threats", 800, lambda seed: _sample("plan_16_3", seed, 3, 0, 2, 0)),
-    "plan_typical": ("plan, 32 candidates, 1 to 6 tracks, up to 3 obstacles, up to 8 further attempts", 300,
+    "plan_typical": ("plan, 32 candidates, 1 to 6 tracks, up to 3 obstacles, up to 9 further attempts", 300,
                      lambda seed: _sample("plan_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
     "update_typical": ("update, the same", 300, lambda seed: _sample("update_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
     "plan_full": ("plan, 32 candidates, 32 tracks, 96 obstacles", 80, lambda seed: _sample("plan_full", seed, 32, 96, 4, 8)),
