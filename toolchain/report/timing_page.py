@@ -150,7 +150,7 @@ def _on_host():
     if not h:
         return []
     return ["## Time on the host", "", "Wall time, of one run on a virtual machine with two cores and other load beside it: noise, not compared by any test "
-            f"(`timing.distribution` runs a short one). {number(h['plans'])} random plans with 16 candidates, 3 threats and up to nine attempts, {h['how']}:", "",
+            f"(`timing.distribution` runs a short one). {number(h['plans'])} random plans with 16 candidates, 3 threats and up to ten attempts, {h['how']}:", "",
             row("median", "99 %", "99.99 %", "most", "its input", "the same input again 500 times: least, middle, most", "costliest without noise", "its input"),
             row(*["---"] * 8),
             row(*(f"{h[k]:.1f} us" for k in ("median_us", "p99_us", "p9999_us", "most_us")), h["most_input"],
