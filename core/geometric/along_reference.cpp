@@ -26,8 +26,6 @@ constexpr Seconds kLeastDuration = 1e-3F;
 constexpr int kCarrySteps = 8;
 /// The tangent at the collision point is taken between points this share of D before and behind it.
 constexpr float kTangentShare = 0.02F;
-/// A path frame may be that far from unitary (Problem's validity), and times are rounded.
-constexpr float kUnitTolerance = 1.01F;
 /// Points by which the reach of curves is found.
 constexpr int kReachPoints = 16;
 

@@ -12,9 +12,6 @@ namespace {
 /// Rounding of the finite differences that accelerations are taken from.
 constexpr float kDifferenceRounding = 1.001F;
 
-/// A path frame may be that far from unitary (Problem's validity), and times are rounded.
-constexpr float kUnitTolerance = 1.01F;
-
 bool within(const Vec3& change, Seconds time, const vehicle::VehicleLimits& limits) noexcept
 {
     const float level = kDifferenceRounding * limits.max_acceleration * time;

@@ -12,6 +12,9 @@
 
 namespace jink::geometric::detail {
 
+/// A path frame may be that far from unitary (Problem's validity), and times are rounded.
+inline constexpr float kUnitTolerance = 1.01F;
+
 using Coordinates = std::array<float, kMaxPathPoints>;
 
 /// A family's curve for D = 1, w = 1: made once per plan.
