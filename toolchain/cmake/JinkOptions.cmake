@@ -29,6 +29,9 @@ if(JINK_SANITIZE)
   add_compile_options(-fsanitize=${JINK_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   # The vptr check compares type information, which code built without RTTI does not have.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=vptr>)
+  # These three are costly to build; sources that are flashed keep them (jink_embedded, below).
+  set(JINK_COSTLY_CHECKS null,alignment,object-size)
+  add_compile_options(-fno-sanitize=${JINK_COSTLY_CHECKS})
   add_link_options(-fsanitize=${JINK_SANITIZE})
 endif()
 
@@ -42,3 +45,16 @@ target_compile_options(jink_warnings INTERFACE
 add_library(jink_embedded INTERFACE)
 target_compile_options(jink_embedded INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti -fno-threadsafe-statics>)
+if(JINK_SANITIZE MATCHES "undefined")
+  target_compile_options(jink_embedded INTERFACE -O1 -fsanitize=${JINK_COSTLY_CHECKS})
+endif()
+
+# jink_command_lines(sources): what reads a command line. CLI11 is headers alone, made anew by each of them: optimizing
+# that takes longer than all of their own code.
+function(jink_command_lines)
+  set(level -O1)
+  if(JINK_SANITIZE)
+    set(level -O0)
+  endif()
+  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS ${level})
+endfunction()
