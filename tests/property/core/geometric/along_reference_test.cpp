@@ -133,7 +133,7 @@ TEST(AlongReference, PlanesDoNotTwist)
 TEST(AlongReference, CornersAreRounded)
 {
     Random random(20261132);
-    for (int i = 0; i < 500; ++i) {
+    for (std::size_t i = 0; i < case_count(500); ++i) {
         const float turn = random.uniform(0.3F, 2.0F);
         TwinRoute twin;
         const Vec3 corner(40.0F, 0.0F, 50.0F);

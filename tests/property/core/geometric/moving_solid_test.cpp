@@ -64,7 +64,8 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
     std::size_t free = 0;
     std::size_t hits = 0;
     std::size_t seen_to_touch = 0;
-    for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
+    const std::size_t cases = case_count(1500);
+    for (std::uint64_t seed = 1; seed <= cases; ++seed) {
         RandomProblem p(seed);
         Random random(seed * 92821);
         p.problem.threats = {};
@@ -130,8 +131,8 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
             }
         }
     }
-    EXPECT_GT(free, 5000U);
-    EXPECT_GT(hits, 5000U);
+    EXPECT_GT(free, 10 * cases / 3);
+    EXPECT_GT(hits, 10 * cases / 3);
     EXPECT_GT(seen_to_touch * 10, hits * 7) << "most contacts are seen by so few points";
     std::printf("[ measured ] %zu candidates free, %zu in contact, %zu of these seen so by samples\n", free, hits,
                 seen_to_touch);

@@ -7,9 +7,11 @@
 #include "core/base/random.hpp"
 #include "core/geometric/planner.hpp"
 #include "tests/oracle/planner_oracle.hpp"
+#include "tests/property/core/geometry/oracle.hpp"
 
 namespace jink::geometric {
 
+using geometry::oracle::case_count;
 using oracle::operator+;
 using oracle::operator-;
 using oracle::operator*;

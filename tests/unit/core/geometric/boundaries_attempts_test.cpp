@@ -136,5 +136,25 @@ TEST(Attempts, BadSettingsAreRefusedHoweverOftenTheyAreTried)
     }
 }
 
+TEST(Attempts, OneThatWasCutShortIsToldWhateverComesAfterIt)
+{
+    std::size_t told = 0;
+    for (std::uint32_t units = 0; units < 4'000; units += 100) {
+        bool cut = false;
+        for (std::size_t retries = 0; retries < kAttempts.size(); ++retries) {
+            Hopeless scene;
+            scene.settings.evaluate_all = scene.settings.all_terms = false;
+            scene.settings.check_units = units;
+            scene.settings.retries = static_cast<std::uint8_t>(retries);
+            ASSERT_EQ(scene.run_all(), PlanStatus::none_available);
+            ASSERT_TRUE(scene.result.cut_short || !cut) << units << " units, " << retries << " retries";
+            cut = scene.result.cut_short;
+        }
+        told += cut ? 1U : 0U;
+    }
+    EXPECT_GT(told, 0U);
+    EXPECT_LT(told, 40U) << "some of them are enough";
+}
+
 }  // namespace
 }  // namespace jink::geometric

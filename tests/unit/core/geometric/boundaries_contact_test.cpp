@@ -211,16 +211,7 @@ TEST(ContactBorder, ALookAtWhatIsFarCostsTheSameForEach)
 {
     // Up to four balls are looked at one by one, more of them first as a whole.
     const auto spent = [](std::size_t balls) {
-        Scene scene;
-        scene.settings.simple = false;
-        scene.settings.extra_planes = 0;
-        scene.settings.offset_rule = OffsetRule::source;
-        scene.settings.offsets = 2;
-        scene.settings.verify_flight = scene.settings.check_acceleration = false;
-        scene.problem.distance = 60.0F;
-        scene.problem.main_radius = 6.0F;
-        scene.problem.main = kNoThreat;
-        scene.threats.clear();
+        Scene scene = two_level_candidates(6.0F);
         for (std::size_t i = 0; i < balls; ++i) {
             scene.threats.push_back(Scene::still(Vec3(60.0F, 0.0F, 50.0F + 18.0F), 0.5F));
         }

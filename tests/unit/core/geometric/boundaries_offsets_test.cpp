@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/geometric/offsets.hpp"
 #include "core/geometry/convex.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
@@ -218,6 +219,43 @@ TEST(OffsetBorder, SourceOffsetsOnTheLimitAreKept)
     scene.settings.source_drop_margin = 0.2001F;
     static_cast<void>(scene.run());
     EXPECT_EQ(scene.result.candidates.size(), 20U);
+}
+
+TEST(OffsetBorder, AnOffsetAtTheDropLimitIsKept)
+{
+    OffsetScene scene(Family::symmetric, 20.0F);
+    scene.settings.offset_rule = OffsetRule::source;
+    scene.settings.offsets = 16;
+    const float third = 3.0F * (2.0F * 3.2F / 16.0F);  // 0.4 m apart for a radius of 1 m
+    // The margin for which the limit, less the share kept for rounding, is that offset to the bit.
+    const auto limit = [](float margin) { return (1.0F - 1e-5F) * (1.0F + margin); };
+    float margin = third - 1.0F;
+    while (limit(margin) < third) {
+        margin = std::nextafter(margin, 1.0F);
+    }
+    ASSERT_EQ(limit(margin), third);
+    scene.settings.source_drop_margin = margin;
+    const std::vector<float> kept = scene.offsets(0.0F);
+    EXPECT_EQ(std::count(kept.begin(), kept.end(), third), 1);
+    scene.settings.source_drop_margin = margin + 1e-6F;
+    const std::vector<float> dropped = scene.offsets(0.0F);
+    EXPECT_EQ(dropped.size(), kept.size() - 2);
+}
+
+TEST(OffsetBorder, ABallsWidthDoesNotDependOnHowFarAheadItIsNearest)
+{
+    const Vec3 half(0.4F, 0.4F, 0.2F);
+    for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {
+        OffsetScene scene(family, 20.0F);
+        const auto smallest = [&](const Vec3& centre_offset) {
+            scene.problem.main_centre_offset = centre_offset;
+            return detail::smallest_clearing_offset(scene.problem, scene.settings, family, half, Vec3::UnitY());
+        };
+        const float abeam = smallest(Vec3::Zero());
+        for (const float ahead : {-6.0F, -0.7F, 0.7F, 6.0F}) {
+            EXPECT_EQ(smallest(Vec3(ahead, 0.0F, 0.0F)), abeam) << ahead;
+        }
+    }
 }
 
 }  // namespace

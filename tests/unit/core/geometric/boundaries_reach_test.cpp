@@ -65,7 +65,8 @@ TEST(ReachBorder, EveryCandidateIsWatchedToItsEnd)
         climbing.limits.max_climb = 0.4F;
         expect_ends_in_sight(climbing);
         CurveScene sinking(family);
-        sinking.limits.max_descent = 0.4F;
+        sinking.limits.max_descent = 0.2F;
+        sinking.limits.max_climb = 20.0F;
         expect_ends_in_sight(sinking);
         // Wide for its length, and everything as fast.
         CurveScene wide(family);

@@ -114,18 +114,9 @@ TEST(WorkBorder, AStartInsideOfMargins)
 /// Units of a run of two symmetric level candidates, 9.6 m to either side, checked as curves.
 std::uint32_t spent_on(const std::vector<world::Obstacle>& obstacles, bool escape)
 {
-    Scene scene;
-    scene.settings.simple = false;
-    scene.settings.extra_planes = 0;
-    scene.settings.offset_rule = OffsetRule::source;
-    scene.settings.offsets = 2;
-    scene.settings.verify_flight = scene.settings.check_acceleration = false;
+    Scene scene = two_level_candidates(3.0F);
     scene.settings.escape_from_margin = escape;
     scene.settings.check_units = 1'000;
-    scene.problem.distance = 60.0F;
-    scene.problem.main_radius = 3.0F;
-    scene.problem.main = kNoThreat;
-    scene.threats.clear();
     scene.obstacles = obstacles;
     EXPECT_EQ(scene.run(), PlanStatus::found);
     EXPECT_EQ(scene.result.candidates.size(), 2U);
@@ -146,6 +137,30 @@ TEST(WorkBorder, ASolidCostsWhatItsPlaceSays)
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), false), beside);
     // Beside the start: the escape rule asks how near.
     EXPECT_GT(more(Vec3(-2.6F, 0.0F, 50.0F), true), more(Vec3(-2.6F, 0.0F, 50.0F), false));
+}
+
+TEST(WorkBorder, ManyBallsOutOfACurvesReachCostALookEach)
+{
+    constexpr std::uint32_t kBalls = 7;
+    const auto spent = [](SecurityMode security, const Vec3& velocity) {
+        Scene scene = two_level_candidates(3.0F);
+        scene.settings.escape_from_margin = false;
+        scene.settings.security = security;
+        scene.settings.closeness_nearest = 1;
+        // Within what both level candidates together may reach, and far above either.
+        scene.threats.assign(kBalls, {{Vec3(60.0F, 0.0F, 59.0F), velocity}, 0.1F});
+        EXPECT_EQ(scene.run(), PlanStatus::found);
+        return scene.budget.spent();
+    };
+    const std::uint32_t none = spent_on({}, false);
+    constexpr std::uint32_t kPassed = kBalls * (units::kCollected + 2 * units::kFarItem);
+    for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
+        EXPECT_EQ(spent(security, Vec3::Zero()), none + kPassed);
+    }
+    // What moves is looked at for closeness besides, one at most here.
+    const std::uint32_t costed = 2 * units::closeness_units(25, 1);
+    EXPECT_EQ(spent(SecurityMode::time_aware, Vec3(0.0F, 0.0F, 0.01F)), none + kPassed + costed);
+    EXPECT_GT(spent(SecurityMode::swept, Vec3(0.0F, 0.0F, 0.01F)), none + kPassed + costed);
 }
 
 }  // namespace

@@ -55,4 +55,21 @@ struct Scene {
     }
 };
 
+/// Two symmetric level candidates, 3.2 radii of the main threat to either side of a leg of 60 m, checked as curves; no
+/// threats.
+inline Scene two_level_candidates(float main_radius)
+{
+    Scene scene;
+    scene.settings.simple = false;
+    scene.settings.extra_planes = 0;
+    scene.settings.offset_rule = OffsetRule::source;
+    scene.settings.offsets = 2;
+    scene.settings.verify_flight = scene.settings.check_acceleration = false;
+    scene.problem.distance = 60.0F;
+    scene.problem.main_radius = main_radius;
+    scene.problem.main = kNoThreat;
+    scene.threats.clear();
+    return scene;
+}
+
 }  // namespace jink::geometric
