@@ -7,6 +7,7 @@
 
 #include "toolchain/sim/board_line.hpp"
 #include "toolchain/sim/child.hpp"
+#include "toolchain/sim/hold_up.hpp"
 #include "toolchain/sim/plant.hpp"
 
 namespace jink::sim {
@@ -34,8 +35,15 @@ bool wait_for_life(Child& child, BoardLine& line, Plant& plant)
 
 void fly(Plant& plant, BoardLine& line, Child& child, Record& notes)
 {
+    HoldUp hold_up;
+    double next_look = 0.0;
     while (!plant.finished()) {
         std::this_thread::sleep_for(kNap);
+        if (const double wall = line.wall(); wall >= next_look) {
+            next_look = wall + HoldUp::kLookEvery;
+            static_cast<void>(hold_up.look(HoldUp::sample(child, wall)));
+            notes.held_up = hold_up.longest();
+        }
         plant.deliver(line.listen(plant.now()));
         const Micros due = line.due(plant.now());
         notes.late_steps += due - plant.now() > BoardClock::kStepOfBoard ? 1U : 0U;
@@ -75,6 +83,7 @@ Record fly_board_once(const Scenario& scenario, const Computer& computer, const 
     record.faults.insert(record.faults.end(), notes.faults.begin(), notes.faults.end());
     record.late_steps = notes.late_steps;
     record.latest_step = notes.latest_step;
+    record.held_up = notes.held_up;
     if (line.clock().times_deaf() > 0) {
         record.faults.emplace_back("the board told no time for a while");
         record.latest_step = std::max(record.latest_step, BoardClock::kDeaf);

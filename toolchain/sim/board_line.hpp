@@ -70,9 +70,10 @@ public:
     /// Datagrams lost by this machine, not by the board.
     [[nodiscard]] std::uint64_t dropped() const { return line_.dropped(); }
 
-private:
+    /// Since the line began [s].
     [[nodiscard]] double wall() const;
 
+private:
     DatagramLine line_;
     BoardClock clock_;
     link::mavlink::Parser parser_{nullptr, link::mavlink::LongerPayload::accept};

@@ -95,20 +95,25 @@ bool Child::running()
     return !ended_;
 }
 
-Child::Processor Child::look(const Processor& before) const
+Child::Threads Child::threads() const
 {
-    const std::string folder = "/proc/" + std::to_string(pid_);
-    double ran = 0.0;
-    double waited = 0.0;
-    std::ifstream(folder + "/schedstat") >> ran >> waited;
-    // PID (NAME) STATE ...
-    std::string stat;
-    std::getline(std::ifstream(folder + "/stat"), stat);
-    const std::size_t name_ends = stat.rfind(')');
-    const bool ready = name_ends != std::string::npos && stat.compare(name_ends, 3, ") R") == 0;
-    Processor now{ran * 1e-9, waited * 1e-9, false};
-    now.waiting = ready && now.ran == before.ran;
-    return now;
+    Threads threads;
+    std::error_code error;
+    const std::filesystem::path folder = "/proc/" + std::to_string(pid_) + "/task";
+    for (std::filesystem::directory_iterator i(folder, error), end; !error && i != end; i.increment(error)) {
+        double ran = 0.0;
+        double waited = 0.0;
+        std::string stat;
+        if (!(std::ifstream(i->path() / "schedstat") >> ran >> waited) ||
+            !std::getline(std::ifstream(i->path() / "stat"), stat)) {
+            continue;  // over meanwhile
+        }
+        // ID (NAME) STATE ...
+        const std::size_t name_ends = stat.rfind(')');
+        const bool ready = name_ends != std::string::npos && stat.compare(name_ends, 3, ") R") == 0;
+        threads[static_cast<pid_t>(std::stol(stat))] = {ran * 1e-9, waited * 1e-9, ready};
+    }
+    return threads;
 }
 
 void Child::ask_to_stop() const { ::kill(pid_, SIGTERM); }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,15 +49,14 @@ public:
     /// True while it runs.
     [[nodiscard]] bool running();
     void ask_to_stop() const;
-    /// What the machine did to it, not what it did itself (/proc/PID/schedstat, of its first thread; nothing where the
-    /// system does not tell).
-    struct Processor {
-        double ran = 0.0;      ///< [s]
-        double waited = 0.0;   ///< ready to run, until it last got a processor [s]
-        bool waiting = false;  ///< for one at present, since the look before or longer
+    struct Thread {
+        double ran = 0.0;     ///< [s]
+        double waited = 0.0;  ///< ready to run, until it last got a processor [s]
+        bool ready = false;   ///< it runs, or waits for a processor
     };
-    /// At present; `before`: what the look before gave.
-    [[nodiscard]] Processor look(const Processor& before) const;
+    using Threads = std::map<pid_t, Thread>;
+    /// Its threads (/proc/PID/task/*/schedstat); none where the system does not tell.
+    [[nodiscard]] Threads threads() const;
     /// How it ended, in words; empty: it exited with 0. Only when it no longer runs.
     [[nodiscard]] std::string ending() const;
 

@@ -14,6 +14,7 @@
 
 #include "toolchain/sim/board_flight.hpp"
 #include "toolchain/sim/child.hpp"
+#include "toolchain/sim/hold_up.hpp"
 #include "toolchain/sim/plant.hpp"
 
 namespace jink::sim {
@@ -24,13 +25,9 @@ using std::chrono::microseconds;
 
 /// A step that begins this much too late is counted: the co-processor has then seen a gap and a burst.
 constexpr auto kLate = microseconds(20'000);
-/// And one beyond this means that the machine stood still: nothing can be said of such a flight.
-constexpr double kStall = 0.1;  // [s]
 /// Beyond this a flight in which each tenth of a second counts may end otherwise than on a machine that runs evenly.
 constexpr double kHeldUp = 0.015;  // [s]
 constexpr unsigned kAttempts = 4;
-/// Between two looks at how long the program waited for a processor [us].
-constexpr Micros kLookEvery = 20'000;
 /// SCHED_FIFO priorities of the simulator's threads and, above them, of the program: its turn comes first, as on its
 /// own machine.
 constexpr int kOwnPriority = 10;
@@ -54,43 +51,21 @@ bool wait_for_life(Child& child, PseudoTerminal& line, Plant& plant)
     return false;
 }
 
-/// How long the machine left the program without a processor. The program's own account of its lateness would excuse
-/// the program too.
-class Starvation {
-public:
-    /// Since the look before, or the wait that still goes on [s].
-    double look(const Child& child)
-    {
-        const Child::Processor now = child.look(last_);
-        // The first look that finds it ready may have come just before its turn.
-        looks_ = now.waiting ? looks_ + 1 : 0;
-        const double waiting = looks_ > 1 ? to_seconds((looks_ - 1) * kLookEvery) : 0.0;
-        const double waited = first_ ? 0.0 : now.waited - last_.waited;
-        first_ = false;
-        last_ = now;
-        return std::max(waited, waiting);
-    }
-
-private:
-    Child::Processor last_;
-    Micros looks_ = 0;
-    bool first_ = true;
-};
-
 /// Flies in step with the wall clock.
 void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes)
 {
     auto next = Clock::now();
     std::vector<std::byte> waiting;
-    Starvation starvation;
+    HoldUp hold_up;
     while (!plant.finished()) {
         next += microseconds(kStep);
         std::this_thread::sleep_until(next);
         const auto late = Clock::now() - next;
         notes.late_steps += late > kLate ? 1U : 0U;
         notes.latest_step = std::max(notes.latest_step, std::chrono::duration<double>(late).count());
-        if (plant.now() % kLookEvery == 0) {
-            notes.latest_step = std::max(notes.latest_step, starvation.look(child));
+        if (plant.now() % to_micros(HoldUp::kLookEvery) == 0) {
+            const double wall = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+            notes.latest_step = std::max(notes.latest_step, hold_up.look(HoldUp::sample(child, wall)));
         }
         plant.deliver(line.read());
         plant.step();
@@ -230,7 +205,8 @@ Record fly_once(const Scenario& scenario, const Computer& computer, const std::f
 /// The machine's doing, as far as can be told: it stood still, or held something up in a flight that went wrong.
 bool says_nothing(const Scenario& scenario, const Record& record)
 {
-    return record.latest_step > kStall || (record.latest_step > kHeldUp && !unmet(scenario, record).empty());
+    return record.latest_step > HoldUp::kStall ||
+           ((record.latest_step > kHeldUp || record.held_up > HoldUp::kStall) && !unmet(scenario, record).empty());
 }
 
 }  // namespace
@@ -242,7 +218,7 @@ Record fly_daemon(const Scenario& scenario, const Computer& computer, const std:
         record = fly_once(scenario, computer, folder);
         record.repeats = repeats;
     }
-    if (record.latest_step > kStall) {
+    if (record.latest_step > HoldUp::kStall) {
         record.faults.push_back("the machine stood still for " + std::to_string(record.latest_step) +
                                 " s in each attempt");
         record.outcome = Outcome::failed;

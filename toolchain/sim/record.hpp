@@ -75,6 +75,7 @@ struct Record {
     Heard heard;
     unsigned late_steps = 0;   ///< real time: steps begun more than a tick late
     double latest_step = 0.0;  ///< real time: the latest of them [s]
+    double held_up = 0.0;      ///< emulated: the machine kept the emulator from running, the longest [s]
     unsigned repeats = 0;      ///< real time: flights thrown away before because the machine stood still
     std::vector<Vec> mission;
     std::vector<Threat> threats;

@@ -197,6 +197,7 @@ Json json(const ReportedFlight& flight, bool machine_independent)
     if (!machine_independent) {
         j["late_steps"] = r.late_steps;
         j["latest_step"] = rounded(r.latest_step);
+        j["held_up"] = rounded(r.held_up);
         j["repeats"] = r.repeats;
     }
     j["link"] = link_of(r);

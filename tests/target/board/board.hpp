@@ -10,6 +10,7 @@
 #include "tests/target/board/debugger.hpp"
 #include "toolchain/sim/board_line.hpp"
 #include "toolchain/sim/child.hpp"
+#include "toolchain/sim/hold_up.hpp"
 #include "toolchain/sim/plant.hpp"
 
 namespace jink::target {
@@ -63,6 +64,9 @@ public:
     [[nodiscard]] const std::vector<Heard>& heard() const { return heard_; }
     /// What was lost on the way by this machine.
     [[nodiscard]] std::uint64_t dropped() const { return line_.dropped(); }
+    /// How long this machine kept the emulator from running, the longest [s]. Beyond HoldUp::kStall the board's clock
+    /// has leapt while it waited: its watchdog may have bitten, and what the flight shows says nothing.
+    [[nodiscard]] double held_up() const { return hold_up_.longest(); }
     [[nodiscard]] const link::mavlink::ParserDiagnostics& parser() const { return parser_.diagnostics(); }
 
 private:
@@ -72,10 +76,29 @@ private:
     sim::Plant plant_;
     std::unique_ptr<sim::Child> qemu_;
     std::unique_ptr<Debugger> debugger_;
+    sim::HoldUp hold_up_;
+    double next_look_ = 0.0;
     std::map<std::string, std::uint32_t> symbols_;
     link::mavlink::Parser parser_;
     std::vector<Heard> heard_;
     std::chrono::steady_clock::time_point moved_;  ///< when the plant last did
 };
+
+/// `run(attempt, held_up)` returns its failures and tells how long this machine held it up; one that fails where the
+/// machine stood still says nothing and is run again, at most four times in all. The failures of the last.
+template <class Run>
+int run_unheld(Run run)
+{
+    constexpr int kAttempts = 4;
+    int failures = 0;
+    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
+        double held_up = 0.0;
+        failures = run(attempt, held_up);
+        if (failures == 0 || held_up <= sim::HoldUp::kStall) {
+            break;
+        }
+    }
+    return failures;
+}
 
 }  // namespace jink::target

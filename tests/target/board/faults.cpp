@@ -324,6 +324,25 @@ int run_loop(Board& board)
     return test.failures();
 }
 
+int run_case(Board& board, const std::string& wanted, const std::string& machine)
+{
+    if (wanted == "start_up") {
+        return run_early(board);
+    }
+    if (wanted == "in_handler") {
+        return run_nested(board);
+    }
+    if (wanted == "crash_loop") {
+        return run_loop(board);
+    }
+    for (const Case& c : cases_for(machine)) {
+        if (c.name == wanted) {
+            return run_fault(board, c);
+        }
+    }
+    throw std::runtime_error("no such case");
+}
+
 }  // namespace
 }  // namespace jink::target
 
@@ -342,22 +361,18 @@ int main(int argc, char** argv)
     jink::sim::default_radii(scenario);
     int failures = -1;
     try {
-        Board board(argv[1], machine, scenario, folder);
-        if (wanted == "start_up") {
-            failures = run_early(board);
-        } else if (wanted == "in_handler") {
-            failures = run_nested(board);
-        } else if (wanted == "crash_loop") {
-            failures = run_loop(board);
-        }
-        for (const Case& c : cases_for(machine)) {
-            failures = c.name == wanted ? run_fault(board, c) : failures;
-        }
-        if (failures != 0) {
-            for (const auto& text : board.plant().autopilot().heard().texts) {
-                std::printf("heard at %.2f s: %s\n", text.time, text.text.c_str());
+        failures = jink::target::run_unheld([&](int attempt, double& held_up) {
+            Board board(argv[1], machine, scenario, folder);
+            const int result = run_case(board, wanted, machine);
+            held_up = board.held_up();
+            if (result != 0) {
+                std::printf("attempt %d, held up for %.3f s at most\n", attempt, held_up);
+                for (const auto& text : board.plant().autopilot().heard().texts) {
+                    std::printf("heard at %.2f s: %s\n", text.time, text.text.c_str());
+                }
             }
-        }
+            return result;
+        });
     } catch (const std::exception& e) {
         std::printf("%s: %s\n", wanted.c_str(), e.what());
         failures = 1;

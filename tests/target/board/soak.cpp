@@ -19,11 +19,13 @@
 
 #include <unistd.h>
 
+#include "tests/target/board/board.hpp"
 #include "tests/target/board/counters.hpp"
 
 #include "tests/target/board/full_line.hpp"
 #include "toolchain/sim/child.hpp"
 #include "toolchain/sim/datagram_line.hpp"
+#include "toolchain/sim/hold_up.hpp"
 
 namespace jink::target {
 namespace {
@@ -115,9 +117,15 @@ public:
         return judge(read_counters());
     }
 
+    [[nodiscard]] double held_up() const { return hold_up_.longest(); }
+
 private:
     void pause()
     {
+        if (const double wall = since(start_); wall >= next_look_) {
+            next_look_ = wall + sim::HoldUp::kLookEvery;
+            static_cast<void>(hold_up_.look(sim::HoldUp::sample(*qemu_, wall)));
+        }
         if (!qemu_->running()) {
             throw std::runtime_error("the emulator ended: " + qemu_->ending());
         }
@@ -252,6 +260,9 @@ private:
     Ear ear_;
     std::optional<sim::Child> qemu_;
     std::optional<Debugger> debugger_;
+    sim::HoldUp hold_up_;
+    double next_look_ = 0.0;
+    Clock::time_point start_ = Clock::now();
     std::uint64_t sent_ = 0;
     double first_ = -1.0;  ///< what the board's clock told first [s]
     double walled_ = 0.0;  ///< by the wall's [s]
@@ -299,8 +310,15 @@ int main(int argc, char** argv)
     int failures = 1;
     try {
         const sim::Scenario scenario = target::crowd_for(options->seconds);
-        target::Soak soak(*options, scenario, folder);
-        failures = soak.run();
+        failures = target::run_unheld([&](int attempt, double& held_up) {
+            target::Soak soak(*options, scenario, folder);
+            const int result = soak.run();
+            held_up = soak.held_up();
+            if (result != 0) {
+                std::printf("attempt %d, held up for %.3f s at most\n", attempt, held_up);
+            }
+            return result;
+        });
     } catch (const std::exception& e) {
         std::printf("FAIL %s\n", e.what());
     }
