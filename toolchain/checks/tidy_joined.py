@@ -22,6 +22,19 @@ INCLUDE = re.compile(r'\s*#\s*include\s*([<"][^>"]+[>"])')
 FINDING = re.compile(r'^(?P<file>[^:\s]+):(?P<line>\d+):(?P<rest>\d+: .*)$')
 
 
+def without_precompiled(flags):
+    """clang reads no header that GCC has precompiled."""
+    kept, skip = [], False
+    for flag, following in zip(flags, [*flags[1:], ""]):
+        if skip:
+            skip = False
+        elif flag == "-include" and "cmake_pch" in following:
+            skip = True
+        elif flag != "-Winvalid-pch":
+            kept.append(flag)
+    return kept
+
+
 def flags_of(build, sources):
     """The compiler's arguments; joined sources have to have the same."""
     commands = {pathlib.Path(c["file"]).resolve(): shlex.split(c["command"])
@@ -32,7 +45,7 @@ def flags_of(build, sources):
             raise SystemExit(f"tidy: {source} is not built in {build}")
         words = commands[source]
         start = next(i for i, word in enumerate(words) if word.startswith("-"))
-        flags = words[start:words.index("-o")]
+        flags = without_precompiled(words[start:words.index("-o")])
         if found is not None and flags != found:
             raise SystemExit(f"tidy: {source} is built with other flags than the rest")
         found = flags

@@ -211,7 +211,7 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
         const Candidate& c = outcome.result.candidates[i];
         std::string status(words_of(c.status));
         if (c.hit.kind != world::ThreatKind::none) {
-            status += " " + hit_name(file, c.hit);
+            status.append(" ").append(hit_name(file, c.hit));
         }
         out += format("%3zu  %-9s  %5.1f  %+6.2f  %-20.40s  %6.3f", i, std::string(to_string(c.shape.family)).c_str(),
                       degrees(c.shape.plane), wide(c.shape.offset), status.c_str(), wide(c.duration));
@@ -225,7 +225,7 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
         }
         out += "\n";
     }
-    out += "\n" + verdict(file, outcome) + "\n";
+    out.append("\n").append(verdict(file, outcome)).append("\n");
     out += format("%u units of work, %zu %s.\n", outcome.work, outcome.tries,
                   outcome.tries == 1 ? "attempt" : "attempts, slower, further out and waiting");
     return out;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 
 #include "core/base/random.hpp"
 #include "core/geometry/shape.hpp"
@@ -63,26 +63,7 @@ inline Vec3d exact_support(const Shape& shape, const Vec3d& direction)
 inline constexpr int kMostPoints = 16;
 
 /// Least-norm point of the affine hull of `points`, as weights.
-inline std::vector<double> affine_weights(const std::vector<Vec3d>& points)
-{
-    std::vector<double> weights(points.size(), 0.0);
-    weights[0] = 1;
-    if (points.size() > 1) {
-        // In place: the core forbids Eigen's heap.
-        Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, kMostPoints> sides(
-            3, static_cast<Eigen::Index>(points.size()) - 1);
-        for (Eigen::Index i = 0; i < sides.cols(); ++i) {
-            sides.col(i) = points[static_cast<std::size_t>(i) + 1] - points[0];
-        }
-        const Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMostPoints, 1> along =
-            sides.completeOrthogonalDecomposition().solve(-points[0]);
-        for (Eigen::Index i = 0; i < sides.cols(); ++i) {
-            weights[static_cast<std::size_t>(i) + 1] = along(i);
-            weights[0] -= along(i);
-        }
-    }
-    return weights;
-}
+std::vector<double> affine_weights(const std::vector<Vec3d>& points);
 
 /// Distance of the origin from the convex set that `reach(direction)` supports; the radius of spheres and capsules is
 /// left out.
