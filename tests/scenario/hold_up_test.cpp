@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <sched.h>
@@ -56,6 +57,24 @@ TEST(HoldUp, KnowsNothingOfAThreadThatIsNew)
     HoldUp hold_up;
     static_cast<void>(hold_up.look({1.0, 0.0, {{kMain, {1.0, 0.0, false}}}}));
     EXPECT_EQ(hold_up.look(sample(1.02, {1.0, 0.0, false}, {3.0, 2.0, true})), 0.0);
+}
+
+TEST(HoldUp, WhatFailsIsRunAgainOnlyWhereTheMachineStoodStill)
+{
+    const auto attempts = [](double held_up_s, int fails) {
+        int runs = 0;
+        const int failures = run_unheld([&](int attempt, double& held_up) {
+            EXPECT_EQ(attempt, ++runs);
+            held_up = held_up_s;
+            return attempt <= fails ? 2 : 0;
+        });
+        return std::pair(runs, failures);
+    };
+    EXPECT_EQ(attempts(0.05, 9), std::pair(1, 2));
+    EXPECT_EQ(attempts(0.2, 9), std::pair(4, 2));
+    EXPECT_EQ(attempts(0.2, 3), std::pair(4, 0));
+    EXPECT_EQ(attempts(0.2, 1), std::pair(2, 0));
+    EXPECT_EQ(attempts(0.2, 0), std::pair(1, 0));
 }
 
 void pause() { std::this_thread::sleep_for(std::chrono::milliseconds(20)); }

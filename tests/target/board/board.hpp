@@ -84,21 +84,4 @@ private:
     std::chrono::steady_clock::time_point moved_;  ///< when the plant last did
 };
 
-/// `run(attempt, held_up)` returns its failures and tells how long this machine held it up; one that fails where the
-/// machine stood still says nothing and is run again, at most four times in all. The failures of the last.
-template <class Run>
-int run_unheld(Run run)
-{
-    constexpr int kAttempts = 4;
-    int failures = 0;
-    for (int attempt = 1; attempt <= kAttempts; ++attempt) {
-        double held_up = 0.0;
-        failures = run(attempt, held_up);
-        if (failures == 0 || held_up <= sim::HoldUp::kStall) {
-            break;
-        }
-    }
-    return failures;
-}
-
 }  // namespace jink::target

@@ -361,12 +361,12 @@ int main(int argc, char** argv)
     jink::sim::default_radii(scenario);
     int failures = -1;
     try {
-        failures = jink::target::run_unheld([&](int attempt, double& held_up) {
+        failures = jink::sim::run_unheld([&](int attempt, double& held_up) {
             Board board(argv[1], machine, scenario, folder);
             const int result = run_case(board, wanted, machine);
             held_up = board.held_up();
-            if (result != 0) {
-                std::printf("attempt %d, held up for %.3f s at most\n", attempt, held_up);
+            std::printf("%s: attempt %d, held up for %.3f s at most\n", wanted.c_str(), attempt, held_up);
+            if (result != 0 || held_up > jink::sim::HoldUp::kStall) {
                 for (const auto& text : board.plant().autopilot().heard().texts) {
                     std::printf("heard at %.2f s: %s\n", text.time, text.text.c_str());
                 }

@@ -310,7 +310,7 @@ int main(int argc, char** argv)
     int failures = 1;
     try {
         const sim::Scenario scenario = target::crowd_for(options->seconds);
-        failures = target::run_unheld([&](int attempt, double& held_up) {
+        failures = sim::run_unheld([&](int attempt, double& held_up) {
             target::Soak soak(*options, scenario, folder);
             const int result = soak.run();
             held_up = soak.held_up();
