@@ -3,6 +3,7 @@
 // when the start moves, how many tracks and how much work there may be.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -83,8 +84,10 @@ struct Leg {
     vehicle::Airframe airframe;
     world::Reference reference;
     std::vector<world::Track> tracks;
+    std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
     Settings settings;
+    Result last;
     WorkBudget budget{1'000'000};
     world::Manoeuvre out;
 
@@ -109,7 +112,20 @@ struct Leg {
     PlanStatus plan()
     {
         Planner planner{settings};
-        return planner.plan({now, own, limits, airframe, reference, tracks, {}, airspace, nullptr, 3.0F}, budget, out);
+        const PlanStatus status = planner.plan(
+            {now, own, limits, airframe, reference, tracks, obstacles, airspace, nullptr, 3.0F}, budget, out);
+        last = planner.last();
+        return status;
+    }
+    /// Offsets of all candidates, in their order.
+    std::vector<float> offsets()
+    {
+        static_cast<void>(plan());
+        std::vector<float> all;
+        for (const Candidate& candidate : last.candidates) {
+            all.push_back(candidate.shape.offset);
+        }
+        return all;
     }
     std::size_t points() const { return out.path.points.size(); }
 };
@@ -152,6 +168,90 @@ TEST(FlightBorder, TheStartIsNotMovedTooNear)
     leg.tracks[0].position.x() = 40.0F;
     ASSERT_EQ(leg.plan(), PlanStatus::found);
     EXPECT_EQ(leg.points(), 26U);
+}
+
+TEST(FlightBorder, ASlowStartIsNotMovedTooNearEither)
+{
+    // 2.5 R are left at least, also where four times the way is next to nothing.
+    Leg leg;
+    leg.settings.check_acceleration = leg.settings.verify_flight = false;
+    leg.settings.latency = 0.2F;
+    leg.own.velocity = Vec3(1.0F, 0.0F, 0.0F);
+    leg.add(Vec3(0.0F, 0.0F, 50.0F), 4.0F);
+    std::size_t moved = 0;
+    std::size_t as_it_is = 0;
+    for (float x = 9.5F; x < 13.0F; x += 0.05F) {
+        leg.tracks[0].position.x() = x;
+        if (leg.plan() != PlanStatus::found) {
+            continue;
+        }
+        const bool is_moved = leg.out.path.points[1].time == leg.settings.latency;
+        (is_moved ? moved : as_it_is) += 1;
+        EXPECT_TRUE(as_it_is > 0 || !is_moved) << "the nearest that is planned for is not moved nearer";
+    }
+    EXPECT_GT(moved, 0U);
+    EXPECT_GT(as_it_is, 0U);
+    EXPECT_LE(as_it_is, 5U) << "no more of them than 0.2 m hold";
+}
+
+TEST(FlightBorder, ASmallBodyIsPlannedForAsTheLeastOne)
+{
+    Leg leg;
+    leg.add(Vec3(30.0F, 0.0F, 50.0F), Planner::kLeastMainRadius);
+    const std::vector<float> least = leg.offsets();
+    ASSERT_FALSE(least.empty());
+    for (const float radius : {0.3F, 0.1F, 0.0F}) {
+        leg.tracks[0].radius = radius;
+        // It is met a little later, so that curves are a little longer and offsets a little less.
+        const std::vector<float> offsets = leg.offsets();
+        ASSERT_EQ(offsets.size(), least.size());
+        for (std::size_t i = 0; i < offsets.size(); ++i) {
+            EXPECT_NEAR(offsets[i], least[i], 0.01F) << radius;
+        }
+    }
+}
+
+TEST(FlightBorder, AnObstacleThatIsASphereIsPassedAsATrackThatStands)
+{
+    Leg leg;
+    leg.add(Vec3(30.0F, 0.5F, 50.0F), 1.5F);
+    const std::vector<float> track = leg.offsets();
+    leg.tracks.clear();
+    leg.obstacles = {{1, geometry::make_sphere(Vec3(30.0F, 0.5F, 50.0F), 1.5F)}};
+    const std::vector<float> sphere = leg.offsets();
+    ASSERT_FALSE(track.empty());
+    ASSERT_EQ(sphere.size(), track.size());
+    for (std::size_t i = 0; i < sphere.size(); ++i) {
+        EXPECT_NEAR(sphere[i], track[i], 1e-3F);
+    }
+}
+
+TEST(FlightBorder, ATrackStampedAheadIsNotTakenForSmaller)
+{
+    // It comes from the side and grows; what is available of it now is available of it at no later stamp.
+    std::size_t fewer = 0;
+    for (float acceleration = 0.0F; acceleration < 2.0F; acceleration += 0.1F) {
+        Leg leg;
+        leg.settings.evaluate_all = true;
+        leg.settings.retries = 0;
+        leg.settings.latency = 0.0F;
+        world::Track& track = leg.add(Vec3(30.0F, -24.0F, 50.0F), 0.5F);
+        track.velocity = Vec3(0.0F, 4.0F, 0.0F);
+        track.max_acceleration = acceleration;
+        const auto available = [&] {
+            const PlanStatus status = leg.plan();
+            EXPECT_TRUE(status == PlanStatus::found || status == PlanStatus::none_available) << acceleration;
+            return std::count_if(leg.last.candidates.begin(), leg.last.candidates.end(), [](const Candidate& c) {
+                return c.status == CandidateStatus::available || c.status == CandidateStatus::chosen;
+            });
+        };
+        const auto now = available();
+        track.stamp = TimePoint{leg.now.us + 3'000'000};
+        const auto ahead = available();
+        EXPECT_LE(ahead, now) << acceleration;
+        fewer += now < static_cast<std::ptrdiff_t>(leg.last.candidates.size()) ? 1U : 0U;
+    }
+    EXPECT_GT(fewer, 3U) << "it is in the way of some";
 }
 
 TEST(FlightBorder, AnUncertainThreatIsAsNearAsItsBody)

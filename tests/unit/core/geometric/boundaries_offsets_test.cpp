@@ -182,6 +182,36 @@ TEST(OffsetBorder, NoOffsetIsBeyondItsShareOfTheDistanceAndOneOnItStays)
     EXPECT_GT(dropped, 0U);
 }
 
+TEST(OffsetBorder, AnOffsetThatIsTheWidestToTheBitStays)
+{
+    OffsetScene scene(Family::symmetric, 10.0F);
+    scene.set_main(geometry::make_sphere(Vec3(10.0F, 0.0F, 50.0F), 1.0F), 1.0F);
+    scene.settings.offsets = 2;
+    scene.problem.span_from = 1.0F;  // the only offset of a side is where the span ends
+    const float widest = detail::kLargestRatio * scale_of(scene.problem);
+    std::size_t met = 0;
+    float last = 0.0F;
+    for (float to = 2.0F; to < 12.0F && last <= widest; to += 1e-3F) {
+        // From a thousandth below the border on, by the smallest steps there are.
+        scene.problem.span_to = to;
+        const std::vector<float> offsets = scene.offsets(0.0F);
+        last = offsets.empty() ? widest + 1.0F : offsets[1];
+        if (last < widest - 0.005F || last > widest) {
+            continue;
+        }
+        for (int i = 0; i < 20'000; ++i) {
+            const std::vector<float> next = scene.offsets(0.0F);
+            if (next.empty()) {
+                break;
+            }
+            met += next[1] == widest && next[0] == -widest ? 1U : 0U;
+            scene.problem.span_to = std::nextafter(scene.problem.span_to, 100.0F);
+        }
+        break;
+    }
+    EXPECT_GT(met, 0U);
+}
+
 TEST(OffsetBorder, NearAndFarEndsOfACurveAreNotAskedToClear)
 {
     // So near that the box is over the threat at the start, so long behind that the curve has ended: some offset all

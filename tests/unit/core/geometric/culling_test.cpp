@@ -168,5 +168,34 @@ TEST(Culling, AStraightCandidateTakesOneQueryForASolid)
     EXPECT_LE(many, few + 48 * kWaits * (units::kSolidSegment + 1));
 }
 
+/// Within reach of candidates in general, which are level, and above each single one: of many, seen at a glance.
+TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
+{
+    constexpr std::uint32_t kMore = 6;
+    for (const Vec3& velocity : {Vec3(0.0F, 0.0F, 0.0F), Vec3(0.0F, 0.01F, 0.0F)}) {
+        for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
+            Scene scene;
+            scene.settings.security = security;
+            scene.settings.verify_flight = false;
+            scene.settings.extra_planes = 0;
+            scene.settings.closeness_nearest = 1;
+            const std::vector<Threat> above(kMore, {{Vec3(20.0F, 0.0F, 53.2F), velocity}, 0.1F});
+            const auto add = [&] { scene.threats.insert(scene.threats.end(), above.begin(), above.end()); };
+            add();
+            const std::uint32_t before = units_of(scene);
+            add();
+            const std::uint32_t added = units_of(scene) - before;
+            const bool by_volume = velocity.y() > 0.0F && security == SecurityMode::swept;
+            const std::uint32_t each = units::kFarItem + (by_volume ? units::kItem : 0);
+            static_cast<void>(scene.run());
+            // The others cannot be flown, or meet what comes before.
+            const auto looked_at = static_cast<std::uint32_t>(scene.count(CandidateStatus::available) +
+                                                              scene.count(CandidateStatus::chosen));
+            ASSERT_GT(looked_at, 1U);
+            EXPECT_EQ(added, kMore * (units::kCollected + looked_at * each)) << by_volume;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace jink::geometric

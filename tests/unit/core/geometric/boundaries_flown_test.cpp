@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A candidate as it is flown, at the border: what its flight costs to the last unit, how long swept volumes last for
+// it, how fast it may be before its path is.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/base/work_units.hpp"
+#include "core/geometric/flown.hpp"
+#include "tests/unit/core/geometric/scene.hpp"
+
+namespace jink::geometric {
+namespace {
+
+/// A straight path of `length` at 5 m/s along the leg, about its start, and nothing in the way.
+struct FlightBench : Scene {
+    path::TimedPath path;
+
+    explicit FlightBench(float length, const Vec3& direction = Vec3::UnitX())
+    {
+        threats.clear();
+        problem.main = kNoThreat;
+        problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), direction);
+        const Vec3 along = problem.frame.axes.col(0);
+        problem.start_velocity = 5.0F * along;
+        settings.escape_from_margin = false;
+        constexpr int kPoints = 25;
+        for (int i = 0; i < kPoints; ++i) {
+            const float way = length * static_cast<float>(i) / static_cast<float>(kPoints - 1);
+            path.points.unchecked_push_back({way * along, 5.0F * along, way / 5.0F});
+        }
+    }
+    detail::Verdict judge(Seconds swept_until, WorkBudget& units)
+    {
+        problem.threats = threats;
+        problem.obstacles = obstacles;
+        detail::Flown flown(problem, settings, limits);
+        return flown.judge(path, swept_until, units);
+    }
+    CandidateStatus status(Seconds swept_until = 0.0F)
+    {
+        WorkBudget units(1'000'000);
+        return judge(swept_until, units).status;
+    }
+};
+
+TEST(FlownBorder, WhatAFlightNeedsIsWhatItSpends)
+{
+    std::uint32_t needs[2] = {};
+    for (const vehicle::VehicleKind kind : {vehicle::VehicleKind::fixed_wing, vehicle::VehicleKind::multirotor}) {
+        FlightBench bench(30.0F);
+        bench.limits.kind = kind;
+        WorkBudget plenty(1'000'000);
+        ASSERT_EQ(bench.judge(0.0F, plenty).status, CandidateStatus::available);
+        WorkBudget enough(plenty.spent());
+        EXPECT_EQ(bench.judge(0.0F, enough).status, CandidateStatus::available);
+        EXPECT_FALSE(enough.exhausted());
+        WorkBudget less(plenty.spent() - 1);
+        EXPECT_EQ(bench.judge(0.0F, less).status, CandidateStatus::not_evaluated);
+        EXPECT_TRUE(less.exhausted());
+        EXPECT_EQ(less.left(), 0U) << "what is not flown to its end takes all the same";
+        needs[kind == vehicle::VehicleKind::multirotor] = plenty.spent();
+    }
+    EXPECT_GE(needs[1], needs[0] + 5 * units::kCandidatePart) << "braking comes on top";
+}
+
+/// Units that the threats of a bench add to its flight.
+std::uint32_t added_units(FlightBench& bench)
+{
+    const std::vector<Threat> threats = bench.threats;
+    bench.threats.clear();
+    WorkBudget without(1'000'000);
+    EXPECT_EQ(bench.judge(0.0F, without).status, CandidateStatus::available);
+    bench.threats = threats;
+    WorkBudget with(1'000'000);
+    static_cast<void>(bench.judge(0.0F, with));
+    return with.spent() - without.spent();
+}
+
+TEST(FlownBorder, WhatIsInTheWayAtAGlanceIsNotLookedAtCloser)
+{
+    FlightBench bench(30.0F);
+    bench.threats = {Scene::still(Vec3(1.0F, 0.0F, 50.0F), 0.5F)};
+    ASSERT_EQ(bench.status(), CandidateStatus::hits_static);
+    EXPECT_EQ(added_units(bench), units::kCollected + units::kItem + units::kBallLook);
+}
+
+TEST(FlownBorder, WhatIsPassedAtAGlanceIsNotLookedAtCloser)
+{
+    // As large as the leg is long, a tenth of a metre beside all of it: each segment is looked at, once.
+    FlightBench bench(60.0F, Vec3(1.0F, 1.0F, 0.0F));
+    const Mat3& axes = bench.problem.frame.axes;
+    bench.threats = {Scene::still(Vec3(0.0F, 0.0F, 50.0F) + axes * Vec3(30.0F, 202.5F, 0.0F), 200.0F)};
+    ASSERT_EQ(bench.status(), CandidateStatus::available);
+    const std::uint32_t added = added_units(bench);
+    EXPECT_GT(added, units::kCollected + units::kItem + units::kBallLook * 3 * kMaxPathPoints / 4) << "almost all";
+    EXPECT_LT(added, units::kCollected + units::kItem + units::kBallLook * kMaxPathPoints);
+}
+
+TEST(FlownBorder, VolumesLastAsLongAsTheFlight)
+{
+    FlightBench bench(30.0F);
+    bench.settings.security = SecurityMode::swept;
+    bench.threats = {{{Vec3(15.0F, -24.0F, 50.0F), Vec3(0.0F, 6.0F, 0.0F)}, 0.5F}};  // on the leg after 4 s
+    EXPECT_EQ(bench.status(), CandidateStatus::hits_moving);
+    bench.settings.security = SecurityMode::time_aware;
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
+}
+
+TEST(FlownBorder, VolumesLastAsLongAsTheLongestCandidate)
+{
+    // Beside a slanted leg, within the extent of its flight: it comes there long after the flight.
+    FlightBench bench(20.0F, Vec3(1.0F, 1.0F, 0.0F));
+    bench.settings.security = SecurityMode::swept;
+    bench.threats = {{{Vec3(13.0F, 1.0F, 50.0F), Vec3(-0.3F, 0.3F, 0.0F)}, 0.5F}};
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
+    EXPECT_EQ(bench.status(40.0F), CandidateStatus::hits_moving);
+}
+
+TEST(FlownBorder, AFlightMayBeginFasterThanItsPath)
+{
+    FlightBench bench(30.0F);
+    for (path::PathPoint& point : bench.path.points) {
+        point.velocity *= 0.2F;
+        point.time *= 5.0F;
+    }
+    bench.problem.speed = 1.0F;
+    bench.limits.max_acceleration = 2.0F;
+    bench.problem.start_velocity = Vec3(18.0F, 0.0F, 0.0F);
+    ASSERT_EQ(bench.status(), CandidateStatus::available);
+    // Passed within the first second; by the path's speed it would be looked at after that.
+    bench.threats = {Scene::still(Vec3(12.0F, 1.0F, 50.0F), 0.3F)};
+    EXPECT_EQ(bench.status(), CandidateStatus::hits_static);
+}
+
+/// A track that hardly moves sweeps no volume to speak of, and is in the way all the same.
+TEST(FlownBorder, ATrackAsSlowAsNumbersAllowIsInTheWay)
+{
+    for (const float speed : {1e-6F, 1e-20F, 1e-25F, 1e-38F}) {
+        for (const bool to_collision_point : {false, true}) {
+            FlightBench bench(30.0F);
+            bench.settings.security = SecurityMode::swept;
+            bench.settings.main_swept_to_collision_point = to_collision_point;
+            bench.problem.main = 0;
+            bench.threats = {{{Vec3(15.0F, 0.0F, 50.0F), Vec3(0.0F, speed, 0.0F)}, 0.5F}};
+            EXPECT_EQ(bench.status(), CandidateStatus::hits_moving) << speed;
+        }
+    }
+}
+
+TEST(FlownBorder, WhatTouchesAtTheStartIsNoMarginToEscapeFrom)
+{
+    FlightBench bench(30.0F);
+    bench.settings.escape_from_margin = true;
+    // The box reaches 1 m; 1e-3 m within, the escape rule shrinks it; touching exactly it does not.
+    bench.threats = {Scene::still(Vec3(-3.0F, 0.0F, 50.0F), 2.001F)};
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
+    bench.threats[0].radius = 2.0F;
+    EXPECT_EQ(bench.status(), CandidateStatus::hits_static);
+    bench.threats[0].radius = 1.999F;
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
+}
+
+}  // namespace
+}  // namespace jink::geometric
