@@ -197,5 +197,34 @@ TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
     }
 }
 
+/// What lies beyond the end of all candidates that there are costs its bounding test, whatever others would reach.
+TEST(Culling, ReachIsThatOfTheFamiliesThatAreAskedFor)
+{
+    for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {
+        Scene scene;
+        scene.settings.simple = family == Family::simple;
+        scene.settings.symmetric = family == Family::symmetric;
+        scene.settings.smooth = family == Family::smooth;
+        scene.settings.verify_flight = scene.settings.check_acceleration = false;
+        scene.problem.main = kNoThreat;
+        scene.threats.clear();
+        static_cast<void>(scene.run());
+        const std::uint32_t alone = scene.budget.spent();
+        float widest = 0.0F;
+        for (const Candidate& candidate : scene.result.candidates) {
+            widest = std::max(widest, std::abs(candidate.shape.offset));
+        }
+        const float end = curve_length_x(family, scene.problem.distance) + widest;
+        const auto added = [&](float x) {
+            scene.threats = {Scene::still(Vec3(x, 0.0F, 50.0F), 0.5F)};
+            scene.budget = WorkBudget{1'000'000};
+            static_cast<void>(scene.run());
+            return scene.budget.spent() - alone;
+        };
+        EXPECT_EQ(added(end + 1.6F), units::kCollected) << to_string(family);
+        EXPECT_GT(added(end + 1.4F), units::kCollected) << to_string(family);
+    }
+}
+
 }  // namespace
 }  // namespace jink::geometric
