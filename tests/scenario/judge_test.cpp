@@ -63,6 +63,9 @@ TEST(Report, AThreatToldOfTooLateIsNoFailureToAvoid)
     EXPECT_FALSE(late.told_too_late);
     EXPECT_EQ(late.last_chance.tried, 721U);
     EXPECT_FALSE(late.failed_avoidable);
+    EXPECT_EQ(late.late_chance.tried, 721U);
+    EXPECT_NEAR(late.late_chance.detected, late.last_chance.detected + kReaction, 0.02 + 1e-9);
+    EXPECT_LT(late.late_chance.best, late.last_chance.best);
 }
 
 TEST(Judge, SeesNoConflictBesideTheWay)

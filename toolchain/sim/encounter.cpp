@@ -52,6 +52,7 @@ void each_column(Result& r, Visit&& visit)
     visit("told_too_late", r.told_too_late);
     visit("failed_avoidable", r.failed_avoidable);
     visit("last_keep", r.last_keep);
+    visit("late_keep", r.late_keep);
     visit("deviation_most", r.deviation_most);
     visit("deviation_rms", r.deviation_rms);
     visit("acceleration", r.acceleration);
@@ -178,6 +179,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.told_too_late = flight.told_too_late;
     r.failed_avoidable = flight.failed_avoidable;
     r.last_keep = flight.last_chance.keep;
+    r.late_keep = flight.late_chance.keep;
     measure(scenario, record.samples, r);
     return r;
 }

@@ -36,7 +36,8 @@ struct EncounterResult {
     unsigned keep = 0;        ///< manoeuvres of the judge that keep it from when that was so; 0: none, or no conflict
     bool told_too_late = false;     ///< the promise was broken before anybody could tell, and worst then (report.hpp)
     bool failed_avoidable = false;  ///< the promise was broken, and a manoeuvre of the judge would have kept it
-    unsigned last_keep = 0;         ///< how many would, from the first sighting or the first conflict on
+    unsigned last_keep = 0;         ///< how many would, from the first sighting or the first conflict on,
+    unsigned late_keep = 0;         ///< and kReaction later (report.hpp)
     double deviation_most = 0.0;    ///< greatest distance from the line of the leg [m]
     double deviation_rms = 0.0;     ///< over the flight [m]
     double acceleration = 0.0;      ///< integral of the squared acceleration [m2/s3]

@@ -242,10 +242,14 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
             return flight;
         }
         const double in_sight = std::max(told, flight.verdict.conflict ? flight.verdict.detected : 0.0);
-        const Sample& then =
-            *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= in_sight; });
-        flight.last_chance =
-            judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time, kJudged, trials);
+        const auto judge_at = [&](double time) {
+            const Sample& then =
+                *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= time; });
+            return judge_from(scenario, {then.position, then.velocity, then.acceleration, 0.0}, then.time, kJudged,
+                              trials);
+        };
+        flight.last_chance = judge_at(in_sight);
+        flight.late_chance = judge_at(in_sight + kReaction);
         flight.failed_avoidable = flight.last_chance.avoidable;
     }
     return flight;

@@ -11,6 +11,10 @@
 
 namespace jink::sim {
 
+/// What passes from a sighting's leaving the autopilot until the command that it leads to takes effect there: a tick of
+/// the co-processor, the line twice and a tick of the autopilot [s].
+inline constexpr double kReaction = 0.05;
+
 /// A flight with what belongs to it in a report.
 struct ReportedFlight {
     Scenario scenario;
@@ -23,7 +27,8 @@ struct ReportedFlight {
     /// first conflict came into sight, if that was later) one of the judge's manoeuvres would have kept it.
     bool failed_avoidable = false;
     bool told_too_late = false;  ///< the promise was broken before anybody was told of the threat, and worst then
-    Verdict last_chance;         ///< of that instant, where the promise was broken afterwards
+    Verdict last_chance;         ///< of that instant, where the promise was broken afterwards,
+    Verdict late_chance;         ///< and kReaction later: what is avoidable there was missed by the choice alone
 };
 
 /// Adds what can be found out after a flight: the expectation, the flight alone and, when `with_judge`, the verdict.
