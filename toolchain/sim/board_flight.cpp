@@ -36,14 +36,10 @@ bool wait_for_life(Child& child, BoardLine& line, Plant& plant)
 void fly(Plant& plant, BoardLine& line, Child& child, Record& notes)
 {
     HoldUp hold_up;
-    double next_look = 0.0;
     while (!plant.finished()) {
         std::this_thread::sleep_for(kNap);
-        if (const double wall = line.wall(); wall >= next_look) {
-            next_look = wall + HoldUp::kLookEvery;
-            static_cast<void>(hold_up.look(HoldUp::sample(child, wall)));
-            notes.held_up = hold_up.longest();
-        }
+        hold_up.watch(child, line.wall());
+        notes.held_up = hold_up.longest();
         plant.deliver(line.listen(plant.now()));
         const Micros due = line.due(plant.now());
         notes.late_steps += due - plant.now() > BoardClock::kStepOfBoard ? 1U : 0U;

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "toolchain/sim/report.hpp"
 #include "toolchain/sim/statistics.hpp"
 
 namespace jink::sim {
@@ -61,6 +62,8 @@ void put_outcomes(std::string& text, const Results& results)
                   count_if(results, [&](const EncounterResult& r) { return r.outcome == outcome; }), results.size());
     }
 }
+
+static_assert(kReaction == 0.05, "as the texts below have it");
 
 void put_promises(std::string& text, const Results& results)
 {
@@ -233,8 +236,7 @@ std::string summary_text(const FolderSetup& setup, const Results& results)
                  [](const EncounterResult& r) { return broke_promise(r) || r.outcome == Outcome::failed; });
     put_list(text,
              "Promises and rules broken. keep: of 721 ways of the judge, from the first sighting or conflict on; "
-             "later: 0.05 s "
-             "after that",
+             "later: 0.05 s after that",
              bad);
     put_list(text, "The ten worst (worst/*.yaml)", worst_of(results));
     return text;

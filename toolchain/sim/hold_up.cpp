@@ -28,6 +28,13 @@ double stolen_time()
 
 HoldUp::Sample HoldUp::sample(const Child& child, double wall) { return {wall, stolen_time(), child.threads()}; }
 
+void HoldUp::watch(const Child& child, double wall)
+{
+    if (first_ || wall >= last_.wall + kLookEvery) {
+        static_cast<void>(look(sample(child, wall)));
+    }
+}
+
 double HoldUp::look(const Sample& now)
 {
     double held = 0.0;

@@ -20,6 +20,8 @@ public:
     /// The longest of: a thread of the program left without a processor, ready to run; time stolen from this machine's
     /// processors; no look at all. Since the look before, or still going on [s]; 0 at the first.
     double look(const Sample& now);
+    /// Looks where the last look lies kLookEvery back; for loops that turn faster.
+    void watch(const Child& child, double wall);
     /// The longest of all looks [s].
     [[nodiscard]] double longest() const noexcept { return longest_; }
 

@@ -80,10 +80,7 @@ void Board::tick()
         moved_ = now;
     }
     line_.flush();
-    if (const double wall = line_.wall(); wall >= next_look_) {
-        next_look_ = wall + sim::HoldUp::kLookEvery;
-        static_cast<void>(hold_up_.look(sim::HoldUp::sample(*qemu_, wall)));
-    }
+    hold_up_.watch(*qemu_, line_.wall());
     if (!qemu_->running()) {
         throw std::runtime_error("the emulator ended: " + qemu_->ending());
     }

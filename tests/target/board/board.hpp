@@ -77,7 +77,6 @@ private:
     std::unique_ptr<sim::Child> qemu_;
     std::unique_ptr<Debugger> debugger_;
     sim::HoldUp hold_up_;
-    double next_look_ = 0.0;
     std::map<std::string, std::uint32_t> symbols_;
     link::mavlink::Parser parser_;
     std::vector<Heard> heard_;

@@ -122,10 +122,7 @@ public:
 private:
     void pause()
     {
-        if (const double wall = since(start_); wall >= next_look_) {
-            next_look_ = wall + sim::HoldUp::kLookEvery;
-            static_cast<void>(hold_up_.look(sim::HoldUp::sample(*qemu_, wall)));
-        }
+        hold_up_.watch(*qemu_, since(start_));
         if (!qemu_->running()) {
             throw std::runtime_error("the emulator ended: " + qemu_->ending());
         }
@@ -261,7 +258,6 @@ private:
     std::optional<sim::Child> qemu_;
     std::optional<Debugger> debugger_;
     sim::HoldUp hold_up_;
-    double next_look_ = 0.0;
     Clock::time_point start_ = Clock::now();
     std::uint64_t sent_ = 0;
     double first_ = -1.0;  ///< what the board's clock told first [s]
