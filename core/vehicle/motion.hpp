@@ -81,10 +81,10 @@ inline void move(Vec3& position, Vec3& velocity, const Vec3& command, const Vehi
     goal.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
     const Vec3 error = velocity - goal;
 
-    const Decay level = decay(error.x() * error.x() + error.y() * error.y(), limits.velocity_lag,
-                              limits.max_acceleration, dt, fading);
-    const Decay vertical = decay(error.z() * error.z(), limits.velocity_lag, limits.max_vertical_acceleration, dt,
-                                 fading);
+    const Decay level =
+        decay(error.x() * error.x() + error.y() * error.y(), limits.velocity_lag, limits.max_acceleration, dt, fading);
+    const Decay vertical =
+        decay(error.z() * error.z(), limits.velocity_lag, limits.max_vertical_acceleration, dt, fading);
 
     position += goal * dt + error.cwiseProduct(Vec3(level.integral, level.integral, vertical.integral));
     velocity = goal + error.cwiseProduct(Vec3(level.left, level.left, vertical.left));
