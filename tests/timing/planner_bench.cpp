@@ -205,6 +205,9 @@ void all_checks(benchmark::State& state)
                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
 
+BENCHMARK_CAPTURE(plan, source_16_candidates_1_threat, one_family(source_settings()), 1)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(plan, source_16_candidates_2_threats, one_family(source_settings()), 2)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, source_16_candidates_3_threats, one_family(source_settings()), 3)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_16_candidates_3_threats, sixteen(Settings{}), 3)->Unit(benchmark::kMicrosecond);
