@@ -53,7 +53,7 @@ Seconds expect_room_is_left(const Passing& p)
     const double lengths = apart.maxCoeff() + half.maxCoeff() + double(p.largest) + closing * double(p.duration);
     // A hundred times that is promised; this sum is rounded otherwise.
     EXPECT_GT(gap, 95.0 * kExactRounding * lengths)
-        << p.apart.transpose() << " half " << p.half.transpose() << " of " << p.largest << " at " << closing;
+        << p.apart.maxCoeff() << " from " << p.half.maxCoeff() << " and " << p.largest << " at " << closing;
     return lasts;
 }
 
