@@ -229,5 +229,17 @@ TEST(PlanesLaw, WhatIsInASolidByFarIsSeenToBe)
     }
 }
 
+/// What passes a box's edge between two faces is left to a search, which is what planes across all of its edges cost.
+TEST(PlanesLaw, ABoxIsPartedByItsFacesAlone)
+{
+    const Mat3 turned = Eigen::AngleAxisf(0.25F * 3.14159265F, Vec3::UnitZ()).toRotationMatrix();
+    const detail::Planes on_edge(geometry::make_box(Vec3::Zero(), Vec3::Ones(), turned), Vec3::Zero());
+    const detail::Planes on_face(geometry::make_box(Vec3::Zero(), Vec3::Ones()), Vec3::Zero());
+    const Vec3 half = Vec3::Constant(0.5F);
+    EXPECT_FALSE(on_edge.part(Vec3(-0.2F, 2.0F, 0.0F), Vec3(0.2F, 2.0F, 0.0F), half, 0.0F));
+    EXPECT_TRUE(on_edge.part(Vec3(1.0F, 2.0F, 0.0F), Vec3(1.2F, 2.0F, 0.0F), half, 0.0F)) << "beyond one face";
+    EXPECT_TRUE(on_face.part(Vec3(-0.2F, 2.0F, 0.0F), Vec3(0.2F, 2.0F, 0.0F), half, 0.0F));
+}
+
 }  // namespace
 }  // namespace jink::geometric
