@@ -241,5 +241,42 @@ TEST(PlanesLaw, ABoxIsPartedByItsFacesAlone)
     EXPECT_TRUE(on_face.part(Vec3(-0.2F, 2.0F, 0.0F), Vec3(0.2F, 2.0F, 0.0F), half, 0.0F));
 }
 
+/// Solids and boxes of no size, so that all there is is the room left for rounding, to the bit: as far as that nothing
+/// is told, and by a little more it is.
+TEST(PlanesLaw, AtTheRoomLeftForRoundingNothingIsTold)
+{
+    const Vec3 zero = Vec3::Zero();
+    const auto next = [](float x) { return std::nextafter(x, 1.0F); };
+    // A share of 1 m and of both ends' distances.
+    float room = detail::kExtentRounding;
+    for (int i = 0; i < 4; ++i) {
+        room = detail::kExtentRounding * (1.0F + room + room);
+    }
+    for (const geometry::Shape& shape : {geometry::make_box(zero, zero), geometry::make_sphere(zero, 0.0F),
+                                         geometry::make_cylinder(zero, zero, 0.0F)}) {
+        const detail::Planes planes(shape, zero);
+        const auto part = [&](float at) { return planes.part(Vec3(0.0F, 0.0F, at), Vec3(0.0F, 0.0F, at), zero, 0.0F); };
+        EXPECT_FALSE(part(room)) << int(shape.kind);
+        EXPECT_TRUE(part(next(room))) << int(shape.kind);
+        if (shape.kind != ShapeKind::sphere) {
+            const auto part_all = [&](float at) {
+                const detail::Curve curve = curve_of(Vec3(0.0F, 0.0F, at), Vec3(0.0F, 0.0F, at));
+                return planes.part(detail::view_of(curve), zero, 0.0F);
+            };
+            EXPECT_FALSE(part_all(room)) << int(shape.kind);
+            EXPECT_TRUE(part_all(next(room))) << int(shape.kind);
+        }
+        const auto touch = [&](float half) { return planes.touch(zero, Vec3::Constant(half), 0.0F); };
+        EXPECT_FALSE(touch(detail::kExtentRounding)) << int(shape.kind);
+        EXPECT_TRUE(touch(next(detail::kExtentRounding))) << int(shape.kind);
+    }
+    // A corner that is inside by just that much, the ball in its box by less.
+    const float size = 1.5F * detail::kExtentRounding;
+    const geometry::Shape box = geometry::make_box(zero, Vec3::Constant(size));
+    const float corner = size - detail::kExtentRounding * (1.0F + geometry::bounding_radius(box));
+    EXPECT_FALSE(detail::Planes(box, zero).touch(zero, Vec3::Constant(corner), 0.0F));
+    EXPECT_TRUE(detail::Planes(box, zero).touch(zero, Vec3::Constant(0.9999F * corner), 0.0F));
+}
+
 }  // namespace
 }  // namespace jink::geometric

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 
 #include <Eigen/Geometry>
 
@@ -244,6 +245,28 @@ TEST(ClearanceBorder, WhoStandsStillFarFromABallIsFarUntilTheEnd)
     bench.threats = {Scene::still(Vec3(-3.0F, 0.0F, 0.0F), 0.5F)};
     ASSERT_EQ(bench.check(Part::all, {Vec3(-2.0F, 0.0F, 0.0F)}).status, CandidateStatus::available);
     EXPECT_EQ(bench.spent, units::kItem);
+}
+
+TEST(ClearanceBorder, AVolumeThatIsAsFarAsItsRadiusAndItsSlackIsInTheWay)
+{
+    // A metre beside the box all the time, in numbers that are exact; the slack is a share of 1 m and of how far out
+    // the volume lies.
+    constexpr float kFarOut = 8.5F;
+    const float slack = detail::kExtentRounding * (1.0F + kFarOut);
+    float radius = 1.0F - slack;
+    while (radius + slack > 1.0F) {
+        radius = std::nextafter(radius, 0.0F);
+    }
+    while (radius + slack < 1.0F) {
+        radius = std::nextafter(radius, 1.0F);
+    }
+    ASSERT_EQ(radius + slack, 1.0F);
+    CurveBench bench({{Vec3(0.0F, -10.0F, 0.0F), 0.0F}, {Vec3(1.0F, -10.0F, 0.0F), 1.0F}});
+    bench.settings.security = SecurityMode::swept;
+    bench.threats = {{{Vec3(0.0F, -kFarOut, 0.0F), Vec3(1.0F, 0.0F, 0.0F)}, radius}};
+    EXPECT_EQ(bench.status(), CandidateStatus::hits_moving);
+    bench.threats[0].radius = radius - 1e-6F;
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
 }
 
 }  // namespace

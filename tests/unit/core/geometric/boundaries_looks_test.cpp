@@ -98,6 +98,22 @@ TEST(LookBorder, NothingIsPassedOverBeforeTheFirstLook)
     }
 }
 
+TEST(LookBorder, RoomThatIsRoundingAloneLastsForNoTime)
+{
+    // Nothing moves and nothing has a size: all there is is the ten-thousandth of lengths that is left, to the bit.
+    float room = 1e-4F;
+    for (int i = 0; i < 4; ++i) {
+        room = 1e-4F * (1.0F + room);
+    }
+    for (const float way : {0.0F, 1.0F}) {
+        Room look(0.0F, 0.0F, 0.0F, 1.0F);
+        look.look(Vec3(0.0F, std::nextafter(room, way), 0.0F), Vec3::Zero(), 0.0F);
+        EXPECT_EQ(look.lasts_until(1.0F), way > 0.0F);
+        look.look(Vec3(0.0F, room, 0.0F), Vec3::Zero(), 0.0F);
+        EXPECT_FALSE(look.lasts_until(1.0F));
+    }
+}
+
 /// Boxes that lie `gap` from each other along one axis, `at` from the origin, the same in all others.
 bool are_apart(int axis, float at, float gap, float half)
 {
