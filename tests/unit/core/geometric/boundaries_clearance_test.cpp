@@ -208,7 +208,7 @@ TEST(ClearanceBorder, WhoLeavesAMarginStraightAwayIsSeenToAtAGlance)
 
 TEST(ClearanceBorder, AMarginThatGrowsBackAsSlowlyAsNumbersAllowIsLookedAtAllTheSame)
 {
-    // On the other side, a quarter of a metre inside: one goes deeper, one leaves. The way deeper is far beyond slack.
+    // A quarter of a metre inside: one way leads out, the other deeper, by far more than the slack.
     for (const float speed : {0.0F, 1e-44F, 1e-20F, 0.5F}) {
         for (const bool ball : {true, false}) {
             for (const float way : {-1.0F, 1.0F}) {
