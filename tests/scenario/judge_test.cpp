@@ -161,8 +161,7 @@ TEST_F(Conclusion, EachBrokenRuleFails)
     EXPECT_TRUE(fails([](Record& r) { r.heard.longest_setpoint_gap = kSecond; }));
     EXPECT_TRUE(fails([](Record& r) { r.final_mode = Mode::external; }));
     EXPECT_TRUE(fails([](Record& r) { r.faults.emplace_back("another"); }));
-    scenario.floor = 2.7;
-    EXPECT_TRUE(fails([](Record& r) { r.lowest = 2.6; }));
+    EXPECT_TRUE(fails([](Record& r) { r.below_floor = true; }));
 }
 TEST_F(Conclusion, AConflictThatIsStillWarnedOfMayEndInExternalMode)
 {
@@ -180,6 +179,26 @@ TEST_F(Conclusion, ExpectationsAreComparedOneByOne)
     scenario.expect.outcomes = {Outcome::clear, Outcome::braked};
     record.flips = 1;
     EXPECT_EQ(unmet(scenario, record).size(), 4U);
+}
+
+/// A leg that leads below the floor is the mission's affair; leaving one above it downwards is a fault.
+TEST(InProcess, TheFloorIsBrokenWhereTheLegIsNot)
+{
+    Scenario s = with_standing_threat(30.0);
+    s.threats[0].position.y() = 60.0;  // far from the leg
+    s.floor = 20.0;
+    s.mission[1] = Vec(100, 0, 0);
+    s.start_velocity = along(s.mission[1] - s.mission[0], s.vehicle.cruise, s.vehicle);
+    s.duration = 19.0;
+    const Record down = fly_in_process(s);
+    EXPECT_LT(down.lowest, 10.0);
+    EXPECT_FALSE(down.below_floor);
+    EXPECT_EQ(down.outcome, Outcome::clear);
+    // The same flight, started so low that the leg, which is above the floor at first, is met from below.
+    s.start_position.z() = 19.0;
+    const Record low = fly_in_process(s);
+    EXPECT_TRUE(low.below_floor);
+    EXPECT_EQ(low.outcome, Outcome::failed);
 }
 
 TEST(InProcess, TheSameSeedGivesTheSameBytes)

@@ -19,6 +19,8 @@ public:
     [[nodiscard]] std::size_t target() const noexcept { return target_; }
     /// Distance from the present leg [m].
     [[nodiscard]] double cross_track(const Vec& position) const;
+    /// Of the present leg, where it is nearest [m].
+    [[nodiscard]] double height_abeam(const Vec& position) const { return abeam(position, 0.0).z(); }
 
 private:
     [[nodiscard]] Vec abeam(const Vec& position, double ahead) const;

@@ -69,9 +69,18 @@ void Plant::take_notes()
     samples_.push_back(sample);
 }
 
+/// Below the floor, and not because the leg leads there.
+bool Plant::is_below_floor() const
+{
+    const Vec& position = world_.own().position;
+    return scenario_.floor && position.z() < *scenario_.floor &&
+           autopilot_.mission().height_abeam(position) >= *scenario_.floor;
+}
+
 void Plant::step()
 {
     autopilot_.step();
+    below_floor_ = below_floor_ || is_below_floor();
     if (autopilot_.mode() == Mode::external) {
         flips_.note(world_.own().position, autopilot_.command());
         sides_.note(world_.seconds(), autopilot_.takeovers(), world_.own().position, autopilot_.command());
@@ -132,6 +141,7 @@ Record Plant::record() const
         record.takeovers > 0 && autopilot_.mode() == Mode::mission && autopilot_.last_change_was_asked();
     record.cross_track = autopilot_.mission().cross_track(world_.own().position);
     record.lowest = world_.lowest();
+    record.below_floor = below_floor_;
     record.heard = autopilot_.heard();
     record.mission = scenario_.mission;
     record.threats = scenario_.threats;
@@ -166,7 +176,7 @@ void conclude(const Scenario& scenario, Record& record)
           "the co-processor's heartbeat paused");
     check(!link_faulty && to_seconds(heard.longest_setpoint_gap) > kLongestGap,
           "the set-points paused in external mode");
-    check(scenario.floor && record.lowest < *scenario.floor, "below the floor");
+    check(record.below_floor, "below the floor");
     const bool still_warned =
         heard.last_warning >= 0 && record.duration - to_seconds(heard.last_warning) < kStillWarned;
     check(record.final_mode == Mode::external && !still_warned, "the external mode was not given back");

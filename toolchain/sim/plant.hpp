@@ -39,6 +39,7 @@ private:
     [[nodiscard]] bool cable_pulled() const noexcept;
     [[nodiscard]] bool faults_over() const;
     void take_notes();
+    [[nodiscard]] bool is_below_floor() const;
 
     const Scenario& scenario_;
     World world_;
@@ -48,6 +49,7 @@ private:
     std::vector<Sample> samples_;
     Micros held_ = 0;
     Micros longest_hold_ = 0;
+    bool below_floor_ = false;
 };
 
 /// Decides the outcome and lists the rules that were broken.

@@ -72,6 +72,7 @@ struct Record {
     Mode final_mode = Mode::mission;
     double cross_track = 0.0;  ///< at the end [m]
     double lowest = 0.0;       ///< least height of the centre [m]
+    bool below_floor = false;  ///< was below it where the leg is not: a mission may lead there by itself
     Heard heard;
     unsigned late_steps = 0;   ///< real time: steps begun more than a tick late
     double latest_step = 0.0;  ///< real time: the latest of them [s]
