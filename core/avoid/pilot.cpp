@@ -101,6 +101,7 @@ void Pilot::take(Tick& tick) noexcept
         tick.out.new_manoeuvre = true;
     }
     flying_ = answer_;
+    chosen_side_ = answer_.side;
     is_slow_ = mean_speed(flying_) < kSlow * tick.way.speed;
     looked_at_ = tick.s.now;
     has_flying_ = true;
@@ -183,14 +184,15 @@ bool Pilot::find_faster(Tick& tick) noexcept
     return false;
 }
 
-/// What is flown is not clear to its end. Another one on its side is taken at once. Its other side is held to be noise
-/// as long as there is time: it is taken, or the last rung, when the margin would be entered before the last moment;
-/// its worst instant may lie far behind that.
+/// What is flown is not clear to its end. Another one on its side is taken at once. The other side, of what was chosen
+/// or of where the vehicle is, is held to be noise as long as there is time: it is taken, or the last rung, when the
+/// margin would be entered before the last moment; its worst instant may lie far behind that.
 void Pilot::replace(Tick& tick) noexcept
 {
     const float margin = tick.out.margin;
     const bool found = plan(tick);
-    const bool turns_over = found && flying_.side.dot(answer_.side) < kOppositeSide;
+    const bool turns_over =
+        found && (flying_.side.dot(answer_.side) < kOppositeSide || chosen_side_.dot(answer_.side) < kOppositeSide);
     if (found && !turns_over) {
         take(tick);
         return;

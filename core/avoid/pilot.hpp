@@ -74,6 +74,7 @@ private:
     Seconds ground_given_ = 0.0F;
     TimePoint last_update_;
     Fallback fallback_;
+    Vec3 chosen_side_ = Vec3::Zero();  ///< of what is flown, when it was taken; its own side follows the flight
     world::Manoeuvre flying_;
     world::Manoeuvre answer_;
 };

@@ -106,6 +106,36 @@ TEST(Avoiding, TheOtherSideIsTakenWhenTimeIsUpAndCounted)
     EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
 }
 
+/// A manoeuvre's own side counts beside the one that the vehicle has come to fly: what was called up, and led to the
+/// left, is not replaced by what is called down.
+TEST(Avoiding, TheOppositeOfWhatWasChosenIsTheOtherSideToo)
+{
+    Flight f;
+    Vec3 called = Vec3::UnitZ();
+    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        out.side = called;
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    for (int i = 0; i < 40; ++i) {
+        f.pass(g.velocity, 0.05F);
+        g = f.update(supervisor, true);
+    }
+    ASSERT_GT(supervisor.flying()->side.dot(kLeft), 0.9F) << "that is where it is";
+    f.scene.track(Vec3(35, 5, 30), Vec3::Zero(), 4.0F);
+    called = -Vec3::UnitZ();
+    g = f.update(supervisor, true);
+    EXPECT_LT(g.margin, 0.0F);
+    EXPECT_FALSE(g.new_manoeuvre);
+    called = Vec3::UnitZ();
+    f.pass(g.velocity, 0.05F);
+    const std::uint32_t asked = supervisor.diagnostics().plans;
+    g = f.update(supervisor, true);
+    EXPECT_GT(supervisor.diagnostics().plans, asked) << "it goes on looking";
+}
+
 TEST(Avoiding, ATrackThatWasSeenWrongOnceTurnsNothingOver)
 {
     Flight f;
