@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometric/planner.hpp"
+#include "core/world/conflict.hpp"
 
 namespace jink::geometric {
 
@@ -49,5 +50,16 @@ struct Flight {
 
     world::PlanStatus plan() { return planner.plan(situation(), budget, out); }
 };
+
+/// A problem as the planner makes it of where the vehicle is, `distance` along its way on a route to the collision point.
+inline Problem problem_along(const Flight& flight, float distance)
+{
+    const world::Way way = world::way_along(flight.situation(), flight.own.position);
+    Problem problem;
+    problem.frame = make_path_frame(way.origin, way.direction);
+    problem.ahead = way.ahead;
+    problem.distance = distance;
+    return problem;
+}
 
 }  // namespace jink::geometric
