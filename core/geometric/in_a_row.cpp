@@ -161,8 +161,12 @@ bool join_parts(const Problem& problem, const Settings& settings, const vehicle:
         return false;
     }
     WorkBudget checks(std::min(settings.check_units, budget.left()));
+    const bool is_short = checks.left() < settings.check_units;
     const bool clear = whole.flown.judge(whole.path, 0.0F, checks).status == CandidateStatus::available;
     static_cast<void>(budget.spend(checks.spent()));  // never more than was left
+    if (checks.exhausted() && is_short) {
+        static_cast<void>(budget.spend());  // refused: it was the budget that did not do
+    }
     if (!clear) {
         return false;
     }

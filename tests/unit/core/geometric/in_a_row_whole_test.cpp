@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Two threats in a row: what both parts make together, what they cost, and what is tried where one of them fails.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "core/geometric/flown.hpp"
+#include "tests/unit/core/geometric/in_a_row.hpp"
+
+namespace jink::geometric {
+namespace {
+
+using world::PlanStatus;
+
+TEST(InARowWhole, TheFewestWaypointsAreEnough)
+{
+    for (const std::uint16_t waypoints : {std::uint16_t{8}, std::uint16_t{13}, std::uint16_t{16}}) {
+        InARow scene;
+        scene.settings.waypoints = waypoints;
+        ASSERT_EQ(scene.run_in_a_row(), PlanStatus::found) << waypoints;
+        // As many for the first part as half of them are, but no fewer than a curve has; one point is of both.
+        EXPECT_EQ(scene.result.path.points.size(), std::max(waypoints / 2 + 1, 8) - 1U + waypoints);
+    }
+}
+
+TEST(InARowWhole, AsManyPointsAsAPathHolds)
+{
+    InARow scene;
+    scene.settings.waypoints = kMaxPathPoints;
+    ASSERT_EQ(scene.run_in_a_row(), PlanStatus::found);
+    EXPECT_EQ(scene.result.path.points.size(), kMaxPathPoints - 1);
+}
+
+TEST(InARowWhole, WithoutAFirstPartThereIsNoMoreToDo)
+{
+    InARow scene;
+    scene.settings.escape_from_margin = false;
+    scene.threats.push_back(Scene::still(Vec3(0.0F, 0.0F, 50.0F), 100.0F));
+    EXPECT_EQ(scene.run_in_a_row(), PlanStatus::none_available);
+    Problem part = scene.problem;
+    part.ends_at_top = true;
+    Settings with = scene.settings;
+    with.waypoints = scene.first_points();
+    auto first = std::make_unique<Result>();
+    WorkBudget budget(1'000'000);
+    ASSERT_EQ(solve(part, with, scene.limits, scene.airframe, budget, *first), PlanStatus::none_available);
+    EXPECT_EQ(scene.budget.spent(), budget.spent());
+}
+
+TEST(InARowWhole, WithoutASecondPartThereIsNoPath)
+{
+    InARow scene;
+    scene.obstacles = {{1, geometry::make_box(Vec3(30.0F, 0.0F, 50.0F), Vec3(0.5F, 60.0F, 60.0F))}};
+    auto first = std::make_unique<Result>();
+    ASSERT_EQ(scene.first_part(*first), PlanStatus::found);
+    EXPECT_EQ(scene.run_in_a_row(), PlanStatus::none_available);
+    EXPECT_TRUE(scene.result.path.points.empty());
+}
+
+Vec3 first_side(InARow& scene)
+{
+    auto first = std::make_unique<Result>();
+    EXPECT_EQ(scene.first_part(*first), PlanStatus::found);
+    return first->side;
+}
+
+/// A wall behind the main threat, to a side and a little to the other.
+void wall_off(InARow& scene, const Vec3& side)
+{
+    scene.obstacles = {{1, geometry::make_box(Vec3(30.0F, 0.0F, 50.0F) + 28.5F * side, Vec3(0.5F, 30.0F, 60.0F))}};
+}
+
+TEST(InARowWhole, WhereOneSideLeadsNowhereAnotherIsTried)
+{
+    InARow scene;
+    const Vec3 side = first_side(scene);
+    ASSERT_EQ(std::abs(side.y()), 1.0F);
+    wall_off(scene, side);
+    ASSERT_EQ(first_side(scene), side) << "the first part is free";
+    ASSERT_EQ(scene.run_in_a_row(), PlanStatus::found);
+    EXPECT_LT(scene.result.side.dot(side), 0.1F);
+}
+
+TEST(InARowWhole, ItsCostIsThatOfTheDearerPart)
+{
+    // Somebody who flies away from beside the first part, or comes to beside the second one.
+    for (const bool comes : {false, true}) {
+        InARow scene;
+        scene.threats.push_back(comes ? Threat{{Vec3(30.0F, 53.0F, 50.0F), Vec3(0.0F, -3.0F, 0.0F)}, 0.5F}
+                                      : Threat{{Vec3(2.0F, 6.0F, 50.0F), Vec3(0.0F, 1.0F, 0.0F)}, 0.5F});
+        auto first = std::make_unique<Result>();
+        ASSERT_EQ(scene.first_part(*first), PlanStatus::found);
+        ASSERT_EQ(scene.run_in_a_row(), PlanStatus::found);
+        ASSERT_EQ(scene.result.side, first->side);
+        Problem second;
+        ASSERT_TRUE(second_problem(scene, *first, second));
+        Settings with = scene.settings;
+        with.escape_from_margin = false;
+        auto expected = std::make_unique<Result>();
+        WorkBudget unlimited(100'000'000);
+        ASSERT_EQ(solve(second, with, scene.limits, scene.airframe, unlimited, *expected), PlanStatus::found);
+        const float of_first = first->candidates[first->chosen].total;
+        const float of_second = expected->candidates[expected->chosen].total;
+        ASSERT_EQ(of_second > of_first + 0.05F, comes);
+        ASSERT_EQ(of_first > of_second + 0.05F, !comes);
+        const Candidate& chosen = scene.result.candidates[scene.result.chosen];
+        EXPECT_NEAR(chosen.total, std::max(of_first, of_second), 1e-3F);
+        EXPECT_EQ(chosen.duration, scene.result.path.duration());
+    }
+}
+
+/// What is found has been paid for; where work ends before that, that is told.
+void expect_true_to_every_budget(const InARow& what, std::uint32_t step)
+{
+    InARow whole = what;
+    ASSERT_EQ(whole.run_in_a_row(), PlanStatus::found);
+    const std::uint32_t needed = whole.budget.spent();
+    for (std::uint32_t units = 0; units <= 2 * needed; units += step) {
+        InARow scene = what;
+        scene.budget = WorkBudget{units};
+        const PlanStatus status = scene.run_in_a_row();
+        ASSERT_TRUE(status == PlanStatus::found || status == PlanStatus::budget_spent) << units << " of " << needed;
+        ASSERT_EQ(scene.result.path.points.empty(), status != PlanStatus::found) << units;
+        ASSERT_TRUE(status != PlanStatus::found || !scene.budget.exhausted()) << units << " of " << needed;
+        ASSERT_TRUE(status != PlanStatus::found || units >= needed) << units << " of " << needed;
+    }
+}
+
+TEST(InARowWhole, EveryBudgetGivesAnAnswerThatIsTrue)
+{
+    InARow scene;
+    scene.settings.extra_planes = 0;
+    scene.threats.push_back(Scene::still(on_way_back(scene, 0.6F), 0.5F));
+    expect_true_to_every_budget(scene, 1);
+}
+
+TEST(InARowWhole, EveryBudgetGivesATrueAnswerOnTheOtherSideToo)
+{
+    InARow scene;
+    scene.settings.extra_planes = 0;
+    scene.settings.offsets = 4;
+    wall_off(scene, first_side(scene));
+    expect_true_to_every_budget(scene, 2);
+}
+
+/// The whole is flown and checked within what one attempt may spend on that, and else not taken.
+TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
+{
+    InARow whole;
+    ASSERT_EQ(whole.run_in_a_row(), PlanStatus::found);
+    path::TimedPath about = whole.result.path;
+    for (path::PathPoint& point : about.points) {
+        point.position -= whole.problem.frame.origin;
+    }
+    detail::Flown flown(whole.problem, whole.settings, whole.limits);
+    WorkBudget needed(1'000'000);
+    ASSERT_EQ(flown.judge(about, 0.0F, needed).status, CandidateStatus::available);
+    for (const bool enough : {true, false}) {
+        InARow scene;
+        scene.settings.check_units = needed.spent() - (enough ? 0U : 1U);
+        EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
+    }
+}
+
+}  // namespace
+}  // namespace jink::geometric
