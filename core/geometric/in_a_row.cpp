@@ -167,6 +167,7 @@ bool join_parts(const Problem& problem, const Settings& settings, const vehicle:
     if (checks.exhausted() && is_short) {
         static_cast<void>(budget.spend());  // refused: it was the budget that did not do
     }
+    result.cut_short = result.cut_short || checks.exhausted();
     if (!clear) {
         return false;
     }
@@ -192,6 +193,12 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
     Settings with = settings;
     const auto first_points = static_cast<std::uint16_t>(std::max(settings.waypoints / 2 + 1, 8));
     PlanStatus status = PlanStatus::none_available;
+    bool cut_short = false;
+    const auto solve_part = [&] {
+        status = solve(part_of, with, limits, airframe, budget, workspace, result);
+        cut_short = cut_short || result.cut_short;
+        result.cut_short = cut_short;
+    };
     Vec3 side = problem.preferred_side;
     for (int part = 0; part < kFirstParts; ++part) {
         part_of = problem;
@@ -199,7 +206,7 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
         part_of.preferred_side = side;
         with.waypoints = first_points;
         with.escape_from_margin = settings.escape_from_margin;
-        status = solve(part_of, with, limits, airframe, budget, workspace, result);
+        solve_part();
         if (status != PlanStatus::found) {
             break;
         }
@@ -210,17 +217,19 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
             with.waypoints =
                 static_cast<std::uint16_t>(std::min<std::size_t>(settings.waypoints, kMaxPathPoints - first_points));
             with.escape_from_margin = false;  // the whole is judged by it
-            status = solve(part_of, with, limits, airframe, budget, workspace, result);
+            solve_part();
         }
         if (status == PlanStatus::found && join_parts(problem, settings, limits, first, budget, workspace, result)) {
             return status;
         }
+        cut_short = result.cut_short;
         side = -first.side;
         with.flip_penalty = kOtherSide;
     }
     result.path.points.clear();
-    return status == PlanStatus::budget_spent || budget.exhausted() ? PlanStatus::budget_spent
-                                                                    : PlanStatus::none_available;
+    const bool is_spent = status == PlanStatus::budget_spent || budget.exhausted();
+    result.cut_short = result.cut_short || is_spent;
+    return is_spent ? PlanStatus::budget_spent : PlanStatus::none_available;
 }
 
 }  // namespace jink::geometric::detail

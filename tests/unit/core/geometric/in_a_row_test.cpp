@@ -169,6 +169,7 @@ TEST(InARowSecond, NothingThatHasNoSizeIsGoneRound)
     InARow scene;
     scene.settings.extra_planes = 0;
     scene.settings.offsets = 2;  // one to the left and one to the right, as far out
+    scene.problem.main_radius = 2.0F;  // so far that the main threat is behind
     const Vec3 there = on_way_back(scene, 0.5F);
     for (const float side : {-1.0F, 1.0F}) {
         scene.threats.push_back(Scene::still(Vec3(there.x(), side * there.y(), there.z()), 0.0F));

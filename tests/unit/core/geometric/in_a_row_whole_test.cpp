@@ -124,6 +124,7 @@ void expect_true_to_every_budget(const InARow& what, std::uint32_t step)
         ASSERT_EQ(scene.result.path.points.empty(), status != PlanStatus::found) << units;
         ASSERT_TRUE(status != PlanStatus::found || !scene.budget.exhausted()) << units << " of " << needed;
         ASSERT_TRUE(status != PlanStatus::found || units >= needed) << units << " of " << needed;
+        ASSERT_EQ(scene.result.cut_short, status != PlanStatus::found) << units << " of " << needed;
     }
 }
 
@@ -159,6 +160,10 @@ TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
     for (const bool enough : {true, false}) {
         InARow scene;
         scene.settings.check_units = needed.spent() - (enough ? 0U : 1U);
+        EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
+        EXPECT_EQ(scene.result.cut_short, !enough);
+        // That is no matter of the budget: neither of more than is needed, nor of just as much as has been spent.
+        scene.budget = WorkBudget{scene.budget.spent()};
         EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
     }
 }
