@@ -90,7 +90,6 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
     out.start_velocity = vehicle::clamped_velocity(along, problem.speed, limits);
     out.preferred_side = Vec3::Zero();
     out.main_shape = nullptr;
-    out.body_radius = 0.0F;
     // Twice: where it ends on the leg depends on what is met, and that on the way there.
     float back = top;
     for (int look = 0; look < 2; ++look) {
@@ -108,6 +107,7 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
             out.distance = 0.5F * way.norm();
             out.apex_share = 1.0F;
             out.main_radius = kNothingMet;
+            out.body_radius = 0.0F;
             out.main_centre_offset = Vec3::Zero();
             return !budget.exhausted();
         }

@@ -145,10 +145,64 @@ TEST(InARowWhole, EveryBudgetGivesATrueAnswerOnTheOtherSideToo)
     expect_true_to_every_budget(scene, 2);
 }
 
+/// Two answers are the same: found or not, and the same path.
+bool same(PlanStatus status, const Result& result, PlanStatus other_status, const Result& other)
+{
+    return status == other_status && result.path.points.size() == other.path.points.size() &&
+           std::equal(result.path.points.begin(), result.path.points.end(), other.path.points.begin(),
+                      [](const path::PathPoint& a, const path::PathPoint& b) { return a.position == b.position; });
+}
+
+TEST(InARowWhole, AnAnswerThatMoreChecksWouldChangeIsCutShort)
+{
+    InARow unlimited;
+    unlimited.settings.evaluate_all = false;
+    unlimited.settings.extra_planes = 1;
+    const Vec3 side = first_side(unlimited);
+    // Beside the first part on that side, and the second on it: whoever flies there has to look closer.
+    unlimited.threats.push_back(Scene::still(Vec3(14.0F, 0.0F, 50.0F) + 6.0F * side, 1.0F));
+    unlimited.threats.push_back(Scene::still(Vec3(26.0F, 0.0F, 50.0F) + 6.0F * side, 1.0F));
+    const InARow scene = unlimited;
+    const PlanStatus answer = unlimited.run_in_a_row();
+    ASSERT_EQ(answer, PlanStatus::found);
+    std::size_t others = 0;
+    for (std::uint32_t units = 0; units < 1000; ++units) {
+        InARow limited = scene;
+        limited.settings.check_units = units;
+        const PlanStatus status = limited.run_in_a_row();
+        const bool is_same = same(status, limited.result, answer, unlimited.result);
+        ASSERT_TRUE(is_same || limited.result.cut_short) << units << " for checks";
+        others += !is_same && status == PlanStatus::found ? 1U : 0U;
+    }
+    EXPECT_GT(others, 0U) << "on another side, which takes less work to check";
+}
+
+/// Many candidates, of which a small budget leaves most unseen.
+TEST(InARowWhole, WithLessThanAllWorkEveryAnswerIsCutShort)
+{
+    InARow scene;
+    scene.settings.evaluate_all = false;
+    scene.settings.offsets = 32;
+    scene.settings.check_units = 3000;
+    InARow unlimited = scene;
+    ASSERT_EQ(unlimited.run_in_a_row(), PlanStatus::found);
+    EXPECT_FALSE(unlimited.result.cut_short);
+    std::size_t found = 0;
+    for (std::uint32_t units = 0; units < unlimited.budget.spent(); units += 50) {
+        InARow limited = scene;
+        limited.budget = WorkBudget{units};
+        found += limited.run_in_a_row() == PlanStatus::found ? 1U : 0U;
+        ASSERT_TRUE(limited.result.cut_short) << units << " in all";
+    }
+    EXPECT_GT(found, 0U);
+}
+
 /// The whole is flown and checked within what one attempt may spend on that, and else not taken.
 TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
 {
     InARow whole;
+    whole.settings.extra_planes = 0;
+    whole.settings.offsets = 2;
     ASSERT_EQ(whole.run_in_a_row(), PlanStatus::found);
     path::TimedPath about = whole.result.path;
     for (path::PathPoint& point : about.points) {
@@ -159,6 +213,7 @@ TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
     ASSERT_EQ(flown.judge(about, 0.0F, needed).status, CandidateStatus::available);
     for (const bool enough : {true, false}) {
         InARow scene;
+        scene.settings = whole.settings;
         scene.settings.check_units = needed.spent() - (enough ? 0U : 1U);
         EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
         EXPECT_EQ(scene.result.cut_short, !enough);
