@@ -36,7 +36,9 @@ void fill(InARow& scene, Random& random)
         const Vec3 there = scene.problem.frame.origin + ahead * along + RandomProblem::vector(random, 4.0F);
         const float growth = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.05F);
         scene.threats.push_back({{there - (ahead / scene.problem.speed) * velocity, velocity},
-                                 random.uniform(0.1F, 1.5F), growth, 0.1F * growth});
+                                 random.uniform(0.1F, 1.5F),
+                                 growth,
+                                 0.1F * growth});
     }
 }
 
@@ -46,8 +48,8 @@ void expect_clear(const InARow& scene, std::size_t i)
     const Vec3d half = scene.limits.half_extents.cast<double>();
     for (const Threat& threat : scene.threats) {
         const auto margin = [&](const Vec3& own, double t) {
-            const Vec3d apart = own.cast<double>() - threat.motion.position.cast<double>() -
-                                t * threat.motion.velocity.cast<double>();
+            const Vec3d apart =
+                own.cast<double>() - threat.motion.position.cast<double>() - t * threat.motion.velocity.cast<double>();
             return gap(half, apart) - double(threat.radius) -
                    t * (double(threat.radius_rate) + 0.5 * double(threat.radius_acceleration) * t);
         };

@@ -78,8 +78,8 @@ TEST(ReachAlong, HoldsWhatGoesRoundOutside)
     detail::Extent reach;
     detail::reach_along(problem, length, widest, problem.speed, reach, longest);
     path::TimedPath path;
-    ASSERT_TRUE(make_candidate_path(problem, {Family::plateau, 0.0F, -widest}, kMaxPathPoints,
-                                    vehicle::VehicleLimits{}, path));
+    ASSERT_TRUE(
+        make_candidate_path(problem, {Family::plateau, 0.0F, -widest}, kMaxPathPoints, vehicle::VehicleLimits{}, path));
     EXPECT_LE(path.duration(), longest);
     // Chords of 64 points are shorter than the bends: the curve itself is longer still.
     const float turned = 2.0F * kPi * static_cast<float>(kMaxRouteSegments);

@@ -67,8 +67,7 @@ TEST(InSight, CurvesThatOutlastWaitsAreWatchedToTheirEnd)
     std::size_t longer = 0;
     for (std::size_t i = 0; i < curves.size(); ++i) {
         path::TimedPath path;
-        ASSERT_TRUE(
-            make_candidate_path(scene.problem, curves[i].shape, scene.settings.waypoints, scene.limits, path));
+        ASSERT_TRUE(make_candidate_path(scene.problem, curves[i].shape, scene.settings.waypoints, scene.limits, path));
         longer += path.duration() > longest_wait + 3.0F ? 1U : 0U;
         const Seconds then = path.duration() - 0.02F;
         const Vec3 velocity(0.0F, 6.0F, 0.0F);
@@ -137,8 +136,8 @@ TEST(InSight, OfMovingSolidsTheNearestSurfaceCountsFirst)
     };
     const MovingSolid small = solid(Vec3(0.0F, 30.0F, 50.0F), 0.3F, 0.0F);
     // Farther away, but each within 20 m of the start with its bounding ball, kept clear of by as much as it says.
-    for (const MovingSolid& large : {solid(Vec3(0.0F, -40.0F, 50.0F), 11.5F, 0.0F),
-                                     solid(Vec3(0.0F, -40.0F, 50.0F), 6.0F, 10.0F)}) {
+    for (const MovingSolid& large :
+         {solid(Vec3(0.0F, -40.0F, 50.0F), 11.5F, 0.0F), solid(Vec3(0.0F, -40.0F, 50.0F), 6.0F, 10.0F)}) {
         const auto closeness = [](const std::vector<MovingSolid>& solids) {
             Unhindered scene;
             scene.settings.closeness_nearest = 1;

@@ -78,13 +78,11 @@ struct Met {
     double at_end = 0.0;
 };
 
-inline double gap(const Vec3d& half, const Vec3d& apart)
-{
-    return (apart.cwiseAbs() - half).cwiseMax(0.0).norm();
-}
+inline double gap(const Vec3d& half, const Vec3d& apart) { return (apart.cwiseAbs() - half).cwiseMax(0.0).norm(); }
 
 /// `met`, or this ball where it is touched earlier; `at_end` is how large it is in the end.
-inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, double duration, const Met& ball, Met& met)
+inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, double duration, const Met& ball,
+                 Met& met)
 {
     const auto distance = [&](double t) {
         return gap(half, ball.position + t * ball.velocity - from - t * velocity) - ball.at_end;
@@ -110,17 +108,19 @@ inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, do
     }
 }
 
-inline Met first_met(const Problem& problem, const Vec3& half, const Vec3d& from, const Vec3d& velocity,
-                     double begins, double duration)
+inline Met first_met(const Problem& problem, const Vec3& half, const Vec3d& from, const Vec3d& velocity, double begins,
+                     double duration)
 {
     Met met;
     for (const Threat& threat : problem.threats) {
         const auto radius = [&](double t) {
-            return double(threat.radius) + t * (double(threat.radius_rate) + 0.5 * double(threat.radius_acceleration) * t);
+            return double(threat.radius) +
+                   t * (double(threat.radius_rate) + 0.5 * double(threat.radius_acceleration) * t);
         };
         const Vec3d v = threat.motion.velocity.cast<double>();
         look(half.cast<double>(), from, velocity, duration,
-             {false, 0.0, threat.motion.position.cast<double>() + begins * v, v, radius(begins), radius(begins + duration)},
+             {false, 0.0, threat.motion.position.cast<double>() + begins * v, v, radius(begins),
+              radius(begins + duration)},
              met);
     }
     for (const world::Obstacle& obstacle : problem.obstacles) {
@@ -157,13 +157,12 @@ inline bool second_problem(const InARow& scene, const Result& first, Problem& ou
             return false;
         }
         const Vec3d way = back * along - aside * side;
-        const Vec3d velocity =
-            vehicle::clamped_velocity(way.cast<float>(), problem.speed, scene.limits).cast<double>();
+        const Vec3d velocity = vehicle::clamped_velocity(way.cast<float>(), problem.speed, scene.limits).cast<double>();
         const double speed = velocity.norm();
         out.frame = make_path_frame(from.cast<float>(), way.cast<float>());
         const double duration = way.norm() / speed;
-        const Met met = first_met(problem, scene.limits.half_extents, from, velocity, begins + double(problem.begins),
-                                  duration);
+        const Met met =
+            first_met(problem, scene.limits.half_extents, from, velocity, begins + double(problem.begins), duration);
         if (!met.any) {
             out.main = kNoThreat;
             out.main_radius = 0.01F;

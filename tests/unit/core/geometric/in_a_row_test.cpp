@@ -86,7 +86,8 @@ TEST(InARowSecond, WhatIsMetFirstCountsInWhateverOrderItIsTold)
     const Threat near = Scene::still(on_way_back(probe, 0.5F), 0.5F);
     const Threat far = Scene::still(on_way_back(probe, 0.85F) + Vec3(0.0F, 0.0F, 1.2F), 0.4F);
     const Threat aside = Scene::still(on_way_back(probe, 0.3F) + Vec3(0.0F, 0.0F, 9.0F), 1.0F);
-    for (const auto& order : {std::array{near, far, aside}, std::array{far, near, aside}, std::array{aside, far, near}}) {
+    for (const auto& order :
+         {std::array{near, far, aside}, std::array{far, near, aside}, std::array{aside, far, near}}) {
         InARow scene;
         scene.threats.insert(scene.threats.end(), order.begin(), order.end());
         expect_second_part(scene, "first at " + std::to_string(order[0].motion.position.x()));
@@ -168,7 +169,7 @@ TEST(InARowSecond, NothingThatHasNoSizeIsGoneRound)
 {
     InARow scene;
     scene.settings.extra_planes = 0;
-    scene.settings.offsets = 2;  // one to the left and one to the right, as far out
+    scene.settings.offsets = 2;        // one to the left and one to the right, as far out
     scene.problem.main_radius = 2.0F;  // so far that the main threat is behind
     const Vec3 there = on_way_back(scene, 0.5F);
     for (const float side : {-1.0F, 1.0F}) {

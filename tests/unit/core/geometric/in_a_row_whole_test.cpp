@@ -217,8 +217,10 @@ TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
         scene.settings.check_units = needed.spent() - (enough ? 0U : 1U);
         EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
         EXPECT_EQ(scene.result.cut_short, !enough);
-        // That is no matter of the budget: neither of more than is needed, nor of just as much as has been spent.
-        scene.budget = WorkBudget{scene.budget.spent()};
+        // On either side as much is done but for that unit; and a budget of just so much is not what was short.
+        const std::uint32_t spent = enough ? whole.budget.spent() : 2U * (whole.budget.spent() - 1U);
+        EXPECT_EQ(scene.budget.spent(), spent);
+        scene.budget = WorkBudget{spent};
         EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
     }
 }

@@ -78,8 +78,7 @@ TEST(RoundedCorners, TurnAsGentlyAsHalfOfTheAccelerationAllows)
         for (const float joined_at : {10.0F, 25.0F}) {
             for (const float start : {0.0F, 5.0F}) {
                 const Problem problem = problem_to(twin, Vec3(start, 0.0F, 50.0F), joined_at);
-                expect_one_corner(problem, 40.0F - start, Vec3d::UnitX(),
-                                  direction.cast<double>().normalized());
+                expect_one_corner(problem, 40.0F - start, Vec3d::UnitX(), direction.cast<double>().normalized());
             }
         }
     }
