@@ -14,7 +14,7 @@ using path::PathPoint;
 using path::TimedPath;
 
 /// A fallback that was chosen stays unless another is better by this much [m].
-constexpr float kFallbackHysteresis = 0.3F;
+constexpr float kFallbackHysteresis = 0.1F;
 /// Points kept free for the braking tail.
 constexpr std::size_t kTailPoints = 12;
 constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
@@ -62,6 +62,8 @@ bool predict_turn(const world::Situation& s, float direction, const Settings& se
 
 /// Level directions that are tried; and each of them climbing and descending.
 constexpr int kCourses = 8;
+/// Rounds of finer steps about the best of them: to 6 degrees, and an eighth of the climb.
+constexpr int kRefinements = 3;
 
 /// A command at cruise speed: `climb` [m/s] of it upwards, the rest on a course (counter-clockwise from `ahead`).
 Vec3 command_on(const Vec3& ahead, float course, float climb, const vehicle::VehicleLimits& limits) noexcept
@@ -122,8 +124,14 @@ private:
     TimedPath flight_;
 };
 
-/// Eight level courses, each of them climbing and descending too, straight up and down; then half way to the courses
-/// beside the best.
+/// A command at cruise speed by its course from `ahead` [rad] and its climb [m/s].
+struct Course {
+    float angle = 0.0F;
+    float climb = 0.0F;
+};
+
+/// Eight level courses, each of them climbing and descending too, straight up and down; then steps to all sides of the
+/// best, each time half as far.
 void search_ways_out(const world::Situation& s, const world::Way& way, LeastHarm& search, Fallback& best) noexcept
 {
     Vec3 ahead(way.direction.x(), way.direction.y(), 0.0F);
@@ -132,26 +140,35 @@ void search_ways_out(const world::Situation& s, const world::Way& way, LeastHarm
     const float up = slant(s.limits.max_climb, s.limits);
     const float down = slant(s.limits.max_descent, s.limits);
     constexpr float kTurn = 2.0F * kPi / static_cast<float>(kCourses);
-    float best_course = 0.0F;
+    Course best_course;
     bool on_course = false;
+    const auto attempt = [&](const Course& course) noexcept {
+        const bool better = search.attempt(command_on(ahead, course.angle, course.climb, s.limits), best);
+        best_course = better ? course : best_course;
+        on_course = on_course || better;
+    };
     for (const float climb : {0.0F, up, -down}) {
         for (int i = 0; i < kCourses; ++i) {
-            const float course = kTurn * static_cast<float>(i);
-            if (search.attempt(command_on(ahead, course, climb, s.limits), best)) {
-                best_course = course;
-                on_course = true;
-            }
+            attempt({kTurn * static_cast<float>(i), climb});
         }
     }
     const float fastest = s.limits.cruise_speed;
     for (const float climb : {std::min(s.limits.max_climb, fastest), -std::min(s.limits.max_descent, fastest)}) {
         on_course = !search.attempt(Vec3(0.0F, 0.0F, climb), best) && on_course;
     }
-    if (on_course) {
-        const float climb = best.command.z();
-        for (const float beside : {-0.5F * kTurn, 0.5F * kTurn}) {
-            search.attempt(command_on(ahead, best_course + beside, climb, s.limits), best);
-        }
+    if (!on_course) {
+        return;
+    }
+    float turn = 0.5F * kTurn;
+    float rise = 0.5F;
+    for (int round = 0; round < kRefinements; ++round) {
+        const Course centre = best_course;
+        attempt({centre.angle - turn, centre.climb});
+        attempt({centre.angle + turn, centre.climb});
+        attempt({centre.angle, std::min(centre.climb + rise * up, up)});
+        attempt({centre.angle, std::max(centre.climb - rise * down, -down)});
+        turn *= 0.5F;
+        rise *= 0.5F;
     }
 }
 

@@ -25,10 +25,11 @@ struct Fallback {
 };
 
 /// Brake (a fixed wing: hold turn) when that is clear; else the one with the greatest least margin of brake and 26 ways
-/// at cruise speed (8 courses level, climbing and descending; straight up and down), refined by half a step of course;
-/// what was flown before (`previous`, may be null) stays while it is clear, and where nothing is clear unless another
-/// is 0.3 m better. A way is looked at only until it is no better than the best so far, and counts as the worst when
-/// `budget` runs out. O(30 * points * threats).
+/// at cruise speed (8 courses level, climbing and descending; straight up and down), refined three times by steps of
+/// course and of climb to all sides; what was flown before (`previous`, may be null) stays while it is clear, and where
+/// nothing is clear unless another is 0.1 m better. A way is looked at only until it is no better than the best so far,
+/// and counts as the worst when `budget` runs out. O(40 * points * threats). Against 721 ways in 600 random close
+/// calls: 2 mm behind on average, 0.4 m at most (tests/property/core/avoid/fallback_test.cpp).
 [[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
                                        const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 

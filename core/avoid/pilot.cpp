@@ -183,6 +183,29 @@ bool Pilot::find_faster(Tick& tick) noexcept
     return false;
 }
 
+/// What is flown is not clear to its end. Another one on its side is taken at once. Its other side is held to be noise
+/// as long as there is time: it is taken, or the last rung, when the margin would be entered before the last moment;
+/// its worst instant may lie far behind that.
+void Pilot::replace(Tick& tick) noexcept
+{
+    const float margin = tick.out.margin;
+    const bool found = plan(tick);
+    const bool turns_over = found && flying_.side.dot(answer_.side) < kOppositeSide;
+    if (found && !turns_over) {
+        take(tick);
+        return;
+    }
+    if (check_manoeuvre(tick.s, flying_, settings_, tick.budget, last_moment(tick), kSignAlone).margin >= 0.0F) {
+        tick.out.margin = margin;
+        return;
+    }
+    if (found) {
+        take(tick);
+    } else {
+        fall_back(tick);
+    }
+}
+
 void Pilot::avoid(Tick& tick) noexcept
 {
     const Seconds flown = tick.s.now - flying_.start;
@@ -202,13 +225,7 @@ void Pilot::avoid(Tick& tick) noexcept
         return;
     }
     if (ahead.margin < 0.0F) {
-        if (plan(tick)) {
-            take(tick);
-        } else if (check_manoeuvre(tick.s, flying_, settings_, tick.budget, last_moment(tick), kSignAlone).margin <
-                   0.0F) {
-            // What counts is when the margin is entered; its worst instant may lie far behind that.
-            fall_back(tick);
-        }
+        replace(tick);
         return;
     }
     if (find_faster(tick)) {

@@ -45,6 +45,7 @@ private:
     [[nodiscard]] Seconds last_moment(const Tick& tick) const noexcept;
     [[nodiscard]] bool urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
     void take(Tick& tick) noexcept;
+    void replace(Tick& tick) noexcept;
     void fall_back(Tick& tick) noexcept;
     void enter_rejoining() noexcept;
     [[nodiscard]] bool way_clear_for(const Tick& tick, Seconds span) const noexcept;

@@ -252,6 +252,17 @@ void add_exactly(const Tables& tables, const UnitFlight& flight, const CurveQuer
     }
 }
 
+bool has_shape(const Tables& tables, std::size_t family, float offset, float distance) noexcept
+{
+    return family < tables.families.size() && distance > 0.0F && distance < kInfinity &&
+           std::abs(offset) <= kLargestRatio * distance;
+}
+
+float smoothness_of(const FamilyTable& family, float ratio, float distance) noexcept
+{
+    return ratio * ratio * Reader(ratio, kBendSteps)(family.bend) / distance;
+}
+
 }  // namespace
 
 Tables with_limits(const Tables& tables, const vehicle::VehicleLimits& limits,
@@ -270,9 +281,16 @@ Tables with_limits(const Tables& tables, const vehicle::VehicleLimits& limits,
 bool covers(const Tables& tables, const CurveQuery& query) noexcept
 {
     const float steepness = query.along_z * query.along_z + query.side_z * query.side_z;
-    return query.family < tables.families.size() && query.distance > 0.0F && query.distance < kInfinity &&
-           std::abs(query.offset) <= kLargestRatio * query.distance && query.speed > 0.0F && query.speed < kInfinity &&
-           steepness <= kUnitTolerance;
+    return has_shape(tables, query.family, query.offset, query.distance) && query.speed > 0.0F &&
+           query.speed < kInfinity && steepness <= kUnitTolerance;
+}
+
+std::optional<float> smoothness(const Tables& tables, std::size_t family, float offset, float distance) noexcept
+{
+    if (!has_shape(tables, family, offset, distance)) {
+        return std::nullopt;
+    }
+    return smoothness_of(tables.families[family], std::abs(offset / distance), distance);
 }
 
 std::optional<Estimate> estimate(const Tables& tables, const CurveQuery& query) noexcept
@@ -284,10 +302,9 @@ std::optional<Estimate> estimate(const Tables& tables, const CurveQuery& query) 
     const float length = flight.length_of(flight.family.chords());
     AllBound bound;
     find_all_bound(tables, flight, query.speed, bound);
-    const float bend = Reader(flight.ratio, kBendSteps)(flight.family.bend);
     return Estimate{.length = query.distance * length,
                     .time = query.distance * unit_time(flight, length, query.speed, bound),
-                    .smoothness = flight.ratio * flight.ratio * bend / query.distance};
+                    .smoothness = smoothness_of(flight.family, flight.ratio, query.distance)};
 }
 
 std::optional<float> energy(const Tables& tables, const CurveQuery& query) noexcept

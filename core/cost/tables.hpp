@@ -104,6 +104,10 @@ struct Estimate {
 /// Nothing outside the domain. O(1) where no limit binds, else O(kMaxRuns log waypoints).
 [[nodiscard]] std::optional<Estimate> estimate(const Tables& tables, const CurveQuery& query) noexcept;
 
+/// S alone, as `estimate` has it to the bit, of any plane, leg and speed; nothing outside the domain. O(1).
+[[nodiscard]] std::optional<float> smoothness(const Tables& tables, std::size_t family, float offset,
+                                              float distance) noexcept;
+
 /// E of the candidate [J]; nothing outside the domain. Chords on which a limit binds, and those before them, are
 /// evaluated exactly: O(kMaxRuns log waypoints) plus their number.
 [[nodiscard]] std::optional<float> energy(const Tables& tables, const CurveQuery& query) noexcept;

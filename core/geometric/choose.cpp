@@ -52,6 +52,15 @@ float Run::smoothness_of(const CandidateShape& shape) const noexcept
         return 0.0F;
     }
     const UnitCurve& unit = unit_[static_cast<std::size_t>(shape.family)];
+    const cost::tables::Tables* const tables = settings_.tables;
+    if (tables != nullptr && tables->waypoints == unit.points &&
+        settings_.smoothness == cost::SmoothnessMethod::curvature) {
+        const std::optional<float> known =
+            cost::tables::smoothness(*tables, static_cast<std::size_t>(shape.family), shape.offset, scale_of(problem_));
+        if (known) {
+            return *known;
+        }
+    }
     Coordinates y;
     for (std::size_t i = 0; i < unit.points; ++i) {
         y[i] = std::abs(shape.offset) * unit.f[i];

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "core/base/work_budget.hpp"
+#include "core/cost/tables.hpp"
 #include "core/geometric/candidate.hpp"
 #include "core/path/follower.hpp"
 #include "core/path/route.hpp"
@@ -98,6 +99,9 @@ struct Settings {
     /// does not reach are not taken.
     std::uint32_t check_units = 1600;
     cost::SmoothnessMethod smoothness = cost::SmoothnessMethod::curvature;
+    /// Where the smoothness of curves is read, those of other families and of another number of waypoints apart; null:
+    /// computed (cost/tables.hpp says how far both are from each other). Outlives what is set up with it.
+    const cost::tables::Tables* tables = nullptr;
     cost::ClosenessMethod closeness = cost::ClosenessMethod::time_aware;
     float rotation_penalty = 1.0F;  ///< k_p
     /// Energy and hover power of each candidate too, which are told but do not count; 0 otherwise.

@@ -79,20 +79,21 @@ Vec3 command(const TimedPath& path, Seconds t, std::size_t next, Seconds ahead, 
              const Vec3& position, const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
 {
     Vec3 correction = gains.position_gain * (position_at(path, t, next) - position);
-    const float size = correction.norm();
-    if (size > gains.max_correction) {
-        correction *= gains.max_correction / size;
+    // Squares are compared, so that most commands need no root: each would wait for the one before.
+    const float size = correction.squaredNorm();
+    if (size > gains.max_correction * gains.max_correction) {
+        correction *= gains.max_correction / std::sqrt(size);
     }
     Vec3 command = correction;
-    float fastest = limits.cruise_speed;
+    float fastest = limits.cruise_speed * limits.cruise_speed;
     if (t < path.duration()) {
         const Vec3 velocity = smooth_velocity(path, ahead, next_ahead);
         command += velocity;
-        fastest = std::max(fastest, velocity.norm());
+        fastest = std::max(fastest, velocity.squaredNorm());
     }
     command.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
-    const float speed = command.norm();
-    return speed > fastest ? Vec3(command * (fastest / speed)) : command;
+    const float speed = command.squaredNorm();
+    return speed > fastest ? Vec3(command * std::sqrt(fastest / speed)) : command;
 }
 
 }  // namespace detail

@@ -40,33 +40,37 @@ private:
     float lag_;
 };
 
-/// Size of a velocity error after dt, and its integral over dt.
+/// What becomes of a velocity error over dt, as shares of it: its direction stays.
 struct Decay {
-    float error = 0.0F;     ///< [m/s]
-    float integral = 0.0F;  ///< [m]
+    float left = 0.0F;      ///< after dt, of the error
+    float integral = 0.0F;  ///< over dt, of the error [s]
 };
 
-/// An error that shrinks at rate min(error / lag, limit): a straight ramp down to limit * lag, an exponential from
-/// there. Its direction stays, so one number says it all.
-inline Decay decay(float error, float lag, float limit, Seconds dt, Fading& fading) noexcept
+/// Of an error of the given squared size, which shrinks at rate min(error / lag, limit): a straight ramp down to
+/// limit * lag, an exponential from there. No root below that.
+inline Decay decay(float squared_error, float lag, float limit, Seconds dt, Fading& fading) noexcept
 {
     const float knee = limit * lag;
-    float integral = 0.0F;
-    if (error > knee) {
-        const Seconds ramp = (error - knee) / limit;
-        if (ramp >= dt) {
-            const float left = error - limit * dt;
-            return {left, 0.5F * (error + left) * dt};
+    if (squared_error <= knee * knee) {
+        if (lag <= 0.0F) {
+            return {};  // there is no error
         }
-        integral = 0.5F * (error + knee) * ramp;
-        error = knee;
-        dt -= ramp;
+        const float rest = fading(dt);  // in [-1, 0]
+        return {1.0F + rest, -lag * rest};
     }
+    const float error = std::sqrt(squared_error);
+    const float per_error = 1.0F / error;
+    const Seconds ramp = (error - knee) / limit;
+    if (ramp >= dt) {
+        const float left = error - limit * dt;
+        return {left * per_error, 0.5F * (error + left) * dt * per_error};
+    }
+    const float of_ramp = 0.5F * (error + knee) * ramp;
     if (lag <= 0.0F) {
-        return {0.0F, integral};
+        return {0.0F, of_ramp * per_error};
     }
-    const float rest = fading(dt);  // in [-1, 0]
-    return {error + error * rest, integral - error * lag * rest};
+    const float rest = fading(dt - ramp);
+    return {(knee + knee * rest) * per_error, (of_ramp - knee * lag * rest) * per_error};
 }
 
 /// `advance` without its stamp. `fading`: made with limits.velocity_lag.
@@ -77,15 +81,13 @@ inline void move(Vec3& position, Vec3& velocity, const Vec3& command, const Vehi
     goal.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
     const Vec3 error = velocity - goal;
 
-    const float horizontal = std::sqrt(error.x() * error.x() + error.y() * error.y());
-    const Decay level = decay(horizontal, limits.velocity_lag, limits.max_acceleration, dt, fading);
+    const Decay level =
+        decay(error.x() * error.x() + error.y() * error.y(), limits.velocity_lag, limits.max_acceleration, dt, fading);
     const Decay vertical =
-        decay(std::abs(error.z()), limits.velocity_lag, limits.max_vertical_acceleration, dt, fading);
-    const float per_metre = horizontal > 0.0F ? 1.0F / horizontal : 0.0F;
-    const Vec3 direction(error.x() * per_metre, error.y() * per_metre, std::copysign(1.0F, error.z()));
+        decay(error.z() * error.z(), limits.velocity_lag, limits.max_vertical_acceleration, dt, fading);
 
-    position += goal * dt + direction.cwiseProduct(Vec3(level.integral, level.integral, vertical.integral));
-    velocity = goal + direction.cwiseProduct(Vec3(level.error, level.error, vertical.error));
+    position += goal * dt + error.cwiseProduct(Vec3(level.integral, level.integral, vertical.integral));
+    velocity = goal + error.cwiseProduct(Vec3(level.left, level.left, vertical.left));
 }
 
 }  // namespace jink::vehicle::detail

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/cost/tables_default.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -47,8 +49,12 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"GEO_SWEPT", 0, 0, 1, true, "0 time-aware security, 1 swept as the source"},
     {"GEO_K_S", 0.3F, 0, 0.9F, false, "weight of smoothness; closeness gets what is left of 1"},
     {"GEO_K_T", 0.2F, 0.1F, 1, false, "weight of time"},
+    {"GEO_K_A", 0, 0, 0.9F, false, "weight of the angle: passing in front of traffic instead of behind it"},
+    {"GEO_K_B", 0, 0, 0.9F, false, "weight of the time beyond the collision point"},
     {"GEO_K_P", 1, 0, 10, false, "penalty on planes that are not level"},
     {"GEO_FLIP", 0.15F, 0, 1, false, "penalty on changing sides"},
+    {"GEO_NEAREST", 0, 0, static_cast<float>(kMaxTracks), true,
+     "candidates look at so many moving tracks first; 0: all"},
     {"GEO_MAX_COST", 1, 0.01F, 1, false, "a plan that costs more counts as not found"},
     {"GEO_T_LOW", 1.2530F, 0, 1000, false, "flight time that costs 0 [s]"},
     {"GEO_T_HIGH", 7.0814F, 0.01F, 1000, false, "flight time that costs 1 (before the source's factor 1.15) [s]"},
@@ -116,9 +122,13 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.security = whole(Param::swept) == 1 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
     g.weights.smoothness = at(Param::weight_smoothness);
     g.weights.time = at(Param::weight_time);
-    g.weights.closeness = 1.0F - g.weights.smoothness - g.weights.time;
+    g.weights.passing = at(Param::weight_passing);
+    g.weights.beyond = at(Param::weight_beyond);
+    g.weights.closeness = 1.0F - g.weights.smoothness - g.weights.time - g.weights.passing - g.weights.beyond;
+    g.tables = &cost::tables::kDefault;  // smoothness, which is read there, is the same for every vehicle
     g.rotation_penalty = at(Param::rotation_penalty);
     g.flip_penalty = at(Param::flip_penalty);
+    g.moving_nearest = static_cast<std::uint16_t>(whole(Param::nearest));
     g.max_cost = at(Param::max_cost);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);

@@ -80,8 +80,12 @@ std::vector<std::string> misfits(const ParamValues& values)
     }
     const float smoothness = value_of(values, Param::weight_smoothness);
     const float time = value_of(values, Param::weight_time);
-    if (!cost::is_valid(cost::Weights{smoothness, time, 1.0F - smoothness - time})) {
-        out.emplace_back("GEO_K_S and GEO_K_T leave closeness a weight outside 0 to 0.7: their sum must be 0.3 to 1");
+    const float passing = value_of(values, Param::weight_passing);
+    const float beyond = value_of(values, Param::weight_beyond);
+    if (!cost::is_valid(
+            cost::Weights{smoothness, time, 1.0F - smoothness - time - passing - beyond, passing, beyond})) {
+        out.emplace_back("GEO_K_S, GEO_K_T, GEO_K_A and GEO_K_B leave closeness a weight outside 0 to 0.7: "
+                         "their sum must be 0.3 to 1");
     }
     if (static_cast<unsigned>(value_of(values, Param::offsets)) % 2U != 0) {
         out.emplace_back("GEO_OFFSETS must be even");

@@ -132,6 +132,7 @@ TEST(ApplyTogether, SaysWhichDoNotFit)
         {"GEO_T_LOW,10\nGEO_T_HIGH,5", "GEO_T_HIGH * 1.15 must be greater than GEO_T_LOW"},
         {"GEO_K_S,0\nGEO_K_T,0.1", "their sum must be 0.3 to 1"},
         {"GEO_K_S,0.9\nGEO_K_T,0.9", "their sum must be 0.3 to 1"},
+        {"GEO_K_A,0.3\nGEO_K_B,0.3", "their sum must be 0.3 to 1"},
         {"GEO_OFFSETS,5", "GEO_OFFSETS must be even"},
         {"GEO_OFFSETS,64\nGEO_PLANES,31", "candidates per family are more than"},
     };

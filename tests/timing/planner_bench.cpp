@@ -7,6 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "core/base/random.hpp"
+#include "core/cost/tables_default.hpp"
 #include "core/geometric/planner.hpp"
 
 namespace {
@@ -14,10 +15,14 @@ namespace {
 using namespace jink;
 using namespace jink::geometric;
 
+/// Two seconds ahead at 5 m/s: as near as the supervisor's last moment. And five: when it asks first.
+constexpr float kNear = 10.0F;
+constexpr float kFirst = 25.0F;
+
 /// Main threat standing on the leg 10 m ahead, the others flying past it where they leave some candidates free.
 std::vector<Threat> threats(std::size_t count)
 {
-    std::vector<Threat> all{{{Vec3(10.0F, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
+    std::vector<Threat> all{{{Vec3(kNear, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
     for (std::size_t i = 1; i < count; ++i) {
         const float side = i % 2 == 0 ? 1.0F : -1.0F;
         const auto n = static_cast<float>(i);
@@ -26,23 +31,23 @@ std::vector<Threat> threats(std::size_t count)
     return all;
 }
 
-/// Main threat standing on the leg 10 m ahead; two more about the leg, 0.5 to 8 m large and growing, three in ten of
-/// them standing.
-std::vector<Threat> random_threats(std::uint64_t seed)
+/// Main threat standing on the leg `ahead` metres ahead; two more about the leg, 0.5 to `largest` m large and growing,
+/// three in ten of them standing.
+std::vector<Threat> random_threats(std::uint64_t seed, float ahead = kNear, float largest = 8.0F)
 {
     Random random(seed);
     const auto in = [&](float low, float high) { return random.uniform(low, high); };
-    std::vector<Threat> all{{{Vec3(10.0F, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
+    std::vector<Threat> all{{{Vec3(ahead, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
     for (int i = 0; i < 2; ++i) {
         const float vx = in(-4.0F, 4.0F);
         const float vy = in(-4.0F, 4.0F);
         const float vz = in(-2.0F, 2.0F);
         const Vec3 velocity = in(0.0F, 1.0F) < 0.3F ? Vec3(Vec3::Zero()) : Vec3(vx, vy, vz);
-        const float t = in(0.0F, 5.0F);
-        const float x = in(2.0F, 24.0F);
+        const float t = in(0.0F, ahead / 2.0F);
+        const float x = in(2.0F, 2.4F * ahead);
         const float y = in(-4.0F, 4.0F);
         const float z = in(-4.0F, 4.0F);
-        const float radius = in(0.5F, 8.0F);
+        const float radius = in(0.5F, largest);
         all.push_back({{Vec3(x, y, z) - t * velocity, velocity}, radius, in(0.0F, 0.5F)});
     }
     return all;
@@ -52,7 +57,7 @@ Problem problem_with(const std::vector<Threat>& threats)
 {
     Problem problem;
     problem.frame = make_path_frame(Vec3::Zero(), Vec3::UnitX());
-    problem.distance = 10.0F;
+    problem.distance = threats[0].motion.position.x();
     problem.main_radius = 1.0F;
     problem.main = 0;
     problem.threats = threats;
@@ -77,13 +82,19 @@ void plan(benchmark::State& state, Settings settings, std::size_t threat_count)
     state.counters["found"] = status == world::PlanStatus::found ? 1.0 : 0.0;
 }
 
-/// Both families, four planes, one offset a side: 16. As the co-processor has it: flyable is what passes the predicted
-/// flight.
+/// As the co-processor has it: flyable is what passes the predicted flight, smoothness is read.
+Settings as_flown(Settings settings)
+{
+    settings.check_acceleration = false;
+    settings.tables = &cost::tables::kDefault;
+    return settings;
+}
+
+/// Both families, four planes, one offset a side: 16.
 Settings sixteen(Settings settings)
 {
     settings.offsets = 2;
-    settings.check_acceleration = false;
-    return settings;
+    return as_flown(settings);
 }
 
 Settings one_attempt(Settings settings)
@@ -98,18 +109,11 @@ Settings one_family(Settings settings)
     return settings;
 }
 
-Settings thirty_two(Settings settings)
-{
-    settings.check_acceleration = false;
-    return settings;
-}
-
 Settings many(Settings settings)
 {
     settings.offsets = 16;
     settings.extra_planes = 15;
-    settings.check_acceleration = false;
-    return settings;
+    return as_flown(settings);
 }
 
 /// The first `count` random scenes, from `seed` on, in which all attempts fail; one plan after the other.
@@ -145,7 +149,8 @@ void refused(benchmark::State& state, std::uint64_t seed, std::size_t count)
 }
 
 /// Random scenes as they come, one plan after the other, with the further attempts that each needs.
-void random_scenes(benchmark::State& state, Settings settings, std::size_t count)
+void random_scenes(benchmark::State& state, Settings settings, std::size_t count, float ahead = kNear,
+                   float largest = 8.0F)
 {
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
@@ -153,7 +158,7 @@ void random_scenes(benchmark::State& state, Settings settings, std::size_t count
     const auto workspace = std::make_unique<Workspace>();
     std::vector<std::vector<Threat>> scenes;
     for (std::size_t i = 0; i < count; ++i) {
-        scenes.push_back(random_threats(i + 1));
+        scenes.push_back(random_threats(i + 1, ahead, largest));
     }
     std::size_t next = 0;
     std::size_t found = 0;
@@ -200,16 +205,27 @@ void all_checks(benchmark::State& state)
                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
 
+BENCHMARK_CAPTURE(plan, source_16_candidates_1_threat, one_family(source_settings()), 1)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(plan, source_16_candidates_2_threats, one_family(source_settings()), 2)
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, source_16_candidates_3_threats, one_family(source_settings()), 3)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_16_candidates_3_threats, sixteen(Settings{}), 3)->Unit(benchmark::kMicrosecond);
-BENCHMARK_CAPTURE(plan, product_32_candidates_3_threats, thirty_two(Settings{}), 3)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(plan, product_32_candidates_3_threats, as_flown(Settings{}), 3)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(plan, product_512_candidates_9_threats, many(Settings{}), 9)->Unit(benchmark::kMicrosecond);
 
 BENCHMARK_CAPTURE(random_scenes, product_16_candidates_3_threats, one_attempt(sixteen(Settings{})), 1000)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(random_scenes, product_all_attempts, sixteen(Settings{}), 1000)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(random_scenes, source_16_candidates_3_threats, one_family(source_settings()), 1000)
+    ->Unit(benchmark::kMicrosecond);
+/// Two intruders of up to 2 m about a leg that is blocked 25 m ahead.
+BENCHMARK_CAPTURE(random_scenes, product_16_candidates_3_threats_25_m, one_attempt(sixteen(Settings{})), 1000, kFirst,
+                  2.0F)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(random_scenes, product_all_attempts_25_m, sixteen(Settings{}), 1000, kFirst, 2.0F)
+    ->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(random_scenes, source_16_candidates_3_threats_25_m, one_family(source_settings()), 1000, kFirst, 2.0F)
     ->Unit(benchmark::kMicrosecond);
 BENCHMARK(all_checks)->Unit(benchmark::kMicrosecond);
 

@@ -43,6 +43,9 @@ Changes company_of(Param p, float value)
     case Param::bounds: return {{Param::floor, 2.0F}, {Param::ceiling, 120.0F}};
     case Param::weight_smoothness: return {{Param::weight_time, value > 0.5F ? 0.1F : 0.4F}};
     case Param::weight_time: return {{Param::weight_smoothness, value > 0.5F ? 0.0F : 0.3F}};
+    case Param::weight_passing:
+    case Param::weight_beyond:
+        return {{Param::weight_smoothness, value > 0.5F ? 0.0F : 0.3F}, {Param::weight_time, 0.1F}};
     case Param::offsets: return {{Param::planes, 0.0F}};
     case Param::planes: return {{Param::offsets, 2.0F}, {Param::families, 1.0F}};
     case Param::time_low: return {{Param::time_high, 1000.0F}};
@@ -161,9 +164,12 @@ TEST(Parameters, RefusesWhatIsNotFiniteOrNotWhole)
 TEST(Parameters, RefusesSetsThatDoNotFitTogether)
 {
     const std::vector<Changes> sets{
-        {{Param::weight_smoothness, 0.0F}},                 // closeness 0.8
-        {{Param::weight_smoothness, 0.09F}},                // closeness 0.71
-        {{Param::weight_time, 0.71F}},                      // closeness -0.01
+        {{Param::weight_smoothness, 0.0F}},   // closeness 0.8
+        {{Param::weight_smoothness, 0.09F}},  // closeness 0.71
+        {{Param::weight_time, 0.71F}},        // closeness -0.01
+        {{Param::weight_passing, 0.51F}},     // the same
+        {{Param::weight_beyond, 0.51F}},
+        {{Param::weight_passing, 0.3F}, {Param::weight_beyond, 0.3F}},
         {{Param::weight_smoothness, 0.9F}},                 // closeness -0.1
         {{Param::offsets, 3.0F}},                           // odd
         {{Param::offsets, 64.0F}, {Param::planes, 31.0F}},  // more candidates than there is room for
@@ -191,6 +197,8 @@ TEST(Parameters, AcceptsSetsThatFitOnlyTogether)
          std::vector<Changes>{{{Param::weight_smoothness, 0.0F}, {Param::weight_time, 0.3F}},
                               {{Param::weight_smoothness, 0.9F}, {Param::weight_time, 0.1F}},
                               {{Param::weight_smoothness, 0.1F}},  // closeness 0.7, its greatest
+                              {{Param::weight_smoothness, 0.0F}, {Param::weight_beyond, 0.1F}},
+                              {{Param::weight_passing, 0.25F}, {Param::weight_beyond, 0.25F}},  // closeness 0
                               {{Param::time_low, 8.14F}},
                               {{Param::bounds, 3.0F}, {Param::ceiling, 6.0F}},
                               {{Param::bounds, 1.0F}, {Param::floor, 130.0F}},
@@ -299,8 +307,13 @@ std::vector<Route> routes()
         same(Param::weight_smoothness, 0.4F, [](C c) { return c.planner.weights.smoothness; }),
         same(Param::weight_time, 0.25F, [](C c) { return c.planner.weights.time; }),
         {Param::weight_time, 0.5F, [](C c) { return c.planner.weights.closeness; }, 0.2F},
+        same(Param::weight_passing, 0.15F, [](C c) { return c.planner.weights.passing; }),
+        {Param::weight_passing, 0.15F, [](C c) { return c.planner.weights.closeness; }, 0.35F},
+        same(Param::weight_beyond, 0.05F, [](C c) { return c.planner.weights.beyond; }),
+        {Param::weight_beyond, 0.05F, [](C c) { return c.planner.weights.closeness; }, 0.45F},
         same(Param::rotation_penalty, 2.8F, [](C c) { return c.planner.rotation_penalty; }),
         same(Param::flip_penalty, 0.45F, [](C c) { return c.planner.flip_penalty; }),
+        same(Param::nearest, 3, [](C c) { return static_cast<float>(c.planner.moving_nearest); }),
         same(Param::max_cost, 0.55F, [](C c) { return c.planner.max_cost; }),
         same(Param::time_low, 1.5F, [](C c) { return c.planner.caps.time_low; }),
         same(Param::time_high, 9.5F, [](C c) { return c.planner.caps.time_high; }),

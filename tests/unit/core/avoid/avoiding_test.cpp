@@ -65,26 +65,70 @@ TEST(Avoiding, DoesNotFlipWhileThePictureStays)
     EXPECT_EQ(supervisor.diagnostics().flips, 0U);
 }
 
-TEST(Avoiding, ReplansWhenThePictureChangesAndCountsTheFlip)
+/// A method that goes to `side` as long as nobody says otherwise.
+FakeMethod to_the(const Vec3& side)
 {
-    Flight f;
-    Vec3 side = kLeft;
-    FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+    return {[&side](const Situation& s, WorkBudget&, Manoeuvre& out) {
         out = detour(s, side, 6.0F, 60.0F);
         return PlanStatus::found;
     }};
+}
+
+TEST(Avoiding, TheOtherSideIsTakenWhenTimeIsUpAndCounted)
+{
+    Flight f;
+    Vec3 side = kLeft;
+    FakeMethod method = to_the(side);
     Supervisor supervisor(quick(), method);
     Guidance g = avoid_head_on(f, supervisor);
     f.pass(g.velocity, 0.1F);
-    f.scene.track(Vec3(22, 6, 30), Vec3::Zero(), 2.0F);  // in the way of the detour
+    f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // met in 6 s, on the detour and beside the leg
     side = -kLeft;
     g = f.update(supervisor, true);
+    EXPECT_EQ(supervisor.diagnostics().flips, 0U) << "there is time";
+    EXPECT_LT(g.margin, 0.0F) << "and it is said what is flown";
+    Seconds waited = 0.0F;
+    while (supervisor.diagnostics().flips == 0U) {
+        ASSERT_NE(supervisor.flying(), nullptr) << static_cast<int>(g.state) << " after " << waited;
+        ASSERT_GT(supervisor.flying()->side.dot(kLeft), 0.0F);
+        f.pass(g.velocity, 0.05F);
+        waited += 0.05F;
+        g = f.update(supervisor, true);
+        ASSERT_LT(waited, 6.0F);
+        WorkBudget budget(world::test::kPlenty);
+        ASSERT_GE(world::separation_at(f.scene.situation(), f.scene.own.position, 0.0F, budget).margin, 0.0F);
+    }
+    EXPECT_GT(waited, 1.0F);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_TRUE(g.new_manoeuvre);
     EXPECT_EQ(supervisor.flying()->side, -kLeft);
     EXPECT_EQ(supervisor.diagnostics().replans, 1U);
-    EXPECT_EQ(supervisor.diagnostics().flips, 1U);
     EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
+}
+
+TEST(Avoiding, ATrackThatWasSeenWrongOnceTurnsNothingOver)
+{
+    Flight f;
+    Vec3 side = kLeft;
+    FakeMethod method = to_the(side);
+    Supervisor supervisor(quick(), method);
+    Guidance g = avoid_head_on(f, supervisor);
+    side = -kLeft;
+    for (int i = 0; i < 20; ++i) {
+        f.pass(g.velocity, 0.05F);
+        const bool wrong = i == 10;
+        if (wrong) {
+            f.scene.track(Vec3(32, 6, 30), Vec3::Zero(), 2.0F);
+        }
+        g = f.update(supervisor, true);
+        EXPECT_EQ(g.margin < 0.0F, wrong) << "step " << i;
+        if (wrong) {
+            f.scene.tracks.pop_back();
+        }
+    }
+    EXPECT_EQ(supervisor.diagnostics().flips, 0U);
+    EXPECT_EQ(supervisor.diagnostics().replans, 0U);
+    EXPECT_EQ(g.state, State::avoiding);
 }
 
 TEST(Avoiding, AReplanOnTheSameSideIsNoFlip)

@@ -143,5 +143,26 @@ TEST(CostTables, WhatTheyDoNotHoldIsRefused)
     EXPECT_FALSE(covers(Tables{}, kLevel)) << "no tables at all";
 }
 
+TEST(CostTables, SmoothnessAloneIsTheSameAndRefusesTheSame)
+{
+    for (std::size_t family = 0; family < kDefault.families.size(); ++family) {
+        for (const float offset : {-12.801F, -3.0F, 0.0F, 0.5F, 12.801F}) {
+            CurveQuery query = kLevel;
+            query.family = family;
+            query.offset = offset;
+            const std::optional<Estimate> all = estimate(kDefault, query);
+            ASSERT_TRUE(all);
+            EXPECT_EQ(smoothness(kDefault, family, offset, query.distance), all->smoothness) << offset;
+        }
+    }
+    EXPECT_FALSE(smoothness(kDefault, 3, 1.0F, 10.0F)) << "family";
+    EXPECT_FALSE(smoothness(kDefault, 0, 12.8011F, 10.0F)) << "offset";
+    EXPECT_FALSE(smoothness(kDefault, 0, kNaN, 10.0F)) << "offset";
+    for (const float bad : {0.0F, -1.0F, kNaN, kInfinity}) {
+        EXPECT_FALSE(smoothness(kDefault, 0, 1.0F, bad)) << "distance";
+    }
+    EXPECT_FALSE(smoothness(Tables{}, 0, 1.0F, 10.0F)) << "no tables at all";
+}
+
 }  // namespace
 }  // namespace jink::cost::tables
