@@ -145,7 +145,6 @@ TEST(AlongBorder, WhatTheWorkspaceHeldIsNotRead)
         for (const int held : {0x00, 0xFF}) {  // all bits set: no number at all
             auto scene = std::make_unique<Scene>();
             scene->settings.wait = scene->settings.smooth = scene->settings.plateau = true;
-            scene->settings.retries = 9;
             scene->problem.ahead.route = route;
             scene->problem.speed = 2.0F;
             scene->problem.start_velocity = Vec3(2.0F, 0.0F, 0.0F);

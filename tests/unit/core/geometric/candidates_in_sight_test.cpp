@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/cost/tables_default.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
@@ -178,6 +179,40 @@ TEST(InSight, TermsAreToldWhereTheyCountOrAreAskedFor)
             EXPECT_EQ(candidate.terms.beyond > 0.0F, c.all_terms || c.beyond > 0.0F);
         }
         EXPECT_GT(told, 0U);
+    }
+}
+
+/// A table that says twice of what is true is believed.
+TEST(InSight, SmoothnessIsWhatTheTableSays)
+{
+    cost::tables::Tables doubled = cost::tables::kDefault;
+    std::vector<cost::tables::FamilyTable> families(doubled.families.begin(), doubled.families.end());
+    std::vector<std::vector<float>> bends;
+    for (cost::tables::FamilyTable& family : families) {
+        bends.emplace_back(family.bend.begin(), family.bend.end());
+        for (float& bend : bends.back()) {
+            bend *= 2.0F;
+        }
+        family.bend = bends.back();
+    }
+    doubled.families = families;
+    Unhindered scene;
+    const auto smoothness = [&scene](const cost::tables::Tables* tables) {
+        scene.settings.tables = tables;
+        EXPECT_EQ(scene.run(), PlanStatus::found);
+        std::vector<float> all;
+        for (const Candidate& c : scene.result.candidates) {
+            all.push_back(c.terms.smoothness);
+        }
+        return all;
+    };
+    const std::vector<float> read = smoothness(&cost::tables::kDefault);
+    const std::vector<float> twice = smoothness(&doubled);
+    ASSERT_FALSE(read.empty());
+    ASSERT_EQ(twice.size(), read.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+        EXPECT_GT(read[i], 0.0F);
+        EXPECT_FLOAT_EQ(twice[i], 2.0F * read[i]);
     }
 }
 

@@ -3,6 +3,7 @@
 // each candidate's closeness is what it is with them alone.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
