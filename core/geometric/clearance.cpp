@@ -91,9 +91,8 @@ float Clearance::shrink_to_clear(float start_margin) const noexcept
 int Clearance::escape_parts(Seconds duration) const noexcept
 {
     constexpr Seconds kLeast = 0.02F;
-    const Seconds longest = settings_.escape.speed > 0.0F
-                                ? std::max(kLeast, 0.5F * settings_.escape.slack / settings_.escape.speed)
-                                : duration;
+    const Seconds longest =
+        settings_.escape.speed > 0.0F ? 0.5F * settings_.escape.slack / settings_.escape.speed : duration;
     return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
 }
 

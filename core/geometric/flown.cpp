@@ -2,6 +2,7 @@
 #include "core/geometric/flown.hpp"
 
 #include <algorithm>
+#include <cassert>
 
 #include "core/base/work_units.hpp"
 #include "core/path/flight.hpp"
@@ -81,9 +82,10 @@ void Flown::brake(WorkBudget& budget) noexcept
     Vec3 velocity = last > 0 ? flight_.velocity(last - 1) : start_velocity_;
     const Seconds start = flight_.t[last];
     const Seconds span = std::max(vehicle::stopping_time(velocity.norm(), limits_), kFlightStep);
-    const path::detail::Steps steps(span, span / static_cast<float>(kTailPoints - 1), kMaxPathPoints - 1);
+    const path::detail::Steps steps(span, span / static_cast<float>(kTailPoints - 1), kTailPoints - 1);
+    assert(flight_.points + steps.count <= kMaxPathPoints);  // the flight's own step leaves room for them
     Seconds from = 0.0F;
-    for (std::size_t i = 1; i < kTailPoints && i <= steps.count && flight_.points < kMaxPathPoints; ++i) {
+    for (std::size_t i = 1; i <= steps.count; ++i) {
         static_cast<void>(budget.spend(units::kCandidatePart));
         const Seconds to = steps.end_of(i);
         vehicle::detail::move(position, velocity, Vec3::Zero(), limits_, to - from, fading_);

@@ -161,5 +161,38 @@ TEST(FlownBorder, WhatTouchesAtTheStartIsNoMarginToEscapeFrom)
     EXPECT_EQ(bench.status(), CandidateStatus::available);
 }
 
+TEST(FlownBorder, WhereThereIsNoPathLeftBrakingIsAllThatIsFlown)
+{
+    // From 5 m/s, through a lag of a quarter of a second: 1.25 m, and 2.5 m at most at 5 m/s2. The box reaches 1 m.
+    FlightBench bench(0.0F);
+    ASSERT_EQ(bench.path.duration(), 0.0F);
+    bench.threats = {Scene::still(Vec3(3.0F, 0.0F, 50.0F), 0.25F)};
+    EXPECT_EQ(bench.status(), CandidateStatus::hits_static);
+    bench.threats = {Scene::still(Vec3(6.0F, 0.0F, 50.0F), 0.25F)};
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
+    bench.threats = {Scene::still(Vec3(-1.5F, 0.0F, 50.0F), 0.25F)};
+    EXPECT_EQ(bench.status(), CandidateStatus::available);
+}
+
+TEST(FlownBorder, WhatStandsAtItsEndIsWatchedForAStepMore)
+{
+    FlightBench bench(0.0F);
+    bench.problem.start_velocity = Vec3::Zero();
+    for (std::size_t i = 0; i < bench.path.points.size(); ++i) {
+        bench.path.points[i].velocity = Vec3::Zero();
+        bench.path.points[i].time = static_cast<float>(i) / static_cast<float>(bench.path.points.size() - 1);
+    }
+    ASSERT_EQ(bench.path.duration(), 1.0F);
+    // It comes down at 20 m/s, and is there a tenth of a second after the path's end, or much later.
+    const Vec3 velocity(0.0F, 0.0F, -20.0F);
+    const auto coming = [&](Seconds then) {
+        bench.threats = {{{Vec3(0.0F, 0.0F, 51.5F) - then * velocity, velocity}, 0.5F}};
+        return bench.status();
+    };
+    EXPECT_EQ(coming(0.9F), CandidateStatus::hits_moving);
+    EXPECT_EQ(coming(1.1F), CandidateStatus::hits_moving);
+    EXPECT_EQ(coming(1.5F), CandidateStatus::available);
+}
+
 }  // namespace
 }  // namespace jink::geometric

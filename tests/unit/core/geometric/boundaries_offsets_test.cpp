@@ -288,5 +288,26 @@ TEST(OffsetBorder, ABallsWidthDoesNotDependOnHowFarAheadItIsNearest)
     }
 }
 
+TEST(OffsetBorder, WhatReachesPastACurvesEndsIsClearedAThirdOfTheWay)
+{
+    // A wall from the collision point back beyond the start, or on beyond the curve's end: there the curve is on the
+    // leg whatever its offset. The unit curve goes on past its ends, and would be far out again there.
+    constexpr float kDistance = 20.0F;
+    const Vec3 half(0.4F, 0.4F, 0.2F);
+    for (const Family family : {Family::simple, Family::symmetric, Family::smooth, Family::plateau}) {
+        for (const float length : {1.2F, 2.0F, 3.0F, 5.6F}) {
+            for (const float side : {-1.0F, 1.0F}) {
+                OffsetScene scene(family, kDistance);
+                const float reach = 0.5F * length * kDistance;
+                scene.set_main(
+                    geometry::make_box(Vec3(kDistance + side * reach, 0.0F, 50.0F), Vec3(reach, 2.0F, 20.0F)), 2.0F);
+                const float smallest =
+                    detail::smallest_clearing_offset(scene.problem, scene.settings, family, half, Vec3::UnitY());
+                EXPECT_NEAR(smallest, 3.0F * (2.0F + 0.4F + detail::kClearingSlack), 1e-4F) << int(family) << length;
+            }
+        }
+    }
+}
+
 }  // namespace
 }  // namespace jink::geometric

@@ -48,6 +48,27 @@ TEST(PathFrame, AnyLengthOfDirection)
     }
 }
 
+TEST(PathFrame, AcrossIsTakenAsFarAsItIsAcross)
+{
+    // Along the world's axes and between them, whatever their lengths.
+    for (const Vec3& x : {Vec3(1.0F, 0.0F, 0.0F), Vec3(0.0F, 0.0F, -1.0F), Vec3(0.6F, -0.8F, 0.0F)}) {
+        for (const Vec3& aside : {Vec3(0.0F, 1.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(0.3F, 2.0F, -1.0F)}) {
+            const Vec3 y = (aside - aside.dot(x) * x);
+            if (y.norm() < 1e-3F) {
+                continue;
+            }
+            for (const float length : {1e-25F, 1.0F, 1e25F}) {
+                const PathFrame frame = make_path_frame(Vec3::Ones(), length * x, length * (aside + 0.5F * x));
+                EXPECT_EQ(frame.origin, Vec3::Ones());
+                EXPECT_TRUE(frame.axes.col(0).isApprox(x, 1e-6F)) << length;
+                EXPECT_TRUE(frame.axes.col(1).isApprox(y.normalized(), 1e-6F)) << length;
+                EXPECT_TRUE(frame.axes.isUnitary(1e-5F));
+                EXPECT_NEAR(frame.axes.determinant(), 1.0F, 1e-5F);
+            }
+        }
+    }
+}
+
 TEST(Curve, MeetsItsDefinition)
 {
     const float distance = 8.0F;

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Curves and balls that touch by less than any bound leaves for rounding, against distances in double: none of the
+// looks that pass over what is far passes over these, from however far the ball comes and however long it is under way.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/property/core/geometric/random_problem.hpp"
+#include "tests/unit/core/geometric/curve_bench.hpp"
+
+namespace jink::geometric {
+namespace {
+
+/// A short curve, from the origin on or far out, and a ball: at rest, or under way in a plane of two of the world's
+/// axes or anywhere, which is near some point of the curve when that is reached.
+struct Encounter {
+    CurveBench bench;
+    oracle::Flight flight;
+    double lengths = 0.0;  ///< sum of what is involved [m]
+
+    static std::vector<CurvePoint> curve(Random& random)
+    {
+        const bool far = random.below(2) == 0;
+        std::vector<CurvePoint> points{{Vec3::Zero(), 0.0F}};
+        if (far) {
+            points[0].position = RandomProblem::vector(random, 1000.0F).cwiseAbs();
+        }
+        for (std::uint64_t i = 0, n = 1 + random.below(5); i < n; ++i) {
+            const CurvePoint& last = points.back();
+            Vec3 step = RandomProblem::vector(random, 6.0F);
+            if (far) {
+                step = step.cwiseAbs();  // all of it in one octant
+            }
+            points.push_back({last.position + step, last.time + random.uniform(0.5F, 3.0F)});
+        }
+        return points;
+    }
+
+    explicit Encounter(Random& random) : bench(curve(random))
+    {
+        const detail::Curve& curve = bench.curve;
+        for (std::size_t i = 0; i < curve.points; ++i) {
+            flight.p.push_back(oracle::to_double(curve.position(i)));
+            flight.t.push_back(double(curve.t[i]));
+        }
+        const std::size_t met = random.below(curve.points);
+        const Vec3 place = curve.position(met) + RandomProblem::vector(random, random.below(4) == 0 ? 200.0F : 8.0F);
+        Threat threat;
+        threat.motion.position = place;
+        if (random.below(3) == 0 && met > 0) {
+            // From beside the origin to beside that point.
+            threat.motion.position = RandomProblem::vector(random, 1.0F);
+            threat.motion.velocity =
+                (curve.position(met) + RandomProblem::vector(random, 2.0F) - threat.motion.position) / curve.t[met];
+        } else if (random.below(3) > 0) {
+            Vec3 velocity = RandomProblem::vector(random, std::pow(10.0F, random.uniform(0.0F, 2.5F)));
+            if (random.below(2) == 0) {
+                velocity[static_cast<int>(random.below(3))] = 0.0F;
+            }
+            threat.motion = {place - curve.t[met] * velocity, velocity};
+        }
+        if (random.below(2) == 0) {  // level: as far out as it may be otherwise, there it is near the origin
+            threat.motion.position.z() = threat.motion.velocity.z() = 0.0F;
+        }
+        bench.threats = {threat};
+        const detail::Extent reach = detail::extent_of(curve);
+        lengths = double(threat.motion.position.cwiseAbs().sum()) +
+                  double(reach.low.cwiseAbs().sum() + reach.high.cwiseAbs().sum()) + 10.0 +
+                  double(curve.duration()) * double(threat.motion.velocity.cwiseAbs().sum());
+    }
+    [[nodiscard]] oracle::Moving ball() const
+    {
+        return {oracle::to_double(bench.threats[0].motion.position),
+                oracle::to_double(bench.threats[0].motion.velocity), 0.0};
+    }
+    [[nodiscard]] CandidateStatus status(double radius)
+    {
+        bench.threats[0].radius = static_cast<float>(radius);
+        return bench.status();
+    }
+};
+
+TEST(CurveContact, ABallIsMetWhereItTouchesByAHair)
+{
+    Random random(831);
+    const oracle::Box box{{0.5, 0.5, 0.5}};
+    unsigned touching = 0;
+    for (std::size_t i = 0; i < case_count(3'000); ++i) {
+        Encounter encounter(random);
+        const bool moves = detail::is_moving(encounter.bench.threats[0]);
+        const double distance = oracle::margin(encounter.flight, encounter.ball(), box);
+        const double hair = 1e-6 * (encounter.lengths + 2.0 * distance);  // twice what the exact test may be wrong by
+        if (distance > 4.0 * hair) {
+            ASSERT_EQ(encounter.status(distance - 4.0 * hair), CandidateStatus::available) << i;
+        }
+        ASSERT_EQ(encounter.status(distance + hair),
+                  moves ? CandidateStatus::hits_moving : CandidateStatus::hits_static)
+            << i << " at " << distance;
+        touching += distance > 0.0 ? 1U : 0U;
+    }
+    EXPECT_GT(touching, case_count(3'000) / 2);
+}
+
+TEST(CurveContact, AVolumeIsMetWhereItTouches)
+{
+    Random random(832);
+    const oracle::Box box{{0.5, 0.5, 0.5}};
+    unsigned touching = 0;
+    for (std::size_t i = 0; i < case_count(1'500); ++i) {
+        Encounter encounter(random);
+        encounter.bench.settings.security = SecurityMode::swept;
+        const bool moves = detail::is_moving(encounter.bench.threats[0]);
+        const double end = double(encounter.bench.curve.duration());
+        const double distance = oracle::swept_margin(encounter.flight, encounter.ball(), end, box);
+        // Touching is enough, to the last bit of the radius.
+        const float radius = std::nextafter(static_cast<float>(distance), std::numeric_limits<float>::infinity());
+        if (moves) {
+            ASSERT_EQ(encounter.status(double(radius)), CandidateStatus::hits_moving) << i << " at " << distance;
+            touching += distance > 0.0 ? 1U : 0U;
+        }
+        const double beyond = 4e-5 * (encounter.lengths + distance);
+        if (distance > beyond) {
+            ASSERT_EQ(encounter.status(distance - beyond), CandidateStatus::available) << i;
+        }
+    }
+    EXPECT_GT(touching, case_count(1'500) / 4);
+}
+
+}  // namespace
+}  // namespace jink::geometric
