@@ -81,7 +81,7 @@ void reach_along(const Problem& problem, float length, float widest, float slowe
 /// Makes `problem`, of a straight way, one along the way's route, unless any manoeuvre ends before the way bends.
 void follow_route(const world::Situation& situation, const world::Way& way, const world::Conflict& conflict,
                   Problem& problem) noexcept;
-/// Moves the start of a problem along a route by `by`, if it is left with `least` to the collision point.
+/// Moves the start of a problem along a route by `by`, if it is left with `least` > 0 to the collision point [m].
 [[nodiscard]] bool move_start_along(const world::Situation& situation, const Vec3& by, float least,
                                     Problem& problem) noexcept;
 

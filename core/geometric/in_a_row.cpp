@@ -90,7 +90,6 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
     out.start_velocity = vehicle::clamped_velocity(along, problem.speed, limits);
     out.preferred_side = Vec3::Zero();
     out.main_shape = nullptr;
-    out.body_radius = 0.0F;
     // Twice: where it ends on the leg depends on what is met, and that on the way there.
     float back = top;
     for (int look = 0; look < 2; ++look) {
@@ -108,6 +107,7 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
             out.distance = 0.5F * way.norm();
             out.apex_share = 1.0F;
             out.main_radius = kNothingMet;
+            out.body_radius = 0.0F;
             out.main_centre_offset = Vec3::Zero();
             return !budget.exhausted();
         }
@@ -161,8 +161,13 @@ bool join_parts(const Problem& problem, const Settings& settings, const vehicle:
         return false;
     }
     WorkBudget checks(std::min(settings.check_units, budget.left()));
+    const bool is_short = checks.left() < settings.check_units;
     const bool clear = whole.flown.judge(whole.path, 0.0F, checks).status == CandidateStatus::available;
     static_cast<void>(budget.spend(checks.spent()));  // never more than was left
+    if (checks.exhausted() && is_short) {
+        static_cast<void>(budget.spend());  // refused: it was the budget that did not do
+    }
+    result.cut_short = result.cut_short || checks.exhausted();
     if (!clear) {
         return false;
     }
@@ -188,6 +193,12 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
     Settings with = settings;
     const auto first_points = static_cast<std::uint16_t>(std::max(settings.waypoints / 2 + 1, 8));
     PlanStatus status = PlanStatus::none_available;
+    bool cut_short = false;
+    const auto solve_part = [&] {
+        status = solve(part_of, with, limits, airframe, budget, workspace, result);
+        cut_short = cut_short || result.cut_short;
+        result.cut_short = cut_short;
+    };
     Vec3 side = problem.preferred_side;
     for (int part = 0; part < kFirstParts; ++part) {
         part_of = problem;
@@ -195,7 +206,7 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
         part_of.preferred_side = side;
         with.waypoints = first_points;
         with.escape_from_margin = settings.escape_from_margin;
-        status = solve(part_of, with, limits, airframe, budget, workspace, result);
+        solve_part();
         if (status != PlanStatus::found) {
             break;
         }
@@ -206,17 +217,19 @@ PlanStatus solve_in_a_row(const Problem& problem, const Settings& settings, cons
             with.waypoints =
                 static_cast<std::uint16_t>(std::min<std::size_t>(settings.waypoints, kMaxPathPoints - first_points));
             with.escape_from_margin = false;  // the whole is judged by it
-            status = solve(part_of, with, limits, airframe, budget, workspace, result);
+            solve_part();
         }
         if (status == PlanStatus::found && join_parts(problem, settings, limits, first, budget, workspace, result)) {
             return status;
         }
+        cut_short = result.cut_short;
         side = -first.side;
         with.flip_penalty = kOtherSide;
     }
     result.path.points.clear();
-    return status == PlanStatus::budget_spent || budget.exhausted() ? PlanStatus::budget_spent
-                                                                    : PlanStatus::none_available;
+    const bool is_spent = status == PlanStatus::budget_spent || budget.exhausted();
+    result.cut_short = result.cut_short || is_spent;
+    return is_spent ? PlanStatus::budget_spent : PlanStatus::none_available;
 }
 
 }  // namespace jink::geometric::detail

@@ -38,7 +38,7 @@ bool move_start_along(const world::Situation& situation, const Vec3& by, float l
     const float on_route = problem.distance - problem.ahead.straight + problem.ahead.joined_at;
     const float distance = on_route >= way.ahead.joined_at ? way.ahead.straight + (on_route - way.ahead.joined_at)
                                                            : (collision_point(problem) - start).dot(way.direction);
-    if (!(distance > 0.0F) || distance < least) {
+    if (!(distance >= least)) {
         return false;
     }
     problem.frame = make_path_frame(start, way.direction);

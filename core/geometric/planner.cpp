@@ -77,7 +77,7 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     }
     problem.frame = make_path_frame(problem.frame.origin + way, left);
     problem.distance = left.norm();
-    problem.straight = std::max(problem.straight - way.norm(), 0.0F);
+    problem.straight -= way.norm();  // of which it has far more: follow_route has seen to it
     return latency;
 }
 

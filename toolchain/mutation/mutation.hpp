@@ -154,16 +154,17 @@ template <int kMutant, class A, class B>
     return two<kMutant>(value(a || b), value(a), value(b));
 }
 
-template <int kMutant>
-[[nodiscard]] bool negation(bool a)
+template <int kMutant, class A>
+[[nodiscard]] bool negation(const A& a)
 {
-    return one<kMutant>(!a, a);
+    const bool is = static_cast<bool>(a);
+    return one<kMutant>(!is, is);
 }
-/// A condition that is not an operator: taken, not taken.
-template <int kMutant>
-[[nodiscard]] bool condition(bool a)
+/// A condition that is not an operator: taken, not taken. Of anything that says yes or no where a condition stands.
+template <int kMutant, class A>
+[[nodiscard]] bool condition(const A& a)
 {
-    return two<kMutant>(a, true, false);
+    return two<kMutant>(static_cast<bool>(a), true, false);
 }
 
 /// Bounds dropped.

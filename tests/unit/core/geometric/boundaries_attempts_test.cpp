@@ -156,5 +156,38 @@ TEST(Attempts, OneThatWasCutShortIsToldWhateverComesAfterIt)
     EXPECT_LT(told, 40U) << "some of them are enough";
 }
 
+/// Manoeuvres of two parts are for straight legs and threats that are where they are, when.
+TEST(Attempts, TwoPartsAreNeitherForRoutesNorForSweptVolumes)
+{
+    path::Route route;
+    ASSERT_EQ(route.add_leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F)), path::RouteStatus::ok);
+    Hopeless along;
+    along.problem.ahead.route = &route;
+    EXPECT_EQ(along.run_all(), PlanStatus::none_available);
+    EXPECT_EQ(along.attempts, 9U);
+    Hopeless swept;
+    swept.settings.security = SecurityMode::swept;
+    EXPECT_EQ(swept.run_all(), PlanStatus::none_available);
+    EXPECT_EQ(swept.attempts, 9U);
+    EXPECT_EQ(swept.result.attempt, 8U);
+}
+
+TEST(Attempts, MorePlanesAreOfNoFamilyThatWasNotAskedFor)
+{
+    ASSERT_EQ(kAttempts[8].kind, Attempt::Kind::more_planes);
+    for (const Family left_out : {Family::simple, Family::symmetric}) {
+        for (const std::uint16_t offsets : {std::uint16_t{2}, std::uint16_t{8}}) {
+            Hopeless scene;
+            scene.settings.*flag_of(left_out) = false;
+            scene.settings.offsets = offsets;
+            scene.settings.retries = 8;
+            EXPECT_EQ(scene.run_all(), PlanStatus::none_available);
+            ASSERT_EQ(scene.result.attempt, 8U);
+            EXPECT_EQ(scene.count_of(left_out), 0U);
+            EXPECT_EQ(scene.planes(), 8U) << "and of the other there are some";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace jink::geometric
