@@ -122,6 +122,32 @@ TEST(EncounterSummary, RanksAvoidableFirstThenBrokenRulesThenSeparation)
     EXPECT_EQ(worst_of(results).size(), 10U);
 }
 
+/// Seed 519 of the campaign: avoidable for a judge that knows, and avoided by the co-processor when its sensors know.
+TEST(EncounterResult, WhatWasAvoidableIsFlownAgainWithoutNoise)
+{
+    const EncounterResult lost = fly_encounter(519, {});
+    ASSERT_TRUE(lost.failed_avoidable);
+    EXPECT_LT(lost.separation, 0.7);
+    Scenario quiet = open_encounter(519);
+    quiet.traffic.sigma_position = quiet.traffic.sigma_velocity = 0.0;
+    EXPECT_EQ(lost.noiseless, fly_in_process(quiet).closest.surface);
+    EXPECT_GT(lost.noiseless, 0.7);
+    EXPECT_EQ(fly_encounter(22, {}).noiseless, 0.0) << "not asked";
+}
+
+TEST(EncounterSummary, TellsNoiseFromChoice)
+{
+    std::vector<EncounterResult> results(3, ended(3, Outcome::breach, 0.6, true));
+    results[0].noiseless = 0.69;
+    results[1].noiseless = 0.7;
+    results[2].noiseless = 3.0;
+    results.push_back(ended(4, Outcome::collision, -1.0, false));
+    const std::string text = summary_text({}, results);
+    const std::size_t at = text.find("without the sensors' noise too");
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_NE(text.substr(at, 60).find(" 1 of        4"), std::string::npos) << text;
+}
+
 TEST(EncounterSummary, CountsWhatItSays)
 {
     FolderSetup setup;

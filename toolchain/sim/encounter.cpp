@@ -53,6 +53,7 @@ void each_column(Result& r, Visit&& visit)
     visit("failed_avoidable", r.failed_avoidable);
     visit("last_keep", r.last_keep);
     visit("late_keep", r.late_keep);
+    visit("noiseless", r.noiseless);
     visit("deviation_most", r.deviation_most);
     visit("deviation_rms", r.deviation_rms);
     visit("acceleration", r.acceleration);
@@ -186,8 +187,13 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
 
 EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant)
 {
-    const Scenario scenario = encounter_scenario(seed, variant);
-    return result_of(scenario, fly_in_process(scenario));
+    Scenario scenario = encounter_scenario(seed, variant);
+    EncounterResult result = result_of(scenario, fly_in_process(scenario));
+    if (result.failed_avoidable) {
+        scenario.traffic.sigma_position = scenario.traffic.sigma_velocity = 0.0;
+        result.noiseless = fly_in_process(scenario).closest.surface;
+    }
+    return result;
 }
 
 std::string encounter_columns()

@@ -38,6 +38,8 @@ struct EncounterResult {
     bool failed_avoidable = false;  ///< the promise was broken, and a manoeuvre of the judge would have kept it
     unsigned last_keep = 0;         ///< how many would, from the first sighting or the first conflict on,
     unsigned late_keep = 0;         ///< and kReaction later (report.hpp)
+    double noiseless = 0.0;         ///< failed_avoidable: least separation of the same encounter when sensors tell the
+                                    ///< truth [m]; 0 otherwise
     double deviation_most = 0.0;    ///< greatest distance from the line of the leg [m]
     double deviation_rms = 0.0;     ///< over the flight [m]
     double acceleration = 0.0;      ///< integral of the squared acceleration [m2/s3]
@@ -59,7 +61,8 @@ struct Variant {
 /// however often it is asked. Empty when all of them are taken. O(n^2) for n parameters.
 [[nodiscard]] std::string refusal_of(const Variant& variant);
 
-/// Flies open_encounter(seed) in process and judges it (Trials::until_broken).
+/// Flies open_encounter(seed) in process and judges it (Trials::until_broken). One that was avoidable is flown once
+/// more without the sensors' noise, with the same delays and losses: what keeps the promise then was lost to noise.
 [[nodiscard]] EncounterResult fly_encounter(std::uint64_t seed, const Variant& variant);
 
 /// open_encounter(seed) for one variant.

@@ -77,6 +77,11 @@ void put_promises(std::string& text, const Results& results)
               all);
     put_share(text, "... avoidable also 0.05 s later",
               count_if(results, [](const EncounterResult& r) { return r.failed_avoidable && r.late_keep > 0; }), all);
+    // Of the scenarios' promise (Scenario::promise).
+    put_share(text, "... avoidable, and broken without the sensors' noise too",
+              count_if(results,
+                       [](const EncounterResult& r) { return r.failed_avoidable && r.noiseless < Scenario{}.promise; }),
+              all);
     put_share(text, "... told of too late", count_if(results, [](const EncounterResult& r) { return r.told_too_late; }),
               all);
     put_share(
@@ -193,14 +198,14 @@ const char* verdict_of(const EncounterResult& r)
 void put_list(std::string& text, const char* title, const Results& results)
 {
     line(text, "\n%s", title);
-    line(text, "  %20s %9s %-10s %10s %8s %8s %6s %6s %6s %6s %5s  %s", "seed", "intruders", "outcome", "separation",
-         "at [s]", "told [s]", "keep", "later", "same", "chang.", "ctrl", "judge");
+    line(text, "  %20s %9s %-10s %10s %8s %8s %6s %6s %6s %6s %6s %5s  %s", "seed", "intruders", "outcome",
+         "separation", "at [s]", "told [s]", "keep", "later", "quiet", "same", "chang.", "ctrl", "judge");
     for (const EncounterResult& r : results) {
-        line(text, "  %20llu %9u %-10s %10.3f %8.2f %8.2f %6u %6u %6u %6u %5u  %s",
+        line(text, "  %20llu %9u %-10s %10.3f %8.2f %8.2f %6u %6u %6.2f %6u %6u %5u  %s",
              static_cast<unsigned long long>(r.seed), r.intruders, std::string(to_string(r.outcome)).c_str(),
              r.separation, r.at, r.told, broke_promise(r) ? r.last_keep : r.keep,
-             broke_promise(r) ? r.late_keep : r.keep, r.sides.same_picture, r.sides.changed_picture, r.takeovers,
-             verdict_of(r));
+             broke_promise(r) ? r.late_keep : r.keep, r.noiseless, r.sides.same_picture, r.sides.changed_picture,
+             r.takeovers, verdict_of(r));
     }
 }
 
@@ -236,7 +241,7 @@ std::string summary_text(const FolderSetup& setup, const Results& results)
                  [](const EncounterResult& r) { return broke_promise(r) || r.outcome == Outcome::failed; });
     put_list(text,
              "Promises and rules broken. keep: of 721 ways of the judge, from the first sighting or conflict on; "
-             "later: 0.05 s after that",
+             "later: 0.05 s after that; quiet: least separation without the sensors' noise, of what was avoidable",
              bad);
     put_list(text, "The ten worst (worst/*.yaml)", worst_of(results));
     return text;
