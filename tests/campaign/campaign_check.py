@@ -250,6 +250,8 @@ def thousand(programs, top):
     broken = text.split("Promises and rules broken", 1)[1].split("The ten worst", 1)[0]
     seeds = {int(line.split()[0]) for line in broken.splitlines() if line.endswith("avoidable")}
     check(seeds == KNOWN_SHORTFALLS, f"avoidable: {sorted(seeds)}, known: {sorted(KNOWN_SHORTFALLS)}")
+    quiet = next(line for line in text.splitlines() if "without the sensors' noise too" in line)
+    check(quiet.split("too")[1].split()[0] == "0", f"noise is not what decided: {quiet}")
     check("0 broken rules" in text, "a rule was broken")
 
 

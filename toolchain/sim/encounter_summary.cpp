@@ -241,7 +241,7 @@ std::string summary_text(const FolderSetup& setup, const Results& results)
                  [](const EncounterResult& r) { return broke_promise(r) || r.outcome == Outcome::failed; });
     put_list(text,
              "Promises and rules broken. keep: of 721 ways of the judge, from the first sighting or conflict on; "
-             "later: 0.05 s after that; quiet: least separation without the sensors' noise, of what was avoidable",
+             "later: 0.05 s after that; quiet: least separation of avoidable ones without the sensors' noise",
              bad);
     put_list(text, "The ten worst (worst/*.yaml)", worst_of(results));
     return text;
