@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/path/timed_path.hpp"
+#include "tests/unit/core/geometric/flight.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
@@ -76,45 +77,21 @@ TEST(FlightBorder, NoFlightIsFasterThanItsBound)
     EXPECT_EQ(aside.count(CandidateStatus::hits_static), aside.result.candidates.size());
 }
 
-/// On a level leg of 200 m eastwards at 5 m/s.
-struct Leg {
-    TimePoint now{1'000'000};
-    vehicle::VehicleState own;
-    vehicle::VehicleLimits limits;
-    vehicle::Airframe airframe;
-    world::Reference reference;
-    std::vector<world::Track> tracks;
-    std::vector<world::Obstacle> obstacles;
-    world::Airspace airspace;
+/// A flight whose settings a test may change.
+struct Leg : Flight {
     Settings settings;
     Result last;
-    WorkBudget budget{1'000'000};
-    world::Manoeuvre out;
 
-    Leg()
-    {
-        own.stamp = now;
-        own.position = Vec3(0.0F, 0.0F, 50.0F);
-        own.velocity = Vec3(5.0F, 0.0F, 0.0F);
-        reference.valid = true;
-        reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
-    }
     world::Track& add(const Vec3& position, float radius)
     {
-        world::Track track;
-        track.id = static_cast<world::TrackId>(tracks.size() + 1);
-        track.stamp = now;
-        track.position = position;
-        track.radius = radius;
-        tracks.push_back(track);
+        Flight::add(position, Vec3::Zero(), radius);
         return tracks.back();
     }
     PlanStatus plan()
     {
-        Planner planner{settings};
-        const PlanStatus status = planner.plan(
-            {now, own, limits, airframe, reference, tracks, obstacles, airspace, nullptr, 3.0F}, budget, out);
-        last = planner.last();
+        Planner planned{settings};
+        const PlanStatus status = planned.plan(situation(), budget, out);
+        last = planned.last();
         return status;
     }
     /// Offsets of all candidates, in their order.
