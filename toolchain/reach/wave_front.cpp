@@ -161,8 +161,11 @@ private:
     /// Of each key the best stays, in the order of their ids.
     void purge(std::vector<NodeId>& ids) const
     {
-        std::map<std::vector<std::uint16_t>, NodeId> best;
         std::sort(ids.begin(), ids.end());
+        if (constraint_.keeps_equals) {
+            return;
+        }
+        std::map<std::vector<std::uint16_t>, NodeId> best;
         for (const NodeId id : ids) {
             const auto [place, is_new] = best.try_emplace(key_of(out_.nodes[id], 0, settings_.attitude_in_key), id);
             if (!is_new && constraint_.measure(out_.nodes[id]) < constraint_.measure(out_.nodes[place->second])) {

@@ -18,6 +18,8 @@ struct Constraint {
     std::function<double(const Node&)> measure;
     /// Which of the trajectories that end in one cell are expanded, in the order of their ids.
     std::function<std::vector<NodeId>(const std::vector<Node>& all, std::span<const NodeId> passing)> select;
+    /// Of two trajectories with one key both stay.
+    bool keeps_equals = false;
     /// Whether a child is made at all.
     std::function<bool(const Node&)> allows = [](const Node&) { return true; };
 };
