@@ -7,12 +7,12 @@
 namespace jink::reach {
 namespace {
 
-bool any_node_is_free(std::span<const Level> nodes, Run run) noexcept
+bool any_node_is_free(std::span<const Level> nodes, AvoidanceRun run) noexcept
 {
     return std::any_of(nodes.begin() + 1, nodes.end(), [&](Level level) { return is_free(level, run); });
 }
 
-CellIndex nearest_outer(const ReachSet& set, std::span<const Level> cells, const Vec3& goal, Run run,
+CellIndex nearest_outer(const ReachSet& set, std::span<const Level> cells, const Vec3& goal, AvoidanceRun run,
                         const ChoiceRule& rule) noexcept
 {
     CellIndex best = kNoCell;
@@ -32,7 +32,7 @@ CellIndex nearest_outer(const ReachSet& set, std::span<const Level> cells, const
     return best;
 }
 
-CellIndex farthest_free(const ReachSet& set, std::span<const Level> cells, Run run) noexcept
+CellIndex farthest_free(const ReachSet& set, std::span<const Level> cells, AvoidanceRun run) noexcept
 {
     const std::size_t in_layer = set.grid.columns() * set.grid.rows();
     for (std::size_t layer = set.grid.layers(); layer > 0; --layer) {
@@ -46,7 +46,7 @@ CellIndex farthest_free(const ReachSet& set, std::span<const Level> cells, Run r
 }
 
 /// The cheapest that ends in the cell; where none does, that passes through it.
-NodeIndex cheapest_in(const ReachSet& set, std::span<const Level> nodes, CellIndex cell, Run run) noexcept
+NodeIndex cheapest_in(const ReachSet& set, std::span<const Level> nodes, CellIndex cell, AvoidanceRun run) noexcept
 {
     NodeIndex ending = kNoNode;
     NodeIndex passing = kNoNode;
@@ -94,7 +94,7 @@ void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<cons
 }
 
 Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
-                      const Vec3& goal, Run run, const ChoiceRule& rule) noexcept
+                      const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
     Choice choice;
     choice.run = run;
@@ -127,11 +127,11 @@ Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::sp
 }
 
 Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
-                             const Vec3& goal, Run loosest, const ChoiceRule& rule) noexcept
+                             const Vec3& goal, AvoidanceRun loosest, const ChoiceRule& rule) noexcept
 {
     Choice choice;
-    for (int run = static_cast<int>(Run::soft_constraints); run >= static_cast<int>(loosest); --run) {
-        choice = find_best_path(set, nodes, cells, goal, static_cast<Run>(run), rule);
+    for (int run = static_cast<int>(AvoidanceRun::soft_constraints); run >= static_cast<int>(loosest); --run) {
+        choice = find_best_path(set, nodes, cells, goal, static_cast<AvoidanceRun>(run), rule);
         if (choice.node != kNoNode) {
             return choice;
         }

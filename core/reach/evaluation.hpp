@@ -13,13 +13,13 @@
 namespace jink::reach {
 
 /// Runs of the source, each with one sort of threat more. A run is made with the strictest one that leaves a way.
-enum class Run : std::uint8_t { obstacles, intruders, hard_constraints, soft_constraints };
+enum class AvoidanceRun : std::uint8_t { obstacles, intruders, hard_constraints, soft_constraints };
 inline constexpr std::size_t kRuns = 4;
 
 /// The first run in which a cell or node is not free: 0 blocked in all of them, up to kRuns free in all.
 using Level = std::uint8_t;
 inline constexpr Level kFree = kRuns;
-[[nodiscard]] constexpr bool is_free(Level level, Run run) noexcept
+[[nodiscard]] constexpr bool is_free(Level level, AvoidanceRun run) noexcept
 {
     return level > static_cast<Level>(run);
 }
@@ -46,7 +46,7 @@ struct Choice {
     PathStatus status = PathStatus::no_path;
     NodeIndex node = kNoNode;  ///< end of the trajectory
     CellIndex cell = kNoCell;  ///< that it was chosen for
-    Run run = Run::soft_constraints;
+    AvoidanceRun run = AvoidanceRun::soft_constraints;
 };
 
 /// How a trajectory is chosen.
@@ -60,11 +60,11 @@ struct ChoiceRule {
 /// outer cell nearest to it. Ties go to the lower index. `goal`: in the grid's frame [movements' lengths].
 /// O(nodes + cells).
 [[nodiscard]] Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
-                                    const Vec3& goal, Run run, const ChoiceRule& rule = {}) noexcept;
+                                    const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule = {}) noexcept;
 
 /// The same in the strictest run that leaves a way, from soft constraints down to `loosest`.
 [[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes,
-                                           std::span<const Level> cells, const Vec3& goal, Run loosest,
+                                           std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
                                            const ChoiceRule& rule = {}) noexcept;
 
 }  // namespace jink::reach

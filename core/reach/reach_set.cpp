@@ -52,7 +52,7 @@ SetStatus check_node(const ReachSet& s, std::size_t node) noexcept
     if (s.end[node] >= s.grid.cells()) {
         return SetStatus::unknown_cell;
     }
-    if (s.first_entry[node] > s.first_entry[node + 1]) {
+    if (s.first_entry[node] > s.first_entry[node + 1] || s.first_entry[node + 1] > s.entries.size()) {
         return SetStatus::bad_entry;
     }
     for (const FootprintEntry& entry : s.entered(node)) {
