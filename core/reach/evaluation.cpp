@@ -93,8 +93,8 @@ void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<cons
     }
 }
 
-Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
-                      const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule) noexcept
+Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells, const Vec3& goal,
+                      AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
     Choice choice;
     choice.run = run;

@@ -19,10 +19,7 @@ inline constexpr std::size_t kRuns = 4;
 /// The first run in which a cell or node is not free: 0 blocked in all of them, up to kRuns free in all.
 using Level = std::uint8_t;
 inline constexpr Level kFree = kRuns;
-[[nodiscard]] constexpr bool is_free(Level level, AvoidanceRun run) noexcept
-{
-    return level > static_cast<Level>(run);
-}
+[[nodiscard]] constexpr bool is_free(Level level, AvoidanceRun run) noexcept { return level > static_cast<Level>(run); }
 
 /// Levels of all nodes and cells at once, in place of the source's four passes: the least level on the way to a node;
 /// of a cell, the greatest of the nodes that enter it.

@@ -140,7 +140,9 @@ public:
         if (!(std::isfinite(layer) && std::isfinite(column) && std::isfinite(row))) {
             return {LocateStatus::not_a_number, {}};
         }
-        const auto past = [](T at, std::size_t count) { return at < -kTolerance || at > static_cast<T>(count) + kTolerance; };
+        const auto past = [](T at, std::size_t count) {
+            return at < -kTolerance || at > static_cast<T>(count) + kTolerance;
+        };
         if (past(layer, layers_) || past(column, columns_) || past(row, rows_)) {
             return {};
         }

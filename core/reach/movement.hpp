@@ -12,8 +12,8 @@
 
 // The movements of the automaton: short orders of equal length, each with a turn at constant rate (Gomola 6.2.5).
 //
-// Frame: x forward, y left, z up, origin where the vehicle is. Pitch > 0 is nose down, yaw > 0 nose left. Lengths are in
-// units of one movement's length where nothing else is said, so that one set of tables serves every speed.
+// Frame: x forward, y left, z up, origin where the vehicle is. Pitch > 0 is nose down, yaw > 0 nose left. Lengths are
+// in units of one movement's length where nothing else is said, so that one set of tables serves every speed.
 
 namespace jink::reach {
 

@@ -74,8 +74,8 @@ std::uint32_t checksum_of(const ReachSet& s) noexcept
     crc.add16(static_cast<std::uint16_t>(s.grid.layers()));
     crc.add16(static_cast<std::uint16_t>(s.grid.columns()));
     crc.add16(static_cast<std::uint16_t>(s.grid.rows()));
-    for (const float number : {s.grid.distance(), s.grid.horizontal(), s.grid.vertical(), s.step.length, s.step.pitch,
-                               s.step.yaw}) {
+    for (const float number :
+         {s.grid.distance(), s.grid.horizontal(), s.grid.vertical(), s.step.length, s.step.pitch, s.step.yaw}) {
         crc.add(number);
     }
     crc.add(s.samples);

@@ -48,15 +48,15 @@ struct ReachSet {
     std::uint8_t samples = 0;
 
     std::span<const NodeIndex> parent;
-    std::span<const std::uint8_t> movement;     ///< Movement that leads from the parent; of the root: straight
-    std::span<const CellIndex> end;             ///< cell of the node; of the root: kNoCell
-    std::span<const std::int16_t> position;     ///< x, y, z of each [kPositionUnit]
-    std::span<const std::int8_t> attitude;      ///< pitch and yaw of each, in steps
-    std::span<const std::uint16_t> cost;        ///< of the trajectory [kCostUnit]
-    std::span<const std::uint8_t> depth;        ///< movements from the root
-    std::span<const std::uint16_t> first_entry; ///< of each node, in `entries`; one more than there are nodes
+    std::span<const std::uint8_t> movement;      ///< Movement that leads from the parent; of the root: straight
+    std::span<const CellIndex> end;              ///< cell of the node; of the root: kNoCell
+    std::span<const std::int16_t> position;      ///< x, y, z of each [kPositionUnit]
+    std::span<const std::int8_t> attitude;       ///< pitch and yaw of each, in steps
+    std::span<const std::uint16_t> cost;         ///< of the trajectory [kCostUnit]
+    std::span<const std::uint8_t> depth;         ///< movements from the root
+    std::span<const std::uint16_t> first_entry;  ///< of each node, in `entries`; one more than there are nodes
     std::span<const FootprintEntry> entries;
-    std::uint32_t checksum = 0;                 ///< of all of the above (`checksum_of`)
+    std::uint32_t checksum = 0;  ///< of all of the above (`checksum_of`)
 
     [[nodiscard]] std::size_t nodes() const noexcept { return parent.size(); }
     [[nodiscard]] std::span<const FootprintEntry> entered(std::size_t node) const noexcept
@@ -73,13 +73,13 @@ struct ReachSet {
 /// What is wrong with a set. A set is taken as a whole or not at all.
 enum class SetStatus : std::uint8_t {
     good,
-    empty,             ///< no root
-    too_large,         ///< more nodes, cells or entries than there is room for
-    sizes_differ,      ///< the tables do not belong together
-    not_a_tree,        ///< a parent that does not come before its child, or a depth that is not one more
+    empty,         ///< no root
+    too_large,     ///< more nodes, cells or entries than there is room for
+    sizes_differ,  ///< the tables do not belong together
+    not_a_tree,    ///< a parent that does not come before its child, or a depth that is not one more
     unknown_movement,
     unknown_cell,
-    bad_entry,         ///< times out of order, or beyond the movement
+    bad_entry,  ///< times out of order, or beyond the movement
     wrong_checksum,
 };
 

@@ -185,10 +185,12 @@ TEST(ReachSetAnchors, SmoothnessByColumn)
             b = std::max(b, member.node.smoothness());
         }
     }
-    const double expected[4][5] = {{.40, .40, .40, .40, .40}, {.60, .70, .70, .70, .60}, {.50, .60, .70, .60, .50}, {.50, .70, 1.0, .70, .50}};
+    const double expected[4][5] = {
+        {.40, .40, .40, .40, .40}, {.60, .70, .70, .70, .60}, {.50, .60, .70, .60, .50}, {.50, .70, 1.0, .70, .50}};
     for (int column = 0; column < 7; ++column) {
         for (int row = 0; row < 5; ++row) {
-            EXPECT_NEAR(best[column][row], expected[column < 4 ? column : 6 - column][row], 0.005) << column << " " << row;
+            EXPECT_NEAR(best[column][row], expected[column < 4 ? column : 6 - column][row], 0.005)
+                << column << " " << row;
         }
     }
 }

@@ -27,7 +27,7 @@ struct Entered {
 struct Node {
     std::uint32_t parent = 0;  ///< the root is its own
     Movement movement = Movement::straight;
-    std::uint8_t depth = 0;  ///< movements from the root
+    std::uint8_t depth = 0;   ///< movements from the root
     std::uint8_t smooth = 0;  ///< of these, smooth ones
     std::int8_t pitch_steps = 0;
     std::int8_t yaw_steps = 0;
@@ -36,8 +36,8 @@ struct Node {
     CellPlace end;                     ///< cell of its end
     std::vector<CellIndex> footprint;  ///< cells of the path in the order of entering, each once
     std::vector<Entered> entered;      ///< by the last movement
-    double wall = 0.0;                 ///< least distance of the last movement's samples in the end cell from its side walls
-    double centre = 0.0;               ///< and from its centre
+    double wall = 0.0;    ///< least distance of the last movement's samples in the end cell from its side walls
+    double centre = 0.0;  ///< and from its centre
 
     [[nodiscard]] double smoothness() const noexcept
     {
@@ -49,9 +49,9 @@ struct Settings {
     Grid<double> grid;
     MovementStep<double> step;
     DisplacementModel model = DisplacementModel::arc;
-    bool attitude_in_key = true;   ///< two trajectories of one footprint are different when they head differently
-    bool keep_lateral = false;     ///< trajectories that leave the grid sideways count as well
-    int most_extra = 3;            ///< movements that may end in the layer they begin in, one after the other
+    bool attitude_in_key = true;  ///< two trajectories of one footprint are different when they head differently
+    bool keep_lateral = false;    ///< trajectories that leave the grid sideways count as well
+    int most_extra = 3;           ///< movements that may end in the layer they begin in, one after the other
     std::uint32_t most_nodes = 1U << 20U;
 };
 

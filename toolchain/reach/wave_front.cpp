@@ -99,8 +99,8 @@ private:
 
     static void note(Node& node, CellIndex cell, std::uint8_t sample)
     {
-        const auto known = std::find_if(node.entered.begin(), node.entered.end(),
-                                        [&](const Entered& e) { return e.cell == cell; });
+        const auto known =
+            std::find_if(node.entered.begin(), node.entered.end(), [&](const Entered& e) { return e.cell == cell; });
         if (known != node.entered.end()) {
             known->last = sample;
         } else if (std::find(node.footprint.begin(), node.footprint.end(), cell) == node.footprint.end()) {
