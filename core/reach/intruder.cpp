@@ -7,12 +7,12 @@
 
 #include <Eigen/Geometry>
 
+#include "core/reach/fusion.hpp"
+
 namespace jink::reach {
 namespace {
 
 constexpr float kForEver = std::numeric_limits<float>::infinity();
-/// Of a threat: anything above counts (Gomola table 6.5).
-constexpr float kThreshold = 1e-7F;
 
 using Times = StaticVector<float, kMostCrossings>;
 
