@@ -162,8 +162,7 @@ TEST(EvaluationLaws, TheChoiceIsTheCheapestOfTheBestCell)
         ASSERT_TRUE(is_free(nodes[choice.node], run));
         ASSERT_TRUE(is_free(cells[choice.cell], run));
         const Located at = set.grid.locate(goal);
-        const bool goal_is_free =
-            at.status == LocateStatus::inside && is_free(cells[set.grid.index(at.place)], run);
+        const bool goal_is_free = at.status == LocateStatus::inside && is_free(cells[set.grid.index(at.place)], run);
         ASSERT_EQ(choice.status == PathStatus::goal_unreachable,
                   at.status == LocateStatus::inside && !goal_is_free && set.grid.is_outer(set.grid.place(choice.cell)));
         if (goal_is_free) {
@@ -179,15 +178,17 @@ TEST(EvaluationLaws, TheChoiceIsTheCheapestOfTheBestCell)
                 }
             }
         }
-        const auto ends_there = [&](std::size_t n) { return n > 0 && is_free(nodes[n], run) && set.end[n] == choice.cell; };
+        const auto ends_there = [&](std::size_t n) {
+            return n > 0 && is_free(nodes[n], run) && set.end[n] == choice.cell;
+        };
         bool any = false;
         for (std::size_t n = 1; n < set.nodes(); ++n) {
             any = any || ends_there(n);
         }
         for (std::size_t n = 1; n < set.nodes(); ++n) {
-            const bool passes = is_free(nodes[n], run) && std::ranges::any_of(set.entered(n), [&](const FootprintEntry& e) {
-                                    return e.cell == choice.cell;
-                                });
+            const bool passes =
+                is_free(nodes[n], run) &&
+                std::ranges::any_of(set.entered(n), [&](const FootprintEntry& e) { return e.cell == choice.cell; });
             if (any ? ends_there(n) : passes) {
                 ASSERT_LE(set.cost[choice.node], set.cost[n]) << "seed " << kSeed << ", case " << i;
                 ASSERT_TRUE(set.cost[choice.node] < set.cost[n] || choice.node <= n) << "ties: lower index";
@@ -214,9 +215,13 @@ TEST(EvaluationLaws, ASetThatWasChangedIsRefused)
         case 0: tree.parent[node] = static_cast<NodeIndex>(tree.parent[node] ^ (1U << random.below(16))); break;
         case 1: tree.movement[node] = static_cast<std::uint8_t>(tree.movement[node] ^ (1U << random.below(8))); break;
         case 2: tree.end[node] = static_cast<CellIndex>(tree.end[node] ^ (1U << random.below(16))); break;
-        case 3: tree.position[3 * node] = static_cast<std::int16_t>(tree.position[3 * node] ^ (1 << random.below(15))); break;
+        case 3:
+            tree.position[3 * node] = static_cast<std::int16_t>(tree.position[3 * node] ^ (1 << random.below(15)));
+            break;
         case 4: tree.cost[node] = static_cast<std::uint16_t>(tree.cost[node] ^ (1U << random.below(16))); break;
-        default: tree.first_entry[node] = static_cast<std::uint16_t>(tree.first_entry[node] ^ (1U << random.below(16))); break;
+        default:
+            tree.first_entry[node] = static_cast<std::uint16_t>(tree.first_entry[node] ^ (1U << random.below(16)));
+            break;
         }
         ASSERT_NE(check(tree.set), SetStatus::good) << "seed " << kSeed << ", case " << i;
         ++refused;

@@ -19,7 +19,8 @@ void every_point_lies_in_its_cell(int count, T slack)
 {
     constexpr std::uint64_t kSeed = 11;
     Random random(kSeed);
-    const Grid<T> grids[] = {Grid<T>(), Grid<T>(16, 16, 16, T(150), T(3.1), T(1.5)), Grid<T>(1, 1, 1, T(2), T(0.1), T(0.2))};
+    const Grid<T> grids[] = {Grid<T>(), Grid<T>(16, 16, 16, T(150), T(3.1), T(1.5)),
+                             Grid<T>(1, 1, 1, T(2), T(0.1), T(0.2))};
     int inside = 0;
     for (int i = 0; i < count; ++i) {
         const Grid<T>& grid = grids[random.below(3)];

@@ -51,15 +51,15 @@ TEST(MovementLaws, ClosedFormIsTheIntegral)
 
 Movement mirrored_left_right(Movement m)
 {
-    const std::array<Movement, kMovements> of{Movement::straight,   Movement::right,     Movement::left,
-                                              Movement::up,         Movement::down,      Movement::down_right,
+    const std::array<Movement, kMovements> of{Movement::straight,  Movement::right,    Movement::left,
+                                              Movement::up,        Movement::down,     Movement::down_right,
                                               Movement::down_left, Movement::up_right, Movement::up_left};
     return of[static_cast<std::size_t>(m)];
 }
 Movement mirrored_up_down(Movement m)
 {
-    const std::array<Movement, kMovements> of{Movement::straight, Movement::left,    Movement::right,
-                                              Movement::down,     Movement::up,      Movement::up_left,
+    const std::array<Movement, kMovements> of{Movement::straight, Movement::left,      Movement::right,
+                                              Movement::down,     Movement::up,        Movement::up_left,
                                               Movement::up_right, Movement::down_left, Movement::down_right};
     return of[static_cast<std::size_t>(m)];
 }
