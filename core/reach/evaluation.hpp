@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "core/base/work_budget.hpp"
+#include "core/reach/reach_set.hpp"
+
+// Which trajectories are free, of which threats; and which one to fly (Gomola 6.7.1, 6.7.2).
+
+namespace jink::reach {
+
+/// Runs of the source, each with one sort of threat more. A run is made with the strictest one that leaves a way.
+enum class AvoidanceRun : std::uint8_t { obstacles, intruders, hard_constraints, soft_constraints };
+inline constexpr std::size_t kRuns = 4;
+
+/// The first run in which a cell or node is not free: 0 blocked in all of them, up to kRuns free in all.
+using Level = std::uint8_t;
+inline constexpr Level kFree = kRuns;
+[[nodiscard]] constexpr bool is_free(Level level, AvoidanceRun run) noexcept { return level > static_cast<Level>(run); }
+
+/// Levels of all nodes and cells at once, in place of the source's four passes: the least level on the way to a node;
+/// of a cell, the greatest of the nodes that enter it.
+///
+/// @param blocks   of each cell of the grid: its own level
+/// @param intruder of each node: its own level by threats that were looked at node by node, or empty
+/// @param nodes    out: level of each node; the root is free
+/// @param cells    out: level of each cell; 0 where no node enters it
+/// O(nodes + entries): one look each.
+void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<const Level> intruder,
+              std::span<Level> nodes, std::span<Level> cells) noexcept;
+
+enum class PathStatus : std::uint8_t {
+    found,
+    goal_unreachable,  ///< the goal's own cell is not free: the best way towards it instead
+    no_outer_cell,     ///< no cell at the grid's border is free: the farthest one instead, which may be a trap
+    no_path,           ///< no movement at all is free
+};
+
+struct Choice {
+    PathStatus status = PathStatus::no_path;
+    NodeIndex node = kNoNode;  ///< end of the trajectory
+    CellIndex cell = kNoCell;  ///< that it was chosen for
+    AvoidanceRun run = AvoidanceRun::soft_constraints;
+};
+
+/// How a trajectory is chosen.
+struct ChoiceRule {
+    /// A goal in a cell that is not free ends the search without a way, as in navigation.
+    bool goal_or_nothing = false;
+    std::uint8_t least_outer_layer = 0;  ///< cells at the sides nearer than this are no exits
+};
+
+/// The cheapest trajectory that is free in `run` and ends in the goal's cell; of a goal outside the grid, in the free
+/// outer cell nearest to it. Ties go to the lower index. `goal`: in the grid's frame [movements' lengths].
+/// O(nodes + cells).
+[[nodiscard]] Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
+                                    const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule = {}) noexcept;
+
+/// The same in the strictest run that leaves a way, from soft constraints down to `loosest`.
+[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes,
+                                           std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
+                                           const ChoiceRule& rule = {}) noexcept;
+
+}  // namespace jink::reach

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/reach/evaluation.hpp"
+
+// What is said of a cell by sensors, maps, intruders and constraints, put together (Gomola 6.7.1).
+
+namespace jink::reach {
+
+/// Of a threat: a rating above it is one, the order of the failure rate of manned aviation (Gomola table 6.5).
+inline constexpr float kThreshold = 1e-7F;
+
+/// One cell's ratings, each 0 to 1, as sources report them one after the other. Complements are kept, because near 1
+/// single precision cannot tell apart what the threshold asks for.
+class CellRating {
+public:
+    /// A sensor in whose field the cell lies (Gomola eq. 6.156).
+    /// @param hidden    1 - visibility
+    /// @param obstacle  of this sensor
+    void add_sensor(float hidden, float obstacle) noexcept
+    {
+        hidden_ = seen_ ? std::max(hidden_, hidden) : hidden;
+        seen_ = true;
+        obstacle_ = std::max(obstacle_, obstacle);
+    }
+    void add_map(float rating) noexcept { map_ = std::max(map_, rating); }
+    /// Of one intruder (Gomola eq. 6.159).
+    void add_intruder(float rating) noexcept { spared_by_intruders_ *= 1.0F - rating; }
+    void add_hard(float rating) noexcept { hard_ = std::max(hard_, rating); }
+    void add_soft(float rating) noexcept { soft_ = std::max(soft_, rating); }
+
+    /// 1 - visibility; 1 where no sensor looks.
+    [[nodiscard]] float hidden() const noexcept { return seen_ ? hidden_ : 1.0F; }
+    [[nodiscard]] float visibility() const noexcept { return 1.0F - hidden(); }
+    /// Damped by what is hidden (Gomola eq. 6.157).
+    [[nodiscard]] float obstacle() const noexcept { return obstacle_ * visibility(); }
+    /// Of the map where sensors do not see (Gomola eq. 6.158).
+    [[nodiscard]] float map() const noexcept { return map_ * hidden(); }
+    [[nodiscard]] float intruder() const noexcept { return 1.0F - spared_by_intruders_; }
+    [[nodiscard]] float constraint() const noexcept { return std::max(hard_, soft_); }
+    /// Gomola eq. 6.161.
+    [[nodiscard]] float threat() const noexcept
+    {
+        return std::max(std::max(obstacle(), map()), std::max(intruder(), constraint()));
+    }
+
+    [[nodiscard]] bool is_visible() const noexcept { return hidden() <= kThreshold; }
+    [[nodiscard]] bool is_occupied() const noexcept { return obstacle() >= kThreshold; }
+    [[nodiscard]] bool is_mapped() const noexcept { return map() >= kThreshold; }
+    [[nodiscard]] bool is_intruded() const noexcept { return intruder() >= kThreshold; }
+    [[nodiscard]] bool is_hard() const noexcept { return hard_ >= kThreshold; }
+    [[nodiscard]] bool is_soft() const noexcept { return soft_ >= kThreshold; }
+
+    /// The run in which it is not free first. `allow_hidden`: what nobody sees is not in the way, but obstacles and
+    /// charted ones are, however little is seen of them.
+    [[nodiscard]] Level level(bool allow_hidden = false) const noexcept
+    {
+        const bool blocked = allow_hidden ? obstacle_ >= kThreshold || map_ >= kThreshold
+                                          : !is_visible() || is_occupied() || is_mapped();
+        if (blocked) {
+            return static_cast<Level>(AvoidanceRun::obstacles);
+        }
+        if (is_intruded()) {
+            return static_cast<Level>(AvoidanceRun::intruders);
+        }
+        if (is_hard()) {
+            return static_cast<Level>(AvoidanceRun::hard_constraints);
+        }
+        return is_soft() ? static_cast<Level>(AvoidanceRun::soft_constraints) : kFree;
+    }
+
+private:
+    float hidden_ = 1.0F;
+    float obstacle_ = 0.0F;
+    float map_ = 0.0F;
+    float spared_by_intruders_ = 1.0F;
+    float hard_ = 0.0F;
+    float soft_ = 0.0F;
+    bool seen_ = false;
+};
+
+}  // namespace jink::reach

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every point of the grid lies in one cell, and in the one that its ranges say.
+#include <gtest/gtest.h>
+
+#include "core/base/random.hpp"
+#include "core/reach/grid.hpp"
+
+namespace jink::reach {
+namespace {
+
+template <class T>
+bool within(T value, T from, T to, T slack)
+{
+    return value >= from - slack && value <= to + slack;
+}
+
+template <class T>
+void every_point_lies_in_its_cell(int count, T slack)
+{
+    constexpr std::uint64_t kSeed = 11;
+    Random random(kSeed);
+    const Grid<T> grids[] = {Grid<T>(), Grid<T>(16, 16, 16, T(150), T(3.1), T(1.5)),
+                             Grid<T>(1, 1, 1, T(2), T(0.1), T(0.2))};
+    int inside = 0;
+    for (int i = 0; i < count; ++i) {
+        const Grid<T>& grid = grids[random.below(3)];
+        const auto in = [&](T size) { return static_cast<T>(random.uniform(-1.0F, 1.0F)) * size; };
+        const Polar<T> polar{std::abs(in(grid.distance() * T(1.1))), in(std::min(grid.horizontal() * T(1.1), T(3.14))),
+                             in(std::min(grid.vertical() * T(1.1), T(1.57)))};
+        const Point<T> point = from_polar(polar);
+        const Located at = grid.locate(point);
+        const bool far = polar.distance > grid.distance() * (T(1) + slack) ||
+                         std::abs(polar.horizontal) > grid.horizontal() * (T(1) + slack) ||
+                         std::abs(polar.vertical) > grid.vertical() * (T(1) + slack);
+        if (far) {
+            ASSERT_NE(at.status, LocateStatus::inside) << "case " << i;
+            continue;
+        }
+        if (at.status != LocateStatus::inside) {
+            continue;  // within rounding of the border
+        }
+        ++inside;
+        const CellPlace& p = at.place;
+        ASSERT_LT(grid.index(p), grid.cells());
+        const T near = slack * grid.distance();
+        ASSERT_TRUE(within(polar.distance, grid.layer_start(p.layer), grid.layer_end(p.layer), near)) << "case " << i;
+        // Near the vehicle angles are what rounding makes of them.
+        const T angle = slack * (T(1) + grid.distance() / std::max(polar.distance * std::cos(polar.vertical), T(1e-3)));
+        ASSERT_TRUE(within(polar.horizontal, grid.column_start(p.column), grid.column_start(p.column + 1U), angle))
+            << "case " << i;
+        ASSERT_TRUE(within(polar.vertical, grid.row_start(p.row), grid.row_start(p.row + 1U), angle)) << "case " << i;
+    }
+    EXPECT_GT(inside, count / 2);
+}
+
+TEST(GridLaws, EveryPointLiesInItsCell)
+{
+    every_point_lies_in_its_cell<double>(500000, 1e-8);
+    every_point_lies_in_its_cell<float>(500000, 2e-5F);
+}
+
+TEST(GridLaws, CentresLieInTheirCells)
+{
+    const Grid<float> grid;
+    for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
+        const Located at = grid.locate(grid.centre(grid.place(cell)));
+        ASSERT_EQ(at.status, LocateStatus::inside);
+        ASSERT_EQ(grid.index(at.place), cell);
+    }
+}
+
+}  // namespace
+}  // namespace jink::reach

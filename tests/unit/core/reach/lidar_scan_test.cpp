@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ratings from scans and their fusion: figures of the reach-set specification, section 13.1, and of the avoidance
+// specification, section 4.
+#include "core/reach/lidar_scan.hpp"
+
+#include <array>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "core/reach/fusion.hpp"
+
+namespace jink::reach {
+namespace {
+
+constexpr float kDegree = 0.0174532925F;
+
+TEST(LidarScans, AreasAreThoseOfTheDerivedFigures)
+{
+    const Grid<float> grid;
+    EXPECT_NEAR(area_of(grid, 0, 2, 5.0F), 1.1728066F, 1e-5F);
+    EXPECT_NEAR(area_of(grid, 6, 2, 10.0F), 4.6912265F, 2e-5F);
+    EXPECT_NEAR(area_of(grid, 3, 2, 9.5F), 4.2338319F, 2e-5F);
+    const Grid<float> sphere(1, 1, 1, 1.0F, kPi, 0.5F * kPi);
+    EXPECT_NEAR(area_of(sphere, 0, 0, 1.0F), 4.0F * kPi, 1e-4F);
+}
+
+/// Points in the middle of a cell.
+void hit(LidarScan& scan, const Grid<float>& grid, const CellPlace& place, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        ASSERT_EQ(scan.add(Point<float>(grid.centre(place))), PointStatus::counted);
+    }
+}
+
+/// Figure 6.12: what is stopped in a layer is missing in all behind it.
+TEST(LidarScans, VisibilityFallsBehindWhatStopsRays)
+{
+    const Grid<float> grid;
+    LidarScan scan;
+    // 20 rays in each direction: 4 across 12.857 degrees, 5 up 12.
+    ASSERT_TRUE(scan.configure(grid, 90.0F / 28.0F * kDegree, 2.4F * kDegree));
+    ASSERT_EQ(scan.rays(3, 2), 20U);
+    std::array<float, 10> v{};
+    const auto expect = [&](std::initializer_list<float> steps, std::initializer_list<int> until) {
+        scan.visibility(3, 2, v);
+        int layer = 0;
+        auto value = steps.begin();
+        for (const int end : until) {
+            for (; layer < end; ++layer) {
+                EXPECT_NEAR(v[static_cast<std::size_t>(layer)], *value, 1e-6F) << "layer " << layer + 1;
+            }
+            ++value;
+        }
+    };
+    expect({1.0F}, {10});
+    hit(scan, grid, {2, 3, 2}, 5);
+    expect({1.0F, 0.75F}, {3, 10});
+    hit(scan, grid, {4, 3, 2}, 3);
+    expect({1.0F, 0.75F, 0.60F}, {3, 5, 10});
+    hit(scan, grid, {6, 3, 2}, 4);
+    expect({1.0F, 0.75F, 0.60F, 0.40F}, {3, 5, 7, 10});
+    scan.begin();
+    scan.add_invalid(3, 2);
+    expect({0.95F}, {10});
+}
+
+/// The same plate at 5 m and at 10 m: a quarter of the hits, the same rating but for whole rays.
+TEST(LidarScans, APlateIsRatedAlikeNearAndFar)
+{
+    const Grid<float> grid(10, 7, 5, 12.0F, 45.0F * kDegree, 30.0F * kDegree);
+    LidarScan scan;
+    ASSERT_TRUE(scan.configure(grid, 0.2F * kDegree, 0.2F * kDegree));
+    const auto rating = [&](float distance) {
+        scan.begin();
+        // A plate of 0.1 m2 across the middle direction.
+        const float half = 0.5F * std::sqrt(0.1F) / distance;
+        Located at;
+        for (float h = -half; h <= half; h += 0.2F * kDegree) {
+            for (float v = -half; v <= half; v += 0.2F * kDegree) {
+                const Polar<float> point{distance, h, v};
+                EXPECT_EQ(scan.add(point), PointStatus::counted);
+                at = grid.locate(point);
+            }
+        }
+        return scan.obstacle(at.place, 0.5F);
+    };
+    const float near = rating(5.0F);
+    const float far = rating(10.0F);
+    EXPECT_NEAR(near, 0.2F, 0.03F);
+    EXPECT_NEAR(far, near, 0.03F);
+}
+
+TEST(LidarScans, EveryPointIsAnsweredFor)
+{
+    const Grid<float> grid;
+    LidarScan scan;
+    EXPECT_EQ(scan.add(Point<float>(1, 0, 0)), PointStatus::outside) << "not configured";
+    EXPECT_FALSE(scan.configure(grid, 20.0F * kDegree, 2.0F * kDegree)) << "columns without a ray";
+    EXPECT_FALSE(scan.configure(grid, 0.0F, 1.0F));
+    EXPECT_FALSE(scan.configure(Grid<float>(16, 16, 16, 1.0F, 1.0F, 1.0F), 0.01F, 0.01F)) << "too large";
+    ASSERT_TRUE(scan.configure(grid, 1.0F * kDegree, 1.0F * kDegree));
+    EXPECT_EQ(scan.add(Point<float>(5, 0, 0)), PointStatus::counted);
+    EXPECT_EQ(scan.add(Point<float>(11, 0, 0)), PointStatus::beyond);
+    EXPECT_EQ(scan.add(Point<float>(-5, 0, 0)), PointStatus::outside);
+    EXPECT_EQ(scan.add(Point<float>(5, 0, 9)), PointStatus::outside);
+    EXPECT_EQ(scan.add(Point<float>(std::numeric_limits<float>::quiet_NaN(), 0, 0)), PointStatus::not_a_number);
+    EXPECT_EQ(scan.points(), 1U);
+    // More points than rays: no share above 1, and counters that do not wrap.
+    for (int i = 0; i < 70000; ++i) {
+        scan.add(Point<float>(5, 0, 0));
+    }
+    EXPECT_EQ(scan.hindrance({4, 3, 2}), 1.0F);
+    EXPECT_EQ(scan.obstacle({4, 3, 2}, 0.1F), 1.0F);
+}
+
+TEST(Fusion, CheckValues)
+{
+    CellRating intruders;
+    intruders.add_intruder(0.2F);
+    intruders.add_intruder(0.5F);
+    EXPECT_NEAR(intruders.intruder(), 0.6F, 1e-6F);
+
+    CellRating cell;
+    cell.add_sensor(0.1F, 0.3F);
+    cell.add_sensor(0.5F, 0.8F);
+    EXPECT_NEAR(cell.visibility(), 0.5F, 1e-6F);
+    EXPECT_NEAR(cell.obstacle(), 0.4F, 1e-6F);
+    cell.add_map(0.6F);
+    EXPECT_NEAR(cell.map(), 0.3F, 1e-6F);
+    cell.add_intruder(0.2F);
+    cell.add_intruder(0.5F);
+    EXPECT_NEAR(cell.threat(), 0.6F, 1e-6F);
+}
+
+/// Figure 6.13: what the chart says counts where sensors do not see.
+TEST(Fusion, ChartsCountWhereNobodySees)
+{
+    CellRating seen;
+    seen.add_sensor(0.0F, 0.0F);
+    seen.add_map(1.0F);
+    EXPECT_EQ(seen.map(), 0.0F) << "charted and visible, but not there";
+    EXPECT_EQ(seen.level(), kFree);
+    CellRating hidden;
+    hidden.add_sensor(0.6F, 0.0F);
+    hidden.add_map(0.9F);
+    EXPECT_NEAR(hidden.map(), 0.54F, 1e-6F);
+    CellRating found;
+    found.add_sensor(0.0F, 1.0F);
+    found.add_map(1.0F);
+    EXPECT_EQ(found.threat(), 1.0F);
+}
+
+/// Table 6.5, at the threshold itself: the threat's side wins.
+TEST(Fusion, ThresholdsAreThoseOfTheTable)
+{
+    const auto seen = [] {
+        CellRating cell;
+        cell.add_sensor(0.0F, 0.0F);
+        return cell;
+    };
+    const float above = std::nextafter(kThreshold, 1.0F);
+    const float below = std::nextafter(kThreshold, 0.0F);
+    EXPECT_TRUE(seen().is_visible());
+    CellRating cell;
+    cell.add_sensor(kThreshold, 0.0F);
+    EXPECT_TRUE(cell.is_visible());
+    cell.add_sensor(above, 0.0F);
+    EXPECT_FALSE(cell.is_visible());
+    EXPECT_FALSE(CellRating().is_visible()) << "no sensor looks there";
+    const auto level = [&](auto&& add) {
+        CellRating c = seen();
+        add(c);
+        return c.level();
+    };
+    EXPECT_EQ(level([](CellRating&) {}), kFree);
+    EXPECT_EQ(level([](CellRating& c) { c.add_sensor(0.0F, kThreshold); }), 0);
+    EXPECT_EQ(level([&](CellRating& c) { c.add_sensor(0.0F, below); }), kFree);
+    EXPECT_EQ(level([](CellRating& c) { c.add_intruder(1.0F); }), 1);
+    EXPECT_EQ(level([](CellRating& c) { c.add_hard(kThreshold); }), 2);
+    EXPECT_EQ(level([&](CellRating& c) { c.add_hard(below); }), kFree);
+    EXPECT_EQ(level([](CellRating& c) { c.add_soft(kThreshold); }), 3);
+    EXPECT_EQ(level([&](CellRating& c) { c.add_soft(below); }), kFree);
+    EXPECT_EQ(level([](CellRating& c) {
+                  c.add_soft(1.0F);
+                  c.add_hard(1.0F);
+                  c.add_intruder(1.0F);
+              }),
+              1)
+        << "the first run in which it is not free";
+    EXPECT_EQ(CellRating().level(), 0);
+    EXPECT_EQ(CellRating().level(true), kFree) << "the last resort";
+    CellRating charted;
+    charted.add_sensor(1.0F, 0.5F);
+    EXPECT_EQ(charted.obstacle(), 0.0F) << "damped";
+    EXPECT_EQ(charted.level(true), 0) << "but in the way all the same";
+}
+
+}  // namespace
+}  // namespace jink::reach

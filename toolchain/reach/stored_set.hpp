@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <iosfwd>
+#include <string>
+
+#include "core/reach/reach_set.hpp"
+#include "toolchain/reach/set.hpp"
+
+// A set as the tables that are flown.
+
+namespace jink::reach::build {
+
+/// What a trajectory costs: its length first, steering second.
+struct CostRule {
+    double turn = 0.1;       ///< of a turn or a climb, on top of its length
+    double diagonal = 0.15;  ///< of both at once
+    double change = 0.05;    ///< of a movement that is not the one before
+    /// Trajectories that are not smooth cost up to twice as much (Gomola eq. 6.84). Not additive: for ranking alone.
+    bool by_smoothness = false;
+};
+/// Of each member [movements' lengths].
+[[nodiscard]] std::vector<double> costs_of(const Set& set, const CostRule& rule);
+
+/// The tables, owned.
+class StoredSet {
+public:
+    /// @throws std::length_error when the set is larger than the tables may be.
+    StoredSet(std::string name, const Settings& settings, const Set& set, const CostRule& rule);
+
+    /// A view of this, which outlives it.
+    [[nodiscard]] ReachSet view() const;
+
+private:
+    std::string name_;
+    Grid<float> grid_;
+    MovementStep<float> step_;
+    std::vector<NodeIndex> parent_;
+    std::vector<std::uint8_t> movement_;
+    std::vector<CellIndex> end_;
+    std::vector<std::int16_t> position_;
+    std::vector<std::int8_t> attitude_;
+    std::vector<std::uint16_t> cost_;
+    std::vector<std::uint8_t> depth_;
+    std::vector<std::uint16_t> first_entry_;
+    std::vector<FootprintEntry> entries_;
+    std::uint32_t checksum_ = 0;
+};
+
+}  // namespace jink::reach::build

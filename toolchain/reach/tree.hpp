@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/reach/grid.hpp"
+#include "core/reach/movement.hpp"
+
+// A reach set while it is built, in double precision, on the host.
+
+namespace jink::reach::build {
+
+/// Samples of a movement, at equal shares of it; the last one is its end.
+inline constexpr int kSamples = 8;
+
+/// A cell that a movement enters for the first time on its path, and when, in samples of the movement: from the first
+/// one in it (counted from 1) to the last.
+struct Entered {
+    CellIndex cell = kNoCell;
+    std::uint8_t first = 0;
+    std::uint8_t last = 0;
+};
+
+/// The end of one trajectory: a path of movements from the root.
+struct Node {
+    std::uint32_t parent = 0;  ///< the root is its own
+    Movement movement = Movement::straight;
+    std::uint8_t depth = 0;   ///< movements from the root
+    std::uint8_t smooth = 0;  ///< of these, smooth ones
+    std::int8_t pitch_steps = 0;
+    std::int8_t yaw_steps = 0;
+    std::uint8_t separations = 0xF;  ///< planes that all movements keep to (acas.hpp)
+    Pose<double> pose;
+    CellPlace end;                     ///< cell of its end
+    std::vector<CellIndex> footprint;  ///< cells of the path in the order of entering, each once
+    std::vector<Entered> entered;      ///< by the last movement
+    double wall = 0.0;    ///< least distance of the last movement's samples in the end cell from its side walls
+    double centre = 0.0;  ///< and from its centre
+
+    [[nodiscard]] double smoothness() const noexcept
+    {
+        return depth == 0 ? 1.0 : static_cast<double>(smooth) / static_cast<double>(depth);
+    }
+};
+
+struct Settings {
+    Grid<double> grid;
+    MovementStep<double> step;
+    DisplacementModel model = DisplacementModel::arc;
+    bool attitude_in_key = true;  ///< two trajectories of one footprint are different when they head differently
+    bool keep_lateral = false;    ///< trajectories that leave the grid sideways count as well
+    int most_extra = 3;           ///< movements that may end in the layer they begin in, one after the other
+    std::uint32_t most_nodes = 1U << 20U;
+};
+
+}  // namespace jink::reach::build
