@@ -62,23 +62,24 @@ template <class T>
 class Grid {
 public:
     /// The source's: 10 layers of one movement each, 90 by 60 degrees in 7 by 5.
-    Grid() noexcept = default;
-    Grid(std::size_t layers, std::size_t columns, std::size_t rows, T distance, T horizontal, T vertical) noexcept
+    constexpr Grid() noexcept = default;
+    constexpr Grid(std::size_t layers, std::size_t columns, std::size_t rows, T distance, T horizontal,
+                   T vertical) noexcept
         : layers_(layers), columns_(columns), rows_(rows), distance_(distance), horizontal_(horizontal),
           vertical_(vertical)
     {
     }
 
-    [[nodiscard]] std::size_t layers() const noexcept { return layers_; }
-    [[nodiscard]] std::size_t columns() const noexcept { return columns_; }
-    [[nodiscard]] std::size_t rows() const noexcept { return rows_; }
-    [[nodiscard]] std::size_t cells() const noexcept { return layers_ * columns_ * rows_; }
+    [[nodiscard]] constexpr std::size_t layers() const noexcept { return layers_; }
+    [[nodiscard]] constexpr std::size_t columns() const noexcept { return columns_; }
+    [[nodiscard]] constexpr std::size_t rows() const noexcept { return rows_; }
+    [[nodiscard]] constexpr std::size_t cells() const noexcept { return layers_ * columns_ * rows_; }
     /// Of the outermost layer's end.
-    [[nodiscard]] T distance() const noexcept { return distance_; }
+    [[nodiscard]] constexpr T distance() const noexcept { return distance_; }
     /// To either side.
-    [[nodiscard]] T horizontal() const noexcept { return horizontal_; }
+    [[nodiscard]] constexpr T horizontal() const noexcept { return horizontal_; }
     /// Up and down.
-    [[nodiscard]] T vertical() const noexcept { return vertical_; }
+    [[nodiscard]] constexpr T vertical() const noexcept { return vertical_; }
 
     [[nodiscard]] T layer_end(std::size_t layer) const noexcept
     {

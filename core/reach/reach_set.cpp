@@ -1,37 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reach/reach_set.hpp"
 
-#include <array>
-#include <bit>
+#include "core/reach/crc.hpp"
 
 namespace jink::reach {
 namespace {
-
-class Crc {
-public:
-    void add(std::uint8_t byte) noexcept
-    {
-        value_ ^= byte;
-        for (int bit = 0; bit < 8; ++bit) {
-            value_ = (value_ >> 1U) ^ ((value_ & 1U) != 0 ? 0xEDB88320U : 0U);
-        }
-    }
-    void add16(std::uint16_t number) noexcept
-    {
-        add(static_cast<std::uint8_t>(number & 0xFFU));
-        add(static_cast<std::uint8_t>(number >> 8U));
-    }
-    void add32(std::uint32_t number) noexcept
-    {
-        add16(static_cast<std::uint16_t>(number & 0xFFFFU));
-        add16(static_cast<std::uint16_t>(number >> 16U));
-    }
-    void add(float number) noexcept { add32(std::bit_cast<std::uint32_t>(number)); }
-    [[nodiscard]] std::uint32_t value() const noexcept { return ~value_; }
-
-private:
-    std::uint32_t value_ = 0xFFFFFFFFU;
-};
 
 bool has_sizes(const ReachSet& s) noexcept
 {

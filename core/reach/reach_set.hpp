@@ -81,6 +81,7 @@ enum class SetStatus : std::uint8_t {
     unknown_cell,
     bad_entry,  ///< times out of order, or beyond the movement
     wrong_checksum,
+    bad_segments,  ///< of a vehicle: numbers or sets that do not belong together (vehicle_sets.hpp)
 };
 
 /// CRC-32 (IEEE 802.3) of the tables and of the numbers that go with them, in a byte order that is the same on every
