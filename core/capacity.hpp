@@ -24,6 +24,12 @@
 #ifndef JINK_MAX_HULL_VERTICES
 #define JINK_MAX_HULL_VERTICES 64
 #endif
+#ifndef JINK_MAX_REACH_NODES
+#define JINK_MAX_REACH_NODES 4096
+#endif
+#ifndef JINK_MAX_REACH_CELLS
+#define JINK_MAX_REACH_CELLS 512
+#endif
 
 namespace jink {
 
@@ -53,5 +59,13 @@ static_assert(kMaxCandidates >= 8 && kMaxCandidates <= 4096);
 /// Vertices of one convex hull in a constant table; a larger one is refused.
 inline constexpr std::size_t kMaxHullVertices = JINK_MAX_HULL_VERTICES;
 static_assert(kMaxHullVertices >= 4 && kMaxHullVertices <= 1024);
+
+/// Nodes of a reach set that is flown; a larger set is refused. Two bytes each.
+inline constexpr std::size_t kMaxReachNodes = JINK_MAX_REACH_NODES;
+static_assert(kMaxReachNodes >= 16 && kMaxReachNodes <= 65534);
+
+/// Cells of its grid: 10 layers of 7 columns and 5 rows are 350. Eighteen bytes each.
+inline constexpr std::size_t kMaxReachCells = JINK_MAX_REACH_CELLS;
+static_assert(kMaxReachCells >= 16 && kMaxReachCells <= 4096);
 
 }  // namespace jink

@@ -15,9 +15,22 @@ enum class State : std::uint8_t {
     braking,    ///< nothing was safe: brake, hold turn, or the way of least harm
 };
 
+/// In which order the methods are asked, and which.
+enum class LadderOrder : std::uint8_t {
+    as_given,  ///< one after the other, until one answers
+    reversed,  ///< the last one first
+    first,     ///< the first alone
+    last,      ///< the last alone
+};
+
 struct Settings {
-    Seconds lookahead = 8.0F;  ///< conflicts are looked for this far ahead, 1..60 [s]
-    Seconds commit = 5.0F;     ///< the way is left when its loss of separation is nearer than this, 0.5..60 [s]
+    LadderOrder order = LadderOrder::as_given;
+    /// With so many tracks and obstacles within `clutter_radius`, methods that are asked as given are asked in the
+    /// reverse order; 0: never.
+    std::uint16_t clutter = 0;
+    float clutter_radius = 20.0F;  ///< 1..200 [m]
+    Seconds lookahead = 8.0F;      ///< conflicts are looked for this far ahead, 1..60 [s]
+    Seconds commit = 5.0F;         ///< the way is left when its loss of separation is nearer than this, 0.5..60 [s]
     float room = 0.4F;  ///< plans are asked for with this much to spare, so that noise does not undo them, 0..10 [m]
     Seconds prediction_step = 0.2F;     ///< of the predicted flight, 0.02..0.5 [s]
     Seconds fallback_horizon = 4.0F;    ///< over which fallbacks are compared, 1..20 [s]
@@ -30,6 +43,8 @@ struct Settings {
     Seconds give_ground_limit = 10.0F;  ///< per conflict, at most [s]
     /// Of the units below at most for the plans of one update, so that checks and fallbacks have theirs.
     std::uint32_t plan_budget = 20000;
+    /// Of these kept back for each method that is asked after another one.
+    std::uint32_t kept_for_next = 8000;
     std::uint32_t budget = 60000;  ///< units of work per update (WorkBudget): what bounds a step's time on every target
     path::FollowerGains gains;
     world::EscapeRule escape;
@@ -55,8 +70,9 @@ struct Guidance {
 struct Diagnostics {
     std::uint32_t updates = 0;
     std::uint32_t conflicts = 0;  ///< begun
-    std::uint32_t plans = 0;      ///< asked of the ladder
+    std::uint32_t plans = 0;      ///< asked of a method
     std::uint32_t plans_found = 0;
+    std::uint32_t found_by_next = 0;     ///< of these by a method that was not asked first
     std::uint32_t answers_rejected = 0;  ///< by the final check
     std::uint32_t manoeuvres = 0;        ///< begun under control
     std::uint32_t replans = 0;           ///< manoeuvres replaced because the picture changed

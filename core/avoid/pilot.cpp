@@ -68,16 +68,9 @@ bool Pilot::plan(Tick& tick) noexcept
     const Wider wider(tick.s, settings_.room);
     WorkBudget planning(std::min(settings_.plan_budget, tick.budget.left()));
     float margin = 0.0F;
-    bool found = false;
-    for (const world::Situation* s : {&wider.situation, &tick.s}) {
-        if (found || planning.exhausted()) {
-            break;
-        }
-        ++diagnostics_.plans;
-        tick.out.plan_status =
-            tick.ladder.plan(tick.ladder.self, *s, settings_, planning, diagnostics_, answer_, margin);
-        found = tick.out.plan_status == world::PlanStatus::found;
-    }
+    tick.out.plan_status = tick.ladder.plan(tick.ladder.self, {wider.situation, tick.s}, settings_, planning,
+                                            diagnostics_, answer_, margin);
+    const bool found = tick.out.plan_status == world::PlanStatus::found;
     if (found) {
         ++diagnostics_.plans_found;
         tick.out.margin = margin;

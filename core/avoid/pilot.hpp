@@ -6,11 +6,17 @@
 
 namespace jink::avoid {
 
+/// A situation to plan in: for a vehicle with room to spare, and as it is.
+struct Rounds {
+    const world::Situation& wide;
+    const world::Situation& plain;
+};
+
 /// The ladder of methods as the state machine sees it: one function that plans, checked answers only.
 struct Ladder {
     void* self = nullptr;
-    world::PlanStatus (*plan)(void* self, const world::Situation&, const Settings&, WorkBudget&, Diagnostics&,
-                              world::Manoeuvre&, float& margin) noexcept = nullptr;
+    world::PlanStatus (*plan)(void* self, const Rounds&, const Settings&, WorkBudget&, Diagnostics&, world::Manoeuvre&,
+                              float& margin) noexcept = nullptr;
 };
 
 /// The state machine of the supervisor, free of the methods' types. See Supervisor.

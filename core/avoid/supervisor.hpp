@@ -4,7 +4,7 @@
 #include <limits>
 #include <tuple>
 
-#include "core/avoid/pilot.hpp"
+#include "core/avoid/rungs.hpp"
 
 namespace jink::avoid {
 
@@ -14,8 +14,9 @@ namespace jink::avoid {
 ///
 /// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does
 /// not, nothing is held on to: the answer is made anew from the present state every tick, on the side chosen before
-/// where that is about as good. Methods are owned by the caller and outlive the supervisor. Same situations in the same
-/// order give the same guidance.
+/// where that is about as good. A method with a member kKeepsRoom keeps Settings::room by itself, as far as there is
+/// any, and is asked once a plan; others are asked for a wider vehicle first. Methods are owned by the caller and
+/// outlive the supervisor. Same situations in the same order give the same guidance.
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:
@@ -37,10 +38,31 @@ public:
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return pilot_.flying(); }
 
 private:
+    static constexpr std::size_t kMethods = sizeof...(Methods);
+
+    /// One rung: with room to spare, then without. A method that keeps room itself, as far as there is any, is asked
+    /// once.
     template <class Method>
-    static bool ask(Method& method, const world::Situation& situation, const Settings& settings, WorkBudget& budget,
+    static bool ask(Method& method, const Rounds& rounds, const Settings& settings, WorkBudget& budget,
                     Diagnostics& diagnostics, world::Manoeuvre& out, float& margin, world::PlanStatus& status) noexcept
     {
+        if constexpr (!requires { Method::kKeepsRoom; }) {
+            if (ask_in(method, rounds.wide, settings, budget, diagnostics, out, margin, status)) {
+                return true;
+            }
+            if (budget.exhausted()) {
+                return false;
+            }
+        }
+        return ask_in(method, rounds.plain, settings, budget, diagnostics, out, margin, status);
+    }
+
+    template <class Method>
+    static bool ask_in(Method& method, const world::Situation& situation, const Settings& settings, WorkBudget& budget,
+                       Diagnostics& diagnostics, world::Manoeuvre& out, float& margin,
+                       world::PlanStatus& status) noexcept
+    {
+        ++diagnostics.plans;
         status = method.plan(situation, budget, out);
         if (status != world::PlanStatus::found) {
             return false;
@@ -56,16 +78,30 @@ private:
         return true;
     }
 
-    static world::PlanStatus ladder(void* self, const world::Situation& situation, const Settings& settings,
-                                    WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
-                                    float& margin) noexcept
+    static world::PlanStatus ladder(void* self, const Rounds& rounds, const Settings& settings, WorkBudget& budget,
+                                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin) noexcept
     {
         world::PlanStatus status = world::PlanStatus::none_available;
-        std::apply(
-            [&](auto&... method) {
-                static_cast<void>((ask(method, situation, settings, budget, diagnostics, out, margin, status) || ...));
-            },
-            static_cast<Supervisor*>(self)->methods_);
+        const Rungs rungs = rungs_of(kMethods, rounds.plain, settings);
+        for (std::size_t i = 0; i < rungs.count; ++i) {
+            const std::size_t after = rungs.count - 1 - i;
+            const auto kept = static_cast<std::uint32_t>(after * settings.kept_for_next);
+            WorkBudget share(budget.left() > kept ? budget.left() - kept : 0);
+            std::size_t n = 0;
+            const bool found = std::apply(
+                [&](auto&... method) {
+                    return ((n++ == rungs.method(i) &&
+                             ask(method, rounds, settings, share, diagnostics, out, margin, status)) ||
+                            ...);
+                },
+                static_cast<Supervisor*>(self)->methods_);
+            // What ends the last one's work ends that of the plan, and is told.
+            static_cast<void>(budget.spend(after == 0 && share.exhausted() ? budget.left() + 1 : share.spent()));
+            if (found) {
+                diagnostics.found_by_next += i > 0 ? 1U : 0U;
+                return status;
+            }
+        }
         return status;
     }
 

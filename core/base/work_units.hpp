@@ -80,4 +80,15 @@ inline constexpr std::uint32_t kSolidShares = kSoftDoubles ? 28 : 1;
 inline constexpr std::uint32_t kCandidatePart = 3;  ///< part of a candidate's flight
 inline constexpr std::uint32_t kCandidateStep = 1;  ///< and each of its points
 
+// --- reach sets (core/reach) ---
+inline constexpr std::uint32_t kReachMark = 150;     ///< a set that is placed: its cells' balls
+inline constexpr std::uint32_t kReachDepths = 2;     ///< and sixteen of its nodes
+inline constexpr std::uint32_t kReachCells = 2;      ///< and four of its cells and a threat that may come near to them
+inline constexpr std::uint32_t kReachNode = 1;       ///< node that is looked at
+inline constexpr std::uint32_t kReachLook = 2;       ///< and a ball near it
+inline constexpr std::uint32_t kReachSolid = 6;      ///< or any other solid
+inline constexpr std::uint32_t kReachEntries = 2;    ///< eight entries of footprints, when ways are chosen
+inline constexpr std::uint32_t kReachPath = 30;      ///< way that is made a path, with a stop at its end
+inline constexpr std::uint32_t kReachScanCell = 20;  ///< cell of a set or of a scan, when one is laid over the other
+
 }  // namespace jink::units

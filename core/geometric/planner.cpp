@@ -16,16 +16,15 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// The track `lead` from now, with its growth as a polynomial of time from then: equal to world::threat_radius, and
-/// never below it where the track's stamp lies ahead of now.
+/// The track `lead` from now.
 Threat threat_of(const Situation& situation, const world::Track& track, Seconds lead) noexcept
 {
-    const Seconds age = std::max(situation.now - track.stamp, 0.0F) + lead;
+    const world::Growth growth = world::growth_of(situation, track, lead);
     Threat threat;
     threat.motion = {track.position + track.velocity * lead, track.velocity};
-    threat.radius = world::threat_radius(situation, track, lead);
-    threat.radius_rate = situation.k_sigma * track.sigma_velocity + track.max_acceleration * age;
-    threat.radius_acceleration = track.max_acceleration;
+    threat.radius = growth.radius;
+    threat.radius_rate = growth.rate;
+    threat.radius_acceleration = growth.acceleration;
     return threat;
 }
 

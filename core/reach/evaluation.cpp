@@ -75,22 +75,8 @@ NodeIndex cheapest_in(const ReachSet& set, std::span<const Level> nodes, CellInd
 void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<const Level> intruder,
               std::span<Level> nodes, std::span<Level> cells) noexcept
 {
-    std::fill(cells.begin(), cells.end(), Level{0});
-    nodes[0] = kFree;
-    for (std::size_t node = 1; node < set.nodes(); ++node) {
-        Level level = nodes[set.parent[node]];
-        if (!intruder.empty()) {
-            level = std::min(level, intruder[node]);
-        }
-        const std::span<const FootprintEntry> entered = set.entered(node);
-        for (const FootprintEntry& entry : entered) {
-            level = std::min(level, blocks[entry.cell]);
-        }
-        nodes[node] = level;
-        for (const FootprintEntry& entry : entered) {
-            cells[entry.cell] = std::max(cells[entry.cell], level);
-        }
-    }
+    evaluate_with(
+        set, blocks, [&](NodeIndex node) { return intruder.empty() ? kFree : intruder[node]; }, nodes, cells);
 }
 
 Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells, const Vec3& goal,

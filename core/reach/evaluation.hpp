@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -24,11 +24,36 @@ inline constexpr Level kFree = kRuns;
 /// Levels of all nodes and cells at once, in place of the source's four passes: the least level on the way to a node;
 /// of a cell, the greatest of the nodes that enter it.
 ///
-/// @param blocks   of each cell of the grid: its own level
-/// @param intruder of each node: its own level by threats that were looked at node by node, or empty
-/// @param nodes    out: level of each node; the root is free
-/// @param cells    out: level of each cell; 0 where no node enters it
+/// @param blocks  of each cell of the grid: its own level
+/// @param own     own(node), called once at most for each node, parents first: its own level by threats that are looked
+///                at node by node. Not called where the way to the node is blocked in all runs.
+/// @param nodes   out: level of each node; the root is free
+/// @param cells   out: level of each cell; 0 where no node enters it
 /// O(nodes + entries): one look each.
+template <class OwnLevel>
+void evaluate_with(const ReachSet& set, std::span<const Level> blocks, const OwnLevel& own, std::span<Level> nodes,
+                   std::span<Level> cells) noexcept
+{
+    std::fill(cells.begin(), cells.end(), Level{0});
+    nodes[0] = kFree;
+    for (std::size_t node = 1; node < set.nodes(); ++node) {
+        Level level = nodes[set.parent[node]];
+        const std::span<const FootprintEntry> entered = set.entered(node);
+        for (const FootprintEntry& entry : entered) {
+            level = std::min(level, blocks[entry.cell]);
+        }
+        if (level > 0) {
+            level = std::min<Level>(level, own(static_cast<NodeIndex>(node)));
+        }
+        nodes[node] = level;
+        for (const FootprintEntry& entry : entered) {
+            cells[entry.cell] = std::max(cells[entry.cell], level);
+        }
+    }
+}
+
+/// The same with the own levels in a table.
+/// @param intruder  of each node, or empty: all free
 void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<const Level> intruder,
               std::span<Level> nodes, std::span<Level> cells) noexcept;
 

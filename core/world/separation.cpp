@@ -338,6 +338,13 @@ float threat_radius(const Situation& situation, const Track& track, Seconds t) n
            0.5F * track.max_acceleration * age * age;
 }
 
+Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept
+{
+    const Seconds age = std::max(situation.now - track.stamp, 0.0F) + lead;
+    return {threat_radius(situation, track, lead),
+            situation.k_sigma * track.sigma_velocity + track.max_acceleration * age, track.max_acceleration};
+}
+
 Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points, Seconds horizon,
                             WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {

@@ -65,7 +65,7 @@ struct Reference {
     std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
 };
 
-enum class MethodId : std::uint8_t { none, supervisor, geometric };
+enum class MethodId : std::uint8_t { none, supervisor, geometric, reach };
 enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
 
 /// What to fly. For `brake` and `velocity` the path is the predicted flight under the constant command `command`.
@@ -107,5 +107,17 @@ enum class PlanStatus : std::uint8_t {
 /// uncertainty included) grown from its stamp on, and half its acceleration bound times t squared. The only place where
 /// threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
+
+/// A radius as a polynomial of time.
+struct Growth {
+    float radius = 0.0F;        ///< at time 0 [m]
+    float rate = 0.0F;          ///< [m/s]
+    float acceleration = 0.0F;  ///< [m/s2]
+
+    [[nodiscard]] float at(Seconds t) const noexcept { return radius + t * (rate + 0.5F * acceleration * t); }
+};
+/// `threat_radius` from `lead` seconds after Situation::now on; never below it where the track's stamp lies ahead of
+/// now. O(1).
+[[nodiscard]] Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept;
 
 }  // namespace jink::world

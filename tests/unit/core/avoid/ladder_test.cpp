@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -113,6 +119,120 @@ TEST(Ladder, TheFirstGoodAnswerWinsAndEachStatusIsTold)
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(second.asked, 0);
     EXPECT_EQ(supervisor.flying()->side, kLeft);
+}
+
+/// Which of two methods are asked, "1" and "2" in their order, when neither has an answer.
+std::string asked_in_order(const Settings& settings, const std::function<void(Flight&)>& more = {})
+{
+    Flight f;
+    head_on(f);
+    if (more) {
+        more(f);
+    }
+    std::string order;
+    const auto note = [&](const char* name) {
+        return FakeMethod{[&order, name](const Situation&, WorkBudget&, Manoeuvre&) {
+            if (order.empty() || order.back() != *name) {
+                order += name;
+            }
+            return PlanStatus::none_available;
+        }};
+    };
+    FakeMethod first = note("1");
+    FakeMethod second = note("2");
+    Supervisor supervisor(settings, first, second);
+    static_cast<void>(f.update(supervisor, true));
+    return order;
+}
+
+TEST(Ladder, AsksInTheOrderThatIsSet)
+{
+    Settings settings = quick();
+    const std::pair<LadderOrder, const char*> orders[] = {{LadderOrder::as_given, "12"},
+                                                          {LadderOrder::reversed, "21"},
+                                                          {LadderOrder::first, "1"},
+                                                          {LadderOrder::last, "2"}};
+    for (const auto& [order, expected] : orders) {
+        settings.order = order;
+        EXPECT_EQ(asked_in_order(settings), expected);
+    }
+}
+
+TEST(Ladder, InClutterTheLastMethodIsAskedFirst)
+{
+    Settings settings = quick();
+    settings.clutter = 3;
+    settings.clutter_radius = 15.0F;
+    const auto pillars = [](int n, float distance) {
+        return [=](Flight& f) {
+            for (int i = 0; i < n; ++i) {
+                const float angle = 0.5F * kPi + 0.3F * static_cast<float>(i);
+                const Vec3 at = f.scene.own.position + distance * Vec3(std::cos(angle), std::sin(angle), 0.0F);
+                f.scene.obstacle(geometry::make_capsule(at - Vec3(0, 0, 5), at + Vec3(0, 0, 5), 1.0F));
+            }
+        };
+    };
+    EXPECT_EQ(asked_in_order(settings, pillars(2, 10.0F)), "12");
+    EXPECT_EQ(asked_in_order(settings, pillars(3, 10.0F)), "21");
+    EXPECT_EQ(asked_in_order(settings, pillars(3, 25.0F)), "12") << "farther off than that is no clutter";
+    settings.order = LadderOrder::first;
+    EXPECT_EQ(asked_in_order(settings, pillars(3, 10.0F)), "1") << "who is not asked at all is not asked first";
+    settings.order = LadderOrder::as_given;
+    settings.clutter = 0;
+    EXPECT_EQ(asked_in_order(settings, pillars(8, 10.0F)), "12");
+}
+
+TEST(Ladder, WhatIsKeptForTheNextMethodIsLeftToIt)
+{
+    Flight f;
+    head_on(f);
+    Settings settings = quick();
+    settings.plan_budget = 5000;
+    settings.kept_for_next = 2000;
+    std::uint32_t first_had = 0;
+    std::uint32_t second_had = 0;
+    FakeMethod first{[&](const Situation&, WorkBudget& budget, Manoeuvre&) {
+        first_had = std::max(first_had, budget.left());
+        while (budget.spend(100)) {
+        }
+        return PlanStatus::budget_spent;
+    }};
+    FakeMethod second{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+        second_had = std::max(second_had, budget.left());
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(settings, first, second);
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_EQ(first_had, 3000U);
+    EXPECT_EQ(second_had, 2000U);
+    EXPECT_EQ(first.asked, 1) << "without work left there is no second round";
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_EQ(supervisor.diagnostics().found_by_next, 1U);
+    EXPECT_EQ(supervisor.diagnostics().budget_spent, 0U) << "the plan was made";
+}
+
+/// Keeps room by itself.
+struct RoomyMethod : FakeMethod {
+    static constexpr bool kKeepsRoom = true;
+};
+
+TEST(Ladder, AMethodThatKeepsRoomIsAskedOnceAndForTheVehicleAsItIs)
+{
+    Flight f;
+    head_on(f);
+    std::vector<float> widths;
+    const auto note = [&](const Situation& s, WorkBudget&, Manoeuvre&) {
+        widths.push_back(s.limits.half_extents.x());
+        return PlanStatus::none_available;
+    };
+    FakeMethod plain{note};
+    RoomyMethod roomy{{note}};
+    const Settings settings = quick();
+    Supervisor supervisor(settings, plain, roomy);
+    static_cast<void>(f.update(supervisor, true));
+    const float width = f.scene.limits.half_extents.x();
+    EXPECT_EQ(widths, (std::vector<float>{width + settings.room, width, width}));
 }
 
 TEST(Ladder, AMethodThatSpendsTheBudgetLeavesNothingToTrust)

@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reach/near.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "core/base/work_units.hpp"
+#include "core/geometry/glance.hpp"
+#include "core/geometry/sweep.hpp"
+#include "core/world/obstacle_distance.hpp"
+
+namespace jink::reach::detail {
+namespace {
+
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
+/// No point of a movement is farther than this from one of its ends [movement's length].
+constexpr float kHalfMovement = 0.5F;
+/// A solid is looked at in this many pieces of a movement.
+constexpr int kSolidPieces = 4;
+
+/// Of a box or a flat-ended cylinder, by how far a point lies beyond its faces; below 0 inside, by the nearest one.
+template <class Beyond>
+float signed_distance(const Beyond& beyond) noexcept
+{
+    const float deepest = beyond.maxCoeff();
+    return deepest > 0.0F ? beyond.cwiseMax(0.0F).norm() : deepest;
+}
+
+/// Distance of a point from a solid that has been grown by the own box, below 0 inside. Exact for upright boxes, else
+/// no more than it is. O(1).
+float distance_to(const NearThreat& solid, const Vec3& point) noexcept
+{
+    const Vec3 in = solid.shape->axes.transpose() * (point - solid.position);
+    switch (solid.shape->kind) {
+    case geometry::ShapeKind::capsule:
+        return std::hypot(std::max(std::abs(in.z()) - solid.half.z(), 0.0F), std::hypot(in.x(), in.y())) -
+               solid.half.x();
+    case geometry::ShapeKind::cylinder:
+        return signed_distance(
+            Eigen::Vector2f(std::hypot(in.x(), in.y()) - solid.half.x(), std::abs(in.z()) - solid.half.z()));
+    default: return signed_distance(Vec3(in.cwiseAbs() - solid.half));
+    }
+}
+
+/// Half extents, in the solid's axes, of a box about it and the own box at once; of round ones x is the radius.
+void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
+{
+    const geometry::Shape& shape = *solid.shape;
+    const Vec3 own_in = shape.axes.cwiseAbs().transpose() * own;
+    switch (shape.kind) {
+    case geometry::ShapeKind::capsule: solid.half = {shape.radius + own.norm(), 0.0F, shape.half.z()}; return;
+    case geometry::ShapeKind::cylinder:
+        // Upright, the corners of the own box are its farthest points sideways.
+        solid.half = {shape.radius + std::min(own.norm(), std::hypot(own_in.x(), own_in.y())), 0.0F,
+                      shape.half.z() + own_in.z()};
+        return;
+    case geometry::ShapeKind::hull: {
+        Vec3 low = Vec3::Constant(kUnbounded);
+        Vec3 high = Vec3::Constant(-kUnbounded);
+        for (const Vec3& vertex : shape.vertices) {
+            low = low.cwiseMin(vertex);
+            high = high.cwiseMax(vertex);
+        }
+        solid.position = shape.centre + shape.axes * (0.5F * (low + high));
+        solid.half = 0.5F * (high - low) + own_in;
+        return;
+    }
+    default: solid.half = shape.half + own_in; return;
+    }
+}
+
+Vec3 at_time(const NearThreat& threat, Seconds t) noexcept { return threat.position + threat.velocity * t; }
+
+/// Depths of the nodes that end in a layer.
+struct Depths {
+    std::uint8_t least = 0xFF;
+    std::uint8_t most = 0;
+};
+using LayerDepths = std::array<Depths, kMaxLayers>;
+
+LayerDepths depths_of(const ReachSet& set) noexcept
+{
+    LayerDepths depths;
+    const std::size_t in_layer = set.grid.columns() * set.grid.rows();
+    for (std::size_t node = 1; node < set.nodes(); ++node) {
+        Depths& of = depths[set.end[node] / in_layer];
+        of.least = std::min(of.least, set.depth[node]);
+        of.most = std::max(of.most, set.depth[node]);
+    }
+    return depths;
+}
+
+}  // namespace
+
+float NearThreats::shrunk_by(float margin_at_start) const noexcept
+{
+    return margin_at_start < 0.0F ? rule_.escape.slack - margin_at_start : 0.0F;
+}
+
+float NearThreats::shrunk_at(float shrunk, Seconds t) const noexcept
+{
+    return shrunk > 0.0F ? std::max(0.0F, shrunk - rule_.escape.speed * t) : 0.0F;
+}
+
+void NearThreats::add_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
+                            Seconds lead, float range) noexcept
+{
+    NearThreat threat;
+    threat.half = situation.limits.half_extents;
+    threat.body = threat.half.norm();
+    threat.position = track.position + track.velocity * lead;
+    threat.velocity = track.velocity;
+    threat.growth = world::growth_of(situation, track, lead);
+    threat.is_track = true;
+    const Seconds last = placed.period * static_cast<float>(kMaxDepth);
+    const float apart = geometry::point_segment_distance(placed.origin, threat.position, at_time(threat, last));
+    if (apart > range + threat.growth.at(last) + threat.body) {
+        return;
+    }
+    threat.shrunk =
+        shrunk_by(geometry::box_distance(threat.half, threat.position - placed.origin) - threat.growth.at(0.0F));
+    near_.unchecked_push_back(threat);
+}
+
+void NearThreats::add_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+                               float range) noexcept
+{
+    NearThreat threat;
+    const Vec3& own = situation.limits.half_extents;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    threat.position = shape.centre;
+    float radius = 0.0F;
+    if (world::as_sphere(shape, own, threat.half, radius)) {
+        threat.growth.radius = radius + extra;
+        threat.is_tall = threat.half.z() != own.z();
+        threat.body = threat.is_tall ? std::hypot(own.x(), own.y()) : own.norm();
+        const float margin = geometry::box_distance(threat.half, threat.position - placed.origin) - radius - extra;
+        if (margin > range) {
+            return;
+        }
+        threat.shrunk = shrunk_by(margin);
+    } else {
+        threat.shape = &shape;
+        grow_by_box(threat, own);
+        threat.growth.radius = extra;
+        const float margin = distance_to(threat, placed.origin) - extra;
+        if (margin > range) {
+            return;
+        }
+        threat.shrunk = shrunk_by(margin);
+    }
+    near_.unchecked_push_back(threat);
+}
+
+void NearThreats::collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
+                          const NearRule& rule) noexcept
+{
+    rule_ = rule;
+    bulge_ = placed.bulge();
+    near_.clear();
+    const float range = placed.unit * placed.set->grid.distance() + bulge_ + beyond + rule_.room;
+    for (const world::Track& track : situation.tracks) {
+        add_track(situation, track, placed, lead, range);
+    }
+    for (const world::Obstacle& obstacle : situation.obstacles) {
+        add_obstacle(situation, obstacle.shape, placed, range);
+    }
+    all_ = {};
+    for (std::size_t i = 0; i < near_.size(); ++i) {
+        all_.add(i);
+    }
+    const world::Airspace& air = situation.airspace;
+    const Vec3& half = situation.limits.half_extents;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    floor_ = air.has_floor ? air.floor + half.z() + extra : -kUnbounded;
+    ceiling_ = air.has_ceiling ? air.ceiling - half.z() - extra : kUnbounded;
+    keep_in_ = air.has_keep_in ? air.keep_in_radius - std::hypot(half.x(), half.y()) - extra : kUnbounded;
+    home_ = air.home;
+    floor_shrunk_ = shrunk_by(placed.origin.z() - floor_);
+    ceiling_shrunk_ = shrunk_by(ceiling_ - placed.origin.z());
+    keep_in_shrunk_ = shrunk_by(keep_in_ - (placed.origin - home_).head<2>().norm());
+}
+
+bool NearThreats::mark(const Placed& placed, WorkBudget& budget) noexcept
+{
+    const ReachSet& set = *placed.set;
+    if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths +
+                                                 set.grid.cells() * (1 + near_.size()) / 4 * units::kReachCells))) {
+        return false;
+    }
+    const LayerDepths depths = depths_of(set);
+    const CellBalls balls(set.grid);
+    std::fill_n(of_cell_.begin(), set.grid.cells(), ThreatBits{});
+    for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
+        const Depths& depth = depths[layer];
+        if (depth.least > depth.most) {
+            continue;
+        }
+        const Seconds first = placed.period * static_cast<float>(depth.least - 1);
+        const Seconds last = placed.period * static_cast<float>(depth.most + 1);
+        for (std::size_t i = 0; i < near_.size(); ++i) {
+            mark_layer(placed, balls, layer, i, first, last);
+        }
+    }
+    return true;
+}
+
+/// In the set's frame, where the cells are the same for every plan.
+void NearThreats::mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat,
+                             Seconds first, Seconds last) noexcept
+{
+    const Grid<float>& grid = placed.set->grid;
+    const NearThreat& near = near_[threat];
+    // No point of a movement is farther from one of its ends than half of it.
+    const float around = kHalfMovement + (bulge_ + rule_.room + near.growth.at(last) + near.body) / placed.unit;
+    const Vec3 from = placed.to_set(at_time(near, first));
+    const Vec3 way = placed.to_set(at_time(near, last)) - from;
+    const float way_squared = way.squaredNorm();
+    const float per_way = way_squared > 0.0F ? 1.0F / way_squared : 0.0F;
+    const float height = near.is_tall ? near.half.z() / placed.unit : 0.0F;
+    ThreatBits* cell = &of_cell_[grid.index({static_cast<std::uint8_t>(layer), 0, 0})];
+    for (std::size_t column = 0; column < grid.columns(); ++column) {
+        for (std::size_t row = 0; row < grid.rows(); ++row, ++cell) {
+            const Vec3 centre = balls.distance(layer) * balls.direction(column, row);
+            const float size = balls.radius(layer, row) + around;
+            if (near.shape != nullptr) {
+                if (distance_to(near, placed.to_world(centre)) <= size * placed.unit) {
+                    cell->add(threat);
+                }
+                continue;
+            }
+            const Vec3 apart = centre - from;
+            const float share = std::clamp(apart.dot(way) * per_way, 0.0F, 1.0F);
+            Vec3 nearest = apart - share * way;
+            nearest.z() = std::max(std::abs(nearest.z()) - height, 0.0F);
+            if (nearest.squaredNorm() <= size * size) {
+                cell->add(threat);
+            }
+        }
+    }
+}
+
+Level NearThreats::against(const NearThreat& threat, const Piece& piece) const noexcept
+{
+    constexpr Level kObstacle = static_cast<Level>(AvoidanceRun::obstacles);
+    constexpr Level kIntruder = static_cast<Level>(AvoidanceRun::intruders);
+    constexpr Level kNoRoom = static_cast<Level>(AvoidanceRun::soft_constraints);
+    const float radius = threat.growth.at(piece.end) - shrunk_at(threat.shrunk, piece.end) + piece.bulge;
+    const Vec3& from = piece.from;
+    const Vec3& to = piece.to;
+    if (threat.shape != nullptr) {
+        // Between two points no piece is nearer than half of what both are farther than its length.
+        const float length = (to - from).norm() / static_cast<float>(kSolidPieces);
+        float before = distance_to(threat, from);
+        float least = kUnbounded;
+        for (int i = 1; i <= kSolidPieces; ++i) {
+            const float share = static_cast<float>(i) / static_cast<float>(kSolidPieces);
+            const float after = distance_to(threat, Vec3(from + share * (to - from)));
+            least = std::min(least, 0.5F * (before + after - length));
+            before = after;
+        }
+        return least <= radius ? kObstacle : least <= radius + rule_.room ? kNoRoom : kFree;
+    }
+    if (radius + rule_.room < 0.0F) {
+        return kFree;
+    }
+    const Vec3 first = at_time(threat, piece.start) - from;
+    const Vec3 last = at_time(threat, piece.end) - to;
+    if (geometry::glance(threat.half, first, last, radius + rule_.room) == geometry::Glance::apart) {
+        return kFree;
+    }
+    if (radius < 0.0F) {
+        return kNoRoom;
+    }
+    const geometry::Glance glance = geometry::glance(threat.half, first, last, radius);
+    if (glance == geometry::Glance::touches ||
+        (glance == geometry::Glance::unclear &&
+         geometry::contact_interval(threat.half, {}, {first, last - first}, radius, 1.0F))) {
+        return threat.is_track ? kIntruder : kObstacle;
+    }
+    return kNoRoom;
+}
+
+Level NearThreats::in_airspace(const Vec3& to, Seconds end) const noexcept
+{
+    const bool inside = to.z() >= floor_ - shrunk_at(floor_shrunk_, end) &&
+                        to.z() <= ceiling_ + shrunk_at(ceiling_shrunk_, end) &&
+                        (to - home_).head<2>().norm() <= keep_in_ + shrunk_at(keep_in_shrunk_, end);
+    return inside ? kFree : static_cast<Level>(AvoidanceRun::obstacles);
+}
+
+Level NearThreats::against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept
+{
+    constexpr Level kBlocked = static_cast<Level>(AvoidanceRun::obstacles);
+    Level level = in_airspace(piece.to, piece.end);
+    for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
+        for (std::uint32_t left = bits.words[word]; left != 0 && level != kBlocked; left &= left - 1) {
+            const std::size_t i = word * 32 + static_cast<std::size_t>(std::countr_zero(left));
+            if (!budget.spend(near_[i].shape != nullptr ? units::kReachSolid : units::kReachLook)) {
+                return kBlocked;
+            }
+            level = std::min(level, against(near_[i], piece));
+        }
+    }
+    return level;
+}
+
+Level NearThreats::level(const Piece& piece, WorkBudget& budget) const noexcept
+{
+    return budget.spend(units::kReachNode) ? against(all_, piece, budget) : static_cast<Level>(AvoidanceRun::obstacles);
+}
+
+Level NearThreats::level(const Placed& placed, NodeIndex node, WorkBudget& budget) const noexcept
+{
+    const ReachSet& set = *placed.set;
+    if (!budget.spend(units::kReachNode)) {
+        return static_cast<Level>(AvoidanceRun::obstacles);
+    }
+    const NodeIndex parent = set.parent[node];
+    // At the root everything may be near; it has nine children at most.
+    ThreatBits bits = parent == 0 ? all_ : of_cell_[set.end[parent]];
+    for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
+        bits.words[word] |= of_cell_[set.end[node]].words[word];
+    }
+    const Seconds end = placed.time(node);
+    return against(bits, {placed.node(parent), placed.node(node), end - placed.period, end, bulge_}, budget);
+}
+
+}  // namespace jink::reach::detail

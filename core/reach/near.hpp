@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/base/static_vector.hpp"
+#include "core/base/work_budget.hpp"
+#include "core/reach/cell_balls.hpp"
+#include "core/reach/evaluation.hpp"
+#include "core/reach/placed.hpp"
+#include "core/world/separation.hpp"
+
+// What is near enough to a placed reach set to matter to it, and which of its nodes meet it. Private to this room.
+
+namespace jink::reach::detail {
+
+/// Threats by number, as bits: tracks first, then obstacles.
+struct ThreatBits {
+    static constexpr std::size_t kMost = kMaxTracks + kMaxObstacles;
+    static constexpr std::size_t kWords = (kMost + 31) / 32;
+
+    void add(std::size_t i) noexcept { words[i / 32] |= std::uint32_t{1} << (i % 32); }
+
+    std::array<std::uint32_t, kWords> words{};
+};
+
+/// One threat to the own box, as it is met from the start of the path on.
+struct NearThreat {
+    const geometry::Shape* shape = nullptr;  ///< of a solid that is no ball; null for balls, at rest or moving
+    Vec3 half = Vec3::Zero();  ///< ball: of the own box, taller for upright capsules. solid: its own, grown by the box
+    Vec3 position = Vec3::Zero();  ///< centre [m]
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    world::Growth growth;          ///< of the ball, or of what a solid is grown by
+    float shrunk = 0.0F;           ///< by the escape rule, at time 0 [m]
+    float body = 0.0F;     ///< ball: what the own box adds to its radius, at most; of a tall one in the level plane [m]
+    bool is_tall = false;  ///< ball: an upright capsule, whose heights are looked at by `half` alone
+    bool is_track = false;
+};
+
+/// How node checks are made.
+struct NearRule {
+    world::EscapeRule escape;
+    float room = 0.4F;  ///< nearer than this is better avoided: level soft_constraints [m]
+};
+
+/// A straight piece of a flight, from the start of the path on.
+struct Piece {
+    Vec3 from = Vec3::Zero();  ///< [m]
+    Vec3 to = Vec3::Zero();
+    Seconds start = 0.0F;
+    Seconds end = 0.0F;
+    float bulge = 0.0F;  ///< how far off it the vehicle may be [m]
+};
+
+/// Memory: 80 bytes a threat, 16 a cell.
+class NearThreats {
+public:
+    /// Takes in what the placed set may come near to.
+    /// @param lead    the path begins so long after Situation::now [s]
+    /// @param beyond  way past the grid's border that is looked at as well [m]
+    /// O(tracks + obstacles).
+    void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
+                 const NearRule& rule) noexcept;
+
+    /// Finds, for each cell in which a node ends, what may come near to the way to or from there at the times at which
+    /// a node is there. False when the budget does not allow for it. O(nodes + cells * threats).
+    [[nodiscard]] bool mark(const Placed& placed, WorkBudget& budget) noexcept;
+
+    /// Level of the movement that leads to `node`, by what is near and by the bounds of the airspace:
+    /// obstacles, intruders, soft_constraints (less room than wanted) or kFree. What is told is safe: the movement is
+    /// taken as its chord with its bulge around it, threats as large as they are at its end; solids that are no balls
+    /// as up to an eighth of a movement nearer than they are. A budget that runs out: obstacles. O(near threats).
+    [[nodiscard]] Level level(const Placed& placed, NodeIndex node, WorkBudget& budget) const noexcept;
+
+    /// The same of any piece, against all that is near. O(threats).
+    [[nodiscard]] Level level(const Piece& piece, WorkBudget& budget) const noexcept;
+
+    [[nodiscard]] std::size_t size() const noexcept { return near_.size(); }
+
+private:
+    [[nodiscard]] Level against(const NearThreat& threat, const Piece& piece) const noexcept;
+    [[nodiscard]] Level against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept;
+    void mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat, Seconds first,
+                    Seconds last) noexcept;
+    [[nodiscard]] Level in_airspace(const Vec3& to, Seconds end) const noexcept;
+    void add_track(const world::Situation& situation, const world::Track& track, const Placed& placed, Seconds lead,
+                   float range) noexcept;
+    void add_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+                      float range) noexcept;
+    [[nodiscard]] float shrunk_by(float margin_at_start) const noexcept;
+    [[nodiscard]] float shrunk_at(float shrunk, Seconds t) const noexcept;
+
+    NearRule rule_;
+    StaticVector<NearThreat, ThreatBits::kMost> near_;
+    std::array<ThreatBits, kMaxReachCells> of_cell_{};
+    ThreatBits all_;
+    float bulge_ = 0.0F;  ///< of a movement [m]
+    // Of the airspace, grown by the own box: bounds of its centre.
+    float floor_ = 0.0F;
+    float ceiling_ = 0.0F;
+    float keep_in_ = 0.0F;
+    Vec3 home_ = Vec3::Zero();
+    float floor_shrunk_ = 0.0F;
+    float ceiling_shrunk_ = 0.0F;
+    float keep_in_shrunk_ = 0.0F;
+};
+
+}  // namespace jink::reach::detail

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reach/planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/finite.hpp"
+#include "core/base/work_units.hpp"
+#include "core/world/conflict.hpp"
+#include "core/world/route_way.hpp"
+
+namespace jink::reach {
+namespace {
+
+using world::PlanStatus;
+using world::Situation;
+
+static_assert(world::AvoidanceMethod<Planner>);
+
+/// A scan that is older says nothing [s].
+constexpr Seconds kScanAge = 0.5F;
+/// Courses of a multirotor that hardly moves, from the way [rad].
+constexpr std::array<float, Planner::kHeadings> kTurns{0.0F, kPi / 3.0F, -kPi / 3.0F};
+/// The goal lies just beyond the grid [its range].
+constexpr float kGoalShare = 1.02F;
+/// Of the stop at the end of a way, in time.
+constexpr int kStopPieces = 4;
+static_assert(kMaxPathPoints >= 2 * kMaxDepth + 2, "the deepest way has to fit");
+/// Off the way by less a path has no side [m].
+constexpr float kLeastSide = 0.1F;
+
+bool fits(const ReachSet* set) noexcept
+{
+    return set != nullptr && set->nodes() <= kMaxReachNodes && set->grid.cells() <= kMaxReachCells;
+}
+
+/// The point of the reference that lies `ahead` [m] in front of the vehicle, or its end.
+Vec3 goal_of(const Situation& s, const world::Way& way, float ahead) noexcept
+{
+    if (s.reference.route != nullptr) {
+        return way.origin + way.direction * std::min(way.length, ahead);
+    }
+    const Vec3 leg = s.reference.leg.end - s.reference.leg.start;
+    const float length = leg.norm();
+    if (!(length > 0.0F)) {
+        return way.origin + way.direction * ahead;
+    }
+    const Vec3 along = leg / length;
+    const float done = along.dot(s.own.position - s.reference.leg.start);
+    return s.reference.leg.start + along * std::clamp(done + ahead, 0.0F, length);
+}
+
+/// Unit vector from the way towards the farthest point of the path.
+Vec3 side_of(const world::Way& way, const path::TimedPath& path) noexcept
+{
+    Vec3 farthest = Vec3::Zero();
+    for (const path::PathPoint& point : path.points) {
+        const Vec3 from = point.position - way.origin;
+        const Vec3 off = from - way.direction * way.direction.dot(from);
+        farthest = off.squaredNorm() > farthest.squaredNorm() ? off : farthest;
+    }
+    const float distance = farthest.norm();
+    return distance > kLeastSide ? Vec3(farthest / distance) : Vec3(Vec3::Zero());
+}
+
+}  // namespace
+
+/// What all courses of a plan share.
+struct Planner::Start {
+    const world::Way& way;
+    const SegmentSets& sets;
+    Seconds lead;
+    float speed;  ///< along the movements [m/s]
+    float stop;   ///< way that a stop takes [m]; 0 for what does not stop
+};
+
+bool is_valid(const Settings& s) noexcept
+{
+    return s.sets != nullptr && is_not_negative(s.room) && s.room <= 10.0F && is_not_negative(s.latency) &&
+           s.latency <= 1.0F && is_not_negative(s.escape.slack) && is_not_negative(s.escape.speed) && s.tries >= 1 &&
+           s.tries <= 8 && std::all_of(s.sets->segments.begin(), s.sets->segments.end(), [](const SegmentSets& sets) {
+               return fits(sets.navigation) && fits(sets.emergency);
+           });
+}
+
+Planner::Planner(const Settings& settings) noexcept : settings_(settings)
+{
+    if (is_valid(settings_)) {
+        static_cast<void>(picture_.configure(settings_.sets->segments.front().emergency->grid));
+    }
+}
+
+bool Planner::configure(const Settings& settings) noexcept
+{
+    if (!is_valid(settings)) {
+        return false;
+    }
+    if (settings.sets != settings_.sets) {
+        static_cast<void>(picture_.configure(settings.sets->segments.front().emergency->grid));
+    }
+    settings_ = settings;
+    return true;
+}
+
+PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::Manoeuvre& out) noexcept
+{
+    report_ = {};
+    const path::Route* const route = situation.reference.route;
+    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
+        situation.tracks.size() > kMaxTracks || situation.obstacles.size() > kMaxObstacles) {
+        return PlanStatus::bad_input;
+    }
+    const VehicleSets& sets = *settings_.sets;
+    const world::Way way = world::way_of(situation);
+    const Vec3& velocity = situation.own.velocity;
+    const float own_speed = velocity.norm();
+    const float least_speed = sets.speeds.front() * sets.cruise_speed;
+    const bool stops = situation.limits.kind == vehicle::VehicleKind::multirotor;
+    const bool hovers = stops && own_speed < least_speed;
+    const Vec3 ahead = hovers ? way.direction : velocity;
+    const float level_ahead = std::hypot(ahead.x(), ahead.y());
+    const float pitch = hovers ? 0.0F : -std::atan2(velocity.z(), level_ahead);
+    const float speed = std::max(own_speed, least_speed);
+    const SegmentSets* of = segment_of(sets, speed / sets.cruise_speed, pitch);
+    if (of == nullptr) {
+        return PlanStatus::none_available;  // faster or steeper than any set is for
+    }
+    const Seconds lead = hovers ? 0.0F : settings_.latency;
+    const Start start{way, *of, lead, speed, stops ? vehicle::stopping_distance(speed, situation.limits) : 0.0F};
+    Placed placed;
+    placed.origin = situation.own.position + velocity * lead;
+    placed.unit = speed * sets.period;
+    placed.period = sets.period;
+    placed.upside_down = of->upside_down;
+    const float course = level_ahead > 0.0F ? std::atan2(ahead.y(), ahead.x()) : situation.own.yaw;
+    const std::size_t headings = hovers ? kHeadings : 1;
+    for (std::size_t i = 0; i < headings; ++i) {
+        placed.cosine = std::cos(course + kTurns[i]);
+        placed.sine = std::sin(course + kTurns[i]);
+        ++report_.headings;
+        for (const ReachSet* set : {of->navigation, of->emergency}) {
+            placed.set = set;
+            report_.emergency = set == of->emergency;
+            const PlanStatus status = try_set(situation, placed, start, budget, out);
+            if (status != PlanStatus::none_available) {
+                return status;
+            }
+        }
+    }
+    return PlanStatus::none_available;
+}
+
+/// The way to a node as a path, its movements in halves.
+void Planner::make_path(const Situation& situation, const Placed& placed, NodeIndex node, const Start& start,
+                        path::TimedPath& path) noexcept
+{
+    const ReachSet& set = *placed.set;
+    std::array<NodeIndex, kMaxDepth> way{};
+    std::size_t movements = 0;
+    for (NodeIndex at = node; at != 0; at = set.parent[at]) {
+        way[movements++] = at;
+    }
+    path.points.clear();
+    if (start.lead > 0.0F) {
+        path.points.unchecked_push_back({situation.own.position, Vec3::Zero(), 0.0F});
+    }
+    path.points.unchecked_push_back({placed.origin, Vec3::Zero(), start.lead});
+    for (std::size_t i = movements; i > 0; --i) {
+        const NodeIndex to = way[i - 1];
+        const NodeIndex from = set.parent[to];
+        const Pose<float> pose{set.position_of(from), static_cast<float>(set.attitude[2U * from]) * set.step.pitch,
+                               static_cast<float>(set.attitude[2U * from + 1U]) * set.step.yaw};
+        const Vec3 middle = at_share(pose, static_cast<Movement>(set.movement[to]), 0.5F, set.step).position;
+        const Seconds end = start.lead + placed.time(to);
+        path.points.unchecked_push_back({placed.to_world(middle), Vec3::Zero(), end - 0.5F * placed.period});
+        path.points.unchecked_push_back({placed.node(to), Vec3::Zero(), end});
+    }
+    for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
+        const path::PathPoint& next = path.points[i + 1];
+        path::PathPoint& point = path.points[i];
+        point.velocity = (next.position - point.position) / (next.time - point.time);
+    }
+    path.points.back().velocity = path.points[path.points.size() - 2].velocity;
+}
+
+/// Whether the vehicle can stop at the end of a path, which is itself clear of what is near.
+bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, const Start& start,
+                       WorkBudget& budget) const noexcept
+{
+    if (!(start.stop > 0.0F)) {
+        return true;
+    }
+    vehicle::VehicleState at = situation.own;
+    at.position = path.points.back().position;
+    at.velocity = path.points.back().velocity;
+    const Seconds step = vehicle::stopping_time(at.velocity.norm(), situation.limits) / static_cast<float>(kStopPieces);
+    const float bulge = 0.125F * situation.limits.max_acceleration * step * step;
+    Seconds t = path.duration() - start.lead;
+    for (int i = 0; i < kStopPieces; ++i) {
+        const Vec3 from = at.position;
+        vehicle::advance(at, Vec3::Zero(), situation.limits, step);
+        if (!is_free(near_.level({from, at.position, t, t + step, bulge}, budget), AvoidanceRun::hard_constraints)) {
+            return false;
+        }
+        t += step;
+    }
+    return true;
+}
+
+PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, const Start& start, WorkBudget& budget,
+                            world::Manoeuvre& out) noexcept
+{
+    const ReachSet& set = *placed.set;
+    const std::span<Level> blocks(blocks_.data(), set.grid.cells());
+    const std::span<Level> cells(cells_.data(), set.grid.cells());
+    const std::span<Level> nodes(nodes_.data(), set.nodes());
+    std::fill(blocks.begin(), blocks.end(), kFree);
+    if (settings_.blocks_unseen && picture_.is_known() && !picture_.is_fresh(situation.now, kScanAge)) {
+        return PlanStatus::none_available;  // blind where it used to see
+    }
+    if (picture_.is_fresh(situation.now, kScanAge) && !picture_.rate(placed, settings_.blocks_unseen, blocks, budget)) {
+        return PlanStatus::budget_spent;
+    }
+    near_.collect(situation, placed, start.lead, start.stop, {settings_.escape, settings_.room});
+    report_.near = static_cast<std::uint16_t>(near_.size());
+    const auto entries = static_cast<std::uint32_t>(set.entries.size());
+    if (!near_.mark(placed, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
+        return PlanStatus::budget_spent;
+    }
+    evaluate_with(
+        set, blocks, [&](NodeIndex node) { return own_[node] = near_.level(placed, node, budget); }, nodes, cells);
+    const float range = placed.unit * set.grid.distance();
+    const Vec3 goal = placed.to_set(goal_of(situation, start.way, kGoalShare * range));
+    const ChoiceRule rule{false, settings_.least_outer_layer};
+    path::TimedPath path;
+    for (int i = 0; i < settings_.tries && !budget.exhausted(); ++i) {
+        if (!budget.spend(units::kReachEntries * (1U + entries / 8U))) {
+            break;
+        }
+        const Choice choice = find_best_path_of_all(set, nodes, cells, goal, AvoidanceRun::hard_constraints, rule);
+        report_.path = choice.status;
+        report_.run = choice.run;
+        report_.node = choice.node;
+        if (choice.node == kNoNode) {
+            return PlanStatus::none_available;
+        }
+        ++report_.tries;
+        make_path(situation, placed, choice.node, start, path);
+        if (budget.spend(units::kReachPath) && can_stop(situation, path, start, budget)) {
+            report_.free_nodes = static_cast<std::uint16_t>(
+                std::count_if(nodes.begin() + 1, nodes.end(), [&](Level level) { return is_free(level, choice.run); }));
+            out.kind = world::ManoeuvreKind::follow_path;
+            out.by = world::MethodId::reach;
+            out.start = situation.now;
+            out.valid_until = situation.now + path.duration();
+            out.path = path;
+            out.command = Vec3::Zero();
+            out.side = side_of(start.way, out.path);
+            out.cost =
+                std::clamp(set.cost_of(choice.node) / static_cast<float>(set.depth[choice.node]) - 1.0F, 0.0F, 1.0F);
+            return PlanStatus::found;
+        }
+        // Struck out, with what follows from it; its cells are open to others.
+        own_[choice.node] = static_cast<Level>(AvoidanceRun::obstacles);
+        evaluate_with(
+            set, blocks, [&](NodeIndex node) { return own_[node]; }, nodes, cells);
+    }
+    return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
+}
+
+}  // namespace jink::reach

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/reach/near.hpp"
+#include "core/reach/scan_picture.hpp"
+#include "core/reach/vehicle_sets.hpp"
+#include "core/world/method.hpp"
+
+namespace jink::reach {
+
+struct Settings {
+    const VehicleSets* sets = nullptr;  ///< of the vehicle, checked by the caller; outlives the planner
+    float room = 0.4F;                  ///< ways that keep this much to spare come first [m], 0..10
+    Seconds latency = 0.1F;             ///< from planning until the vehicle answers, 0..1
+    world::EscapeRule escape;
+    /// Cells at the grid's sides nearer than this many layers are no exits.
+    std::uint8_t least_outer_layer = 2;
+    /// Ways whose end is looked at before the planner gives up, 1..8.
+    std::uint8_t tries = 3;
+    /// What a scan that is known does not see is not flown through. Where no scan is known everything counts as seen.
+    bool blocks_unseen = true;
+};
+
+/// Why a plan ended, and how.
+struct Report {
+    PathStatus path = PathStatus::no_path;
+    AvoidanceRun run = AvoidanceRun::soft_constraints;
+    bool emergency = false;        ///< the navigation set had no way
+    std::uint8_t headings = 0;     ///< courses that were tried
+    std::uint8_t tries = 0;        ///< ways whose end was looked at
+    std::uint16_t near = 0;        ///< threats within reach
+    std::uint16_t free_nodes = 0;  ///< of the set that was looked at last, in the run of the answer
+    NodeIndex node = kNoNode;
+};
+
+/// The method: satisfies world's AvoidanceMethod. Lays the vehicle's reach set into the world along its course, finds
+/// which trajectories keep clear of everything, in time, and takes the cheapest that ends nearest to the goal (Gomola
+/// 6.7). The goal is the point of the reference as far ahead as the grid reaches.
+///
+/// The navigation set first; where it has no way, the emergency set. A multirotor that hardly moves may begin in any
+/// direction: along its way, then to either side. A way at whose end it could not stop (a fixed wing flies on) is
+/// struck out, and the next best taken.
+///
+/// Plans whether or not something is in the way. Unlike the source it never accepts an intruder or a closed airspace
+/// for want of better: such a way would not pass the final check.
+///
+/// Memory: sizeof(Planner), about 32 KiB with the default capacities: 2 bytes a node, 18 a cell, 80 a threat.
+/// O(nodes * near threats + cells * threats) for each course and set.
+class Planner {
+public:
+    static constexpr std::size_t kHeadings = 3;
+    /// The supervisor need not ask for a wider vehicle first: Settings::room.
+    static constexpr bool kKeepsRoom = true;
+
+    explicit Planner(const Settings& settings) noexcept;
+
+    [[nodiscard]] world::PlanStatus plan(const world::Situation& situation, WorkBudget& budget,
+                                         world::Manoeuvre& out) noexcept;
+
+    [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+    /// Refused (false, nothing changed) when out of range, or when a set has more nodes or cells than there is room
+    /// for.
+    [[nodiscard]] bool configure(const Settings& settings) noexcept;
+    [[nodiscard]] const Report& last() const noexcept { return report_; }
+    /// What a scanning sensor sees; to be filled between plans.
+    [[nodiscard]] ScanPicture& picture() noexcept { return picture_; }
+    [[nodiscard]] const ScanPicture& picture() const noexcept { return picture_; }
+
+private:
+    struct Start;
+
+    [[nodiscard]] world::PlanStatus try_set(const world::Situation& situation, const Placed& placed, const Start& start,
+                                            WorkBudget& budget, world::Manoeuvre& out) noexcept;
+    static void make_path(const world::Situation& situation, const Placed& placed, NodeIndex node, const Start& start,
+                          path::TimedPath& path) noexcept;
+    [[nodiscard]] bool can_stop(const world::Situation& situation, const path::TimedPath& path, const Start& start,
+                                WorkBudget& budget) const noexcept;
+
+    Settings settings_;
+    Report report_;
+    ScanPicture picture_;
+    detail::NearThreats near_;
+    std::array<Level, kMaxReachNodes> own_{};
+    std::array<Level, kMaxReachNodes> nodes_{};
+    std::array<Level, kMaxReachCells> blocks_{};
+    std::array<Level, kMaxReachCells> cells_{};
+};
+
+[[nodiscard]] bool is_valid(const Settings& settings) noexcept;
+
+}  // namespace jink::reach

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/base/work_budget.hpp"
+#include "core/reach/fusion.hpp"
+#include "core/reach/lidar_scan.hpp"
+#include "core/reach/placed.hpp"
+
+// The newest scan of a range sensor, counted by cells of a grid of its own, and what it says of a set that is placed
+// elsewhere a moment later.
+
+namespace jink::reach {
+
+/// Where a scan is made from, and how.
+struct ScanStart {
+    TimePoint stamp;
+    Vec3 position = Vec3::Zero();   ///< [m]
+    float nose = 0.0F;              ///< where x of the points looks: counter-clockwise from east [rad]
+    float course = 0.0F;            ///< along which the grid is laid [rad]
+    float unit = 1.0F;              ///< thickness of its layers [m], > 0
+    float horizontal_pitch = 0.0F;  ///< between neighbouring rays [rad], > 0
+    float vertical_pitch = 0.0F;
+};
+
+/// Memory: that of a LidarScan twice, about 7 KiB: one is filled while the other one is read.
+class ScanPicture {
+public:
+    /// Columns to either side of a set's, so that a course may change until it is planned.
+    static constexpr std::size_t kSpareColumns = 1;
+
+    /// Layers, columns and rows as the sets', and kSpareColumns. False where that does not fit in a LidarScan; the
+    /// picture then stays without a scan.
+    [[nodiscard]] bool configure(const Grid<float>& sets) noexcept;
+
+    /// A new scan begins; what was counted of one that did not end is forgotten. False, and nothing is counted until
+    /// the next one, when it cannot be used: no grid, numbers that are none, a direction without rays.
+    bool begin(const ScanStart& start) noexcept;
+    /// A first return, relative to the sensor: x along the nose, y left, z up [m]. O(1).
+    void add(const Vec3& point) noexcept;
+    /// A ray that was not fired or is known to be wrong. O(1).
+    void add_invalid(const Vec3& direction) noexcept;
+    /// The scan is whole: from now on it is the picture. `lost` rays are missing, nobody knows where: with any, nothing
+    /// counts as seen.
+    void end(std::uint32_t lost) noexcept;
+
+    /// A whole scan is known that is no older than `age`.
+    [[nodiscard]] bool is_fresh(TimePoint now, Seconds age) const noexcept;
+    /// A scan was ever known.
+    [[nodiscard]] bool is_known() const noexcept { return known_; }
+    [[nodiscard]] const ScanStart& start() const noexcept { return start_[seen_]; }
+
+    /// Levels of the cells of a placed set by the picture alone: obstacles where something was hit or, with
+    /// `blocks_unseen`, where it does not see all; else kFree. Each cell is looked at in eight places, and each place
+    /// that was hit in nine: cells that are cut by less are the business of what is known more exactly. False when the
+    /// budget does not allow for it. O(cells).
+    [[nodiscard]] bool rate(const Placed& placed, bool blocks_unseen, std::span<Level> blocks,
+                            WorkBudget& budget) const noexcept;
+
+private:
+    [[nodiscard]] Placed frame() const noexcept;
+
+    Grid<float> grid_;
+    bool has_grid_ = false;
+    bool counts_ = false;  ///< a scan has begun that can be used
+    bool known_ = false;
+    std::size_t seen_ = 0;  ///< which of both is the picture
+    std::array<LidarScan, 2> scans_;
+    std::array<ScanStart, 2> start_;
+    std::array<std::uint32_t, 2> lost_{};
+};
+
+}  // namespace jink::reach
