@@ -60,7 +60,7 @@ static_assert(kMaxCandidates >= 8 && kMaxCandidates <= 4096);
 inline constexpr std::size_t kMaxHullVertices = JINK_MAX_HULL_VERTICES;
 static_assert(kMaxHullVertices >= 4 && kMaxHullVertices <= 1024);
 
-/// Nodes of a reach set that is flown; a larger set is refused. Two bytes each.
+/// Nodes of a reach set that is flown; a larger set is refused. A byte each.
 inline constexpr std::size_t kMaxReachNodes = JINK_MAX_REACH_NODES;
 static_assert(kMaxReachNodes >= 16 && kMaxReachNodes <= 65534);
 

@@ -78,9 +78,18 @@ bool is_valid(const Settings& s) noexcept
 {
     return s.sets != nullptr && is_not_negative(s.room) && s.room <= 10.0F && is_not_negative(s.latency) &&
            s.latency <= 1.0F && is_not_negative(s.escape.slack) && is_not_negative(s.escape.speed) && s.tries >= 1 &&
-           s.tries <= 8 && std::all_of(s.sets->segments.begin(), s.sets->segments.end(), [](const SegmentSets& sets) {
+           s.tries <= 64 && std::all_of(s.sets->segments.begin(), s.sets->segments.end(), [](const SegmentSets& sets) {
                return fits(sets.navigation) && fits(sets.emergency);
            });
+}
+
+bool suits(const VehicleSets& sets, const vehicle::VehicleLimits& limits) noexcept
+{
+    constexpr float kRounding = 1.0F - 1e-4F;
+    return limits.max_acceleration >= kRounding * sets.max_acceleration &&
+           limits.max_vertical_acceleration >= kRounding * sets.max_vertical_acceleration &&
+           limits.max_climb >= kRounding * sets.max_climb && limits.max_descent >= kRounding * sets.max_descent &&
+           sets.most_speed * sets.cruise_speed >= kRounding * limits.cruise_speed;
 }
 
 Planner::Planner(const Settings& settings) noexcept : settings_(settings)
@@ -228,7 +237,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
         return PlanStatus::budget_spent;
     }
     evaluate_with(
-        set, blocks, [&](NodeIndex node) { return own_[node] = near_.level(placed, node, budget); }, nodes, cells);
+        set, blocks, [&](NodeIndex node) { return near_.level(placed, node, budget); }, nodes, cells);
     const float range = placed.unit * set.grid.distance();
     const Vec3 goal = placed.to_set(goal_of(situation, start.way, kGoalShare * range));
     const ChoiceRule rule{false, settings_.least_outer_layer};
@@ -260,10 +269,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
                 std::clamp(set.cost_of(choice.node) / static_cast<float>(set.depth[choice.node]) - 1.0F, 0.0F, 1.0F);
             return PlanStatus::found;
         }
-        // Struck out, with what follows from it; its cells are open to others.
-        own_[choice.node] = static_cast<Level>(AvoidanceRun::obstacles);
-        evaluate_with(
-            set, blocks, [&](NodeIndex node) { return own_[node]; }, nodes, cells);
+        cells[choice.cell] = 0;  // struck out as an end; ways through it stay
     }
     return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
 }

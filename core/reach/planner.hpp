@@ -18,8 +18,8 @@ struct Settings {
     world::EscapeRule escape;
     /// Cells at the grid's sides nearer than this many layers are no exits.
     std::uint8_t least_outer_layer = 2;
-    /// Ways whose end is looked at before the planner gives up, 1..8.
-    std::uint8_t tries = 3;
+    /// Ways whose end is looked at before the planner gives up, 1..64.
+    std::uint8_t tries = 12;
     /// What a scan that is known does not see is not flown through. Where no scan is known everything counts as seen.
     bool blocks_unseen = true;
 };
@@ -47,7 +47,7 @@ struct Report {
 /// Plans whether or not something is in the way. Unlike the source it never accepts an intruder or a closed airspace
 /// for want of better: such a way would not pass the final check.
 ///
-/// Memory: sizeof(Planner), about 32 KiB with the default capacities: 2 bytes a node, 18 a cell, 80 a threat.
+/// Memory: sizeof(Planner), about 32 KiB with the default capacities: a byte a node, 18 a cell, 80 a threat.
 /// O(nodes * near threats + cells * threats) for each course and set.
 class Planner {
 public:
@@ -83,12 +83,13 @@ private:
     Report report_;
     ScanPicture picture_;
     detail::NearThreats near_;
-    std::array<Level, kMaxReachNodes> own_{};
     std::array<Level, kMaxReachNodes> nodes_{};
     std::array<Level, kMaxReachCells> blocks_{};
     std::array<Level, kMaxReachCells> cells_{};
 };
 
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;
+/// Whether a vehicle of these limits can fly the sets, and cruises no faster than they are for. O(1).
+[[nodiscard]] bool suits(const VehicleSets& sets, const vehicle::VehicleLimits& limits) noexcept;
 
 }  // namespace jink::reach

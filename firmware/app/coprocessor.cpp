@@ -27,13 +27,28 @@ Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog&
                          link::SensorBus* bus) noexcept
     : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters), bus_(bus),
       applied_generation_(parameters.generation()), planner_(parameters.configuration().planner),
-      supervisor_(parameters.configuration().supervisor, planner_), tracks_(parameters.configuration().tracks),
+      reach_(parameters.configuration().reach), supervisor_(supervisor_settings(), planner_, reach_),
+      tracks_(parameters.configuration().tracks),
       param_service_(parameters_, diagnostics_.params_set, diagnostics_.params_refused)
 {
     link_.ask_for_rates(parameters.configuration().ask_rates);
     if (bus_ != nullptr) {
         bus_->serve(param_service_);
     }
+}
+
+avoid::Settings Coprocessor::supervisor_settings() const noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    avoid::Settings settings = c.supervisor;
+    settings.order = leaves_reach_out_ || c.reach_unsuited ? avoid::LadderOrder::first : settings.order;
+    return settings;
+}
+
+void Coprocessor::leave_out_reach_sets() noexcept
+{
+    leaves_reach_out_ = true;
+    static_cast<void>(supervisor_.configure(supervisor_settings()));
 }
 
 void Coprocessor::apply_configuration() noexcept
@@ -46,7 +61,8 @@ void Coprocessor::apply_configuration() noexcept
     // Parameters admit only what both accept (fits_together).
     link_.ask_for_rates(c.ask_rates);
     static_cast<void>(planner_.configure(c.planner));
-    static_cast<void>(supervisor_.configure(c.supervisor));
+    static_cast<void>(reach_.configure(c.reach));
+    static_cast<void>(supervisor_.configure(supervisor_settings()));
     tracks_.configure(c.tracks);
 }
 
@@ -378,6 +394,12 @@ void Coprocessor::tell_notices() noexcept
         }
         notices_.clear();
     }
+    const Configuration& c = parameters_.configuration();
+    const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::LadderOrder::first;
+    if (unsuited && !told_unsuited_ && has_autopilot_) {
+        say(link::Severity::warning, "jink: reach sets do not suit this vehicle");
+    }
+    told_unsuited_ = unsuited && has_autopilot_;
 }
 
 void Coprocessor::shut_down(TimePoint now) noexcept

@@ -7,6 +7,7 @@
 
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
+#include "core/reach/planner.hpp"
 #include "core/world/obstacle_table.hpp"
 #include "core/world/track_table.hpp"
 #include "firmware/app/param_service.hpp"
@@ -120,6 +121,9 @@ public:
     void keep_last_words(hal::LastWords& words) noexcept { last_words_ = &words; }
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
+    /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
+    /// start calls this.
+    void leave_out_reach_sets() noexcept;
     /// A text that waits until an autopilot is heard, kMostNotices of them; false when there is no room.
     [[nodiscard]] bool tell_when_heard(link::Severity severity, const Text& text) noexcept
     {
@@ -145,6 +149,7 @@ public:
     [[nodiscard]] const geometric::Planner& planner() const noexcept { return planner_; }
     /// For studies on a bench: settings that no parameter reaches. The next change of a parameter takes them back.
     [[nodiscard]] geometric::Planner& planner() noexcept { return planner_; }
+    [[nodiscard]] const reach::Planner& reach_planner() const noexcept { return reach_; }
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
     [[nodiscard]] const vehicle::VehicleState& own() const noexcept { return own_; }
 
@@ -170,6 +175,7 @@ private:
     void take_params() noexcept;
     void take_commands() noexcept;
     void apply_configuration() noexcept;
+    [[nodiscard]] avoid::Settings supervisor_settings() const noexcept;
     void prepare_last_words() noexcept;
     void tell_notices() noexcept;
     void take_reading(const link::RangeReading& reading) noexcept;
@@ -204,7 +210,10 @@ private:
     link::SensorBus* bus_;
     std::uint32_t applied_generation_ = 0;
     geometric::Planner planner_;
-    avoid::Supervisor<geometric::Planner> supervisor_;
+    reach::Planner reach_;
+    avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
+    bool leaves_reach_out_ = false;
+    bool told_unsuited_ = false;
     Takeover takeover_;
     world::TrackTable tracks_;
     world::ObstacleTable obstacles_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/cost/tables_default.hpp"
+#include "firmware/app/reach_sets.hpp"
 
 namespace jink::app {
 namespace {
@@ -62,6 +63,11 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
+    {"JNK_METHODS", 1, 0, 3, true,
+     "0 geometric, 1 geometric then reach sets, 2 reach sets then geometric, 3 reach sets"},
+    {"JNK_CLUTTER", 0, 0, 128, true,
+     "of JNK_METHODS 1: from so many threats within 20 m reach sets come first; 0 never"},
+    {"RCH_UNSEEN", 1, 0, 1, true, "1: reach sets do not go where a point cloud does not see"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -130,6 +136,16 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.flip_penalty = at(Param::flip_penalty);
     g.moving_nearest = static_cast<std::uint16_t>(whole(Param::nearest));
     g.max_cost = at(Param::max_cost);
+    constexpr std::array kOrders{avoid::LadderOrder::first, avoid::LadderOrder::as_given, avoid::LadderOrder::reversed,
+                                 avoid::LadderOrder::last};
+    c.supervisor.order = kOrders[whole(Param::methods)];
+    c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
+    c.reach.sets = &reach_sets();
+    c.reach.room = c.supervisor.room;
+    c.reach.latency = at(Param::latency);
+    c.reach.escape = c.supervisor.escape;
+    c.reach.blocks_unseen = whole(Param::unseen) == 1;
+    c.reach_unsuited = !reach::suits(*c.reach.sets, c.limits);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);
     g.latency = at(Param::latency);
@@ -140,7 +156,8 @@ bool fits_together(const Configuration& c) noexcept
 {
     const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
     return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && avoid::is_valid(c.supervisor) &&
-           vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner);
+           vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner) &&
+           reach::is_valid(c.reach);
 }
 
 ParamStatus check_one(std::size_t index, float value) noexcept

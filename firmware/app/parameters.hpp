@@ -8,6 +8,7 @@
 
 #include "core/avoid/guidance.hpp"
 #include "core/geometric/planner.hpp"
+#include "core/reach/planner.hpp"
 #include "core/world/track_table.hpp"
 
 namespace jink::app {
@@ -69,6 +70,9 @@ enum class Param : std::uint8_t {
     standby,
     ask_rates,
     tell_near,
+    methods,
+    clutter,
+    unseen,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -97,6 +101,9 @@ struct Configuration {
     ActMode mode = ActMode::act;
     avoid::Settings supervisor;
     geometric::Settings planner;
+    reach::Settings reach;
+    /// The reach sets do not suit the vehicle's limits: they are not asked, whatever the order.
+    bool reach_unsuited = false;
     vehicle::VehicleLimits limits;
     vehicle::Airframe airframe;
     world::TrackTableSettings tracks;

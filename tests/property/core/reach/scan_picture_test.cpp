@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/reach/scan_picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "core/reach/cell_balls.hpp"
+#include "core/reach/intruder.hpp"
+
+namespace jink::reach {
+namespace {
+
+constexpr float kPitch = 0.02F;
+constexpr Level kBlocked = 0;
+
+/// A set of which only the grid counts.
+struct GridAlone {
+    ReachSet set;
+    Placed placed;
+    std::vector<Level> blocks;
+
+    GridAlone() : blocks(set.grid.cells(), kFree) { placed.set = &set; }
+
+    bool rate(const ScanPicture& picture, bool blocks_unseen)
+    {
+        WorkBudget budget(100'000);
+        return picture.rate(placed, blocks_unseen, blocks, budget);
+    }
+    [[nodiscard]] Level level(std::uint8_t layer, std::uint8_t column, std::uint8_t row) const
+    {
+        return blocks[set.grid.index({layer, column, row})];
+    }
+};
+
+ScanStart straight_ahead(float unit = 1.0F)
+{
+    ScanStart start;
+    start.stamp = TimePoint{1'000'000};
+    start.unit = unit;
+    start.horizontal_pitch = start.vertical_pitch = kPitch;
+    return start;
+}
+
+TEST(ScanPictures, WhatIsHitIsBlockedAndWhatLiesBehindIsNotSeen)
+{
+    GridAlone grid;
+    ScanPicture picture;
+    ASSERT_TRUE(picture.configure(grid.set.grid));
+    ASSERT_TRUE(picture.begin(straight_ahead()));
+    picture.add(Vec3(4.5F, 0.0F, 0.0F));
+    picture.end(0);
+    ASSERT_TRUE(grid.rate(picture, true));
+    for (std::uint8_t layer = 0; layer < 10; ++layer) {
+        EXPECT_EQ(grid.level(layer, 3, 2), layer < 4 ? kFree : kBlocked) << int{layer};
+        EXPECT_EQ(grid.level(layer, 1, 2), kFree) << int{layer};
+    }
+    ASSERT_TRUE(grid.rate(picture, false));
+    for (std::uint8_t layer = 0; layer < 10; ++layer) {
+        EXPECT_EQ(grid.level(layer, 3, 2), layer == 4 ? kBlocked : kFree) << int{layer};
+    }
+}
+
+TEST(ScanPictures, NothingIsSeenWithoutAScanOrWithRaysLost)
+{
+    GridAlone grid;
+    ScanPicture picture;
+    ASSERT_TRUE(picture.configure(grid.set.grid));
+    EXPECT_FALSE(picture.is_known());
+    EXPECT_FALSE(picture.is_fresh(TimePoint{1'000'000}, 1.0F));
+    ASSERT_TRUE(picture.begin(straight_ahead()));
+    picture.add(Vec3(4.5F, 0.0F, 0.0F));
+    EXPECT_FALSE(picture.is_known()) << "a scan that has not ended is none";
+    picture.end(1);
+    EXPECT_TRUE(picture.is_fresh(TimePoint{1'500'000}, 0.5F));
+    EXPECT_FALSE(picture.is_fresh(TimePoint{1'500'001}, 0.5F));
+    ASSERT_TRUE(grid.rate(picture, true));
+    EXPECT_TRUE(std::all_of(grid.blocks.begin(), grid.blocks.end(), [](Level level) { return level == kBlocked; }));
+}
+
+TEST(ScanPictures, ARayThatWasNotFiredHidesItsDirection)
+{
+    GridAlone grid;
+    ScanPicture picture;
+    ASSERT_TRUE(picture.configure(grid.set.grid));
+    ASSERT_TRUE(picture.begin(straight_ahead()));
+    picture.add_invalid(Vec3(1.0F, 0.0F, 0.0F));
+    picture.end(0);
+    ASSERT_TRUE(grid.rate(picture, true));
+    for (std::uint8_t layer = 0; layer < 10; ++layer) {
+        EXPECT_EQ(grid.level(layer, 3, 2), kBlocked);
+        EXPECT_EQ(grid.level(layer, 2, 2), kFree);
+    }
+}
+
+TEST(ScanPictures, AScanThatCannotBeUsedLeavesTheOneBefore)
+{
+    GridAlone grid;
+    ScanPicture picture;
+    EXPECT_FALSE(picture.begin(straight_ahead())) << "no grid yet";
+    ASSERT_TRUE(picture.configure(grid.set.grid));
+    ASSERT_TRUE(picture.begin(straight_ahead()));
+    picture.add(Vec3(4.5F, 0.0F, 0.0F));
+    picture.end(0);
+    for (const auto& spoil : std::vector<void (*)(ScanStart&)>{
+             [](ScanStart& s) { s.unit = 0.0F; }, [](ScanStart& s) { s.position.x() = NAN; },
+             [](ScanStart& s) { s.nose = NAN; }, [](ScanStart& s) { s.course = INFINITY; },
+             [](ScanStart& s) { s.horizontal_pitch = 0.0F; }, [](ScanStart& s) { s.vertical_pitch = 3.0F; }}) {
+        ScanStart bad = straight_ahead();
+        spoil(bad);
+        EXPECT_FALSE(picture.begin(bad));
+        picture.add(Vec3(1.5F, 0.0F, 0.0F));
+        picture.end(0);
+        ASSERT_TRUE(grid.rate(picture, true));
+        EXPECT_EQ(grid.level(1, 3, 2), kFree);
+        EXPECT_EQ(grid.level(4, 3, 2), kBlocked);
+    }
+}
+
+/// Moved, turned and of another unit, the picture says of the place of each point what it is.
+TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
+{
+    std::size_t hits = 0;
+    for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+        Random random(seed);
+        GridAlone grid;
+        ScanPicture picture;
+        ASSERT_TRUE(picture.configure(grid.set.grid));
+        ScanStart start = straight_ahead(random.uniform(1.0F, 3.0F));
+        start.position =
+            Vec3(random.uniform(-200.0F, 200.0F), random.uniform(-200.0F, 200.0F), random.uniform(5.0F, 50.0F));
+        start.course = random.uniform(-kPi, kPi);
+        start.nose = random.uniform(-kPi, kPi);
+        ASSERT_TRUE(picture.begin(start));
+        // In the world, then as the sensor sees it.
+        const float azimuth = start.course + random.uniform(-0.7F, 0.7F);
+        const float elevation = random.uniform(-0.45F, 0.45F);
+        const Vec3 apart =
+            random.uniform(1.0F, 9.5F) * start.unit *
+            Vec3(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
+        const float c = std::cos(start.nose);
+        const float s = std::sin(start.nose);
+        picture.add(Vec3(c * apart.x() + s * apart.y(), -s * apart.x() + c * apart.y(), apart.z()));
+        picture.end(0);
+        grid.placed.origin = start.position + 0.3F * start.unit * Vec3(random.uniform(), random.uniform(), 0.0F);
+        const float course = start.course + random.uniform(-0.1F, 0.1F);
+        grid.placed.cosine = std::cos(course);
+        grid.placed.sine = std::sin(course);
+        grid.placed.unit = start.unit * random.uniform(0.9F, 1.1F);
+        ASSERT_TRUE(grid.rate(picture, false));
+        const Vec3 point = start.position + apart;
+        const Located at = grid.set.grid.locate(grid.placed.to_set(point));
+        const auto blocked = std::count(grid.blocks.begin(), grid.blocks.end(), kBlocked);
+        const Polar<float> polar = to_polar(grid.placed.to_set(point));
+        // At the border the cell of the scan may lie beyond it but for a corner.
+        const bool well_inside = polar.distance < 8.5F && std::abs(polar.horizontal) < 0.6F &&
+                                 std::abs(polar.vertical) < 0.4F && at.status == LocateStatus::inside;
+        ASSERT_TRUE(!well_inside || blocked >= 1) << "seed " << seed;
+        ASSERT_LE(blocked, 18) << "seed " << seed << ": a cell of the scan is no larger than that";
+        if (well_inside) {
+            ++hits;
+            // All that is blocked lies about the cell that was hit, which holds the point.
+            const CellBall hit = ball_of(grid.set.grid, at.place);
+            for (std::size_t i = 0; i < grid.blocks.size(); ++i) {
+                const CellBall other = ball_of(grid.set.grid, grid.set.grid.place(static_cast<CellIndex>(i)));
+                ASSERT_TRUE(grid.blocks[i] == kFree ||
+                            (hit.centre - other.centre).norm() <= 2.5F * (hit.radius + other.radius))
+                    << "seed " << seed;
+            }
+        }
+    }
+    EXPECT_GT(hits, 1500U);
+}
+
+TEST(CellBallsLaw, AreThoseOfTheCells)
+{
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        Random random(seed);
+        const Grid<float> grid(1 + random.below(16), 1 + random.below(8), 1 + random.below(8),
+                               random.uniform(1.0F, 20.0F), random.uniform(0.2F, 1.5F), random.uniform(0.2F, 1.2F));
+        ASSERT_TRUE(detail::CellBalls::serves(grid));
+        const detail::CellBalls balls(grid);
+        for (std::size_t i = 0; i < grid.cells(); ++i) {
+            const CellPlace place = grid.place(static_cast<CellIndex>(i));
+            const CellBall ball = ball_of(grid, place);
+            const Vec3 centre = balls.distance(place.layer) * balls.direction(place.column, place.row);
+            ASSERT_LT((centre - ball.centre).norm(), 1e-5F * grid.distance()) << "seed " << seed;
+            ASSERT_NEAR(balls.radius(place.layer, place.row), ball.radius, 3e-5F * grid.distance()) << "seed " << seed;
+            ASSERT_GE(balls.radius(place.layer, place.row), ball.radius - 1e-6F * grid.distance()) << "seed " << seed;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace jink::reach
