@@ -111,23 +111,33 @@ private:
     std::map<Key, NodeId> known_;
 };
 
+/// The grid cut off, and the sides shut: what ends there has no part in the footprints.
+Settings on_few_layers(Settings settings)
+{
+    const Grid<double>& g = settings.grid;
+    const std::size_t layers = std::min(kFootprintLayers, g.layers());
+    settings.grid = Grid<double>(layers, g.columns(), g.rows(), g.layer_end(layers - 1), g.horizontal(), g.vertical());
+    settings.keep_lateral = false;
+    return settings;
+}
+
 }  // namespace
 
 std::size_t count_reachable_cells(const Settings& settings) { return Flood(settings).run(); }
 
-Coverage coverage_of(const Settings& settings, const std::function<Set(const Settings&)>& make)
+Whole whole_of(const Settings& settings)
 {
-    const Grid<double>& g = settings.grid;
-    Settings few = settings;
-    const std::size_t layers = std::min(kFootprintLayers, g.layers());
-    few.grid = Grid<double>(layers, g.columns(), g.rows(), g.layer_end(layers - 1), g.horizontal(), g.vertical());
-    few.keep_lateral = false;
-    Coverage coverage;
-    coverage.cells =
-        static_cast<double>(measure(make(settings)).cells) / static_cast<double>(count_reachable_cells(settings));
-    coverage.footprints =
-        static_cast<double>(measure(make(few)).footprints) / static_cast<double>(measure(full_set(few)).footprints);
-    return coverage;
+    return {count_reachable_cells(settings), measure(full_set(on_few_layers(settings))).footprints};
+}
+
+Coverage coverage_of(const Settings& settings, const Set& set, const std::function<Set(const Settings&)>& make,
+                     const Whole& whole)
+{
+    const auto share = [](std::size_t part, std::size_t all) {
+        return static_cast<double>(part) / static_cast<double>(std::max<std::size_t>(all, 1));
+    };
+    return {share(measure(set).cells, whole.cells),
+            share(measure(make(on_few_layers(settings))).footprints, whole.footprints)};
 }
 
 }  // namespace jink::reach::build

@@ -20,11 +20,19 @@ namespace jink::reach::build {
 /// five layers nine times as many.
 inline constexpr std::size_t kFootprintLayers = 4;
 
-struct Coverage {
-    double cells = 0.0;       ///< touched, of count_reachable_cells (what the source's 0.9 can be reproduced with)
-    double footprints = 0.0;  ///< different ones on the first kFootprintLayers, of all (Gomola eq. 6.73)
+/// All there is with some settings.
+struct Whole {
+    std::size_t cells = 0;       ///< count_reachable_cells
+    std::size_t footprints = 0;  ///< different ones of all trajectories on the first kFootprintLayers
 };
-/// Of the sets that `make` makes.
-[[nodiscard]] Coverage coverage_of(const Settings& settings, const std::function<Set(const Settings&)>& make);
+[[nodiscard]] Whole whole_of(const Settings& settings);
+
+struct Coverage {
+    double cells = 0.0;       ///< touched, of all: with this one the source's 0.9 can be reproduced
+    double footprints = 0.0;  ///< different ones of a set made on the first kFootprintLayers, of all (Gomola eq. 6.73)
+};
+/// Of a set that `make` made with these settings.
+[[nodiscard]] Coverage coverage_of(const Settings& settings, const Set& set,
+                                   const std::function<Set(const Settings&)>& make, const Whole& whole);
 
 }  // namespace jink::reach::build
