@@ -40,7 +40,7 @@ inline constexpr float kCostUnit = 1.0F / 1024.0F;
 /// A view of constant tables, structure of arrays. Node 0 is the root; parents come before their children. Lengths are
 /// in movements' lengths, so one set serves every speed at which the vehicle turns by the same steps per movement.
 ///
-/// Memory: 17 bytes a node, 4 an entry, 2 a cell: about 50 KiB for 2300 nodes.
+/// Memory: 18 bytes a node, 4 an entry: about 55 KiB for 2300 nodes.
 struct ReachSet {
     std::string_view name;
     Grid<float> grid;

@@ -9,6 +9,7 @@
 #include "core/cost/tables_default.hpp"
 #include "core/cost/tables_uav2.hpp"
 #include "tests/host/scratch.hpp"
+#include "toolchain/host/header_text.hpp"
 #include "toolchain/host/waypoints_study.hpp"
 
 namespace jink::host {

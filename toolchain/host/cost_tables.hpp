@@ -71,8 +71,6 @@ struct TableErrors {
 /// Every error within the family's bounds, nothing refused.
 [[nodiscard]] bool holds(const TableErrors& errors, const cost::tables::Bounds& bounds);
 
-/// What is left of a name in a C++ name: `my quad-3` gives MyQuad3. Empty where nothing is, or a digit comes first.
-[[nodiscard]] std::string identifier_of(const std::string& name);
 /// The tables as a header: `inline constexpr Tables k<Identifier>` in jink::cost::tables. `source` names the vehicle
 /// file.
 [[nodiscard]] std::string tables_header(MadeTables& made, const std::string& source);

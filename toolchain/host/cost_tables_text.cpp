@@ -1,48 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cost tables as a C++ header.
-#include <array>
-#include <cctype>
-#include <charconv>
-
 #include "toolchain/host/cost_tables.hpp"
+#include "toolchain/host/header_text.hpp"
 
 namespace jink::host {
 namespace {
-
-constexpr std::size_t kWidth = 118;
-
-/// The shortest text that reads as the same number.
-std::string literal(float value)
-{
-    std::array<char, 32> text{};
-    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-    std::string out(text.data(), end);
-    if (out.find_first_of(".e") == std::string::npos) {
-        out.append(".0");
-    }
-    return out.append("F");
-}
-
-std::string literal(std::uint8_t value) { return std::to_string(value); }
-
-template <class T>
-void append_array(std::string& out, const char* type, const std::string& name, const std::vector<T>& values)
-{
-    out.append("inline constexpr std::array<").append(type).append(", ").append(std::to_string(values.size()));
-    out.append("> ").append(name).append("{");
-    std::string line = "\n    ";
-    for (const T& value : values) {
-        const std::string text = literal(value) + ",";
-        if (line.size() + text.size() > kWidth) {
-            out.append(line);
-            line = "\n    ";
-        } else if (line.size() > 5) {
-            line.append(" ");
-        }
-        line.append(text);
-    }
-    out.append(line).append("\n};\n");
-}
 
 void append_bounds(std::string& out, const cost::tables::Bounds& b)
 {
@@ -78,22 +40,6 @@ void append_view(std::string& out, MadeTables& made, const std::string& space)
 }
 
 }  // namespace
-
-std::string identifier_of(const std::string& name)
-{
-    std::string out;
-    bool starts = true;
-    for (const char c : name) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code >= 128 || std::isalnum(code) == 0) {
-            starts = true;
-            continue;
-        }
-        out.push_back(starts ? static_cast<char>(std::toupper(code)) : c);
-        starts = false;
-    }
-    return out.empty() || std::isdigit(static_cast<unsigned char>(out.front())) != 0 ? std::string() : out;
-}
 
 std::string tables_header(MadeTables& made, const std::string& source)
 {

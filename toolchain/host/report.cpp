@@ -11,6 +11,8 @@
 #include <string>
 
 #include "toolchain/host/commands.hpp"
+#include "toolchain/host/header_text.hpp"
+#include "toolchain/host/script.hpp"
 
 namespace jink::host {
 namespace {
@@ -24,34 +26,19 @@ struct Options {
     std::string python = "/usr/bin/python3";
 };
 
-/// Installed beside the program (bin/jink, share/jink/report), or in the sources that it was built from.
-fs::path find_script()
-{
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path installed = program.parent_path().parent_path() / "share/jink/report/report.py";
-    return fs::exists(installed, error) ? installed : fs::path(JINK_REPORT_FOLDER) / "report.py";
-}
-
-[[noreturn]] void refuse(const std::string& why)
-{
-    std::fprintf(stderr, "jink report: %s\n", why.c_str());
-    throw CLI::RuntimeError(kExitBadInput);
-}
-
 void run(const Options& options)
 {
     if (options.folder.empty() == options.run.empty()) {
-        refuse("give either a folder with run.json, or --run");
+        refuse("report", "give either a folder with run.json, or --run");
     }
     const std::string in = options.run.empty() ? (fs::path(options.folder) / "run.json").string() : options.run;
     const std::string out = !options.out.empty() ? options.out : (fs::path(in).parent_path() / "report.html").string();
-    const std::string script = find_script().string();
+    const std::string script = find_report_script("report.py").string();
     std::fflush(nullptr);
     // Replaces this program: its exit status is the script's. -I keeps PYTHONPATH and user packages out.
     execl(options.python.c_str(), options.python.c_str(), "-I", "-B", script.c_str(), "--run", in.c_str(), "--out",
           out.c_str(), static_cast<char*>(nullptr));
-    refuse(options.python + " cannot be started: " + std::strerror(errno));
+    refuse("report", options.python + " cannot be started: " + std::strerror(errno));
 }
 
 }  // namespace

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink tables: a vehicle's cost look-up tables, with the errors of their interpolation.
-#include <algorithm>
-#include <cctype>
 #include <cstdio>
-#include <fstream>
 #include <memory>
 #include <string>
 
 #include "core/geometric/planner.hpp"
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/cost_tables.hpp"
+#include "toolchain/host/header_text.hpp"
 
 namespace jink::host {
 namespace {
@@ -20,41 +18,6 @@ struct Options {
     std::uint16_t waypoints = geometric::Settings{}.waypoints;
     bool check = false;
 };
-
-[[noreturn]] void refuse(const std::string& why)
-{
-    std::fprintf(stderr, "jink tables: %s\n", why.c_str());
-    throw CLI::RuntimeError(kExitBadInput);
-}
-
-files::Vehicle read(const std::string& file)
-{
-    files::Complaints complaints;
-    auto vehicle = files::read_vehicle_file(file, complaints);
-    for (const files::Complaint& complaint : complaints) {
-        std::fprintf(stderr, "%s\n", files::to_string(complaint).c_str());
-    }
-    if (!vehicle) {
-        throw CLI::RuntimeError(kExitBadInput);
-    }
-    if (identifier_of(vehicle->name).empty() ||
-        !std::all_of(vehicle->name.begin(), vehicle->name.end(), [](unsigned char c) {
-            return c < 128 && (std::isalnum(c) != 0 || c == ' ' || c == '-' || c == '_' || c == '.');
-        })) {
-        refuse(file + ": no C++ name can be made of the vehicle's name " + files::in_quotes(vehicle->name));
-    }
-    return *std::move(vehicle);
-}
-
-void write(const std::string& file, const std::string& text)
-{
-    std::ofstream out(file, std::ios::binary);
-    out << text;
-    out.flush();
-    if (!out) {
-        refuse(file + " cannot be written");
-    }
-}
 
 void print_line(const char* what, double error, float bound)
 {
@@ -88,7 +51,7 @@ bool print_family(const cost::tables::Tables& tables, std::size_t family, const 
 
 void run(const Options& options)
 {
-    const files::Vehicle vehicle = read(options.file);
+    const files::Vehicle vehicle = read_named_vehicle("tables", options.file);
     MadeTables made = make_tables(vehicle, options.waypoints);
     const cost::tables::Tables tables = made.view();
     const cost::Caps flights = cost::reference_flights(made.limits, made.airframe);
@@ -108,7 +71,8 @@ void run(const Options& options)
         throw CLI::RuntimeError(kExitStop);
     }
     if (!options.out.empty()) {
-        write(options.out, tables_header(made, std::filesystem::path(options.file).filename().string()));
+        write_whole("tables", options.out,
+                    tables_header(made, std::filesystem::path(options.file).filename().string()));
     }
 }
 

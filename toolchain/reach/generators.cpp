@@ -2,7 +2,9 @@
 #include "toolchain/reach/generators.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <set>
 
 namespace jink::reach::build {
 namespace {
@@ -61,7 +63,7 @@ Constraint harmonic(const Settings& settings, std::size_t spread)
     return c;
 }
 
-Constraint acas(const Settings& settings, std::uint8_t separations, std::size_t spread)
+Constraint acas(const Settings& settings, std::uint8_t separations, std::size_t spread, SpreadOf spread_of)
 {
     Constraint c;
     c.measure = [](const Node& node) { return -node.smoothness(); };
@@ -70,7 +72,18 @@ Constraint acas(const Settings& settings, std::uint8_t separations, std::size_t 
         if (spread == kNoLimit) {
             return std::vector<NodeId>(passing.begin(), passing.end());
         }
-        return best_of(all, passing, spread, 0, attitude, performance);
+        if (spread_of == SpreadOf::cell) {
+            return best_of(all, passing, spread, 0, attitude, performance);
+        }
+        std::set<NodeId> ids;
+        for (const std::uint8_t plane : {kHorizontal, kVertical, kSlash, kBackslash}) {
+            std::vector<NodeId> in_plane;
+            std::copy_if(passing.begin(), passing.end(), std::back_inserter(in_plane),
+                         [&](NodeId id) { return (all[id].separations & separations & plane) != 0; });
+            const std::vector<NodeId> best = best_of(all, in_plane, spread, 0, attitude, performance);
+            ids.insert(best.begin(), best.end());
+        }
+        return std::vector<NodeId>(ids.begin(), ids.end());
     };
     return c;
 }

@@ -18,8 +18,12 @@ enum Separation : std::uint8_t { kHorizontal = 1, kVertical = 2, kSlash = 4, kBa
 [[nodiscard]] Constraint chaotic(const Settings& settings, std::size_t spread = 9, std::size_t tail = 3);
 /// Candidates near the centre of their cell, smooth ones first (Gomola algorithm 6.3).
 [[nodiscard]] Constraint harmonic(const Settings& settings, std::size_t spread = 9);
+/// Whether candidates of a cell are counted together, or those of each plane apart: where planes cross, in the middle
+/// column and row, one plane's candidates do not displace those of the others then.
+enum class SpreadOf : std::uint8_t { cell, separation };
 /// Candidates that keep to one of the planes (Gomola algorithm 6.5), near the centre and smooth ones first.
-[[nodiscard]] Constraint acas(const Settings& settings, std::uint8_t separations, std::size_t spread = 9);
+[[nodiscard]] Constraint acas(const Settings& settings, std::uint8_t separations, std::size_t spread = 9,
+                              SpreadOf spread_of = SpreadOf::cell);
 
 /// Distance from the centre over smoothness (Gomola eq. 6.80); without smoothness beyond all others, by distance.
 [[nodiscard]] double performance(const Node& node);

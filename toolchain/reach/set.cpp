@@ -35,21 +35,27 @@ Set kept(const WaveFront& grown, std::uint8_t origin)
 {
     std::vector<bool> keeps(grown.nodes.size(), false);
     std::vector<bool> in_front(grown.nodes.size(), false);
+    std::vector<bool> lateral(grown.nodes.size(), false);
     keeps[0] = true;
-    for (const NodeId front : grown.front) {
-        in_front[front] = true;
-        for (NodeId id = front; !keeps[id]; id = grown.nodes[id].parent) {
+    const auto keep = [&](NodeId id, std::vector<bool>& as) {
+        for (as[id] = true; !keeps[id]; id = grown.nodes[id].parent) {
             keeps[id] = true;
         }
+    };
+    for (const NodeId id : grown.front) {
+        keep(id, in_front);
+    }
+    for (const NodeId id : grown.lateral) {
+        keep(id, lateral);
     }
     const std::vector<std::vector<NodeId>> children = children_of(grown.nodes, keeps);
     Set set;
     std::vector<NodeId> order{0};
-    set.members.push_back({grown.nodes[0], origin, false});
+    set.members.push_back({grown.nodes[0], origin, false, false});
     for (std::size_t at = 0; at < order.size(); ++at) {
         for (const NodeId child : children[order[at]]) {
             order.push_back(child);
-            set.members.push_back({grown.nodes[child], origin, in_front[child]});
+            set.members.push_back({grown.nodes[child], origin, in_front[child], lateral[child]});
             set.members.back().node.parent = static_cast<NodeId>(at);
         }
     }
@@ -75,6 +81,8 @@ Set merged(const Set& a, const Set& b)
             const Set::Member& other = b.members[*pair[1]];
             member.origins = static_cast<std::uint8_t>(member.origins | other.origins);
             member.in_front = member.in_front || other.in_front;
+            // What one set ends with, the other one may go on from; it is an exit all the same.
+            member.is_lateral = member.is_lateral || other.is_lateral;
         }
         member.node.parent = parent;
         out.members.push_back(std::move(member));
@@ -107,14 +115,18 @@ Metrics measure(const Set& set)
     m.nodes = set.members.size();
     for (const Set::Member& member : set.members) {
         m.most_entered = std::max(m.most_entered, member.node.entered.size());
-        if (!member.in_front) {
+        if (!member.in_front && !member.is_lateral) {
             continue;
         }
         const Node& node = member.node;
-        ++m.trajectories;
         cells.insert(node.footprint.begin(), node.footprint.end());
         footprints.insert(node.footprint);
-        m.mean_smoothness += node.smoothness();
+        if (member.in_front) {
+            ++m.trajectories;
+            m.mean_smoothness += node.smoothness();
+        } else {
+            ++m.laterals;
+        }
         m.most_depth = std::max<std::size_t>(m.most_depth, node.depth);
         m.longest_footprint = std::max(m.longest_footprint, node.footprint.size());
     }

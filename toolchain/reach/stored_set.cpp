@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "toolchain/reach/stored_set.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -96,6 +97,36 @@ ReachSet StoredSet::view() const
     set.entries = entries_;
     set.checksum = checksum_;
     return set;
+}
+
+std::size_t bytes_of(const ReachSet& set)
+{
+    return set.parent.size_bytes() + set.movement.size_bytes() + set.end.size_bytes() + set.position.size_bytes() +
+           set.attitude.size_bytes() + set.cost.size_bytes() + set.depth.size_bytes() + set.first_entry.size_bytes() +
+           set.entries.size_bytes();
+}
+
+std::size_t bytes_of(const Set& set)
+{
+    // Parent, movement, end, position, attitude, cost, depth, first entry.
+    constexpr std::size_t kNode = 2 + 1 + 2 + 6 + 2 + 2 + 1 + 2;
+    std::size_t bytes = sizeof(std::uint16_t) + kNode * set.members.size();
+    for (const Set::Member& member : set.members) {
+        bytes += sizeof(FootprintEntry) * member.node.entered.size();
+    }
+    return bytes;
+}
+
+bool StoredSet::has_tables_of(const StoredSet& other) const
+{
+    const auto same = [](const FootprintEntry& a, const FootprintEntry& b) {
+        return a.cell == b.cell && a.first == b.first && a.last == b.last;
+    };
+    // The grid and the step are in the checksum.
+    return checksum_ == other.checksum_ && parent_ == other.parent_ && movement_ == other.movement_ &&
+           end_ == other.end_ && position_ == other.position_ && attitude_ == other.attitude_ && cost_ == other.cost_ &&
+           depth_ == other.depth_ && first_entry_ == other.first_entry_ && entries_.size() == other.entries_.size() &&
+           std::equal(entries_.begin(), entries_.end(), other.entries_.begin(), same);
 }
 
 }  // namespace jink::reach::build

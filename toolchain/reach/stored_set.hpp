@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <iosfwd>
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "core/reach/reach_set.hpp"
 #include "toolchain/reach/set.hpp"
@@ -22,6 +23,11 @@ struct CostRule {
 /// Of each member [movements' lengths].
 [[nodiscard]] std::vector<double> costs_of(const Set& set, const CostRule& rule);
 
+/// Of the tables of a set, as they lie in flash.
+[[nodiscard]] std::size_t bytes_of(const ReachSet& set);
+/// And as they would, of one that may be too large for them.
+[[nodiscard]] std::size_t bytes_of(const Set& set);
+
 /// The tables, owned.
 class StoredSet {
 public:
@@ -30,6 +36,8 @@ public:
 
     /// A view of this, which outlives it.
     [[nodiscard]] ReachSet view() const;
+    /// The same but for the name.
+    [[nodiscard]] bool has_tables_of(const StoredSet& other) const;
 
 private:
     std::string name_;

@@ -50,8 +50,13 @@ struct Settings {
     MovementStep<double> step;
     DisplacementModel model = DisplacementModel::arc;
     bool attitude_in_key = true;  ///< two trajectories of one footprint are different when they head differently
-    bool keep_lateral = false;    ///< trajectories that leave the grid sideways count as well
+    bool keep_lateral = false;    ///< trajectories that leave the grid sideways, from an outer cell, count as well
+    /// Of these, so many for each cell that they end in: the smoothest, then the shortest.
+    std::size_t most_lateral = static_cast<std::size_t>(-1);
     int most_extra = 3;           ///< movements that may end in the layer they begin in, one after the other
+    std::int8_t root_pitch = 0;   ///< of the vehicle at its place, in steps; the grid stays level
+    std::int8_t most_down = 127;  ///< steepest pitch of any trajectory, in steps
+    std::int8_t most_up = 127;
     std::uint32_t most_nodes = 1U << 20U;
 };
 

@@ -2,31 +2,21 @@
 #include "toolchain/reach/wave_front.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <functional>
 #include <map>
 #include <optional>
+#include <tuple>
+
+#include "toolchain/reach/expansion.hpp"
 
 namespace jink::reach::build {
 namespace {
-
-/// Least distance of a point of a cell from its four side walls: two half-planes and two cones through the vehicle.
-double wall_distance(const Grid<double>& grid, const CellPlace& cell, const Polar<double>& p)
-{
-    double least = std::numeric_limits<double>::infinity();
-    for (const std::size_t side : {0U, 1U}) {
-        const double azimuth = grid.column_start(cell.column + side);
-        const double elevation = grid.row_start(cell.row + side);
-        least = std::min({least, p.distance * std::cos(p.vertical) * std::sin(std::abs(p.horizontal - azimuth)),
-                          p.distance * std::sin(std::abs(p.vertical - elevation))});
-    }
-    return least;
-}
 
 class Growth {
 public:
     Growth(const Settings& settings, const Constraint& constraint) : settings_(settings), constraint_(constraint)
     {
-        out_.nodes.emplace_back();
+        out_.nodes.push_back(root_of(settings));
     }
 
     WaveFront run()
@@ -42,6 +32,7 @@ public:
             for (auto& [cell, passing] : buckets) {
                 std::sort(passing.begin(), passing.end());
                 for (const NodeId id : constraint_.select(out_.nodes, passing)) {
+                    expanded_.push_back(id);
                     const std::vector<NodeId> leaves = expand(id, static_cast<int>(layer));
                     next.insert(next.end(), leaves.begin(), leaves.end());
                 }
@@ -50,81 +41,13 @@ public:
             stack = std::move(next);
         }
         out_.front = std::move(stack);
+        if (settings_.keep_lateral) {
+            keep_lateral();
+        }
         return std::move(out_);
     }
 
 private:
-    /// The child, unless it leaves the grid or is not allowed.
-    std::optional<Node> child_of(NodeId id, Movement movement) const
-    {
-        const Node& from = out_.nodes[id];
-        Node node;
-        node.parent = id;
-        node.movement = movement;
-        node.depth = static_cast<std::uint8_t>(from.depth + 1);
-        node.smooth = static_cast<std::uint8_t>(from.smooth + (is_smooth(movement) ? 1 : 0));
-        const Turn turn = turn_of(movement);
-        node.pitch_steps = static_cast<std::int8_t>(from.pitch_steps + turn.pitch);
-        node.yaw_steps = static_cast<std::int8_t>(from.yaw_steps + turn.yaw);
-        node.separations = static_cast<std::uint8_t>(from.separations & separations_of(movement));
-        node.footprint = from.footprint;
-        if (!constraint_.allows(node)) {
-            return std::nullopt;
-        }
-        std::array<Point<double>, kSamples> samples;
-        std::array<CellPlace, kSamples> cells;
-        for (int i = 0; i < kSamples; ++i) {
-            const Pose<double> pose =
-                at_share(from.pose, movement, static_cast<double>(i + 1) / kSamples, settings_.step, settings_.model);
-            const Located at = settings_.grid.locate(pose.position);
-            if (at.status != LocateStatus::inside) {
-                return std::nullopt;
-            }
-            samples[static_cast<std::size_t>(i)] = pose.position;
-            cells[static_cast<std::size_t>(i)] = at.place;
-            node.pose = pose;
-        }
-        node.end = cells.back();
-        node.wall = node.centre = std::numeric_limits<double>::infinity();
-        const Point<double> centre = settings_.grid.centre(node.end);
-        for (std::size_t i = 0; i < kSamples; ++i) {
-            note(node, settings_.grid.index(cells[i]), static_cast<std::uint8_t>(i + 1));
-            if (cells[i] == node.end) {
-                node.wall = std::min(node.wall, wall_distance(settings_.grid, node.end, to_polar(samples[i])));
-                node.centre = std::min(node.centre, (samples[i] - centre).norm());
-            }
-        }
-        return node;
-    }
-
-    static void note(Node& node, CellIndex cell, std::uint8_t sample)
-    {
-        const auto known =
-            std::find_if(node.entered.begin(), node.entered.end(), [&](const Entered& e) { return e.cell == cell; });
-        if (known != node.entered.end()) {
-            known->last = sample;
-        } else if (std::find(node.footprint.begin(), node.footprint.end(), cell) == node.footprint.end()) {
-            node.footprint.push_back(cell);
-            node.entered.push_back({cell, sample, sample});
-        }
-    }
-
-    static std::uint8_t separations_of(Movement movement)
-    {
-        switch (movement) {
-        case Movement::straight: return 0b1111;
-        case Movement::left:
-        case Movement::right: return 0b0001;
-        case Movement::up:
-        case Movement::down: return 0b0010;
-        case Movement::up_left:
-        case Movement::down_right: return 0b0100;
-        case Movement::up_right:
-        case Movement::down_left: return 0b1000;
-        }
-        return 0;
-    }
-
     /// Children that end beyond `layer`, with up to most_extra movements before them that do not.
     std::vector<NodeId> expand(NodeId id, int layer)
     {
@@ -135,8 +58,8 @@ private:
     void expand(NodeId id, int layer, int extra, std::vector<NodeId>& leaves)
     {
         for (const Movement movement : kAllMovements) {
-            std::optional<Node> node = child_of(id, movement);
-            if (!node) {
+            std::optional<Node> node = child_of(settings_, out_.nodes[id], id, movement);
+            if (!node || !constraint_.allows(*node)) {
                 continue;
             }
             if (out_.nodes.size() >= settings_.most_nodes) {
@@ -156,6 +79,39 @@ private:
                 expand(next, layer, extra + 1, leaves);
             }
         }
+    }
+
+    /// Of what was expanded and led nowhere: what ends at a side, the smoothest and shortest of each cell.
+    void keep_lateral()
+    {
+        std::vector<bool> leads(out_.nodes.size(), false);
+        const auto mark = [&](NodeId id) {
+            for (leads[0] = true; !leads[id]; id = out_.nodes[id].parent) {
+                leads[id] = true;
+            }
+        };
+        for (const NodeId id : out_.front) {
+            mark(id);
+        }
+        // Children have greater ids than their parents: from behind, the last of a way comes first.
+        std::sort(expanded_.begin(), expanded_.end(), std::greater<>());
+        std::map<CellIndex, std::vector<NodeId>> ends;
+        for (const NodeId id : expanded_) {
+            if (!leads[id] && ends_at_side(settings_, out_.nodes[id])) {
+                mark(id);
+                ends[settings_.grid.index(out_.nodes[id].end)].push_back(id);
+            }
+        }
+        for (auto& [cell, ids] : ends) {
+            std::sort(ids.begin(), ids.end(), [&](NodeId a, NodeId b) {
+                const Node& m = out_.nodes[a];
+                const Node& n = out_.nodes[b];
+                return std::make_tuple(-m.smoothness(), m.depth, a) < std::make_tuple(-n.smoothness(), n.depth, b);
+            });
+            ids.resize(std::min(ids.size(), settings_.most_lateral));
+            out_.lateral.insert(out_.lateral.end(), ids.begin(), ids.end());
+        }
+        std::sort(out_.lateral.begin(), out_.lateral.end());
     }
 
     /// Of each key the best stays, in the order of their ids.
@@ -181,6 +137,7 @@ private:
 
     const Settings& settings_;
     const Constraint& constraint_;
+    std::vector<NodeId> expanded_;
     WaveFront out_;
 };
 

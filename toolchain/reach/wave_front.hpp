@@ -27,6 +27,8 @@ struct Constraint {
 struct WaveFront {
     std::vector<Node> nodes;    ///< root first, parents before children; all that were made
     std::vector<NodeId> front;  ///< that end in the last layer
+    /// That lead to none of these and end in a cell at a side, with Settings::keep_lateral.
+    std::vector<NodeId> lateral;
     std::uint32_t extra_dropped = 0;
     bool truncated = false;  ///< Settings::most_nodes was reached
 };

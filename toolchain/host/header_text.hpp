@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "firmware/linux/vehicle_file.hpp"
+
+// Generated C++ headers: numbers, arrays and names as text, and the vehicle and the file that they come from and go to.
+
+namespace jink::host {
+
+/// The shortest text that reads as the same number.
+[[nodiscard]] std::string literal(float value);
+template <std::integral T>
+[[nodiscard]] std::string literal(T value)
+{
+    return std::to_string(static_cast<int>(value));
+}
+
+/// `inline constexpr std::array<type, n> name{...};` in lines of up to 118 characters. `items`: as they are written,
+/// numbers or lists in braces.
+void append_array_of(std::string& out, const std::string& type, const std::string& name,
+                     const std::vector<std::string>& items);
+template <class Range>
+void append_array(std::string& out, const std::string& type, const std::string& name, const Range& values)
+{
+    std::vector<std::string> items;
+    items.reserve(values.size());
+    for (const auto& value : values) {
+        items.push_back(literal(value));
+    }
+    append_array_of(out, type, name, items);
+}
+
+/// What is left of a name in a C++ name: `my quad-3` gives MyQuad3. Empty where nothing is, or a digit comes first.
+[[nodiscard]] std::string identifier_of(const std::string& name);
+
+/// The vehicle of a file, with a name that C++ names can be made of. Complaints go to standard error.
+/// @throws CLI::RuntimeError with kExitBadInput
+[[nodiscard]] files::Vehicle read_named_vehicle(const std::string& command, const std::string& file);
+/// @throws CLI::RuntimeError with kExitBadInput where the file cannot be written
+void write_whole(const std::string& command, const std::string& file, const std::string& text);
+/// One line on standard error, `jink COMMAND: why`.
+/// @throws CLI::RuntimeError with kExitBadInput
+[[noreturn]] void refuse(const std::string& command, const std::string& why);
+
+}  // namespace jink::host

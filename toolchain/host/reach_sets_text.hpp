@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "toolchain/reach/vehicle_build.hpp"
+
+// Reach sets as a C++ header.
+
+namespace jink::host {
+
+/// `inline constexpr VehicleSets k<Vehicle>Sets`, or k<Vehicle>ReducedSets, in jink::reach, with its tables before it.
+/// `source` names the vehicle file, whose vehicle has a name that identifier_of takes.
+[[nodiscard]] std::string reach_sets_header(const reach::build::BuiltVehicle& built, const std::string& source);
+
+}  // namespace jink::host

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/reach/best_paths.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <queue>
+#include <set>
+#include <tuple>
+
+#include <Eigen/Geometry>
+
+#include "core/reach/reach_set.hpp"
+#include "toolchain/reach/expansion.hpp"
+
+namespace jink::reach::build {
+namespace {
+
+/// Distances are told apart no finer than this, so that every machine builds the same set.
+constexpr double kFinest = 1e-9;
+
+/// Distance of a node's place from the line from the vehicle through the centre of its column [movements' lengths].
+double off_centre_line(const Settings& settings, const Node& node)
+{
+    const Point<double> centre = settings.grid.centre(node.end);
+    return node.pose.position.cross(centre.normalized()).norm();
+}
+
+int turns_of(const Node& node) { return node.depth - node.smooth; }
+
+/// Fewer turns, then fewer movements, then nearer to the centre line; of equals the older one.
+using Rank = std::tuple<int, int, double, NodeId>;
+
+class BestSearch {
+public:
+    BestSearch(const Settings& settings, const BestRule& rule) : settings_(settings), rule_(rule) {}
+
+    WaveFront run()
+    {
+        out_.nodes.push_back(root_of(settings_));
+        extra_.push_back(0);
+        expand(0);
+        while (!waiting_.empty()) {
+            const NodeId id = std::get<NodeId>(waiting_.top());
+            waiting_.pop();
+            const Node& node = out_.nodes[id];
+            if (node.end.layer + 1U == settings_.grid.layers()) {
+                ends_.push_back(id);
+            } else if (std::size_t& known = known_[state_of(node)]; known < rule_.positions) {
+                ++known;
+                expand(id);
+            }
+        }
+        choose_columns();
+        if (rule_.wanted == BestFor::cells) {
+            choose_cells();
+        }
+        std::sort(out_.front.begin(), out_.front.end());
+        return std::move(out_);
+    }
+
+private:
+    using State = std::array<int, 3>;
+    [[nodiscard]] State state_of(const Node& node) const
+    {
+        return {settings_.grid.index(node.end), node.pitch_steps, node.yaw_steps};
+    }
+
+    [[nodiscard]] Rank rank_of(NodeId id) const
+    {
+        const Node& node = out_.nodes[id];
+        return {turns_of(node), node.depth, std::round(off_centre_line(settings_, node) / kFinest), id};
+    }
+
+    void expand(NodeId id)
+    {
+        for (const Movement movement : kAllMovements) {
+            std::optional<Node> node = child_of(settings_, out_.nodes[id], id, movement);
+            if (!node || node->depth > kMaxDepth) {
+                continue;
+            }
+            const bool beyond = id == 0 || node->end.layer > out_.nodes[id].end.layer;
+            const int extra = beyond ? 0 : extra_[id] + 1;
+            if (extra > settings_.most_extra) {
+                ++out_.extra_dropped;
+                continue;
+            }
+            const auto next = static_cast<NodeId>(out_.nodes.size());
+            out_.nodes.push_back(*std::move(node));
+            extra_.push_back(extra);
+            waiting_.push(rank_of(next));
+        }
+    }
+
+    /// Ends came in the order of their ranks but for the distance, which counts before the number of movements here.
+    void choose_columns()
+    {
+        std::map<CellIndex, NodeId> best;
+        const auto ahead = [&](NodeId a, NodeId b) {
+            const auto [turns_a, depth_a, off_a, id_a] = rank_of(a);
+            const auto [turns_b, depth_b, off_b, id_b] = rank_of(b);
+            return std::tie(turns_a, off_a, depth_a, id_a) < std::tie(turns_b, off_b, depth_b, id_b);
+        };
+        for (const NodeId id : ends_) {
+            const auto [place, is_new] = best.try_emplace(settings_.grid.index(out_.nodes[id].end), id);
+            if (!is_new && ahead(id, place->second)) {
+                place->second = id;
+            }
+        }
+        for (const auto& [cell, id] : best) {
+            out_.front.push_back(id);
+        }
+    }
+
+    /// Whole trajectories once more, the one that adds least before the others: fewest new movements, fewest turns.
+    void choose_cells()
+    {
+        std::vector<bool> kept(out_.nodes.size(), false);
+        std::set<CellIndex> ended;
+        kept[0] = true;
+        const auto keep = [&](NodeId id) {
+            for (; !kept[id]; id = out_.nodes[id].parent) {
+                kept[id] = true;
+                ended.insert(settings_.grid.index(out_.nodes[id].end));
+            }
+        };
+        for (const NodeId id : out_.front) {
+            keep(id);
+        }
+        std::map<CellIndex, std::vector<NodeId>> through;
+        for (const NodeId end : ends_) {
+            for (NodeId id = end; id != 0; id = out_.nodes[id].parent) {
+                std::vector<NodeId>& of = through[settings_.grid.index(out_.nodes[id].end)];
+                if (of.empty() || of.back() != end) {
+                    of.push_back(end);
+                }
+            }
+        }
+        const auto adds = [&](NodeId end) {
+            int movements = 0;
+            for (NodeId id = end; !kept[id]; id = out_.nodes[id].parent) {
+                ++movements;
+            }
+            return movements;
+        };
+        // From the far cells to the near ones: what leads to a far cell ends in near ones on its way.
+        for (auto cell = through.rbegin(); cell != through.rend(); ++cell) {
+            if (ended.count(cell->first) != 0) {
+                continue;
+            }
+            std::optional<std::tuple<int, int, NodeId>> best;
+            for (const NodeId end : cell->second) {
+                const std::tuple<int, int, NodeId> rank{turns_of(out_.nodes[end]), adds(end), end};
+                best = best ? std::min(*best, rank) : rank;
+            }
+            out_.front.push_back(std::get<NodeId>(*best));
+            keep(out_.front.back());
+        }
+    }
+
+    const Settings& settings_;
+    const BestRule& rule_;
+    WaveFront out_;
+    std::vector<int> extra_;  ///< of each node: movements up to it that ended in the layer they began in, in a row
+    std::vector<NodeId> ends_;
+    std::map<State, std::size_t> known_;
+    std::priority_queue<Rank, std::vector<Rank>, std::greater<>> waiting_;
+};
+
+}  // namespace
+
+Set best_paths(const Settings& settings, const BestRule& rule)
+{
+    return kept(BestSearch(settings, rule).run(), kFromBest);
+}
+
+}  // namespace jink::reach::build
