@@ -85,6 +85,7 @@ inline constexpr std::uint32_t kReachMark = 150;     ///< a set that is placed: 
 inline constexpr std::uint32_t kReachDepths = 2;     ///< and sixteen of its nodes
 inline constexpr std::uint32_t kReachCells = 2;      ///< and four of its cells and a threat that may come near to them
 inline constexpr std::uint32_t kReachNode = 1;       ///< node that is looked at
+inline constexpr std::uint32_t kReachGlances = 1;  ///< and three threats that may come near, each a look from afar
 inline constexpr std::uint32_t kReachLook = 2;       ///< and a ball near it
 inline constexpr std::uint32_t kReachSolid = 6;      ///< or any other solid
 inline constexpr std::uint32_t kReachEntries = 2;    ///< eight entries of footprints, when ways are chosen

@@ -4,14 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jink::reach::detail {
+namespace jink::reach {
 
-CellBalls::CellBalls(const Grid<float>& grid) noexcept : rows_(grid.rows())
+CellBalls::CellBalls(const Grid<float>& grid) noexcept : grid_(grid)
 {
     constexpr float kRounding = 1.0F + 1e-5F;
     for (std::size_t column = 0; column < grid.columns(); ++column) {
-        for (std::size_t row = 0; row < rows_; ++row) {
-            directions_[column * rows_ + row] =
+        for (std::size_t row = 0; row < grid.rows(); ++row) {
+            directions_[column * grid.rows() + row] =
                 from_polar(Polar<float>{1.0F, 0.5F * (grid.column_start(column) + grid.column_start(column + 1)),
                                         0.5F * (grid.row_start(row) + grid.row_start(row + 1))});
         }
@@ -20,7 +20,7 @@ CellBalls::CellBalls(const Grid<float>& grid) noexcept : rows_(grid.rows())
     for (std::size_t layer = 0; layer < grid.layers(); ++layer) {
         distances_[layer] = 0.5F * (grid.layer_start(layer) + grid.layer_end(layer));
     }
-    for (std::size_t row = 0; row < rows_; ++row) {
+    for (std::size_t row = 0; row < grid.rows(); ++row) {
         const float low = grid.row_start(row);
         const float high = grid.row_start(row + 1);
         const float middle = 0.5F * (low + high);
@@ -43,4 +43,4 @@ CellBalls::CellBalls(const Grid<float>& grid) noexcept : rows_(grid.rows())
     }
 }
 
-}  // namespace jink::reach::detail
+}  // namespace jink::reach

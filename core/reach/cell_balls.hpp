@@ -5,7 +5,7 @@
 
 #include "core/reach/grid.hpp"
 
-namespace jink::reach::detail {
+namespace jink::reach {
 
 /// The balls about all cells of a grid (as `ball_of` has them), with few sines: directions of the centres, and radii,
 /// which are the same for all columns. Made in O(columns + rows * layers).
@@ -15,14 +15,25 @@ class CellBalls {
 public:
     static constexpr std::size_t kMaxDirections = 64;
 
+    CellBalls() noexcept = default;
     explicit CellBalls(const Grid<float>& grid) noexcept;
 
+    [[nodiscard]] bool are_of(const Grid<float>& grid) const noexcept
+    {
+        return grid_.layers() == grid.layers() && grid_.columns() == grid.columns() && grid_.rows() == grid.rows() &&
+               grid_.distance() == grid.distance() && grid_.horizontal() == grid.horizontal() &&
+               grid_.vertical() == grid.vertical();
+    }
     /// Of the cells' middles; times the middle of a layer: their centres.
     [[nodiscard]] const Vec3& direction(std::size_t column, std::size_t row) const noexcept
     {
-        return directions_[column * rows_ + row];
+        return directions_[column * grid_.rows() + row];
     }
     [[nodiscard]] float distance(std::size_t layer) const noexcept { return distances_[layer]; }
+    [[nodiscard]] Vec3 centre(const CellPlace& place) const noexcept
+    {
+        return distances_[place.layer] * direction(place.column, place.row);
+    }
     [[nodiscard]] float radius(std::size_t layer, std::size_t row) const noexcept
     {
         return radii_[layer * kMaxRows + row];
@@ -34,10 +45,10 @@ public:
     }
 
 private:
-    std::size_t rows_;
-    std::array<Vec3, kMaxDirections> directions_;
+    Grid<float> grid_{0, 0, 0, 0.0F, 0.0F, 0.0F};
+    std::array<Vec3, kMaxDirections> directions_{};
     std::array<float, kMaxLayers> distances_{};
     std::array<float, kMaxLayers * kMaxRows> radii_{};
 };
 
-}  // namespace jink::reach::detail
+}  // namespace jink::reach

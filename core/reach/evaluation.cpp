@@ -12,18 +12,21 @@ bool any_node_is_free(std::span<const Level> nodes, AvoidanceRun run) noexcept
     return std::any_of(nodes.begin() + 1, nodes.end(), [&](Level level) { return is_free(level, run); });
 }
 
-CellIndex nearest_outer(const ReachSet& set, std::span<const Level> cells, const Vec3& goal, AvoidanceRun run,
-                        const ChoiceRule& rule) noexcept
+CellIndex nearest_outer(const ReachSet& set, const CellBalls& balls, std::span<const Level> cells, const Vec3& goal,
+                        AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
     CellIndex best = kNoCell;
     float least = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < set.grid.cells(); ++i) {
         const auto cell = static_cast<CellIndex>(i);
-        const CellPlace place = set.grid.place(cell);
-        if (!is_free(cells[i], run) || !set.grid.is_outer(place) || place.layer < rule.least_outer_layer) {
+        if (!is_free(cells[i], run)) {
             continue;
         }
-        const float distance = (set.grid.centre(place) - goal).squaredNorm();
+        const CellPlace place = set.grid.place(cell);
+        if (!set.grid.is_outer(place) || place.layer < rule.least_outer_layer) {
+            continue;
+        }
+        const float distance = (balls.centre(place) - goal).squaredNorm();
         if (distance < least) {
             least = distance;
             best = cell;
@@ -82,6 +85,12 @@ void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<cons
 Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells, const Vec3& goal,
                       AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
+    return find_best_path(set, CellBalls(set.grid), nodes, cells, goal, run, rule);
+}
+
+Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+                      std::span<const Level> cells, const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule) noexcept
+{
     Choice choice;
     choice.run = run;
     if (!any_node_is_free(nodes, run)) {
@@ -101,7 +110,7 @@ Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::sp
         }
     }
     if (choice.cell == kNoCell) {
-        choice.cell = nearest_outer(set, cells, goal, run, rule);
+        choice.cell = nearest_outer(set, balls, cells, goal, run, rule);
     }
     if (choice.cell == kNoCell) {
         choice.status = PathStatus::no_outer_cell;
@@ -115,9 +124,16 @@ Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::sp
 Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
                              const Vec3& goal, AvoidanceRun loosest, const ChoiceRule& rule) noexcept
 {
+    return find_best_path_of_all(set, CellBalls(set.grid), nodes, cells, goal, loosest, rule);
+}
+
+Choice find_best_path_of_all(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+                             std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
+                             const ChoiceRule& rule) noexcept
+{
     Choice choice;
     for (int run = static_cast<int>(AvoidanceRun::soft_constraints); run >= static_cast<int>(loosest); --run) {
-        choice = find_best_path(set, nodes, cells, goal, static_cast<AvoidanceRun>(run), rule);
+        choice = find_best_path(set, balls, nodes, cells, goal, static_cast<AvoidanceRun>(run), rule);
         if (choice.node != kNoNode) {
             return choice;
         }

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/base/work_budget.hpp"
+#include "core/reach/cell_balls.hpp"
 #include "core/reach/reach_set.hpp"
 
 // Which trajectories are free, of which threats; and which one to fly (Gomola 6.7.1, 6.7.2).
@@ -83,10 +84,17 @@ struct ChoiceRule {
 /// O(nodes + cells).
 [[nodiscard]] Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
                                     const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule = {}) noexcept;
+/// The same with the cells' centres at hand, which depend on the grid alone.
+[[nodiscard]] Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+                                    std::span<const Level> cells, const Vec3& goal, AvoidanceRun run,
+                                    const ChoiceRule& rule) noexcept;
 
 /// The same in the strictest run that leaves a way, from soft constraints down to `loosest`.
 [[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes,
                                            std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
                                            const ChoiceRule& rule = {}) noexcept;
+[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+                                           std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
+                                           const ChoiceRule& rule) noexcept;
 
 }  // namespace jink::reach

@@ -70,11 +70,16 @@ PointStatus LidarScan::add(const Polar<float>& point) noexcept
                              std::abs(point.vertical) <= grid_->vertical();
         return farther ? PointStatus::beyond : PointStatus::outside;
     }
-    const CellIndex cell = grid_->index(at.place);
-    hits_[cell] = one_more(hits_[cell]);
-    distances_[cell] += point.distance;
-    ++points_;
+    add(at.place, point.distance);
     return PointStatus::counted;
+}
+
+void LidarScan::add(const CellPlace& place, float distance) noexcept
+{
+    const CellIndex cell = grid_->index(place);
+    hits_[cell] = one_more(hits_[cell]);
+    distances_[cell] += distance;
+    ++points_;
 }
 
 void LidarScan::add_invalid(std::size_t column, std::size_t row) noexcept

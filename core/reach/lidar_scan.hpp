@@ -33,6 +33,9 @@ public:
     /// A first return, in the grid's frame. O(1).
     PointStatus add(const Point<float>& point) noexcept { return add(to_polar(point)); }
     PointStatus add(const Polar<float>& point) noexcept;
+    /// The same of a point that is known to lie in a cell of the grid.
+    /// @param distance  from the sensor [grid's unit]
+    void add(const CellPlace& place, float distance) noexcept;
     /// A ray in a direction of the grid that was fired and came back from nowhere, or was not fired or is known to be
     /// wrong: such a direction is seen that much less. O(1).
     void add_invalid(std::size_t column, std::size_t row) noexcept;

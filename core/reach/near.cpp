@@ -73,26 +73,23 @@ void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
 
 Vec3 at_time(const NearThreat& threat, Seconds t) noexcept { return threat.position + threat.velocity * t; }
 
-/// Depths of the nodes that end in a layer.
-struct Depths {
-    std::uint8_t least = 0xFF;
-    std::uint8_t most = 0;
-};
-using LayerDepths = std::array<Depths, kMaxLayers>;
-
-LayerDepths depths_of(const ReachSet& set) noexcept
-{
-    LayerDepths depths;
-    const std::size_t in_layer = set.grid.columns() * set.grid.rows();
-    for (std::size_t node = 1; node < set.nodes(); ++node) {
-        Depths& of = depths[set.end[node] / in_layer];
-        of.least = std::min(of.least, set.depth[node]);
-        of.most = std::max(of.most, set.depth[node]);
-    }
-    return depths;
-}
-
 }  // namespace
+
+/// Of the nodes that end in each cell.
+struct NearThreats::Depths {
+    std::array<std::uint8_t, kMaxReachCells> least{};
+    std::array<std::uint8_t, kMaxReachCells> most{};  ///< 0: no node ends in it
+
+    explicit Depths(const ReachSet& set) noexcept
+    {
+        least.fill(0xFF);
+        for (std::size_t node = 1; node < set.nodes(); ++node) {
+            const CellIndex end = set.end[node];
+            least[end] = std::min(least[end], set.depth[node]);
+            most[end] = std::max(most[end], set.depth[node]);
+        }
+    }
+};
 
 float NearThreats::shrunk_by(float margin_at_start) const noexcept
 {
@@ -102,6 +99,12 @@ float NearThreats::shrunk_by(float margin_at_start) const noexcept
 float NearThreats::shrunk_at(float shrunk, Seconds t) const noexcept
 {
     return shrunk > 0.0F ? std::max(0.0F, shrunk - rule_.escape.speed * t) : 0.0F;
+}
+
+void NearThreats::set_far(NearThreat& threat, Seconds last, const Placed& placed) const noexcept
+{
+    const float half_way = 0.5F * (placed.unit + placed.period * threat.velocity.norm());
+    threat.far = threat.growth.at(last) + threat.body + rule_.room + bulge_ + half_way;
 }
 
 void NearThreats::add_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
@@ -121,6 +124,7 @@ void NearThreats::add_track(const world::Situation& situation, const world::Trac
     }
     threat.shrunk =
         shrunk_by(geometry::box_distance(threat.half, threat.position - placed.origin) - threat.growth.at(0.0F));
+    set_far(threat, last, placed);
     near_.unchecked_push_back(threat);
 }
 
@@ -141,6 +145,7 @@ void NearThreats::add_obstacle(const world::Situation& situation, const geometry
             return;
         }
         threat.shrunk = shrunk_by(margin);
+        set_far(threat, 0.0F, placed);
     } else {
         threat.shape = &shape;
         grow_by_box(threat, own);
@@ -183,25 +188,18 @@ void NearThreats::collect(const world::Situation& situation, const Placed& place
     keep_in_shrunk_ = shrunk_by(keep_in_ - (placed.origin - home_).head<2>().norm());
 }
 
-bool NearThreats::mark(const Placed& placed, WorkBudget& budget) noexcept
+bool NearThreats::mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept
 {
     const ReachSet& set = *placed.set;
     if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths +
                                                  set.grid.cells() * (1 + near_.size()) / 4 * units::kReachCells))) {
         return false;
     }
-    const LayerDepths depths = depths_of(set);
-    const CellBalls balls(set.grid);
+    const Depths depths(set);
     std::fill_n(of_cell_.begin(), set.grid.cells(), ThreatBits{});
     for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
-        const Depths& depth = depths[layer];
-        if (depth.least > depth.most) {
-            continue;
-        }
-        const Seconds first = placed.period * static_cast<float>(depth.least - 1);
-        const Seconds last = placed.period * static_cast<float>(depth.most + 1);
         for (std::size_t i = 0; i < near_.size(); ++i) {
-            mark_layer(placed, balls, layer, i, first, last);
+            mark_layer(placed, balls, layer, i, depths);
         }
     }
     return true;
@@ -209,34 +207,40 @@ bool NearThreats::mark(const Placed& placed, WorkBudget& budget) noexcept
 
 /// In the set's frame, where the cells are the same for every plan.
 void NearThreats::mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat,
-                             Seconds first, Seconds last) noexcept
+                             const Depths& depths) noexcept
 {
     const Grid<float>& grid = placed.set->grid;
     const NearThreat& near = near_[threat];
     // No point of a movement is farther from one of its ends than half of it.
-    const float around = kHalfMovement + (bulge_ + rule_.room + near.growth.at(last) + near.body) / placed.unit;
-    const Vec3 from = placed.to_set(at_time(near, first));
-    const Vec3 way = placed.to_set(at_time(near, last)) - from;
-    const float way_squared = way.squaredNorm();
-    const float per_way = way_squared > 0.0F ? 1.0F / way_squared : 0.0F;
+    const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
+    const float around = kHalfMovement + (bulge_ + rule_.room + near.growth.at(longest) + near.body) / placed.unit;
+    const Vec3 at_start = placed.to_set(near.position);
+    const Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
+    const float speed_squared = per_period.squaredNorm();
+    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
     const float height = near.is_tall ? near.half.z() / placed.unit : 0.0F;
-    ThreatBits* cell = &of_cell_[grid.index({static_cast<std::uint8_t>(layer), 0, 0})];
+    std::size_t cell = grid.index({static_cast<std::uint8_t>(layer), 0, 0});
     for (std::size_t column = 0; column < grid.columns(); ++column) {
         for (std::size_t row = 0; row < grid.rows(); ++row, ++cell) {
+            if (depths.most[cell] == 0) {
+                continue;
+            }
             const Vec3 centre = balls.distance(layer) * balls.direction(column, row);
             const float size = balls.radius(layer, row) + around;
             if (near.shape != nullptr) {
                 if (distance_to(near, placed.to_world(centre)) <= size * placed.unit) {
-                    cell->add(threat);
+                    of_cell_[cell].add(threat);
                 }
                 continue;
             }
-            const Vec3 apart = centre - from;
-            const float share = std::clamp(apart.dot(way) * per_way, 0.0F, 1.0F);
-            Vec3 nearest = apart - share * way;
+            // Nearest while some node comes to the cell, or leaves it.
+            const Vec3 apart = centre - at_start;
+            const float when = std::clamp(apart.dot(per_period) * per_speed, static_cast<float>(depths.least[cell] - 1),
+                                          static_cast<float>(depths.most[cell] + 1));
+            Vec3 nearest = apart - when * per_period;
             nearest.z() = std::max(std::abs(nearest.z()) - height, 0.0F);
             if (nearest.squaredNorm() <= size * size) {
-                cell->add(threat);
+                of_cell_[cell].add(threat);
             }
         }
     }
@@ -294,9 +298,10 @@ Level NearThreats::in_airspace(const Vec3& to, Seconds end) const noexcept
 Level NearThreats::against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept
 {
     constexpr Level kBlocked = static_cast<Level>(AvoidanceRun::obstacles);
+    constexpr Level kMet = static_cast<Level>(AvoidanceRun::intruders);
     Level level = in_airspace(piece.to, piece.end);
     for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
-        for (std::uint32_t left = bits.words[word]; left != 0 && level != kBlocked; left &= left - 1) {
+        for (std::uint32_t left = bits.words[word]; left != 0 && level > kMet; left &= left - 1) {
             const std::size_t i = word * 32 + static_cast<std::size_t>(std::countr_zero(left));
             if (!budget.spend(near_[i].shape != nullptr ? units::kReachSolid : units::kReachLook)) {
                 return kBlocked;
@@ -319,13 +324,39 @@ Level NearThreats::level(const Placed& placed, NodeIndex node, WorkBudget& budge
         return static_cast<Level>(AvoidanceRun::obstacles);
     }
     const NodeIndex parent = set.parent[node];
+    const Seconds end = placed.time(node);
+    const Piece piece{placed.node(parent), placed.node(node), end - placed.period, end, bulge_};
     // At the root everything may be near; it has nine children at most.
     ThreatBits bits = parent == 0 ? all_ : of_cell_[set.end[parent]];
     for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
         bits.words[word] |= of_cell_[set.end[node]].words[word];
     }
-    const Seconds end = placed.time(node);
-    return against(bits, {placed.node(parent), placed.node(node), end - placed.period, end, bulge_}, budget);
+    return keep_near(piece, bits, budget) ? against(bits, piece, budget) : static_cast<Level>(AvoidanceRun::obstacles);
+}
+
+/// Takes off those that one look from the middle of the piece sees to be far. False when the budget does not allow for
+/// it.
+bool NearThreats::keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& budget) const noexcept
+{
+    const Vec3 middle = 0.5F * (piece.from + piece.to);
+    const Seconds halfway = 0.5F * (piece.start + piece.end);
+    std::uint32_t looks = 0;
+    for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
+        for (std::uint32_t left = bits.words[word]; left != 0; left &= left - 1) {
+            const int bit = std::countr_zero(left);
+            const NearThreat& threat = near_[word * 32 + static_cast<std::size_t>(bit)];
+            ++looks;
+            if (threat.shape != nullptr) {
+                continue;
+            }
+            Vec3 apart = at_time(threat, halfway) - middle;
+            apart.z() = threat.is_tall ? std::max(std::abs(apart.z()) - threat.half.z(), 0.0F) : apart.z();
+            if (apart.squaredNorm() > threat.far * threat.far) {
+                bits.words[word] &= ~(std::uint32_t{1} << static_cast<unsigned>(bit));
+            }
+        }
+    }
+    return budget.spend((looks + 2) / 3 * units::kReachGlances);
 }
 
 }  // namespace jink::reach::detail

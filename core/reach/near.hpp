@@ -34,6 +34,7 @@ struct NearThreat {
     world::Growth growth;          ///< of the ball, or of what a solid is grown by
     float shrunk = 0.0F;           ///< by the escape rule, at time 0 [m]
     float body = 0.0F;     ///< ball: what the own box adds to its radius, at most; of a tall one in the level plane [m]
+    float far = 0.0F;      ///< ball: farther apart than this halfway through a movement is apart all through it [m]
     bool is_tall = false;  ///< ball: an upright capsule, whose heights are looked at by `half` alone
     bool is_track = false;
 };
@@ -65,12 +66,13 @@ public:
 
     /// Finds, for each cell in which a node ends, what may come near to the way to or from there at the times at which
     /// a node is there. False when the budget does not allow for it. O(nodes + cells * threats).
-    [[nodiscard]] bool mark(const Placed& placed, WorkBudget& budget) noexcept;
+    [[nodiscard]] bool mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept;
 
     /// Level of the movement that leads to `node`, by what is near and by the bounds of the airspace:
     /// obstacles, intruders, soft_constraints (less room than wanted) or kFree. What is told is safe: the movement is
     /// taken as its chord with its bulge around it, threats as large as they are at its end; solids that are no balls
-    /// as up to an eighth of a movement nearer than they are. A budget that runs out: obstacles. O(near threats).
+    /// as up to an eighth of a movement nearer than they are. What meets an intruder is not looked at any further. A
+    /// budget that runs out: obstacles. O(near threats).
     [[nodiscard]] Level level(const Placed& placed, NodeIndex node, WorkBudget& budget) const noexcept;
 
     /// The same of any piece, against all that is near. O(threats).
@@ -81,8 +83,11 @@ public:
 private:
     [[nodiscard]] Level against(const NearThreat& threat, const Piece& piece) const noexcept;
     [[nodiscard]] Level against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept;
-    void mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat, Seconds first,
-                    Seconds last) noexcept;
+    struct Depths;
+    void set_far(NearThreat& threat, Seconds last, const Placed& placed) const noexcept;
+    [[nodiscard]] bool keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& budget) const noexcept;
+    void mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat,
+                    const Depths& depths) noexcept;
     [[nodiscard]] Level in_airspace(const Vec3& to, Seconds end) const noexcept;
     void add_track(const world::Situation& situation, const world::Track& track, const Placed& placed, Seconds lead,
                    float range) noexcept;

@@ -31,7 +31,8 @@ constexpr float kLeastSide = 0.1F;
 
 bool fits(const ReachSet* set) noexcept
 {
-    return set != nullptr && set->nodes() <= kMaxReachNodes && set->grid.cells() <= kMaxReachCells;
+    return set != nullptr && set->nodes() > 0 && set->nodes() <= kMaxReachNodes &&
+           set->grid.cells() <= kMaxReachCells && CellBalls::serves(set->grid);
 }
 
 /// The point of the reference that lies `ahead` [m] in front of the vehicle, or its end.
@@ -92,20 +93,10 @@ bool suits(const VehicleSets& sets, const vehicle::VehicleLimits& limits) noexce
            sets.most_speed * sets.cruise_speed >= kRounding * limits.cruise_speed;
 }
 
-Planner::Planner(const Settings& settings) noexcept : settings_(settings)
-{
-    if (is_valid(settings_)) {
-        static_cast<void>(picture_.configure(settings_.sets->segments.front().emergency->grid));
-    }
-}
-
 bool Planner::configure(const Settings& settings) noexcept
 {
     if (!is_valid(settings)) {
         return false;
-    }
-    if (settings.sets != settings_.sets) {
-        static_cast<void>(picture_.configure(settings.sets->segments.front().emergency->grid));
     }
     settings_ = settings;
     return true;
@@ -147,14 +138,18 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
         placed.cosine = std::cos(course + kTurns[i]);
         placed.sine = std::sin(course + kTurns[i]);
         ++report_.headings;
+        PlanStatus status = PlanStatus::none_available;
         for (const ReachSet* set : {of->navigation, of->emergency}) {
-            placed.set = set;
-            report_.emergency = set == of->emergency;
-            const PlanStatus status = try_set(situation, placed, start, budget, out);
-            if (status != PlanStatus::none_available) {
-                return status;
+            if (status == PlanStatus::none_available && set != placed.set) {
+                placed.set = set;
+                report_.emergency = set == of->emergency;
+                status = try_set(situation, placed, start, budget, out);
             }
         }
+        if (status != PlanStatus::none_available) {
+            return status;
+        }
+        placed.set = nullptr;
     }
     return PlanStatus::none_available;
 }
@@ -224,20 +219,30 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     const std::span<Level> cells(cells_.data(), set.grid.cells());
     const std::span<Level> nodes(nodes_.data(), set.nodes());
     std::fill(blocks.begin(), blocks.end(), kFree);
-    if (settings_.blocks_unseen && picture_.is_known() && !picture_.is_fresh(situation.now, kScanAge)) {
-        return PlanStatus::none_available;  // blind where it used to see
+    if (picture_ != nullptr && picture_->is_known()) {
+        const bool fresh = picture_->is_fresh(situation.now, kScanAge);
+        if (!fresh && settings_.blocks_unseen) {
+            return PlanStatus::none_available;  // blind where it used to see
+        }
+        if (fresh && !picture_->rate(placed, settings_.blocks_unseen, blocks, budget)) {
+            return PlanStatus::budget_spent;
+        }
     }
-    if (picture_.is_fresh(situation.now, kScanAge) && !picture_.rate(placed, settings_.blocks_unseen, blocks, budget)) {
-        return PlanStatus::budget_spent;
+    if (!balls_.are_of(set.grid)) {
+        balls_ = CellBalls(set.grid);
     }
     near_.collect(situation, placed, start.lead, start.stop, {settings_.escape, settings_.room});
     report_.near = static_cast<std::uint16_t>(near_.size());
     const auto entries = static_cast<std::uint32_t>(set.entries.size());
-    if (!near_.mark(placed, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
+    if (!near_.mark(placed, balls_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
         return PlanStatus::budget_spent;
     }
-    evaluate_with(
-        set, blocks, [&](NodeIndex node) { return near_.level(placed, node, budget); }, nodes, cells);
+    // What meets anything is of no use, nor what follows on it, whatever it meets.
+    const auto own_level = [&](NodeIndex node) {
+        const Level level = near_.level(placed, node, budget);
+        return is_free(level, AvoidanceRun::hard_constraints) ? level : static_cast<Level>(AvoidanceRun::obstacles);
+    };
+    evaluate_with(set, blocks, own_level, nodes, cells);
     const float range = placed.unit * set.grid.distance();
     const Vec3 goal = placed.to_set(goal_of(situation, start.way, kGoalShare * range));
     const ChoiceRule rule{false, settings_.least_outer_layer};
@@ -246,7 +251,8 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
         if (!budget.spend(units::kReachEntries * (1U + entries / 8U))) {
             break;
         }
-        const Choice choice = find_best_path_of_all(set, nodes, cells, goal, AvoidanceRun::hard_constraints, rule);
+        const Choice choice =
+            find_best_path_of_all(set, balls_, nodes, cells, goal, AvoidanceRun::hard_constraints, rule);
         report_.path = choice.status;
         report_.run = choice.run;
         report_.node = choice.node;

@@ -55,19 +55,18 @@ public:
     /// The supervisor need not ask for a wider vehicle first: Settings::room.
     static constexpr bool kKeepsRoom = true;
 
-    explicit Planner(const Settings& settings) noexcept;
+    explicit Planner(const Settings& settings) noexcept { static_cast<void>(configure(settings)); }
 
     [[nodiscard]] world::PlanStatus plan(const world::Situation& situation, WorkBudget& budget,
                                          world::Manoeuvre& out) noexcept;
 
     [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
-    /// Refused (false, nothing changed) when out of range, or when a set has more nodes or cells than there is room
-    /// for.
+    /// Refused (false, nothing changed; without sets from the start every plan is bad_input) when out of range, or when
+    /// a set has more nodes or cells than there is room for.
     [[nodiscard]] bool configure(const Settings& settings) noexcept;
     [[nodiscard]] const Report& last() const noexcept { return report_; }
-    /// What a scanning sensor sees; to be filled between plans.
-    [[nodiscard]] ScanPicture& picture() noexcept { return picture_; }
-    [[nodiscard]] const ScanPicture& picture() const noexcept { return picture_; }
+    /// What a scanning sensor sees from now on; null: nothing is known of such a sensor. It outlives this.
+    void look_at(const ScanPicture* picture) noexcept { picture_ = picture; }
 
 private:
     struct Start;
@@ -81,7 +80,8 @@ private:
 
     Settings settings_;
     Report report_;
-    ScanPicture picture_;
+    const ScanPicture* picture_ = nullptr;
+    CellBalls balls_;
     detail::NearThreats near_;
     std::array<Level, kMaxReachNodes> nodes_{};
     std::array<Level, kMaxReachCells> blocks_{};

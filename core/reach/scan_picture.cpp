@@ -16,26 +16,49 @@ constexpr std::array<float, 2> kInside{0.25F, 0.75F};
 /// Anything that is hit is an obstacle: how large it is, is no question of life.
 constexpr float kAnyHit = 1e-3F;
 
-Vec3 inside_of(const Grid<float>& grid, const CellPlace& place, float distance, float across, float up) noexcept
-{
-    const auto between = [](float from, float to, float share) { return from + share * (to - from); };
-    return from_polar(
-        Polar<float>{between(grid.layer_start(place.layer), grid.layer_end(place.layer), distance),
-                     between(grid.column_start(place.column), grid.column_start(place.column + 1U), across),
-                     between(grid.row_start(place.row), grid.row_start(place.row + 1U), up)});
-}
-
-template <class Look>
-void for_each_inside(const Grid<float>& grid, const CellPlace& place, const Look& look) noexcept
-{
-    for (const float distance : kInside) {
-        for (const float across : kInside) {
-            for (const float up : kInside) {
-                look(inside_of(grid, place, distance, across, up));
+/// Those points of all cells of a grid, with few sines.
+class InnerPoints {
+public:
+    explicit InnerPoints(const Grid<float>& grid) noexcept : grid_(grid)
+    {
+        for (std::size_t i = 0; i < kPerAxis; ++i) {
+            for (std::size_t column = 0; column < grid.columns(); ++column) {
+                const float angle = between(grid.column_start(column), grid.column_start(column + 1), kInside[i]);
+                across_[kPerAxis * column + i] = {std::cos(angle), std::sin(angle)};
+            }
+            for (std::size_t row = 0; row < grid.rows(); ++row) {
+                const float angle = between(grid.row_start(row), grid.row_start(row + 1), kInside[i]);
+                up_[kPerAxis * row + i] = {std::cos(angle), std::sin(angle)};
             }
         }
     }
-}
+
+    template <class Look>
+    void for_each(const CellPlace& place, const Look& look) const noexcept
+    {
+        for (const float share : kInside) {
+            const float distance = between(grid_.layer_start(place.layer), grid_.layer_end(place.layer), share);
+            for (std::size_t i = 0; i < kPerAxis; ++i) {
+                const Eigen::Vector2f& across = across_[kPerAxis * place.column + i];
+                for (std::size_t j = 0; j < kPerAxis; ++j) {
+                    const Eigen::Vector2f& up = up_[kPerAxis * place.row + j];
+                    look(Vec3(distance * Vec3(up.x() * across.x(), up.x() * across.y(), up.y())));
+                }
+            }
+        }
+    }
+
+private:
+    static constexpr std::size_t kPerAxis = kInside.size();
+    [[nodiscard]] static float between(float from, float to, float share) noexcept
+    {
+        return from + share * (to - from);
+    }
+
+    const Grid<float>& grid_;
+    std::array<Eigen::Vector2f, kPerAxis * kMaxColumns> across_;
+    std::array<Eigen::Vector2f, kPerAxis * kMaxRows> up_;
+};
 
 }  // namespace
 
@@ -44,10 +67,12 @@ bool ScanPicture::configure(const Grid<float>& sets) noexcept
     const std::size_t columns = sets.columns() + 2 * kSpareColumns;
     const float horizontal = sets.horizontal() * static_cast<float>(columns) / static_cast<float>(sets.columns());
     known_ = counts_ = false;
-    has_grid_ = sets.cells() > 0 && horizontal <= kPi && columns * sets.rows() <= LidarScan::kDirections &&
+    has_grid_ = sets.cells() > 0 && columns * sets.rows() <= LidarScan::kDirections &&
                 sets.layers() * columns * sets.rows() <= LidarScan::kCells;
     if (has_grid_) {
         grid_ = Grid<float>(sets.layers(), columns, sets.rows(), sets.distance(), horizontal, sets.vertical());
+        finder_ = CellFinder(grid_);
+        has_grid_ = CellFinder::serves(grid_);
     }
     return has_grid_;
 }
@@ -58,6 +83,8 @@ bool ScanPicture::begin(const ScanStart& start) noexcept
     counts_ = has_grid_ && is_finite(start.position) && std::isfinite(start.nose) && std::isfinite(start.course) &&
               is_positive(start.unit) && scans_[filled].configure(grid_, start.horizontal_pitch, start.vertical_pitch);
     start_[filled] = start;
+    cosine_ = std::cos(start.nose - start.course);
+    sine_ = std::sin(start.nose - start.course);
     return counts_;
 }
 
@@ -66,12 +93,12 @@ void ScanPicture::add(const Vec3& point) noexcept
     if (!counts_) {
         return;
     }
-    const ScanStart& start = start_[1 - seen_];
-    const float turn = start.nose - start.course;
-    const float c = std::cos(turn);
-    const float s = std::sin(turn);
-    static_cast<void>(scans_[1 - seen_].add(
-        Vec3(Vec3(c * point.x() - s * point.y(), s * point.x() + c * point.y(), point.z()) / start.unit)));
+    const Vec3 in_grid =
+        Vec3(cosine_ * point.x() - sine_ * point.y(), sine_ * point.x() + cosine_ * point.y(), point.z()) /
+        start_[1 - seen_].unit;
+    if (const Located at = finder_.locate(in_grid); at.status == LocateStatus::inside) {
+        scans_[1 - seen_].add(at.place, in_grid.norm());
+    }
 }
 
 void ScanPicture::add_invalid(const Vec3& direction) noexcept
@@ -92,10 +119,31 @@ void ScanPicture::end(std::uint32_t lost) noexcept
 {
     if (counts_) {
         seen_ = 1 - seen_;
-        lost_[seen_] = lost;
         known_ = true;
+        judge();
+        if (lost > 0) {
+            std::replace(cells_.begin(), cells_.end(), Cell::free, Cell::unseen);
+        }
     }
     counts_ = false;
+}
+
+void ScanPicture::judge() noexcept
+{
+    const LidarScan& scan = scans_[seen_];
+    std::array<float, kMaxLayers> visible{};
+    for (std::size_t column = 0; column < grid_.columns(); ++column) {
+        for (std::size_t row = 0; row < grid_.rows(); ++row) {
+            scan.visibility(column, row, visible);
+            for (std::size_t layer = 0; layer < grid_.layers(); ++layer) {
+                const CellPlace place{static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),
+                                      static_cast<std::uint8_t>(row)};
+                const bool hit = scan.obstacle(place, kAnyHit) >= kThreshold;
+                const bool seen = visible[layer] >= 1.0F - kThreshold;
+                cells_[grid_.index(place)] = hit ? Cell::hit : seen ? Cell::free : Cell::unseen;
+            }
+        }
+    }
 }
 
 bool ScanPicture::is_fresh(TimePoint now, Seconds age) const noexcept
@@ -122,32 +170,24 @@ bool ScanPicture::rate(const Placed& placed, bool blocks_unseen, std::span<Level
         return false;
     }
     const Placed from = frame();
-    const LidarScan& scan = scans_[seen_];
-    std::array<bool, LidarScan::kCells> is_seen{};
-    std::array<float, kMaxLayers> visible{};
-    for (std::size_t column = 0; column < grid_.columns(); ++column) {
-        for (std::size_t row = 0; row < grid_.rows(); ++row) {
-            scan.visibility(column, row, visible);
-            for (std::size_t layer = 0; layer < grid_.layers(); ++layer) {
-                const CellPlace place{static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),
-                                      static_cast<std::uint8_t>(row)};
-                is_seen[grid_.index(place)] = lost_[seen_] == 0 && visible[layer] >= 1.0F - kThreshold;
-            }
-        }
-    }
+    const InnerPoints of_sets(sets);
+    const Vec3 offset = from.to_set(placed.origin);
+    const Vec3 x = from.to_set(placed.to_world(Vec3::UnitX())) - offset;
+    const Vec3 y = from.to_set(placed.to_world(Vec3::UnitY())) - offset;
+    const float z = (placed.upside_down ? -1.0F : 1.0F) * placed.unit / from.unit;
     for (std::size_t i = 0; i < sets.cells(); ++i) {
-        blocks[i] = kFree;
-        for_each_inside(sets, sets.place(static_cast<CellIndex>(i)), [&](const Vec3& point) {
-            const Located at = grid_.locate(from.to_set(placed.to_world(point)));
-            const bool known = at.status == LocateStatus::inside;
-            const bool hit = known && scan.obstacle(at.place, kAnyHit) >= kThreshold;
-            const bool unseen = !known || !is_seen[grid_.index(at.place)];
-            blocks[i] = hit || (unseen && blocks_unseen) ? kBlocked : blocks[i];
+        Cell worst = Cell::free;
+        of_sets.for_each(sets.place(static_cast<CellIndex>(i)), [&](const Vec3& point) {
+            const Located at = finder_.locate(offset + point.x() * x + point.y() * y + Vec3(0.0F, 0.0F, z * point.z()));
+            const Cell cell = at.status == LocateStatus::inside ? cells_[grid_.index(at.place)] : Cell::unseen;
+            worst = std::max(worst, cell);
         });
+        blocks[i] = worst == Cell::hit || (worst == Cell::unseen && blocks_unseen) ? kBlocked : kFree;
     }
+    const InnerPoints of_scan(grid_);
     for (std::size_t i = 0; i < grid_.cells(); ++i) {
         const CellPlace place = grid_.place(static_cast<CellIndex>(i));
-        if (scan.obstacle(place, kAnyHit) < kThreshold) {
+        if (cells_[i] != Cell::hit) {
             continue;
         }
         const auto block = [&](const Vec3& point) {
@@ -157,7 +197,7 @@ bool ScanPicture::rate(const Placed& placed, bool blocks_unseen, std::span<Level
             }
         };
         block(grid_.centre(place));
-        for_each_inside(grid_, place, block);
+        of_scan.for_each(place, block);
     }
     return true;
 }

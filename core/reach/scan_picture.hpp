@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/work_budget.hpp"
+#include "core/reach/cell_finder.hpp"
 #include "core/reach/fusion.hpp"
 #include "core/reach/lidar_scan.hpp"
 #include "core/reach/placed.hpp"
@@ -58,15 +59,20 @@ public:
 
 private:
     [[nodiscard]] Placed frame() const noexcept;
+    void judge() noexcept;
 
     Grid<float> grid_;
+    CellFinder finder_;
     bool has_grid_ = false;
+    float cosine_ = 1.0F;  ///< from the nose to the course of the scan under way
+    float sine_ = 0.0F;
     bool counts_ = false;  ///< a scan has begun that can be used
     bool known_ = false;
     std::size_t seen_ = 0;  ///< which of both is the picture
     std::array<LidarScan, 2> scans_;
     std::array<ScanStart, 2> start_;
-    std::array<std::uint32_t, 2> lost_{};
+    enum class Cell : std::uint8_t { free, unseen, hit };
+    std::array<Cell, LidarScan::kCells> cells_{};  ///< of the picture
 };
 
 }  // namespace jink::reach

@@ -76,7 +76,7 @@ NearThreats& near_of(const Crowd& crowd, WorkBudget& budget)
 {
     static NearThreats near;
     near.collect(crowd.view(), crowd.placed, 0.0F, 0.0F, {world::EscapeRule{}, 0.5F});
-    EXPECT_TRUE(near.mark(crowd.placed, budget));
+    EXPECT_TRUE(near.mark(crowd.placed, CellBalls(crowd.placed.set->grid), budget));
     return near;
 }
 

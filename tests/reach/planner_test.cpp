@@ -303,6 +303,9 @@ TEST(ReachPlanner, KeepsToTheAirspace)
 TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
 {
     static Planner seeing{unit_settings()};
+    static ScanPicture picture;
+    ASSERT_TRUE(picture.configure(test::unit_sets().segments[0].emergency->grid));
+    seeing.look_at(&picture);
     const Case c;
     ScanStart start;
     start.stamp = c.now;
@@ -310,9 +313,9 @@ TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
     start.unit = 2.5F;
     start.horizontal_pitch = start.vertical_pitch = 0.02F;
     const auto scan_with = [&](auto&& points) {
-        ASSERT_TRUE(seeing.picture().begin(start));
+        ASSERT_TRUE(picture.begin(start));
         points();
-        seeing.picture().end(0);
+        picture.end(0);
     };
     const auto plan_now = [&](world::Manoeuvre& m) {
         WorkBudget budget(kPlenty);
@@ -322,7 +325,7 @@ TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
     scan_with([] {});
     EXPECT_EQ(plan_now(m), PlanStatus::found);
     EXPECT_EQ(m.side, Vec3::Zero()) << "all clear as far as it sees";
-    scan_with([] { seeing.picture().add(Vec3(12.0F, 0.0F, 0.0F)); });
+    scan_with([] { picture.add(Vec3(12.0F, 0.0F, 0.0F)); });
     ASSERT_EQ(plan_now(m), PlanStatus::found);
     EXPECT_NE(m.side, Vec3::Zero()) << "around what was hit and what is behind it";
     start.stamp = c.now - 0.6F;

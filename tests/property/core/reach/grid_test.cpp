@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "core/reach/grid.hpp"
+#include "core/reach/cell_finder.hpp"
 
 namespace jink::reach {
 namespace {
@@ -67,6 +67,48 @@ TEST(GridLaws, CentresLieInTheirCells)
         ASSERT_EQ(at.status, LocateStatus::inside);
         ASSERT_EQ(grid.index(at.place), cell);
     }
+}
+
+/// By tangents as by angles, but for points on a face.
+TEST(CellFinderLaw, FindsTheCellThatTheGridLocates)
+{
+    std::size_t inside = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        Random random(seed);
+        const Grid<float> grid(1 + random.below(16), 1 + random.below(16), 1 + random.below(16),
+                               random.uniform(0.5F, 200.0F), random.uniform(0.1F, 1.5F), random.uniform(0.1F, 1.5F));
+        ASSERT_TRUE(CellFinder::serves(grid));
+        const CellFinder finder(grid);
+        const float slack = 1e-5F * grid.distance();
+        for (int i = 0; i < 5000; ++i) {
+            const auto in = [&] { return random.uniform(-1.1F, 1.1F) * grid.distance(); };
+            const Vec3 point(in(), in(), in());
+            const Located found = finder.locate(point);
+            const Located located = grid.locate(point);
+            inside += located.status == LocateStatus::inside ? 1U : 0U;
+            if (found.status == located.status && found.place == located.place) {
+                continue;
+            }
+            // Some point about it lies on the other side of a face.
+            bool on_a_face = false;
+            for (int axis = 0; axis < 3; ++axis) {
+                for (const float sign : {-slack, slack}) {
+                    Vec3 moved = point;
+                    moved[axis] += sign;
+                    const Located at = grid.locate(moved);
+                    on_a_face = on_a_face || (at.status == found.status && at.place == found.place);
+                }
+            }
+            ASSERT_TRUE(on_a_face) << "seed " << seed << " point " << i;
+        }
+    }
+    EXPECT_GT(inside, 10000U);
+    const CellFinder finder{Grid<float>()};
+    EXPECT_EQ(finder.locate(Vec3(NAN, 0.0F, 0.0F)).status, LocateStatus::not_a_number);
+    EXPECT_EQ(finder.locate(Vec3(INFINITY, 0.0F, 0.0F)).status, LocateStatus::outside);
+    EXPECT_EQ(finder.locate(Vec3(-1.0F, 0.0F, 0.0F)).status, LocateStatus::outside) << "behind";
+    EXPECT_EQ(finder.locate(Vec3::Zero()).status, LocateStatus::inside);
+    EXPECT_FALSE(CellFinder::serves(Grid<float>(1, 1, 1, 1.0F, 1.6F, 0.5F)));
 }
 
 }  // namespace

@@ -181,8 +181,8 @@ TEST(CellBallsLaw, AreThoseOfTheCells)
         Random random(seed);
         const Grid<float> grid(1 + random.below(16), 1 + random.below(8), 1 + random.below(8),
                                random.uniform(1.0F, 20.0F), random.uniform(0.2F, 1.5F), random.uniform(0.2F, 1.2F));
-        ASSERT_TRUE(detail::CellBalls::serves(grid));
-        const detail::CellBalls balls(grid);
+        ASSERT_TRUE(CellBalls::serves(grid));
+        const CellBalls balls(grid);
         for (std::size_t i = 0; i < grid.cells(); ++i) {
             const CellPlace place = grid.place(static_cast<CellIndex>(i));
             const CellBall ball = ball_of(grid, place);
