@@ -20,6 +20,7 @@ enum class BestFor : std::uint8_t {
 };
 struct BestRule {
     BestFor wanted = BestFor::columns;
+    int parts = 2;              ///< of each range of a cell, that are states of their own
     std::size_t positions = 4;  ///< trajectories that are gone on from, of each state
 };
 
