@@ -65,7 +65,8 @@ private:
     using State = std::array<int, 6>;
     [[nodiscard]] State state_of(const Node& node) const
     {
-        const std::array<int, 3> part = part_of_cell(settings_.grid, node, rule_.parts);
+        const bool fine = turns_of(node) <= rule_.fine_turns;
+        const std::array<int, 3> part = part_of_cell(settings_.grid, node, fine ? rule_.parts : 1);
         return {settings_.grid.index(node.end), node.pitch_steps, node.yaw_steps, part[0], part[1], part[2]};
     }
 

@@ -34,7 +34,10 @@ public:
     }
 
 private:
-    static constexpr int kParts = 4;
+    /// Near the vehicle, where trajectories still have most of their ways before them, cells are divided finer.
+    static constexpr std::size_t kNear = 4;
+    static constexpr int kNearParts = 4;
+    static constexpr int kParts = 2;
     using Key = std::array<int, 7>;
     struct Place {
         Node node;
@@ -48,7 +51,8 @@ private:
 
     [[nodiscard]] Key key_of_place(const Node& node, int extra) const
     {
-        const std::array<int, 3> part = part_of_cell(settings_.grid, node, kParts);
+        const std::array<int, 3> part =
+            part_of_cell(settings_.grid, node, node.end.layer < kNear ? kNearParts : kParts);
         return {settings_.grid.index(node.end), node.pitch_steps, node.yaw_steps, part[0], part[1], part[2], extra};
     }
 
