@@ -66,11 +66,6 @@ void build(const Options& options)
 /// Replaces this program by the script, which reads the sets from its standard input.
 [[noreturn]] void draw(const std::vector<NamedSet>& sets, const Options& options)
 {
-    std::error_code error;
-    fs::create_directories(options.figures, error);
-    if (error) {
-        refuse(kMeasure, options.figures + " cannot be made: " + error.message());
-    }
     const std::string json = drawing_of(sets);
     std::FILE* const file = std::tmpfile();
     if (file == nullptr || std::fwrite(json.data(), 1, json.size(), file) != json.size() || std::fflush(file) != 0 ||
@@ -89,6 +84,10 @@ void measure(const Options& options)
 {
     if (options.source != options.file.empty()) {
         refuse(kMeasure, "give either a vehicle file, or --source");
+    }
+    std::error_code error;
+    if (!options.figures.empty() && !fs::create_directories(options.figures, error) && error) {
+        refuse(kMeasure, options.figures + " cannot be made: " + error.message());
     }
     const std::vector<NamedSet> sets = options.source ? sets_of_source() : sets_of(build_from(kMeasure, options));
     std::fputs(table_of(sets, measure_all(sets)).c_str(), stdout);

@@ -62,10 +62,12 @@ public:
     }
 
 private:
-    using State = std::array<int, 3>;
+    using State = std::array<int, 6>;
     [[nodiscard]] State state_of(const Node& node) const
     {
-        return {settings_.grid.index(node.end), node.pitch_steps, node.yaw_steps};
+        const bool fine = turns_of(node) <= rule_.fine_turns;
+        const std::array<int, 3> part = part_of_cell(settings_.grid, node, fine ? rule_.parts : 1);
+        return {settings_.grid.index(node.end), node.pitch_steps, node.yaw_steps, part[0], part[1], part[2]};
     }
 
     [[nodiscard]] Rank rank_of(NodeId id) const

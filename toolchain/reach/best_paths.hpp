@@ -7,9 +7,10 @@
 
 // The trajectories with the fewest turns, by dynamic programming.
 //
-// A state is a cell and an attitude in steps; of each, the few trajectories with the fewest turns are gone on from.
-// Positions within a cell are not told apart, so what is found is a real trajectory but not for certain the best one:
-// tests compare it with all trajectories of up to three turns.
+// A state is an attitude in steps and a part of a cell; of each, the few trajectories with the fewest turns are gone on
+// from. Positions within a part are not told apart, so what is found is a real trajectory but not for certain the best
+// one: tests compare it with all trajectories of up to three turns. Whole cells as states, four trajectories each, miss
+// the best one in 10 of 35 columns.
 
 namespace jink::reach::build {
 
@@ -20,7 +21,9 @@ enum class BestFor : std::uint8_t {
 };
 struct BestRule {
     BestFor wanted = BestFor::columns;
-    std::size_t positions = 4;  ///< trajectories that are gone on from, of each state
+    int parts = 3;              ///< of each range of a cell, that are states of their own,
+    int fine_turns = 3;         ///< for trajectories with up to so many turns
+    std::size_t positions = 2;  ///< trajectories that are gone on from, of each state
 };
 
 /// To each end the trajectory with the fewest movements that are not smooth; of equals the one that ends nearest to

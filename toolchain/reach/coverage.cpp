@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 
@@ -35,6 +34,9 @@ public:
     }
 
 private:
+    /// Near the vehicle, where trajectories still have most of their ways before them, cells are divided finer.
+    static constexpr std::size_t kNear = 4;
+    static constexpr int kNearParts = 4;
     static constexpr int kParts = 2;
     using Key = std::array<int, 7>;
     struct Place {
@@ -49,18 +51,9 @@ private:
 
     [[nodiscard]] Key key_of_place(const Node& node, int extra) const
     {
-        const Polar<double> p = to_polar(node.pose.position);
-        const Grid<double>& g = settings_.grid;
-        const auto part = [](double at, double start, double end) {
-            return static_cast<int>(std::ceil(kParts * (at - start) / (end - start) - 1e-9));
-        };
-        return {g.index(node.end),
-                node.pitch_steps,
-                node.yaw_steps,
-                part(p.distance, g.layer_start(node.end.layer), g.layer_end(node.end.layer)),
-                part(p.horizontal, g.column_start(node.end.column), g.column_start(node.end.column + 1U)),
-                part(p.vertical, g.row_start(node.end.row), g.row_start(node.end.row + 1U)),
-                extra};
+        const std::array<int, 3> part =
+            part_of_cell(settings_.grid, node, node.end.layer < kNear ? kNearParts : kParts);
+        return {settings_.grid.index(node.end), node.pitch_steps, node.yaw_steps, part[0], part[1], part[2], extra};
     }
 
     void expand(NodeId id)

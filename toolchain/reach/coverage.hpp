@@ -12,7 +12,7 @@ namespace jink::reach::build {
 
 /// Cells that trajectories touch which end in the last layer, or with Settings::keep_lateral at a side: those of the
 /// tree of all trajectories, which itself would not fit into any memory. Found over states in place of trajectories:
-/// of those that end in one half of a cell's ranges with one attitude, the first is gone on from.
+/// of those that end in one part of a cell with one attitude, the first is gone on from.
 /// O(cells * attitudes * movements).
 [[nodiscard]] std::size_t count_reachable_cells(const Settings& settings);
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace jink::reach::build {
@@ -118,6 +119,17 @@ bool ends_at_side(const Settings& settings, const Node& node)
 {
     return node.depth > 0 && (node.end.column == 0 || node.end.column + 1U == settings.grid.columns() ||
                               node.end.row == 0 || node.end.row + 1U == settings.grid.rows());
+}
+
+std::array<int, 3> part_of_cell(const Grid<double>& grid, const Node& node, int parts)
+{
+    const Polar<double> p = to_polar(node.pose.position);
+    const auto part = [&](double at, double start, double end) {
+        return static_cast<int>(std::ceil(parts * (at - start) / (end - start) - 1e-9));
+    };
+    return {part(p.distance, grid.layer_start(node.end.layer), grid.layer_end(node.end.layer)),
+            part(p.horizontal, grid.column_start(node.end.column), grid.column_start(node.end.column + 1U)),
+            part(p.vertical, grid.row_start(node.end.row), grid.row_start(node.end.row + 1U))};
 }
 
 }  // namespace jink::reach::build

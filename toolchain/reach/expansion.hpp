@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,5 +25,8 @@ namespace jink::reach::build {
 
 /// Ends in a cell at one of the grid's sides: where a trajectory may leave it.
 [[nodiscard]] bool ends_at_side(const Settings& settings, const Node& node);
+
+/// In which part of its cell a node ends, of `parts` equal ones in distance, azimuth and elevation, counted from 1.
+[[nodiscard]] std::array<int, 3> part_of_cell(const Grid<double>& grid, const Node& node, int parts);
 
 }  // namespace jink::reach::build

@@ -12,9 +12,10 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
 import numpy as np  # noqa: E402
 from matplotlib.collections import LineCollection  # noqa: E402
+from PIL import Image  # noqa: E402 (matplotlib needs it too)
 
 INK, GRID = "#2b2f36", "#c9ced6"
-WIDTH = 9.4  # [in]
+WIDTH = 12.0  # [in]
 FLATTEST = 0.34  # of a view's width: what is flatter is stretched, and says so
 
 plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
@@ -58,21 +59,23 @@ def height_share(half):
 
 
 def draw(data, folder):
-    wide = WIDTH - 1.9
-    shares = [height_share(data["horizontal"]), height_share(data["vertical"])]
-    figure, axes = plt.subplots(2, 1, figsize=(WIDTH, wide * sum(shares) + 1.5), height_ratios=shares,
-                                layout="constrained")
+    tall = max(height_share(data["horizontal"]), height_share(data["vertical"]))
+    figure, axes = plt.subplots(1, 2, figsize=(WIDTH, 0.44 * WIDTH * tall + 0.9), layout="constrained")
     drawn = view(axes[0], data, 1, data["horizontal"], data["columns"], "seen from above")
     view(axes[1], data, 2, data["vertical"], data["rows"], "seen from the side")
     axes[0].set_ylabel("left [movements]")
     axes[1].set_ylabel("up [movements]")
-    axes[1].set_xlabel("ahead [movements]")
+    for ax in axes:
+        ax.set_xlabel("ahead [movements]")
     figure.suptitle(f"{data['name']}: {len(data['movements']) + 1} nodes", fontsize=10, weight="bold")
-    figure.colorbar(drawn, ax=axes, label="smoothness of the best trajectory through it", shrink=0.6)
+    figure.colorbar(drawn, ax=axes, label="smoothness of the best trajectory through it", shrink=0.7, pad=0.01)
     name = data["name"].replace(" ", "_").replace("/", "-").replace(",", "") + ".png"
-    # No date or version in the file, so that drawing anew changes nothing.
-    figure.savefig(folder / name, dpi=110, metadata={"Software": None})
+    figure.set_dpi(90)
+    figure.canvas.draw()
+    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[:, :, :3])
     plt.close(figure)
+    # 128 colours make a third of the size. No date or version in the file, so that drawing anew changes nothing.
+    pixels.quantize(128, dither=Image.Dither.NONE).save(folder / name, optimize=True)
     return name
 
 
