@@ -27,6 +27,8 @@ public:
         obstacle_ = std::max(obstacle_, obstacle);
     }
     void add_map(float rating) noexcept { map_ = std::max(map_, rating); }
+    /// About a charted body: a soft constraint where sensors do not see, as the body itself (Gomola eq. 6.103).
+    void add_map_margin(float rating) noexcept { map_margin_ = std::max(map_margin_, rating); }
     /// Of one intruder (Gomola eq. 6.159).
     void add_intruder(float rating) noexcept { spared_by_intruders_ *= 1.0F - rating; }
     void add_hard(float rating) noexcept { hard_ = std::max(hard_, rating); }
@@ -40,7 +42,8 @@ public:
     /// Of the map where sensors do not see (Gomola eq. 6.158).
     [[nodiscard]] float map() const noexcept { return map_ * hidden(); }
     [[nodiscard]] float intruder() const noexcept { return 1.0F - spared_by_intruders_; }
-    [[nodiscard]] float constraint() const noexcept { return std::max(hard_, soft_); }
+    [[nodiscard]] float soft() const noexcept { return std::max(soft_, map_margin_ * hidden()); }
+    [[nodiscard]] float constraint() const noexcept { return std::max(hard_, soft()); }
     /// Gomola eq. 6.161.
     [[nodiscard]] float threat() const noexcept
     {
@@ -52,7 +55,7 @@ public:
     [[nodiscard]] bool is_mapped() const noexcept { return map() >= kThreshold; }
     [[nodiscard]] bool is_intruded() const noexcept { return intruder() >= kThreshold; }
     [[nodiscard]] bool is_hard() const noexcept { return hard_ >= kThreshold; }
-    [[nodiscard]] bool is_soft() const noexcept { return soft_ >= kThreshold; }
+    [[nodiscard]] bool is_soft() const noexcept { return soft() >= kThreshold; }
 
     /// The run in which it is not free first. `allow_hidden`: what nobody sees is not in the way, but obstacles and
     /// charted ones are, however little is seen of them.
@@ -76,6 +79,7 @@ private:
     float hidden_ = 1.0F;
     float obstacle_ = 0.0F;
     float map_ = 0.0F;
+    float map_margin_ = 0.0F;
     float spared_by_intruders_ = 1.0F;
     float hard_ = 0.0F;
     float soft_ = 0.0F;
