@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <bitset>
+#include <cmath>
 #include <cstdint>
 
 #include "core/reach/evaluation.hpp"
@@ -84,6 +86,53 @@ private:
     float hard_ = 0.0F;
     float soft_ = 0.0F;
     bool seen_ = false;
+};
+
+/// Which sets of cells one belongs to (Gomola eq. 6.164 to 6.167). The first three may overlap: that nobody sees a cell
+/// does not undo what is known to be there. Free are those of none of them, and not charted.
+struct SpaceSets {
+    bool uncertain = false;
+    bool occupied = false;
+    bool constrained = false;
+    bool free = false;
+};
+/// O(1).
+[[nodiscard]] inline SpaceSets space_of(const CellRating& cell) noexcept
+{
+    SpaceSets sets;
+    sets.uncertain = !cell.is_visible();
+    sets.occupied = cell.is_occupied();
+    sets.constrained = cell.is_visible() && (cell.is_hard() || cell.is_soft() || cell.is_intruded());
+    sets.free = !(sets.uncertain || sets.occupied || sets.constrained || cell.is_mapped());
+    return sets;
+}
+
+/// A trajectory by the threats of the cells it passes (Gomola eq. 6.162), for telemetry: what is flown is decided by
+/// levels.
+class TrajectoryRating {
+public:
+    /// Of a cell; one that the trajectory has passed already does not count again. Out of the table: counts as lost.
+    void add(CellIndex cell, float threat) noexcept
+    {
+        if (cell < kMaxCells && passed_[cell]) {
+            return;
+        }
+        loss_ += cell < kMaxCells ? -std::log1p(-std::min(threat, 1.0F)) : INFINITY;
+        blocked_ = blocked_ || !(threat < kThreshold);
+        if (cell < kMaxCells) {
+            passed_.set(cell);
+        }
+    }
+    /// Product of 1 - threat.
+    [[nodiscard]] float reachability() const noexcept { return std::exp(-loss_); }
+    /// At least 1 - threshold, told by complements, and no threat at all on the way: at the threshold itself table 6.5
+    /// says both, and the threat wins.
+    [[nodiscard]] bool is_reachable() const noexcept { return !blocked_ && loss_ <= -std::log1p(-kThreshold); }
+
+private:
+    std::bitset<kMaxCells> passed_;
+    float loss_ = 0.0F;
+    bool blocked_ = false;
 };
 
 }  // namespace jink::reach
