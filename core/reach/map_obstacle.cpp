@@ -144,6 +144,42 @@ Lattice lattice_of(const Vec3& half, float spacing) noexcept
     return {{1, 1, 1}, lattice.spacing};
 }
 
+/// Calls visit(point in the body's axes, whether it is of the body) for all points of the body and its margin.
+template <class Visit>
+void visit_cloud(const MapBody& body, const Lattice& lattice, const Visit& visit) noexcept
+{
+    const auto along = [&](std::size_t i, std::size_t axis) {
+        return lattice.spacing * (static_cast<float>(i) - 0.5F * static_cast<float>(lattice.count[axis] - 1U));
+    };
+    for (std::size_t i = 0; i < lattice.count[0]; ++i) {
+        for (std::size_t j = 0; j < lattice.count[1]; ++j) {
+            for (std::size_t k = 0; k < lattice.count[2]; ++k) {
+                const Vec3 local(along(i, 0), along(j, 1), along(k, 2));
+                const float outside = (local.cwiseAbs() - body.half).cwiseMax(0.0F).norm();
+                if (outside <= body.rounding + body.margin) {
+                    visit(local, outside <= body.rounding);
+                }
+            }
+        }
+    }
+}
+
+/// Volume of a box and all that is within `about` of it (Steiner's formula).
+float volume_of(const Vec3& half, float about) noexcept
+{
+    const float a = half.x();
+    const float b = half.y();
+    const float c = half.z();
+    return 8.0F * (a * b * c + (a * b + b * c + c * a) * about) +
+           kPi * about * about * (2.0F * (a + b + c) + 4.0F / 3.0F * about);
+}
+
+/// Of one point of a cloud. A body without volume, a line or a plane, is one wherever it is.
+float point_rate(float volume, std::size_t points, float threshold) noexcept
+{
+    return threshold > 0.0F && volume > 0.0F && points > 0 ? volume / (threshold * static_cast<float>(points)) : 1.0F;
+}
+
 }  // namespace
 
 MapStatus check(const MapObstacle& o) noexcept
@@ -253,30 +289,20 @@ CloudReport rate_by_cloud(const Grid<float>& grid, const MapBody& body, const Cl
     std::ranges::fill(margins, 0.0F);
     const float about = body.rounding + body.margin;
     const Lattice lattice = lattice_of(body.half + Vec3::Constant(about), rule.spacing);
-    const float volume = lattice.spacing * lattice.spacing * lattice.spacing;
-    const float rate = rule.threshold > 0.0F ? volume / rule.threshold : 1.0F;
-    CloudReport report{0, lattice.spacing, lattice.spacing > rule.spacing};
-    const auto place_on = [&](std::size_t i, int axis) {
-        return lattice.spacing * (static_cast<float>(i) - 0.5F * static_cast<float>(lattice.count[axis] - 1U));
-    };
-    for (std::size_t i = 0; i < lattice.count[0]; ++i) {
-        for (std::size_t j = 0; j < lattice.count[1]; ++j) {
-            for (std::size_t k = 0; k < lattice.count[2]; ++k) {
-                const Vec3 local(place_on(i, 0), place_on(j, 1), place_on(k, 2));
-                const float outside = (local.cwiseAbs() - body.half).cwiseMax(0.0F).norm();
-                const Located at = grid.locate(Vec3(body.centre + body.axes * local));
-                if (outside > about) {
-                    continue;
-                }
-                ++report.points;
-                if (at.status == LocateStatus::inside) {
-                    float& sum = (outside <= body.rounding ? bodies : margins)[grid.index(at.place)];
-                    sum = std::min(sum + rate, 1.0F);
-                }
-            }
+    std::size_t of_body = 0;
+    std::size_t of_margin = 0;
+    visit_cloud(body, lattice, [&](const Vec3&, bool is_body) { ++(is_body ? of_body : of_margin); });
+    const float volume = volume_of(body.half, body.rounding);
+    const float body_rate = point_rate(volume, of_body, rule.threshold);
+    const float margin_rate = point_rate(volume_of(body.half, about) - volume, of_margin, rule.threshold);
+    visit_cloud(body, lattice, [&](const Vec3& local, bool is_body) {
+        const Located at = grid.locate(Vec3(body.centre + body.axes * local));
+        if (at.status == LocateStatus::inside) {
+            float& sum = (is_body ? bodies : margins)[grid.index(at.place)];
+            sum = std::min(sum + (is_body ? body_rate : margin_rate), 1.0F);
         }
-    }
-    return report;
+    });
+    return {of_body + of_margin, lattice.spacing, lattice.spacing > rule.spacing};
 }
 
 }  // namespace jink::reach

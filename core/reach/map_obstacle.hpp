@@ -81,8 +81,9 @@ struct CloudReport {
     float spacing = 0.0F;    ///< that was used
     bool coarsened = false;  ///< spacing was more than was asked for: cells may be missed
 };
-/// Ratings of all cells by one obstacle's points (Gomola eq. 6.105 to 6.107, with the minimum where the source prints
-/// the maximum): the reference for `closure_of`, and graded. A point is in the body or in the margin, never in both.
+/// Ratings of all cells by one obstacle's points, each worth an equal share of the cloud's volume (Gomola eq. 6.105
+/// to 6.107, with the minimum where the source prints the maximum): the reference for `closure_of`, and graded. A point
+/// is in the body or in the margin, never in both.
 /// @param bodies, margins  out, of each cell
 /// O(cells + kMaxCloudPoints).
 CloudReport rate_by_cloud(const Grid<float>& grid, const MapBody& body, const CloudRule& rule, std::span<float> bodies,
