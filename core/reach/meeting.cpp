@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/reach/predictor.hpp"
+
 namespace jink::reach {
 namespace {
 
@@ -96,6 +98,19 @@ bool meets(const Vec3& from, const Vec3& to, float t_from, float t_to, const Int
         kApproachSlack * (from.norm() + to.norm() + intruder.position.norm() + t_to * intruder.velocity.norm());
     // The other way round what is not a number would be clear.
     return !(least > intruder.radius + margin + growth_of(intruder, t_to) + slack);
+}
+
+bool meets(const ReachSet& set, std::size_t node, float period, const Intruder& intruder, float margin) noexcept
+{
+    if (node == 0) {
+        return false;
+    }
+    // Half a unit along each axis, and what sums of float positions lose.
+    constexpr float kStoredError = kPositionUnit;
+    const float begin = static_cast<float>(set.depth[node] - 1);
+    const float aside = chord_deviation(set.step, static_cast<Movement>(set.movement[node])) + kStoredError;
+    return meets(set.position_of(set.parent[node]), set.position_of(node), begin * period, (begin + 1.0F) * period,
+                 intruder, margin + aside);
 }
 
 }  // namespace jink::reach

@@ -57,6 +57,13 @@ void fill_meetings(const CombinedModel& model, std::span<const CellBall> balls, 
 [[nodiscard]] bool meets(const Vec3& from, const Vec3& to, float t_from, float t_to, const Intruder& intruder,
                          float margin) noexcept;
 
+/// The same of a node's movement, along its arc: `margin` is taken larger by how far an arc is from its chord, and by
+/// what the tables round. The root meets nobody. In the grid's unit.
+/// @param period  of one movement [s]
+/// O(1).
+[[nodiscard]] bool meets(const ReachSet& set, std::size_t node, float period, const Intruder& intruder,
+                         float margin) noexcept;
+
 /// What `meets` adds to the intruder's radius at a time. O(1).
 [[nodiscard]] float growth_of(const Intruder& intruder, float t) noexcept;
 
