@@ -2,7 +2,7 @@
 #pragma once
 
 #include <algorithm>
-#include <bitset>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -111,17 +111,21 @@ struct SpaceSets {
 /// levels.
 class TrajectoryRating {
 public:
-    /// Of a cell; one that the trajectory has passed already does not count again. Out of the table: counts as lost.
+    /// Of a cell; one that the trajectory has passed already does not count again. One that no grid has makes it
+    /// unreachable.
     void add(CellIndex cell, float threat) noexcept
     {
-        if (cell < kMaxCells && passed_[cell]) {
+        if (cell >= kMaxCells) {
+            blocked_ = true;
             return;
         }
-        loss_ += cell < kMaxCells ? -std::log1p(-std::min(threat, 1.0F)) : INFINITY;
-        blocked_ = blocked_ || !(threat < kThreshold);
-        if (cell < kMaxCells) {
-            passed_.set(cell);
+        const std::uint32_t bit = 1U << (cell % 32U);
+        if ((passed_[cell / 32U] & bit) != 0) {
+            return;
         }
+        passed_[cell / 32U] |= bit;
+        loss_ -= std::log1p(-std::min(threat, 1.0F));
+        blocked_ = blocked_ || !(threat < kThreshold);
     }
     /// Product of 1 - threat.
     [[nodiscard]] float reachability() const noexcept { return std::exp(-loss_); }
@@ -130,7 +134,7 @@ public:
     [[nodiscard]] bool is_reachable() const noexcept { return !blocked_ && loss_ <= -std::log1p(-kThreshold); }
 
 private:
-    std::bitset<kMaxCells> passed_;
+    std::array<std::uint32_t, kMaxCells / 32> passed_{};  // one bit of each cell
     float loss_ = 0.0F;
     bool blocked_ = false;
 };

@@ -31,7 +31,7 @@ float rounding_of(const MapObstacle& obstacle) noexcept
 }
 
 /// A range of numbers.
-struct Bounds {
+struct Between {
     float low = INFINITY;
     float high = -INFINITY;
 
@@ -45,9 +45,9 @@ struct Bounds {
 };
 
 /// Of amplitude sin(x - shift) for x from `from` to `to`, all within (-pi, pi) of the shift.
-Bounds sine_bounds(float amplitude, float shift, float from, float to) noexcept
+Between sine_bounds(float amplitude, float shift, float from, float to) noexcept
 {
-    Bounds bounds;
+    Between bounds;
     bounds.add(amplitude * std::sin(from - shift));
     bounds.add(amplitude * std::sin(to - shift));
     for (const float peak : {-0.5F * kPi, 0.5F * kPi}) {
@@ -59,7 +59,7 @@ Bounds sine_bounds(float amplitude, float shift, float from, float to) noexcept
 }
 
 /// How far a box reaches from its centre along a direction of length 1.
-float reach_along(const Mat3& axes, const Vec3& half, const Vec3& direction) noexcept
+float box_reach(const Mat3& axes, const Vec3& half, const Vec3& direction) noexcept
 {
     return (axes.transpose() * direction).cwiseAbs().dot(half);
 }
@@ -69,8 +69,8 @@ bool are_apart(const CellBox& cell, const MapBody& body, float gap) noexcept
 {
     const Vec3 between = body.centre - cell.centre;
     const auto tells = [&](const Vec3& axis) {
-        const float apart = std::abs(between.dot(axis)) - reach_along(cell.axes, cell.half, axis) -
-                            reach_along(body.axes, body.half, axis);
+        const float apart =
+            std::abs(between.dot(axis)) - box_reach(cell.axes, cell.half, axis) - box_reach(body.axes, body.half, axis);
         return apart > gap + kTouchSlack * (1.0F + between.norm());
     };
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -108,7 +108,7 @@ bool is_beyond_walls(const Grid<float>& grid, const CellPlace& place, const MapB
     const Vec3 past_left(-std::sin(left), std::cos(left), 0.0F);
     const Vec3 past_right(std::sin(right), -std::cos(right), 0.0F);
     const auto past = [&](const Vec3& outwards) {
-        return body.centre.dot(outwards) - reach_along(body.axes, body.half, outwards) > gap + slack;
+        return body.centre.dot(outwards) - box_reach(body.axes, body.half, outwards) > gap + slack;
     };
     return past(past_left) || past(past_right);
 }
@@ -231,15 +231,15 @@ CellBox box_of(const Grid<float>& grid, const CellPlace& place) noexcept
 
     // Along the middle direction, aside and up, of a direction in the cell: its azimuth from the middle one is turned
     // by 0 to `aside` either way, and each is linear in the cosine of that, so both ends are looked at.
-    Bounds along;
-    Bounds up;
+    Between along;
+    Between up;
     for (const float turned : {0.0F, aside}) {
         const float c = std::cos(turned);
         const float a = std::cos(elevation);
         const float b = std::sin(elevation);
         // sin(e) b + cos(e) a c, and sin(e) a - cos(e) b c.
-        const Bounds ahead = sine_bounds(std::hypot(b, a * c), std::atan2(-a * c, b), low, high);
-        const Bounds above = sine_bounds(std::hypot(a, b * c), std::atan2(b * c, a), low, high);
+        const Between ahead = sine_bounds(std::hypot(b, a * c), std::atan2(-a * c, b), low, high);
+        const Between above = sine_bounds(std::hypot(a, b * c), std::atan2(b * c, a), low, high);
         along.add(ahead.low);
         along.add(ahead.high);
         up.add(above.low);
@@ -248,15 +248,15 @@ CellBox box_of(const Grid<float>& grid, const CellPlace& place) noexcept
     const bool level = low <= 0.0F && high >= 0.0F;
     const float level_share = level ? 1.0F : std::max(std::cos(low), std::cos(high));
     const float left = outer * level_share * (aside < 0.5F * kPi ? std::sin(aside) : 1.0F);
-    const auto scaled = [&](const Bounds& b) {
-        return Bounds{std::min(b.low * inner, b.low * outer), std::max(b.high * inner, b.high * outer)};
+    const auto scaled = [&](const Between& b) {
+        return Between{std::min(b.low * inner, b.low * outer), std::max(b.high * inner, b.high * outer)};
     };
     CellBox box;
     box.axes.col(0) = from_polar(Polar<float>{1.0F, azimuth, elevation});
     box.axes.col(1) = Vec3(-std::sin(azimuth), std::cos(azimuth), 0.0F);
     box.axes.col(2) = box.axes.col(0).cross(box.axes.col(1));
-    const Bounds x = scaled(along);
-    const Bounds z = scaled(up);
+    const Between x = scaled(along);
+    const Between z = scaled(up);
     box.centre = x.middle() * box.axes.col(0) + z.middle() * box.axes.col(2);
     box.half = Vec3(x.half(), left, z.half()) + Vec3::Constant(kTouchSlack * outer);
     return box;

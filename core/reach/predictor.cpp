@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/base/finite.hpp"
 
@@ -17,8 +16,8 @@ float change_time(const TransitionTimes& times, Movement from, float from_speed,
 {
     const Turn a = turn_of(from);
     const Turn b = turn_of(to);
-    const float turn = times.turn * static_cast<float>(std::abs(a.yaw - b.yaw));
-    const float pitch = times.pitch * static_cast<float>(std::abs(a.pitch - b.pitch));
+    const float turn = times.turn * std::abs(static_cast<float>(a.yaw - b.yaw));
+    const float pitch = times.pitch * std::abs(static_cast<float>(a.pitch - b.pitch));
     return std::max({turn, pitch, from_speed == to_speed ? 0.0F : times.speed});
 }
 
