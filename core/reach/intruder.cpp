@@ -2,6 +2,7 @@
 #include "core/reach/intruder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -82,9 +83,9 @@ CellBall ball_of(const Grid<float>& grid, const CellPlace& place) noexcept
     ball.centre = grid.centre(place);
     // The farthest point of a cell from any point in it is a corner, or on the middle of an outer edge at most as far:
     // the arcs between corners bulge outwards, which the middle of each outer edge takes in.
-    const float distances[] = {grid.layer_start(place.layer), grid.layer_end(place.layer)};
-    const float horizontals[] = {grid.column_start(place.column), grid.column_start(place.column + 1U)};
-    const float verticals[] = {grid.row_start(place.row), grid.row_start(place.row + 1U)};
+    const std::array distances{grid.layer_start(place.layer), grid.layer_end(place.layer)};
+    const std::array horizontals{grid.column_start(place.column), grid.column_start(place.column + 1U)};
+    const std::array verticals{grid.row_start(place.row), grid.row_start(place.row + 1U)};
     for (const float distance : distances) {
         for (const float horizontal : {horizontals[0], (horizontals[0] + horizontals[1]) / 2.0F, horizontals[1]}) {
             for (const float vertical : {verticals[0], (verticals[0] + verticals[1]) / 2.0F, verticals[1]}) {

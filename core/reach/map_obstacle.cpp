@@ -2,6 +2,7 @@
 #include "core/reach/map_obstacle.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
@@ -59,7 +60,7 @@ Between sine_bounds(float amplitude, float shift, float from, float to) noexcept
 }
 
 /// How far a box reaches from its centre along a direction of length 1.
-float box_reach(const Mat3& axes, const Vec3& half, const Vec3& direction) noexcept
+float half_extent(const Mat3& axes, const Vec3& half, const Vec3& direction) noexcept
 {
     return (axes.transpose() * direction).cwiseAbs().dot(half);
 }
@@ -69,8 +70,8 @@ bool are_apart(const CellBox& cell, const MapBody& body, float gap) noexcept
 {
     const Vec3 between = body.centre - cell.centre;
     const auto tells = [&](const Vec3& axis) {
-        const float apart =
-            std::abs(between.dot(axis)) - box_reach(cell.axes, cell.half, axis) - box_reach(body.axes, body.half, axis);
+        const float apart = std::abs(between.dot(axis)) - half_extent(cell.axes, cell.half, axis) -
+                            half_extent(body.axes, body.half, axis);
         return apart > gap + kTouchSlack * (1.0F + between.norm());
     };
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -108,7 +109,7 @@ bool is_beyond_walls(const Grid<float>& grid, const CellPlace& place, const MapB
     const Vec3 past_left(-std::sin(left), std::cos(left), 0.0F);
     const Vec3 past_right(std::sin(right), -std::cos(right), 0.0F);
     const auto past = [&](const Vec3& outwards) {
-        return body.centre.dot(outwards) - box_reach(body.axes, body.half, outwards) > gap + slack;
+        return body.centre.dot(outwards) - half_extent(body.axes, body.half, outwards) > gap + slack;
     };
     return past(past_left) || past(past_right);
 }
@@ -122,7 +123,7 @@ std::size_t points_on(float half, float spacing) noexcept
 
 /// The lattice about a body that holds its margin too, coarse enough.
 struct Lattice {
-    std::size_t count[3] = {};
+    std::array<std::size_t, 3> count{};
     float spacing = 0.0F;
 };
 Lattice lattice_of(const Vec3& half, float spacing) noexcept
@@ -133,8 +134,9 @@ Lattice lattice_of(const Vec3& half, float spacing) noexcept
     for (int step = 0; step < kMostSteps; ++step) {
         float points = 1.0F;
         for (Eigen::Index i = 0; i < 3; ++i) {
-            lattice.count[i] = points_on(half[i], lattice.spacing);
-            points *= static_cast<float>(lattice.count[i]);
+            std::size_t& count = lattice.count[static_cast<std::size_t>(i)];
+            count = points_on(half[i], lattice.spacing);
+            points *= static_cast<float>(count);
         }
         if (points <= static_cast<float>(kMaxCloudPoints)) {
             return lattice;
