@@ -41,7 +41,7 @@ void cell_times(const ReachSet& set, float period, std::span<Stay> out) noexcept
 void fill_meetings(const CombinedModel& model, std::span<const CellBall> balls, std::span<Stay> out) noexcept;
 
 /// A node's movement is in some cell at a time when some intruder is (both as stays above). Finer than the hull of all
-/// trajectories' times, coarser than `meets`.
+/// trajectories' times, coarser than `meets`. What of it is outside the grid has no cell and is not looked at.
 /// @param table  of each intruder, each cell: intruders times cells
 /// O(samples intruders).
 [[nodiscard]] bool meets_in_cells(const ReachSet& set, std::size_t node, float period,
