@@ -166,8 +166,10 @@ Closure closure_of(const Grid<float>& grid, const CellPlace& place, const GridPo
         return Closure::none;
     }
     float distance = 0.0F;
-    if (barrel.velocity == Vec2::Zero()) {
-        distance = pose.unit * level_distance(grid, place, in_grid(pose, barrel.circle.centre));
+    const bool stands = barrel.velocity == Vec2::Zero();
+    if (stands || from == to) {
+        const Vec2 centre = stands ? barrel.circle.centre : Vec2(barrel.circle.centre + from * barrel.velocity);
+        distance = pose.unit * level_distance(grid, place, in_grid(pose, centre));
     } else {
         const Circle shadow = shadow_of(grid, place);
         const Vec2 first = in_grid(pose, barrel.circle.centre + from * barrel.velocity);

@@ -57,7 +57,7 @@ struct Heights {
 
 /// Body, margin or nothing, for a cell that the vehicle is in from `from` until `to` [s]; heights that touch overlap,
 /// distances that are equal count. Never less than the truth: while the barrel moves the cell is taken as the circle
-/// about it. O(1).
+/// about it; at one instant, `from` equal to `to`, or when the barrel stands, the distance is exact. O(1).
 [[nodiscard]] Closure closure_of(const Grid<float>& grid, const CellPlace& place, const GridPose& pose,
                                  const Barrel& barrel, float from, float to) noexcept;
 

@@ -2,6 +2,7 @@
 #include "core/reach/intruder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +14,8 @@ namespace jink::reach {
 namespace {
 
 constexpr float kForEver = std::numeric_limits<float>::infinity();
+/// Of its distance, by which an intruder's line may be off by rounding.
+constexpr float kFarSlack = 1e-6F;
 
 using Times = StaticVector<float, kMostCrossings>;
 
@@ -80,9 +83,9 @@ CellBall ball_of(const Grid<float>& grid, const CellPlace& place) noexcept
     ball.centre = grid.centre(place);
     // The farthest point of a cell from any point in it is a corner, or on the middle of an outer edge at most as far:
     // the arcs between corners bulge outwards, which the middle of each outer edge takes in.
-    const float distances[] = {grid.layer_start(place.layer), grid.layer_end(place.layer)};
-    const float horizontals[] = {grid.column_start(place.column), grid.column_start(place.column + 1U)};
-    const float verticals[] = {grid.row_start(place.row), grid.row_start(place.row + 1U)};
+    const std::array distances{grid.layer_start(place.layer), grid.layer_end(place.layer)};
+    const std::array horizontals{grid.column_start(place.column), grid.column_start(place.column + 1U)};
+    const std::array verticals{grid.row_start(place.row), grid.row_start(place.row + 1U)};
     for (const float distance : distances) {
         for (const float horizontal : {horizontals[0], (horizontals[0] + horizontals[1]) / 2.0F, horizontals[1]}) {
             for (const float vertical : {verticals[0], (verticals[0] + verticals[1]) / 2.0F, verticals[1]}) {
@@ -125,15 +128,17 @@ std::optional<Stay> body_in(const CellBall& cell, const Intruder& intruder) noex
 {
     const float reach = intruder.radius + cell.radius;
     const Vec3 from = intruder.position - cell.centre;
-    if (intruder.velocity.norm() < kStandsBelow) {
-        return from.norm() <= reach ? std::optional(Stay{0.0F, kForEver}) : std::nullopt;
-    }
     const float a = intruder.velocity.squaredNorm();
-    const float b = from.dot(intruder.velocity);
-    const float discriminant = b * b - a * (from.squaredNorm() - square(reach));
-    if (!(discriminant >= 0.0F)) {
+    if (a < square(kStandsBelow) && from.norm() <= reach) {
+        return Stay{0.0F, kForEver};
+    }
+    // The distance from the line out of the cross product: the difference of squares loses a body that comes from afar.
+    const float apart = from.cross(intruder.velocity).squaredNorm();
+    const float discriminant = a * square(reach + kFarSlack * from.norm()) - apart;
+    if (!(discriminant >= 0.0F) || !(a > 0.0F)) {
         return std::nullopt;
     }
+    const float b = from.dot(intruder.velocity);
     const float root = std::sqrt(discriminant);
     const float last = (-b + root) / a;
     return last < 0.0F ? std::nullopt : std::optional(Stay{std::max(0.0F, (-b - root) / a), last});
@@ -143,7 +148,11 @@ std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) no
 {
     const float speed = intruder.velocity.norm();
     if (speed < kStandsBelow) {
-        return body_in(cell, intruder);
+        // What a slow one touches now it may touch for ever; where it may go is a cone all the same.
+        const std::optional<Stay> stands = body_in(cell, intruder);
+        if (stands || !(speed > 0.0F)) {
+            return stands;
+        }
     }
     const float reach = intruder.radius + cell.radius;
     const Axes axes(intruder.velocity);
@@ -167,8 +176,7 @@ std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) no
         }
     }
     const float distance = to.norm();
-    return Stay{std::max(0.0F, distance - reach) / (speed * (1.0F + intruder.speed_share)),
-                (distance + reach) / (speed * (1.0F - intruder.speed_share))};
+    return reach_times(std::max(0.0F, distance - reach), distance + reach, speed, intruder.speed_share);
 }
 
 float time_rate(const Stay& vehicle, const Stay& intruder) noexcept
@@ -179,6 +187,77 @@ float time_rate(const Stay& vehicle, const Stay& intruder) noexcept
     }
     const float length = vehicle.to - vehicle.from;
     return length > 0.0F ? std::clamp(overlap / length, 2.0F * kThreshold, 1.0F) : 1.0F;
+}
+
+float padding(float step, float radius, float speed, float clock) noexcept
+{
+    return speed > 0.0F ? (0.5F * step + radius) / speed + clock : kForEver;
+}
+
+Stay padded(const Stay& stay, float by) noexcept { return {std::max(0.0F, stay.from - by), stay.to + by}; }
+
+Stay reach_times(float nearest, float farthest, float speed, float share) noexcept
+{
+    if (!(speed > 0.0F)) {
+        return {0.0F, kForEver};
+    }
+    const float slow = speed * (1.0F - share);
+    return {nearest / (speed * (1.0F + share)), slow > 0.0F ? farthest / slow : kForEver};
+}
+
+Intruder moved(const Intruder& intruder, float later) noexcept
+{
+    Intruder there = intruder;
+    there.position += later * intruder.velocity;
+    return there;
+}
+
+CombinedModel::CombinedModel(const Grid<float>& grid, const Intruder& intruder, const Models& models,
+                             float clock) noexcept
+    : intruder_(intruder), models_(models), clock_(clock)
+{
+    if (!(models.line || models.body || models.spread)) {
+        models_ = {true, true, true, false};
+        status_ = ModelStatus::bad_intruder_model;
+    }
+    if (!models_.line) {
+        return;
+    }
+    cross(grid, intruder.position, intruder.velocity, crossed_);
+    const Located at = grid.locate(intruder.position);
+    if (intruder.velocity.norm() < kStandsBelow && at.status == LocateStatus::inside) {
+        // There is room: between kMostCrossings times there is one stay less.
+        crossed_.unchecked_push_back({grid.index(at.place), {0.0F, kForEver}});
+    }
+}
+
+Meeting CombinedModel::in(CellIndex cell, const CellBall& ball, const std::optional<Stay>& vehicle) const noexcept
+{
+    Meeting meeting;
+    const auto add = [&](const std::optional<Stay>& touched, float by) {
+        if (!touched) {
+            return;
+        }
+        const Stay stay = padded(*touched, by);
+        const float timed = vehicle ? time_rate(*vehicle, stay) : 0.0F;
+        meeting.rate = std::max(meeting.rate, models_.timed ? timed : 1.0F);
+        meeting.stay =
+            meeting.stay ? Stay{std::min(meeting.stay->from, stay.from), std::max(meeting.stay->to, stay.to)} : stay;
+    };
+    // The line's times are of the body's centre; the other models' times have the radius in them.
+    const float speed = intruder_.velocity.norm();
+    for (const CellStay& crossed : crossed_) {
+        if (crossed.cell == cell) {
+            add(crossed.stay, padding(0.0F, intruder_.radius, speed, clock_));
+        }
+    }
+    if (models_.body) {
+        add(body_in(ball, intruder_), clock_);
+    }
+    if (models_.spread) {
+        add(spread_in(ball, intruder_), clock_);
+    }
+    return meeting;
 }
 
 }  // namespace jink::reach

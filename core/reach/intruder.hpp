@@ -23,7 +23,7 @@ struct Intruder {
 };
 /// Greatest spread: 75 degrees, beyond which the tangent tells nothing.
 inline constexpr float kMostSpread = 1.3089969F;
-/// Slower ones stand: they are where they are, for ever.
+/// Slower ones [grid's unit/s] may stand: what they touch now they touch for ever. So may they go on.
 inline constexpr float kStandsBelow = 0.1F;
 
 /// When something is in a cell [s], first to last.
@@ -48,6 +48,7 @@ struct CellBall {
 inline constexpr std::size_t kMostCrossings = 2 * (kMaxLayers + 1) + (kMaxColumns + 1) + 2 * (kMaxRows + 1) + 1;
 using CrossedCells = StaticVector<CellStay, kMostCrossings>;
 /// Exact: where the line meets the spheres, planes and cones between cells. A velocity of zero meets nothing here.
+/// What is said of a cell's corner, where the line is in it for less than rounding tells, may be another cell's.
 /// O(n log n) for n = 2 (layers + rows + 2) + columns + 2.
 void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, CrossedCells& out) noexcept;
 
@@ -64,11 +65,62 @@ void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, 
 /// lost. O(1).
 [[nodiscard]] float time_rate(const Stay& vehicle, const Stay& intruder) noexcept;
 
-/// Models of one intruder, and their weights against each other (Gomola eq. 6.150, 6.151).
-struct ModelRates {
-    float line = 0.0F;    ///< weight 2.5
-    float body = 0.0F;    ///< weight 2.6
-    float spread = 0.0F;  ///< weight 2.7
+/// How long before and after an intruder counts as in a cell beyond what a model says (avoids the loss of one that is
+/// seen there for an instant): half the step it was looked at by and its radius, at its speed, and what its clock may
+/// be off by. Infinite at speed 0.
+/// @param step    between samples of its way [grid's unit]; 0 for exact ways
+/// @param radius  that the model leaves out of its times [grid's unit]
+/// @param clock   [s]: one decision frame of the intruder
+/// O(1).
+[[nodiscard]] float padding(float step, float radius, float speed, float clock) noexcept;
+[[nodiscard]] Stay padded(const Stay& stay, float by) noexcept;
+
+/// When an intruder may be between two distances from where it is now, its speed being wrong by up to `share` (Gomola
+/// eq. 6.121, 6.148, 6.149). One that stands, or whose speed is not known at all, is there for ever. O(1).
+[[nodiscard]] Stay reach_times(float nearest, float farthest, float speed, float share) noexcept;
+
+/// Where an intruder is `later` seconds on. O(1).
+[[nodiscard]] Intruder moved(const Intruder& intruder, float later) noexcept;
+
+/// Which models an intruder is looked at by (Gomola eq. 6.150, 6.151). Claimed separation: body, with the separation
+/// as its radius; one that may deviate: spread; small ones that are known to fly straight: line.
+struct Models {
+    bool line = false;
+    bool body = false;
+    bool spread = false;
+    bool timed = false;  ///< cells that the vehicle is in at other times are not rated
+};
+enum class ModelStatus : std::uint8_t { good, bad_intruder_model };
+
+/// What an intruder does to a cell.
+struct Meeting {
+    float rate = 0.0F;         ///< 0 to 1
+    std::optional<Stay> stay;  ///< hull of the models' times, padded; none: it is not touched
+};
+
+/// One intruder by the models asked for; all of them, and not timed, when none is (`bad_intruder_model`).
+///
+/// Memory: the cells of its line, about 1 KiB.
+class CombinedModel {
+public:
+    /// @param clock  as of `padding`
+    /// @param grid   outlives this
+    /// O(n log n) as `cross`.
+    CombinedModel(const Grid<float>& grid, const Intruder& intruder, const Models& models, float clock) noexcept;
+
+    [[nodiscard]] ModelStatus status() const noexcept { return status_; }
+    /// The greatest of the models' rates: 1 where one touches the cell, and when timed, 1 times the share of `vehicle`
+    /// in that model's own times. Timed without a vehicle in the cell: 0.
+    /// @param vehicle  its stay in the cell; none: it never is
+    /// O(kMostCrossings).
+    [[nodiscard]] Meeting in(CellIndex cell, const CellBall& ball, const std::optional<Stay>& vehicle) const noexcept;
+
+private:
+    Intruder intruder_;
+    Models models_;
+    float clock_;
+    ModelStatus status_ = ModelStatus::good;
+    CrossedCells crossed_;
 };
 
 }  // namespace jink::reach

@@ -90,5 +90,33 @@ TEST(MovementLaws, MirroredOrdersFlyMirroredPathsOfTheSameLength)
     }
 }
 
+/// Section 16.1: n movements are n long along their arcs, whatever they turn; with either model their chords no longer.
+TEST(MovementLaws, NMovementsAreNLong)
+{
+    constexpr std::uint64_t kSeed = 8;
+    Random random(kSeed);
+    for (int i = 0; i < 1000; ++i) {
+        Pose<double> pose;
+        double length = 0.0;
+        double chords = 0.0;
+        const int count = 1 + static_cast<int>(random.below(12));
+        for (int k = 0; k < count; ++k) {
+            const auto movement = static_cast<Movement>(random.below(kMovements));
+            Point<double> before = pose.position;
+            constexpr int kParts = 64;
+            for (int n = 1; n <= kParts; ++n) {
+                const Point<double> at =
+                    at_share(pose, movement, static_cast<double>(n) / kParts, MovementStep<double>{}).position;
+                length += (at - before).norm();
+                before = at;
+            }
+            chords += (before - pose.position).norm();
+            pose = apply(pose, movement, MovementStep<double>{});
+        }
+        ASSERT_NEAR(length, count, 2e-6 * count) << "seed " << kSeed << ", case " << i;
+        ASSERT_LE(chords, count + 1e-12) << "seed " << kSeed << ", case " << i;
+    }
+}
+
 }  // namespace
 }  // namespace jink::reach

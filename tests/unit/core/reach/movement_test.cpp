@@ -66,6 +66,22 @@ TEST(Movements, EndWhereTheReferenceResultsSay)
     }
 }
 
+/// Section 16.1: six turns to the left end exactly on the grid's border, which is inside; ten movements straight on in
+/// the middle of the last layer.
+TEST(Movements, EndInTheCellsOfTheReferenceResults)
+{
+    const Grid<double> grid;
+    const Located side = grid.locate(fly<double>({L, L, L, L, L, L}).position);
+    EXPECT_EQ(side.status, LocateStatus::inside);
+    EXPECT_EQ(side.place.column, 6);
+    const Located end = grid.locate(fly<double>(std::vector<Movement>(10, S)).position);
+    EXPECT_EQ(end.status, LocateStatus::inside);
+    EXPECT_EQ(end.place, (CellPlace{9, 3, 2}));
+    const Grid<float> single;
+    EXPECT_EQ(single.locate(fly<float>({L, L, L, L, L, L}).position).place.column, 6);
+    EXPECT_EQ(single.locate(fly<float>(std::vector<Movement>(10, S)).position).place, (CellPlace{9, 3, 2}));
+}
+
 /// Section 3: against 20 000 steps of numerical integration the source of the figure was within 2e-9.
 TEST(Movements, AgreeWithTheFigureOfTheClosedForm)
 {

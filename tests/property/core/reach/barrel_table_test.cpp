@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Merged constraints: whatever was in one of them, at any time, is in the one that they became.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "core/reach/barrel_table.hpp"
+
+namespace jink::reach {
+namespace {
+
+Barrel random_barrel(Random& random)
+{
+    Barrel barrel;
+    barrel.circle = {Vec2(random.uniform(-300.0F, 300.0F), random.uniform(-300.0F, 300.0F)),
+                     random.uniform(0.0F, 60.0F)};
+    barrel.velocity =
+        random.below(3) == 0 ? Vec2(Vec2::Zero()) : Vec2(random.uniform(-15.0F, 15.0F), random.uniform(-15.0F, 15.0F));
+    barrel.bottom = random.uniform(0.0F, 80.0F);
+    barrel.top = barrel.bottom + random.uniform(0.0F, 100.0F);
+    barrel.margin = random.uniform(0.0F, 40.0F);
+    return barrel;
+}
+
+/// Where a point is of a barrel at a time: the definition itself, in double.
+Closure closure_at(const Barrel& barrel, double x, double y, double z, double t)
+{
+    const double apart =
+        std::hypot(x - static_cast<double>(barrel.circle.centre.x()) - t * static_cast<double>(barrel.velocity.x()),
+                   y - static_cast<double>(barrel.circle.centre.y()) - t * static_cast<double>(barrel.velocity.y()));
+    if (z < static_cast<double>(barrel.bottom) || z > static_cast<double>(barrel.top)) {
+        return Closure::none;
+    }
+    const auto radius = static_cast<double>(barrel.circle.radius);
+    return apart <= radius                                        ? Closure::hard
+           : apart <= radius + static_cast<double>(barrel.margin) ? Closure::soft
+                                                                  : Closure::none;
+}
+
+TEST(BarrelTableLaws, NothingIsLostInAMerge)
+{
+    constexpr std::uint64_t kSeed = 20261123;
+    Random random(kSeed);
+    std::size_t closed = 0;
+    for (int i = 0; i < 300; ++i) {
+        BarrelTable table;
+        const float from = random.uniform(0.0F, 5.0F);
+        const float to = from + random.uniform(0.0F, 20.0F);
+        table.begin(Vec3(random.uniform(-50.0F, 50.0F), random.uniform(-50.0F, 50.0F), 50.0F), from, to);
+        std::vector<Barrel> all;
+        const std::size_t count = kMaxBarrels + random.below(20);
+        for (std::size_t n = 0; n < count; ++n) {
+            all.push_back(random_barrel(random));
+            ASSERT_EQ(table.add(all.back()), n < kMaxBarrels ? AddStatus::added : AddStatus::constraint_merged);
+        }
+        ASSERT_EQ(table.merged(), count - kMaxBarrels);
+        for (int k = 0; k < 500; ++k) {
+            // A point in or about some barrel at some time.
+            const Barrel& barrel = all[random.below(all.size())];
+            const double t = static_cast<double>(random.uniform(from, to));
+            const double angle = static_cast<double>(random.uniform(-kPi, kPi));
+            const double away =
+                static_cast<double>(random.uniform(0.0F, 1.0F) * (barrel.circle.radius + barrel.margin));
+            const double x = static_cast<double>(barrel.circle.centre.x()) +
+                             t * static_cast<double>(barrel.velocity.x()) + away * std::cos(angle);
+            const double y = static_cast<double>(barrel.circle.centre.y()) +
+                             t * static_cast<double>(barrel.velocity.y()) + away * std::sin(angle);
+            const double z = static_cast<double>(random.uniform(barrel.bottom, barrel.top));
+            Closure before = Closure::none;
+            for (const Barrel& b : all) {
+                before = std::max(before, closure_at(b, x, y, z, t));
+            }
+            Closure after = Closure::none;
+            for (const Barrel& b : table.barrels()) {
+                after = std::max(after, closure_at(b, x, y, z, t));
+            }
+            ASSERT_GE(after, before) << "seed " << kSeed << ", case " << i << ", point " << k;
+            closed += before == Closure::hard ? 1U : 0U;
+        }
+    }
+    EXPECT_GT(closed, 50000U);
+}
+
+/// What comes within range at some time is active.
+TEST(BarrelTableLaws, WhatComesNearIsActive)
+{
+    constexpr std::uint64_t kSeed = 9;
+    Random random(kSeed);
+    int near = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const Barrel barrel = random_barrel(random);
+        const Vec3 vehicle(random.uniform(-200.0F, 200.0F), random.uniform(-200.0F, 200.0F),
+                           random.uniform(0.0F, 99.0F));
+        const float range = random.uniform(10.0F, 150.0F);
+        const float since = random.uniform(0.0F, 30.0F);
+        const float horizon = random.uniform(0.0F, 20.0F);
+        const float t = since + random.uniform() * horizon;
+        const Vec2 apart = barrel.circle.centre + t * barrel.velocity - vehicle.head<2>();
+        const bool is_near = apart.norm() <= range + barrel.circle.radius + barrel.margin - 0.05F &&
+                             vehicle.z() + range >= barrel.bottom && vehicle.z() - range <= barrel.top;
+        if (is_near) {
+            ++near;
+            ASSERT_TRUE(may_matter(barrel, vehicle, range, since, horizon)) << "seed " << kSeed << ", case " << i;
+        }
+    }
+    EXPECT_GT(near, 1000);
+}
+
+}  // namespace
+}  // namespace jink::reach
