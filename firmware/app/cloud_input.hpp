@@ -11,7 +11,7 @@
 
 namespace jink::app {
 
-/// Bytes read from the cloud port per step. 10^5 points ten times a second are 126 616 bytes in 20 ms; the rest lets a
+/// Bytes read from the cloud port per step. 10^5 points ten times a second are 126 005 bytes in 20 ms; the rest lets a
 /// late step catch up within four. What the port still holds then waits for the next step, and counts as a full step.
 inline constexpr std::size_t kMaxCloudBytesPerStep = 160U * 1024U;
 
