@@ -49,7 +49,7 @@ struct CloudDiagnostics {
 /// Hits are placed by the own position at the scan's stamp, flown on or back from the newest one, and by the own yaw as
 /// known when the scan began. The sensor counts as the vehicle's centre.
 ///
-/// Memory: 8 bytes for each of kBins, and 250. add() is O(1); end_scan() O(kBins * (kMaxCloudObstacles +
+/// Memory: 8 bytes for each of kBins, and 290. add() is O(1); end_scan() O(kBins * (kMaxCloudObstacles +
 /// kMaxObstacles)). Nothing is allocated.
 class CloudObstacles final : public link::CloudSink {
 public:

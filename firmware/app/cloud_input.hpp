@@ -18,7 +18,7 @@ inline constexpr std::size_t kMaxCloudBytesPerStep = 160U * 1024U;
 /// Point clouds on their way into the world: compact frames on a port of their own, and single points of the
 /// autopilot's link. Each has an image of its own, because their scans overlap in time.
 ///
-/// Owned by whoever has such a port: a Coprocessor that is given none pays a pointer. About 13 KiB, no allocation.
+/// Owned by whoever has such a port: a Coprocessor that is given none pays a pointer. About 12 KiB, no allocation.
 /// Neither copied nor moved.
 class CloudInput final : public Clouds {
 public:

@@ -55,7 +55,7 @@ struct ReceiverDiagnostics {
 /// takes at least from its stamp to the line cannot be seen here, and makes it look that much younger.
 ///
 /// Work: at most kMaxWorkPerByte bytes through a checksum per byte, and a header more per call; per point a sine and a
-/// cosine of each angle. Nothing is allocated. Memory: 2 * kMaxFrame + kMaxParts / 8 bytes, 320 for the clock
+/// cosine of each angle. Nothing is allocated. Memory: 2 * kMaxFrame + kMaxParts / 8 bytes, 420 for the clock
 /// and the counters.
 class Receiver {
 public:
