@@ -158,7 +158,8 @@ void CloudObstacles::keep(Bin& bin, const Direction& direction, float range) noe
 /// the angle from the middle, which is greatest in a corner for bins of less than half a turn, and is convex in range.
 geometry::Shape CloudObstacles::local_sphere(std::size_t index, const Bin& bin) noexcept
 {
-    const float column = static_cast<float>(index / kRows) * kColumnWidth - kPi;
+    const std::size_t columns_before = index / kRows;
+    const float column = static_cast<float>(columns_before) * kColumnWidth - kPi;
     const Rows row = row_ends(index % kRows);
     const float left = angle_at(bin.left, column, column + kColumnWidth);
     const float right = angle_at(bin.right, column, column + kColumnWidth);
@@ -205,8 +206,8 @@ void CloudObstacles::end_scan(std::uint32_t points_lost) noexcept
         }
     }
     for (std::size_t given = 0; given < kMaxCloudObstacles; ++given) {
-        const auto nearest = std::min_element(bins_.begin(), bins_.end(),
-                                              [](const Bin& a, const Bin& b) { return a.nearest < b.nearest; });
+        auto* const nearest = std::min_element(bins_.begin(), bins_.end(),
+                                               [](const Bin& a, const Bin& b) { return a.nearest < b.nearest; });
         if (!has_hit(*nearest)) {
             return;
         }

@@ -82,13 +82,11 @@ void Receiver::pass_over(std::size_t n) noexcept
 void Receiver::search(TimePoint now, CloudSink& sink) noexcept
 {
     while (pending() > 0) {  // at least one byte goes each time round
-        if (buffer_[begin_] != kSync[0]) {
+        const bool may_start = buffer_[begin_] == kSync[0];
+        const bool is_whole = pending() > kSync.size();  // start bytes and version
+        if (!may_start || (is_whole && buffer_[begin_ + 1] != kSync[1])) {
             pass_over(1);
-        } else if (pending() < kSync.size() + 1) {
-            return;
-        } else if (buffer_[begin_ + 1] != kSync[1]) {
-            pass_over(1);
-        } else if (!judge(now, sink)) {
+        } else if (!is_whole || !judge(now, sink)) {
             return;
         }
     }
@@ -190,14 +188,13 @@ void Receiver::on_frame(const Part& part, std::span<const std::byte> frame, Time
 bool Receiver::is_ours(const Part& part) noexcept
 {
     std::uint32_t* cause = nullptr;
-    if (!agrees(part, scan_)) {
-        cause = &diagnostics_.inconsistent;
-    } else if ((received_[part.part / 8U] >> part.part % 8U & 1U) != 0) {
+    const bool is_too_much = open_ && part.points > scan_.scan_points - scan_points_;
+    if ((received_[part.part / 8U] >> part.part % 8U & 1U) != 0 && agrees(part, scan_)) {
         cause = &diagnostics_.duplicated;
+    } else if (is_too_much || !agrees(part, scan_)) {
+        cause = &diagnostics_.inconsistent;
     } else if (!open_) {
         cause = &diagnostics_.late;
-    } else if (part.points > scan_.scan_points - scan_points_) {
-        cause = &diagnostics_.inconsistent;
     }
     if (cause != nullptr) {
         ++*cause;
