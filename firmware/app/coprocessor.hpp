@@ -22,6 +22,8 @@
 
 namespace jink::app {
 
+class Clouds;
+
 /// Why the co-processor is not fit to act; a bit set.
 enum class Fault : std::uint16_t {
     none = 0,
@@ -119,6 +121,12 @@ public:
 
     /// From here on every step prepares what a fault handler is to say, before it sends anything. They outlive this.
     void keep_last_words(hal::LastWords& words) noexcept { last_words_ = &words; }
+    /// From here on the points of the link and of the input's own port become obstacles. It outlives this, and takes
+    /// nothing once this is gone.
+    void use_clouds(Clouds& clouds) noexcept;
+    /// One more taker of the same scans ; nothing without use_clouds() before. It outlives
+    /// this.
+    void forward_clouds_to(link::CloudSink& sink) noexcept;
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
     /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
@@ -172,6 +180,7 @@ private:
     void take_tracks(TimePoint now) noexcept;
     void take_scan(TimePoint now) noexcept;
     void take_readings() noexcept;
+    void take_clouds(TimePoint now) noexcept;
     void take_params() noexcept;
     void take_commands() noexcept;
     void apply_configuration() noexcept;
@@ -262,6 +271,7 @@ private:
     bool told_conflict_ = false;
     Diagnostics diagnostics_;
     hal::LastWords* last_words_ = nullptr;
+    Clouds* clouds_ = nullptr;
     StaticVector<Notice, kMostNotices> notices_;
     bool passive_ = false;
     ParamService param_service_;

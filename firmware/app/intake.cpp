@@ -254,6 +254,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     take_tracks(now);
     take_scan(now);
     take_readings();
+    take_clouds(now);
     take_params();
     take_commands();
     inbox_.clear();

@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "firmware/link/cloud.hpp"
 #include "firmware/link/global_position.hpp"
 #include "firmware/link/messages.hpp"
 
@@ -81,6 +82,9 @@ public:
 
     /// Whether `service` may ask the autopilot for messages that come too seldom. Off at first.
     virtual void ask_for_rates(bool on) noexcept = 0;
+    /// Where single points in space go as they come in `receive`; nobody takes them until this is called. The sink
+    /// outlives the link.
+    virtual void report_points_to(CloudSink& sink) noexcept = 0;
 
     /// Bytes waiting to go out (contiguous part), and taking `n` of them off once the port has accepted them.
     [[nodiscard]] virtual std::span<const std::byte> pending() const noexcept = 0;

@@ -18,8 +18,10 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/can_bus.hpp"
+#include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/linux/cloud_line.hpp"
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/node_identity.hpp"
 #include "firmware/linux/param_file.hpp"
@@ -44,6 +46,7 @@ extern "C" void request_stop(int /*signal*/) { stop_requested = 1; }
 struct Options {
     std::string serial;
     std::string can;
+    std::string cloud;
     std::string vehicle_file;
     std::string param_file;
     std::string watchdog;
@@ -89,6 +92,21 @@ void sleep_until(std::int64_t us)
     t.tv_nsec = us % 1'000'000 * 1000;
     // Woken early by a signal: the loop looks at the stop flag.
     static_cast<void>(clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr));
+}
+
+/// Sleeps until `us`; a cloud line is emptied a thousand times a second meanwhile: its driver holds little.
+void wait_until(std::int64_t us, hal::SystemClock& clock, host::CloudLine* cloud)
+{
+    constexpr std::int64_t kPumpPeriod = 1'000;
+    while (cloud != nullptr && stop_requested == 0) {
+        cloud->pump();
+        const std::int64_t next = clock.now_us() + kPumpPeriod;
+        if (next >= us) {
+            break;
+        }
+        sleep_until(next);
+    }
+    sleep_until(us);
 }
 
 /// Closing throws away what the driver has not sent yet, and the last words are the ones that matter.
@@ -204,19 +222,38 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         }
     }
 
+    hal::TermiosSerialPort cloud_port;
+    std::optional<host::CloudLine> cloud_line;
+    if (!options.cloud.empty()) {
+        std::string cloud_device;
+        std::uint32_t cloud_baud = 0;
+        if (!split_device(options.cloud, cloud_device, cloud_baud)) {
+            std::fprintf(stderr, "jinkd: --cloud %s: expected DEV[:BAUD]\n", options.cloud.c_str());
+            return EXIT_FAILURE;
+        }
+        if (!open_serial(cloud_port, cloud_device, cloud_baud)) {
+            return EXIT_FAILURE;
+        }
+        cloud_line.emplace(cloud_port);
+    }
+    // Single points of the link count without a port too.
+    const auto clouds = std::make_unique<app::CloudInput>(cloud_line ? &*cloud_line : nullptr);
+
     link::mavlink::EndpointOptions link_options;
     link_options.system_id = static_cast<std::uint8_t>(options.system_id);
     link::mavlink::Endpoint endpoint(link_options);
     const auto coprocessor =
         std::make_unique<app::Coprocessor>(endpoint, port, watchdog, parameters, bus ? &*bus : nullptr);
+    coprocessor->use_clouds(*clouds);
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
-    const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr};
+    const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
 
     std::int64_t next = clock.now_us();
     while (stop_requested == 0) {
         const std::int64_t began = clock.now_us();
         serial.service(began);
         can.service(began);
+        cloud_port.service(began);
         const app::StepReport report = coprocessor->step({began});
         log.note(report, watched, began, clock.now_us() - began);
         next += kTickMicroseconds;
@@ -224,7 +261,7 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         if (next < now) {
             next = now;  // late: do not try to catch up by a burst of steps
         }
-        sleep_until(next);
+        wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
     }
     coprocessor->shut_down({clock.now_us()});
     let_go_out(serial, clock);
@@ -258,6 +295,8 @@ int main(int argc, char** argv)
     cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
         ->check(CLI::Range(0, 127))
         ->needs(can);
+    cli.add_option("--cloud", options.cloud,
+                   "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
     cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
     cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")

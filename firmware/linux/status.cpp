@@ -106,6 +106,45 @@ void write_bus(std::FILE* f, const app::CanBus& bus)
                  t.transfers_in, t.transfers_out, t.bytes_overwritten, b.tunnel_dropped);
 }
 
+void write_image(std::FILE* f, const char* name, const app::CloudDiagnostics& d)
+{
+    const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::fprintf(f,
+                 "    \"%s\": {\"scans\": %u, \"unplaced\": %u, \"hits\": %llu, \"nothing\": %llu, \"invalid\": %llu, "
+                 "\"lost\": %llu,\n      \"body\": %llu, \"below_floor\": %llu, \"beyond\": %llu, \"behind\": %llu, "
+                 "\"kept\": %llu, \"obstacles\": %u, \"no_room\": %u}",
+                 name, d.scans, d.scans_unplaced, u(d.hits), u(d.nothing), u(d.invalid), u(d.lost), u(d.body),
+                 u(d.below_floor), u(d.beyond), u(d.behind), u(d.kept), d.obstacles, d.no_room);
+}
+
+void write_clouds(std::FILE* f, const app::CloudInput& clouds)
+{
+    const link::cloud::ReceiverDiagnostics& d = clouds.receiver_diagnostics();
+    const auto u = [](std::uint64_t value) { return static_cast<unsigned long long>(value); };
+    std::fprintf(f, "  \"clouds\": {\n");
+    if (clouds.has_port()) {
+        std::fprintf(f,
+                     "    \"bytes\": %llu, \"noise_bytes\": %llu, \"full_steps\": %u, \"frames\": %u, "
+                     "\"frames_missed\": %u, \"reordered\": %u, \"restarts\": %u,\n",
+                     u(clouds.bytes_in()), u(d.noise_bytes), clouds.full_steps(), d.frames, d.frames_missed,
+                     d.reordered, d.restarts);
+        std::fprintf(f,
+                     "    \"scans\": %u, \"scans_complete\": %u, \"scans_missed\": %u, \"points\": %llu, "
+                     "\"points_lost\": %llu, \"clock_relocks\": %u,\n",
+                     d.scans, d.scans_complete, d.scans_missed, u(d.points), u(d.points_lost), d.clock_relocks);
+        std::fprintf(f,
+                     "    \"unknown_version\": %u, \"bad_header\": %u, \"bad_checksum\": %u, \"cut\": %u, "
+                     "\"out_of_range\": %u, \"inconsistent\": %u, \"duplicated\": %u, \"late\": %u, \"stale\": "
+                     "%u,\n",
+                     d.unknown_version, d.bad_header, d.bad_checksum, d.cut, d.out_of_range, d.inconsistent,
+                     d.duplicated, d.late, d.stale);
+        write_image(f, "port", clouds.port_diagnostics());
+        std::fprintf(f, ",\n");
+    }
+    write_image(f, "link", clouds.link_diagnostics());
+    std::fprintf(f, "},\n");
+}
+
 }  // namespace
 
 void StatusLog::note(const app::StepReport& report, const Watched& watched, std::int64_t now_us, std::int64_t took_us)
@@ -213,6 +252,7 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched) c
     if (watched.bus != nullptr) {
         write_bus(f, *watched.bus);
     }
+    write_clouds(f, watched.clouds);
     std::fprintf(f, "  \"port_disconnects\": %llu, \"port_reconnects\": %llu\n}\n",
                  static_cast<unsigned long long>(port.disconnects), static_cast<unsigned long long>(port.reconnects));
     return std::ferror(f) == 0;

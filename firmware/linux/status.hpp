@@ -6,6 +6,7 @@
 #include <string>
 
 #include "firmware/app/can_bus.hpp"
+#include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/serial_port.hpp"
@@ -18,6 +19,7 @@ struct Watched {
     const link::mavlink::Endpoint& endpoint;
     const hal::SerialPort& port;  ///< MAVLink's
     const app::CanBus* bus;       ///< nullptr: there is none
+    const app::CloudInput& clouds;
 };
 
 /// The daemon's status line and the summary that it leaves behind.

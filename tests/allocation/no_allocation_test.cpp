@@ -9,7 +9,7 @@
 #include <memory>
 #include <new>
 
-#include "tests/unit/app/flight.hpp"
+#include "tests/unit/app/cloud_bench.hpp"
 
 extern "C" {
 void* __libc_malloc(std::size_t size);                           // NOLINT: glibc's names
@@ -139,6 +139,7 @@ struct Visited {
 
 class Watched {
 public:
+    Watched() { flight.coprocessor.use_clouds(clouds); }
     void fly(int ticks)
     {
         for (int i = 0; i < ticks; ++i) {
@@ -175,6 +176,8 @@ public:
         return report;
     }
 
+    CloudLine line;
+    app::CloudInput clouds{&line};
     Flight flight;
     Visited visited;
 };
@@ -198,6 +201,17 @@ void fly_everything(Watched& w)
         w.tick();
     }
     w.fly(50);
+
+    // Point clouds of a LiDAR, damaged ones too.
+    cloud::test::Driver driver;
+    for (int i = 0; i < 20; ++i) {
+        f.feed(wire::attitude(f.boot_ms(), 0.5F * kPi));
+        auto bytes = cloud::test::joined(driver.scan(cloud::test::random_points(random, 5000), 100U * driver.number));
+        bytes[random.below(bytes.size())] ^= std::byte{1};
+        w.line.feed(bytes);
+        w.fly(5);
+    }
+    w.fly(60);
 
     // Around a pillar and back.
     f.obstacles = {f.position + Vec3(0.4F, 40.0F, 0.0F)};
@@ -245,6 +259,7 @@ int main()
     expect(v.given_back >= 2, "control was given back twice");
     expect(v.parameters == static_cast<long>(app::kParamCount), "the whole parameter list went out");
     expect(v.refused_bytes > 20000, "garbage was searched and refused");
+    expect(watched->clouds.port_diagnostics().obstacles > 0, "clouds became obstacles");
     expect(!watched->flight.lost_input, "the port held everything that was fed");
     return failures == 0 ? 0 : 1;
 }

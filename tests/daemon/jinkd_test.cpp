@@ -22,6 +22,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/link/cloud/frame.hpp"
 #include "firmware/link/mavlink/codec.hpp"
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/messages.hpp"
@@ -84,7 +85,11 @@ public:
     {
         std::array<std::byte, kMaxFrame> frame{};
         const std::size_t n = encode(message, {1, 1, sequence_++}, frame);
-        EXPECT_EQ(write(master_, frame.data(), n), static_cast<ssize_t>(n));
+        send_bytes({frame.data(), n});
+    }
+    void send_bytes(std::span<const std::byte> bytes) const
+    {
+        EXPECT_EQ(write(master_, bytes.data(), bytes.size()), static_cast<ssize_t>(bytes.size()));
     }
 
     /// Waits for a HEARTBEAT of component 196.
@@ -189,8 +194,8 @@ TEST(Jinkd, HelpNamesEveryOptionOfTheReadme)
     Daemon daemon({"--help"}, scratch / "out");
     EXPECT_EQ(daemon.wait(kPatience), 0);
     const std::string help = text_of(scratch / "out");
-    for (const char* option :
-         {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog", "--system-id"}) {
+    for (const char* option : {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog",
+                               "--system-id", "--cloud"}) {
         EXPECT_NE(help.find(option), std::string::npos) << option;
     }
 }
@@ -211,6 +216,8 @@ TEST(Jinkd, RefusesWhatItCannotUse)
         {"--serial", "/dev/ptmx", "--params", file + "-that-is-not-there"},
         {"--serial", "/dev/ptmx", "--vehicle", file},
         {"--serial", "/dev/ptmx", "--system-id", "256"},
+        {"--serial", "/dev/ptmx", "--cloud", "/dev/null:0"},
+        {"--serial", "/dev/ptmx", "--cloud", file},
         {"--can", ""},
         {"--can", "a_name_that_no_interface_can_have"},
         {"--node-id", "42"},
@@ -310,6 +317,43 @@ TEST(Jinkd, ComesBackWhenTheCableDoes)
     }
     daemon.signal(SIGTERM);
     EXPECT_EQ(daemon.wait(kPatience), 0);
+}
+
+TEST(Jinkd, TakesPointCloudsOnALineOfTheirOwn)
+{
+    namespace cloud = jink::link::cloud;
+    Scratch scratch;
+    Cable cable;
+    Cable lidar;
+    Daemon daemon({"--serial", cable.path(), "--cloud", lidar.path(), "--summary", (scratch / "summary.json").string()},
+                  scratch / "out");
+    ASSERT_TRUE(cable.heartbeat(kPatience));
+    const std::vector<cloud::RawPoint> points(cloud::kMaxPoints, {0, 0, 3000});
+    cloud::Part part;
+    part.max_range = 10000;
+    part.parts = 2;
+    part.scan_points = 2 * cloud::kMaxPoints;
+    std::array<std::byte, cloud::kMaxFrame> frame{};
+    for (std::uint16_t i = 0; i < 20; ++i) {  // ten scans, the last one in half
+        part.sequence = i;
+        part.scan = static_cast<std::uint16_t>(i / 2);
+        part.part = i % 2;
+        part.stamp_ms = 100U * part.scan;
+        const std::size_t n = cloud::write_frame(part, points, frame);
+        if (i < 19) {
+            lidar.send_bytes({frame.data(), n});
+        }
+        std::this_thread::sleep_for(milliseconds(20));
+    }
+    std::this_thread::sleep_for(milliseconds(500));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
+    const std::string summary = text_of(scratch / "summary.json");
+    EXPECT_NE(summary.find("\"scans\": 10, \"scans_complete\": 9, \"scans_missed\": 0, \"points\": 2280, "
+                           "\"points_lost\": 120"),
+              std::string::npos)
+        << summary;
+    EXPECT_NE(summary.find("\"hits\": 2280"), std::string::npos) << summary;
 }
 
 TEST(Jinkd, TakesTheSystemIdOfTheAutopilotItHears)

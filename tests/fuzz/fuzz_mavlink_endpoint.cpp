@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The whole receiving side of the MAVLink link on arbitrary bytes. First input byte: 1 repair checksums, 2 all frames
 // claim to be the autopilot's, 4 inbox emptied only now and then. Then records: time step in units of 10 ms, length,
-// bytes. Checked after each record: every number in the inbox is finite and within the ranges that the application
-// relies on, and what is sent is whole frames without a gap.
+// bytes. Checked after each record: every number in the inbox and every point is finite and within the ranges that the
+// application relies on, and what is sent is whole frames without a gap.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -21,6 +21,26 @@ namespace {
 
 constexpr float kFar = 200'000.0F;  // of own positions and legs [m]
 constexpr float kRound = 45e6F;     // no two places on the globe are farther apart on the map [m]
+
+/// Points come scan by scan, hits within their reach and directions of length 1.
+struct PointCheck final : CloudSink {
+    void begin_scan(const CloudScan& scan) noexcept override
+    {
+        JINK_FUZZ_CHECK(!open && std::isfinite(scan.max_range) && scan.max_range > 0.0F);
+        open = true;
+    }
+    void add(Ray ray, const Vec3& point) noexcept override
+    {
+        JINK_FUZZ_CHECK(open && is_finite(point) && ray != Ray::invalid);
+        JINK_FUZZ_CHECK(ray == Ray::hit ? point != Vec3::Zero() : std::abs(point.norm() - 1.0F) < 1e-4F);
+    }
+    void end_scan(std::uint32_t points_lost) noexcept override
+    {
+        JINK_FUZZ_CHECK(open && points_lost == 0);
+        open = false;
+    }
+    bool open = false;
+};
 
 void check_scan(const RangeScan& scan, TimePoint now)
 {
@@ -108,6 +128,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const unsigned options = data[0];
     const auto endpoint = std::make_unique<Endpoint>();
     const auto inbox = std::make_unique<Inbox>();
+    PointCheck points;
+    endpoint->report_points_to(points);
     Parser ears;
     TimePoint now{10'000'000};
     unsigned records = 0;

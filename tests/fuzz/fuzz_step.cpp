@@ -14,6 +14,7 @@
 #include <cstring>
 #include <memory>
 
+#include "firmware/app/cloud_input.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/fuzz/mavlink_repair.hpp"
 #include "tests/unit/app/flight.hpp"
@@ -44,6 +45,7 @@ public:
         f_.px4 = (options & 4U) != 0;
         f_.acknowledges = (options & 8U) != 0;
         f_.mode = f_.mission_mode();
+        f_.coprocessor.use_clouds(clouds_);
     }
 
     [[nodiscard]] bool over() const { return steps_ >= kMaxSteps; }
@@ -221,6 +223,7 @@ private:
         }
     }
 
+    CloudInput clouds_;
     Flight f_;
     Parser ears_;
     bool repairs_;

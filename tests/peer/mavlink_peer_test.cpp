@@ -207,6 +207,8 @@ TEST(MavlinkPeer, CataloguesAgree)
     }
     // newer than the peer: COMMAND_CANCEL, PROTOCOL_VERSION, ONBOARD_COMPUTER_STATUS, COMPONENT_METADATA, EVENT
     EXPECT_EQ(only_ours, (std::set<std::uint32_t>{80, 300, 390, 397, 410}));
+    // what point clouds come in by must not be among those: it is exchanged below
+    EXPECT_TRUE(theirs.contains(ObstacleDistance3d::kInfo.id));
     for (const auto& [id, their] : theirs) {
         const MessageInfo* const ours = find_message(id);
         ASSERT_NE(ours, nullptr) << their.name << " would not be recognised";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reception: who speaks, in which mode, by which clock. Own state and leg: endpoint_state.cpp. Sensors, traffic and
-// requests: endpoint_sensors.cpp. Sending: endpoint_sending.cpp.
+// requests: endpoint_sensors.cpp. Points in space: endpoint_points.cpp. Sending: endpoint_sending.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -43,6 +43,7 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
         ++diagnostics_.frames_in;
         dispatch({*frame, now, inbox});
     }
+    end_pausing_scan(now);
     const ParserDiagnostics& p = parser_.diagnostics();
     diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
                                   p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +

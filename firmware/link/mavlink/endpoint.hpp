@@ -39,6 +39,10 @@
 //   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
 //   min_distance means "nearer than that" and is kept as min_distance. A second scan within a tick takes the place of
 //   the first (inbox_full). DISTANCE_SENSOR orientations 0-7 (by yaw, as above), 24, 25.
+// * OBSTACLE_DISTANCE_3D, where somebody takes points: frame 12 (body, levelled by a roll and pitch not older than
+//   0.3 s) and 1 (a place in the local frame, made relative by own place and yaw), else no_origin; other frames are
+//   out_of_range. Farther than max_distance: nothing in that direction; nearer than min_distance: at min_distance. A
+//   scan is what comes with one time stamp and sensor_type, and ends with the next or a pause of 0.05 s.
 // * Leg: POSITION_TARGET_LOCAL_NED (frame 1) while not in the external mode: from the position when it changed to the
 //   target; mission items: MISSION_CURRENT tells the sequence number, then MISSION_REQUEST_LIST / MISSION_COUNT /
 //   MISSION_REQUEST_INT for seq and seq - 1 / MISSION_ACK; frames 0, 3, 5, 6 (global, or relative to home) and 1; items
@@ -72,6 +76,7 @@ public:
     void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept override;
     void service(TimePoint now) noexcept override;
     void ask_for_rates(bool on) noexcept override { asks_for_rates_ = on; }
+    void report_points_to(CloudSink& sink) noexcept override { points_to_ = &sink; }
 
     [[nodiscard]] std::span<const std::byte> pending() const noexcept override { return transmit_.pending(); }
     void consume(std::size_t n) noexcept override { transmit_.consume(n); }
@@ -133,6 +138,10 @@ private:
     void on_adsb(const Context& c) noexcept;
     void on_obstacle_distance(const Context& c) noexcept;
     void on_distance_sensor(const Context& c) noexcept;
+    void on_point(const Context& c) noexcept;
+    [[nodiscard]] bool make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& point) noexcept;
+    void follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept;
+    void end_pausing_scan(TimePoint now) noexcept;
     void on_command(const Context& c) noexcept;
     void on_param(const Context& c) noexcept;
 
@@ -140,7 +149,7 @@ private:
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
     void note(ClockEvent event) noexcept;
     [[nodiscard]] bool stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) noexcept;
-    void note_heading(float heading, TimePoint now) noexcept;
+    void note_attitude(float roll, float pitch, float heading, TimePoint now) noexcept;
     [[nodiscard]] bool knows_yaw(TimePoint now) const noexcept;
     void set_origin(const std::optional<GlobalPosition>& origin, int rank, Inbox& inbox) noexcept;
     [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
@@ -178,6 +187,8 @@ private:
     vehicle::VehicleState own_;
     bool has_yaw_ = false;
     TimePoint yaw_heard_;
+    float roll_ = 0.0F;   ///< heard with the yaw [rad]
+    float pitch_ = 0.0F;  ///< [rad]
     bool has_odometry_ = false;
     TimePoint last_odometry_;
     std::uint8_t reset_counter_ = 0;
@@ -194,6 +205,13 @@ private:
     bool has_mission_leg_ = false;
     bool leg_waits_ = false;  ///< both ends are here, but cannot be placed yet
     bool leg_moved_ = false;  ///< it was placed by an origin that holds no more
+
+    /// Of single points that came with one stamp.
+    bool is_scan_open_ = false;
+    std::uint8_t scan_sensor_ = 0;
+    std::uint32_t scan_boot_ms_ = 0;
+    CloudSink* points_to_ = nullptr;
+    TimePoint last_point_;
 };
 
 }  // namespace jink::link::mavlink

@@ -52,6 +52,12 @@ void Endpoint::dispatch_sensors(const Context& c) noexcept
             return;
         }
         break;
+    case ObstacleDistance3d::kInfo.id:
+        if (same_system && points_to_ != nullptr) {
+            on_point(c);
+            return;
+        }
+        break;
     default: dispatch_requests(c); return;
     }
     ++diagnostics_.frames_ignored;

@@ -57,9 +57,18 @@ Vec3 turn(const std::array<float, 4>& q, const Vec3& v) noexcept
     return v + q[0] * t + axis.cross(t);
 }
 
+// Of a unit quaternion from FRD to NED; z-y-x, as ATTITUDE has them [rad].
 float heading_of(const std::array<float, 4>& q) noexcept
 {
     return std::atan2(2.0F * (q[0] * q[3] + q[1] * q[2]), 1.0F - 2.0F * (q[2] * q[2] + q[3] * q[3]));
+}
+float pitch_of(const std::array<float, 4>& q) noexcept
+{
+    return std::asin(std::clamp(2.0F * (q[0] * q[2] - q[3] * q[1]), -1.0F, 1.0F));
+}
+float roll_of(const std::array<float, 4>& q) noexcept
+{
+    return std::atan2(2.0F * (q[0] * q[1] + q[2] * q[3]), 1.0F - 2.0F * (q[1] * q[1] + q[2] * q[2]));
 }
 
 bool is_unit(const std::array<float, 4>& q) noexcept
@@ -123,26 +132,29 @@ void Endpoint::on_attitude(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         return;
     }
-    note_heading(heading_of(normalised(q)), c.now);
+    const std::array<float, 4> unit = normalised(q);
+    note_attitude(roll_of(unit), pitch_of(unit), heading_of(unit), c.now);
 }
 
 void Endpoint::on_euler_attitude(const Context& c) noexcept
 {
     Attitude m;
     static_cast<void>(decode(c.frame, m));
-    if (!std::isfinite(m.yaw)) {
+    if (!std::isfinite(m.yaw) || !std::isfinite(m.roll) || !std::isfinite(m.pitch)) {
         ++diagnostics_.not_finite;
         return;
     }
-    if (std::abs(m.yaw) > kLargestAngle) {
+    if (std::abs(m.yaw) > kLargestAngle || std::abs(m.roll) > kLargestAngle || std::abs(m.pitch) > kLargestAngle) {
         ++diagnostics_.out_of_range;
         return;
     }
-    note_heading(m.yaw, c.now);
+    note_attitude(m.roll, m.pitch, m.yaw, c.now);
 }
 
-void Endpoint::note_heading(float heading, TimePoint now) noexcept
+void Endpoint::note_attitude(float roll, float pitch, float heading, TimePoint now) noexcept
 {
+    roll_ = roll;
+    pitch_ = pitch;
     own_.yaw = swap_heading_yaw(heading);
     has_yaw_ = true;
     yaw_heard_ = now;
@@ -181,7 +193,7 @@ void Endpoint::on_odometry(const Context& c) noexcept
     last_odometry_ = c.now;
     own_.position = swap_ned_enu(ned);
     own_.velocity = swap_ned_enu(velocity);
-    note_heading(heading_of(q), c.now);
+    note_attitude(roll_of(q), pitch_of(q), heading_of(q), c.now);
     own_.sigma_position = sigma_of(m.pose_covariance);
     own_.sigma_velocity = sigma_of(m.velocity_covariance);
     has_local_ = true;

@@ -100,6 +100,7 @@ public:
     }
     void service(TimePoint now) noexcept override { honest_.service(now); }
     void ask_for_rates(bool on) noexcept override { honest_.ask_for_rates(on); }
+    void report_points_to(link::CloudSink& sink) noexcept override { honest_.report_points_to(sink); }
     std::span<const std::byte> pending() const noexcept override { return honest_.pending(); }
     void consume(std::size_t n) noexcept override { honest_.consume(n); }
     void discard_pending() noexcept override { honest_.discard_pending(); }

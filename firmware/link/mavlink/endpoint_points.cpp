@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Single points in space: OBSTACLE_DISTANCE_3D.
+#include <cmath>
+
+#include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/link/mavlink/numbers.hpp"
+
+namespace jink::link::mavlink {
+namespace {
+
+/// Points of one scan follow one another within this, as ArduPilot has it [s].
+constexpr Seconds kPointPause = 0.05F;
+/// A roll of 90 degrees a second moves what is 20 m away by 9 m in this time: older ones place nothing [s].
+constexpr Seconds kTiltFresh = 0.3F;
+/// Own place by which points of the local frame become relative; flown on from its stamp [s].
+constexpr Seconds kPlaceFresh = 0.5F;
+
+}  // namespace
+
+void Endpoint::on_point(const Context& c) noexcept
+{
+    ObstacleDistance3d m;
+    static_cast<void>(decode(c.frame, m));
+    if (!is_finite({m.x, m.y, m.z}) || !std::isfinite(m.min_distance) || !std::isfinite(m.max_distance)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if ((m.frame != kFrameBodyFrd && m.frame != kFrameLocalNed) || m.max_distance <= 0.0F || m.min_distance < 0.0F ||
+        m.min_distance > m.max_distance) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    Vec3 point;
+    if (!make_level(m, c.now, point)) {
+        ++diagnostics_.no_origin;
+        return;
+    }
+    const float distance = point.norm();
+    if (!(distance > 0.0F) || !std::isfinite(distance)) {  // no direction that it could lie in
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    follow_scan(m, c.now);
+    if (distance > m.max_distance) {
+        points_to_->add(Ray::nothing, point / distance);
+    } else {
+        points_to_->add(Ray::hit, point * (std::max(distance, m.min_distance) / distance));
+    }
+}
+
+/// @param point  relative to the vehicle, in CloudSink's level frame [m]
+/// False where attitude or own place are not known well enough.
+bool Endpoint::make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& point) noexcept
+{
+    const Vec3 told(m.x, m.y, m.z);
+    if (m.frame == kFrameBodyFrd) {
+        point = level_of_frd(roll_, pitch_) * told;
+        return has_yaw_ && now - yaw_heard_ <= kTiltFresh;
+    }
+    // Where it was told, not where it is: the vehicle has flown on.
+    const Vec3 own = own_.position + own_.velocity * (now - own_.stamp);
+    const Vec3 offset = swap_ned_enu(told) - own;
+    const float c = std::cos(own_.yaw);
+    const float s = std::sin(own_.yaw);
+    point = Vec3(c * offset.x() + s * offset.y(), c * offset.y() - s * offset.x(), offset.z());
+    return knows_yaw(now) && has_local_ && now - local_heard_ <= kPlaceFresh;
+}
+
+/// The scan that a point belongs to: the one that is open, or its own.
+void Endpoint::follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept
+{
+    if (is_scan_open_ && (m.time_boot_ms != scan_boot_ms_ || m.sensor_type != scan_sensor_)) {
+        points_to_->end_scan(0);
+        is_scan_open_ = false;
+    }
+    if (!is_scan_open_) {
+        CloudScan scan;
+        scan.stamp = now;  // the stamp is on the sender's clock, and that is any component's
+        scan.sensor = m.sensor_type;
+        scan.max_range = m.max_distance;
+        points_to_->begin_scan(scan);
+        is_scan_open_ = true;
+        scan_boot_ms_ = m.time_boot_ms;
+        scan_sensor_ = m.sensor_type;
+    }
+    last_point_ = now;
+}
+
+void Endpoint::end_pausing_scan(TimePoint now) noexcept
+{
+    if (is_scan_open_ && now - last_point_ > kPointPause) {
+        points_to_->end_scan(0);
+        is_scan_open_ = false;
+    }
+}
+
+}  // namespace jink::link::mavlink
