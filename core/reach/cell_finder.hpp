@@ -35,28 +35,42 @@ public:
 
     [[nodiscard]] Located locate(const Vec3& point) const noexcept
     {
-        const float level_squared = point.x() * point.x() + point.y() * point.y();
-        const float distance = std::sqrt(level_squared + point.z() * point.z());
-        const float level = std::sqrt(level_squared);
-        if (!std::isfinite(distance)) {
-            return {std::isnan(distance) ? LocateStatus::not_a_number : LocateStatus::outside, {}};
-        }
-        if (distance > distance_ || point.x() < 0.0F || point.y() < point.x() * column_[0] ||
-            point.y() > point.x() * column_[columns_] || point.z() < level * row_[0] ||
-            point.z() > level * row_[rows_]) {
-            return {LocateStatus::outside, {}};
+        const float distance = point.norm();
+        if (std::isnan(distance)) {
+            return {LocateStatus::not_a_number, {}};
         }
         CellPlace place;
-        const float layer = std::ceil(distance * per_layer_) - 1.0F;
-        place.layer = static_cast<std::uint8_t>(std::fmax(0.0F, std::fmin(layer, static_cast<float>(layers_ - 1))));
+        if (!(distance <= distance_) || !find_direction(point, place)) {
+            return {LocateStatus::outside, {}};
+        }
+        place.layer = layer_of(distance);
+        return {LocateStatus::inside, place};
+    }
+
+    /// Column and row of the direction of `point`, finite, of any length; false outside the grid's angles.
+    [[nodiscard]] bool find_direction(const Vec3& point, CellPlace& place) const noexcept
+    {
+        const float level = std::sqrt(point.x() * point.x() + point.y() * point.y());
+        if (point.x() < 0.0F || point.y() < point.x() * column_[0] || point.y() > point.x() * column_[columns_] ||
+            point.z() < level * row_[0] || point.z() > level * row_[rows_]) {
+            return false;
+        }
+        place = {};
         for (std::size_t column = 1; column < columns_; ++column) {
             place.column = static_cast<std::uint8_t>(place.column + (point.y() > point.x() * column_[column] ? 1 : 0));
         }
         for (std::size_t row = 1; row < rows_; ++row) {
             place.row = static_cast<std::uint8_t>(place.row + (point.z() > level * row_[row] ? 1 : 0));
         }
-        return {LocateStatus::inside, place};
+        return true;
     }
+    /// Layer of what is not beyond the grid. O(1).
+    [[nodiscard]] std::uint8_t layer_of(float distance) const noexcept
+    {
+        const float layer = std::ceil(distance * per_layer_) - 1.0F;
+        return static_cast<std::uint8_t>(std::fmax(0.0F, std::fmin(layer, static_cast<float>(layers_ - 1))));
+    }
+    [[nodiscard]] float distance() const noexcept { return distance_; }
 
 private:
     std::size_t layers_ = 0;

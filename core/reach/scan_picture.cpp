@@ -83,47 +83,56 @@ bool ScanPicture::begin(const ScanStart& start) noexcept
     counts_ = has_grid_ && is_finite(start.position) && std::isfinite(start.nose) && std::isfinite(start.course) &&
               is_positive(start.unit) && scans_[filled].configure(grid_, start.horizontal_pitch, start.vertical_pitch);
     start_[filled] = start;
+    fired_.fill(0);
     cosine_ = std::cos(start.nose - start.course);
     sine_ = std::sin(start.nose - start.course);
     return counts_;
 }
 
+Vec3 ScanPicture::in_grid(const Vec3& point) const noexcept
+{
+    return {cosine_ * point.x() - sine_ * point.y(), sine_ * point.x() + cosine_ * point.y(), point.z()};
+}
+
+/// False for a ray that does not look into the grid.
+bool ScanPicture::note_ray(const Vec3& in_grid, CellPlace& place) noexcept
+{
+    if (!finder_.find_direction(in_grid, place)) {
+        return false;
+    }
+    std::uint16_t& fired = fired_[place.column * grid_.rows() + place.row];
+    fired = static_cast<std::uint16_t>(std::min(fired + 1, 0xFFFF));
+    return true;
+}
+
 void ScanPicture::add(const Vec3& point) noexcept
 {
-    if (!counts_) {
+    CellPlace place;
+    const Vec3 turned = in_grid(point) / start_[1 - seen_].unit;
+    if (!counts_ || !is_finite(turned) || !note_ray(turned, place)) {
         return;
     }
-    const Vec3 in_grid =
-        Vec3(cosine_ * point.x() - sine_ * point.y(), sine_ * point.x() + cosine_ * point.y(), point.z()) /
-        start_[1 - seen_].unit;
-    if (const Located at = finder_.locate(in_grid); at.status == LocateStatus::inside) {
-        scans_[1 - seen_].add(at.place, in_grid.norm());
+    const float distance = turned.norm();
+    if (distance <= finder_.distance()) {
+        place.layer = finder_.layer_of(distance);
+        scans_[1 - seen_].add(place, distance);
     }
 }
 
-void ScanPicture::add_invalid(const Vec3& direction) noexcept
+void ScanPicture::add_nothing(const Vec3& direction) noexcept
 {
-    if (!counts_) {
-        return;
-    }
-    const ScanStart& start = start_[1 - seen_];
-    Polar<float> polar = to_polar(direction);
-    polar.horizontal = std::remainder(polar.horizontal + start.nose - start.course, 2.0F * kPi);
-    polar.distance = 0.5F * grid_.distance();
-    if (const Located at = grid_.locate(polar); at.status == LocateStatus::inside) {
-        scans_[1 - seen_].add_invalid(at.place.column, at.place.row);
+    CellPlace place;
+    if (counts_ && is_finite(direction)) {
+        static_cast<void>(note_ray(in_grid(direction), place));
     }
 }
 
-void ScanPicture::end(std::uint32_t lost) noexcept
+void ScanPicture::end() noexcept
 {
     if (counts_) {
         seen_ = 1 - seen_;
         known_ = true;
         judge();
-        if (lost > 0) {
-            std::replace(cells_.begin(), cells_.end(), Cell::free, Cell::unseen);
-        }
     }
     counts_ = false;
 }
@@ -135,11 +144,13 @@ void ScanPicture::judge() noexcept
     for (std::size_t column = 0; column < grid_.columns(); ++column) {
         for (std::size_t row = 0; row < grid_.rows(); ++row) {
             scan.visibility(column, row, visible);
+            const std::size_t direction = column * grid_.rows() + row;
+            const bool looks = static_cast<float>(fired_[direction]) >= kSeenShare * scan.rays(column, row);
             for (std::size_t layer = 0; layer < grid_.layers(); ++layer) {
                 const CellPlace place{static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),
                                       static_cast<std::uint8_t>(row)};
                 const bool hit = scan.obstacle(place, kAnyHit) >= kThreshold;
-                const bool seen = visible[layer] >= 1.0F - kThreshold;
+                const bool seen = looks && visible[layer] >= 1.0F - kThreshold;
                 cells_[grid_.index(place)] = hit ? Cell::hit : seen ? Cell::free : Cell::unseen;
             }
         }

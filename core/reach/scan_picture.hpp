@@ -28,6 +28,8 @@ class ScanPicture {
 public:
     /// Columns to either side of a set's, so that a course may change until it is planned.
     static constexpr std::size_t kSpareColumns = 1;
+    /// Of the rays that a direction should have: rays lie a little otherwise in each direction.
+    static constexpr float kSeenShare = 0.75F;
 
     /// Layers, columns and rows as the sets', and kSpareColumns. False where that does not fit in a LidarScan; the
     /// picture then stays without a scan.
@@ -36,13 +38,14 @@ public:
     /// A new scan begins; what was counted of one that did not end is forgotten. False, and nothing is counted until
     /// the next one, when it cannot be used: no grid, numbers that are none, a direction without rays.
     bool begin(const ScanStart& start) noexcept;
-    /// A first return, relative to the sensor: x along the nose, y left, z up [m]. O(1).
+    /// A first return, relative to the sensor: x along the nose, y left, z up [m]. O(columns + rows).
     void add(const Vec3& point) noexcept;
-    /// A ray that was not fired or is known to be wrong. O(1).
-    void add_invalid(const Vec3& direction) noexcept;
-    /// The scan is whole: from now on it is the picture. `lost` rays are missing, nobody knows where: with any, nothing
-    /// counts as seen.
-    void end(std::uint32_t lost) noexcept;
+    /// A ray that went out and came back from nowhere. Rays that were not fired, or are known to be wrong, are not
+    /// told.
+    void add_nothing(const Vec3& direction) noexcept;
+    /// The scan has ended: from now on it is the picture. A direction in which fewer than kSeenShare of the rays were
+    /// fired, by the pitches, is not seen: beyond the sensor's field, lost on the way, or not valid.
+    void end() noexcept;
 
     /// A whole scan is known that is no older than `age`.
     [[nodiscard]] bool is_fresh(TimePoint now, Seconds age) const noexcept;
@@ -59,6 +62,8 @@ public:
 
 private:
     [[nodiscard]] Placed frame() const noexcept;
+    [[nodiscard]] Vec3 in_grid(const Vec3& point) const noexcept;
+    [[nodiscard]] bool note_ray(const Vec3& in_grid, CellPlace& place) noexcept;
     void judge() noexcept;
 
     Grid<float> grid_;
@@ -71,6 +76,7 @@ private:
     std::size_t seen_ = 0;  ///< which of both is the picture
     std::array<LidarScan, 2> scans_;
     std::array<ScanStart, 2> start_;
+    std::array<std::uint16_t, LidarScan::kDirections> fired_{};  ///< of the scan under way
     enum class Cell : std::uint8_t { free, unseen, hit };
     std::array<Cell, LidarScan::kCells> cells_{};  ///< of the picture
 };

@@ -3,6 +3,7 @@
 #include "firmware/app/clouds.hpp"
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/reach_picture.hpp"
 
 namespace jink::app {
 
@@ -14,8 +15,20 @@ void Coprocessor::take_clouds(TimePoint now) noexcept
     }
     const Configuration& c = parameters_.configuration();
     const world::Airspace air = airspace(now);
-    clouds_->serve(now, {has_own_ && own_yaw_known_, own_.stamp, own_.position, own_.velocity, own_.yaw, c.own_age,
-                         c.scan_keep, c.limits.half_extents, air.has_floor, air.floor});
+    const CloudView view{
+        has_own_ && own_yaw_known_, own_.stamp,    own_.position, own_.velocity, own_.yaw, c.own_age, c.scan_keep,
+        c.limits.half_extents,      air.has_floor, air.floor};
+    if (reach_picture_ != nullptr) {
+        reach_picture_->look_from(view);
+    }
+    clouds_->serve(now, view);
+}
+
+void Coprocessor::let_reach_sets_see(ReachPicture& picture) noexcept
+{
+    reach_picture_ = &picture;
+    reach_.look_at(&picture.picture());
+    forward_clouds_to(picture);
 }
 
 void Coprocessor::use_clouds(Clouds& clouds) noexcept

@@ -24,6 +24,8 @@ namespace jink::app {
 
 class Clouds;
 
+class ReachPicture;
+
 /// Why the co-processor is not fit to act; a bit set.
 enum class Fault : std::uint16_t {
     none = 0,
@@ -127,6 +129,9 @@ public:
     /// One more taker of the same scans ; nothing without use_clouds() before. It outlives
     /// this.
     void forward_clouds_to(link::CloudSink& sink) noexcept;
+    /// The scans that are forwarded go to this picture, and reach sets plan by it. After use_clouds(); it outlives
+    /// this.
+    void let_reach_sets_see(ReachPicture& picture) noexcept;
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
     /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
@@ -272,6 +277,7 @@ private:
     Diagnostics diagnostics_;
     hal::LastWords* last_words_ = nullptr;
     Clouds* clouds_ = nullptr;
+    ReachPicture* reach_picture_ = nullptr;
     StaticVector<Notice, kMostNotices> notices_;
     bool passive_ = false;
     ParamService param_service_;

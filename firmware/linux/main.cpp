@@ -20,6 +20,8 @@
 #include "firmware/app/can_bus.hpp"
 #include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/reach_picture.hpp"
+#include "firmware/app/reach_sets.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/cloud_line.hpp"
 #include "firmware/linux/complaint.hpp"
@@ -245,6 +247,14 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
     const auto coprocessor =
         std::make_unique<app::Coprocessor>(endpoint, port, watchdog, parameters, bus ? &*bus : nullptr);
     coprocessor->use_clouds(*clouds);
+    const auto picture = std::make_unique<app::ReachPicture>(app::reach_sets());
+    if (cloud_line) {
+        coprocessor->let_reach_sets_see(*picture);
+    }
+    if (reach::check(app::reach_sets()) != reach::SetStatus::good) {
+        std::fprintf(stderr, "jinkd: the reach sets are damaged and left out\n");
+        coprocessor->leave_out_reach_sets();
+    }
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
 

@@ -314,8 +314,13 @@ TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
     start.horizontal_pitch = start.vertical_pitch = 0.02F;
     const auto scan_with = [&](auto&& points) {
         ASSERT_TRUE(picture.begin(start));
+        for (float h = -1.1F; h < 1.1F; h += 0.02F) {
+            for (float v = -0.6F; v < 0.6F; v += 0.02F) {
+                picture.add_nothing(Vec3(std::cos(v) * std::cos(h), std::cos(v) * std::sin(h), std::sin(v)));
+            }
+        }
         points();
-        picture.end(0);
+        picture.end();
     };
     const auto plan_now = [&](world::Manoeuvre& m) {
         WorkBudget budget(kPlenty);

@@ -19,7 +19,9 @@ namespace {
 using namespace jink;
 
 constexpr std::size_t kIntruders = 32;
-constexpr std::size_t kPoints = 2000;
+constexpr int kAcross = 50;
+constexpr int kUp = 40;
+constexpr std::size_t kPoints = kAcross * kUp;
 constexpr float kSpeed = 5.0F;
 
 /// The sets of the default vehicle, but the emergency sets alone: the ones with most nodes.
@@ -73,11 +75,12 @@ struct Scene {
         scan.stamp = now;
         scan.position = own.position;
         scan.unit = kSpeed * reach::kDefaultSets.period;
-        scan.horizontal_pitch = scan.vertical_pitch = 0.03F;
+        scan.horizontal_pitch = 2.2F / kAcross;
+        scan.vertical_pitch = 1.1F / kUp;
         for (std::size_t i = 0; i < kPoints; ++i) {
-            const float azimuth = random.uniform(-1.0F, 1.0F);
-            const float elevation = random.uniform(-0.4F, 0.4F);
-            // Most of what is hit stands behind the grid; a few trunks in it.
+            const float azimuth = scan.horizontal_pitch * (static_cast<float>(i % kAcross) - 0.5F * kAcross);
+            const float elevation = scan.vertical_pitch * (static_cast<float>(i / kAcross) - 0.5F * kUp);
+            // Most of what is hit stands behind the grid, and trunks in it.
             const float distance = std::abs(azimuth - 0.3F) < 0.05F ? 14.0F : 40.0F;
             points.push_back(distance * Vec3(std::cos(elevation) * std::cos(azimuth),
                                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation)));
@@ -116,7 +119,7 @@ void scan(reach::ScanPicture& picture, const Scene& scene)
     for (const Vec3& point : scene.points) {
         picture.add(point);
     }
-    picture.end(0);
+    picture.end();
 }
 
 std::unique_ptr<reach::ScanPicture> picture_of(const reach::VehicleSets& sets)

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/reach/scan_picture.hpp"
+#include "core/reach/vehicle_sets.hpp"
+#include "firmware/app/clouds.hpp"
+
+namespace jink::app {
+
+/// What the point clouds say to the reach sets: which of their cells are hit, and which are seen. Only of sensors that
+/// tell the pitch of their rays; of others it is not known what they do not see.
+///
+/// Owned by whoever has clouds. Memory: that of a ScanPicture, about 8 KiB.
+class ReachPicture final : public link::CloudSink {
+public:
+    /// Of the sets whose grid is the widest; they outlive this.
+    explicit ReachPicture(const reach::VehicleSets& sets) noexcept;
+
+    /// Holds for scans that begin after this.
+    void look_from(const CloudView& view) noexcept { view_ = view; }
+    [[nodiscard]] const reach::ScanPicture& picture() const noexcept { return picture_; }
+
+    void begin_scan(const link::CloudScan& scan) noexcept override;
+    void add(link::Ray ray, const Vec3& point) noexcept override;
+    void end_scan(std::uint32_t points_lost) noexcept override;
+
+    [[nodiscard]] std::uint32_t scans() const noexcept { return scans_; }
+    /// That could not be used: the own place is not known, or the pitch of the rays, or it is too coarse for the cells.
+    [[nodiscard]] std::uint32_t unused() const noexcept { return unused_; }
+
+private:
+    const reach::VehicleSets& sets_;
+    CloudView view_;
+    reach::ScanPicture picture_;
+    std::uint32_t scans_ = 0;
+    std::uint32_t unused_ = 0;
+};
+
+}  // namespace jink::app

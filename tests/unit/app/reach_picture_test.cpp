@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/reach_picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "firmware/app/reach_sets.hpp"
+
+namespace jink::app {
+namespace {
+
+using link::Ray;
+
+/// Flying north at 5 m/s, the nose to the east.
+struct Flying {
+    ReachPicture picture{reach_sets()};
+    CloudView view;
+    link::CloudScan scan;
+
+    Flying()
+    {
+        view.is_placed = true;
+        view.stamp = TimePoint{1'000'000};
+        view.position = Vec3(10.0F, 20.0F, 30.0F);
+        view.velocity = Vec3(0.0F, 5.0F, 0.0F);
+        scan.stamp = TimePoint{1'100'000};
+        scan.ray_pitch_level = scan.ray_pitch_vertical = 0.02F;
+        scan.max_range = 100.0F;
+    }
+
+    /// All around, with one hit 10 m to the north: to the left of the nose.
+    void look()
+    {
+        picture.look_from(view);
+        picture.begin_scan(scan);
+        for (float h = -3.14F; h < 3.14F; h += 0.02F) {
+            for (float v = -0.7F; v < 0.7F; v += 0.02F) {
+                picture.add(Ray::nothing, Vec3(std::cos(v) * std::cos(h), std::cos(v) * std::sin(h), std::sin(v)));
+            }
+        }
+        picture.add(Ray::hit, Vec3(0.0F, 10.0F, 0.0F));
+        picture.end_scan(0);
+    }
+
+    /// Cells of a set that lies along the course: blocked ones of the middle column.
+    [[nodiscard]] int blocked_ahead() const
+    {
+        const reach::ReachSet& set = *reach_sets().segments[1].emergency;
+        reach::Placed placed;
+        placed.set = &set;
+        placed.origin = Vec3(10.0F, 20.5F, 30.0F);
+        placed.cosine = 0.0F;
+        placed.sine = 1.0F;
+        placed.unit = 5.0F * reach_sets().period;
+        std::vector<reach::Level> blocks(set.grid.cells());
+        WorkBudget budget(100'000);
+        EXPECT_TRUE(picture.picture().rate(placed, false, blocks, budget));
+        int count = 0;
+        for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
+            count += blocks[set.grid.index({static_cast<std::uint8_t>(layer), 3, 2})] == reach::kFree ? 0 : 1;
+        }
+        return count;
+    }
+};
+
+TEST(ReachPictures, LieAlongTheCourseWhereverTheNoseLooks)
+{
+    Flying f;
+    f.look();
+    EXPECT_EQ(f.picture.scans(), 1U);
+    EXPECT_EQ(f.picture.unused(), 0U);
+    EXPECT_EQ(f.picture.picture().start().stamp, f.scan.stamp);
+    EXPECT_LT((f.picture.picture().start().position - Vec3(10.0F, 20.5F, 30.0F)).norm(), 1e-4F);
+    EXPECT_EQ(f.blocked_ahead(), 1);
+}
+
+TEST(ReachPictures, WithoutAPlaceOrThePitchOfTheRaysThereIsNone)
+{
+    for (const auto& spoil : std::vector<void (*)(Flying&)>{
+             [](Flying& f) { f.view.is_placed = false; }, [](Flying& f) { f.scan.ray_pitch_level = 0.0F; },
+             [](Flying& f) { f.scan.ray_pitch_vertical = 0.0F; }, [](Flying& f) { f.scan.stamp = f.view.stamp + 0.6F; },
+             [](Flying& f) { f.scan.ray_pitch_level = 0.5F; }}) {
+        Flying f;
+        spoil(f);
+        f.look();
+        EXPECT_EQ(f.picture.scans(), 1U);
+        EXPECT_EQ(f.picture.unused(), 1U);
+        EXPECT_FALSE(f.picture.picture().is_known());
+    }
+}
+
+TEST(ReachPictures, RaysThatAreNotValidSeeNothing)
+{
+    Flying f;
+    f.picture.look_from(f.view);
+    f.picture.begin_scan(f.scan);
+    for (int i = 0; i < 20000; ++i) {
+        f.picture.add(Ray::invalid, Vec3(0.0F, 1.0F, 0.0F));
+    }
+    f.picture.end_scan(0);
+    reach::Placed placed;
+    placed.set = reach_sets().segments[1].emergency;
+    std::vector<reach::Level> blocks(placed.set->grid.cells());
+    WorkBudget budget(100'000);
+    EXPECT_TRUE(f.picture.picture().rate(placed, true, blocks, budget));
+    EXPECT_EQ(std::count(blocks.begin(), blocks.end(), reach::kFree), 0);
+}
+
+}  // namespace
+}  // namespace jink::app
