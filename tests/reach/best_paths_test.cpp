@@ -167,6 +167,13 @@ TEST(BestPaths, AsFewAsThereAreEnds)
     }
     EXPECT_GE(ended.size(), 270U) << "278 cells are touched by any trajectory at all";
     EXPECT_LT(cells.members.size(), kept(grow(s, harmonic(s, 9)), kFromHarmonic).members.size() / 2);
+    EXPECT_GT(measure(cells).mean_smoothness, 0.7);
+    for (const Set::Member& member : cells.members) {
+        if (member.is_lateral) {
+            EXPECT_TRUE(ends_at_side(s, member.node));
+            EXPECT_GE(member.node.smoothness(), 0.2) << "no turning back to the front";
+        }
+    }
 }
 
 TEST(BestPaths, ColumnsOutOfReachStayEmpty)

@@ -58,6 +58,7 @@ public:
             choose_cells();
         }
         std::sort(out_.front.begin(), out_.front.end());
+        std::sort(out_.lateral.begin(), out_.lateral.end());
         return std::move(out_);
     }
 
@@ -147,19 +148,45 @@ private:
             }
             return movements;
         };
+        const std::map<CellIndex, NodeId> sides = best_at_sides();
         // From the far cells to the near ones: what leads to a far cell ends in near ones on its way.
-        for (auto cell = through.rbegin(); cell != through.rend(); ++cell) {
-            if (ended.count(cell->first) != 0) {
+        for (std::size_t at = settings_.grid.cells(); at-- > 0;) {
+            const auto cell = static_cast<CellIndex>(at);
+            if (ended.count(cell) != 0) {
                 continue;
             }
             std::optional<std::tuple<int, int, NodeId>> best;
-            for (const NodeId end : cell->second) {
+            for (const NodeId end : through[cell]) {
                 const std::tuple<int, int, NodeId> rank{turns_of(out_.nodes[end]), adds(end), end};
                 best = best ? std::min(*best, rank) : rank;
             }
-            out_.front.push_back(std::get<NodeId>(*best));
-            keep(out_.front.back());
+            const auto side = sides.find(cell);
+            if (side != sides.end() && (!best || turns_of(out_.nodes[side->second]) < std::get<0>(*best))) {
+                out_.lateral.push_back(side->second);
+                keep(side->second);
+            } else if (best) {
+                out_.front.push_back(std::get<NodeId>(*best));
+                keep(out_.front.back());
+            }
         }
+    }
+
+    /// Of each cell at a side the trajectory with the fewest turns that ends there: going on from the near ones among
+    /// them takes turning back.
+    [[nodiscard]] std::map<CellIndex, NodeId> best_at_sides() const
+    {
+        std::map<CellIndex, NodeId> best;
+        for (NodeId id = 1; id < out_.nodes.size(); ++id) {
+            const Node& node = out_.nodes[id];
+            if (!ends_at_side(settings_, node) || node.end.layer + 1U == settings_.grid.layers()) {
+                continue;
+            }
+            const auto [known, is_new] = best.try_emplace(settings_.grid.index(node.end), id);
+            if (!is_new && rank_of(id) < rank_of(known->second)) {
+                known->second = id;
+            }
+        }
+        return best;
     }
 
     const Settings& settings_;

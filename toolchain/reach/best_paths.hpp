@@ -17,7 +17,8 @@ namespace jink::reach::build {
 /// What smooth trajectories are looked for.
 enum class BestFor : std::uint8_t {
     columns,  ///< one to each column of the last layer
-    cells,    ///< and one more through each cell that no one chosen so far ends a movement in
+    cells,    ///< and one more through each cell that no one chosen so far ends a movement in; where that takes more
+              ///< turns, to a cell at a side alone
 };
 struct BestRule {
     BestFor wanted = BestFor::columns;

@@ -97,7 +97,8 @@ std::vector<Rung> ladder_of(Profile profile)
 constexpr std::array<std::string_view, kPitchSegments> kPitchNames{"descending", "level", "climbing"};
 constexpr std::array<std::int8_t, kPitchSegments> kRootPitch{1, 0, -1};
 
-/// Navigation sets by their names: they are the same on every rung.
+/// Navigation sets are the same on every rung: kept by their names.
+enum class Lasts : std::uint8_t { on_this_rung, on_every_rung };
 using Known = std::map<std::string, Set>;
 
 class Builder {
@@ -141,23 +142,27 @@ private:
             return;
         }
         settings.root_pitch = kRootPitch[pitch];
+        // The smooth set of the full profile ends some trajectories at the sides; the one by columns none.
+        settings.keep_lateral = built_.recipe.profile == Profile::full;
         const std::string name = built_.vehicle + " " + speed + " " + std::string(kPitchNames[pitch]);
         BuiltVehicle::Segment segment;
-        segment.navigation = add(name + " navigation", settings, navigation_of(built_.recipe.profile), {});
+        segment.navigation =
+            add(name + " navigation", settings, navigation_of(built_.recipe.profile), {}, Lasts::on_every_rung);
         settings.keep_lateral = true;
         settings.most_lateral = built_.rung.most_lateral;
         CostRule cost;
         cost.by_smoothness = true;
-        segment.emergency = add(name + " emergency", settings, emergency_of(built_.recipe.profile, built_.rung), cost);
+        segment.emergency = add(name + " emergency", settings, emergency_of(built_.recipe.profile, built_.rung), cost,
+                                Lasts::on_this_rung);
         built_.segments.push_back(segment);
     }
 
-    std::size_t add(const std::string& name, const Settings& settings, const Make& make, const CostRule& cost)
+    std::size_t add(const std::string& name, const Settings& settings, const Make& make, const CostRule& cost,
+                    Lasts lasts)
     {
-        const bool lasts = !settings.keep_lateral;
         const auto known = known_.find(name);
         Set set = known != known_.end() ? known->second : make(settings);
-        if (lasts) {
+        if (lasts == Lasts::on_every_rung) {
             known_.try_emplace(name, set);
         }
         StoredSet stored(name, settings, set, cost);
