@@ -40,6 +40,8 @@ enum class Fault : std::uint16_t {
     bus_lost = 256,   ///< the sensor bus is not there: nothing seen does not mean that there is nothing
 };
 
+[[nodiscard]] constexpr std::uint16_t bit(Fault fault) noexcept { return static_cast<std::uint16_t>(fault); }
+
 /// Whose own state the picture of the world is drawn about.
 enum class OwnSource : std::uint8_t { none, autopilot, bus };
 

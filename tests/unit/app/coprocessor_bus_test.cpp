@@ -12,7 +12,6 @@ using namespace test;
 
 const Vec3 kNorth(0.0F, 5.0F, 0.0F);
 
-std::uint16_t bit(Fault fault) { return static_cast<std::uint16_t>(fault); }
 bool has(const StepReport& report, Fault fault) { return (report.faults & bit(fault)) != 0; }
 
 std::unique_ptr<BusBench> bench(std::initializer_list<std::pair<Param, float>> changes = {}, bool tunnel = false)

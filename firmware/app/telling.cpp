@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the co-processor says of itself: heartbeats, warnings and texts, and its last words.
+#include <cmath>
+
+#include "firmware/app/coprocessor.hpp"
+
+namespace jink::app {
+namespace {
+
+constexpr Seconds kHeartbeatPeriod = 1.0F;
+constexpr Seconds kCollisionPeriod = 0.5F;
+
+}  // namespace
+
+link::SystemState Coprocessor::system_state(const StepReport& report) const noexcept
+{
+    const unsigned never_ready = bit(Fault::no_autopilot) | bit(Fault::own_state_missing) |
+                                 (bus_was_up_ ? 0U : static_cast<unsigned>(bit(Fault::bus_lost)));
+    if (report.faults != 0) {
+        const bool only_waiting = (report.faults & ~never_ready) == 0;
+        return only_waiting ? link::SystemState::boot : link::SystemState::critical;
+    }
+    if (report.guidance.wants_control && report.guidance.margin < 0.0F &&
+        report.guidance.state == avoid::State::braking) {
+        return link::SystemState::emergency;
+    }
+    const bool on_guard = autopilot_.armed && parameters_.configuration().mode != ActMode::off;
+    return on_guard ? link::SystemState::active : link::SystemState::standby;
+}
+
+void Coprocessor::announce(TakeoverEvent event) noexcept
+{
+    using link::Severity;
+    switch (event) {
+    case TakeoverEvent::took_over: say(Severity::warning, "jink: avoiding, has control"); break;
+    case TakeoverEvent::gave_back: say(Severity::notice, "jink: clear, mission resumed"); break;
+    case TakeoverEvent::refused: say(Severity::critical, "jink: control refused, advising only"); break;
+    case TakeoverEvent::overruled: say(Severity::warning, "jink: mode changed by others, hands off"); break;
+    case TakeoverEvent::lost: say(Severity::critical, "jink: fault while avoiding, control dropped"); break;
+    case TakeoverEvent::held: say(Severity::warning, "jink: autopilot holds, as asked"); break;
+    case TakeoverEvent::none: break;
+    }
+}
+
+void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noexcept
+{
+    const avoid::Guidance& g = report.guidance;
+    const world::Conflict& c = g.conflict;
+    const Vec3 miss = c.threat_at_closest - c.own_at_closest;
+    const bool is_track = c.threat.kind == world::ThreatKind::track;
+    link::CollisionWarning warning;
+    warning.id = is_track ? tracks_.id_in_snapshot(c.threat.index) : obstacles_.obstacles()[c.threat.index].id;
+    warning.time_to_closest = c.time_to_closest;
+    warning.horizontal_miss = std::hypot(miss.x(), miss.y());
+    warning.vertical_miss = std::abs(miss.z());
+    warning.action = link::CollisionAction::report;
+    if (takeover_.in_control()) {
+        const world::Manoeuvre* flying = supervisor_.flying();
+        const bool vertical = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
+        warning.action = g.kind == world::ManoeuvreKind::brake ? link::CollisionAction::hover
+                         : vertical                            ? link::CollisionAction::ascend_or_descend
+                                                               : link::CollisionAction::move_horizontally;
+    }
+    const bool near =
+        c.time_to_loss <= vehicle::stopping_time(own_.velocity.norm(), parameters_.configuration().limits) + 1.0F;
+    warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
+    link_.send_collision(warning);
+    last_collision_ = now;
+    if (!told_conflict_) {
+        Text text;
+        text << (is_track ? "jink: conflict, traffic in " : "jink: conflict, obstacle in ") << c.time_to_loss << " s";
+        say(link::Severity::warning, text.view());
+    }
+}
+
+void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
+{
+    const bool changed = report.state != told_state_;
+    if (changed && report.state == link::SystemState::critical) {
+        ++diagnostics_.faults;
+        Text text;
+        text << "jink: fault " << static_cast<std::uint32_t>(report.faults);
+        say(link::Severity::critical, text.view());
+    }
+    if (!heartbeat_sent_ || changed || now - last_heartbeat_ >= kHeartbeatPeriod) {
+        link_.send_heartbeat(report.state);
+        heartbeat_sent_ = true;
+        last_heartbeat_ = now;
+        told_state_ = report.state;
+    }
+    tell_notices();
+    const avoid::Guidance& g = report.guidance;
+    if (g.has_conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
+        warn_of_conflict(now, report);
+    }
+    told_conflict_ = g.has_conflict;
+    if (g.state != told_guidance_ && g.state == avoid::State::braking) {
+        say(link::Severity::critical, "jink: nothing safe, braking");
+    }
+    told_guidance_ = g.state;
+}
+
+/// Before anything of this step goes out, so that they are newer than all of it.
+void Coprocessor::prepare_last_words() noexcept
+{
+    if (last_words_ == nullptr) {
+        return;
+    }
+    const bool hold = takeover_.in_control();
+    const std::string_view text = passive_ ? ""  // told by then, and again and again in a row of faults
+                                  : hold   ? "jink: processor fault, hold asked, restarting"
+                                           : "jink: processor fault, restarting";
+    last_words_->publish(link_.compose_last_words(last_words_->draft(), hold, text));
+}
+
+void Coprocessor::tell_notices() noexcept
+{
+    if (has_autopilot_) {
+        for (const Notice& notice : notices_) {
+            say(notice.severity, notice.text.view());
+        }
+        notices_.clear();
+    }
+    const Configuration& c = parameters_.configuration();
+    const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::LadderOrder::first;
+    if (unsuited && !told_unsuited_ && has_autopilot_) {
+        say(link::Severity::warning, "jink: reach sets do not suit this vehicle");
+    }
+    told_unsuited_ = unsuited && has_autopilot_;
+}
+
+void Coprocessor::shut_down(TimePoint now) noexcept
+{
+    link_.drop_setpoint();
+    link_.drop_mode_request();
+    if (takeover_.in_control()) {
+        link_.request_hold_mode();
+    }
+    takeover_.drop(false);
+    link_.send_heartbeat(link::SystemState::critical);
+    say(link::Severity::notice, "jink: stopped");
+    if (bus_ != nullptr) {
+        bus_->service(now, {link::SystemState::critical, false, last_faults_});
+    }
+    StepReport report;
+    write_port(report);
+}
+
+}  // namespace jink::app
