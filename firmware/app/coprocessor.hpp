@@ -216,8 +216,8 @@ private:
         link::Severity severity = link::Severity::info;
         Text text;
     };
-    /// What a start has to tell of the one before: two lines of a fault, one of what follows from it.
-    static constexpr std::size_t kMostNotices = 3;
+    /// What a start has to tell of the one before: two lines of a fault, one of what follows from it; and of its sets.
+    static constexpr std::size_t kMostNotices = 4;
 
     link::Link& link_;
     hal::SerialPort& port_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/cortex_m/flight.hpp"
 
+#include "firmware/app/reach_sets.hpp"
+
 #include <bit>
 
 namespace jink::firmware {
@@ -42,6 +44,17 @@ FaultStory tell_story(const FaultRecord& record) noexcept
     return story;
 }
 
+void settle_reach_sets(app::Coprocessor& coprocessor) noexcept
+{
+    if (reach::check(app::reach_sets()) == reach::SetStatus::good) {
+        return;
+    }
+    coprocessor.leave_out_reach_sets();
+    app::Text text;
+    text << "jink: reach sets damaged, left out";
+    static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, text));
+}
+
 bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept
 {
     FaultRecord record{};
@@ -49,7 +62,7 @@ bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept
         return false;
     }
     const bool passive = record.streak >= kFaultsInARow;
-    // The coprocessor is new and has room for three.
+    // The coprocessor is new and has room for these three beside what its sets have to tell.
     if (record.streak <= kFaultsInARow || std::has_single_bit(record.count)) {
         const FaultStory story = tell_story(record);
         static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, story.what));

@@ -28,6 +28,10 @@ struct FaultStory {
 };
 [[nodiscard]] FaultStory tell_story(const hal::cortex_m::FaultRecord& record) noexcept;
 
+/// Checks the reach sets against their checksums; damaged ones are left out, and the autopilot is told. Reads all of
+/// their tables bit by bit: 11 million instructions on a Cortex-M7 for 256 KiB, so before the watchdog is started.
+void settle_reach_sets(app::Coprocessor& coprocessor) noexcept;
+
 /// Reads the record of the fault before this start and has it told: each of the first kFaultsInARow, then those whose
 /// count is a power of two. True where this start is to be passive; then it returns after kPassiveWait only. For the
 /// time before the watchdog is started.

@@ -221,6 +221,7 @@ extern "C" void hal::cortex_m::jink_main()
             hal::cortex_m::enable_interrupt(irq);
         }
     }
+    firmware::settle_reach_sets(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);
     if (bus == nullptr) {
         app::Text text;

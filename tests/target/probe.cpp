@@ -109,7 +109,10 @@ struct Probe::World {
     }
 };
 
-Probe::Probe() noexcept : planner_(geometric::Settings{}), supervisor_(avoid::Settings{}, planner_) {}
+Probe::Probe() noexcept
+    : planner_(geometric::Settings{}), reach_(reach::Settings{}), supervisor_(avoid::Settings{}, planner_, reach_)
+{
+}
 
 void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
 {
@@ -130,15 +133,17 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
                                      world.airspace,
                                      nullptr,
                                      world.configuration.k_sigma};
-    if (!planner_.configure(world.configuration.planner) || !supervisor_.configure(world.configuration.supervisor)) {
+    if (!planner_.configure(world.configuration.planner) || !reach_.configure(world.configuration.reach) ||
+        !supervisor_.configure(world.configuration.supervisor)) {
         return;
     }
     supervisor_.reset();
     out.magic = kProbeMagic;
-    if (record.kind == ProbeKind::plan) {
+    if (record.kind == ProbeKind::plan || record.kind == ProbeKind::reach) {
         WorkBudget budget(world.configuration.supervisor.plan_budget);
         jink_window_begin();
-        const world::PlanStatus status = planner_.plan(situation, budget, manoeuvre_);
+        const world::PlanStatus status = record.kind == ProbeKind::plan ? planner_.plan(situation, budget, manoeuvre_)
+                                                                        : reach_.plan(situation, budget, manoeuvre_);
         jink_window_end();
         out.status = static_cast<std::uint32_t>(status);
         out.work = budget.spent();

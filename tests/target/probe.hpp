@@ -3,6 +3,7 @@
 
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
+#include "core/reach/planner.hpp"
 #include "tests/target/probe_record.hpp"
 
 namespace jink::target {
@@ -20,7 +21,8 @@ public:
 private:
     struct World;
     geometric::Planner planner_;
-    avoid::Supervisor<geometric::Planner> supervisor_;
+    reach::Planner reach_;
+    avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
     world::Manoeuvre manoeuvre_;
 };
 

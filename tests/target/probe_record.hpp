@@ -20,6 +20,7 @@ enum class ProbeKind : std::uint32_t {
     plan,    ///< geometric::Planner::plan alone
     update,  ///< avoid::Supervisor::update, not in control before
     info,    ///< sizes; nothing is computed
+    reach,   ///< reach::Planner::plan alone
 };
 
 struct ProbeTrack {

@@ -15,19 +15,22 @@ import targets
 
 IMAGES = ["mps2_an500", "stm32f405"]
 PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf": "arm-linux-gnueabihf-", "aarch64": "aarch64-linux-gnu-"}
-LIMITS = {"flash": 256 * 1024, "static RAM with its stack": 64 * 1024, "stack": 8 * 1024, "core-coupled": 64 * 1024}
+# Reach sets have limits of their own, on top of what the image had without them.
+LIMITS = {"flash": 512 * 1024, "flash without reach sets": 256 * 1024, "tables of the reach sets": 256 * 1024, "static RAM with its stack": 96 * 1024,
+          "static RAM without the reach planner": 64 * 1024, "reach planner": 32 * 1024, "stack": 8 * 1024, "core-coupled": 64 * 1024}
+REACH_TABLES = re.compile(r"jink::reach::(setsOf\w+::|k\w+Sets)")
 ALLOCATOR = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
 # Entry points whose stack is of interest to somebody who links the core: (name, mangled name).
 ENTRIES = [("image: the program", r"^jink_main$"), ("image: deepest interrupt", r"^jink_(uart|usart|can|guard)"),
            ("Coprocessor::step", r"N4jink3app11Coprocessor4stepE"), ("Pilot::update (of Supervisor)", r"N4jink5avoid5Pilot6updateE"),
-           ("geometric::Planner::plan", r"N4jink9geometric7Planner4planE")]
+           ("geometric::Planner::plan", r"N4jink9geometric7Planner4planE"), ("reach::Planner::plan", r"N4jink5reach7Planner4planE")]
 # Capacities of the formula, another value for each, and a set to try the formula on.
 BASE = {"JINK_MAX_TRACKS": 32, "JINK_MAX_OBSTACLES": 96, "JINK_MAX_PATH_POINTS": 64, "JINK_MAX_CANDIDATES": 32,
-        "JINK_MAX_HULL_VERTICES": 16}
+        "JINK_MAX_HULL_VERTICES": 16, "JINK_MAX_REACH_NODES": 2560, "JINK_MAX_REACH_CELLS": 350}
 TRIED = {"JINK_MAX_TRACKS": 64, "JINK_MAX_OBSTACLES": 192, "JINK_MAX_PATH_POINTS": 128, "JINK_MAX_CANDIDATES": 512,
-         "JINK_MAX_HULL_VERTICES": 64}
+         "JINK_MAX_HULL_VERTICES": 64, "JINK_MAX_REACH_NODES": 4096, "JINK_MAX_REACH_CELLS": 512}
 PROOF = {"JINK_MAX_TRACKS": 16, "JINK_MAX_OBSTACLES": 40, "JINK_MAX_PATH_POINTS": 96, "JINK_MAX_CANDIDATES": 128,
-         "JINK_MAX_HULL_VERTICES": 32}
+         "JINK_MAX_HULL_VERTICES": 32, "JINK_MAX_REACH_NODES": 3072, "JINK_MAX_REACH_CELLS": 400}
 TOP = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -91,13 +94,16 @@ def of_image(build, target, faults):
     sizes = {line.split()[2]: int(line.split()[0], 16) for line in symbols.splitlines() if len(line.split()) == 3}
     reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
     allocators = [line for line in symbols.splitlines() if ALLOCATOR.search(line)]
+    tables = sum(int(line.split()[1], 16) for line in run("arm-none-eabi-nm", "-S", "-C", elf).splitlines() if REACH_TABLES.search(line))
+    planner = sizeof(capacities_of(folder))["ReachPlanner"]
     graph = stack.Graph(folder, skip="tests/")
     stacks = {}
     for name, pattern in ENTRIES:
         found = [f for f in graph.frames if re.search(pattern, f)]
         stacks[name] = max(graph.deepest(f)[0] for f in found) if found else 0
     deepest = stacks[ENTRIES[0][0]] + stacks[ENTRIES[1][0]] + 27 * 4  # an interrupt's frame, registers of the FPU included
-    result = {"flash": text + data, "static RAM with its stack": data + bss, "data": data, "bss": bss - reserved, "stack reserved": reserved, "core-coupled": coupled,
+    result = {"flash": text + data, "flash without reach sets": text + data - tables, "tables of the reach sets": tables,
+              "static RAM with its stack": data + bss, "static RAM without the reach planner": data + bss - planner, "reach planner": planner, "data": data, "bss": bss - reserved, "stack reserved": reserved, "core-coupled": coupled,
               "stack": deepest, "stack by call graph": stacks, "painted stack of the probe": painted(build, target),
               "allocators": len(allocators), "rooms": by_room(build, target)}
     for name, most in LIMITS.items():
@@ -108,6 +114,13 @@ def of_image(build, target, faults):
     if not negative_link(folder, target):
         faults.append(f"{target}: an image that allocates links: the proof does not hold")
     return result
+
+
+def capacities_of(folder):
+    """{name: value} that a build was configured with."""
+    cache = (folder / "CMakeCache.txt").read_text(encoding="utf-8")
+    value = re.search(r"^JINK_CAPACITIES:\w+=(.*)$", cache, re.M)[1]
+    return dict(pair.split("=") for pair in value.split(";") if pair)
 
 
 def painted(build, target):

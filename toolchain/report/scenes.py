@@ -263,6 +263,7 @@ SCENES = {scene.name: scene for scene in (
           0, False, study=True),
     Scene("plan_16_3_solids", "plan, 16 candidates, 3 threats of any shape", "plan", (3, 3), (0, 0), SIXTEEN, 0, False, True, True),
     Scene("plan_full", "plan at full capacity", "plan", (1, 32), (0, 96), THIRTY_TWO, 8, True),
+    Scene("reach_full", "decision with reach sets, 32 tracks and 96 obstacles at most", "reach", (1, 32), (0, 96), SIXTEEN, 0, False),
     Scene("update_full", "update at full capacity", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True),
     Scene("update_solids", "update, solids of any shape", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True, True),
 )}
@@ -280,6 +281,9 @@ SAMPLES = {
                      lambda seed: _sample("plan_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
     "update_typical": ("update, the same", 300, lambda seed: _sample("update_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
     "plan_full": ("plan, 32 candidates, 32 tracks, 96 obstacles", 80, lambda seed: _sample("plan_full", seed, 32, 96, 4, 8)),
+    "reach_typical": ("decision with reach sets, 1 to 6 tracks, up to 3 obstacles", 300,
+                      lambda seed: _sample("reach_full", seed, 1 + seed % 6, seed // 6 % 4, 2, 0)),
+    "reach_full": ("decision with reach sets, 32 tracks, 96 obstacles", 80, lambda seed: _sample("reach_full", seed, 32, 96, 2, 0)),
     "update_full": ("update, the same", 80, lambda seed: _sample("update_full", seed, 32, 96, 4, 8)),
 }
 

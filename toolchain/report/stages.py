@@ -20,6 +20,7 @@ STAGES = [
     ("predicted flights", r"^core/geometric/flown\.cpp:.*(fly|start|add|stops|Flown::Flown|append)"),
     ("contact tests of flights", r"^core/geometric/flown\.cpp:.*judge"),
     ("choice", r"^core/geometric/solve\.cpp:(choose|next_cheapest|take|operator\(\))"),
+    ("reach sets", r"^core/reach/"),
     ("final check", r"^core/avoid/guard\.cpp:.*check_manoeuvre"),
     ("fallback", r"^core/avoid/guard\.cpp"),
 ]

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which method the co-processor plans with: by parameter, and never with reach sets that are damaged or not for its
+// vehicle.
+#include <algorithm>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/app/flight.hpp"
+
+namespace jink::app::test {
+namespace {
+
+/// A flight past an obstacle on the leg: who planned it, and how near it came.
+struct Passed {
+    world::MethodId by = world::MethodId::none;
+    float nearest = 1e9F;
+    bool warned = false;  ///< that the sets do not suit
+};
+
+Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_out = false)
+{
+    Parameters parameters;
+    for (const auto& [param, value] : values) {
+        EXPECT_EQ(parameters.set(param, value), ParamStatus::ok);
+    }
+    const auto f = std::make_unique<Flight>(parameters);
+    if (leave_out) {
+        f->coprocessor.leave_out_reach_sets();
+    }
+    Passed passed;
+    const auto listen = [&] {
+        for (const Statustext& m : f->said_of<Statustext>()) {
+            const std::string text(m.text.data(), m.text.size());
+            passed.warned = passed.warned || text.find("do not suit") != std::string::npos;
+        }
+    };
+    EXPECT_TRUE(f->until(
+        [&](const StepReport& r) {
+            listen();
+            return r.faults == 0;
+        },
+        200));
+    f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
+    EXPECT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
+    passed.by = f->coprocessor.flying() != nullptr ? f->coprocessor.flying()->by : world::MethodId::none;
+    f->until([&](const StepReport& r) {
+        listen();
+        passed.nearest = std::min(passed.nearest, (f->position - f->obstacles[0]).norm());
+        return r.control == Control::autopilot;
+    });
+    EXPECT_GT(f->position.y(), f->obstacles[0].y()) << "gone by";
+    return passed;
+}
+
+TEST(CoprocessorMethods, PlanAsTheParameterSays)
+{
+    using world::MethodId;
+    const std::pair<float, MethodId> methods[] = {
+        {0.0F, MethodId::geometric}, {1.0F, MethodId::geometric}, {2.0F, MethodId::reach}, {3.0F, MethodId::reach}};
+    for (const auto& [value, by] : methods) {
+        const Passed passed = pass({{Param::methods, value}});
+        EXPECT_EQ(passed.by, by) << value;
+        EXPECT_GT(passed.nearest, 2.0F) << value;
+        EXPECT_FALSE(passed.warned);
+    }
+}
+
+TEST(CoprocessorMethods, InClutterReachSetsComeFirst)
+{
+    EXPECT_EQ(pass({{Param::clutter, 1.0F}}).by, world::MethodId::geometric) << "farther off than 20 m is no clutter";
+    // One that stands beside the leg is within 20 m of the vehicle when it has to plan.
+    const auto f = std::make_unique<Flight>([] {
+        Parameters p;
+        EXPECT_EQ(p.set(Param::clutter, 2.0F), ParamStatus::ok);
+        return p;
+    }());
+    ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults == 0; }, 200));
+    f->obstacles = {f->position + Vec3(0.4F, 24.0F, 0.0F), f->position + Vec3(8.0F, 20.0F, 0.0F),
+                    f->position + Vec3(-9.0F, 18.0F, 0.0F)};
+    ASSERT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
+    ASSERT_NE(f->coprocessor.flying(), nullptr);
+    EXPECT_EQ(f->coprocessor.flying()->by, world::MethodId::reach);
+}
+
+TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
+{
+    const Passed passed = pass({{Param::methods, 3.0F}}, true);
+    EXPECT_EQ(passed.by, world::MethodId::geometric);
+    EXPECT_GT(passed.nearest, 2.0F);
+}
+
+TEST(CoprocessorMethods, SetsThatDoNotSuitTheVehicleAreLeftOutAndItIsTold)
+{
+    const Passed passed = pass({{Param::methods, 3.0F}, {Param::acceleration, 4.0F}});
+    EXPECT_EQ(passed.by, world::MethodId::geometric);
+    EXPECT_TRUE(passed.warned);
+    EXPECT_FALSE(pass({{Param::methods, 0.0F}, {Param::acceleration, 4.0F}}).warned) << "nobody asked for them";
+}
+
+}  // namespace
+}  // namespace jink::app::test
