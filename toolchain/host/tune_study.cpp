@@ -97,7 +97,9 @@ sim::Variant variant_of(const cost::Weights& weights)
     // As decimals of three places, which is how they are written: a float's own digits say 0.30000001.
     const auto rounded = [](float value) { return std::round(1000.0 * static_cast<double>(value)) / 1000.0; };
     sim::Variant variant;
-    variant.parameters = {{"GEO_K_S", rounded(weights.smoothness)}, {"GEO_K_T", rounded(weights.time)}};
+    // The geometric planner alone: another method's answers say nothing of its weights.
+    variant.parameters = {
+        {"JNK_METHODS", 0.0}, {"GEO_K_S", rounded(weights.smoothness)}, {"GEO_K_T", rounded(weights.time)}};
     return variant;
 }
 

@@ -43,7 +43,7 @@ struct Tried {
 /// and such that the parameters GEO_K_S and GEO_K_T take them, which is what cost::is_valid says.
 [[nodiscard]] std::vector<Tried> combinations(double step);
 
-/// The co-processor's parameters for these weights.
+/// The co-processor's parameters for these weights, with the geometric planner alone.
 [[nodiscard]] sim::Variant variant_of(const cost::Weights& weights);
 
 /// True when `a` is at least as good in every outcome that is compared (broken, braked, separation, deviation,
