@@ -234,11 +234,17 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     near_.collect(situation, placed, start.lead, start.stop, {settings_.escape, settings_.room});
     report_.near = static_cast<std::uint16_t>(near_.size());
     const auto entries = static_cast<std::uint32_t>(set.entries.size());
+    if (fusion_ != nullptr && !fusion_->rate(situation, placed, balls_, start.lead, blocks, budget)) {
+        return PlanStatus::budget_spent;
+    }
     if (!near_.mark(placed, balls_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
         return PlanStatus::budget_spent;
     }
     // What meets anything is of no use, nor what follows on it, whatever it meets.
     const auto own_level = [&](NodeIndex node) {
+        if (fusion_ != nullptr) {
+            return kFree;  // its cells have said it
+        }
         const Level level = near_.level(placed, node, budget);
         return is_free(level, AvoidanceRun::hard_constraints) ? level : static_cast<Level>(AvoidanceRun::obstacles);
     };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/reach/cell_fusion.hpp"
 #include "core/reach/near.hpp"
 #include "core/reach/scan_picture.hpp"
 #include "core/reach/vehicle_sets.hpp"
@@ -67,6 +68,8 @@ public:
     [[nodiscard]] const Report& last() const noexcept { return report_; }
     /// What a scanning sensor sees from now on; null: nothing is known of such a sensor. It outlives this.
     void look_at(const ScanPicture* picture) noexcept { picture_ = picture; }
+    /// Rates cells as the source does from now on, instead of nodes; null: nodes. It outlives this.
+    void rate_cells_by(CellFusion* fusion) noexcept { fusion_ = fusion; }
 
 private:
     struct Start;
@@ -81,6 +84,7 @@ private:
     Settings settings_;
     Report report_;
     const ScanPicture* picture_ = nullptr;
+    CellFusion* fusion_ = nullptr;
     CellBalls balls_;
     detail::NearThreats near_;
     std::array<Level, kMaxReachNodes> nodes_{};

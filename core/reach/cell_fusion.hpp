@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "core/base/work_budget.hpp"
+#include "core/reach/cell_balls.hpp"
+#include "core/reach/map_obstacle.hpp"
+#include "core/reach/meeting.hpp"
+#include "core/reach/placed.hpp"
+#include "core/world/world.hpp"
+
+// The source's way to rate a placed set: by cells, each of them by all that may be in it while any trajectory is there
+// (Gomola 6.6, 6.7). The planner's own way is by nodes; this one is for comparison, and for who wants it.
+
+namespace jink::reach {
+
+struct FusionRule {
+    Models models{false, true, false, true};  ///< of every intruder: body, in time
+    float horizontal = 0.0F;                  ///< spread of every intruder, where the models ask for it [rad]
+    float vertical = 0.0F;
+    Seconds clock = 0.0F;  ///< one decision frame of the intruders, by which their times may be off
+    float room = 0.4F;     ///< about obstacles: soft [m]
+};
+
+/// Memory: 8 bytes a cell, for the times of the set that was rated last.
+class CellFusion {
+public:
+    explicit CellFusion(const FusionRule& rule) noexcept : rule_(rule) {}
+
+    [[nodiscard]] const FusionRule& rule() const noexcept { return rule_; }
+
+    /// Lowers the levels of cells: obstacles where an obstacle may be, intruders where a track may be at a time at
+    /// which some trajectory is in the cell, hard constraints where a bound of the airspace is passed, soft ones within
+    /// the room about obstacles. Tracks are as large as they get by the time of the longest trajectory; all that is
+    /// near is enlarged by a ball about the own box.
+    ///
+    /// Never less than the truth but for what `meeting.hpp` says of stays. Says more than by nodes: the hull of all
+    /// trajectories' times, cells as balls and boxes. False when the budget does not allow for it: when the set is not
+    /// the one that was rated last its times are found anew, samples of each node in turn (units::kReachStay), which is
+    /// no matter for a microcontroller's tick.
+    /// @param lead  the path begins so long after Situation::now [s]
+    /// O(cells * (tracks + obstacles)), and nodes * samples for another set.
+    [[nodiscard]] bool rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                            Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept;
+
+private:
+    [[nodiscard]] bool find_times(const Placed& placed, WorkBudget& budget) noexcept;
+    void rate_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
+                    const CellBalls& balls, Seconds lead, std::span<Level> blocks) const noexcept;
+    void rate_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+                       std::span<Level> blocks) const noexcept;
+    static void rate_airspace(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                              std::span<Level> blocks) noexcept;
+
+    FusionRule rule_;
+    const ReachSet* times_of_ = nullptr;
+    Seconds period_ = 0.0F;
+    std::array<Stay, kMaxReachCells> times_{};
+};
+
+/// A solid at rest as a placed set sees it: the box or the ball about it, enlarged by `about` [m]. O(1), O(vertices)
+/// for a hull.
+[[nodiscard]] MapBody body_of(const geometry::Shape& shape, const Placed& placed, float about, float margin) noexcept;
+
+}  // namespace jink::reach
