@@ -12,6 +12,9 @@
 #ifndef JINK_MAX_OBSTACLES
 #define JINK_MAX_OBSTACLES 96
 #endif
+#ifndef JINK_MAX_BARRELS
+#define JINK_MAX_BARRELS 32
+#endif
 #ifndef JINK_MAX_PATH_POINTS
 #define JINK_MAX_PATH_POINTS 64
 #endif
@@ -42,6 +45,11 @@ static_assert(kMaxTracks >= 1 && kMaxTracks <= 256);
 /// When full, the obstacle farthest from the vehicle gives way, and ObstacleTable counts it.
 inline constexpr std::size_t kMaxObstacles = JINK_MAX_OBSTACLES;
 static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
+
+/// Closed volumes and storm cells at once (Gomola 6.6.5). When there are more, the two farthest become one that holds
+/// both, and BarrelTable::merged() counts it: nothing is lost, more than needed may be closed.
+inline constexpr std::size_t kMaxBarrels = JINK_MAX_BARRELS;
+static_assert(kMaxBarrels >= 2 && kMaxBarrels <= 256);
 
 /// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
