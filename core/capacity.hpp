@@ -72,7 +72,7 @@ static_assert(kMaxHullVertices >= 4 && kMaxHullVertices <= 1024);
 inline constexpr std::size_t kMaxReachNodes = JINK_MAX_REACH_NODES;
 static_assert(kMaxReachNodes >= 16 && kMaxReachNodes <= 65534);
 
-/// Cells of its grid: 10 layers of 7 columns and 5 rows are 350. Eighteen bytes each.
+/// Cells of its grid: 10 layers of 7 columns and 5 rows are 350. Two bytes each, and a bit for each threat.
 inline constexpr std::size_t kMaxReachCells = JINK_MAX_REACH_CELLS;
 static_assert(kMaxReachCells >= 16 && kMaxReachCells <= 4096);
 

@@ -29,10 +29,10 @@ void against_barrel(const Situation& situation, const Flight& flight, std::size_
         const Vec2 b = barrel.circle.centre + barrel.velocity * chunk.end;
         const Vec2 low = a.cwiseMin(b).array() - barrel.circle.radius;
         const Vec2 high = a.cwiseMax(b).array() + barrel.circle.radius;
-        const float bound = boxes_apart(chunk.low - half, chunk.high + half, {low.x(), low.y(), barrel.bottom},
-                                        {high.x(), high.y(), barrel.top}) -
-                            extra;
-        if (bound > best.margin) {
+        const float apart = boxes_apart(chunk.low - half, chunk.high + half, {low.x(), low.y(), barrel.bottom},
+                                        {high.x(), high.y(), barrel.top});
+        // Where they overlap it may be as deep as anything.
+        if (apart > 0.0F && apart - extra >= best.margin) {
             continue;
         }
         if (!paid(budget, (chunk.last - chunk.first) * units::kThreatPiece, best, chunk.start, ref)) {

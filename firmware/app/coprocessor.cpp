@@ -135,6 +135,8 @@ world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
         const float ground = ground_ + std::max(c.floor, 0.0F);
         air.floor = has_autopilot_ ? std::max(air.floor, ground) : ground;
     }
+    // They are placed in the autopilot's frame: in a bus's own frame there are none.
+    air.barrels = has_autopilot_ ? constraints_.barrels() : std::span<const world::Barrel>();
     return air;
 }
 
@@ -155,6 +157,7 @@ std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexce
     } else if (now - autopilot_own_ > c.own_age) {
         faults |= bit(Fault::own_state_stale);
     }
+    faults |= has_autopilot_ && constraints_.lacks_origin() ? bit(Fault::airspace_unplaced) : 0U;
     return static_cast<std::uint16_t>(faults);
 }
 
@@ -224,6 +227,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
             air, nullptr, c.k_sigma};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
+        report.barrels = static_cast<std::uint16_t>(air.barrels.size());
         report.guidance = supervisor_.update(situation, takeover_.in_control());
         report.work = report.guidance.work;
     }
@@ -271,6 +275,7 @@ StepReport Coprocessor::step(TimePoint now) noexcept
     settle_frame(bus_tracks);
     take_inbox(now);
     link_.service(now);
+    constraints_.place(link_.origin(), now);
     report.faults = find_faults(now, gap > kStall);
     control(now, report);
     report.state = system_state(report);
@@ -288,6 +293,7 @@ StepReport Coprocessor::step(TimePoint now) noexcept
 link::SystemState Coprocessor::system_state(const StepReport& report) const noexcept
 {
     const unsigned never_ready = bit(Fault::no_autopilot) | bit(Fault::own_state_missing) |
+                                 bit(Fault::airspace_unplaced) |
                                  (bus_was_up_ ? 0U : static_cast<unsigned>(bit(Fault::bus_lost)));
     if (report.faults != 0) {
         const bool only_waiting = (report.faults & ~never_ready) == 0;
@@ -312,37 +318,6 @@ void Coprocessor::announce(TakeoverEvent event) noexcept
     case TakeoverEvent::lost: say(Severity::critical, "jink: fault while avoiding, control dropped"); break;
     case TakeoverEvent::held: say(Severity::warning, "jink: autopilot holds, as asked"); break;
     case TakeoverEvent::none: break;
-    }
-}
-
-void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noexcept
-{
-    const avoid::Guidance& g = report.guidance;
-    const world::Conflict& c = g.conflict;
-    const Vec3 miss = c.threat_at_closest - c.own_at_closest;
-    const bool is_track = c.threat.kind == world::ThreatKind::track;
-    link::CollisionWarning warning;
-    warning.id = is_track ? tracks_.id_in_snapshot(c.threat.index) : obstacles_.obstacles()[c.threat.index].id;
-    warning.time_to_closest = c.time_to_closest;
-    warning.horizontal_miss = std::hypot(miss.x(), miss.y());
-    warning.vertical_miss = std::abs(miss.z());
-    warning.action = link::CollisionAction::report;
-    if (takeover_.in_control()) {
-        const world::Manoeuvre* flying = supervisor_.flying();
-        const bool vertical = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
-        warning.action = g.kind == world::ManoeuvreKind::brake ? link::CollisionAction::hover
-                         : vertical                            ? link::CollisionAction::ascend_or_descend
-                                                               : link::CollisionAction::move_horizontally;
-    }
-    const bool near =
-        c.time_to_loss <= vehicle::stopping_time(own_.velocity.norm(), parameters_.configuration().limits) + 1.0F;
-    warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
-    link_.send_collision(warning);
-    last_collision_ = now;
-    if (!told_conflict_) {
-        Text text;
-        text << (is_track ? "jink: conflict, traffic in " : "jink: conflict, obstacle in ") << c.time_to_loss << " s";
-        say(link::Severity::warning, text.view());
     }
 }
 
