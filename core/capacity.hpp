@@ -12,6 +12,9 @@
 #ifndef JINK_MAX_OBSTACLES
 #define JINK_MAX_OBSTACLES 96
 #endif
+#ifndef JINK_MAX_BARRELS
+#define JINK_MAX_BARRELS 32
+#endif
 #ifndef JINK_MAX_PATH_POINTS
 #define JINK_MAX_PATH_POINTS 64
 #endif
@@ -43,6 +46,11 @@ static_assert(kMaxTracks >= 1 && kMaxTracks <= 256);
 inline constexpr std::size_t kMaxObstacles = JINK_MAX_OBSTACLES;
 static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
 
+/// Closed volumes and storm cells at once (Gomola 6.6.5). When there are more, the two farthest become one that holds
+/// both, and BarrelTable::merged() counts it: nothing is lost, more than needed may be closed.
+inline constexpr std::size_t kMaxBarrels = JINK_MAX_BARRELS;
+static_assert(kMaxBarrels >= 2 && kMaxBarrels <= 256);
+
 /// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
 static_assert(kMaxPathPoints >= 8 && kMaxPathPoints <= 1024);
@@ -64,7 +72,7 @@ static_assert(kMaxHullVertices >= 4 && kMaxHullVertices <= 1024);
 inline constexpr std::size_t kMaxReachNodes = JINK_MAX_REACH_NODES;
 static_assert(kMaxReachNodes >= 16 && kMaxReachNodes <= 65534);
 
-/// Cells of its grid: 10 layers of 7 columns and 5 rows are 350. Eighteen bytes each.
+/// Cells of its grid: 10 layers of 7 columns and 5 rows are 350. Two bytes each, and a bit for each threat.
 inline constexpr std::size_t kMaxReachCells = JINK_MAX_REACH_CELLS;
 static_assert(kMaxReachCells >= 16 && kMaxReachCells <= 4096);
 

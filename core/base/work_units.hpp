@@ -39,6 +39,8 @@ inline constexpr std::uint32_t kThreat = 3;       ///< track or obstacle
 inline constexpr std::uint32_t kThreatChunk = 2;  ///< and eight pieces at once
 inline constexpr std::uint32_t kThreatPiece = 3;  ///< and one piece of eight that may be near
 inline constexpr std::uint32_t kBallPart = 8;     ///< and part of a piece, where the threat is a sphere
+inline constexpr std::uint32_t kBarrelPart = 6;   ///< or a barrel: both ends of it
+inline constexpr std::uint32_t kBarrelTurn = 3;   ///< and each instant between them that is looked at
 
 // --- conflicts (core/world/conflict) ---
 inline constexpr std::uint32_t kConflict = 16;       ///< of the way with a track
@@ -46,6 +48,7 @@ inline constexpr std::uint32_t kConflictPart = 8;    ///< and each half second i
 inline constexpr std::uint32_t kConflictBall = 8;    ///< of the way with a sphere or an upright capsule
 inline constexpr std::uint32_t kConflictMet = 24;    ///< and what is told of it when it is met
 inline constexpr std::uint32_t kConflictSolid = 10;  ///< with any other obstacle, but for its queries
+inline constexpr std::uint32_t kConflictBarrel = 8;  ///< with a barrel, but for the instants that are looked at
 
 // --- flights predicted by the supervisor (core/avoid) ---
 inline constexpr std::uint32_t kFlightPart = 4;   ///< a tenth of a second along a path

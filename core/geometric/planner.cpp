@@ -184,6 +184,10 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!world::main_conflict(situation, way, settings_.lookahead, budget, conflict)) {
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
     }
+    if (conflict.threat.kind == world::ThreatKind::barrel) {
+        // Curves of a few main radii do not lead around something hundreds of metres wide.
+        return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
+    }
     Problem problem = problem_of(situation, way, conflict);
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;

@@ -4,36 +4,24 @@
 #include <cstdint>
 #include <span>
 
-#include <Eigen/Core>
-
 #include "core/reach/grid.hpp"
+#include "core/world/barrel.hpp"
 
 // Airspace that is closed, and weather: a circle about a polygon, between two heights, that may move (Gomola 6.5.3,
 // 6.6.5).
 
 namespace jink::reach {
 
-using Vec2 = Eigen::Vector2f;
+using world::Barrel;
+using world::Circle;
+using world::Vec2;
 
 /// Corners of one polygon. More are refused.
 inline constexpr std::size_t kMaxCorners = 32;
 
-struct Circle {
-    Vec2 centre = Vec2::Zero();
-    float radius = 0.0F;
-};
 /// The smallest circle around all points, grown by what rounding may take, 1e-5 of their extent. For no points: radius
 /// 0 about the origin. O(n^3) for n <= kMaxCorners points, n^2 on average; nothing is random.
 [[nodiscard]] Circle smallest_circle(std::span<const Vec2> points) noexcept;
-
-/// A constraint as it is flown around: made once, when it is loaded.
-struct Barrel {
-    Circle circle;                 ///< at time 0 (world frame, east and north) [m]
-    Vec2 velocity = Vec2::Zero();  ///< [m/s]
-    float bottom = 0.0F;           ///< [m], world frame
-    float top = 0.0F;              ///< [m]
-    float margin = 0.0F;           ///< about the circle: soft [m]
-};
 
 enum class Closure : std::uint8_t { none, soft, hard };
 

@@ -6,16 +6,12 @@
 #include <span>
 
 #include "core/base/static_vector.hpp"
+#include "core/capacity.hpp"
 #include "core/reach/barrel.hpp"
 
 // The constraints of one sort, hard or soft, that are looked at in one frame (Gomola eq. 6.110, 6.6.5).
 
 namespace jink::reach {
-
-/// Barrels at once; each costs 32 bytes, and a test in every cell. When there are more, the two farthest become one
-/// that holds both, and BarrelTable::merged() counts it: nothing is lost, more than needed may be closed.
-inline constexpr std::size_t kMaxBarrels = 32;
-static_assert(kMaxBarrels >= 2 && kMaxBarrels <= 256);
 
 /// The barrel may come within the range of the vehicle's grid, margin and all, in the next `horizon` seconds, from its
 /// own time `since` on: level distance and heights. Never no when it does. O(1).

@@ -71,8 +71,6 @@ void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
     }
 }
 
-Vec3 at_time(const NearThreat& threat, Seconds t) noexcept { return threat.position + threat.velocity * t; }
-
 }  // namespace
 
 /// Of the nodes that end in each cell.
@@ -104,7 +102,7 @@ float NearThreats::shrunk_at(float shrunk, Seconds t) const noexcept
 void NearThreats::set_far(NearThreat& threat, Seconds last, const Placed& placed) const noexcept
 {
     const float half_way = 0.5F * (placed.unit + placed.period * threat.velocity.norm());
-    threat.far = threat.growth.at(last) + threat.body + rule_.room + bulge_ + half_way;
+    threat.far = threat.growth.at(last) + threat.body + threat.room + bulge_ + half_way;
 }
 
 void NearThreats::add_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
@@ -117,8 +115,9 @@ void NearThreats::add_track(const world::Situation& situation, const world::Trac
     threat.velocity = track.velocity;
     threat.growth = world::growth_of(situation, track, lead);
     threat.is_track = true;
+    threat.room = rule_.room;
     const Seconds last = placed.period * static_cast<float>(kMaxDepth);
-    const float apart = geometry::point_segment_distance(placed.origin, threat.position, at_time(threat, last));
+    const float apart = geometry::point_segment_distance(placed.origin, threat.position, threat.at(last));
     if (apart > range + threat.growth.at(last) + threat.body) {
         return;
     }
@@ -135,6 +134,7 @@ void NearThreats::add_obstacle(const world::Situation& situation, const geometry
     const Vec3& own = situation.limits.half_extents;
     const float extra = situation.k_sigma * situation.own.sigma_position;
     threat.position = shape.centre;
+    threat.room = rule_.room;
     float radius = 0.0F;
     if (world::as_sphere(shape, own, threat.half, radius)) {
         threat.growth.radius = radius + extra;
@@ -171,6 +171,9 @@ void NearThreats::collect(const world::Situation& situation, const Placed& place
     }
     for (const world::Obstacle& obstacle : situation.obstacles) {
         add_obstacle(situation, obstacle.shape, placed, range);
+    }
+    for (const world::Barrel& barrel : situation.airspace.barrels) {
+        add_barrel(situation, barrel, placed, lead, range);
     }
     all_ = {};
     for (std::size_t i = 0; i < near_.size(); ++i) {
@@ -213,7 +216,7 @@ void NearThreats::mark_layer(const Placed& placed, const CellBalls& balls, std::
     const NearThreat& near = near_[threat];
     // No point of a movement is farther from one of its ends than half of it.
     const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
-    const float around = kHalfMovement + (bulge_ + rule_.room + near.growth.at(longest) + near.body) / placed.unit;
+    const float around = kHalfMovement + (bulge_ + near.room + near.growth.at(longest) + near.body) / placed.unit;
     const Vec3 at_start = placed.to_set(near.position);
     const Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
     const float speed_squared = per_period.squaredNorm();
@@ -254,6 +257,9 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
     const float radius = threat.growth.at(piece.end) - shrunk_at(threat.shrunk, piece.end) + piece.bulge;
     const Vec3& from = piece.from;
     const Vec3& to = piece.to;
+    if (threat.is_barrel) {
+        return against_barrel(threat, piece);
+    }
     if (threat.shape != nullptr) {
         // Between two points no piece is nearer than half of what both are farther than its length.
         const float length = (to - from).norm() / static_cast<float>(kSolidPieces);
@@ -270,8 +276,8 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
     if (radius + rule_.room < 0.0F) {
         return kFree;
     }
-    const Vec3 first = at_time(threat, piece.start) - from;
-    const Vec3 last = at_time(threat, piece.end) - to;
+    const Vec3 first = threat.at(piece.start) - from;
+    const Vec3 last = threat.at(piece.end) - to;
     if (geometry::glance(threat.half, first, last, radius + rule_.room) == geometry::Glance::apart) {
         return kFree;
     }
@@ -349,7 +355,7 @@ bool NearThreats::keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& bu
             if (threat.shape != nullptr) {
                 continue;
             }
-            Vec3 apart = at_time(threat, halfway) - middle;
+            Vec3 apart = threat.at(halfway) - middle;
             apart.z() = threat.is_tall ? std::max(std::abs(apart.z()) - threat.half.z(), 0.0F) : apart.z();
             if (apart.squaredNorm() > threat.far * threat.far) {
                 bits.words[word] &= ~(std::uint32_t{1} << static_cast<unsigned>(bit));

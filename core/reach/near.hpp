@@ -15,9 +15,9 @@
 
 namespace jink::reach::detail {
 
-/// Threats by number, as bits: tracks first, then obstacles.
+/// Threats by number, as bits: tracks first, then obstacles, then barrels.
 struct ThreatBits {
-    static constexpr std::size_t kMost = kMaxTracks + kMaxObstacles;
+    static constexpr std::size_t kMost = kMaxTracks + kMaxObstacles + kMaxBarrels;
     static constexpr std::size_t kWords = (kMost + 31) / 32;
 
     void add(std::size_t i) noexcept { words[i / 32] |= std::uint32_t{1} << (i % 32); }
@@ -35,8 +35,12 @@ struct NearThreat {
     float shrunk = 0.0F;           ///< by the escape rule, at time 0 [m]
     float body = 0.0F;     ///< ball: what the own box adds to its radius, at most; of a tall one in the level plane [m]
     float far = 0.0F;      ///< ball: farther apart than this halfway through a movement is apart all through it [m]
-    bool is_tall = false;  ///< ball: an upright capsule, whose heights are looked at by `half` alone
+    float room = 0.0F;     ///< nearer than this is better avoided; of a barrel level, its margin if that is more [m]
+    bool is_tall = false;  ///< ball: an upright capsule or a barrel, whose heights are looked at by `half` alone
     bool is_track = false;
+    bool is_barrel = false;  ///< flat-ended: the radius is level alone
+
+    [[nodiscard]] Vec3 at(Seconds t) const noexcept { return position + velocity * t; }
 };
 
 /// How node checks are made.
@@ -54,13 +58,13 @@ struct Piece {
     float bulge = 0.0F;  ///< how far off it the vehicle may be [m]
 };
 
-/// Memory: 80 bytes a threat, 16 a cell.
+/// Memory: 88 bytes a threat, a bit for each threat in a cell.
 class NearThreats {
 public:
     /// Takes in what the placed set may come near to.
     /// @param lead    the path begins so long after Situation::now [s]
     /// @param beyond  way past the grid's border that is looked at as well [m]
-    /// O(tracks + obstacles).
+    /// O(tracks + obstacles + barrels).
     void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
                  const NearRule& rule) noexcept;
 
@@ -69,7 +73,8 @@ public:
     [[nodiscard]] bool mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept;
 
     /// Level of the movement that leads to `node`, by what is near and by the bounds of the airspace:
-    /// obstacles, intruders, soft_constraints (less room than wanted) or kFree. What is told is safe: the movement is
+    /// obstacles, intruders, hard_constraints (a barrel's body), soft_constraints (less room than wanted, or a barrel's
+    /// margin) or kFree. What is told is safe: the movement is
     /// taken as its chord with its bulge around it, threats as large as they are at its end; solids that are no balls
     /// as up to an eighth of a movement nearer than they are. What meets an intruder is not looked at any further. A
     /// budget that runs out: obstacles. O(near threats).
@@ -82,6 +87,7 @@ public:
 
 private:
     [[nodiscard]] Level against(const NearThreat& threat, const Piece& piece) const noexcept;
+    [[nodiscard]] Level against_barrel(const NearThreat& barrel, const Piece& piece) const noexcept;
     [[nodiscard]] Level against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept;
     struct Depths;
     void set_far(NearThreat& threat, Seconds last, const Placed& placed) const noexcept;
@@ -93,6 +99,8 @@ private:
                    float range) noexcept;
     void add_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
                       float range) noexcept;
+    void add_barrel(const world::Situation& situation, const world::Barrel& barrel, const Placed& placed, Seconds lead,
+                    float range) noexcept;
     [[nodiscard]] float shrunk_by(float margin_at_start) const noexcept;
     [[nodiscard]] float shrunk_at(float shrunk, Seconds t) const noexcept;
 

@@ -107,7 +107,8 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     report_ = {};
     const path::Route* const route = situation.reference.route;
     if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
-        situation.tracks.size() > kMaxTracks || situation.obstacles.size() > kMaxObstacles) {
+        situation.tracks.size() > kMaxTracks || situation.obstacles.size() > kMaxObstacles ||
+        situation.airspace.barrels.size() > kMaxBarrels) {
         return PlanStatus::bad_input;
     }
     const VehicleSets& sets = *settings_.sets;

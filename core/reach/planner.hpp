@@ -46,9 +46,10 @@ struct Report {
 /// struck out, and the next best taken.
 ///
 /// Plans whether or not something is in the way. Unlike the source it never accepts an intruder or a closed airspace
-/// for want of better: such a way would not pass the final check.
+/// (a barrel's body) for want of better: such a way would not pass the final check. A barrel's margin is entered only
+/// where no other way is left.
 ///
-/// Memory: sizeof(Planner), about 32 KiB with the default capacities: a byte a node, 18 a cell, 80 a threat.
+/// Memory: sizeof(Planner), about 32 KiB with the default capacities: a byte a node, 22 a cell, 88 a threat.
 /// O(nodes * near threats + cells * threats) for each course and set.
 class Planner {
 public:

@@ -112,7 +112,8 @@ bool detail::obstacle_conflict(const Situation& situation, const Way& way, std::
         return true;
     }
     const auto points = path_of(phases_of(way, lookahead), false);
-    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), {points.data(), points.size()}, budget);
+    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), {}, {points.data(), points.size()},
+                        budget);
 }
 
 Way way_of(const Situation& situation) noexcept
@@ -166,6 +167,16 @@ bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead
     Conflict conflict;
     for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
         if (predict_conflict(situation, way, i, lookahead, budget, conflict)) {
+            consider(conflict);
+        }
+        if (budget.exhausted()) {
+            return met_now(conflict, out);
+        }
+    }
+    const auto position_at = [&way](Seconds t) { return way_position(way, t); };
+    const Phases phases = phases_of(way, lookahead);
+    for (std::size_t i = 0; i < situation.airspace.barrels.size(); ++i) {
+        if (detail::meets_barrel(situation, phases, position_at, i, budget, conflict)) {
             consider(conflict);
         }
         if (budget.exhausted()) {

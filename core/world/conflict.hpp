@@ -13,7 +13,7 @@ struct Conflict {
     float margin = 0.0F;             ///< at the closest approach; of a solid the least on the way [m]
     float miss_distance = 0.0F;      ///< between the centres (nearest point of an obstacle) at the closest approach [m]
     Vec3 own_at_closest = Vec3::Zero();     ///< the collision point: own position on the way then [m]
-    Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then [m]
+    Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then, a barrel's at the own height [m]
     float radius_at_closest = 0.0F;         ///< threat's grown radius then [m]
     float way_at_closest = 0.0F;            ///< along the way until then; a way with a route alone [m]
 };
@@ -57,10 +57,12 @@ inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 [[nodiscard]] bool predict_conflict(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
                                     WorkBudget& budget, Conflict& out) noexcept;
 
-/// The main threat: of all tracks and obstacles in conflict with the way within `lookahead`, the one whose loss of
-/// separation comes first (ties: the smaller margin, then the smaller index). False when there is none. Airspace bounds
-/// are no threats: candidates obey them, but a leg outside them is the mission's business. When the budget runs out,
-/// the threat that it ran out at is the main one, its loss of separation now. O(tracks + obstacles).
+/// The main threat: of all tracks, barrels and obstacles in conflict with the way within `lookahead`, the one whose
+/// loss of separation comes first (ties: the smaller margin, then the order just said and the smaller index). False
+/// when there is none. A barrel is met when the own box enters its body, at the way's end too; its margin does not
+/// count. Floor, ceiling and keep-in are no threats: candidates obey them, but a leg outside them is the mission's
+/// business. When the budget runs out, the threat that it ran out at is the main one, its loss of separation now.
+/// O(tracks + barrels + obstacles).
 [[nodiscard]] bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                                  Conflict& out) noexcept;
 

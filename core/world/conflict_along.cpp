@@ -32,6 +32,15 @@ public:
         return true;
     }
     [[nodiscard]] bool meets_obstacle(std::size_t index, WorkBudget& budget, Conflict& out) const noexcept;
+    [[nodiscard]] bool meets_barrel(std::size_t index, WorkBudget& budget, Conflict& out) const noexcept
+    {
+        const auto position_at = [this](Seconds t) { return this->position_at(pieces_.way_at(t)); };
+        if (!detail::meets_barrel(situation_, pieces_, position_at, index, budget, out)) {
+            return false;
+        }
+        out.way_at_closest = pieces_.way_at(out.time_to_closest);
+        return true;
+    }
 
 private:
     [[nodiscard]] static vehicle::VehicleLimits widened(vehicle::VehicleLimits limits, float extra) noexcept
@@ -110,9 +119,11 @@ bool main_conflict_along(const Situation& situation, const Way& way, Seconds loo
     bool found = false;
     Conflict conflict;
     const std::size_t tracks = situation.tracks.size();
-    for (std::size_t i = 0; i < tracks + situation.obstacles.size(); ++i) {
-        const bool meets =
-            i < tracks ? course.meets_track(i, budget, conflict) : course.meets_obstacle(i - tracks, budget, conflict);
+    const std::size_t moving = tracks + situation.airspace.barrels.size();
+    for (std::size_t i = 0; i < moving + situation.obstacles.size(); ++i) {
+        const bool meets = i < tracks   ? course.meets_track(i, budget, conflict)
+                           : i < moving ? course.meets_barrel(i - tracks, budget, conflict)
+                                        : course.meets_obstacle(i - moving, budget, conflict);
         if (meets && (!found || comes_first(conflict, out))) {
             out = conflict;
             found = true;

@@ -7,6 +7,7 @@
 
 #include "core/base/work_units.hpp"
 #include "core/geometry/sweep.hpp"
+#include "core/world/barrel.hpp"
 #include "core/world/conflict.hpp"
 
 // What the search for conflicts does for a straight way and for one along a route. Private to this room.
@@ -101,9 +102,11 @@ auto path_of(const Parts& phases, bool hovers) noexcept
 
 /// A way that starts inside a margin and draws apart from this one threat for good. Nothing on it could mend the start.
 inline bool draws_apart(const Situation& situation, std::span<const Track> tracks, std::span<const Obstacle> obstacles,
-                        std::span<const path::PathPoint> points, WorkBudget& budget) noexcept
+                        std::span<const Barrel> barrels, std::span<const path::PathPoint> points,
+                        WorkBudget& budget) noexcept
 {
-    const Airspace open;
+    Airspace open;
+    open.barrels = barrels;
     const Situation alone{
         situation.now, situation.own, situation.limits, situation.airframe, situation.reference, tracks,
         obstacles,     open,          nullptr,          situation.k_sigma};
@@ -147,8 +150,8 @@ bool predict(const Situation& situation, const Parts& phases, const PositionAt& 
     if (loss <= 0.0F) {
         WorkBudget apart(std::min(kDrawingApartBudget, budget.left()));
         const auto points = path_of(phases, true);
-        const bool leaves =
-            draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, {points.data(), points.size()}, apart);
+        const bool leaves = draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, {},
+                                        {points.data(), points.size()}, apart);
         static_cast<void>(budget.spend(apart.spent()));  // never more than was left
         if (leaves) {
             return false;
@@ -164,6 +167,57 @@ bool predict(const Situation& situation, const Parts& phases, const PositionAt& 
     out.margin = geometry::box_distance(situation.limits.half_extents, out.threat_at_closest - out.own_at_closest) -
                  out.radius_at_closest;
     return true;
+}
+
+/// Of one barrel with a way, likewise: its body alone. It moves, so that hovering at the way's end counts too.
+template <class Parts, class PositionAt>
+bool meets_barrel(const Situation& situation, const Parts& phases, const PositionAt& position_at, std::size_t index,
+                  WorkBudget& budget, Conflict& out) noexcept
+{
+    const Barrel& barrel = situation.airspace.barrels[index];
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    out = {};
+    out.threat = {ThreatKind::barrel, static_cast<std::uint16_t>(index)};
+    bool met = false;
+    Seconds loss = 0.0F;
+    for (const auto& phase : phases) {
+        const Seconds span = phase.end - phase.start;
+        if (!(span > 0.0F)) {
+            continue;
+        }
+        const BarrelApproach approach(situation.limits.half_extents, phase.own, barrel, phase.start, extra, 0.0F);
+        const bool paid_for = budget.spend(units::kConflictBarrel);
+        const geometry::Approach near = approach.least(span, met ? out.margin : 0.0F, budget);
+        if (!met && (near.distance <= 0.0F || !paid_for)) {
+            met = true;
+            loss = phase.start + approach.first_contact(near.when, budget);
+            out.margin = near.distance;
+            out.time_to_closest = phase.start + near.when;
+        } else if (met && near.distance < out.margin) {
+            out.margin = near.distance;
+            out.time_to_closest = phase.start + near.when;
+        }
+        if (budget.exhausted()) {
+            const Conflict so_far = out;
+            return met_now(so_far, out);
+        }
+    }
+    if (!met) {
+        return false;
+    }
+    out.time_to_loss = loss;
+    out.time_to_closest = std::max(out.time_to_closest, loss);
+    out.own_at_closest = position_at(out.time_to_closest);
+    const Vec2 centre = barrel.circle.centre + barrel.velocity * out.time_to_closest;
+    out.threat_at_closest = {centre.x(), centre.y(), std::clamp(out.own_at_closest.z(), barrel.bottom, barrel.top)};
+    out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
+    out.radius_at_closest = barrel.circle.radius + extra;
+    if (loss > 0.0F) {
+        return true;
+    }
+    const auto points = path_of(phases, true);
+    return !draws_apart(situation, {}, {}, situation.airspace.barrels.subspan(index, 1), {points.data(), points.size()},
+                        budget);
 }
 
 /// Of one obstacle with a way, which is taken to be straight.

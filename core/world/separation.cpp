@@ -9,97 +9,21 @@
 #include "core/geometry/convex.hpp"
 #include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
+#include "core/world/barrel.hpp"
 #include "core/world/obstacle_distance.hpp"
+#include "core/world/separation_parts.hpp"
 
 namespace jink::world {
 namespace {
 
+using namespace detail;
 using geometry::Motion;
 
-/// Segments that share one bounding box when far threats are passed over.
-constexpr std::size_t kChunk = 8;
-constexpr std::size_t kMaxChunks = (kMaxPathPoints + kChunk - 1) / kChunk;
-/// A growing threat is looked at in pieces no longer than this, each with the size at its end [s].
-constexpr Seconds kGrowthPiece = 0.25F;
 /// No shorter, however small the slack [s].
 constexpr Seconds kLeastEscapePiece = 0.02F;
+/// A growing threat is looked at in pieces no longer than this, each with the size at its end [s].
+constexpr Seconds kGrowthPiece = 0.25F;
 constexpr Seconds kSolidEscapePiece = 0.2F;
-
-struct Piece {
-    Vec3 from;
-    Vec3 velocity;
-    Seconds start;
-    Seconds duration;
-};
-
-struct Bounds {
-    Vec3 low;
-    Vec3 high;
-    Seconds start;
-    Seconds end;
-    std::size_t first;
-    std::size_t last;  ///< one past the last piece
-};
-
-/// A path until `horizon` as the pieces it is made of, and boxes about some of them at a time.
-class Flight {
-public:
-    Flight(std::span<const path::PathPoint> points, Seconds horizon) noexcept : points_(points), horizon_(horizon)
-    {
-        while (count_ + 1 < points.size() && points[count_].time < horizon) {
-            ++count_;
-        }
-        stands_ = count_ == 0;
-        count_ = std::max<std::size_t>(count_, 1);
-        for (std::size_t first = 0; first < count_; first += kChunk) {
-            chunks_.unchecked_push_back(bounds(first, std::min(first + kChunk, count_)));
-        }
-    }
-
-    [[nodiscard]] std::size_t size() const noexcept { return count_; }
-    [[nodiscard]] Piece piece(std::size_t i) const noexcept
-    {
-        const path::PathPoint& from = points_[i];
-        if (stands_) {
-            return {from.position, Vec3::Zero(), 0.0F, 0.0F};
-        }
-        return {from.position, from.velocity, from.time, std::min(points_[i + 1].time, horizon_) - from.time};
-    }
-    [[nodiscard]] const Vec3& begin() const noexcept { return points_.front().position; }
-    [[nodiscard]] const auto& chunks() const noexcept { return chunks_; }
-
-private:
-    [[nodiscard]] Bounds bounds(std::size_t first, std::size_t last) const noexcept
-    {
-        const Piece begin = piece(first);
-        Bounds b{begin.from, begin.from, begin.start, 0.0F, first, last};
-        for (std::size_t i = first; i < last; ++i) {
-            const Piece p = piece(i);
-            const Vec3 to = p.from + p.velocity * p.duration;
-            b.low = b.low.cwiseMin(p.from).cwiseMin(to);
-            b.high = b.high.cwiseMax(p.from).cwiseMax(to);
-            b.end = p.start + p.duration;
-        }
-        return b;
-    }
-
-    std::span<const path::PathPoint> points_;
-    Seconds horizon_;
-    std::size_t count_ = 0;
-    bool stands_ = false;
-    StaticVector<Bounds, kMaxChunks + 1> chunks_;
-};
-
-/// Distance between two boxes given by their corners.
-float boxes_apart(const Vec3& low_a, const Vec3& high_a, const Vec3& low_b, const Vec3& high_b) noexcept
-{
-    return (low_a - high_b).cwiseMax(low_b - high_a).cwiseMax(0.0F).norm();
-}
-
-float shrink_at(float initial, const EscapeRule& escape, Seconds t) noexcept
-{
-    return initial > 0.0F ? std::max(0.0F, initial - escape.speed * t) : 0.0F;
-}
 
 /// While a shrunk surface grows back it is looked at in pieces so short that it takes half the slack at most in each,
 /// so that its size at their end may stand for it.
@@ -112,24 +36,6 @@ Seconds escape_piece(const EscapeRule& escape) noexcept
 int parts_of(Seconds duration, Seconds longest) noexcept
 {
     return std::max(1, static_cast<int>(std::ceil(duration / longest)));
-}
-
-/// What is not a number is contact of the worst kind.
-void consider(Separation& best, float margin, Seconds when, ThreatRef against) noexcept
-{
-    if (!(margin >= best.margin)) {
-        best = {margin > -kSeparationCap ? margin : -kSeparationCap, when, against};
-    }
-}
-
-/// Takes units; without them the threat counts as met, at `when`.
-bool paid(WorkBudget& budget, std::size_t units, Separation& best, Seconds when, ThreatRef ref) noexcept
-{
-    if (budget.spend(static_cast<std::uint32_t>(units))) {
-        return true;
-    }
-    consider(best, -kSeparationCap, when, ref);
-    return false;
 }
 
 /// Whether a sphere of `radius` that goes from `from` to `to`, seen from the own box, certainly stays farther off than
@@ -330,21 +236,6 @@ void against_airspace(const Situation& situation, const Flight& flight, const Es
 
 }  // namespace
 
-float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept
-{
-    const Seconds age = std::max(0.0F, (situation.now - track.stamp) + t);
-    return track.radius +
-           situation.k_sigma * (situation.own.sigma_position + track.sigma_position + track.sigma_velocity * age) +
-           0.5F * track.max_acceleration * age * age;
-}
-
-Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept
-{
-    const Seconds age = std::max(situation.now - track.stamp, 0.0F) + lead;
-    return {threat_radius(situation, track, lead),
-            situation.k_sigma * track.sigma_velocity + track.max_acceleration * age, track.max_acceleration};
-}
-
 Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points, Seconds horizon,
                             WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
@@ -367,6 +258,9 @@ Separation least_separation(const Situation& situation, std::span<const path::Pa
         if (!track_first || i != cutoff.first.index) {
             against_track(situation, flight, i, escape, budget, best);
         }
+    }
+    for (std::size_t i = 0; i < air.barrels.size() && best.margin >= cutoff.below; ++i) {
+        against_barrel(situation, flight, i, escape, budget, best);
     }
     for (std::size_t i = 0; i < situation.obstacles.size() && best.margin >= cutoff.below; ++i) {
         against_obstacle(situation, flight, i, escape, budget, best);
@@ -398,6 +292,14 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
         if (near < best.margin) {
             consider(best, obstacle_margin(half, position, position, shape, budget, extra), t, ref);
         }
+    }
+    for (std::size_t i = 0; i < situation.airspace.barrels.size(); ++i) {
+        const ThreatRef ref{ThreatKind::barrel, static_cast<std::uint16_t>(i)};
+        if (!paid(budget, units::kThreat, best, t, ref)) {
+            return best;
+        }
+        const float extra = situation.k_sigma * situation.own.sigma_position;
+        consider(best, barrel_distance(half, position, situation.airspace.barrels[i], t) - extra, t, ref);
     }
     for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {
         consider(best, margin_of(position), t, {kind, 0});

@@ -6,9 +6,9 @@
 
 namespace jink::world {
 
-enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in };
+enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in, barrel };
 
-/// What a separation is measured against: the kind and, for tracks and obstacles, the index in the Situation.
+/// What a separation is measured against: the kind and, for tracks, obstacles and barrels, the index in the Situation.
 struct ThreatRef {
     ThreatKind kind = ThreatKind::none;
     std::uint16_t index = 0;
@@ -42,8 +42,8 @@ struct Cutoff {
 /// Least separation along a timed path, from path time 0 (= Situation::now) to min(path end, `horizon`):
 /// exact and time-aware for tracks (relative motion per segment in closed form, the threat at the size it has at the
 /// segment's end, so never optimistic), swept and exact for obstacles (libccd under `budget`, a budget that runs out
-/// counts as contact), airspace bounds by their planes. All of them are met k_sigma * sigma_position of the own
-/// position early.
+/// counts as contact), barrels exact and time-aware (the flight's box against the moving body; their margin does not
+/// count), airspace bounds by their planes. All of them are met k_sigma * sigma_position of the own position early.
 ///
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface, which
 /// is looked at in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
@@ -52,7 +52,7 @@ struct Cutoff {
 /// Never above the truth by more than 1e-3 m within 100 m of the origin; below it by no more than what a track grows in
 /// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below
 /// Cutoff::below, and no lower bound of the least. Cost in budget: core/base/work_units.hpp, by piece of the path,
-/// threat, piece near a threat, and part of it; queries for solids. O(points * (tracks + obstacles)).
+/// threat, piece near a threat, and part of it; queries for solids. O(points * (tracks + obstacles + barrels)).
 [[nodiscard]] Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points,
                                           Seconds horizon, WorkBudget& budget, const EscapeRule& escape = {},
                                           const Cutoff& cutoff = {}) noexcept;

@@ -9,6 +9,7 @@
 #include "core/path/route.hpp"
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
+#include "core/world/barrel.hpp"
 
 // What is known at one instant. Plain values; tables that fill them are in track_table.hpp and obstacle_table.hpp.
 
@@ -48,6 +49,8 @@ struct Airspace {
     float ceiling = 0.0F;
     Vec3 home = Vec3::Zero();
     float keep_in_radius = 0.0F;  ///< horizontal, about home [m]
+    /// Closed volumes and weather, kMaxBarrels at most, where they are at Situation::now. Their owner outlives this.
+    std::span<const Barrel> barrels{};
 };
 
 /// A straight leg to fly.

@@ -131,6 +131,8 @@ world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
         const float ground = ground_ + std::max(c.floor, 0.0F);
         air.floor = has_autopilot_ ? std::max(air.floor, ground) : ground;
     }
+    // They are placed in the autopilot's frame: in a bus's own frame there are none.
+    air.barrels = has_autopilot_ ? constraints_.barrels() : std::span<const world::Barrel>();
     return air;
 }
 
@@ -151,6 +153,7 @@ std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexce
     } else if (now - autopilot_own_ > c.own_age) {
         faults |= bit(Fault::own_state_stale);
     }
+    faults |= has_autopilot_ && constraints_.lacks_origin() ? bit(Fault::airspace_unplaced) : 0U;
     return static_cast<std::uint16_t>(faults);
 }
 
@@ -220,6 +223,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
             air, nullptr, c.k_sigma};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
+        report.barrels = static_cast<std::uint16_t>(air.barrels.size());
         report.guidance = supervisor_.update(situation, takeover_.in_control());
         report.work = report.guidance.work;
     }
@@ -267,6 +271,7 @@ StepReport Coprocessor::step(TimePoint now) noexcept
     settle_frame(bus_tracks);
     take_inbox(now);
     link_.service(now);
+    constraints_.place(link_.origin(), now);
     report.faults = find_faults(now, gap > kStall);
     control(now, report);
     report.state = system_state(report);

@@ -10,6 +10,7 @@
 #include "core/reach/planner.hpp"
 #include "core/world/obstacle_table.hpp"
 #include "core/world/track_table.hpp"
+#include "firmware/app/constraints.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/app/takeover.hpp"
@@ -34,10 +35,11 @@ enum class Fault : std::uint16_t {
     own_state_missing = 4,  ///< the autopilot's; that of a receiver on the bus is good for advice alone
     own_state_stale = 8,
     port_lost = 16,
-    late = 32,        ///< the last step came later than two ticks after the one before
-    not_finite = 64,  ///< a command that is not a number: never sent
-    passive = 128,    ///< told to plan and ask nothing (stay_passive)
-    bus_lost = 256,   ///< the sensor bus is not there: nothing seen does not mean that there is nothing
+    late = 32,                ///< the last step came later than two ticks after the one before
+    not_finite = 64,          ///< a command that is not a number: never sent
+    passive = 128,            ///< told to plan and ask nothing (stay_passive)
+    bus_lost = 256,           ///< the sensor bus is not there: nothing seen does not mean that there is nothing
+    airspace_unplaced = 512,  ///< something closed is known by its place on the globe, but no origin to place it by
 };
 
 [[nodiscard]] constexpr std::uint16_t bit(Fault fault) noexcept { return static_cast<std::uint16_t>(fault); }
@@ -56,6 +58,7 @@ struct StepReport {
     std::uint32_t bytes_out = 0;
     std::uint16_t tracks = 0;
     std::uint16_t obstacles = 0;
+    std::uint16_t barrels = 0;  ///< closed volumes and storm cells that are known
     Control control = Control::autopilot;
     OwnSource own_source = OwnSource::none;
     avoid::Guidance guidance;
@@ -134,6 +137,13 @@ public:
     /// The scans that are forwarded go to this picture, and reach sets plan by it. After use_clouds(); it outlives
     /// this.
     void let_reach_sets_see(ReachPicture& picture) noexcept;
+    /// What is closed from now on, in place of all that was told before: kept clear of like every other threat, by all
+    /// methods and the final check. Constraints in the local frame are the autopilot's. What is wrong is refused and
+    /// counted (ConstraintDiagnostics); what is too much is merged.
+    void set_constraints(std::span<const Constraint> constraints, TimePoint now) noexcept
+    {
+        constraints_.tell(constraints, link_.origin(), own_.position, now);
+    }
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
     /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
@@ -158,6 +168,10 @@ public:
     [[nodiscard]] const world::ObstacleDiagnostics& obstacle_diagnostics() const noexcept
     {
         return obstacles_.diagnostics();
+    }
+    [[nodiscard]] const ConstraintDiagnostics& constraint_diagnostics() const noexcept
+    {
+        return constraints_.diagnostics();
     }
     [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
@@ -233,6 +247,7 @@ private:
     Takeover takeover_;
     world::TrackTable tracks_;
     world::ObstacleTable obstacles_;
+    ConstraintTable constraints_;
     link::Inbox inbox_;
     std::array<std::byte, kMaxBytesPerStep> bytes_{};
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the co-processor says of itself: heartbeats, warnings and texts, and its last words.
-#include <cmath>
-
+// What the co-processor says of itself: heartbeats, texts and its last words.
 #include "firmware/app/coprocessor.hpp"
 
 namespace jink::app {
@@ -15,6 +13,7 @@ constexpr Seconds kCollisionPeriod = 0.5F;
 link::SystemState Coprocessor::system_state(const StepReport& report) const noexcept
 {
     const unsigned never_ready = bit(Fault::no_autopilot) | bit(Fault::own_state_missing) |
+                                 bit(Fault::airspace_unplaced) |
                                  (bus_was_up_ ? 0U : static_cast<unsigned>(bit(Fault::bus_lost)));
     if (report.faults != 0) {
         const bool only_waiting = (report.faults & ~never_ready) == 0;
@@ -39,37 +38,6 @@ void Coprocessor::announce(TakeoverEvent event) noexcept
     case TakeoverEvent::lost: say(Severity::critical, "jink: fault while avoiding, control dropped"); break;
     case TakeoverEvent::held: say(Severity::warning, "jink: autopilot holds, as asked"); break;
     case TakeoverEvent::none: break;
-    }
-}
-
-void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noexcept
-{
-    const avoid::Guidance& g = report.guidance;
-    const world::Conflict& c = g.conflict;
-    const Vec3 miss = c.threat_at_closest - c.own_at_closest;
-    const bool is_track = c.threat.kind == world::ThreatKind::track;
-    link::CollisionWarning warning;
-    warning.id = is_track ? tracks_.id_in_snapshot(c.threat.index) : obstacles_.obstacles()[c.threat.index].id;
-    warning.time_to_closest = c.time_to_closest;
-    warning.horizontal_miss = std::hypot(miss.x(), miss.y());
-    warning.vertical_miss = std::abs(miss.z());
-    warning.action = link::CollisionAction::report;
-    if (takeover_.in_control()) {
-        const world::Manoeuvre* flying = supervisor_.flying();
-        const bool vertical = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
-        warning.action = g.kind == world::ManoeuvreKind::brake ? link::CollisionAction::hover
-                         : vertical                            ? link::CollisionAction::ascend_or_descend
-                                                               : link::CollisionAction::move_horizontally;
-    }
-    const bool near =
-        c.time_to_loss <= vehicle::stopping_time(own_.velocity.norm(), parameters_.configuration().limits) + 1.0F;
-    warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
-    link_.send_collision(warning);
-    last_collision_ = now;
-    if (!told_conflict_) {
-        Text text;
-        text << (is_track ? "jink: conflict, traffic in " : "jink: conflict, obstacle in ") << c.time_to_loss << " s";
-        say(link::Severity::warning, text.view());
     }
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/geometry/convex.hpp"
+#include "core/world/barrel.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "tests/oracle/planner_oracle.hpp"
 #include "tests/oracle/random_situation.hpp"
@@ -34,6 +35,17 @@ struct Crowd : RandomSituation {
         for (std::uint32_t i = 0; i < 6; ++i) {
             obstacles.push_back({100 + i, any_shape()});
         }
+        for (int i = 0; i < 3; ++i) {
+            const Vec3 at = somewhere(12.0F * placed.unit);
+            const float middle = at.z() + random.uniform(-4.0F, 4.0F);
+            const float tall = random.uniform(0.1F, 5.0F);
+            barrels.push_back({{at.head<2>(), random.uniform(0.2F, 3.0F)},
+                               {random.uniform(-4.0F, 4.0F), random.uniform(-4.0F, 4.0F)},
+                               middle - tall,
+                               middle + tall,
+                               random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 4.0F)});
+        }
+        airspace.barrels = barrels;
         airspace.has_ceiling = airspace.has_keep_in = true;
         airspace.floor = own.position.z() - random.uniform(2.0F, 20.0F);
         airspace.ceiling = own.position.z() + random.uniform(2.0F, 20.0F);
@@ -70,6 +82,7 @@ struct Crowd : RandomSituation {
                                                           Vec3(0, 0, -1)};
     Random random;
     Placed placed;
+    std::vector<world::Barrel> barrels;
 };
 
 NearThreats& near_of(const Crowd& crowd, WorkBudget& budget)
@@ -102,6 +115,54 @@ TEST(NearThreatsLaw, CellsLoseNothing)
     }
     EXPECT_GT(met * 10, nodes);
     EXPECT_LT(met * 10, nodes * 9);
+}
+
+/// Barrels alone, so that a movement's level is theirs: along its arc none that is free comes into a margin, none that
+/// is short of room into a body; and bodies do close movements.
+TEST(NearThreatsLaw, BarrelsCloseBodiesAndTellMargins)
+{
+    constexpr int kSamples = 16;
+    std::array<std::size_t, kRuns + 1> seen{};
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        Crowd crowd(seed);
+        crowd.tracks.clear();
+        crowd.obstacles.clear();
+        crowd.airspace.has_floor = crowd.airspace.has_ceiling = crowd.airspace.has_keep_in = false;
+        WorkBudget budget(100'000'000);
+        if (world::separation_at(crowd.view(), crowd.own.position, 0.0F, budget).margin < 0.0F) {
+            continue;
+        }
+        const NearThreats& near = near_of(crowd, budget);
+        const Placed& placed = crowd.placed;
+        const ReachSet& set = *placed.set;
+        const float extra = crowd.view().k_sigma * crowd.own.sigma_position;
+        for (int draw = 0; draw < 60; ++draw) {
+            const auto node = static_cast<NodeIndex>(1 + crowd.random.below(set.nodes() - 1));
+            const NodeIndex parent = set.parent[node];
+            const Level level = near.level(placed, node, budget);
+            ++seen[level];
+            const Pose<float> from{set.position_of(parent),
+                                   static_cast<float>(set.attitude[2U * parent]) * set.step.pitch,
+                                   static_cast<float>(set.attitude[2U * parent + 1U]) * set.step.yaw};
+            for (int i = 0; i <= kSamples && level > Level(AvoidanceRun::hard_constraints); ++i) {
+                const float share = static_cast<float>(i) / kSamples;
+                const Vec3 own = placed.to_world(
+                    i == 0 ? from.position
+                           : at_share(from, static_cast<Movement>(set.movement[node]), share, set.step).position);
+                const Seconds t = placed.time(parent) + share * placed.period;
+                for (const world::Barrel& barrel : crowd.barrels) {
+                    world::Barrel wide = barrel;
+                    wide.circle.radius += level == kFree ? barrel.margin : 0.0F;
+                    ASSERT_GE(world::barrel_distance(crowd.limits.half_extents, own, wide, t) - extra, -2e-3F)
+                        << "seed " << seed << " node " << node << " share " << share;
+                }
+            }
+        }
+    }
+    EXPECT_EQ(seen[Level(AvoidanceRun::obstacles)] + seen[Level(AvoidanceRun::intruders)], 0U);
+    EXPECT_GT(seen[Level(AvoidanceRun::hard_constraints)], 300U);
+    EXPECT_GT(seen[Level(AvoidanceRun::soft_constraints)], 300U);
+    EXPECT_GT(seen[kFree], 3000U);
 }
 
 /// Along the arc itself, at the true times: what is told free or short of room alone touches nothing.

@@ -95,7 +95,7 @@ ordered_json json_of(const ProblemFile& file, const world::ThreatRef& hit)
     if (hit.kind == world::ThreatKind::none) {
         return nullptr;
     }
-    constexpr std::array kKinds{"none", "threat", "obstacle", "floor", "ceiling", "keep_in"};
+    constexpr std::array kKinds{"none", "threat", "obstacle", "floor", "ceiling", "keep_in", "barrel"};
     return {{"kind", kKinds[static_cast<std::size_t>(hit.kind)]}, {"index", hit.index}, {"name", hit_name(file, hit)}};
 }
 
@@ -186,6 +186,7 @@ std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit)
     case world::ThreatKind::floor: return "floor";
     case world::ThreatKind::ceiling: return "ceiling";
     case world::ThreatKind::keep_in: return "keep-in distance";
+    case world::ThreatKind::barrel: return "closed area";
     case world::ThreatKind::none: break;
     }
     return {};

@@ -144,6 +144,19 @@ inline double solid_distance(const Scene& scene, const path::TimedPath& path, co
     return best;
 }
 
+/// A barrel's body at one instant: out of it sideways and up or down, or the least way out.
+inline double barrel_margin_at(const Scene& scene, const Vec3d& own, const Barrel& barrel, double t)
+{
+    const Vec3d half = scene.limits.half_extents.cast<double>();
+    const Eigen::Vector2d centre = barrel.circle.centre.cast<double>() + barrel.velocity.cast<double>() * t;
+    const Vec3d level(centre.x() - own.x(), centre.y() - own.y(), 0.0);
+    const double beside = point_box(level, half) - double(barrel.circle.radius);
+    const double beyond = std::max(double(barrel.bottom) - own.z() - half.z(), own.z() - half.z() - double(barrel.top));
+    const double distance = beside <= 0.0 && beyond <= 0.0 ? std::max(beside, beyond)
+                                                           : std::hypot(std::max(beside, 0.0), std::max(beyond, 0.0));
+    return distance - double(scene.k_sigma) * double(scene.own.sigma_position);
+}
+
 /// What a bound leaves, at one instant.
 inline double bound_margin_at(const Scene& scene, const Vec3d& own, ThreatKind kind)
 {

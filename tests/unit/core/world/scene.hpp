@@ -17,6 +17,7 @@ struct Scene {
     Reference reference;
     std::vector<Track> tracks;
     std::vector<Obstacle> obstacles;
+    std::vector<Barrel> barrels;
     Airspace airspace;
     const Manoeuvre* flying = nullptr;
     float k_sigma = 3.0F;
@@ -41,6 +42,13 @@ struct Scene {
         t.velocity = velocity;
         t.radius = radius;
         return tracks.emplace_back(t);
+    }
+    /// Body alone, from 20 m below to 20 m above the origin. The scene is not to be copied afterwards.
+    Barrel& barrel(const Vec2& centre, float radius, const Vec2& velocity = Vec2::Zero())
+    {
+        barrels.push_back({{centre, radius}, velocity, -20.0F, 20.0F, 0.0F});
+        airspace.barrels = barrels;
+        return barrels.back();
     }
     void obstacle(const geometry::Shape& shape)
     {

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Closed airspace and weather near a placed reach set (Gomola 6.6.5, time-aware over whole movements).
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/sweep.hpp"
+#include "core/reach/near.hpp"
+
+namespace jink::reach::detail {
+namespace {
+
+/// Whether the own box's level rectangle comes within `radius` of a barrel's axis while its middle is within `height`
+/// of it: the axis goes straight from `first` to `last` as seen from the own box. Exact but for rounding, which works
+/// to the safe side; what touches counts.
+bool touches_between(const NearThreat& barrel, const Vec3& first, const Vec3& last, float radius, float height) noexcept
+{
+    constexpr float kSlack = 1e-5F;  // of the heights
+    const float reach = height + kSlack * (height + std::abs(first.z()) + std::abs(last.z()));
+    const float rise = last.z() - first.z();
+    float enters = 0.0F;
+    float leaves = 1.0F;
+    if (std::abs(rise) > kSlack * reach) {
+        const float a = (-reach - first.z()) / rise;
+        const float b = (reach - first.z()) / rise;
+        enters = std::max(std::min(a, b) - kSlack, 0.0F);
+        leaves = std::min(std::max(a, b) + kSlack, 1.0F);
+        if (enters > leaves) {
+            return false;
+        }
+    } else if (std::min(std::abs(first.z()), std::abs(last.z())) > reach) {
+        return false;
+    }
+    const Vec3 way(last.x() - first.x(), last.y() - first.y(), 0.0F);
+    const Vec3 begin = Vec3(first.x(), first.y(), 0.0F) + enters * way;
+    const Vec3 half(barrel.half.x(), barrel.half.y(), 1.0F);
+    return geometry::contact_interval(half, {}, {begin, (leaves - enters) * way}, radius, 1.0F).has_value();
+}
+
+}  // namespace
+
+void NearThreats::add_barrel(const world::Situation& situation, const world::Barrel& barrel, const Placed& placed,
+                             Seconds lead, float range) noexcept
+{
+    NearThreat threat;
+    const Vec3& own = situation.limits.half_extents;
+    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const world::Vec2 centre = barrel.circle.centre + lead * barrel.velocity;
+    threat.half = {own.x(), own.y(), 0.5F * (barrel.top - barrel.bottom) + own.z() + extra};
+    threat.position = {centre.x(), centre.y(), 0.5F * (barrel.top + barrel.bottom)};
+    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
+    threat.growth.radius = barrel.circle.radius + extra;
+    threat.body = std::hypot(own.x(), own.y());
+    threat.room = std::max(rule_.room, barrel.margin);
+    threat.is_tall = threat.is_barrel = true;
+    const Seconds last = placed.period * static_cast<float>(kMaxDepth);
+    const auto level = [](const Vec3& v) { return Vec3(v.x(), v.y(), 0.0F); };
+    const float apart =
+        geometry::point_segment_distance(level(placed.origin), level(threat.position), level(threat.at(last)));
+    const float height = std::abs(placed.origin.z() - threat.position.z()) - threat.half.z();
+    if (apart > range + threat.growth.radius + threat.body + barrel.margin || height > range) {
+        return;
+    }
+    threat.shrunk = shrunk_by(world::barrel_distance(own, placed.origin, barrel, lead) - extra);
+    set_far(threat, last, placed);
+    near_.unchecked_push_back(threat);
+}
+
+/// A flat-ended solid: the level distance counts while the heights overlap, as large as it is at the piece's end.
+Level NearThreats::against_barrel(const NearThreat& barrel, const Piece& piece) const noexcept
+{
+    const float shrunk = shrunk_at(barrel.shrunk, piece.end);
+    const float radius = barrel.growth.radius - shrunk + piece.bulge;
+    const float height = barrel.half.z() - shrunk + piece.bulge;
+    const Vec3 first = barrel.at(piece.start) - piece.from;
+    const Vec3 last = barrel.at(piece.end) - piece.to;
+    if (radius >= 0.0F && height >= 0.0F && touches_between(barrel, first, last, radius, height)) {
+        return static_cast<Level>(AvoidanceRun::hard_constraints);
+    }
+    const bool is_close = radius + barrel.room >= 0.0F && height + rule_.room >= 0.0F &&
+                          touches_between(barrel, first, last, radius + barrel.room, height + rule_.room);
+    return is_close ? static_cast<Level>(AvoidanceRun::soft_constraints) : kFree;
+}
+
+}  // namespace jink::reach::detail

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "core/world/world.hpp"
+
+// How threats grow.
+
+namespace jink::world {
+
+float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept
+{
+    const Seconds age = std::max(0.0F, (situation.now - track.stamp) + t);
+    return track.radius +
+           situation.k_sigma * (situation.own.sigma_position + track.sigma_position + track.sigma_velocity * age) +
+           0.5F * track.max_acceleration * age * age;
+}
+
+Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept
+{
+    const Seconds age = std::max(situation.now - track.stamp, 0.0F) + lead;
+    return {threat_radius(situation, track, lead),
+            situation.k_sigma * track.sigma_velocity + track.max_acceleration * age, track.max_acceleration};
+}
+
+}  // namespace jink::world

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include "core/base/static_vector.hpp"
+#include "core/capacity.hpp"
+#include "core/world/barrel.hpp"
+#include "firmware/link/global_position.hpp"
+
+namespace jink::app {
+
+/// A closed volume or a storm cell as it is told.
+struct Constraint {
+    /// Where it was at `stamp`: about `about`, heights above it; without one in the autopilot's local frame.
+    world::Barrel barrel;
+    TimePoint stamp{};                                         ///< on the co-processor's clock
+    TimePoint ends{std::numeric_limits<std::int64_t>::max()};  ///< it counts no longer after this
+    std::optional<link::GlobalPosition> about;
+};
+
+struct ConstraintDiagnostics {
+    std::uint32_t told = 0;
+    std::uint32_t refused = 0;  ///< not finite, no radius, upside down, beyond 100 km, stamped in the future
+    std::uint32_t merged = 0;   ///< became part of another: there were more than kMaxBarrels
+    std::uint32_t grown = 0;    ///< placings of a moving one that was told long ago and has grown
+};
+
+/// What is closed, as long as nothing else is told: a set that is told replaces the one before.
+///
+/// A moving one goes straight on from its stamp. Told longer ago than kFresh it grows at its own speed to all sides
+/// besides, so that it is held where it may be if it has turned, stopped or doubled its pace since then. Nothing that
+/// stands grows old, and nothing is forgotten before its end.
+///
+/// More than kMaxBarrels: the two farthest of the vehicle become one standing one that holds both for kFresh; after
+/// that it grows at twice the greatest speed of all that were told, so that it still does.
+///
+/// Memory: 72 bytes for each of kMaxBarrels, and 32 for its place at an instant.
+class ConstraintTable {
+public:
+    /// A moving constraint should be told anew at least this often [s].
+    static constexpr Seconds kFresh = 60.0F;
+    /// Growth is taken this far ahead, because a way is looked at into the future [s].
+    static constexpr Seconds kAhead = 10.0F;
+    /// A map's lengths are off by this share of the distance from the origin at most: PX4's sphere is 0.11 % smaller.
+    static constexpr float kMapError = 1.5e-3F;
+
+    /// Replaces everything. What is wrong is refused, by itself, and counted.
+    /// @param own  the vehicle's place in the local frame [m], as far as it is known: what is far of it is merged first
+    /// O(told * kMaxBarrels).
+    void tell(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
+              const Vec3& own, TimePoint now) noexcept;
+
+    /// Where everything is at `now`, in the local frame that begins at `origin`. O(kMaxBarrels).
+    void place(const std::optional<link::GlobalPosition>& origin, TimePoint now) noexcept;
+
+    /// As placed last. What could not be placed is not in it: lacks_origin().
+    [[nodiscard]] std::span<const world::Barrel> barrels() const noexcept { return {placed_.data(), placed_.size()}; }
+    /// Something closed is known by its place on the globe alone, and the origin of the local frame is not.
+    [[nodiscard]] bool lacks_origin() const noexcept { return lacks_origin_; }
+    [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
+    [[nodiscard]] const ConstraintDiagnostics& diagnostics() const noexcept { return diagnostics_; }
+
+private:
+    struct Entry {
+        Constraint constraint;
+        float speed = 0.0F;  ///< at which it grows once it is old [m/s]
+    };
+    void merge(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
+               const Vec3& own, TimePoint now) noexcept;
+    [[nodiscard]] bool accepts(const Constraint& constraint, TimePoint now) const noexcept;
+
+    StaticVector<Entry, kMaxBarrels> entries_;
+    StaticVector<world::Barrel, kMaxBarrels> placed_;
+    bool lacks_origin_ = false;
+    ConstraintDiagnostics diagnostics_;
+};
+
+}  // namespace jink::app
