@@ -139,8 +139,8 @@ void CellFusion::rate_airspace(const world::Situation& situation, const Placed& 
     }
 }
 
-bool CellFusion::rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls, Seconds lead,
-                      std::span<Level> blocks, WorkBudget& budget) noexcept
+RateStatus CellFusion::rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                            Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept
 {
     const auto cells = static_cast<std::uint32_t>(blocks.size());
     const auto tracks = static_cast<std::uint32_t>(situation.tracks.size());
@@ -148,7 +148,7 @@ bool CellFusion::rate(const world::Situation& situation, const Placed& placed, c
     if (!find_times(placed, budget) ||
         !budget.spend(
             cells * (units::kReachCellBounds + tracks * units::kReachCellTrack + obstacles * units::kReachCellSolid))) {
-        return false;
+        return RateStatus::budget_spent;
     }
     for (const world::Track& track : situation.tracks) {
         rate_track(situation, track, placed, balls, lead, blocks);
@@ -157,7 +157,7 @@ bool CellFusion::rate(const world::Situation& situation, const Placed& placed, c
         rate_obstacle(situation, obstacle.shape, placed, blocks);
     }
     rate_airspace(situation, placed, balls, blocks);
-    return true;
+    return RateStatus::rated;
 }
 
 }  // namespace jink::reach

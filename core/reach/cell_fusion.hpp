@@ -4,12 +4,9 @@
 #include <array>
 #include <span>
 
-#include "core/base/work_budget.hpp"
-#include "core/reach/cell_balls.hpp"
+#include "core/reach/cell_source.hpp"
 #include "core/reach/map_obstacle.hpp"
 #include "core/reach/meeting.hpp"
-#include "core/reach/placed.hpp"
-#include "core/world/world.hpp"
 
 // The source's way to rate a placed set: by cells, each of them by all that may be in it while any trajectory is there
 // (Gomola 6.6, 6.7). The planner's own way is by nodes; this one is for comparison, and for who wants it.
@@ -25,7 +22,7 @@ struct FusionRule {
 };
 
 /// Memory: 8 bytes a cell, for the times of the set that was rated last.
-class CellFusion {
+class CellFusion final : public CellSource {
 public:
     explicit CellFusion(const FusionRule& rule) noexcept : rule_(rule) {}
 
@@ -37,13 +34,11 @@ public:
     /// near is enlarged by a ball about the own box.
     ///
     /// Never less than the truth but for what `meeting.hpp` says of stays. Says more than by nodes: the hull of all
-    /// trajectories' times, cells as balls and boxes. False when the budget does not allow for it: when the set is not
-    /// the one that was rated last its times are found anew, samples of each node in turn (units::kReachStay), which is
-    /// no matter for a microcontroller's tick.
-    /// @param lead  the path begins so long after Situation::now [s]
+    /// trajectories' times, cells as balls and boxes. When the set is not the one that was rated last its times are
+    /// found anew, samples of each node in turn (units::kReachStay), which is no matter for a microcontroller's tick.
     /// O(cells * (tracks + obstacles)), and nodes * samples for another set.
-    [[nodiscard]] bool rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
-                            Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept;
+    [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                                  Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
 
 private:
     [[nodiscard]] bool find_times(const Placed& placed, WorkBudget& budget) noexcept;

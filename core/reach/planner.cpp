@@ -17,8 +17,6 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// A scan that is older says nothing [s].
-constexpr Seconds kScanAge = 0.5F;
 /// Courses of a multirotor that hardly moves, from the way [rad].
 constexpr std::array<float, Planner::kHeadings> kTurns{0.0F, kPi / 3.0F, -kPi / 3.0F};
 /// The goal lies just beyond the grid [its range].
@@ -220,24 +218,19 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     const std::span<Level> cells(cells_.data(), set.grid.cells());
     const std::span<Level> nodes(nodes_.data(), set.nodes());
     std::fill(blocks.begin(), blocks.end(), kFree);
-    if (picture_ != nullptr && picture_->is_known()) {
-        const bool fresh = picture_->is_fresh(situation.now, kScanAge);
-        if (!fresh && settings_.blocks_unseen) {
-            return PlanStatus::none_available;  // blind where it used to see
-        }
-        if (fresh && !picture_->rate(placed, settings_.blocks_unseen, blocks, budget)) {
-            return PlanStatus::budget_spent;
-        }
-    }
     if (!balls_.are_of(set.grid)) {
         balls_ = CellBalls(set.grid);
+    }
+    for (CellSource* source : {picture_, fusion_}) {
+        const RateStatus status =
+            source != nullptr ? source->rate(situation, placed, balls_, start.lead, blocks, budget) : RateStatus::rated;
+        if (status == RateStatus::blind || status == RateStatus::budget_spent) {
+            return status == RateStatus::blind ? PlanStatus::none_available : PlanStatus::budget_spent;
+        }
     }
     near_.collect(situation, placed, start.lead, start.stop, {settings_.escape, settings_.room});
     report_.near = static_cast<std::uint16_t>(near_.size());
     const auto entries = static_cast<std::uint32_t>(set.entries.size());
-    if (fusion_ != nullptr && !fusion_->rate(situation, placed, balls_, start.lead, blocks, budget)) {
-        return PlanStatus::budget_spent;
-    }
     if (!near_.mark(placed, balls_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
         return PlanStatus::budget_spent;
     }

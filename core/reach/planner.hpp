@@ -4,9 +4,8 @@
 #include <array>
 #include <cstdint>
 
-#include "core/reach/cell_fusion.hpp"
+#include "core/reach/cell_source.hpp"
 #include "core/reach/near.hpp"
-#include "core/reach/scan_picture.hpp"
 #include "core/reach/vehicle_sets.hpp"
 #include "core/world/method.hpp"
 
@@ -21,8 +20,6 @@ struct Settings {
     std::uint8_t least_outer_layer = 2;
     /// Ways whose end is looked at before the planner gives up, 1..64.
     std::uint8_t tries = 12;
-    /// What a scan that is known does not see is not flown through. Where no scan is known everything counts as seen.
-    bool blocks_unseen = true;
 };
 
 /// Why a plan ended, and how.
@@ -67,10 +64,12 @@ public:
     /// a set has more nodes or cells than there is room for.
     [[nodiscard]] bool configure(const Settings& settings) noexcept;
     [[nodiscard]] const Report& last() const noexcept { return report_; }
-    /// What a scanning sensor sees from now on; null: nothing is known of such a sensor. It outlives this.
-    void look_at(const ScanPicture* picture) noexcept { picture_ = picture; }
-    /// Rates cells as the source does from now on, instead of nodes; null: nodes. It outlives this.
-    void rate_cells_by(CellFusion* fusion) noexcept { fusion_ = fusion; }
+    /// What a scanning sensor sees (ScanPicture) rates the cells from now on, before nodes are looked at; null: nothing
+    /// is known of such a sensor. It outlives this.
+    void look_at(CellSource* picture) noexcept { picture_ = picture; }
+    /// All that is known rates cells as the source does (CellFusion) from now on, instead of nodes; null: nodes. It
+    /// outlives this.
+    void rate_cells_by(CellSource* fusion) noexcept { fusion_ = fusion; }
 
 private:
     struct Start;
@@ -84,8 +83,8 @@ private:
 
     Settings settings_;
     Report report_;
-    const ScanPicture* picture_ = nullptr;
-    CellFusion* fusion_ = nullptr;
+    CellSource* picture_ = nullptr;
+    CellSource* fusion_ = nullptr;
     CellBalls balls_;
     detail::NearThreats near_;
     std::array<Level, kMaxReachNodes> nodes_{};

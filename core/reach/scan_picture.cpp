@@ -172,13 +172,16 @@ Placed ScanPicture::frame() const noexcept
     return placed;
 }
 
-bool ScanPicture::rate(const Placed& placed, bool blocks_unseen, std::span<Level> blocks,
-                       WorkBudget& budget) const noexcept
+RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& placed, const CellBalls& /*balls*/,
+                             Seconds /*lead*/, std::span<Level> blocks, WorkBudget& budget) noexcept
 {
     constexpr Level kBlocked = static_cast<Level>(AvoidanceRun::obstacles);
+    if (!is_fresh(situation.now, kFresh)) {
+        return is_known() && blocks_unseen_ ? RateStatus::blind : RateStatus::nothing_known;
+    }
     const Grid<float>& sets = placed.set->grid;
     if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + grid_.cells())))) {
-        return false;
+        return RateStatus::budget_spent;
     }
     const Placed from = frame();
     const InnerPoints of_sets(sets);
@@ -193,7 +196,7 @@ bool ScanPicture::rate(const Placed& placed, bool blocks_unseen, std::span<Level
             const Cell cell = at.status == LocateStatus::inside ? cells_[grid_.index(at.place)] : Cell::unseen;
             worst = std::max(worst, cell);
         });
-        blocks[i] = worst == Cell::hit || (worst == Cell::unseen && blocks_unseen) ? kBlocked : kFree;
+        blocks[i] = worst == Cell::hit || (worst == Cell::unseen && blocks_unseen_) ? kBlocked : blocks[i];
     }
     const InnerPoints of_scan(grid_);
     for (std::size_t i = 0; i < grid_.cells(); ++i) {
@@ -210,7 +213,7 @@ bool ScanPicture::rate(const Placed& placed, bool blocks_unseen, std::span<Level
         block(grid_.centre(place));
         of_scan.for_each(place, block);
     }
-    return true;
+    return RateStatus::rated;
 }
 
 }  // namespace jink::reach

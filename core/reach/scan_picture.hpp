@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/base/work_budget.hpp"
 #include "core/reach/cell_finder.hpp"
+#include "core/reach/cell_source.hpp"
 #include "core/reach/fusion.hpp"
 #include "core/reach/lidar_scan.hpp"
-#include "core/reach/placed.hpp"
 
 // The newest scan of a range sensor, counted by cells of a grid of its own, and what it says of a set that is placed
 // elsewhere a moment later.
@@ -24,7 +23,7 @@ struct ScanStart {
 };
 
 /// Memory: that of a LidarScan twice, about 7 KiB: one is filled while the other one is read.
-class ScanPicture {
+class ScanPicture final : public CellSource {
 public:
     /// Columns to either side of a set's, so that a course may change until it is planned.
     static constexpr std::size_t kSpareColumns = 1;
@@ -53,12 +52,18 @@ public:
     [[nodiscard]] bool is_known() const noexcept { return known_; }
     [[nodiscard]] const ScanStart& start() const noexcept { return start_[seen_]; }
 
-    /// Levels of the cells of a placed set by the picture alone: obstacles where something was hit or, with
-    /// `blocks_unseen`, where it does not see all; else kFree. Each cell is looked at in eight places, and each place
-    /// that was hit in nine: cells that are cut by less are the business of what is known more exactly. False when the
-    /// budget does not allow for it. O(cells).
-    [[nodiscard]] bool rate(const Placed& placed, bool blocks_unseen, std::span<Level> blocks,
-                            WorkBudget& budget) const noexcept;
+    /// What it does not see is blocked too, from now on. On at first.
+    void block_unseen(bool on) noexcept { blocks_unseen_ = on; }
+
+    /// By the picture alone: obstacles where something was hit or, where that is to be, where it does not see all. Each
+    /// cell is looked at in eight places, and each place that was hit in nine: cells that are cut by less are the
+    /// business of what is known more exactly. A picture older than kFresh is no more than none; while what is unseen
+    /// is blocked it is blindness. O(cells).
+    [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                                  Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
+
+    /// [s]
+    static constexpr Seconds kFresh = 0.5F;
 
 private:
     [[nodiscard]] Placed frame() const noexcept;
@@ -71,6 +76,7 @@ private:
     bool has_grid_ = false;
     float cosine_ = 1.0F;  ///< from the nose to the course of the scan under way
     float sine_ = 0.0F;
+    bool blocks_unseen_ = true;
     bool counts_ = false;  ///< a scan has begun that can be used
     bool known_ = false;
     std::size_t seen_ = 0;  ///< which of both is the picture

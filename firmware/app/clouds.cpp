@@ -20,6 +20,7 @@ void Coprocessor::take_clouds(TimePoint now) noexcept
         c.limits.half_extents,      air.has_floor, air.floor};
     if (reach_picture_ != nullptr) {
         reach_picture_->look_from(view);
+        reach_picture_->picture().block_unseen(c.blocks_unseen);
     }
     clouds_->serve(now, view);
 }

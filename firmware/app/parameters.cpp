@@ -144,7 +144,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.reach.room = c.supervisor.room;
     c.reach.latency = at(Param::latency);
     c.reach.escape = c.supervisor.escape;
-    c.reach.blocks_unseen = whole(Param::unseen) == 1;
+    c.blocks_unseen = whole(Param::unseen) == 1;
     c.reach_unsuited = !reach::suits(*c.reach.sets, c.limits);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);

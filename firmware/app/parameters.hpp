@@ -104,6 +104,7 @@ struct Configuration {
     reach::Settings reach;
     /// The reach sets do not suit the vehicle's limits: they are not asked, whatever the order.
     bool reach_unsuited = false;
+    bool blocks_unseen = true;  ///< by reach sets, where a point cloud does not see
     vehicle::VehicleLimits limits;
     vehicle::Airframe airframe;
     world::TrackTableSettings tracks;

@@ -18,6 +18,7 @@ public:
 
     /// Holds for scans that begin after this.
     void look_from(const CloudView& view) noexcept { view_ = view; }
+    [[nodiscard]] reach::ScanPicture& picture() noexcept { return picture_; }
     [[nodiscard]] const reach::ScanPicture& picture() const noexcept { return picture_; }
 
     void begin_scan(const link::CloudScan& scan) noexcept override;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "core/avoid/guard.hpp"
+#include "core/reach/scan_picture.hpp"
 #include "tests/oracle/planner_oracle.hpp"
 #include "tests/oracle/random_situation.hpp"
 #include "tests/reach/unit_sets.hpp"
@@ -336,9 +337,7 @@ TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
     start.stamp = c.now - 0.6F;
     scan_with([] {});
     EXPECT_EQ(plan_now(m), PlanStatus::none_available) << "blind where it used to see";
-    Settings trusting = unit_settings();
-    trusting.blocks_unseen = false;
-    ASSERT_TRUE(seeing.configure(trusting));
+    picture.block_unseen(false);
     EXPECT_EQ(plan_now(m), PlanStatus::found);
 }
 

@@ -12,6 +12,7 @@
 #include "core/base/random.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/reach/planner.hpp"
+#include "core/reach/scan_picture.hpp"
 #include "core/reach/sets_default.hpp"
 
 namespace {

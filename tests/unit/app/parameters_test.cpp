@@ -277,7 +277,7 @@ std::vector<Route> routes()
         {Param::methods, 3, [](C c) { return static_cast<float>(c.supervisor.order); },
          static_cast<float>(avoid::LadderOrder::last)},
         same(Param::clutter, 7, [](C c) { return static_cast<float>(c.supervisor.clutter); }),
-        {Param::unseen, 0, [](C c) { return c.reach.blocks_unseen ? 1.0F : 0.0F; }, 0},
+        {Param::unseen, 0, [](C c) { return c.blocks_unseen ? 1.0F : 0.0F; }, 0},
         same(Param::latency, 0.3F, [](C c) { return c.reach.latency; }),
         {Param::acceleration, 4, [](C c) { return c.reach_unsuited ? 1.0F : 0.0F; }, 1},
         {Param::acceleration, 6, [](C c) { return c.reach_unsuited ? 1.0F : 0.0F; }, 0},

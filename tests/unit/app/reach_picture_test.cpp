@@ -45,8 +45,23 @@ struct Flying {
         picture.end_scan(0);
     }
 
+    bool rate(const reach::Placed& placed, bool blocks_unseen, std::vector<reach::Level>& blocks)
+    {
+        std::fill(blocks.begin(), blocks.end(), reach::kFree);
+        picture.picture().block_unseen(blocks_unseen);
+        WorkBudget budget(100'000);
+        const vehicle::VehicleState own;
+        const vehicle::VehicleLimits limits;
+        const vehicle::Airframe airframe;
+        const world::Reference reference;
+        const world::Airspace airspace;
+        const world::Situation now{scan.stamp, own, limits, airframe, reference, {}, {}, airspace};
+        return picture.picture().rate(now, placed, reach::CellBalls(placed.set->grid), 0.0F, blocks, budget) ==
+               reach::RateStatus::rated;
+    }
+
     /// Cells of a set that lies along the course: blocked ones of the middle column.
-    [[nodiscard]] int blocked_ahead() const
+    [[nodiscard]] int blocked_ahead()
     {
         const reach::ReachSet& set = *reach_sets().segments[1].emergency;
         reach::Placed placed;
@@ -56,8 +71,7 @@ struct Flying {
         placed.sine = 1.0F;
         placed.unit = 5.0F * reach_sets().period;
         std::vector<reach::Level> blocks(set.grid.cells());
-        WorkBudget budget(100'000);
-        EXPECT_TRUE(picture.picture().rate(placed, false, blocks, budget));
+        EXPECT_TRUE(rate(placed, false, blocks));
         int count = 0;
         for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
             count += blocks[set.grid.index({static_cast<std::uint8_t>(layer), 3, 2})] == reach::kFree ? 0 : 1;
@@ -104,8 +118,7 @@ TEST(ReachPictures, RaysThatAreNotValidSeeNothing)
     reach::Placed placed;
     placed.set = reach_sets().segments[1].emergency;
     std::vector<reach::Level> blocks(placed.set->grid.cells());
-    WorkBudget budget(100'000);
-    EXPECT_TRUE(f.picture.picture().rate(placed, true, blocks, budget));
+    EXPECT_TRUE(f.rate(placed, true, blocks));
     EXPECT_EQ(std::count(blocks.begin(), blocks.end(), reach::kFree), 0);
 }
 

@@ -26,10 +26,18 @@ struct GridAlone {
 
     GridAlone() : blocks(set.grid.cells(), kFree) { placed.set = &set; }
 
-    bool rate(const ScanPicture& picture, bool blocks_unseen)
+    bool rate(ScanPicture& picture, bool blocks_unseen)
     {
+        picture.block_unseen(blocks_unseen);
+        std::fill(blocks.begin(), blocks.end(), kFree);
         WorkBudget budget(100'000);
-        return picture.rate(placed, blocks_unseen, blocks, budget);
+        const vehicle::VehicleState own;
+        const vehicle::VehicleLimits limits;
+        const vehicle::Airframe airframe;
+        const world::Reference reference;
+        const world::Airspace airspace;
+        const world::Situation now{TimePoint{1'000'000}, own, limits, airframe, reference, {}, {}, airspace};
+        return picture.rate(now, placed, CellBalls(set.grid), 0.0F, blocks, budget) == RateStatus::rated;
     }
     [[nodiscard]] Level level(std::uint8_t layer, std::uint8_t column, std::uint8_t row) const
     {
