@@ -23,6 +23,7 @@
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/linux/airspace_file.hpp"
 #include "firmware/linux/cloud_line.hpp"
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/node_identity.hpp"
@@ -43,7 +44,10 @@ constexpr std::uint32_t kDefaultBaud = 921600;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
+volatile std::sig_atomic_t reload_requested = 0;
+
 extern "C" void request_stop(int /*signal*/) { stop_requested = 1; }
+extern "C" void request_reload(int /*signal*/) { reload_requested = 1; }
 
 struct Options {
     std::string serial;
@@ -51,6 +55,7 @@ struct Options {
     std::string cloud;
     std::string vehicle_file;
     std::string param_file;
+    std::string airspace_file;
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;
@@ -180,6 +185,30 @@ bool open_can(hal::SocketCanPort& port, const std::string& interface)
     return !is_final;
 }
 
+void complain(const files::Complaints& complaints)
+{
+    for (const files::Complaint& complaint : complaints) {
+        std::fprintf(stderr, "jinkd: %s\n", files::to_string(complaint).c_str());
+    }
+}
+
+/// False, and said why, where the file is not good: what was closed before stays so.
+bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor)
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_REALTIME, &t);
+    const TimePoint now{clock.now_us()};
+    const double unix_seconds = static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
+    files::Complaints complaints;
+    const auto constraints = files::read_airspace_file(file, {unix_seconds, now}, complaints);
+    complain(complaints);
+    if (constraints) {
+        coprocessor.set_constraints(*constraints, now);
+        std::fprintf(stderr, "jinkd: %s: %zu areas are closed\n", file.c_str(), constraints->size());
+    }
+    return constraints.has_value();
+}
+
 link::dronecan::NodeOptions node_options(const Options& options)
 {
     link::dronecan::NodeOptions node;
@@ -255,6 +284,9 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         std::fprintf(stderr, "jinkd: the reach sets are damaged and left out\n");
         coprocessor->leave_out_reach_sets();
     }
+    if (!options.airspace_file.empty() && !load_airspace(options.airspace_file, clock, *coprocessor)) {
+        return EXIT_FAILURE;
+    }
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
 
@@ -264,6 +296,10 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         serial.service(began);
         can.service(began);
         cloud_port.service(began);
+        if (reload_requested != 0) {
+            reload_requested = 0;
+            static_cast<void>(load_airspace(options.airspace_file, clock, *coprocessor));
+        }
         const app::StepReport report = coprocessor->step({began});
         log.note(report, watched, began, clock.now_us() - began);
         next += kTickMicroseconds;
@@ -309,6 +345,8 @@ int main(int argc, char** argv)
                    "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
     cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
+    cli.add_option("--airspace", options.airspace_file,
+                   "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
     cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
         ->check(CLI::Range(0, 255));
     cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")
@@ -336,9 +374,7 @@ int main(int argc, char** argv)
     }
     files::Complaints complaints;
     const auto parameters = files::load_parameters(options.vehicle_file, options.param_file, complaints);
-    for (const files::Complaint& complaint : complaints) {
-        std::fprintf(stderr, "jinkd: %s\n", files::to_string(complaint).c_str());
-    }
+    complain(complaints);
     if (!parameters) {
         return EXIT_FAILURE;
     }
@@ -346,6 +382,10 @@ int main(int argc, char** argv)
     action.sa_handler = request_stop;
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
+    if (!options.airspace_file.empty()) {
+        action.sa_handler = request_reload;
+        sigaction(SIGHUP, &action, nullptr);
+    }
     if (options.realtime > 0) {
         go_realtime(options.realtime);
     }

@@ -172,6 +172,9 @@ void StatusLog::note(const app::StepReport& report, const Watched& watched, std:
     std::printf("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
                 name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
                 report.obstacles);
+    if (report.barrels > 0) {
+        std::printf("areas %2u ", report.barrels);
+    }
     if (g.has_conflict) {
         std::printf("conflict in %.1f s ", static_cast<double>(g.conflict.time_to_loss));
     }
@@ -249,6 +252,9 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched) c
         "  \"bus_states\": %u, \"bus_states_beside\": %u, \"bus_reports_dropped\": %u, \"places_disagree\": %u, "
         "\"near_told\": %u,\n",
         d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_told);
+    const app::ConstraintDiagnostics& a = coprocessor.constraint_diagnostics();
+    std::fprintf(f, "  \"areas_told\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n", a.told,
+                 a.refused, a.merged, a.grown);
     if (watched.bus != nullptr) {
         write_bus(f, *watched.bus);
     }

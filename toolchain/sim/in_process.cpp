@@ -101,6 +101,11 @@ public:
         hand_over_settings();
     }
 
+    void close(const std::vector<ClosedArea>& areas, TimePoint now)
+    {
+        coprocessor_->set_constraints(constraints_of(areas, now), now);
+    }
+
     void step(TimePoint now)
     {
         const std::uint32_t plans = coprocessor_->supervisor_diagnostics().plans;
@@ -263,6 +268,7 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
            Tap& tap)
 {
     Plant plant(scenario);
+    bench.close(scenario.areas, {clock.now_us()});
     Ticks ticks(timing);
     std::array<std::byte, 4096> buffer{};
     bool overflow = false;

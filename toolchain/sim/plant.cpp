@@ -133,6 +133,7 @@ Record Plant::record() const
     record.duration = world_.seconds();
     record.closest = world_.closest();
     record.closest_threat = scenario_.threats.empty() ? "" : scenario_.threats[record.closest.threat].name;
+    record.closest_area = world_.closest_area();
     record.takeovers = autopilot_.takeovers();
     record.flips = flips_.flips();
     record.longest_hold = to_seconds(longest_hold_);
@@ -181,9 +182,10 @@ void conclude(const Scenario& scenario, Record& record)
         heard.last_warning >= 0 && record.duration - to_seconds(heard.last_warning) < kStillWarned;
     check(record.final_mode == Mode::external && !still_warned, "the external mode was not given back");
 
-    if (record.closest.surface < scenario.body_radius) {
+    const double surface = std::min(record.closest.surface, record.closest_area);
+    if (surface < scenario.body_radius) {
         record.outcome = Outcome::collision;
-    } else if (record.closest.surface < scenario.promise) {
+    } else if (surface < scenario.promise) {
         record.outcome = Outcome::breach;
     } else if (!record.faults.empty()) {
         record.outcome = Outcome::failed;

@@ -65,6 +65,7 @@ struct Record {
     double duration = 0.0;
     Closest closest;
     std::string closest_threat;
+    double closest_area = 1e9;  ///< centre to the body of a closed area, below 0: into it [m]
     unsigned takeovers = 0;
     int flips = 0;              ///< side changes of the commanded track about the leg
     double longest_hold = 0.0;  ///< standing still by command [s]

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "toolchain/sim/closed_area.hpp"
 #include "toolchain/sim/threat.hpp"
 #include "toolchain/sim/truth_vehicle.hpp"
 
@@ -94,6 +95,7 @@ struct Scenario {
     Vec start_velocity = Vec::Zero();
     std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
     std::vector<Threat> threats;
+    std::vector<ClosedArea> areas;
     TrafficSensor traffic;
     ScanSensor scan;
     std::map<std::string, double> parameters;  ///< set at the start, verified

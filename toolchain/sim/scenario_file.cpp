@@ -177,6 +177,7 @@ Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name
     read_vehicle(map, s.vehicle);
     read_mission(map, s, complaints);
     read_threats(map, s.threats, complaints);
+    read_areas(map, s.areas, complaints);
     read_sensors(map, s);
     read_parameters(map, s, complaints);
     read_faults(map, s.faults);

@@ -84,5 +84,6 @@ std::optional<T> one_of(YamlMap& map, std::string_view key, const std::array<T, 
 
 /// All threats of a file, in order, grids spread out.
 void read_threats(YamlMap& root, std::vector<Threat>& out, Complaints& complaints);
+void read_areas(YamlMap& root, std::vector<ClosedArea>& out, Complaints& complaints);
 
 }  // namespace jink::sim::detail

@@ -91,6 +91,26 @@ void put_threat(YAML::Emitter& out, const Threat& threat)
     out << EndMap;
 }
 
+void put_areas(YAML::Emitter& out, const std::vector<ClosedArea>& areas)
+{
+    if (areas.empty()) {
+        return;
+    }
+    out << Key << "closed_areas" << Value << BeginSeq;
+    for (const ClosedArea& area : areas) {
+        out << BeginMap;
+        put(out, "name", area.name);
+        put(out, "radius", area.radius);
+        put(out, "bottom", area.bottom);
+        put(out, "top", area.top);
+        put(out, "margin", area.margin);
+        put(out, "centre", area.centre);
+        put(out, "velocity", area.velocity);
+        out << EndMap;
+    }
+    out << EndSeq;
+}
+
 void put_sensors(YAML::Emitter& out, const Scenario& s)
 {
     out << Key << "traffic" << Value << BeginMap;
@@ -169,6 +189,7 @@ std::string scenario_text(const Scenario& s, const std::string& remark)
         put_threat(out, threat);
     }
     out << EndSeq;
+    put_areas(out, s.areas);
     put_sensors(out, s);
     out << Key << "parameters" << Value << BeginMap;
     for (const auto& [name, value] : s.parameters) {

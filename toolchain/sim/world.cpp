@@ -48,6 +48,9 @@ void World::measure(const Vec& own_before, const std::vector<Vec>& before)
         }
         closest_.box = std::min(closest_.box, box_distance(threat, positions_[i], own_.position, half));
     }
+    for (const ClosedArea& area : scenario_.areas) {
+        closest_area_ = std::min(closest_area_, surface_distance(area, seconds(), own_.position));
+    }
 }
 
 void World::step(const Vec& command)
@@ -88,7 +91,11 @@ bool World::all_past() const
             return false;
         }
     }
-    return true;
+    return std::all_of(scenario_.areas.begin(), scenario_.areas.end(), [&](const ClosedArea& area) {
+        const Vec gap = area.centre_at(seconds()) - own_.position;
+        const Vec closing = area.velocity - own_.velocity;
+        return gap.head<2>().dot(closing.head<2>()) >= 0.0;
+    });
 }
 
 }  // namespace jink::sim

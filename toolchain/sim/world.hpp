@@ -35,11 +35,13 @@ public:
     /// Since when it is seen [us]; -1: not yet.
     [[nodiscard]] Micros appeared(std::size_t i) const { return appeared_[i]; }
     [[nodiscard]] const Closest& closest() const noexcept { return closest_; }
+    /// The closest that the centre came to a closed area's body [m], below 0: into it; 1e9 without any.
+    [[nodiscard]] double closest_area() const noexcept { return closest_area_; }
     /// Least distance now from the centre to a surface [m], and whose; 1e9 without threats.
     [[nodiscard]] double separation(std::size_t& nearest) const;
     /// Lowest height of the centre so far [m].
     [[nodiscard]] double lowest() const noexcept { return lowest_; }
-    /// True when the vehicle draws away from every threat that moves, and none is yet to appear.
+    /// True when the vehicle draws away from every threat and closed area, and none is yet to appear.
     [[nodiscard]] bool all_past() const;
 
 private:
@@ -53,6 +55,7 @@ private:
     std::vector<Vec> before_;
     std::vector<Micros> appeared_;
     Closest closest_;
+    double closest_area_ = 1e9;
     double lowest_;
 };
 

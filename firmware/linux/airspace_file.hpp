@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/app/constraints.hpp"
+#include "firmware/linux/complaint.hpp"
+
+// Airspace files (YAML): closed volumes and storm cells, as circles or polygons between two heights. Keys and units:
+// docs/links.md, an example in firmware/airspace/example.yaml.
+
+namespace jink::files {
+
+/// The same instant on the clock of files and on the co-processor's own.
+struct BothClocks {
+    double unix_seconds = 0.0;  ///< UTC, since 1970
+    TimePoint own;
+};
+
+/// Nothing, and a complaint for each thing that is wrong, unless all of the file is good. A polygon becomes the
+/// smallest circle around it.
+[[nodiscard]] std::optional<std::vector<app::Constraint>>
+read_airspace_file(const std::filesystem::path& path, const BothClocks& now, Complaints& complaints);
+
+/// The same from text; `file` is what complaints call it.
+[[nodiscard]] std::optional<std::vector<app::Constraint>>
+parse_airspace(const std::string& text, const std::string& file, const BothClocks& now, Complaints& complaints);
+
+}  // namespace jink::files

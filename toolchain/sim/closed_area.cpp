@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/closed_area.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "toolchain/sim/scenario_parts.hpp"
+
+namespace jink::sim {
+
+double surface_distance(const ClosedArea& area, double t, const Vec& point)
+{
+    const Vec off = point - area.centre_at(t);
+    const double beside = std::hypot(off.x(), off.y()) - area.radius;
+    const double beyond = std::max(area.bottom - point.z(), point.z() - area.top);
+    if (beside <= 0.0 && beyond <= 0.0) {
+        return std::max(beside, beyond);
+    }
+    return std::hypot(std::max(beside, 0.0), std::max(beyond, 0.0));
+}
+
+std::vector<app::Constraint> constraints_of(const std::vector<ClosedArea>& areas, TimePoint start)
+{
+    std::vector<app::Constraint> constraints;
+    for (const ClosedArea& area : areas) {
+        app::Constraint constraint;
+        constraint.barrel.circle = {area.centre.head<2>().cast<float>(), static_cast<float>(area.radius)};
+        constraint.barrel.velocity = area.velocity.head<2>().cast<float>();
+        constraint.barrel.bottom = static_cast<float>(area.bottom);
+        constraint.barrel.top = static_cast<float>(area.top);
+        constraint.barrel.margin = static_cast<float>(area.margin);
+        constraint.stamp = start;
+        constraints.push_back(constraint);
+    }
+    return constraints;
+}
+
+std::string airspace_text(const std::vector<ClosedArea>& areas, double began)
+{
+    std::ostringstream out;
+    out << "frame: local\nareas:\n" << std::fixed;
+    for (const ClosedArea& area : areas) {
+        out << "  - {centre: [" << area.centre.x() << ", " << area.centre.y() << "], radius: " << area.radius
+            << ", bottom: " << area.bottom << ", top: " << area.top << ", margin: " << area.margin << ", velocity: ["
+            << area.velocity.x() << ", " << area.velocity.y() << "], known_at: " << began << "}\n";
+    }
+    return out.str();
+}
+
+void write_airspace(const std::filesystem::path& file, const std::vector<ClosedArea>& areas)
+{
+    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
+    const std::filesystem::path fresh = file.string() + ".new";
+    std::ofstream out(fresh);
+    out << airspace_text(areas, now.count());
+    out.close();
+    if (!out) {
+        throw std::runtime_error(fresh.string() + " cannot be written");
+    }
+    std::filesystem::rename(fresh, file);
+}
+
+namespace detail {
+
+void read_areas(YamlMap& root, std::vector<ClosedArea>& out, Complaints& complaints)
+{
+    const auto list = root.list("closed_areas");
+    for (std::size_t i = 0; list && i < list->size(); ++i) {
+        YamlMap map((*list)[i], item_name("closed_areas", i), root.file(), complaints);
+        if (!map.is_map()) {
+            continue;
+        }
+        ClosedArea area;
+        area.name = map.text("name").value_or("area_" + std::to_string(i + 1));
+        number(map, "radius", area.radius, {0.1F, 1e4F}, kNeed);
+        number(map, "bottom", area.bottom, kPlace, kNeed);
+        number(map, "top", area.top, kPlace, kNeed);
+        number(map, "margin", area.margin, {0.0F, 1e4F});
+        vector(map, "centre", area.centre, kPlace, kNeed);
+        vector(map, "velocity", area.velocity, {-200.0F, 200.0F});
+        if (area.top < area.bottom) {
+            map.complain("top", "lies below the bottom");
+        }
+        if (area.velocity.z() != 0.0) {
+            map.complain("velocity", "is level: its third number is 0");
+        }
+        map.finish();
+        out.push_back(area);
+    }
+}
+
+}  // namespace detail
+}  // namespace jink::sim
