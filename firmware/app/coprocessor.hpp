@@ -147,7 +147,7 @@ public:
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
     /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
-    /// start calls this.
+    /// start calls this, and the autopilot is told.
     void leave_out_reach_sets() noexcept;
     /// A text that waits until an autopilot is heard, kMostNotices of them; false when there is no room.
     [[nodiscard]] bool tell_when_heard(link::Severity severity, const Text& text) noexcept
@@ -230,8 +230,8 @@ private:
         link::Severity severity = link::Severity::info;
         Text text;
     };
-    /// What a start has to tell of the one before: two lines of a fault, one of what follows from it; and of its sets.
-    static constexpr std::size_t kMostNotices = 4;
+    /// What a start has to tell of the one before: two lines of a fault, one of what follows from it.
+    static constexpr std::size_t kMostNotices = 3;
 
     link::Link& link_;
     hal::SerialPort& port_;
@@ -243,6 +243,7 @@ private:
     reach::Planner reach_;
     avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
     bool leaves_reach_out_ = false;
+    bool told_left_out_ = false;
     bool told_unsuited_ = false;
     Takeover takeover_;
     world::TrackTable tracks_;

@@ -89,6 +89,10 @@ void Coprocessor::tell_notices() noexcept
         }
         notices_.clear();
     }
+    if (leaves_reach_out_ && !told_left_out_ && has_autopilot_) {
+        say(link::Severity::critical, "jink: reach sets damaged, left out");
+        told_left_out_ = true;
+    }
     const Configuration& c = parameters_.configuration();
     const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::LadderOrder::first;
     if (unsuited && !told_unsuited_ && has_autopilot_) {

@@ -46,13 +46,9 @@ FaultStory tell_story(const FaultRecord& record) noexcept
 
 void settle_reach_sets(app::Coprocessor& coprocessor) noexcept
 {
-    if (reach::check(app::reach_sets()) == reach::SetStatus::good) {
-        return;
+    if (reach::check(app::reach_sets()) != reach::SetStatus::good) {
+        coprocessor.leave_out_reach_sets();
     }
-    coprocessor.leave_out_reach_sets();
-    app::Text text;
-    text << "jink: reach sets damaged, left out";
-    static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, text));
 }
 
 bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept
@@ -62,7 +58,7 @@ bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept
         return false;
     }
     const bool passive = record.streak >= kFaultsInARow;
-    // The coprocessor is new and has room for these three beside what its sets have to tell.
+    // The coprocessor is new and has room for three.
     if (record.streak <= kFaultsInARow || std::has_single_bit(record.count)) {
         const FaultStory story = tell_story(record);
         static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, story.what));

@@ -67,7 +67,7 @@ TEST_F(LastWordsFlight, NoticesWaitForTheAutopilotAndAreToldOnce)
 {
     Text text;
     text << "jink: restart 1";
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 3; ++i) {
         EXPECT_TRUE(f->coprocessor.tell_when_heard(link::Severity::critical, text));
     }
     EXPECT_FALSE(f->coprocessor.tell_when_heard(link::Severity::critical, text));
@@ -79,7 +79,7 @@ TEST_F(LastWordsFlight, NoticesWaitForTheAutopilotAndAreToldOnce)
         f->fly(1);
         told += texts("jink: restart 1");
     }
-    EXPECT_EQ(told, 4U);
+    EXPECT_EQ(told, 3U);
 }
 
 TEST_F(LastWordsFlight, PassiveItSaysCriticalAndAsksForNothing)

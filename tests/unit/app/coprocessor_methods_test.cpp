@@ -17,6 +17,7 @@ struct Passed {
     world::MethodId by = world::MethodId::none;
     float nearest = 1e9F;
     bool warned = false;  ///< that the sets do not suit
+    int told = 0;         ///< that they are damaged
 };
 
 Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_out = false)
@@ -33,6 +34,7 @@ Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_ou
     const auto listen = [&] {
         for (const Statustext& m : f->said_of<Statustext>()) {
             const std::string text(m.text.data(), m.text.size());
+            passed.told += text.find("damaged") != std::string::npos ? 1 : 0;
             passed.warned = passed.warned || text.find("do not suit") != std::string::npos;
         }
     };
@@ -88,6 +90,7 @@ TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
 {
     const Passed passed = pass({{Param::methods, 3.0F}}, true);
     EXPECT_EQ(passed.by, world::MethodId::geometric);
+    EXPECT_EQ(passed.told, 1);
     EXPECT_GT(passed.nearest, 2.0F);
 }
 
