@@ -66,7 +66,8 @@ def generated(m):
                       "and the stack are in no room. Interrupt rings and the objects of the application belong to the image's own room.", "",
                       *_rooms(m), "", "## Stack", "", "Bytes by the compiler's call graph, own frame included.", "", *_stacks(m), "",
                       "## A formula of the capacities", "",
-                      f"Bytes on the Cortex-M7. The images have {capacities}. `Coprocessor` holds one of each of the others but `Endpoint`.", "",
+                      f"Bytes on the Cortex-M7. The images have {capacities}. `Coprocessor` holds one of each of the others but `Endpoint`. "
+                      "`ReachPlanner`, and with it `Coprocessor`, has on top a bit for each threat in each cell: 4 (tracks + obstacles + closed areas, up to the next 32) / 32 bytes for each cell and one more.", "",
                       *_formula(m), "", "## ARM Linux", "", "The libraries as a whole; a program takes what it calls.", "", *_linux(m), "",
                       f"Compilers: {compilers}.", "", END])
 
