@@ -190,15 +190,17 @@ void Lidar::measure(const World& world)
     points.reserve(rays_.size());
     for (std::size_t i = 0; i < rays_.size(); ++i) {
         cloud::RawPoint point;
-        point.azimuth = static_cast<std::int16_t>(std::lround(rays_[i].azimuth / static_cast<double>(cloud::kAngleUnit)));
+        point.azimuth =
+            static_cast<std::int16_t>(std::lround(rays_[i].azimuth / static_cast<double>(cloud::kAngleUnit)));
         point.elevation =
             static_cast<std::int16_t>(std::lround(rays_[i].elevation / static_cast<double>(cloud::kAngleUnit)));
         point.range = cloud::kNothingRange;
         if (ranges[i] >= 0.0) {
             const double measured = ranges[i] + sensor_.sigma * static_cast<double>(random_.normal());
-            point.range = measured < kBlind
-                              ? cloud::kInvalidRange
-                              : static_cast<std::uint16_t>(std::lround(measured / static_cast<double>(cloud::kRangeUnit)));
+            point.range =
+                measured < kBlind
+                    ? cloud::kInvalidRange
+                    : static_cast<std::uint16_t>(std::lround(measured / static_cast<double>(cloud::kRangeUnit)));
         }
         points.push_back(point);
     }

@@ -70,7 +70,8 @@ private:
         std::vector<std::byte> bytes;
     };
     void measure(const World& world);
-    [[nodiscard]] std::vector<std::byte> frames_of(const World& world, const std::vector<link::cloud::RawPoint>& points);
+    [[nodiscard]] std::vector<std::byte> frames_of(const World& world,
+                                                   const std::vector<link::cloud::RawPoint>& points);
 
     const LidarSensor sensor_;
     std::vector<LidarRay> rays_;

@@ -98,10 +98,10 @@ struct Scenario {
     std::uint64_t seed = 1;
     Stack stack = Stack::ardupilot;
     PlannerKind planner = PlannerKind::product;
-    double duration = 20.0;       ///< at most [s]
-    double promise = 0.7;         ///< least distance from the vehicle's centre to a true surface [m]
-    double body_radius = 0.5;     ///< of the vehicle [m]
-    std::optional<double> floor;  ///< the centre stays this high above home [m]
+    double duration = 20.0;        ///< at most [s]
+    double promise = 0.7;          ///< least distance from the vehicle's centre to a true surface [m]
+    double body_radius = 0.5;      ///< of the vehicle [m]
+    std::optional<double> floor;   ///< the centre stays this high above home [m]
     std::optional<double> ground;  ///< height of the plane that the LiDAR sees [m]
     bool to_goal = false;          ///< ends at the last waypoint, and not when all threats are past
     TruthLimits vehicle;

@@ -174,7 +174,8 @@ void read_seed(YamlMap& map, Scenario& s)
     }
 }
 
-Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name, Complaints& complaints)
+Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name, Complaints& complaints,
+                       std::optional<std::uint64_t> seed)
 {
     Scenario s;
     s.name = name.stem().string();
@@ -184,6 +185,7 @@ Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name
     }
     s.title = map.text("title").value_or("");
     read_seed(map, s);
+    s.seed = seed.value_or(s.seed);
     s.stack = one_of(map, "stack", std::array{Stack::ardupilot, Stack::px4}).value_or(s.stack);
     s.planner = one_of(map, "planner", std::array{PlannerKind::product, PlannerKind::source}).value_or(s.planner);
     number(map, "duration", s.duration, {1.0F, 600.0F});
@@ -194,7 +196,7 @@ Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name
     s.to_goal = map.boolean("to_goal").value_or(false);
     read_vehicle(map, s.vehicle);
     read_mission(map, s, complaints);
-    read_threats(map, s.threats, complaints);
+    read_threats(map, s.seed, s.threats, complaints);
     read_sensors(map, s);
     if (!s.lidar && std::any_of(s.threats.begin(), s.threats.end(),
                                 [](const Threat& threat) { return threat.sensed_by == SensedBy::lidar; })) {
@@ -218,9 +220,10 @@ std::string all_of(const Complaints& complaints)
     return text;
 }
 
-Scenario checked(const std::optional<YAML::Node>& node, const std::filesystem::path& name, Complaints& complaints)
+Scenario checked(const std::optional<YAML::Node>& node, const std::filesystem::path& name, Complaints& complaints,
+                 std::optional<std::uint64_t> seed = std::nullopt)
 {
-    Scenario scenario = node ? read_scenario(*node, name, complaints) : Scenario{};
+    Scenario scenario = node ? read_scenario(*node, name, complaints, seed) : Scenario{};
     std::stable_sort(complaints.begin(), complaints.end(), [](const files::Complaint& a, const files::Complaint& b) {
         return std::tie(a.line, a.column) < std::tie(b.line, b.column);
     });
@@ -260,10 +263,10 @@ Scenario parse_scenario(const std::string& text, const std::filesystem::path& na
     return checked(files::parse_yaml(text, name.string(), complaints), name, complaints);
 }
 
-Scenario load_scenario(const std::filesystem::path& file)
+Scenario load_scenario(const std::filesystem::path& file, std::optional<std::uint64_t> seed)
 {
     Complaints complaints;
-    return checked(files::load_yaml(file, complaints), file, complaints);
+    return checked(files::load_yaml(file, complaints), file, complaints, seed);
 }
 
 std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder)

@@ -14,6 +14,7 @@ constexpr int kScatterTries = 100'000;
 /// Reads threats one by one; what all of them share.
 struct Threats {
     std::string file;
+    std::uint64_t seed;
     Complaints& complaints;
     std::vector<Threat>& out;
 };
@@ -98,7 +99,7 @@ void read_grid(YamlMap& map, const Threat& first, std::vector<Threat>& threats)
 }
 
 /// Copies of a threat at random places of a level rectangle about its position, each at least `apart` from the others.
-void read_scatter(YamlMap& map, const Threat& first, std::vector<Threat>& threats)
+void read_scatter(YamlMap& map, const Threat& first, std::uint64_t seed, std::vector<Threat>& threats)
 {
     auto scatter = map.map("scatter");
     if (!scatter) {
@@ -106,7 +107,9 @@ void read_scatter(YamlMap& map, const Threat& first, std::vector<Threat>& threat
     }
     const auto count = static_cast<std::size_t>(
         scatter->whole("count", {1.0F, static_cast<float>(kMostScattered)}, kNeed).value_or(1.0F));
-    const auto seed = static_cast<std::uint64_t>(scatter->whole("seed", {0.0F, 1e6F}).value_or(1.0F));
+    if (const auto own = scatter->whole("seed", {0.0F, 1e6F})) {
+        seed = static_cast<std::uint64_t>(*own);
+    }
     Vec half = Vec::Zero();
     double apart = 0.0;
     vector(*scatter, "half", half, {0.0F, 1e4F}, kNeed);
@@ -183,7 +186,7 @@ void read_threat(Threats& reader, const YAML::Node& node, std::size_t index)
     if (map.has("grid")) {
         read_grid(map, threat, reader.out);
     } else if (map.has("scatter")) {
-        read_scatter(map, threat, reader.out);
+        read_scatter(map, threat, reader.seed, reader.out);
     } else {
         reader.out.push_back(threat);
     }
@@ -192,13 +195,13 @@ void read_threat(Threats& reader, const YAML::Node& node, std::size_t index)
 
 }  // namespace
 
-void read_threats(YamlMap& root, std::vector<Threat>& out, Complaints& complaints)
+void read_threats(YamlMap& root, std::uint64_t seed, std::vector<Threat>& out, Complaints& complaints)
 {
     const auto list = root.list("threats");
     if (!list) {
         return;
     }
-    Threats reader{root.file(), complaints, out};
+    Threats reader{root.file(), seed, complaints, out};
     for (std::size_t i = 0; i < list->size(); ++i) {
         read_threat(reader, (*list)[i], i);
     }

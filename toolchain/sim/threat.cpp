@@ -84,8 +84,7 @@ double surface_distance(const Threat& threat, const Vec& centre, const Vec& poin
     const Vec gap = (point - centre).cwiseAbs();
     switch (threat.form) {
     case Form::box: return beyond_faces<3>(gap - threat.half_extents);
-    case Form::cylinder:
-        return beyond_faces<2>({gap.head<2>().norm() - threat.radius, gap.z() - threat.half_height});
+    case Form::cylinder: return beyond_faces<2>({gap.head<2>().norm() - threat.radius, gap.z() - threat.half_height});
     case Form::ball: break;
     }
     return from_axis(threat, centre, point).norm() - threat.radius;

@@ -38,12 +38,12 @@ struct Turn {
 struct Threat {
     std::string name;
     Form form = Form::ball;
-    double radius = 1.0;              ///< of the body [m]
-    double half_height = 0.0;         ///< of the upright axis of a capsule or a cylinder [m]
+    double radius = 1.0;             ///< of the body [m]
+    double half_height = 0.0;        ///< of the upright axis of a capsule or a cylinder [m]
     Vec half_extents = Vec::Zero();  ///< of a box [m]
-    Vec position = Vec::Zero();  ///< at time 0 [m]
-    Vec velocity = Vec::Zero();  ///< from time 0 [m/s]
-    std::vector<Turn> turns;     ///< in order of time
+    Vec position = Vec::Zero();      ///< at time 0 [m]
+    Vec velocity = Vec::Zero();      ///< from time 0 [m/s]
+    std::vector<Turn> turns;         ///< in order of time
     SensedBy sensed_by = SensedBy::traffic;
     double appears_at = 0.0;                        ///< not seen before [s]
     std::optional<double> appears_when_own_within;  ///< of `collision_point`; seen from then on [m]
