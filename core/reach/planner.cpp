@@ -138,6 +138,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
         placed.cosine = std::cos(course + kTurns[i]);
         placed.sine = std::sin(course + kTurns[i]);
         ++report_.headings;
+        looked_ = false;
         PlanStatus status = PlanStatus::none_available;
         for (const ReachSet* set : {of->navigation, of->emergency}) {
             if (status == PlanStatus::none_available && set != placed.set) {
@@ -211,13 +212,14 @@ bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, 
     return true;
 }
 
-PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, const Start& start, WorkBudget& budget,
-                            world::Manoeuvre& out) noexcept
+/// Levels of the cells by the picture, into `blocks_`; those of the course's other set, where its cells are the same.
+PlanStatus Planner::look(const Situation& situation, const Placed& placed, WorkBudget& budget) noexcept
 {
-    const ReachSet& set = *placed.set;
-    const std::span<Level> blocks(blocks_.data(), set.grid.cells());
-    const std::span<Level> cells(cells_.data(), set.grid.cells());
-    const std::span<Level> nodes(nodes_.data(), set.nodes());
+    const Grid<float>& grid = placed.set->grid;
+    if (looked_ && balls_.are_of(grid)) {
+        return PlanStatus::found;
+    }
+    const std::span<Level> blocks(blocks_.data(), grid.cells());
     std::fill(blocks.begin(), blocks.end(), kFree);
     if (picture_ != nullptr && picture_->is_known()) {
         const bool fresh = picture_->is_fresh(situation.now, kScanAge);
@@ -227,6 +229,21 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
         if (fresh && !picture_->rate(placed, settings_.blocks_unseen, blocks, budget)) {
             return PlanStatus::budget_spent;
         }
+    }
+    looked_ = true;
+    return PlanStatus::found;
+}
+
+PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, const Start& start, WorkBudget& budget,
+                            world::Manoeuvre& out) noexcept
+{
+    const ReachSet& set = *placed.set;
+    const std::span<const Level> blocks(blocks_.data(), set.grid.cells());
+    const std::span<Level> cells(cells_.data(), set.grid.cells());
+    const std::span<Level> nodes(nodes_.data(), set.nodes());
+    const PlanStatus looked = look(situation, placed, budget);
+    if (looked != PlanStatus::found) {
+        return looked;
     }
     if (!balls_.are_of(set.grid)) {
         balls_ = CellBalls(set.grid);

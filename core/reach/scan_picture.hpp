@@ -56,7 +56,7 @@ public:
     /// Levels of the cells of a placed set by the picture alone: obstacles where something was hit or, with
     /// `blocks_unseen`, where it does not see all; else kFree. Each cell is looked at in eight places, and each place
     /// that was hit in nine: cells that are cut by less are the business of what is known more exactly. False when the
-    /// budget does not allow for it. O(cells).
+    /// budget does not allow for it. O(cells of the set + cells hit).
     [[nodiscard]] bool rate(const Placed& placed, bool blocks_unseen, std::span<Level> blocks,
                             WorkBudget& budget) const noexcept;
 
@@ -79,6 +79,7 @@ private:
     std::array<std::uint16_t, LidarScan::kDirections> fired_{};  ///< of the scan under way
     enum class Cell : std::uint8_t { free, unseen, hit };
     std::array<Cell, LidarScan::kCells> cells_{};  ///< of the picture
+    std::size_t hits_ = 0;                         ///< so many of them
 };
 
 }  // namespace jink::reach

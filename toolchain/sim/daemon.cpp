@@ -233,6 +233,9 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Co
         if (scenario.planner != PlannerKind::product) {
             throw std::runtime_error(scenario.name + ": 'planner: source' is flown in process only");
         }
+        if (scenario.lidar) {
+            throw std::runtime_error(scenario.name + ": what a LiDAR sees is flown in process only");
+        }
     }
     std::vector<Record> records(scenarios.size());
     std::atomic<std::size_t> next{0};
