@@ -47,7 +47,7 @@ avoid::Settings Coprocessor::supervisor_settings() const noexcept
     if (reach_picture_ != nullptr) {
         // Laying a scan over a set would take most of what a plan may, and a way through clutter takes the rest.
         settings.plan_budget += kPictureUnits;
-        settings.kept_for_next += kPictureUnits;
+        settings.kept_for_next = settings.plan_budget / 2;  // whichever of both is asked first
         settings.budget += kPictureUnits;
     }
     return settings;
