@@ -137,6 +137,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
         placed.cosine = std::cos(course + kTurns[i]);
         placed.sine = std::sin(course + kTurns[i]);
         ++report_.headings;
+        looked_ = false;
         PlanStatus status = PlanStatus::none_available;
         for (const ReachSet* set : {of->navigation, of->emergency}) {
             if (status == PlanStatus::none_available && set != placed.set) {
@@ -210,23 +211,41 @@ bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, 
     return true;
 }
 
-PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, const Start& start, WorkBudget& budget,
-                            world::Manoeuvre& out) noexcept
+/// Levels of the cells by what rates them, into `blocks_`; those of the course's other set, where its cells are the
+/// same. By times that a set's own trajectories make they are not.
+PlanStatus Planner::look(const Situation& situation, const Placed& placed, const Start& start,
+                         WorkBudget& budget) noexcept
 {
-    const ReachSet& set = *placed.set;
-    const std::span<Level> blocks(blocks_.data(), set.grid.cells());
-    const std::span<Level> cells(cells_.data(), set.grid.cells());
-    const std::span<Level> nodes(nodes_.data(), set.nodes());
-    std::fill(blocks.begin(), blocks.end(), kFree);
-    if (!balls_.are_of(set.grid)) {
-        balls_ = CellBalls(set.grid);
+    const Grid<float>& grid = placed.set->grid;
+    const bool same_cells = balls_.are_of(grid);
+    if (looked_ && same_cells && fusion_ == nullptr) {
+        return PlanStatus::found;
     }
+    if (!same_cells) {
+        balls_ = CellBalls(grid);
+    }
+    const std::span<Level> blocks(blocks_.data(), grid.cells());
+    std::fill(blocks.begin(), blocks.end(), kFree);
     for (CellSource* source : {picture_, fusion_}) {
         const RateStatus status =
             source != nullptr ? source->rate(situation, placed, balls_, start.lead, blocks, budget) : RateStatus::rated;
         if (status == RateStatus::blind || status == RateStatus::budget_spent) {
             return status == RateStatus::blind ? PlanStatus::none_available : PlanStatus::budget_spent;
         }
+    }
+    looked_ = true;
+    return PlanStatus::found;
+}
+
+PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, const Start& start, WorkBudget& budget,
+                            world::Manoeuvre& out) noexcept
+{
+    const ReachSet& set = *placed.set;
+    const std::span<const Level> blocks(blocks_.data(), set.grid.cells());
+    const std::span<Level> cells(cells_.data(), set.grid.cells());
+    const std::span<Level> nodes(nodes_.data(), set.nodes());
+    if (const PlanStatus looked = look(situation, placed, start, budget); looked != PlanStatus::found) {
+        return looked;
     }
     near_.collect(situation, placed, start.lead, start.stop, {settings_.escape, settings_.room});
     report_.near = static_cast<std::uint16_t>(near_.size());

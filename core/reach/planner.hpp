@@ -74,6 +74,8 @@ public:
 private:
     struct Start;
 
+    [[nodiscard]] world::PlanStatus look(const world::Situation& situation, const Placed& placed, const Start& start,
+                                         WorkBudget& budget) noexcept;
     [[nodiscard]] world::PlanStatus try_set(const world::Situation& situation, const Placed& placed, const Start& start,
                                             WorkBudget& budget, world::Manoeuvre& out) noexcept;
     static void make_path(const world::Situation& situation, const Placed& placed, NodeIndex node, const Start& start,
@@ -85,6 +87,7 @@ private:
     Report report_;
     CellSource* picture_ = nullptr;
     CellSource* fusion_ = nullptr;
+    bool looked_ = false;  ///< `blocks_` are of the course that is tried, and of the cells that `balls_` are of
     CellBalls balls_;
     detail::NearThreats near_;
     std::array<Level, kMaxReachNodes> nodes_{};

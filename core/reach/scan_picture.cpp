@@ -140,6 +140,7 @@ void ScanPicture::end() noexcept
 void ScanPicture::judge() noexcept
 {
     const LidarScan& scan = scans_[seen_];
+    hits_ = 0;
     std::array<float, kMaxLayers> visible{};
     for (std::size_t column = 0; column < grid_.columns(); ++column) {
         for (std::size_t row = 0; row < grid_.rows(); ++row) {
@@ -151,6 +152,7 @@ void ScanPicture::judge() noexcept
                                       static_cast<std::uint8_t>(row)};
                 const bool hit = scan.obstacle(place, kAnyHit) >= kThreshold;
                 const bool seen = looks && visible[layer] >= 1.0F - kThreshold;
+                hits_ += hit ? 1U : 0U;
                 cells_[grid_.index(place)] = hit ? Cell::hit : seen ? Cell::free : Cell::unseen;
             }
         }
@@ -180,7 +182,7 @@ RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& pl
         return is_known() && blocks_unseen_ ? RateStatus::blind : RateStatus::nothing_known;
     }
     const Grid<float>& sets = placed.set->grid;
-    if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + grid_.cells())))) {
+    if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + hits_)))) {
         return RateStatus::budget_spent;
     }
     const Placed from = frame();
@@ -200,10 +202,10 @@ RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& pl
     }
     const InnerPoints of_scan(grid_);
     for (std::size_t i = 0; i < grid_.cells(); ++i) {
-        const CellPlace place = grid_.place(static_cast<CellIndex>(i));
         if (cells_[i] != Cell::hit) {
             continue;
         }
+        const CellPlace place = grid_.place(static_cast<CellIndex>(i));
         const auto block = [&](const Vec3& point) {
             const Located at = sets.locate(placed.to_set(from.to_world(point)));
             if (at.status == LocateStatus::inside) {

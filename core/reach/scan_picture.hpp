@@ -58,7 +58,7 @@ public:
     /// By the picture alone: obstacles where something was hit or, where that is to be, where it does not see all. Each
     /// cell is looked at in eight places, and each place that was hit in nine: cells that are cut by less are the
     /// business of what is known more exactly. A picture older than kFresh is no more than none; while what is unseen
-    /// is blocked it is blindness. O(cells).
+    /// is blocked it is blindness. O(cells of the set + cells hit).
     [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
                                   Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
 
@@ -85,6 +85,7 @@ private:
     std::array<std::uint16_t, LidarScan::kDirections> fired_{};  ///< of the scan under way
     enum class Cell : std::uint8_t { free, unseen, hit };
     std::array<Cell, LidarScan::kCells> cells_{};  ///< of the picture
+    std::size_t hits_ = 0;                         ///< so many of them
 };
 
 }  // namespace jink::reach

@@ -30,6 +30,7 @@ void Coprocessor::let_reach_sets_see(ReachPicture& picture) noexcept
     reach_picture_ = &picture;
     reach_.look_at(&picture.picture());
     forward_clouds_to(picture);
+    static_cast<void>(supervisor_.configure(supervisor_settings()));
 }
 
 void Coprocessor::use_clouds(Clouds& clouds) noexcept

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/work_units.hpp"
+#include "core/reach/lidar_scan.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -16,6 +19,10 @@ constexpr Seconds kStall = 0.5F;
 /// Speed from which the own motion itself is taken for the way, where no leg is known [m/s].
 constexpr float kMoving = 0.5F;
 constexpr float kWayAhead = 60.0F;  // [s]
+
+/// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs.
+constexpr auto kPictureUnits =
+    static_cast<std::uint32_t>(units::kReachScanCell * (kMaxReachCells + reach::LidarScan::kCells));
 
 }  // namespace
 
@@ -38,6 +45,12 @@ avoid::Settings Coprocessor::supervisor_settings() const noexcept
     const Configuration& c = parameters_.configuration();
     avoid::Settings settings = c.supervisor;
     settings.order = leaves_reach_out_ || c.reach_unsuited ? avoid::LadderOrder::first : settings.order;
+    if (reach_picture_ != nullptr) {
+        // Laying a scan over a set would take most of what a plan may, and a way through clutter takes the rest.
+        settings.plan_budget += kPictureUnits;
+        settings.kept_for_next = settings.plan_budget / 2;  // whichever of both is asked first
+        settings.budget += kPictureUnits;
+    }
     return settings;
 }
 

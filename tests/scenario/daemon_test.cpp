@@ -96,6 +96,9 @@ void choose(const std::string& only)
         }
         if (wanted) {
             scenarios().push_back(load_scenario(file));
+            if (scenarios().back().lidar) {
+                scenarios().pop_back();  // in process only
+            }
         }
     }
 }

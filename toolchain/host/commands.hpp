@@ -18,6 +18,7 @@ void add_check(CLI::App& jink);
 void add_plan(CLI::App& jink);
 void add_reach(CLI::App& jink);
 void add_report(CLI::App& jink);
+void add_scenes(CLI::App& jink);
 void add_tables(CLI::App& jink);
 void add_tune(CLI::App& jink);
 void add_waypoints(CLI::App& jink);

@@ -14,6 +14,7 @@ int main(int argc, char** argv)
         jink::host::add_plan(app);
         jink::host::add_reach(app);
         jink::host::add_report(app);
+        jink::host::add_scenes(app);
         jink::host::add_tables(app);
         jink::host::add_tune(app);
         jink::host::add_waypoints(app);

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink reach: a vehicle's reach sets, as tables to be flashed, measured and drawn.
-#include <unistd.h>
-
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -63,23 +59,6 @@ void build(const Options& options)
     }
 }
 
-/// Replaces this program by the script, which reads the sets from its standard input.
-[[noreturn]] void draw(const std::vector<NamedSet>& sets, const Options& options)
-{
-    const std::string json = drawing_of(sets);
-    std::FILE* const file = std::tmpfile();
-    if (file == nullptr || std::fwrite(json.data(), 1, json.size(), file) != json.size() || std::fflush(file) != 0 ||
-        lseek(fileno(file), 0, SEEK_SET) != 0 || dup2(fileno(file), STDIN_FILENO) < 0) {
-        refuse(kMeasure, std::string("the sets cannot be handed to the script: ") + std::strerror(errno));
-    }
-    const std::string script = find_report_script("reach_sets.py").string();
-    std::fflush(nullptr);
-    // -I keeps PYTHONPATH and user packages out.
-    execl(options.python.c_str(), options.python.c_str(), "-I", "-B", script.c_str(), options.figures.c_str(),
-          static_cast<char*>(nullptr));
-    refuse(kMeasure, options.python + " cannot be started: " + std::strerror(errno));
-}
-
 void measure(const Options& options)
 {
     if (options.source != options.file.empty()) {
@@ -92,7 +71,7 @@ void measure(const Options& options)
     const std::vector<NamedSet> sets = options.source ? sets_of_source() : sets_of(build_from(kMeasure, options));
     std::fputs(table_of(sets, measure_all(sets)).c_str(), stdout);
     if (!options.figures.empty()) {
-        draw(sets, options);
+        become_report_script(kMeasure, options.python, "reach_sets.py", drawing_of(sets), options.figures);
     }
 }
 

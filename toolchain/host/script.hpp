@@ -10,4 +10,9 @@ namespace jink::host {
 /// it was built from.
 [[nodiscard]] std::filesystem::path find_report_script(const std::string& name);
 
+/// Replaces this program by such a script, which reads `input` from its standard input and gets `folder` to write to;
+/// its exit status is the script's. What goes wrong is told in the name of `command`.
+[[noreturn]] void become_report_script(const char* command, const std::string& python, const std::string& name,
+                                       const std::string& input, const std::string& folder);
+
 }  // namespace jink::host

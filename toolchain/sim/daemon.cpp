@@ -249,6 +249,9 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Co
         if (computer.emulated() && !scenario.areas.empty()) {
             throw std::runtime_error(scenario.name + ": no image has an input for closed areas");
         }
+        if (scenario.lidar) {
+            throw std::runtime_error(scenario.name + ": what a LiDAR sees is flown in process only");
+        }
     }
     std::vector<Record> records(scenarios.size());
     std::atomic<std::size_t> next{0};

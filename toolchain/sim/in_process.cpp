@@ -9,12 +9,16 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/reach_picture.hpp"
+#include "firmware/app/reach_sets.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/memory/counting_watchdog.hpp"
 #include "hal/memory/manual_clock.hpp"
 #include "hal/memory/memory_serial_link.hpp"
 #include "toolchain/sim/fan.hpp"
+#include "toolchain/sim/lidar.hpp"
 #include "toolchain/sim/step_record.hpp"
 #include "toolchain/sim/tunnel_line.hpp"
 
@@ -94,10 +98,18 @@ private:
 /// The co-processor with its own watch on it.
 class Bench {
 public:
-    Bench(hal::SerialPort& port, hal::Watchdog& watchdog, link::SensorBus* bus, PlannerKind planner)
+    /// @param cloud  a LiDAR's line; nullptr: there is none
+    Bench(hal::SerialPort& port, hal::Watchdog& watchdog, link::SensorBus* bus, PlannerKind planner,
+          hal::SerialPort* cloud)
         : coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, app::Parameters(), bus)),
           planner_(planner)
     {
+        if (cloud != nullptr) {
+            clouds_ = std::make_unique<app::CloudInput>(cloud);
+            picture_ = std::make_unique<app::ReachPicture>(app::reach_sets());
+            coprocessor_->use_clouds(*clouds_);
+            coprocessor_->let_reach_sets_see(*picture_);
+        }
         hand_over_settings();
     }
 
@@ -200,6 +212,8 @@ private:
     }
 
     link::mavlink::Endpoint endpoint_;
+    std::unique_ptr<app::CloudInput> clouds_;
+    std::unique_ptr<app::ReachPicture> picture_;
     std::unique_ptr<app::Coprocessor> coprocessor_;
     PlannerKind planner_;
     std::uint32_t generation_ = 0;
@@ -265,7 +279,7 @@ private:
 void to(hal::ManualClock& clock, Micros flown) { clock.advance(kClockStart + flown - clock.now_us()); }
 
 Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clock, LineEnd& line, Bench& bench,
-           Tap& tap)
+           Tap& tap, Lidar* lidar)
 {
     Plant plant(scenario);
     bench.close(scenario.areas, {clock.now_us()});
@@ -275,6 +289,9 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
     while (!plant.finished()) {
         plant.deliver({buffer.data(), line.read(buffer)});
         plant.step();
+        if (lidar != nullptr) {
+            lidar->step(plant.world());
+        }
         overflow = !line.write(plant.collect()) || overflow;
         for (; ticks.next() <= plant.now(); ticks.begin()) {
             to(clock, ticks.next());
@@ -299,6 +316,11 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
     return record;
 }
 
+std::unique_ptr<Lidar> lidar_of(const Scenario& scenario)
+{
+    return scenario.lidar ? std::make_unique<Lidar>(scenario) : nullptr;
+}
+
 }  // namespace
 
 Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream* steps)
@@ -310,8 +332,9 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
     hal::CountingWatchdog watchdog;
     const auto cable = std::make_unique<Cable>(clock, scenario.seed, timing);
     Tap tap(cable->port(), steps);
-    Bench bench(tap, watchdog, nullptr, scenario.planner);
-    return fly(scenario, timing, clock, *cable, bench, tap);
+    const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
+    Bench bench(tap, watchdog, nullptr, scenario.planner, lidar.get());
+    return fly(scenario, timing, clock, *cable, bench, tap, lidar.get());
 }
 
 Record fly_in_process(const Scenario& scenario, std::ostream* steps)
@@ -325,8 +348,9 @@ Record fly_through_tunnel(const Scenario& scenario)
     hal::CountingWatchdog watchdog;
     const auto line = std::make_unique<TunnelLine>(clock, scenario.seed);
     Tap tap(line->bus().serial(), nullptr);
-    Bench bench(tap, watchdog, &line->bus(), scenario.planner);
-    Record record = fly(scenario, Timing{}, clock, *line, bench, tap);
+    const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
+    Bench bench(tap, watchdog, &line->bus(), scenario.planner, lidar.get());
+    Record record = fly(scenario, Timing{}, clock, *line, bench, tap, lidar.get());
     record.transport = "tunnel";
     return record;
 }

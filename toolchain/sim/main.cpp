@@ -59,11 +59,15 @@ fs::path find_daemon()
     throw std::runtime_error("jinkd is not where this program is; say where with --daemon");
 }
 
-std::vector<Scenario> load_all(const std::vector<std::string>& files)
+std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_time)
 {
     std::vector<Scenario> scenarios;
     for (const std::string& file : files) {
         scenarios.push_back(load_scenario(file));
+        if (real_time && scenarios.back().lidar) {
+            std::cout << scenarios.back().name << ": left out, a LiDAR is simulated in process only\n";
+            scenarios.pop_back();
+        }
     }
     return scenarios;
 }
@@ -73,6 +77,9 @@ Record fly_recorded(const Scenario& scenario, const std::string& folder)
 {
     if (folder.empty()) {
         return fly_in_process(scenario);
+    }
+    if (scenario.lidar) {
+        throw std::runtime_error(scenario.name + ": the steps of a flight with a LiDAR cannot be recorded");
     }
     fs::create_directories(folder);
     const fs::path file = fs::path(folder) / (scenario.name + ".steps");
@@ -177,9 +184,10 @@ int fly(const Options& options)
 {
     make_folder(options);
     std::vector<ReportedFlight> flights;
-    const std::vector<Scenario> scenarios = load_all(options.files);
+    const bool in_process = options.daemon.empty() && options.image.empty();
+    const std::vector<Scenario> scenarios = load_all(options.files, !in_process);
     const bool tunnel = options.link == "tunnel";
-    if (options.daemon.empty() && options.image.empty()) {
+    if (in_process) {
         for (const Scenario& scenario : scenarios) {
             Record record = tunnel ? fly_through_tunnel(scenario) : fly_recorded(scenario, options.steps);
             flights.push_back(report_on(scenario, std::move(record), options.judge));
@@ -202,7 +210,7 @@ int fly(const Options& options)
 int phases(const Options& options)
 {
     unsigned unexpected = 0;
-    for (const Scenario& scenario : load_all(options.files)) {
+    for (const Scenario& scenario : load_all(options.files, false)) {
         const std::vector<Record> flights = fly_phases(scenario, options.seed, options.count, options.spread);
         std::map<std::string, unsigned> ends;
         std::vector<double> least;
@@ -242,7 +250,7 @@ int demo(const Options& options)
     for (const fs::path& file : scenario_files(options.scenarios)) {
         files.push_back(file.string());
     }
-    const std::vector<Scenario> scenarios = load_all(files);
+    const std::vector<Scenario> scenarios = load_all(files, true);
     std::cout << scenarios.size() << " scenarios in real time against " << computer.program.filename().string() << ", "
               << options.at_once << " at once ..." << std::endl;
     std::vector<Record> records = fly_daemons(scenarios, computer, log_folder(options), options.at_once);

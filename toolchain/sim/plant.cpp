@@ -21,6 +21,8 @@ constexpr double kLongestGap = 0.5;
 /// Longest gap between the co-processor's heartbeats [s].
 constexpr double kHeartbeatGap = 1.5;
 
+/// The last waypoint is reached within this [m].
+constexpr double kAtGoal = 3.0;
 /// A flight may end in external mode while a conflict was warned of this recently [s].
 constexpr double kStillWarned = 5.0;
 
@@ -81,6 +83,9 @@ void Plant::step()
 {
     autopilot_.step();
     below_floor_ = below_floor_ || is_below_floor();
+    if (goal_at_ < 0 && (world_.own().position - scenario_.mission.back()).norm() <= kAtGoal) {
+        goal_at_ = world_.now();
+    }
     if (autopilot_.mode() == Mode::external) {
         flips_.note(world_.own().position, autopilot_.command());
         sides_.note(world_.seconds(), autopilot_.takeovers(), world_.own().position, autopilot_.command());
@@ -116,6 +121,9 @@ bool Plant::finished() const
     if (world_.now() >= to_micros(scenario_.duration)) {
         return true;
     }
+    if (scenario_.to_goal) {
+        return goal_at_ >= 0 && autopilot_.mode() == Mode::mission && world_.now() - goal_at_ >= kSettled;
+    }
     const bool back = autopilot_.mode() == Mode::mission && autopilot_.mode_since() > 0 &&
                       world_.now() - autopilot_.mode_since() >= kSettled &&
                       autopilot_.mission().cross_track(world_.own().position) < kOnLeg;
@@ -141,6 +149,7 @@ Record Plant::record() const
     record.given_back =
         record.takeovers > 0 && autopilot_.mode() == Mode::mission && autopilot_.last_change_was_asked();
     record.cross_track = autopilot_.mission().cross_track(world_.own().position);
+    record.goal_at = goal_at_ < 0 ? -1.0 : to_seconds(goal_at_);
     record.lowest = world_.lowest();
     record.below_floor = below_floor_;
     record.heard = autopilot_.heard();

@@ -50,6 +50,7 @@ private:
     Micros held_ = 0;
     Micros longest_hold_ = 0;
     bool below_floor_ = false;
+    Micros goal_at_ = -1;
 };
 
 /// Decides the outcome and lists the rules that were broken.

@@ -50,6 +50,9 @@ std::vector<std::string> unmet(const Scenario& scenario, const Record& record)
         missing.push_back("it ends in mode " + std::string(to_string(record.final_mode)) + ", not " +
                           std::string(to_string(*expect.final_mode)));
     }
+    if (expect.goal_reached && *expect.goal_reached != (record.goal_at >= 0.0)) {
+        missing.push_back(record.goal_at >= 0.0 ? "the goal was reached" : "the goal was not reached");
+    }
     if (expect.flips_at_most && record.flips > *expect.flips_at_most) {
         missing.push_back(std::to_string(record.flips) + " changes of side, " + std::to_string(*expect.flips_at_most) +
                           " allowed");

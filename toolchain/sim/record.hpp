@@ -72,6 +72,7 @@ struct Record {
     bool given_back = false;
     Mode final_mode = Mode::mission;
     double cross_track = 0.0;  ///< at the end [m]
+    double goal_at = -1.0;     ///< when the last waypoint was reached; negative: never [s]
     double lowest = 0.0;       ///< least height of the centre [m]
     bool below_floor = false;  ///< was below it where the leg is not: a mission may lead there by itself
     Heard heard;

@@ -67,6 +67,8 @@ Json threats(const Record& record)
             positions.push_back(json(threat.position_at(record.samples[i].time)));
         }
         all.push_back({{"name", threat.name},
+                       {"form", to_string(threat.form)},
+                       {"half_extents", json(threat.half_extents)},
                        {"radius", threat.radius},
                        {"half_height", threat.half_height},
                        {"sensed_by", to_string(threat.sensed_by)},
@@ -193,6 +195,7 @@ Json json(const ReportedFlight& flight, bool machine_independent)
            {"given_back", r.given_back},
            {"final_mode", to_string(r.final_mode)},
            {"cross_track", rounded(r.cross_track)},
+           {"goal_at", r.goal_at < 0.0 ? Json(nullptr) : Json(rounded(r.goal_at))},
            {"lowest", rounded(r.lowest)}};
     if (!machine_independent) {
         j["late_steps"] = r.late_steps;

@@ -57,6 +57,18 @@ struct ScanSensor {
     Micros phase = 0;     ///< of its clock, below its period; not in files: timing.hpp
 };
 
+/// A LiDAR that turns with the vehicle: rays in rows and columns about its axes. All of a scan is measured at once.
+struct LidarSensor {
+    double rate = 10.0;     ///< scans [Hz]
+    double range = 60.0;    ///< [m]
+    double level = 360.0;   ///< field of view about the nose [deg]
+    double up = 45.0;       ///< highest row [deg]
+    double down = 45.0;     ///< lowest row, below the level [deg]
+    double pitch = 2.0;     ///< between neighbouring rays and rows [deg]
+    double sigma = 0.03;    ///< noise of range [m]
+    double latency = 0.02;  ///< from measurement to arrival [s]
+};
+
 /// What goes wrong on purpose. Times in [s]; those left out do not happen.
 struct Faults {
     std::optional<double> pilot_takes_over;  ///< mode of `pilot_mode` chosen by the pilot
@@ -77,6 +89,7 @@ struct Expectation {
     std::optional<bool> given_back;  ///< the mission flies again at the end, and control had been taken
     std::optional<Mode> final_mode;
     std::optional<int> flips_at_most;
+    std::optional<bool> goal_reached;  ///< the last waypoint
 };
 
 /// One flight: the world, the vehicle, its mission, the autopilot and what is expected.
@@ -86,10 +99,12 @@ struct Scenario {
     std::uint64_t seed = 1;
     Stack stack = Stack::ardupilot;
     PlannerKind planner = PlannerKind::product;
-    double duration = 20.0;       ///< at most [s]
-    double promise = 0.7;         ///< least distance from the vehicle's centre to a true surface [m]
-    double body_radius = 0.5;     ///< of the vehicle [m]
-    std::optional<double> floor;  ///< the centre stays this high above home [m]
+    double duration = 20.0;        ///< at most [s]
+    double promise = 0.7;          ///< least distance from the vehicle's centre to a true surface [m]
+    double body_radius = 0.5;      ///< of the vehicle [m]
+    std::optional<double> floor;   ///< the centre stays this high above home [m]
+    std::optional<double> ground;  ///< height of the plane that the LiDAR sees [m]
+    bool to_goal = false;          ///< ends at the last waypoint, and not when all threats are past
     TruthLimits vehicle;
     Vec start_position = Vec::Zero();
     Vec start_velocity = Vec::Zero();
@@ -98,6 +113,7 @@ struct Scenario {
     std::vector<ClosedArea> areas;
     TrafficSensor traffic;
     ScanSensor scan;
+    std::optional<LidarSensor> lidar;
     std::map<std::string, double> parameters;  ///< set at the start, verified
     Faults faults;
     Expectation expect;

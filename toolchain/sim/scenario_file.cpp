@@ -52,6 +52,21 @@ void read_sensors(YamlMap& root, Scenario& s)
         number(*map, "range", s.scan.range, {1.0F, 600.0F});
         map->finish();
     }
+    if (auto map = root.map("lidar")) {
+        LidarSensor& lidar = s.lidar.emplace();
+        number(*map, "rate", lidar.rate, {1.0F, 50.0F});
+        number(*map, "range", lidar.range, {1.0F, 600.0F});
+        number(*map, "level", lidar.level, {10.0F, 360.0F});
+        number(*map, "up", lidar.up, {-45.0F, 85.0F});
+        number(*map, "down", lidar.down, {-45.0F, 85.0F});
+        number(*map, "pitch", lidar.pitch, {0.25F, 10.0F});
+        number(*map, "sigma", lidar.sigma, {0.0F, 5.0F});
+        number(*map, "latency", lidar.latency, {0.0F, 1.0F});
+        if (lidar.up + lidar.down < lidar.pitch) {
+            map->complain("up", "leaves no two rows between 'down' and 'up'");
+        }
+        map->finish();
+    }
 }
 
 void read_faults(YamlMap& root, Faults& faults)
@@ -105,6 +120,7 @@ void read_expectation(YamlMap& root, Expectation& expect)
         expect.flips_at_most = static_cast<int>(*flips);
     }
     expect.final_mode = one_of(*map, "final_mode", kModes);
+    expect.goal_reached = map->boolean("goal_reached");
     map->finish();
 }
 
@@ -158,7 +174,8 @@ void read_seed(YamlMap& map, Scenario& s)
     }
 }
 
-Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name, Complaints& complaints)
+Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name, Complaints& complaints,
+                       std::optional<std::uint64_t> seed)
 {
     Scenario s;
     s.name = name.stem().string();
@@ -168,17 +185,24 @@ Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name
     }
     s.title = map.text("title").value_or("");
     read_seed(map, s);
+    s.seed = seed.value_or(s.seed);
     s.stack = one_of(map, "stack", std::array{Stack::ardupilot, Stack::px4}).value_or(s.stack);
     s.planner = one_of(map, "planner", std::array{PlannerKind::product, PlannerKind::source}).value_or(s.planner);
     number(map, "duration", s.duration, {1.0F, 600.0F});
     number(map, "promise", s.promise, {0.0F, 100.0F});
     number(map, "body_radius", s.body_radius, {0.0F, 100.0F});
     number(map, "floor", s.floor, kPlace);
+    number(map, "ground", s.ground, kPlace);
+    s.to_goal = map.boolean("to_goal").value_or(false);
     read_vehicle(map, s.vehicle);
     read_mission(map, s, complaints);
-    read_threats(map, s.threats, complaints);
+    read_threats(map, s.seed, s.threats, complaints);
     read_areas(map, s.areas, complaints);
     read_sensors(map, s);
+    if (!s.lidar && std::any_of(s.threats.begin(), s.threats.end(),
+                                [](const Threat& threat) { return threat.sensed_by == SensedBy::lidar; })) {
+        map.complain("threats", "nothing sees them: there is no 'lidar'");
+    }
     read_parameters(map, s, complaints);
     read_faults(map, s.faults);
     read_expectation(map, s.expect);
@@ -197,9 +221,10 @@ std::string all_of(const Complaints& complaints)
     return text;
 }
 
-Scenario checked(const std::optional<YAML::Node>& node, const std::filesystem::path& name, Complaints& complaints)
+Scenario checked(const std::optional<YAML::Node>& node, const std::filesystem::path& name, Complaints& complaints,
+                 std::optional<std::uint64_t> seed = std::nullopt)
 {
-    Scenario scenario = node ? read_scenario(*node, name, complaints) : Scenario{};
+    Scenario scenario = node ? read_scenario(*node, name, complaints, seed) : Scenario{};
     std::stable_sort(complaints.begin(), complaints.end(), [](const files::Complaint& a, const files::Complaint& b) {
         return std::tie(a.line, a.column) < std::tie(b.line, b.column);
     });
@@ -239,10 +264,10 @@ Scenario parse_scenario(const std::string& text, const std::filesystem::path& na
     return checked(files::parse_yaml(text, name.string(), complaints), name, complaints);
 }
 
-Scenario load_scenario(const std::filesystem::path& file)
+Scenario load_scenario(const std::filesystem::path& file, std::optional<std::uint64_t> seed)
 {
     Complaints complaints;
-    return checked(files::load_yaml(file, complaints), file, complaints);
+    return checked(files::load_yaml(file, complaints), file, complaints, seed);
 }
 
 std::vector<std::filesystem::path> scenario_files(const std::filesystem::path& folder)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -24,8 +25,10 @@ private:
 
 /// Reads a scenario file (format: tests/scenario/README.md). Unknown keys, wrong types, missing and impossible values
 /// are refused.
+/// @param seed  where given, stands for the file's
 /// @throws BadScenario
-[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file);
+[[nodiscard]] Scenario load_scenario(const std::filesystem::path& file,
+                                     std::optional<std::uint64_t> seed = std::nullopt);
 
 /// The same from text; `name` stands for the file in messages, and its stem for the scenario's name.
 [[nodiscard]] Scenario parse_scenario(const std::string& text, const std::filesystem::path& name);

@@ -82,8 +82,9 @@ std::optional<T> one_of(YamlMap& map, std::string_view key, const std::array<T, 
     return text ? one_of(map, key, *text, values) : std::nullopt;
 }
 
-/// All threats of a file, in order, grids spread out.
-void read_threats(YamlMap& root, std::vector<Threat>& out, Complaints& complaints);
+/// All threats of a file, in order, grids and scatters spread out.
+/// @param seed  of scatters that have none
+void read_threats(YamlMap& root, std::uint64_t seed, std::vector<Threat>& out, Complaints& complaints);
 void read_areas(YamlMap& root, std::vector<ClosedArea>& out, Complaints& complaints);
 
 }  // namespace jink::sim::detail

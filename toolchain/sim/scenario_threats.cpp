@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "core/base/random.hpp"
 #include "toolchain/sim/scenario_parts.hpp"
 
 namespace jink::sim::detail {
 namespace {
 
 constexpr int kMostInGrid = 64;
+constexpr int kMostScattered = 256;
+constexpr int kScatterTries = 100'000;
 
 /// Reads threats one by one; what all of them share.
 struct Threats {
     std::string file;
+    std::uint64_t seed;
     Complaints& complaints;
     std::vector<Threat>& out;
 };
@@ -92,17 +98,59 @@ void read_grid(YamlMap& map, const Threat& first, std::vector<Threat>& threats)
     }
 }
 
+/// Copies of a threat at random places of a level rectangle about its position, each at least `apart` from the others.
+void read_scatter(YamlMap& map, const Threat& first, std::uint64_t seed, std::vector<Threat>& threats)
+{
+    auto scatter = map.map("scatter");
+    if (!scatter) {
+        return;
+    }
+    const auto count = static_cast<std::size_t>(
+        scatter->whole("count", {1.0F, static_cast<float>(kMostScattered)}, kNeed).value_or(1.0F));
+    if (const auto own = scatter->whole("seed", {0.0F, 1e6F})) {
+        seed = static_cast<std::uint64_t>(*own);
+    }
+    Vec half = Vec::Zero();
+    double apart = 0.0;
+    vector(*scatter, "half", half, {0.0F, 1e4F}, kNeed);
+    number(*scatter, "apart", apart, {0.0F, 1e4F}, kNeed);
+    scatter->finish();
+    Random random(seed);
+    const std::size_t before = threats.size();
+    for (int tries = kScatterTries; tries > 0 && threats.size() < before + count; --tries) {
+        Threat threat = first;
+        threat.name = first.name + "_" + std::to_string(threats.size() - before);
+        for (const int axis : {0, 1, 2}) {
+            threat.position[axis] += half[axis] * (2.0 * static_cast<double>(random.uniform()) - 1.0);
+        }
+        const bool is_free =
+            std::all_of(threats.begin() + static_cast<std::ptrdiff_t>(before), threats.end(),
+                        [&](const Threat& other) { return (other.position - threat.position).norm() >= apart; });
+        if (is_free) {
+            threats.push_back(threat);
+        }
+    }
+    if (threats.size() < before + count) {
+        map.complain("scatter", "so many do not fit so far apart");
+    }
+}
+
 void read_sensing(YamlMap& map, Threat& threat)
 {
     threat.sensed_by = threat.at_rest() ? SensedBy::point : SensedBy::traffic;
-    if (const auto by = one_of(map, "sensed_by", std::array{SensedBy::traffic, SensedBy::point, SensedBy::scan})) {
+    constexpr std::array kAll{SensedBy::traffic, SensedBy::point, SensedBy::scan, SensedBy::lidar};
+    if (const auto by = one_of(map, "sensed_by", kAll)) {
         threat.sensed_by = *by;
     }
     if (threat.sensed_by != SensedBy::traffic && !threat.at_rest()) {
         map.complain("sensed_by", "what moves is sensed by traffic");
     }
-    if (threat.half_height > 0.0 && threat.sensed_by != SensedBy::scan) {
+    const bool is_seen = threat.sensed_by == SensedBy::scan || threat.sensed_by == SensedBy::lidar;
+    if (threat.half_height > 0.0 && !is_seen) {
         map.complain("half_height", "only a scan sees something tall; traffic and points are spheres");
+    }
+    if (threat.form != Form::ball && threat.sensed_by != SensedBy::lidar) {
+        map.complain("form", "only a lidar sees what is no ball");
     }
     number(map, "appears_at", threat.appears_at, kAnyTime);
     number(map, "appears_when_own_within", threat.appears_when_own_within, {0.0F, 1e4F});
@@ -119,14 +167,26 @@ void read_threat(Threats& reader, const YAML::Node& node, std::size_t index)
     }
     Threat threat;
     threat.name = map.text("name").value_or("threat_" + std::to_string(reader.out.size() + 1));
+    threat.form = one_of(map, "form", std::array{Form::ball, Form::cylinder, Form::box}).value_or(threat.form);
+    const bool is_box = threat.form == Form::box;
+    if (is_box != map.has("half_extents")) {
+        map.complain(is_box ? "form" : "half_extents", "a box, and nothing else, has 'half_extents'");
+    }
+    vector(map, "half_extents", threat.half_extents, {0.05F, 500.0F});
+    if (is_box && (map.has("radius") || map.has("half_height"))) {
+        map.complain("form", "a box has neither 'radius' nor 'half_height'");
+    }
     number(map, "radius", threat.radius, {0.05F, 500.0F});
-    number(map, "half_height", threat.half_height, {0.0F, 500.0F});
+    number(map, "half_height", threat.half_height, {0.0F, 500.0F},
+           threat.form == Form::cylinder ? kNeed : YamlMap::Need::optional);
     vector(map, "velocity", threat.velocity, kVelocity);
     read_turns(reader, map, threat);
     read_place(map, threat);
     read_sensing(map, threat);
     if (map.has("grid")) {
         read_grid(map, threat, reader.out);
+    } else if (map.has("scatter")) {
+        read_scatter(map, threat, reader.seed, reader.out);
     } else {
         reader.out.push_back(threat);
     }
@@ -135,13 +195,13 @@ void read_threat(Threats& reader, const YAML::Node& node, std::size_t index)
 
 }  // namespace
 
-void read_threats(YamlMap& root, std::vector<Threat>& out, Complaints& complaints)
+void read_threats(YamlMap& root, std::uint64_t seed, std::vector<Threat>& out, Complaints& complaints)
 {
     const auto list = root.list("threats");
     if (!list) {
         return;
     }
-    Threats reader{root.file(), complaints, out};
+    Threats reader{root.file(), seed, complaints, out};
     for (std::size_t i = 0; i < list->size(); ++i) {
         read_threat(reader, (*list)[i], i);
     }

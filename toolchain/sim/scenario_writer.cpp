@@ -68,8 +68,13 @@ void put_threat(YAML::Emitter& out, const Threat& threat)
 {
     out << BeginMap;
     put(out, "name", threat.name);
-    put(out, "radius", threat.radius);
-    put(out, "half_height", threat.half_height);
+    put(out, "form", word(to_string(threat.form)));
+    if (threat.form == Form::box) {
+        put(out, "half_extents", threat.half_extents);
+    } else {
+        put(out, "radius", threat.radius);
+        put(out, "half_height", threat.half_height);
+    }
     put(out, "position", threat.position);
     put(out, "velocity", threat.velocity);
     if (!threat.turns.empty()) {
@@ -124,6 +129,18 @@ void put_sensors(YAML::Emitter& out, const Scenario& s)
     put(out, "rate", s.scan.rate);
     put(out, "range", s.scan.range);
     out << EndMap;
+    if (s.lidar) {
+        out << Key << "lidar" << Value << BeginMap;
+        put(out, "rate", s.lidar->rate);
+        put(out, "range", s.lidar->range);
+        put(out, "level", s.lidar->level);
+        put(out, "up", s.lidar->up);
+        put(out, "down", s.lidar->down);
+        put(out, "pitch", s.lidar->pitch);
+        put(out, "sigma", s.lidar->sigma);
+        put(out, "latency", s.lidar->latency);
+        out << EndMap;
+    }
 }
 
 void put_faults(YAML::Emitter& out, const Faults& faults)
@@ -159,6 +176,9 @@ void put_expectation(YAML::Emitter& out, const Expectation& expect)
     if (expect.flips_at_most) {
         out << Key << "flips_at_most" << Value << *expect.flips_at_most;
     }
+    if (expect.goal_reached) {
+        out << Key << "goal_reached" << Value << *expect.goal_reached;
+    }
     out << EndMap;
 }
 
@@ -176,6 +196,8 @@ std::string scenario_text(const Scenario& s, const std::string& remark)
     put(out, "promise", s.promise);
     put(out, "body_radius", s.body_radius);
     put(out, "floor", s.floor);
+    put(out, "ground", s.ground);
+    out << Key << "to_goal" << Value << s.to_goal;
     put_vehicle(out, s.vehicle);
     out << Key << "mission" << Value << BeginSeq;
     for (const Vec& waypoint : s.mission) {

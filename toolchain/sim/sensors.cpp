@@ -72,7 +72,8 @@ std::vector<Sighting> TrafficReceiver::poll()
     const Micros period = to_micros(1.0 / world_.scenario().traffic.rate);
     for (std::size_t i = 0; i < channels_.size(); ++i) {
         Channel& channel = channels_[i];
-        if (world_.scenario().threats[i].sensed_by == SensedBy::scan || !world_.visible(i)) {
+        const SensedBy by = world_.scenario().threats[i].sensed_by;
+        if (by == SensedBy::scan || by == SensedBy::lidar || !world_.visible(i)) {
             continue;
         }
         channel.next = channel.next < 0 ? world_.appeared(i) + world_.scenario().traffic.phase : channel.next;

@@ -15,6 +15,13 @@ Vec from_axis(const Threat& threat, const Vec& centre, const Vec& point) noexcep
     return gap;
 }
 
+/// Distance to what reaches so far beyond its faces in independent directions; inside, to the nearest face.
+template <int N>
+double beyond_faces(const Eigen::Matrix<double, N, 1>& beyond) noexcept
+{
+    return beyond.cwiseMax(0.0).norm() + std::min(0.0, beyond.maxCoeff());
+}
+
 }  // namespace
 
 std::string_view to_string(SensedBy by) noexcept
@@ -22,9 +29,20 @@ std::string_view to_string(SensedBy by) noexcept
     switch (by) {
     case SensedBy::traffic: return "traffic";
     case SensedBy::point: return "point";
+    case SensedBy::lidar: return "lidar";
     case SensedBy::scan: break;
     }
     return "scan";
+}
+
+std::string_view to_string(Form form) noexcept
+{
+    switch (form) {
+    case Form::cylinder: return "cylinder";
+    case Form::box: return "box";
+    case Form::ball: break;
+    }
+    return "ball";
 }
 
 Vec Threat::position_at(double t) const noexcept
@@ -63,13 +81,26 @@ bool Threat::at_rest() const noexcept
 
 double surface_distance(const Threat& threat, const Vec& centre, const Vec& point) noexcept
 {
+    const Vec gap = (point - centre).cwiseAbs();
+    switch (threat.form) {
+    case Form::box: return beyond_faces<3>(gap - threat.half_extents);
+    case Form::cylinder: return beyond_faces<2>({gap.head<2>().norm() - threat.radius, gap.z() - threat.half_height});
+    case Form::ball: break;
+    }
     return from_axis(threat, centre, point).norm() - threat.radius;
 }
 
 double box_distance(const Threat& threat, const Vec& centre, const Vec& point, const Vec& half) noexcept
 {
     Vec gap = (centre - point).cwiseAbs();
+    if (threat.form == Form::box) {
+        return (gap - half - threat.half_extents).cwiseMax(0.0).norm();
+    }
     gap.z() -= threat.half_height;
+    if (threat.form == Form::cylinder) {
+        const double level = (gap - half).head<2>().cwiseMax(0.0).norm() - threat.radius;
+        return std::hypot(std::max(0.0, level), std::max(0.0, gap.z() - half.z()));
+    }
     return std::max(0.0, (gap - half).cwiseMax(0.0).norm() - threat.radius);
 }
 
@@ -79,7 +110,7 @@ Nearest nearest_in_step(const Threat& threat, const Vec& centre_from, const Vec&
     const double at_start = surface_distance(threat, centre_from, from);
     const double at_end = surface_distance(threat, centre_to, to);
     Nearest nearest = at_end < at_start ? Nearest{at_end, 1.0} : Nearest{at_start, 0.0};
-    if (threat.half_height > 0.0) {
+    if (threat.form != Form::ball || threat.half_height > 0.0) {
         return nearest;
     }
     const Vec gap = from - centre_from;

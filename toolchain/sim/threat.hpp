@@ -15,9 +15,18 @@ enum class SensedBy : std::uint8_t {
     traffic,  ///< ADSB_VEHICLE of an aircraft
     point,    ///< ADSB_VEHICLE of a point obstacle, velocity 0
     scan,     ///< OBSTACLE_DISTANCE
+    lidar,    ///< point clouds in compact frames, in process only (lidar.hpp)
+};
+
+/// Bodies. All but the ball stand still.
+enum class Form : std::uint8_t {
+    ball,      ///< `radius`; with `half_height` an upright capsule, whose axis is that long
+    cylinder,  ///< upright: `radius`, `half_height`
+    box,       ///< `half_extents`, along the axes of the world
 };
 
 [[nodiscard]] std::string_view to_string(SensedBy by) noexcept;
+[[nodiscard]] std::string_view to_string(Form form) noexcept;
 
 /// A change of velocity at an instant.
 struct Turn {
@@ -25,14 +34,16 @@ struct Turn {
     Vec velocity = Vec::Zero();
 };
 
-/// A sphere that flies straight between turns; with `half_height` an upright capsule that stands still.
+/// A body that flies straight between turns, or stands still.
 struct Threat {
     std::string name;
-    double radius = 1.0;         ///< of the body [m]
-    double half_height = 0.0;    ///< of the upright axis of a capsule [m]
-    Vec position = Vec::Zero();  ///< at time 0 [m]
-    Vec velocity = Vec::Zero();  ///< from time 0 [m/s]
-    std::vector<Turn> turns;     ///< in order of time
+    Form form = Form::ball;
+    double radius = 1.0;             ///< of the body [m]
+    double half_height = 0.0;        ///< of the upright axis of a capsule or a cylinder [m]
+    Vec half_extents = Vec::Zero();  ///< of a box [m]
+    Vec position = Vec::Zero();      ///< at time 0 [m]
+    Vec velocity = Vec::Zero();      ///< from time 0 [m/s]
+    std::vector<Turn> turns;         ///< in order of time
     SensedBy sensed_by = SensedBy::traffic;
     double appears_at = 0.0;                        ///< not seen before [s]
     std::optional<double> appears_when_own_within;  ///< of `collision_point`; seen from then on [m]
@@ -49,8 +60,8 @@ struct Threat {
 [[nodiscard]] double box_distance(const Threat& threat, const Vec& centre, const Vec& point, const Vec& half) noexcept;
 
 /// Least distance to the surface while the point goes from `from` to `to` and the centre from `centre_from` to
-/// `centre_to`, both at constant velocity, and the share of the step at which it occurs. Exact for spheres; for
-/// capsules, which stand, the nearer end.
+/// `centre_to`, both at constant velocity, and the share of the step at which it occurs. Exact for spheres; for what
+/// stands and is none, the nearer end.
 struct Nearest {
     double distance = 0.0;
     double share = 0.0;
