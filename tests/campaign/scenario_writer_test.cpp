@@ -75,7 +75,7 @@ TEST(ScenarioWriter, KeepsEverythingThatAFileCanSay)
     s.faults.clock_jump_by = -1.0;
     s.faults.cable_pulled_at = 2.0;
     s.faults.cable_pulled_for = 1.0;
-    s.expect = {{Outcome::avoided, Outcome::failed}, true, Mode::mission, 3};
+    s.expect = {{Outcome::avoided, Outcome::failed}, true, Mode::mission, 3, true};
 
     const Scenario read = parse_scenario(scenario_text(s), "all.yaml");
     EXPECT_EQ(scenario_text(read), scenario_text(s));
@@ -98,6 +98,7 @@ TEST(ScenarioWriter, KeepsEverythingThatAFileCanSay)
     EXPECT_EQ(read.expect.outcomes, s.expect.outcomes);
     EXPECT_EQ(read.expect.final_mode, s.expect.final_mode);
     EXPECT_EQ(read.expect.flips_at_most, s.expect.flips_at_most);
+    EXPECT_EQ(read.expect.goal_reached, s.expect.goal_reached);
 }
 
 }  // namespace

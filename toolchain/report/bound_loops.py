@@ -38,7 +38,8 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
 
 
 RULES = [
-    # The images fly by one leg: no routes. Weights as they are by default, without that of passing. No solids.
+    # The images fly by one leg: no routes; nothing is closed. Weights as they are by default, without that of passing. No solids.
+    (r"[bB]arrel", "each", lambda p: 0),  # no closed areas
     (r"core/path/route|route_way\.cpp|along_reference|plan_along|RoutePieces|WayPiece", "each", lambda p: 0),
     (r"Run::passing|moving_solids|solid\.shape|clearance_solids\.cpp|geometric/extent\.hpp", "each", lambda p: 0),
     (r"solve_with_retries", "each", lambda p: p["attempts"]),
@@ -51,7 +52,7 @@ RULES = [
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*if \(obstacle_conflict", "each", lambda p: p["obstacles"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*if \(predict_conflict", "each", lambda p: p["tracks"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*obstacle_conflict.*touching", "each", lambda p: 8),
-    (r"separation\.cpp:.*part < parts", "in all", lambda p: p["paid parts"]),
+    (r"separation(_parts\.hpp|\.cpp):.*part < parts", "in all", lambda p: p["paid parts"]),
     (r"shape\.vertices|Matrix<float, 3, 1, 0, 3, 1> const\*, std::span", "each", lambda p: 0),  # no hulls
     (r"next \+ 1 < curve\.points", "in all", lambda p: p["points"]),
     (r"next \+ 1 < path\.points", "in all", lambda p: p["flight parts"] + p["points"]),
@@ -62,11 +63,11 @@ RULES = [
     (r"touches_in_parts|Clearance::leaves", "each", lambda p: p["escape parts"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*pieces", "each", lambda p: p["pieces"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*i < 8", "each", lambda p: 8),
-    (r"separation\.cpp:.*situation\.tracks", "each", lambda p: p["checked tracks"]),
-    (r"separation\.cpp:.*situation\.obstacles", "each", lambda p: p["obstacles"]),
-    (r"separation\.cpp:.*(chunks\(\)|first < count_|first \+= kChunk)", "each", lambda p: p["chunks"]),
-    (r"separation\.cpp:.*(chunk\.last|i < last)", "each", lambda p: min(8, p["pieces of a path"])),
-    (r"separation\.cpp", "each", lambda p: p["pieces of a path"]),
+    (r"separation(_parts\.hpp|\.cpp):.*situation\.tracks", "each", lambda p: p["checked tracks"]),
+    (r"separation(_parts\.hpp|\.cpp):.*situation\.obstacles", "each", lambda p: p["obstacles"]),
+    (r"separation(_parts\.hpp|\.cpp):.*(chunks\(\)|first < count_|first \+= kChunk)", "each", lambda p: p["chunks"]),
+    (r"separation(_parts\.hpp|\.cpp):.*(chunk\.last|i < last)", "each", lambda p: min(8, p["pieces of a path"])),
+    (r"separation(_parts\.hpp|\.cpp)", "each", lambda p: p["pieces of a path"]),
     (r"kShrinkSteps", "each", lambda p: 6),
     (r"situation\.tracks|problem_\.threats|moving_\.size|per_threat|geometric::Threat", "each", lambda p: p["tracks"]),
     (r"obstacles\.size|obstacles\(\)|problem_\.obstacles|world::Obstacle|obstacle\.shape", "each", lambda p: p["obstacles"]),
