@@ -45,7 +45,7 @@ inline constexpr std::uint32_t kBarrelTurn = 3;   ///< and each instant between 
 // --- conflicts (core/world/conflict) ---
 inline constexpr std::uint32_t kConflict = 16;       ///< of the way with a track
 inline constexpr std::uint32_t kConflictPart = 8;    ///< and each half second in which it grows
-inline constexpr std::uint32_t kConflictBall = 8;    ///< of the way with a sphere or an upright capsule
+inline constexpr std::uint32_t kConflictBall = 9;    ///< of the way with a sphere or an upright capsule
 inline constexpr std::uint32_t kConflictMet = 24;    ///< and what is told of it when it is met
 inline constexpr std::uint32_t kConflictSolid = 10;  ///< with any other obstacle, but for its queries
 inline constexpr std::uint32_t kConflictBarrel = 8;  ///< with a barrel, but for the instants that are looked at
