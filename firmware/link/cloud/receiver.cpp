@@ -189,7 +189,8 @@ bool Receiver::is_ours(const Part& part) noexcept
 {
     std::uint32_t* cause = nullptr;
     const bool is_too_much = open_ && part.points > scan_.scan_points - scan_points_;
-    if ((received_[part.part / 8U] >> part.part % 8U & 1U) != 0 && agrees(part, scan_)) {
+    const std::uint32_t received = received_[part.part / 8U];
+    if ((received >> part.part % 8U & 1U) != 0 && agrees(part, scan_)) {
         cause = &diagnostics_.duplicated;
     } else if (is_too_much || !agrees(part, scan_)) {
         cause = &diagnostics_.inconsistent;
