@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/reach/sets_default_reduced.hpp"
 #include "firmware/app/parameters.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
@@ -62,6 +63,9 @@ app::Configuration configuration_of(const ProbeRecord& r) noexcept
     c.planner.waypoints = static_cast<std::uint16_t>(r.waypoints);
     c.planner.security = r.swept != 0 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
     c.planner.lookahead = c.supervisor.lookahead = r.lookahead;
+    if (r.reduced_sets != 0) {
+        c.reach.sets = &reach::kDefaultReducedSets;
+    }
     c.k_sigma = r.k_sigma;
     c.limits.half_extents = vec(r.half);
     c.limits.cruise_speed = r.cruise_speed;
@@ -114,6 +118,15 @@ Probe::Probe() noexcept
 {
 }
 
+bool Probe::is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept
+{
+    if (record.kind == ProbeKind::reach) {
+        return answer.status == static_cast<std::uint32_t>(world::PlanStatus::found);
+    }
+    const world::Manoeuvre* flying = record.kind == ProbeKind::update ? supervisor_.flying() : nullptr;
+    return flying != nullptr && flying->by == world::MethodId::reach;
+}
+
 void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
 {
     out = {};
@@ -161,10 +174,13 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
         out.state = static_cast<std::uint32_t>(guidance.kind);
         out.margin = guidance.margin;
         std::copy_n(guidance.velocity.data(), 3, out.velocity);
+        if (supervisor_.flying() != nullptr) {
+            out.cost = supervisor_.flying()->cost;
+        }
     }
     const geometric::Result& result = planner_.last();
     out.candidates = static_cast<std::uint32_t>(result.candidates.size());
-    out.chosen = static_cast<std::uint32_t>(result.chosen);
+    out.chosen = is_by_reach(record, out) ? kReachChose + reach_.last().node : static_cast<std::uint32_t>(result.chosen);
     out.cut_short = result.cut_short ? 1U : 0U;
     out.stack_used = stack_used();
 }

@@ -20,6 +20,10 @@ public:
 
 private:
     struct World;
+
+    /// Whether it was the reach sets that chose.
+    [[nodiscard]] bool is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept;
+
     geometric::Planner planner_;
     reach::Planner reach_;
     avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;

@@ -12,9 +12,11 @@
 
 namespace jink::target {
 
-inline constexpr std::uint32_t kProbeMagic = 0x4A504202;  // "JPB", layout 2
+inline constexpr std::uint32_t kProbeMagic = 0x4A504203;  // "JPB", layout 3
 inline constexpr std::size_t kProbeTracks = 32;
 inline constexpr std::size_t kProbeObstacles = 96;
+
+inline constexpr std::uint32_t kReachChose = 0x10000;
 
 enum class ProbeKind : std::uint32_t {
     plan,    ///< geometric::Planner::plan alone
@@ -51,7 +53,8 @@ struct ProbeRecord {
     std::uint32_t extra_planes;
     std::uint32_t families;  ///< sum of: 1 simple, 2 symmetric, 4 smooth, 8 plateau, 16 wait
     std::uint32_t retries;
-    std::uint32_t bounds;  ///< 1 floor, 2 ceiling, 4 keep-in
+    std::uint32_t bounds;        ///< 1 floor, 2 ceiling, 4 keep-in
+    std::uint32_t reduced_sets;  ///< 0 the build's own reach sets, 1 the default vehicle's reduced ones
     float own_position[3];
     float own_velocity[3];
     float own_sigma;
@@ -79,14 +82,14 @@ struct ProbeRecord {
 };
 static_assert(std::is_trivially_copyable_v<ProbeRecord>);
 static_assert(sizeof(ProbeTrack) == 40 && sizeof(ProbeObstacle) == 36);
-static_assert(sizeof(ProbeRecord) == 8 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
+static_assert(sizeof(ProbeRecord) == 9 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
 
 struct ProbeAnswer {
     std::uint32_t magic;
     std::uint32_t seed;
     std::uint32_t status;      ///< world::PlanStatus; of `update` the one of its plan
     std::uint32_t candidates;  ///< of the last attempt
-    std::uint32_t chosen;      ///< index
+    std::uint32_t chosen;      ///< index of the candidate; kReachChose and the node where reach sets chose
     std::uint32_t work;        ///< units spent
     std::uint32_t state;       ///< avoid::State, of `update`
     std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told

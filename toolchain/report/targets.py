@@ -7,10 +7,10 @@ import struct
 import subprocess
 import tempfile
 
-MAGIC = 0x4A504202
+MAGIC = 0x4A504203
 TRACKS = 32
 OBSTACLES = 96
-HEADER = struct.Struct("<8I20f2I8f2I")
+HEADER = struct.Struct("<9I20f2I8f2I")
 TRACK = struct.Struct("<10f")
 OBSTACLE = struct.Struct("<I8f")
 ANSWER = struct.Struct("<8I5fI")
@@ -29,6 +29,7 @@ class Case:
     families: int = 3
     retries: int = 8
     bounds: int = 0
+    reduced_sets: int = 0
     own_position: tuple = (0.0, 0.0, 30.0)
     own_velocity: tuple = (5.0, 0.0, 0.0)
     own_sigma: float = 0.1
@@ -49,7 +50,7 @@ class Case:
 
     def pack(self):
         out = HEADER.pack(MAGIC, self.seed, KINDS[self.kind], self.offsets, self.extra_planes, self.families, self.retries,
-                          self.bounds, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
+                          self.bounds, self.reduced_sets, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
                           *self.leg_end, self.leg_speed, *self.half, self.floor, self.ceiling, self.keep_in,
                           self.waypoints, self.swept, self.lookahead, self.k_sigma, *self.limits, len(self.tracks), len(self.obstacles))
         for position, velocity, *rest in self.tracks:
