@@ -180,7 +180,8 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     }
     const geometric::Result& result = planner_.last();
     out.candidates = static_cast<std::uint32_t>(result.candidates.size());
-    out.chosen = is_by_reach(record, out) ? kReachChose + reach_.last().node : static_cast<std::uint32_t>(result.chosen);
+    out.chosen =
+        is_by_reach(record, out) ? kReachChose + reach_.last().node : static_cast<std::uint32_t>(result.chosen);
     out.cut_short = result.cut_short ? 1U : 0U;
     out.stack_used = stack_used();
 }
