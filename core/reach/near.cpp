@@ -15,8 +15,6 @@ namespace jink::reach::detail {
 namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
-/// No point of a movement is farther than this from one of its ends [movement's length].
-constexpr float kHalfMovement = 0.5F;
 /// A solid is looked at in this many pieces of a movement.
 constexpr int kSolidPieces = 4;
 
@@ -26,22 +24,6 @@ float signed_distance(const Beyond& beyond) noexcept
 {
     const float deepest = beyond.maxCoeff();
     return deepest > 0.0F ? beyond.cwiseMax(0.0F).norm() : deepest;
-}
-
-/// Distance of a point from a solid that has been grown by the own box, below 0 inside. Exact for upright boxes, else
-/// no more than it is. O(1).
-float distance_to(const NearThreat& solid, const Vec3& point) noexcept
-{
-    const Vec3 in = solid.shape->axes.transpose() * (point - solid.position);
-    switch (solid.shape->kind) {
-    case geometry::ShapeKind::capsule:
-        return std::hypot(std::max(std::abs(in.z()) - solid.half.z(), 0.0F), std::hypot(in.x(), in.y())) -
-               solid.half.x();
-    case geometry::ShapeKind::cylinder:
-        return signed_distance(
-            Eigen::Vector2f(std::hypot(in.x(), in.y()) - solid.half.x(), std::abs(in.z()) - solid.half.z()));
-    default: return signed_distance(Vec3(in.cwiseAbs() - solid.half));
-    }
 }
 
 /// Half extents, in the solid's axes, of a box about it and the own box at once; of round ones x is the radius.
@@ -73,21 +55,19 @@ void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
 
 }  // namespace
 
-/// Of the nodes that end in each cell.
-struct NearThreats::Depths {
-    std::array<std::uint8_t, kMaxReachCells> least{};
-    std::array<std::uint8_t, kMaxReachCells> most{};  ///< 0: no node ends in it
-
-    explicit Depths(const ReachSet& set) noexcept
-    {
-        least.fill(0xFF);
-        for (std::size_t node = 1; node < set.nodes(); ++node) {
-            const CellIndex end = set.end[node];
-            least[end] = std::min(least[end], set.depth[node]);
-            most[end] = std::max(most[end], set.depth[node]);
-        }
+float distance_to(const NearThreat& solid, const Vec3& point) noexcept
+{
+    const Vec3 in = solid.shape->axes.transpose() * (point - solid.position);
+    switch (solid.shape->kind) {
+    case geometry::ShapeKind::capsule:
+        return std::hypot(std::max(std::abs(in.z()) - solid.half.z(), 0.0F), std::hypot(in.x(), in.y())) -
+               solid.half.x();
+    case geometry::ShapeKind::cylinder:
+        return signed_distance(
+            Eigen::Vector2f(std::hypot(in.x(), in.y()) - solid.half.x(), std::abs(in.z()) - solid.half.z()));
+    default: return signed_distance(Vec3(in.cwiseAbs() - solid.half));
     }
-};
+}
 
 float NearThreats::shrunk_by(float margin_at_start) const noexcept
 {
@@ -189,64 +169,6 @@ void NearThreats::collect(const world::Situation& situation, const Placed& place
     floor_shrunk_ = shrunk_by(placed.origin.z() - floor_);
     ceiling_shrunk_ = shrunk_by(ceiling_ - placed.origin.z());
     keep_in_shrunk_ = shrunk_by(keep_in_ - (placed.origin - home_).head<2>().norm());
-}
-
-bool NearThreats::mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept
-{
-    const ReachSet& set = *placed.set;
-    if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths +
-                                                 set.grid.cells() * (1 + near_.size()) / 4 * units::kReachCells))) {
-        return false;
-    }
-    const Depths depths(set);
-    std::fill_n(of_cell_.begin(), set.grid.cells(), ThreatBits{});
-    for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
-        for (std::size_t i = 0; i < near_.size(); ++i) {
-            mark_layer(placed, balls, layer, i, depths);
-        }
-    }
-    return true;
-}
-
-/// In the set's frame, where the cells are the same for every plan.
-void NearThreats::mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat,
-                             const Depths& depths) noexcept
-{
-    const Grid<float>& grid = placed.set->grid;
-    const NearThreat& near = near_[threat];
-    // No point of a movement is farther from one of its ends than half of it.
-    const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
-    const float around = kHalfMovement + (bulge_ + near.room + near.growth.at(longest) + near.body) / placed.unit;
-    const Vec3 at_start = placed.to_set(near.position);
-    const Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
-    const float speed_squared = per_period.squaredNorm();
-    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
-    const float height = near.is_tall ? near.half.z() / placed.unit : 0.0F;
-    std::size_t cell = grid.index({static_cast<std::uint8_t>(layer), 0, 0});
-    for (std::size_t column = 0; column < grid.columns(); ++column) {
-        for (std::size_t row = 0; row < grid.rows(); ++row, ++cell) {
-            if (depths.most[cell] == 0) {
-                continue;
-            }
-            const Vec3 centre = balls.distance(layer) * balls.direction(column, row);
-            const float size = balls.radius(layer, row) + around;
-            if (near.shape != nullptr) {
-                if (distance_to(near, placed.to_world(centre)) <= size * placed.unit) {
-                    of_cell_[cell].add(threat);
-                }
-                continue;
-            }
-            // Nearest while some node comes to the cell, or leaves it.
-            const Vec3 apart = centre - at_start;
-            const float when = std::clamp(apart.dot(per_period) * per_speed, static_cast<float>(depths.least[cell] - 1),
-                                          static_cast<float>(depths.most[cell] + 1));
-            Vec3 nearest = apart - when * per_period;
-            nearest.z() = std::max(std::abs(nearest.z()) - height, 0.0F);
-            if (nearest.squaredNorm() <= size * size) {
-                of_cell_[cell].add(threat);
-            }
-        }
-    }
 }
 
 Level NearThreats::against(const NearThreat& threat, const Piece& piece) const noexcept

@@ -43,6 +43,10 @@ struct NearThreat {
     [[nodiscard]] Vec3 at(Seconds t) const noexcept { return position + velocity * t; }
 };
 
+/// Distance of a point from a solid that has been grown by the own box, below 0 inside. Exact for upright boxes, else
+/// no more than it is. O(1).
+[[nodiscard]] float distance_to(const NearThreat& solid, const Vec3& point) noexcept;
+
 /// How node checks are made.
 struct NearRule {
     world::EscapeRule escape;
@@ -90,10 +94,10 @@ private:
     [[nodiscard]] Level against_barrel(const NearThreat& barrel, const Piece& piece) const noexcept;
     [[nodiscard]] Level against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept;
     struct Depths;
+    struct LayerCells;
     void set_far(NearThreat& threat, Seconds last, const Placed& placed) const noexcept;
     [[nodiscard]] bool keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& budget) const noexcept;
-    void mark_layer(const Placed& placed, const CellBalls& balls, std::size_t layer, std::size_t threat,
-                    const Depths& depths) noexcept;
+    void mark_layer(const Placed& placed, const LayerCells& cells, std::size_t threat) noexcept;
     [[nodiscard]] Level in_airspace(const Vec3& to, Seconds end) const noexcept;
     void add_track(const world::Situation& situation, const world::Track& track, const Placed& placed, Seconds lead,
                    float range) noexcept;

@@ -33,23 +33,20 @@ public:
         }
     }
 
-    template <class Look>
-    void for_each(const CellPlace& place, const Look& look) const noexcept
+    static constexpr std::size_t kPerAxis = kInside.size();
+
+    [[nodiscard]] Vec3 direction(std::size_t column, std::size_t i, std::size_t row, std::size_t j) const noexcept
     {
-        for (const float share : kInside) {
-            const float distance = between(grid_.layer_start(place.layer), grid_.layer_end(place.layer), share);
-            for (std::size_t i = 0; i < kPerAxis; ++i) {
-                const Eigen::Vector2f& across = across_[kPerAxis * place.column + i];
-                for (std::size_t j = 0; j < kPerAxis; ++j) {
-                    const Eigen::Vector2f& up = up_[kPerAxis * place.row + j];
-                    look(Vec3(distance * Vec3(up.x() * across.x(), up.x() * across.y(), up.y())));
-                }
-            }
-        }
+        const Eigen::Vector2f& across = across_[kPerAxis * column + i];
+        const Eigen::Vector2f& up = up_[kPerAxis * row + j];
+        return {up.x() * across.x(), up.x() * across.y(), up.y()};
+    }
+    [[nodiscard]] float distance(std::size_t layer, std::size_t k) const noexcept
+    {
+        return between(grid_.layer_start(layer), grid_.layer_end(layer), kInside[k]);
     }
 
 private:
-    static constexpr std::size_t kPerAxis = kInside.size();
     [[nodiscard]] static float between(float from, float to, float share) noexcept
     {
         return from + share * (to - from);
@@ -58,6 +55,62 @@ private:
     const Grid<float>& grid_;
     std::array<Eigen::Vector2f, kPerAxis * kMaxColumns> across_;
     std::array<Eigen::Vector2f, kPerAxis * kMaxRows> up_;
+};
+
+void block_if(bool blocked, Level& level) noexcept
+{
+    level = blocked ? static_cast<Level>(AvoidanceRun::obstacles) : level;
+}
+
+/// Points of one frame in another one, both upright or upside down.
+class Map {
+public:
+    Map(const Placed& of, const Placed& in) noexcept
+        : offset_(in.to_set(of.origin)), x_(in.to_set(of.to_world(Vec3::UnitX())) - offset_),
+          y_(in.to_set(of.to_world(Vec3::UnitY())) - offset_),
+          z_(in.to_set(of.to_world(Vec3::UnitZ())).z() - offset_.z())
+    {
+    }
+    /// Of a direction from the origin.
+    [[nodiscard]] Vec3 along(const Vec3& direction) const noexcept
+    {
+        return direction.x() * x_ + direction.y() * y_ + Vec3(0.0F, 0.0F, z_ * direction.z());
+    }
+    [[nodiscard]] const Vec3& offset() const noexcept { return offset_; }
+
+private:
+    Vec3 offset_;
+    Vec3 x_;
+    Vec3 y_;
+    float z_;
+};
+
+/// Points whose cells are to be found at once.
+class Places {
+public:
+    explicit Places(const CellFinder& finder) noexcept : finder_(finder) {}
+
+    void begin() noexcept { count_ = 0; }
+    void add(const Vec3& point) noexcept
+    {
+        x_[count_] = point.x();
+        y_[count_] = point.y();
+        z_[count_++] = point.z();
+    }
+    [[nodiscard]] std::span<const CellIndex> find() noexcept
+    {
+        const std::span<CellIndex> cells(cells_.data(), count_);
+        finder_.locate_all(x_, y_, z_, cells);
+        return cells;
+    }
+
+private:
+    const CellFinder& finder_;
+    CellFinder::Coordinates x_{};
+    CellFinder::Coordinates y_{};
+    CellFinder::Coordinates z_{};
+    std::array<CellIndex, CellFinder::kAtOnce> cells_{};
+    std::size_t count_ = 0;
 };
 
 }  // namespace
@@ -177,45 +230,78 @@ Placed ScanPicture::frame() const noexcept
 RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& placed, const CellBalls& /*balls*/,
                              Seconds /*lead*/, std::span<Level> blocks, WorkBudget& budget) noexcept
 {
-    constexpr Level kBlocked = static_cast<Level>(AvoidanceRun::obstacles);
-    if (!is_fresh(situation.now, kFresh)) {
+    const Grid<float>& sets = placed.set->grid;
+    if (!is_fresh(situation.now, kFresh) || !CellFinder::serves(sets)) {
         return is_known() && blocks_unseen_ ? RateStatus::blind : RateStatus::nothing_known;
     }
-    const Grid<float>& sets = placed.set->grid;
     if (!budget.spend(static_cast<std::uint32_t>(units::kReachScanCell * (sets.cells() + hits_)))) {
         return RateStatus::budget_spent;
     }
-    const Placed from = frame();
-    const InnerPoints of_sets(sets);
-    const Vec3 offset = from.to_set(placed.origin);
-    const Vec3 x = from.to_set(placed.to_world(Vec3::UnitX())) - offset;
-    const Vec3 y = from.to_set(placed.to_world(Vec3::UnitY())) - offset;
-    const float z = (placed.upside_down ? -1.0F : 1.0F) * placed.unit / from.unit;
-    for (std::size_t i = 0; i < sets.cells(); ++i) {
-        Cell worst = Cell::free;
-        of_sets.for_each(sets.place(static_cast<CellIndex>(i)), [&](const Vec3& point) {
-            const Located at = finder_.locate(offset + point.x() * x + point.y() * y + Vec3(0.0F, 0.0F, z * point.z()));
-            const Cell cell = at.status == LocateStatus::inside ? cells_[grid_.index(at.place)] : Cell::unseen;
-            worst = std::max(worst, cell);
-        });
-        blocks[i] = worst == Cell::hit || (worst == Cell::unseen && blocks_unseen_) ? kBlocked : blocks[i];
+    look_from(placed, blocks);
+    lay_over(placed, blocks);
+    return RateStatus::rated;
+}
+
+/// What the picture says of the cells of the set.
+void ScanPicture::look_from(const Placed& placed, std::span<Level> blocks) const noexcept
+{
+    constexpr std::size_t kPerAxis = InnerPoints::kPerAxis;
+    const Grid<float>& sets = placed.set->grid;
+    const InnerPoints points(sets);
+    const Map map(placed, frame());
+    Places places(finder_);
+    for (std::size_t column = 0; column < sets.columns(); ++column) {
+        for (std::size_t row = 0; row < sets.rows(); ++row) {
+            std::array<Cell, kMaxLayers> worst{};
+            for (std::size_t direction = 0; direction < kPerAxis * kPerAxis; ++direction) {
+                const Vec3 along = map.along(points.direction(column, direction / kPerAxis, row, direction % kPerAxis));
+                places.begin();
+                for (std::size_t k = 0; k < kPerAxis * sets.layers(); ++k) {
+                    places.add(map.offset() + points.distance(k / kPerAxis, k % kPerAxis) * along);
+                }
+                const std::span<const CellIndex> found = places.find();
+                for (std::size_t k = 0; k < found.size(); ++k) {
+                    Cell& of_layer = worst[k / kPerAxis];
+                    of_layer = std::max(of_layer, found[k] == kNoCell ? Cell::unseen : cells_[found[k]]);
+                }
+            }
+            for (std::size_t layer = 0; layer < sets.layers(); ++layer) {
+                block_if(worst[layer] == Cell::hit || (worst[layer] == Cell::unseen && blocks_unseen_),
+                         blocks[sets.index({static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),
+                                            static_cast<std::uint8_t>(row)})]);
+            }
+        }
     }
-    const InnerPoints of_scan(grid_);
+}
+
+/// Where the cells that were hit lie in the set.
+void ScanPicture::lay_over(const Placed& placed, std::span<Level> blocks) const noexcept
+{
+    constexpr std::size_t kPerAxis = InnerPoints::kPerAxis;
+    const InnerPoints points(grid_);
+    const CellFinder finder(placed.set->grid);
+    const Map map(frame(), placed);
+    Places places(finder);
     for (std::size_t i = 0; i < grid_.cells(); ++i) {
         if (cells_[i] != Cell::hit) {
             continue;
         }
         const CellPlace place = grid_.place(static_cast<CellIndex>(i));
-        const auto block = [&](const Vec3& point) {
-            const Located at = sets.locate(placed.to_set(from.to_world(point)));
-            if (at.status == LocateStatus::inside) {
-                blocks[sets.index(at.place)] = kBlocked;
+        places.begin();
+        places.add(map.offset() + map.along(grid_.centre(place)));
+        for (std::size_t direction = 0; direction < kPerAxis * kPerAxis; ++direction) {
+            const Vec3 along =
+                map.along(points.direction(place.column, direction / kPerAxis, place.row, direction % kPerAxis));
+            for (std::size_t k = 0; k < kPerAxis; ++k) {
+                places.add(map.offset() + points.distance(place.layer, k) * along);
             }
-        };
-        block(grid_.centre(place));
-        of_scan.for_each(place, block);
+        }
+        for (const CellIndex cell : places.find()) {
+            if (cell != kNoCell) {
+                block_if(true, blocks[cell]);
+            }
+        }
     }
-    return RateStatus::rated;
 }
 
 }  // namespace jink::reach

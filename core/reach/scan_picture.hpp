@@ -70,6 +70,8 @@ private:
     [[nodiscard]] Vec3 in_grid(const Vec3& point) const noexcept;
     [[nodiscard]] bool note_ray(const Vec3& in_grid, CellPlace& place) noexcept;
     void judge() noexcept;
+    void look_from(const Placed& placed, std::span<Level> blocks) const noexcept;
+    void lay_over(const Placed& placed, std::span<Level> blocks) const noexcept;
 
     Grid<float> grid_;
     CellFinder finder_;

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every point of the grid lies in one cell, and in the one that its ranges say.
+#include <array>
+#include <cmath>
+#include <limits>
+
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
@@ -70,6 +74,49 @@ TEST(GridLaws, CentresLieInTheirCells)
 }
 
 /// By tangents as by angles, but for points on a face.
+TEST(CellFinderLaw, ManyPointsLieWhereEachOfThemDoes)
+{
+    Random random(13);
+    const Grid<float> grids[] = {Grid<float>(), Grid<float>(16, 16, 16, 150.0F, 1.5F, 1.5F),
+                                 Grid<float>(1, 1, 1, 2.0F, 0.1F, 0.2F), Grid<float>(7, 3, 5, 10.0F, 0.7F, 0.4F)};
+    std::size_t inside = 0;
+    std::size_t points = 0;
+    for (int i = 0; i < 40000; ++i) {
+        const Grid<float>& grid = grids[random.below(4)];
+        const CellFinder finder(grid);
+        const std::size_t n = 1 + random.below(CellFinder::kAtOnce);
+        CellFinder::Coordinates x{};
+        CellFinder::Coordinates y{};
+        CellFinder::Coordinates z{};
+        for (std::size_t k = 0; k < n; ++k) {
+            const auto in = [&] { return 1.1F * grid.distance() * random.uniform(-1.0F, 1.0F); };
+            Vec3 point(random.below(4) == 0 ? in() : std::abs(in()), 0.7F * in(), 0.5F * in());
+            if (random.below(8) == 0) {  // on the end of a layer, to the last bit or so
+                point *= grid.layer_end(random.below(static_cast<std::uint32_t>(grid.layers()))) / point.norm();
+            }
+            x[k] = point.x();
+            y[k] = point.y();
+            z[k] = random.below(500) == 0 ? std::numeric_limits<float>::infinity() : point.z();
+        }
+        std::array<CellIndex, CellFinder::kAtOnce> found{};
+        finder.locate_all(x, y, z, {found.data(), n});
+        for (std::size_t k = 0; k < n; ++k) {
+            const Vec3 point(x[k], y[k], z[k]);
+            const Located at = finder.locate(point);
+            const CellIndex expected = at.status == LocateStatus::inside ? grid.index(at.place) : kNoCell;
+            // The length of a point may be summed up in another order: layers may differ where one ends there.
+            const float layers = point.norm() / grid.distance() * static_cast<float>(grid.layers());
+            if (expected != found[k] && std::abs(layers - std::round(layers)) < 1e-5F * std::max(layers, 1.0F)) {
+                continue;
+            }
+            ASSERT_EQ(found[k], expected) << "round " << i << ", point " << k;
+            inside += expected != kNoCell ? 1U : 0U;
+            ++points;
+        }
+    }
+    EXPECT_GT(inside, points / 10);
+}
+
 TEST(CellFinderLaw, FindsTheCellThatTheGridLocates)
 {
     std::size_t inside = 0;

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/work_units.hpp"
+#include "core/reach/near.hpp"
+
+// Which threats may come near to which cells of a placed set.
+
+namespace jink::reach::detail {
+namespace {
+
+/// No point of a movement is farther than this from one of its ends [movement's length].
+constexpr float kHalfMovement = 0.5F;
+
+}  // namespace
+
+/// Of the nodes that end in each cell.
+struct NearThreats::Depths {
+    std::array<std::uint8_t, kMaxReachCells> least{};
+    std::array<std::uint8_t, kMaxReachCells> most{};  ///< 0: no node ends in it
+
+    explicit Depths(const ReachSet& set) noexcept
+    {
+        least.fill(0xFF);
+        for (std::size_t node = 1; node < set.nodes(); ++node) {
+            const CellIndex end = set.end[node];
+            least[end] = std::min(least[end], set.depth[node]);
+            most[end] = std::max(most[end], set.depth[node]);
+        }
+    }
+};
+
+/// Those of a layer in which a node ends, in the set's frame.
+struct NearThreats::LayerCells {
+    using Numbers = std::array<float, CellBalls::kMaxDirections>;
+
+    std::size_t count = 0;
+    Numbers x;
+    Numbers y;
+    Numbers z;
+    Numbers radius;
+    Numbers first;  ///< a node comes from the cell before, at the earliest [movements]
+    Numbers last;   ///< and has left it, at the latest
+    std::array<CellIndex, CellBalls::kMaxDirections> cell;
+
+    LayerCells(const Placed& placed, const CellBalls& balls, std::size_t layer, const Depths& depths) noexcept
+    {
+        const Grid<float>& grid = placed.set->grid;
+        CellIndex at = grid.index({static_cast<std::uint8_t>(layer), 0, 0});
+        for (std::size_t column = 0; column < grid.columns(); ++column) {
+            for (std::size_t row = 0; row < grid.rows(); ++row, ++at) {
+                if (depths.most[at] == 0) {
+                    continue;
+                }
+                const Vec3 centre = balls.distance(layer) * balls.direction(column, row);
+                x[count] = centre.x();
+                y[count] = centre.y();
+                z[count] = centre.z();
+                radius[count] = balls.radius(layer, row);
+                first[count] = static_cast<float>(depths.least[at] - 1);
+                last[count] = static_cast<float>(depths.most[at] + 1);
+                cell[count++] = at;
+            }
+        }
+        bound();
+    }
+
+    /// Nothing that is far from the box between its times is near to any of them.
+    void bound() noexcept
+    {
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 at(x[i], y[i], z[i]);
+            low = low.cwiseMin(at - Vec3::Constant(radius[i]));
+            high = high.cwiseMax(at + Vec3::Constant(radius[i]));
+            earliest = std::min(earliest, first[i]);
+            latest = std::max(latest, last[i]);
+        }
+    }
+    static constexpr float kUnbounded = std::numeric_limits<float>::infinity();
+    Vec3 low = Vec3::Constant(kUnbounded);  ///< of a box about all of them
+    Vec3 high = Vec3::Constant(-kUnbounded);
+    float earliest = kUnbounded;
+    float latest = 0.0F;
+};
+
+bool NearThreats::mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept
+{
+    const ReachSet& set = *placed.set;
+    if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths +
+                                                 set.grid.cells() * (1 + near_.size()) / 4 * units::kReachCells))) {
+        return false;
+    }
+    const Depths depths(set);
+    std::fill_n(of_cell_.begin(), set.grid.cells(), ThreatBits{});
+    for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
+        const LayerCells cells(placed, balls, layer, depths);
+        for (std::size_t i = 0; i < near_.size(); ++i) {
+            mark_layer(placed, cells, i);
+        }
+    }
+    return true;
+}
+
+/// In the set's frame, where the cells are the same for every plan.
+void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std::size_t threat) noexcept
+{
+    const NearThreat& near = near_[threat];
+    // No point of a movement is farther from one of its ends than half of it.
+    const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
+    const float around = kHalfMovement + (bulge_ + near.room + near.growth.at(longest) + near.body) / placed.unit;
+    if (near.shape != nullptr) {
+        for (std::size_t i = 0; i < cells.count; ++i) {
+            const Vec3 centre(cells.x[i], cells.y[i], cells.z[i]);
+            if (distance_to(near, placed.to_world(centre)) <= (cells.radius[i] + around) * placed.unit) {
+                of_cell_[cells.cell[i]].add(threat);
+            }
+        }
+        return;
+    }
+    const Vec3 at_start = placed.to_set(near.position);
+    const Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
+    const float speed_squared = per_period.squaredNorm();
+    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
+    const float height = near.is_tall ? near.half.z() / placed.unit : 0.0F;
+    const Vec3 early = at_start + cells.earliest * per_period;
+    const Vec3 late = at_start + cells.latest * per_period;
+    const Vec3 size(around, around, around + height);
+    if ((early.cwiseMin(late) - size - cells.high).maxCoeff() > 0.0F ||
+        (cells.low - early.cwiseMax(late) - size).maxCoeff() > 0.0F) {
+        return;
+    }
+    // In numbers by themselves, so that the compiler takes several cells at a time.
+    std::array<float, CellBalls::kMaxDirections> spare;
+    for (std::size_t i = 0; i < cells.count; ++i) {
+        const float x = cells.x[i] - at_start.x();
+        const float y = cells.y[i] - at_start.y();
+        const float z = cells.z[i] - at_start.z();
+        // Nearest while some node comes to the cell, or leaves it.
+        const float wanted = (x * per_period.x() + y * per_period.y() + z * per_period.z()) * per_speed;
+        const float when = std::min(std::max(wanted, cells.first[i]), cells.last[i]);
+        const float apart_x = x - when * per_period.x();
+        const float apart_y = y - when * per_period.y();
+        const float apart_z = std::max(std::abs(z - when * per_period.z()) - height, 0.0F);
+        const float together = cells.radius[i] + around;
+        spare[i] = apart_x * apart_x + apart_y * apart_y + apart_z * apart_z - together * together;
+    }
+    for (std::size_t i = 0; i < cells.count; ++i) {
+        if (spare[i] <= 0.0F) {
+            of_cell_[cells.cell[i]].add(threat);
+        }
+    }
+}
+
+}  // namespace jink::reach::detail
