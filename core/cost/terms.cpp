@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -119,31 +120,51 @@ float mean_second_derivative(std::span<const float> x, std::span<const float> y)
     return sum / static_cast<float>(x.size());
 }
 
-/// `closeness` of `count` points.
-template <class Position, class Time>
-float closeness_of(std::size_t count, const Position& position, const Time& time, const MovingThreat& threat,
-                   ClosenessMethod method) noexcept
-{
-    const Vec3 velocity = threat.motion.velocity;
-    // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to the
-    // velocity.
-    const float speed_squared = velocity.squaredNorm();
-    const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
-    float least_squared = std::numeric_limits<float>::infinity();
-    float sum = 0.0F;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Vec3 apart = position(i) - threat.motion.position;
-        const Seconds t = method == ClosenessMethod::time_aware
-                              ? time(i)
-                              : std::clamp(apart.dot(velocity) * per_speed, 0.0F, threat.duration);
-        const float squared = (apart - t * velocity).squaredNorm();
-        sum += std::sqrt(squared);
-        least_squared = std::min(least_squared, squared);
+/// What is summed up over points for `closeness`.
+class Closeness {
+public:
+    Closeness(const MovingThreat& threat, ClosenessMethod method) noexcept : threat_(threat), method_(method)
+    {
+        // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to
+        // the velocity.
+        const float speed_squared = threat.motion.velocity.squaredNorm();
+        per_speed_ = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
     }
-    const float mean = sum / static_cast<float>(count);
-    const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared) - threat.radius;
-    return bracket > 0.0F ? 1.0F / bracket : std::numeric_limits<float>::infinity();
-}
+
+    [[nodiscard]] float distance_squared(float x, float y, float z, Seconds time) const noexcept
+    {
+        const Vec3& position = threat_.motion.position;
+        const Vec3& velocity = threat_.motion.velocity;
+        const float from_x = x - position.x();
+        const float from_y = y - position.y();
+        const float from_z = z - position.z();
+        const float along = (from_x * velocity.x() + (from_y * velocity.y() + from_z * velocity.z())) * per_speed_;
+        const Seconds t =
+            method_ == ClosenessMethod::time_aware ? time : std::min(std::max(along, 0.0F), threat_.duration);
+        const float apart_x = from_x - t * velocity.x();
+        const float apart_y = from_y - t * velocity.y();
+        const float apart_z = from_z - t * velocity.z();
+        return apart_x * apart_x + (apart_y * apart_y + apart_z * apart_z);
+    }
+    void add(float distance_squared, float distance) noexcept
+    {
+        sum_ += distance;
+        least_squared_ = std::min(least_squared_, distance_squared);
+    }
+    [[nodiscard]] float of(std::size_t count) const noexcept
+    {
+        const float mean = sum_ / static_cast<float>(count);
+        const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared_) - threat_.radius;
+        return bracket > 0.0F ? 1.0F / bracket : std::numeric_limits<float>::infinity();
+    }
+
+private:
+    const MovingThreat& threat_;
+    ClosenessMethod method_;
+    float per_speed_;
+    float least_squared_ = std::numeric_limits<float>::infinity();
+    float sum_ = 0.0F;
+};
 
 }  // namespace
 
@@ -176,16 +197,38 @@ float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noe
 
 float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept
 {
-    return closeness_of(
-        path.points.size(), [&](std::size_t i) { return path.points[i].position; },
-        [&](std::size_t i) { return path.points[i].time; }, threat, method);
+    Closeness closeness(threat, method);
+    for (const auto& point : path.points) {
+        const Vec3& p = point.position;
+        const float squared = closeness.distance_squared(p.x(), p.y(), p.z(), point.time);
+        closeness.add(squared, std::sqrt(squared));
+    }
+    return closeness.of(path.points.size());
 }
 
 float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept
 {
-    return closeness_of(
-        path.t.size(), [&](std::size_t i) { return Vec3(path.x[i], path.y[i], path.z[i]); },
-        [&](std::size_t i) { return path.t[i]; }, threat, method);
+    // Roots are taken several at a time where there are vector registers; the sum keeps its order.
+    constexpr std::size_t kAtOnce = 8;
+    Closeness closeness(threat, method);
+    const std::size_t count = path.t.size();
+    std::size_t i = 0;
+    for (; i + kAtOnce <= count; i += kAtOnce) {
+        std::array<float, kAtOnce> squared;
+        std::array<float, kAtOnce> distance;
+        for (std::size_t k = 0; k < kAtOnce; ++k) {
+            squared[k] = closeness.distance_squared(path.x[i + k], path.y[i + k], path.z[i + k], path.t[i + k]);
+            distance[k] = std::sqrt(squared[k]);
+        }
+        for (std::size_t k = 0; k < kAtOnce; ++k) {
+            closeness.add(squared[k], distance[k]);
+        }
+    }
+    for (; i < count; ++i) {
+        const float squared = closeness.distance_squared(path.x[i], path.y[i], path.z[i], path.t[i]);
+        closeness.add(squared, std::sqrt(squared));
+    }
+    return closeness.of(count);
 }
 
 float combined_closeness(std::span<const float> per_threat) noexcept
