@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +51,39 @@ Json body_of(const sim::Threat& threat, double end)
             {"half_height", threat.half_height},   {"half_extents", json(threat.half_extents)},
             {"moves", !threat.at_rest()},          {"from", json(threat.position_at(0.0))},
             {"to", json(threat.position_at(end))}};
+}
+
+Json body_of(const sim::ClosedArea& area, double end)
+{
+    return {{"form", "area"},
+            {"radius", area.radius},
+            {"margin", area.margin},
+            {"moves", false},
+            {"from", json(area.centre_at(0.0))},
+            {"to", json(area.centre_at(end))}};
+}
+
+/// Of bodies and closed areas alike [m].
+double least_of(const sim::Record& record) { return std::min(record.closest.surface, record.closest_area); }
+
+/// Where the vehicle was then.
+sim::Vec place_of_least(const sim::Scenario& scenario, const sim::Record& record)
+{
+    if (record.closest.surface <= record.closest_area) {
+        return record.closest.own;
+    }
+    sim::Vec at = record.closest.own;
+    double least = std::numeric_limits<double>::infinity();
+    for (const sim::Sample& sample : record.samples) {
+        for (const sim::ClosedArea& area : scenario.areas) {
+            const double distance = sim::surface_distance(area, sample.time, sample.position);
+            if (distance < least) {
+                least = distance;
+                at = sample.position;
+            }
+        }
+    }
+    return at;
 }
 
 /// How long a scene is worth looking at: until the last of those that reached the goal was there.
@@ -122,7 +156,7 @@ std::string table_of(const Scene& scene)
         const std::string goal = r.goal_at < 0.0 ? "-" : line("%.1f", r.goal_at);
         text += line("  %-32s %-10s %7s %8.2f %7.1f %6u %6u %6u", flight.by.name.c_str(),
                      std::string(sim::to_string(r.outcome)).c_str(), goal.substr(0, goal.find('\n')).c_str(),
-                     r.closest.surface, flight.held, inside.brakes, inside.plans, inside.plans_found);
+                     least_of(r), flight.held, inside.brakes, inside.plans, inside.plans_found);
         for (const std::string& fault : r.faults) {
             text += "    " + fault + "\n";
         }
@@ -145,8 +179,8 @@ std::string summary_of(const std::vector<Scene>& scenes)
         double still = 0.0;
         for (const Scene& scene : scenes) {
             const sim::Record& r = scene.flights[way].record;
-            touched += r.closest.surface < scene.scenario.body_radius ? 1U : 0U;
-            separations.push_back(r.closest.surface);
+            touched += least_of(r) < scene.scenario.body_radius ? 1U : 0U;
+            separations.push_back(least_of(r));
             still += scene.flights[way].held / static_cast<double>(scenes.size());
             if (r.goal_at >= 0.0) {
                 goals.push_back(r.goal_at);
@@ -167,6 +201,9 @@ std::string drawing_of(const std::vector<Scene>& scenes)
         for (const sim::Threat& threat : scene.scenario.threats) {
             bodies.push_back(body_of(threat, last_of(scene)));
         }
+        for (const sim::ClosedArea& area : scene.scenario.areas) {
+            bodies.push_back(body_of(area, last_of(scene)));
+        }
         Json mission = Json::array();
         for (const Vec& waypoint : scene.scenario.mission) {
             mission.push_back(json(waypoint));
@@ -176,8 +213,8 @@ std::string drawing_of(const std::vector<Scene>& scenes)
             flights.push_back({{"by", flight.by.name},
                                {"outcome", sim::to_string(flight.record.outcome)},
                                {"goal", flight.record.goal_at >= 0.0},
-                               {"least", rounded(flight.record.closest.surface)},
-                               {"at", json(flight.record.closest.own)},
+                               {"least", rounded(least_of(flight.record))},
+                               {"at", json(place_of_least(scene.scenario, flight.record))},
                                {"end", rounded(flight.record.duration)},
                                {"path", path_of(flight.record)}});
         }

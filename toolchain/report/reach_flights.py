@@ -25,7 +25,12 @@ plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": 
 
 def draw_body(axes, body):
     x, y, _ = body["from"]
-    if body["moves"]:
+    if body["form"] == "area":
+        axes.add_patch(Circle((x, y), body["radius"], facecolor=MOVES, alpha=0.2, lw=0, zorder=1))
+        axes.add_patch(Circle((x, y), body["radius"] + body["margin"], fill=False, edgecolor=MOVES, ls=(0, (3, 3)), lw=0.8, zorder=1))
+        axes.annotate("", body["to"][:2], (x, y), arrowprops={"arrowstyle": "->", "color": MOVES, "lw": 1.0, "alpha": 0.7}, zorder=2,
+                      annotation_clip=True)
+    elif body["moves"]:
         axes.annotate("", body["to"][:2], (x, y), arrowprops={"arrowstyle": "->", "color": MOVES, "lw": 1.0, "alpha": 0.7}, zorder=2,
                       annotation_clip=True)
         axes.add_patch(Circle((x, y), body["radius"], color=MOVES, lw=0, zorder=2))
@@ -59,7 +64,7 @@ def draw(scene, folder):
     low, high = paths.min(axis=0) - ROOM, paths.max(axis=0) + ROOM
     bodies = [body for body in scene["bodies"] if not body["moves"]]
     for body in bodies:
-        low[:2], high[:2] = np.minimum(low[:2], body["from"][:2]), np.maximum(high[:2], body["from"][:2])
+        low[:2], high[:2] = np.minimum(low[:2], np.subtract(body["from"][:2], body.get("margin", 0.0))), np.maximum(high[:2], body["from"][:2])
     tall = (high[1] - low[1]) / (high[0] - low[0])
     figure, axes = plt.subplots(3, 1, figsize=(WIDTH, WIDTH * 0.9 * tall + 3.2), layout="constrained",
                                 height_ratios=[WIDTH * 0.9 * tall, 1.7, 0.5])
