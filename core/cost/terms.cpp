@@ -214,8 +214,8 @@ float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMeth
     const std::size_t count = path.t.size();
     std::size_t i = 0;
     for (; i + kAtOnce <= count; i += kAtOnce) {
-        std::array<float, kAtOnce> squared;
-        std::array<float, kAtOnce> distance;
+        std::array<float, kAtOnce> squared{};
+        std::array<float, kAtOnce> distance{};
         for (std::size_t k = 0; k < kAtOnce; ++k) {
             squared[k] = closeness.distance_squared(path.x[i + k], path.y[i + k], path.z[i + k], path.t[i + k]);
             distance[k] = std::sqrt(squared[k]);

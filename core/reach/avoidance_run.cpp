@@ -172,8 +172,9 @@ void Planner::make_path(const Situation& situation, const Placed& placed, NodeIn
     for (std::size_t i = movements; i > 0; --i) {
         const NodeIndex to = way[i - 1];
         const NodeIndex from = set.parent[to];
-        const Pose<float> pose{set.position_of(from), static_cast<float>(set.attitude[2U * from]) * set.step.pitch,
-                               static_cast<float>(set.attitude[2U * from + 1U]) * set.step.yaw};
+        const Pose<float> pose{set.position_of(from),
+                               static_cast<float>(set.attitude[std::size_t{2} * from]) * set.step.pitch,
+                               static_cast<float>(set.attitude[std::size_t{2} * from + 1]) * set.step.yaw};
         const Vec3 middle = at_share(pose, static_cast<Movement>(set.movement[to]), 0.5F, set.step).position;
         const Seconds end = start.lead + placed.time(to);
         path.points.unchecked_push_back({placed.to_world(middle), Vec3::Zero(), end - 0.5F * placed.period});

@@ -89,9 +89,9 @@ public:
             const auto whole = static_cast<float>(static_cast<std::int32_t>(layers));
             const float layer = std::max(whole - (whole == layers ? 1.0F : 0.0F), 0.0F);
             const auto cell = static_cast<std::int32_t>((layer * columns + column[i]) * rows + row[i]);
-            const bool inside = (distance[i] <= distance_) & (x[i] >= 0.0F) & (y[i] >= x[i] * column_[0]) &
-                                (y[i] <= x[i] * column_[columns_]) & (z[i] >= level[i] * row_[0]) &
-                                (z[i] <= level[i] * row_[rows_]);
+            const bool inside = distance[i] <= distance_ && x[i] >= 0.0F && y[i] >= x[i] * column_[0] &&
+                                y[i] <= x[i] * column_[columns_] && z[i] >= level[i] * row_[0] &&
+                                z[i] <= level[i] * row_[rows_];
             out[i] = static_cast<CellIndex>(inside ? cell : std::int32_t{kNoCell});
         }
     }

@@ -22,7 +22,7 @@ struct FusionRule {
 };
 
 /// Memory: 8 bytes a cell, for the times of the set that was rated last.
-class CellFusion final : public CellSource {
+class CellFusion final : public CellSource {  // NOLINT(cppcoreguidelines-virtual-class-destructor): final
 public:
     explicit CellFusion(const FusionRule& rule) noexcept : rule_(rule) {}
 

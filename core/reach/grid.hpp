@@ -106,6 +106,7 @@ public:
     [[nodiscard]] CellPlace place(CellIndex cell) const noexcept
     {
         const std::size_t in_layer = columns_ * rows_;
+        // NOLINTNEXTLINE(clang-analyzer-core.DivideZero): a grid that has the cell has a row
         return {static_cast<std::uint8_t>(cell / in_layer), static_cast<std::uint8_t>(cell % in_layer / rows_),
                 static_cast<std::uint8_t>(cell % rows_)};
     }
@@ -142,7 +143,7 @@ public:
             return {LocateStatus::not_a_number, {}};
         }
         const auto past = [](T at, std::size_t count) {
-            return at < -kTolerance || at > static_cast<T>(count) + kTolerance;
+            return at < -tolerance() || at > static_cast<T>(count) + tolerance();
         };
         if (past(layer, layers_) || past(column, columns_) || past(row, rows_)) {
             return {};
@@ -151,11 +152,11 @@ public:
     }
 
 private:
-    static constexpr T kTolerance = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-9);
+    [[nodiscard]] static constexpr T tolerance() noexcept { return sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-9); }
 
     [[nodiscard]] static std::uint8_t part(T at, std::size_t count) noexcept
     {
-        const T end = std::ceil(at - kTolerance);
+        const T end = std::ceil(at - tolerance());
         return static_cast<std::uint8_t>(std::clamp(end - T(1), T(0), static_cast<T>(count) - T(1)));
     }
 

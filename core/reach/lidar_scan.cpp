@@ -90,7 +90,8 @@ void LidarScan::add_invalid(std::size_t column, std::size_t row) noexcept
 
 float LidarScan::hindrance(const CellPlace& place) const noexcept
 {
-    const float share = static_cast<float>(hits_[grid_->index(place)]) / rays(place.column, place.row);
+    const float share =
+        static_cast<float>(hits_[grid_->index(place)]) / static_cast<float>(rays(place.column, place.row));
     return std::min(share, 1.0F);  // more points than rays: several returns, or a finer sensor than was said
 }
 
@@ -107,7 +108,7 @@ float LidarScan::obstacle(const CellPlace& place, float threshold_area) const no
 
 void LidarScan::visibility(std::size_t column, std::size_t row, std::span<float> out) const noexcept
 {
-    const float missing = static_cast<float>(invalid_[direction(column, row)]) / rays(column, row);
+    const float missing = static_cast<float>(invalid_[direction(column, row)]) / static_cast<float>(rays(column, row));
     float left = std::max(1.0F - missing, 0.0F);
     for (std::size_t layer = 0; layer < grid_->layers(); ++layer) {
         out[layer] = left;

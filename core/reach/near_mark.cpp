@@ -45,6 +45,8 @@ struct NearThreats::LayerCells {
     Numbers last;   ///< and has left it, at the latest
     std::array<CellIndex, CellBalls::kMaxDirections> cell;
 
+    // Numbers are there up to `count`.
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     LayerCells(const Placed& placed, const CellBalls& balls, std::size_t layer, const Depths& depths) noexcept
     {
         const Grid<float>& grid = placed.set->grid;
@@ -132,7 +134,7 @@ void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std:
         return;
     }
     // In numbers by themselves, so that the compiler takes several cells at a time.
-    std::array<float, CellBalls::kMaxDirections> spare;
+    std::array<float, CellBalls::kMaxDirections> spare{};
     for (std::size_t i = 0; i < cells.count; ++i) {
         const float x = cells.x[i] - at_start.x();
         const float y = cells.y[i] - at_start.y();

@@ -199,7 +199,8 @@ void ScanPicture::judge() noexcept
         for (std::size_t row = 0; row < grid_.rows(); ++row) {
             scan.visibility(column, row, visible);
             const std::size_t direction = column * grid_.rows() + row;
-            const bool looks = static_cast<float>(fired_[direction]) >= kSeenShare * scan.rays(column, row);
+            const bool looks =
+                static_cast<float>(fired_[direction]) >= kSeenShare * static_cast<float>(scan.rays(column, row));
             for (std::size_t layer = 0; layer < grid_.layers(); ++layer) {
                 const CellPlace place{static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),
                                       static_cast<std::uint8_t>(row)};

@@ -23,7 +23,7 @@ struct ScanStart {
 };
 
 /// Memory: that of a LidarScan twice, about 7 KiB: one is filled while the other one is read.
-class ScanPicture final : public CellSource {
+class ScanPicture final : public CellSource {  // NOLINT(cppcoreguidelines-virtual-class-destructor): final
 public:
     /// Columns to either side of a set's, so that a course may change until it is planned.
     static constexpr std::size_t kSpareColumns = 1;

@@ -7,6 +7,67 @@
 // Barrels in the final check.
 
 namespace jink::world::detail {
+namespace {
+
+/// A barrel as the own box meets it, with what the escape rule takes off at first.
+struct BarrelCheck {
+    const Barrel& barrel;
+    const Vec3& half;
+    const EscapeRule& escape;
+    ThreatRef ref;
+    float extra = 0.0F;
+    float shrunk = 0.0F;
+    /// Until then the surface grows evenly, so that the margin stays a convex function of time; afterwards it stands.
+    Seconds whole = 0.0F;
+
+    BarrelCheck(const Situation& situation, const Vec3& begin, std::size_t index, const EscapeRule& rule) noexcept
+        : barrel(situation.airspace.barrels[index]), half(situation.limits.half_extents),
+          escape(rule), ref{ThreatKind::barrel, static_cast<std::uint16_t>(index)},
+          extra(situation.k_sigma * situation.own.sigma_position)
+    {
+        const float start_margin = barrel_distance(half, begin, barrel, 0.0F) - extra;
+        shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
+        if (shrunk > 0.0F) {
+            whole = escape.speed > 0.0F ? shrunk / escape.speed : std::numeric_limits<Seconds>::infinity();
+        }
+    }
+
+    [[nodiscard]] bool may_matter(const Bounds& chunk, float best) const noexcept
+    {
+        const Vec2 a = barrel.circle.centre + barrel.velocity * chunk.start;
+        const Vec2 b = barrel.circle.centre + barrel.velocity * chunk.end;
+        const Vec2 low = a.cwiseMin(b).array() - barrel.circle.radius;
+        const Vec2 high = a.cwiseMax(b).array() + barrel.circle.radius;
+        const float apart = boxes_apart(chunk.low - half, chunk.high + half, {low.x(), low.y(), barrel.bottom},
+                                        {high.x(), high.y(), barrel.top});
+        // Where they overlap it may be as deep as anything.
+        return apart <= 0.0F || apart - extra < best;
+    }
+
+    /// With the surface growing, then with the whole body.
+    void against(const Piece& p, WorkBudget& budget, Separation& best) const noexcept
+    {
+        const Seconds end = p.start + p.duration;
+        const Seconds middle = std::clamp(whole, p.start, end);
+        for (const bool escapes : {true, false}) {
+            const Seconds from = escapes ? p.start : middle;
+            const Seconds span = (escapes ? middle : end) - from;
+            if (!(span > 0.0F) && (escapes || p.duration > 0.0F)) {
+                continue;
+            }
+            const float outset = extra - shrink_at(shrunk, escape, from);
+            const BarrelApproach approach(half, {p.from + p.velocity * (from - p.start), p.velocity}, barrel, from,
+                                          outset, escapes ? escape.speed : 0.0F);
+            const geometry::Approach near = approach.least(span, best.margin, budget);
+            consider(best, near.distance, from + near.when, ref);
+            if (budget.exhausted()) {
+                return;
+            }
+        }
+    }
+};
+
+}  // namespace
 
 void against_barrel(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
                     WorkBudget& budget, Separation& best) noexcept
@@ -15,48 +76,18 @@ void against_barrel(const Situation& situation, const Flight& flight, std::size_
     if (!paid(budget, units::kThreat + flight.chunks().size() * units::kThreatChunk, best, 0.0F, ref)) {
         return;
     }
-    const Barrel& barrel = situation.airspace.barrels[index];
-    const Vec3& half = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
-    const float start_margin = barrel_distance(half, flight.begin(), barrel, 0.0F) - extra;
-    const float shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
-    // Until then the surface grows evenly, so that the margin stays a convex function of time; afterwards it stands.
-    const Seconds whole = shrunk <= 0.0F        ? 0.0F
-                          : escape.speed > 0.0F ? shrunk / escape.speed
-                                                : std::numeric_limits<Seconds>::infinity();
+    const BarrelCheck check(situation, flight.begin(), index, escape);
     for (const Bounds& chunk : flight.chunks()) {
-        const Vec2 a = barrel.circle.centre + barrel.velocity * chunk.start;
-        const Vec2 b = barrel.circle.centre + barrel.velocity * chunk.end;
-        const Vec2 low = a.cwiseMin(b).array() - barrel.circle.radius;
-        const Vec2 high = a.cwiseMax(b).array() + barrel.circle.radius;
-        const float apart = boxes_apart(chunk.low - half, chunk.high + half, {low.x(), low.y(), barrel.bottom},
-                                        {high.x(), high.y(), barrel.top});
-        // Where they overlap it may be as deep as anything.
-        if (apart > 0.0F && apart - extra >= best.margin) {
+        if (!check.may_matter(chunk, best.margin)) {
             continue;
         }
         if (!paid(budget, (chunk.last - chunk.first) * units::kThreatPiece, best, chunk.start, ref)) {
             return;
         }
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
-            const Piece p = flight.piece(i);
-            const Seconds end = p.start + p.duration;
-            const Seconds middle = std::clamp(whole, p.start, end);
-            // With the surface growing, then with the whole body.
-            for (const bool escapes : {true, false}) {
-                const Seconds from = escapes ? p.start : middle;
-                const Seconds span = (escapes ? middle : end) - from;
-                if (!(span > 0.0F) && (escapes || p.duration > 0.0F)) {
-                    continue;
-                }
-                const float outset = extra - shrink_at(shrunk, escape, from);
-                const BarrelApproach approach(half, {p.from + p.velocity * (from - p.start), p.velocity}, barrel, from,
-                                              outset, escapes ? escape.speed : 0.0F);
-                const geometry::Approach near = approach.least(span, best.margin, budget);
-                consider(best, near.distance, from + near.when, ref);
-                if (budget.exhausted()) {
-                    return;
-                }
+            check.against(flight.piece(i), budget, best);
+            if (budget.exhausted()) {
+                return;
             }
         }
     }

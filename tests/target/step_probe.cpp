@@ -64,6 +64,8 @@ public:
     void feed() noexcept override {}
 };
 
+constexpr std::uint32_t kWithoutReachSets = 2;
+
 /// Everything that a start makes new.
 struct Device {
     explicit Device(hal::SerialPort& port) noexcept : coprocessor(endpoint, port, watchdog, app::Parameters()) {}
@@ -118,6 +120,9 @@ void serve() noexcept
         }
         if (record.start != 0) {
             device.emplace(line);
+            if (record.start == kWithoutReachSets) {
+                device->coprocessor.leave_out_reach_sets();
+            }
         }
         if (!line.bring(record.bytes_in)) {
             return;

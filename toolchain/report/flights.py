@@ -16,7 +16,7 @@ DISCRETE = ("state", "faults", "control", "guidance", "kind", "plan_status", "pl
 class Step:
     """toolchain/sim/step_record.hpp"""
 
-    start: bool
+    start: int  # 0, 1, or 2 for a start without reach sets
     now_us: int
     bytes_in: bytes
     bytes_out: bytes  # in the recorded flight
@@ -52,7 +52,7 @@ def read(path):
         if magic != MAGIC:
             raise ValueError(f"{path}: no step record at byte {at}")
         at += RECORD.size
-        steps.append(Step(bool(start), now, data[at:at + size_in], data[at + size_in:at + size_in + size_out]))
+        steps.append(Step(start, now, data[at:at + size_in], data[at + size_in:at + size_in + size_out]))
         at += size_in + size_out
     return steps
 

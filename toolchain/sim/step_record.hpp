@@ -17,7 +17,7 @@ inline constexpr std::uint32_t kStepBytes = 4096;
 
 struct StepRecord {
     std::uint32_t magic;
-    std::uint32_t start;      ///< 1: the co-processor starts anew before this step
+    std::uint32_t start;      ///< 1: the co-processor starts anew before this step; 2: and without reach sets
     std::int64_t now_us;      ///< the step's time
     std::uint32_t bytes_in;   ///< read by the step
     std::uint32_t bytes_out;  ///< written by it in the recorded flight
