@@ -74,7 +74,7 @@ bool TrajectoryGenerator::start(const Task& task, TimePoint now) noexcept
 
 void TrajectoryGenerator::reject() noexcept
 {
-    if (status_ == GeneratorStatus::idle || status_ == GeneratorStatus::done) {
+    if (status_ == GeneratorStatus::idle) {
         status_ = GeneratorStatus::rejected;
     }
 }

@@ -95,7 +95,7 @@ public:
     /// Flies the path that was committed last from its start. False, and nothing changes, where there is none or the
     /// task's numbers are none. O(1).
     [[nodiscard]] bool start(const Task& task, TimePoint now) noexcept;
-    /// A task was refused: told as long as nothing is flown.
+    /// A task was refused: told where there is none that is flown, or whose end is held.
     void reject() noexcept;
     /// Forgets path and task.
     void stop() noexcept;
