@@ -119,6 +119,9 @@ DenseStatus DensePath::begin(bool continues) noexcept
     if (continues && has_next_) {
         return DenseStatus::busy;
     }
+    if (continues && !empty() && is_complete()) {
+        return DenseStatus::gap;  // whoever flies it may be done
+    }
     continues_ = continues && !empty();
     if (!continues_) {
         has_next_ = false;  // what is to be replaced needs no continuation, and its chunk is needed

@@ -28,7 +28,7 @@ enum class DenseStatus : std::uint8_t {
     time_not_later,  ///< arrivals must increase
     too_long,        ///< more than kMaxDensePoints points after decimation (PATH_TOO_LONG)
     too_few,         ///< not two points at different places
-    gap,             ///< what is to continue a path does not begin where that ends
+    gap,             ///< what is to continue a path does not begin where that ends, or that is complete
 };
 
 /// Keeps, of points that come one by one, those that the path needs (G-ORCA 13.3): what is left out lies within

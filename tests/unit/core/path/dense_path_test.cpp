@@ -181,6 +181,8 @@ TEST_F(DensePathTest, StreamsChunkByChunk)
     EXPECT_TRUE(path->is_complete());
     EXPECT_NEAR(path->along(2), 2.0F, 1e-5F);
     EXPECT_EQ(path->generation(), 1U) << "one path";
+    EXPECT_EQ(path->advance(1), 0U);
+    EXPECT_EQ(load_line(*path, true, true, 3.0F), DenseStatus::gap) << "it is complete: whoever flies it may be done";
 }
 
 TEST_F(DensePathTest, ToReplaceAPathGivesItsContinuationUp)
