@@ -33,6 +33,12 @@
 #ifndef JINK_MAX_REACH_CELLS
 #define JINK_MAX_REACH_CELLS 512
 #endif
+#ifndef JINK_MAX_COMMANDS
+#define JINK_MAX_COMMANDS 64
+#endif
+#ifndef JINK_MAX_DENSE_POINTS
+#define JINK_MAX_DENSE_POINTS 1024
+#endif
 
 namespace jink {
 
@@ -75,5 +81,16 @@ static_assert(kMaxReachNodes >= 16 && kMaxReachNodes <= 65534);
 /// Cells of its grid: 10 layers of 7 columns and 5 rows are 350. Two bytes each, and a bit for each threat.
 inline constexpr std::size_t kMaxReachCells = JINK_MAX_REACH_CELLS;
 static_assert(kMaxReachCells >= 16 && kMaxReachCells <= 4096);
+
+/// Velocity commands that a vehicle remembers to predict itself across its delay: 1.6 s at 40 Hz, where 22 bridge the
+/// half second that was measured in flight (Alejo 8.4). When full the oldest is overwritten, and a prediction that
+/// would need it says so. 24 bytes each.
+inline constexpr std::size_t kMaxCommands = JINK_MAX_COMMANDS;
+static_assert(kMaxCommands >= 8 && kMaxCommands <= 1024);
+
+/// Points of one chunk of a dense path after decimation, of which there are two (G-ORCA 13.3). A chunk that would need
+/// more is refused as a whole. 20 bytes each.
+inline constexpr std::size_t kMaxDensePoints = JINK_MAX_DENSE_POINTS;
+static_assert(kMaxDensePoints >= 16 && kMaxDensePoints <= 65535);
 
 }  // namespace jink

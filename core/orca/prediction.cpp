@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/orca/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::orca {
+namespace {
+
+/// `command` acting for `dt` > 0: a velocity error fades exponentially (G-ORCA 11.3).
+void fly_command(Predicted& state, const Vec3& command, Seconds dt, Seconds lag) noexcept
+{
+    const Vec3 error = state.velocity - command;
+    if (lag <= 0.0F) {
+        state.position += command * dt;
+        state.velocity = command;
+        return;
+    }
+    const float faded = -std::expm1(-dt / lag);
+    state.position += command * dt + error * (lag * faded);
+    state.velocity -= error * faded;
+}
+
+template <class Commands>
+Predicted predict_by(const vehicle::VehicleState& measured, const Commands& issued, const VelocityLoop& loop,
+                     TimePoint at) noexcept
+{
+    Predicted state{measured.position, measured.velocity, false};
+    TimePoint t = measured.stamp;
+    if (at <= t) {
+        state.position += measured.velocity * (at - t);
+        return state;
+    }
+    const std::int64_t act = (TimePoint{} + loop.act).us;
+    const auto acts = [&](std::size_t i) { return TimePoint{issued[i].issued.us + act}; };
+    const std::size_t n = issued.size();
+    std::size_t next = 0;
+    while (next < n && acts(next) <= t) {
+        ++next;
+    }
+    if (next == 0) {
+        const TimePoint end = n > 0 ? std::min(at, acts(0)) : at;
+        state.position += measured.velocity * (end - t);
+        state.clipped = true;
+        t = end;
+    } else {
+        --next;  // acts at t
+    }
+    for (; next < n && t < at; ++next) {
+        const TimePoint end = next + 1 < n ? std::min(at, acts(next + 1)) : at;
+        fly_command(state, issued[next].velocity, end - t, loop.lag);
+        t = end;
+    }
+    return state;
+}
+
+}  // namespace
+
+Predicted predict(const vehicle::VehicleState& measured, const CommandRing& issued, const VelocityLoop& loop,
+                  TimePoint at) noexcept
+{
+    return predict_by(measured, issued, loop, at);
+}
+
+Predicted predict(const vehicle::VehicleState& measured, std::span<const IssuedCommand> issued,
+                  const VelocityLoop& loop, TimePoint at) noexcept
+{
+    return predict_by(measured, issued, loop, at);
+}
+
+float inflation_of(Seconds age, float max_speed, float max_acceleration, const AgeRules& rules) noexcept
+{
+    const Seconds known = std::clamp(age, 0.0F, rules.lost);
+    const float grown = std::min(rules.most, rules.velocity_error * known + 0.5F * max_acceleration * known * known);
+    return grown + max_speed * std::max(0.0F, age - rules.lost);
+}
+
+PredictedNeighbour predict_neighbour(const Broadcast& heard, TimePoint at, const AgeRules& rules, float reach) noexcept
+{
+    const Seconds age = at - heard.state.stamp;
+    const bool is_lost = age > rules.lost;
+    const TimePoint until = is_lost ? heard.state.stamp + rules.lost : at;
+    const std::span<const IssuedCommand> commands{heard.commands.data(), heard.commands.size()};
+    const Predicted there = predict_by(heard.state, commands, heard.loop, until);
+
+    PredictedNeighbour neighbour;
+    neighbour.position = there.position;
+    neighbour.velocity = is_lost ? Vec3(Vec3::Zero()) : there.velocity;
+    neighbour.inflation = inflation_of(age, heard.max_speed, heard.max_acceleration, rules);
+    if (is_lost) {
+        neighbour.freshness = neighbour.inflation > reach ? Freshness::gone : Freshness::lost;
+    } else {
+        neighbour.freshness = age > rules.stale ? Freshness::stale : Freshness::fresh;
+    }
+    return neighbour;
+}
+
+}  // namespace jink::orca

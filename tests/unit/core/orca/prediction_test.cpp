@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Prediction across the delay (G-ORCA section 11) and its acceptance test T9.
+#include "core/orca/prediction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace jink::orca {
+namespace {
+
+constexpr std::int64_t kPeriod = 25'000;  // 40 Hz
+
+vehicle::VehicleState state_at(TimePoint stamp, const Vec3& position, const Vec3& velocity)
+{
+    vehicle::VehicleState state;
+    state.stamp = stamp;
+    state.position = position;
+    state.velocity = velocity;
+    return state;
+}
+
+/// A vehicle with a pure delay and a velocity loop, in double and in steps of a microsecond's precision: what T9
+/// predicts.
+struct Plant {
+    double act = 0.0;
+    double lag = 0.0;
+    double x = 0.0;
+    double v = 0.0;
+    /// Flies `command` for dt.
+    void fly(double command, double dt)
+    {
+        if (lag == 0.0) {
+            v = command;
+            x += v * dt;
+            return;
+        }
+        const double kept = std::exp(-dt / lag);
+        x += command * dt + (v - command) * lag * (1.0 - kept);
+        v = command + (v - command) * kept;
+    }
+};
+
+/// Worst error of predictions over 4 s of commands: T_d = 0.5 s, 0.3 s of them to sense and 0.2 s to act. The plant
+/// flies in steps of 5 ms, of which all times are whole ones.
+struct Errors {
+    double position = 0.0;
+    double velocity = 0.0;
+};
+
+template <class Command>
+Errors worst_errors(const Command& command, double plant_lag, float believed_lag)
+{
+    constexpr int kSense = 60;  // steps of 5 ms
+    constexpr int kAct = 40;
+    constexpr int kTick = 5;
+    CommandRing ring;
+    std::vector<double> x(1, 0.0);
+    std::vector<double> v(1, command(0));
+    Plant plant{0.2, plant_lag, 0.0, command(0)};
+    const auto acting = [&](int step) { return command(std::max(0, (step - kAct) / kTick * kTick)); };
+    for (int step = 0; step < 900; ++step) {
+        plant.fly(step < kAct ? command(0) : acting(step), 0.005);
+        x.push_back(plant.x);
+        v.push_back(plant.v);
+    }
+    Errors worst;
+    for (int step = 0; step + kAct < 800; step += kTick) {
+        if (step >= kSense + kAct) {
+            const auto measured = static_cast<std::size_t>(step - kSense);
+            const Predicted p =
+                predict(state_at(TimePoint{5000 * (step - kSense)}, Vec3(static_cast<float>(x[measured]), 0.0F, 0.0F),
+                                 Vec3(static_cast<float>(v[measured]), 0.0F, 0.0F)),
+                        ring, {0.2F, believed_lag}, TimePoint{5000 * (step + kAct)});
+            EXPECT_FALSE(p.clipped) << step;
+            const auto then = static_cast<std::size_t>(step + kAct);
+            worst.position = std::max(worst.position, std::abs(static_cast<double>(p.position.x()) - x[then]));
+            worst.velocity = std::max(worst.velocity, std::abs(static_cast<double>(p.velocity.x()) - v[then]));
+        }
+        // The command of this tick is not known when its own effect is predicted.
+        EXPECT_EQ(ring.add(TimePoint{5000 * step}, Vec3(static_cast<float>(command(step)), 0.0F, 0.0F)),
+                  RingStatus::ok);
+    }
+    return worst;
+}
+
+double constant_velocity(int /*step*/) { return 1.25; }
+/// 0.5 m/s2: in each tick of 25 ms 0.0125 m/s more.
+double ramp(int step) { return 0.0025 * step; }
+
+/// T9: error 0 with the ideal plant; what is left is the rounding of 10 m in float.
+TEST(PredictionT9, ConstantVelocityWithAKnownDelayIsExact)
+{
+    const Errors worst = worst_errors(constant_velocity, 0.0, 0.0F);
+    EXPECT_LT(worst.position, 2e-6);
+    EXPECT_EQ(worst.velocity, 0.0);
+}
+TEST(PredictionT9, ARampWithAKnownDelayIsExact)
+{
+    const Errors worst = worst_errors(ramp, 0.0, 0.0F);
+    EXPECT_LT(worst.position, 5e-6);
+    EXPECT_LT(worst.velocity, 2e-7);
+}
+/// T9: less than 1 cm with the first-order plant, whose time constant is identified; in fact none but rounding.
+TEST(PredictionT9, TheFirstOrderPlantIsWithinACentimetre)
+{
+    for (const auto& command : {constant_velocity, ramp}) {
+        const Errors worst = worst_errors(command, 0.2, 0.2F);
+        EXPECT_LT(worst.position, 0.01);
+        EXPECT_LT(worst.position, 1e-5);
+        EXPECT_LT(worst.velocity, 2e-6);
+    }
+}
+/// Taken for ideal, the same plant on a ramp is late by its lag: 0.5 m/s2 * 0.2 s of velocity. The figures show that
+/// the tests above can fail.
+TEST(PredictionT9, AnIdealLoopIsNotAFirstOrderOne)
+{
+    const Errors worst = worst_errors(ramp, 0.2, 0.0F);
+    EXPECT_NEAR(worst.velocity, 0.1, 0.01);
+    EXPECT_GT(worst.position, 0.01);
+}
+
+/// By hand: T_act = 0.1 s; commands 1, 2, 3 m/s at 0, 25, 50 ms act from 100, 125, 150 ms on.
+class ThreeCommands : public ::testing::Test {
+protected:
+    void SetUp() override
+    {
+        for (int i = 0; i < 3; ++i) {
+            ASSERT_EQ(ring.add(TimePoint{kPeriod * i}, Vec3(static_cast<float>(i + 1), 0.0F, 0.0F)), RingStatus::ok);
+        }
+    }
+    [[nodiscard]] Predicted from_to(std::int64_t from, std::int64_t to, float lag = 0.0F) const
+    {
+        return predict(state_at(TimePoint{from}, Vec3::Zero(), Vec3(0.5F, 0.0F, 0.0F)), ring, {0.1F, lag},
+                       TimePoint{to});
+    }
+    CommandRing ring;
+};
+
+TEST_F(ThreeCommands, OverlapsOfTheirHoldIntervals)
+{
+    const Predicted p = from_to(110'000, 160'000);
+    EXPECT_NEAR(p.position.x(), 0.015F * 1.0F + 0.025F * 2.0F + 0.010F * 3.0F, 1e-7F);
+    EXPECT_EQ(p.velocity.x(), 3.0F);
+    EXPECT_FALSE(p.clipped);
+}
+TEST_F(ThreeCommands, TheLastOneHoldsOn) { EXPECT_NEAR(from_to(150'000, 650'000).position.x(), 1.5F, 1e-6F); }
+/// A window that begins before the first command acts: DELAY_CLIPPED.
+TEST_F(ThreeCommands, WhatTheyDoNotCoverIsFlownAsMeasured)
+{
+    const Predicted p = from_to(60'000, 125'000);
+    EXPECT_TRUE(p.clipped);
+    EXPECT_NEAR(p.position.x(), 0.040F * 0.5F + 0.025F * 1.0F, 1e-7F);
+    EXPECT_EQ(p.velocity.x(), 1.0F);
+    const Predicted before = from_to(10'000, 60'000);
+    EXPECT_TRUE(before.clipped);
+    EXPECT_NEAR(before.position.x(), 0.025F, 1e-7F);
+    EXPECT_EQ(before.velocity.x(), 0.5F);
+}
+TEST_F(ThreeCommands, FromTheInstantTheFirstOneActsNothingIsClipped)
+{
+    EXPECT_FALSE(from_to(100'000, 125'000).clipped);
+    EXPECT_TRUE(from_to(99'999, 125'000).clipped);
+}
+TEST_F(ThreeCommands, BackwardsAlongTheMeasuredVelocity)
+{
+    const Predicted p = from_to(200'000, 100'000);
+    EXPECT_NEAR(p.position.x(), -0.05F, 1e-7F);
+    EXPECT_EQ(p.velocity.x(), 0.5F);
+}
+/// A lag that is next to nothing is none.
+TEST_F(ThreeCommands, AVanishingLagIsIdeal)
+{
+    const Predicted ideal = from_to(110'000, 160'000);
+    for (const float lag : {1e-3F, 1e-6F, 1e-30F}) {
+        const Predicted p = from_to(110'000, 160'000, lag);
+        EXPECT_NEAR(p.position.x(), ideal.position.x(), 3.0F * lag + 1e-7F);
+        EXPECT_NEAR(p.velocity.x(), 3.0F, 1e-4F) << lag;
+    }
+}
+
+TEST(Prediction, NoCommandsAtAll)
+{
+    const Predicted p =
+        predict(state_at(TimePoint{0}, Vec3(1, 2, 3), Vec3(1, -1, 0.5F)), CommandRing(), {}, TimePoint{2'000'000});
+    EXPECT_TRUE(p.clipped);
+    EXPECT_LT((p.position - Vec3(3, 0, 4)).norm(), 1e-6F);
+}
+
+/// A delay longer than the ring bridges: 64 commands at 100 Hz are 0.64 s.
+TEST(Prediction, ADelayBeyondTheRingIsClipped)
+{
+    CommandRing ring;
+    for (int i = 0; i < 200; ++i) {
+        ASSERT_EQ(ring.add(TimePoint{10'000 * i}, Vec3(1, 0, 0)), RingStatus::ok);
+    }
+    const TimePoint now{2'000'000};
+    const VelocityLoop loop{0.3F, 0.0F};
+    EXPECT_FALSE(predict(state_at(now - 0.3F, Vec3::Zero(), Vec3::Zero()), ring, loop, now + 0.3F).clipped);
+    EXPECT_TRUE(predict(state_at(now - 0.4F, Vec3::Zero(), Vec3::Zero()), ring, loop, now + 0.3F).clipped);
+}
+
+Broadcast moving_east()
+{
+    Broadcast heard;
+    heard.state = state_at(TimePoint{0}, Vec3(10, 0, 2), Vec3(1, 0, 0));
+    return heard;
+}
+
+/// 11.4 CONST_VEL: p_j + v_j (t_eff - t_j).
+TEST(NeighbourPrediction, WithoutCommandsAtConstantVelocity)
+{
+    const PredictedNeighbour n = predict_neighbour(moving_east(), TimePoint{500'000}, {}, 20.0F);
+    EXPECT_LT((n.position - Vec3(10.5F, 0, 2)).norm(), 1e-6F);
+    EXPECT_EQ(n.freshness, Freshness::fresh);
+    EXPECT_NEAR(n.inflation, 0.1F * 0.5F + 0.5F * 2.0F * 0.25F, 1e-6F);
+}
+/// 11.4 BROADCAST: it turns, and says so.
+TEST(NeighbourPrediction, ByItsLastCommands)
+{
+    Broadcast heard = moving_east();
+    heard.loop.act = 0.2F;
+    heard.commands.unchecked_push_back({TimePoint{-200'000}, Vec3(1, 0, 0)});
+    heard.commands.unchecked_push_back({TimePoint{-100'000}, Vec3(0, 1, 0)});
+    const PredictedNeighbour n = predict_neighbour(heard, TimePoint{500'000}, {}, 20.0F);
+    EXPECT_LT((n.position - Vec3(10.1F, 0.4F, 2)).norm(), 1e-6F);
+    EXPECT_LT((n.velocity - Vec3(0, 1, 0)).norm(), 1e-6F);
+}
+/// Both sides see the same: a vehicle that predicts itself by its ring lands where its neighbours put it.
+TEST(NeighbourPrediction, IsWhatTheNeighbourPredictsOfItself)
+{
+    CommandRing ring;
+    Broadcast heard = moving_east();
+    heard.loop = {0.2F, 0.15F};
+    for (int i = 0; i < 8; ++i) {
+        const IssuedCommand c{TimePoint{kPeriod * (i - 8)}, Vec3(0.1F * static_cast<float>(i), 1, 0)};
+        ASSERT_EQ(ring.add(c.issued, c.velocity), RingStatus::ok);
+        heard.commands.unchecked_push_back(c);
+    }
+    const TimePoint at{300'000};
+    const Predicted own = predict(heard.state, ring, heard.loop, at);
+    EXPECT_EQ(own.position, predict_neighbour(heard, at, {}, 20.0F).position);
+    EXPECT_EQ(own.velocity, predict_neighbour(heard, at, {}, 20.0F).velocity);
+}
+
+/// 11.4: stale after 1 s, lost after 3 s, then static, then gone.
+TEST(NeighbourPrediction, AgesFromFreshToGone)
+{
+    const Broadcast heard = moving_east();
+    const auto at = [&](double age) {
+        return predict_neighbour(heard, TimePoint{static_cast<std::int64_t>(age * 1e6)}, {}, 10.0F);
+    };
+    EXPECT_EQ(at(1.0).freshness, Freshness::fresh);
+    EXPECT_EQ(at(1.00001).freshness, Freshness::stale);
+    EXPECT_EQ(at(3.0).freshness, Freshness::stale);
+    EXPECT_EQ(at(3.0).velocity.x(), 1.0F);
+    const PredictedNeighbour lost = at(4.0);
+    EXPECT_EQ(lost.freshness, Freshness::lost);
+    EXPECT_EQ(lost.velocity, Vec3::Zero());
+    EXPECT_LT((lost.position - Vec3(13, 0, 2)).norm(), 1e-5F) << "stands where it would be at 3 s";
+    EXPECT_NEAR(lost.inflation, 3.0F + 1.5F, 1e-4F) << "3 m, and 1.5 m/s for a second";
+    // 3 m + 1.5 m/s * (t - 3 s) exceeds 10 m at 7.667 s.
+    EXPECT_EQ(at(7.6).freshness, Freshness::lost);
+    EXPECT_EQ(at(7.7).freshness, Freshness::gone);
+}
+
+TEST(NeighbourPrediction, InflationIsLimitedToThreeMetres)
+{
+    const AgeRules rules;
+    EXPECT_EQ(inflation_of(0.0F, 1.5F, 2.0F, rules), 0.0F);
+    EXPECT_EQ(inflation_of(-1.0F, 1.5F, 2.0F, rules), 0.0F) << "stamped later than it is wanted for";
+    EXPECT_NEAR(inflation_of(1.0F, 1.5F, 2.0F, rules), 1.1F, 1e-6F);
+    EXPECT_EQ(inflation_of(2.9F, 1.5F, 2.0F, rules), 3.0F);
+    EXPECT_EQ(inflation_of(3.0F, 1.5F, 2.0F, rules), 3.0F);
+    float before = 0.0F;
+    for (int ms = 0; ms < 10'000; ms += 7) {
+        const float now = inflation_of(static_cast<float>(ms) * 1e-3F, 1.5F, 0.4F, rules);
+        EXPECT_GE(now, before) << ms;
+        before = now;
+    }
+}
+
+}  // namespace
+}  // namespace jink::orca
