@@ -100,4 +100,7 @@ inline constexpr std::uint32_t kReachCellBounds = 8;  ///< cell against the boun
 inline constexpr std::uint32_t kReachCellTrack = 6;   ///< and a track
 inline constexpr std::uint32_t kReachCellSolid = 30;  ///< or an obstacle
 
+// --- maps of convex pieces (core/geometry/mesh_map) ---
+inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is looked at: both its children's boxes
+
 }  // namespace jink::units

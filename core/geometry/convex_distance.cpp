@@ -2,17 +2,15 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "core/geometry/convex.hpp"
-#include "core/geometry/simplex.hpp"
+#include "core/geometry/origin_search.hpp"
 #include "core/geometry/swept_box.hpp"
 
 namespace jink::geometry {
 
 namespace {
 
-using detail::Simplex;
 using detail::SweptBox;
 
 /// The difference of the swept box and a solid, seen from the middle of the way: numbers as small as the scene allows.
@@ -42,55 +40,16 @@ private:
     Shape solid_;
 };
 
-/// Rounds without a nearer point before the search ends. The direction still improves when the distance no longer does:
-/// its error enters the distance squared.
-constexpr int kStallsAllowed = 2;
-
-bool holds(const Simplex& simplex, const Vec3& point) noexcept
-{
-    for (std::size_t i = 0; i < simplex.size; ++i) {
-        if (simplex.points[i] == point) {
-            return true;
-        }
-    }
-    return false;
-}
-
 }  // namespace
 
-// GJK (Gilbert, Johnson & Keerthi 1988): the nearest point of a growing simplex is an upper bound, the support plane
-// across it a lower one. Only the lower one is ever returned, so that an error of the simplex costs rounds, not safety.
 float detail::proven_distance(const SweptBox& box, const Shape& shape, const SearchLimits& limits,
                               WorkBudget& budget) noexcept
 {
     const Difference difference(box, shape);
-    const float slack = box.slack(shape);
-    Simplex simplex;
-    Vec3 nearest = -difference.offset();
-    float upper = std::numeric_limits<float>::max();
-    float proven = 0.0F;
-    int stalls = 0;
+    const auto support = [&](const Vec3& direction) { return difference.support(direction); };
     const std::uint32_t turn = units::kSearchTurn + units::hull_units(shape.vertices.size());
-    for (std::uint32_t calls = 2; calls <= limits.calls; calls += 2) {
-        if (!budget.spend(turn)) {
-            return 0.0F;
-        }
-        const Vec3 next = difference.support(-nearest);
-        proven = std::max(proven, nearest.dot(next) / nearest.norm() - slack);
-        if (proven >= limits.reach || holds(simplex, next)) {
-            break;
-        }
-        simplex.points[simplex.size++] = next;
-        nearest = detail::reduce_to_nearest(simplex);
-        const float norm = nearest.norm();
-        stalls += norm < upper ? 0 : 1;
-        upper = std::min(upper, norm);
-        const bool decided = upper <= limits.near + slack || upper - proven <= limits.resolution + 2.0F * slack;
-        if (decided || simplex.size == simplex.points.size() || stalls > kStallsAllowed) {
-            break;
-        }
-    }
-    return std::min(proven, limits.reach);
+    const SearchResult found = search_origin(support, SearchBegin{-difference.offset()}, box.slack(shape), limits, turn, budget);
+    return found.budget_spent ? 0.0F : std::min(found.proven, limits.reach);
 }
 
 float swept_box_distance(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape, float reach,

@@ -5,6 +5,7 @@
 
 #include "core/base/work_budget.hpp"
 #include "core/base/work_units.hpp"
+#include "core/geometry/origin_search.hpp"
 #include "core/geometry/shape.hpp"
 #include "core/geometry/sweep.hpp"
 
@@ -43,14 +44,6 @@ struct SweptBox {
         const Vec3 arm = shape.axes.col(2) * shape.half.z();
         return swept_distance(half, Vec3::Zero(), to - from, centre - arm, centre + arm) - shape.radius;
     }
-};
-
-/// What a distance search need not tell apart.
-struct SearchLimits {
-    float near = 0.0F;        ///< distances up to this are all as good as contact [m]
-    float reach = 0.0F;       ///< distances from this on are all as good as clear [m]
-    float resolution = 0.0F;  ///< [m]
-    std::uint32_t calls = 0;  ///< support calls allowed
 };
 
 /// Distance between the swept box and the solid that a separating plane has proven [m], at most `limits.reach`, 0 if

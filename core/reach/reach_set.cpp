@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reach/reach_set.hpp"
 
-#include "core/reach/crc.hpp"
+#include "core/base/crc.hpp"
 
 namespace jink::reach {
 namespace {

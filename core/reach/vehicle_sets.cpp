@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/reach/crc.hpp"
+#include "core/base/crc.hpp"
 
 namespace jink::reach {
 namespace {

@@ -6,7 +6,7 @@
 
 // The checksum of stored tables.
 
-namespace jink::reach {
+namespace jink {
 
 /// CRC-32 (IEEE 802.3), bit by bit: tables are checked once, at an image's start, and a table of its own would cost 1
 /// KiB. Numbers go in low byte first on every machine.
@@ -36,4 +36,4 @@ private:
     std::uint32_t value_ = 0xFFFFFFFFU;
 };
 
-}  // namespace jink::reach
+}  // namespace jink

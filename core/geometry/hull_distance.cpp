@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometry/hull_distance.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Geometry>
+
+#include "core/geometry/origin_search.hpp"
+
+namespace jink::geometry {
+
+namespace {
+
+/// Largest relative error of one float operation.
+constexpr float kUnitRoundoff = 0x1p-24F;
+/// Of a vertex's product with a unit vector, in roundings of the vertex's sum of magnitudes: the difference and its
+/// stretching, three products, two sums, the vector's own length, and as much again to spare.
+constexpr float kProductRoundings = 16.0F;
+
+Vec3 stretched(const Vec3& v, float stretch) noexcept { return {v.x(), v.y(), stretch * v.z()}; }
+
+/// The vertices seen from `origin`, in the stretched space.
+struct Seen {
+    std::span<const Vec3> vertices;
+    Vec3 origin;
+    float stretch;
+
+    [[nodiscard]] Vec3 at(std::size_t i) const noexcept { return stretched(vertices[i] - origin, stretch); }
+    [[nodiscard]] Vec3 support(const Vec3& direction) const noexcept
+    {
+        const Vec3 along = stretched(direction, stretch);
+        std::size_t best = 0;
+        float most = along.dot(vertices[0] - origin);
+        for (std::size_t i = 1; i < vertices.size(); ++i) {
+            const float product = along.dot(vertices[i] - origin);
+            if (product > most) {
+                most = product;
+                best = i;
+            }
+        }
+        return at(best);
+    }
+    /// Largest sum of magnitudes; the vertex nearest to the origin.
+    [[nodiscard]] float size(Vec3& nearest) const noexcept
+    {
+        float largest = 0.0F;
+        float least = std::numeric_limits<float>::max();
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            const Vec3 v = at(i);
+            largest = std::max(largest, v.cwiseAbs().sum());
+            if (v.squaredNorm() < least) {
+                least = v.squaredNorm();
+                nearest = v;
+            }
+        }
+        return largest;
+    }
+};
+
+/// Whether the direction is worth to begin with.
+bool is_start(const Vec3& v) noexcept { return v.squaredNorm() > std::numeric_limits<float>::min(); }
+
+template <class Support>
+Separation search(const Support& support, const detail::SearchBegin& begin, float size, const DistanceQuery& query,
+                  std::uint32_t turn, WorkBudget& budget) noexcept
+{
+    if (!is_start(begin.nearest)) {
+        return {};
+    }
+    const detail::SearchLimits limits{0.0F, query.reach, query.resolution, 2 * kMostDistanceTurns};
+    const detail::SearchResult found =
+        detail::search_origin(support, begin, kProductRoundings * kUnitRoundoff * size, limits, turn, budget);
+    Separation out{found.proven, found.upper, found.towards};
+    if (found.upper == std::numeric_limits<float>::max()) {
+        out.upper = std::numeric_limits<float>::infinity();
+    }
+    return out;
+}
+
+/// With the last answer, or with the nearest of a few points.
+detail::SearchBegin begin_with(const DistanceQuery& query, const Vec3& nearest) noexcept
+{
+    return {is_start(query.start) ? query.start : nearest, nullptr, std::numeric_limits<float>::max()};
+}
+
+/// Of a ball about a point `offset` away.
+Separation from_ball(const Vec3& offset, float radius, float slack) noexcept
+{
+    const float length = offset.norm();
+    const float distance = length - radius - slack;
+    if (!(distance > 0.0F)) {
+        return {0.0F, std::max(length - radius, 0.0F) + slack, Vec3::Zero()};
+    }
+    return {distance, length - radius + slack, offset / length};
+}
+
+/// From `point` to the nearest point of the shape's axis, which is the centre for all but capsules and cylinders.
+Vec3 to_axis(const Vec3& point, const Shape& shape) noexcept
+{
+    const Vec3 offset = shape.centre - point;
+    if (shape.kind != ShapeKind::capsule && shape.kind != ShapeKind::cylinder) {
+        return offset;
+    }
+    const Vec3 axis = shape.axes.col(2);
+    const float along = std::clamp(-offset.dot(axis) / axis.squaredNorm(), -shape.half.z(), shape.half.z());
+    return offset + along * axis;
+}
+
+/// A ball about a point or a segment: the axes, which may be a little askew, decide nothing else.
+bool is_rounded(const Shape& shape) noexcept
+{
+    return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule;
+}
+
+/// The exit along `direction`, of any length, where it is shorter than the best one so far.
+template <class Support>
+void try_exit(const Support& support, const Vec3& direction, Exit& best) noexcept
+{
+    const float length = direction.norm();
+    if (!(length > std::numeric_limits<float>::min())) {
+        return;
+    }
+    const Vec3 unit = direction / length;
+    const float depth = unit.dot(support(unit));
+    if (depth < best.depth) {
+        best = {depth, unit};
+    }
+}
+
+}  // namespace
+
+Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices, const DistanceQuery& query,
+                               WorkBudget& budget) noexcept
+{
+    assert(!vertices.empty() && query.stretch > 0.0F && query.reach > 0.0F);
+    const Seen seen{vertices, point, query.stretch};
+    Vec3 nearest = Vec3::Zero();
+    const float size = seen.size(nearest);
+    const auto support = [&](const Vec3& direction) { return seen.support(direction); };
+    detail::SearchBegin begin = begin_with(query, nearest);
+    detail::Simplex simplex;
+    if (vertices.size() <= 3) {
+        // All of them at once: one turn proves what is found.
+        simplex.points.fill(Vec3::Zero());
+        simplex.size = vertices.size();
+        for (std::size_t i = 0; i < vertices.size(); ++i) {
+            simplex.points[i] = seen.at(i);
+        }
+        begin.nearest = detail::reduce_to_nearest(simplex);
+        begin.simplex = &simplex;
+        begin.upper = begin.nearest.norm();
+    }
+    return search(support, begin, size, query, distance_turn_units(vertices.size()), budget);
+}
+
+Separation hull_hull_distance(std::span<const Vec3> first, std::span<const Vec3> second, const DistanceQuery& query,
+                              WorkBudget& budget) noexcept
+{
+    assert(!first.empty() && !second.empty() && query.stretch > 0.0F && query.reach > 0.0F);
+    const Seen own{first, first[0], query.stretch};
+    const Seen other{second, first[0], query.stretch};
+    Vec3 nearest = Vec3::Zero();
+    Vec3 unused = Vec3::Zero();
+    const float size = other.size(nearest) + own.size(unused);
+    const auto support = [&](const Vec3& direction) -> Vec3 {
+        return other.support(direction) - own.support(-direction);
+    };
+    return search(support, begin_with(query, nearest), size, query, distance_turn_units(first.size() + second.size()),
+                  budget);
+}
+
+Separation point_shape_distance(const Vec3& point, const Shape& shape, const DistanceQuery& query,
+                                WorkBudget& budget) noexcept
+{
+    assert(is_valid(shape) && query.stretch > 0.0F && query.reach > 0.0F);
+    const Vec3 offset = stretched(shape.centre - point, query.stretch);
+    const float size = offset.cwiseAbs().sum() + std::max(1.0F, query.stretch) * bounding_radius(shape);
+    const std::uint32_t turn = distance_turn_units(shape.vertices.size());
+    if (query.stretch == 1.0F && is_rounded(shape)) {
+        if (!budget.spend(turn)) {
+            return {0.0F, std::numeric_limits<float>::infinity(), Vec3::Zero()};
+        }
+        return from_ball(to_axis(point, shape), shape.radius, kProductRoundings * kUnitRoundoff * size);
+    }
+    Shape centred = shape;
+    centred.centre = Vec3::Zero();
+    const auto support = [&](const Vec3& direction) -> Vec3 {
+        return offset + stretched(geometry::support(centred, stretched(direction, query.stretch)), query.stretch);
+    };
+    return search(support, begin_with(query, offset), size, query, turn, budget);
+}
+
+Exit exit_by_faces(const Vec3& point, std::span<const FacePlane> faces, float stretch) noexcept
+{
+    assert(!faces.empty());
+    // The plane normal . y = offset is (S^-1 normal) . y' = offset in the stretched space.
+    const float shrink = 1.0F / stretch;
+    Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
+    for (const FacePlane& face : faces) {
+        const Vec3 normal = stretched(face.normal, shrink);
+        const float length = normal.norm();
+        const float depth = (face.offset - face.normal.dot(point)) / length;
+        if (depth < best.depth) {
+            best = {depth, normal / length};
+        }
+    }
+    return best;
+}
+
+Exit exit_by_vertices(const Vec3& point, std::span<const Vec3> vertices, float stretch) noexcept
+{
+    assert(!vertices.empty());
+    const Seen seen{vertices, point, stretch};
+    const auto support = [&](const Vec3& direction) { return seen.support(direction); };
+    Vec3 mean = Vec3::Zero();
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+        mean += seen.at(i);
+    }
+    Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
+    try_exit(support, -mean, best);
+    for (int axis = 0; axis < 3; ++axis) {
+        try_exit(support, Vec3::Unit(axis), best);
+        try_exit(support, -Vec3::Unit(axis), best);
+    }
+    if (vertices.size() >= 3) {
+        const Vec3 normal = (seen.at(1) - seen.at(0)).cross(seen.at(2) - seen.at(0));
+        try_exit(support, normal, best);
+        try_exit(support, -normal, best);
+    }
+    return best;
+}
+
+Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcept
+{
+    const Vec3 offset = stretched(shape.centre - point, stretch);
+    Shape centred = shape;
+    centred.centre = Vec3::Zero();
+    const auto support = [&](const Vec3& direction) -> Vec3 {
+        return offset + stretched(geometry::support(centred, stretched(direction, stretch)), stretch);
+    };
+    Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
+    // A normal of the unstretched space becomes one of the stretched space by S^-1.
+    const Vec3 local = shape.axes.transpose() * (point - shape.centre);
+    try_exit(support, stretched(-to_axis(point, shape), 1.0F / stretch), best);
+    try_exit(support, stretched(shape.axes * Vec3(local.x(), local.y(), 0.0F), 1.0F / stretch), best);
+    try_exit(support, -offset, best);
+    for (int axis = 0; axis < 3; ++axis) {
+        const Vec3 normal = stretched(shape.axes.col(axis), 1.0F / stretch);
+        try_exit(support, normal, best);
+        try_exit(support, -normal, best);
+    }
+    return best;
+}
+
+}  // namespace jink::geometry

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/geometry/mesh_map.hpp"
+
+#include <cassert>
+#include <limits>
+
+namespace jink::geometry {
+
+namespace {
+
+/// What rounding may add to the distance of a box, as a share of it.
+constexpr float kBoxRounding = 1e-6F;
+
+float slack_of(const MeshMap& map, float stretch) noexcept { return std::max(1.0F, stretch) * map.slack; }
+
+/// Puts `piece` among the `found` first of `out`, nearest first; what falls out of a full list is returned.
+float insert(std::span<NearPiece> out, std::size_t& found, const NearPiece& piece) noexcept
+{
+    float lost = std::numeric_limits<float>::infinity();
+    if (found == out.size()) {
+        lost = std::max(piece.from.distance, out.back().from.distance);
+        if (piece.from.distance >= out.back().from.distance) {
+            return piece.from.distance;
+        }
+        --found;
+    }
+    std::size_t at = found++;
+    for (; at > 0 && piece.from.distance < out[at - 1].from.distance; --at) {
+        out[at] = out[at - 1];
+    }
+    out[at] = piece;
+    return lost;
+}
+
+}  // namespace
+
+float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point, float stretch) noexcept
+{
+    Vec3 off = (node.low - point).cwiseMax(point - node.high).cwiseMax(0.0F);
+    off.z() *= stretch;
+    return std::max(off.norm() * (1.0F - kBoxRounding) - slack_of(map, stretch), 0.0F);
+}
+
+Separation piece_distance(const MeshMap& map, std::size_t piece, const Vec3& point, const DistanceQuery& query,
+                          WorkBudget& budget) noexcept
+{
+    Separation from = point_hull_distance(point, map.vertices_of(piece), query, budget);
+    from.distance -= slack_of(map, query.stretch);
+    if (!(from.distance > 0.0F)) {
+        from.distance = 0.0F;
+        from.direction = Vec3::Zero();
+    }
+    return from;
+}
+
+Exit piece_exit(const MeshMap& map, std::size_t piece, const Vec3& point, float stretch) noexcept
+{
+    Exit out = map.pieces[piece].faces > 0 ? exit_by_faces(point, map.faces_of(piece), stretch)
+                                           : exit_by_vertices(point, map.vertices_of(piece), stretch);
+    out.depth += slack_of(map, stretch);
+    return out;
+}
+
+NearestPieces nearest_pieces(const MeshMap& map, const Vec3& point, const DistanceQuery& query,
+                             std::span<NearPiece> out, WorkBudget& budget) noexcept
+{
+    assert(!out.empty());
+    NearestPieces answer;
+    float lost = query.reach;
+    const auto visit = [&](std::uint16_t piece, float bound) {
+        const bool full = answer.found == out.size();
+        DistanceQuery asked = query;
+        asked.start = Vec3::Zero();
+        asked.reach = full ? std::max(out.back().from.distance, std::numeric_limits<float>::min()) : query.reach;
+        const NearPiece near{piece, piece_distance(map, piece, point, asked, budget)};
+        if (budget.exhausted()) {
+            lost = std::min(lost, std::max(bound, near.from.distance));
+        } else if (near.from.distance < query.reach) {
+            lost = std::min(lost, insert(out, answer.found, near));
+        }
+        return answer.found == out.size() ? std::min(query.reach, out.back().from.distance) : query.reach;
+    };
+    const float passed_over = visit_near(map, point, query.stretch, query.reach, budget, visit);
+    answer.dropped = std::min(lost, passed_over);
+    return answer;
+}
+
+}  // namespace jink::geometry

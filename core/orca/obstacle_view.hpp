@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/orca/obstacle_plane.hpp"
+
+// Where single obstacles lie. Shared by the half-spaces and by the check along a way; not meant for other rooms.
+
+namespace jink::orca::detail {
+
+/// One convex obstacle seen from a point, in the stretched space.
+struct Sighting {
+    float distance = 0.0F;  ///< proven [m]; below 0: the point is in the obstacle, its way out that long
+    float upper = 0.0F;     ///< no farther than this [m]
+    Vec3 direction =
+        Vec3::UnitX();     ///< unit vector towards it; zero where the budget ran out before anything was known
+    bool bounded = false;  ///< the search was cut short: `distance` may be less than could be known
+};
+
+/// The scene in the space that is stretched for the vehicle's envelope.
+struct ObstacleView {
+    const ObstacleScene& scene;
+    Envelope envelope;
+    float resolution = 1e-4F;  ///< [m]
+
+    /// Of a piece of the map; `reach` as in geometry::DistanceQuery. With an exhausted budget what was proven by then.
+    [[nodiscard]] Sighting piece(std::size_t index, const Vec3& point, float reach, WorkBudget& budget) const noexcept;
+    /// Of an obstacle of the scene.
+    [[nodiscard]] Sighting obstacle(std::size_t index, const Vec3& point, float reach,
+                                    WorkBudget& budget) const noexcept;
+    /// A lower bound of its distance. O(1), O(vertices) for a hull.
+    [[nodiscard]] float obstacle_bound(std::size_t index, const Vec3& point) const noexcept;
+};
+
+}  // namespace jink::orca::detail
