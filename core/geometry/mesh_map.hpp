@@ -179,7 +179,8 @@ float visit_near(const MeshMap& map, const Vec3& point, float stretch, float rea
 
 struct NearestPieces {
     std::size_t found = 0;  ///< pieces in the answer
-    /// No piece that is not in the answer is nearer than this [m]; query.reach when all within it are.
+    /// No piece that is not in the answer is nearer than this [m]; query.reach where the answer has room to
+    /// spare.
     float dropped = 0.0F;
 };
 /// The pieces nearest to `point` within `query.reach` of it, nearest first, into `out`.

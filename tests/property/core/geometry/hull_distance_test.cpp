@@ -47,7 +47,7 @@ double band(const std::vector<Vec3>& vertices, const Vec3& origin, float stretch
     for (const Vec3& v : vertices) {
         most = std::max(most, stretched(v - origin, stretch).cwiseAbs().sum());
     }
-    return 2e-6 * most;
+    return 3e-6 * most;
 }
 
 struct Tally {
