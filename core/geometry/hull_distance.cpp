@@ -22,20 +22,24 @@ constexpr float kProductRoundings = 16.0F;
 
 Vec3 stretched(const Vec3& v, float stretch) noexcept { return {v.x(), v.y(), stretch * v.z()}; }
 
+const Vec3& vector_of(const Vec3& v) noexcept { return v; }
+Vec3 vector_of(const Point3& v) noexcept { return v.vec(); }
+
 /// The vertices seen from `origin`, in the stretched space.
+template <class Vertex>
 struct Seen {
-    std::span<const Vec3> vertices;
+    std::span<const Vertex> vertices;
     Vec3 origin;
     float stretch;
 
-    [[nodiscard]] Vec3 at(std::size_t i) const noexcept { return stretched(vertices[i] - origin, stretch); }
+    [[nodiscard]] Vec3 at(std::size_t i) const noexcept { return stretched(vector_of(vertices[i]) - origin, stretch); }
     [[nodiscard]] Vec3 support(const Vec3& direction) const noexcept
     {
         const Vec3 along = stretched(direction, stretch);
         std::size_t best = 0;
-        float most = along.dot(vertices[0] - origin);
+        float most = along.dot(vector_of(vertices[0]) - origin);
         for (std::size_t i = 1; i < vertices.size(); ++i) {
-            const float product = along.dot(vertices[i] - origin);
+            const float product = along.dot(vector_of(vertices[i]) - origin);
             if (product > most) {
                 most = product;
                 best = i;
@@ -130,13 +134,12 @@ void try_exit(const Support& support, const Vec3& direction, Exit& best) noexcep
     }
 }
 
-}  // namespace
-
-Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices, const DistanceQuery& query,
-                               WorkBudget& budget) noexcept
+template <class Vertex>
+Separation distance_from_hull(const Vec3& point, std::span<const Vertex> vertices, const DistanceQuery& query,
+                              WorkBudget& budget) noexcept
 {
     assert(!vertices.empty() && query.stretch > 0.0F && query.reach > 0.0F);
-    const Seen seen{vertices, point, query.stretch};
+    const Seen<Vertex> seen{vertices, point, query.stretch};
     Vec3 nearest = Vec3::Zero();
     const float size = seen.size(nearest);
     const auto support = [&](const Vec3& direction) { return seen.support(direction); };
@@ -156,12 +159,26 @@ Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices
     return search(support, begin, size, query, distance_turn_units(vertices.size()), budget);
 }
 
+}  // namespace
+
+Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices, const DistanceQuery& query,
+                               WorkBudget& budget) noexcept
+{
+    return distance_from_hull(point, vertices, query, budget);
+}
+
+Separation point_hull_distance(const Vec3& point, std::span<const Point3> vertices, const DistanceQuery& query,
+                               WorkBudget& budget) noexcept
+{
+    return distance_from_hull(point, vertices, query, budget);
+}
+
 Separation hull_hull_distance(std::span<const Vec3> first, std::span<const Vec3> second, const DistanceQuery& query,
                               WorkBudget& budget) noexcept
 {
     assert(!first.empty() && !second.empty() && query.stretch > 0.0F && query.reach > 0.0F);
-    const Seen own{first, first[0], query.stretch};
-    const Seen other{second, first[0], query.stretch};
+    const Seen<Vec3> own{first, first[0], query.stretch};
+    const Seen<Vec3> other{second, first[0], query.stretch};
     Vec3 nearest = Vec3::Zero();
     Vec3 unused = Vec3::Zero();
     const float size = other.size(nearest) + own.size(unused);
@@ -200,9 +217,9 @@ Exit exit_by_faces(const Vec3& point, std::span<const FacePlane> faces, float st
     const float shrink = 1.0F / stretch;
     Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
     for (const FacePlane& face : faces) {
-        const Vec3 normal = stretched(face.normal, shrink);
+        const Vec3 normal = stretched(face.normal.vec(), shrink);
         const float length = normal.norm();
-        const float depth = (face.offset - face.normal.dot(point)) / length;
+        const float depth = (face.offset - face.normal.vec().dot(point)) / length;
         if (depth < best.depth) {
             best = {depth, normal / length};
         }
@@ -210,10 +227,10 @@ Exit exit_by_faces(const Vec3& point, std::span<const FacePlane> faces, float st
     return best;
 }
 
-Exit exit_by_vertices(const Vec3& point, std::span<const Vec3> vertices, float stretch) noexcept
+Exit exit_by_vertices(const Vec3& point, std::span<const Point3> vertices, float stretch) noexcept
 {
     assert(!vertices.empty());
-    const Seen seen{vertices, point, stretch};
+    const Seen<Point3> seen{vertices, point, stretch};
     const auto support = [&](const Vec3& direction) { return seen.support(direction); };
     Vec3 mean = Vec3::Zero();
     for (std::size_t i = 0; i < vertices.size(); ++i) {

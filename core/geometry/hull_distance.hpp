@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/base/point3.hpp"
 #include "core/base/vec3.hpp"
 #include "core/base/work_budget.hpp"
 #include "core/base/work_units.hpp"
@@ -49,6 +50,10 @@ struct DistanceQuery {
 [[nodiscard]] Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices,
                                              const DistanceQuery& query, WorkBudget& budget) noexcept;
 
+/// The same of vertices in a constant table.
+[[nodiscard]] Separation point_hull_distance(const Vec3& point, std::span<const Point3> vertices,
+                                             const DistanceQuery& query, WorkBudget& budget) noexcept;
+
 /// The same of two hulls, of `first` and of `second`. Accuracy as above, with the vertices of both relative to
 /// `first[0]`. O(kMostDistanceTurns * vertices of both).
 [[nodiscard]] Separation hull_hull_distance(std::span<const Vec3> first, std::span<const Vec3> second,
@@ -62,7 +67,7 @@ struct DistanceQuery {
 
 /// A face's plane: outward unit normal; normal . y <= offset for each point y of the solid.
 struct FacePlane {
-    Vec3 normal = Vec3::UnitZ();
+    Point3 normal{0.0F, 0.0F, 1.0F};
     float offset = 0.0F;  ///< [m]
 };
 
@@ -79,7 +84,7 @@ struct Exit {
 /// Out of the hull of `vertices` (1..4 of them need not span a solid): along the thinnest of a few directions, those of
 /// the point from the vertices' mean, of the axes and, of a triangle, its normal. `depth` is not below the true one.
 /// O(vertices).
-[[nodiscard]] Exit exit_by_vertices(const Vec3& point, std::span<const Vec3> vertices, float stretch) noexcept;
+[[nodiscard]] Exit exit_by_vertices(const Vec3& point, std::span<const Point3> vertices, float stretch) noexcept;
 
 /// Out of any shape: along the best of its own axes and the direction away from its centre or its axis. `depth` is not
 /// below the true one, and it is that of spheres, boxes, capsules and cylinders where nothing is stretched.

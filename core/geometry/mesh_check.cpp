@@ -14,18 +14,23 @@ namespace {
 /// Longest error of a stored normal's length.
 constexpr float kUnitTolerance = 1e-4F;
 
-void add_vector(Crc& crc, const Vec3& v) noexcept
+void add_point(Crc& crc, const Point3& v) noexcept
 {
-    crc.add(v.x());
-    crc.add(v.y());
-    crc.add(v.z());
+    crc.add(v.x);
+    crc.add(v.y);
+    crc.add(v.z);
 }
 
-bool is_within_map(const Vec3& v) noexcept { return is_finite(v) && (v.array().abs() <= kMaxMeshCoordinate).all(); }
-
-bool lies_within(const Vec3& v, const Vec3& low, const Vec3& high) noexcept
+bool is_within_map(const Point3& point) noexcept
 {
-    return (v.array() >= low.array()).all() && (v.array() <= high.array()).all();
+    const Vec3 v = point.vec();
+    return is_finite(v) && (v.array().abs() <= kMaxMeshCoordinate).all();
+}
+
+bool lies_within(const Point3& point, const Point3& low, const Point3& high) noexcept
+{
+    const Vec3 v = point.vec();
+    return (v.array() >= low.vec().array()).all() && (v.array() <= high.vec().array()).all();
 }
 
 MapStatus check_sizes(const MeshMap& m) noexcept
@@ -51,12 +56,12 @@ MapStatus check_sizes(const MeshMap& m) noexcept
 MapStatus check_faces(const MeshMap& m, std::size_t piece) noexcept
 {
     for (const FacePlane& face : m.faces_of(piece)) {
-        if (!is_finite(face.normal) || !std::isfinite(face.offset) ||
-            !(std::abs(face.normal.norm() - 1.0F) <= kUnitTolerance)) {
+        const Vec3 normal = face.normal.vec();
+        if (!is_finite(normal) || !std::isfinite(face.offset) || !(std::abs(normal.norm() - 1.0F) <= kUnitTolerance)) {
             return MapStatus::bad_face;
         }
-        for (const Vec3& vertex : m.vertices_of(piece)) {
-            if (!(face.normal.dot(vertex) <= face.offset + kFaceTolerance)) {
+        for (const Point3& vertex : m.vertices_of(piece)) {
+            if (!(normal.dot(vertex.vec()) <= face.offset + kFaceTolerance)) {
                 return MapStatus::bad_face;
             }
         }
@@ -86,7 +91,7 @@ MapStatus check_pieces(const MeshMap& m) noexcept
     if (!std::isfinite(m.slack) || !(m.slack >= 0.0F) || !is_within_map(m.low) || !is_within_map(m.high)) {
         return MapStatus::bad_coordinate;
     }
-    for (const Vec3& v : m.vertices) {
+    for (const Point3& v : m.vertices) {
         if (!is_within_map(v)) {
             return MapStatus::bad_coordinate;
         }
@@ -125,7 +130,7 @@ MapStatus check_leaf(const MeshMap& m, const MeshNode& node, Met& met) noexcept
     if (node.piece >= m.pieces.size() || node.right != 0 || !met.add(node.piece)) {
         return MapStatus::bad_tree;
     }
-    for (const Vec3& v : m.vertices_of(node.piece)) {
+    for (const Point3& v : m.vertices_of(node.piece)) {
         if (!lies_within(v, node.low, node.high)) {
             return MapStatus::bad_bounds;
         }
@@ -192,24 +197,24 @@ std::uint32_t checksum_of(const MeshMap& m) noexcept
     crc.add16(m.version);
     crc.add(m.metres_per_unit);
     crc.add(m.slack);
-    add_vector(crc, m.low);
-    add_vector(crc, m.high);
+    add_point(crc, m.low);
+    add_point(crc, m.high);
     for (const MeshPiece& piece : m.pieces) {
         crc.add32(piece.first_vertex);
         crc.add32(piece.first_face);
         crc.add16(piece.vertices);
         crc.add16(piece.faces);
     }
-    for (const Vec3& vertex : m.vertices) {
-        add_vector(crc, vertex);
+    for (const Point3& vertex : m.vertices) {
+        add_point(crc, vertex);
     }
     for (const FacePlane& face : m.faces) {
-        add_vector(crc, face.normal);
+        add_point(crc, face.normal);
         crc.add(face.offset);
     }
     for (const MeshNode& node : m.nodes) {
-        add_vector(crc, node.low);
-        add_vector(crc, node.high);
+        add_point(crc, node.low);
+        add_point(crc, node.high);
         crc.add16(node.right);
         crc.add16(node.piece);
     }

@@ -36,7 +36,7 @@ float insert(std::span<NearPiece> out, std::size_t& found, const NearPiece& piec
 
 float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point, float stretch) noexcept
 {
-    Vec3 off = (node.low - point).cwiseMax(point - node.high).cwiseMax(0.0F);
+    Vec3 off = (node.low.vec() - point).cwiseMax(point - node.high.vec()).cwiseMax(0.0F);
     off.z() *= stretch;
     return std::max(off.norm() * (1.0F - kBoxRounding) - slack_of(map, stretch), 0.0F);
 }

@@ -45,8 +45,8 @@ inline constexpr std::uint16_t kNoPiece = 0xFFFF;
 
 /// A node of the tree of boxes. Nodes are stored so that a left child follows its parent.
 struct MeshNode {
-    Vec3 low = Vec3::Zero();         ///< [m]
-    Vec3 high = Vec3::Zero();        ///< [m]
+    Point3 low;                      ///< [m]
+    Point3 high;                     ///< [m]
     std::uint16_t right = 0;         ///< index of the right child; of a leaf: 0
     std::uint16_t piece = kNoPiece;  ///< of a leaf: what it holds
 
@@ -64,15 +64,15 @@ struct MeshMap {
     /// How far the mesh may stand out of the pieces [m], >= 0: what rounding to float may have taken off. Every query
     /// answers as if the pieces were larger by it.
     float slack = 0.0F;
-    Vec3 low = Vec3::Zero();  ///< bounds of all pieces [m]
-    Vec3 high = Vec3::Zero();
+    Point3 low;  ///< bounds of all pieces [m]
+    Point3 high;
     std::span<const MeshPiece> pieces;
-    std::span<const Vec3> vertices;
+    std::span<const Point3> vertices;
     std::span<const FacePlane> faces;
     std::span<const MeshNode> nodes;
     std::uint32_t checksum = 0;  ///< of all of the above but the name (`checksum_of`)
 
-    [[nodiscard]] std::span<const Vec3> vertices_of(std::size_t piece) const noexcept
+    [[nodiscard]] std::span<const Point3> vertices_of(std::size_t piece) const noexcept
     {
         return vertices.subspan(pieces[piece].first_vertex, pieces[piece].vertices);
     }

@@ -21,11 +21,11 @@ inline std::vector<geometry::FacePlane> faces_of_hull(const std::vector<Vec3>& v
     std::vector<geometry::FacePlane> faces;
     const auto add = [&](const Vec3d& normal, double offset) {
         for (const geometry::FacePlane& face : faces) {
-            if (face.normal.cast<double>().dot(normal) > 1.0 - 1e-9) {
+            if (face.normal.vec().cast<double>().dot(normal) > 1.0 - 1e-9) {
                 return;
             }
         }
-        faces.push_back({normal.cast<float>(), static_cast<float>(offset)});
+        faces.push_back({Point3::of(normal.cast<float>()), static_cast<float>(offset)});
     };
     double size = 0;
     for (const Vec3& v : vertices) {
@@ -69,7 +69,9 @@ public:
             const std::vector<geometry::FacePlane> faces = faces_of_hull(hull);
             pieces_.push_back({static_cast<std::uint32_t>(vertices_.size()), static_cast<std::uint32_t>(faces_.size()),
                                static_cast<std::uint16_t>(hull.size()), static_cast<std::uint16_t>(faces.size())});
-            vertices_.insert(vertices_.end(), hull.begin(), hull.end());
+            for (const Vec3& v : hull) {
+                vertices_.push_back(Point3::of(v));
+            }
             faces_.insert(faces_.end(), faces.begin(), faces.end());
         }
         map_.name = "hulls";
@@ -91,7 +93,7 @@ public:
     [[nodiscard]] const geometry::MeshMap& map() const { return map_; }
 
     std::vector<geometry::MeshPiece> pieces_;
-    std::vector<Vec3> vertices_;
+    std::vector<Point3> vertices_;
     std::vector<geometry::FacePlane> faces_;
     std::vector<geometry::MeshNode> nodes_;
 
@@ -100,25 +102,27 @@ private:
     {
         const std::size_t at = nodes_.size();
         geometry::MeshNode node;
-        node.low = Vec3::Constant(1e9F);
-        node.high = Vec3::Constant(-1e9F);
+        Vec3 low = Vec3::Constant(1e9F);
+        Vec3 high = -low;
         for (std::size_t i = first; i < last; ++i) {
-            for (const Vec3& v : map_.vertices_of(order[i])) {
-                node.low = node.low.cwiseMin(v);
-                node.high = node.high.cwiseMax(v);
+            for (const Point3& v : map_.vertices_of(order[i])) {
+                low = low.cwiseMin(v.vec());
+                high = high.cwiseMax(v.vec());
             }
         }
+        node.low = Point3::of(low);
+        node.high = Point3::of(high);
         node.piece = last - first == 1 ? order[first] : geometry::kNoPiece;
         nodes_.push_back(node);
         if (last - first == 1) {
             return;
         }
         int axis = 0;
-        (node.high - node.low).maxCoeff(&axis);
+        (high - low).maxCoeff(&axis);
         const std::size_t middle = (first + last) / 2;
         std::nth_element(order.begin() + long(first), order.begin() + long(middle), order.begin() + long(last),
                          [&](std::uint16_t a, std::uint16_t b) {
-                             return map_.vertices_of(a)[0][axis] < map_.vertices_of(b)[0][axis];
+                             return map_.vertices_of(a)[0].vec()[axis] < map_.vertices_of(b)[0].vec()[axis];
                          });
         split(order, first, middle);
         nodes_[at].right = static_cast<std::uint16_t>(nodes_.size());

@@ -223,8 +223,8 @@ TEST(ExitByFaces, IsTheNearestFaceOfTheStretchedSolid)
         const Vec3 centre = oracle::in_cube(random, 100.0F);
         std::vector<FacePlane> faces(4 + random.below(50));
         for (FacePlane& face : faces) {
-            face.normal = (oracle::in_cube(random, 1.0F) + Vec3(0.0F, 0.0F, 1e-3F)).normalized();
-            face.offset = face.normal.dot(centre) + random.uniform(0.1F, 10.0F);
+            face.normal = Point3::of((oracle::in_cube(random, 1.0F) + Vec3(0.0F, 0.0F, 1e-3F)).normalized());
+            face.offset = face.normal.vec().dot(centre) + random.uniform(0.1F, 10.0F);
         }
         const float stretch = any_stretch(random);
         const Vec3 point = centre + oracle::in_cube(random, 3.0F);
@@ -232,7 +232,7 @@ TEST(ExitByFaces, IsTheNearestFaceOfTheStretchedSolid)
         double least = 1e300;
         for (const FacePlane& face : faces) {
             // Distance of a point from a plane in the stretched space, from three points of the plane.
-            const Vec3d normal = face.normal.cast<double>();
+            const Vec3d normal = face.normal.vec().cast<double>();
             const Vec3d foot = normal * double(face.offset) / normal.squaredNorm();
             const Vec3d side = normal.unitOrthogonal();
             const auto up = [&](const Vec3d& v) { return Vec3d(v.x(), v.y(), double(stretch) * v.z()); };

@@ -61,7 +61,7 @@ TEST(NearestPieces, AreThoseThatALookAtEveryPieceFinds)
             DistanceQuery query;
             query.stretch = random.below(2) == 0 ? 1.0F : random.uniform(0.5F, 4.0F);
             query.reach = random.uniform(0.1F, 20.0F);
-            const Vec3 point = 0.5F * (map.low + map.high) + oracle::in_cube(random, 1.5F * room);
+            const Vec3 point = 0.5F * (map.low.vec() + map.high.vec()) + oracle::in_cube(random, 1.5F * room);
             std::vector<NearPiece> out(1 + random.below(20));
             WorkBudget budget(10'000'000);
             const NearestPieces found = nearest_pieces(map, point, query, out, budget);
@@ -106,7 +106,7 @@ TEST(VisitNear, VisitsEveryPieceWithinReachOnceAndItsBoundHolds)
         const MeshMap& map = tables.map();
         const float stretch = random.uniform(0.5F, 4.0F);
         const float reach = random.uniform(0.1F, 15.0F);
-        const Vec3 point = 0.5F * (map.low + map.high) + oracle::in_cube(random, 12.0F);
+        const Vec3 point = 0.5F * (map.low.vec() + map.high.vec()) + oracle::in_cube(random, 12.0F);
         std::vector<int> visited(map.pieces.size(), 0);
         WorkBudget budget(1'000'000);
         DistanceQuery query;

@@ -78,10 +78,10 @@ TEST(MeshMapCheck, ATreeThatIsTooDeepIsRefused)
 {
     // Every node's left child is a leaf: as deep as there are pieces.
     std::vector<MeshPiece> some;
-    std::vector<Vec3> vertices;
+    std::vector<Point3> vertices;
     std::vector<MeshNode> nodes;
     MeshNode box;
-    box.high = Vec3::Ones();
+    box.high = {1.0F, 1.0F, 1.0F};
     constexpr std::uint16_t kCount = kMaxMeshDepth + 2;
     for (std::uint16_t i = 0; i < kCount; ++i) {
         some.push_back({3U * i, 0, 3, 0});
@@ -94,7 +94,7 @@ TEST(MeshMapCheck, ATreeThatIsTooDeepIsRefused)
         nodes.back().piece = i;
     }
     MeshMap map;
-    map.high = Vec3::Ones();
+    map.high = box.high;
     map.pieces = some;
     map.vertices = vertices;
     map.nodes = nodes;
@@ -124,21 +124,21 @@ TEST(MeshMapCheck, TablesThatDoNotBelongTogetherAreRefused)
 TEST(MeshMapCheck, BadCoordinatesAreRefused)
 {
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1000.1F}) {
-        EXPECT_EQ(Changed([bad](auto& t, auto&) { t.vertices_[3].y() = bad; }).status(), MapStatus::bad_coordinate);
-        EXPECT_EQ(Changed([bad](auto& t, auto&) { t.nodes_[0].high.y() = bad; }).status(), MapStatus::bad_coordinate);
-        EXPECT_EQ(Changed([bad](auto&, MeshMap& m) { m.high.x() = bad; }).status(), MapStatus::bad_coordinate);
+        EXPECT_EQ(Changed([bad](auto& t, auto&) { t.vertices_[3].y = bad; }).status(), MapStatus::bad_coordinate);
+        EXPECT_EQ(Changed([bad](auto& t, auto&) { t.nodes_[0].high.y = bad; }).status(), MapStatus::bad_coordinate);
+        EXPECT_EQ(Changed([bad](auto&, MeshMap& m) { m.high.x = bad; }).status(), MapStatus::bad_coordinate);
     }
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.slack = -0.1F; }).status(), MapStatus::bad_coordinate);
 }
 
 TEST(MeshMapCheck, BoxesThatHoldTooLittleAreRefused)
 {
-    EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.low.x() = 0.5F; }).status(), MapStatus::bad_bounds);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.nodes_[0].low.x() = 0.5F; }).status(), MapStatus::bad_bounds);
+    EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.low.x = 0.5F; }).status(), MapStatus::bad_bounds);
+    EXPECT_EQ(Changed([](auto& t, auto&) { t.nodes_[0].low.x = 0.5F; }).status(), MapStatus::bad_bounds);
     EXPECT_EQ(Changed([](auto& t, auto&) {
                   for (MeshNode& node : t.nodes_) {
                       if (node.is_leaf()) {
-                          node.high.z() -= 0.1F;
+                          node.high.z -= 0.1F;
                       }
                   }
               }).status(),
@@ -161,9 +161,9 @@ TEST(MeshMapCheck, TreesThatDoNotHoldEveryPieceOnceAreRefused)
 TEST(MeshMapCheck, FacesThatCutTheirPieceAreRefused)
 {
     EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].offset -= 0.01F; }).status(), MapStatus::bad_face);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].normal *= 1.01F; }).status(), MapStatus::bad_face);
+    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].normal.x += 0.9F; }).status(), MapStatus::bad_face);
     EXPECT_EQ(
-        Changed([](auto& t, auto&) { t.faces_[2].normal.x() = std::numeric_limits<float>::quiet_NaN(); }).status(),
+        Changed([](auto& t, auto&) { t.faces_[2].normal.x = std::numeric_limits<float>::quiet_NaN(); }).status(),
         MapStatus::bad_face);
 }
 
@@ -171,9 +171,9 @@ TEST(MeshMapCheck, EveryTableIsInTheChecksum)
 {
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.checksum ^= 1U; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.slack = 1e-6F; }, false).status(), MapStatus::wrong_checksum);
-    EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.high.x() += 1.0F; }, false).status(), MapStatus::wrong_checksum);
+    EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.high.x += 1.0F; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].offset += 1e-6F; }, false).status(), MapStatus::wrong_checksum);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.vertices_[0] += Vec3(1e-4F, 0, 0); }, false).status(),
+    EXPECT_EQ(Changed([](auto& t, auto&) { t.vertices_[0].x += 1e-4F; }, false).status(),
               MapStatus::wrong_checksum);
 }
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Half-spaces of static obstacles for a swarm of 100 among the 1000 triangles of fifty corner buildings: the tree's
+// query, the distances and the choice of planes, for a soup of triangles and for the same mesh in convex pieces.
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "core/orca/obstacle_plane.hpp"
+#include "core/orca/obstacle_way.hpp"
+#include "toolchain/mesh/decompose.hpp"
+
+namespace {
+
+using jink::Vec3;
+using jink::WorkBudget;
+namespace mesh = jink::mesh;
+namespace orca = jink::orca;
+
+constexpr std::size_t kBuildings = 50;
+constexpr std::size_t kAgents = 100;
+constexpr float kTown = 100.0F;  ///< side [m]
+
+/// An L of 20 triangles, 12 m by 12 m, turned by quarters.
+void append_building(mesh::TriangleMesh& town, const mesh::Vec3d& at, double height, std::size_t quarters)
+{
+    const double outline[6][2] = {{0, 0}, {12, 0}, {12, 4}, {4, 4}, {4, 12}, {0, 12}};
+    const std::size_t caps[4][3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}};
+    const std::size_t first = town.vertices.size();
+    for (const double z : {0.0, height}) {
+        for (const auto& p : outline) {
+            double x = p[0];
+            double y = p[1];
+            for (std::size_t i = 0; i < quarters; ++i) {
+                std::swap(x, y);
+                x = -x;
+            }
+            town.vertices.emplace_back(at + mesh::Vec3d(x, y, z));
+        }
+    }
+    for (const auto& c : caps) {
+        town.triangles.push_back({first + c[0], first + c[2], first + c[1]});
+        town.triangles.push_back({first + c[0] + 6, first + c[1] + 6, first + c[2] + 6});
+    }
+    for (std::size_t i = 0; i < 6; ++i) {
+        const std::size_t j = (i + 1) % 6;
+        town.triangles.push_back({first + i, first + j, first + j + 6});
+        town.triangles.push_back({first + i, first + j + 6, first + i + 6});
+    }
+}
+
+struct Swarm {
+    mesh::TriangleMesh town;
+    std::vector<orca::OwnMotion> agents;
+
+    Swarm()
+    {
+        jink::Random random(1);
+        for (std::size_t i = 0; i < kBuildings; ++i) {
+            append_building(town, {double(random.uniform(0.0F, kTown)), double(random.uniform(0.0F, kTown)), 0.0},
+                            double(random.uniform(5.0F, 30.0F)), random.below(4));
+        }
+        for (std::size_t i = 0; i < kAgents; ++i) {
+            orca::OwnMotion own;
+            own.position = {random.uniform(0.0F, kTown), random.uniform(0.0F, kTown), random.uniform(2.0F, 30.0F)};
+            own.velocity = {random.uniform(-2.0F, 2.0F), random.uniform(-2.0F, 2.0F), 0.0F};
+            own.reach_speed = 3.0F;
+            agents.push_back(own);
+        }
+    }
+};
+
+const Swarm& swarm()
+{
+    static const Swarm made;
+    return made;
+}
+
+mesh::StoredMap map_of(mesh::Method method)
+{
+    mesh::Recipe recipe;
+    recipe.method = method;
+    return mesh::StoredMap("town", mesh::pieces_of(swarm().town, recipe));
+}
+
+/// All agents in each turn; `work(agent, budget)` of each alone is timed for the worst of them, the least time of all
+/// turns standing for an agent.
+template <class Work>
+void run(benchmark::State& state, mesh::Method method, const Work& work)
+{
+    using Clock = std::chrono::steady_clock;
+    const mesh::StoredMap stored = map_of(method);
+    const jink::geometry::MeshMap map = stored.view();
+    const orca::ObstacleScene scene{&map, {}};
+    std::vector<double> least(kAgents, 1e9);
+    std::uint32_t most_units = 0;
+    for (auto _ : state) {
+        for (std::size_t i = 0; i < kAgents; ++i) {
+            WorkBudget budget(1'000'000);
+            const auto start = Clock::now();
+            work(scene, swarm().agents[i], budget);
+            least[i] = std::min(least[i], std::chrono::duration<double, std::nano>(Clock::now() - start).count());
+            most_units = std::max(most_units, budget.spent());
+        }
+    }
+    double sum = 0;
+    for (const double time : least) {
+        sum += time;
+    }
+    state.counters["triangles"] = double(swarm().town.triangles.size());
+    state.counters["pieces"] = double(map.pieces.size());
+    state.counters["ns_per_agent"] = sum / double(kAgents);
+    state.counters["worst_ns"] = *std::max_element(least.begin(), least.end());
+    state.counters["most_units"] = most_units;
+}
+
+void planes(benchmark::State& state, mesh::Method method)
+{
+    const orca::ObstacleSettings settings;
+    std::size_t most = 0;
+    std::size_t truncated = 0;
+    run(state, method, [&](const orca::ObstacleScene& scene, const orca::OwnMotion& own, WorkBudget& budget) {
+        const orca::ObstaclePlanes found = orca::obstacle_planes(scene, own, settings, budget);
+        most = std::max(most, found.planes.size());
+        truncated += found.truncated ? 1 : 0;
+        benchmark::DoNotOptimize(found.margin);
+    });
+    state.counters["most_planes"] = double(most);
+    state.counters["truncated"] = double(truncated) / double(state.iterations());
+}
+
+void way(benchmark::State& state, mesh::Method method)
+{
+    const orca::ObstacleSettings settings;
+    run(state, method, [&](const orca::ObstacleScene& scene, const orca::OwnMotion& own, WorkBudget& budget) {
+        const orca::WayClearance found =
+            orca::clearance_along(scene, own.position, own.velocity, settings.horizon, settings, budget);
+        benchmark::DoNotOptimize(found.clear_until);
+    });
+}
+
+}  // namespace
+
+BENCHMARK_CAPTURE(planes, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(planes, decomposed, mesh::Method::decompose)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(way, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(way, decomposed, mesh::Method::decompose)->Unit(benchmark::kMicrosecond);
+BENCHMARK_MAIN();

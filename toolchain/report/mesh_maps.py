@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws maps of convex pieces, as `jink mesh measure --figures` hands them over on standard input, all in one PNG."""
+import json
+import pathlib
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
+import numpy as np  # noqa: E402
+from matplotlib.collections import PolyCollection  # noqa: E402
+from PIL import Image  # noqa: E402 (matplotlib needs it too)
+
+INK, MESH = "#2b2f36", "#2b2f36"
+WIDTH = 12.0  # [in]
+
+plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
+                     "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False})
+
+
+def outline(points):
+    """Convex hull of points of a plane, counter-clockwise (Andrew 1979)."""
+    points = sorted(set(map(tuple, points)))
+    if len(points) < 3:
+        return points
+
+    def half(some):
+        chain = []
+        for p in some:
+            while len(chain) >= 2 and ((chain[-1][0] - chain[-2][0]) * (p[1] - chain[-2][1])
+                                       - (chain[-1][1] - chain[-2][1]) * (p[0] - chain[-2][0])) <= 0:
+                chain.pop()
+            chain.append(p)
+        return chain[:-1]
+
+    return half(points) + half(points[::-1])
+
+
+def view(axes, data, across, up):
+    pieces = [outline([(v[across], v[up]) for v in piece]) for piece in data["pieces"]]
+    colours = plt.cm.tab20(np.arange(len(pieces)) % 20)
+    axes.add_collection(PolyCollection([p for p in pieces if len(p) > 2], facecolors=colours, edgecolors=colours, alpha=0.35,
+                                       linewidths=0.8))
+    axes.add_collection(PolyCollection([[(v[across], v[up]) for v in t] for t in data["mesh"]], facecolors="none",
+                                       edgecolors=MESH, linewidths=0.3))
+    axes.autoscale_view()
+    axes.set_aspect("equal")
+
+
+def draw(maps, folder):
+    figure, rows = plt.subplots(2, len(maps), figsize=(WIDTH, 0.5 * WIDTH), layout="constrained", squeeze=False)
+    for data, above, beside in zip(maps, rows[0], rows[1]):
+        view(above, data, 0, 1)
+        view(beside, data, 0, 2)
+        above.set_title(f"{data['name']}: {len(data['pieces'])} pieces,\n{data['bytes'] / 1024:.1f} KiB, stand out "
+                        f"{data['excess']:.2f} m", loc="left", fontsize=8)
+        beside.set_xlabel("east [m]")
+    rows[0][0].set_ylabel("from above: north [m]")
+    rows[1][0].set_ylabel("from the side: up [m]")
+    figure.set_dpi(90)
+    figure.canvas.draw()
+    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[:, :, :3])
+    plt.close(figure)
+    # 128 colours make a third of the size. No date or version in the file, so that drawing anew changes nothing.
+    pixels.quantize(128, dither=Image.Dither.NONE).save(folder / "maps.png", optimize=True)
+    return "maps.png"
+
+
+def main():
+    if len(sys.argv) != 2:
+        print("usage: mesh_maps.py FOLDER < maps.json", file=sys.stderr)
+        return 2
+    folder = pathlib.Path(sys.argv[1])
+    try:
+        print(folder / draw(json.load(sys.stdin), folder))
+    except OSError as error:
+        print(f"jink mesh measure: {error.filename} cannot be written: {error.strerror}", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
