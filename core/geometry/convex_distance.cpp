@@ -48,7 +48,8 @@ float detail::proven_distance(const SweptBox& box, const Shape& shape, const Sea
     const Difference difference(box, shape);
     const auto support = [&](const Vec3& direction) { return difference.support(direction); };
     const std::uint32_t turn = units::kSearchTurn + units::hull_units(shape.vertices.size());
-    const SearchResult found = search_origin(support, SearchBegin{-difference.offset()}, box.slack(shape), limits, turn, budget);
+    const SearchResult found =
+        search_origin(support, SearchBegin{-difference.offset()}, box.slack(shape), limits, turn, budget);
     return found.budget_spent ? 0.0F : std::min(found.proven, limits.reach);
 }
 

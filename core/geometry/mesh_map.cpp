@@ -44,8 +44,11 @@ float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point,
 Separation piece_distance(const MeshMap& map, std::size_t piece, const Vec3& point, const DistanceQuery& query,
                           WorkBudget& budget) noexcept
 {
-    Separation from = point_hull_distance(point, map.vertices_of(piece), query, budget);
-    from.distance -= slack_of(map, query.stretch);
+    const float slack = slack_of(map, query.stretch);
+    DistanceQuery bare = query;
+    bare.reach += slack;
+    Separation from = point_hull_distance(point, map.vertices_of(piece), bare, budget);
+    from.distance -= slack;
     if (!(from.distance > 0.0F)) {
         from.distance = 0.0F;
         from.direction = Vec3::Zero();

@@ -35,15 +35,15 @@ bool implies(const HalfSpace& kept, const HalfSpace& other, float speed) noexcep
     // The fastest towards the other obstacle: along its own normal if `kept` admits that, else on the rim of `kept`.
     const float cosine = kept.normal.dot(other.normal);
     const float bound = -kept.offset;
-    float fastest = speed;
-    if (speed * cosine > bound) {
-        if (bound < -speed) {
-            return false;  // admits nothing: says nothing of the other one
-        }
-        const float rim = std::sqrt(std::max(0.0F, (speed - bound) * (speed + bound)));
-        fastest = bound * cosine + rim * kept.normal.cross(other.normal).norm();
+    const float other_bound = -other.offset + kSameVelocity;
+    if (speed * cosine <= bound) {
+        return speed <= other_bound;
     }
-    return fastest <= -other.offset + kSameVelocity;
+    // bound * cosine + rim * sine <= other_bound; a plane that admits nothing says nothing of the other one.
+    const float left = other_bound - bound * cosine;
+    const float rim_squared = (speed - bound) * (speed + bound);
+    return left >= 0.0F && rim_squared >= 0.0F &&
+           rim_squared * kept.normal.cross(other.normal).squaredNorm() <= left * left;
 }
 
 /// The nearest planes so far, nearest first.

@@ -66,7 +66,11 @@ TEST(NearestPieces, AreThoseThatALookAtEveryPieceFinds)
             WorkBudget budget(10'000'000);
             const NearestPieces found = nearest_pieces(map, point, query, out, budget);
             const std::vector<Seen> truth = look_at_all(map, point, query);
-            ASSERT_EQ(found.found, std::min(out.size(), truth.size())) << "case " << n;
+            // What lies at the reach but for the resolution may be left out.
+            const auto sure = static_cast<std::size_t>(std::count_if(
+                truth.begin(), truth.end(), [&](const Seen& seen) { return seen.distance < query.reach - 2.5e-4F; }));
+            ASSERT_GE(found.found, std::min(out.size(), sure)) << "case " << n;
+            ASSERT_LE(found.found, std::min(out.size(), truth.size())) << "case " << n;
             for (std::size_t i = 0; i < found.found; ++i) {
                 // A search that may stop early at the last one's distance knows it less exactly.
                 ASSERT_NEAR(out[i].from.distance, truth[i].distance, 2.5e-4F) << "case " << n;

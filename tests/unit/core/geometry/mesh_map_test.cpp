@@ -162,9 +162,8 @@ TEST(MeshMapCheck, FacesThatCutTheirPieceAreRefused)
 {
     EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].offset -= 0.01F; }).status(), MapStatus::bad_face);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].normal.x += 0.9F; }).status(), MapStatus::bad_face);
-    EXPECT_EQ(
-        Changed([](auto& t, auto&) { t.faces_[2].normal.x = std::numeric_limits<float>::quiet_NaN(); }).status(),
-        MapStatus::bad_face);
+    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].normal.x = std::numeric_limits<float>::quiet_NaN(); }).status(),
+              MapStatus::bad_face);
 }
 
 TEST(MeshMapCheck, EveryTableIsInTheChecksum)
@@ -173,8 +172,7 @@ TEST(MeshMapCheck, EveryTableIsInTheChecksum)
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.slack = 1e-6F; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.high.x += 1.0F; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].offset += 1e-6F; }, false).status(), MapStatus::wrong_checksum);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.vertices_[0].x += 1e-4F; }, false).status(),
-              MapStatus::wrong_checksum);
+    EXPECT_EQ(Changed([](auto& t, auto&) { t.vertices_[0].x += 1e-4F; }, false).status(), MapStatus::wrong_checksum);
 }
 
 TEST(NearestPieces, TellsWhatItLeavesOut)

@@ -16,6 +16,7 @@
 #include <fcl/narrowphase/distance.h>
 
 #include "core/geometry/convex.hpp"
+#include "core/geometry/hull_distance.hpp"
 #include "core/geometry/sweep.hpp"
 #include "tests/property/core/geometry/convex_oracle.hpp"
 #include "tests/timing/crossing_scene.hpp"
@@ -112,6 +113,54 @@ TEST_P(Fcl, DistanceOfABoxAtRestAgrees)
 INSTANTIATE_TEST_SUITE_P(Kinds, Fcl,
                          ::testing::Values(ShapeKind::sphere, ShapeKind::box, ShapeKind::capsule, ShapeKind::cylinder,
                                            ShapeKind::hull));
+
+float power_of_two(Random& random) { return std::ldexp(1.0F, 1 - static_cast<int>(random.below(8))); }
+
+/// A sheared cube of any size, whose faces are known without looking for them.
+Shape simple_hull(Random& random, const Vec3& centre, std::vector<Vec3>& vertices)
+{
+    vertices = sheared_cube(random);
+    for (Vec3& vertex : vertices) {
+        vertex = centre + power_of_two(random) * vertex;
+    }
+    return make_hull(vertices, Vec3::Zero());
+}
+
+TEST(FclHulls, HullToHullDistanceAgrees)
+{
+    Random random(oracle::seed_of(10));
+    std::size_t apart = 0;
+    std::size_t touching = 0;
+    double worst = 0;
+    std::vector<Vec3> first;
+    std::vector<Vec3> second;
+    for (std::size_t n = 0; n < oracle::case_count(10'000); ++n) {
+        const Shape own = simple_hull(random, oracle::in_cube(random, 2.0F), first);
+        const float far = random.below(10) == 0 ? 1000.0F : 3.0F;
+        const Shape other = simple_hull(random, oracle::in_cube(random, far), second);
+        fcl::DistanceRequestd request;
+        request.distance_tolerance = 1e-9;
+        fcl::DistanceResultd result;
+        const double expected = fcl::distance(twin(own).get(), placed(Vec3::Zero()), twin(other).get(),
+                                              placed(Vec3::Zero()), request, result);
+        DistanceQuery query;
+        query.resolution = 0.0F;
+        WorkBudget budget(10'000);
+        const Separation found = hull_hull_distance(first, second, query, budget);
+        ASSERT_LE(double(found.distance), std::max(expected, 0.0) + 1e-6 * (1.0 + expected)) << n;
+        if (expected <= 0) {
+            ++touching;
+        } else {
+            ++apart;
+            const double band = 3e-6 * (40.0 + 2.0 * std::sqrt(3.0) * expected);
+            worst = std::max(worst, (expected - double(found.distance)) / band);
+            ASSERT_NEAR(double(found.distance), expected, band + 1e-6) << n;
+        }
+    }
+    std::cout << "FCL hulls: apart=" << apart << " touching=" << touching << " worst shortfall " << worst << " bands\n";
+    EXPECT_GT(apart, oracle::case_count(10'000) / 4);
+    EXPECT_GT(touching, oracle::case_count(10'000) / 100);
+}
 
 TEST(FclMoving, ConservativeAdvancementAgreesOnTheCrossingScene)
 {
