@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -91,7 +92,7 @@ void expect_all_held(const TriangleMesh& mesh, const geometry::MeshMap& map, int
                 b = 1 - b;
             }
             const Vec3d point = c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]);
-            ASSERT_TRUE(is_held(map, point, room)) << "triangle " << t << ": " << point.transpose();
+            ASSERT_TRUE(is_held(map, point, room)) << "triangle " << t << " sample " << n;
         }
     }
 }
@@ -251,7 +252,7 @@ TEST(Solid, DistanceIsThatOfTheNearestOfManyPoints)
         EXPECT_GE(solid.nearest_on_surface(p).distance, least - 0.1);
         const bool in_bars = p.z() > 0 && p.z() < 2 && p.y() > 0 && p.y() < 4 && p.x() > 0 && p.x() < 4 &&
                              !(p.y() > 1 && p.x() > 1 && p.x() < 3);
-        EXPECT_EQ(solid.holds(p), in_bars) << p.transpose();
+        EXPECT_EQ(solid.holds(p), in_bars) << n;
     }
 }
 

@@ -78,11 +78,18 @@ const Swarm& swarm()
     return made;
 }
 
-mesh::StoredMap map_of(mesh::Method method)
+mesh::StoredMap made_by(mesh::Method method)
 {
     mesh::Recipe recipe;
     recipe.method = method;
     return mesh::StoredMap("town", mesh::pieces_of(swarm().town, recipe));
+}
+
+const mesh::StoredMap& map_of(mesh::Method method)
+{
+    static const mesh::StoredMap soup = made_by(mesh::Method::soup);
+    static const mesh::StoredMap decomposed = made_by(mesh::Method::decompose);
+    return method == mesh::Method::soup ? soup : decomposed;
 }
 
 /// All agents in each turn; `work(agent, budget)` of each alone is timed for the worst of them, the least time of all
@@ -91,8 +98,7 @@ template <class Work>
 void run(benchmark::State& state, mesh::Method method, const Work& work)
 {
     using Clock = std::chrono::steady_clock;
-    const mesh::StoredMap stored = map_of(method);
-    const jink::geometry::MeshMap map = stored.view();
+    const jink::geometry::MeshMap map = map_of(method).view();
     const orca::ObstacleScene scene{&map, {}};
     std::vector<double> least(kAgents, 1e9);
     std::uint32_t most_units = 0;

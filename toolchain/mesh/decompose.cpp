@@ -33,6 +33,16 @@ std::vector<Vec3d> points_of(const TriangleMesh& mesh, const Cluster& cluster)
     return out;
 }
 
+TriangleMesh part_of(const TriangleMesh& mesh, const Cluster& cluster)
+{
+    TriangleMesh out;
+    out.vertices = mesh.vertices;
+    for (const std::size_t triangle : cluster) {
+        out.triangles.push_back(mesh.triangles[triangle]);
+    }
+    return out;
+}
+
 double size_of(const std::vector<Vec3d>& points)
 {
     Vec3d low = points[0];
@@ -171,13 +181,15 @@ std::vector<Piece> pieces_of(const TriangleMesh& mesh, const Recipe& recipe)
                           std::to_string(kMostTriangles) + " that are decomposed");
     }
     std::vector<Piece> pieces;
-    const Solid solid(mesh);
     for (const Cluster& object : objects_of(mesh)) {
         if (const std::size_t open = open_edges(mesh, object); open > 0 && !recipe.open) {
             throw CannotBuild("an object is not closed: " + std::to_string(open) +
                               " edges without exactly one neighbour, passed the other way; mend the mesh, take --open, "
                               "or --method soup");
         }
+        // Measured from its own object: not less than from all of the mesh.
+        const TriangleMesh alone = part_of(mesh, object);
+        const Solid solid(alone);
         if (recipe.method == Method::hull) {
             add_divided(mesh, solid, object, std::numeric_limits<double>::infinity(), pieces);
             continue;

@@ -26,7 +26,7 @@ struct Recipe {
     bool open = false;
 };
 
-/// The pieces, with what each stands out by (Piece::excess).
+/// The pieces, with what each stands out by of its object (Piece::excess).
 ///
 /// `decompose`: clusters by hierarchical approximate convex decomposition (Mamou & Ghorbel 2009, Bullet's HACD); what
 /// stands out too far all the same, or has no hull within a map's limits, is halved until it does not.

@@ -17,7 +17,7 @@ using Corners = std::array<Vec3d, 3>;
 
 constexpr std::size_t kLeaf = 4;  ///< triangles of a box that is not divided further
 /// Parts of a piece's surface that are looked at; what is not known better by then stays an upper bound.
-constexpr std::size_t kMostParts = 40'000;
+constexpr std::size_t kMostParts = 10'000;
 
 double distance_from_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b)
 {
@@ -71,6 +71,13 @@ Solid::Solid(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size
 {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     closed_ = open_edges(mesh, order_) == 0;
+    double volume = 0.0;  // six times that
+    for (const std::size_t triangle : order_) {
+        const Corners c = mesh.corners(triangle);
+        const Vec3d& from = mesh.vertices[0];
+        volume += (c[0] - from).dot((c[1] - from).cross(c[2] - from));
+    }
+    outward_ = closed_ && volume > 0.0;
     split(0, order_.size());
 }
 
@@ -147,6 +154,21 @@ double Solid::distance_from(std::size_t triangle, const Vec3d& point) const
     return distance_from_triangle(point, mesh_.corners(triangle));
 }
 
+bool Solid::is_behind(std::size_t triangle, const Vec3d& point) const
+{
+    const Corners t = mesh_.corners(triangle);
+    const Vec3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    if (!outward_ || normal.dot(point - t[0]) >= 0.0) {
+        return false;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (normal.dot((t[(i + 1) % 3] - t[i]).cross(point - t[i])) <= 0.0) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool Solid::holds(const Vec3d& point) const
 {
     if (!closed_) {
@@ -181,7 +203,7 @@ double excess_of(const Piece& piece, const Solid& solid, double tolerance)
             return;
         }
         // Inside, all within `off` is inside too.
-        const bool inside = solid.holds(centre);
+        const bool inside = solid.is_behind(triangle, centre) || solid.holds(centre);
         known = std::max(known, inside || off <= touching ? 0.0 : off);
         parts.push({corners, inside ? std::min(radius - off, bound) : bound});
     };

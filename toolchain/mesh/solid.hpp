@@ -23,11 +23,15 @@ public:
     [[nodiscard]] double distance_from(std::size_t triangle, const Vec3d& point) const;
     /// Whether a closed surface goes round the point; false where it is not closed. O(triangles).
     [[nodiscard]] bool holds(const Vec3d& point) const;
+    /// Whether the point lies right behind the inside of the triangle, the nearest one, and so within a closed surface;
+    /// false also where that is not sure. O(1).
+    [[nodiscard]] bool is_behind(std::size_t triangle, const Vec3d& point) const;
     [[nodiscard]] bool is_closed() const { return closed_; }
 
 private:
     const TriangleMesh& mesh_;
     bool closed_ = false;
+    bool outward_ = false;  ///< closed, and its triangles face outwards on the whole
     struct Box {
         Vec3d low, high;
         std::size_t first = 0, last = 0;  ///< in order_

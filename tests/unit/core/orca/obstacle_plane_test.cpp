@@ -118,7 +118,7 @@ TEST_P(CheckBox, ACentreInsideLeavesByTheNearestFace)
         const Vec3 out = std::abs(local.x()) > 0.3F   ? Vec3(std::copysign(1.0F, local.x()), 0.0F, 0.0F)
                          : std::abs(local.y()) > 0.5F ? Vec3(0.0F, std::copysign(1.0F, local.y()), 0.0F)
                                                       : Vec3(0.0F, 0.0F, std::copysign(1.0F, local.z()));
-        EXPECT_TRUE(found.planes[0].normal.isApprox(out, 1e-4F)) << found.planes[0].normal.transpose();
+        EXPECT_TRUE(found.planes[0].normal.isApprox(out, 1e-4F));
         EXPECT_NEAR(found.planes[0].offset, 0.3F, kTolerance);
         EXPECT_NEAR(found.margin, -1.0F, 0.01F + kTolerance);  // 0.1 m deep and the envelope's 0.9 m
         EXPECT_TRUE(found.penetrating);
