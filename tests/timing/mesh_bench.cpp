@@ -87,9 +87,12 @@ mesh::StoredMap made_by(mesh::Method method)
 
 const mesh::StoredMap& map_of(mesh::Method method)
 {
-    static const mesh::StoredMap soup = made_by(mesh::Method::soup);
+    if (method == mesh::Method::soup) {
+        static const mesh::StoredMap soup = made_by(mesh::Method::soup);
+        return soup;
+    }
     static const mesh::StoredMap decomposed = made_by(mesh::Method::decompose);
-    return method == mesh::Method::soup ? soup : decomposed;
+    return decomposed;
 }
 
 /// All agents in each turn; `work(agent, budget)` of each alone is timed for the worst of them, the least time of all
