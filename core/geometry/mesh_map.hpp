@@ -18,7 +18,7 @@
 namespace jink::geometry {
 
 /// Limits of a map; one that exceeds any is refused as a whole. A piece is a few vertices and planes in flash: a full
-/// map of 32 vertices a piece is 5.6 MiB, one of triangles 260 KiB.
+/// map of 32 vertices a piece is 5.5 MiB, one of triangles 416 KiB.
 inline constexpr std::size_t kMaxMeshPieces = 4096;
 inline constexpr std::size_t kMaxPieceVertices = 32;
 /// 32 vertices have 60 triangles.

@@ -8,8 +8,8 @@
 
 namespace jink::orca {
 
-/// Steps along the way for one obstacle. A velocity that keeps to the obstacle's half-space needs one; of a million
-/// random ways past random hulls that come near, all but one in a thousand end within eight.
+/// Steps along the way for one obstacle (gorca 21.2). A velocity that keeps to the obstacle's half-space needs one;
+/// none of the 300 random ways of test ClearanceAlong.EndsAtTheFirstContact used up all eight.
 inline constexpr std::uint32_t kMostWaySteps = 8;
 
 struct WayClearance {
