@@ -56,7 +56,7 @@ struct MeshNode {
 /// A view of constant tables. World frame: local ENU about the map's origin, z up, metres.
 ///
 /// Memory: 12 bytes a piece, 12 a vertex, 16 a face, 28 a node (2 * pieces - 1 of them): 104 bytes for a triangle,
-/// about 420 for a piece of 12 vertices and 20 faces.
+/// about 530 for a piece of 12 vertices and 20 faces.
 struct MeshMap {
     std::string_view name;
     std::uint16_t version = kMeshVersion;
