@@ -97,7 +97,7 @@ TaskStatus MissionUpload::open(const TaskUpload& part) noexcept
     open_ = true;
     first_ = part;
     next_ = 0;
-    crc_ = reach::Crc();
+    crc_ = Crc();
     return TaskStatus::more;
 }
 

@@ -3,8 +3,8 @@
 
 #include <cstdint>
 
+#include "core/base/crc.hpp"
 #include "core/path/trajectory_generator.hpp"
-#include "core/reach/crc.hpp"
 #include "firmware/link/mission/messages.hpp"
 
 namespace jink::app {
@@ -42,7 +42,7 @@ private:
     bool open_ = false;
     link::mission::TaskUpload first_;  ///< of the upload that is open
     std::uint16_t next_ = 0;
-    reach::Crc crc_;
+    Crc crc_;
     TimePoint last_part_;
     bool has_task_ = false;
     std::uint32_t task_ = 0;

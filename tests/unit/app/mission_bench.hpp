@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/reach/crc.hpp"
+#include "core/base/crc.hpp"
 #include "firmware/app/mission_protocol.hpp"
 
 // The other end of a mission line for tests: makes frames, and reads what comes back.
@@ -34,7 +34,7 @@ struct Point {
 inline std::vector<TaskUpload> parts_of(std::uint32_t task, const std::vector<Point>& points,
                                         std::uint8_t flags = kLast, float speed = 1.0F)
 {
-    reach::Crc crc;
+    Crc crc;
     for (const Point& p : points) {
         crc.add(p.position.x());
         crc.add(p.position.y());
