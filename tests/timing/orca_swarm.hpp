@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "core/orca/agent_plane.hpp"
+#include "core/orca/program.hpp"
+
+// Many vehicles in one process, each avoiding all others by core/orca: the antipodal sphere of the public ORCA-3D
+// library's example. All memory is taken by the constructor; a step takes none.
+
+namespace jink::orca {
+
+/// The nearest of many points by a k-d tree: leaves of few points each, split at the median of the longer side.
+/// Built anew each step, O(N log N); a query looks at the leaves that can hold a nearer one.
+class NearestPoints {
+public:
+    /// Points kept at most of one query.
+    static constexpr std::size_t kMost = 128;
+    struct Found {
+        float distance2 = 0.0F;
+        std::uint32_t index = 0;
+    };
+
+    explicit NearestPoints(std::size_t capacity);
+    void build(const std::vector<Vec3>& points);
+    /// The `most` nearest within `range` of points[self], but for itself, nearest first, and one more if there is one.
+    /// @return how many: most + 1 where more than `most` are within range
+    std::size_t query(std::size_t self, std::size_t most, float range, std::array<Found, kMost>& found) const;
+
+private:
+    static constexpr std::uint32_t kLeaf = 8;
+    struct Node {
+        Vec3 low, high;
+        std::uint32_t begin, end;
+        std::uint32_t left;  ///< its right twin follows; 0 for a leaf
+    };
+    void split(std::size_t node);
+
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> order_;
+    std::vector<Vec3> sorted_;
+    const std::vector<Vec3>* points_ = nullptr;
+};
+
+/// Rules of a swarm; defaults are the public example's.
+struct SwarmSettings {
+    float radius = 1.5F;      ///< of a vehicle [m]
+    float max_speed = 2.0F;   ///< [m/s]
+    float cruise = 1.0F;      ///< preferred speed [m/s]
+    float range = 15.0F;      ///< [m] in which others are seen
+    std::size_t most = 10;    ///< others at once
+    float step = 0.125F;      ///< [s]
+    float sphere = 100.0F;    ///< radius [m]
+    float warning = 3.0F;     ///< radius of the warning region [m]; the conflict region's is 2 radius
+    bool regions = true;      ///< false: one region of 2 radius, as the public library has it
+    PairSettings pair;
+};
+
+class Swarm {
+public:
+    Swarm(std::size_t count, const SwarmSettings& settings);
+
+    /// One period of all vehicles.
+    void step();
+    /// One vehicle's part of it; `build` first, `move` after all.
+    void build();
+    void decide(std::size_t self);
+    void move();
+
+    /// All within two radii of their goals.
+    [[nodiscard]] bool arrived() const;
+    /// Least distance of two centres [m] during the last period, in continuous time.
+    [[nodiscard]] float least_distance() const;
+    [[nodiscard]] std::size_t size() const { return positions_.size(); }
+
+    /// What happened so far.
+    struct Counts {
+        std::uint64_t solved = 0, warning = 0, conflict = 0, other = 0, truncated = 0;
+    };
+    [[nodiscard]] const Counts& counts() const { return counts_; }
+
+private:
+    [[nodiscard]] Vec3 preferred(std::size_t self) const;
+
+    SwarmSettings settings_;
+    std::vector<Vec3> positions_, velocities_, goals_, next_;
+    NearestPoints nearest_;
+    Scratch<2 * NearestPoints::kMost> scratch_;
+    std::array<HalfSpace, 2 * NearestPoints::kMost> planes_;
+    std::array<NearestPoints::Found, NearestPoints::kMost> found_;
+    std::uint64_t steps_ = 0;
+    Counts counts_;
+};
+
+}  // namespace jink::orca
