@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/work_units.hpp"
+#include "core/orca/exchange.hpp"
 
 namespace jink::orca {
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::size_t kMaxHeld = 8;    // rows of one turn: the three of a basis, and those that brought nothing
 constexpr float kShifted = 1e-4F;      // [m/s] that a relaxed level gives way beyond what it has to, against rounding
+constexpr float kFirm = 1e-3F;         // least share of a corner that is a point and no edge
 constexpr float kUnitLength = 1e-3F;   // by which a normal's length may be off
 constexpr std::size_t kNobody = ~std::size_t{0};
 
@@ -30,6 +32,9 @@ public:
     /// The least d by which rows [from, to) have to give way, each by d * yield, for the rows before `from` to hold.
     /// Starts from the nearest point within those, which nearest(from) has left. Shifts the rows by it.
     Found relax(std::size_t from, std::size_t to, float& d) noexcept;
+    /// After nearest(count) found nothing: the same for rows [from, count), where four rows decide. And the nearest
+    /// point then. False: nothing is known.
+    bool relax_at_corner(std::size_t from, std::size_t count, float& d) noexcept;
 
     [[nodiscard]] const Vec3& x() const noexcept { return x_; }
     [[nodiscard]] const Basis& basis() const noexcept { return basis_; }
@@ -41,6 +46,7 @@ private:
     };
     [[nodiscard]] Worst worst(std::size_t from, std::size_t to, float least) const noexcept;
     [[nodiscard]] Worst worst_yielding(std::size_t from, std::size_t to, float least) const noexcept;
+    void shift(std::size_t from, std::size_t to, float d) noexcept;
     Found whole(std::size_t count) noexcept;
     Found push_out(std::size_t soft, std::size_t hards, std::size_t softs, float& d) noexcept;
 
@@ -51,6 +57,8 @@ private:
     WorkBudget& budget_;
     Vec3 x_ = Vec3::Zero();
     Basis basis_;
+    std::array<std::uint16_t, kMaxHeld> ids_{};  // rows that the last search held, the last one the most violated
+    std::size_t size_ = 0;
 };
 
 Solver::Worst Solver::worst(std::size_t from, std::size_t to, float least) const noexcept
@@ -92,8 +100,9 @@ Found Solver::nearest(std::size_t count) noexcept
         return Found::nothing;
     }
     std::array<Row, kMaxHeld> held;
-    std::array<std::uint16_t, kMaxHeld> ids{};
-    std::size_t size = 0;
+    std::array<std::uint16_t, kMaxHeld>& ids = ids_;
+    std::size_t& size = size_;
+    size = 0;
     float distance2 = (x_ - goal_.point).squaredNorm();
     while (budget_.spend(units::kOrcaTurn + units::orca_rows(count))) {
         const Worst next = worst(0, count, tolerance_.outside);
@@ -130,6 +139,40 @@ Found Solver::nearest(std::size_t count) noexcept
         }
     }
     return Found::exhausted;
+}
+
+bool Solver::relax_at_corner(std::size_t from, std::size_t count, float& d) noexcept
+{
+    if (size_ != 4) {
+        return false;
+    }
+    Corner corner;
+    std::copy_n(ids_.begin(), 4, corner.rows.begin());
+    if (!exchange(scratch_.rows.first(count), scratch_.yields.first(count), from, balls_, tolerance_, budget_,
+                  corner)) {
+        return false;
+    }
+    d = corner.d;
+    if (*std::min_element(corner.shares.begin(), corner.shares.end()) > kFirm) {
+        x_ = corner.x;
+        basis_ = {{corner.rows[0], corner.rows[1], corner.rows[2]}, 3};
+        return true;
+    }
+    // Not the only point that breaks no more: the nearest of them.
+    shift(from, count, d);
+    x_ = corner.x;
+    const Vec3 least = corner.x;
+    if (nearest(count) != Found::optimum) {
+        x_ = least;
+    }
+    return true;
+}
+
+void Solver::shift(std::size_t from, std::size_t to, float d) noexcept
+{
+    for (std::size_t i = from; i < to; ++i) {
+        scratch_.rows[i].offset -= (d + kShifted) * scratch_.yields[i];
+    }
 }
 
 /// Moves x to where `soft` is broken least while none of the softs before it is broken more: they stand in `held`
@@ -212,9 +255,7 @@ Found Solver::relax(std::size_t from, std::size_t to, float& d) noexcept
         }
     }
     d = std::max(d, worst_yielding(from, to, d).by);
-    for (std::size_t i = from; i < to; ++i) {
-        scratch_.rows[i].offset -= (d + kShifted) * scratch_.yields[i];
-    }
+    shift(from, to, d);
     return Found::optimum;
 }
 
@@ -356,6 +397,10 @@ Vec3 into_balls(Balls balls, const Vec3& point) noexcept
 {
     constexpr float kUlps = 3e-7F;
     Vec3 out = is_finite(point) ? point : balls.back().centre;
+    const auto in = [&](const Ball& ball) { return (out - ball.centre).squaredNorm() <= ball.radius * ball.radius; };
+    if (std::all_of(balls.begin(), balls.end(), in)) {
+        return out;
+    }
     if (!optimum_in_balls(balls, {out, false}, Tolerance(0.0F), out)) {
         out = balls.front().centre;
     }
@@ -383,8 +428,19 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
     Found found = solver.nearest(problem.planes.size());
     Vec3 best = solver.x();
     if (found == Found::nothing) {
-        best = problem.reference;
-        found = ladder(problem, solver, out, best);
+        // The last level alone, in most cases.
+        const std::size_t last = problem.planes.empty() ? 0 : static_cast<std::size_t>(problem.planes.back().level);
+        if (last > 0 && solver.relax_at_corner(level_end(problem.planes, last - 1), problem.planes.size(),
+                                               out.broken[last])) {
+            out.status = kRelaxed[last];
+            out.level = problem.planes.back().level;
+            best = solver.x();
+            found = Found::optimum;
+        } else {
+            best = problem.reference;
+            out.broken = {};
+            found = ladder(problem, solver, out, best);
+        }
     }
     if (found == Found::exhausted) {
         out.status |= kWorkLimit;
