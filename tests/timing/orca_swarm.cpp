@@ -8,109 +8,9 @@
 
 namespace jink::orca {
 
-NearestPoints::NearestPoints(std::size_t capacity) : nodes_(2 * capacity + 2), order_(capacity), sorted_(capacity) {}
-
-void NearestPoints::split(std::size_t node)
-{
-    // Iterative: children are appended, and split in turn.
-    std::size_t used = node + 1;
-    for (std::size_t at = node; at < used; ++at) {
-        Node& here = nodes_[at];
-        here.low = Vec3::Constant(std::numeric_limits<float>::max());
-        here.high = -here.low;
-        for (std::uint32_t i = here.begin; i < here.end; ++i) {
-            here.low = here.low.cwiseMin((*points_)[order_[i]]);
-            here.high = here.high.cwiseMax((*points_)[order_[i]]);
-        }
-        here.left = 0;
-        if (here.end - here.begin <= kLeaf) {
-            continue;
-        }
-        int axis = 0;
-        (here.high - here.low).maxCoeff(&axis);
-        const float at_value = 0.5F * (here.low[axis] + here.high[axis]);
-        auto* const first = order_.data() + here.begin;
-        auto* const last = order_.data() + here.end;
-        auto* middle = std::partition(first, last, [&](std::uint32_t i) { return (*points_)[i][axis] < at_value; });
-        if (middle == first || middle == last) {
-            middle = first + (last - first) / 2;
-        }
-        const auto cut = static_cast<std::uint32_t>(middle - order_.data());
-        here.left = static_cast<std::uint32_t>(used);
-        nodes_[used] = {{}, {}, here.begin, cut, 0};
-        nodes_[used + 1] = {{}, {}, cut, here.end, 0};
-        used += 2;
-    }
-}
-
-void NearestPoints::build(const std::vector<Vec3>& points)
-{
-    points_ = &points;
-    // The last step's order is nearly right already.
-    if (order_.size() != points.size() || order_[0] == order_[1 % order_.size()]) {
-        order_.resize(points.size());
-        std::iota(order_.begin(), order_.end(), 0U);
-    }
-    nodes_[0] = {{}, {}, 0, static_cast<std::uint32_t>(points.size()), 0};
-    split(0);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        sorted_[i] = points[order_[i]];
-    }
-}
-
-std::size_t NearestPoints::query(std::size_t self, std::size_t most, float range,
-                                 std::array<Found, kMost>& found) const
-{
-    const Vec3 centre = (*points_)[self];
-    const std::size_t keep = std::min(most + 1, kMost);
-    float bound = range * range;
-    std::size_t count = 0;
-    const auto away = [&](const Node& node) {
-        return (centre - centre.cwiseMax(node.low).cwiseMin(node.high)).squaredNorm();
-    };
-    struct Later {
-        std::uint32_t node;
-        float distance2;
-    };
-    std::array<Later, 64> stack{};
-    std::size_t depth = 0;
-    Later next{0, 0.0F};
-    while (true) {
-        if (next.distance2 < bound) {
-            const Node& node = nodes_[next.node];
-            if (node.left != 0) {
-                const float left = away(nodes_[node.left]);
-                const float right = away(nodes_[node.left + 1]);
-                const bool left_first = left <= right;
-                stack[depth++] = left_first ? Later{node.left + 1, right} : Later{node.left, left};
-                next = left_first ? Later{node.left, left} : Later{node.left + 1, right};
-                continue;
-            }
-            for (std::uint32_t i = node.begin; i < node.end; ++i) {
-                const float distance2 = (sorted_[i] - centre).squaredNorm();
-                if (distance2 >= bound || order_[i] == self) {
-                    continue;
-                }
-                std::size_t place = count < keep ? count++ : keep - 1;
-                for (; place > 0 && found[place - 1].distance2 > distance2; --place) {
-                    found[place] = found[place - 1];
-                }
-                found[place] = {distance2, order_[i]};
-                if (count == keep) {
-                    bound = found[keep - 1].distance2;
-                }
-            }
-        }
-        if (depth == 0) {
-            return count;
-        }
-        next = stack[--depth];
-    }
-}
-
 Swarm::Swarm(std::size_t count, const SwarmSettings& settings)
     : settings_(settings), positions_(count), velocities_(count, Vec3::Zero()), goals_(count), next_(count),
-      nearest_(count)
+      nearest_(count, settings.most, settings.range)
 {
     // Points of a Fibonacci sphere.
     const double golden = 3.14159265358979323846 * (3.0 - std::sqrt(5.0));
@@ -134,11 +34,18 @@ Vec3 Swarm::preferred(std::size_t self) const
     return wanted + 1e-3F * Vec3(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F));
 }
 
-void Swarm::build() { nearest_.build(positions_); }
+void Swarm::build()
+{
+    float fastest2 = 0.0F;
+    for (const Vec3& velocity : velocities_) {
+        fastest2 = std::max(fastest2, velocity.squaredNorm());
+    }
+    nearest_.move(positions_, std::sqrt(fastest2) * settings_.step);
+}
 
 void Swarm::decide(std::size_t self)
 {
-    const std::size_t seen = nearest_.query(self, settings_.most, settings_.range, found_);
+    const std::size_t seen = nearest_.query(self, found_);
     const std::size_t used = std::min(seen, settings_.most);
     Pair pair;
     pair.own_velocity = velocities_[self];

@@ -9,43 +9,12 @@
 #include "core/base/random.hpp"
 #include "core/orca/agent_plane.hpp"
 #include "core/orca/program.hpp"
+#include "tests/timing/orca_nearest.hpp"
 
 // Many vehicles in one process, each avoiding all others by core/orca: the antipodal sphere of the public ORCA-3D
 // library's example. All memory is taken by the constructor; a step takes none.
 
 namespace jink::orca {
-
-/// The nearest of many points by a k-d tree: leaves of few points each, split at the median of the longer side.
-/// Built anew each step, O(N log N); a query looks at the leaves that can hold a nearer one.
-class NearestPoints {
-public:
-    /// Points kept at most of one query.
-    static constexpr std::size_t kMost = 128;
-    struct Found {
-        float distance2 = 0.0F;
-        std::uint32_t index = 0;
-    };
-
-    explicit NearestPoints(std::size_t capacity);
-    void build(const std::vector<Vec3>& points);
-    /// The `most` nearest within `range` of points[self], but for itself, nearest first, and one more if there is one.
-    /// @return how many: most + 1 where more than `most` are within range
-    std::size_t query(std::size_t self, std::size_t most, float range, std::array<Found, kMost>& found) const;
-
-private:
-    static constexpr std::uint32_t kLeaf = 8;
-    struct Node {
-        Vec3 low, high;
-        std::uint32_t begin, end;
-        std::uint32_t left;  ///< its right twin follows; 0 for a leaf
-    };
-    void split(std::size_t node);
-
-    std::vector<Node> nodes_;
-    std::vector<std::uint32_t> order_;
-    std::vector<Vec3> sorted_;
-    const std::vector<Vec3>* points_ = nullptr;
-};
 
 /// Rules of a swarm; defaults are the public example's.
 struct SwarmSettings {
