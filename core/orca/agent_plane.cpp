@@ -11,11 +11,43 @@ namespace {
 constexpr float kOnAxis = 1e-5F;      // [m/s] across the axis, below which a velocity has no side of its own
 constexpr float kCoincident = 1e-6F;  // [m] between centres that have no direction
 
+// A vector that is handed over in memory part by part and read as a whole waits for itself: twice the time of a
+// half-space. So what makes one is one function.
+#define JINK_INLINE [[gnu::always_inline]] inline
+
 /// Stretches heights by `by`.
-Vec3 stretched(const Vec3& v, float by) noexcept { return {v.x(), v.y(), v.z() * by}; }
+JINK_INLINE Vec3 stretched(const Vec3& v, float by) noexcept { return {v.x(), v.y(), v.z() * by}; }
+
+JINK_INLINE Exit exit_of(const Vec3& position, const Vec3& velocity, float radius, float horizon) noexcept
+{
+    const float rate = 1.0F / horizon;
+    const Vec3 from_ball = velocity - position * rate;
+    const float along = from_ball.dot(position);
+    const float length2 = from_ball.squaredNorm();
+    if (along < 0.0F && along * along > radius * radius * length2) {
+        // The ball at the horizon, on the side of the apex.
+        const float length = std::sqrt(length2);
+        return {from_ball / length, radius * rate - length};
+    }
+    const float distance2 = position.squaredNorm();
+    const float distance = std::sqrt(distance2);
+    const float cosine_length = std::sqrt((distance - radius) * (distance + radius));  // no cancellation near contact
+    const Vec3 across = velocity - position * (velocity.dot(position) / distance2);
+    const float across_length = across.norm();
+    const Vec3 sideways = across_length > kOnAxis ? Vec3(across / across_length) : side(position);
+    const float scale = 1.0F / distance;
+    const Vec3 normal = (cosine_length * scale) * sideways - (radius * scale * scale) * position;
+    return {normal, -velocity.dot(normal)};
+}
+
+JINK_INLINE Exit apart(const Vec3& position, float distance, const Vec3& velocity, float speed, bool above) noexcept
+{
+    const Vec3 normal = distance < kCoincident ? Vec3(0.0F, 0.0F, above ? 1.0F : -1.0F) : Vec3(position / -distance);
+    return {normal, speed - velocity.dot(normal)};
+}
 
 /// An exit in the stretched space as a half-space of the own velocities.
-HalfSpace half_space(const Exit& exit, const Pair& pair, float stretch, Level level) noexcept
+JINK_INLINE HalfSpace half_space(const Exit& exit, const Pair& pair, float stretch, Level level) noexcept
 {
     const float share = exit.depth * (exit.depth > 0.0F ? pair.weights.react : pair.weights.slack);
     HalfSpace out;
@@ -35,42 +67,42 @@ HalfSpace half_space(const Exit& exit, const Pair& pair, float stretch, Level le
     return out;
 }
 
-Exit warning_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair,
+JINK_INLINE Exit warning_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair,
                   const PairSettings& settings) noexcept
 {
     const float outer = pair.across;
     if (distance > outer) {
-        return nearest_exit(position, velocity, outer, settings.horizon);
+        return exit_of(position, velocity, outer, settings.horizon);
     }
     const float inner = outer * settings.conflict_ratio;
     const float part = std::min((outer - distance) / (outer - inner), 1.0F);
     if (settings.ramp == Ramp::speed || distance < kCoincident) {
-        return separating(position, distance, velocity, settings.ramp_speed * part, pair.above);
+        return apart(position, distance, velocity, settings.ramp_speed * part, pair.above);
     }
     const Exit soon = original_exit(position, velocity, outer, settings.period);
     // The answer at the rim, where both formulas know only how fast the two close in.
-    const Exit late = separating(position, distance, velocity, 0.0F, pair.above);
+    const Exit late = apart(position, distance, velocity, 0.0F, pair.above);
     const Vec3 change = (1.0F - part) * late.depth * late.normal + part * soon.depth * soon.normal;
     const Vec3 normal = ((1.0F - part) * late.normal + part * soon.normal).normalized();
     return {normal, change.dot(normal)};
 }
 
-Exit conflict_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair, float inner,
+JINK_INLINE Exit conflict_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair, float inner,
                    const PairSettings& settings) noexcept
 {
     if (distance > inner) {
-        return nearest_exit(position, velocity, inner, settings.horizon);
+        return exit_of(position, velocity, inner, settings.horizon);
     }
     const float speed = std::min(settings.recovery_speed, (inner - distance) / settings.recovery_time);
-    return separating(position, distance, velocity, speed, pair.above);
+    return apart(position, distance, velocity, speed, pair.above);
 }
 
 /// Conflict::at_rest: of the gap, half in each `brake` time; of what is missing, half of the recovery.
-HalfSpace rest_plane(const Vec3& position, float distance, const Pair& pair, float inner, float stretch,
+JINK_INLINE HalfSpace rest_plane(const Vec3& position, float distance, const Pair& pair, float inner, float stretch,
                      const PairSettings& settings) noexcept
 {
     const float gap = distance - inner;
-    const Exit out = separating(position, distance, Vec3::Zero(), 0.0F, pair.above);
+    const Exit out = apart(position, distance, Vec3::Zero(), 0.0F, pair.above);
     // Demanded of both together: a separating speed, negative while there is a gap.
     const float speed =
         gap > 0.0F ? -gap / settings.brake : std::min(settings.recovery_speed, -gap / settings.recovery_time);
@@ -97,24 +129,7 @@ Vec3 side(const Vec3& position) noexcept
 
 Exit nearest_exit(const Vec3& position, const Vec3& velocity, float radius, float horizon) noexcept
 {
-    const float rate = 1.0F / horizon;
-    const Vec3 from_ball = velocity - position * rate;
-    const float along = from_ball.dot(position);
-    const float length2 = from_ball.squaredNorm();
-    if (along < 0.0F && along * along > radius * radius * length2) {
-        // The ball at the horizon, on the side of the apex.
-        const float length = std::sqrt(length2);
-        return {from_ball / length, radius * rate - length};
-    }
-    const float distance2 = position.squaredNorm();
-    const float distance = std::sqrt(distance2);
-    const float cosine_length = std::sqrt((distance - radius) * (distance + radius));  // no cancellation near contact
-    const Vec3 across = velocity - position * (velocity.dot(position) / distance2);
-    const float across_length = across.norm();
-    const Vec3 sideways = across_length > kOnAxis ? Vec3(across / across_length) : side(position);
-    const float scale = 1.0F / distance;
-    const Vec3 normal = (cosine_length * scale) * sideways - (radius * scale * scale) * position;
-    return {normal, -velocity.dot(normal)};
+    return exit_of(position, velocity, radius, horizon);
 }
 
 Exit original_exit(const Vec3& position, const Vec3& velocity, float radius, float period) noexcept
@@ -126,8 +141,7 @@ Exit original_exit(const Vec3& position, const Vec3& velocity, float radius, flo
 
 Exit separating(const Vec3& position, float distance, const Vec3& velocity, float speed, bool above) noexcept
 {
-    const Vec3 normal = distance < kCoincident ? Vec3(0.0F, 0.0F, above ? 1.0F : -1.0F) : Vec3(position / -distance);
-    return {normal, speed - velocity.dot(normal)};
+    return apart(position, distance, velocity, speed, above);
 }
 
 PairPlanes pair_planes(const Pair& pair, const PairSettings& settings) noexcept
