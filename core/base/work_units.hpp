@@ -102,6 +102,7 @@ inline constexpr std::uint32_t kReachCellSolid = 30;  ///< or an obstacle
 
 // --- orca ---
 inline constexpr std::uint32_t kOrcaPair = 4;   ///< another vehicle's half-spaces
+inline constexpr std::uint32_t kOrcaSelect = 4;  ///< another vehicle that is kept or left out
 inline constexpr std::uint32_t kOrcaPlane = 4;  ///< a plane that is searched for its best point
 inline constexpr std::uint32_t kOrcaLine = 4;   ///< and a line
 inline constexpr std::uint32_t kOrcaTurn = 2;   ///< a turn of the search, but for these

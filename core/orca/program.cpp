@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/finite.hpp"
 #include "core/base/work_units.hpp"
 #include "core/orca/exchange.hpp"
 
@@ -289,6 +290,16 @@ float read(const Problem& problem, ScratchView scratch) noexcept
     return sound && std::isfinite(sum) ? scale : kNan;
 }
 
+/// The reference, within the balls where these are sound.
+Vec3 last_command(const Problem& problem) noexcept
+{
+    const auto is_sound = [](const Ball& ball) { return is_finite(ball.centre) && is_not_negative(ball.radius); };
+    if (!problem.balls.empty() && std::all_of(problem.balls.begin(), problem.balls.end(), is_sound)) {
+        return into_balls(problem.balls, problem.reference);
+    }
+    return is_finite(problem.reference) ? problem.reference : Vec3(Vec3::Zero());
+}
+
 /// The end of the levels up to and with `level`.
 std::size_t level_end(std::span<const HalfSpace> planes, std::size_t level) noexcept
 {
@@ -421,7 +432,7 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
     if (!std::isfinite(scale)) {
         out.status = kBadInput;
         out.level = Level::limits;
-        out.velocity = into_balls(problem.balls, problem.reference);
+        out.velocity = last_command(problem);
         return out;
     }
     Solver solver(problem, scratch, Tolerance(scale), budget);

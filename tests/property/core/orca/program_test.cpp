@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Velocity programs against an interior-point method in doubles: the same sets are contradictions, the same optimum, the
+// same least violation (G-ORCA specification, T3). JINK_CASES=1000000 runs as many; JINK_SEED another sequence.
+#include "core/orca/program.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/base/random.hpp"
+#include "tests/oracle/orca_oracle.hpp"
+
+namespace jink::orca {
+namespace {
+
+std::uint64_t from_environment(const char* name, std::uint64_t otherwise)
+{
+    const char* const given = std::getenv(name);
+    return given != nullptr ? std::strtoull(given, nullptr, 10) : otherwise;
+}
+
+Vec3 direction(Random& random)
+{
+    while (true) {
+        const Vec3 v(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+        if (v.squaredNorm() > 1e-4F && v.squaredNorm() < 1.0F) {
+            return v.normalized();
+        }
+    }
+}
+
+struct Case {
+    std::vector<HalfSpace> planes;
+    std::vector<Ball> balls;
+    Vec3 preferred;
+};
+
+constexpr int kFamilies = 5;
+
+/// Half-spaces of a family: about a point that they leave free or not, some through one point, some nearly parallel or
+/// opposite to another one.
+Case random_case(Random& random, int family)
+{
+    Case out;
+    const float speed = random.uniform(0.5F, 4.0F);
+    out.balls.push_back({Vec3::Zero(), speed});
+    if (random.below(2) == 0) {
+        out.balls.push_back({direction(random) * random.uniform(0.0F, speed), random.uniform(0.05F, 1.0F) * speed});
+    }
+    const Vec3 centre = out.balls.back().centre + direction(random) * random.uniform(0.0F, 0.7F * out.balls.back().radius);
+    out.preferred = direction(random) * random.uniform(0.0F, 1.5F * speed);
+    const std::size_t count = 1 + random.below(family == 4 ? 10 : 54);
+    const float room = random.uniform(-0.6F, family == 1 ? 0.0F : 0.2F) * speed;
+    for (std::size_t i = 0; i < count; ++i) {
+        HalfSpace plane;
+        plane.normal = direction(random);
+        float at = random.uniform(room - 0.3F * speed, room);
+        if (family == 2) {
+            at = 0.0F;  // all through one point
+        } else if ((family == 3 || family == 4) && i > 0 && random.below(2) == 0) {
+            // Beside or opposite to one before, by 1e-1 to 1e-4 of an angle.
+            const HalfSpace& other = out.planes[random.below(i)];
+            const float turn = std::pow(10.0F, random.uniform(-4.0F, -1.0F));
+            const float sign = random.below(3) == 0 ? -1.0F : 1.0F;
+            plane.normal = (sign * other.normal + turn * direction(random)).normalized();
+            at = sign * (other.offset - other.normal.dot(centre)) + turn * random.uniform(-1.0F, 1.0F) * speed;
+        }
+        plane.offset = plane.normal.dot(centre) + at;
+        plane.yield = random.below(4) == 0 ? random.uniform(0.5F, 3.0F) : 1.0F;
+        plane.level = Level::warning;
+        out.planes.push_back(plane);
+    }
+    if (random.below(3) == 0) {
+        const std::size_t hard = random.below(std::min<std::size_t>(count, 6) + 1);
+        for (std::size_t i = 0; i < hard; ++i) {
+            out.planes[i].level = Level::conflict;
+        }
+    }
+    return out;
+}
+
+oracle::Question question_of(const Case& c)
+{
+    oracle::Question q;
+    for (const HalfSpace& plane : c.planes) {
+        const Eigen::Vector3d n = plane.normal.cast<double>();
+        q.planes.push_back({{n.x(), n.y(), n.z()}, static_cast<double>(plane.offset), static_cast<double>(plane.yield)});
+    }
+    for (const Ball& ball : c.balls) {
+        const Eigen::Vector3d p = ball.centre.cast<double>();
+        q.balls.push_back({{p.x(), p.y(), p.z()}, static_cast<double>(ball.radius), 0.0});
+    }
+    const Eigen::Vector3d g = c.preferred.cast<double>();
+    q.goal = {g.x(), g.y(), g.z()};
+    return q;
+}
+
+double distance(const Vec3& a, const std::array<double, 3>& b)
+{
+    return (a.cast<double>() - Eigen::Vector3d(b[0], b[1], b[2])).norm();
+}
+
+/// What the worst of many cases came to.
+struct Tally {
+    std::uint64_t cases = 0, feasible = 0, relaxed = 0, hard_relaxed = 0, on_edge = 0, farther = 0;
+    double optimum = 0.0, objective = 0.0, violation = 0.0, least = 0.0;
+
+    void print(const std::string& name, std::uint64_t seed) const
+    {
+        std::printf("%s, seed %llu: %llu cases, %llu with room, %llu relaxed (%llu twice), %llu on the edge; optimum off "
+                    "by %.1e at most, by more than 1e-4 in %llu; farther from the goal by %.1e, half-spaces broken by "
+                    "%.1e, least violation off by %.1e\n",
+                    name.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(cases),
+                    static_cast<unsigned long long>(feasible), static_cast<unsigned long long>(relaxed),
+                    static_cast<unsigned long long>(hard_relaxed), static_cast<unsigned long long>(on_edge), optimum,
+                    static_cast<unsigned long long>(farther), objective, violation, least);
+    }
+};
+
+constexpr double kEdge = 1e-5;  // [m/s] of room or contradiction, within which either answer is right
+
+/// Of the feasible ones: the optimum.
+void compare_optimum(const Case& c, const oracle::Question& q, const oracle::Least& least, const Solution& solution,
+                     Tally& tally, const std::string& where)
+{
+    ++tally.feasible;
+    ASSERT_EQ(solution.status, 0U) << where;
+    const std::array<double, 3> best = oracle::nearest(q, least.x);
+    const double off = distance(solution.velocity, best);
+    tally.optimum = std::max(tally.optimum, off);
+    const std::array<double, 3> zero{q.goal};
+    const Eigen::Vector3d ideal(best[0], best[1], best[2]);
+    const double farther = distance(solution.velocity, zero) - (ideal - c.preferred.cast<double>()).norm();
+    tally.objective = std::max(tally.objective, farther);
+    ASSERT_LE(farther, 1e-4) << where;
+    if (off > 1e-4) {
+        ++tally.farther;
+        // Only where the constraints themselves leave it open within rounding: no farther than where they meet when
+        // each gives way by that rounding.
+        oracle::Question loose = q;
+        for (oracle::Plane& plane : loose.planes) {
+            plane.b -= 2e-6 * static_cast<double>(c.balls[0].radius + 1.0F);
+        }
+        const std::array<double, 3> moved = oracle::nearest(loose, least.x);
+        const double open = (Eigen::Vector3d(moved[0], moved[1], moved[2]) - ideal).norm();
+        ASSERT_LE(off, 1e-4 + 2.0 * open) << where;
+    }
+}
+
+void compare(const Case& c, Tally& tally, const std::string& where)
+{
+    Scratch<54> scratch;
+    WorkBudget budget(10'000'000);
+    const Solution solution = solve({c.planes, c.balls, c.preferred, Vec3::Zero()}, scratch.view(), budget);
+    ++tally.cases;
+    ASSERT_TRUE(is_finite(solution.velocity)) << where;
+    for (const Ball& ball : c.balls) {
+        ASSERT_LE((solution.velocity - ball.centre).norm(), ball.radius * (1.0F + 1e-6F) + 1e-6F) << where;
+    }
+    for (const HalfSpace& plane : c.planes) {
+        const float allowed = solution.broken[static_cast<std::size_t>(plane.level)];
+        const double beyond = static_cast<double>(plane.violation(solution.velocity) / plane.yield - allowed);
+        tally.violation = std::max(tally.violation, beyond);
+        // A relaxed level is shifted by 1e-4 more.
+        ASSERT_LE(beyond, allowed > 0.0F ? 1.2e-4 : 1e-5) << where;
+    }
+    const oracle::Question q = question_of(c);
+    std::size_t hard = 0;
+    while (hard < c.planes.size() && c.planes[hard].level == Level::conflict) {
+        ++hard;
+    }
+    oracle::Question first = q;
+    first.planes.resize(hard);
+    const oracle::Least hards = hard > 0 ? oracle::least_violation(first, 0) : oracle::Least{true, -1.0, {}};
+    if (!hards.hard_hold) {
+        ++tally.on_edge;  // the balls touch in a point
+        return;
+    }
+    if (std::fabs(hards.d) < kEdge) {
+        ++tally.on_edge;
+        return;
+    }
+    if (hards.d > 0.0) {
+        ++tally.hard_relaxed;
+        ASSERT_NE(solution.status & kRelaxedConflict, 0U) << where;
+        tally.least = std::max(tally.least, std::fabs(static_cast<double>(solution.broken[2]) - hards.d));
+        ASSERT_NEAR(static_cast<double>(solution.broken[2]), hards.d, 1e-4) << where;
+        return;
+    }
+    ASSERT_EQ(solution.status & kRelaxedConflict, 0U) << where;
+    const oracle::Least least = oracle::least_violation(q, hard);
+    if (!least.hard_hold || std::fabs(least.d) < kEdge) {
+        ++tally.on_edge;
+        return;
+    }
+    if (least.d < 0.0) {
+        compare_optimum(c, q, least, solution, tally, where);
+        return;
+    }
+    ++tally.relaxed;
+    ASSERT_EQ(solution.status, kRelaxedWarning) << where;
+    tally.least = std::max(tally.least, std::fabs(static_cast<double>(solution.broken[3]) - least.d));
+    ASSERT_NEAR(static_cast<double>(solution.broken[3]), least.d, 1e-4) << where;
+}
+
+TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)
+{
+    const std::uint64_t cases = from_environment("JINK_CASES", 20'000);
+    const std::uint64_t seed = from_environment("JINK_SEED", 20261123);
+    const std::array<std::string, kFamilies> names{"random", "crowded", "through one point", "nearly parallel",
+                                                   "few and nearly parallel"};
+    std::array<Tally, kFamilies> tallies;
+    for (std::uint64_t i = 0; i < cases && !HasFatalFailure(); ++i) {
+        Random random(seed + i * 0x9E3779B97F4A7C15ULL);
+        const auto family = static_cast<int>(i % kFamilies);
+        compare(random_case(random, family), tallies[i % kFamilies],
+                "JINK_SEED=" + std::to_string(seed) + " case " + std::to_string(i));
+    }
+    for (std::size_t k = 0; k < kFamilies; ++k) {
+        tallies[k].print(names[k], seed);
+        EXPECT_GT(tallies[k].feasible + tallies[k].relaxed, tallies[k].cases / 2);
+    }
+}
+
+}  // namespace
+}  // namespace jink::orca
