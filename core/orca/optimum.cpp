@@ -152,8 +152,12 @@ bool optimum_on_disc(const Row& plane, Balls balls, const Goal& goal, float tole
     }
     const float off = goal.farthest ? -goal.point.dot(plane.normal) : plane.violation(goal.point);
     Goal level{goal.point + off * plane.normal, goal.farthest};
-    if (goal.farthest && level.point.squaredNorm() <= kTiny) {
-        level.point = Vec3::Zero();
+    if (goal.farthest) {
+        // Nearly along the normal, what is left is rounding in part, and becomes long: once more.
+        level.point -= level.point.dot(plane.normal) * plane.normal;
+        if (level.point.squaredNorm() <= kTiny) {
+            level.point = Vec3::Zero();
+        }
     }
     if (balls.size() == 1) {
         x = onto(one.centre, one.radius, level);
@@ -258,6 +262,39 @@ bool optimum_on_line(std::span<const Row> rows, std::size_t before, const Vec3& 
     return true;
 }
 
+/// a * b without an error: product and what it rounded off (Dekker; Veltkamp's split, for targets without a fused one).
+struct Product {
+    float value;
+    float rest;
+};
+Product product(float a, float b) noexcept
+{
+    constexpr float kSplit = 4097.0F;  // 2^12 + 1: halves of 12 bits
+    const float a_wide = kSplit * a;
+    const float b_wide = kSplit * b;
+    const float a_high = a_wide - (a_wide - a);
+    const float b_high = b_wide - (b_wide - b);
+    const float a_low = a - a_high;
+    const float b_low = b - b_high;
+    const float value = a * b;
+    return {value, ((a_high * b_high - value) + a_high * b_low + a_low * b_high) + a_low * b_low};
+}
+
+/// row.violation(x) as if in twice the precision, rounded once (Ogita, Rump and Oishi's Dot2).
+float exact_violation(const Row& row, const Vec3& x) noexcept
+{
+    float sum = row.offset;
+    float rest = 0.0F;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        const Product part = product(-row.normal[i], x[i]);
+        const float next = sum + part.value;
+        const float back = next - sum;
+        rest += ((sum - (next - back)) + (part.value - back)) + part.rest;
+        sum = next;
+    }
+    return sum + rest;
+}
+
 /// The line that both planes have in common, from its point nearest to `near`, which lies on plane `one`. False where
 /// they are parallel.
 bool line_of(const Row& one, const Row& other, const Vec3& near, Vec3& from, Vec3& along) noexcept
@@ -275,10 +312,37 @@ bool line_of(const Row& one, const Row& other, const Vec3& near, Vec3& from, Vec
     const Vec3 across_line = along.cross(one.normal);  // in plane `one`
     const float steep = across_line.dot(turn);         // = across_line . other.normal, but exact
     from = near + (other.violation(near) / steep) * across_line;
-    // What the way of a long step rounded off, once more.
-    from += one.violation(from) * one.normal;
-    from += (other.violation(from) / steep) * across_line;
+    // What the way of a long step rounded off, once more. Between planes of nearly the same direction the rounding of
+    // the violations themselves would be a long way.
+    constexpr float kBlunt = 0.1F;  // [rad]
+    if (sine > kBlunt) {
+        from += one.violation(from) * one.normal;
+        from += (other.violation(from) / steep) * across_line;
+    } else {
+        from += exact_violation(one, from) * one.normal;
+        from += (exact_violation(other, from) / steep) * across_line;
+    }
     return true;
+}
+
+/// Brings a corner of three planes that hardly differ in direction to where they meet: what rounding left of each
+/// plane is a long way there.
+void settle(const Row& a, const Row& b, const Row& c, float tolerance, Vec3& x) noexcept
+{
+    constexpr float kBlunt = 0.1F;  // volume of the normals
+    constexpr float kFlat = 1e-6F;
+    const Vec3 bc = b.normal.cross(c.normal);
+    const float volume = a.normal.dot(bc);
+    if (std::fabs(volume) > kBlunt || std::fabs(volume) < kFlat) {
+        return;
+    }
+    const Vec3 step = (exact_violation(a, x) * bc + exact_violation(b, x) * c.normal.cross(a.normal) +
+                       exact_violation(c, x) * a.normal.cross(b.normal)) /
+                      volume;
+    // Farther than what rounding explains, it is another corner.
+    if (step.norm() * std::fabs(volume) <= 4.0F * tolerance) {
+        x += step;
+    }
 }
 
 }  // namespace
@@ -321,6 +385,9 @@ Found optimum_on_plane(std::span<const Row> rows, std::size_t on, std::size_t be
         if (!line_of(rows[on], rows[j], best, from, along) ||
             !optimum_on_line(rows, j, from, along, balls, goal, tolerance.outside, best, end)) {
             return Found::nothing;
+        }
+        if (end != Piece::kNone) {
+            settle(rows[on], rows[j], rows[end], tolerance.outside, best);
         }
         held = {{static_cast<std::uint16_t>(on), static_cast<std::uint16_t>(j), end},
                 static_cast<std::uint8_t>(end == Piece::kNone ? 2 : 3)};

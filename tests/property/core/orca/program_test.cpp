@@ -110,41 +110,71 @@ struct Tally {
     void print(const std::string& name, std::uint64_t seed) const
     {
         std::printf("%s, seed %llu: %llu cases, %llu with room, %llu relaxed (%llu twice), %llu on the edge; optimum off "
-                    "by %.1e at most, by more than 1e-4 in %llu; farther from the goal by %.1e, half-spaces broken by "
-                    "%.1e, least violation off by %.1e\n",
+                    "by %.1e at most, least violation by %.1e, either by more than 1e-4 in %llu; farther from the goal "
+                    "by %.1e, half-spaces broken by %.1e\n",
                     name.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(cases),
                     static_cast<unsigned long long>(feasible), static_cast<unsigned long long>(relaxed),
                     static_cast<unsigned long long>(hard_relaxed), static_cast<unsigned long long>(on_edge), optimum,
-                    static_cast<unsigned long long>(farther), objective, violation, least);
+                    least, static_cast<unsigned long long>(farther), objective, violation);
     }
 };
 
 constexpr double kEdge = 1e-5;  // [m/s] of room or contradiction, within which either answer is right
 
+/// The question with every half-space moved by what rounding may be: into what is free, or out of it.
+oracle::Question moved(const Case& c, oracle::Question q, double sign)
+{
+    for (oracle::Plane& plane : q.planes) {
+        plane.b += sign * 2e-6 * static_cast<double>(c.balls[0].radius + 1.0F);
+    }
+    return q;
+}
+
+/// The least violation: to 1e-4, or where hard half-spaces that are nearly parallel leave it open within rounding,
+/// between what it is with both roundings.
+void compare_least(const Case& c, const oracle::Question& q, std::size_t hard, double broken, double exact,
+                   Tally& tally, const std::string& where)
+{
+    const double off = std::fabs(broken - exact);
+    tally.least = std::max(tally.least, off);
+    if (off <= 1e-4) {
+        return;
+    }
+    ++tally.farther;
+    const oracle::Least loose = oracle::least_violation(moved(c, q, -1.0), hard);
+    const oracle::Least tight = oracle::least_violation(moved(c, q, 1.0), hard);
+    ASSERT_GE(broken, loose.d - 1e-4) << where;
+    ASSERT_TRUE(!tight.hard_hold || broken <= tight.d + 1e-4) << where << ' ' << broken << ' ' << tight.d;
+}
+
 /// Of the feasible ones: the optimum.
-void compare_optimum(const Case& c, const oracle::Question& q, const oracle::Least& least, const Solution& solution,
-                     Tally& tally, const std::string& where)
+void compare_optimum(const Case& c, const oracle::Question& q, const Solution& solution, Tally& tally,
+                     const std::string& where)
 {
     ++tally.feasible;
     ASSERT_EQ(solution.status, 0U) << where;
-    const std::array<double, 3> best = oracle::nearest(q, least.x);
+    // From the point with most room.
+    const std::array<double, 3> inside = oracle::least_violation(q, 0, 1e-6).x;
+    const std::array<double, 3> best = oracle::nearest(q, inside);
     const double off = distance(solution.velocity, best);
     tally.optimum = std::max(tally.optimum, off);
-    const std::array<double, 3> zero{q.goal};
     const Eigen::Vector3d ideal(best[0], best[1], best[2]);
-    const double farther = distance(solution.velocity, zero) - (ideal - c.preferred.cast<double>()).norm();
+    const double farther = distance(solution.velocity, q.goal) - (ideal - c.preferred.cast<double>()).norm();
     tally.objective = std::max(tally.objective, farther);
-    ASSERT_LE(farther, 1e-4) << where;
     if (off > 1e-4) {
         ++tally.farther;
+        // No farther from the goal than with the rounding against it, where that leaves any room.
+        const oracle::Question against = moved(c, q, 1.0);
+        const oracle::Least tight = oracle::least_violation(against, 0);
+        if (tight.d < -1e-6) {
+            const std::array<double, 3> worst = oracle::nearest(against, tight.x);
+            const Eigen::Vector3d bound(worst[0], worst[1], worst[2]);
+            ASSERT_LE(distance(solution.velocity, q.goal), (bound - c.preferred.cast<double>()).norm() + 1e-4) << where;
+        }
         // Only where the constraints themselves leave it open within rounding: no farther than where they meet when
         // each gives way by that rounding.
-        oracle::Question loose = q;
-        for (oracle::Plane& plane : loose.planes) {
-            plane.b -= 2e-6 * static_cast<double>(c.balls[0].radius + 1.0F);
-        }
-        const std::array<double, 3> moved = oracle::nearest(loose, least.x);
-        const double open = (Eigen::Vector3d(moved[0], moved[1], moved[2]) - ideal).norm();
+        const std::array<double, 3> loose = oracle::nearest(moved(c, q, -1.0), inside);
+        const double open = (Eigen::Vector3d(loose[0], loose[1], loose[2]) - ideal).norm();
         ASSERT_LE(off, 1e-4 + 2.0 * open) << where;
     }
 }
@@ -185,8 +215,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     if (hards.d > 0.0) {
         ++tally.hard_relaxed;
         ASSERT_NE(solution.status & kRelaxedConflict, 0U) << where;
-        tally.least = std::max(tally.least, std::fabs(static_cast<double>(solution.broken[2]) - hards.d));
-        ASSERT_NEAR(static_cast<double>(solution.broken[2]), hards.d, 1e-4) << where;
+        compare_least(c, first, 0, static_cast<double>(solution.broken[2]), hards.d, tally, where);
         return;
     }
     ASSERT_EQ(solution.status & kRelaxedConflict, 0U) << where;
@@ -196,13 +225,12 @@ void compare(const Case& c, Tally& tally, const std::string& where)
         return;
     }
     if (least.d < 0.0) {
-        compare_optimum(c, q, least, solution, tally, where);
+        compare_optimum(c, q, solution, tally, where);
         return;
     }
     ++tally.relaxed;
     ASSERT_EQ(solution.status, kRelaxedWarning) << where;
-    tally.least = std::max(tally.least, std::fabs(static_cast<double>(solution.broken[3]) - least.d));
-    ASSERT_NEAR(static_cast<double>(solution.broken[3]), least.d, 1e-4) << where;
+    compare_least(c, q, hard, static_cast<double>(solution.broken[3]), least.d, tally, where);
 }
 
 TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)
@@ -220,7 +248,7 @@ TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)
     }
     for (std::size_t k = 0; k < kFamilies; ++k) {
         tallies[k].print(names[k], seed);
-        EXPECT_GT(tallies[k].feasible + tallies[k].relaxed, tallies[k].cases / 2);
+        EXPECT_GT(tallies[k].feasible + tallies[k].relaxed + tallies[k].hard_relaxed, tallies[k].cases / 20);
     }
 }
 
