@@ -327,7 +327,7 @@ bool line_of(const Row& one, const Row& other, const Vec3& near, Vec3& from, Vec
 
 /// Brings a corner of three planes that hardly differ in direction to where they meet: what rounding left of each
 /// plane is a long way there.
-void settle(const Row& a, const Row& b, const Row& c, float tolerance, Vec3& x) noexcept
+void settle(const Row& a, const Row& b, const Row& c, Balls balls, float tolerance, Vec3& x) noexcept
 {
     constexpr float kBlunt = 0.1F;  // volume of the normals
     constexpr float kFlat = 1e-6F;
@@ -336,12 +336,17 @@ void settle(const Row& a, const Row& b, const Row& c, float tolerance, Vec3& x) 
     if (std::fabs(volume) > kBlunt || std::fabs(volume) < kFlat) {
         return;
     }
-    const Vec3 step = (exact_violation(a, x) * bc + exact_violation(b, x) * c.normal.cross(a.normal) +
-                       exact_violation(c, x) * a.normal.cross(b.normal)) /
-                      volume;
-    // Farther than what rounding explains, it is another corner.
-    if (step.norm() * std::fabs(volume) <= 4.0F * tolerance) {
-        x += step;
+    const auto off = [&](const Vec3& at) {
+        return Vec3(exact_violation(a, at), exact_violation(b, at), exact_violation(c, at));
+    };
+    const Vec3 before = off(x);
+    const Vec3 settled =
+        x + (before.x() * bc + before.y() * c.normal.cross(a.normal) + before.z() * a.normal.cross(b.normal)) / volume;
+    // Farther than what rounding explains, it is another corner; and the way there is rounded, too.
+    const auto in = [&](const Ball& ball) { return within(ball, settled, tolerance); };
+    if (before.cwiseAbs().maxCoeff() <= 4.0F * tolerance && off(settled).cwiseAbs().maxCoeff() <= tolerance &&
+        std::all_of(balls.begin(), balls.end(), in)) {
+        x = settled;
     }
 }
 
@@ -387,7 +392,7 @@ Found optimum_on_plane(std::span<const Row> rows, std::size_t on, std::size_t be
             return Found::nothing;
         }
         if (end != Piece::kNone) {
-            settle(rows[on], rows[j], rows[end], tolerance.outside, best);
+            settle(rows[on], rows[j], rows[end], balls, tolerance.outside, best);
         }
         held = {{static_cast<std::uint16_t>(on), static_cast<std::uint16_t>(j), end},
                 static_cast<std::uint8_t>(end == Piece::kNone ? 2 : 3)};

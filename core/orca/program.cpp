@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxHeld = 8;    // rows of one turn: the three of a basis, and those that brought nothing
 constexpr float kShifted = 1e-4F;      // [m/s] that a relaxed level gives way beyond what it has to, against rounding
+constexpr int kMostShifts = 2;         // times that it gives way ten times as far, before what was found is taken
 constexpr float kFirm = 1e-3F;         // least share of a corner that is a point and no edge
 constexpr float kUnitLength = 1e-3F;   // by which a normal's length may be off
 constexpr std::size_t kNobody = ~std::size_t{0};
@@ -36,6 +37,10 @@ public:
     /// After nearest(count) found nothing: the same for rows [from, count), where four rows decide. And the nearest
     /// point then. False: nothing is known.
     bool relax_at_corner(std::size_t from, std::size_t count, float& d) noexcept;
+
+    /// The nearest point once rows [from, count) have given way. Where rounding leaves none, because rows before them
+    /// are nearly opposite, they give way further.
+    Found nearest_relaxed(std::size_t from, std::size_t count) noexcept;
 
     [[nodiscard]] const Vec3& x() const noexcept { return x_; }
     [[nodiscard]] const Basis& basis() const noexcept { return basis_; }
@@ -163,7 +168,7 @@ bool Solver::relax_at_corner(std::size_t from, std::size_t count, float& d) noex
     shift(from, count, d);
     x_ = corner.x;
     const Vec3 least = corner.x;
-    if (nearest(count) != Found::optimum) {
+    if (nearest_relaxed(from, count) != Found::optimum) {
         x_ = least;
     }
     return true;
@@ -174,6 +179,18 @@ void Solver::shift(std::size_t from, std::size_t to, float d) noexcept
     for (std::size_t i = from; i < to; ++i) {
         scratch_.rows[i].offset -= (d + kShifted) * scratch_.yields[i];
     }
+}
+
+Found Solver::nearest_relaxed(std::size_t from, std::size_t count) noexcept
+{
+    Found found = nearest(count);
+    float further = kShifted;
+    for (int turn = 0; turn < kMostShifts && found == Found::nothing; ++turn) {
+        further *= 10.0F;
+        shift(from, count, further);
+        found = nearest(count);
+    }
+    return found;
 }
 
 /// Moves x to where `soft` is broken least while none of the softs before it is broken more: they stand in `held`
@@ -324,12 +341,14 @@ std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Ve
 constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
                                                       kRelaxedWarning};
 
+constexpr float kUnsaid = 1e-5F;  // [m/s] by which a level may be broken that is not said to be
+
 /// What is said to be broken is what is, to twice the shift: corners of nearly opposite half-spaces may be off by more.
 void report(std::span<const HalfSpace> planes, Solution& out) noexcept
 {
     const std::array<float, kLevels> exact = broken_by(planes, out.velocity);
     for (std::size_t level = 0; level < kLevels; ++level) {
-        if (exact[level] > out.broken[level] + 2.0F * kShifted) {
+        if (exact[level] > out.broken[level] + (out.broken[level] > 0.0F ? 2.0F * kShifted : kUnsaid)) {
             out.broken[level] = exact[level];
             out.status |= kRelaxed[level];
             out.level = std::min(out.level, static_cast<Level>(level));
@@ -401,7 +420,7 @@ Found ladder(const Problem& problem, Solver& solver, Solution& out, Vec3& best) 
             }
             if (found == Found::optimum) {
                 best = solver.x();
-                found = solver.nearest(end);
+                found = solver.nearest_relaxed(before, end);
             }
         }
         if (found == Found::exhausted) {
