@@ -32,7 +32,11 @@ JINK_INLINE Exit exit_of(const Vec3& position, const Vec3& velocity, float radiu
     const float distance2 = position.squaredNorm();
     const float distance = std::sqrt(distance2);
     const float cosine_length = std::sqrt((distance - radius) * (distance + radius));  // no cancellation near contact
-    const Vec3 across = velocity - position * (velocity.dot(position) / distance2);
+    Vec3 across = velocity - position * (velocity.dot(position) / distance2);
+    constexpr float kNearAxis = 1e-4F;  // of the speed squared: what is left of the difference is rounding in part
+    if (across.squaredNorm() < kNearAxis * velocity.squaredNorm()) {
+        across -= position * (across.dot(position) / distance2);
+    }
     const float across_length = across.norm();
     const Vec3 sideways = across_length > kOnAxis ? Vec3(across / across_length) : side(position);
     const float scale = 1.0F / distance;
