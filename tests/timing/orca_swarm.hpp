@@ -16,18 +16,35 @@
 
 namespace jink::orca {
 
-/// Rules of a swarm; defaults are the public example's.
+/// Rules of a swarm; defaults are the public example's, and two regions around each vehicle.
+///
+/// The public library loses distance in two ways: where half-spaces contradict each other all give way, and of more
+/// than `most` neighbours the farther ones are not seen. Here the half-spaces of a region a little wider than needed
+/// give way, and that leaves the distance itself: the conflict region's half-spaces depend on positions alone
+/// (Conflict::at_rest), all hold at once, and whoever is not seen is kept off by a cap of the speed. A brake time of two
+/// periods caps nobody who is a metre away, and slows nobody who is half of that.
 struct SwarmSettings {
-    float radius = 1.5F;      ///< of a vehicle [m]
-    float max_speed = 2.0F;   ///< [m/s]
-    float cruise = 1.0F;      ///< preferred speed [m/s]
-    float range = 15.0F;      ///< [m] in which others are seen
-    std::size_t most = 10;    ///< others at once
-    float step = 0.125F;      ///< [s]
-    float sphere = 100.0F;    ///< radius [m]
-    float warning = 3.0F;     ///< radius of the warning region [m]; the conflict region's is 2 radius
-    bool regions = true;      ///< false: one region of 2 radius, as the public library has it
-    PairSettings pair;
+    float radius = 1.5F;     ///< of a vehicle [m]
+    float max_speed = 2.0F;  ///< [m/s]
+    float cruise = 1.0F;     ///< preferred speed [m/s]
+    float range = 15.0F;     ///< [m] in which others are seen
+    std::size_t most = 10;   ///< others at once
+    float step = 0.125F;     ///< [s]
+    float sphere = 100.0F;   ///< radius [m]
+    float warning = 3.1F;    ///< radius of the warning region [m]; the conflict region's is 2 radius
+    bool regions = true;     ///< false: one region of 2 radius that gives way, as the public library has it
+    PairSettings pair = swarm_pair();
+
+    static PairSettings swarm_pair()
+    {
+        PairSettings pair;
+        pair.horizon = 10.0F;
+        pair.conflict = Conflict::at_rest;
+        pair.brake = 0.25F;
+        pair.ramp_speed = 0.25F;
+        pair.recovery_time = 0.125F;
+        return pair;
+    }
 };
 
 class Swarm {

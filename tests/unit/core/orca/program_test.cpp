@@ -2,6 +2,7 @@
 // Velocity programs: the check vectors of the G-ORCA specification, section 17 (G1 - G9), statuses, refusals.
 #include "core/orca/program.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -241,6 +242,49 @@ TEST(Program, OutOfWorkItTakesTheBestOfAFew)
     }
     WorkBudget budget(kPlenty);
     EXPECT_EQ(solve({planes, balls, {1.5F, 0, 0}, {1, 0, 0}}, scratch.view(), budget).status, 0U);
+}
+
+/// A known answer among many more half-spaces than hold it, in any order.
+TEST(Program, OrderWithinALevelChangesNothing)
+{
+    std::vector<HalfSpace> planes{kG2a, kG2b};
+    for (int i = 0; i < 40; ++i) {
+        const float angle = 0.37F * static_cast<float>(i);
+        const Vec3 normal(std::cos(angle) * 0.6F, std::sin(angle) * 0.6F, i % 2 == 0 ? 0.8F : -0.8F);
+        planes.push_back(plane(Vec3(0.5F, 0.3F, 0.2F) - 0.1F * normal, normal));
+    }
+    for (int turn = 0; turn < 42; ++turn) {
+        std::rotate(planes.begin(), planes.begin() + 1, planes.end());
+        const Solution solution = solve_for(planes, kTwo, {1, -0.5F, 0.2F});
+        EXPECT_EQ(solution.status, 0U);
+        expect_near(solution.velocity, {0.5F, 0.3F, 0.2F});
+    }
+}
+
+TEST(Program, StandsStillWhereThatIsAll)
+{
+    // A cage of six half-spaces through 0: what a crowd at the rim of the conflict region leaves.
+    std::vector<HalfSpace> planes;
+    for (int axis = 0; axis < 3; ++axis) {
+        planes.push_back(plane(Vec3::Zero(), Vec3::Unit(axis), Level::conflict));
+        planes.push_back(plane(Vec3::Zero(), -Vec3::Unit(axis), Level::conflict));
+    }
+    const Solution solution = solve_for(planes, kTwo, {1, -0.5F, 0.2F});
+    EXPECT_EQ(solution.status, 0U);
+    expect_near(solution.velocity, Vec3::Zero());
+}
+
+TEST(Program, IntoBallsIsAlwaysWithin)
+{
+    const std::vector<Ball> lens{{Vec3::Zero(), 1.0F}, {{1.9F, 0, 0}, 1.0F}};
+    for (const Vec3& point : {Vec3(9, 9, 9), Vec3(-3, 0, 0), Vec3(0.95F, 0, 0), Vec3(1, 5, 0)}) {
+        const Vec3 x = into_balls(lens, point);
+        for (const Ball& ball : lens) {
+            EXPECT_LE((x - ball.centre).norm(), ball.radius + 1e-6F);
+        }
+    }
+    EXPECT_TRUE(is_finite(into_balls(lens, {std::nanf(""), 0, 0})));
+    EXPECT_EQ(into_balls(kTwo, {0.1F, 0.2F, 0.3F}), Vec3(0.1F, 0.2F, 0.3F));
 }
 
 }  // namespace
