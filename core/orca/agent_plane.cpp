@@ -72,7 +72,7 @@ JINK_INLINE HalfSpace half_space(const Exit& exit, const Pair& pair, float stret
 }
 
 JINK_INLINE Exit warning_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair,
-                  const PairSettings& settings) noexcept
+                              const PairSettings& settings) noexcept
 {
     const float outer = pair.across;
     if (distance > outer) {
@@ -91,8 +91,8 @@ JINK_INLINE Exit warning_exit(const Vec3& position, float distance, const Vec3& 
     return {normal, change.dot(normal)};
 }
 
-JINK_INLINE Exit conflict_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair, float inner,
-                   const PairSettings& settings) noexcept
+JINK_INLINE Exit conflict_exit(const Vec3& position, float distance, const Vec3& velocity, const Pair& pair,
+                               float inner, const PairSettings& settings) noexcept
 {
     if (distance > inner) {
         return exit_of(position, velocity, inner, settings.horizon);
@@ -103,7 +103,7 @@ JINK_INLINE Exit conflict_exit(const Vec3& position, float distance, const Vec3&
 
 /// Conflict::at_rest: of the gap, half in each `brake` time; of what is missing, half of the recovery.
 JINK_INLINE HalfSpace rest_plane(const Vec3& position, float distance, const Pair& pair, float inner, float stretch,
-                     const PairSettings& settings) noexcept
+                                 const PairSettings& settings) noexcept
 {
     const float gap = distance - inner;
     const Exit out = apart(position, distance, Vec3::Zero(), 0.0F, pair.above);
@@ -155,8 +155,8 @@ PairPlanes pair_planes(const Pair& pair, const PairSettings& settings) noexcept
     const Vec3 velocity = stretched(pair.own_velocity - pair.other_velocity, stretch);
     PairPlanes out;
     out.distance = position.norm();
-    out.warning = half_space(warning_exit(position, out.distance, velocity, pair, settings), pair, stretch,
-                             Level::warning);
+    out.warning =
+        half_space(warning_exit(position, out.distance, velocity, pair, settings), pair, stretch, Level::warning);
     const float inner = pair.across * settings.conflict_ratio;
     out.conflict = settings.conflict == Conflict::at_rest
                        ? rest_plane(position, out.distance, pair, inner, stretch, settings)

@@ -107,10 +107,10 @@ struct PairPlanes {
     float distance = 0.0F;  ///< between the centres, in the space where the region is a sphere [m]
 };
 
-/// Both half-spaces of a pair (Alejo 7.1 - 7.2.4): the warning region's gives way, the conflict region's gives way after
-/// it. Heights are stretched until the region is a sphere, and the half-spaces brought back (Alejo 7.31), so limits of
-/// speed and acceleration keep their meaning. Both sides of a pair get mirrored half-spaces: by the bit, where their
-/// positions and velocities are. Input finite. O(1).
+/// Both half-spaces of a pair (Alejo 7.1 - 7.2.4): the warning region's gives way, the conflict region's gives way
+/// after it. Heights are stretched until the region is a sphere, and the half-spaces brought back (Alejo 7.31), so
+/// limits of speed and acceleration keep their meaning. Both sides of a pair get mirrored half-spaces: by the bit,
+/// where their positions and velocities are. Input finite. O(1).
 [[nodiscard]] PairPlanes pair_planes(const Pair& pair, const PairSettings& settings) noexcept;
 
 /// The warning region's alone, as one region around a pair.
@@ -118,7 +118,8 @@ struct PairPlanes {
 
 /// Beyond this distance [m] of the centres, in the stretched space, no admissible velocities of the two collide within
 /// the horizon: its half-space may be left out and nothing is lost. Speeds are the most each can fly [m/s].
-[[nodiscard]] inline float reach(float radius, float horizon, float own_speed, float other_speed, float stretch) noexcept
+[[nodiscard]] inline float reach(float radius, float horizon, float own_speed, float other_speed,
+                                 float stretch) noexcept
 {
     return radius + horizon * (own_speed + other_speed) * (stretch > 1.0F ? stretch : 1.0F);
 }

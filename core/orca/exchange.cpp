@@ -58,8 +58,8 @@ struct Corners {
             d += corner.shares[k] * missing[k];
         }
         // Three of the four planes give the point: leave out the one with the largest share, whose others span most.
-        const std::size_t out = static_cast<std::size_t>(
-            std::max_element(corner.shares.begin(), corner.shares.end()) - corner.shares.begin());
+        const std::size_t out = static_cast<std::size_t>(std::max_element(corner.shares.begin(), corner.shares.end()) -
+                                                         corner.shares.begin());
         std::array<std::size_t, 3> of{};
         std::size_t n = 0;
         for (std::size_t k = 0; k < 4; ++k) {

@@ -18,7 +18,8 @@ struct HorizonFound {
 
 /// Looks for the longest horizon in [least, longest] that leaves a velocity, to a 256th of the difference.
 ///
-/// @param build  (float horizon) -> std::span<const HalfSpace>: all half-spaces with this horizon, by level, valid until
+/// @param build  (float horizon) -> std::span<const HalfSpace>: all half-spaces with this horizon, by level, valid
+/// until
 ///               the next call
 /// @param problem  all but its half-spaces
 /// At most ten programs.

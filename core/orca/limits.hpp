@@ -83,10 +83,10 @@ enum class Unsafe : std::uint8_t {
 struct SafetyQuestion {
     MotionLimits limits;
     PairSettings pair;
-    float across = 1.2F;           ///< warning region's half axes [m]
-    float upright = 0.6F;          ///< [m]
-    float obstacle_horizon = 2.4F; ///< [s]
-    float delay = 0.5F;            ///< [s] from sensing to flying, filters included
+    float across = 1.2F;            ///< warning region's half axes [m]
+    float upright = 0.6F;           ///< [m]
+    float obstacle_horizon = 2.4F;  ///< [s]
+    float delay = 0.5F;             ///< [s] from sensing to flying, filters included
 };
 inline constexpr float kMostStretch = 4.0F;
 inline constexpr float kLeastStretch = 0.5F;

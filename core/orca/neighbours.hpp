@@ -71,11 +71,11 @@ struct Selection {
 
 /// Chooses among `all`, tracked ones in any order; the same set whatever the order, ties by id.
 ///
-/// Whoever can not be met within the horizon is left out, and nothing is lost. Of the others the kMaxOrcaNeighbours with
-/// the least (distance - radius) / horizon are kept, those that do not give way counted as nearer by their speed. For
-/// each one that is left out the own speed is capped at gap / cap_horizon less its own top speed; where that is nothing,
-/// at half of the gap, which holds if it caps its own the same way (those that do not give way do not: then 0).
-/// O(n kMaxOrcaNeighbours).
+/// Whoever can not be met within the horizon is left out, and nothing is lost. Of the others the kMaxOrcaNeighbours
+/// with the least (distance - radius) / horizon are kept, those that do not give way counted as nearer by their speed.
+/// For each one that is left out the own speed is capped at gap / cap_horizon less its own top speed; where that is
+/// nothing, at half of the gap, which holds if it caps its own the same way (those that do not give way do not: then
+/// 0). O(n kMaxOrcaNeighbours).
 [[nodiscard]] Selection select(const NeighbourSettings& settings, std::span<const Neighbour> all,
                                WorkBudget& budget) noexcept;
 

@@ -13,8 +13,8 @@ namespace jink::orca {
 
 namespace {
 
-constexpr float kTiny = 1e-12F;        // of a length squared that has no direction
-constexpr float kUnbounded = 1e18F;    // [m/s]
+constexpr float kTiny = 1e-12F;          // of a length squared that has no direction
+constexpr float kUnbounded = 1e18F;      // [m/s]
 constexpr float kSameDirection = 1e-6F;  // sine of an angle between planes that no rounding of normals tells from 0
 
 /// Disc: what a plane leaves of a ball.
@@ -254,8 +254,8 @@ bool optimum_on_line(std::span<const Row> rows, std::size_t before, const Vec3& 
             return false;
         }
     }
-    const float wanted = goal.farthest ? (goal.point.dot(along) > 0.0F ? piece.high : piece.low)
-                                       : along.dot(goal.point - from);
+    const float wanted =
+        goal.farthest ? (goal.point.dot(along) > 0.0F ? piece.high : piece.low) : along.dot(goal.point - from);
     const float t = std::clamp(wanted, piece.low, piece.high);
     end = t == piece.low ? piece.low_row : t == piece.high ? piece.high_row : Piece::kNone;
     x = from + t * along;

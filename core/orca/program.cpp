@@ -13,11 +13,11 @@ namespace jink::orca {
 
 namespace {
 
-constexpr std::size_t kMaxHeld = 8;    // rows of one turn: the three of a basis, and those that brought nothing
-constexpr float kShifted = 1e-4F;      // [m/s] that a relaxed level gives way beyond what it has to, against rounding
-constexpr int kMostShifts = 2;         // times that it gives way ten times as far, before what was found is taken
-constexpr float kFirm = 1e-3F;         // least share of a corner that is a point and no edge
-constexpr float kUnitLength = 1e-3F;   // by which a normal's length may be off
+constexpr std::size_t kMaxHeld = 8;   // rows of one turn: the three of a basis, and those that brought nothing
+constexpr float kShifted = 1e-4F;     // [m/s] that a relaxed level gives way beyond what it has to, against rounding
+constexpr int kMostShifts = 2;        // times that it gives way ten times as far, before what was found is taken
+constexpr float kFirm = 1e-3F;        // least share of a corner that is a point and no edge
+constexpr float kUnitLength = 1e-3F;  // by which a normal's length may be off
 constexpr std::size_t kNobody = ~std::size_t{0};
 
 /// The search for one problem's solution.
@@ -123,9 +123,8 @@ Found Solver::nearest(std::size_t count) noexcept
         ids[size] = static_cast<std::uint16_t>(next.row);
         ++size;
         Basis local;
-        const Found found =
-            optimum_on_plane(std::span<const Row>(held.data(), size), size - 1, size - 1, balls_, goal_, tolerance_,
-                             budget_, x_, local);
+        const Found found = optimum_on_plane(std::span<const Row>(held.data(), size), size - 1, size - 1, balls_, goal_,
+                                             tolerance_, budget_, x_, local);
         if (found != Found::optimum) {
             return found;
         }
@@ -216,8 +215,7 @@ Found Solver::push_out(std::size_t soft, std::size_t hards, std::size_t softs, f
             continue;  // the same direction: the one that is broken more stays so
         }
         const float shrink = 1.0F / std::sqrt(length2);
-        scratch_.derived[size++] = {normal * shrink,
-                                    (scratch_.rows[j].offset * other_by - most.offset * by) * shrink};
+        scratch_.derived[size++] = {normal * shrink, (scratch_.rows[j].offset * other_by - most.offset * by) * shrink};
     }
     const Optimum best = optimum(scratch_.derived.first(size), balls_, {most.normal, true}, tolerance_, budget_);
     if (best.found == Found::exhausted) {
@@ -377,8 +375,8 @@ void choose(const Problem& problem, const Vec3& so_far, Solution& out) noexcept
 {
     const Ball& reachable = problem.balls.back();
     const float speed = reachable.centre.norm();
-    const Vec3 braking = speed <= reachable.radius ? Vec3(Vec3::Zero())
-                                                   : Vec3(reachable.centre * (1.0F - reachable.radius / speed));
+    const Vec3 braking =
+        speed <= reachable.radius ? Vec3(Vec3::Zero()) : Vec3(reachable.centre * (1.0F - reachable.radius / speed));
     const std::array<Vec3, 5> candidates{so_far, problem.reference, braking, away_from(problem, Level::obstacles),
                                          away_from(problem, Level::conflict)};
     bool first = true;
@@ -473,8 +471,8 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
     if (found == Found::nothing) {
         // The last level alone, in most cases.
         const std::size_t last = problem.planes.empty() ? 0 : static_cast<std::size_t>(problem.planes.back().level);
-        if (last > 0 && solver.relax_at_corner(level_end(problem.planes, last - 1), problem.planes.size(),
-                                               out.broken[last])) {
+        if (last > 0 &&
+            solver.relax_at_corner(level_end(problem.planes, last - 1), problem.planes.size(), out.broken[last])) {
             out.status = kRelaxed[last];
             out.level = problem.planes.back().level;
             best = solver.x();

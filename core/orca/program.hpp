@@ -38,12 +38,13 @@ struct Problem {
 };
 
 struct Solution {
-    Vec3 velocity = Vec3::Zero();        ///< [m/s], always finite and within the balls
-    Level level = Level::warning;        ///< the strongest level that is broken; meaningless where `status` is 0
+    Vec3 velocity = Vec3::Zero();         ///< [m/s], always finite and within the balls
+    Level level = Level::warning;         ///< the strongest level that is broken; meaningless where `status` is 0
     std::array<float, kLevels> broken{};  ///< by level: how far its half-spaces are broken at most, over their yield
-    std::array<std::uint16_t, 3> active{};  ///< half-spaces that hold the velocity where it is: their places in `planes`
-    std::uint8_t actives = 0;            ///< how many of them
-    std::uint32_t status = 0;            ///< StatusBit
+    std::array<std::uint16_t, 3>
+        active{};              ///< half-spaces that hold the velocity where it is: their places in `planes`
+    std::uint8_t actives = 0;  ///< how many of them
+    std::uint32_t status = 0;  ///< StatusBit
 };
 
 /// What a solver works in: 38 bytes for each half-space, of the caller's.

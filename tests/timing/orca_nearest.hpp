@@ -52,7 +52,7 @@ private:
     std::size_t most_;
     std::size_t wide_;
     float range_;
-    float moved_ = 0.0F;        // sum of all moves
+    float moved_ = 0.0F;  // sum of all moves
     bool built_ = false;
     std::vector<Node> nodes_;
     std::vector<std::uint32_t> order_;

@@ -80,8 +80,9 @@ void Swarm::decide(std::size_t self)
     }
     const Ball ball{Vec3::Zero(), cap};
     WorkBudget budget(1'000'000);
-    const Solution solution = solve({{planes_.data(), conflicts + warnings}, {&ball, 1}, preferred(self), velocities_[self]},
-                                    scratch_.view(), budget);
+    const Solution solution =
+        solve({{planes_.data(), conflicts + warnings}, {&ball, 1}, preferred(self), velocities_[self]}, scratch_.view(),
+              budget);
     ++counts_.solved;
     counts_.warning += (solution.status & kRelaxedWarning) != 0 ? 1U : 0U;
     counts_.conflict += (solution.status & kRelaxedConflict) != 0 ? 1U : 0U;

@@ -21,8 +21,8 @@ namespace jink::orca {
 /// The public library loses distance in two ways: where half-spaces contradict each other all give way, and of more
 /// than `most` neighbours the farther ones are not seen. Here the half-spaces of a region a little wider than needed
 /// give way, and that leaves the distance itself: the conflict region's half-spaces depend on positions alone
-/// (Conflict::at_rest), all hold at once, and whoever is not seen is kept off by a cap of the speed. A brake time of two
-/// periods caps nobody who is a metre away, and slows nobody who is half of that.
+/// (Conflict::at_rest), all hold at once, and whoever is not seen is kept off by a cap of the speed. A brake time of
+/// two periods caps nobody who is a metre away, and slows nobody who is half of that.
 struct SwarmSettings {
     float radius = 1.5F;     ///< of a vehicle [m]
     float max_speed = 2.0F;  ///< [m/s]

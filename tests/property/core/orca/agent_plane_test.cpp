@@ -228,7 +228,8 @@ TEST(AgentPlaneLaws, BeyondTheReachNothingCollides)
         const Vec3 v = v_own - v_other;
         const Point stretched(static_cast<double>(v.x()), static_cast<double>(v.y()),
                               static_cast<double>(v.z()) * static_cast<double>(stretch));
-        ASSERT_GT(clearance(p.cast<double>(), stretched, static_cast<double>(radius), static_cast<double>(horizon)), 0.0)
+        ASSERT_GT(clearance(p.cast<double>(), stretched, static_cast<double>(radius), static_cast<double>(horizon)),
+                  0.0)
             << "seed " << kSeed << ", case " << i;
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Velocity programs against an interior-point method in doubles: the same sets are contradictions, the same optimum, the
-// same least violation (G-ORCA specification, T3). JINK_CASES=1000000 runs as many; JINK_SEED another sequence.
+// Velocity programs against an interior-point method in doubles: the same sets are contradictions, the same optimum,
+// the same least violation (G-ORCA specification, T3). JINK_CASES=1000000 runs as many; JINK_SEED another sequence.
 #include "core/orca/program.hpp"
 
 #include <cstdio>
@@ -49,7 +49,8 @@ Case random_case(Random& random, int family)
     if (random.below(2) == 0) {
         out.balls.push_back({direction(random) * random.uniform(0.0F, speed), random.uniform(0.05F, 1.0F) * speed});
     }
-    const Vec3 centre = out.balls.back().centre + direction(random) * random.uniform(0.0F, 0.7F * out.balls.back().radius);
+    const Vec3 centre =
+        out.balls.back().centre + direction(random) * random.uniform(0.0F, 0.7F * out.balls.back().radius);
     out.preferred = direction(random) * random.uniform(0.0F, 1.5F * speed);
     const std::size_t count = 1 + random.below(family == 4 ? 10 : 54);
     const float room = random.uniform(-0.6F, family == 1 ? 0.0F : 0.2F) * speed;
@@ -86,7 +87,8 @@ oracle::Question question_of(const Case& c)
     oracle::Question q;
     for (const HalfSpace& plane : c.planes) {
         const Eigen::Vector3d n = plane.normal.cast<double>();
-        q.planes.push_back({{n.x(), n.y(), n.z()}, static_cast<double>(plane.offset), static_cast<double>(plane.yield)});
+        q.planes.push_back(
+            {{n.x(), n.y(), n.z()}, static_cast<double>(plane.offset), static_cast<double>(plane.yield)});
     }
     for (const Ball& ball : c.balls) {
         const Eigen::Vector3d p = ball.centre.cast<double>();
@@ -109,13 +111,14 @@ struct Tally {
 
     void print(const std::string& name, std::uint64_t seed) const
     {
-        std::printf("%s, seed %llu: %llu cases, %llu with room, %llu relaxed (%llu twice), %llu on the edge; optimum off "
-                    "by %.1e at most, least violation by %.1e, either by more than 1e-4 in %llu; farther from the goal "
-                    "by %.1e, half-spaces broken by %.1e\n",
-                    name.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(cases),
-                    static_cast<unsigned long long>(feasible), static_cast<unsigned long long>(relaxed),
-                    static_cast<unsigned long long>(hard_relaxed), static_cast<unsigned long long>(on_edge), optimum,
-                    least, static_cast<unsigned long long>(farther), objective, violation);
+        std::printf(
+            "%s, seed %llu: %llu cases, %llu with room, %llu relaxed (%llu twice), %llu on the edge; optimum off "
+            "by %.1e at most, least violation by %.1e, either by more than 1e-4 in %llu; farther from the goal "
+            "by %.1e, half-spaces broken by %.1e\n",
+            name.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(cases),
+            static_cast<unsigned long long>(feasible), static_cast<unsigned long long>(relaxed),
+            static_cast<unsigned long long>(hard_relaxed), static_cast<unsigned long long>(on_edge), optimum, least,
+            static_cast<unsigned long long>(farther), objective, violation);
     }
 };
 
