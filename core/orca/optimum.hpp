@@ -47,6 +47,13 @@ struct Tolerance {
 /// Balls of one program: one or two.
 using Balls = std::span<const Ball>;
 
+/// Whether `x` is within the ball, but for a tolerance [m/s].
+[[nodiscard]] inline bool within(const Ball& ball, const Vec3& x, float tolerance) noexcept
+{
+    const float reach = ball.radius + tolerance;
+    return (x - ball.centre).squaredNorm() <= reach * reach;
+}
+
 /// How a search ended.
 enum class Found : std::uint8_t {
     optimum,

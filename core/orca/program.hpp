@@ -8,9 +8,9 @@
 
 #include "core/base/vec3.hpp"
 #include "core/base/work_budget.hpp"
-#include "core/capacity.hpp"
 #include "core/orca/half_space.hpp"
 #include "core/orca/optimum.hpp"
+#include "core/orca/search.hpp"
 
 // The velocity that keeps to all half-spaces and is nearest to the preferred one; where none keeps to all, the one that
 // breaks the weakest level least (Alejo 7.1, van den Berg et al.; what the source leaves open is said here).
@@ -45,25 +45,6 @@ struct Solution {
         active{};              ///< half-spaces that hold the velocity where it is: their places in `planes`
     std::uint8_t actives = 0;  ///< how many of them
     std::uint32_t status = 0;  ///< StatusBit
-};
-
-/// What a solver works in: 38 bytes for each half-space, of the caller's.
-struct ScratchView {
-    std::span<Row> rows;
-    std::span<Row> derived;
-    std::span<float> yields;
-    std::span<std::uint16_t> held;
-};
-template <std::size_t N = kMaxOrcaPlanes>
-class Scratch {
-public:
-    [[nodiscard]] ScratchView view() noexcept { return {rows_, derived_, yields_, held_}; }
-
-private:
-    std::array<Row, N> rows_;
-    std::array<Row, N> derived_;
-    std::array<float, N> yields_;
-    std::array<std::uint16_t, N> held_;
 };
 
 /// Solves `problem`.
