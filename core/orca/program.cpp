@@ -70,7 +70,10 @@ std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Ve
     std::array<float, kLevels> out{};
     for (const HalfSpace& plane : planes) {
         float& most = out[static_cast<std::size_t>(plane.level)];
-        most = std::max(most, plane.violation(x) / plane.yield);
+        const float by = plane.violation(x);
+        if (by > most * plane.yield) {
+            most = by / plane.yield;
+        }
     }
     return out;
 }
@@ -78,14 +81,14 @@ std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Ve
 constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
                                                       kRelaxedWarning};
 
-constexpr float kUnsaid = 1e-5F;  // [m/s] by which a level may be broken that is not said to be
-
-/// What is said to be broken is what is, to twice the shift: corners of nearly opposite half-spaces may be off by more.
-void report(std::span<const HalfSpace> planes, Solution& out) noexcept
+/// What is said to be broken is what is: the last look at each velocity, however it was found. To twice the shift where
+/// a level gives way, to rounding where it does not.
+void report(std::span<const HalfSpace> planes, float scale, Solution& out) noexcept
 {
+    const float unsaid = 4.0F * Tolerance(scale).outside;
     const std::array<float, kLevels> exact = broken_by(planes, out.velocity);
     for (std::size_t level = 0; level < kLevels; ++level) {
-        if (exact[level] > out.broken[level] + (out.broken[level] > 0.0F ? 2.0F * kShifted : kUnsaid)) {
+        if (exact[level] > out.broken[level] + (out.broken[level] > 0.0F ? 2.0F * kShifted : unsaid)) {
             out.broken[level] = exact[level];
             out.status |= kRelaxed[level];
             out.level = std::min(out.level, static_cast<Level>(level));
@@ -233,9 +236,7 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
         return out;
     }
     out.velocity = into_balls(problem.balls, best);
-    if (out.status != 0) {
-        report(problem.planes, out);
-    }
+    report(problem.planes, scale, out);
     out.actives = search.basis().size;
     out.active = search.basis().rows;
     return out;

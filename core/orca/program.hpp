@@ -64,9 +64,10 @@ struct Solution {
 /// order; five looks at each half-space beyond the budget.
 ///
 /// Rounding: where a level is not said to be broken, none of it is by more than 2e-6 of the largest speed, and where it
-/// is, by no more than is said and 2e-4 m/s. The optimum is exact to 1e-6 of the speed; to 1e-3 and more along the edge
-/// of half-spaces within a thousandth of each other's direction, where that much breaks them by no more than this.
-/// O(n) per turn, usually 2 - 6 turns; each turn is counted, and n^3 bounds them all. Allocates nothing.
+/// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum is
+/// exact to 1e-6 of the speed; to 1e-3 and more along the edge of half-spaces within a thousandth of each other's
+/// direction, where that much breaks them by no more than this. O(n) per turn, usually 2 - 6 turns; each turn is
+/// counted, and n^3 bounds them all. Allocates nothing.
 [[nodiscard]] Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept;
 
 /// The point nearest to `point` that is within all balls, as near as rounding lets it be. Finite where the balls are,

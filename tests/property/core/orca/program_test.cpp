@@ -175,10 +175,10 @@ void compare_optimum(const Case& c, const oracle::Question& q, const Solution& s
             ASSERT_LE(distance(solution.velocity, q.goal), (bound - c.preferred.cast<double>()).norm() + 1e-4) << where;
         }
         // Only where the constraints themselves leave it open within rounding: no farther than where they meet when
-        // each gives way by that rounding.
+        // each gives way by that rounding; or where the goal is as far from either.
         const std::array<double, 3> loose = oracle::nearest(moved(c, q, -1.0), inside);
         const double open = (Eigen::Vector3d(loose[0], loose[1], loose[2]) - ideal).norm();
-        ASSERT_LE(off, 1e-4 + 2.0 * open) << where;
+        ASSERT_TRUE(off <= 1e-4 + 2.0 * open || std::fabs(farther) <= 1e-5) << where << ' ' << off << ' ' << open;
     }
 }
 
@@ -192,11 +192,15 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     for (const Ball& ball : c.balls) {
         ASSERT_LE((solution.velocity - ball.centre).norm(), ball.radius * (1.0F + 1e-6F) + 1e-6F) << where;
     }
+    double scale = 1.0;
+    for (const Ball& ball : c.balls) {
+        scale = std::max(scale, static_cast<double>(ball.centre.norm() + ball.radius));
+    }
     for (const HalfSpace& plane : c.planes) {
         const float allowed = solution.broken[static_cast<std::size_t>(plane.level)];
         const double beyond = static_cast<double>(plane.violation(solution.velocity) / plane.yield - allowed);
         tally.violation = std::max(tally.violation, beyond);
-        ASSERT_LE(beyond, allowed > 0.0F ? 2.1e-4 : 1e-5) << where;
+        ASSERT_LE(beyond, allowed > 0.0F ? 2.1e-4 : 2e-6 * scale / static_cast<double>(plane.yield) + 1e-6) << where;
     }
     const oracle::Question q = question_of(c);
     std::size_t hard = 0;
