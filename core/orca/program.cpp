@@ -218,7 +218,7 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
             out.status = kRelaxed[last];
             out.level = problem.planes.back().level;
             best = search.x();
-            found = Found::optimum;
+            found = budget.exhausted() ? Found::exhausted : Found::optimum;
         } else {
             best = problem.reference;
             out.broken = {};

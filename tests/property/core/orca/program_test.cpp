@@ -262,5 +262,74 @@ TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)
     }
 }
 
+/// With any budget: a finite velocity within the balls, the same as ever or kWorkLimit, no more spent than was given,
+/// and no half-space broken that is not said to be.
+TEST(ProgramLaws, WhateverTheBudget)
+{
+    const std::uint64_t seed = from_environment("JINK_SEED", 20261123);
+    Random random(seed);
+    std::uint32_t most = 0;
+    int limited = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        const Case c = random_case(random, i % kFamilies);
+        const Problem problem{c.planes, c.balls, c.preferred, c.balls.back().centre};
+        Scratch<54> scratch;
+        WorkBudget plenty(10'000'000);
+        const Solution whole = solve(problem, scratch.view(), plenty);
+        most = std::max(most, plenty.spent());
+        const auto units = static_cast<std::uint32_t>(random.below(i % 2 == 0 ? 60 : 600));
+        WorkBudget budget(units);
+        const Solution solution = solve(problem, scratch.view(), budget);
+        const std::string where = "JINK_SEED=" + std::to_string(seed) + " case " + std::to_string(i);
+        ASSERT_LE(budget.spent(), units) << where;
+        ASSERT_TRUE(is_finite(solution.velocity)) << where;
+        for (const Ball& ball : c.balls) {
+            ASSERT_LE((solution.velocity - ball.centre).norm(), ball.radius * (1.0F + 1e-6F) + 1e-6F) << where;
+        }
+        if ((solution.status & kWorkLimit) == 0) {
+            ASSERT_EQ(solution.velocity, whole.velocity) << where;
+            ASSERT_EQ(solution.status, whole.status) << where;
+            continue;
+        }
+        ++limited;
+        for (const HalfSpace& plane : c.planes) {
+            ASSERT_LE(plane.violation(solution.velocity) / plane.yield,
+                      solution.broken[static_cast<std::size_t>(plane.level)] + 1e-5F)
+                << where;
+        }
+    }
+    EXPECT_GT(limited, 1000);
+    std::printf("at most %u units, seed %llu\n", most, static_cast<unsigned long long>(seed));
+}
+
+/// The same half-space again and again, opposite ones, and what two vehicles in one place ask for.
+TEST(ProgramLaws, SameAndOppositeHalfSpaces)
+{
+    Random random(20261124);
+    for (int i = 0; i < 5'000; ++i) {
+        Case c = random_case(random, 0);
+        c.planes.resize(std::min<std::size_t>(c.planes.size(), 8));
+        const std::size_t count = c.planes.size();
+        for (std::size_t k = 0; k < count; ++k) {
+            HalfSpace again = c.planes[k];
+            again.level = Level::warning;
+            c.planes.push_back(again);
+            again.normal = -again.normal;
+            again.offset = random.below(2) == 0 ? -again.offset : again.offset;
+            c.planes.push_back(again);
+        }
+        Scratch<54> scratch;
+        WorkBudget budget(10'000'000);
+        const Solution solution = solve({c.planes, c.balls, c.preferred, Vec3::Zero()}, scratch.view(), budget);
+        ASSERT_TRUE(is_finite(solution.velocity)) << i;
+        ASSERT_EQ(solution.status & (kWorkLimit | kBadInput | kInfeasibleDynamics), 0U) << i;
+        for (const HalfSpace& plane : c.planes) {
+            ASSERT_LE(plane.violation(solution.velocity) / plane.yield,
+                      solution.broken[static_cast<std::size_t>(plane.level)] + 2.1e-4F)
+                << i;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace jink::orca
