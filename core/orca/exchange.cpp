@@ -13,7 +13,7 @@ namespace jink::orca {
 namespace {
 
 constexpr int kMostTurns = 16;
-constexpr float kFlat = 1e-3F;  // volume that normals span, below which a corner is too blunt to compute with
+constexpr float kBluntCorner = 1e-3F;  // volume that normals span, below which a corner is too blunt to compute with
 
 /// What a corner is computed from.
 struct Corners {
@@ -36,7 +36,7 @@ struct Corners {
         for (std::size_t k = 0; k < 4; ++k) {
             sum += part[k] * yield(corner.rows[k]);
         }
-        if (std::fabs(sum) < kFlat) {
+        if (std::fabs(sum) < kBluntCorner) {
             return false;
         }
         bool all = true;
@@ -72,7 +72,7 @@ struct Corners {
         const Vec3& n2 = rows[corner.rows[of[2]]].normal;
         const Vec3 n12 = n1.cross(n2);
         const float volume = n0.dot(n12);
-        if (std::fabs(volume) < kFlat) {
+        if (std::fabs(volume) < kBluntCorner) {
             return false;
         }
         const auto away = [&](std::size_t k) { return missing[of[k]] - d * yield(corner.rows[of[k]]); };

@@ -10,12 +10,12 @@ namespace jink::orca {
 
 namespace {
 
-constexpr float kEuler = 2.7182818F;
+constexpr float kEulersNumber = 2.7182818F;
 constexpr float kNoDirection = 1e-6F;  // [m/s]
 
 float speed_across(const Vec3& v) noexcept { return std::sqrt(v.x() * v.x() + v.y() * v.y()); }
 
-void add(LimitSet& set, const Vec3& normal, float offset) noexcept
+void add_plane(LimitSet& set, const Vec3& normal, float offset) noexcept
 {
     HalfSpace& plane = set.planes[set.size++];
     plane.normal = normal;
@@ -37,8 +37,8 @@ void add_turn(const MotionLimits& limits, LimitSet& set) noexcept
     const float x = set.reference.x() / level;
     const float y = set.reference.y() / level;
     // Not left of the heading turned to the left, not right of the one turned to the right.
-    add(set, {sine * x + cosine * y, sine * y - cosine * x, 0.0F}, 0.0F);
-    add(set, {sine * x - cosine * y, sine * y + cosine * x, 0.0F}, 0.0F);
+    add_plane(set, {sine * x + cosine * y, sine * y - cosine * x, 0.0F}, 0.0F);
+    add_plane(set, {sine * x - cosine * y, sine * y + cosine * x, 0.0F}, 0.0F);
 }
 
 void add_climb(const MotionLimits& limits, LimitSet& set) noexcept
@@ -51,10 +51,10 @@ void add_climb(const MotionLimits& limits, LimitSet& set) noexcept
         least = std::max(least, set.reference.z() - limits.sink_acceleration * limits.period);
     }
     if (most < limits.max_speed) {
-        add(set, -Vec3::UnitZ(), -most);
+        add_plane(set, -Vec3::UnitZ(), -most);
     }
     if (least > -limits.max_speed) {
-        add(set, Vec3::UnitZ(), least);
+        add_plane(set, Vec3::UnitZ(), least);
     }
 }
 
@@ -98,7 +98,7 @@ LimitSet limit_set(const MotionLimits& limits, const Vec3& reference) noexcept
     if (limits.min_speed > 0.0F) {
         constexpr float kRounding = 1.0F - 1e-6F;
         if (speed >= limits.min_speed * kRounding) {
-            add(set, set.reference / speed, std::min(limits.min_speed, speed));
+            add_plane(set, set.reference / speed, std::min(limits.min_speed, speed));
         } else {
             set.stalled = true;
         }
@@ -145,7 +145,7 @@ Unsafe check(const SafetyQuestion& q) noexcept
         return Unsafe::stretch;
     }
     const float brakes = limits.max_speed / limits.acceleration;
-    const float delayed = kEuler * q.delay;
+    const float delayed = kEulersNumber * q.delay;
     constexpr float kRounding = 1.0F + 1e-5F;  // defaults are just what is asked for
     if (q.obstacle_horizon * kRounding < brakes) {
         return Unsafe::obstacle_horizon_brakes;
@@ -173,7 +173,7 @@ float ramp_speed_for(float across, float conflict_ratio, float delay, float acce
     constexpr float kMost = 0.3F;  // [m/s]
     const float most = std::min(kMost, acceleration);
     const float width = across * (1.0F - conflict_ratio);
-    return delay > 0.0F ? std::min(most, width / (kEuler * delay)) : most;
+    return delay > 0.0F ? std::min(most, width / (kEulersNumber * delay)) : most;
 }
 
 }  // namespace jink::orca

@@ -39,7 +39,7 @@ bool gives_way(const NeighbourSettings& settings, const Neighbour& n) noexcept
 }
 
 /// False for one that can not be met, or is beyond the range: then `horizon` is what is left of it.
-bool look_at(const NeighbourSettings& settings, const Neighbour& n, Candidate& out, float& horizon) noexcept
+bool weigh(const NeighbourSettings& settings, const Neighbour& n, Candidate& out, float& horizon) noexcept
 {
     const Pair pair = pair_of(settings, Vec3::Zero(), n, 0);
     const float stretch = pair.across / pair.upright;
@@ -103,7 +103,7 @@ Selection select(const NeighbourSettings& settings, std::span<const Neighbour> a
         }
         Candidate next;
         next.index = static_cast<std::uint16_t>(i);
-        if (!look_at(settings, n, next, out.horizon)) {
+        if (!weigh(settings, n, next, out.horizon)) {
             continue;
         }
         if (size == kept.size()) {

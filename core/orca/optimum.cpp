@@ -14,13 +14,13 @@ namespace jink::orca {
 
 namespace {
 
-constexpr float kTiny = 1e-12F;      // of a length squared that has no direction
-constexpr float kUnbounded = 1e18F;  // [m/s]
+constexpr float kTiny = 1e-12F;    // of a length squared that has no direction
+constexpr float kEndless = 1e18F;  // [m/s]
 
 /// Disc: what a plane leaves of a ball.
 struct Disc {
-    Vec3 centre;
-    float radius;
+    Vec3 centre = Vec3::Zero();
+    float radius = 0.0F;
 };
 
 /// The point of a ball (or, with everything in one plane, of a disc) nearest to the goal or farthest along it.
@@ -46,7 +46,7 @@ Cut cut(float distance, float radius_1, float radius_2) noexcept
 }
 
 /// Some unit vector across `axis`.
-Vec3 across(const Vec3& axis) noexcept
+Vec3 any_across(const Vec3& axis) noexcept
 {
     return (std::fabs(axis.x()) < 0.6F ? axis.cross(Vec3::UnitX()) : axis.cross(Vec3::UnitY())).normalized();
 }
@@ -68,7 +68,7 @@ bool optimum_on_circle(const Ball& one, const Ball& other, const Goal& goal, flo
     const Vec3 way = goal.farthest ? goal.point : Vec3(goal.point - centre);
     const Vec3 level = way - way.dot(axis) * axis;
     const float length2 = level.squaredNorm();
-    const Vec3 direction = length2 > kTiny ? Vec3(level / std::sqrt(length2)) : across(axis);
+    const Vec3 direction = length2 > kTiny ? Vec3(level / std::sqrt(length2)) : any_across(axis);
     x = centre + std::sqrt(std::max(at.radius2, 0.0F)) * direction;
     return true;
 }
@@ -163,8 +163,8 @@ bool optimum_on_disc(const Row& plane, Balls balls, const Goal& goal, float tole
 
 /// A piece of a line: its ends, and how steeply what ends it there is left beyond.
 struct Piece {
-    float low = -kUnbounded;
-    float high = kUnbounded;
+    float low = -kEndless;
+    float high = kEndless;
     float low_slope = 1.0F;
     float high_slope = 1.0F;
     std::uint16_t low_row = kNone;
