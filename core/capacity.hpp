@@ -42,6 +42,12 @@
 #ifndef JINK_MAX_OBSTACLE_PLANES
 #define JINK_MAX_OBSTACLE_PLANES 16
 #endif
+#ifndef JINK_MAX_ORCA_PLANES
+#define JINK_MAX_ORCA_PLANES 54
+#endif
+#ifndef JINK_MAX_ORCA_NEIGHBOURS
+#define JINK_MAX_ORCA_NEIGHBOURS 16
+#endif
 
 namespace jink {
 
@@ -101,5 +107,15 @@ static_assert(kMaxDensePoints >= 16 && kMaxDensePoints <= 65535);
 /// bytes each.
 inline constexpr std::size_t kMaxObstaclePlanes = JINK_MAX_OBSTACLE_PLANES;
 static_assert(kMaxObstaclePlanes >= 4 && kMaxObstaclePlanes <= 64);
+
+/// Half-spaces of one velocity program: 6 of limits, 16 of obstacles, two for each of 16 neighbours. 38 bytes each of
+/// scratch; a program with more is refused.
+inline constexpr std::size_t kMaxOrcaPlanes = JINK_MAX_ORCA_PLANES;
+static_assert(kMaxOrcaPlanes >= 8 && kMaxOrcaPlanes <= 1024);
+
+/// Neighbours that get half-spaces of their own. When there are more, those that could be met last give way, and the
+/// own speed is capped for their sake: nothing is lost.
+inline constexpr std::size_t kMaxOrcaNeighbours = JINK_MAX_ORCA_NEIGHBOURS;
+static_assert(kMaxOrcaNeighbours >= 1 && kMaxOrcaNeighbours <= 256);
 
 }  // namespace jink

@@ -103,4 +103,14 @@ inline constexpr std::uint32_t kReachCellSolid = 30;  ///< or an obstacle
 // --- maps of convex pieces (core/geometry/mesh_map) ---
 inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is looked at: both its children's boxes
 
+// --- orca ---
+inline constexpr std::uint32_t kOrcaPair = 4;      ///< another vehicle's half-spaces
+inline constexpr std::uint32_t kOrcaSelect = 4;    ///< another vehicle that is kept or left out
+inline constexpr std::uint32_t kOrcaPlane = 4;     ///< a plane that is searched for its best point
+inline constexpr std::uint32_t kOrcaLine = 4;      ///< and a line
+inline constexpr std::uint32_t kOrcaTurn = 2;      ///< a turn of the search, but for these
+inline constexpr std::uint32_t kOrcaExchange = 8;  ///< a turn of the search among four half-spaces
+/// Half-spaces looked at.
+constexpr std::uint32_t orca_rows(std::size_t rows) noexcept { return static_cast<std::uint32_t>(rows + 3) / 4; }
+
 }  // namespace jink::units

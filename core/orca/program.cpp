@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/orca/program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/finite.hpp"
+#include "core/orca/search.hpp"
+
+namespace jink::orca {
+
+namespace {
+
+constexpr float kUnitLength = 1e-3F;  // by which a normal's length may be off
+
+/// Reads the problem into rows. @return the largest speed that occurs, or NaN where something is no number or no
+/// half-space, or the levels are not in order
+float read(const Problem& problem, ScratchView scratch) noexcept
+{
+    const std::size_t n = problem.planes.size();
+    constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+    if (n > scratch.rows.size() || problem.balls.empty() || problem.balls.size() > 2) {
+        return kNan;
+    }
+    float scale = 0.0F;
+    float sum = 0.0F;  // NaN or infinite where anything in it is
+    for (const Ball& ball : problem.balls) {
+        scale = std::max(scale, ball.centre.norm() + ball.radius);
+        sum += ball.centre.squaredNorm() + (ball.radius >= 0.0F ? ball.radius : kNan);
+    }
+    sum += problem.preferred.squaredNorm() + problem.reference.squaredNorm();
+    bool sound = true;
+    Level level = Level::limits;
+    for (std::size_t i = 0; i < n; ++i) {
+        const HalfSpace& plane = problem.planes[i];
+        scratch.rows[i] = {plane.normal, plane.offset};
+        scratch.yields[i] = plane.yield;
+        sum += std::fabs(plane.offset);
+        sound = sound && std::fabs(plane.normal.squaredNorm() - 1.0F) <= kUnitLength && plane.yield > 0.0F &&
+                plane.level >= level;
+        level = plane.level;
+    }
+    return sound && std::isfinite(sum) ? scale : kNan;
+}
+
+/// The reference, within the balls where these are sound.
+Vec3 last_command(const Problem& problem) noexcept
+{
+    const auto is_sound = [](const Ball& ball) { return is_finite(ball.centre) && is_not_negative(ball.radius); };
+    if (!problem.balls.empty() && std::all_of(problem.balls.begin(), problem.balls.end(), is_sound)) {
+        return into_balls(problem.balls, problem.reference);
+    }
+    return is_finite(problem.reference) ? problem.reference : Vec3(Vec3::Zero());
+}
+
+/// The end of the levels up to and with `level`.
+std::size_t level_end(std::span<const HalfSpace> planes, std::size_t level) noexcept
+{
+    std::size_t end = 0;
+    while (end < planes.size() && static_cast<std::size_t>(planes[end].level) <= level) {
+        ++end;
+    }
+    return end;
+}
+
+/// How far each level is broken by `x`.
+std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Vec3& x) noexcept
+{
+    std::array<float, kLevels> out{};
+    for (const HalfSpace& plane : planes) {
+        float& most = out[static_cast<std::size_t>(plane.level)];
+        const float by = plane.violation(x);
+        if (by > most * plane.yield) {
+            most = by / plane.yield;
+        }
+    }
+    return out;
+}
+
+constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
+                                                      kRelaxedWarning};
+
+/// What is said to be broken is what is: the last look at each velocity, however it was found. To twice the shift where
+/// a level gives way, to rounding where it does not.
+void report(std::span<const HalfSpace> planes, float scale, Solution& out) noexcept
+{
+    const float unsaid = 4.0F * Tolerance(scale).outside;
+    const std::array<float, kLevels> exact = broken_by(planes, out.velocity);
+    for (std::size_t level = 0; level < kLevels; ++level) {
+        if (exact[level] > out.broken[level] + (out.broken[level] > 0.0F ? 2.0F * kShifted : unsaid)) {
+            out.broken[level] = exact[level];
+            out.status |= kRelaxed[level];
+            out.level = std::min(out.level, static_cast<Level>(level));
+        }
+    }
+}
+
+/// All the acceleration there is along the half-space of `level` that the reference breaks most.
+Vec3 away_from(const Problem& problem, Level level) noexcept
+{
+    const Ball& reachable = problem.balls.back();
+    Vec3 out = problem.reference;
+    float most = -std::numeric_limits<float>::infinity();
+    for (const HalfSpace& plane : problem.planes) {
+        const float by = plane.violation(problem.reference);
+        if (plane.level == level && by > most) {
+            most = by;
+            out = reachable.centre + reachable.radius * plane.normal;
+        }
+    }
+    return out;
+}
+
+/// The best of a few velocities, where there is no time to find a better one.
+void choose(const Problem& problem, const Vec3& so_far, Solution& out) noexcept
+{
+    const Ball& reachable = problem.balls.back();
+    const float speed = reachable.centre.norm();
+    const Vec3 braking =
+        speed <= reachable.radius ? Vec3(Vec3::Zero()) : Vec3(reachable.centre * (1.0F - reachable.radius / speed));
+    const std::array<Vec3, 5> candidates{so_far, problem.reference, braking, away_from(problem, Level::obstacles),
+                                         away_from(problem, Level::conflict)};
+    bool first = true;
+    for (const Vec3& candidate : candidates) {
+        const Vec3 x = into_balls(problem.balls, candidate);
+        const std::array<float, kLevels> broken = broken_by(problem.planes, x);
+        if (first || broken < out.broken) {
+            out.velocity = x;
+            out.broken = broken;
+            first = false;
+        }
+    }
+}
+
+/// Level by level: each gives way for those before it.
+Found ladder(const Problem& problem, Search& search, Solution& out, Vec3& best) noexcept
+{
+    std::size_t before = 0;
+    for (std::size_t level = 0; level < kLevels; ++level) {
+        const std::size_t end = level_end(problem.planes, level);
+        if (end == before && level > 0) {
+            continue;
+        }
+        Found found = search.nearest(end);
+        if (found == Found::nothing && level == 0) {
+            out.status |= kInfeasibleDynamics;
+            out.level = Level::limits;
+            return Found::nothing;
+        }
+        if (found == Found::nothing) {
+            if (out.status == 0) {
+                out.level = static_cast<Level>(level);
+            }
+            out.status |= kRelaxed[level];
+            found = search.nearest(before);
+            best = search.x();
+            if (found == Found::optimum) {
+                found = search.relax(before, end, out.broken[level]);
+            }
+            if (found == Found::optimum) {
+                best = search.x();
+                found = search.nearest_relaxed(before, end);
+            }
+        }
+        if (found == Found::exhausted) {
+            return found;
+        }
+        if (found == Found::optimum) {
+            best = search.x();
+        }
+        before = end;
+    }
+    return Found::optimum;
+}
+
+}  // namespace
+
+Vec3 into_balls(Balls balls, const Vec3& point) noexcept
+{
+    constexpr float kUlps = 3e-7F;
+    Vec3 out = is_finite(point) ? point : balls.back().centre;
+    const auto in = [&](const Ball& ball) { return (out - ball.centre).squaredNorm() <= ball.radius * ball.radius; };
+    if (std::all_of(balls.begin(), balls.end(), in)) {
+        return out;
+    }
+    if (!optimum_in_balls(balls, {out, false}, Tolerance(0.0F), out)) {
+        out = balls.front().centre;
+    }
+    for (const Ball& ball : balls) {
+        const Vec3 away = out - ball.centre;
+        const float length = away.norm();
+        if (length > ball.radius) {
+            out = ball.centre + away * (ball.radius / length * (1.0F - kUlps));
+        }
+    }
+    return out;
+}
+
+Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept
+{
+    Solution out;
+    const float scale = read(problem, scratch);
+    if (!std::isfinite(scale)) {
+        out.status = kBadInput;
+        out.level = Level::limits;
+        out.velocity = last_command(problem);
+        return out;
+    }
+    Search search(problem.balls, problem.preferred, scratch, Tolerance(scale), budget);
+    Found found = search.nearest(problem.planes.size());
+    Vec3 best = search.x();
+    if (found == Found::nothing) {
+        // The last level alone, in most cases.
+        const std::size_t last = problem.planes.empty() ? 0 : static_cast<std::size_t>(problem.planes.back().level);
+        if (last > 0 &&
+            search.relax_at_corner(level_end(problem.planes, last - 1), problem.planes.size(), out.broken[last])) {
+            out.status = kRelaxed[last];
+            out.level = problem.planes.back().level;
+            best = search.x();
+            found = budget.exhausted() ? Found::exhausted : Found::optimum;
+        } else {
+            best = problem.reference;
+            out.broken = {};
+            found = ladder(problem, search, out, best);
+        }
+    }
+    if (found == Found::exhausted) {
+        out.status |= kWorkLimit;
+        choose(problem, best, out);
+        return out;
+    }
+    if ((out.status & kInfeasibleDynamics) != 0) {
+        out.velocity = into_balls(problem.balls, problem.reference);
+        out.broken = broken_by(problem.planes, out.velocity);
+        return out;
+    }
+    out.velocity = into_balls(problem.balls, best);
+    report(problem.planes, scale, out);
+    out.actives = search.basis().size;
+    out.active = search.basis().rows;
+    return out;
+}
+
+}  // namespace jink::orca

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/vec3.hpp"
+
+namespace jink::orca {
+
+/// The nearest of many moving points, exactly. A k-d tree finds for each point those within a wider circle than asked
+/// for; until they may have come as near as what is outside of it, they are all that is looked at. All memory is taken
+/// by the constructor.
+class NearestPoints {
+public:
+    /// Points kept at most of one query.
+    static constexpr std::size_t kMost = 128;
+    struct Found {
+        float distance2 = 0.0F;
+        std::uint32_t index = 0;
+    };
+
+    /// @param most   asked for by each query, < kMost
+    /// @param range  [m] beyond which nothing is looked for
+    NearestPoints(std::size_t points, std::size_t most, float range);
+
+    /// The points have moved, each by `moved` [m] at most.
+    void move(const std::vector<Vec3>& points, float moved);
+    /// The `most` nearest within range of points[self], but for itself, nearest first, and one more if there is one.
+    std::size_t query(std::size_t self, std::array<Found, kMost>& found);
+
+private:
+    static constexpr std::uint32_t kLeaf = 8;
+    struct Node {
+        Vec3 low, high;
+        std::uint32_t begin, end;
+        std::uint32_t left;  ///< its right twin follows; 0 for a leaf
+    };
+    /// Those near a point when they were looked up last.
+    struct Near {
+        std::array<std::uint32_t, kMost> index{};
+        std::size_t count = 0;
+        float outside = 0.0F;  ///< all others were at least this far
+        float moved = -1e9F;   ///< moved_ then
+    };
+    void build();
+    void split();
+    void look_up(std::size_t self, float wide, Near& near);
+
+    std::size_t most_;
+    std::size_t wide_;
+    float range_;
+    float moved_ = 0.0F;  // sum of all moves
+    bool built_ = false;
+    std::vector<Node> nodes_;
+    std::vector<std::uint32_t> order_;
+    std::array<std::vector<float>, 3> along_;  // coordinates in this order
+    std::vector<Near> near_;
+    const std::vector<Vec3>* points_ = nullptr;
+};
+
+}  // namespace jink::orca

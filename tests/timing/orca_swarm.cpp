@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/timing/orca_swarm.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace jink::orca {
+
+Swarm::Swarm(std::size_t count, const SwarmSettings& settings)
+    : settings_(settings), positions_(count), velocities_(count, Vec3::Zero()), goals_(count), next_(count),
+      nearest_(count, settings.most, settings.range)
+{
+    // Points of a Fibonacci sphere.
+    const double golden = 3.14159265358979323846 * (3.0 - std::sqrt(5.0));
+    for (std::size_t i = 0; i < count; ++i) {
+        const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
+        const double level = std::sqrt(1.0 - z * z);
+        const double angle = golden * static_cast<double>(i);
+        const Eigen::Vector3d at(std::cos(angle) * level, std::sin(angle) * level, z);
+        positions_[i] = (at * static_cast<double>(settings.sphere)).cast<float>();
+        goals_[i] = -positions_[i];
+    }
+    settings_.pair.conflict_ratio = settings_.regions ? 2.0F * settings_.radius / settings_.warning : 0.999F;
+}
+
+Vec3 Swarm::preferred(std::size_t self) const
+{
+    const Vec3 way = goals_[self] - positions_[self];
+    const float length = way.norm();
+    const Vec3 wanted = length > settings_.cruise ? Vec3(way * (settings_.cruise / length)) : way;
+    Random random(self * 1000003U + steps_);
+    return wanted + 1e-3F * Vec3(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F));
+}
+
+void Swarm::build()
+{
+    float fastest2 = 0.0F;
+    for (const Vec3& velocity : velocities_) {
+        fastest2 = std::max(fastest2, velocity.squaredNorm());
+    }
+    nearest_.move(positions_, std::sqrt(fastest2) * settings_.step);
+}
+
+void Swarm::decide(std::size_t self)
+{
+    const std::size_t seen = nearest_.query(self, found_);
+    const std::size_t used = std::min(seen, settings_.most);
+    Pair pair;
+    pair.own_velocity = velocities_[self];
+    pair.across = pair.upright = settings_.regions ? settings_.warning : 2.0F * settings_.radius;
+    const float inner = 2.0F * settings_.radius;
+    float cap = settings_.max_speed;
+    if (settings_.regions && seen > used) {
+        const float gap = std::sqrt(found_[used].distance2) - inner;
+        cap = std::min(cap, std::max(gap, 0.0F) / (2.0F * settings_.pair.brake));
+        counts_.truncated += cap < settings_.max_speed ? 1U : 0U;
+    }
+    std::size_t conflicts = 0;
+    std::size_t warnings = 0;
+    const float felt = inner + 2.0F * settings_.pair.brake * cap;
+    // Those near enough come first: their conflict half-spaces before all warning ones.
+    while (settings_.regions && conflicts < used && found_[conflicts].distance2 < felt * felt) {
+        ++conflicts;
+    }
+    for (std::size_t k = 0; k < used; ++k) {
+        const std::uint32_t other = found_[k].index;
+        pair.position = positions_[other] - positions_[self];
+        pair.other_velocity = velocities_[other];
+        pair.above = self > other;
+        pair.source = static_cast<std::uint16_t>(other);
+        if (k < conflicts) {
+            const PairPlanes both = pair_planes(pair, settings_.pair);
+            planes_[k] = both.conflict;
+            planes_[conflicts + warnings++] = both.warning;
+        } else {
+            planes_[conflicts + warnings++] = pair_plane(pair, settings_.pair);
+        }
+    }
+    const Ball ball{Vec3::Zero(), cap};
+    WorkBudget budget(1'000'000);
+    const Solution solution =
+        solve({{planes_.data(), conflicts + warnings}, {&ball, 1}, preferred(self), velocities_[self]}, scratch_.view(),
+              budget);
+    ++counts_.solved;
+    counts_.warning += (solution.status & kRelaxedWarning) != 0 ? 1U : 0U;
+    counts_.conflict += (solution.status & kRelaxedConflict) != 0 ? 1U : 0U;
+    counts_.other += (solution.status & ~(kRelaxedWarning | kRelaxedConflict)) != 0 ? 1U : 0U;
+    next_[self] = solution.velocity;
+}
+
+void Swarm::move()
+{
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        velocities_[i] = next_[i];
+        positions_[i] += velocities_[i] * settings_.step;
+    }
+    ++steps_;
+}
+
+void Swarm::step()
+{
+    build();
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        decide(i);
+    }
+    move();
+}
+
+bool Swarm::arrived() const
+{
+    const float near2 = 4.0F * settings_.radius * settings_.radius;
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        if ((goals_[i] - positions_[i]).squaredNorm() > near2) {
+            return false;
+        }
+    }
+    return true;
+}
+
+float Swarm::least_distance() const
+{
+    float least2 = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < positions_.size(); ++i) {
+        for (std::size_t j = i + 1; j < positions_.size(); ++j) {
+            const Vec3 now = positions_[j] - positions_[i];
+            const Vec3 velocity = velocities_[j] - velocities_[i];
+            const float speed2 = velocity.squaredNorm();
+            const float ago = speed2 > 0.0F ? std::clamp(now.dot(velocity) / speed2, 0.0F, settings_.step) : 0.0F;
+            least2 = std::min(least2, (now - ago * velocity).squaredNorm());
+        }
+    }
+    return std::sqrt(least2);
+}
+
+}  // namespace jink::orca

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/base/random.hpp"
+#include "core/orca/agent_plane.hpp"
+#include "core/orca/program.hpp"
+#include "tests/timing/orca_nearest.hpp"
+
+// Many vehicles in one process, each avoiding all others by core/orca: the antipodal sphere of the public ORCA-3D
+// library's example. All memory is taken by the constructor; a step takes none.
+
+namespace jink::orca {
+
+/// Rules of a swarm; defaults are the public example's, and two regions around each vehicle.
+///
+/// The public library loses distance in two ways: where half-spaces contradict each other all give way, and of more
+/// than `most` neighbours the farther ones are not seen. Here the half-spaces of a region a little wider than needed
+/// give way, and that leaves the distance itself: the conflict region's half-spaces depend on positions alone
+/// (Conflict::at_rest), all hold at once, and whoever is not seen is kept off by a cap of the speed. A brake time of
+/// two periods caps nobody who is a metre away, and slows nobody who is half of that.
+struct SwarmSettings {
+    float radius = 1.5F;     ///< of a vehicle [m]
+    float max_speed = 2.0F;  ///< [m/s]
+    float cruise = 1.0F;     ///< preferred speed [m/s]
+    float range = 15.0F;     ///< [m] in which others are seen
+    std::size_t most = 10;   ///< others at once
+    float step = 0.125F;     ///< [s]
+    float sphere = 100.0F;   ///< radius [m]
+    float warning = 3.1F;    ///< radius of the warning region [m]; the conflict region's is 2 radius
+    bool regions = true;     ///< false: one region of 2 radius that gives way, as the public library has it
+    PairSettings pair = swarm_pair();
+
+    static PairSettings swarm_pair()
+    {
+        PairSettings pair;
+        pair.horizon = 10.0F;
+        pair.conflict = Conflict::at_rest;
+        pair.brake = 0.25F;
+        pair.ramp_speed = 0.25F;
+        pair.recovery_time = 0.125F;
+        return pair;
+    }
+};
+
+class Swarm {
+public:
+    Swarm(std::size_t count, const SwarmSettings& settings);
+
+    /// One period of all vehicles.
+    void step();
+    /// One vehicle's part of it; `build` first, `move` after all.
+    void build();
+    void decide(std::size_t self);
+    void move();
+
+    /// All within two radii of their goals.
+    [[nodiscard]] bool arrived() const;
+    /// Least distance of two centres [m] during the last period, in continuous time.
+    [[nodiscard]] float least_distance() const;
+    [[nodiscard]] std::size_t size() const { return positions_.size(); }
+
+    /// What happened so far.
+    struct Counts {
+        std::uint64_t solved = 0, warning = 0, conflict = 0, other = 0, truncated = 0;
+    };
+    [[nodiscard]] const Counts& counts() const { return counts_; }
+
+private:
+    [[nodiscard]] Vec3 preferred(std::size_t self) const;
+
+    SwarmSettings settings_;
+    std::vector<Vec3> positions_, velocities_, goals_, next_;
+    NearestPoints nearest_;
+    Scratch<2 * NearestPoints::kMost> scratch_;
+    std::array<HalfSpace, 2 * NearestPoints::kMost> planes_;
+    std::array<NearestPoints::Found, NearestPoints::kMost> found_;
+    std::uint64_t steps_ = 0;
+    Counts counts_;
+};
+
+}  // namespace jink::orca
