@@ -102,7 +102,7 @@ static_assert(kMaxCommands >= 8 && kMaxCommands <= 1024);
 inline constexpr std::size_t kMaxDensePoints = JINK_MAX_DENSE_POINTS;
 static_assert(kMaxDensePoints >= 16 && kMaxDensePoints <= 65535);
 
-/// Half-spaces of static obstacles that one velocity has to keep to (gorca 18, K_OBS). When more pieces are within
+/// Half-spaces of static obstacles that one velocity has to keep to. When more pieces are within
 /// reach, the nearest ones count and a bound of the speed stands in for all others (ObstaclePlanes::speed_cap). 32
 /// bytes each.
 inline constexpr std::size_t kMaxObstaclePlanes = JINK_MAX_OBSTACLE_PLANES;

@@ -30,7 +30,7 @@ template <class Vertex>
 struct Seen {
     std::span<const Vertex> vertices;
     Vec3 origin;
-    float stretch;
+    float stretch = 1.0F;
 
     [[nodiscard]] Vec3 at(std::size_t i) const noexcept { return stretched(vector_of(vertices[i]) - origin, stretch); }
     [[nodiscard]] Vec3 support(const Vec3& direction) const noexcept
@@ -104,7 +104,7 @@ Separation from_ball(const Vec3& offset, float radius, float slack) noexcept
 /// From `point` to the nearest point of the shape's axis, which is the centre for all but capsules and cylinders.
 Vec3 to_axis(const Vec3& point, const Shape& shape) noexcept
 {
-    const Vec3 offset = shape.centre - point;
+    Vec3 offset = shape.centre - point;
     if (shape.kind != ShapeKind::capsule && shape.kind != ShapeKind::cylinder) {
         return offset;
     }

@@ -143,6 +143,19 @@ bool holds_box(const MeshNode& parent, const MeshNode& child) noexcept
     return lies_within(child.low, parent.low, parent.high) && lies_within(child.high, parent.low, parent.high);
 }
 
+MapStatus check_parent(const MeshMap& m, std::size_t i, std::uint8_t depth) noexcept
+{
+    const MeshNode& node = m.nodes[i];
+    if (node.right <= i + 1 || node.right >= m.nodes.size()) {
+        return MapStatus::bad_tree;
+    }
+    if (depth == kMaxMeshDepth) {
+        return MapStatus::too_large;
+    }
+    return holds_box(node, m.nodes[i + 1]) && holds_box(node, m.nodes[node.right]) ? MapStatus::good
+                                                                                   : MapStatus::bad_bounds;
+}
+
 /// Left children follow their parents, right ones where the left half ends: one pass over all nodes.
 MapStatus check_tree(const MeshMap& m) noexcept
 {
@@ -157,14 +170,8 @@ MapStatus check_tree(const MeshMap& m) noexcept
             return MapStatus::bad_coordinate;
         }
         if (!node.is_leaf()) {
-            if (node.right <= i + 1 || node.right >= m.nodes.size()) {
-                return MapStatus::bad_tree;
-            }
-            if (depth == kMaxMeshDepth) {
-                return MapStatus::too_large;
-            }
-            if (!holds_box(node, m.nodes[i + 1]) || !holds_box(node, m.nodes[node.right])) {
-                return MapStatus::bad_bounds;
+            if (const MapStatus status = check_parent(m, i, depth); status != MapStatus::good) {
+                return status;
             }
             ++depth;
             right[waiting] = node.right;

@@ -20,9 +20,10 @@ namespace jink::geometry {
 /// Limits of a map; one that exceeds any is refused as a whole. A piece is a few vertices and planes in flash: a full
 /// map of 32 vertices a piece is 5.5 MiB, one of triangles 416 KiB.
 inline constexpr std::size_t kMaxMeshPieces = 4096;
-inline constexpr std::size_t kMaxPieceVertices = 32;
+/// Fewer where the build has room for less (kMaxHullVertices).
+inline constexpr std::size_t kMaxPieceVertices = kMaxHullVertices < 32 ? kMaxHullVertices : 32;
 /// 32 vertices have 60 triangles.
-inline constexpr std::size_t kMaxPieceFaces = 60;
+inline constexpr std::size_t kMaxPieceFaces = 2 * kMaxPieceVertices - 4;
 inline constexpr std::size_t kMaxMeshDepth = 20;
 /// Coordinates [m]. Beyond it floats are coarser than 6e-5 m.
 inline constexpr float kMaxMeshCoordinate = 1000.0F;
@@ -30,8 +31,6 @@ inline constexpr float kMaxMeshCoordinate = 1000.0F;
 inline constexpr std::uint16_t kMeshVersion = 1;
 /// How far a vertex may lie beyond one of the faces of its piece [m]: normals are rounded, 6e-8 of a kilometre each.
 inline constexpr float kFaceTolerance = 1e-3F;
-
-static_assert(kMaxPieceVertices <= kMaxHullVertices);
 
 /// One convex piece: the hull of its vertices.
 struct MeshPiece {

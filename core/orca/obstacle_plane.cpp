@@ -9,15 +9,14 @@
 #include <Eigen/Geometry>
 
 #include "core/base/finite.hpp"
+#include "core/orca/limits.hpp"
 #include "core/orca/obstacle_view.hpp"
 
 namespace jink::orca {
 
 namespace {
 
-constexpr float kLeastStretch = 0.5F;
-constexpr float kMostStretch = 4.0F;
-/// Velocities that differ by less are the same to the programs that choose among them [m/s] (gorca 18, eps_f).
+/// Velocities that differ by less are the same to the programs that choose among them [m/s].
 constexpr float kSameVelocity = 1e-5F;
 
 /// How much of a stretched length may be the physical one times this.
@@ -47,10 +46,10 @@ bool implies(const HalfSpace& kept, const HalfSpace& other, float speed) noexcep
 }
 
 /// The nearest planes so far, nearest first.
-class Selection {
+class NearestPlanes {
 public:
-    Selection(const Envelope& envelope, const OwnMotion& own, const ObstacleSettings& settings,
-              ObstaclePlanes& out) noexcept
+    NearestPlanes(const Envelope& envelope, const OwnMotion& own, const ObstacleSettings& settings,
+                  ObstaclePlanes& out) noexcept
         : envelope_(envelope), own_(own), settings_(settings), out_(out)
     {
     }
@@ -116,7 +115,7 @@ private:
     float dropped_ = std::numeric_limits<float>::infinity();
 };
 
-void add_map(const detail::ObstacleView& view, const OwnMotion& own, float reach, Selection& selection,
+void add_map(const detail::ObstacleView& view, const OwnMotion& own, float reach, NearestPlanes& selection,
              WorkBudget& budget) noexcept
 {
     const auto visit = [&](std::uint16_t piece, float bound) {
@@ -135,7 +134,7 @@ void add_map(const detail::ObstacleView& view, const OwnMotion& own, float reach
     }
 }
 
-void add_obstacles(const detail::ObstacleView& view, const OwnMotion& own, float reach, Selection& selection,
+void add_obstacles(const detail::ObstacleView& view, const OwnMotion& own, float reach, NearestPlanes& selection,
                    WorkBudget& budget) noexcept
 {
     for (std::size_t i = 0; i < view.scene.obstacles.size(); ++i) {
@@ -209,7 +208,7 @@ ObstaclePlanes obstacle_planes(const ObstacleScene& scene, const OwnMotion& own,
     ObstaclePlanes out;
     const detail::ObstacleView view{scene, envelope_of(settings), settings.resolution};
     const float reach = obstacle_reach(view.envelope, own, settings);
-    Selection selection(view.envelope, own, settings, out);
+    NearestPlanes selection(view.envelope, own, settings, out);
     add_obstacles(view, own, reach, selection, budget);
     if (scene.map != nullptr) {
         add_map(view, own, reach, selection, budget);

@@ -28,7 +28,7 @@ struct ObstacleSettings {
     float recovery_speed = 0.3F;   ///< out of an obstacle's margin, at most [m/s], >= 0
     Seconds recovery_time = 1.0F;  ///< and in about so long [s], > 0
     /// What the vehicle can brake with [m/s2]; above 0, half-spaces also bound the speed from which it can still stop
-    /// before the margin (gorca 21.2, item 7). 0: they do not.
+    /// before the margin. 0: they do not.
     float braking = 0.0F;
     Seconds delay = 0.0F;      ///< until a command has an effect, for `braking` [s], >= 0
     float resolution = 1e-4F;  ///< of distances [m], > 0
@@ -65,7 +65,7 @@ struct OwnMotion {
 struct ObstaclePlanes {
     StaticVector<HalfSpace, kMaxObstaclePlanes> planes;
     /// Not every piece has a half-space of its own: velocities have to be no faster than this [m/s] beside the planes,
-    /// which then keeps clear of all others (gorca 6.6). Infinite when nothing was dropped.
+    /// which then keeps clear of all others. Infinite when nothing was dropped.
     float speed_cap = std::numeric_limits<float>::infinity();
     /// Of the nearest piece: its distance in the stretched space less the envelope's radius [m], infinite when nothing
     /// is within reach; below 0 in its margin.

@@ -4,11 +4,11 @@
 #include "core/orca/obstacle_plane.hpp"
 
 // Whether a command keeps clear of all obstacles along its straight way, whatever half-spaces it was chosen from: what
-// was relaxed, dropped or left out shows here (gorca 21.2, item 5).
+// was relaxed, dropped or left out shows here.
 
 namespace jink::orca {
 
-/// Steps along the way for one obstacle (gorca 21.2). A velocity that keeps to the obstacle's half-space needs one;
+/// Steps along the way for one obstacle. A velocity that keeps to the obstacle's half-space needs one;
 /// none of the 300 random ways of test ClearanceAlong.EndsAtTheFirstContact used up all eight.
 inline constexpr std::uint32_t kMostWaySteps = 8;
 

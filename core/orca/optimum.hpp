@@ -17,7 +17,7 @@
 namespace jink::orca {
 
 /// A half-space as the programs read it: normal . x >= offset. 16 bytes, so that four numbers are read at once.
-struct Row {
+struct Row {  // NOLINT(cppcoreguidelines-pro-type-member-init): left open, scratch is made of it
     Vec3 normal;
     float offset;
 

@@ -124,7 +124,7 @@ bool Search::relax_at_corner(std::size_t from, std::size_t count, float& d) noex
     return true;
 }
 
-void Search::shift(std::size_t from, std::size_t to, float d) noexcept
+void Search::shift(std::size_t from, std::size_t to, float d) const noexcept
 {
     for (std::size_t i = from; i < to; ++i) {
         scratch_.rows[i].offset -= (d + kShifted) * scratch_.yields[i];

@@ -72,7 +72,7 @@ private:
     };
     [[nodiscard]] Worst worst(std::size_t from, std::size_t to, float least) const noexcept;
     [[nodiscard]] Worst worst_yielding(std::size_t from, std::size_t to, float least) const noexcept;
-    void shift(std::size_t from, std::size_t to, float d) noexcept;
+    void shift(std::size_t from, std::size_t to, float d) const noexcept;
     [[nodiscard]] Found whole(std::size_t count) noexcept;
     [[nodiscard]] Found push_out(std::size_t soft, std::size_t hards, std::size_t softs, float& d) noexcept;
 

@@ -23,7 +23,7 @@ std::vector<Vec3> corners(const Vec3& low, const Vec3& high)
     return out;
 }
 
-/// Check values of gorca 17: R_A 0.9 m, tau_obs 2 s, no stretch.
+/// Check values: R_A 0.9 m, tau_obs 2 s, no stretch.
 ObstacleSettings check_settings()
 {
     ObstacleSettings settings;
