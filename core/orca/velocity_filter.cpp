@@ -34,8 +34,8 @@ bool has_good_numbers(const FilterSettings& s) noexcept
 {
     return is_valid(s.obstacles) && is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F &&
            s.cover <= 2.0F && is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
-           is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) && is_not_negative(s.loop.lag) &&
-           s.smoothing >= 1 && s.smoothing <= CommandFilter::kMost;
+           is_not_negative(s.tick) && is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) &&
+           is_not_negative(s.loop.lag) && s.smoothing >= 1 && s.smoothing <= CommandFilter::kMost;
 }
 
 Unsafe check_filter(const FilterSettings& s) noexcept
@@ -197,7 +197,7 @@ void VelocityFilter::add_neighbours(Tick& tick, WorkBudget& budget) noexcept
 
 Vec3 VelocityFilter::preferred_of(Tick& tick) noexcept
 {
-    const Seconds period = settings_.limits.period;
+    const Seconds period = settings_.tick > 0.0F ? settings_.tick : settings_.limits.period;
     const float factor = settings_.slows_down ? slow_down_.update(tick.out.nearest, period) : 1.0F;
     const Biased biased = bias_.apply(settings_.own_id, factor * tick.input.preferred, tick.input.own.velocity,
                                       {tick.seen.data(), tick.seen.size()}, period);

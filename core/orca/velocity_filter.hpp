@@ -46,6 +46,7 @@ enum FilterBit : std::uint32_t {
 /// Everything that is set beforehand.
 struct FilterSettings {
     MotionLimits limits;
+    Seconds tick = 0.0F;  ///< between decisions, for what is timed, >= 0; 0: limits.period
     PairSettings pair;
     float half_width = 0.6F;   ///< own share of the warning region's radius [m], > 0
     float half_height = 0.3F;  ///< [m], > 0

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "core/base/time.hpp"
@@ -68,7 +69,7 @@ struct Reference {
     std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
 };
 
-enum class MethodId : std::uint8_t { none, supervisor, geometric, reach };
+enum class MethodId : std::uint8_t { none, supervisor, geometric, reach, orca };
 enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
 
 /// What to fly. For `brake` and `velocity` the path is the predicted flight under the constant command `command`.
@@ -83,6 +84,12 @@ struct Manoeuvre {
     path::TimedPath path;
 };
 
+/// A velocity that the vehicle was told to fly.
+struct Commanded {
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    TimePoint at;
+};
+
 /// A view of everything a method may know; made once per tick, immutable.
 struct Situation {
     TimePoint now;
@@ -93,8 +100,13 @@ struct Situation {
     std::span<const Track> tracks;
     std::span<const Obstacle> obstacles;
     const Airspace& airspace;
-    const Manoeuvre* flying = nullptr;  ///< what is being flown or was last chosen, for hysteresis
-    float k_sigma = 3.0F;               ///< standard deviations that count as possible
+    const Manoeuvre* flying = nullptr;     ///< what is being flown or was last chosen, for hysteresis
+    float k_sigma = 3.0F;                  ///< standard deviations that count as possible
+    TrackId own_id = 0;                    ///< as others know it by what it broadcasts; 0: not known
+    const Commanded* commanded = nullptr;  ///< what it was told last, while it is steered from here
+    /// Tracks that share the reaction are looked at so far ahead in separations, and not beyond [s]: what they do then
+    /// depends on both. Conflicts are not bounded by it.
+    Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
 };
 
 enum class PlanStatus : std::uint8_t {
