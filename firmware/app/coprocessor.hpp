@@ -241,11 +241,13 @@ private:
     Parameters parameters_;
     link::SensorBus* bus_;
     std::uint32_t applied_generation_ = 0;
+    // The supervisor's settings depend on these two: they come before it.
+    bool leaves_reach_out_ = false;
+    ReachPicture* reach_picture_ = nullptr;
     geometric::Planner planner_;
     reach::Planner reach_;
     orca::Planner orca_;
     avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner> supervisor_;
-    bool leaves_reach_out_ = false;
     bool told_left_out_ = false;
     bool told_unsuited_ = false;
     Takeover takeover_;
@@ -298,7 +300,6 @@ private:
     Diagnostics diagnostics_;
     hal::LastWords* last_words_ = nullptr;
     Clouds* clouds_ = nullptr;
-    ReachPicture* reach_picture_ = nullptr;
     StaticVector<Notice, kMostNotices> notices_;
     bool passive_ = false;
     ParamService param_service_;
