@@ -7,7 +7,7 @@
 #include <cstddef>
 
 #ifndef JINK_MAX_TRACKS
-#define JINK_MAX_TRACKS 32
+#define JINK_MAX_TRACKS 64
 #endif
 #ifndef JINK_MAX_OBSTACLES
 #define JINK_MAX_OBSTACLES 96
@@ -51,7 +51,8 @@
 
 namespace jink {
 
-/// Tracks kept at once. 32 covers an ADS-B receiver's nearest traffic plus own detections.
+/// Tracks kept at once: 31 vehicles of a swarm, 25 obstacles that move, and traffic beside them. 32, which boards have,
+/// cover an ADS-B receiver's nearest traffic plus own detections.
 /// When full, the track whose closest approach is farthest away gives way, and TrackTable counts it.
 inline constexpr std::size_t kMaxTracks = JINK_MAX_TRACKS;
 static_assert(kMaxTracks >= 1 && kMaxTracks <= 256);

@@ -73,11 +73,9 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
     entry.variance_position = m.sigma_position * m.sigma_position;
     const float sigma_velocity = m.has_velocity ? m.sigma_velocity : settings_.first_sigma_velocity;
     entry.variance_velocity = sigma_velocity * sigma_velocity;
-    entry.track = {m.id,           m.stamp,
-                   m.position,     m.has_velocity ? m.velocity : Vec3(Vec3::Zero()),
-                   m.radius,       m.sigma_position,
-                   sigma_velocity, m.max_acceleration,
-                   m.source,       false};
+    entry.track = {m.id,     m.stamp,          m.position,     m.has_velocity ? m.velocity : Vec3(Vec3::Zero()),
+                   m.radius, m.sigma_position, sigma_velocity, m.max_acceleration,
+                   m.source, m.cooperative};
     return entry;
 }
 
@@ -130,7 +128,7 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.covariance = vpv;
     e.variance_velocity = vvv;
     e.track = {m.id,           m.stamp,        position,           velocity, m.radius,
-               std::sqrt(vpp), std::sqrt(vvv), m.max_acceleration, m.source, false};
+               std::sqrt(vpp), std::sqrt(vvv), m.max_acceleration, m.source, m.cooperative};
 }
 
 TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::VehicleState& own, TimePoint now) noexcept

@@ -22,6 +22,7 @@ struct TrackMeasurement {
     float sigma_velocity = 0.0F;    ///< [m/s], > 0 where has_velocity
     float max_acceleration = 0.0F;  ///< [m/s2], >= 0
     TrackSource source = TrackSource::adsb;
+    bool cooperative = false;  ///< as in Track; the newest sighting's word counts
 };
 
 enum class TrackStatus : std::uint8_t {

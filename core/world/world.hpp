@@ -19,7 +19,13 @@ namespace jink::world {
 using TrackId = std::uint32_t;
 using ObstacleId = std::uint32_t;
 
-enum class TrackSource : std::uint8_t { adsb, own_sensor, datalink };
+/// How a track is known.
+enum class TrackSource : std::uint8_t {
+    adsb,        ///< by a transponder (ADS-B, UAT, FLARM) heard here, or by the autopilot's receiver
+    own_sensor,  ///< seen from here; never cooperative
+    datalink,    ///< by its own word on the link that we share with it
+    utm,         ///< by its own word to whoever manages the traffic
+};
 
 /// A moving threat: a sphere with a straight motion and what is not known of it.
 struct Track {
@@ -32,7 +38,7 @@ struct Track {
     float sigma_velocity = 0.0F;    ///< [m/s]
     float max_acceleration = 0.0F;  ///< bound on what it may do unannounced [m/s2]
     TrackSource source = TrackSource::adsb;
-    bool cooperative = false;
+    bool cooperative = false;  ///< it takes its share in avoiding us, as we take ours; else all of it is ours
 };
 
 struct Obstacle {
@@ -100,9 +106,11 @@ struct Situation {
     std::span<const Track> tracks;
     std::span<const Obstacle> obstacles;
     const Airspace& airspace;
-    const Manoeuvre* flying = nullptr;     ///< what is being flown or was last chosen, for hysteresis
-    float k_sigma = 3.0F;                  ///< standard deviations that count as possible
-    TrackId own_id = 0;                    ///< as others know it by what it broadcasts; 0: not known
+    const Manoeuvre* flying = nullptr;  ///< what is being flown or was last chosen, for hysteresis
+    float k_sigma = 3.0F;               ///< standard deviations that count as possible
+    /// By which the others of the same link know us (TrackSource::datalink); 0: not known. Says nothing beside the id
+    /// of a track of another source: that is of another scheme, and they may know us by another too.
+    TrackId own_id = 0;
     const Commanded* commanded = nullptr;  ///< what it was told last, while it is steered from here
     /// Tracks that share the reaction are looked at so far ahead in separations, and not beyond [s]: what they do then
     /// depends on both. Conflicts are not bounded by it.

@@ -233,8 +233,8 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
         const world::Reference reference = reference_at(own);
         const world::Airspace air = airspace(now);
         const world::Situation situation{
-            now, own,     c.limits, c.airframe, reference, tracks_.snapshot(now), obstacles_.obstacles(),
-            air, nullptr, c.k_sigma};
+            now, own,     c.limits,  c.airframe,       reference, tracks_.snapshot(now), obstacles_.obstacles(),
+            air, nullptr, c.k_sigma, link_.own_track()};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
         report.barrels = static_cast<std::uint16_t>(air.barrels.size());

@@ -84,6 +84,7 @@ struct Diagnostics {
     std::uint32_t readings = 0;
     std::uint32_t readings_refused = 0;  ///< not level, and wider than kWidestSteep
     std::uint32_t tracks_in = 0;
+    std::uint32_t own_heard = 0;     ///< own transponder (JNK_OWN_ICAO), heard back
     std::uint32_t legs_dropped = 0;  ///< the autopilot went on to a place that is not known: the own motion is the way
     std::uint32_t faults = 0;        ///< times the state became CRITICAL
     std::uint32_t bus_states = 0;    ///< own states of the bus that were used: the autopilot's was missing or old
@@ -183,6 +184,8 @@ public:
     [[nodiscard]] const orca::Planner& orca_planner() const noexcept { return orca_; }
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
     [[nodiscard]] const vehicle::VehicleState& own() const noexcept { return own_; }
+    /// As a plan at `now` has them, until the next step.
+    [[nodiscard]] std::span<const world::Track> tracks(TimePoint now) noexcept { return tracks_.snapshot(now); }
 
 private:
     void read_port(TimePoint now, StepReport& report) noexcept;

@@ -22,6 +22,21 @@ constexpr float kLevel = 0.02F;
 constexpr std::uint32_t kScanIds = 0x01000000;
 constexpr std::uint32_t kReadingIds = 0x02000000;
 
+/// Whether what is heard takes its share in avoiding us. Who says that he will not, and what stands, does not.
+bool is_cooperative(const link::TrackReport& report, const Configuration& c) noexcept
+{
+    if (report.at_rest || report.helpless) {
+        return false;
+    }
+    switch (report.source) {
+    case world::TrackSource::datalink: return c.coop_systems;
+    case world::TrackSource::utm: return c.coop_utm;
+    case world::TrackSource::adsb: return c.coop_all || (c.coop_unmanned && report.unmanned);
+    case world::TrackSource::own_sensor: break;
+    }
+    return false;
+}
+
 }  // namespace
 
 void Coprocessor::take_own_state(TimePoint now) noexcept
@@ -66,11 +81,17 @@ void Coprocessor::take_tracks(TimePoint now) noexcept
 {
     const Configuration& c = parameters_.configuration();
     for (const link::TrackReport& report : inbox_.tracks) {
+        const bool transponder = report.source == world::TrackSource::adsb;
+        if (transponder && c.own_address != 0 && report.id == c.own_address) {
+            ++diagnostics_.own_heard;
+            continue;
+        }
         world::TrackMeasurement m;
         m.id = report.id;
         m.stamp = report.stamp - c.track_latency;
         m.position = report.position;
         m.source = report.source;
+        m.cooperative = is_cooperative(report, c);
         m.sigma_position = report.sigma_position > 0.0F ? report.sigma_position : c.track_sigma_position;
         if (report.at_rest) {
             m.has_velocity = true;

@@ -69,6 +69,9 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_CLUTTER", 0, 0, 128, true,
      "of JNK_METHODS 1: from so many threats within 20 m reach sets come first; 0 never"},
     {"RCH_UNSEEN", 1, 0, 1, true, "1: reach sets do not go where a point cloud does not see"},
+    {"JNK_COOP", 7, 0, 15, true,
+     "who shares the reaction, sum of: 1 systems of the link, 2 UTM, 4 UAVs of ADS-B, 8 all of it"},
+    {"JNK_OWN_ICAO", 0, 0, 16777215, true, "own transponder's address: heard back, it is no traffic; 0 not known"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -105,6 +108,11 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.track_acceleration = at(Param::track_acceleration);
     c.track_latency = at(Param::track_latency);
     c.tracks.max_age = at(Param::track_age);
+    c.coop_systems = (whole(Param::coop) & 1U) != 0;
+    c.coop_utm = (whole(Param::coop) & 2U) != 0;
+    c.coop_unmanned = (whole(Param::coop) & 4U) != 0;
+    c.coop_all = (whole(Param::coop) & 8U) != 0;
+    c.own_address = whole(Param::own_address);
     c.scan_height = at(Param::scan_height);
     c.scan_keep = at(Param::scan_keep);
     c.own_age = at(Param::own_age);

@@ -74,6 +74,8 @@ enum class Param : std::uint8_t {
     methods,
     clutter,
     unseen,
+    coop,
+    own_address,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -116,6 +118,8 @@ struct Configuration {
     float track_radius = 1.0F, point_radius = 1.0F;      ///< of traffic that does not say its size [m]
     float track_sigma_position = 0.5F, track_sigma_velocity = 0.3F, track_acceleration = 0.0F, track_latency = 0.1F;
     float scan_height = 10.0F;  ///< half height given to what a level scan sees [m]
+    bool coop_systems = true, coop_utm = true, coop_unmanned = true, coop_all = false;  ///< who shares the reaction
+    std::uint32_t own_address = 0;                                                      ///< 24 bits; 0: not known
     Seconds scan_keep = 1.0F;
     Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]
     Seconds setpoint_period = 0.05F;

@@ -7,7 +7,8 @@
 namespace jink::app {
 namespace {
 
-/// Ids of warnings of closed areas, beside those of scans (0x01000000) and readings (0x02000000).
+/// Ids of warnings of closed areas, beside those of scans (0x01000000) and readings (0x02000000), and of tracks
+/// (firmware/link/track_ids.hpp).
 constexpr std::uint32_t kBarrelIds = 0x04000000;
 
 }  // namespace

@@ -64,6 +64,8 @@ struct LinkDiagnostics {
     std::uint32_t bytes_discarded = 0;     ///< that waited when the port was lost
     std::uint32_t rate_requests = 0;       ///< messages asked for
     std::uint32_t rates_refused = 0;       ///< answers that did not grant one
+    std::uint32_t own_heard = 0;           ///< what we say of ourselves, come back as if it were another's
+    std::uint32_t systems_evicted = 0;     ///< others of the link whose clock was forgotten: there are too many
 };
 
 /// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
@@ -122,6 +124,9 @@ public:
     /// @return bytes written; 0 where `out` is too small
     [[nodiscard]] virtual std::size_t compose_last_words(std::span<std::byte> out, bool hold,
                                                          std::string_view text) noexcept = 0;
+
+    /// By which the others of this link know us (track_ids.hpp); 0 while that is not known, or nobody does.
+    [[nodiscard]] virtual world::TrackId own_track() const noexcept { return 0; }
 
     [[nodiscard]] virtual const LinkDiagnostics& diagnostics() const noexcept = 0;
 

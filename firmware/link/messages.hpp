@@ -61,7 +61,12 @@ struct TrackReport {
     world::TrackSource source = world::TrackSource::adsb;
     bool at_rest =
         false;  ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
+    bool unmanned = false;  ///< says so, or is a vehicle like ours
+    bool helpless = false;  ///< says that it will not give way: disarmed, on the ground, in an emergency
 };
+
+/// Sightings that one step may bring: more than a line of 921600 baud carries in 20 ms to a board (kMaxTracks 32).
+inline constexpr std::size_t kMaxTrackReports = kMaxTracks + kMaxTracks / 2;
 
 inline constexpr std::size_t kMaxScanSectors = 72;
 
@@ -141,7 +146,7 @@ struct Inbox {
     Vec3 home = Vec3::Zero();
     bool has_scan = false;
     RangeScan scan;
-    StaticVector<TrackReport, 2 * kMaxTracks> tracks;
+    StaticVector<TrackReport, kMaxTrackReports> tracks;
     StaticVector<RangeReading, 16> readings;
     StaticVector<ParamRequest, 16> params;
     StaticVector<CommandRequest, 8> commands;

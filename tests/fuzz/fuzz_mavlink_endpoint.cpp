@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/link/track_ids.hpp"
 #include "tests/fuzz/check.hpp"
 #include "tests/fuzz/mavlink_repair.hpp"
 
@@ -77,6 +78,10 @@ void check_inbox(const Inbox& inbox, TimePoint now)
         JINK_FUZZ_CHECK(t.stamp <= now && is_finite(t.position) && t.position.norm() < kRound);
         JINK_FUZZ_CHECK(is_finite(t.velocity) && t.velocity.norm() < 1000.0F);
         JINK_FUZZ_CHECK(t.has_velocity || t.velocity == Vec3::Zero());
+        JINK_FUZZ_CHECK(t.sigma_position >= 0.0F && t.sigma_position < 200.0F);
+        JINK_FUZZ_CHECK(t.sigma_velocity >= 0.0F && t.sigma_velocity < 1000.0F);
+        JINK_FUZZ_CHECK((t.source == world::TrackSource::datalink) == is_of_system(t.id));
+        JINK_FUZZ_CHECK((t.source == world::TrackSource::utm) == (t.id >= kUtmIds && t.id < kWideAddressIds));
     }
     for (const RangeReading& r : inbox.readings) {
         JINK_FUZZ_CHECK(std::abs(r.direction.norm() - 1.0F) < 1e-4F);

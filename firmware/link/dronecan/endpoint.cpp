@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "firmware/link/track_ids.hpp"
+
 namespace jink::link::dronecan {
 namespace {
 
@@ -24,6 +26,8 @@ constexpr Seconds kFutureSlack = 0.05F;
 constexpr float kDefaultHalfAngle = 0.1F;
 constexpr float kLeastFieldOfView = 1e-3F;
 constexpr float kDegree = kPi / 180.0F;
+/// Noise of a velocity whose vertical part is not known, as the MAVLink side has it [m/s].
+constexpr float kUnknownClimb = 5.0F;
 constexpr std::uint32_t kProximityBeams = 1U << 8U;  ///< apart from the range finders' ids
 
 template <class Range>
@@ -224,15 +228,17 @@ void Endpoint::on_traffic(const Context& c) noexcept
         return;
     }
     TrackReport report;
-    report.id = m.icao;
+    report.id = track_of_address(m.icao);
     report.stamp = c.transfer.stamp - static_cast<Seconds>(m.tslc);
     const auto height = static_cast<std::int32_t>(std::lround(m.altitude * 1e3F));
     report.position = mavlink::to_local({m.latitude, m.longitude, height}, options_.origin);
     report.at_rest = m.traffic_type == TrafficReport::kPointObstacle;
+    report.unmanned = m.traffic_type == TrafficReport::kUnmanned;
     report.has_velocity = report.at_rest || moves;
     if (moves) {
         report.velocity = mavlink::swap_ned_enu({m.velocity[0], m.velocity[1], m.velocity[2]});
         report.velocity.z() = m.vertical_velocity_valid ? report.velocity.z() : 0.0F;
+        report.sigma_velocity = m.vertical_velocity_valid ? 0.0F : kUnknownClimb;
     }
     if (!c.inbox.tracks.try_push_back(report)) {
         ++diagnostics_.inbox_full;

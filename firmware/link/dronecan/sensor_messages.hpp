@@ -57,6 +57,7 @@ struct Proximity {
 
 struct TrafficReport {
     static constexpr TypeInfo kType{TransferKind::message, 20790, 0x71FB, 47};
+    static constexpr std::uint8_t kUnmanned = 14;
     static constexpr std::uint8_t kPointObstacle = 19;
     std::uint64_t stamp = 0;  ///< [us], 56 bits; 0: not said
     std::uint32_t icao = 0;

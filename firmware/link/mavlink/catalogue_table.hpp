@@ -21,7 +21,7 @@ inline constexpr std::array<MessageInfo, 293> kCatalogue{{
     {21, 159, 2, 2},  // PARAM_REQUEST_LIST
     {22, 220, 25, 25},  // PARAM_VALUE
     {23, 168, 23, 23},  // PARAM_SET
-    {24, 24, 30, 255},  // GPS_RAW_INT, passed over
+    {24, 24, 30, 52},  // GPS_RAW_INT
     {25, 23, 101, 255},  // GPS_STATUS, passed over
     {26, 170, 22, 255},  // SCALED_IMU, passed over
     {27, 144, 26, 255},  // RAW_IMU, passed over

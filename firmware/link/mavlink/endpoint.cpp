@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reception: who speaks, in which mode, by which clock. Own state and leg: endpoint_state.cpp. Sensors, traffic and
-// requests: endpoint_sensors.cpp. Points in space: endpoint_points.cpp. Sending: endpoint_sending.cpp.
+// Reception: who speaks, in which mode, by which clock. Own state and leg: endpoint_state.cpp. Sensors and requests:
+// endpoint_sensors.cpp. Traffic: endpoint_traffic.cpp. Points in space: endpoint_points.cpp. Sending:
+// endpoint_sending.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -48,6 +49,7 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
     diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
                                   p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
                                   p.stale_signature + p.signature_streams;
+    diagnostics_.systems_evicted = neighbours_.evicted();
     const bool fetched = mission_.take_leg() || leg_moved_;
     leg_moved_ = false;
     if (fetched || leg_waits_) {
@@ -84,6 +86,7 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
     case Attitude::kInfo.id: on_euler_attitude(c); break;
     case Odometry::kInfo.id: on_odometry(c); break;
     case GlobalPositionInt::kInfo.id: on_global_position(c); break;
+    case GpsRawInt::kInfo.id: on_gps(c); break;
     case GpsGlobalOrigin::kInfo.id: on_origin(c); break;
     case HomePosition::kInfo.id: on_home(c); break;
     case PositionTargetLocalNed::kInfo.id: on_position_target(c); break;
@@ -120,7 +123,11 @@ void Endpoint::on_heartbeat(const Context& c) noexcept
     if (is_autopilot && system_ == 0) {
         system_ = c.frame.header.system_id;
     }
-    if (!is_autopilot || c.frame.header.system_id != system_) {
+    if (is_autopilot && c.frame.header.system_id != system_) {
+        neighbours_.note_armed(c.frame.header.system_id, (m.base_mode & kArmed) != 0, c.now);
+        return;
+    }
+    if (!is_autopilot) {
         ++diagnostics_.frames_ignored;
         return;
     }

@@ -8,17 +8,19 @@
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/link/mavlink/mission_client.hpp"
 #include "firmware/link/mavlink/modes.hpp"
+#include "firmware/link/mavlink/neighbours.hpp"
 #include "firmware/link/mavlink/parser.hpp"
 #include "firmware/link/mavlink/stream_requests.hpp"
 #include "firmware/link/mavlink/transmit_buffer.hpp"
+#include "firmware/link/track_ids.hpp"
 
 // MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/links.md is the reference for
 // users; this is what it does with each message:
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its
 //   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing but HEARTBEAT is
-//   sent, as system 1. Own state, modes and legs are taken from that autopilot alone; traffic and ranges from any
-//   component of our system.
+//   sent, as system 1. Own state, modes and legs are taken from that autopilot alone; transponders' traffic and ranges
+//   from any component of our system.
 // * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION or ATTITUDE (yaw), ODOMETRY (all of it:
 //   velocity in its child frame turned by q, sigmas from the covariances when not NaN, reset_counter; frame_id other
 //   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 1 s. Stamps are mapped by ClockSync; older
@@ -33,8 +35,16 @@
 //   leg anew, and moves the traffic that waits in the inbox; what was taken out of it before is the application's.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
 //   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
-//   emitter_type 19 (point obstacle): at_rest, velocity zero.
+//   emitter_type 19 (point obstacle): at_rest, velocity zero; 14 (UAV): unmanned. Ids: track_ids.hpp.
 //   Stamp = now - tslc (the application takes the assumed latency off).
+// * GLOBAL_POSITION_INT of other systems' autopilots (component 1): a track by its system id. Stamped by that system's
+//   boot clock (Neighbours). Latitude and longitude 0: out_of_range. helpless while its last HEARTBEAT says disarmed.
+//   Their LOCAL_POSITION_NED is passed over: it is about an origin of their own.
+// * UTM_GLOBAL_POSITION of anybody but our autopilot, whose uas_id is our own name: a track by its uas_id, or by sender
+//   where it has none. Own name, from whomever: own_heard. Without position or altitude (flags 4, 8): out_of_range;
+//   velocity as flags 32 and 64 say, h_acc, v_acc and vel_acc as standard deviations. flight_state 2, 16, 32: helpless.
+//   Its heights are above the ellipsoid: brought to sea level by what our GPS_RAW_INT says of both, and uncertain by
+//   36 m while it has not. Stamp = now.
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by a yaw not older than 1 s, else no_origin);
 //   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
 //   min_distance means "nearer than that" and is kept as min_distance. A second scan within a tick takes the place of
@@ -105,6 +115,10 @@ public:
     {
         return origin_rank_ > 0 ? std::optional(origin_) : std::nullopt;
     }
+    [[nodiscard]] world::TrackId own_track() const noexcept override
+    {
+        return system_ != 0 ? track_of_system(system_) : 0;
+    }
     [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept override { return diagnostics_; }
     [[nodiscard]] const ParserDiagnostics& parser_diagnostics() const noexcept { return parser_.diagnostics(); }
     /// 0 until an autopilot was heard.
@@ -136,6 +150,11 @@ private:
     void on_command_ack(const Context& c) noexcept;
     void on_timesync(const Context& c) noexcept;
     void on_adsb(const Context& c) noexcept;
+    void on_neighbour(const Context& c) noexcept;
+    void on_gps(const Context& c) noexcept;
+    void on_utm(const Context& c) noexcept;
+    [[nodiscard]] bool is_own(const Frame& frame, const UtmGlobalPosition& m, bool named) noexcept;
+    void deliver(const TrackReport& report, Inbox& inbox) noexcept;
     void on_obstacle_distance(const Context& c) noexcept;
     void on_distance_sensor(const Context& c) noexcept;
     void on_point(const Context& c) noexcept;
@@ -173,6 +192,7 @@ private:
     ClockSync clock_;
     MissionClient mission_;
     StreamRequests streams_;
+    Neighbours neighbours_;
     bool asks_for_rates_ = false;
     std::uint8_t system_;
     std::uint8_t sequence_ = 0;
@@ -197,6 +217,9 @@ private:
 
     int origin_rank_ = 0;  ///< 0 none, 1 own global less local position, 2 home, 3 GPS_GLOBAL_ORIGIN
     GlobalPosition origin_;
+    bool has_undulation_ = false;
+    std::int32_t undulation_ = 0;              ///< of the geoid over the ellipsoid, here [mm]
+    std::array<std::uint8_t, 18> own_name_{};  ///< to traffic management; zeros: not known
     bool has_home_ = false;
     Vec3 home_ = Vec3::Zero();
 

@@ -160,11 +160,13 @@ void Endpoint::send_velocity(const Vec3& velocity, TimePoint now) noexcept
 void Endpoint::send_collision(const CollisionWarning& warning) noexcept
 {
     Collision m;
-    m.id = warning.id;
+    const bool of_system = is_of_system(warning.id);
+    m.id = of_system ? warning.id - kSystemIds : warning.id;
     m.time_to_minimum_delta = warning.time_to_closest;
     m.altitude_minimum_delta = warning.vertical_miss;
     m.horizontal_minimum_delta = warning.horizontal_miss;
-    m.src = 0;  // from ADS-B and own sensing alike: MAV_COLLISION_SRC knows no other that fits
+    // 1: a system of the link, by its id. 0: all else, since MAV_COLLISION_SRC knows ADS-B and no other that fits.
+    m.src = of_system ? 1 : 0;
     m.action = static_cast<std::uint8_t>(warning.action);
     m.threat_level = static_cast<std::uint8_t>(warning.level);
     send(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Traffic and range sensors, and what others ask of us.
+// Range sensors, and what others ask of us.
 #include <algorithm>
 #include <cmath>
 
@@ -8,17 +8,6 @@
 
 namespace jink::link::mavlink {
 namespace {
-
-// ADSB_FLAGS and ADSB_EMITTER_TYPE
-constexpr unsigned kValidCoordinates = 1;
-constexpr unsigned kValidAltitude = 2;
-constexpr unsigned kValidHeading = 4;
-constexpr unsigned kValidVelocity = 8;
-constexpr unsigned kValidVerticalVelocity = 128;
-constexpr std::uint8_t kPointObstacle = 19;
-/// Noise of a velocity whose vertical part is not known, one standard deviation [m/s]: that of a track without any
-/// (world::TrackTableSettings). Three of them hold climbs of 15 m/s; the sightings that follow narrow it down.
-constexpr float kUnknownClimb = 5.0F;
 
 constexpr std::uint16_t kUnknownDistance = 65535;
 constexpr float kCentimetre = 0.01F;
@@ -37,6 +26,18 @@ void Endpoint::dispatch_sensors(const Context& c) noexcept
     case AdsbVehicle::kInfo.id:
         if (same_system) {
             on_adsb(c);
+            return;
+        }
+        break;
+    case UtmGlobalPosition::kInfo.id:
+        if (c.frame.header.system_id != 0) {
+            on_utm(c);
+            return;
+        }
+        break;
+    case GlobalPositionInt::kInfo.id:
+        if (!same_system && c.frame.header.component_id == kAutopilotComponent && c.frame.header.system_id != 0) {
+            on_neighbour(c);
             return;
         }
         break;
@@ -61,40 +62,6 @@ void Endpoint::dispatch_sensors(const Context& c) noexcept
     default: dispatch_requests(c); return;
     }
     ++diagnostics_.frames_ignored;
-}
-
-void Endpoint::on_adsb(const Context& c) noexcept
-{
-    AdsbVehicle m;
-    static_cast<void>(decode(c.frame, m));
-    const GlobalPosition where{m.lat, m.lon, m.altitude};
-    constexpr unsigned kNeeded = kValidCoordinates | kValidAltitude;
-    if ((m.flags & kNeeded) != kNeeded || !is_on_earth(where)) {
-        ++diagnostics_.out_of_range;
-        return;
-    }
-    if (origin_rank_ == 0) {
-        ++diagnostics_.no_origin;
-        return;
-    }
-    TrackReport report;
-    report.id = m.ICAO_address;
-    report.stamp = c.now - static_cast<Seconds>(m.tslc);
-    report.position = to_local(where, origin_);
-    report.at_rest = m.emitter_type == kPointObstacle;
-    const bool level = (m.flags & kValidHeading) != 0 && (m.flags & kValidVelocity) != 0;
-    report.has_velocity = report.at_rest || level;
-    if (level && !report.at_rest) {
-        const float yaw = swap_heading_yaw(static_cast<float>(m.heading) * 0.01F * kDegree);
-        const float speed = static_cast<float>(m.hor_velocity) * kCentimetre;
-        const bool climb_known = (m.flags & kValidVerticalVelocity) != 0;
-        const float climb = climb_known ? static_cast<float>(m.ver_velocity) * kCentimetre : 0.0F;
-        report.velocity = Vec3(speed * std::cos(yaw), speed * std::sin(yaw), climb);
-        report.sigma_velocity = climb_known ? 0.0F : kUnknownClimb;
-    }
-    if (!c.inbox.tracks.try_push_back(report)) {
-        ++diagnostics_.inbox_full;
-    }
 }
 
 void Endpoint::on_obstacle_distance(const Context& c) noexcept

@@ -170,6 +170,47 @@ inline constexpr std::array<Field, 5> ParamSet::kFields{{
     {offsetof(ParamSet, param_type), 22, 1, FieldType::u8},
 }};
 
+/// GPS_RAW_INT (24), common.
+struct GpsRawInt {
+    std::uint64_t time_usec = 0;  ///< [us]
+    std::int32_t lat = 0;  ///< [degE7]
+    std::int32_t lon = 0;  ///< [degE7]
+    std::int32_t alt = 0;  ///< [mm]
+    std::uint16_t eph = 0;
+    std::uint16_t epv = 0;
+    std::uint16_t vel = 0;  ///< [cm/s]
+    std::uint16_t cog = 0;  ///< [cdeg]
+    std::uint8_t fix_type = 0;
+    std::uint8_t satellites_visible = 0;
+    std::int32_t alt_ellipsoid = 0;  ///< [mm] extension
+    std::uint32_t h_acc = 0;  ///< [mm] extension
+    std::uint32_t v_acc = 0;  ///< [mm] extension
+    std::uint32_t vel_acc = 0;  ///< [mm] extension
+    std::uint32_t hdg_acc = 0;  ///< [degE5] extension
+    std::uint16_t yaw = 0;  ///< [cdeg] extension
+
+    static constexpr MessageInfo kInfo{24, 24, 30, 52};
+    static const std::array<Field, 16> kFields;
+};
+inline constexpr std::array<Field, 16> GpsRawInt::kFields{{
+    {offsetof(GpsRawInt, time_usec), 0, 1, FieldType::u64},
+    {offsetof(GpsRawInt, lat), 8, 1, FieldType::i32},
+    {offsetof(GpsRawInt, lon), 12, 1, FieldType::i32},
+    {offsetof(GpsRawInt, alt), 16, 1, FieldType::i32},
+    {offsetof(GpsRawInt, eph), 20, 1, FieldType::u16},
+    {offsetof(GpsRawInt, epv), 22, 1, FieldType::u16},
+    {offsetof(GpsRawInt, vel), 24, 1, FieldType::u16},
+    {offsetof(GpsRawInt, cog), 26, 1, FieldType::u16},
+    {offsetof(GpsRawInt, fix_type), 28, 1, FieldType::u8},
+    {offsetof(GpsRawInt, satellites_visible), 29, 1, FieldType::u8},
+    {offsetof(GpsRawInt, alt_ellipsoid), 30, 1, FieldType::i32},
+    {offsetof(GpsRawInt, h_acc), 34, 1, FieldType::u32},
+    {offsetof(GpsRawInt, v_acc), 38, 1, FieldType::u32},
+    {offsetof(GpsRawInt, vel_acc), 42, 1, FieldType::u32},
+    {offsetof(GpsRawInt, hdg_acc), 46, 1, FieldType::u32},
+    {offsetof(GpsRawInt, yaw), 50, 1, FieldType::u16},
+}};
+
 /// ATTITUDE (30), common.
 struct Attitude {
     std::uint32_t time_boot_ms = 0;  ///< [ms]
@@ -1721,6 +1762,7 @@ using AllMessages = MessageList<
     ParamRequestList,
     ParamValue,
     ParamSet,
+    GpsRawInt,
     Attitude,
     AttitudeQuaternion,
     LocalPositionNed,

@@ -97,5 +97,122 @@ TEST(CoprocessorTraffic, FromBeyondTheMapIsForgottenAndCounted)
     EXPECT_EQ(m.f.coprocessor.diagnostics().tracks_not_moved, 1U);
 }
 
+constexpr GlobalPosition kHome{473977420, 85455940, 488000};
+constexpr std::uint8_t kOther = 9;
+
+/// What the vehicle beside us says of itself, on the wire of whoever says it.
+GlobalPositionInt said_by_system(const Vec3& where, std::uint32_t boot_ms)
+{
+    const GlobalPosition p = to_global(where, kHome).value();
+    return {boot_ms, p.lat, p.lon, p.alt, 0, 0, 0, 0, 0};
+}
+
+UtmGlobalPosition said_to_utm(const Vec3& where)
+{
+    const GlobalPosition p = to_global(where, kHome).value();
+    UtmGlobalPosition m;
+    m.lat = p.lat;
+    m.lon = p.lon;
+    m.alt = p.alt;
+    m.uas_id.fill(3);
+    m.flight_state = 3;
+    m.flags = 2 | 4 | 8 | 32 | 64;
+    return m;
+}
+
+template <link::mavlink::Message M>
+void feed_from(Flight& f, std::uint8_t system, const M& message)
+{
+    f.feed_bytes(wire::frame_of(message, {system, 1, 0}));
+}
+
+TEST(CoprocessorTraffic, SharesTheReactionAsTheParameterSays)
+{
+    const Vec3 aside(0.0F, -200.0F, 50.0F);
+    for (unsigned mask = 0; mask < 16; ++mask) {
+        Parameters parameters;
+        ASSERT_EQ(parameters.set(Param::coop, static_cast<float>(mask)), ParamStatus::ok);
+        Flight f(parameters);
+        f.fly(60);
+        AdsbVehicle manned = wire::adsb(0xA1, to_global(aside, kHome).value());
+        AdsbVehicle uav = manned;
+        uav.ICAO_address = 0xA2;
+        uav.emitter_type = 14;
+        AdsbVehicle mast = manned;
+        mast.ICAO_address = 0xA3;
+        mast.emitter_type = 19;
+        for (const AdsbVehicle& m : {manned, uav, mast}) {
+            f.feed(m, 156);
+        }
+        feed_from(f, kOther, said_by_system(aside, f.boot_ms()));
+        feed_from(f, kOther + 1, said_to_utm(aside));
+        f.fly(1);
+        const auto tracks = f.coprocessor.tracks(f.now);
+        ASSERT_EQ(tracks.size(), 5U);
+        const std::array<bool, 5> expected{(mask & 8U) != 0, (mask & (4U | 8U)) != 0, false, (mask & 1U) != 0,
+                                           (mask & 2U) != 0};
+        const std::array kSources{world::TrackSource::adsb, world::TrackSource::adsb, world::TrackSource::adsb,
+                                  world::TrackSource::datalink, world::TrackSource::utm};
+        for (std::size_t i = 0; i < 5; ++i) {
+            EXPECT_EQ(tracks[i].cooperative, expected[i]) << "mask " << mask << " track " << i;
+            EXPECT_EQ(tracks[i].source, kSources[i]);
+        }
+    }
+}
+
+TEST(CoprocessorTraffic, WhoeverSaysThatHeWillNotDoesNotShareTheReaction)
+{
+    const Vec3 aside(0.0F, -200.0F, 50.0F);
+    Flight f;
+    f.fly(60);
+    const auto shares = [&] {
+        const auto tracks = f.coprocessor.tracks(f.now);
+        EXPECT_EQ(tracks.size(), 1U);
+        return tracks.front().cooperative;
+    };
+    feed_from(f, kOther, said_by_system(aside, f.boot_ms()));
+    f.fly(1);
+    EXPECT_TRUE(shares());
+    feed_from(f, kOther, wire::heartbeat(wire::kCopterAuto, false, 3));
+    feed_from(f, kOther, said_by_system(aside, f.boot_ms()));
+    f.fly(1);
+    EXPECT_FALSE(shares()) << "disarmed";
+    feed_from(f, kOther, wire::heartbeat(wire::kCopterAuto, true, 3));
+    feed_from(f, kOther, said_by_system(aside, f.boot_ms()));
+    f.fly(1);
+    EXPECT_TRUE(shares()) << "the newest word counts";
+}
+
+TEST(CoprocessorTraffic, AnotherSystemInTheWayIsAConflictToldByItsId)
+{
+    Flight f;
+    f.fly(60);
+    for (int i = 0; i < 100 && !f.last.guidance.has_conflict; ++i) {
+        feed_from(f, kOther, said_by_system(Vec3(0.0F, 40.0F, 50.0F), f.boot_ms()));
+        f.fly(1);
+    }
+    ASSERT_TRUE(f.last.guidance.has_conflict);
+    const auto told = f.said_of<Collision>();
+    ASSERT_EQ(told.size(), 1U);
+    EXPECT_EQ(told[0].src, 1);
+    EXPECT_EQ(told[0].id, kOther);
+}
+
+TEST(CoprocessorTraffic, OwnTransponderHeardBackIsNoTraffic)
+{
+    for (const float own : {0.0F, 161.0F, 16777215.0F}) {
+        Parameters parameters;
+        ASSERT_EQ(parameters.set(Param::own_address, own), ParamStatus::ok);
+        Flight f(parameters);
+        f.fly(60);
+        for (const std::uint32_t address : {0U, 161U, 0xFFFFFFU}) {
+            f.feed(wire::adsb(address, to_global(f.position, kHome).value()), 156);
+        }
+        f.fly(1);
+        EXPECT_EQ(f.last.tracks, own > 0.0F ? 2U : 3U);
+        EXPECT_EQ(f.coprocessor.diagnostics().own_heard, own > 0.0F ? 1U : 0U);
+    }
+}
+
 }  // namespace
 }  // namespace jink::app::test

@@ -156,7 +156,9 @@ TEST(Parameters, RefusesWhatIsNotFiniteOrNotWhole)
             const float between = info.low + 0.5F;
             expect_refused(parameters, ParamStatus::out_of_range, [&] { return parameters.set(p, between); });
             const float nearly = std::nextafter(info.high, -kInfinity);
-            expect_refused(parameters, ParamStatus::out_of_range, [&] { return parameters.set(p, nearly); });
+            if (nearly != std::floor(nearly)) {  // near 2^24 the next float is a whole number too
+                expect_refused(parameters, ParamStatus::out_of_range, [&] { return parameters.set(p, nearly); });
+            }
         }
     }
 }
@@ -278,6 +280,15 @@ std::vector<Route> routes()
          static_cast<float>(avoid::LadderOrder::last)},
         same(Param::clutter, 7, [](C c) { return static_cast<float>(c.supervisor.clutter); }),
         {Param::unseen, 0, [](C c) { return c.blocks_unseen ? 1.0F : 0.0F; }, 0},
+        {Param::coop, 1,
+         [](C c) { return c.coop_systems && !c.coop_utm && !c.coop_unmanned && !c.coop_all ? 1.0F : 0.0F; }, 1},
+        {Param::coop, 2,
+         [](C c) { return !c.coop_systems && c.coop_utm && !c.coop_unmanned && !c.coop_all ? 1.0F : 0.0F; }, 1},
+        {Param::coop, 4,
+         [](C c) { return !c.coop_systems && !c.coop_utm && c.coop_unmanned && !c.coop_all ? 1.0F : 0.0F; }, 1},
+        {Param::coop, 8,
+         [](C c) { return !c.coop_systems && !c.coop_utm && !c.coop_unmanned && c.coop_all ? 1.0F : 0.0F; }, 1},
+        same(Param::own_address, 16777215, [](C c) { return static_cast<float>(c.own_address); }),
         same(Param::latency, 0.3F, [](C c) { return c.reach.latency; }),
         {Param::acceleration, 4, [](C c) { return c.reach_unsuited ? 1.0F : 0.0F; }, 1},
         {Param::acceleration, 6, [](C c) { return c.reach_unsuited ? 1.0F : 0.0F; }, 0},

@@ -162,11 +162,14 @@ TEST_F(DronecanEndpoint, Traffic)
     EXPECT_TRUE(track.has_velocity);
     expect_near(track.velocity, {-20.0F, 10.0F, -2.0F}, 1e-2F);
     EXPECT_FALSE(track.at_rest);
+    EXPECT_FALSE(track.unmanned);
+    EXPECT_EQ(track.sigma_velocity, 0.0F) << "not said";
 
     TrafficReport m = traffic();
     m.vertical_velocity_valid = false;
     give(m);
     EXPECT_EQ(inbox.tracks[1].velocity.z(), 0.0F);
+    EXPECT_GE(inbox.tracks[1].sigma_velocity, 5.0F) << "it may climb";
     m.velocity_valid = false;
     m.velocity[0] = kNaN;  // not said: no fault
     give(m);
@@ -176,6 +179,11 @@ TEST_F(DronecanEndpoint, Traffic)
     EXPECT_TRUE(inbox.tracks[3].at_rest);
     EXPECT_TRUE(inbox.tracks[3].has_velocity);
     expect_near(inbox.tracks[3].velocity, Vec3::Zero(), 0.0F);
+    m.traffic_type = 14;
+    m.icao = 0x05000007;  // no address of 24 bits, and not system 7
+    give(m);
+    EXPECT_TRUE(inbox.tracks[4].unmanned);
+    EXPECT_EQ(inbox.tracks[4].id, 0x85000007U);
 }
 
 TEST_F(DronecanEndpoint, BadTrafficIsRefused)

@@ -143,12 +143,12 @@ TEST_F(MavlinkEndpointSensors, TrafficWithoutAPlaceIsRefused)
 TEST_F(MavlinkEndpointSensors, TrafficBeyondTheInboxIsCounted)
 {
     origin();
-    for (std::uint32_t i = 0; i < 2 * kMaxTracks + 3; ++i) {
+    for (std::uint32_t i = 0; i < kMaxTrackReports + 3; ++i) {
         AdsbVehicle m = traffic();
         m.ICAO_address = i;
         from(kSystem, 156, m);
     }
-    EXPECT_EQ(inbox->tracks.size(), 2 * kMaxTracks);
+    EXPECT_EQ(inbox->tracks.size(), kMaxTrackReports);
     EXPECT_EQ(count().inbox_full, 3U);
 }
 

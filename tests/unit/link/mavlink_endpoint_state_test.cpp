@@ -46,6 +46,7 @@ TEST_F(MavlinkEndpointState, LearnsItsSystemFromTheFirstAutopilot)
     companion.autopilot = 8;
     from(kSystem, 1, companion);
     EXPECT_EQ(endpoint->system_id(), 0);
+    EXPECT_EQ(endpoint->own_track(), 0U);
     heartbeat();
     EXPECT_EQ(endpoint->system_id(), kSystem);
     Heartbeat other;
@@ -53,7 +54,8 @@ TEST_F(MavlinkEndpointState, LearnsItsSystemFromTheFirstAutopilot)
     from(9, 1, other);
     EXPECT_EQ(endpoint->system_id(), kSystem) << "stays with the first";
     EXPECT_TRUE(inbox->has_autopilot);
-    EXPECT_EQ(count().frames_ignored, 4U);
+    EXPECT_EQ(count().frames_ignored, 3U) << "another vehicle is not of no interest";
+    EXPECT_EQ(endpoint->own_track(), 0x05000000U + kSystem);
 }
 
 TEST_F(MavlinkEndpointState, SystemIdMayBeFixed)

@@ -76,6 +76,67 @@ TEST(MavlinkGoldenFrames, ObstacleDistance3d)
     expect_golden(m, kUs, "fd1c00000001c41d2b00e80300000000c03f000010c00000003fcdcc4c3e000020420700000c3f04");
 }
 
+// The next three were made with node-mavlink.
+constexpr std::uint8_t kOther = 9;
+
+TEST(MavlinkGoldenFrames, GlobalPositionInt)
+{
+    GlobalPositionInt m{123456, 467000123, 82000456, 570789, 1789, 123, -456, 78, 27001};
+    expect_golden(m, {kOther, 1, 5},
+                  "fd1c000005090121000040e201003bdbd51b483ae304a5b50800fd0600007b0038fe4e00796961dd");
+}
+
+TEST(MavlinkGoldenFrames, UtmGlobalPosition)
+{
+    UtmGlobalPosition m;
+    m.time = 1700000000123456U;
+    m.lat = 467000123;
+    m.lon = -82000456;
+    m.alt = 618789;
+    m.relative_alt = 1789;
+    m.next_lat = 467000999;
+    m.next_lon = 82000999;
+    m.next_alt = 620000;
+    m.vx = -321;
+    m.vy = 654;
+    m.vz = -87;
+    m.h_acc = 1500;
+    m.v_acc = 2500;
+    m.vel_acc = 40;
+    m.update_rate = 100;
+    for (std::uint8_t i = 0; i < 18; ++i) {
+        m.uas_id[i] = static_cast<std::uint8_t>(i + 1);
+    }
+    m.flight_state = 3;
+    m.flags = 127;
+    expect_golden(
+        m, {kOther, 1, 6},
+        "fd46000006090154010040222018240a06003bdbd51bb8c51cfb25710900fd060000a7ded51b673ce304e0750900bffe8e02a9ff"
+        "dc05c409280064000102030405060708090a0b0c0d0e0f101112037fbff6");
+}
+
+TEST(MavlinkGoldenFrames, GpsRawInt)
+{
+    GpsRawInt m;
+    m.time_usec = 987654321;
+    m.lat = 467000123;
+    m.lon = 82000456;
+    m.alt = 570789;
+    m.eph = 80;
+    m.epv = 120;
+    m.vel = 510;
+    m.cog = 9000;
+    m.fix_type = 4;
+    m.satellites_visible = 17;
+    m.alt_ellipsoid = 618789;
+    m.h_acc = 500;
+    m.v_acc = 800;
+    m.vel_acc = 100;
+    expect_golden(m, {kOther, 1, 7},
+                  "fd2b0000070901180000b168de3a000000003bdbd51b483ae304a5b5080050007800fe0128230411257109"
+                  "00f40100002003000064e221");
+}
+
 TEST(MavlinkGoldenFrames, SetPositionTargetLocalNed)
 {
     SetPositionTargetLocalNed m;

@@ -59,6 +59,22 @@ TEST_F(TrackTables, FirstSightingIsTakenAsItIs)
     EXPECT_EQ(table.id_in_snapshot(0), 7U);
 }
 
+TEST_F(TrackTables, TheNewestSightingSaysWhetherItIsCooperative)
+{
+    for (int i = 0; i < 6; ++i) {
+        TrackMeasurement m = sighting(7, Vec3(10, 20, 30), {kNow.us + i * 100'000});
+        m.cooperative = i % 3 == 1;  // filtered, and started anew by a jump
+        m.position.x() += i >= 3 ? 500.0F : 0.0F;
+        m.source = m.cooperative ? TrackSource::utm : TrackSource::adsb;
+        static_cast<void>(table.update(m, own, m.stamp));
+        const auto tracks = table.snapshot(m.stamp);
+        ASSERT_EQ(tracks.size(), 1U);
+        EXPECT_EQ(tracks[0].cooperative, m.cooperative) << i;
+        EXPECT_EQ(tracks[0].source, m.source) << i;
+    }
+    EXPECT_EQ(table.diagnostics().jumps, 1U);
+}
+
 TEST_F(TrackTables, WithoutVelocityTheFirstSightingStandsWithALargeDoubt)
 {
     TrackMeasurement m = sighting(7, Vec3(10, 20, 30));
