@@ -50,6 +50,7 @@ struct Pilot::Tick {
     world::Way way;
     Guidance out;
     bool wide_clear = false;
+    bool held = false;     ///< on its way back at a bound of the airspace
     bool ran_out = false;  ///< of work, planning or altogether
 };
 

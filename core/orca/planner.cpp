@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/work_units.hpp"
 #include "core/path/follower.hpp"
 #include "core/world/conflict.hpp"
 
@@ -19,6 +20,10 @@ constexpr float kLeastSpeed = 0.05F;    ///< [m/s] of a leg
 constexpr float kNearEnd = 1.0F;        ///< [1/s] the last metres of a reference are flown at so much of what is left
 constexpr float kFlattest = kMostStretch * 0.99F;
 constexpr float kTallest = kLeastStretch * 1.01F;
+
+/// Units of what the filter does not count itself: settings and reference; a track or barrel looked at.
+constexpr std::uint32_t kPlanUnits = 40;
+constexpr std::uint32_t kThreatUnits = 3;
 
 /// The upright cylinder about the own box, no flatter or taller than half-spaces can be made for.
 struct Cylinder {
@@ -207,6 +212,10 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     if (!s.reference.valid) {
         return world::PlanStatus::bad_input;
     }
+    if (!budget.spend(kPlanUnits +
+                      kThreatUnits * static_cast<std::uint32_t>(s.tracks.size() + s.airspace.barrels.size()))) {
+        return world::PlanStatus::budget_spent;
+    }
     take_command(s);
     const Seconds since = has_planned_ ? s.now - last_plan_ : kUsualTick;
     has_planned_ = true;
@@ -233,6 +242,9 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     add_barrels(s, input.own.position, kept, ahead, bounds);
     input.bounds = {bounds.data(), bounds.size()};
     decision_ = filter_.decide(input, budget);
+    const Seconds step = std::max(kPathStep, settings.pair.horizon / static_cast<float>(kMaxPathPoints - 2));
+    const auto steps = static_cast<std::uint32_t>(settings.pair.horizon / step) + 1;
+    static_cast<void>(budget.spend(steps * units::kCommandStep));
     if ((decision_.status & kWorkLimit) != 0 || budget.exhausted()) {
         return world::PlanStatus::budget_spent;
     }
@@ -248,7 +260,6 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     out.command = decision_.command;
     out.side = Vec3::Zero();
     out.cost = 0.0F;
-    const Seconds step = std::max(kPathStep, settings.pair.horizon / static_cast<float>(kMaxPathPoints - 2));
     path::predict_velocity_command(s.own, out.command, settings.pair.horizon, step, s.limits, out.path);
     return world::PlanStatus::found;
 }
