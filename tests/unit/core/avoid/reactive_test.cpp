@@ -56,7 +56,7 @@ TEST(ReactiveMethods, TheNextIsAskedWhereTheyHaveNoAnswer)
 {
     for (const Reactive reactive : {Reactive::first, Reactive::alone}) {
         Flight f;
-        head_on(f, 20.0F);
+        head_on(f);
         FakeMethod planning = always(kLeft);
         FakeReactive deciding{{[](const Situation&, WorkBudget&, Manoeuvre&) { return PlanStatus::none_available; }}};
         Supervisor supervisor(with(reactive), planning, deciding);

@@ -101,8 +101,9 @@ TEST(Rejoining, BelowTheFloorItGoesNoDeeper)
     FakeMethod method = never();
     Supervisor supervisor(quick(), method);
     const Guidance g = f.update(supervisor, true);
-    EXPECT_EQ(g.state, State::rejoining);
+    EXPECT_FALSE(g.wants_control) << "above its leg, as near as our command may bring it";
     EXPECT_GE(g.velocity.z(), 0.0F);
+    EXPECT_GT(g.velocity.x(), 1.0F);
 }
 
 TEST(Rejoining, CeilingAndKeepInAreKept)

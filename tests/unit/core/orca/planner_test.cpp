@@ -96,7 +96,7 @@ TEST(OrcaPlanner, BoundsOfTheAirspaceAreKept)
     Scene scene = eastward();
     scene.leg(Vec3(0, 0, 30), Vec3(30, 0, 0), 5.0F);
     scene.own.velocity = Vec3(0, 0, -1);
-    scene.own.position.z() = 6.0F;
+    scene.own.position = Vec3(24, 0, 6);
     scene.airspace.has_floor = true;
     scene.airspace.floor = 4.5F;  // half a metre below the box
     EXPECT_GE(found(scene).command.z(), -0.51F);
@@ -189,9 +189,12 @@ TEST(OrcaPlanner, BlockedIsNoAnswer)
         world::Manoeuvre out;
         PlanStatus status = PlanStatus::found;
         Scene now = scene;
+        world::Commanded sent;
         for (int i = 0; i < 400 && status == PlanStatus::found; ++i) {
             status = plan(planner, now, out);
             ASSERT_LT(out.command.x(), 0.1F);
+            sent = {out.command, now.now};
+            now.commanded = &sent;
             now.now = now.now + 0.02F;
             now.own.stamp = now.now;
         }
