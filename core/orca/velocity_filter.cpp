@@ -29,11 +29,18 @@ NeighbourSettings neighbour_settings(const FilterSettings& s) noexcept
     return out;
 }
 
-/// What check() does not look at.
+bool is_valid(const BiasSettings& s) noexcept
+{
+    return is_positive(s.near) && is_not_negative(s.sideways) && is_not_negative(s.vertical) &&
+           is_not_negative(s.stalled_below) && is_not_negative(s.stall) && is_positive(s.blocked);
+}
+
+/// What check() does not look at, or lets studies choose.
 bool has_good_numbers(const FilterSettings& s) noexcept
 {
-    return is_valid(s.obstacles) && is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F &&
-           s.cover <= 2.0F && is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
+    return is_valid(s.obstacles) && is_valid(s.bias) && is_positive(s.pair.conflict_ratio) &&
+           is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= 2.0F &&
+           is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
            is_not_negative(s.tick) && is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) &&
            is_not_negative(s.loop.lag) && s.smoothing >= 1 && s.smoothing <= CommandFilter::kMost;
 }
@@ -184,7 +191,8 @@ void VelocityFilter::add_neighbours(Tick& tick, WorkBudget& budget) noexcept
             tick.out.nearest = share;
             tick.out.nearest_id = other.id;
         }
-        if (other.position.squaredNorm() > 0.0F) {
+        constexpr float kCoincident2 = 1e-12F;  // [m2], below which there is no side to pass on
+        if (other.position.squaredNorm() > kCoincident2) {
             tick.seen.unchecked_push_back({other.id, other.position, side(other.position)});
         }
     }
@@ -234,6 +242,10 @@ void VelocityFilter::choose(Tick& tick, WorkBudget& budget) noexcept
     const Solution solution =
         solve({tick.until(tick.end), tick.limits.balls, preferred, tick.limits.reference}, scratch_.view(), budget);
     tick.out.status |= solution.status;
+    if ((solution.status & kBadInput) != 0) {
+        brake(tick);
+        return;
+    }
     tick.out.level = solution.level;
     tick.out.broken = solution.broken;
     for (std::size_t i = 0; i < solution.actives; ++i) {
@@ -251,11 +263,12 @@ void VelocityFilter::choose(Tick& tick, WorkBudget& budget) noexcept
     }
 }
 
-/// All the braking that one period allows.
+/// All the braking that one period allows, from what was sent last: the mean of solutions is not the last of them.
 void VelocityFilter::brake(Tick& tick) noexcept
 {
     const Vec3& flown = tick.input.own.velocity;
-    const Vec3 last = has_solution_ ? last_solution_ : is_finite(flown) ? flown : Vec3(Vec3::Zero());
+    const Vec3 start = is_finite(flown) ? flown : Vec3(Vec3::Zero());
+    const Vec3 last = !has_solution_ ? start : issued_.empty() ? last_solution_ : issued_.newest().velocity;
     const MotionLimits& limits = settings_.limits;
     const float speed = last.norm();
     const float most = limits.acceleration * limits.period;

@@ -2,16 +2,13 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <deque>
-#include <limits>
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/orca/velocity_filter.hpp"
-#include "tests/property/core/geometry/convex_oracle.hpp"
+#include "tests/property/core/orca/closed_loop_scene.hpp"
 
 // Vehicles that each fly by a VelocityFilter of their own, closed over a plant in double precision with delays, and a
 // judge that shares nothing with the filter: distances of centres across and in height, and of obstacles by Wolfe's
@@ -19,113 +16,15 @@
 
 namespace jink::orca::closed_loop {
 
-using Vec3d = Eigen::Vector3d;
-
-/// How the world answers. Times in [s].
-struct Plant {
-    double period = 0.025;
-    double sense = 0.0;  ///< everybody's states are told so late
-    double act = 0.0;    ///< commands begin to act so late
-    double lag = 0.0;    ///< of the velocity loop, first order
-    double noise = 0.0;  ///< of what is told of velocities, standard deviation [m/s]
-    std::uint64_t seed = 1;
-};
-
-struct Body {
-    Vec3d centre;
-    Vec3d half;            ///< box: half extents; capsule along `half`: to its end
-    double radius = -1.0;  ///< of a capsule; below 0: a box
-    std::vector<Vec3> hull{};
-
-    [[nodiscard]] geometry::Shape shape() const
-    {
-        if (!hull.empty()) {
-            return geometry::make_hull(hull, centre.cast<float>());
-        }
-        const Vec3d a = centre - half;
-        const Vec3d b = centre + half;
-        return radius < 0.0 ? geometry::make_box(centre.cast<float>(), half.cast<float>())
-                            : geometry::make_capsule(a.cast<float>(), b.cast<float>(), float(radius));
-    }
-    /// From `point` to the nearest point, heights times `stretch`; 0 within.
-    [[nodiscard]] double distance(const Vec3d& point, double stretch) const
-    {
-        const Vec3d scale(1.0, 1.0, stretch);
-        if (hull.empty() && radius < 0.0) {
-            return ((point - centre).cwiseAbs() - half).cwiseMax(0.0).cwiseProduct(scale).norm();
-        }
-        const auto support = [&](const Vec3d& direction) -> Vec3d {
-            Vec3d best = Vec3d::Zero();
-            if (!hull.empty()) {
-                double most = -1e300;
-                for (const Vec3& vertex : hull) {
-                    const Vec3d w = (centre + vertex.cast<double>() - point).cwiseProduct(scale);
-                    if (w.dot(direction) > most) {
-                        most = w.dot(direction);
-                        best = w;
-                    }
-                }
-                return best;
-            }
-            const Vec3d pulled = direction.cwiseProduct(scale);
-            best = centre - point + (half.dot(pulled) > 0.0 ? half : Vec3d(-half));
-            const double length = pulled.norm();
-            if (length > 0.0) {
-                best += radius * pulled / length;
-            }
-            return best.cwiseProduct(scale);
-        };
-        return geometry::oracle::distance_from_origin(support, 1e-6).upper;
-    }
-};
-
-struct Agent {
-    Vec3d start;
-    Vec3d goal;
-    double wait = 0.0;  ///< [s] before it sets out
-};
-
-/// What happened.
-struct Outcome {
-    double time = -1.0;         ///< [s] until all were at their goals; -1: never
-    double least = 1e9;         ///< distance of two centres [m]
-    double least_across = 1e9;  ///< the same across [m]
-    double ellipsoid = 1e9;     ///< least of sqrt((across / E_xy)^2 + (height / E_z)^2)
-    double cylinder = 1e9;      ///< least of max(across / E_xy, height / E_z)
-    double obstacle = 1e9;      ///< least distance to one, stretched, over what is to be kept
-    double climb = 0.0;         ///< fastest vertical velocity [m/s]
-    double command_rate = 0.0;  ///< rms of the commands' rate of change [m/s2]
-    std::uint64_t solves = 0;
-    std::uint64_t warning = 0, conflict = 0, obstacle_relaxed = 0, other = 0;  ///< relaxations
-    std::uint64_t outside = 0;  ///< commands that were not finite or faster than allowed
-    std::uint64_t turns = 0;    ///< times a command's rate of change turned round
-    bool blocked = false;
-    std::vector<double> waits;  ///< [s] longest that each did not get nearer to its goal
-};
-
-struct Scene {
-    std::vector<Agent> agents;
-    std::vector<Body> bodies{};
-    FilterSettings settings{};
-    Plant plant{};
-    double cruise = 0.6;      ///< [m/s]
-    double near_goal = 0.15;  ///< [m]
-    double until = 60.0;      ///< [s]
-    double e_xy = 0.7;        ///< what is judged: conflict regions [m]
-    double e_z = 0.45;
-    bool knows_delay = true;  ///< own commands on their way, and the others' velocities, are reckoned with
-    bool there_and_back = false;
-};
-
 class World {
 public:
-    explicit World(const Scene& scene) : scene_(scene), random_(scene.plant.seed)
+    explicit World(const Scene& scene) : scene_(scene), random_(scene.plant.seed), dice_(scene.plant.seed + 1000)
     {
         FilterSettings settings = scene.settings;
         settings.limits.period = float(scene.plant.period);
         settings.own_stale = float(scene.plant.sense) + 0.2F;
         settings.loop =
-            scene.knows_delay ? VelocityLoop{float(scene.plant.act), float(scene.plant.lag)} : VelocityLoop{};
+            scene.knows_delay ? VelocityLoop{float(scene.plant.act), float(scene.plant.known_lag())} : VelocityLoop{};
         filters_.resize(scene.agents.size());
         for (std::size_t i = 0; i < filters_.size(); ++i) {
             settings.own_id = static_cast<std::uint32_t>(i + 1);
@@ -167,7 +66,9 @@ private:
         Vec3d goal;
         bool returns = false;
         std::deque<State> past;      ///< newest first, one a period
-        std::deque<Vec3d> commands;  ///< newest first
+        std::deque<Vec3d> commands;  ///< newest first, one a period, issued from the first tick on
+        Vec3d rate = Vec3d::Zero();  ///< of the velocity, where its loop is of second order
+        std::uint64_t issued = 0;
         Vec3d change = Vec3d::Zero();
         double best_way = 1e9;
         double best_at = 0.0;
@@ -208,6 +109,39 @@ private:
         return way.norm() > scene_.cruise ? Vec3d(way * (scene_.cruise / way.norm())) : way;
     }
 
+    /// What the others make of vehicle `j`, all told `age` late.
+    [[nodiscard]] Predicted seen_of(std::size_t j, double age)
+    {
+        const State seen = told(vehicles_[j]);
+        const double ahead = scene_.knows_delay ? age + scene_.plant.act : 0.0;
+        if (!scene_.knows_delay || scene_.told == Told::velocity) {
+            return {(seen.at + ahead * seen.velocity).cast<float>(), seen.velocity.cast<float>(), false};
+        }
+        Broadcast heard;
+        heard.state.stamp = stamp(now_ - age);
+        heard.state.position = seen.at.cast<float>();
+        heard.state.velocity = seen.velocity.cast<float>();
+        heard.loop = filters_[j].settings().loop;
+        // Those that were on their way when the state was told; each stands for as many as have to share its place.
+        const Vehicle& v = vehicles_[j];
+        const auto tick = std::llround(now_ / scene_.plant.period);
+        const auto told_at = tick - std::llround(age / scene_.plant.period);
+        const auto on_their_way = std::llround(scene_.plant.act / scene_.plant.period) + 1;
+        const auto share = std::max<long long>(1, (on_their_way + 7) / 8);
+        const auto issued = static_cast<long long>(v.issued);
+        for (auto k = told_at - share * 7; k <= told_at; k += share) {
+            const auto back = issued - 1 - k;
+            if (k >= 0 && back >= 0 && back < static_cast<long long>(v.commands.size())) {
+                const Vec3d& command = v.commands[static_cast<std::size_t>(back)];
+                static_cast<void>(
+                    heard.commands.try_push_back({stamp(double(k) * scene_.plant.period), command.cast<float>()}));
+            }
+        }
+        const PredictedNeighbour there =
+            predict_neighbour(heard, stamp(now_) + float(scene_.plant.act), AgeRules{}, 1e6F);
+        return {there.position, there.velocity, false};
+    }
+
     void decide(std::size_t i)
     {
         Vehicle& v = vehicles_[i];
@@ -229,11 +163,10 @@ private:
             if (j == i) {
                 continue;
             }
-            const State seen = told(vehicles_[j]);
-            const double ahead = scene_.knows_delay ? age + scene_.plant.act : 0.0;
+            const Predicted seen = seen_of(j, age);
             Neighbour n;
-            n.position = (seen.at + ahead * seen.velocity).cast<float>() - input.own.position;
-            n.velocity = seen.velocity.cast<float>();
+            n.position = seen.position - input.own.position;
+            n.velocity = seen.velocity;
             n.half_width = filter.settings().half_width;
             n.half_height = filter.settings().half_height;
             n.max_speed = filter.settings().limits.max_speed;
@@ -247,6 +180,9 @@ private:
         const Decision decision = filter.decide(input, budget);
         static_cast<void>(filter.issued(now, decision.command));
         note(v, decision, filter.settings().limits);
+        if (scene_.watch) {
+            scene_.watch({now_, i, input, decision, filter});
+        }
     }
 
     void note(Vehicle& v, const Decision& decision, const MotionLimits& limits)
@@ -266,6 +202,7 @@ private:
         out_.turns += change.dot(v.change) < 0.0 && change.norm() > 0.05 ? 1U : 0U;
         v.change = change;
         v.commands.push_front(command);
+        ++v.issued;
         if (v.commands.size() > 256) {
             v.commands.pop_back();
         }
@@ -279,14 +216,30 @@ private:
         for (int part = 0; part < kParts; ++part) {
             for (Vehicle& v : vehicles_) {
                 const Vec3d command = act < v.commands.size() ? v.commands[act] : Vec3d(Vec3d::Zero());
-                const double share = scene_.plant.lag > 0.0 ? std::exp(-h / scene_.plant.lag) : 0.0;
-                const Vec3d off = v.velocity - command;
-                v.at += command * h + off * (scene_.plant.lag * (1.0 - share));
-                v.velocity = command + share * off;
+                follow(v, command, h);
                 out_.climb = std::max(out_.climb, std::abs(v.velocity.z()));
             }
             measure();
         }
+    }
+
+    void follow(Vehicle& v, const Vec3d& command, double h) const
+    {
+        const Plant& plant = scene_.plant;
+        if (plant.natural > 0.0) {
+            constexpr int kSteps = 4;
+            for (int step = 0; step < kSteps; ++step) {
+                v.rate += (h / kSteps) * (plant.natural * plant.natural * (command - v.velocity) -
+                                          2.0 * plant.damping * plant.natural * v.rate);
+                v.velocity += (h / kSteps) * v.rate;
+                v.at += (h / kSteps) * v.velocity;
+            }
+            return;
+        }
+        const double share = plant.lag > 0.0 ? std::exp(-h / plant.lag) : 0.0;
+        const Vec3d off = v.velocity - command;
+        v.at += command * h + off * (plant.lag * (1.0 - share));
+        v.velocity = command + share * off;
     }
 
     void measure()
@@ -312,13 +265,17 @@ private:
         for (std::size_t i = 0; i < vehicles_.size(); ++i) {
             Vehicle& v = vehicles_[i];
             for (const Body& body : scene_.bodies) {
-                out_.obstacle = std::min(out_.obstacle, body.distance(v.at, stretch) / double(kept.horizontal));
+                const Vec3d from = (v.at - body.centre).cwiseProduct(Vec3d(1.0, 1.0, stretch));
+                if ((from.norm() - body.reach(stretch)) / double(kept.horizontal) < out_.obstacle) {
+                    out_.obstacle = std::min(out_.obstacle, body.distance(v.at, stretch) / double(kept.horizontal));
+                }
             }
-            const double way = (v.goal - v.at).norm();
+            double way = (v.goal - v.at).norm();
             if (way < scene_.near_goal && scene_.there_and_back && !v.returns) {
                 v.returns = true;
                 v.goal = scene_.agents[i].start;
                 v.best_way = 1e9;
+                way = (v.goal - v.at).norm();
             }
             if (way < v.best_way - 0.01 || way < scene_.near_goal || now_ < scene_.agents[i].wait) {
                 v.best_way = way;
@@ -327,13 +284,28 @@ private:
             out_.waits[i] = std::max(out_.waits[i], now_ - v.best_at);
             all = all && way < scene_.near_goal && (v.returns || !scene_.there_and_back);
         }
-        if (all) {
+        if (all && scene_.swaps) {
+            ++out_.missions;
+            swap();
+        } else if (all) {
             out_.time = now_;
+        }
+    }
+
+    /// Each start becomes the goal of another vehicle than now: Sattolo's shuffle of the goals.
+    void swap()
+    {
+        for (std::size_t i = vehicles_.size() - 1; i > 0; --i) {
+            std::swap(vehicles_[i].goal, vehicles_[dice_.below(i)].goal);
+        }
+        for (Vehicle& v : vehicles_) {
+            v.best_way = 1e9;
         }
     }
 
     const Scene& scene_;
     Random random_;
+    Random dice_;  ///< for swaps
     std::vector<VelocityFilter> filters_;
     std::vector<Vehicle> vehicles_;
     std::vector<world::Obstacle> obstacles_;
@@ -342,36 +314,5 @@ private:
     double rate2_ = 0.0;
     Outcome out_;
 };
-
-/// Settings of S1 to S4 (Alejo 7.3): pair separations 1.0 / 0.64 m and 0.7 / 0.45 m, obstacles 1.0 / 0.6 m.
-inline FilterSettings testbed_settings()
-{
-    FilterSettings s;
-    s.limits.max_speed = 1.5F;
-    s.limits.acceleration = 2.0F;
-    s.half_width = 0.5F;
-    s.half_height = 0.32F;
-    s.pair.horizon = 5.0F;
-    s.pair.conflict_ratio = 0.7F;
-    s.pair.recovery_time = 1.0F;
-    s.pair.ramp_speed = 0.3F;
-    s.delay = 0.1F;
-    s.obstacles.horizontal = 1.0F;
-    s.obstacles.vertical = 0.6F;
-    return s;
-}
-
-/// Vehicles on a circle that change places with those across.
-inline std::vector<Agent> on_a_circle(std::size_t count, double radius, double height)
-{
-    std::vector<Agent> agents;
-    for (std::size_t i = 0; i < count; ++i) {
-        const double angle = 2.0 * 3.14159265358979 * double(i) / double(count);
-        const Vec3d out(radius * std::cos(angle), radius * std::sin(angle), 0.0);
-        const Vec3d middle(0.0, 0.0, height);
-        agents.push_back({middle + out, middle - out});
-    }
-    return agents;
-}
 
 }  // namespace jink::orca::closed_loop
