@@ -244,8 +244,10 @@ private:
     std::uint32_t applied_generation_ = 0;
     geometric::Planner planner_;
     reach::Planner reach_;
-    avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
+    // Before the supervisor, whose settings depend on them.
     bool leaves_reach_out_ = false;
+    ReachPicture* reach_picture_ = nullptr;
+    avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
     bool told_left_out_ = false;
     bool told_unsuited_ = false;
     Takeover takeover_;
@@ -298,7 +300,6 @@ private:
     Diagnostics diagnostics_;
     hal::LastWords* last_words_ = nullptr;
     Clouds* clouds_ = nullptr;
-    ReachPicture* reach_picture_ = nullptr;
     StaticVector<Notice, kMostNotices> notices_;
     bool passive_ = false;
     ParamService param_service_;
