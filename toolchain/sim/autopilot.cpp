@@ -21,7 +21,7 @@ constexpr double kStopped = 0.3;  // [m/s]
 }  // namespace
 
 Autopilot::Autopilot(World& world)
-    : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world),
+    : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world), writer_(scenario_.system),
       told_(scenario_.threats.size(), -1)
 {
     for (const auto& [name, value] : scenario_.parameters) {
@@ -136,6 +136,13 @@ void Autopilot::step()
     watch_setpoints();
     command_ = wanted_velocity();
     world_.step(command_);
+}
+
+void Autopilot::relay(std::span<const std::byte> frames)
+{
+    if (!rebooting()) {
+        writer_.bytes().insert(writer_.bytes().end(), frames.begin(), frames.end());
+    }
 }
 
 std::vector<std::byte> Autopilot::take_output() { return std::exchange(writer_.bytes(), {}); }

@@ -55,6 +55,11 @@ public:
     void receive(std::span<const std::byte> bytes);
     /// One kStep: telemetry that is due, the world moved on under the present mode's command.
     void step();
+    /// Frames of others that come in over the radio: routed on to the co-processor as they are.
+    void relay(std::span<const std::byte> frames);
+    /// Where it is, as it tells everybody.
+    [[nodiscard]] link::mavlink::GlobalPositionInt global_position() const;
+    [[nodiscard]] link::mavlink::Heartbeat heartbeat() const;
     /// Everything to be sent since the last call.
     [[nodiscard]] std::vector<std::byte> take_output();
 
@@ -111,6 +116,7 @@ private:
     [[nodiscard]] std::uint32_t boot_ms() const noexcept { return static_cast<std::uint32_t>(boot_us() / 1000); }
     [[nodiscard]] bool due(Micros period, Micros phase = 0) const noexcept { return world_.now() % period == phase; }
     [[nodiscard]] bool rebooting() const noexcept;
+    [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
     [[nodiscard]] std::uint16_t home_items() const noexcept;
 
     World& world_;

@@ -34,12 +34,12 @@ constexpr Micros kStreamGap = kSecond / 2;
 /// Set-points that were under way when somebody chose a mode are forgiven [us].
 constexpr Micros kGrace = kSecond / 5;
 
-bool for_us(std::uint8_t system, std::uint8_t component) noexcept
-{
-    return (system == kAutopilot.system || system == 0) && (component == kAutopilot.component || component == 0);
-}
-
 }  // namespace
+
+bool Autopilot::for_us(std::uint8_t system, std::uint8_t component) const noexcept
+{
+    return (system == scenario_.system || system == 0) && (component == kAutopilot.component || component == 0);
+}
 
 void Autopilot::receive(std::span<const std::byte> bytes)
 {

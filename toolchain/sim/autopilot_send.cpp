@@ -55,7 +55,7 @@ std::uint16_t centidegrees(double radians) noexcept
 
 }  // namespace
 
-void Autopilot::send_heartbeat()
+Heartbeat Autopilot::heartbeat() const
 {
     Heartbeat heartbeat;
     heartbeat.custom_mode = custom_mode(scenario_.stack, mode_);
@@ -63,8 +63,10 @@ void Autopilot::send_heartbeat()
     heartbeat.autopilot = scenario_.stack == Stack::ardupilot ? kArdupilot : kPx4;
     heartbeat.base_mode = kArmedAndCustom;
     heartbeat.system_status = kStateActive;
-    writer_.write(heartbeat);
+    return heartbeat;
 }
+
+void Autopilot::send_heartbeat() { writer_.write(heartbeat()); }
 
 void Autopilot::send_own_state()
 {
@@ -84,11 +86,24 @@ void Autopilot::send_own_state()
         writer_.write(attitude);
     }
     if (due(200'000)) {
-        const GlobalPosition global = to_global(p, scenario_.stack);
-        writer_.write(GlobalPositionInt{boot_ms(), global.lat, global.lon, global.alt,
-                                        static_cast<std::int32_t>(std::lround(p.z() * 1e3)), centi(v.y()), centi(v.x()),
-                                        centi(-v.z()), centidegrees(compass(own.yaw))});
+        writer_.write(global_position());
     }
+}
+
+GlobalPositionInt Autopilot::global_position() const
+{
+    const Truth& own = world_.own();
+    const Vec& v = own.velocity;
+    const GlobalPosition global = to_global(own.position, scenario_.stack);
+    return {boot_ms(),
+            global.lat,
+            global.lon,
+            global.alt,
+            static_cast<std::int32_t>(std::lround(own.position.z() * 1e3)),
+            centi(v.y()),
+            centi(v.x()),
+            centi(-v.z()),
+            centidegrees(compass(own.yaw))};
 }
 
 bool Autopilot::send_message(int id)
@@ -170,7 +185,7 @@ void Autopilot::send_parameters()
         }
         ParamSet set;
         set.param_value = wanted.value;
-        set.target_system = kAutopilot.system;
+        set.target_system = scenario_.system;
         set.target_component = kJink;
         set.param_type = kReal32;
         static_cast<void>(set_text(set.param_id, wanted.name));

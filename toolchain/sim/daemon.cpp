@@ -9,13 +9,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include <pthread.h>
-#include <sched.h>
-
 #include "toolchain/sim/board_flight.hpp"
 #include "toolchain/sim/child.hpp"
 #include "toolchain/sim/hold_up.hpp"
 #include "toolchain/sim/plant.hpp"
+#include "toolchain/sim/running_daemon.hpp"
 
 namespace jink::sim {
 namespace {
@@ -28,28 +26,6 @@ constexpr auto kLate = microseconds(20'000);
 /// Beyond this a flight in which each tenth of a second counts may end otherwise than on a machine that runs evenly.
 constexpr double kHeldUp = 0.015;  // [s]
 constexpr unsigned kAttempts = 4;
-/// SCHED_FIFO priorities of the simulator's threads and, above them, of the program: its turn comes first, as on its
-/// own machine.
-constexpr int kOwnPriority = 10;
-constexpr int kDaemonPriority = 20;
-/// Generous: what starts and stops at all does so long before, on any machine.
-constexpr auto kStartTime = std::chrono::seconds(60);
-constexpr auto kStopTime = std::chrono::seconds(30);
-constexpr auto kNap = std::chrono::milliseconds(2);
-
-/// Until its first bytes: it runs and has opened the line.
-bool wait_for_life(Child& child, PseudoTerminal& line, Plant& plant)
-{
-    for (const auto until = Clock::now() + kStartTime; Clock::now() < until && child.running();) {
-        const auto bytes = line.read();
-        if (!bytes.empty()) {
-            plant.deliver(bytes);
-            return true;
-        }
-        std::this_thread::sleep_for(kNap);
-    }
-    return false;
-}
 
 /// Flies in step with the wall clock.
 void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes)
@@ -76,27 +52,6 @@ void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes
             notes.faults.push_back("the program ended in flight: " + child.ending());
             return;
         }
-    }
-}
-
-void stop(Child& child, PseudoTerminal& line, Plant& plant, Record& notes)
-{
-    child.ask_to_stop();
-    for (const auto until = Clock::now() + kStopTime; Clock::now() < until && child.running();) {
-        plant.deliver(line.read());
-        std::this_thread::sleep_for(kNap);
-    }
-    plant.deliver(line.read());
-    if (child.running()) {
-        notes.faults.emplace_back("jinkd does not stop on SIGTERM");
-        return;
-    }
-    if (!child.ending().empty()) {
-        notes.faults.push_back("jinkd: " + child.ending());
-    }
-    constexpr int kCritical = 5;
-    if (plant.autopilot().heard().state != kCritical) {
-        notes.faults.emplace_back("jinkd stopped without saying so");
     }
 }
 
@@ -141,15 +96,6 @@ std::optional<Inside> read_summary(const std::filesystem::path& file)
     return inside;
 }
 
-/// Real-time priority for this thread, so that other work on the machine does not delay it; false where that is not
-/// permitted.
-bool go_first()
-{
-    sched_param param{};
-    param.sched_priority = kOwnPriority;
-    return ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &param) == 0;
-}
-
 std::string transport_of(const Computer& computer) { return computer.emulated() ? computer.machine : "daemon"; }
 
 std::vector<std::string> command_of(const Computer& computer, const std::string& line,
@@ -191,7 +137,7 @@ Record fly_daemon_once(const Scenario& scenario, const Computer& computer, const
             fly_on_time(plant, line, child, notes);
             record = plant.record();
             if (child.running()) {
-                stop(child, line, plant, notes);
+                stop_daemon(child, line, plant, notes.faults);
             }
         } else {
             record = plant.record();

@@ -21,15 +21,19 @@ inline constexpr Sender kAdsbReceiver{1, 156};
 inline constexpr Sender kRangefinder{1, 158};
 inline constexpr Sender kGroundStation{255, 190};
 
-/// Encodes messages one behind the other, each sender with its own running number.
+/// Encodes messages one behind the other, each sender with its own running number. Those of the vehicle, which stand
+/// above as system 1, go out as the system that it is.
 class FrameWriter {
 public:
+    explicit FrameWriter(std::uint8_t system = kAutopilot.system) : system_(system) {}
+
     template <link::mavlink::Message M>
     void write(const M& message, Sender sender = kAutopilot)
     {
         std::array<std::byte, link::mavlink::kMaxFrame> frame{};
         const std::uint8_t sequence = sequences_[{sender.system, sender.component}]++;
-        const std::size_t n = link::mavlink::encode(message, {sender.system, sender.component, sequence}, frame);
+        const std::uint8_t system = sender.system == kAutopilot.system ? system_ : sender.system;
+        const std::size_t n = link::mavlink::encode(message, {system, sender.component, sequence}, frame);
         bytes_.insert(bytes_.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n));
     }
 
@@ -38,6 +42,7 @@ public:
     [[nodiscard]] std::vector<std::byte>& bytes() noexcept { return bytes_; }
 
 private:
+    std::uint8_t system_;
     std::map<std::pair<std::uint8_t, std::uint8_t>, std::uint8_t> sequences_;
     std::vector<std::byte> bytes_;
 };

@@ -20,6 +20,7 @@
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/report.hpp"
 #include "toolchain/sim/scenario_file.hpp"
+#include "toolchain/sim/swarm_command.hpp"
 
 namespace {
 
@@ -360,6 +361,8 @@ int main(int argc, char** argv)
     }
     EncountersOptions encounters;
     const CLI::App& encounters_command = add_encounters(cli, encounters, true);
+    SwarmOptions swarm;
+    const CLI::App& swarm_command = add_swarm(cli, swarm);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
@@ -368,6 +371,9 @@ int main(int argc, char** argv)
     try {
         if (encounters_command.parsed()) {
             return run_encounters(encounters);
+        }
+        if (swarm_command.parsed()) {
+            return run_swarm(swarm);
         }
         if (fly_command->parsed()) {
             const bool plain = options.daemon.empty() && options.image.empty() && options.link == "serial";
@@ -382,6 +388,6 @@ int main(int argc, char** argv)
         return demo_command->parsed() ? demo(options) : crowd_command->parsed() ? crowd(options) : random(options);
     } catch (const std::exception& e) {
         std::cerr << "jink-sim: " << e.what() << "\n";
-        return encounters_command.parsed() ? kRefused : EXIT_FAILURE;
+        return encounters_command.parsed() || swarm_command.parsed() ? kRefused : EXIT_FAILURE;
     }
 }

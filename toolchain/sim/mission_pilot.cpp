@@ -8,8 +8,6 @@ namespace {
 
 /// The leg is flown towards the point this far ahead [m].
 constexpr double kCarrot = 6.0;
-/// A waypoint counts as reached within this [m].
-constexpr double kReached = 2.0;
 /// Approach of the last waypoint [1/s].
 constexpr double kHoverGain = 0.8;
 
@@ -29,7 +27,7 @@ Vec MissionPilot::abeam(const Vec& position, double ahead) const
 
 Vec MissionPilot::command(const Vec& position)
 {
-    if (target_ + 1 < scenario_.mission.size() && (position - scenario_.mission[target_]).norm() < kReached) {
+    if (target_ + 1 < scenario_.mission.size() && (position - scenario_.mission[target_]).norm() < scenario_.reached) {
         ++target_;
     }
     const bool last = target_ + 1 == scenario_.mission.size();

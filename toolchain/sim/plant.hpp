@@ -22,6 +22,8 @@ public:
     void deliver(std::span<const std::byte> bytes);
     /// One kStep of time.
     void step();
+    /// Frames of other systems, as the radio brings them.
+    void relay(std::span<const std::byte> frames) { autopilot_.relay(frames); }
     /// The co-processor has taken a manoeuvre of this side just now.
     void note_choice(const Vec& side);
     [[nodiscard]] std::vector<std::byte> collect();

@@ -97,6 +97,7 @@ struct Scenario {
     std::string name;
     std::string title;
     std::uint64_t seed = 1;
+    std::uint8_t system = 1;  ///< of the vehicle on the link; not in files: swarm.hpp
     Stack stack = Stack::ardupilot;
     PlannerKind planner = PlannerKind::product;
     double duration = 20.0;        ///< at most [s]
@@ -109,6 +110,7 @@ struct Scenario {
     Vec start_position = Vec::Zero();
     Vec start_velocity = Vec::Zero();
     std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
+    double reached = 2.0;      ///< a waypoint is, within this; not in files [m]
     std::vector<Threat> threats;
     std::vector<ClosedArea> areas;
     TrafficSensor traffic;

@@ -2,7 +2,9 @@
 // Which method the co-processor plans with: by parameter, and never with reach sets that are damaged or not for its
 // vehicle.
 #include <algorithm>
+#include <cstddef>
 #include <memory>
+#include <new>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -84,6 +86,42 @@ TEST(CoprocessorMethods, InClutterReachSetsComeFirst)
     ASSERT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
     ASSERT_NE(f->coprocessor.flying(), nullptr);
     EXPECT_EQ(f->coprocessor.flying()->by, world::MethodId::reach);
+}
+
+/// Made in memory that holds something from before.
+struct OldMemory {
+    OldMemory(std::byte left, const Parameters& parameters) : storage(std::make_unique<Storage>())
+    {
+        volatile std::byte* const bytes = storage->bytes;
+        for (std::size_t i = 0; i < sizeof(Flight); ++i) {
+            bytes[i] = left;
+        }
+        flight = new (storage->bytes) Flight(parameters);
+    }
+    OldMemory(const OldMemory&) = delete;
+    OldMemory& operator=(const OldMemory&) = delete;
+    ~OldMemory() { flight->~Flight(); }
+
+    struct Storage {
+        alignas(Flight) std::byte bytes[sizeof(Flight)];
+    };
+    std::unique_ptr<Storage> storage;
+    Flight* flight = nullptr;
+};
+
+TEST(CoprocessorMethods, DoNotDependOnWhatTheMemoryHeldBefore)
+{
+    Parameters parameters;
+    ASSERT_EQ(parameters.set(Param::methods, 3.0F), ParamStatus::ok);
+    for (const int left : {0x00, 0x01, 0xA5, 0xFF}) {
+        const OldMemory old(static_cast<std::byte>(left), parameters);
+        Flight& f = *old.flight;
+        ASSERT_TRUE(f.until([](const StepReport& r) { return r.faults == 0; }, 200));
+        f.obstacles = {f.position + Vec3(0.4F, 40.0F, 0.0F)};
+        ASSERT_TRUE(f.until([](const StepReport& r) { return r.control == Control::ours; }));
+        ASSERT_NE(f.coprocessor.flying(), nullptr);
+        EXPECT_EQ(f.coprocessor.flying()->by, world::MethodId::reach) << left;
+    }
 }
 
 TEST(CoprocessorMethods, DamagedSetsAreLeftOut)

@@ -135,19 +135,20 @@ TEST_F(MavlinkNeighbours, WhoeverSaysSoIsDisarmed)
 TEST_F(MavlinkNeighbours, AgreesWithClockSync)
 {
     Random random(20261);
+    const auto below = [&](std::uint64_t n) { return static_cast<std::int64_t>(random.below(n)); };
     for (int run = 0; run < 50; ++run) {
         neighbours = std::make_unique<Neighbours>();
         ClockSync oracle;
-        std::int64_t offset = random.below(1'000'000);
+        std::int64_t offset = below(1'000'000);
         std::int64_t now = 10'000;
         std::int64_t stall = 0;
         for (int i = 0; i < 1500; ++i) {
-            now += 20 + random.below(200);
-            stall = stall > 0 ? stall - 50 : (random.below(200) == 0 ? random.below(5000) : 0);
-            if (random.below(400) == 0) {
-                offset = random.below(2) == 0 ? now - static_cast<std::int64_t>(random.below(1000)) : offset - 5000;
+            now += 20 + below(200);
+            stall = stall > 0 ? stall - 50 : (below(200) == 0 ? below(5000) : 0);
+            if (below(400) == 0) {
+                offset = below(2) == 0 ? now - below(1000) : offset - 5000;
             }
-            const std::int64_t sent = now - 10 - random.below(120) - std::max<std::int64_t>(stall, 0);
+            const std::int64_t sent = now - 10 - below(120) - std::max<std::int64_t>(stall, 0);
             const std::int64_t boot_ms = std::max<std::int64_t>(0, sent - offset);
             static_cast<void>(oracle.one_way(boot_ms * 1000, now * 1000));
             const std::int64_t theirs = std::min(oracle.to_local(boot_ms * 1000).value(), now * 1000);

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The simulator of many vehicles: its radio, its places, its measures.
+#include "toolchain/sim/swarm.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "toolchain/sim/swarm_command.hpp"
+
+namespace jink::sim {
+namespace {
+
+std::vector<std::byte> message(unsigned value) { return {static_cast<std::byte>(value), std::byte{7}}; }
+
+TEST(Radio, EverybodyElseHearsItLaterAndInOrder)
+{
+    Radio radio(3, 0.0, 200'000, 1);
+    radio.send(1, message(1), 0);
+    radio.send(1, message(2), 5'000);
+    EXPECT_TRUE(radio.take(0, 199'999).empty());
+    EXPECT_EQ(radio.take(0, 200'000), message(1));
+    EXPECT_TRUE(radio.take(0, 200'000).empty()) << "once";
+    EXPECT_EQ(radio.take(0, 300'000), message(2));
+    EXPECT_TRUE(radio.take(1, 300'000).empty()) << "not the sender";
+    const std::vector<std::byte> both = radio.take(2, 300'000);
+    ASSERT_EQ(both.size(), 4U);
+    EXPECT_EQ(both[0], std::byte{1});
+    EXPECT_EQ(both[2], std::byte{2});
+}
+
+TEST(Radio, LosesItsShareForEachReceiverByItself)
+{
+    constexpr int kMessages = 20'000;
+    Radio radio(3, 0.1, 0, 2);
+    int heard[3] = {};
+    int both = 0;
+    for (int i = 0; i < kMessages; ++i) {
+        radio.send(0, message(1), i);
+        const bool first = !radio.take(1, i).empty();
+        const bool second = !radio.take(2, i).empty();
+        heard[1] += first ? 1 : 0;
+        heard[2] += second ? 1 : 0;
+        both += first && second ? 1 : 0;
+    }
+    EXPECT_EQ(heard[0], 0);
+    // Four standard deviations.
+    EXPECT_NEAR(heard[1], 0.9 * kMessages, 170);
+    EXPECT_NEAR(heard[2], 0.9 * kMessages, 170);
+    EXPECT_NEAR(both, 0.81 * kMessages, 222) << "independent";
+    Radio deaf(2, 1.0, 0, 3);
+    deaf.send(0, message(1), 0);
+    EXPECT_TRUE(deaf.take(1, 1).empty());
+}
+
+SwarmSetup small()
+{
+    SwarmSetup setup;
+    setup.vehicles = 4;
+    setup.circle = 6.0;
+    setup.duration = 60.0;
+    return setup;
+}
+
+TEST(Swarm, ChangesPlacesAcrossTheCircle)
+{
+    SwarmSetup setup = small();
+    setup.vehicles = 5;  // an odd number: opposite is where nobody starts
+    setup.obstacles = 25;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        std::vector<Threat> obstacles;
+        for (unsigned i = 0; i < setup.vehicles; ++i) {
+            setup.back = i % 2 == 1;
+            const Scenario s = swarm_scenario(setup, seed, i);
+            EXPECT_EQ(s.system, i + 1);
+            ASSERT_EQ(s.mission.size(), setup.back ? 3U : 2U);
+            EXPECT_EQ(s.mission[0], s.start_position);
+            const Vec home(0.0, 0.0, setup.height);
+            EXPECT_NEAR((s.mission[1] - home).norm(), setup.circle, 1e-9);
+            EXPECT_NEAR((s.mission[1] + s.mission[0] - 2.0 * home).norm(), 0.0, std::sqrt(3.0) * setup.spread + 1e-9);
+            EXPECT_EQ(s.threats.size(), setup.obstacles);
+            for (std::size_t k = 0; k < s.threats.size(); ++k) {
+                const Threat& ball = s.threats[k];
+                EXPECT_GT((ball.position - s.start_position).norm(), 2.5) << "room to begin";
+                EXPECT_LE(ball.velocity.norm(), 0.6 * setup.cruise) << "slower than any vehicle";
+                EXPECT_EQ(ball.velocity.z(), 0.0);
+                if (i > 0) {
+                    EXPECT_EQ(ball.position, obstacles[k].position) << "the same for everybody";
+                    EXPECT_EQ(ball.velocity, obstacles[k].velocity);
+                }
+            }
+            obstacles = s.threats;
+        }
+    }
+}
+
+TEST(Swarm, RefusesParametersAndNumbersThatAreNone)
+{
+    SwarmSetup setup = small();
+    setup.parameters = {{"JNK_NONE", 1.0}};
+    EXPECT_THROW(static_cast<void>(swarm_parameters(setup)), std::runtime_error);
+    setup.parameters = {{"JNK_LOOKAHEAD", 1000.0}};
+    EXPECT_THROW(static_cast<void>(swarm_parameters(setup)), std::runtime_error);
+    setup.parameters = {{"JNK_LOOKAHEAD", 5.0}, {"TRK_RADIUS", 0.5}};
+    const app::Parameters parameters = swarm_parameters(setup);
+    EXPECT_EQ(parameters.get(app::Param::lookahead), 5.0F);
+    EXPECT_EQ(parameters.get(app::Param::track_radius), 0.5F) << "what is said wins";
+    EXPECT_FLOAT_EQ(parameters.get(app::Param::half_xy), 0.45F);
+    setup.vehicles = 65;
+    EXPECT_THROW(Swarm(setup, 1), std::runtime_error);
+    setup.vehicles = 1;
+    EXPECT_THROW(Swarm(setup, 1), std::runtime_error);
+}
+
+TEST(Swarm, WithoutAvoidanceTheyMeetAndItIsSeen)
+{
+    SwarmSetup setup = small();
+    setup.spread = 0.0;
+    setup.parameters = {{"JNK_MODE", 0.0}};
+    const SwarmResult result = fly_swarm(setup, 1, {});
+    EXPECT_EQ(result.collisions, 6U) << "each with each, once";
+    EXPECT_LT(result.distance, 0.01);
+    EXPECT_LT(result.margin, 0.02);
+    EXPECT_EQ(result.arrived, 4U);
+    EXPECT_EQ(result.takeovers, 0U);
+    EXPECT_FALSE(result.good());
+    EXPECT_TRUE(result.faults.empty());
+}
+
+TEST(Swarm, OfFourChangesPlacesOverAPoorRadioBitByBitTheSame)
+{
+    SwarmSetup setup = small();
+    setup.loss = 0.1;
+    setup.delay = 0.2;
+    setup.obstacles = 3;
+    for (const Stack stack : {Stack::ardupilot, Stack::px4}) {
+        setup.stack = stack;
+        const SwarmResult result = fly_swarm(setup, 3, {});
+        EXPECT_TRUE(result.good()) << to_line(result);
+        EXPECT_GE(result.margin, 1.0);
+        EXPECT_GT(result.takeovers, 0U);
+        EXPECT_EQ(to_line(fly_swarm(setup, 3, {})), to_line(result));
+        EXPECT_NE(fly_swarm(setup, 4, {}).digest, result.digest);
+    }
+}
+
+TEST(Swarm, AndBackAgain)
+{
+    SwarmSetup setup = small();
+    setup.back = true;
+    const SwarmResult result = fly_swarm(setup, 1, {});
+    EXPECT_TRUE(result.good()) << to_line(result);
+    EXPECT_GT(result.time, 4.0 * setup.circle / setup.cruise * 0.9) << "twice across";
+}
+
+TEST(Swarm, WhoHearsNobodyAvoidsNobody)
+{
+    SwarmSetup setup = small();
+    setup.spread = 0.0;
+    setup.loss = 1.0;
+    const SwarmResult result = fly_swarm(setup, 1, {});
+    EXPECT_EQ(result.takeovers, 0U);
+    EXPECT_EQ(result.collisions, 6U);
+}
+
+TEST(Swarm, TimeThatRunsOutIsAGoalMissed)
+{
+    SwarmSetup setup = small();
+    setup.duration = 5.0;
+    const SwarmResult result = fly_swarm(setup, 1, {});
+    EXPECT_EQ(result.arrived, 0U);
+    EXPECT_NEAR(result.time, 5.0, 0.01);
+    EXPECT_FALSE(result.good());
+}
+
+TEST(Swarm, SummaryNamesTheWorst)
+{
+    SwarmResult a;
+    a.seed = 1;
+    a.vehicles = a.arrived = 4;
+    a.distance = 0.9;
+    a.margin = 1.2;
+    a.time = 20.0;
+    SwarmResult b = a;
+    b.seed = 2;
+    b.margin = 0.8;
+    b.stall = 3.0;
+    SwarmResult c = a;
+    c.seed = 3;
+    c.collisions = 1;
+    c.distance = 0.4;
+    c.arrived = 3;
+    c.obstacle = 0.3;
+    c.time = 60.0;
+    const std::string text = summarise({a, b, c});
+    EXPECT_NE(text.find("3 swarms: 1 with collisions, 1 with goals missed, 1 nearer than the separations"),
+              std::string::npos);
+    EXPECT_NE(text.find("least distance 0.400 m (seed 3), least margin 0.800 (seed 2), least to an obstacle 0.300 m"),
+              std::string::npos);
+    EXPECT_NE(text.find("longest stall 3.00 s (seed 2), time median 20.00 s, most 60.00 s"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace jink::sim

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/bench.hpp"
+
+#include <ctime>
+#include <stdexcept>
+
+#include "firmware/app/reach_sets.hpp"
+#include "toolchain/sim/fan.hpp"
+
+namespace jink::sim {
+namespace {
+
+/// Of this thread: a step that is interrupted by other work of the machine is not thereby a long one.
+double cpu_microseconds()
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
+}
+
+}  // namespace
+
+Bench::Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& setup)
+    : endpoint_({.system_id = setup.system}),
+      coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, setup.parameters, setup.bus)),
+      planner_(setup.planner)
+{
+    if (setup.cloud != nullptr) {
+        clouds_ = std::make_unique<app::CloudInput>(setup.cloud);
+        picture_ = std::make_unique<app::ReachPicture>(app::reach_sets());
+        coprocessor_->use_clouds(*clouds_);
+        coprocessor_->let_reach_sets_see(*picture_);
+    }
+    hand_over_settings();
+}
+
+void Bench::step(TimePoint now)
+{
+    const std::uint32_t plans = coprocessor_->supervisor_diagnostics().plans;
+    const std::uint32_t found = coprocessor_->supervisor_diagnostics().plans_found;
+    const double began = cpu_microseconds();
+    const app::StepReport report = coprocessor_->step(now);
+    const double took = cpu_microseconds() - began;
+    chosen_.reset();
+    if (report.guidance.new_manoeuvre && coprocessor_->flying() != nullptr) {
+        chosen_ = coprocessor_->flying()->side.cast<double>();
+    }
+    if (coprocessor_->parameters().generation() != generation_) {
+        foreign_plans_ += coprocessor_->supervisor_diagnostics().plans - plans;
+        hand_over_settings();
+    }
+    steps_.note(took);
+    if (coprocessor_->supervisor_diagnostics().plans != plans) {
+        plan_steps_.note(took);
+        plan_steps_.keep(took);
+    }
+    const bool planned = coprocessor_->supervisor_diagnostics().plans != plans;
+    const bool succeeded = coprocessor_->supervisor_diagnostics().plans_found != found;
+    if ((succeeded && !found_) || (planned && fan_.empty())) {
+        fan_ = fan_of(*coprocessor_, report, first_candidate_);
+        found_ = succeeded;
+    }
+}
+
+Inside Bench::inside() const
+{
+    const auto& s = coprocessor_->supervisor_diagnostics();
+    const auto& d = coprocessor_->diagnostics();
+    const auto& t = coprocessor_->track_diagnostics();
+    const auto& l = endpoint_.diagnostics();
+    Inside in;
+    in.steps = steps_.durations();
+    in.plan_steps = plan_steps_.durations();
+    in.conflicts = s.conflicts;
+    in.plans = s.plans;
+    in.plans_found = s.plans_found;
+    in.answers_rejected = s.answers_rejected;
+    in.manoeuvres = s.manoeuvres;
+    in.replans = s.replans;
+    in.flips = s.flips;
+    in.brakes = s.brakes;
+    in.escapes = s.escapes;
+    in.holds = s.holds;
+    in.rejoined = s.rejoined;
+    in.control_lost = s.control_lost;
+    in.budget_spent = s.budget_spent;
+    in.most_work = s.most_work;
+    in.deadlines_missed = d.deadlines_missed;
+    in.setpoints_withheld = d.setpoints_withheld;
+    in.own_state_refused = d.own_state_refused;
+    in.autopilot_reboots = d.autopilot_reboots;
+    in.clock_relocks = l.clock_relocks;
+    in.tracks_refused = t.not_finite + t.out_of_range + t.stale + t.future + t.full;
+    in.track_jumps = t.jumps;
+    in.frames_refused = l.frames_refused;
+    in.not_finite = l.not_finite;
+    in.stale_stamp = l.stale_stamp;
+    in.inbox_full = l.inbox_full;
+    in.outbox_full = l.outbox_full;
+    in.first_candidate = first_candidate_;
+    in.fan = fan_;
+    return in;
+}
+
+void Bench::hand_over_settings()
+{
+    generation_ = coprocessor_->parameters().generation();
+    if (planner_ == PlannerKind::source) {
+        geometric::Settings settings = geometric::source_settings();
+        // What the supervisor sees as a conflict the planner has to see too.
+        settings.lookahead = coprocessor_->parameters().configuration().planner.lookahead;
+        if (!coprocessor_->planner().configure(settings)) {
+            throw std::logic_error("the planner refuses the source's settings");
+        }
+    }
+}
+
+}  // namespace jink::sim

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware/app/cloud_input.hpp"
+#include "firmware/app/coprocessor.hpp"
+#include "firmware/app/reach_picture.hpp"
+#include "firmware/link/mavlink/endpoint.hpp"
+#include "toolchain/sim/record.hpp"
+#include "toolchain/sim/scenario.hpp"
+
+namespace jink::sim {
+
+/// How long something takes, time after time.
+class Stopwatch {
+public:
+    void note(double us)
+    {
+        ++durations_.count;
+        sum_ += us;
+        durations_.worst = std::max(durations_.worst, us);
+        durations_.mean = sum_ / static_cast<double>(durations_.count);
+    }
+    void keep(double us) { durations_.times.push_back(us); }
+    [[nodiscard]] const Durations& durations() const noexcept { return durations_; }
+
+private:
+    Durations durations_;
+    double sum_ = 0.0;
+};
+
+/// What a co-processor is given at its start, beside its line.
+struct BenchSetup {
+    PlannerKind planner = PlannerKind::product;
+    app::Parameters parameters;
+    std::uint8_t system = 0;           ///< whom it serves; 0: the first autopilot heard
+    link::SensorBus* bus = nullptr;    ///< outlives the bench
+    hal::SerialPort* cloud = nullptr;  ///< a LiDAR's line; outlives the bench
+};
+
+/// The co-processor in this process, with its own watch on it.
+class Bench {
+public:
+    /// @param port, watchdog  outlive the bench
+    Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& setup);
+
+    void close(const std::vector<ClosedArea>& areas, TimePoint now)
+    {
+        coprocessor_->set_constraints(constraints_of(areas, now), now);
+    }
+    void step(TimePoint now);
+
+    /// Plans that went by the parameters' settings although others were handed over: those of a step that took a
+    /// parameter. A flight as it is meant has none.
+    [[nodiscard]] unsigned foreign_plans() const noexcept
+    {
+        return planner_ == PlannerKind::product ? 0U : foreign_plans_;
+    }
+
+    /// Side of the manoeuvre that the last step took.
+    [[nodiscard]] const std::optional<Vec>& chosen() const noexcept { return chosen_; }
+
+    [[nodiscard]] Inside inside() const;
+    [[nodiscard]] app::Coprocessor& coprocessor() noexcept { return *coprocessor_; }
+
+private:
+    /// A change of a parameter gives the planner the product's settings again.
+    void hand_over_settings();
+
+    link::mavlink::Endpoint endpoint_;
+    std::unique_ptr<app::CloudInput> clouds_;
+    std::unique_ptr<app::ReachPicture> picture_;
+    std::unique_ptr<app::Coprocessor> coprocessor_;
+    PlannerKind planner_;
+    std::uint32_t generation_ = 0;
+    unsigned foreign_plans_ = 0;
+    Stopwatch steps_;
+    Stopwatch plan_steps_;
+    std::string first_candidate_;
+    std::vector<FanCurve> fan_;
+    bool found_ = false;
+    std::optional<Vec> chosen_;
+};
+
+}  // namespace jink::sim

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "toolchain/sim/swarm_command.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <functional>
+#include <iomanip>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <thread>
+
+#include <CLI/CLI.hpp>
+
+#include "toolchain/sim/encounter_campaign.hpp"
+
+namespace jink::sim {
+namespace {
+
+constexpr double kNone = 1e8;  // [m]
+
+std::string metres(double value)
+{
+    if (value > kNone) {
+        return "-";
+    }
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(3) << value << " m";
+    return out.str();
+}
+
+SwarmSetup setup_of(const SwarmOptions& options)
+{
+    SwarmSetup setup = options.setup;
+    setup.stack = options.stack == "px4" ? Stack::px4 : Stack::ardupilot;
+    for (const std::string& text : options.parameters) {
+        const auto [name, value] = parse_parameter(text);
+        setup.parameters[name] = value;
+    }
+    static_cast<void>(swarm_parameters(setup));  // what is refused is refused before anything flies
+    return setup;
+}
+
+/// On several threads; the order of the results is that of the seeds.
+std::vector<SwarmResult> fly_all(const SwarmSetup& setup, const SwarmOptions& options, unsigned threads)
+{
+    std::vector<SwarmResult> results(options.count);
+    std::atomic<unsigned> next{0};
+    std::exception_ptr failure;
+    std::atomic<bool> failed{false};
+    std::vector<std::thread> workers;
+    for (unsigned i = 0; i < threads; ++i) {
+        workers.emplace_back([&] {
+            for (unsigned k = next++; k < options.count && !failed; k = next++) {
+                try {
+                    results[k] = fly_swarm(setup, options.seed + k, options.out);
+                } catch (...) {
+                    if (!failed.exchange(true)) {
+                        failure = std::current_exception();
+                    }
+                }
+            }
+        });
+    }
+    for (std::thread& worker : workers) {
+        worker.join();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
+    }
+    return results;
+}
+
+std::filesystem::path program_of(const SwarmOptions& options)
+{
+    if (!options.program.empty()) {
+        return options.program;
+    }
+    const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+    for (const auto& candidate : {here / "jinkd", here / "../../firmware/linux/jinkd"}) {
+        if (std::filesystem::exists(candidate)) {
+            return std::filesystem::canonical(candidate);
+        }
+    }
+    throw std::runtime_error("jinkd is not where this program is; say where with --program");
+}
+
+std::vector<SwarmResult> fly_daemons_one_by_one(const SwarmSetup& setup, const SwarmOptions& options)
+{
+    const std::filesystem::path folder = options.out.empty() ? std::filesystem::temp_directory_path() / "jink-swarm"
+                                                             : std::filesystem::path(options.out);
+    std::filesystem::create_directories(folder);
+    std::vector<SwarmResult> results;
+    for (unsigned k = 0; k < options.count; ++k) {
+        results.push_back(fly_swarm_of_daemons(setup, options.seed + k, program_of(options), folder));
+    }
+    return results;
+}
+
+}  // namespace
+
+CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
+{
+    SwarmSetup& s = options.setup;
+    CLI::App* command = cli.add_subcommand(
+        "swarm", "vehicles on a circle change places, each with a co-processor of its own; exit status 1 when bodies "
+                 "touched, a goal was missed or a rule of the protocol was broken");
+    command->add_option("--vehicles", s.vehicles, "how many, default 20")->check(CLI::Range(2U, 64U));
+    command->add_option("--circle", s.circle, "its radius, default 10 [m]")->check(CLI::Range(1.0, 1000.0));
+    command->add_option("--cruise", s.cruise, "cruise speed, default 1 [m/s]")->check(CLI::Range(0.5, 20.0));
+    command->add_option("--spread", s.spread, "of the starting places, default 0.1 [m]")->check(CLI::Range(0.0, 1.0));
+    command->add_flag("--back", s.back, "and back again");
+    command->add_option("--obstacles", s.obstacles, "that move, default 0")->check(CLI::Range(0U, 62U));
+    command->add_option("--body", s.body, "radius of vehicles and obstacles, default 0.25 [m]")
+        ->check(CLI::Range(0.05, 5.0));
+    command->add_option("--level", s.level, "separation, level, default 0.7 [m]")->check(CLI::Range(0.2, 50.0));
+    command->add_option("--vertical", s.vertical, "or in height, default 0.5 [m]")->check(CLI::Range(0.2, 50.0));
+    command->add_option("--rate", s.rate, "of broadcasts, default 10 [Hz]")->check(CLI::Range(1.0, 200.0));
+    command->add_option("--loss", s.loss, "share of broadcasts lost, default 0")->check(CLI::Range(0.0, 1.0));
+    command->add_option("--delay", s.delay, "of broadcasts, default 0 [s]")->check(CLI::Range(0.0, 1.9));
+    command->add_option("--duration", s.duration, "at most, default 180 [s]")->check(CLI::Range(1.0, 3600.0));
+    command->add_option("--stack", options.stack, "of the autopilots")->check(CLI::IsMember({"ardupilot", "px4"}));
+    command->add_option("--parameters", options.parameters, "NAME=VALUE of the co-processors, any number of them");
+    command->add_option("--seed", options.seed, "the first, default 1");
+    command->add_option("--count", options.count, "seeds, default 1")->check(CLI::Range(1U, 1'000'000U));
+    command->add_option("--threads", options.threads, "default: one to a core")->check(CLI::Range(1U, 1024U));
+    command->add_option("--out", options.out, "folder for results.txt, and SEED.csv of flights that went wrong");
+    command->add_flag("--daemon", options.daemon, "in real time, one jinkd to a vehicle, on pseudo-terminals");
+    command->add_option("--program", options.program, "the program jinkd")->check(CLI::ExistingFile);
+    return *command;
+}
+
+std::string to_line(const SwarmResult& r)
+{
+    std::ostringstream out;
+    out << "seed " << r.seed << ": distance " << metres(r.distance) << ", margin " << std::fixed << std::setprecision(3)
+        << r.margin << ", obstacle " << metres(r.obstacle) << ", " << r.arrived << " of " << r.vehicles
+        << " there after " << std::setprecision(2) << r.time << " s, stall " << r.stall << " s, " << r.collisions
+        << " collisions, " << r.takeovers << " take-overs, digest " << std::hex << std::setw(16) << std::setfill('0')
+        << r.digest;
+    for (const std::string& fault : r.faults) {
+        out << "; " << fault;
+    }
+    return out.str();
+}
+
+std::string summarise(const std::vector<SwarmResult>& results)
+{
+    const auto worst = [&](const std::function<bool(const SwarmResult&, const SwarmResult&)>& worse) {
+        return *std::min_element(results.begin(), results.end(), worse);
+    };
+    const auto count = [&](const std::function<bool(const SwarmResult&)>& is) {
+        return std::count_if(results.begin(), results.end(), is);
+    };
+    std::vector<double> times;
+    for (const SwarmResult& r : results) {
+        times.push_back(r.time);
+    }
+    std::sort(times.begin(), times.end());
+    const SwarmResult distance = worst([](const auto& a, const auto& b) { return a.distance < b.distance; });
+    const SwarmResult margin = worst([](const auto& a, const auto& b) { return a.margin < b.margin; });
+    const SwarmResult obstacle = worst([](const auto& a, const auto& b) { return a.obstacle < b.obstacle; });
+    const SwarmResult stall = worst([](const auto& a, const auto& b) { return a.stall > b.stall; });
+    std::ostringstream out;
+    out << std::fixed << std::setprecision(3) << results.size()
+        << " swarms: " << count([](const auto& r) { return r.collisions > 0; }) << " with collisions, "
+        << count([](const auto& r) { return r.arrived < r.vehicles; }) << " with goals missed, "
+        << count([](const auto& r) { return r.margin < 1.0; }) << " nearer than the separations, "
+        << count([](const auto& r) { return !r.faults.empty(); }) << " with rules broken\n"
+        << "least distance " << metres(distance.distance) << " (seed " << distance.seed << "), least margin "
+        << margin.margin << " (seed " << margin.seed << "), least to an obstacle " << metres(obstacle.obstacle)
+        << " (seed " << obstacle.seed << ")\n"
+        << std::setprecision(2) << "longest stall " << stall.stall << " s (seed " << stall.seed << "), time median "
+        << times[times.size() / 2] << " s, most " << times.back() << " s\n";
+    return out.str();
+}
+
+int run_swarm(const SwarmOptions& options)
+{
+    const SwarmSetup setup = setup_of(options);
+    if (!options.out.empty()) {
+        std::filesystem::create_directories(options.out);
+    }
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    const std::vector<SwarmResult> results =
+        options.daemon ? fly_daemons_one_by_one(setup, options)
+                       : fly_all(setup, options, options.threads > 0 ? options.threads : cores);
+    std::ostringstream text;
+    for (const SwarmResult& result : results) {
+        text << to_line(result) << "\n";
+    }
+    text << summarise(results);
+    std::cout << text.str();
+    if (!options.out.empty()) {
+        const std::filesystem::path file = std::filesystem::path(options.out) / "results.txt";
+        std::ofstream out(file);
+        out << text.str();
+        out.close();
+        if (!out) {
+            throw std::runtime_error(file.string() + " cannot be written");
+        }
+    }
+    const bool good = std::all_of(results.begin(), results.end(), [](const SwarmResult& r) { return r.good(); });
+    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+}
+
+}  // namespace jink::sim

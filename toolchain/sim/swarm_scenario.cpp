@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "core/base/random.hpp"
+#include "toolchain/sim/swarm.hpp"
+
+namespace jink::sim {
+namespace {
+
+/// An obstacle starts at least this far from every vehicle [m].
+constexpr double kClearStart = 3.0;
+/// Its speed, in shares of the vehicles' own.
+constexpr double kSlowest = 0.2;
+constexpr double kFastest = 0.6;
+
+double drawn(Random& random, double low, double high)
+{
+    return low + (high - low) * static_cast<double>(random.uniform());
+}
+
+Vec on_circle(const SwarmSetup& setup, unsigned index)
+{
+    const double angle = 2.0 * std::numbers::pi * index / setup.vehicles;
+    return {setup.circle * std::cos(angle), setup.circle * std::sin(angle), setup.height};
+}
+
+/// From outside, across the inner part of the circle.
+Threat obstacle(const SwarmSetup& setup, Random& random, unsigned number)
+{
+    Threat ball;
+    ball.name = "obstacle_" + std::to_string(number + 1);
+    ball.radius = setup.body;
+    const double from = drawn(random, -std::numbers::pi, std::numbers::pi);
+    const double distance = setup.circle + kClearStart + drawn(random, 0.0, setup.circle);
+    ball.position = distance * Vec(std::cos(from), std::sin(from), 0.0);
+    const double to = drawn(random, -std::numbers::pi, std::numbers::pi);
+    const double aside = drawn(random, 0.0, 0.7 * setup.circle);
+    const Vec aim = aside * Vec(std::cos(to), std::sin(to), 0.0);
+    ball.velocity = (aim - ball.position).normalized() * drawn(random, kSlowest, kFastest) * setup.cruise;
+    ball.position.z() = setup.height + drawn(random, -1.0, 1.0);
+    return ball;
+}
+
+void small_and_slow(Scenario& s, double cruise)
+{
+    s.vehicle.cruise = cruise;
+    s.vehicle.max_climb = s.vehicle.max_descent = cruise;
+    s.vehicle.max_acceleration = s.vehicle.max_vertical_acceleration = 2.0;
+}
+
+}  // namespace
+
+Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned index)
+{
+    Random places(seed * 7919U + 3U);
+    Random obstacles(seed * 104729U + 5U);
+    const auto off_place = [&] {
+        const double x = drawn(places, -setup.spread, setup.spread);
+        const double y = drawn(places, -setup.spread, setup.spread);
+        const double z = drawn(places, -setup.spread, setup.spread);
+        return Vec(x, y, z);
+    };
+    Scenario s;
+    s.name = "swarm_" + std::to_string(seed) + "_" + std::to_string(index + 1);
+    s.title = s.name;
+    s.seed = seed * 1000U + index;
+    s.system = static_cast<std::uint8_t>(index + 1);
+    s.stack = setup.stack;
+    s.duration = setup.duration;
+    s.to_goal = true;
+    s.body_radius = setup.body;
+    s.promise = setup.body;
+    small_and_slow(s, setup.cruise);
+    Vec off = off_place();
+    for (unsigned i = 0; i < index; ++i) {
+        off = off_place();  // those before it have had theirs
+    }
+    s.start_position = on_circle(setup, index) + off;
+    const Vec opposite(-on_circle(setup, index).x(), -on_circle(setup, index).y(), setup.height);
+    s.mission = {s.start_position, opposite};
+    if (setup.back) {
+        s.mission.push_back(on_circle(setup, index));
+    }
+    s.reached = 0.5;
+    for (unsigned i = 0; i < setup.obstacles; ++i) {
+        s.threats.push_back(obstacle(setup, obstacles, i));
+    }
+    s.traffic.latency = setup.delay;
+    s.traffic.dropout = setup.loss;
+    return s;
+}
+
+app::Parameters swarm_parameters(const SwarmSetup& setup)
+{
+    const double half = 0.5 * setup.vertical;
+    std::map<std::string, double> wanted{
+        {"VEH_CRUISE", setup.cruise},
+        {"VEH_CLIMB", setup.cruise},
+        {"VEH_DESCENT", setup.cruise},
+        {"VEH_ACC", 2.0},
+        {"VEH_ACC_Z", 2.0},
+        // The sphere of the other one and the box of the own one together are the separations.
+        {"TRK_RADIUS", half},
+        {"JNK_HALF_XY", setup.level - half},
+        {"JNK_HALF_Z", half},
+        // What the wire rounds, and the autopilots' maps differ by.
+        {"TRK_SIGMA_P", 0.03},
+        {"TRK_SIGMA_V", 0.03},
+        // And half a tick, until it is looked at.
+        {"TRK_LATENCY", setup.delay + 0.01},
+    };
+    for (const auto& [name, value] : setup.parameters) {
+        wanted[name] = value;
+    }
+    app::Parameters parameters;
+    std::array<float, app::kParamCount> values = parameters.values();
+    for (const auto& [name, value] : wanted) {
+        const std::size_t index = app::Parameters::find(name);
+        if (index == app::kParamCount) {
+            throw std::runtime_error(name + " is no parameter");
+        }
+        values[index] = static_cast<float>(value);
+    }
+    if (parameters.set_all(values) != app::ParamStatus::ok) {
+        throw std::runtime_error("the co-processor refuses these parameters");
+    }
+    return parameters;
+}
+
+}  // namespace jink::sim
