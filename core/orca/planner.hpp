@@ -59,6 +59,12 @@ public:
     /// Refused (false, nothing changed) when out of range.
     [[nodiscard]] bool configure(const Settings& settings) noexcept;
     [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
+    /// Forgets what was planned and flown before.
+    void reset() noexcept
+    {
+        filter_.reset();
+        has_planned_ = false;
+    }
     /// Convex pieces that are obstacles beside the situation's; good (geometry::check), outlives this; null: none.
     void use_map(const geometry::MeshMap* map) noexcept { map_ = map; }
     [[nodiscard]] const Decision& last() const noexcept { return decision_; }

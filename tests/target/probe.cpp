@@ -158,14 +158,14 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
                                      nullptr,
                                      world.configuration.k_sigma};
     if (!planner_.configure(world.configuration.planner) || !reach_.configure(world.configuration.reach) ||
-        !supervisor_.configure(world.configuration.supervisor)) {
+        !orca_.configure(world.configuration.orca) || !supervisor_.configure(world.configuration.supervisor)) {
         return;
     }
     supervisor_.reset();
     out.magic = kProbeMagic;
     const bool reciprocal = record.kind == ProbeKind::reciprocal;
     if (record.kind == ProbeKind::plan || record.kind == ProbeKind::reach || reciprocal) {
-        orca_ = orca::Planner(world.configuration.orca);
+        orca_.reset();
         WorkBudget budget(world.configuration.supervisor.plan_budget);
         jink_window_begin();
         const world::PlanStatus status = plan(record.kind, situation, budget);

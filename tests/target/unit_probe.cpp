@@ -337,7 +337,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     const world::Way way = world::way_of(s);
     const Vec3 command = within(3.0F);
     world::Conflict conflict;
-    orca_ = orca::Planner();
+    orca_.reset();
     jink_window_begin();
     switch (work) {
     case Work::conflict_tracks:
