@@ -221,18 +221,28 @@ bool is_valid(const Settings& s) noexcept
            within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) && within(s.clear_extra, 0.0F, 10.0F) &&
            within(s.on_leg, 0.05F, 50.0F) && within(s.blocked_patience, 0.0F, 600.0F) &&
            within(s.give_ground_speed, 0.0F, 5.0F) && within(s.give_ground_limit, 0.0F, 600.0F) && s.budget >= 1000 &&
-           s.order <= LadderOrder::last && within(s.clutter_radius, 1.0F, 200.0F) && s.plan_budget >= 100 &&
-           s.plan_budget <= s.budget && s.kept_for_next <= s.plan_budget &&
+           s.order <= LadderOrder::last && s.reactive <= Reactive::alone && within(s.clutter_radius, 1.0F, 200.0F) &&
+           s.plan_budget >= 100 && s.plan_budget <= s.budget && s.kept_for_next <= s.plan_budget &&
            within(s.gains.position_gain, 0.0F, 10.0F) && within(s.gains.max_correction, 0.0F, 10.0F) &&
            within(s.escape.slack, 0.0F, 1.0F) && within(s.escape.speed, 0.0F, 10.0F);
 }
 
-world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre,
+Seconds time_to_stop(const world::Situation& s, const Settings& settings) noexcept
+{
+    return vehicle::stopping_time(s.own.velocity.norm(), s.limits) + settings.reserve;
+}
+
+world::Separation check_manoeuvre(const world::Situation& given, const world::Manoeuvre& manoeuvre,
                                   const Settings& settings, WorkBudget& budget, Seconds horizon,
                                   const world::Cutoff& cutoff) noexcept
 {
-    if (!is_well_formed(manoeuvre, s.now)) {
+    if (!is_well_formed(manoeuvre, given.now)) {
         return {-world::kSeparationCap, 0.0F, {}};
+    }
+    world::Situation s = given;
+    const bool is_command = manoeuvre.kind == world::ManoeuvreKind::velocity;
+    if (is_command) {
+        s.shared_horizon = time_to_stop(s, settings);
     }
     const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
     const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
@@ -242,7 +252,11 @@ world::Separation check_manoeuvre(const world::Situation& s, const world::Manoeu
         return {-world::kSeparationCap, 0.0F, {}};
     }
     TimedPath flight;
-    path::predict_flight(s.own, manoeuvre.path, start, step, s.limits, settings.gains, flight);
+    if (is_command && rest > 0.0F) {
+        path::predict_velocity_command(s.own, manoeuvre.command, rest, step, s.limits, flight);
+    } else {
+        path::predict_flight(s.own, manoeuvre.path, start, step, s.limits, settings.gains, flight);
+    }
     while (flight.points.size() > kFlightPoints) {
         flight.points.pop_back();
     }

@@ -7,8 +7,13 @@
 
 namespace jink::avoid {
 
+/// What the vehicle needs to stop, and Settings::reserve [s].
+[[nodiscard]] Seconds time_to_stop(const world::Situation& situation, const Settings& settings) noexcept;
+
 /// Least separation of a manoeuvre as it will really be flown from now on, within `horizon`: the vehicle model follows
-/// the rest of it, and brakes at its end (a fixed wing flies on), so that a way that ends in a trap is not clear. A
+/// the rest of it, or its command where it is a `velocity`, and brakes at its end (a fixed wing flies on), so that a
+/// way that ends in a trap is not clear. A `velocity` is chosen anew every tick, and what tracks that share the
+/// reaction do meanwhile depends on it: they are looked at as far ahead as the vehicle needs to stop (time_to_stop). A
 /// manoeuvre without points, with numbers that are none, times that do not rise or a start ahead of now is contact,
 /// and so is one that `budget` does not last for. O(points * threats).
 [[nodiscard]] world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,

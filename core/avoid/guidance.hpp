@@ -23,7 +23,15 @@ enum class LadderOrder : std::uint8_t {
     last,      ///< the last alone
 };
 
+/// Whether the method that decides every tick anew (kReactive) is asked; the order is that of the others.
+enum class Reactive : std::uint8_t {
+    never,
+    first,  ///< before all others
+    alone,
+};
+
 struct Settings {
+    Reactive reactive = Reactive::never;
     LadderOrder order = LadderOrder::as_given;
     /// With so many tracks and obstacles within `clutter_radius`, methods that are asked as given are asked in the
     /// reverse order; 0: never.

@@ -44,7 +44,7 @@ bool Pilot::configure(const Settings& settings) noexcept
 void Pilot::reset() noexcept
 {
     state_ = State::watching;
-    had_control_ = has_flying_ = has_fallback_ = standing_ = beside_ = was_clear_ = was_free_ = false;
+    had_control_ = has_flying_ = has_fallback_ = standing_ = beside_ = was_clear_ = was_free_ = has_commanded_ = false;
     ground_given_ = 0.0F;
 }
 
@@ -55,10 +55,7 @@ bool Pilot::due(const Tick& tick, Seconds time_to_loss) const noexcept
 }
 
 /// Nearer than this, it is time to stop.
-Seconds Pilot::last_moment(const Tick& tick) const noexcept
-{
-    return vehicle::stopping_time(tick.s.own.velocity.norm(), tick.s.limits) + settings_.reserve;
-}
+Seconds Pilot::last_moment(const Tick& tick) const noexcept { return time_to_stop(tick.s, settings_); }
 
 bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept { return time_to_loss <= last_moment(tick); }
 
@@ -95,14 +92,42 @@ void Pilot::take(Tick& tick) noexcept
     }
     flying_ = answer_;
     chosen_side_ = answer_.side;
-    is_slow_ = mean_speed(flying_) < kSlow * tick.way.speed;
+    is_slow_ = flying_.kind != world::ManoeuvreKind::velocity && mean_speed(flying_) < kSlow * tick.way.speed;
     looked_at_ = tick.s.now;
     has_flying_ = true;
     has_fallback_ = beside_ = false;
+    fly(tick);
+}
+
+/// The command of what is flown.
+void Pilot::fly(Tick& tick) const noexcept
+{
     tick.out.wants_control = true;
     tick.out.kind = flying_.kind;
-    tick.out.velocity =
-        path::follow(flying_.path, tick.s.now - flying_.start, tick.s.own.position, tick.s.limits, settings_.gains);
+    tick.out.velocity = flying_.kind == world::ManoeuvreKind::velocity
+                            ? flying_.command
+                            : path::follow(flying_.path, tick.s.now - flying_.start, tick.s.own.position, tick.s.limits,
+                                           settings_.gains);
+}
+
+/// A velocity is good for a tick: the methods are asked again. False where they have no answer: what was flown is
+/// looked at then.
+bool Pilot::renew(Tick& tick) noexcept
+{
+    if (flying_.kind != world::ManoeuvreKind::velocity || !plan(tick)) {
+        return false;
+    }
+    if (answer_.kind != world::ManoeuvreKind::velocity) {
+        take(tick);
+        return true;
+    }
+    flying_ = answer_;
+    fly(tick);
+    if (way_clear_for(tick, settings_.settle)) {
+        enter_rejoining();
+        rejoin(tick);
+    }
+    return true;
 }
 
 void Pilot::fall_back(Tick& tick) noexcept
@@ -133,7 +158,7 @@ void Pilot::watch(Tick& tick) noexcept
         if (tick.in_control) {
             // Ours without a reason (granted late, or being given back): keep to the leg meanwhile.
             follow_way(tick);
-            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg;
+            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg && !tick.held;
             if (tick.out.wants_control) {
                 enter_rejoining();
             }
@@ -203,17 +228,17 @@ void Pilot::replace(Tick& tick) noexcept
 
 void Pilot::avoid(Tick& tick) noexcept
 {
-    const Seconds flown = tick.s.now - flying_.start;
-    if (flown >= flying_.path.duration()) {
+    if (renew(tick)) {
+        return;
+    }
+    if (tick.s.now - flying_.start >= flying_.path.duration()) {
         enter_rejoining();
         rejoin(tick);
         return;
     }
     const world::Separation ahead = check_manoeuvre(tick.s, flying_, settings_, tick.budget);
     tick.out.margin = ahead.margin;
-    tick.out.wants_control = true;
-    tick.out.kind = flying_.kind;
-    tick.out.velocity = path::follow(flying_.path, flown, tick.s.own.position, tick.s.limits, settings_.gains);
+    fly(tick);
     const bool heads_back = tick.out.velocity.dot(beside_leg(tick.s).off) < 0.0F;
     if ((ahead.margin < 0.0F || heads_back || is_slow_) && keep_beside(tick)) {
         enter_rejoining();
@@ -293,7 +318,9 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     }
     world::Situation situation = given;
     situation.flying = has_flying_ ? &flying_ : nullptr;
-    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {}, false, false};
+    situation.commanded = in_control && has_commanded_ ? &commanded_ : nullptr;
+    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {},
+              false,     false,      false};
     tick.out.has_conflict =
         world::main_conflict(situation, tick.way, settings_.lookahead, tick.budget, tick.out.conflict);
     diagnostics_.conflicts += tick.out.has_conflict && !in_conflict_ ? 1U : 0U;
@@ -312,6 +339,8 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     tick.out.state = state_;
     tick.out.work = tick.budget.spent();
     last_update_ = situation.now;
+    has_commanded_ = in_control && tick.out.wants_control;
+    commanded_ = {tick.out.velocity, situation.now};
     diagnostics_.budget_spent += tick.budget.exhausted() || tick.ran_out ? 1U : 0U;
     diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());
     return tick.out;

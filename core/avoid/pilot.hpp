@@ -51,6 +51,8 @@ private:
     [[nodiscard]] Seconds last_moment(const Tick& tick) const noexcept;
     [[nodiscard]] bool urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
     void take(Tick& tick) noexcept;
+    void fly(Tick& tick) const noexcept;
+    [[nodiscard]] bool renew(Tick& tick) noexcept;
     void replace(Tick& tick) noexcept;
     void fall_back(Tick& tick) noexcept;
     void enter_rejoining() noexcept;
@@ -74,6 +76,8 @@ private:
     bool is_slow_ = false;  ///< what is flown
     TimePoint looked_at_;   ///< when a faster one was looked for last
     bool has_fallback_ = false;
+    bool has_commanded_ = false;
+    world::Commanded commanded_;
     TimePoint clear_since_;
     TimePoint free_since_;
     TimePoint standing_since_;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Back to the leg: when the way is clear, how it is flown, and what is flown while it is not.
+#include <algorithm>
+#include <cmath>
+
 #include "core/avoid/pilot_tick.hpp"
 #include "core/geometry/sweep.hpp"
 
@@ -26,6 +29,35 @@ Beside beside_route(const world::Situation& s) noexcept
     beside.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
     beside.command = vehicle::clamped_velocity(abeam.point.along, s.reference.leg.speed, s.limits);
     return beside;
+}
+
+/// Time in which what is left to a bound of the airspace is used up at most.
+constexpr Seconds kBoundTime = 1.0F;
+
+/// `velocity` without what would take the vehicle out of the airspace, or further out: where the leg itself lies
+/// outside, the autopilot may go there, but not by our command.
+Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
+{
+    const world::Airspace& air = s.airspace;
+    const Vec3& at = s.own.position;
+    const Vec3& half = s.limits.half_extents;
+    const float extra = s.k_sigma * s.own.sigma_position;
+    Vec3 kept = velocity;
+    if (air.has_ceiling) {
+        kept.z() = std::min(kept.z(), std::max(0.0F, air.ceiling - at.z() - half.z() - extra) / kBoundTime);
+    }
+    if (air.has_floor) {
+        kept.z() = std::max(kept.z(), std::min(0.0F, air.floor - at.z() + half.z() + extra) / kBoundTime);
+    }
+    const Vec3 from_home(at.x() - air.home.x(), at.y() - air.home.y(), 0.0F);
+    const float off = from_home.norm();
+    if (air.has_keep_in && off > 0.0F) {
+        const float left = air.keep_in_radius - off - std::hypot(half.x(), half.y()) - extra;
+        const float outward = from_home.dot(kept) / off;
+        const float most = std::max(0.0F, left) / kBoundTime;
+        kept -= (std::max(0.0F, outward - most) / off) * from_home;
+    }
+    return kept;
 }
 
 }  // namespace
@@ -60,7 +92,12 @@ void Pilot::follow_way(Tick& tick) noexcept
 {
     tick.out.wants_control = true;
     tick.out.kind = world::ManoeuvreKind::velocity;
-    tick.out.velocity = tick.way.length > 0.0F ? Vec3(tick.way.direction * tick.way.speed) : Vec3(Vec3::Zero());
+    const Vec3 wanted = tick.way.length > 0.0F ? Vec3(tick.way.direction * tick.way.speed) : Vec3(Vec3::Zero());
+    tick.out.velocity = kept_inside(tick.s, wanted);
+    const Vec3 taken = wanted - tick.out.velocity;
+    const Vec3 off = beside_leg(tick.s).off;
+    const bool beside = std::hypot(off.x(), off.y()) > settings_.on_leg;
+    tick.held = std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && !beside);
 }
 
 /// The way back is not clear, but flying on beside the leg is: past what is slow, or until it has gone. Going back to
@@ -124,7 +161,8 @@ void Pilot::rejoin(Tick& tick) noexcept
         }
     }
     follow_way(tick);
-    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg;
+    // Held at a bound, the vehicle is as near to its leg as we may bring it.
+    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg || tick.held;
     if (back && way_clear_for(tick, settings_.settle)) {
         ++diagnostics_.rejoined;
         state_ = State::watching;

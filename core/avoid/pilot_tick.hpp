@@ -27,8 +27,9 @@ struct Wider {
     world::Situation situation;
 
     Wider(const world::Situation& s, float extra) noexcept
-        : limits(widened(s.limits, extra)), situation{s.now,    s.own,       limits,     s.airframe, s.reference,
-                                                      s.tracks, s.obstacles, s.airspace, s.flying,   s.k_sigma}
+        : limits(widened(s.limits, extra)), situation{s.now,       s.own,     limits,      s.airframe,
+                                                      s.reference, s.tracks,  s.obstacles, s.airspace,
+                                                      s.flying,    s.k_sigma, s.own_id,    s.commanded}
     {
     }
     Wider(const Wider&) = delete;
@@ -49,6 +50,7 @@ struct Pilot::Tick {
     world::Way way;
     Guidance out;
     bool wide_clear = false;
+    bool held = false;     ///< on its way back at a bound of the airspace
     bool ran_out = false;  ///< of work, planning or altogether
 };
 

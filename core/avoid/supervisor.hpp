@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <tuple>
+#include <type_traits>
 
 #include "core/avoid/rungs.hpp"
 
@@ -15,8 +16,9 @@ namespace jink::avoid {
 /// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does
 /// not, nothing is held on to: the answer is made anew from the present state every tick, on the side chosen before
 /// where that is about as good. A method with a member kKeepsRoom keeps Settings::room by itself, as far as there is
-/// any, and is asked once a plan; others are asked for a wider vehicle first. Methods are owned by the caller and
-/// outlive the supervisor. Same situations in the same order give the same guidance.
+/// any, and is asked once a plan; others are asked for a wider vehicle first. A method with a member kReactive decides
+/// every tick anew, and is asked as Settings::reactive says. Methods are owned by the caller and outlive the
+/// supervisor. Same situations in the same order give the same guidance.
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:
@@ -38,7 +40,13 @@ public:
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return pilot_.flying(); }
 
 private:
-    static constexpr std::size_t kMethods = sizeof...(Methods);
+    template <class Method>
+    static constexpr bool kIsReactive = requires
+    {
+        Method::kReactive;
+    };
+    /// Without the reactive ones.
+    static constexpr std::size_t kMethods = (std::size_t{0} + ... + (kIsReactive<Methods> ? 0U : 1U));
 
     /// One rung: with room to spare, then without. A method that keeps room itself, as far as there is any, is asked
     /// once.
@@ -83,14 +91,19 @@ private:
     {
         world::PlanStatus status = world::PlanStatus::none_available;
         const Rungs rungs = rungs_of(kMethods, rounds.plain, settings);
-        for (std::size_t i = 0; i < rungs.count; ++i) {
-            const std::size_t after = rungs.count - 1 - i;
+        const std::size_t first = settings.reactive == Reactive::never ? 1 : 0;  // 0: the reactive ones
+        const std::size_t last = settings.reactive == Reactive::alone ? 0 : rungs.count;
+        for (std::size_t i = first; i <= last; ++i) {
+            const std::size_t after = last - i;
             const auto kept = static_cast<std::uint32_t>(after * settings.kept_for_next);
             WorkBudget share(budget.left() > kept ? budget.left() - kept : 0);
             std::size_t n = 0;
+            const auto is_asked = [&](bool reactive) {
+                return reactive ? i == 0 : i > 0 && n++ == rungs.method(i - 1);
+            };
             const bool found = std::apply(
                 [&](auto&... method) {
-                    return ((n++ == rungs.method(i) &&
+                    return ((is_asked(kIsReactive<std::remove_reference_t<decltype(method)>>) &&
                              ask(method, rounds, settings, share, diagnostics, out, margin, status)) ||
                             ...);
                 },
@@ -98,7 +111,7 @@ private:
             // What ends the last one's work ends that of the plan, and is told.
             static_cast<void>(budget.spend(after == 0 && share.exhausted() ? budget.left() + 1 : share.spent()));
             if (found) {
-                diagnostics.found_by_next += i > 0 ? 1U : 0U;
+                diagnostics.found_by_next += i > first ? 1U : 0U;
                 return status;
             }
         }

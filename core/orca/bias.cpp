@@ -26,7 +26,7 @@ const BiasNeighbour* nearest_ahead(std::span<const BiasNeighbour> neighbours, co
 
 }  // namespace
 
-Biased Bias::apply(std::uint16_t own, const Vec3& preferred, const Vec3& velocity,
+Biased Bias::apply(std::uint32_t own, const Vec3& preferred, const Vec3& velocity,
                    std::span<const BiasNeighbour> neighbours, Seconds period) noexcept
 {
     const float speed = preferred.norm();

@@ -15,7 +15,7 @@ namespace jink::orca {
 
 /// Another vehicle as the bias sees it.
 struct BiasNeighbour {
-    std::uint16_t id = 0;        ///< differs from the own one, which is the smaller one deciding who climbs
+    std::uint32_t id = 0;        ///< differs from the own one, which is the smaller one deciding who climbs
     Vec3 offset = Vec3::Zero();  ///< from the own position to its position [m], finite
     Vec3 side = Vec3::Zero();    ///< unit vector across `offset` to which the own vehicle passes: for the other one,
                                  ///< whose offset is -offset, the opposite one (G-ORCA 3.5)
@@ -39,6 +39,8 @@ struct Biased {
 class Bias {
 public:
     explicit Bias(const BiasSettings& settings = {}) noexcept : settings_(settings) {}
+    /// What was timed stays.
+    void configure(const BiasSettings& settings) noexcept { settings_ = settings; }
 
     /// Once per tick.
     ///
@@ -54,7 +56,7 @@ public:
     /// @param velocity   own one [m/s]
     /// @param period     since the last call [s], > 0
     /// O(neighbours).
-    [[nodiscard]] Biased apply(std::uint16_t own, const Vec3& preferred, const Vec3& velocity,
+    [[nodiscard]] Biased apply(std::uint32_t own, const Vec3& preferred, const Vec3& velocity,
                                std::span<const BiasNeighbour> neighbours, Seconds period) noexcept;
 
     [[nodiscard]] Seconds stalled() const noexcept { return stalled_; }

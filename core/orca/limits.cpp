@@ -165,7 +165,11 @@ Unsafe check(const SafetyQuestion& q) noexcept
     if (pair.ramp_speed > limits.acceleration * kRounding) {
         return Unsafe::ramp_acceleration;
     }
-    return pair.recovery_time * kRounding < delayed ? Unsafe::recovery_delay : Unsafe::none;
+    if (pair.recovery_time * kRounding < delayed) {
+        return Unsafe::recovery_delay;
+    }
+    const bool rests = pair.conflict == Conflict::at_rest;
+    return rests && pair.brake * kRounding < std::max(brakes, delayed) ? Unsafe::rest_brake : Unsafe::none;
 }
 
 float ramp_speed_for(float across, float conflict_ratio, float delay, float acceleration) noexcept

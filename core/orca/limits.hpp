@@ -77,6 +77,7 @@ enum class Unsafe : std::uint8_t {
     ramp_gain,          ///< the separating speed grows too fast for the delay
     ramp_acceleration,  ///< it is more than one second's acceleration
     recovery_delay,     ///< the conflict region would be left too fast for the delay
+    rest_brake,         ///< Conflict::at_rest: too short to brake within PairSettings::brake, or for the delay
 };
 
 /// Settings beside each other.

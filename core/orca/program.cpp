@@ -112,8 +112,9 @@ Vec3 away_from(const Problem& problem, Level level) noexcept
     return out;
 }
 
-/// The best of a few velocities, where there is no time to find a better one.
-void choose(const Problem& problem, const Vec3& so_far, Solution& out) noexcept
+/// The best of a few velocities, where there is no time to find a better one. What it breaks is said, not what was
+/// given way to until then.
+void choose(const Problem& problem, const Vec3& so_far, float scale, Solution& out) noexcept
 {
     const Ball& reachable = problem.balls.back();
     const float speed = reachable.centre.norm();
@@ -129,6 +130,14 @@ void choose(const Problem& problem, const Vec3& so_far, Solution& out) noexcept
             out.velocity = x;
             out.broken = broken;
             first = false;
+        }
+    }
+    out.status = kWorkLimit;
+    out.level = Level::warning;
+    for (std::size_t level = kLevels; level-- > 0;) {
+        if (out.broken[level] > 4.0F * Tolerance(scale).outside) {
+            out.status |= kRelaxed[level];
+            out.level = static_cast<Level>(level);
         }
     }
 }
@@ -226,8 +235,7 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
         }
     }
     if (found == Found::exhausted) {
-        out.status |= kWorkLimit;
-        choose(problem, best, out);
+        choose(problem, best, scale, out);
         return out;
     }
     if ((out.status & kInfeasibleDynamics) != 0) {

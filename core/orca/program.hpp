@@ -61,7 +61,7 @@ struct Solution {
 /// With planes.size() > the scratch's size (a caller's mistake) or a yield <= 0: kBadInput. Where the budget runs out:
 /// of the best point so far, the reference, all braking that the last ball allows, and all acceleration along the most
 /// violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
-/// order; five looks at each half-space beyond the budget.
+/// order; what it breaks is said as for any other. Five looks at each half-space beyond the budget.
 ///
 /// Rounding: where a level is not said to be broken, none of it is by more than 2e-6 of the largest speed, and where it
 /// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum is

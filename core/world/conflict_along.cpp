@@ -14,9 +14,9 @@ class Course {
 public:
     Course(const Situation& s, const Way& way, Seconds lookahead) noexcept
         : way_(way), pieces_(s, way, lookahead),
-          limits_(widened(s.limits, pieces_.off())), situation_{s.now,       s.own,    limits_,     s.airframe,
-                                                                s.reference, s.tracks, s.obstacles, s.airspace,
-                                                                s.flying,    s.k_sigma}
+          limits_(widened(s.limits, pieces_.off())), situation_{s.now,       s.own,     limits_,     s.airframe,
+                                                                s.reference, s.tracks,  s.obstacles, s.airspace,
+                                                                s.flying,    s.k_sigma, s.own_id,    s.commanded}
     {
     }
     Course(const Course&) = delete;

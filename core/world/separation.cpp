@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
@@ -249,14 +250,22 @@ Separation least_separation(const Situation& situation, std::span<const path::Pa
         return best;
     }
     const Flight flight(points, horizon);
+    // What is looked at of those that share the reaction.
+    std::optional<Flight> shared;
+    if (situation.shared_horizon < horizon) {
+        shared.emplace(points, situation.shared_horizon);
+    }
+    const auto flight_for = [&](std::size_t index) noexcept -> const Flight& {
+        return shared && situation.tracks[index].cooperative ? *shared : flight;
+    };
     against_airspace(situation, flight, escape, best);
     const bool track_first = cutoff.first.kind == ThreatKind::track && cutoff.first.index < situation.tracks.size();
     if (track_first) {
-        against_track(situation, flight, cutoff.first.index, escape, budget, best);
+        against_track(situation, flight_for(cutoff.first.index), cutoff.first.index, escape, budget, best);
     }
     for (std::size_t i = 0; i < situation.tracks.size() && best.margin >= cutoff.below; ++i) {
         if (!track_first || i != cutoff.first.index) {
-            against_track(situation, flight, i, escape, budget, best);
+            against_track(situation, flight_for(i), i, escape, budget, best);
         }
     }
     for (std::size_t i = 0; i < air.barrels.size() && best.margin >= cutoff.below; ++i) {

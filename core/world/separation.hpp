@@ -49,6 +49,8 @@ struct Cutoff {
 /// is looked at in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
 /// m more (kObstacleResolution, and pieces of 0.2 s). A margin that is no number is contact.
 ///
+/// Tracks that share the reaction are looked at until Situation::shared_horizon at most.
+///
 /// Never above the truth by more than 1e-3 m within 100 m of the origin; below it by no more than what a track grows in
 /// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below
 /// Cutoff::below, and no lower bound of the least. Cost in budget: core/base/work_units.hpp, by piece of the path,

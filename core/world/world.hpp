@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "core/base/time.hpp"
@@ -74,7 +75,7 @@ struct Reference {
     std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
 };
 
-enum class MethodId : std::uint8_t { none, supervisor, geometric, reach };
+enum class MethodId : std::uint8_t { none, supervisor, geometric, reach, orca };
 enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
 
 /// What to fly. For `brake` and `velocity` the path is the predicted flight under the constant command `command`.
@@ -87,6 +88,12 @@ struct Manoeuvre {
     Vec3 side = Vec3::Zero();     ///< unit vector from the leg towards the farthest point of the path; zero for none
     float cost = 0.0F;            ///< [0, 1], as the method counts it
     path::TimedPath path;
+};
+
+/// A velocity that the vehicle was told to fly.
+struct Commanded {
+    Vec3 velocity = Vec3::Zero();  ///< [m/s]
+    TimePoint at;
 };
 
 /// A view of everything a method may know; made once per tick, immutable.
@@ -104,6 +111,10 @@ struct Situation {
     /// By which the others of the same link know us (TrackSource::datalink); 0: not known. Says nothing beside the id
     /// of a track of another source: that is of another scheme, and they may know us by another too.
     TrackId own_id = 0;
+    const Commanded* commanded = nullptr;  ///< what it was told last, while it is steered from here
+    /// Tracks that share the reaction are looked at so far ahead in separations, and not beyond [s]: what they do then
+    /// depends on both. Conflicts are not bounded by it.
+    Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
 };
 
 enum class PlanStatus : std::uint8_t {

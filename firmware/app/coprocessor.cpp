@@ -30,8 +30,8 @@ Coprocessor::Coprocessor(link::Link& link, hal::SerialPort& port, hal::Watchdog&
                          link::SensorBus* bus) noexcept
     : link_(link), port_(port), watchdog_(watchdog), parameters_(parameters), bus_(bus),
       applied_generation_(parameters.generation()), planner_(parameters.configuration().planner),
-      reach_(parameters.configuration().reach), supervisor_(supervisor_settings(), planner_, reach_),
-      tracks_(parameters.configuration().tracks),
+      reach_(parameters.configuration().reach), orca_(parameters.configuration().orca),
+      supervisor_(supervisor_settings(), planner_, reach_, orca_), tracks_(parameters.configuration().tracks),
       param_service_(parameters_, diagnostics_.params_set, diagnostics_.params_refused)
 {
     link_.ask_for_rates(parameters.configuration().ask_rates);
@@ -71,6 +71,7 @@ void Coprocessor::apply_configuration() noexcept
     link_.ask_for_rates(c.ask_rates);
     static_cast<void>(planner_.configure(c.planner));
     static_cast<void>(reach_.configure(c.reach));
+    static_cast<void>(orca_.configure(c.orca));
     static_cast<void>(supervisor_.configure(supervisor_settings()));
     tracks_.configure(c.tracks);
 }

@@ -7,6 +7,7 @@
 
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
+#include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "core/world/obstacle_table.hpp"
 #include "core/world/track_table.hpp"
@@ -180,6 +181,7 @@ public:
     /// For studies on a bench: settings that no parameter reaches. The next change of a parameter takes them back.
     [[nodiscard]] geometric::Planner& planner() noexcept { return planner_; }
     [[nodiscard]] const reach::Planner& reach_planner() const noexcept { return reach_; }
+    [[nodiscard]] const orca::Planner& orca_planner() const noexcept { return orca_; }
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
     [[nodiscard]] const vehicle::VehicleState& own() const noexcept { return own_; }
     /// As a plan at `now` has them, until the next step.
@@ -242,12 +244,13 @@ private:
     Parameters parameters_;
     link::SensorBus* bus_;
     std::uint32_t applied_generation_ = 0;
-    geometric::Planner planner_;
-    reach::Planner reach_;
-    // Before the supervisor, whose settings depend on them.
+    // The supervisor's settings depend on these two: they come before it.
     bool leaves_reach_out_ = false;
     ReachPicture* reach_picture_ = nullptr;
-    avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
+    geometric::Planner planner_;
+    reach::Planner reach_;
+    orca::Planner orca_;
+    avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner> supervisor_;
     bool told_left_out_ = false;
     bool told_unsuited_ = false;
     Takeover takeover_;

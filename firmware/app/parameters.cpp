@@ -63,8 +63,9 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
-    {"JNK_METHODS", 1, 0, 3, true,
-     "0 geometric, 1 geometric then reach sets, 2 reach sets then geometric, 3 reach sets"},
+    {"JNK_METHODS", 1, 0, 5, true,
+     "0 geometric, 1 geometric then reach sets, 2 reach sets then geometric, 3 reach sets, 4 reciprocal, 5 reciprocal "
+     "then as 1"},
     {"JNK_CLUTTER", 0, 0, 128, true,
      "of JNK_METHODS 1: from so many threats within 20 m reach sets come first; 0 never"},
     {"RCH_UNSEEN", 1, 0, 1, true, "1: reach sets do not go where a point cloud does not see"},
@@ -145,7 +146,11 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.moving_nearest = static_cast<std::uint16_t>(whole(Param::nearest));
     g.max_cost = at(Param::max_cost);
     constexpr std::array kOrders{avoid::LadderOrder::first, avoid::LadderOrder::as_given, avoid::LadderOrder::reversed,
-                                 avoid::LadderOrder::last};
+                                 avoid::LadderOrder::last,  avoid::LadderOrder::as_given, avoid::LadderOrder::as_given};
+    constexpr std::array kReactive{avoid::Reactive::never, avoid::Reactive::never, avoid::Reactive::never,
+                                   avoid::Reactive::never, avoid::Reactive::alone, avoid::Reactive::first};
+    static_assert(kOrders.size() == kReactive.size());
+    c.supervisor.reactive = kReactive[whole(Param::methods)];
     c.supervisor.order = kOrders[whole(Param::methods)];
     c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
     c.reach.sets = &reach_sets();
@@ -153,6 +158,9 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.reach.latency = at(Param::latency);
     c.reach.escape = c.supervisor.escape;
     c.blocks_unseen = whole(Param::unseen) == 1;
+    c.orca.horizon = c.supervisor.lookahead;
+    c.orca.latency = at(Param::latency);
+    c.orca.gives_up_blocked = c.supervisor.reactive != avoid::Reactive::alone;
     c.reach_unsuited = !reach::suits(*c.reach.sets, c.limits);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);

@@ -8,6 +8,7 @@
 
 #include "core/avoid/guidance.hpp"
 #include "core/geometric/planner.hpp"
+#include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "core/world/track_table.hpp"
 
@@ -104,6 +105,7 @@ struct Configuration {
     avoid::Settings supervisor;
     geometric::Settings planner;
     reach::Settings reach;
+    orca::Settings orca;
     /// The reach sets do not suit the vehicle's limits: they are not asked, whatever the order.
     bool reach_unsuited = false;
     bool blocks_unseen = true;  ///< by reach sets, where a point cloud does not see

@@ -13,9 +13,10 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
 import stack  # noqa: E402
 
-# With reach sets; what they may take of it, and the rest, is in the memory report (toolchain/report/memory_sizes.py).
-MOST_FLASH = 512 * 1024
-MOST_STATIC_RAM = 96 * 1024
+# With reach sets and reciprocal avoidance; what they may take of it, and the rest, is in the memory report
+# (toolchain/report/memory_sizes.py).
+MOST_FLASH = 576 * 1024
+MOST_STATIC_RAM = 112 * 1024
 MOST_COUPLED = 64 * 1024
 MOST_STACK = 8 * 1024
 ALLOCATORS = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")

@@ -106,6 +106,7 @@ struct Probe::World {
         airspace.keep_in_radius = r.keep_in;
         for (std::uint32_t i = 0; i < r.track_count; ++i) {
             tracks.unchecked_push_back(track_of(r.tracks[i], i));
+            tracks.back().cooperative = (r.shared >> i & 1U) != 0;
         }
         for (std::uint32_t i = 0; i < r.obstacle_count; ++i) {
             obstacles.unchecked_push_back(obstacle_of(r.obstacles[i], i));
@@ -114,8 +115,18 @@ struct Probe::World {
 };
 
 Probe::Probe() noexcept
-    : planner_(geometric::Settings{}), reach_(reach::Settings{}), supervisor_(avoid::Settings{}, planner_, reach_)
+    : planner_(geometric::Settings{}), reach_(reach::Settings{}),
+      supervisor_(avoid::Settings{}, planner_, reach_, orca_)
 {
+}
+
+world::PlanStatus Probe::plan(ProbeKind kind, const world::Situation& situation, WorkBudget& budget) noexcept
+{
+    switch (kind) {
+    case ProbeKind::plan: return planner_.plan(situation, budget, manoeuvre_);
+    case ProbeKind::reach: return reach_.plan(situation, budget, manoeuvre_);
+    default: return orca_.plan(situation, budget, manoeuvre_);
+    }
 }
 
 bool Probe::is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept
@@ -152,17 +163,18 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     }
     supervisor_.reset();
     out.magic = kProbeMagic;
-    if (record.kind == ProbeKind::plan || record.kind == ProbeKind::reach) {
+    const bool reciprocal = record.kind == ProbeKind::reciprocal;
+    if (record.kind == ProbeKind::plan || record.kind == ProbeKind::reach || reciprocal) {
+        orca_ = orca::Planner(world.configuration.orca);
         WorkBudget budget(world.configuration.supervisor.plan_budget);
         jink_window_begin();
-        const world::PlanStatus status = record.kind == ProbeKind::plan ? planner_.plan(situation, budget, manoeuvre_)
-                                                                        : reach_.plan(situation, budget, manoeuvre_);
+        const world::PlanStatus status = plan(record.kind, situation, budget);
         jink_window_end();
         out.status = static_cast<std::uint32_t>(status);
         out.work = budget.spent();
         if (status == world::PlanStatus::found) {
             out.cost = manoeuvre_.cost;
-            const Vec3& v = manoeuvre_.path.points.front().velocity;
+            const Vec3& v = reciprocal ? manoeuvre_.command : manoeuvre_.path.points.front().velocity;
             std::copy_n(v.data(), 3, out.velocity);
         }
     } else if (record.kind == ProbeKind::update) {

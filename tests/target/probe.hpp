@@ -3,6 +3,7 @@
 
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
+#include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "tests/target/probe_record.hpp"
 
@@ -21,12 +22,15 @@ public:
 private:
     struct World;
 
+    [[nodiscard]] world::PlanStatus plan(ProbeKind kind, const world::Situation& situation,
+                                         WorkBudget& budget) noexcept;
     /// Whether it was the reach sets that chose.
     [[nodiscard]] bool is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept;
 
     geometric::Planner planner_;
     reach::Planner reach_;
-    avoid::Supervisor<geometric::Planner, reach::Planner> supervisor_;
+    orca::Planner orca_;
+    avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner> supervisor_;
     world::Manoeuvre manoeuvre_;
 };
 

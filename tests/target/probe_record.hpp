@@ -12,17 +12,18 @@
 
 namespace jink::target {
 
-inline constexpr std::uint32_t kProbeMagic = 0x4A504203;  // "JPB", layout 3
+inline constexpr std::uint32_t kProbeMagic = 0x4A504204;  // "JPB", layout 4
 inline constexpr std::size_t kProbeTracks = 32;
 inline constexpr std::size_t kProbeObstacles = 96;
 
 inline constexpr std::uint32_t kReachChose = 0x10000;
 
 enum class ProbeKind : std::uint32_t {
-    plan,    ///< geometric::Planner::plan alone
-    update,  ///< avoid::Supervisor::update, not in control before
-    info,    ///< sizes; nothing is computed
-    reach,   ///< reach::Planner::plan alone
+    plan,        ///< geometric::Planner::plan alone
+    update,      ///< avoid::Supervisor::update, not in control before
+    info,        ///< sizes; nothing is computed
+    reach,       ///< reach::Planner::plan alone
+    reciprocal,  ///< orca::Planner::plan alone
 };
 
 struct ProbeTrack {
@@ -55,6 +56,7 @@ struct ProbeRecord {
     std::uint32_t retries;
     std::uint32_t bounds;        ///< 1 floor, 2 ceiling, 4 keep-in
     std::uint32_t reduced_sets;  ///< 0 the build's own reach sets, 1 the default vehicle's reduced ones
+    std::uint32_t shared;        ///< bit i: track i shares the reaction
     float own_position[3];
     float own_velocity[3];
     float own_sigma;
@@ -82,7 +84,7 @@ struct ProbeRecord {
 };
 static_assert(std::is_trivially_copyable_v<ProbeRecord>);
 static_assert(sizeof(ProbeTrack) == 40 && sizeof(ProbeObstacle) == 36);
-static_assert(sizeof(ProbeRecord) == 9 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
+static_assert(sizeof(ProbeRecord) == 10 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
 
 struct ProbeAnswer {
     std::uint32_t magic;
@@ -94,7 +96,7 @@ struct ProbeAnswer {
     std::uint32_t state;       ///< avoid::State, of `update`
     std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told
     float cost;
-    float velocity[3];        ///< command, of `update`; first velocity of the path, of `plan`
+    float velocity[3];        ///< command, of `update` and `reciprocal`; else first velocity of the path
     float margin;             ///< of `update`
     std::uint32_t cut_short;  ///< 1: work has ended before all candidates of the last plan were looked at
 };

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same planning problems on every target: the choice must be the same, costs may differ by rounding.
+"""The same planning problems on every target: the choice must be the same, costs and velocities may differ by rounding.
 
 Usage: same_choice.py BUILD_FOLDER COUNT [TARGET ...]
 
@@ -10,6 +10,7 @@ touches something is left out as a whole); and on a target with doubles in softw
 """
 import collections
 import copy
+import math
 import pathlib
 import random
 import re
@@ -23,7 +24,8 @@ TIE = 1e-4
 SOFT_DOUBLES = ("stm32f405",)
 # ProbeShape: box, capsule (one that leans and overlaps the start), cylinder.
 THROUGH_LIBCCD = (1, 2, 3)
-KINDS = ("plan", "plan", "reach", "plan", "update")
+KINDS = ("plan", "plan", "reach", "plan", "update", "reciprocal")
+SAME_VELOCITY = 1e-3  # [m/s], of a decision that is a velocity
 REDUCED_ONLY = ("stm32f405",)
 DISTURBED = 32
 ROUNDINGS = 4 * 2.0**-24
@@ -40,13 +42,15 @@ def ran_out(probe, case, *answers):
 def case_of(seed):
     kind = KINDS[seed % len(KINDS)]
     case = cases.random_case(seed, kind, tracks=1 + seed % 6, obstacles=(seed // 6) % 4, offsets=2 + 2 * (seed % 2))
+    if kind == "reciprocal":
+        case.shared = random.Random(seed).getrandbits(6)
     case.reduced_sets = int(seed // len(KINDS) % 2 == 0)
     return case
 
 
 def is_comparable(probe, case):
     """An image without room for the large reach sets flies the reduced ones, whatever is asked for."""
-    return case.kind == "plan" or case.reduced_sets or probe.name not in REDUCED_ONLY
+    return case.kind in ("plan", "reciprocal") or case.reduced_sets or probe.name not in REDUCED_ONLY
 
 
 def disturbed(case):
@@ -61,6 +65,10 @@ def disturbed(case):
 
 def choice(answer):
     return answer.status, answer.kind, answer.chosen
+
+
+def is_same(case, a, b):
+    return choice(a) == choice(b) and (case.kind != "reciprocal" or math.dist(a.velocity, b.velocity) <= SAME_VELOCITY)
 
 
 def main(build, count, names):
@@ -79,16 +87,16 @@ def main(build, count, names):
         found[case.kind] += reference.status == "found"
         for probe, answer in zip(asked[1:], answers[1:]):
             difference = abs(answer.cost - reference.cost)
-            if choice(answer) == choice(reference):
+            if is_same(case, answer, reference):
                 largest = max(largest, difference)
                 continue
             if ran_out(probe, case, answer, reference):
                 spent += 1
                 continue
             largest = max(largest, difference)
-            if answer.status == reference.status == "found" and difference <= TIE:
+            if case.kind != "reciprocal" and answer.status == reference.status == "found" and difference <= TIE:
                 ties += 1
-            elif any(choice(probes[0].ask(other)) == choice(answer) for other in disturbed(case)):
+            elif any(is_same(case, probes[0].ask(other), answer) for other in disturbed(case)):
                 unsteady += 1
             else:
                 differing.append(f"case {seed} on {probe.name}: {answer} against {reference}")

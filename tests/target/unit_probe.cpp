@@ -14,6 +14,7 @@
 #include "core/cost/tables_default.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometry/convex.hpp"
+#include "core/orca/planner.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
@@ -41,6 +42,10 @@ enum class Work : std::uint32_t {
     check,
     command,
     fallback,
+    orca_tracks,
+    orca_spheres,
+    orca_solids,
+    orca_program,
     curve_exact,
     curve_table,
     energy_exact,
@@ -115,6 +120,7 @@ private:
     }
     void geometry(Work work, WorkBudget& budget) noexcept;
     void curve(Work work, WorkBudget& budget) noexcept;
+    void program(WorkBudget& budget) noexcept;
 
     Random random_{0};
     std::array<Vec3, kMaxHullVertices> vertices_{};
@@ -126,6 +132,9 @@ private:
     StaticVector<world::Track, kMaxTracks> tracks_;
     StaticVector<world::Obstacle, kMaxObstacles> obstacles_;
     world::Manoeuvre manoeuvre_;
+    orca::Planner orca_;
+    std::array<orca::HalfSpace, kMaxOrcaPlanes> planes_{};
+    orca::Scratch<kMaxOrcaPlanes> scratch_;
     volatile float sink_ = 0.0F;
 };
 
@@ -185,9 +194,11 @@ void UnitProbe::scene(Work work) noexcept
     obstacles_.clear();
     path();
 
-    const bool tracks = work == Work::separation_tracks || work == Work::conflict_tracks || work == Work::fallback;
-    const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback;
-    const bool solids = work == Work::separation_solids || work == Work::conflict_solids;
+    const bool tracks = work == Work::separation_tracks || work == Work::conflict_tracks || work == Work::fallback ||
+                        work == Work::orca_tracks;
+    const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
+                         work == Work::orca_spheres;
+    const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids;
     const float spread = random_.uniform(1.0F, 60.0F);
     for (std::size_t i = 0, n = tracks ? below(kMaxTracks + 1) : 0; i < n; ++i) {
         world::Track track;
@@ -197,6 +208,7 @@ void UnitProbe::scene(Work work) noexcept
         track.radius = random_.uniform(0.2F, 4.0F);
         track.sigma_velocity = below(2) == 0 ? 0.0F : 0.2F;
         track.max_acceleration = below(3) == 0 ? 0.3F : 0.0F;
+        track.cooperative = below(2) == 0;
         tracks_.unchecked_push_back(track);
     }
     for (std::size_t i = 0, n = spheres ? below(kMaxObstacles + 1) : 0; i < n; ++i) {
@@ -283,6 +295,25 @@ void UnitProbe::curve(Work work, WorkBudget& budget) noexcept
     jink_window_end();
 }
 
+/// Half-spaces of all levels in any directions, most of them not far from the origin: some contradict each other.
+void UnitProbe::program(WorkBudget& budget) noexcept
+{
+    const std::size_t size = below(planes_.size() + 1);
+    const float far = random_.uniform(-2.0F, 4.0F);
+    for (std::size_t i = 0; i < size; ++i) {
+        orca::HalfSpace& plane = planes_[i];
+        plane.normal = (within(1.0F) + Vec3(0.0F, 0.0F, 1e-3F)).normalized();
+        plane.offset = -random_.uniform(-1.0F, far);
+        plane.level = static_cast<orca::Level>(i * orca::kLevels / size);
+    }
+    const std::array<orca::Ball, 2> balls{{{Vec3::Zero(), 5.0F}, {within(2.0F), random_.uniform(0.1F, 3.0F)}}};
+    const Vec3 preferred = within(5.0F);
+    jink_window_begin();
+    sink_ =
+        orca::solve({{planes_.data(), size}, balls, preferred, balls[1].centre}, scratch_.view(), budget).velocity.x();
+    jink_window_end();
+}
+
 std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
 {
     random_ = Random(seed * 977ULL + static_cast<std::uint32_t>(work));
@@ -296,12 +327,17 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
         curve(work, budget);
         return budget.spent();
     }
+    if (work == Work::orca_program) {
+        program(budget);
+        return budget.spent();
+    }
     scene(work);
     const world::Situation s = situation();
     const avoid::Settings settings;
     const world::Way way = world::way_of(s);
     const Vec3 command = within(3.0F);
     world::Conflict conflict;
+    orca_ = orca::Planner();
     jink_window_begin();
     switch (work) {
     case Work::conflict_tracks:
@@ -311,6 +347,9 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
         break;
     case Work::check: sink_ = avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; break;
     case Work::command: sink_ = avoid::command_margin(s, command, settings, budget); break;
+    case Work::orca_tracks:
+    case Work::orca_spheres:
+    case Work::orca_solids: sink_ = orca_.plan(s, budget, manoeuvre_) == world::PlanStatus::found ? 1.0F : 0.0F; break;
     case Work::fallback: sink_ = avoid::choose_fallback(s, way, nullptr, settings, budget).margin; break;
     default: sink_ = world::least_separation(s, manoeuvre_.path, 40.0F, budget).margin; break;
     }

@@ -11,7 +11,8 @@ extern "C" {
 char size_of_Coprocessor[sizeof(app::Coprocessor)];
 char size_of_Planner[sizeof(geometric::Planner)];
 char size_of_ReachPlanner[sizeof(reach::Planner)];
-char size_of_Supervisor[sizeof(avoid::Supervisor<geometric::Planner, reach::Planner>)];
+char size_of_ReciprocalPlanner[sizeof(orca::Planner)];
+char size_of_Supervisor[sizeof(avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner>)];
 char size_of_TrackTable[sizeof(world::TrackTable)];
 char size_of_ObstacleTable[sizeof(world::ObstacleTable)];
 char size_of_Endpoint[sizeof(link::mavlink::Endpoint)];

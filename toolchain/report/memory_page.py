@@ -14,13 +14,13 @@ def _images(m):
     yield row("figure [bytes]", *memory_sizes.IMAGES, "limit")
     yield row(*["---"] * 4)
     first = m["targets"][memory_sizes.IMAGES[0]]
-    names = {"flash without reach sets": "of the flash: without reach sets, their tables and code", "tables of the reach sets": "of the flash: the reach sets' tables",
-             "static RAM without the reach planner": "of the static RAM: without the reach planner", "reach planner": "of the static RAM: the reach planner", "flash": "flash: code, constants, initial values", "data": "of the static RAM: initialised", "bss": "of the static RAM: zeroed",
+    names = {"flash of the rest": "of the flash: without reach sets, their tables and code, and without reciprocal avoidance", "code of reciprocal avoidance": "of the flash: the code of reciprocal avoidance", "tables of the reach sets": "of the flash: the reach sets' tables",
+             "static RAM of the rest": "of the static RAM: without these two", "reciprocal planner": "of the static RAM: the reciprocal planner", "reach planner": "of the static RAM: the reach planner", "flash": "flash: code, constants, initial values", "data": "of the static RAM: initialised", "bss": "of the static RAM: zeroed",
              "stack reserved": "of the static RAM: stack reserved", "core-coupled": "core-coupled memory, apart from the static RAM", "stack": "stack by call graph, the deepest interrupt on top",
              "painted stack of the probe": "stack used by the probe, painted (plans and updates: random problems and all records)",
              "allocators": "allocators in the image"}
-    for key in ("flash", "flash without reach sets", "tables of the reach sets", "static RAM with its stack", "static RAM without the reach planner",
-                "reach planner", "data", "bss", "stack reserved", "core-coupled", "stack", "painted stack of the probe", "allocators"):
+    for key in ("flash", "flash of the rest", "tables of the reach sets", "code of reciprocal avoidance", "static RAM with its stack", "reach planner",
+                "reciprocal planner", "static RAM of the rest", "data", "bss", "stack reserved", "core-coupled", "stack", "painted stack of the probe", "allocators"):
         limit = memory_sizes.LIMITS.get(key)
         if key in first:
             yield row(names.get(key, key), *(number(m["targets"][t][key]) for t in memory_sizes.IMAGES),

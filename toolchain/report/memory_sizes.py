@@ -15,15 +15,17 @@ import targets
 
 IMAGES = ["mps2_an500", "stm32f405"]
 PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf": "arm-linux-gnueabihf-", "aarch64": "aarch64-linux-gnu-"}
-# Reach sets have limits of their own, on top of what the image had without them.
-LIMITS = {"flash": 512 * 1024, "flash without reach sets": 256 * 1024, "tables of the reach sets": 256 * 1024, "static RAM with its stack": 96 * 1024,
-          "static RAM without the reach planner": 64 * 1024, "reach planner": 32 * 1024, "stack": 8 * 1024, "core-coupled": 64 * 1024}
+# Reach sets and reciprocal avoidance have limits of their own, on top of what the image had without them.
+LIMITS = {"flash": 576 * 1024, "flash of the rest": 256 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 64 * 1024,
+          "static RAM with its stack": 112 * 1024, "static RAM of the rest": 64 * 1024, "reach planner": 32 * 1024, "reciprocal planner": 16 * 1024,
+          "stack": 8 * 1024, "core-coupled": 64 * 1024}
 REACH_TABLES = re.compile(r"jink::reach::(setsOf\w+::|k\w+Sets)")
 ALLOCATOR = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
 # Entry points whose stack is of interest to somebody who links the core: (name, mangled name).
 ENTRIES = [("image: the program", r"^jink_main$"), ("image: deepest interrupt", r"^jink_(uart|usart|can|guard)"),
            ("Coprocessor::step", r"N4jink3app11Coprocessor4stepE"), ("Pilot::update (of Supervisor)", r"N4jink5avoid5Pilot6updateE"),
-           ("geometric::Planner::plan", r"N4jink9geometric7Planner4planE"), ("reach::Planner::plan", r"N4jink5reach7Planner4planE")]
+           ("geometric::Planner::plan", r"N4jink9geometric7Planner4planE"), ("reach::Planner::plan", r"N4jink5reach7Planner4planE"),
+           ("orca::Planner::plan", r"N4jink4orca7Planner4planE")]
 # Capacities of the formula, another value for each, and a set to try the formula on.
 BASE = {"JINK_MAX_TRACKS": 32, "JINK_MAX_OBSTACLES": 96, "JINK_MAX_PATH_POINTS": 64, "JINK_MAX_CANDIDATES": 32,
         "JINK_MAX_HULL_VERTICES": 16, "JINK_MAX_REACH_NODES": 2560, "JINK_MAX_REACH_CELLS": 350, "JINK_MAX_BARRELS": 2}
@@ -95,7 +97,8 @@ def of_image(build, target, faults):
     reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
     allocators = [line for line in symbols.splitlines() if ALLOCATOR.search(line)]
     tables = sum(int(line.split()[1], 16) for line in run("arm-none-eabi-nm", "-S", "-C", elf).splitlines() if REACH_TABLES.search(line))
-    planner = sizeof(capacities_of(folder))["ReachPlanner"]
+    types = sizeof(capacities_of(folder))
+    reach, orca = types["ReachPlanner"], types["ReciprocalPlanner"]
     graph = stack.Graph(folder, skip="tests/")
     stacks = {}
     for name, pattern in ENTRIES:
@@ -103,9 +106,11 @@ def of_image(build, target, faults):
         stacks[name] = max(graph.deepest(f)[0] for f in found) if found else 0
     deepest = stacks[ENTRIES[0][0]] + stacks[ENTRIES[1][0]] + 27 * 4  # an interrupt's frame, registers of the FPU included
     rooms = by_room(build, target)
-    code = rooms.get("core/reach", {"flash": 0})["flash"]
-    result = {"flash": text + data, "flash without reach sets": text + data - tables - code, "tables of the reach sets": tables,
-              "static RAM with its stack": data + bss, "static RAM without the reach planner": data + bss - planner, "reach planner": planner, "data": data, "bss": bss - reserved, "stack reserved": reserved, "core-coupled": coupled,
+    code = {method: rooms.get(f"core/{method}", {"flash": 0})["flash"] for method in ("reach", "orca")}
+    result = {"flash": text + data, "flash of the rest": text + data - tables - sum(code.values()), "tables of the reach sets": tables,
+              "code of reciprocal avoidance": code["orca"],
+              "static RAM with its stack": data + bss, "static RAM of the rest": data + bss - reach - orca, "reach planner": reach,
+              "reciprocal planner": orca, "data": data, "bss": bss - reserved, "stack reserved": reserved, "core-coupled": coupled,
               "stack": deepest, "stack by call graph": stacks, "painted stack of the probe": painted(build, target),
               "allocators": len(allocators), "rooms": rooms}
     for name, most in LIMITS.items():

@@ -1,23 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws maps of convex pieces, as `jink mesh measure --figures` hands them over on standard input, all in one PNG."""
-import json
 import pathlib
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import PolyCollection
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
-import numpy as np  # noqa: E402
-from matplotlib.collections import PolyCollection  # noqa: E402
-from PIL import Image  # noqa: E402 (matplotlib needs it too)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-INK, MESH = "#2b2f36", "#2b2f36"
-WIDTH = 12.0  # [in]
-
-plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
-                     "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False})
+import pictures  # noqa: E402 (found beside this script)
+from pictures import INK, WIDTH  # noqa: E402
 
 
 def outline(points):
@@ -44,12 +38,12 @@ def view(axes, data, across, up):
     axes.add_collection(PolyCollection([p for p in pieces if len(p) > 2], facecolors=colours, edgecolors=colours, alpha=0.35,
                                        linewidths=0.8))
     axes.add_collection(PolyCollection([[(v[across], v[up]) for v in t] for t in data["mesh"]], facecolors="none",
-                                       edgecolors=MESH, linewidths=0.3))
+                                       edgecolors=INK, linewidths=0.3))
     axes.autoscale_view()
     axes.set_aspect("equal")
 
 
-def draw(maps, folder):
+def draw(maps):
     figure, rows = plt.subplots(2, len(maps), figsize=(WIDTH, 0.5 * WIDTH), layout="constrained", squeeze=False)
     for data, above, beside in zip(maps, rows[0], rows[1]):
         view(above, data, 0, 1)
@@ -59,27 +53,8 @@ def draw(maps, folder):
         beside.set_xlabel("east [m]")
     rows[0][0].set_ylabel("from above: north [m]")
     rows[1][0].set_ylabel("from the side: up [m]")
-    figure.set_dpi(90)
-    figure.canvas.draw()
-    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[:, :, :3])
-    plt.close(figure)
-    # 128 colours make a third of the size. No date or version in the file, so that drawing anew changes nothing.
-    pixels.quantize(128, dither=Image.Dither.NONE).save(folder / "maps.png", optimize=True)
-    return "maps.png"
-
-
-def main():
-    if len(sys.argv) != 2:
-        print("usage: mesh_maps.py FOLDER < maps.json", file=sys.stderr)
-        return 2
-    folder = pathlib.Path(sys.argv[1])
-    try:
-        print(folder / draw(json.load(sys.stdin), folder))
-    except OSError as error:
-        print(f"jink mesh measure: {error.filename} cannot be written: {error.strerror}", file=sys.stderr)
-        return 1
-    return 0
+    return figure, "maps.png"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(pictures.main("jink mesh measure", lambda maps: [draw(maps)]))

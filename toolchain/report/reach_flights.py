@@ -1,26 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws flown scenes from above, as `jink scenes --out` hands them over on standard input, one PNG each."""
-import json
 import pathlib
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.patches import Circle, Rectangle
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
-import numpy as np  # noqa: E402
-from matplotlib.patches import Circle, Rectangle  # noqa: E402
-from PIL import Image  # noqa: E402 (matplotlib needs it too)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-INK, BODY, EDGE, MOVES = "#2b2f36", "#c9ced6", "#8b939f", "#b3462f"
+import pictures  # noqa: E402 (found beside this script)
+from pictures import INK, WIDTH  # noqa: E402
+
+BODY, EDGE, MOVES = "#c9ced6", "#8b939f", "#b3462f"
 COLOURS = {"straight": "#9aa1ab", "geometric": "#d17a22", "geometric, reach sets": "#1f6fb2", "reach sets, geometric": "#2e8b57",
            "reach sets": "#8e5bb5"}
-WIDTH = 12.0  # [in]
 ROOM = 8.0  # about what is drawn [m]
-
-plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
-                     "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False})
 
 
 def draw_body(axes, body):
@@ -58,7 +54,7 @@ def view(axes, scene, coordinate):
         axes.plot(flight["at"][0], flight["at"][coordinate], "o", mfc="white", mec=colour, ms=4, zorder=11)
 
 
-def draw(scene, folder):
+def draw(scene):
     mission = np.array(scene["mission"])
     paths = np.concatenate([np.array(flight["path"]) for flight in scene["flights"]] + [mission])
     low, high = paths.min(axis=0) - ROOM, paths.max(axis=0) + ROOM
@@ -84,29 +80,8 @@ def draw(scene, folder):
     handles, labels = axes[0].get_legend_handles_labels()
     axes[2].axis("off")
     axes[2].legend(handles, labels, loc="center", ncols=3, frameon=False, fontsize=8)
-    name = scene["name"] + ".png"
-    figure.set_dpi(90)
-    figure.canvas.draw()
-    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[:, :, :3])
-    plt.close(figure)
-    # 128 colours make a third of the size. No date or version in the file, so that drawing anew changes nothing.
-    pixels.quantize(128, dither=Image.Dither.NONE).save(folder / name, optimize=True)
-    return name
-
-
-def main():
-    if len(sys.argv) != 2:
-        print("usage: reach_flights.py FOLDER < scenes.json", file=sys.stderr)
-        return 2
-    folder = pathlib.Path(sys.argv[1])
-    for scene in json.load(sys.stdin):
-        try:
-            print(folder / draw(scene, folder))
-        except OSError as error:
-            print(f"jink scenes: {error.filename} cannot be written: {error.strerror}", file=sys.stderr)
-            return 1
-    return 0
+    return figure, scene["name"] + ".png"
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(pictures.main("jink scenes", lambda scenes: map(draw, scenes)))

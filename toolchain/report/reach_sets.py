@@ -1,25 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws reach sets, as `jink reach measure --figures` hands them over on standard input, one PNG each."""
-import json
 import math
 import pathlib
 import sys
 
-import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.collections import LineCollection
 
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402 (the backend must be chosen first)
-import numpy as np  # noqa: E402
-from matplotlib.collections import LineCollection  # noqa: E402
-from PIL import Image  # noqa: E402 (matplotlib needs it too)
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-INK, GRID = "#2b2f36", "#c9ced6"
-WIDTH = 12.0  # [in]
+import pictures  # noqa: E402 (found beside this script)
+from pictures import INK, WIDTH  # noqa: E402
+
+GRID = "#c9ced6"
 FLATTEST = 0.34  # of a view's width: what is flatter is stretched, and says so
-
-plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": INK, "axes.labelcolor": INK,
-                     "xtick.color": INK, "ytick.color": INK, "axes.spines.top": False, "axes.spines.right": False})
 
 
 def grid_lines(half, parts, layers, distance):
@@ -58,7 +54,7 @@ def height_share(half):
     return max(FLATTEST, 2.1 * math.sin(half) / 1.04)
 
 
-def draw(data, folder):
+def draw(data):
     tall = max(height_share(data["horizontal"]), height_share(data["vertical"]))
     figure, axes = plt.subplots(1, 2, figsize=(WIDTH, 0.44 * WIDTH * tall + 0.9), layout="constrained")
     drawn = view(axes[0], data, 1, data["horizontal"], data["columns"], "seen from above")
@@ -70,28 +66,8 @@ def draw(data, folder):
     figure.suptitle(f"{data['name']}: {len(data['movements']) + 1} nodes", fontsize=10, weight="bold")
     figure.colorbar(drawn, ax=axes, label="smoothness of the best trajectory through it", shrink=0.7, pad=0.01)
     name = data["name"].replace(" ", "_").replace("/", "-").replace(",", "") + ".png"
-    figure.set_dpi(90)
-    figure.canvas.draw()
-    pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[:, :, :3])
-    plt.close(figure)
-    # 128 colours make a third of the size. No date or version in the file, so that drawing anew changes nothing.
-    pixels.quantize(128, dither=Image.Dither.NONE).save(folder / name, optimize=True)
-    return name
-
-
-def main():
-    if len(sys.argv) != 2:
-        print("usage: reach_sets.py FOLDER < sets.json", file=sys.stderr)
-        return 2
-    folder = pathlib.Path(sys.argv[1])
-    for data in json.load(sys.stdin):
-        try:
-            print(folder / draw(data, folder))
-        except OSError as error:
-            print(f"jink reach measure: {error.filename} cannot be written: {error.strerror}", file=sys.stderr)
-            return 1
-    return 0
+    return figure, name
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(pictures.main("jink reach measure", lambda sets: map(draw, sets)))

@@ -3,6 +3,7 @@
 import copy
 import dataclasses
 import math
+import random
 
 import cases
 import targets
@@ -42,6 +43,8 @@ class Scene:
                 p, v, *rest = case.tracks[i]
                 t = r.uniform(1.0, 7.0)
                 case.tracks[i] = (tuple(a + t * b for a, b in zip(p, v)), (0.0, 0.0, 0.0), *rest)
+        if self.kind == "reciprocal":
+            case.shared = r.getrandbits(32)
         if self.free:
             for _ in range(r.randint(0, 3)):
                 _parameter(case, r, 1.0)
@@ -56,7 +59,7 @@ class Scene:
 
     @property
     def moves(self):
-        return MOVES + ([_more, _fewer] if self.threats[0] != self.threats[1] or self.obstacles[1] else []) + (
+        return MOVES + ([_share] * 2 if self.kind == "reciprocal" else []) + ([_more, _fewer] if self.threats[0] != self.threats[1] or self.obstacles[1] else []) + (
             [lambda c, r, s, scene: _parameter(c, r, s)] * 3 if self.free else [])
 
     def cross(self, a, b, r):
@@ -167,6 +170,10 @@ def _obstacle(case, r, size, scene):
     case.obstacles[i] = (kind, a, b, radius, yaw)
 
 
+def _share(case, r, size, scene):
+    case.shared ^= 1 << r.randrange(max(1, len(case.tracks)))
+
+
 def _more(case, r, size, scene):
     """One more: a copy of another, moved a little."""
     if case.tracks and len(case.tracks) < scene.threats[1] and not scene.mixed:
@@ -234,6 +241,7 @@ def tidy(case, scene):
     case.obstacles = [(kind, tuple(_within(x, -1000.0, 1000.0) for x in a), tuple(_within(x, 0.1, 20.0) for x in b) if kind == 1
                        else tuple(_within(x, -1000.0, 1000.0) for x in b), _within(radius, 0.05, 10.0) if kind != 1 else 0.0, yaw)
                       for kind, a, b, radius, yaw in case.obstacles]
+    case.shared &= (1 << len(case.tracks)) - 1
     if scene.study:
         _as_studied(case)
     if not scene.solids:
@@ -264,6 +272,8 @@ SCENES = {scene.name: scene for scene in (
     Scene("plan_16_3_solids", "plan, 16 candidates, 3 threats of any shape", "plan", (3, 3), (0, 0), SIXTEEN, 0, False, True, True),
     Scene("plan_full", "plan at full capacity", "plan", (1, 32), (0, 96), THIRTY_TWO, 8, True),
     Scene("reach_full", "decision with reach sets, 32 tracks and 96 obstacles at most", "reach", (1, 32), (0, 96), SIXTEEN, 0, False),
+    Scene("orca_16_16", "reciprocal decision, 16 tracks and 16 obstacles", "reciprocal", (16, 16), (16, 16), SIXTEEN, 0, False, True),
+    Scene("orca_full", "reciprocal decision, 32 tracks and 96 obstacles at most", "reciprocal", (1, 32), (0, 96), SIXTEEN, 0, False, True),
     Scene("update_full", "update at full capacity", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True),
     Scene("update_solids", "update, solids of any shape", "update", (1, 32), (0, 96), THIRTY_TWO, 8, True, True),
 )}
@@ -271,6 +281,8 @@ SCENES = {scene.name: scene for scene in (
 
 def _sample(scene, seed, tracks, obstacles, offsets, retries):
     case = cases.random_case(seed, SCENES[scene].kind, tracks, obstacles, offsets, retries)
+    if SCENES[scene].kind == "reciprocal":
+        case.shared = random.Random(seed).getrandbits(32)
     return tidy(case, SCENES[scene])
 
 
@@ -284,6 +296,9 @@ SAMPLES = {
     "reach_typical": ("decision with reach sets, 1 to 6 tracks, up to 3 obstacles", 300,
                       lambda seed: _sample("reach_full", seed, 1 + seed % 6, seed // 6 % 4, 2, 0)),
     "reach_full": ("decision with reach sets, 32 tracks, 96 obstacles", 80, lambda seed: _sample("reach_full", seed, 32, 96, 2, 0)),
+    "orca_typical": ("reciprocal decision, 1 to 6 tracks, up to 3 obstacles", 300,
+                     lambda seed: _sample("orca_full", seed, 1 + seed % 6, seed // 6 % 4, 2, 0)),
+    "orca_16_16": ("reciprocal decision, 16 tracks and 16 obstacles", 300, lambda seed: _sample("orca_16_16", seed, 16, 16, 2, 0)),
     "update_full": ("update, the same", 80, lambda seed: _sample("update_full", seed, 32, 96, 4, 8)),
 }
 

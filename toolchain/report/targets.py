@@ -7,14 +7,14 @@ import struct
 import subprocess
 import tempfile
 
-MAGIC = 0x4A504203
+MAGIC = 0x4A504204
 TRACKS = 32
 OBSTACLES = 96
-HEADER = struct.Struct("<9I20f2I8f2I")
+HEADER = struct.Struct("<10I20f2I8f2I")
 TRACK = struct.Struct("<10f")
 OBSTACLE = struct.Struct("<I8f")
 ANSWER = struct.Struct("<8I5fI")
-KINDS = {"plan": 0, "update": 1, "info": 2, "reach": 3}
+KINDS = {"plan": 0, "update": 1, "info": 2, "reach": 3, "reciprocal": 4}
 STATUS = ["found", "no_conflict", "too_close", "none_available", "budget_spent", "bad_input"]
 
 
@@ -30,6 +30,7 @@ class Case:
     retries: int = 8
     bounds: int = 0
     reduced_sets: int = 0
+    shared: int = 0  # bit i: track i shares the reaction
     own_position: tuple = (0.0, 0.0, 30.0)
     own_velocity: tuple = (5.0, 0.0, 0.0)
     own_sigma: float = 0.1
@@ -50,7 +51,7 @@ class Case:
 
     def pack(self):
         out = HEADER.pack(MAGIC, self.seed, KINDS[self.kind], self.offsets, self.extra_planes, self.families, self.retries,
-                          self.bounds, self.reduced_sets, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
+                          self.bounds, self.reduced_sets, self.shared, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
                           *self.leg_end, self.leg_speed, *self.half, self.floor, self.ceiling, self.keep_in,
                           self.waypoints, self.swept, self.lookahead, self.k_sigma, *self.limits, len(self.tracks), len(self.obstacles))
         for position, velocity, *rest in self.tracks:

@@ -58,5 +58,75 @@ TEST(Rejoining, ANewConflictWithoutAPlanIsBrakedFor)
     EXPECT_EQ(f.update(supervisor, true).state, State::braking);
 }
 
+/// Flies on until control is given back, or so many steps of 50 ms.
+int rejoin(Flight& f, Supervisor<FakeMethod>& supervisor, int most)
+{
+    Guidance g = f.update(supervisor, true);
+    EXPECT_EQ(g.state, State::rejoining);
+    int steps = 0;
+    for (; g.wants_control && steps < most; ++steps) {
+        f.pass(g.velocity, 0.05F);
+        const Vec3& at = f.scene.own.position;
+        EXPECT_GE(at.z() - 1.0F, 24.99F) << steps;
+        g = f.update(supervisor, true);
+    }
+    return steps;
+}
+
+/// A leg that lies below the floor is the mission's business: our command leads down to the floor, and when nothing is
+/// in the way any more the autopilot has the vehicle again.
+TEST(Rejoining, AFloorAboveTheLegIsKept)
+{
+    for (const float beside : {0.0F, 15.0F}) {
+        Flight f;
+        f.scene.leg(Vec3(0, 0, 20), Vec3(300, 0, 20), 5.0F);
+        f.scene.airspace.has_floor = true;
+        f.scene.airspace.floor = 25.0F;
+        f.scene.own.position = Vec3(20, beside, 34);
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        EXPECT_LT(rejoin(f, supervisor, 400), 400) << beside;
+        EXPECT_LE(std::abs(f.scene.own.position.y()), 1.0F) << "back above the leg first";
+        EXPECT_EQ(supervisor.state(), State::watching);
+    }
+}
+
+TEST(Rejoining, BelowTheFloorItGoesNoDeeper)
+{
+    Flight f;
+    f.scene.leg(Vec3(0, 0, 10), Vec3(300, 0, 10), 5.0F);
+    f.scene.airspace.has_floor = true;
+    f.scene.airspace.floor = 25.0F;
+    f.scene.own.position = Vec3(20, 0, 22);
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_FALSE(g.wants_control) << "above its leg, as near as our command may bring it";
+    EXPECT_GE(g.velocity.z(), 0.0F);
+    EXPECT_GT(g.velocity.x(), 1.0F);
+}
+
+TEST(Rejoining, CeilingAndKeepInAreKept)
+{
+    Flight f;
+    f.scene.leg(Vec3(0, 0, 40), Vec3(300, 0, 40), 5.0F);
+    f.scene.airspace.has_ceiling = f.scene.airspace.has_keep_in = true;
+    f.scene.airspace.ceiling = 30.0F;
+    f.scene.airspace.keep_in_radius = 60.0F;
+    f.scene.own.position = Vec3(30, 9, 25);
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    Guidance g = f.update(supervisor, true);
+    ASSERT_EQ(g.state, State::rejoining);
+    for (int i = 0; i < 400 && g.wants_control; ++i) {
+        f.pass(g.velocity, 0.05F);
+        const Vec3& at = f.scene.own.position;
+        ASSERT_LE(at.z() + 1.0F, 30.01F) << i;
+        ASSERT_LE(std::hypot(at.x(), at.y()) + 1.41F, 60.05F) << i;
+        g = f.update(supervisor, true);
+    }
+    EXPECT_FALSE(g.wants_control);
+}
+
 }  // namespace
 }  // namespace jink::avoid

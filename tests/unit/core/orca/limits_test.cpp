@@ -168,6 +168,12 @@ TEST(Settings, EachInequalityHasItsCause)
               }),
               Unsafe::ramp_acceleration);
     EXPECT_EQ(cause([](Q q) { q.pair.recovery_time = 1.3F; }), Unsafe::recovery_delay);
+    EXPECT_EQ(cause([](Q q) { q.pair.conflict = Conflict::at_rest; }), Unsafe::rest_brake);
+    EXPECT_EQ(cause([](Q q) {
+                  q.pair.conflict = Conflict::at_rest;
+                  q.pair.brake = 1.36F;
+              }),
+              Unsafe::none);
 }
 
 TEST(Settings, RampThatTheDelayBears)

@@ -21,10 +21,14 @@ struct Scene {
     Airspace airspace;
     const Manoeuvre* flying = nullptr;
     float k_sigma = 3.0F;
+    TrackId own_id = 0;
+    const Commanded* commanded = nullptr;
+    Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
 
     [[nodiscard]] Situation situation() const
     {
-        return {now, own, limits, airframe, reference, tracks, obstacles, airspace, flying, k_sigma};
+        return {now,      own,    limits,  airframe, reference, tracks,        obstacles,
+                airspace, flying, k_sigma, own_id,   commanded, shared_horizon};
     }
 
     void leg(const Vec3& start, const Vec3& end, float speed = 5.0F)

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A method that decides every tick anew, beside others that plan.
+#include <gtest/gtest.h>
+
+#include "core/orca/planner.hpp"
+#include "tests/unit/core/avoid/fakes.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+using world::ManoeuvreKind;
+
+struct FakeReactive : FakeMethod {
+    static constexpr bool kReactive = true;
+    static constexpr bool kKeepsRoom = true;
+};
+
+/// Always the same velocity.
+FakeReactive holding(const Vec3& velocity)
+{
+    return {{[=](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out.kind = ManoeuvreKind::velocity;
+        out.by = world::MethodId::orca;
+        out.start = s.now;
+        out.valid_until = s.now + 8.0F;
+        out.command = velocity;
+        out.side = Vec3::Zero();
+        path::predict_velocity_command(s.own, velocity, 8.0F, 0.2F, s.limits, out.path);
+        return PlanStatus::found;
+    }}};
+}
+
+Settings with(Reactive reactive)
+{
+    Settings s = quick();
+    s.reactive = reactive;
+    return s;
+}
+
+TEST(ReactiveMethods, AreAskedOnlyWhereTheSettingsSaySo)
+{
+    for (const Reactive reactive : {Reactive::never, Reactive::first, Reactive::alone}) {
+        Flight f;
+        head_on(f, 20.0F);
+        FakeMethod planning = always(kLeft);
+        FakeReactive deciding = holding(Vec3(3, -4, 0));
+        Supervisor supervisor(with(reactive), planning, deciding);
+        static_cast<void>(f.update(supervisor, false));
+        EXPECT_EQ(deciding.asked > 0, reactive != Reactive::never);
+        EXPECT_EQ(planning.asked > 0, reactive == Reactive::never);
+    }
+}
+
+TEST(ReactiveMethods, TheNextIsAskedWhereTheyHaveNoAnswer)
+{
+    for (const Reactive reactive : {Reactive::first, Reactive::alone}) {
+        Flight f;
+        head_on(f);
+        FakeMethod planning = always(kLeft);
+        FakeReactive deciding{{[](const Situation&, WorkBudget&, Manoeuvre&) { return PlanStatus::none_available; }}};
+        Supervisor supervisor(with(reactive), planning, deciding);
+        const Guidance g = f.update(supervisor, true);
+        EXPECT_EQ(planning.asked > 0, reactive == Reactive::first);
+        EXPECT_EQ(g.state, reactive == Reactive::first ? State::avoiding : State::rejoining);
+        EXPECT_EQ(supervisor.diagnostics().found_by_next, reactive == Reactive::first ? 1U : 0U);
+    }
+}
+
+TEST(ReactiveMethods, AreAskedAtEveryUpdateAndTheirCommandIsFlownAsItIs)
+{
+    Flight f;
+    head_on(f, 30.0F);
+    Vec3 wanted(4, -3, 0);
+    FakeReactive deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+        return holding(wanted).answer(s, budget, out);
+    }}};
+    Supervisor supervisor(with(Reactive::alone), deciding);
+    Guidance g = f.update(supervisor, false);
+    for (int i = 0; i < 10; ++i) {
+        wanted.x() -= 0.05F;
+        g = f.update(supervisor, true);
+        EXPECT_EQ(deciding.asked, i + 2);
+        EXPECT_EQ(g.state, State::avoiding);
+        EXPECT_EQ(g.kind, ManoeuvreKind::velocity);
+        EXPECT_EQ(g.velocity, wanted);
+        f.pass(g.velocity, 0.02F);
+    }
+    EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
+    EXPECT_EQ(supervisor.diagnostics().replans, 0U);
+}
+
+/// No method is trusted: one that flies into a track is not flown.
+TEST(ReactiveMethods, AnswersAreCheckedLikeAllOthers)
+{
+    Flight f;
+    head_on(f, 20.0F);
+    FakeReactive deciding = holding(Vec3(5, 0, 0));
+    Supervisor supervisor(with(Reactive::alone), deciding);
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_NE(g.velocity, Vec3(5, 0, 0));
+    EXPECT_EQ(supervisor.diagnostics().answers_rejected, 1U);
+}
+
+/// What one that gives way does beyond the stopping time is not known: it is looked at until then.
+TEST(ReactiveMethods, TracksThatShareTheReactionAreLookedAtAsFarAsTheStop)
+{
+    for (const bool cooperative : {false, true}) {
+        Flight f;
+        head_on(f, 40.0F);  // 3.7 s off; the vehicle stops within 2
+        f.scene.tracks.back().cooperative = cooperative;
+        FakeReactive deciding = holding(Vec3(5, 0, 0));
+        Supervisor supervisor(with(Reactive::alone), deciding);
+        static_cast<void>(f.update(supervisor, true));
+        EXPECT_EQ(supervisor.diagnostics().answers_rejected, cooperative ? 0U : 1U);
+    }
+    Flight f;
+    head_on(f, 12.0F);
+    f.scene.tracks.back().cooperative = true;
+    FakeReactive deciding = holding(Vec3(5, 0, 0));
+    Supervisor supervisor(with(Reactive::alone), deciding);
+    static_cast<void>(f.update(supervisor, true));
+    EXPECT_EQ(supervisor.diagnostics().answers_rejected, 1U);
+}
+
+/// Others' plans and the last rung count everybody as flying straight on.
+TEST(ReactiveMethods, PlansOfOthersDoNotCountOnAnybody)
+{
+    Flight f;
+    head_on(f, 40.0F);
+    f.scene.tracks.back().cooperative = true;
+    FakeMethod straight{[](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 0.1F, 80.0F);
+        return PlanStatus::found;
+    }};
+    Supervisor supervisor(with(Reactive::never), straight);
+    static_cast<void>(f.update(supervisor, true));
+    EXPECT_GE(supervisor.diagnostics().answers_rejected, 1U);
+}
+
+/// Methods are told what was really sent, and nothing while the autopilot flies.
+TEST(ReactiveMethods, AreToldTheLastCommand)
+{
+    Flight f;
+    head_on(f, 30.0F);
+    std::vector<const world::Commanded*> seen;
+    std::vector<world::Commanded> values;
+    FakeReactive deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+        seen.push_back(s.commanded);
+        values.push_back(s.commanded != nullptr ? *s.commanded : world::Commanded{});
+        return holding(Vec3(4, -3, 0)).answer(s, budget, out);
+    }}};
+    Supervisor supervisor(with(Reactive::alone), deciding);
+    static_cast<void>(f.update(supervisor, false));
+    const TimePoint first = f.scene.now;
+    f.pass(Vec3(5, 0, 0), 0.02F);
+    static_cast<void>(f.update(supervisor, true));
+    const TimePoint second = f.scene.now;
+    f.pass(Vec3(4, -3, 0), 0.02F);
+    static_cast<void>(f.update(supervisor, true));
+    ASSERT_EQ(seen.size(), 3U);
+    EXPECT_EQ(seen[0], nullptr);
+    EXPECT_EQ(seen[1], nullptr) << "offered at " << first.us << ", but not flown";
+    ASSERT_NE(seen[2], nullptr);
+    EXPECT_EQ(values[2].velocity, Vec3(4, -3, 0));
+    EXPECT_EQ(values[2].at, second);
+}
+
+/// The product's own: two vehicles that share the reaction pass each other, and both come back to their legs.
+TEST(ReactiveMethods, TwoVehiclesPassEachOther)
+{
+    struct Vehicle {
+        Flight f;
+        orca::Planner planner;
+        Supervisor<orca::Planner> supervisor{with(Reactive::alone), planner};
+        bool controlled = false;
+    };
+    std::array<Vehicle, 2> vehicles;
+    Flight& west = vehicles[1].f;
+    west.scene.leg(Vec3(120, 0, 30), Vec3(-180, 0, 30), 5.0F);
+    west.scene.own.position = Vec3(120, 0, 30);
+    west.scene.own.velocity = Vec3(-5, 0, 0);
+    float least = 1e9F;
+    for (int i = 0; i < 2500; ++i) {
+        std::array<Vec3, 2> commands;
+        for (std::size_t k = 0; k < 2; ++k) {
+            Vehicle& v = vehicles[k];
+            const vehicle::VehicleState& other = vehicles[1 - k].f.scene.own;
+            v.f.scene.own_id = static_cast<world::TrackId>(k + 1);
+            v.f.scene.tracks.clear();
+            world::Track& track = v.f.scene.track(other.position, other.velocity);
+            track.id = static_cast<world::TrackId>(2 - k);
+            track.cooperative = true;
+            const Guidance g = v.f.update(v.supervisor, v.controlled);
+            v.controlled = g.wants_control;
+            const world::Way way = world::way_of(v.f.scene.situation());
+            commands[k] = g.wants_control ? g.velocity : Vec3(way.direction * way.speed);
+        }
+        for (std::size_t k = 0; k < 2; ++k) {
+            vehicles[k].f.scene.tracks.clear();
+            vehicles[k].f.pass(commands[k], 0.02F);
+        }
+        least = std::min(least, (vehicles[0].f.scene.own.position - vehicles[1].f.scene.own.position).norm());
+    }
+    EXPECT_GE(least, 2.0F);
+    for (const Vehicle& v : vehicles) {
+        EXPECT_EQ(v.supervisor.diagnostics().manoeuvres, 1U);
+        EXPECT_EQ(v.supervisor.diagnostics().brakes, 0U);
+        EXPECT_LT(std::abs(v.f.scene.own.position.y()), 0.5F);
+        EXPECT_EQ(v.supervisor.state(), State::watching);
+    }
+    EXPECT_GT(vehicles[0].f.scene.own.position.x(), 200.0F);
+    std::printf("[ measured ] two vehicles head on: least distance %.2f m\n", double(least));
+}
+
+}  // namespace
+}  // namespace jink::avoid
