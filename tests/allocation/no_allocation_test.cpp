@@ -135,6 +135,7 @@ struct Visited {
     long given_back = 0;
     long parameters = 0;
     long refused_bytes = 0;
+    long neighbours = 0;
 };
 
 class Watched {
@@ -228,6 +229,28 @@ void fly_everything(Watched& w)
     w.until(own_way, 1500, "gives back once free");
     w.fly(100);
 
+    // Other systems of the link, and what they say to traffic management.
+    for (int i = 0; i < 200; ++i) {
+        GlobalPositionInt m;
+        m.time_boot_ms = f.boot_ms();
+        m.lat = 473977420 + i;
+        m.lon = 85455940 + 20'000;
+        m.alt = 538000;
+        UtmGlobalPosition utm;
+        utm.lat = m.lat;
+        utm.lon = m.lon;
+        utm.alt = m.alt;
+        utm.uas_id.fill(static_cast<std::uint8_t>(i));
+        utm.flags = 2 | 4 | 8 | 32 | 64;
+        const auto system = static_cast<std::uint8_t>(10 + i);
+        f.feed_bytes(wire::frame_of(wire::heartbeat(3, i % 2 == 0, 3), {system, 1, 0}));
+        f.feed_bytes(wire::frame_of(m, {system, 1, 1}));
+        f.feed_bytes(wire::frame_of(utm, {system, 1, 2}));
+        w.fly(1);
+    }
+    w.visited.neighbours = static_cast<long>(f.coprocessor.tracks(f.now).size());
+    w.fly(200);
+
     // A full house.
     for (int i = 0; i < static_cast<int>(kMaxTracks) + 8; ++i) {
         f.obstacles.push_back(f.position + Vec3(random.uniform(-15.0F, 15.0F), 45.0F, random.uniform(-8.0F, 8.0F)));
@@ -258,6 +281,7 @@ int main()
     expect(v.rejoining > 0, "rejoining was visited in control");
     expect(v.given_back >= 2, "control was given back twice");
     expect(v.parameters == static_cast<long>(app::kParamCount), "the whole parameter list went out");
+    expect(v.neighbours == static_cast<long>(kMaxTracks), "neighbours filled the table");
     expect(v.refused_bytes > 20000, "garbage was searched and refused");
     expect(watched->clouds.port_diagnostics().obstacles > 0, "clouds became obstacles");
     expect(!watched->flight.lost_input, "the port held everything that was fed");
