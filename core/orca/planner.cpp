@@ -229,12 +229,12 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     input.own = filter_.predicted(s.own, s.now);
     input.own_age = s.now - s.own.stamp;
     input.preferred = preferred_velocity(s);
-    StaticVector<Neighbour, kMaxTracks> neighbours;
+    neighbours_.clear();
     for (const world::Track& track : s.tracks) {
         static_cast<void>(
-            neighbours.try_push_back(neighbour_of(s, track, input.own, settings, ahead, settings_.stale)));
+            neighbours_.try_push_back(neighbour_of(s, track, input.own, settings, ahead, settings_.stale)));
     }
-    input.neighbours = {neighbours.data(), neighbours.size()};
+    input.neighbours = {neighbours_.data(), neighbours_.size()};
     input.scene = {map_, s.obstacles};
     Bounds bounds;
     const Cylinder kept = cylinder_of(s.limits.half_extents, s.k_sigma * s.own.sigma_position);

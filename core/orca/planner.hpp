@@ -41,7 +41,7 @@ struct Settings {
 /// A fixed wing flies no slower than kWingShare of its cruise speed, and turns no tighter than its acceleration lets
 /// it.
 ///
-/// Memory: sizeof(Planner), about 9 KiB with the default capacities. O(tracks + obstacles) and the programs' turns,
+/// Memory: sizeof(Planner), about 14 KiB with the default capacities. O(tracks + obstacles) and the programs' turns,
 /// bounded by the budget.
 class Planner {
 public:
@@ -76,6 +76,7 @@ private:
     Settings settings_;
     VelocityFilter filter_;
     const geometry::MeshMap* map_ = nullptr;
+    StaticVector<Neighbour, kMaxTracks> neighbours_;  ///< of a plan; not on the stack
     Decision decision_;
     TimePoint last_plan_;
     bool has_planned_ = false;

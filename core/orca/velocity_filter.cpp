@@ -89,13 +89,13 @@ struct VelocityFilter::Tick {
     const FilterInput& input;
     Decision out;
     LimitSet limits;
-    std::array<HalfSpace, kPlanes> planes;
+    Planes& planes;
     std::size_t first = kMaxLimitPlanes;  ///< of limits
     std::size_t hard = kMaxLimitPlanes;   ///< one after those that are kept when the command is smoothed
     std::size_t end = kMaxLimitPlanes;
     StaticVector<BiasNeighbour, kMaxOrcaNeighbours> seen;
 
-    explicit Tick(const FilterInput& given) noexcept : input(given) {}
+    Tick(const FilterInput& given, Planes& memory) noexcept : input(given), planes(memory) {}
 
     void add(const HalfSpace& plane) noexcept { planes[end++] = plane; }
     void put_limits(const LimitSet& set) noexcept
@@ -282,7 +282,7 @@ void VelocityFilter::brake(Tick& tick) noexcept
 Decision VelocityFilter::decide(const FilterInput& input, WorkBudget& budget) noexcept
 {
     const std::uint32_t before = budget.spent();
-    Tick tick(input);
+    Tick tick(input, planes_);
     tick.say(!configured_, kConfigUnsafe);
     tick.say(!is_whole(input), kBadInput);
     tick.say(input.own_age > settings_.own_stale, kOwnStale);

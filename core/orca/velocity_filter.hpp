@@ -116,7 +116,7 @@ struct Decision {
 /// Each tick: predicted() - neighbours relative to it, made by the caller - decide() - issued() with what was really
 /// sent. Answers depend on nothing but the calls so far.
 ///
-/// Memory: about 8 KiB with the default capacities. decide() is bounded by its budget; when that is spent the command
+/// Memory: about 10 KiB with the default capacities. decide() is bounded by its budget; when that is spent the command
 /// is the best of a few, as solve() says, and kWorkLimit is told.
 class VelocityFilter {
 public:
@@ -145,7 +145,7 @@ public:
 
 private:
     static constexpr std::size_t kPlanes = kMaxLimitPlanes + kMaxBounds + kMaxObstaclePlanes + 2 * kMaxOrcaNeighbours;
-    using Planes = StaticVector<HalfSpace, kPlanes>;
+    using Planes = std::array<HalfSpace, kPlanes>;
 
     struct Tick;
     void add_bounds(Tick& tick) const noexcept;
@@ -165,6 +165,7 @@ private:
     Vec3 last_solution_ = Vec3::Zero();
     bool has_solution_ = false;
     bool configured_ = false;
+    Planes planes_;  ///< of a decision; not on the stack
     Scratch<kPlanes> scratch_;
 };
 
