@@ -110,6 +110,7 @@ inline constexpr std::uint32_t kOrcaPlane = 4;     ///< a plane that is searched
 inline constexpr std::uint32_t kOrcaLine = 4;      ///< and a line
 inline constexpr std::uint32_t kOrcaTurn = 2;      ///< a turn of the search, but for these
 inline constexpr std::uint32_t kOrcaExchange = 8;  ///< a turn of the search among four half-spaces
+inline constexpr std::uint32_t kOrcaWide = 16;     ///< each of these in numbers of twice single precision
 /// Half-spaces looked at.
 constexpr std::uint32_t orca_rows(std::size_t rows) noexcept { return static_cast<std::uint32_t>(rows + 3) / 4; }
 

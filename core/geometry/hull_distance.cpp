@@ -134,12 +134,44 @@ void try_exit(const Support& support, const Vec3& direction, Exit& best) noexcep
     }
 }
 
+/// Of a triangle by its nearest point, where the plane across the way there proves it. False where it does not: thin
+/// triangles, and points on it.
+template <class Vertex>
+bool distance_from_triangle(const Seen<Vertex>& seen, const DistanceQuery& query, Separation& out) noexcept
+{
+    const Vec3 a = seen.at(0);
+    const Vec3 b = seen.at(1);
+    const Vec3 c = seen.at(2);
+    detail::Simplex simplex{{a, b, c, Vec3::Zero()}, 3};
+    const Vec3 nearest = detail::reduce_to_nearest(simplex);
+    const float length = nearest.norm();
+    const float size = std::max({a.cwiseAbs().sum(), b.cwiseAbs().sum(), c.cwiseAbs().sum()});
+    const float slack = kProductRoundings * kUnitRoundoff * size;
+    const Vec3 towards = nearest / length;
+    const float proven = std::min({towards.dot(a), towards.dot(b), towards.dot(c)}) - slack;
+    // A NaN of a point without a direction is not enough either.
+    if (!(proven > 0.0F && (proven >= query.reach || length - proven <= query.resolution + 2.0F * slack))) {
+        return false;
+    }
+    out = {proven, length, towards};
+    return true;
+}
+
 template <class Vertex>
 Separation distance_from_hull(const Vec3& point, std::span<const Vertex> vertices, const DistanceQuery& query,
                               WorkBudget& budget) noexcept
 {
     assert(!vertices.empty() && query.stretch > 0.0F && query.reach > 0.0F);
     const Seen<Vertex> seen{vertices, point, query.stretch};
+    const std::uint32_t turn = distance_turn_units(vertices.size());
+    if (Separation out; vertices.size() == 3) {
+        if (!budget.spend(turn)) {
+            return {};
+        }
+        if (distance_from_triangle(seen, query, out)) {
+            return out;
+        }
+    }
     Vec3 nearest = Vec3::Zero();
     const float size = seen.size(nearest);
     const auto support = [&](const Vec3& direction) { return seen.support(direction); };
@@ -156,7 +188,7 @@ Separation distance_from_hull(const Vec3& point, std::span<const Vertex> vertice
         begin.simplex = &simplex;
         begin.upper = begin.nearest.norm();
     }
-    return search(support, begin, size, query, distance_turn_units(vertices.size()), budget);
+    return search(support, begin, size, query, turn, budget);
 }
 
 }  // namespace

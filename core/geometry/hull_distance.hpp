@@ -45,9 +45,10 @@ struct DistanceQuery {
 /// Distance of `point` from the hull of `vertices`, 1..kMaxHullVertices of them, all finite.
 ///
 /// `distance` is never above the true one. Where the search has ended by itself it is below the true one by
-/// `resolution` + 3e-6 * (largest sum of magnitudes of the stretched vertices relative to `point`) at most; ended by
-/// `budget` or by kMostDistanceTurns it is what was proven. Takes kSearchTurn + hull_units of `budget` a turn. With a
-/// good `start` one or two turns do. O(kMostDistanceTurns * vertices).
+/// `resolution` + 3e-6 * (largest sum of magnitudes of the stretched vertices relative to `point`) at most, of a
+/// triangle that is a thousand times as long as it is wide 3e-4 * that; ended by `budget` or by kMostDistanceTurns it
+/// is what was proven. Takes kSearchTurn + hull_units of `budget` a turn. With a good `start` one or two turns do.
+/// O(kMostDistanceTurns * vertices).
 [[nodiscard]] Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices,
                                              const DistanceQuery& query, WorkBudget& budget) noexcept;
 

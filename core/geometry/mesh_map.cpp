@@ -8,11 +8,6 @@ namespace jink::geometry {
 
 namespace {
 
-/// What rounding may add to the distance of a box, as a share of it.
-constexpr float kBoxRounding = 1e-6F;
-
-float slack_of(const MeshMap& map, float stretch) noexcept { return std::max(1.0F, stretch) * map.slack; }
-
 /// Puts `piece` among the `found` first of `out`, nearest first; what falls out of a full list is returned.
 float insert(std::span<NearPiece> out, std::size_t& found, const NearPiece& piece) noexcept
 {
@@ -34,17 +29,10 @@ float insert(std::span<NearPiece> out, std::size_t& found, const NearPiece& piec
 
 }  // namespace
 
-float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point, float stretch) noexcept
-{
-    Vec3 off = (node.low.vec() - point).cwiseMax(point - node.high.vec()).cwiseMax(0.0F);
-    off.z() *= stretch;
-    return std::max(off.norm() * (1.0F - kBoxRounding) - slack_of(map, stretch), 0.0F);
-}
-
 Separation piece_distance(const MeshMap& map, std::size_t piece, const Vec3& point, const DistanceQuery& query,
                           WorkBudget& budget) noexcept
 {
-    const float slack = slack_of(map, query.stretch);
+    const float slack = stretched_slack(map, query.stretch);
     DistanceQuery bare = query;
     bare.reach += slack;
     Separation from = point_hull_distance(point, map.vertices_of(piece), bare, budget);
@@ -60,7 +48,7 @@ Exit piece_exit(const MeshMap& map, std::size_t piece, const Vec3& point, float 
 {
     Exit out = map.pieces[piece].faces > 0 ? exit_by_faces(point, map.faces_of(piece), stretch)
                                            : exit_by_vertices(point, map.vertices_of(piece), stretch);
-    out.depth += slack_of(map, stretch);
+    out.depth += stretched_slack(map, stretch);
     return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -109,6 +110,12 @@ struct NearPiece {
     Separation from;
 };
 
+/// The map's slack in the stretched space [m].
+[[nodiscard]] inline float stretched_slack(const MeshMap& map, float stretch) noexcept
+{
+    return std::max(1.0F, stretch) * map.slack;
+}
+
 /// Where a point stands to one piece: `point_hull_distance`, less the map's slack.
 [[nodiscard]] Separation piece_distance(const MeshMap& map, std::size_t piece, const Vec3& point,
                                         const DistanceQuery& query, WorkBudget& budget) noexcept;
@@ -121,7 +128,16 @@ inline constexpr std::size_t kMeshStack = 24;
 static_assert(kMeshStack > kMaxMeshDepth + 1);
 
 /// Distance of the point from a node's box in the stretched space, rounded down, the map's slack taken off [m].
-[[nodiscard]] float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point, float stretch) noexcept;
+[[nodiscard]] inline float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point,
+                                         float stretch) noexcept
+{
+    constexpr float kBoxRounding = 1e-6F;  // what rounding may add, as a share
+    const auto off = [](float low, float high, float at) { return std::max(std::max(low - at, at - high), 0.0F); };
+    const float x = off(node.low.x, node.high.x, point.x());
+    const float y = off(node.low.y, node.high.y, point.y());
+    const float z = off(node.low.z, node.high.z, point.z()) * stretch;
+    return std::max(std::sqrt(x * x + y * y + z * z) * (1.0F - kBoxRounding) - stretched_slack(map, stretch), 0.0F);
+}
 
 /// Looks at the pieces about `point`, roughly the nearest first.
 ///

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include <Eigen/Geometry>
 
@@ -10,33 +11,39 @@
 
 namespace jink::orca {
 
+using std::fabs;
+
 namespace {
 
 constexpr int kMostTurns = 16;
-constexpr float kBluntCorner = 1e-3F;  // volume that normals span, below which a corner is too blunt to compute with
+/// Volume that normals span, below which a corner is too blunt to compute with.
+template <class Real>
+constexpr float kBluntCorner = std::is_same_v<Real, float> ? 1e-3F : 1e-10F;
 
 /// What a corner is computed from.
+template <class Real>
 struct Corners {
+    using V = Vec3Of<Real>;
     std::span<const Row> rows;
     std::span<const float> yields;
     std::size_t soft;
 
-    [[nodiscard]] float yield(std::size_t i) const noexcept { return i < soft ? 0.0F : yields[i]; }
+    [[nodiscard]] Real yield(std::size_t i) const noexcept { return i < soft ? 0.0F : yields[i]; }
+    [[nodiscard]] V normal(std::size_t i) const noexcept { return rows[i].normal.template cast<Real>(); }
 
     /// The shares of corner.rows: sum share * normal = 0, sum share * yield = 1. False where one is negative.
-    [[nodiscard]] bool shares(Corner& corner) const noexcept
+    [[nodiscard]] bool shares(Corner<Real>& corner) const noexcept
     {
         const auto& [a, b, c, d] = corner.rows;
-        const Vec3 ab = rows[a].normal.cross(rows[b].normal);
-        const Vec3 cd = rows[c].normal.cross(rows[d].normal);
+        const V ab = normal(a).cross(normal(b));
+        const V cd = normal(c).cross(normal(d));
         // Volumes of three normals each, alternating: the one solution of sum share * normal = 0.
-        std::array<float, 4> part{rows[b].normal.dot(cd), -rows[a].normal.dot(cd), rows[d].normal.dot(ab),
-                                  -rows[c].normal.dot(ab)};
-        float sum = 0.0F;
+        const std::array<Real, 4> part{normal(b).dot(cd), -normal(a).dot(cd), normal(d).dot(ab), -normal(c).dot(ab)};
+        Real sum = 0.0F;
         for (std::size_t k = 0; k < 4; ++k) {
             sum += part[k] * yield(corner.rows[k]);
         }
-        if (std::fabs(sum) < kBluntCorner) {
+        if (fabs(sum) < kBluntCorner<Real>) {
             return false;
         }
         bool all = true;
@@ -48,13 +55,13 @@ struct Corners {
     }
 
     /// The point and the violation of a corner with its shares. False where it is too blunt.
-    [[nodiscard]] bool solve(Corner& corner) const noexcept
+    [[nodiscard]] bool solve(Corner<Real>& corner) const noexcept
     {
         // About the last point: what the rows are broken by there is exact to rounding, and small.
-        std::array<float, 4> missing{};
-        float d = 0.0F;
+        std::array<Real, 4> missing{};
+        Real d = 0.0F;
         for (std::size_t k = 0; k < 4; ++k) {
-            missing[k] = rows[corner.rows[k]].violation(corner.x);
+            missing[k] = violation<Real>(rows[corner.rows[k]], corner.x);
             d += corner.shares[k] * missing[k];
         }
         // Three of the four planes give the point: leave out the one with the largest share, whose others span most.
@@ -67,12 +74,12 @@ struct Corners {
                 of[n++] = k;
             }
         }
-        const Vec3& n0 = rows[corner.rows[of[0]]].normal;
-        const Vec3& n1 = rows[corner.rows[of[1]]].normal;
-        const Vec3& n2 = rows[corner.rows[of[2]]].normal;
-        const Vec3 n12 = n1.cross(n2);
-        const float volume = n0.dot(n12);
-        if (std::fabs(volume) < kBluntCorner) {
+        const V n0 = normal(corner.rows[of[0]]);
+        const V n1 = normal(corner.rows[of[1]]);
+        const V n2 = normal(corner.rows[of[2]]);
+        const V n12 = n1.cross(n2);
+        const Real volume = n0.dot(n12);
+        if (fabs(volume) < kBluntCorner<Real>) {
             return false;
         }
         const auto away = [&](std::size_t k) { return missing[of[k]] - d * yield(corner.rows[of[k]]); };
@@ -82,10 +89,10 @@ struct Corners {
     }
 
     /// `corner` with `entering` in the place of the row that makes it a corner again.
-    [[nodiscard]] bool exchanged(std::uint16_t entering, Corner& corner) const noexcept
+    [[nodiscard]] bool exchanged(std::uint16_t entering, Corner<Real>& corner) const noexcept
     {
         for (std::size_t k = 0; k < 4; ++k) {
-            Corner next = corner;
+            Corner<Real> next = corner;
             next.rows[k] = entering;
             if (shares(next) && solve(next)) {
                 corner = next;
@@ -98,38 +105,46 @@ struct Corners {
 
 }  // namespace
 
+template <class Real>
 bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Balls balls,
-              Tolerance tolerance, WorkBudget& budget, Corner& corner) noexcept
+              Tolerance<Real> tolerance, WorkBudget& budget, Corner<Real>& corner) noexcept
 {
-    const Corners corners{rows, yields, soft};
-    corner.x = Vec3::Zero();
+    const Corners<Real> corners{rows, yields, soft};
+    corner.x = Vec3Of<Real>::Zero();
     if (!corners.shares(corner) || !corners.solve(corner)) {
         return false;
     }
     for (int turn = 0; turn < kMostTurns; ++turn) {
-        if (!budget.spend(units::kOrcaExchange + units::orca_rows(rows.size()))) {
+        if (!budget.spend(cost<Real>(units::kOrcaExchange + units::orca_rows(rows.size())))) {
             return false;
         }
-        float most = 4.0F * tolerance.outside;
+        Real most = 2.0F * tolerance.outside;
+        int near = 0;
         std::size_t entering = rows.size();
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            const float by = rows[i].violation(corner.x) - (i < soft ? 0.0F : corner.d * yields[i]);
+            const Real by = violation<Real>(rows[i], corner.x) - (i < soft ? Real(0.0F) : corner.d * yields[i]);
+            near += by > -4.0F * tolerance.outside ? 1 : 0;
             if (by > most) {
                 most = by;
                 entering = i;
             }
         }
         if (entering == rows.size()) {
-            return std::all_of(balls.begin(), balls.end(), [&](const Ball& ball) {
-                return (corner.x - ball.centre).norm() <= ball.radius + tolerance.outside;
-            });
+            corner.is_alone = near <= 4;
+            return std::all_of(balls.begin(), balls.end(),
+                               [&](const Ball& ball) { return within<Real>(ball, corner.x, tolerance.outside); });
         }
-        const float before = corner.d;
+        const Real before = corner.d;
         if (!corners.exchanged(static_cast<std::uint16_t>(entering), corner) || corner.d <= before) {
             return false;
         }
     }
     return false;
 }
+
+template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Balls, Tolerance<float>, WorkBudget&,
+                       Corner<float>&) noexcept;
+template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Balls, Tolerance<Wide>, WorkBudget&,
+                       Corner<Wide>&) noexcept;
 
 }  // namespace jink::orca

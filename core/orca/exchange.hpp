@@ -15,11 +15,13 @@
 namespace jink::orca {
 
 /// Four half-spaces that leave no velocity, and the one where those that may give way are broken equally.
+template <class Real>
 struct Corner {
     std::array<std::uint16_t, 4> rows{};
-    std::array<float, 4> shares{};  ///< how much each of them holds it; their sum, by yield, is 1
-    Vec3 x = Vec3::Zero();
-    float d = 0.0F;  ///< the violation, over the yield [m/s]
+    std::array<Real, 4> shares{};  ///< how much each of them holds it; their sum, by yield, is 1
+    Vec3Of<Real> x = Vec3Of<Real>::Zero();
+    Real d = 0.0F;         ///< the violation, over the yield [m/s]
+    bool is_alone = true;  ///< no fifth half-space is as far broken, but for rounding
 };
 
 /// The least d for which all rows from `soft` on, each shifted by d * yield, and all rows before hold together.
@@ -30,8 +32,9 @@ struct Corner {
 ///         and d is the least.
 ///
 /// With all shares well above 0 that point is the only one. A turn is a look at each row and at four corners; it ends
-/// after a few, each with a larger d, and gives up after kMostTurns.
+/// after a few, each with a larger d, and gives up after kMostTurns. There is one for float and one for Wide.
+template <class Real>
 [[nodiscard]] bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Balls balls,
-                            Tolerance tolerance, WorkBudget& budget, Corner& corner) noexcept;
+                            Tolerance<Real> tolerance, WorkBudget& budget, Corner<Real>& corner) noexcept;
 
 }  // namespace jink::orca

@@ -1,26 +1,45 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/base/vec3.hpp"
+#include <type_traits>
+
+#include <Eigen/Geometry>
+
 #include "core/orca/optimum.hpp"
 
-// Where planes meet, in single precision, also those of nearly the same or nearly opposite direction: what rounding
-// leaves of a violation is a long way there, so that violations are computed as if in twice the precision.
+// Where planes meet, also those of nearly the same or nearly opposite direction.
 
 namespace jink::orca {
 
-/// Sine of an angle between planes that rounding of normals does not tell from 0.
-inline constexpr float kSameDirection = 1e-6F;
-
-/// row.violation(x) as if in twice the precision, rounded once (Ogita, Rump and Oishi's Dot2). Some 80 operations.
-[[nodiscard]] float exact_violation(const Row& row, const Vec3& x) noexcept;
+/// Sine of an angle between planes that rounding does not tell from 0: of normals in single precision, or of what is
+/// computed from them in twice that.
+template <class Real>
+inline constexpr float kSameDirection = std::is_same_v<Real, float> ? 1e-6F : 1e-10F;
 
 /// The line that both planes have in common, from its point nearest to `near`, which lies on plane `one`, along a unit
-/// vector. False where they are parallel. O(1).
-[[nodiscard]] bool line_of(const Row& one, const Row& other, const Vec3& near, Vec3& from, Vec3& along) noexcept;
-
-/// Brings a corner of three planes that hardly differ in direction to where they meet, if that is within the balls;
-/// others stay as they are. O(1).
-void settle(const Row& a, const Row& b, const Row& c, Balls balls, float tolerance, Vec3& x) noexcept;
+/// vector. False where they are parallel. To rounding over the sine of the angle between the planes. O(1).
+template <class Real>
+[[nodiscard]] bool line_of(const RowOf<Real>& one, const RowOf<Real>& other, const Vec3Of<Real>& near,
+                           Vec3Of<Real>& from, Vec3Of<Real>& along) noexcept
+{
+    // Normals of nearly the same direction, or nearly opposite ones: their difference, or sum, is exact where the cross
+    // product of both would be a difference of products that are nearly equal.
+    const bool is_opposite = one.normal.dot(other.normal) < 0.0F;
+    const Vec3Of<Real> turn =
+        is_opposite ? Vec3Of<Real>(other.normal + one.normal) : Vec3Of<Real>(other.normal - one.normal);
+    along = turn.cross(one.normal);
+    const Real sine = along.norm();
+    if (sine <= kSameDirection<Real>) {
+        return false;
+    }
+    along /= sine;
+    const Vec3Of<Real> across_line = along.cross(one.normal);  // in plane `one`
+    const Real steep = across_line.dot(turn);                  // = across_line . other.normal, but exact
+    from = near + (other.violation(near) / steep) * across_line;
+    // What the way of a long step rounded off, once more.
+    from += one.violation(from) * one.normal;
+    from += (other.violation(from) / steep) * across_line;
+    return true;
+}
 
 }  // namespace jink::orca

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <type_traits>
 
 #include <Eigen/Geometry>
 
@@ -12,124 +12,149 @@
 
 namespace jink::orca {
 
+using std::fabs;
+using std::sqrt;
+
 namespace {
 
-constexpr float kTiny = 1e-12F;    // of a length squared that has no direction
+/// Of a length squared that has no direction.
+template <class Real>
+constexpr float kTiny = std::is_same_v<Real, float> ? 1e-12F : 1e-22F;
 constexpr float kEndless = 1e18F;  // [m/s]
+constexpr std::uint16_t kNoRow = 0xFFFF;
 
 /// Disc: what a plane leaves of a ball.
+template <class Real>
 struct Disc {
-    Vec3 centre = Vec3::Zero();
-    float radius = 0.0F;
+    Vec3Of<Real> centre = Vec3Of<Real>::Zero();
+    Real radius = 0.0F;
 };
 
-/// The point of a ball (or, with everything in one plane, of a disc) nearest to the goal or farthest along it.
-Vec3 onto(const Vec3& centre, float radius, const Goal& goal) noexcept
+template <class Real>
+Disc<Real> whole_of(const Ball& ball) noexcept
 {
-    const Vec3 way = goal.farthest ? goal.point : Vec3(goal.point - centre);
-    const float length2 = way.squaredNorm();
+    return {ball.centre.template cast<Real>(), ball.radius};
+}
+
+/// The point of a ball (or, with everything in one plane, of a disc) nearest to the goal or farthest along it.
+template <class Real>
+Vec3Of<Real> onto(const Vec3Of<Real>& centre, Real radius, const GoalOf<Real>& goal) noexcept
+{
+    const Vec3Of<Real> way = goal.farthest ? goal.point : Vec3Of<Real>(goal.point - centre);
+    const Real length2 = way.squaredNorm();
     if (!goal.farthest && length2 <= radius * radius) {
         return goal.point;
     }
-    return length2 > kTiny ? Vec3(centre + way * (radius / std::sqrt(length2))) : centre;
+    return length2 > kTiny<Real> ? Vec3Of<Real>(centre + way * (radius / sqrt(length2))) : centre;
 }
 
 /// How far from the first centre, on the way to the second, the spheres cut; and the radius of the cut, or negative.
+template <class Real>
 struct Cut {
-    float along;
-    float radius2;
+    Real along;
+    Real radius2;
 };
-Cut cut(float distance, float radius_1, float radius_2) noexcept
+template <class Real>
+Cut<Real> cut(Real distance, Real radius_1, Real radius_2) noexcept
 {
-    const float along = 0.5F * (distance + (radius_1 - radius_2) * (radius_1 + radius_2) / distance);
+    const Real along = Real(0.5F) * (distance + (radius_1 - radius_2) * (radius_1 + radius_2) / distance);
     return {along, (radius_1 - along) * (radius_1 + along)};
 }
 
 /// Some unit vector across `axis`.
-Vec3 any_across(const Vec3& axis) noexcept
+template <class Real>
+Vec3Of<Real> any_across(const Vec3Of<Real>& axis) noexcept
 {
-    return (std::fabs(axis.x()) < 0.6F ? axis.cross(Vec3::UnitX()) : axis.cross(Vec3::UnitY())).normalized();
+    const bool is_x = fabs(axis.x()) < 0.6F;
+    return axis.cross(is_x ? Vec3Of<Real>(Vec3Of<Real>::UnitX()) : Vec3Of<Real>(Vec3Of<Real>::UnitY())).normalized();
 }
 
 /// Where the spheres of two balls cut, towards the goal.
-bool optimum_on_circle(const Ball& one, const Ball& other, const Goal& goal, float tolerance, Vec3& x) noexcept
+template <class Real>
+bool optimum_on_circle(const Disc<Real>& one, const Disc<Real>& other, const GoalOf<Real>& goal, float tolerance,
+                       Vec3Of<Real>& x) noexcept
 {
-    const Vec3 between = other.centre - one.centre;
-    const float distance = between.norm();
+    const Vec3Of<Real> between = other.centre - one.centre;
+    const Real distance = between.norm();
     if (distance <= tolerance) {
         return false;
     }
-    const Vec3 axis = between / distance;
-    const Cut at = cut(distance, one.radius, other.radius);
-    if (at.radius2 < -2.0F * one.radius * tolerance) {
+    const Vec3Of<Real> axis = between / distance;
+    const Cut<Real> at = cut(distance, one.radius, other.radius);
+    if (at.radius2 < Real(-2.0F * tolerance) * one.radius) {
         return false;
     }
-    const Vec3 centre = one.centre + at.along * axis;
-    const Vec3 way = goal.farthest ? goal.point : Vec3(goal.point - centre);
-    const Vec3 level = way - way.dot(axis) * axis;
-    const float length2 = level.squaredNorm();
-    const Vec3 direction = length2 > kTiny ? Vec3(level / std::sqrt(length2)) : any_across(axis);
-    x = centre + std::sqrt(std::max(at.radius2, 0.0F)) * direction;
+    const Vec3Of<Real> centre = one.centre + at.along * axis;
+    const Vec3Of<Real> way = goal.farthest ? goal.point : Vec3Of<Real>(goal.point - centre);
+    const Vec3Of<Real> level = way - way.dot(axis) * axis;
+    const Real length2 = level.squaredNorm();
+    const Vec3Of<Real> direction = length2 > kTiny<Real> ? Vec3Of<Real>(level / sqrt(length2)) : any_across(axis);
+    x = centre + sqrt(std::max(at.radius2, Real(0.0F))) * direction;
     return true;
 }
 
 /// What of `ball` lies in the plane; false where nothing does.
-bool disc_of(const Ball& ball, const Row& plane, float tolerance, Disc& disc) noexcept
+template <class Real>
+bool disc_of(const Disc<Real>& ball, const RowOf<Real>& plane, float tolerance, Disc<Real>& disc) noexcept
 {
-    const float height = -plane.violation(ball.centre);
-    if (std::fabs(height) > ball.radius + tolerance) {
+    const Real height = -plane.violation(ball.centre);
+    if (fabs(height) > ball.radius + tolerance) {
         return false;
     }
     disc.centre = ball.centre - height * plane.normal;
-    disc.radius = std::sqrt(std::max((ball.radius - height) * (ball.radius + height), 0.0F));
+    disc.radius = sqrt(std::max((ball.radius - height) * (ball.radius + height), Real(0.0F)));
     return true;
 }
 
 /// The better one of the two points of a plane where two circles cut.
-bool optimum_on_corners(const Disc& one, const Disc& other, const Vec3& normal, const Goal& goal, float tolerance,
-                        Vec3& x) noexcept
+template <class Real>
+bool optimum_on_corners(const Disc<Real>& one, const Disc<Real>& other, const Vec3Of<Real>& normal,
+                        const GoalOf<Real>& goal, float tolerance, Vec3Of<Real>& x) noexcept
 {
-    const Vec3 between = other.centre - one.centre;
-    const float distance = between.norm();
+    const Vec3Of<Real> between = other.centre - one.centre;
+    const Real distance = between.norm();
     if (distance <= tolerance) {
         return false;
     }
-    const Vec3 axis = between / distance;
-    const Cut at = cut(distance, one.radius, other.radius);
-    if (at.radius2 < -2.0F * one.radius * tolerance - tolerance * tolerance) {
+    const Vec3Of<Real> axis = between / distance;
+    const Cut<Real> at = cut(distance, one.radius, other.radius);
+    if (at.radius2 < Real(-2.0F * tolerance) * one.radius - tolerance * tolerance) {
         return false;
     }
-    const Vec3 middle = one.centre + at.along * axis;
-    const Vec3 half = std::sqrt(std::max(at.radius2, 0.0F)) * normal.cross(axis);
-    const Vec3 way = goal.farthest ? goal.point : Vec3(goal.point - middle);
-    x = half.dot(way) >= 0.0F ? Vec3(middle + half) : Vec3(middle - half);
+    const Vec3Of<Real> middle = one.centre + at.along * axis;
+    const Vec3Of<Real> half = sqrt(std::max(at.radius2, Real(0.0F))) * normal.cross(axis);
+    const Vec3Of<Real> way = goal.farthest ? goal.point : Vec3Of<Real>(goal.point - middle);
+    x = half.dot(way) >= 0.0F ? Vec3Of<Real>(middle + half) : Vec3Of<Real>(middle - half);
     return true;
 }
 
-bool optimum_on_two_discs(const Disc& one, const Disc& other, const Row& plane, const Goal& goal, float tolerance,
-                          Vec3& x) noexcept
+template <class Real>
+bool optimum_on_two_discs(const Disc<Real>& one, const Disc<Real>& other, const RowOf<Real>& plane,
+                          const GoalOf<Real>& goal, float tolerance, Vec3Of<Real>& x) noexcept
 {
-    const auto in = [tolerance](const Disc& disc, const Vec3& p) {
-        return within({disc.centre, disc.radius}, p, tolerance);
+    const auto in = [tolerance](const Disc<Real>& disc, const Vec3Of<Real>& p) {
+        const Real reach = disc.radius + tolerance;
+        return (p - disc.centre).squaredNorm() <= reach * reach;
     };
-    if (goal.farthest && goal.point.squaredNorm() <= kTiny) {
+    if (goal.farthest && goal.point.squaredNorm() <= kTiny<Real>) {
         // Every point is as good: the middle of what both leave of the line through their centres.
-        const Vec3 between = other.centre - one.centre;
-        const float distance = between.norm();
-        const float from = std::max(-one.radius, distance - other.radius);
-        const float to = std::min(one.radius, distance + other.radius);
-        if (from > to + 2.0F * tolerance) {
+        const Vec3Of<Real> between = other.centre - one.centre;
+        const Real distance = between.norm();
+        const Real from = std::max(-one.radius, distance - other.radius);
+        const Real to = std::min(one.radius, distance + other.radius);
+        if (from > to + Real(2.0F * tolerance)) {
             return false;
         }
-        x = distance > tolerance ? Vec3(one.centre + between * (0.5F * (from + to) / distance)) : one.centre;
+        x = distance > tolerance ? Vec3Of<Real>(one.centre + between * (Real(0.5F) * (from + to) / distance))
+                                 : one.centre;
         return true;
     }
-    const Vec3 first = onto(one.centre, one.radius, goal);
+    const Vec3Of<Real> first = onto(one.centre, one.radius, goal);
     if (in(other, first)) {
         x = first;
         return true;
     }
-    const Vec3 second = onto(other.centre, other.radius, goal);
+    const Vec3Of<Real> second = onto(other.centre, other.radius, goal);
     if (in(one, second)) {
         x = second;
         return true;
@@ -138,39 +163,41 @@ bool optimum_on_two_discs(const Disc& one, const Disc& other, const Row& plane, 
 }
 
 /// On a plane, within the balls.
-bool optimum_on_disc(const Row& plane, Balls balls, const Goal& goal, float tolerance, Vec3& x) noexcept
+template <class Real>
+bool optimum_on_disc(const RowOf<Real>& plane, Balls balls, const GoalOf<Real>& goal, float tolerance,
+                     Vec3Of<Real>& x) noexcept
 {
-    Disc one;
-    if (!disc_of(balls[0], plane, tolerance, one)) {
+    Disc<Real> one;
+    if (!disc_of(whole_of<Real>(balls[0]), plane, tolerance, one)) {
         return false;
     }
-    const float off = goal.farthest ? -goal.point.dot(plane.normal) : plane.violation(goal.point);
-    Goal level{goal.point + off * plane.normal, goal.farthest};
+    const Real off = goal.farthest ? -goal.point.dot(plane.normal) : plane.violation(goal.point);
+    GoalOf<Real> level{goal.point + off * plane.normal, goal.farthest};
     if (goal.farthest) {
         // Nearly along the normal, what is left is rounding in part, and becomes long: once more.
         level.point -= level.point.dot(plane.normal) * plane.normal;
-        if (level.point.squaredNorm() <= kTiny) {
-            level.point = Vec3::Zero();
+        if (level.point.squaredNorm() <= kTiny<Real>) {
+            level.point = Vec3Of<Real>::Zero();
         }
     }
     if (balls.size() == 1) {
         x = onto(one.centre, one.radius, level);
         return true;
     }
-    Disc other;
-    return disc_of(balls[1], plane, tolerance, other) && optimum_on_two_discs(one, other, plane, level, tolerance, x);
+    Disc<Real> other;
+    return disc_of(whole_of<Real>(balls[1]), plane, tolerance, other) &&
+           optimum_on_two_discs(one, other, plane, level, tolerance, x);
 }
 
 /// A piece of a line: its ends, and how steeply what ends it there is left beyond.
+template <class Real>
 struct Piece {
-    float low = -kEndless;
-    float high = kEndless;
-    float low_slope = 1.0F;
-    float high_slope = 1.0F;
-    std::uint16_t low_row = kNone;
-    std::uint16_t high_row = kNone;
-
-    static constexpr std::uint16_t kNone = 0xFFFF;
+    Real low = -kEndless;
+    Real high = kEndless;
+    Real low_slope = 1.0F;
+    Real high_slope = 1.0F;
+    std::uint16_t low_row = kNoRow;
+    std::uint16_t high_row = kNoRow;
 
     /// Brings ends that passed each other by no more than rounding back together.
     [[nodiscard]] bool close_up(float tolerance) noexcept
@@ -179,9 +206,9 @@ struct Piece {
             return true;
         }
         // Between both ends the larger violation is least where both are equal.
-        const float sum = low_slope + high_slope;
-        const float middle = (low * low_slope + high * high_slope) / sum;
-        if ((low - middle) * low_slope > 2.0F * tolerance) {
+        const Real sum = low_slope + high_slope;
+        const Real middle = (low * low_slope + high * high_slope) / sum;
+        if ((low - middle) * low_slope > Real(2.0F * tolerance)) {
             return false;
         }
         low = high = middle;
@@ -190,17 +217,20 @@ struct Piece {
 };
 
 /// What the balls leave of the line from + t * along.
-bool piece_in_balls(Balls balls, const Vec3& from, const Vec3& along, float tolerance, Piece& piece) noexcept
+template <class Real>
+bool piece_in_balls(Balls balls, const Vec3Of<Real>& from, const Vec3Of<Real>& along, float tolerance,
+                    Piece<Real>& piece) noexcept
 {
-    for (const Ball& ball : balls) {
-        const Vec3 away = from - ball.centre;
-        const float middle = -away.dot(along);
+    for (const Ball& given : balls) {
+        const auto ball = whole_of<Real>(given);
+        const Vec3Of<Real> away = from - ball.centre;
+        const Real middle = -away.dot(along);
         // Of the point of the line nearest to the centre: no difference of squares.
-        const float nearest = (away + middle * along).norm();
+        const Real nearest = (away + middle * along).norm();
         if (nearest > ball.radius + tolerance) {
             return false;
         }
-        const float half = std::sqrt(std::max((ball.radius - nearest) * (ball.radius + nearest), 0.0F));
+        const Real half = sqrt(std::max((ball.radius - nearest) * (ball.radius + nearest), Real(0.0F)));
         piece.low = std::max(piece.low, middle - half);
         piece.high = std::min(piece.high, middle + half);
     }
@@ -208,11 +238,13 @@ bool piece_in_balls(Balls balls, const Vec3& from, const Vec3& along, float tole
 }
 
 /// Cuts the piece of the line off where rows[j] ends it.
-void cut_by(const Row& row, std::size_t j, const Vec3& from, const Vec3& along, Piece& piece) noexcept
+template <class Real>
+void cut_by(const RowOf<Real>& row, std::size_t j, const Vec3Of<Real>& from, const Vec3Of<Real>& along,
+            Piece<Real>& piece) noexcept
 {
-    const float slope = along.dot(row.normal);
-    const float missing = row.violation(from);
-    const float t = missing / slope;
+    const Real slope = along.dot(row.normal);
+    const Real missing = row.violation(from);
+    const Real t = missing / slope;
     if (slope > 0.0F) {
         if (t > piece.low) {
             piece.low = t;
@@ -226,19 +258,21 @@ void cut_by(const Row& row, std::size_t j, const Vec3& from, const Vec3& along, 
     }
 }
 
-/// On the line, within rows[0 .. before) and the balls. `end` is the row that holds the optimum, or Piece::kNone.
-bool optimum_on_line(std::span<const Row> rows, std::size_t before, const Vec3& from, const Vec3& along, Balls balls,
-                     const Goal& goal, float tolerance, Vec3& x, std::uint16_t& end) noexcept
+/// On the line, within rows[0 .. before) and the balls. `end` is the row that holds the optimum, or kNoRow.
+template <class Real>
+bool optimum_on_line(std::span<const RowOf<Real>> rows, std::size_t before, const Vec3Of<Real>& from,
+                     const Vec3Of<Real>& along, Balls balls, const GoalOf<Real>& goal, float tolerance, Vec3Of<Real>& x,
+                     std::uint16_t& end) noexcept
 {
-    Piece piece;
+    Piece<Real> piece;
     if (!piece_in_balls(balls, from, along, tolerance, piece)) {
         return false;
     }
     for (std::size_t j = 0; j < before; ++j) {
-        const float slope = along.dot(rows[j].normal);
-        if (std::fabs(slope) <= kSameDirection) {
+        const Real slope = along.dot(rows[j].normal);
+        if (fabs(slope) <= kSameDirection<Real>) {
             // Along the line nothing changes by more than rounding.
-            if (rows[j].violation(from) > 2.0F * tolerance) {
+            if (rows[j].violation(from) > Real(2.0F * tolerance)) {
                 return false;
             }
             continue;
@@ -248,37 +282,42 @@ bool optimum_on_line(std::span<const Row> rows, std::size_t before, const Vec3& 
             return false;
         }
     }
-    const float wanted =
+    const Real wanted =
         goal.farthest ? (goal.point.dot(along) > 0.0F ? piece.high : piece.low) : along.dot(goal.point - from);
-    const float t = std::clamp(wanted, piece.low, piece.high);
-    end = t == piece.low ? piece.low_row : t == piece.high ? piece.high_row : Piece::kNone;
+    const Real t = std::clamp(wanted, piece.low, piece.high);
+    end = t == piece.low ? piece.low_row : t == piece.high ? piece.high_row : kNoRow;
     x = from + t * along;
     return true;
 }
 
 }  // namespace
 
-bool optimum_in_balls(Balls balls, const Goal& goal, Tolerance tolerance, Vec3& x) noexcept
+template <class Real>
+bool optimum_in_balls(Balls balls, const GoalOf<Real>& goal, Tolerance<Real> tolerance, Vec3Of<Real>& x) noexcept
 {
-    x = onto(balls[0].centre, balls[0].radius, goal);
+    const auto one = whole_of<Real>(balls[0]);
+    x = onto(one.centre, one.radius, goal);
     if (balls.size() == 1 || within(balls[1], x, tolerance.outside)) {
         return true;
     }
-    const Vec3 second = onto(balls[1].centre, balls[1].radius, goal);
+    const auto other = whole_of<Real>(balls[1]);
+    const Vec3Of<Real> second = onto(other.centre, other.radius, goal);
     if (within(balls[0], second, tolerance.outside)) {
         x = second;
         return true;
     }
-    return optimum_on_circle(balls[0], balls[1], goal, tolerance.outside, x);
+    return optimum_on_circle(one, other, goal, tolerance.outside, x);
 }
 
-Found optimum_on_plane(std::span<const Row> rows, std::size_t on, std::size_t before, Balls balls, const Goal& goal,
-                       Tolerance tolerance, WorkBudget& budget, Vec3& x, Basis& basis) noexcept
+template <class Real>
+Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Balls balls,
+                       const GoalOf<Real>& goal, Tolerance<Real> tolerance, WorkBudget& budget, Vec3Of<Real>& x,
+                       Basis& basis) noexcept
 {
-    if (!budget.spend(units::kOrcaPlane + units::orca_rows(before))) {
+    if (!budget.spend(cost<Real>(units::kOrcaPlane + units::orca_rows(before)))) {
         return Found::exhausted;
     }
-    Vec3 best;
+    Vec3Of<Real> best;
     if (!optimum_on_disc(rows[on], balls, goal, tolerance.outside, best)) {
         return Found::nothing;
     }
@@ -287,32 +326,30 @@ Found optimum_on_plane(std::span<const Row> rows, std::size_t on, std::size_t be
         if (rows[j].violation(best) <= tolerance.outside) {
             continue;
         }
-        if (!budget.spend(units::kOrcaLine + units::orca_rows(j))) {
+        if (!budget.spend(cost<Real>(units::kOrcaLine + units::orca_rows(j)))) {
             return Found::exhausted;
         }
-        Vec3 from;
-        Vec3 along;
-        std::uint16_t end = Piece::kNone;
+        Vec3Of<Real> from;
+        Vec3Of<Real> along;
+        std::uint16_t end = kNoRow;
         if (!line_of(rows[on], rows[j], best, from, along) ||
             !optimum_on_line(rows, j, from, along, balls, goal, tolerance.outside, best, end)) {
             return Found::nothing;
         }
-        if (end != Piece::kNone) {
-            settle(rows[on], rows[j], rows[end], balls, tolerance.outside, best);
-        }
         held = {{static_cast<std::uint16_t>(on), static_cast<std::uint16_t>(j), end},
-                static_cast<std::uint8_t>(end == Piece::kNone ? 2 : 3)};
+                static_cast<std::uint8_t>(end == kNoRow ? 2 : 3)};
     }
     x = best;
     basis = held;
     return Found::optimum;
 }
 
-Optimum optimum(std::span<const Row> rows, Balls balls, const Goal& goal, Tolerance tolerance,
-                WorkBudget& budget) noexcept
+template <class Real>
+Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const GoalOf<Real>& goal,
+                      Tolerance<Real> tolerance, WorkBudget& budget) noexcept
 {
-    Optimum out;
-    if (!budget.spend(units::kOrcaPlane + units::orca_rows(rows.size()))) {
+    Optimum<Real> out;
+    if (!budget.spend(cost<Real>(units::kOrcaPlane + units::orca_rows(rows.size())))) {
         out.found = Found::exhausted;
         return out;
     }
@@ -333,5 +370,16 @@ Optimum optimum(std::span<const Row> rows, Balls balls, const Goal& goal, Tolera
     out.satisfied = rows.size();
     return out;
 }
+
+template bool optimum_in_balls(Balls, const GoalOf<float>&, Tolerance<float>, Vec3Of<float>&) noexcept;
+template bool optimum_in_balls(Balls, const GoalOf<Wide>&, Tolerance<Wide>, Vec3Of<Wide>&) noexcept;
+template Found optimum_on_plane(std::span<const RowOf<float>>, std::size_t, std::size_t, Balls, const GoalOf<float>&,
+                                Tolerance<float>, WorkBudget&, Vec3Of<float>&, Basis&) noexcept;
+template Found optimum_on_plane(std::span<const RowOf<Wide>>, std::size_t, std::size_t, Balls, const GoalOf<Wide>&,
+                                Tolerance<Wide>, WorkBudget&, Vec3Of<Wide>&, Basis&) noexcept;
+template Optimum<float> optimum(std::span<const RowOf<float>>, Balls, const GoalOf<float>&, Tolerance<float>,
+                                WorkBudget&) noexcept;
+template Optimum<Wide> optimum(std::span<const RowOf<Wide>>, Balls, const GoalOf<Wide>&, Tolerance<Wide>,
+                               WorkBudget&) noexcept;
 
 }  // namespace jink::orca

@@ -5,10 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 #include "core/base/vec3.hpp"
 #include "core/base/work_budget.hpp"
+#include "core/base/work_units.hpp"
 #include "core/orca/half_space.hpp"
+#include "core/orca/wide.hpp"
 
 // The best velocity within balls and half-spaces: the incremental programs of van den Berg et al., one dimension at a
 // time, with one or two balls in each (Alejo 7.16 and 7.17 hold together). Points are velocities [m/s]; what is said of
@@ -16,17 +19,32 @@
 
 namespace jink::orca {
 
-/// A half-space as the programs read it: normal . x >= offset. 16 bytes, so that four numbers are read at once.
-struct Row {  // NOLINT(cppcoreguidelines-pro-type-member-init): left open, scratch is made of it
-    Vec3 normal;
-    float offset;
+/// A half-space as the programs read it: normal . x >= offset. In single precision 16 bytes, so that four numbers are
+/// read at once.
+template <class Real>
+struct RowOf {  // NOLINT(cppcoreguidelines-pro-type-member-init): left open, scratch is made of it
+    Vec3Of<Real> normal;
+    Real offset;
 
-    [[nodiscard]] float violation(const Vec3& x) const noexcept { return offset - normal.dot(x); }
+    [[nodiscard]] Real violation(const Vec3Of<Real>& x) const noexcept { return offset - normal.dot(x); }
 };
+using Row = RowOf<float>;
+
+/// row.violation(x), as exact as x is.
+template <class Real>
+[[nodiscard]] Real violation(const Row& row, const Vec3Of<Real>& x) noexcept
+{
+    if constexpr (std::is_same_v<Real, float>) {
+        return row.violation(x);
+    } else {
+        return Real(row.offset) - row.normal.cast<Real>().dot(x);
+    }
+}
 
 /// What is wanted: the point nearest to `point`, or the one farthest along the unit vector `point`.
-struct Goal {
-    Vec3 point = Vec3::Zero();
+template <class Real>
+struct GoalOf {
+    Vec3Of<Real> point = Vec3Of<Real>::Zero();
     bool farthest = false;
 };
 
@@ -36,22 +54,32 @@ struct Basis {
     std::uint8_t size = 0;
 };
 
-/// How exact single precision can be [m/s]: from the speeds that are computed with.
+/// How exact the programs can be [m/s]: from the speeds that are computed with.
+template <class Real>
 struct Tolerance {
     float outside;  ///< a point is within a half-space or a ball by this much: twice the rounding of n . x
 
     /// @param scale  the largest speed that occurs [m/s]
-    explicit constexpr Tolerance(float scale) noexcept : outside((scale > 1.0F ? scale : 1.0F) * 5e-7F) {}
+    explicit constexpr Tolerance(float scale) noexcept : outside((scale > 1.0F ? scale : 1.0F) * kShare) {}
+    static constexpr float kShare = std::is_same_v<Real, float> ? 5e-7F : 1e-11F;
 };
+
+/// Units of work of what takes `single` in single precision.
+template <class Real>
+[[nodiscard]] constexpr std::uint32_t cost(std::uint32_t single) noexcept
+{
+    return std::is_same_v<Real, float> ? single : units::kOrcaWide * single;
+}
 
 /// Balls of one program: one or two.
 using Balls = std::span<const Ball>;
 
 /// Whether `x` is within the ball, but for a tolerance [m/s].
-[[nodiscard]] inline bool within(const Ball& ball, const Vec3& x, float tolerance) noexcept
+template <class Real>
+[[nodiscard]] bool within(const Ball& ball, const Vec3Of<Real>& x, float tolerance) noexcept
 {
-    const float reach = ball.radius + tolerance;
-    return (x - ball.centre).squaredNorm() <= reach * reach;
+    const Real reach = Real(ball.radius) + Real(tolerance);
+    return (x - ball.centre.cast<Real>()).squaredNorm() <= reach * reach;
 }
 
 /// How a search ended.
@@ -61,24 +89,31 @@ enum class Found : std::uint8_t {
     exhausted,  ///< the budget is spent
 };
 
+// All of what follows is there for float and for Wide.
+
 /// Within the balls alone. False where they do not meet. O(1).
-[[nodiscard]] bool optimum_in_balls(Balls balls, const Goal& goal, Tolerance tolerance, Vec3& x) noexcept;
+template <class Real>
+[[nodiscard]] bool optimum_in_balls(Balls balls, const GoalOf<Real>& goal, Tolerance<Real> tolerance,
+                                    Vec3Of<Real>& x) noexcept;
 
 /// On the plane of rows[on], within rows[0 .. before) and the balls. False, with `x` as it was, where there is no such
 /// point. O(before^2), of which one look at each row and one line for each row that turns out to be violated.
-[[nodiscard]] Found optimum_on_plane(std::span<const Row> rows, std::size_t on, std::size_t before, Balls balls,
-                                     const Goal& goal, Tolerance tolerance, WorkBudget& budget, Vec3& x,
-                                     Basis& basis) noexcept;
+template <class Real>
+[[nodiscard]] Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Balls balls,
+                                     const GoalOf<Real>& goal, Tolerance<Real> tolerance, WorkBudget& budget,
+                                     Vec3Of<Real>& x, Basis& basis) noexcept;
 
 /// Within rows and balls, row by row; the rows' order is the order of priority. `x` is the optimum, or where there is
 /// none (nothing) the optimum of the first `satisfied` rows. O(n^3), expected O(n) in a good order.
+template <class Real>
 struct Optimum {
     Found found = Found::nothing;
     std::size_t satisfied = 0;  ///< rows; all of them where found
-    Vec3 x = Vec3::Zero();
+    Vec3Of<Real> x = Vec3Of<Real>::Zero();
     Basis basis;
 };
-[[nodiscard]] Optimum optimum(std::span<const Row> rows, Balls balls, const Goal& goal, Tolerance tolerance,
-                              WorkBudget& budget) noexcept;
+template <class Real>
+[[nodiscard]] Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const GoalOf<Real>& goal,
+                                    Tolerance<Real> tolerance, WorkBudget& budget) noexcept;
 
 }  // namespace jink::orca

@@ -85,7 +85,7 @@ constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRela
 /// a level gives way, to rounding where it does not.
 void report(std::span<const HalfSpace> planes, float scale, Solution& out) noexcept
 {
-    const float unsaid = 4.0F * Tolerance(scale).outside;
+    const float unsaid = 4.0F * Tolerance<float>(scale).outside;
     const std::array<float, kLevels> exact = broken_by(planes, out.velocity);
     for (std::size_t level = 0; level < kLevels; ++level) {
         if (exact[level] > out.broken[level] + (out.broken[level] > 0.0F ? 2.0F * kShifted : unsaid)) {
@@ -143,7 +143,8 @@ void choose(const Problem& problem, const Vec3& so_far, float scale, Solution& o
 }
 
 /// Level by level: each gives way for those before it.
-Found ladder(const Problem& problem, Search& search, Solution& out, Vec3& best) noexcept
+template <class Real>
+Found ladder(const Problem& problem, Search<Real>& search, Solution& out, Vec3& best) noexcept
 {
     std::size_t before = 0;
     for (std::size_t level = 0; level < kLevels; ++level) {
@@ -183,6 +184,59 @@ Found ladder(const Problem& problem, Search& search, Solution& out, Vec3& best) 
     return Found::optimum;
 }
 
+/// Solves it with numbers of one kind. `is_blunt`: rounding may have left the answer open.
+template <class Real>
+Found attempt(const Problem& problem, ScratchView scratch, float scale, WorkBudget& budget, Solution& out, Vec3& best,
+              bool& is_blunt) noexcept
+{
+    Search<Real> search(problem.balls, problem.preferred, scratch, scale, budget);
+    Found found = search.nearest(problem.planes.size());
+    best = search.x();
+    is_blunt = false;
+    if (found == Found::optimum) {
+        search.judge(problem.planes.size());
+    } else if (found == Found::nothing) {
+        // The last level alone, in most cases.
+        const std::size_t last = problem.planes.empty() ? 0 : static_cast<std::size_t>(problem.planes.back().level);
+        if (last > 0 &&
+            search.relax_at_corner(level_end(problem.planes, last - 1), problem.planes.size(), out.broken[last])) {
+            out.status = kRelaxed[last];
+            out.level = problem.planes.back().level;
+            best = search.x();
+            found = budget.exhausted() ? Found::exhausted : Found::optimum;
+        } else {
+            best = problem.reference;
+            out.broken = {};
+            found = ladder(problem, search, out, best);
+            is_blunt = out.status == 0;  // it is not sure what it found first
+        }
+    }
+    is_blunt = is_blunt || search.is_blunt();
+    out.actives = search.basis().size;
+    out.active = search.basis().rows;
+    return found;
+}
+
+/// Once more, in twice the precision. What was found stays where that does not end: its few rows do not do.
+[[gnu::noinline]] Found refine(const Problem& problem, ScratchView scratch, float scale, WorkBudget& budget,
+                               Solution& out, Vec3& best) noexcept
+{
+    read(problem, scratch);  // rows that have given way
+    Solution finer;
+    Vec3 finer_best;
+    bool unused = false;
+    const Found found = attempt<Wide>(problem, scratch, scale, budget, finer, finer_best, unused);
+    if (budget.exhausted()) {
+        return Found::exhausted;
+    }
+    if (found == Found::exhausted) {
+        return Found::optimum;
+    }
+    out = finer;
+    best = finer_best;
+    return found;
+}
+
 }  // namespace
 
 Vec3 into_balls(Balls balls, const Vec3& point) noexcept
@@ -193,7 +247,7 @@ Vec3 into_balls(Balls balls, const Vec3& point) noexcept
     if (std::all_of(balls.begin(), balls.end(), in)) {
         return out;
     }
-    if (!optimum_in_balls(balls, {out, false}, Tolerance(0.0F), out)) {
+    if (!optimum_in_balls<float>(balls, {out, false}, Tolerance<float>(0.0F), out)) {
         out = balls.front().centre;
     }
     for (const Ball& ball : balls) {
@@ -216,23 +270,11 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
         out.velocity = last_command(problem);
         return out;
     }
-    Search search(problem.balls, problem.preferred, scratch, Tolerance(scale), budget);
-    Found found = search.nearest(problem.planes.size());
-    Vec3 best = search.x();
-    if (found == Found::nothing) {
-        // The last level alone, in most cases.
-        const std::size_t last = problem.planes.empty() ? 0 : static_cast<std::size_t>(problem.planes.back().level);
-        if (last > 0 &&
-            search.relax_at_corner(level_end(problem.planes, last - 1), problem.planes.size(), out.broken[last])) {
-            out.status = kRelaxed[last];
-            out.level = problem.planes.back().level;
-            best = search.x();
-            found = budget.exhausted() ? Found::exhausted : Found::optimum;
-        } else {
-            best = problem.reference;
-            out.broken = {};
-            found = ladder(problem, search, out, best);
-        }
+    Vec3 best;
+    bool is_blunt = false;
+    Found found = attempt<float>(problem, scratch, scale, budget, out, best, is_blunt);
+    if (is_blunt && found != Found::exhausted) {
+        found = refine(problem, scratch, scale, budget, out, best);
     }
     if (found == Found::exhausted) {
         choose(problem, best, scale, out);
@@ -245,8 +287,6 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
     }
     out.velocity = into_balls(problem.balls, best);
     report(problem.planes, scale, out);
-    out.actives = search.basis().size;
-    out.active = search.basis().rows;
     return out;
 }
 

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Half-spaces of static obstacles for a swarm of 100 among the 1000 triangles of fifty corner buildings: the tree's
-// query, the distances and the choice of planes, for a soup of triangles and for the same mesh in convex pieces.
+// query, the distances and the choice of planes, for a soup of triangles and for the same mesh in convex pieces. And
+// the whole step of the swarm on a flight through them: neighbours and their half-spaces, obstacles, the program.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <vector>
 
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_plane.hpp"
 #include "core/orca/obstacle_way.hpp"
+#include "tests/timing/orca_swarm.hpp"
 #include "toolchain/mesh/decompose.hpp"
 
 namespace {
@@ -51,11 +54,11 @@ void append_building(mesh::TriangleMesh& town, const mesh::Vec3d& at, double hei
     }
 }
 
-struct Swarm {
+struct Town {
     mesh::TriangleMesh town;
     std::vector<orca::OwnMotion> agents;
 
-    Swarm()
+    Town()
     {
         jink::Random random(1);
         for (std::size_t i = 0; i < kBuildings; ++i) {
@@ -72,9 +75,9 @@ struct Swarm {
     }
 };
 
-const Swarm& swarm()
+const Town& swarm()
 {
-    static const Swarm made;
+    static const Town made;
     return made;
 }
 
@@ -150,8 +153,74 @@ void way(benchmark::State& state, mesh::Method method)
     });
 }
 
+/// Where a vehicle fits in: outside of all buildings, and away from those before.
+std::vector<Vec3> free_places()
+{
+    const jink::geometry::MeshMap map = map_of(mesh::Method::decompose).view();
+    const orca::ObstacleScene scene{&map, {}};
+    jink::Random random(2);
+    std::vector<Vec3> out;
+    while (out.size() < kAgents) {
+        const Vec3 at(random.uniform(-6.0F, kTown + 6.0F), random.uniform(-6.0F, kTown + 6.0F),
+                      random.uniform(2.0F, 30.0F));
+        WorkBudget budget(1'000'000);
+        const bool is_near = std::any_of(out.begin(), out.end(), [&](const Vec3& p) { return (p - at).norm() < 3.0F; });
+        if (!is_near && orca::obstacle_planes(scene, {at, Vec3::Zero(), 3.0F}, {}, budget).margin > 0.5F) {
+            out.push_back(at);
+        }
+    }
+    return out;
+}
+
+/// Every vehicle on its way to the place of another one, at 50 Hz for 10 s; the least time that a step of all took in
+/// any flight stands for it.
+void step(benchmark::State& state, mesh::Method method)
+{
+    constexpr std::size_t kSteps = 500;
+    orca::SwarmSettings settings;
+    settings.radius = 0.6F;
+    settings.warning = 1.5F;
+    settings.max_speed = 3.0F;
+    settings.cruise = 2.0F;
+    settings.step = 0.02F;
+    const std::vector<Vec3> places = free_places();
+    std::vector<Vec3> goals = places;
+    std::rotate(goals.begin(), goals.begin() + kAgents / 2, goals.end());
+    const jink::geometry::MeshMap map = map_of(method).view();
+    std::vector<double> least(kSteps, 1e9);
+    orca::Swarm::Counts counts;
+    float apart = 1e9F;
+    for (auto _ : state) {
+        orca::Swarm flying(places, goals, settings);
+        flying.set_obstacles({&map, {}}, {});
+        for (double& time : least) {
+            std::timespec start{};
+            std::timespec end{};
+            clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &start);
+            flying.step();
+            clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &end);
+            time = std::min(time, 1e6 * double(end.tv_sec - start.tv_sec) + 1e-3 * double(end.tv_nsec - start.tv_nsec));
+            apart = std::min(apart, flying.least_distance());
+        }
+        counts = flying.counts();
+    }
+    double sum = 0.0;
+    for (const double time : least) {
+        sum += time;
+    }
+    state.counters["swarm_us"] = sum / double(kSteps);
+    state.counters["worst_us"] = *std::max_element(least.begin(), least.end());
+    state.counters["planes"] = double(counts.planes) / double(counts.solved);
+    state.counters["of_obstacles"] = double(counts.beside_obstacles) / double(counts.solved);
+    state.counters["relaxed"] = double(counts.warning + counts.conflict + counts.other) / double(counts.solved);
+    state.counters["penetrating"] = double(counts.penetrating);
+    state.counters["least_m"] = double(apart);
+}
+
 }  // namespace
 
+BENCHMARK_CAPTURE(step, soup, mesh::Method::soup)->Unit(benchmark::kMillisecond)->Iterations(5);
+BENCHMARK_CAPTURE(step, decomposed, mesh::Method::decompose)->Unit(benchmark::kMillisecond)->Iterations(5);
 BENCHMARK_CAPTURE(planes, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(planes, decomposed, mesh::Method::decompose)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(way, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);

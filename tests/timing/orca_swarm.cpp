@@ -4,25 +4,67 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
+#include <utility>
 
 namespace jink::orca {
 
-Swarm::Swarm(std::size_t count, const SwarmSettings& settings)
-    : settings_(settings), positions_(count), velocities_(count, Vec3::Zero()), goals_(count), next_(count),
-      nearest_(count, settings.most, settings.range)
+namespace {
+
+/// Points of a Fibonacci sphere.
+std::vector<Vec3> on_sphere(std::size_t count, float radius)
 {
-    // Points of a Fibonacci sphere.
+    std::vector<Vec3> out(count);
     const double golden = 3.14159265358979323846 * (3.0 - std::sqrt(5.0));
     for (std::size_t i = 0; i < count; ++i) {
         const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
         const double level = std::sqrt(1.0 - z * z);
         const double angle = golden * static_cast<double>(i);
         const Eigen::Vector3d at(std::cos(angle) * level, std::sin(angle) * level, z);
-        positions_[i] = (at * static_cast<double>(settings.sphere)).cast<float>();
-        goals_[i] = -positions_[i];
+        out[i] = (at * static_cast<double>(radius)).cast<float>();
     }
+    return out;
+}
+
+std::vector<Vec3> opposite(std::vector<Vec3> points)
+{
+    for (Vec3& point : points) {
+        point = -point;
+    }
+    return points;
+}
+
+}  // namespace
+
+Swarm::Swarm(std::size_t count, const SwarmSettings& settings)
+    : Swarm(on_sphere(count, settings.sphere), opposite(on_sphere(count, settings.sphere)), settings)
+{
+}
+
+Swarm::Swarm(std::vector<Vec3> positions, std::vector<Vec3> goals, const SwarmSettings& settings)
+    : settings_(settings), positions_(std::move(positions)), velocities_(positions_.size(), Vec3::Zero()),
+      goals_(std::move(goals)), next_(positions_.size()), nearest_(positions_.size(), settings.most, settings.range)
+{
     settings_.pair.conflict_ratio = settings_.regions ? 2.0F * settings_.radius / settings_.warning : 0.999F;
+}
+
+void Swarm::set_obstacles(const ObstacleScene& scene, const ObstacleSettings& settings)
+{
+    scene_ = scene;
+    obstacle_settings_ = settings;
+    is_among_obstacles_ = true;
+}
+
+/// The first half-spaces: how many they are. Caps the speed where they are not all.
+std::size_t Swarm::add_obstacles(std::size_t self, float& cap)
+{
+    WorkBudget budget(1'000'000);
+    const ObstaclePlanes found =
+        obstacle_planes(scene_, {positions_[self], velocities_[self], settings_.max_speed}, obstacle_settings_, budget);
+    cap = std::min(cap, found.speed_cap);
+    counts_.penetrating += found.penetrating ? 1U : 0U;
+    counts_.beside_obstacles += found.planes.size();
+    std::copy(found.planes.begin(), found.planes.end(), planes_.begin());
+    return found.planes.size();
 }
 
 Vec3 Swarm::preferred(std::size_t self) const
@@ -57,6 +99,8 @@ void Swarm::decide(std::size_t self)
         cap = std::min(cap, std::max(gap, 0.0F) / (2.0F * settings_.pair.brake));
         counts_.truncated += cap < settings_.max_speed ? 1U : 0U;
     }
+    const std::size_t first = is_among_obstacles_ ? add_obstacles(self, cap) : 0;
+    HalfSpace* const planes = planes_.data() + first;
     std::size_t conflicts = 0;
     std::size_t warnings = 0;
     const float felt = inner + 2.0F * settings_.pair.brake * cap;
@@ -72,18 +116,19 @@ void Swarm::decide(std::size_t self)
         pair.source = static_cast<std::uint16_t>(other);
         if (k < conflicts) {
             const PairPlanes both = pair_planes(pair, settings_.pair);
-            planes_[k] = both.conflict;
-            planes_[conflicts + warnings++] = both.warning;
+            planes[k] = both.conflict;
+            planes[conflicts + warnings++] = both.warning;
         } else {
-            planes_[conflicts + warnings++] = pair_plane(pair, settings_.pair);
+            planes[conflicts + warnings++] = pair_plane(pair, settings_.pair);
         }
     }
     const Ball ball{Vec3::Zero(), cap};
     WorkBudget budget(1'000'000);
     const Solution solution =
-        solve({{planes_.data(), conflicts + warnings}, {&ball, 1}, preferred(self), velocities_[self]}, scratch_.view(),
-              budget);
+        solve({{planes_.data(), first + conflicts + warnings}, {&ball, 1}, preferred(self), velocities_[self]},
+              scratch_.view(), budget);
     ++counts_.solved;
+    counts_.planes += first + conflicts + warnings;
     counts_.warning += (solution.status & kRelaxedWarning) != 0 ? 1U : 0U;
     counts_.conflict += (solution.status & kRelaxedConflict) != 0 ? 1U : 0U;
     counts_.other += (solution.status & ~(kRelaxedWarning | kRelaxedConflict)) != 0 ? 1U : 0U;

@@ -8,6 +8,7 @@
 
 #include "core/base/random.hpp"
 #include "core/orca/agent_plane.hpp"
+#include "core/orca/obstacle_plane.hpp"
 #include "core/orca/program.hpp"
 #include "tests/timing/orca_nearest.hpp"
 
@@ -49,7 +50,13 @@ struct SwarmSettings {
 
 class Swarm {
 public:
+    /// On a sphere, each to the opposite point.
     Swarm(std::size_t count, const SwarmSettings& settings);
+    /// From anywhere to anywhere, as many goals as positions.
+    Swarm(std::vector<Vec3> positions, std::vector<Vec3> goals, const SwarmSettings& settings);
+
+    /// Keeps clear of what outlives this, too.
+    void set_obstacles(const ObstacleScene& scene, const ObstacleSettings& settings);
 
     /// One period of all vehicles.
     void step();
@@ -67,17 +74,24 @@ public:
     /// What happened so far.
     struct Counts {
         std::uint64_t solved = 0, warning = 0, conflict = 0, other = 0, truncated = 0;
+        std::uint64_t planes = 0, beside_obstacles = 0;  ///< half-spaces; of these of obstacles
+        std::uint64_t penetrating = 0;                   ///< vehicles whose envelope met an obstacle
     };
     [[nodiscard]] const Counts& counts() const { return counts_; }
 
 private:
     [[nodiscard]] Vec3 preferred(std::size_t self) const;
+    std::size_t add_obstacles(std::size_t self, float& cap);
 
     SwarmSettings settings_;
     std::vector<Vec3> positions_, velocities_, goals_, next_;
     NearestPoints nearest_;
-    Scratch<2 * NearestPoints::kMost> scratch_;
-    std::array<HalfSpace, 2 * NearestPoints::kMost> planes_;
+    static constexpr std::size_t kMostPlanes = 2 * NearestPoints::kMost + kMaxObstaclePlanes;
+    Scratch<kMostPlanes> scratch_;
+    std::array<HalfSpace, kMostPlanes> planes_;
+    ObstacleScene scene_;
+    ObstacleSettings obstacle_settings_;
+    bool is_among_obstacles_ = false;
     std::array<NearestPoints::Found, NearestPoints::kMost> found_;
     std::uint64_t steps_ = 0;
     Counts counts_;

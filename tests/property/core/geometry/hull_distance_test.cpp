@@ -89,6 +89,34 @@ Vec3 any_start(Random& random, const Separation& last)
     }
 }
 
+/// One point and one hull.
+void check_point(Random& random, const Vec3& point, const std::vector<Vec3>& vertices, Tally& tally, double bands = 1.0)
+{
+    DistanceQuery query;
+    query.stretch = any_stretch(random);
+    query.resolution = random.below(2) == 0 ? 1e-4F : 0.0F;
+    WorkBudget unlimited(1'000'000);
+    query.start = any_start(random, point_hull_distance(point, vertices, query, unlimited));
+    WorkBudget budget(1'000'000);
+    const Separation found = point_hull_distance(point, vertices, query, budget);
+    const double room = bands * band(vertices, point, query.stretch);
+    const auto support = [&](const Vec3d& direction) {
+        Vec3d best = stretched(vertices[0], query.stretch) - stretched(point, query.stretch);
+        for (const Vec3& v : vertices) {
+            const Vec3d w = stretched(v, query.stretch) - stretched(point, query.stretch);
+            best = w.dot(direction) > best.dot(direction) ? w : best;
+        }
+        return best;
+    };
+    const oracle::Bounds truth = oracle::distance_from_origin(support, 1e-2 * room / bands);
+    check(found, truth, room, double(query.resolution), tally);
+    for (const Vec3& v : vertices) {
+        const Vec3d w = stretched(v, query.stretch) - stretched(point, query.stretch);
+        ASSERT_GE(w.dot(found.direction.cast<double>()), double(found.distance));
+    }
+    tally.most_turns = std::max(tally.most_turns, budget.spent() / distance_turn_units(vertices.size()));
+}
+
 TEST(PointHullDistance, AgreesWithWolfesMethodAndItsPlaneHolds)
 {
     Random random(oracle::seed_of(11));
@@ -98,35 +126,48 @@ TEST(PointHullDistance, AgreesWithWolfesMethodAndItsPlaneHolds)
         const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);
         const std::vector<Vec3> vertices = any_hull(random, centre, size);
         const float far = random.below(8) == 0 ? 1000.0F : 2.0F * size;
-        const Vec3 point = centre + oracle::in_cube(random, far);
-        DistanceQuery query;
-        query.stretch = any_stretch(random);
-        query.resolution = random.below(2) == 0 ? 1e-4F : 0.0F;
-        WorkBudget unlimited(1'000'000);
-        query.start = any_start(random, point_hull_distance(point, vertices, query, unlimited));
-        WorkBudget budget(1'000'000);
-        const Separation found = point_hull_distance(point, vertices, query, budget);
-        const double room = band(vertices, point, query.stretch);
-        const auto support = [&](const Vec3d& direction) {
-            Vec3d best = stretched(vertices[0], query.stretch) - stretched(point, query.stretch);
-            for (const Vec3& v : vertices) {
-                const Vec3d w = stretched(v, query.stretch) - stretched(point, query.stretch);
-                best = w.dot(direction) > best.dot(direction) ? w : best;
-            }
-            return best;
-        };
-        const oracle::Bounds truth = oracle::distance_from_origin(support, 1e-2 * room);
-        check(found, truth, room, double(query.resolution), tally);
+        check_point(random, centre + oracle::in_cube(random, far), vertices, tally);
         ASSERT_FALSE(HasFatalFailure()) << "case " << n;
-        for (const Vec3& v : vertices) {
-            const Vec3d w = stretched(v, query.stretch) - stretched(point, query.stretch);
-            ASSERT_GE(w.dot(found.direction.cast<double>()), double(found.distance)) << "case " << n;
-        }
-        tally.most_turns = std::max(tally.most_turns, budget.spent() / distance_turn_units(vertices.size()));
     }
     print("point to hull", tally);
     EXPECT_LT(tally.most_turns, kMostDistanceTurns);
     EXPECT_GT(tally.touching, oracle::case_count(20'000) / 50);
+}
+
+/// Triangles have a closed form: fat ones, thin ones, ones without an area, and points about each region and on them.
+TEST(PointHullDistance, OfTrianglesThinOnesTooAgreesWithWolfesMethod)
+{
+    Random random(oracle::seed_of(15));
+    Tally tally;
+    for (std::size_t n = 0; n < oracle::case_count(20'000); ++n) {
+        const float size = oracle::power_of_ten(random, -2.0F, 2.0F);
+        const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);
+        std::vector<Vec3> vertices(3);
+        for (Vec3& v : vertices) {
+            v = centre + oracle::in_cube(random, size);
+        }
+        const float part = random.uniform(-0.5F, 1.5F);
+        const std::uint64_t kind = random.below(8);
+        switch (kind) {
+        case 0: vertices[2] = vertices[0]; break;  // an edge
+        case 1: vertices[1] = vertices[2] = vertices[0]; break;
+        case 2: vertices[2] = vertices[0] + part * (vertices[1] - vertices[0]); break;  // a line, but for rounding
+        case 3: vertices[2] = vertices[0] + oracle::in_cube(random, 1e-3F * size); break;
+        default: break;
+        }
+        Vec3 point = centre + oracle::in_cube(random, random.below(8) == 0 ? 1000.0F : 2.0F * size);
+        if (random.below(4) == 0) {
+            // On the triangle, its plane or its edges, and a little off.
+            const float along = random.uniform(-0.2F, 1.2F);
+            point = vertices[0] + along * (vertices[1] - vertices[0]) + part * (vertices[2] - vertices[0]) +
+                    oracle::in_cube(random, random.below(2) == 0 ? 0.0F : 1e-3F * size);
+        }
+        check_point(random, point, vertices, tally, kind < 4 ? 100.0 : 1.0);
+        ASSERT_FALSE(HasFatalFailure()) << "case " << n;
+    }
+    print("point to triangle", tally);
+    EXPECT_LT(tally.most_turns, kMostDistanceTurns);
+    EXPECT_GT(tally.touching, oracle::case_count(20'000) / 200);
 }
 
 TEST(HullHullDistance, AgreesWithWolfesMethodAndItsPlaneParts)

@@ -106,19 +106,18 @@ double distance(const Vec3& a, const std::array<double, 3>& b)
 
 /// What the worst of many cases came to.
 struct Tally {
-    std::uint64_t cases = 0, feasible = 0, relaxed = 0, hard_relaxed = 0, on_edge = 0, farther = 0;
+    std::uint64_t cases = 0, feasible = 0, relaxed = 0, hard_relaxed = 0, on_edge = 0;
     double optimum = 0.0, objective = 0.0, violation = 0.0, least = 0.0;
 
     void print(const std::string& name, std::uint64_t seed) const
     {
         std::printf(
             "%s, seed %llu: %llu cases, %llu with room, %llu relaxed (%llu twice), %llu on the edge; optimum off "
-            "by %.1e at most, least violation by %.1e, either by more than 1e-4 in %llu; farther from the goal "
-            "by %.1e, half-spaces broken by %.1e\n",
+            "by %.1e at most, least violation by %.1e; farther from the goal by %.1e, half-spaces broken by %.1e\n",
             name.c_str(), static_cast<unsigned long long>(seed), static_cast<unsigned long long>(cases),
             static_cast<unsigned long long>(feasible), static_cast<unsigned long long>(relaxed),
             static_cast<unsigned long long>(hard_relaxed), static_cast<unsigned long long>(on_edge), optimum, least,
-            static_cast<unsigned long long>(farther), objective, violation);
+            objective, violation);
     }
 };
 
@@ -133,21 +132,13 @@ oracle::Question moved(const Case& c, oracle::Question q, double sign)
     return q;
 }
 
-/// The least violation: to 1e-4, or where hard half-spaces that are nearly parallel leave it open within rounding,
-/// between what it is with both roundings.
-void compare_least(const Case& c, const oracle::Question& q, std::size_t hard, double broken, double exact,
-                   Tally& tally, const std::string& where)
+constexpr double kOff = 1e-4;  // [m/s] that an optimum or a least violation may be off by
+
+/// The least violation.
+void compare_least(double broken, double exact, Tally& tally, const std::string& where)
 {
-    const double off = std::fabs(broken - exact);
-    tally.least = std::max(tally.least, off);
-    if (off <= 1e-4) {
-        return;
-    }
-    ++tally.farther;
-    const oracle::Least loose = oracle::least_violation(moved(c, q, -1.0), hard);
-    const oracle::Least tight = oracle::least_violation(moved(c, q, 1.0), hard);
-    ASSERT_GE(broken, loose.d - 1e-4) << where;
-    ASSERT_TRUE(!tight.hard_hold || broken <= tight.d + 1e-4) << where << ' ' << broken << ' ' << tight.d;
+    tally.least = std::max(tally.least, std::fabs(broken - exact));
+    ASSERT_NEAR(broken, exact, kOff) << where;
 }
 
 /// Of the feasible ones: the optimum.
@@ -164,22 +155,7 @@ void compare_optimum(const Case& c, const oracle::Question& q, const Solution& s
     const Eigen::Vector3d ideal(best[0], best[1], best[2]);
     const double farther = distance(solution.velocity, q.goal) - (ideal - c.preferred.cast<double>()).norm();
     tally.objective = std::max(tally.objective, farther);
-    if (off > 1e-4) {
-        ++tally.farther;
-        // No farther from the goal than with the rounding against it, where that leaves any room.
-        const oracle::Question against = moved(c, q, 1.0);
-        const oracle::Least tight = oracle::least_violation(against, 0);
-        if (tight.d < -1e-6) {
-            const std::array<double, 3> worst = oracle::nearest(against, tight.x);
-            const Eigen::Vector3d bound(worst[0], worst[1], worst[2]);
-            ASSERT_LE(distance(solution.velocity, q.goal), (bound - c.preferred.cast<double>()).norm() + 1e-4) << where;
-        }
-        // Only where the constraints themselves leave it open within rounding: no farther than where they meet when
-        // each gives way by that rounding; or where the goal is as far from either.
-        const std::array<double, 3> loose = oracle::nearest(moved(c, q, -1.0), inside);
-        const double open = (Eigen::Vector3d(loose[0], loose[1], loose[2]) - ideal).norm();
-        ASSERT_TRUE(off <= 1e-4 + 2.0 * open || std::fabs(farther) <= 1e-5) << where << ' ' << off << ' ' << open;
-    }
+    ASSERT_LE(off, kOff) << where;
 }
 
 void compare(const Case& c, Tally& tally, const std::string& where)
@@ -221,7 +197,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     if (hards.d > 0.0) {
         ++tally.hard_relaxed;
         ASSERT_NE(solution.status & kRelaxedConflict, 0U) << where;
-        compare_least(c, first, 0, static_cast<double>(solution.broken[2]), hards.d, tally, where);
+        compare_least(static_cast<double>(solution.broken[2]), hards.d, tally, where);
         return;
     }
     ASSERT_EQ(solution.status & kRelaxedConflict, 0U) << where;
@@ -240,7 +216,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     }
     ++tally.relaxed;
     ASSERT_EQ(solution.status, kRelaxedWarning) << where;
-    compare_least(c, q, hard, static_cast<double>(solution.broken[3]), least.d, tally, where);
+    compare_least(static_cast<double>(solution.broken[3]), least.d, tally, where);
 }
 
 TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)

@@ -42,14 +42,14 @@ Solution solve_for(const std::vector<HalfSpace>& planes, const std::vector<Ball>
 const std::vector<Ball> kTwo{{Vec3::Zero(), 2.0F}};
 
 /// The program as the source runs it, row by row.
-Optimum row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred)
+Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred)
 {
     std::vector<Row> rows;
     for (const HalfSpace& p : planes) {
         rows.push_back({p.normal, p.offset});
     }
     WorkBudget budget(kPlenty);
-    return optimum(rows, balls, {preferred, false}, Tolerance(2.0F), budget);
+    return optimum<float>(rows, balls, {preferred, false}, Tolerance<float>(2.0F), budget);
 }
 
 void expect_solved(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
@@ -58,7 +58,7 @@ void expect_solved(const std::vector<HalfSpace>& planes, const std::vector<Ball>
     const Solution solution = solve_for(planes, balls, preferred);
     EXPECT_EQ(solution.status, 0U);
     expect_near(solution.velocity, expected, tolerance);
-    const Optimum incremental = row_by_row(planes, balls, preferred);
+    const Optimum<float> incremental = row_by_row(planes, balls, preferred);
     EXPECT_EQ(incremental.found, Found::optimum);
     EXPECT_EQ(incremental.satisfied, planes.size());
     expect_near(incremental.x, expected, tolerance);

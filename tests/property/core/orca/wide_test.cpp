@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Numbers of twice single precision against double: each operation alone, and what cancels.
+#include "core/orca/wide.hpp"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "core/base/random.hpp"
+
+namespace jink::orca {
+namespace {
+
+constexpr double kExact = 0x1p-43;  // of the result
+
+double value(const Wide& w) { return static_cast<double>(w.hi) + static_cast<double>(w.lo); }
+
+/// Of any sign and size from 1e-4 to 1e4, exact in double.
+Wide any(Random& random)
+{
+    const float size = std::pow(10.0F, random.uniform(-4.0F, 4.0F));
+    const float high = random.uniform(-1.0F, 1.0F) * size;
+    return Wide(high) + Wide(high * random.uniform(-1.0F, 1.0F) * 0x1p-24F);
+}
+
+void expect_exact(const Wide& found, double exact)
+{
+    ASSERT_LE(std::fabs(value(found) - exact), kExact * std::fabs(exact));
+    ASSERT_EQ(found.hi, static_cast<float>(value(found))) << "the halves overlap";
+}
+
+TEST(Wide, EachOperationIsExactToTwoToTheMinus43)
+{
+    Random random(20261125);
+    for (int i = 0; i < 200'000; ++i) {
+        const Wide a = any(random);
+        // Often nearly the same, or nearly opposite.
+        Wide b = any(random);
+        if (random.below(3) == 0) {
+            b = Wide(a.hi * (1.0F + random.uniform(-1.0F, 1.0F) * 1e-6F)) + Wide(a.lo);
+            b = random.below(2) == 0 ? -b : b;
+        }
+        expect_exact(a + b, value(a) + value(b));
+        expect_exact(a - b, value(a) - value(b));
+        expect_exact(a * b, value(a) * value(b));
+        expect_exact(a / b, value(a) / value(b));
+        expect_exact(sqrt(fabs(a)), std::sqrt(std::fabs(value(a))));
+        ASSERT_EQ(a < b, value(a) < value(b));
+        ASSERT_EQ(a <= b, value(a) <= value(b));
+        ASSERT_EQ(a == b, value(a) == value(b));
+    }
+}
+
+TEST(Wide, RootOfNothingAndOfLess)
+{
+    EXPECT_EQ(sqrt(Wide(0.0F)), Wide(0.0F));
+    EXPECT_EQ(sqrt(Wide(-1.0F)), Wide(0.0F));
+}
+
+/// What single precision makes 0 of: a product of three numbers beside 1 less the same with its last bit turned.
+TEST(Wide, VectorsOfItKeepWhatCancels)
+{
+    Random random(20261126);
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec3 n = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0.1F, 1)).normalized();
+        const Vec3 x(random.uniform(-4, 4), random.uniform(-4, 4), random.uniform(-4, 4));
+        const float offset = n.dot(x);
+        const Wide left = Wide(offset) - n.cast<Wide>().dot(x.cast<Wide>());
+        const double exact = static_cast<double>(offset) - n.cast<double>().dot(x.cast<double>());
+        ASSERT_NEAR(value(left), exact, 1e-12);
+        const WideVec3 across = n.cast<Wide>().cross(x.cast<Wide>());
+        ASSERT_NEAR(value(across.dot(x.cast<Wide>())), 0.0, 1e-11);
+    }
+}
+
+}  // namespace
+}  // namespace jink::orca
