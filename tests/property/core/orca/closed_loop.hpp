@@ -265,8 +265,7 @@ private:
         for (std::size_t i = 0; i < vehicles_.size(); ++i) {
             Vehicle& v = vehicles_[i];
             for (const Body& body : scene_.bodies) {
-                const Vec3d from = (v.at - body.centre).cwiseProduct(Vec3d(1.0, 1.0, stretch));
-                if ((from.norm() - body.reach(stretch)) / double(kept.horizontal) < out_.obstacle) {
+                if (body.lower_bound(v.at, stretch) / double(kept.horizontal) < out_.obstacle) {
                     out_.obstacle = std::min(out_.obstacle, body.distance(v.at, stretch) / double(kept.horizontal));
                 }
             }

@@ -47,14 +47,20 @@ struct Body {
         return radius < 0.0 ? geometry::make_box(centre.cast<float>(), half.cast<float>())
                             : geometry::make_capsule(a.cast<float>(), b.cast<float>(), float(radius));
     }
-    /// Of a ball about the centre that holds it, heights times `stretch`.
-    [[nodiscard]] double reach(double stretch) const
+    /// No more than distance(), and quickly: stretching does not bring anything nearer than the lesser scale does.
+    [[nodiscard]] double lower_bound(const Vec3d& point, double stretch) const
     {
-        double most = half.norm() + std::max(radius, 0.0);
+        const Vec3d from = point - centre;
+        const double scale = std::min(stretch, 1.0);
+        if (hull.empty() && radius >= 0.0) {
+            const double along = half.squaredNorm() > 0.0 ? from.dot(half) / half.squaredNorm() : 0.0;
+            return scale * ((from - std::clamp(along, -1.0, 1.0) * half).norm() - radius);
+        }
+        double most = half.norm();
         for (const Vec3& vertex : hull) {
             most = std::max(most, vertex.cast<double>().norm());
         }
-        return most * std::max(stretch, 1.0);
+        return scale * (from.norm() - most);
     }
     /// From `point` to the nearest point, heights times `stretch`; 0 within.
     [[nodiscard]] double distance(const Vec3d& point, double stretch) const

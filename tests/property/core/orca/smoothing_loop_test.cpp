@@ -3,6 +3,7 @@
 // late by what is said.
 #include <gtest/gtest.h>
 
+#include "core/orca/obstacle_way.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 #include "tests/property/core/orca/closed_loop_report.hpp"
 #include "tests/property/core/orca/random_tick.hpp"
@@ -24,6 +25,12 @@ public:
         seen.input = tick.input;
         seen.neighbours.assign(tick.input.neighbours.begin(), tick.input.neighbours.end());
         const std::uint32_t status = tick.decision.status;
+        const ObstacleSettings& kept = seen.settings.obstacles;
+        WorkBudget budget(1'000'000);
+        const WayClearance way = clearance_along(tick.input.scene, tick.input.own.position, tick.decision.command,
+                                                 kept.horizon, kept, budget);
+        ASSERT_EQ(tick.decision.clear_until, way.clear_until);
+        ASSERT_EQ((status & kObstacleAhead) == 0, way.clear);
         const bool newest = (status & kNotSmoothed) != 0;
         not_smoothed_ += newest ? 1U : 0U;
         ++ticks_;
@@ -38,8 +45,7 @@ public:
         own.position = tick.input.own.position;
         own.velocity = tick.input.own.velocity;
         own.reach_speed = seen.settings.limits.max_speed;
-        WorkBudget budget(1'000'000);
-        for (const HalfSpace& plane : obstacle_planes(tick.input.scene, own, seen.settings.obstacles, budget).planes) {
+        for (const HalfSpace& plane : obstacle_planes(tick.input.scene, own, kept, budget).planes) {
             check(plane, tick.decision.command);
         }
         // The conflict half-spaces alone: warnings may be broken by the mean.

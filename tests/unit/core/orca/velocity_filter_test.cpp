@@ -153,6 +153,58 @@ TEST(VelocityFilter, AWingThatHoversIsStalled)
     EXPECT_EQ(filter.decide(input, budget).status, 0U);
 }
 
+/// Where the mean can not be brought back within its slew the newest command is sent as it is, and that is said.
+TEST(VelocityFilter, WhereTheMeanBreaksAHalfSpaceTheNewestCommandIsSent)
+{
+    FilterSettings settings;
+    settings.smoothing = 10;
+    settings.delay = 0.4F;
+    Flown flown(settings, {1, 0, 0});
+    flown.ticks(20);
+    flown.input.preferred = Vec3::Zero();
+    const Vec3 before = flown.ticks(12).command;
+    ASSERT_GT(before.x(), 0.5F);  // the newest is at 0.4 m/s
+    flown.input.bounds = flown.bounds = {{Vec3::UnitX(), 0.4F * 2.4F, 0.0F}};
+    WorkBudget budget(kPlenty);
+    const Decision decision = flown.filter.decide(flown.input, budget);
+    EXPECT_EQ(decision.status, kNotSmoothed);
+    expect_near(decision.command, {0.35F, 0, 0}, 1e-3F);
+}
+
+/// A cap holds for what is sent, not for what it is the mean of.
+TEST(VelocityFilter, SmoothedCommandsKeepToACap)
+{
+    FilterSettings settings;
+    settings.smoothing = 10;
+    settings.delay = 0.4F;
+    Flown flown(settings, {0, 0, 1});
+    flown.ticks(20);
+    for (std::uint32_t i = 0; i < kMaxOrcaNeighbours + 1; ++i) {
+        const float angle = 6.2831853F * static_cast<float>(i) / static_cast<float>(kMaxOrcaNeighbours + 1);
+        flown.neighbours.push_back(other({8 * std::cos(angle), 8 * std::sin(angle), 0}, Vec3::Zero(), i + 1));
+    }
+    for (int i = 1; i <= 10; ++i) {
+        EXPECT_NEAR(flown.tick().command.norm(), 1.0F - 0.0495F * static_cast<float>(i), 1e-3F) << i;
+    }
+}
+
+/// Conflict regions that overlap: the preferred velocity gives time, by the share of the distance that is left.
+TEST(VelocityFilter, SlowsDownWhereConflictRegionsOverlap)
+{
+    for (const bool slows : {true, false}) {
+        FilterSettings settings;
+        settings.slows_down = slows;
+        Flown flown(settings);
+        flown.input.preferred = {1, 0, 0};
+        flown.neighbours = {other({0, 0.5F * 0.84F, 0}, Vec3::Zero())};
+        const Decision decision = flown.ticks(60);
+        EXPECT_NE(decision.status & kConflictOverlap, 0U);
+        EXPECT_NEAR(decision.nearest, 0.5F, 1e-5F);
+        EXPECT_NEAR(decision.command.x(), slows ? 0.5F : 1.0F, 1e-3F);
+        EXPECT_LT(decision.command.y(), -0.1F);  // away from it, at its own speed
+    }
+}
+
 /// The mean goes once more through what is hard; where it can not, the newest command is taken.
 TEST(VelocityFilter, SmoothedCommandsKeepToObstacles)
 {
