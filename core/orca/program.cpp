@@ -12,6 +12,9 @@ namespace jink::orca {
 
 namespace {
 
+/// Units of a program before its first turn.
+constexpr std::uint32_t kSolveUnits = 6;
+
 constexpr float kUnitLength = 1e-3F;  // by which a normal's length may be off
 
 /// Reads the problem into rows. @return the largest speed that occurs, or NaN where something is no number or no
@@ -135,7 +138,7 @@ void choose(const Problem& problem, const Vec3& so_far, float scale, Solution& o
     out.status = kWorkLimit;
     out.level = Level::warning;
     for (std::size_t level = kLevels; level-- > 0;) {
-        if (out.broken[level] > 4.0F * Tolerance(scale).outside) {
+        if (out.broken[level] > 4.0F * Tolerance<float>(scale).outside) {
             out.status |= kRelaxed[level];
             out.level = static_cast<Level>(level);
         }
@@ -270,9 +273,13 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
         out.velocity = last_command(problem);
         return out;
     }
-    Vec3 best;
+    Vec3 best = problem.reference;
     bool is_blunt = false;
-    Found found = attempt<float>(problem, scratch, scale, budget, out, best, is_blunt);
+    // Reading and looking at all of them once more is work too.
+    const auto looks = static_cast<std::uint32_t>(problem.planes.size()) / 2;
+    Found found = budget.spend(kSolveUnits + looks)
+                      ? attempt<float>(problem, scratch, scale, budget, out, best, is_blunt)
+                      : Found::exhausted;
     if (is_blunt && found != Found::exhausted) {
         found = refine(problem, scratch, scale, budget, out, best);
     }
