@@ -63,11 +63,17 @@ struct Solution {
 /// violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
 /// order; what it breaks is said as for any other. Five looks at each half-space beyond the budget.
 ///
+/// In single precision first. Where what holds the answer meets in angles below 0.1, or in more half-spaces than three,
+/// or half-spaces that may not give way hold those that do by more than twenty times their part, rounding may leave it
+/// open: then once more in numbers of twice the precision (wide.hpp), on the few half-spaces that decide. That takes
+/// many times as long, and is seldom asked for. Should its few places not do, what single precision has found stands.
+///
 /// Rounding: where a level is not said to be broken, none of it is by more than 2e-6 of the largest speed, and where it
-/// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum is
-/// exact to 1e-6 of the speed; to 1e-3 and more along the edge of half-spaces within a thousandth of each other's
-/// direction, where that much breaks them by no more than this. O(n) per turn, usually 2 - 6 turns; each turn is
-/// counted, and n^3 bounds them all. Allocates nothing.
+/// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum
+/// and the least violation are exact to 1e-4 m/s for speeds up to some m/s, also among half-spaces within 1e-4 of each
+/// other's direction or of its opposite; whether a level has to give way at all is open within 1e-5 m/s. O(n) per turn,
+/// usually 2 - 6 turns; each turn is counted, those in twice the precision sixteen times (units::kOrcaWide), and n^3
+/// bounds them all. Four more looks at each half-space are not counted. Allocates nothing.
 [[nodiscard]] Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept;
 
 /// The point nearest to `point` that is within all balls, as near as rounding lets it be. Finite where the balls are,

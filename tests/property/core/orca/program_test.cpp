@@ -121,7 +121,7 @@ struct Tally {
     }
 };
 
-constexpr double kEdge = 1e-5;  // [m/s] of room or contradiction, within which either answer is right
+constexpr double kEdge = 1e-5;  // [m/s] of room or contradiction, within which a level may give way or not
 
 /// The question with every half-space moved by what rounding may be: into what is free, or out of it.
 oracle::Question moved(const Case& c, oracle::Question q, double sign)
@@ -192,6 +192,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     }
     if (std::fabs(hards.d) < kEdge) {
         ++tally.on_edge;
+        compare_least(static_cast<double>(solution.broken[2]), std::max(hards.d, 0.0), tally, where);
         return;
     }
     if (hards.d > 0.0) {
@@ -204,6 +205,9 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     const oracle::Least least = oracle::least_violation(q, hard);
     if (!least.hard_hold || std::fabs(least.d) < kEdge) {
         ++tally.on_edge;
+        if (least.hard_hold) {
+            compare_least(static_cast<double>(solution.broken[3]), std::max(least.d, 0.0), tally, where);
+        }
         return;
     }
     if (least.d < 0.0) {
