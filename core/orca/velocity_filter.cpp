@@ -222,8 +222,12 @@ void VelocityFilter::smooth(Tick& tick, const Solution& solution, WorkBudget& bu
     if (settings_.smoothing <= 1) {
         return;
     }
+    const bool anew = (tick.out.status & kResynchronised) != 0;
+    if (anew) {
+        mean_.clear();  // of commands that nobody flew
+    }
     const Vec3 mean = mean_.add(solution.velocity);
-    const Vec3 last = issued_.empty() ? tick.input.own.velocity : issued_.newest().velocity;
+    const Vec3 last = anew || issued_.empty() ? tick.input.own.velocity : issued_.newest().velocity;
     LimitSet limits = limit_set(settings_.limits, last);
     limits.balls[0].radius = std::min(limits.balls[0].radius, tick.limits.balls[0].radius);
     tick.put_limits(limits);
