@@ -29,7 +29,7 @@ NeighbourSettings neighbour_settings(const FilterSettings& s) noexcept
     return out;
 }
 
-bool is_valid(const BiasSettings& s) noexcept
+bool has_good_bias(const BiasSettings& s) noexcept
 {
     return is_positive(s.near) && is_not_negative(s.sideways) && is_not_negative(s.vertical) &&
            is_not_negative(s.stalled_below) && is_not_negative(s.stall) && is_positive(s.blocked);
@@ -38,7 +38,7 @@ bool is_valid(const BiasSettings& s) noexcept
 /// What check() does not look at, or lets studies choose.
 bool has_good_numbers(const FilterSettings& s) noexcept
 {
-    return is_valid(s.obstacles) && is_valid(s.bias) && is_positive(s.pair.conflict_ratio) &&
+    return is_valid(s.obstacles) && has_good_bias(s.bias) && is_positive(s.pair.conflict_ratio) &&
            is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= 2.0F &&
            is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
            is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) && is_not_negative(s.loop.lag) &&
