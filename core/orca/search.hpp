@@ -23,7 +23,7 @@ struct ScratchView {
     std::span<std::uint16_t> held;
 };
 template <std::size_t N = kMaxOrcaPlanes>
-class Scratch {
+class Scratch {  // NOLINT(cppcoreguidelines-pro-type-member-init): written before it is read, each time
 public:
     [[nodiscard]] ScratchView view() noexcept { return {rows_, derived_, yields_, held_}; }
 

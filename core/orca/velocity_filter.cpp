@@ -29,7 +29,7 @@ NeighbourSettings neighbour_settings(const FilterSettings& s) noexcept
     return out;
 }
 
-bool is_valid(const BiasSettings& s) noexcept
+bool has_good_bias(const BiasSettings& s) noexcept
 {
     return is_positive(s.near) && is_not_negative(s.sideways) && is_not_negative(s.vertical) &&
            is_not_negative(s.stalled_below) && is_not_negative(s.stall) && is_positive(s.blocked);
@@ -38,7 +38,7 @@ bool is_valid(const BiasSettings& s) noexcept
 /// What check() does not look at, or lets studies choose.
 bool has_good_numbers(const FilterSettings& s) noexcept
 {
-    return is_valid(s.obstacles) && is_valid(s.bias) && is_positive(s.pair.conflict_ratio) &&
+    return is_valid(s.obstacles) && has_good_bias(s.bias) && is_positive(s.pair.conflict_ratio) &&
            is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= 2.0F &&
            is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
            is_not_negative(s.tick) && is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) &&
@@ -222,8 +222,12 @@ void VelocityFilter::smooth(Tick& tick, const Solution& solution, WorkBudget& bu
     if (settings_.smoothing <= 1) {
         return;
     }
+    const bool anew = (tick.out.status & kResynchronised) != 0;
+    if (anew) {
+        mean_.clear();  // of commands that nobody flew
+    }
     const Vec3 mean = mean_.add(solution.velocity);
-    const Vec3 last = issued_.empty() ? tick.input.own.velocity : issued_.newest().velocity;
+    const Vec3 last = anew || issued_.empty() ? tick.input.own.velocity : issued_.newest().velocity;
     LimitSet limits = limit_set(settings_.limits, last);
     limits.balls[0].radius = std::min(limits.balls[0].radius, tick.limits.balls[0].radius);
     tick.put_limits(limits);

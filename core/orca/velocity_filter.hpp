@@ -92,9 +92,13 @@ struct Binding {
 };
 inline constexpr std::uint16_t kBoundSource = 0xFF00U;
 
-/// One command, with what can be said of it.
+/// One command, with what can be said of it. Where commands are smoothed, `status`, `level`, `broken` and `bindings`
+/// are those of the solution that went into the mean: the mean keeps to all that is hard, not to warning half-spaces.
 struct Decision {
-    Vec3 command = Vec3::Zero();          ///< [m/s], always finite and within the limits' balls
+    /// [m/s], always finite and within the limits' balls: no faster than may be, and one period's acceleration from
+    /// what was sent last; with kNotSmoothed from the last solution, with kResynchronised from what is flown. What can
+    /// not be solved or is too old (kBadInput, kOwnStale, kConfigUnsafe) brakes.
+    Vec3 command = Vec3::Zero();
     std::uint32_t status = 0;             ///< StatusBit, FilterBit
     Level level = Level::warning;         ///< the strongest that is broken, where one is
     std::array<float, kLevels> broken{};  ///< by level, as Solution::broken

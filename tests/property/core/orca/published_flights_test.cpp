@@ -5,6 +5,8 @@
 // cylinder is flown.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/property/core/geometry/oracle.hpp"
 #include "tests/property/core/orca/closed_loop_report.hpp"
 
@@ -202,7 +204,27 @@ TEST(PublishedFlight, E5)
                     {Vec3d(-4, -1.6, 1.5), Vec3d(4, -1.6, 1.5)},
                     {Vec3d(4, 0.3, 1.5), Vec3d(-4, 0.3, 1.5)}};
     scene.there_and_back = true;
+    // Whenever the third one passes another, on which side.
+    std::array<Vec3, 3> at{};
+    std::array<bool, 2> behind{};
+    std::size_t between = 0;
+    std::size_t outside = 0;
+    scene.watch = [&](const Watched& tick) {
+        at[tick.vehicle] = tick.input.own.position;
+        for (std::size_t i = 0; i < behind.size() && tick.vehicle == 2; ++i) {
+            const bool now = at[2].x() < at[i].x();
+            if (now != behind[i] && tick.now > 1.0) {
+                const bool inside = i == 0 ? at[2].y() < at[0].y() : at[2].y() > at[1].y();
+                ++(inside ? between : outside);
+            }
+            behind[i] = now;
+        }
+    };
     const Comparison c = compare("E5", scene, noises(4));
+    std::printf("[ measured ] E5: the third one passes %zu times between the others, %zu times outside\n", between,
+                outside);
+    EXPECT_EQ(outside, 0U);
+    EXPECT_GE(between, 3U * 4U * noises(4));  // three kinds of flight, each past both, out and back
     EXPECT_LT(c.on.rate, 1.2 * c.free.rate);
 }
 

@@ -169,7 +169,7 @@ TEST(PublishedScene, S6)
     EXPECT_NEAR(o.time, 24.3, 10.0);
     EXPECT_GE(o.time, 0.0);
     EXPECT_NEAR(o.ellipsoid, 1.214, 0.01);
-    EXPECT_NEAR(o.cylinder, 0.888, 0.005);
+    EXPECT_NEAR(o.cylinder, 0.888, 0.01);
     EXPECT_EQ(o.conflict, 0U);
 }
 

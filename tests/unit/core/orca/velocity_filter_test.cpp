@@ -153,6 +153,20 @@ TEST(VelocityFilter, AWingThatHoversIsStalled)
     EXPECT_EQ(filter.decide(input, budget).status, 0U);
 }
 
+/// Commands that nobody flew say nothing, so they are not in the mean either.
+TEST(VelocityFilter, WhoDoesNotFlyItsCommandsIsFollowedWhereItSmooths)
+{
+    FilterSettings settings;
+    settings.smoothing = 10;
+    settings.delay = 0.4F;
+    Flown flown(settings, {1, 0, 0});
+    flown.ticks(20);
+    flown.input.own.velocity = flown.last = {-0.5F, 0, 0};
+    const Decision decision = flown.tick();
+    EXPECT_EQ(decision.status, kResynchronised);
+    expect_near(decision.command, {-0.45F, 0, 0}, 1e-5F);
+}
+
 /// Where the mean can not be brought back within its slew the newest command is sent as it is, and that is said.
 TEST(VelocityFilter, WhereTheMeanBreaksAHalfSpaceTheNewestCommandIsSent)
 {
