@@ -26,7 +26,7 @@ struct Corners {
     using V = Vec3Of<Real>;
     std::span<const Row> rows;
     std::span<const float> yields;
-    std::size_t soft;
+    std::size_t soft = 0;
 
     [[nodiscard]] Real yield(std::size_t i) const noexcept { return i < soft ? 0.0F : yields[i]; }
     [[nodiscard]] V normal(std::size_t i) const noexcept { return rows[i].normal.template cast<Real>(); }
