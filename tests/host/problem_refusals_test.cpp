@@ -28,7 +28,7 @@ TEST(ProblemFile, EveryComplaint)
     const auto setting = [](const std::string& what) { return kHead + kThreat + "settings: {" + what + "}\n"; };
     const struct {
         std::string text;
-        const char* complaint;
+        std::string complaint;
     } cases[] = {
         {kThreat, "missing key 'vehicle'"},
         {"vehicle: uva2\n" + kHead.substr(17) + kThreat, "did you mean 'uav2'?"},
@@ -70,7 +70,7 @@ TEST(ProblemFile, EveryComplaint)
         {kHead + "threats: [{position: [20, 0, 20], radius: 1, main: true}]\nobstacles: [{main: true, sphere: {centre: "
                  "[9, 9, 9], radius: 1}}]\n",
          "must say `main: true`, not 2"},
-        {kHead + crowd, "threats: 33 are more than 32"},
+        {kHead + crowd, "threats: " + std::to_string(kMaxTracks + 1) + " are more than " + std::to_string(kMaxTracks)},
         {kHead + kThreat + stones, "obstacles: 97 are more than 96"},
         {kHead + "threats: [{position: [20, 0], radius: 1}]\n", "threats[0].position: three numbers are wanted, not 2"},
         {kHead + "threats: [{position: [20, 0, .inf], radius: 1}]\n", "threats[0].position[2]: '.inf' is not finite"},

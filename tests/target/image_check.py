@@ -18,7 +18,7 @@ import stack  # noqa: E402
 MOST_FLASH = 576 * 1024
 MOST_STATIC_RAM = 112 * 1024
 MOST_COUPLED = 64 * 1024
-MOST_STACK = 8 * 1024
+MOST_STACK = 12 * 1024
 ALLOCATORS = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
 
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "firmware/link/mavlink/checksum.hpp"
 #include "tests/unit/link/mavlink_tools.hpp"
 
 namespace jink::link::mavlink {
@@ -153,16 +154,43 @@ TEST(MavlinkDamage, BurstsAreAcceptedNoMoreOftenThanTheChecksumAllows)
     EXPECT_EQ(accepted_short, 0U) << "a 16-bit CRC catches every burst up to 16 bits";
 }
 
+/// Whether the good frame happens to bring the rest of what is cut off, checksum and all: then nobody can tell, and one
+/// in 65 536 does.
+bool is_made_whole(const Bytes& cut, const MessageInfo& info, std::size_t header)
+{
+    Bytes stream = cut;
+    const Bytes good = good_frame();
+    stream.insert(stream.end(), good.begin(), good.end());
+    if (cut.size() <= kLengthByte) {
+        return false;
+    }
+    const std::size_t length = header + std::to_integer<std::size_t>(cut[kLengthByte]);
+    if (length + 2 > stream.size()) {
+        return false;
+    }
+    Checksum checksum;
+    checksum.add({stream.data() + 1, length - 1});
+    checksum.add(static_cast<std::byte>(info.crc_extra));
+    return checksum.value() ==
+           std::to_integer<unsigned>(stream[length]) + 256U * std::to_integer<unsigned>(stream[length + 1]);
+}
+
 TEST(MavlinkDamage, CutAtEveryByte)
 {
+    int made_whole = 0;
     for (const bool legacy : {false, true}) {
         for (const Sample& sample : samples(base_seed(), legacy)) {
             for (std::size_t n = 0; n < sample.frame.size(); ++n) {
                 const Bytes cut(sample.frame.begin(), sample.frame.begin() + static_cast<std::ptrdiff_t>(n));
+                if (is_made_whole(cut, sample.info, legacy ? 6 : 10)) {
+                    ++made_whole;
+                    continue;
+                }
                 ASSERT_EQ(strangers(cut), 0U) << sample.info.id << " cut at " << n;
             }
         }
     }
+    EXPECT_LE(made_whole, 4);
 }
 
 TEST(MavlinkDamage, WrongStartByte)
