@@ -41,7 +41,7 @@ struct Settings {
 /// A fixed wing flies no slower than kWingShare of its cruise speed, and turns no tighter than its acceleration lets
 /// it.
 ///
-/// Memory: sizeof(Planner), about 14 KiB with the default capacities. O(tracks + obstacles) and the programs' turns,
+/// Memory: sizeof(Planner), about 10 KiB with the default capacities. O(tracks + obstacles) and the programs' turns,
 /// bounded by the budget.
 class Planner {
 public:

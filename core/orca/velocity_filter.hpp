@@ -120,7 +120,7 @@ struct Decision {
 /// Each tick: predicted() - neighbours relative to it, made by the caller - decide() - issued() with what was really
 /// sent. Answers depend on nothing but the calls so far.
 ///
-/// Memory: about 10 KiB with the default capacities. decide() is bounded by its budget; when that is spent the command
+/// Memory: about 6 KiB with the default capacities. decide() is bounded by its budget; when that is spent the command
 /// is the best of a few, as solve() says, and kWorkLimit is told.
 class VelocityFilter {
 public:

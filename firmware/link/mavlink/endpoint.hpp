@@ -152,6 +152,7 @@ private:
     void on_adsb(const Context& c) noexcept;
     void on_neighbour(const Context& c) noexcept;
     void on_gps(const Context& c) noexcept;
+    [[nodiscard]] bool can_place(bool is_sound) noexcept;
     void on_utm(const Context& c) noexcept;
     [[nodiscard]] bool is_own(const Frame& frame, const UtmGlobalPosition& m, bool named) noexcept;
     void deliver(const TrackReport& report, Inbox& inbox) noexcept;

@@ -66,18 +66,21 @@ void Endpoint::deliver(const TrackReport& report, Inbox& inbox) noexcept
     }
 }
 
+/// Whether a place that is sound can be brought into the local frame; counts why not.
+bool Endpoint::can_place(bool is_sound) noexcept
+{
+    diagnostics_.out_of_range += is_sound ? 0U : 1U;
+    diagnostics_.no_origin += is_sound && origin_rank_ == 0 ? 1U : 0U;
+    return is_sound && origin_rank_ > 0;
+}
+
 void Endpoint::on_adsb(const Context& c) noexcept
 {
     AdsbVehicle m;
     static_cast<void>(decode(c.frame, m));
     const GlobalPosition where{m.lat, m.lon, m.altitude};
     constexpr unsigned kNeeded = kValidCoordinates | kValidAltitude;
-    if ((m.flags & kNeeded) != kNeeded || !is_on_earth(where)) {
-        ++diagnostics_.out_of_range;
-        return;
-    }
-    if (origin_rank_ == 0) {
-        ++diagnostics_.no_origin;
+    if (!can_place((m.flags & kNeeded) == kNeeded && is_on_earth(where))) {
         return;
     }
     TrackReport report;
@@ -106,12 +109,7 @@ void Endpoint::on_neighbour(const Context& c) noexcept
     GlobalPositionInt m;
     static_cast<void>(decode(c.frame, m));
     const GlobalPosition where{m.lat, m.lon, m.alt};
-    if (!is_place(where)) {
-        ++diagnostics_.out_of_range;
-        return;
-    }
-    if (origin_rank_ == 0) {
-        ++diagnostics_.no_origin;
+    if (!can_place(is_place(where))) {
         return;
     }
     const std::uint8_t system = c.frame.header.system_id;
@@ -164,12 +162,7 @@ void Endpoint::on_utm(const Context& c) noexcept
     constexpr unsigned kNeeded = kUtmHasPosition | kUtmHasAltitude;
     const std::int64_t height = static_cast<std::int64_t>(m.alt) - (has_undulation_ ? undulation_ : 0);
     const GlobalPosition where{m.lat, m.lon, static_cast<std::int32_t>(height)};
-    if ((m.flags & kNeeded) != kNeeded || !is_place(where) || height != where.alt) {
-        ++diagnostics_.out_of_range;
-        return;
-    }
-    if (origin_rank_ == 0) {
-        ++diagnostics_.no_origin;
+    if (!can_place((m.flags & kNeeded) == kNeeded && is_place(where) && height == where.alt)) {
         return;
     }
     TrackReport report;
