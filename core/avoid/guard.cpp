@@ -232,14 +232,14 @@ Seconds time_to_stop(const world::Situation& s, const Settings& settings) noexce
     return vehicle::stopping_time(s.own.velocity.norm(), s.limits) + settings.reserve;
 }
 
-world::Separation check_manoeuvre(const world::Situation& given, const world::Manoeuvre& manoeuvre,
+world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
                                   const Settings& settings, WorkBudget& budget, Seconds horizon,
                                   const world::Cutoff& cutoff) noexcept
 {
-    if (!is_well_formed(manoeuvre, given.now)) {
+    if (!is_well_formed(manoeuvre, situation.now)) {
         return {-world::kSeparationCap, 0.0F, {}};
     }
-    world::Situation s = given;
+    world::Situation s = situation;
     const bool is_command = manoeuvre.kind == world::ManoeuvreKind::velocity;
     if (is_command) {
         s.shared_horizon = time_to_stop(s, settings);

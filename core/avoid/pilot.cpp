@@ -158,7 +158,8 @@ void Pilot::watch(Tick& tick) noexcept
         if (tick.in_control) {
             // Ours without a reason (granted late, or being given back): keep to the leg meanwhile.
             follow_way(tick);
-            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg && !tick.held;
+            tick.out.wants_control =
+                cross_track(tick.s) > 2.0F * settings_.on_leg && !is_held(tick.s, tick.taken, settings_.on_leg);
             if (tick.out.wants_control) {
                 enter_rejoining();
             }
@@ -319,8 +320,8 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     world::Situation situation = given;
     situation.flying = has_flying_ ? &flying_ : nullptr;
     situation.commanded = in_control && has_commanded_ ? &commanded_ : nullptr;
-    Tick tick{situation, in_control, ladder, WorkBudget(settings_.budget), world::way_of(situation), {},
-              false,     false,      false};
+    Tick tick{situation, in_control,   ladder, WorkBudget(settings_.budget), world::way_of(situation), {},
+              false,     Vec3::Zero(), false};
     tick.out.has_conflict =
         world::main_conflict(situation, tick.way, settings_.lookahead, tick.budget, tick.out.conflict);
     diagnostics_.conflicts += tick.out.has_conflict && !in_conflict_ ? 1U : 0U;

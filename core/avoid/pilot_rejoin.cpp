@@ -81,6 +81,13 @@ Beside beside_leg(const world::Situation& s) noexcept
     return beside;
 }
 
+bool is_held(const world::Situation& s, const Vec3& taken, float on_leg) noexcept
+{
+    const Vec3 off = beside_leg(s).off;
+    const bool beside = std::hypot(off.x(), off.y()) > on_leg;
+    return std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && !beside);
+}
+
 void Pilot::enter_rejoining() noexcept
 {
     state_ = State::rejoining;
@@ -94,10 +101,7 @@ void Pilot::follow_way(Tick& tick) noexcept
     tick.out.kind = world::ManoeuvreKind::velocity;
     const Vec3 wanted = tick.way.length > 0.0F ? Vec3(tick.way.direction * tick.way.speed) : Vec3(Vec3::Zero());
     tick.out.velocity = kept_inside(tick.s, wanted);
-    const Vec3 taken = wanted - tick.out.velocity;
-    const Vec3 off = beside_leg(tick.s).off;
-    const bool beside = std::hypot(off.x(), off.y()) > settings_.on_leg;
-    tick.held = std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && !beside);
+    tick.taken = wanted - tick.out.velocity;
 }
 
 /// The way back is not clear, but flying on beside the leg is: past what is slow, or until it has gone. Going back to
@@ -162,7 +166,8 @@ void Pilot::rejoin(Tick& tick) noexcept
     }
     follow_way(tick);
     // Held at a bound, the vehicle is as near to its leg as we may bring it.
-    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg || tick.held;
+    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg ||
+                      is_held(tick.s, tick.taken, settings_.on_leg);
     if (back && way_clear_for(tick, settings_.settle)) {
         ++diagnostics_.rejoined;
         state_ = State::watching;

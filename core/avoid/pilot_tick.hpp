@@ -21,6 +21,10 @@ struct Beside {
 /// O(segments).
 [[nodiscard]] Beside beside_leg(const world::Situation& situation) noexcept;
 
+/// Whether the vehicle is as near to its leg as bounds let it be, which take `taken` [m/s] off its way there: above or
+/// below it, or at the keep-in radius. O(1), O(segments).
+[[nodiscard]] bool is_held(const world::Situation& situation, const Vec3& taken, float on_leg) noexcept;
+
 /// The same situation for a vehicle with `extra` more to every side.
 struct Wider {
     vehicle::VehicleLimits limits;
@@ -50,8 +54,8 @@ struct Pilot::Tick {
     world::Way way;
     Guidance out;
     bool wide_clear = false;
-    bool held = false;     ///< on its way back at a bound of the airspace
-    bool ran_out = false;  ///< of work, planning or altogether
+    Vec3 taken = Vec3::Zero();  ///< off the velocity of the way back, by bounds of the airspace [m/s]
+    bool ran_out = false;       ///< of work, planning or altogether
 };
 
 }  // namespace jink::avoid

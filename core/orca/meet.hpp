@@ -14,6 +14,7 @@ namespace jink::orca {
 /// Sine of an angle between planes that rounding does not tell from 0: of normals in single precision, or of what is
 /// computed from them in twice that.
 template <class Real>
+// NOLINTNEXTLINE(bugprone-dynamic-static-initializers): constexpr, hence constant
 inline constexpr float kSameDirection = std::is_same_v<Real, float> ? 1e-6F : 1e-10F;
 
 /// The line that both planes have in common, from its point nearest to `near`, which lies on plane `one`, along a unit

@@ -61,6 +61,7 @@ struct Tolerance {
 
     /// @param scale  the largest speed that occurs [m/s]
     explicit constexpr Tolerance(float scale) noexcept : outside((scale > 1.0F ? scale : 1.0F) * kShare) {}
+    // NOLINTNEXTLINE(bugprone-dynamic-static-initializers): constexpr, hence constant
     static constexpr float kShare = std::is_same_v<Real, float> ? 5e-7F : 1e-11F;
 };
 

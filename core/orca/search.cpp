@@ -259,6 +259,7 @@ Found Search<Real>::push_out(std::size_t soft, std::size_t hards, std::size_t so
     if (!budget_.spend(cost<Real>(units::kOrcaTurn + units::orca_rows(hards + softs)))) {
         return Found::exhausted;
     }
+    // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): written before it is read, and kilobytes
     std::array<RowOf<Real>, std::is_same_v<Real, float> ? 0 : kMaxDerived> own;
     std::span<RowOf<Real>> derived(own);
     if constexpr (std::is_same_v<Real, float>) {
