@@ -246,7 +246,8 @@ Separation least_separation(const Situation& situation, std::span<const path::Pa
     }
     const Airspace& air = situation.airspace;
     const std::size_t bounds = (air.has_floor ? 1U : 0U) + (air.has_ceiling ? 1U : 0U) + (air.has_keep_in ? 1U : 0U);
-    if (!paid(budget, points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
+    constexpr std::size_t kLook = 1;
+    if (!paid(budget, kLook + points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
         return best;
     }
     const Flight flight(points, horizon);

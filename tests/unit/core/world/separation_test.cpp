@@ -57,7 +57,7 @@ TEST(LeastSeparation, EachLoopIsPaidFor)
 {
     const path::TimedPath path = flight({Vec3::Zero(), Vec3(1, 0, 0), Vec3(2, 0, 0)}, 1.0F);
     Scene scene;
-    std::uint32_t spent = 3 * units::kPathPiece;
+    std::uint32_t spent = 1 + 3 * units::kPathPiece;  // one for the look itself
     EXPECT_EQ(spent_on(scene, path), spent);
     scene.airspace.has_ceiling = scene.airspace.has_floor = true;
     scene.airspace.floor = -20.0F;
