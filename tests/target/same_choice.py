@@ -68,7 +68,9 @@ def choice(answer):
 
 
 def is_same(case, a, b):
-    return choice(a) == choice(b) and (case.kind != "reciprocal" or math.dist(a.velocity, b.velocity) <= SAME_VELOCITY)
+    if case.kind == "reciprocal":  # chooses a velocity, no candidate
+        return a.status == b.status and (a.status != "found" or math.dist(a.velocity, b.velocity) <= SAME_VELOCITY)
+    return choice(a) == choice(b)
 
 
 def main(build, count, names):
