@@ -11,7 +11,6 @@ namespace jink::files {
 namespace {
 
 using link::GlobalPosition;
-constexpr auto kNeed = YamlMap::Need::required;
 constexpr Range kLocal{-1e5F, 1e5F};      // [m]
 constexpr Range kHeight{-1000.0F, 5e4F};  // [m]
 constexpr Range kRadius{0.1F, 1e5F};      // [m]

@@ -18,7 +18,6 @@ void put(float& out, std::optional<float> value) { out = value.value_or(out); }
 
 void read_limits(YamlMap& map, vehicle::VehicleLimits& limits)
 {
-    constexpr auto kNeed = YamlMap::Need::required;
     if (const auto kind = map.choice("kind", {"multirotor", "fixed_wing"}, kNeed)) {
         limits.kind = *kind == 0 ? vehicle::VehicleKind::multirotor : vehicle::VehicleKind::fixed_wing;
     }
@@ -38,7 +37,6 @@ void read_limits(YamlMap& map, vehicle::VehicleLimits& limits)
 
 void read_airframe(YamlMap& map, vehicle::Airframe& airframe)
 {
-    constexpr auto kNeed = YamlMap::Need::required;
     put(airframe.mass, map.number("mass", range_of(Param::mass), kNeed));
     put(airframe.drag_coefficient, map.number("drag_coefficient", range_of(Param::drag), kNeed));
     put(airframe.effective_area, map.number("effective_area", range_of(Param::area), kNeed));
@@ -56,7 +54,6 @@ void read_airframe(YamlMap& map, vehicle::Airframe& airframe)
 
 void read_caps(YamlMap& map, cost::Caps& caps)
 {
-    constexpr auto kNeed = YamlMap::Need::required;
     auto below = map.map("caps");
     if (!below) {
         return;

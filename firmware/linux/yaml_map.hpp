@@ -82,6 +82,9 @@ private:
     bool is_map_ = false;
 };
 
+/// For a value that has to be there.
+inline constexpr auto kNeed = YamlMap::Need::required;
+
 /// Complaint at the place of a node.
 [[nodiscard]] Complaint complaint_at(const YAML::Mark& mark, const std::string& file, std::string text);
 /// A number of a sequence; a complaint named `where` and nothing when it is none, or out of range.

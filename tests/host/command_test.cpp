@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The jink command as its user meets it: arguments, exit statuses, what goes to which stream, the report.
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdio>

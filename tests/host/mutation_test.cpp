@@ -3,6 +3,7 @@
 // complaints, and what they take the planner takes too.
 #include <algorithm>
 #include <cstdlib>
+#include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
 #include "tests/host/scratch.hpp"

@@ -2,6 +2,7 @@
 // Each attempt, family and shape of a threat has a planning problem of its own in tests/scenario/problems, which uses
 // it.
 #include <algorithm>
+#include <gtest/gtest.h>
 #include <optional>
 #include <string>
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
 #include "firmware/linux/param_file.hpp"
 
 #include "core/base/random.hpp"

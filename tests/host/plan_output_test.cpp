@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
 #include "toolchain/host/plan_output.hpp"
 
 #include <cmath>
@@ -13,7 +15,7 @@ using namespace jink::host;
 using geometric::CandidateStatus;
 using world::PlanStatus;
 
-ProblemFile problem(const std::string& text)
+ProblemFile problem_of(const std::string& text)
 {
     auto read = read_problem_text(text, "p.yaml");
     if (const auto* complaints = std::get_if<files::Complaints>(&read)) {
@@ -36,7 +38,7 @@ struct ByHand {
     std::array<geometric::Threat, 2> threats;
     std::array<world::Obstacle, 1> obstacles;
     world::Airspace airspace;
-    geometric::Problem problem;
+    geometric::Problem problem_of;
 
     ByHand()
     {
@@ -47,19 +49,19 @@ struct ByHand {
         obstacles[0].shape = geometry::make_cylinder({14, 5, 0}, {14, 5, 40}, 0.4F);
         airspace.has_floor = true;
         airspace.floor = 18.0F;
-        problem.frame = geometric::make_path_frame({0, 0, 20}, {1, 0, 0});
-        problem.main = 0;
-        problem.main_radius = 1.0F;
-        problem.threats = threats;
-        problem.obstacles = obstacles;
-        problem.airspace = &airspace;
-        problem.start_velocity = {5, 0, 0};
+        problem_of.frame = geometric::make_path_frame({0, 0, 20}, {1, 0, 0});
+        problem_of.main = 0;
+        problem_of.main_radius = 1.0F;
+        problem_of.threats = threats;
+        problem_of.obstacles = obstacles;
+        problem_of.airspace = &airspace;
+        problem_of.start_velocity = {5, 0, 0};
     }
 };
 
 TEST(PlanOutput, JsonAgreesWithThePlanner)
 {
-    const ProblemFile file = problem(kCrossing);
+    const ProblemFile file = problem_of(kCrossing);
     const auto outcome = solve_problem(file, 120000);
     const auto json = nlohmann::json::parse(plan_json(file, *outcome, true).dump());
 
@@ -67,15 +69,15 @@ TEST(PlanOutput, JsonAgreesWithThePlanner)
     // Closest approach of the centres: closing velocity (5, 2), from (20, 6).
     const float when = (20.0F * 5.0F + 6.0F * 2.0F) / 29.0F;
     EXPECT_NEAR(json["distance"].get<float>(), 5.0F * when, 1e-4F);
-    hand.problem.distance = file.distance;
-    hand.problem.main_centre_offset = file.main_centre_offset;
+    hand.problem_of.distance = file.distance;
+    hand.problem_of.main_centre_offset = file.main_centre_offset;
     EXPECT_NEAR((file.main_centre_offset - Vec3(20.0F - 5.0F * when, 6.0F - 2.0F * when, 0)).norm(), 0.0F, 1e-4F);
     geometric::Settings settings;
     settings.evaluate_all = settings.all_terms = true;
     auto result = std::make_unique<geometric::Result>();
     WorkBudget budget(120000);
     const PlanStatus status =
-        geometric::solve(hand.problem, settings, vehicle::VehicleLimits{}, vehicle::Airframe{}, budget, *result);
+        geometric::solve(hand.problem_of, settings, vehicle::VehicleLimits{}, vehicle::Airframe{}, budget, *result);
     ASSERT_EQ(status, PlanStatus::found);
     EXPECT_EQ(json["status"], "found");
     EXPECT_EQ(json["chosen"].get<std::size_t>(), result->chosen);
@@ -99,8 +101,8 @@ TEST(PlanOutput, JsonAgreesWithThePlanner)
             EXPECT_EQ(j["total"].get<float>(), c.total);
         }
         path::TimedPath path;
-        ASSERT_TRUE(
-            geometric::make_candidate_path(hand.problem, c.shape, settings.waypoints, vehicle::VehicleLimits{}, path));
+        ASSERT_TRUE(geometric::make_candidate_path(hand.problem_of, c.shape, settings.waypoints,
+                                                   vehicle::VehicleLimits{}, path));
         ASSERT_EQ(j["points"].size(), path.points.size());
         for (std::size_t k = 0; k < path.points.size(); ++k) {
             EXPECT_EQ(j["points"][k][1].get<float>(), path.points[k].position.y());
@@ -117,7 +119,7 @@ TEST(PlanOutput, JsonAgreesWithThePlanner)
 TEST(PlanOutput, TheChosenOneIsTheCheapestAvailable)
 {
     const ProblemFile file =
-        problem(kCrossing + "settings: {l: 16, n: 7, check_acceleration: false, verify_flight: false}\n");
+        problem_of(kCrossing + "settings: {l: 16, n: 7, check_acceleration: false, verify_flight: false}\n");
     const auto outcome = solve_problem(file, 1000000);
     const auto json = plan_json(file, *outcome, false);
     ASSERT_EQ(json["status"], "found");
@@ -156,7 +158,7 @@ std::vector<std::string> fields(const std::string& line)
 
 TEST(PlanOutput, CsvHoldsTheSameInColumns)
 {
-    const ProblemFile file = problem(kCrossing);
+    const ProblemFile file = problem_of(kCrossing);
     const auto outcome = solve_problem(file, 120000);
     std::istringstream csv(plan_csv(file, *outcome));
     std::string line;
@@ -188,7 +190,7 @@ TEST(PlanOutput, CsvHoldsTheSameInColumns)
 
 TEST(PlanOutput, TableSaysWhatAndWhy)
 {
-    const ProblemFile file = problem(kCrossing);
+    const ProblemFile file = problem_of(kCrossing);
     const auto outcome = solve_problem(file, 120000);
     const std::string table = plan_table(file, *outcome);
     EXPECT_TRUE(table.starts_with("Two that cross\n"));
@@ -209,7 +211,7 @@ TEST(PlanOutput, EveryWayToStop)
 {
     const std::string close = "vehicle: default\nstart: [0, 0, 20]\ndirection: [1, 0, 0]\ndistance: 2.4\n"
                               "threats: [{position: [2.4, 0, 20], radius: 1}]\n";
-    const ProblemFile near = problem(close);
+    const ProblemFile near = problem_of(close);
     const auto too_close = solve_problem(near, 120000);
     EXPECT_EQ(too_close->status, PlanStatus::too_close);
     EXPECT_NE(plan_table(near, *too_close)
@@ -222,7 +224,7 @@ TEST(PlanOutput, EveryWayToStop)
 
     const std::string wall = "vehicle: default\nleg: {start: [0, 0, 20], end: [60, 0, 20]}\n"
                              "obstacles: [{box: {centre: [20, 0, 20], half_extents: [1, 300, 300]}}]\nmain_radius: 2\n";
-    const ProblemFile blocked = problem(wall);
+    const ProblemFile blocked = problem_of(wall);
     const auto none = solve_problem(blocked, 1000000);
     EXPECT_EQ(none->status, PlanStatus::none_available);
     EXPECT_EQ(none->tries, blocked.settings.retries + 1U) << "all attempts made";
@@ -233,7 +235,7 @@ TEST(PlanOutput, EveryWayToStop)
         EXPECT_FALSE(c.contains("total"));
     }
 
-    const ProblemFile hurried = problem(kCrossing + "settings: {check_acceleration: false}\n");
+    const ProblemFile hurried = problem_of(kCrossing + "settings: {check_acceleration: false}\n");
     const auto spent = solve_problem(hurried, 1);
     EXPECT_EQ(spent->status, PlanStatus::budget_spent);
     EXPECT_NE(plan_table(hurried, *spent).find("Stop: the work budget ran out"), std::string::npos);
@@ -244,10 +246,11 @@ TEST(PlanOutput, ContactWithAThreatsPathIsNoNumberInJson)
 {
     // Swept closeness to a threat whose path crosses every candidate, time-aware security: available, but in contact
     // with the path.
-    const ProblemFile file = problem("vehicle: default\nleg: {start: [0, 0, 20], end: [60, 0, 20]}\n"
-                                     "threats:\n  - {position: [20, 0, 20], radius: 1, main: true}\n"
-                                     "  - {position: [5, -60, 20], velocity: [0, 15, 0], radius: 30}\n"
-                                     "settings: {closeness: swept, check_acceleration: false, verify_flight: false}\n");
+    const ProblemFile file =
+        problem_of("vehicle: default\nleg: {start: [0, 0, 20], end: [60, 0, 20]}\n"
+                   "threats:\n  - {position: [20, 0, 20], radius: 1, main: true}\n"
+                   "  - {position: [5, -60, 20], velocity: [0, 15, 0], radius: 30}\n"
+                   "settings: {closeness: swept, check_acceleration: false, verify_flight: false}\n");
     auto outcome = solve_problem(file, 120000);
     auto json = plan_json(file, *outcome, false);
     for (geometric::Candidate& c : outcome->result.candidates) {
@@ -270,7 +273,7 @@ TEST(PlanOutput, EveryStatusHasAName)
                               CandidateStatus::not_flyable, CandidateStatus::not_evaluated}) {
         EXPECT_NE(name_of(status), "?");
     }
-    const ProblemFile file = problem(kCrossing);
+    const ProblemFile file = problem_of(kCrossing);
     EXPECT_EQ(hit_name(file, {world::ThreatKind::track, 1}), "threat 1");
     EXPECT_EQ(hit_name(file, {world::ThreatKind::obstacle, 0}), "mast");
     EXPECT_EQ(hit_name(file, {world::ThreatKind::ceiling, 0}), "ceiling");

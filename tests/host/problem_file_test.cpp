@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
+#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
@@ -17,7 +18,7 @@ using test::kHead;
 using test::kThreat;
 using test::with;
 
-ProblemFile problem(const std::string& text)
+ProblemFile read_good(const std::string& text)
 {
     auto read = read_problem_text(text, "p.yaml");
     if (const auto* complaints = std::get_if<Complaints>(&read)) {
@@ -30,7 +31,7 @@ ProblemFile problem(const std::string& text)
 TEST(ProblemFile, FindsTheCollisionPointOnALeg)
 {
     // Closing at 8 m/s along x from 20 m: closest after 2.5 s, 12.5 m along the leg.
-    const ProblemFile p = problem(kHead + kThreat);
+    const ProblemFile p = read_good(kHead + kThreat);
     EXPECT_FLOAT_EQ(p.distance, 12.5F);
     EXPECT_FLOAT_EQ(p.main_radius, 1.5F);
     EXPECT_NEAR((p.main_centre_offset - Vec3(0, 1, 0)).norm(), 0.0F, 1e-5F);
@@ -51,7 +52,7 @@ TEST(ProblemFile, FindsTheCollisionPointOnAReference)
         return "threats: [{position: [" + files::to_text(at.x()) + ", " + files::to_text(at.y()) + ", " +
                files::to_text(at.z()) + "], radius: 1}]\n";
     };
-    const ProblemFile p = problem(kBend + still(point + outside));
+    const ProblemFile p = read_good(kBend + still(point + outside));
     EXPECT_NEAR(p.distance, half, 2e-3F);
     EXPECT_LE((p.main_centre_offset - outside).norm(), 5e-3F);
     EXPECT_LE((p.velocity - Vec3(5, 0, 0)).norm(), 1e-5F);
@@ -67,7 +68,7 @@ TEST(ProblemFile, FrameIsAnInput)
 {
     ProblemStorage storage;
     const ProblemFile p =
-        problem(kBend + "frame_y: [0.5, 0, 0.25]\n" + "obstacles: [{sphere: {centre: [12, 0, 20], radius: 1}}]\n");
+        read_good(kBend + "frame_y: [0.5, 0, 0.25]\n" + "obstacles: [{sphere: {centre: [12, 0, 20], radius: 1}}]\n");
     const Mat3 axes = problem_of(p, storage).frame.axes;
     EXPECT_LE((axes.col(0) - Vec3(1, 0, 0)).norm(), 1e-6F);
     EXPECT_LE((axes.col(1) - Vec3(0, 0, 1)).norm(), 1e-6F);
@@ -145,8 +146,8 @@ TEST(ProblemFile, CollisionPointIsTheClosestApproachOfTheFlight)
 TEST(ProblemFile, TakesTheCollisionPointAsGiven)
 {
     const ProblemFile p =
-        problem("vehicle: uav2\nstart: [1, 2, 3]\ndirection: [0, 0, 2]\ndistance: 8\n"
-                "threats: [{position: [1, 2.5, 11], radius: 2}]\nvelocity: [0, 1, 0]\nflown_side: [0, 1, 0]\n");
+        read_good("vehicle: uav2\nstart: [1, 2, 3]\ndirection: [0, 0, 2]\ndistance: 8\n"
+                  "threats: [{position: [1, 2.5, 11], radius: 2}]\nvelocity: [0, 1, 0]\nflown_side: [0, 1, 0]\n");
     EXPECT_EQ(p.direction, Vec3(0, 0, 1));
     EXPECT_EQ(p.distance, 8.0F);
     EXPECT_EQ(p.speed, 15.0F) << "of the vehicle";
@@ -159,27 +160,27 @@ TEST(ProblemFile, TakesTheCollisionPointAsGiven)
 TEST(ProblemFile, ThreatsGrowByTheirUncertainty)
 {
     const ProblemFile p =
-        problem(kHead + "k_sigma: 2\nthreats: [{name: a, position: [20, 0, 20], radius: 1, sigma_position: 0.25, "
-                        "sigma_velocity: 0.5, max_acceleration: 0.75}]\n");
+        read_good(kHead + "k_sigma: 2\nthreats: [{name: a, position: [20, 0, 20], radius: 1, sigma_position: 0.25, "
+                          "sigma_velocity: 0.5, max_acceleration: 0.75}]\n");
     ASSERT_EQ(p.threats.size(), 1U);
     EXPECT_EQ(p.threats[0].name, "a");
     EXPECT_FLOAT_EQ(p.threats[0].threat.radius, 1.5F);
     EXPECT_FLOAT_EQ(p.threats[0].threat.radius_rate, 1.0F);
     EXPECT_FLOAT_EQ(p.threats[0].threat.radius_acceleration, 0.75F);
     EXPECT_FLOAT_EQ(p.main_radius, 1.5F + 1.0F * 4.0F + 0.375F * 16.0F);
-    EXPECT_EQ(problem(kHead + kThreat + "main_radius: 2.5\n").main_radius, 2.5F);
+    EXPECT_EQ(read_good(kHead + kThreat + "main_radius: 2.5\n").main_radius, 2.5F);
 }
 
 TEST(ProblemFile, ReadsObstaclesOfEveryShape)
 {
     const ProblemFile p =
-        problem(kHead + kThreat.substr(0, kThreat.size() - 2) +
-                ", main: true}\nobstacles:\n"
-                "  - {name: ball, sphere: {centre: [1, 2, 3], radius: 4}}\n"
-                "  - {box: {centre: [1, 2, 3], half_extents: [1, 2, 3], yaw: 90}}\n"
-                "  - {capsule: {from: [0, 0, 0], to: [0, 0, 10], radius: 2}}\n"
-                "  - {cylinder: {from: [0, 0, 0], to: [0, 4, 0], radius: 2}}\n"
-                "  - {hull: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], centre: [5, 5, 5]}}\n");
+        read_good(kHead + kThreat.substr(0, kThreat.size() - 2) +
+                  ", main: true}\nobstacles:\n"
+                  "  - {name: ball, sphere: {centre: [1, 2, 3], radius: 4}}\n"
+                  "  - {box: {centre: [1, 2, 3], half_extents: [1, 2, 3], yaw: 90}}\n"
+                  "  - {capsule: {from: [0, 0, 0], to: [0, 0, 10], radius: 2}}\n"
+                  "  - {cylinder: {from: [0, 0, 0], to: [0, 4, 0], radius: 2}}\n"
+                  "  - {hull: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], centre: [5, 5, 5]}}\n");
     ASSERT_EQ(p.obstacles.size(), 5U);
     EXPECT_EQ(p.obstacles[0].name, "ball");
     EXPECT_EQ(p.obstacles[1].name, "obstacle 1");
@@ -201,7 +202,7 @@ TEST(ProblemFile, ReadsObstaclesOfEveryShape)
 
 TEST(ProblemFile, AnObstacleMayBeTheMainThreat)
 {
-    const ProblemFile p = problem(kHead + "obstacles: [{box: {centre: [30, 1, 20], half_extents: [2, 2, 2]}}]\n");
+    const ProblemFile p = read_good(kHead + "obstacles: [{box: {centre: [30, 1, 20], half_extents: [2, 2, 2]}}]\n");
     EXPECT_TRUE(p.main_is_obstacle);
     EXPECT_FLOAT_EQ(p.distance, 30.0F);
     EXPECT_GE(p.main_radius, std::sqrt(12.0F)) << "a sphere about the centre that holds it";
@@ -216,7 +217,7 @@ TEST(ProblemFile, AnObstacleMayBeTheMainThreat)
 
 TEST(ProblemFile, EverySettingReachesThePlanner)
 {
-    const ProblemFile p = problem(
+    const ProblemFile p = read_good(
         kHead + kThreat +
         "collision_box_side: 3\n"
         "settings:\n  l: 6\n  n: 5\n  kinds: [symmetric]\n  waypoints: 31\n  security: swept\n  offset_rule: source\n"
@@ -256,25 +257,25 @@ TEST(ProblemFile, EverySettingReachesThePlanner)
     EXPECT_EQ(p.vehicle.limits.half_extents, Vec3::Constant(1.5F));
 
     const geometric::Settings source =
-        problem(kHead + kThreat + "settings: {preset: source, kinds: simple}\n").settings;
+        read_good(kHead + kThreat + "settings: {preset: source, kinds: simple}\n").settings;
     EXPECT_EQ(source.security, geometric::SecurityMode::swept);
     EXPECT_FALSE(source.symmetric);
-    EXPECT_EQ(problem(kHead + kThreat + "settings: {smoothness: second-derivative}\n").settings.smoothness,
+    EXPECT_EQ(read_good(kHead + kThreat + "settings: {smoothness: second-derivative}\n").settings.smoothness,
               cost::SmoothnessMethod::second_derivative);
-    EXPECT_TRUE(problem(kHead + kThreat + "settings: {kinds: both}\n").settings.symmetric);
+    EXPECT_TRUE(read_good(kHead + kThreat + "settings: {kinds: both}\n").settings.symmetric);
 }
 
 TEST(ProblemFile, ReadsAirspace)
 {
     const ProblemFile p =
-        problem(kHead + kThreat + "airspace: {floor: 2, ceiling: 120, keep_in: {home: [1, 2, 3], radius: 500}}\n");
+        read_good(kHead + kThreat + "airspace: {floor: 2, ceiling: 120, keep_in: {home: [1, 2, 3], radius: 500}}\n");
     ASSERT_TRUE(p.has_airspace);
     EXPECT_TRUE(p.airspace.has_floor && p.airspace.has_ceiling && p.airspace.has_keep_in);
     EXPECT_EQ(p.airspace.floor, 2.0F);
     EXPECT_EQ(p.airspace.ceiling, 120.0F);
     EXPECT_EQ(p.airspace.home, Vec3(1, 2, 3));
     EXPECT_EQ(p.airspace.keep_in_radius, 500.0F);
-    EXPECT_FALSE(problem(kHead + kThreat).has_airspace);
+    EXPECT_FALSE(read_good(kHead + kThreat).has_airspace);
 }
 
 TEST(ProblemFile, VehicleFromAFileBesideItOrInline)

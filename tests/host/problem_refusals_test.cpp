@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a problem file is refused for, and in which words.
+#include <gtest/gtest.h>
+
 #include "tests/host/problem_text.hpp"
 
 namespace {

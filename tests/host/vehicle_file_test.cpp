@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
+
 #include "firmware/linux/vehicle_file.hpp"
 
 #include "tests/host/scratch.hpp"
@@ -11,12 +13,12 @@ using app::Param;
 using test::Scratch;
 using test::with;
 
-const std::string kGood =
+const std::string kGoodVehicle =
     "kind: multirotor\ncruise_speed: 6\nmax_climb: 2\nmax_descent: 1.5\nmax_acceleration: 4\n"
     "max_vertical_acceleration: 2\nvelocity_lag: 0.3\nhalf_extent_level: 0.8\nhalf_extent_vertical: 0.6\n"
     "mass: 2\ndrag_coefficient: 0.4\neffective_area: 1.5\n";
 
-std::optional<Vehicle> read(const std::string& text, Complaints& complaints)
+std::optional<Vehicle> read_vehicle_text(const std::string& text, Complaints& complaints)
 {
     const auto root = parse_yaml(text, "v.yaml", complaints);
     return root ? read_vehicle(*root, "", "v.yaml", complaints) : std::nullopt;
@@ -85,8 +87,8 @@ TEST(VehicleFile, TheDefaultVehicleLeavesTheParametersAsTheyAre)
 TEST(VehicleFile, EveryKeyReachesItsParameter)
 {
     Complaints complaints;
-    const auto vehicle =
-        read(kGood + "caps: {time_low: 1, time_high: 5, energy_low: 100, energy_high: 900}\n", complaints);
+    const auto vehicle = read_vehicle_text(
+        kGoodVehicle + "caps: {time_low: 1, time_high: 5, energy_low: 100, energy_high: 900}\n", complaints);
     ASSERT_TRUE(vehicle) << test::all_of(complaints);
     const ParamValues values = apply_vehicle(*vehicle, app::Parameters().values());
     const auto at = [&](Param p) { return values[static_cast<std::size_t>(p)]; };
@@ -110,7 +112,8 @@ TEST(VehicleFile, EveryKeyReachesItsParameter)
     ASSERT_EQ(parameters.set_all(values), app::ParamStatus::ok);
     expect_same(parameters.configuration().limits, vehicle->limits);
 
-    const auto wing = read("kind: fixed_wing\n" + kGood.substr(kGood.find('\n') + 1), complaints);
+    const auto wing =
+        read_vehicle_text("kind: fixed_wing\n" + kGoodVehicle.substr(kGoodVehicle.find('\n') + 1), complaints);
     ASSERT_TRUE(wing);
     EXPECT_EQ(apply_vehicle(*wing, values)[static_cast<std::size_t>(Param::fixed_wing)], 1.0F);
 }
@@ -118,7 +121,7 @@ TEST(VehicleFile, EveryKeyReachesItsParameter)
 TEST(VehicleFile, CapsAreComputedWhereTheFileHasNone)
 {
     Complaints complaints;
-    const auto vehicle = read(kGood, complaints);
+    const auto vehicle = read_vehicle_text(kGoodVehicle, complaints);
     ASSERT_TRUE(vehicle);
     const cost::Caps caps = cost::caps_for(vehicle->limits, vehicle->airframe);
     EXPECT_EQ(vehicle->caps.time_high, caps.time_high);
@@ -130,10 +133,10 @@ TEST(VehicleFile, EveryRequiredKeyIsMissed)
 {
     std::size_t from = 0;
     int lines = 0;
-    for (std::size_t end = kGood.find('\n'); end != std::string::npos; end = kGood.find('\n', from)) {
-        const std::string key = kGood.substr(from, kGood.find(':', from) - from);
+    for (std::size_t end = kGoodVehicle.find('\n'); end != std::string::npos; end = kGoodVehicle.find('\n', from)) {
+        const std::string key = kGoodVehicle.substr(from, kGoodVehicle.find(':', from) - from);
         Complaints complaints;
-        EXPECT_FALSE(read(kGood.substr(0, from) + kGood.substr(end + 1), complaints));
+        EXPECT_FALSE(read_vehicle_text(kGoodVehicle.substr(0, from) + kGoodVehicle.substr(end + 1), complaints));
         ASSERT_EQ(complaints.size(), 1U) << key << "\n" << test::all_of(complaints);
         EXPECT_NE(with(complaints, "missing key '" + key + "'"), nullptr) << test::all_of(complaints);
         from = end + 1;
@@ -169,14 +172,14 @@ TEST(VehicleFile, EveryComplaintByLine)
     };
     for (const auto& c : cases) {
         Complaints complaints;
-        EXPECT_FALSE(read(kGood + c.more + "\n", complaints)) << c.more;
+        EXPECT_FALSE(read_vehicle_text(kGoodVehicle + c.more + "\n", complaints)) << c.more;
         ASSERT_EQ(complaints.size(), 1U) << c.more << "\n" << test::all_of(complaints);
         EXPECT_EQ(complaints[0].line, 13U) << c.more << "\n" << test::all_of(complaints);
         EXPECT_GE(complaints[0].column, 1U);
         EXPECT_NE(with(complaints, c.complaint), nullptr) << c.more << "\n" << test::all_of(complaints);
     }
     Complaints complaints;
-    EXPECT_FALSE(read("kind: balloon\n" + kGood.substr(kGood.find('\n') + 1), complaints));
+    EXPECT_FALSE(read_vehicle_text("kind: balloon\n" + kGoodVehicle.substr(kGoodVehicle.find('\n') + 1), complaints));
     EXPECT_NE(with(complaints, "kind: 'balloon' is none of: multirotor, fixed_wing"), nullptr)
         << test::all_of(complaints);
 }
@@ -197,7 +200,7 @@ TEST(VehicleFile, RefusesWhatIsNoYamlMapping)
     };
     for (const auto& c : cases) {
         Complaints complaints;
-        EXPECT_FALSE(read(c.text, complaints)) << c.text;
+        EXPECT_FALSE(read_vehicle_text(c.text, complaints)) << c.text;
         ASSERT_EQ(complaints.size(), 1U) << c.text << "\n" << test::all_of(complaints);
         const bool empty = std::string(c.text).empty() || c.text[0] == '#';
         EXPECT_TRUE(empty || with(complaints, c.complaint) != nullptr) << c.text << "\n" << test::all_of(complaints);
@@ -208,7 +211,7 @@ TEST(VehicleFile, RefusesWhatIsNoYamlMapping)
         many += "k" + std::to_string(i) + ": 1\n";
     }
     Complaints complaints;
-    EXPECT_FALSE(read(many, complaints));
+    EXPECT_FALSE(read_vehicle_text(many, complaints));
     EXPECT_NE(with(complaints, "more than 256 keys"), nullptr);
 }
 

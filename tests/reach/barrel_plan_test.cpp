@@ -103,8 +103,8 @@ TEST(BarrelPlans, WhatIsFoundKeepsOutOfBodies)
 }
 
 /// A level leg to the east, a cell across it 30 m ahead.
-struct Leg {
-    explicit Leg(float radius, float half_height)
+struct LegScene {
+    explicit LegScene(float radius, float half_height)
     {
         own.position = {0, 0, 50};
         own.velocity = {5, 0, 0};
@@ -127,7 +127,7 @@ struct Leg {
 
 TEST(BarrelPlans, TheGeometricPlannerSaysThatItHasNone)
 {
-    const Leg leg(10.0F, 30.0F);
+    const LegScene leg(10.0F, 30.0F);
     geometric::Planner planner{geometric::Settings{}};
     world::Manoeuvre manoeuvre;
     WorkBudget budget(kPlenty);
@@ -137,7 +137,7 @@ TEST(BarrelPlans, TheGeometricPlannerSaysThatItHasNone)
 
 /// Flown for `seconds` under the supervisor's command: the least distance from the body.
 template <class Supervisor>
-float flown(Supervisor& supervisor, Leg& leg, Seconds seconds)
+float flown(Supervisor& supervisor, LegScene& leg, Seconds seconds)
 {
     constexpr Seconds kStep = 0.05F;
     float least = 1e9F;
@@ -156,7 +156,7 @@ float flown(Supervisor& supervisor, Leg& leg, Seconds seconds)
 
 TEST(BarrelPlans, TheReachSetsAreAskedNextAndFlyAround)
 {
-    Leg leg(8.0F, 100.0F);
+    LegScene leg(8.0F, 100.0F);
     geometric::Planner first{geometric::Settings{}};
     avoid::Supervisor supervisor{avoid::Settings{}, first, barrel_planner()};
     EXPECT_GT(flown(supervisor, leg, 25.0F), 0.7F);
@@ -166,7 +166,7 @@ TEST(BarrelPlans, TheReachSetsAreAskedNextAndFlyAround)
 
 TEST(BarrelPlans, WithTheGeometricPlannerAloneItStopsBeforeIt)
 {
-    Leg leg(60.0F, 200.0F);
+    LegScene leg(60.0F, 200.0F);
     geometric::Planner only{geometric::Settings{}};
     avoid::Supervisor supervisor{avoid::Settings{}, only};
     EXPECT_GT(flown(supervisor, leg, 20.0F), 0.7F);
@@ -176,7 +176,7 @@ TEST(BarrelPlans, WithTheGeometricPlannerAloneItStopsBeforeIt)
 /// One that comes to a vehicle that cannot plan around it: ground is given.
 TEST(BarrelPlans, WithTheGeometricPlannerAloneItGivesWayToAStorm)
 {
-    Leg leg(30.0F, 200.0F);
+    LegScene leg(30.0F, 200.0F);
     leg.barrels[0].velocity = {-2, 0};
     geometric::Planner only{geometric::Settings{}};
     avoid::Supervisor supervisor{avoid::Settings{}, only};
@@ -185,7 +185,7 @@ TEST(BarrelPlans, WithTheGeometricPlannerAloneItGivesWayToAStorm)
 
 TEST(BarrelPlans, TooManyAreRefused)
 {
-    Leg leg(8.0F, 100.0F);
+    LegScene leg(8.0F, 100.0F);
     leg.barrels.resize(kMaxBarrels + 1, leg.barrels[0]);
     leg.airspace.barrels = leg.barrels;
     world::Manoeuvre manoeuvre;

@@ -18,7 +18,7 @@ namespace {
 using oracle::RandomSituation;
 using world::PlanStatus;
 
-constexpr std::uint32_t kPlenty = 100'000'000;
+constexpr std::uint32_t kFusionPlenty = 100'000'000;
 
 Planner& by_cells(CellFusion* fusion)
 {
@@ -33,7 +33,7 @@ Planner& by_cells(CellFusion* fusion)
 
 PlanStatus plan(Planner& planner, const RandomSituation& s, world::Manoeuvre& out)
 {
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kFusionPlenty);
     return planner.plan(s.view(), budget, out);
 }
 
@@ -50,7 +50,7 @@ TEST(CellFusionLaws, WhatIsFoundByCellsIsClear)
     std::size_t by_nodes = 0;
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         const RandomSituation s(seed);
-        WorkBudget budget(kPlenty);
+        WorkBudget budget(kFusionPlenty);
         const bool starts_clear = world::separation_at(s.view(), s.own.position, 0.0F, budget).margin > 1.0F;
         world::Manoeuvre m;
         by_nodes += plan(by_cells(nullptr), s, m) == PlanStatus::found ? 1U : 0U;
@@ -106,7 +106,7 @@ TEST(CellFusionLaws, NoCellThatIsToldFreeHoldsAnythingOfASolid)
         s.obstacles = {{0, shapes[seed % 4]}};
         CellFusion fusion{FusionRule{}};
         std::vector<Level> blocks(placed.set->grid.cells(), kFree);
-        WorkBudget budget(kPlenty);
+        WorkBudget budget(kFusionPlenty);
         ASSERT_EQ(fusion.rate(s.view(), placed, CellBalls(placed.set->grid), 0.0F, blocks, budget), RateStatus::rated);
         for (int i = 0; i < 2000; ++i) {
             const Vec3 direction = Vec3(random.normal(), random.normal(), random.normal()).normalized();
@@ -141,7 +141,7 @@ TEST(CellFusion, BoundsOfTheAirspaceAreHardConstraints)
         placed.upside_down = upside_down;
         CellFusion fusion{FusionRule{}};
         std::vector<Level> blocks(placed.set->grid.cells(), kFree);
-        WorkBudget budget(kPlenty);
+        WorkBudget budget(kFusionPlenty);
         ASSERT_EQ(fusion.rate(s.view(), placed, CellBalls(placed.set->grid), 0.0F, blocks, budget), RateStatus::rated);
         const auto level = [&](std::uint8_t layer, std::uint8_t row) {
             return blocks[placed.set->grid.index({layer, 3, row})];

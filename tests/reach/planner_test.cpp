@@ -20,7 +20,7 @@ namespace {
 using oracle::RandomSituation;
 using world::PlanStatus;
 
-constexpr std::uint32_t kPlenty = 1'000'000;
+constexpr std::uint32_t kPlannerPlenty = 1'000'000;
 
 Settings unit_settings()
 {
@@ -36,7 +36,7 @@ Planner& planner()
 }
 
 /// Plans, and says what of it may be said of every plan.
-PlanStatus plan(const world::Situation& situation, world::Manoeuvre& out, std::uint32_t units = kPlenty)
+PlanStatus plan(const world::Situation& situation, world::Manoeuvre& out, std::uint32_t units = kPlannerPlenty)
 {
     WorkBudget budget(units);
     return planner().plan(situation, budget, out);
@@ -44,7 +44,7 @@ PlanStatus plan(const world::Situation& situation, world::Manoeuvre& out, std::u
 
 float planned_margin(const RandomSituation& s, const world::Manoeuvre& manoeuvre)
 {
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kPlannerPlenty);
     return world::least_separation(s.view(), manoeuvre.path, 100.0F, budget).margin;
 }
 
@@ -72,7 +72,7 @@ TEST(ReachPlannerLaws, WhatIsFoundPassesTheFinalCheck)
         with_room += report.run == AvoidanceRun::soft_constraints ? 1U : 0U;
         more_tries += report.tries > 1 ? 1U : 0U;
         ASSERT_GE(planned_margin(s, manoeuvre), -0.06F) << "seed " << seed;  // solids are told apart to 0.05 m
-        WorkBudget budget(kPlenty);
+        WorkBudget budget(kPlannerPlenty);
         rejected += avoid::check_manoeuvre(s.view(), manoeuvre, avoid::Settings{}, budget).margin < 0.0F ? 1U : 0U;
     }
     EXPECT_GT(found, 4000U);
@@ -263,7 +263,7 @@ TEST(ReachPlanner, RefusesWhatItIsNotFor)
     aimless.reference.valid = false;
     EXPECT_EQ(plan(aimless.view(), m), PlanStatus::bad_input);
     Planner without{Settings{}};
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kPlannerPlenty);
     EXPECT_EQ(without.plan(Case().view(), budget, m), PlanStatus::bad_input);
     for (const auto& spoil : std::vector<void (*)(Settings&)>{
              [](Settings& s) { s.sets = nullptr; }, [](Settings& s) { s.room = -0.1F; },
@@ -297,7 +297,7 @@ TEST(ReachPlanner, KeepsToTheAirspace)
     ASSERT_EQ(plan(fenced.view(), m), PlanStatus::found);
     EXPECT_GT(planner().last().tries, 1) << "ahead there is no room to stop";
     EXPECT_GE(planned_margin(fenced, m), 0.0F);
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kPlannerPlenty);
     EXPECT_GE(avoid::check_manoeuvre(fenced.view(), m, avoid::Settings{}, budget).margin, 0.0F);
 }
 
@@ -324,7 +324,7 @@ TEST(ReachPlanner, DoesNotGoWhereAScanDoesNotSee)
         picture.end();
     };
     const auto plan_now = [&](world::Manoeuvre& m) {
-        WorkBudget budget(kPlenty);
+        WorkBudget budget(kPlannerPlenty);
         return seeing.plan(c.view(), budget, m);
     };
     world::Manoeuvre m;

@@ -140,7 +140,7 @@ TEST(ReachSetAnchors, Combined)
     EXPECT_NEAR(static_cast<double>(end_heading.trajectories), 2132.0, 0.02 * 2132.0);
 }
 
-Settings with_layers(std::size_t layers, DisplacementModel model)
+Settings front_with_layers(std::size_t layers, DisplacementModel model)
 {
     Settings s = settings_for(model);
     s.grid = Grid<double>(layers, 7, 5, static_cast<double>(layers), s.grid.horizontal(), s.grid.vertical());
@@ -157,9 +157,9 @@ TEST(ReachSetAnchors, FullTreeAndCoverage)
         EXPECT_EQ(m.footprints, footprints);
         EXPECT_EQ(m.cells, cells);
     };
-    const Settings arc = with_layers(4, DisplacementModel::arc);
+    const Settings arc = front_with_layers(4, DisplacementModel::arc);
     counts(measure(full_set(arc)), 7221, 6401, 253, 68);
-    counts(measure(full_set(with_layers(4, DisplacementModel::end_heading))), 6697, 5925, 1149, 94);
+    counts(measure(full_set(front_with_layers(4, DisplacementModel::end_heading))), 6697, 5925, 1149, 94);
     const auto share = [&](std::size_t spread) {
         return static_cast<double>(measure(kept(grow(arc, chaotic(arc, spread, 3)), kFromChaotic)).footprints) / 253.0;
     };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The autopilot that the simulator plays, seen from the co-processor's end of the cable: it must be as strict as the
 // real ones.
+#include <gtest/gtest.h>
+
 #include "toolchain/sim/autopilot.hpp"
 
 #include <cmath>

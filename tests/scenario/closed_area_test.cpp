@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Closed areas of the simulator: distances, files, and what flying into one is called.
+#include <gtest/gtest.h>
+
 #include "toolchain/sim/closed_area.hpp"
 
 #include <cmath>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The judge of avoidability, the outcome of a flight, and that flights in process repeat byte by byte.
+#include <gtest/gtest.h>
+
 #include "toolchain/sim/judge.hpp"
 
 #include "toolchain/sim/in_process.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The simulator's physics: against closed forms, brute force and its own limits.
+#include <gtest/gtest.h>
+
 #include "toolchain/sim/world.hpp"
 
 #include <cmath>
@@ -16,13 +18,13 @@ namespace {
 
 constexpr double kDt = 0.005;
 
-double draw(Random& random, double low, double high)
+double uniform(Random& random, double low, double high)
 {
     return low + (high - low) * static_cast<double>(random.uniform());
 }
-Vec draw_vec(Random& random, double size)
+Vec uniform_vec(Random& random, double size)
 {
-    return {draw(random, -size, size), draw(random, -size, size), draw(random, -size, size)};
+    return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
 }
 
 Scenario quiet_scenario()
@@ -64,7 +66,7 @@ TEST(TruthVehicle, LimitsHoldUnderAnyCommands)
     Vec command = Vec::Zero();
     for (int i = 0; i < 40000; ++i) {
         if (i % 100 == 0) {
-            command = draw_vec(random, 12.0);
+            command = uniform_vec(random, 12.0);
         }
         const Truth before = truth;
         fly(truth, command, limits, kDt);
@@ -130,11 +132,11 @@ TEST(Threat, NearestInStepIsThatOfBruteForce)
     Random random(3);
     for (int k = 0; k < 2000; ++k) {
         Threat threat;
-        threat.radius = draw(random, 0.1, 3.0);
-        const Vec a = draw_vec(random, 5.0);
-        const Vec b = draw_vec(random, 5.0);
-        const Vec c = draw_vec(random, 5.0);
-        const Vec d = draw_vec(random, 5.0);
+        threat.radius = uniform(random, 0.1, 3.0);
+        const Vec a = uniform_vec(random, 5.0);
+        const Vec b = uniform_vec(random, 5.0);
+        const Vec c = uniform_vec(random, 5.0);
+        const Vec d = uniform_vec(random, 5.0);
         double least = 1e9;
         for (int i = 0; i <= 2000; ++i) {
             const double u = i / 2000.0;

@@ -19,6 +19,7 @@ import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"][^>"]+[>"])')
+JOINED = re.compile(r'^#include "([^"]+)"', re.M)
 FINDING = re.compile(r'^(?P<file>[^:\s]+):(?P<line>\d+):(?P<rest>\d+: .*)$')
 
 
@@ -36,9 +37,15 @@ def without_precompiled(flags):
 
 
 def flags_of(build, sources):
-    """The compiler's arguments; joined sources have to have the same."""
-    commands = {pathlib.Path(c["file"]).resolve(): shlex.split(c["command"])
-                for c in json.loads((build / "compile_commands.json").read_text())}
+    """The compiler's arguments; joined sources have to have the same. Where the build joins sources itself, the joined
+    text's (jink_joined)."""
+    commands = {}
+    for command in json.loads((build / "compile_commands.json").read_text()):
+        words = shlex.split(command["command"])
+        text = pathlib.Path(command["file"])
+        parts = JOINED.findall(text.read_text()) if text.parent.name == "Unity" and text.exists() else [text]
+        if "_sanitized.dir" not in words[words.index("-o") + 1]:
+            commands.update({pathlib.Path(part).resolve(): words for part in parts})
     found = None
     for source in sources:
         if source not in commands:

@@ -55,12 +55,22 @@ endif()
 set(JINK_FLASHED_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <optional> <span> <Eigen/Core> <Eigen/Geometry>)
 set(JINK_HOST_HEADERS ${JINK_FLASHED_HEADERS} <filesystem> <map> <memory> <string> <vector>)
 
-# jink_command_lines(sources): what reads a command line. CLI11 is headers alone, made anew by each of them: optimizing
-# that takes longer than all of their own code.
-function(jink_command_lines)
-  set(level -O1)
-  if(JINK_SANITIZE)
-    set(level -O0)
+# jink_joined(target [BATCH n]): sources compiled n at a time as one text, on hosts: headers are read and their inline
+# functions made once for all of them. Names in unnamed namespaces are unique within a folder for this; preset clang and
+# JINK_JOINED=OFF compile each source by itself, so that an include that is missing shows. What is flashed is never
+# joined when it is built for a target: its instructions are counted.
+option(JINK_JOINED "Compile sources of tests and tools several at a time" ON)
+function(jink_joined target)
+  cmake_parse_arguments(arg "" "BATCH" "" ${ARGN})
+  if(JINK_JOINED AND NOT CMAKE_CROSSCOMPILING)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE "${arg_BATCH}")
   endif()
-  set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS ${level} SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
+
+# jink_command_lines(target): what reads a command line. CLI11 is headers alone: optimizing them takes longer than all of
+# our own code.
+function(jink_command_lines target)
+  set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
+  target_compile_options(${target} PRIVATE -O1)
+  jink_joined(${target} BATCH 0)
 endfunction()

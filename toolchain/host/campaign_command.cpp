@@ -45,7 +45,7 @@ void print_json(const CampaignResult& result, double seconds)
     std::printf("%s\n", out.dump(2).c_str());
 }
 
-void run(const CampaignOptions& options)
+void run_campaign(const CampaignOptions& options)
 {
     // Better now than after the flights.
     if (!options.csv.empty() && !std::ofstream(options.csv)) {
@@ -108,7 +108,7 @@ int conclude_campaign(const CampaignOptions& options, const std::vector<StudyBlo
 void add_campaign(CLI::App& jink)
 {
     auto options = std::make_shared<CampaignOptions>();
-    add_campaign_options(jink, *options).callback([options] { run(*options); });
+    add_campaign_options(jink, *options).callback([options] { run_campaign(*options); });
 }
 
 }  // namespace jink::host

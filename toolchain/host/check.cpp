@@ -11,7 +11,7 @@
 namespace jink::host {
 namespace {
 
-struct Options {
+struct CheckOptions {
     std::vector<std::string> files;
     std::string as;
 };
@@ -34,7 +34,7 @@ bool is_good(const std::string& path, std::optional<FileKind> kind)
     return complaints.empty();
 }
 
-void run(const Options& options)
+void run_check(const CheckOptions& options)
 {
     bool good = true;
     for (const std::string& path : options.files) {
@@ -49,14 +49,14 @@ void run(const Options& options)
 
 void add_check(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<CheckOptions>();
     CLI::App* command =
         jink.add_subcommand("check", "say what is wrong with files, by line; exit status 1 when something is");
     command->add_option("files", options->files, "vehicles, planning problems, scenarios (YAML) and parameter files")
         ->required();
     command->add_option("--as", options->as, "what the files are, where name and keys do not tell")
         ->check(CLI::IsMember({"vehicle", "problem", "scenario", "params"}));
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_check(*options); });
 }
 
 }  // namespace jink::host

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct MeshOptions {
     std::string file;
     std::string method = "decompose";
     std::string up = "z";
@@ -31,9 +31,9 @@ struct Options {
     std::string python = "/usr/bin/python3";
 };
 
-constexpr const char* kBuild = "mesh build";
-constexpr const char* kMeasure = "mesh measure";
-constexpr const char* kShow = "mesh show";
+constexpr const char* kBuildMesh = "mesh build";
+constexpr const char* kMeasureMesh = "mesh measure";
+constexpr const char* kShowMesh = "mesh show";
 
 /// What `work` gives, or the end of the program with what it complains about.
 template <class Work>
@@ -46,14 +46,14 @@ auto refusing(const char* command, const std::string& file, const Work& work)
     }
 }
 
-mesh::TriangleMesh mesh_of(const char* command, const Options& options)
+mesh::TriangleMesh mesh_of(const char* command, const MeshOptions& options)
 {
     mesh::ReadOptions reading = options.reading;
     reading.y_up = options.up == "y";
     return refusing(command, options.file, [&] { return mesh::read_mesh(options.file, reading); });
 }
 
-std::string name_of(const char* command, const Options& options)
+std::string name_of(const char* command, const MeshOptions& options)
 {
     const std::string name = options.name.empty() ? fs::path(options.file).stem().string() : options.name;
     if (identifier_of(name).empty()) {
@@ -97,14 +97,14 @@ MeasuredMap measured(const std::string& name, const std::string& map_name, const
     return out;
 }
 
-void build(const Options& options)
+void build_mesh(const MeshOptions& options)
 {
-    const mesh::TriangleMesh mesh = mesh_of(kBuild, options);
-    const std::string name = name_of(kBuild, options);
+    const mesh::TriangleMesh mesh = mesh_of(kBuildMesh, options);
+    const std::string name = name_of(kBuildMesh, options);
     mesh::Recipe recipe = options.recipe;
     recipe.method = method_of(options.method);
     const MeasuredMap made =
-        refusing(kBuild, options.file, [&] { return measured(options.method, name, mesh, recipe); });
+        refusing(kBuildMesh, options.file, [&] { return measured(options.method, name, mesh, recipe); });
     const geometry::MeshMap map = made.map.view();
     std::fputs(summary_of(map).c_str(), stdout);
     std::printf(
@@ -112,20 +112,20 @@ void build(const Options& options)
         "by more than %.4f m\n",
         mesh.triangles.size(), made.excess, made.gap);
     if (!options.out.empty()) {
-        write_whole(kBuild, options.out, made.map.file());
+        write_whole(kBuildMesh, options.out, made.map.file());
     }
     if (!options.header.empty()) {
-        write_whole(kBuild, options.header, map_header(map, fs::path(options.file).filename().string()));
+        write_whole(kBuildMesh, options.header, map_header(map, fs::path(options.file).filename().string()));
     }
 }
 
-void measure(const Options& options)
+void measure_mesh(const MeshOptions& options)
 {
-    const mesh::TriangleMesh mesh = mesh_of(kMeasure, options);
-    const std::string name = name_of(kMeasure, options);
+    const mesh::TriangleMesh mesh = mesh_of(kMeasureMesh, options);
+    const std::string name = name_of(kMeasureMesh, options);
     std::error_code error;
     if (!options.figures.empty() && !fs::create_directories(options.figures, error) && error) {
-        refuse(kMeasure, options.figures + " cannot be made: " + error.message());
+        refuse(kMeasureMesh, options.figures + " cannot be made: " + error.message());
     }
     std::vector<MeasuredMap> maps;
     const auto add = [&](const std::string& title, mesh::Method method, double concavity) {
@@ -146,29 +146,29 @@ void measure(const Options& options)
     }
     add("soup", mesh::Method::soup, options.recipe.concavity);
     if (maps.empty()) {
-        refuse(kMeasure, options.file + ": no method makes a map of it");
+        refuse(kMeasureMesh, options.file + ": no method makes a map of it");
     }
     std::fputs(table_of(maps).c_str(), stdout);
     std::fflush(stdout);
     if (!options.figures.empty()) {
-        become_report_script(kMeasure, options.python, "mesh_maps.py", drawing_of(maps, mesh), options.figures);
+        become_report_script(kMeasureMesh, options.python, "mesh_maps.py", drawing_of(maps, mesh), options.figures);
     }
 }
 
-void show(const Options& options)
+void show_mesh(const MeshOptions& options)
 {
     std::ifstream in(options.file, std::ios::binary);
     std::ostringstream text;
     text << in.rdbuf();
     if (!in) {
-        refuse(kShow, options.file + ": cannot be read");
+        refuse(kShowMesh, options.file + ": cannot be read");
     }
     const mesh::StoredMap stored =
-        refusing(kShow, options.file, [&] { return mesh::StoredMap::from_file(text.str()); });
+        refusing(kShowMesh, options.file, [&] { return mesh::StoredMap::from_file(text.str()); });
     std::fputs(summary_of(stored.view()).c_str(), stdout);
 }
 
-void add_reading(CLI::App& command, Options& options)
+void add_reading(CLI::App& command, MeshOptions& options)
 {
     command.add_option("mesh", options.file, "mesh file (STL or OBJ)")->required();
     command.add_option("--scale", options.reading.scale, "metres in one unit of the file")->capture_default_str();
@@ -189,7 +189,7 @@ void add_mesh(CLI::App& jink)
 {
     CLI::App* command = jink.add_subcommand("mesh", "make maps of convex pieces of meshes, compare and draw them");
     command->require_subcommand(1);
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<MeshOptions>();
     CLI::App* build_command = command->add_subcommand("build", "make a map of a mesh");
     add_reading(*build_command, *options);
     build_command->add_option("--method", options->method, "hull of each object, decompose, or soup of triangles")
@@ -197,15 +197,15 @@ void add_mesh(CLI::App& jink)
         ->check(CLI::IsMember({"hull", "decompose", "soup"}));
     build_command->add_option("-o,--out", options->out, "write the map to this file");
     build_command->add_option("--header", options->header, "write it as constant tables to this C++ header");
-    build_command->callback([options] { build(*options); });
+    build_command->callback([options] { build_mesh(*options); });
     CLI::App* measure_command = command->add_subcommand("measure", "what each method makes of a mesh");
     add_reading(*measure_command, *options);
     measure_command->add_option("--figures", options->figures, "draw each map into this folder");
     measure_command->add_option("--python", options->python, "a Python 3 with matplotlib")->capture_default_str();
-    measure_command->callback([options] { measure(*options); });
+    measure_command->callback([options] { measure_mesh(*options); });
     CLI::App* show_command = command->add_subcommand("show", "what a map file holds, and whether it is good");
     show_command->add_option("map", options->file, "map file")->required();
-    show_command->callback([options] { show(*options); });
+    show_command->callback([options] { show_mesh(*options); });
 }
 
 }  // namespace jink::host

@@ -11,7 +11,7 @@
 namespace jink::host {
 namespace {
 
-struct Options {
+struct PlanOptions {
     std::string file;
     std::string format = "table";
     std::string mode;
@@ -34,7 +34,7 @@ void use_source(geometric::Settings& settings)
     settings.retries = source.retries;
 }
 
-void run(const Options& options)
+void run_plan(const PlanOptions& options)
 {
     std::variant<ProblemFile, files::Complaints> read = read_problem(options.file);
     if (const auto* complaints = std::get_if<files::Complaints>(&read)) {
@@ -73,7 +73,7 @@ void run(const Options& options)
 
 void add_plan(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<PlanOptions>();
     CLI::App* command = jink.add_subcommand(
         "plan", "solve one planning problem and show every candidate; exit status 0: found, 2: stop, 1: bad input");
     command->add_option("file", options->file, "planning problem (YAML)")->required();
@@ -88,7 +88,7 @@ void add_plan(CLI::App& jink)
     command->add_option("--budget", options->budget, "units of work that the plan may take")
         ->capture_default_str()
         ->check(CLI::PositiveNumber);
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_plan(*options); });
 }
 
 }  // namespace jink::host

@@ -29,7 +29,7 @@ format(const char* pattern, ...)
 }
 
 double degrees(float radians) { return static_cast<double>(radians) * 180.0 / static_cast<double>(kPi); }
-double wide(float value) { return static_cast<double>(value); }
+double as_double(float value) { return static_cast<double>(value); }
 
 bool has_cost(const Candidate& c)
 {
@@ -69,11 +69,11 @@ std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
         }
         return format("Fly candidate %zu: %s, plane %.1f deg, offset %+.2f m, %.2f s at up to %.2f m/s, cost %.4f.",
                       outcome.result.chosen, std::string(to_string(c.shape.family)).c_str(), degrees(c.shape.plane),
-                      wide(c.shape.offset), wide(c.duration), wide(fastest), wide(c.total));
+                      as_double(c.shape.offset), as_double(c.duration), as_double(fastest), as_double(c.total));
     }
     case PlanStatus::too_close:
         return format("Stop: the main threat is %.2f m away, nearer than 2.5 of its radii (%.2f m).",
-                      wide(file.distance), wide(geometric::kLeastDistanceInRadii * file.main_radius));
+                      as_double(file.distance), as_double(geometric::kLeastDistanceInRadii * file.main_radius));
     case PlanStatus::none_available: return "Stop: no candidate is available.";
     case PlanStatus::budget_spent: return "Stop: the work budget ran out before an answer.";
     case PlanStatus::no_conflict: return "Nothing to avoid.";
@@ -198,8 +198,8 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
     std::string out = file.title + "\n";
     out += format(
         "vehicle %s at %.2f m/s; main threat %s, D %.2f m, R %.2f m; %s security, offsets by the %s rule, l %d, n %d\n",
-        file.vehicle.name.c_str(), wide(file.speed), main_name(file).c_str(), wide(file.distance),
-        wide(file.main_radius), s.security == geometric::SecurityMode::swept ? "swept" : "time-aware",
+        file.vehicle.name.c_str(), as_double(file.speed), main_name(file).c_str(), as_double(file.distance),
+        as_double(file.main_radius), s.security == geometric::SecurityMode::swept ? "swept" : "time-aware",
         s.offset_rule == geometric::OffsetRule::source ? "source's" : "clearing", int{s.offsets}, int{s.extra_planes});
     out += "terms: T time [s], S smoothness, S_rp the same with rotation penalty, M closeness [1/m], E energy [J], P "
            "rotor power [W]; "
@@ -215,14 +215,15 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
             status.append(" ").append(hit_name(file, c.hit));
         }
         out += format("%3zu  %-9s  %5.1f  %+6.2f  %-20.40s  %6.3f", i, std::string(to_string(c.shape.family)).c_str(),
-                      degrees(c.shape.plane), wide(c.shape.offset), status.c_str(), wide(c.duration));
+                      degrees(c.shape.plane), as_double(c.shape.offset), status.c_str(), as_double(c.duration));
         if (has_cost(c)) {
             const cost::NormalisedTerms normalised = cost::normalise(c.terms, file.settings.caps);
-            out += format(" %7.4f %7.4f %7.4f %8.2f %9.1f | %.3f %.3f %.3f %.3f | %.4f", wide(c.terms.smoothness),
-                          wide(c.terms.smoothness_penalised), wide(c.terms.closeness), wide(c.terms.energy),
-                          wide(c.terms.hover_power), wide(normalised.time), wide(normalised.smoothness_penalised),
-                          wide(normalised.closeness), wide(normalised.energy), wide(c.total));
-            out += c.flip_penalty > 0.0F ? format(" +%.2f side change", wide(c.flip_penalty)) : std::string();
+            out += format(" %7.4f %7.4f %7.4f %8.2f %9.1f | %.3f %.3f %.3f %.3f | %.4f", as_double(c.terms.smoothness),
+                          as_double(c.terms.smoothness_penalised), as_double(c.terms.closeness),
+                          as_double(c.terms.energy), as_double(c.terms.hover_power), as_double(normalised.time),
+                          as_double(normalised.smoothness_penalised), as_double(normalised.closeness),
+                          as_double(normalised.energy), as_double(c.total));
+            out += c.flip_penalty > 0.0F ? format(" +%.2f side change", as_double(c.flip_penalty)) : std::string();
         }
         out += "\n";
     }
@@ -244,17 +245,18 @@ std::string plan_csv(const ProblemFile& file, const PlanOutcome& outcome)
             hit.insert(at, 1, '"');
         }
         out += format("%zu,%s,%.6g,%.9g,%s,", i, std::string(to_string(c.shape.family)).c_str(), degrees(c.shape.plane),
-                      wide(c.shape.offset), std::string(name_of(c.status)).c_str());
+                      as_double(c.shape.offset), std::string(name_of(c.status)).c_str());
         out += hit.empty() ? std::string() : "\"" + hit + "\"";
-        out += format(",%.9g", wide(c.duration));
+        out += format(",%.9g", as_double(c.duration));
         if (has_cost(c)) {
             const cost::NormalisedTerms normalised = cost::normalise(c.terms, file.settings.caps);
-            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", wide(c.terms.time), wide(c.terms.smoothness),
-                          wide(c.terms.smoothness_penalised), wide(c.terms.closeness), wide(c.terms.energy),
-                          wide(c.terms.hover_power));
-            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", wide(normalised.time), wide(normalised.smoothness),
-                          wide(normalised.smoothness_penalised), wide(normalised.closeness), wide(normalised.energy),
-                          wide(c.total), wide(c.flip_penalty));
+            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g", as_double(c.terms.time), as_double(c.terms.smoothness),
+                          as_double(c.terms.smoothness_penalised), as_double(c.terms.closeness),
+                          as_double(c.terms.energy), as_double(c.terms.hover_power));
+            out += format(",%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", as_double(normalised.time),
+                          as_double(normalised.smoothness), as_double(normalised.smoothness_penalised),
+                          as_double(normalised.closeness), as_double(normalised.energy), as_double(c.total),
+                          as_double(c.flip_penalty));
         } else {
             out += ",,,,,,,,,,,,,\n";
         }

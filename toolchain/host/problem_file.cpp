@@ -10,10 +10,10 @@
 namespace jink::host {
 namespace {
 
-using files::Complaints;
-using files::YamlMap;
-constexpr auto kNeed = YamlMap::Need::required;
 using detail::kSpeed;
+using files::Complaints;
+using files::kNeed;
+using files::YamlMap;
 constexpr std::array<std::string_view, 2> kBuiltInVehicles{"default", "uav2"};
 constexpr float kShortest = 1e-3F;  // of a leg or a direction
 

@@ -8,8 +8,8 @@
 namespace jink::host::detail {
 namespace {
 
+using files::kNeed;
 using files::YamlMap;
-constexpr auto kNeed = YamlMap::Need::required;
 
 Mat3 turned(float yaw_degrees)
 {

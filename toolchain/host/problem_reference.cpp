@@ -7,9 +7,9 @@
 namespace jink::host::detail {
 namespace {
 
+using files::kNeed;
 using files::YamlMap;
 using path::RouteStatus;
-constexpr auto kNeed = YamlMap::Need::required;
 constexpr float kDegree = kPi / 180.0F;
 
 std::string words_of(RouteStatus status)

@@ -88,7 +88,7 @@ void read_weights(YamlMap& map, geometric::Settings& settings)
     if (!weights) {
         return;
     }
-    constexpr auto kNeed = YamlMap::Need::required;
+    using files::kNeed;
     const auto smoothness = weights->number("k_S", {0.0F, 1.0F}, kNeed);
     const auto time = weights->number("k_T", {0.1F, 1.0F}, kNeed);
     const auto closeness = weights->number("k_C", {0.0F, 0.7F}, kNeed);

@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 namespace rb = reach::build;
 
-struct Options {
+struct ReachOptions {
     std::string file;
     std::string profile = "full";
     rb::Recipe recipe;
@@ -27,10 +27,10 @@ struct Options {
     std::string python = "/usr/bin/python3";
 };
 
-constexpr const char* kBuild = "reach build";
-constexpr const char* kMeasure = "reach measure";
+constexpr const char* kBuildReach = "reach build";
+constexpr const char* kMeasureReach = "reach measure";
 
-rb::BuiltVehicle build_from(const char* command, const Options& options)
+rb::BuiltVehicle build_from(const char* command, const ReachOptions& options)
 {
     const files::Vehicle vehicle = read_named_vehicle(command, options.file);
     rb::Recipe recipe = options.recipe;
@@ -42,9 +42,9 @@ rb::BuiltVehicle build_from(const char* command, const Options& options)
     }
 }
 
-void build(const Options& options)
+void build_reach(const ReachOptions& options)
 {
-    const rb::BuiltVehicle built = build_from(kBuild, options);
+    const rb::BuiltVehicle built = build_from(kBuildReach, options);
     const char* const of = built.recipe.profile == rb::Profile::reduced ? "planes" : "chaotic";
     std::printf("%s: %zu bytes in %zu sets, profile %s: %s with spread %zu, up to %zu ways out at each side cell\n",
                 built.vehicle.c_str(), built.bytes(), built.sets.size(), options.profile.c_str(), of, built.rung.spread,
@@ -55,27 +55,27 @@ void build(const Options& options)
                     rb::bytes_of(view), static_cast<unsigned>(view.checksum));
     }
     if (!options.out.empty()) {
-        write_whole(kBuild, options.out, reach_sets_header(built, fs::path(options.file).filename().string()));
+        write_whole(kBuildReach, options.out, reach_sets_header(built, fs::path(options.file).filename().string()));
     }
 }
 
-void measure(const Options& options)
+void measure_reach(const ReachOptions& options)
 {
     if (options.source != options.file.empty()) {
-        refuse(kMeasure, "give either a vehicle file, or --source");
+        refuse(kMeasureReach, "give either a vehicle file, or --source");
     }
     std::error_code error;
     if (!options.figures.empty() && !fs::create_directories(options.figures, error) && error) {
-        refuse(kMeasure, options.figures + " cannot be made: " + error.message());
+        refuse(kMeasureReach, options.figures + " cannot be made: " + error.message());
     }
-    const std::vector<NamedSet> sets = options.source ? sets_of_source() : sets_of(build_from(kMeasure, options));
+    const std::vector<NamedSet> sets = options.source ? sets_of_source() : sets_of(build_from(kMeasureReach, options));
     std::fputs(table_of(sets, measure_all(sets)).c_str(), stdout);
     if (!options.figures.empty()) {
-        become_report_script(kMeasure, options.python, "reach_sets.py", drawing_of(sets), options.figures);
+        become_report_script(kMeasureReach, options.python, "reach_sets.py", drawing_of(sets), options.figures);
     }
 }
 
-void add_recipe(CLI::App& command, Options& options)
+void add_recipe(CLI::App& command, ReachOptions& options)
 {
     command.add_option("--profile", options.profile, "full, or reduced for a co-processor with little flash")
         ->capture_default_str()
@@ -97,12 +97,12 @@ void add_reach(CLI::App& jink)
 {
     CLI::App* command = jink.add_subcommand("reach", "make a vehicle's reach sets, measure and draw them");
     command->require_subcommand(1);
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReachOptions>();
     CLI::App* build_command = command->add_subcommand("build", "make the sets of all segments of a vehicle's states");
     build_command->add_option("vehicle", options->file, "vehicle file (YAML)")->required();
     build_command->add_option("--out", options->out, "write the tables to this C++ header");
     add_recipe(*build_command, *options);
-    build_command->callback([options] { build(*options); });
+    build_command->callback([options] { build_reach(*options); });
     CLI::App* measure_command =
         command->add_subcommand("measure", "what the sets cover, how smooth they are and how large");
     measure_command->add_option("vehicle", options->file, "vehicle file (YAML)");
@@ -110,7 +110,7 @@ void add_reach(CLI::App& jink)
     measure_command->add_option("--figures", options->figures, "draw each set into this folder");
     measure_command->add_option("--python", options->python, "a Python 3 with matplotlib")->capture_default_str();
     add_recipe(*measure_command, *options);
-    measure_command->callback([options] { measure(*options); });
+    measure_command->callback([options] { measure_reach(*options); });
 }
 
 }  // namespace jink::host

@@ -19,14 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportOptions {
     std::string folder;
     std::string run;
     std::string out;
     std::string python = "/usr/bin/python3";
 };
 
-void run(const Options& options)
+void run_report(const ReportOptions& options)
 {
     if (options.folder.empty() == options.run.empty()) {
         refuse("report", "give either a folder with run.json, or --run");
@@ -45,13 +45,13 @@ void run(const Options& options)
 
 void add_report(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ReportOptions>();
     CLI::App* command = jink.add_subcommand("report", "make one self-contained HTML page of a demo run");
     command->add_option("folder", options->folder, "folder with run.json of jink-sim; the page is written beside it");
     command->add_option("--run", options->run, "the run itself, where it has another name");
     command->add_option("--out", options->out, "the page to write, default report.html beside the run");
     command->add_option("--python", options->python, "a Python 3 with matplotlib")->capture_default_str();
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_report(*options); });
 }
 
 }  // namespace jink::host

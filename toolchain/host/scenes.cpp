@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScenes = "scenes";
 
-struct Options {
+struct ScenesOptions {
     std::vector<std::string> files;
     std::vector<unsigned> clutters;
     unsigned seeds = 0;
@@ -35,7 +35,7 @@ sim::Scenario load(const std::string& file, std::optional<std::uint64_t> seed)
     }
 }
 
-void run(const Options& options)
+void run_scenes(const ScenesOptions& options)
 {
     std::error_code error;
     if (!options.out.empty() && !fs::create_directories(options.out, error) && error) {
@@ -65,7 +65,7 @@ void run(const Options& options)
 
 void add_scenes(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<ScenesOptions>();
     CLI::App* command =
         jink.add_subcommand("scenes", "fly scenario files straight and with each order of the avoidance methods");
     command->add_option("files", options->files, "scenario files (tests/scenario/README.md)")
@@ -79,7 +79,7 @@ void add_scenes(CLI::App& jink)
         ->check(CLI::Range(0, 100000));
     command->add_option("--out", options->out, "draw each file's scene into this folder");
     command->add_option("--python", options->python, "a Python 3 with matplotlib")->capture_default_str();
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_scenes(*options); });
 }
 
 }  // namespace jink::host

@@ -12,7 +12,7 @@
 namespace jink::host {
 namespace {
 
-struct Options {
+struct TablesOptions {
     std::string file;
     std::string out;
     std::uint16_t waypoints = geometric::Settings{}.waypoints;
@@ -49,7 +49,7 @@ bool print_family(const cost::tables::Tables& tables, std::size_t family, const 
     return good;
 }
 
-void run(const Options& options)
+void run_tables(const TablesOptions& options)
 {
     const files::Vehicle vehicle = read_named_vehicle("tables", options.file);
     MadeTables made = make_tables(vehicle, options.waypoints);
@@ -80,7 +80,7 @@ void run(const Options& options)
 
 void add_tables(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TablesOptions>();
     CLI::App* command = jink.add_subcommand(
         "tables", "make a vehicle's cost look-up tables; exit status 2 when an error bound does not hold");
     command->add_option("vehicle", options->file, "vehicle file (YAML)")->required();
@@ -90,7 +90,7 @@ void add_tables(CLI::App& jink)
         ->check(CLI::Range(std::size_t{8}, kMaxPathPoints));
     command->add_flag("--check", options->check,
                       "prove the bounds on samples twice as dense as, and between, those that they come from");
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_tables(*options); });
 }
 
 }  // namespace jink::host

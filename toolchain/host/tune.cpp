@@ -14,7 +14,7 @@ namespace {
 
 using sim::EncounterResult;
 
-struct Options {
+struct TuneOptions {
     std::string out;
     TuneSetup setup;
     std::size_t check = 400;
@@ -41,7 +41,7 @@ void print_difference(const char* what, const Difference& d)
 }
 
 /// Fresh encounters: those that the fit was chosen by flatter it.
-void check_fit(const Options& options, const TuneSetup& setup, const Tried& fit, const Tried& standard)
+void check_fit(const TuneOptions& options, const TuneSetup& setup, const Tried& fit, const Tried& standard)
 {
     TuneSetup fresh = setup;
     fresh.out = setup.out / "check";
@@ -66,7 +66,7 @@ void check_fit(const Options& options, const TuneSetup& setup, const Tried& fit,
     print_difference("jerk^2 [m2/s5]", difference_of(ours, usual, [](const EncounterResult& r) { return r.jerk; }));
 }
 
-void run(const Options& options)
+void run_tune(const TuneOptions& options)
 {
     TuneSetup setup = options.setup;
     setup.out = options.out;
@@ -114,7 +114,7 @@ void run(const Options& options)
 
 void add_tune(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<TuneOptions>();
     CLI::App* command = jink.add_subcommand(
         "tune", "the planner's weights against closed-loop outcomes of random encounters: the source's seven "
                 "combinations, the front of a grid, a fit, and the fit on fresh encounters");
@@ -135,7 +135,7 @@ void add_tune(CLI::App& jink)
         if (options->check == 1) {
             throw CLI::ValidationError("--check", "0, or 2 and more");
         }
-        run(*options);
+        run_tune(*options);
     });
 }
 

@@ -11,7 +11,7 @@
 namespace jink::host {
 namespace {
 
-struct Options {
+struct WaypointsOptions {
     std::string file;
     std::vector<std::uint16_t> waypoints{8, 10, 13, 16, 19, 22, 25, 31, 37, 49, 57, 64};
     std::size_t problems = 1000;
@@ -33,7 +33,7 @@ files::Vehicle read(const std::string& file)
     return *std::move(vehicle);
 }
 
-void run(const Options& options)
+void run_waypoints(const WaypointsOptions& options)
 {
     const files::Vehicle vehicle = read(options.file);
     const auto distance = static_cast<double>(study_distance(vehicle.limits));
@@ -64,7 +64,7 @@ void run(const Options& options)
 
 void add_waypoints(CLI::App& jink)
 {
-    auto options = std::make_shared<Options>();
+    auto options = std::make_shared<WaypointsOptions>();
     CLI::App* command = jink.add_subcommand(
         "waypoints", "study of how many waypoints candidates need: errors of costs and shape, work and time of plans");
     command->add_option("vehicle", options->file, "vehicle file (YAML), default: the default vehicle");
@@ -74,7 +74,7 @@ void add_waypoints(CLI::App& jink)
     command->add_option("--problems", options->problems, "random problems to plan")
         ->capture_default_str()
         ->check(CLI::Range(std::size_t{1}, std::size_t{1'000'000}));
-    command->callback([options] { run(*options); });
+    command->callback([options] { run_waypoints(*options); });
 }
 
 }  // namespace jink::host

@@ -14,15 +14,15 @@ namespace {
 constexpr std::size_t kRepetitions = 9;
 
 /// Main threat on the leg ahead, a tenth of the way large; two more move about the leg and grow.
-struct Scene {
+struct DrawnScene {
     std::vector<geometric::Threat> threats;
     geometric::Problem problem;
 };
 
-Scene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
+DrawnScene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
 {
     Random random(seed);
-    Scene scene;
+    DrawnScene scene;
     const float speed = limits.cruise_speed;
     const float distance = study_distance(limits);
     const float climb = random.uniform(-0.3F, 0.3F);
@@ -61,7 +61,7 @@ std::vector<WaypointPlans> waypoint_plans(const files::Vehicle& vehicle, const s
 {
     const auto result = std::make_unique<geometric::Result>();
     geometric::Workspace workspace;
-    const auto plan = [&](const Scene& drawn, std::uint16_t count, WaypointPlans& out) {
+    const auto plan = [&](const DrawnScene& drawn, std::uint16_t count, WaypointPlans& out) {
         geometric::Problem problem = drawn.problem;
         problem.threats = drawn.threats;
         geometric::Settings settings;
@@ -74,7 +74,7 @@ std::vector<WaypointPlans> waypoint_plans(const files::Vehicle& vehicle, const s
         out.found += status == world::PlanStatus::found ? 1U : 0U;
         return choice_of(*result, status);
     };
-    std::vector<Scene> scenes;
+    std::vector<DrawnScene> scenes;
     std::vector<std::size_t> finest;
     WaypointPlans unused;
     for (std::size_t i = 0; i < problems; ++i) {
@@ -91,7 +91,7 @@ std::vector<WaypointPlans> waypoint_plans(const files::Vehicle& vehicle, const s
         double least = 1e300;
         for (std::size_t k = 0; k < kRepetitions; ++k) {
             const std::clock_t began = std::clock();
-            for (const Scene& scene : scenes) {
+            for (const DrawnScene& scene : scenes) {
                 plan(scene, count, unused);
             }
             least = std::min(least, static_cast<double>(std::clock() - began));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::array<double, 8> kRatios{0.16, 0.32, 0.48, 0.64, 0.8, 0.96, 1.12, 1.28};
 constexpr std::array<double, 3> kElevations{-30.0, 0.0, 30.0};
-constexpr std::array<double, 4> kPlanes{0.0, 45.0, 90.0, 135.0};
+constexpr std::array<double, 4> kStudyPlanes{0.0, 45.0, 90.0, 135.0};
 
 struct Point {
     double x = 0.0, y = 0.0, z = 0.0;
@@ -133,7 +133,7 @@ WaypointErrors waypoint_errors(const files::Vehicle& vehicle, std::size_t waypoi
         out.inside = std::max(out.inside, chord_distance(family, waypoints, kRatios.back()));
         out.typical = std::max(out.typical, chord_distance(family, waypoints, 0.4));
         for (std::size_t e = 0; e < kElevations.size(); ++e) {
-            for (const double plane : kPlanes) {
+            for (const double plane : kStudyPlanes) {
                 for (const double size : kRatios) {
                     for (const double ratio : {size, -size}) {
                         const Shape shape{ratio, kElevations[e], plane};

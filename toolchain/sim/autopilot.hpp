@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,6 +14,13 @@
 #include "toolchain/sim/world.hpp"
 
 namespace jink::sim {
+
+/// The co-processor's component id: obstacle avoidance.
+inline constexpr std::uint8_t kJink = 196;
+/// MAV_FRAME_LOCAL_NED.
+inline constexpr std::uint8_t kLocalNed = 1;
+/// SET_POSITION_TARGET_LOCAL_NED with everything ignored but the velocity: links.md, B.1.
+inline constexpr std::uint16_t kVelocityMask = 0x0DC7;
 
 /// A STATUSTEXT as heard.
 struct Text {

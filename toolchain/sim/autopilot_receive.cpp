@@ -22,11 +22,6 @@ constexpr std::uint16_t kSetMessageInterval = 511;
 constexpr std::uint16_t kRequestMessage = 512;
 constexpr float kCustomModeEnabled = 1.0F;
 constexpr float kArmed = 128.0F;
-/// The co-processor's component id: obstacle avoidance.
-constexpr std::uint8_t kJink = 196;
-/// Everything ignored but the velocity: links.md, B.1.
-constexpr std::uint16_t kVelocityMask = 0x0DC7;
-constexpr std::uint8_t kLocalNed = 1;
 /// PX4 goes into OFFBOARD when it has set-points, the last not older than this [us] (offboardCheck.cpp since v1.14);
 /// its documentation wants them to have come for a second, none later than this after the one before (Offboard Mode,
 /// v1.16): Faults::offboard_proof.

@@ -20,20 +20,17 @@ constexpr std::uint8_t kPx4 = 12;
 constexpr std::uint8_t kArmedAndCustom = 128 + 1;
 constexpr std::uint8_t kStateActive = 4;
 constexpr std::uint8_t kInAir = 2;
-constexpr std::uint8_t kJink = 196;
 constexpr std::uint8_t kReal32 = 9;
 constexpr std::uint16_t kNavWaypoint = 16;
 constexpr std::uint8_t kFrameGlobal = 0;
 constexpr std::uint8_t kFrameRelative = 3;
 constexpr std::uint8_t kFrameRelativeInt = 6;
-constexpr std::uint8_t kLocalNed = 1;
 constexpr std::uint8_t kBodyFrd = 12;
 constexpr std::uint8_t kPointObstacle = 19;
 constexpr std::uint8_t kLightAircraft = 1;
 /// Coordinates, altitude, heading, velocity, vertical velocity are valid; simulated.
 constexpr std::uint16_t kAdsbFlags = 1 + 2 + 4 + 8 + 64 + 128;
 constexpr std::uint16_t kPositionMask = 0x0DF8;
-constexpr std::uint16_t kVelocityMask = 0x0DC7;
 
 float as_float(double value) noexcept { return static_cast<float>(value); }
 std::int16_t centi(double metres_per_second) noexcept

@@ -14,9 +14,9 @@
 namespace jink::sim::detail {
 
 using files::Complaints;
+using files::kNeed;
 using files::Range;
 using files::YamlMap;
-inline constexpr auto kNeed = YamlMap::Need::required;
 
 inline constexpr Range kAnyTime{0.0F, 1e4F};        // [s]
 inline constexpr Range kPlace{-1e5F, 1e5F};         // [m]

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <gtest/gtest.h>
 #include <string>
 
 #include "tests/unit/link/mavlink_tools.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 using namespace test;
 
-std::uint64_t base_seed()
+std::uint64_t parser_seed()
 {
     const char* const given = std::getenv("JINK_SEED");
     return given != nullptr ? std::strtoull(given, nullptr, 0) : 20260101;
@@ -150,7 +151,7 @@ Bytes random_stream(Random& random, const std::vector<Bytes>& frames)
 TEST(MavlinkParserLaw, FindsExactlyWhatABruteForceSearchFinds)
 {
     for (std::uint64_t round = 0; round < 3000; ++round) {
-        const std::uint64_t seed = base_seed() + round;
+        const std::uint64_t seed = parser_seed() + round;
         Random random(seed);
         const std::vector<Bytes> frames = sample_frames(random);
         const Bytes stream = random_stream(random, frames);
@@ -186,7 +187,7 @@ TEST(MavlinkParserLaw, NoGoodFrameIsLostUnlessAnAcceptedOneOverlapsIt)
 {
     std::size_t overlapped = 0;
     for (std::uint64_t round = 0; round < 500; ++round) {
-        const std::uint64_t seed = base_seed() + 7'000'000 + round;
+        const std::uint64_t seed = parser_seed() + 7'000'000 + round;
         Random random(seed);
         const Bytes stream = random_stream(random, sample_frames(random));
         const std::vector<Place> accepted = reference_scan(stream);
@@ -208,7 +209,7 @@ TEST(MavlinkParserLaw, NoGoodFrameIsLostUnlessAnAcceptedOneOverlapsIt)
 TEST(MavlinkParserLaw, ChunksDoNotMatter)
 {
     for (std::uint64_t round = 0; round < 100; ++round) {
-        const std::uint64_t seed = base_seed() + 8'000'000 + round;
+        const std::uint64_t seed = parser_seed() + 8'000'000 + round;
         Random random(seed);
         const Bytes stream = random_stream(random, sample_frames(random));
         Parser whole;
@@ -258,7 +259,7 @@ TEST(MavlinkParserLaw, WorkPerByteStaysBelowTheStatedBound)
     measure(repeated("fdfd", kSize));
     // hill climbing over short patterns
     for (std::uint64_t start = 0; start < 40; ++start) {
-        Random random(base_seed() + start);
+        Random random(parser_seed() + start);
         constexpr std::array<unsigned, 10> kLikely{0xFD, 0xFE, 0x00, 0x00, 0x01, 0x6E, 0xFF, 0xFB, 0x16, 0x09};
         Bytes best(3 + random.below(12));
         double best_work = 0.0;

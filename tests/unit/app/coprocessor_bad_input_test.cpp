@@ -4,7 +4,6 @@
 // MavlinkDamage.*.
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "hal/memory/counting_watchdog.hpp"
 #include "hal/memory/manual_clock.hpp"
 #include "hal/memory/memory_serial_link.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/link/endpoint_tools.hpp"
 
 namespace jink::app {
@@ -21,9 +21,6 @@ namespace {
 
 using namespace link::mavlink;
 using namespace link::mavlink::test;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 class BadInput : public ::testing::Test {
 protected:
@@ -318,7 +315,7 @@ TEST_F(BadInput, NoNumberInfinityDenormalAndHugeInEveryFloat)
                 continue;
             }
             for (unsigned k = 0; k < field.count; ++k) {
-                for (const float poison : {kNan, kInf, -kInf, 1e-42F, -1e-42F, 3e38F, -3e38F}) {
+                for (const float poison : {kNan, kInfinity, -kInfinity, 1e-42F, -1e-42F, 3e38F, -3e38F}) {
                     Bytes payload(M::kInfo.max_length);
                     const auto bits = std::bit_cast<std::uint32_t>(poison);
                     for (std::size_t b = 0; b < 4; ++b) {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto kBrake = static_cast<float>(wire::kCopterBrake);
 
-bool in_control(const StepReport& report) { return report.control == Control::ours; }
+bool has_control(const StepReport& report) { return report.control == Control::ours; }
 
 class CoprocessorLoss : public ::testing::Test {
 protected:
@@ -23,7 +23,7 @@ protected:
         ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults == 0; }, 200));
         f->fly(60);
         f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
-        ASSERT_TRUE(f->until(in_control));
+        ASSERT_TRUE(f->until(has_control));
         f->fly(10);
         f->requested.clear();
     }

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Coprocessor::step: numbers that are none, parameters, commands, and what the counters count.
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/app/flight.hpp"
 
 namespace jink::app::test {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 class CoprocessorRequests : public ::testing::Test {
 protected:
@@ -84,7 +81,7 @@ TEST_F(CoprocessorRequests, NoNumberInLocalPositionIsCountedAndChangesNothing)
     using Member = float LocalPositionNed::*;
     for (const Member member : {&LocalPositionNed::x, &LocalPositionNed::y, &LocalPositionNed::z, &LocalPositionNed::vx,
                                 &LocalPositionNed::vy, &LocalPositionNed::vz}) {
-        for (const float poison : {kNan, kInf, -kInf}) {
+        for (const float poison : {kNan, kInfinity, -kInfinity}) {
             const std::uint32_t before = f.endpoint.diagnostics().not_finite;
             const std::uint32_t taken = counted().own_states;
             const Vec3 position = f.coprocessor.own().position;
@@ -110,7 +107,7 @@ TEST_F(CoprocessorRequests, NoNumberInOdometryIsCountedWhereItMattersAndNeverHar
     f.fly(1);
     ASSERT_EQ(f.last.faults, 0U);
     const auto poisoned = [&](auto&& poke, bool refused, const std::string& what) {
-        for (const float poison : {kNan, kInf, -kInf}) {
+        for (const float poison : {kNan, kInfinity, -kInfinity}) {
             const std::uint32_t before = f.endpoint.diagnostics().not_finite;
             const std::uint32_t taken = counted().own_states;
             Odometry m = odometry();
@@ -202,7 +199,7 @@ TEST_F(CoprocessorRequests, SetIsAnsweredWithTheValueThatStands)
         EXPECT_EQ(read_back(name).param_value, stands);
     };
     expect_refused("VEH_CRUISE", kNan, 7.5F);
-    expect_refused("VEH_CRUISE", kInf, 7.5F);
+    expect_refused("VEH_CRUISE", kInfinity, 7.5F);
     expect_refused("VEH_CRUISE", 0.0F, 7.5F);
     expect_refused("VEH_CRUISE", 1000.0F, 7.5F);
     expect_refused("VEH_CRUISE", 6.0F, 7.5F, 6);  // INT32: its bits are no number to go by

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kPeriodMs = 50;  // 20 set-points a second, the default
 constexpr std::size_t kWide = 1U << 20U;
 
-bool in_control(const StepReport& report) { return report.control == Control::ours; }
+bool holds_control(const StepReport& report) { return report.control == Control::ours; }
 
 class CoprocessorStalledLine : public ::testing::Test {
 protected:
@@ -22,7 +22,7 @@ protected:
         ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults == 0; }, 200));
         f->fly(60);
         f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
-        ASSERT_TRUE(f->until(in_control));
+        ASSERT_TRUE(f->until(holds_control));
         f->fly(10);
     }
     [[nodiscard]] std::uint32_t now_ms() const { return static_cast<std::uint32_t>(f->now.us / 1000); }

@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint8_t kCritical = 5;
 
 bool has(const StepReport& report, Fault fault) { return (report.faults & static_cast<std::uint16_t>(fault)) != 0; }
-bool in_control(const StepReport& report) { return report.control == Control::ours; }
+bool controls(const StepReport& report) { return report.control == Control::ours; }
 bool healthy(const StepReport& report) { return report.faults == 0; }
 
 bool says_critical(const Flight& f)
@@ -47,7 +47,7 @@ void take_over(Flight& f)
 {
     ASSERT_NO_FATAL_FAILURE(settle(f));
     f.obstacles = {f.position + Vec3(0.4F, 40.0F, 0.0F)};
-    ASSERT_TRUE(f.until(in_control));
+    ASSERT_TRUE(f.until(controls));
     f.fly(10);
     ASSERT_EQ(f.last.control, Control::ours);
     ASSERT_EQ(f.last.guidance.state, avoid::State::avoiding);
@@ -156,7 +156,7 @@ TEST_P(CoprocessorRate, StreamsAtTenHertzOrMoreWhileInControlAndNeverElse)
         if (f->last.control == Control::autopilot) {
             ASSERT_FALSE(sent) << "tick " << i;
         }
-        if (in_control(f->last) || f->last.control == Control::returning) {
+        if (controls(f->last) || f->last.control == Control::returning) {
             began = ours == 0 ? f->now : began;
             ++ours;
             sent_while_ours += sent ? 1 : 0;
@@ -277,7 +277,7 @@ TEST(CoprocessorReboot, ForgetsEverythingThatTheOldAutopilotSaidAndRecovers)
     f->mode = wire::kCopterAuto;
     f->fly(200);
     f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
-    ASSERT_TRUE(f->until(in_control));
+    ASSERT_TRUE(f->until(controls));
     EXPECT_EQ(f->coprocessor.takeover_diagnostics().taken, 2U);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -10,15 +9,13 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/parameters.hpp"
+#include "tests/numbers.hpp"
 
 namespace jink::app {
 namespace {
 
 using Values = std::array<float, kParamCount>;
 using Changes = std::vector<std::pair<Param, float>>;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 std::size_t index_of(Param p) { return static_cast<std::size_t>(p); }
 

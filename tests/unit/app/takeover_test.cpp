@@ -18,7 +18,7 @@ Bench requesting()
     return b;
 }
 
-Bench flying()
+Bench taken_over()
 {
     Bench b = requesting();
     EXPECT_EQ(b.step(wants(Beat::external, 0.2F)).event, TakeoverEvent::took_over);
@@ -28,7 +28,7 @@ Bench flying()
 
 Bench returning()
 {
-    Bench b = flying();
+    Bench b = taken_over();
     EXPECT_EQ(b.step(calm(Beat::external, 1.0F)).action, TakeoverAction::request_former);
     EXPECT_EQ(b.control(), Control::returning);
     return b;
@@ -175,7 +175,7 @@ TEST(Takeover, GrantAfterTheRefusedConflictIsGivenBack)
 TEST(Takeover, PilotsModeIsFinalUntilTheConflictIsOver)
 {
     for (const Beat beat : {Beat::manual, Beat::hold, Beat::disarmed}) {
-        for (Bench b : {requesting(), flying(), returning()}) {
+        for (Bench b : {requesting(), taken_over(), returning()}) {
             EXPECT_EQ(b.step(wants(beat)).event, TakeoverEvent::overruled) << describe(wants(beat));
             EXPECT_FALSE(b.takeover.streaming());
             for (int i = 0; i < 3; ++i) {
@@ -192,7 +192,7 @@ TEST(Takeover, PilotsModeIsFinalUntilTheConflictIsOver)
 
 TEST(Takeover, FormerModeNotAskedForIsThePilots)
 {
-    Bench b = flying();
+    Bench b = taken_over();
     EXPECT_EQ(b.step(wants(Beat::former)).event, TakeoverEvent::overruled);
 }
 
@@ -235,7 +235,7 @@ TEST(Takeover, FaultBeforeControlFallsSilent)
 
 TEST(Takeover, FaultInControlIsLost)
 {
-    for (Bench b : {flying(), returning()}) {
+    for (Bench b : {taken_over(), returning()}) {
         EXPECT_EQ(b.step(fault(Beat::none)).event, TakeoverEvent::lost);
         EXPECT_EQ(b.control(), Control::autopilot);
         EXPECT_EQ(b.takeover.diagnostics().lost_by_fault, 1U);
@@ -246,7 +246,7 @@ TEST(Takeover, FaultInControlIsLost)
 
 TEST(Takeover, HoldAfterALossIsNotResumed)
 {
-    Bench b = flying();
+    Bench b = taken_over();
     b.step(fault(Beat::none));
     EXPECT_EQ(b.step(wants(Beat::hold)).event, TakeoverEvent::none);
     b.step(wants(Beat::external));
@@ -256,7 +256,7 @@ TEST(Takeover, HoldAfterALossIsNotResumed)
 TEST(Takeover, PilotsModeOnTheTickOfAFaultIsThePilots)
 {
     for (const Beat beat : {Beat::manual, Beat::former}) {
-        Bench b = flying();
+        Bench b = taken_over();
         EXPECT_EQ(b.step(fault(beat)).event, TakeoverEvent::overruled) << describe(fault(beat));
         EXPECT_FALSE(b.takeover.streaming());
     }
@@ -308,7 +308,7 @@ TEST(Takeover, FlickeringFaultDoesNotMultiplyTheRequests)
 
 TEST(Takeover, DropForgetsAllUnlessByFault)
 {
-    Bench b = flying();
+    Bench b = taken_over();
     b.takeover.drop(false);
     EXPECT_EQ(b.control(), Control::autopilot);
     b.step(wants(Beat::external));

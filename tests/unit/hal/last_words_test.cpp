@@ -140,7 +140,7 @@ TEST(SayLastWords, ARingWhoseIndicesCannotBeRightIsPassedOver)
 }
 
 /// RCC_CSR as RM0090, 7.3.21 has it: flags stay until RMVF is written.
-struct RccModel {
+struct ResetCauseModel {
     std::uint32_t* csr;
     [[nodiscard]] std::uint32_t read(std::uint32_t offset) const { return offset == 0x74 ? *csr : 0U; }
     void write(std::uint32_t offset, std::uint32_t value) const
@@ -155,9 +155,9 @@ TEST(ResetCause, EachIsToldOnce)
     using stm32f4::ResetCause;
     const auto cause_of = [](std::uint32_t flags) {
         std::uint32_t csr = flags | 3U;  // the slow oscillator is on
-        const ResetCause cause = stm32f4::take_reset_cause(RccModel{&csr});
+        const ResetCause cause = stm32f4::take_reset_cause(ResetCauseModel{&csr});
         EXPECT_EQ(csr, 3U) << "flags are removed";
-        EXPECT_EQ(stm32f4::take_reset_cause(RccModel{&csr}), ResetCause::unknown);
+        EXPECT_EQ(stm32f4::take_reset_cause(ResetCauseModel{&csr}), ResetCause::unknown);
         return cause;
     };
     constexpr std::uint32_t kPin = 1U << 26U;  // pulled by every reset

@@ -26,7 +26,7 @@ namespace {
 using test::Pty;
 using test::TemporaryFolder;
 
-constexpr std::int64_t kRetry = 500'000;
+constexpr std::int64_t kPortRetry = 500'000;
 // A pty hands bytes over in a kernel thread; this is only how long a test that fails anyway waits for them.
 constexpr int kPatienceMs = 10'000;
 
@@ -94,7 +94,7 @@ TEST(TermiosSerialPort, CarriesRandomBytesBothWaysThroughPartialWrites)
         SCOPED_TRACE("seed " + std::to_string(seed));
         const Pty peer;
         TermiosSerialPort port;
-        ASSERT_EQ(port.open(peer.path(), 921'600, kRetry), OpenStatus::ok);
+        ASSERT_EQ(port.open(peer.path(), 921'600, kPortRetry), OpenStatus::ok);
 
         const auto out = random_bytes(100'000, seed);
         std::vector<std::byte> arrived;
@@ -134,7 +134,7 @@ TEST(TermiosSerialPort, ChangesNoByteValue)
 {
     const Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 115'200, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 115'200, kPortRetry), OpenStatus::ok);
     std::vector<std::byte> all(256);
     for (std::size_t i = 0; i < all.size(); ++i) {
         all[i] = static_cast<std::byte>(i);
@@ -153,7 +153,7 @@ TEST_P(TermiosBaud, IsSetAsAsked)
 {
     const Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), GetParam(), kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), GetParam(), kPortRetry), OpenStatus::ok);
     EXPECT_EQ(port.actual_baud(), GetParam());
     termios2 settings{};
     ASSERT_EQ(test::kernel_ioctl(port.descriptor(), TCGETS2, &settings), 0);
@@ -170,7 +170,7 @@ TEST(TermiosSerialPort, DescriptorNeitherBlocksNorLeaksIntoChildren)
 {
     const Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
     EXPECT_NE(::fcntl(port.descriptor(), F_GETFL) & O_NONBLOCK, 0);
     EXPECT_NE(::fcntl(port.descriptor(), F_GETFD) & FD_CLOEXEC, 0);
 }
@@ -179,7 +179,7 @@ TEST(TermiosSerialPort, FullBufferTakesLessAndReturns)
 {
     const Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 921'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 921'600, kPortRetry), OpenStatus::ok);
     const auto flood = random_bytes(1'000'000, 7);
     const std::size_t first = port.write(flood);
     EXPECT_GT(first, 0U);
@@ -194,7 +194,7 @@ TEST(TermiosSerialPort, EmptySpansAreNothing)
 {
     Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
     EXPECT_EQ(port.read({}), 0U);
     EXPECT_EQ(port.write({}), 0U);
     peer.hang_up();
@@ -206,7 +206,7 @@ TEST(TermiosSerialPort, ReadNoticesAHangUp)
 {
     Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
     std::array<std::byte, 4> bytes{};
     EXPECT_EQ(port.read(bytes), 0U);
     EXPECT_EQ(port.health().state, PortState::open);
@@ -223,7 +223,7 @@ TEST(TermiosSerialPort, WriteNoticesAHangUpAndCountsIt)
 {
     Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
     peer.hang_up();
     const std::array<std::byte, 5> bytes{};
     EXPECT_EQ(port.write(bytes), 0U);
@@ -242,7 +242,7 @@ TEST(TermiosSerialPort, ServiceNoticesAHangUp)
     Pty peer;
     std::filesystem::create_symlink(peer.path(), link);
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(link, 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(link, 57'600, kPortRetry), OpenStatus::ok);
     port.service(0);
     EXPECT_EQ(port.health().state, PortState::open);
     std::filesystem::remove(link);
@@ -257,7 +257,7 @@ TEST(TermiosSerialPort, ReadErrorsAreCountedAndLoseThePort)
 {
     const Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
     const int directory = ::open("/", O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     ASSERT_GE(directory, 0);
     ASSERT_EQ(::dup2(directory, port.descriptor()), port.descriptor());
@@ -275,7 +275,7 @@ TEST(TermiosSerialPort, FollowsALinkToTheNextDevice)
     auto first = std::make_unique<Pty>();
     std::filesystem::create_symlink(first->path(), link);
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(link, 921'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(link, 921'600, kPortRetry), OpenStatus::ok);
 
     std::filesystem::remove(link);
     first.reset();
@@ -283,16 +283,16 @@ TEST(TermiosSerialPort, FollowsALinkToTheNextDevice)
     EXPECT_EQ(port.health().state, PortState::lost);
     EXPECT_EQ(port.open_status(), OpenStatus::no_device);
     EXPECT_EQ(port.health().open_failures, 1U);
-    port.service(1'000'000 + kRetry - 1);
+    port.service(1'000'000 + kPortRetry - 1);
     EXPECT_EQ(port.health().open_failures, 1U);
-    port.service(1'000'000 + kRetry);
+    port.service(1'000'000 + kPortRetry);
     EXPECT_EQ(port.health().open_failures, 2U);
 
     const Pty second;
     std::filesystem::create_symlink(second.path(), link);
-    port.service(1'000'000 + 2 * kRetry - 1);
+    port.service(1'000'000 + 2 * kPortRetry - 1);
     EXPECT_EQ(port.health().state, PortState::lost);
-    port.service(1'000'000 + 2 * kRetry);
+    port.service(1'000'000 + 2 * kPortRetry);
     EXPECT_EQ(port.health().state, PortState::open);
     EXPECT_EQ(port.open_status(), OpenStatus::ok);
     EXPECT_EQ(port.health().reconnects, 1U);
@@ -312,7 +312,7 @@ TEST(TermiosSerialPort, ComesBackAtOnceWhenTheDeviceIsThereAgain)
     std::array<Pty, 4> devices;
     std::filesystem::create_symlink(devices[0].path(), link);
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(link, 921'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(link, 921'600, kPortRetry), OpenStatus::ok);
     for (std::size_t i = 1; i < devices.size(); ++i) {
         std::filesystem::remove(link);
         std::filesystem::create_symlink(devices[i].path(), link);
@@ -329,7 +329,7 @@ TEST(TermiosSerialPort, WaitsForADeviceThatWasNeverThere)
     const TemporaryFolder folder;
     const std::string link = folder / "fc";
     TermiosSerialPort port;
-    EXPECT_EQ(port.open(link, 57'600, kRetry), OpenStatus::no_device);
+    EXPECT_EQ(port.open(link, 57'600, kPortRetry), OpenStatus::no_device);
     EXPECT_EQ(port.health().state, PortState::lost);
     EXPECT_EQ(port.health().open_failures, 1U);
     EXPECT_EQ(port.health().disconnects, 0U);
@@ -343,9 +343,9 @@ TEST(TermiosSerialPort, CloseEndsTheRetries)
 {
     const TemporaryFolder folder;
     TermiosSerialPort port;
-    EXPECT_EQ(port.open(folder / "fc", 57'600, kRetry), OpenStatus::no_device);
+    EXPECT_EQ(port.open(folder / "fc", 57'600, kPortRetry), OpenStatus::no_device);
     port.close();
-    port.service(10 * kRetry);
+    port.service(10 * kPortRetry);
     EXPECT_EQ(port.health().state, PortState::closed);
     EXPECT_EQ(port.health().open_failures, 1U);
 }
@@ -354,7 +354,7 @@ TEST(TermiosSerialPort, CloseWithUnsentBytesReturns)
 {
     const Pty peer;
     TermiosSerialPort port;
-    ASSERT_EQ(port.open(peer.path(), 300, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.open(peer.path(), 300, kPortRetry), OpenStatus::ok);
     EXPECT_GT(port.write(random_bytes(100'000, 9)), 0U);
     port.close();
     EXPECT_EQ(port.health().state, PortState::closed);
@@ -367,24 +367,24 @@ TEST(TermiosSerialPort, ManyReconnectsKeepNoDescriptor)
     const std::size_t before = open_descriptors();
     {
         TermiosSerialPort port;
-        EXPECT_EQ(port.open(link, 57'600, kRetry), OpenStatus::no_device);
+        EXPECT_EQ(port.open(link, 57'600, kPortRetry), OpenStatus::no_device);
         for (std::int64_t i = 0; i < 100; ++i) {
             {
                 const Pty peer;
                 std::filesystem::create_symlink(peer.path(), link);
-                port.service(2 * i * kRetry);
+                port.service(2 * i * kPortRetry);
                 ASSERT_EQ(port.health().state, PortState::open);
             }
             std::filesystem::remove(link);
-            port.service((2 * i + 1) * kRetry);
+            port.service((2 * i + 1) * kPortRetry);
             ASSERT_EQ(port.health().state, PortState::lost);
         }
         EXPECT_EQ(port.health().reconnects, 100U);
         EXPECT_EQ(port.health().disconnects, 100U);
         EXPECT_EQ(open_descriptors(), before);
         const Pty peer;
-        EXPECT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
-        EXPECT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+        EXPECT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
+        EXPECT_EQ(port.open(peer.path(), 57'600, kPortRetry), OpenStatus::ok);
         EXPECT_EQ(open_descriptors(), before + 2);
     }
     EXPECT_EQ(open_descriptors(), before);

@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/link/dronecan_tools.hpp"
 
 namespace jink::link::dronecan::test {
 
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
-inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 inline constexpr double kHalfPi = 1.5707963267948966;
 inline constexpr std::int32_t kLatitude = 474000000;
 inline constexpr std::int32_t kLongitude = 85000000;

@@ -51,9 +51,9 @@ TEST_F(DronecanEndpoint, BadProximityIsRefused)
     give(proximity(361.0F, 5.0F));
     give(proximity(0.0F, 5.0F, 91.0F));
     EXPECT_EQ(seen().out_of_range, 5U);
-    give(proximity(kNaN, 5.0F));
+    give(proximity(kNan, 5.0F));
     give(proximity(0.0F, kInfinity));
-    give(proximity(0.0F, 5.0F, kNaN));
+    give(proximity(0.0F, 5.0F, kNan));
     EXPECT_EQ(seen().not_finite, 3U);
     EXPECT_TRUE(inbox.readings.empty());
 }
@@ -94,7 +94,7 @@ TEST_F(DronecanEndpoint, RangeFinders)
     m.range = 0.2F;
     give(m);
     EXPECT_NEAR(inbox.readings[1].range, 0.2F, 1e-4F);
-    for (const float unsaid : {kNaN, -1.0F, kInfinity}) {
+    for (const float unsaid : {kNan, -1.0F, kInfinity}) {
         m.range = unsaid;
         give(m);
         EXPECT_EQ(inbox.readings.back().range, 0.0F);  // nearer than it can see is no reason to vanish
@@ -120,7 +120,7 @@ TEST_F(DronecanEndpoint, BadRangesAreRefused)
     m.range = -0.5F;
     give(m);
     EXPECT_EQ(seen().out_of_range, 4U);
-    m.range = kNaN;
+    m.range = kNan;
     give(m);
     m = measurement();
     m.field_of_view = kInfinity;

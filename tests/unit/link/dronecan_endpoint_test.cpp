@@ -59,7 +59,7 @@ TEST_F(DronecanEndpoint, CovariancesOfEachForm)
     m.covariance[1] = -1.0F;
     give(m);
     EXPECT_EQ(inbox.bus_state.state.sigma_position, 0.0F);
-    for (const float bad : {kNaN, -1.0F, 0.0F, kInfinity}) {
+    for (const float bad : {kNan, -1.0F, 0.0F, kInfinity}) {
         m.covariance.resize(1);
         m.covariance[0] = bad;
         give(m);
@@ -143,7 +143,7 @@ TEST_F(DronecanEndpoint, BadFixesAreRefused)
     m.velocity[0] = 401.0F;
     give(m);
     EXPECT_EQ(seen().out_of_range, ++refused);
-    for (const float bad : {kNaN, kInfinity}) {
+    for (const float bad : {kNan, kInfinity}) {
         m.velocity[0] = bad;
         give(m);
     }
@@ -171,7 +171,7 @@ TEST_F(DronecanEndpoint, Traffic)
     EXPECT_EQ(inbox.tracks[1].velocity.z(), 0.0F);
     EXPECT_GE(inbox.tracks[1].sigma_velocity, 5.0F) << "it may climb";
     m.velocity_valid = false;
-    m.velocity[0] = kNaN;  // not said: no fault
+    m.velocity[0] = kNan;  // not said: no fault
     give(m);
     EXPECT_FALSE(inbox.tracks[2].has_velocity);
     m.traffic_type = TrafficReport::kPointObstacle;
@@ -228,7 +228,7 @@ TEST_F(DronecanEndpoint, BadAttitudesAreRefused)
     m.orientation = {};
     give(m);
     EXPECT_EQ(seen().out_of_range, 2U);
-    m.orientation[0] = kNaN;
+    m.orientation[0] = kNan;
     give(m);
     EXPECT_EQ(seen().not_finite, 1U);
     give(proximity(0.0F, 5.0F));

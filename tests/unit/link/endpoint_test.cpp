@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/link/endpoint_tools.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
 using namespace test;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 TEST(Endpoint, LearnsItsSystemFromTheFirstAutopilotAndListensToThatOne)
 {
@@ -39,7 +36,7 @@ TEST(Endpoint, LearnsItsSystemFromTheFirstAutopilotAndListensToThatOne)
 
 TEST(Endpoint, RefusesOwnStateThatIsNotANumberOrAbsurd)
 {
-    for (const float bad : {kNan, kInf, -kInf, 1e30F, 3e5F}) {
+    for (const float bad : {kNan, kInfinity, -kInfinity, 1e30F, 3e5F}) {
         for (int field = 0; field < 6; ++field) {
             Wire wire;
             wire.hear(heartbeat());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <bit>
 #include <cstring>
+#include <gtest/gtest.h>
 #include <limits>
 #include <string>
 

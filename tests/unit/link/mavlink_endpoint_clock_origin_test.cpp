@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the endpoint makes of the autopilot's reports on its clock and its origin.
+#include <gtest/gtest.h>
 #include <limits>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
 
 namespace jink::link::mavlink {
@@ -9,7 +11,6 @@ namespace {
 
 using namespace test;
 using MavlinkEndpointClockAndOrigin = EndpointTest;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST_F(MavlinkEndpointClockAndOrigin, OldAndFutureStampsAreRefused)
 {

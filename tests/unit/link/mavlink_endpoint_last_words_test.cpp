@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is to be said when the processor faults, composed beforehand.
+#include <gtest/gtest.h>
+
 #include "firmware/link/mavlink/text.hpp"
 #include "hal/last_words.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the autopilot flies to: legs from its mission and from its position targets.
+#include <gtest/gtest.h>
 #include <limits>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
 using namespace test;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 class MavlinkEndpointLegs : public HeardEndpointTest {
 protected:

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OBSTACLE_DISTANCE_3D: frames, units, scans, refusals.
 #include <cmath>
-#include <limits>
+#include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/link/cloud_tools.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
 
 namespace jink::link::mavlink::test {
 namespace {
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 class EndpointPoints : public HeardEndpointTest {
 protected:
@@ -139,7 +137,7 @@ TEST_F(EndpointPoints, OtherFramesAreRefused)
 TEST_F(EndpointPoints, NumbersThatAreNoneAreRefused)
 {
     attitude(0);
-    for (const float bad : {kNaN, kInfinity, -kInfinity}) {
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
         for (float ObstacleDistance3d::*const field :
              {&ObstacleDistance3d::x, &ObstacleDistance3d::y, &ObstacleDistance3d::z, &ObstacleDistance3d::min_distance,
               &ObstacleDistance3d::max_distance}) {
@@ -216,8 +214,8 @@ TEST_F(EndpointPoints, OldAttitudePlacesNothing)
 TEST_F(EndpointPoints, AttitudeThatIsNoneIsRefusedWhole)
 {
     attitude_of(0.1F, 0.2F, 0.3F);
-    attitude_of(kNaN, 0, 0);
-    attitude_of(0, kNaN, 0);
+    attitude_of(kNan, 0, 0);
+    attitude_of(0, kNan, 0);
     EXPECT_EQ(count().not_finite, 2U);
     attitude_of(7, 0, 0);
     attitude_of(0, -7, 0);
@@ -264,7 +262,7 @@ TEST_F(HeardEndpointTest, PointsThatNobodyTakesAreIgnored)
 {
     attitude(0);
     ObstacleDistance3d m;
-    m.x = kNaN;
+    m.x = kNan;
     m.frame = 12;
     const std::uint32_t ignored = count().frames_ignored;
     from(kSystem, 158, m);

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What others ask of us, what we ask and tell: modes, commands, parameters, time, sending.
+#include <gtest/gtest.h>
 #include <limits>
 
 #include "firmware/link/mavlink/text.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
 using namespace test;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr std::uint16_t kDoSetMode = 176;
 
 class MavlinkEndpointRequests : public HeardEndpointTest {

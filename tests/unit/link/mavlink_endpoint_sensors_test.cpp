@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Traffic, range scans and range readings.
+#include <gtest/gtest.h>
 #include <limits>
 
 #include "firmware/link/mavlink/text.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
 using namespace test;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kDegree = kPi / 180.0F;
 
 class MavlinkEndpointSensors : public EndpointTest {

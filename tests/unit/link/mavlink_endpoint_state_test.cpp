@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the endpoint makes of the autopilot's reports on itself: mode, own state.
+#include <gtest/gtest.h>
 #include <limits>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
 
 namespace jink::link::mavlink {
@@ -9,7 +11,6 @@ namespace {
 
 using namespace test;
 using MavlinkEndpointState = EndpointTest;
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST_F(MavlinkEndpointState, NothingCountsBeforeAnAutopilotIsHeard)
 {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What other vehicles say of themselves: positions of systems of the link, UTM_GLOBAL_POSITION, and what is our own.
+#include <gtest/gtest.h>
 #include <limits>
 
 #include "firmware/link/track_ids.hpp"

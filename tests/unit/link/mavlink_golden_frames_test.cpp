@@ -2,6 +2,7 @@
 // Frames made with the official C library, and one signed by node-mavlink (docs/links.md): byte-equal both ways.
 #include <bit>
 #include <cstring>
+#include <gtest/gtest.h>
 
 #include "firmware/link/mavlink/text.hpp"
 #include "tests/unit/link/mavlink_tools.hpp"
@@ -30,7 +31,7 @@ void expect_golden(const M& message, Header header, std::string_view hex)
     EXPECT_EQ(parser.diagnostics().noise_bytes, 0U);
 }
 
-constexpr Header kUs{1, 196, 0};
+constexpr Header kOurHeader{1, 196, 0};
 
 TEST(MavlinkGoldenFrames, Heartbeat)
 {
@@ -38,7 +39,7 @@ TEST(MavlinkGoldenFrames, Heartbeat)
     m.type = 18;
     m.autopilot = 8;
     m.system_status = 4;
-    expect_golden(m, kUs, "fd0900000001c4000000000000001208000403f49a");
+    expect_golden(m, kOurHeader, "fd0900000001c4000000000000001208000403f49a");
 }
 
 TEST(MavlinkGoldenFrames, ObstacleDistance)
@@ -55,7 +56,7 @@ TEST(MavlinkGoldenFrames, ObstacleDistance)
     m.increment_f = 5.0F;
     m.angle_offset = -15.0F;
     m.frame = 12;
-    expect_golden(m, kUs,
+    expect_golden(m, kOurHeader,
                   "fda700000001c44a010015cd5b0700000000f401f501f601f701f801f901fa01ffffffffffffffffffffffffffffffffffff"
                   "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"
                   "ffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffffff"
@@ -73,16 +74,16 @@ TEST(MavlinkGoldenFrames, ObstacleDistance3d)
     m.max_distance = 40.0F;
     m.obstacle_id = 7;
     m.frame = 12;
-    expect_golden(m, kUs, "fd1c00000001c41d2b00e80300000000c03f000010c00000003fcdcc4c3e000020420700000c3f04");
+    expect_golden(m, kOurHeader, "fd1c00000001c41d2b00e80300000000c03f000010c00000003fcdcc4c3e000020420700000c3f04");
 }
 
 // The next three were made with node-mavlink.
-constexpr std::uint8_t kOther = 9;
+constexpr std::uint8_t kOtherSystem = 9;
 
 TEST(MavlinkGoldenFrames, GlobalPositionInt)
 {
     GlobalPositionInt m{123456, 467000123, 82000456, 570789, 1789, 123, -456, 78, 27001};
-    expect_golden(m, {kOther, 1, 5},
+    expect_golden(m, {kOtherSystem, 1, 5},
                   "fd1c000005090121000040e201003bdbd51b483ae304a5b50800fd0600007b0038fe4e00796961dd");
 }
 
@@ -110,7 +111,7 @@ TEST(MavlinkGoldenFrames, UtmGlobalPosition)
     m.flight_state = 3;
     m.flags = 127;
     expect_golden(
-        m, {kOther, 1, 6},
+        m, {kOtherSystem, 1, 6},
         "fd46000006090154010040222018240a06003bdbd51bb8c51cfb25710900fd060000a7ded51b673ce304e0750900bffe8e02a9ff"
         "dc05c409280064000102030405060708090a0b0c0d0e0f101112037fbff6");
 }
@@ -132,7 +133,7 @@ TEST(MavlinkGoldenFrames, GpsRawInt)
     m.h_acc = 500;
     m.v_acc = 800;
     m.vel_acc = 100;
-    expect_golden(m, {kOther, 1, 7},
+    expect_golden(m, {kOtherSystem, 1, 7},
                   "fd2b0000070901180000b168de3a000000003bdbd51b483ae304a5b5080050007800fe0128230411257109"
                   "00f40100002003000064e221");
 }
@@ -149,7 +150,7 @@ TEST(MavlinkGoldenFrames, SetPositionTargetLocalNed)
     m.target_component = 1;
     m.coordinate_frame = 1;
     expect_golden(
-        m, kUs,
+        m, kOurHeader,
         "fd3500000001c4540000e80300000000000000000000000000000000803f000000bf0000803e0000000000000000000000000000"
         "000000000000c70d010101b1a2");
 }
@@ -164,7 +165,7 @@ TEST(MavlinkGoldenFrames, Collision)
     m.time_to_minimum_delta = 2.5F;
     m.altitude_minimum_delta = 1.0F;
     m.horizontal_minimum_delta = 3.0F;
-    expect_golden(m, kUs, "fd1300000001c4f700002a000000000020400000803f0000404001030217cb");
+    expect_golden(m, kOurHeader, "fd1300000001c4f700002a000000000020400000803f0000404001030217cb");
 }
 
 TEST(MavlinkGoldenFrames, CommandAck)
@@ -173,7 +174,7 @@ TEST(MavlinkGoldenFrames, CommandAck)
     m.command = 511;
     m.target_system = 255;
     m.target_component = 190;
-    expect_golden(m, kUs, "fd0a00000001c44d0000ff01000000000000ffbefda4");
+    expect_golden(m, kOurHeader, "fd0a00000001c44d0000ff01000000000000ffbefda4");
 }
 
 TEST(MavlinkGoldenFrames, ParamValue)
@@ -184,7 +185,7 @@ TEST(MavlinkGoldenFrames, ParamValue)
     m.param_type = 9;
     m.param_count = 3;
     m.param_index = 1;
-    expect_golden(m, kUs, "fd1900000001c41600000000403f0300010043415f52414449555300000000000000098b27");
+    expect_golden(m, kOurHeader, "fd1900000001c41600000000403f0300010043415f52414449555300000000000000098b27");
 }
 
 TEST(MavlinkGoldenFrames, Timesync)
@@ -193,7 +194,7 @@ TEST(MavlinkGoldenFrames, Timesync)
     m.ts1 = 123456789000;
     m.target_system = 1;
     m.target_component = 1;
-    expect_golden(m, kUs, "fd1200000001c46f00000000000000000000081a99be1c00000001016b96");
+    expect_golden(m, kOurHeader, "fd1200000001c46f00000000000000000000081a99be1c00000001016b96");
 }
 
 TEST(MavlinkGoldenFrames, LocalPositionNed)
@@ -213,7 +214,7 @@ TEST(MavlinkGoldenFrames, Statustext)
     Statustext m;
     m.severity = 4;
     ASSERT_TRUE(set_text(m.text, "avoidance active"));
-    expect_golden(m, kUs, "fd1100000001c4fd00000461766f6964616e6365206163746976658bd7");
+    expect_golden(m, kOurHeader, "fd1100000001c4fd00000461766f6964616e6365206163746976658bd7");
 }
 
 TEST(MavlinkGoldenFrames, AdsbVehicle)

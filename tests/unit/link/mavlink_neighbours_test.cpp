@@ -14,12 +14,12 @@ namespace jink::link::mavlink {
 namespace {
 
 constexpr std::int64_t kStart = 1'000'000'000;
-constexpr std::uint8_t kSystem = 9;
+constexpr std::uint8_t kNeighbourSystem = 9;
 
 /// One other system: its boot clock and ours.
 struct MavlinkNeighbours : testing::Test {
     /// Sent at `at` of its clock, arrives `delay` later [ms]. @return the age that it is given [ms]
-    std::int64_t age(std::int64_t at, std::int64_t delay, std::uint8_t system = kSystem)
+    std::int64_t age(std::int64_t at, std::int64_t delay, std::uint8_t system = kNeighbourSystem)
     {
         const TimePoint now{kStart + (at + delay) * 1000};
         const TimePoint stamp = neighbours->stamp(system, static_cast<std::uint32_t>(boot + at), now);
@@ -121,14 +121,14 @@ TEST_F(MavlinkNeighbours, TheLongestUnheardGivesWay)
 
 TEST_F(MavlinkNeighbours, WhoeverSaysSoIsDisarmed)
 {
-    EXPECT_FALSE(neighbours->is_disarmed(kSystem)) << "nothing was said";
-    neighbours->note_armed(kSystem, false, {kStart});
-    EXPECT_TRUE(neighbours->is_disarmed(kSystem));
-    EXPECT_FALSE(neighbours->is_disarmed(kSystem + 1));
+    EXPECT_FALSE(neighbours->is_disarmed(kNeighbourSystem)) << "nothing was said";
+    neighbours->note_armed(kNeighbourSystem, false, {kStart});
+    EXPECT_TRUE(neighbours->is_disarmed(kNeighbourSystem));
+    EXPECT_FALSE(neighbours->is_disarmed(kNeighbourSystem + 1));
     EXPECT_EQ(age(0, 50), 0) << "a heartbeat brings no stamp";
-    EXPECT_TRUE(neighbours->is_disarmed(kSystem));
-    neighbours->note_armed(kSystem, true, {kStart});
-    EXPECT_FALSE(neighbours->is_disarmed(kSystem));
+    EXPECT_TRUE(neighbours->is_disarmed(kNeighbourSystem));
+    neighbours->note_armed(kNeighbourSystem, true, {kStart});
+    EXPECT_FALSE(neighbours->is_disarmed(kNeighbourSystem));
 }
 
 /// As ClockSync has it, over stalls, losses, jumps and restarts at random: never more than its rounding apart.
@@ -153,7 +153,7 @@ TEST_F(MavlinkNeighbours, AgreesWithClockSync)
             static_cast<void>(oracle.one_way(boot_ms * 1000, now * 1000));
             const std::int64_t theirs = std::min(oracle.to_local(boot_ms * 1000).value(), now * 1000);
             const TimePoint ours =
-                neighbours->stamp(kSystem, static_cast<std::uint32_t>(boot_ms), TimePoint{now * 1000});
+                neighbours->stamp(kNeighbourSystem, static_cast<std::uint32_t>(boot_ms), TimePoint{now * 1000});
             ASSERT_EQ(ours.us, theirs) << "run " << run << " message " << i;
         }
     }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every counter of ParserDiagnostics is provoked here, each by the frame that its comment describes.
+#include <gtest/gtest.h>
+
 #include "tests/unit/link/mavlink_tools.hpp"
 
 namespace jink::link::mavlink {
@@ -7,7 +9,7 @@ namespace {
 
 using namespace test;
 
-Bytes heartbeat(std::uint8_t sequence, std::uint8_t system = 1, std::uint8_t component = 1)
+Bytes parser_heartbeat(std::uint8_t sequence, std::uint8_t system = 1, std::uint8_t component = 1)
 {
     Heartbeat m;
     m.custom_mode = 4;
@@ -43,7 +45,7 @@ TEST(MavlinkParser, GluedFramesComeOneByOneWhateverTheChunks)
 {
     Bytes stream;
     for (std::uint8_t i = 0; i < 40; ++i) {
-        stream = stream + heartbeat(i);
+        stream = stream + parser_heartbeat(i);
     }
     for (std::size_t chunk = 1; chunk <= stream.size(); ++chunk) {
         Parser parser;
@@ -85,9 +87,9 @@ TEST(MavlinkParser, FramesOfMessagesNotDecodedAreSteppedOverWhole)
     RawFrame transfer;
     transfer.id = 110;
     transfer.crc_extra = 84;
-    transfer.payload = heartbeat(9) + Bytes(200, std::byte{3});
+    transfer.payload = parser_heartbeat(9) + Bytes(200, std::byte{3});
     Parser parser;
-    const auto frames = parse(parser, transfer.bytes() + heartbeat(1));
+    const auto frames = parse(parser, transfer.bytes() + parser_heartbeat(1));
     ASSERT_EQ(frames.size(), 2U);
     EXPECT_EQ(frames[0].message_id, 110U);
     EXPECT_EQ(frames[1].message_id, 0U);
@@ -97,13 +99,13 @@ TEST(MavlinkParser, FramesOfMessagesNotDecodedAreSteppedOverWhole)
 TEST(MavlinkParser, SystemZeroIsPassedOnForTheReceiverToJudge)
 {
     Parser parser;
-    EXPECT_EQ(accepted(parser, heartbeat(0, 0, 0)), 1U);
+    EXPECT_EQ(accepted(parser, parser_heartbeat(0, 0, 0)), 1U);
 }
 
 TEST(MavlinkParserDiagnostics, Accepted)
 {
     Parser parser;
-    EXPECT_EQ(accepted(parser, heartbeat(0) + legacy_frame_of(Heartbeat{}, {1, 1, 1})), 2U);
+    EXPECT_EQ(accepted(parser, parser_heartbeat(0) + legacy_frame_of(Heartbeat{}, {1, 1, 1})), 2U);
     EXPECT_EQ(parser.diagnostics().accepted, 2U);
     EXPECT_EQ(parser.diagnostics().checksum_bytes, (10U + 9U) + (6U + 9U));
 }
@@ -111,7 +113,7 @@ TEST(MavlinkParserDiagnostics, Accepted)
 TEST(MavlinkParserDiagnostics, NoiseBytes)
 {
     Parser parser;
-    EXPECT_EQ(accepted(parser, Bytes(17, std::byte{0x20}) + heartbeat(0)), 1U);
+    EXPECT_EQ(accepted(parser, Bytes(17, std::byte{0x20}) + parser_heartbeat(0)), 1U);
     EXPECT_EQ(parser.diagnostics().noise_bytes, 17U);
 }
 
@@ -121,7 +123,7 @@ TEST(MavlinkParserDiagnostics, IncompatibleFlags)
         RawFrame raw = raw_heartbeat();
         raw.incompatible = static_cast<std::uint8_t>(flags);
         Parser parser;
-        EXPECT_EQ(accepted(parser, raw.bytes() + heartbeat(0)), 1U) << flags;
+        EXPECT_EQ(accepted(parser, raw.bytes() + parser_heartbeat(0)), 1U) << flags;
         EXPECT_GE(parser.diagnostics().incompatible_flags, 1U) << flags;  // FD and FE are start bytes themselves
     }
 }
@@ -140,9 +142,9 @@ TEST(MavlinkParserDiagnostics, UnknownMessageDoesNotHideTheNextFrame)
         RawFrame raw = raw_heartbeat();
         raw.version = version;
         raw.id = 3;
-        raw.payload = heartbeat(5);
+        raw.payload = parser_heartbeat(5);
         Parser parser;
-        const auto frames = parse(parser, raw.bytes() + heartbeat(0));
+        const auto frames = parse(parser, raw.bytes() + parser_heartbeat(0));
         EXPECT_EQ(parser.diagnostics().unknown_message, 1U);
         ASSERT_EQ(frames.size(), 2U) << "an unknown id cannot be checked: what looks like a frame inside counts as one";
     }
@@ -154,7 +156,7 @@ TEST(MavlinkParserDiagnostics, NoiseThatClaimsTheFrameBehindIt)
     for (const std::string_view noise : {"fd0102fe", "fdff00", "feff", "fd", "fe", "fdfdfdfd", "fefefefefe", "fd0901",
                                          "fd09000000010100000000", "fe09000101000000000000"}) {
         Parser parser;
-        const auto frames = parse(parser, from_hex(noise) + heartbeat(0) + heartbeat(1), 1, true);
+        const auto frames = parse(parser, from_hex(noise) + parser_heartbeat(0) + parser_heartbeat(1), 1, true);
         EXPECT_EQ(frames.size(), 2U) << noise;
     }
 }
@@ -165,7 +167,7 @@ TEST(MavlinkParserDiagnostics, TooShort)
     raw.version = 1;
     raw.payload.resize(8);
     Parser parser;
-    EXPECT_EQ(accepted(parser, raw.bytes() + heartbeat(0)), 1U);
+    EXPECT_EQ(accepted(parser, raw.bytes() + parser_heartbeat(0)), 1U);
     EXPECT_EQ(parser.diagnostics().too_short, 1U);
 }
 
@@ -176,7 +178,7 @@ TEST(MavlinkParserDiagnostics, TooLong)
         raw.version = version;
         raw.payload.resize(10, std::byte{1});
         Parser parser;
-        EXPECT_EQ(accepted(parser, raw.bytes() + heartbeat(0)), 1U);
+        EXPECT_EQ(accepted(parser, raw.bytes() + parser_heartbeat(0)), 1U);
         EXPECT_EQ(parser.diagnostics().too_long, 1U);
     }
     // v1 carries no extensions
@@ -210,7 +212,7 @@ TEST(MavlinkParserDiagnostics, BadChecksum)
     RawFrame raw = raw_heartbeat();
     raw.crc_extra = 51;  // another definition of the message
     Parser parser;
-    EXPECT_EQ(accepted(parser, raw.bytes() + heartbeat(0)), 1U);
+    EXPECT_EQ(accepted(parser, raw.bytes() + parser_heartbeat(0)), 1U);
     EXPECT_EQ(parser.diagnostics().bad_checksum, 1U);
 }
 
@@ -222,7 +224,7 @@ TEST(MavlinkParserDiagnostics, CutFramesGiveWayToTheNext)
         Parser parser;
         const Bytes cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
         EXPECT_EQ(accepted(parser, cut), 0U);
-        const auto frames = parse(parser, heartbeat(0), 1, true);
+        const auto frames = parse(parser, parser_heartbeat(0), 1, true);
         ASSERT_EQ(frames.size(), 1U) << n;
         EXPECT_EQ(frames[0].message_id, 0U);
         EXPECT_EQ(parser.pending(), 0U);
@@ -237,15 +239,18 @@ TEST(MavlinkParserDiagnostics, CutFramesGiveWayToTheNext)
 TEST(MavlinkParserDiagnostics, LostRepeatedAndWrappedNumbers)
 {
     Parser parser;
-    EXPECT_EQ(accepted(parser, heartbeat(254) + heartbeat(255) + heartbeat(0) + heartbeat(1)), 4U);
+    EXPECT_EQ(
+        accepted(parser, parser_heartbeat(254) + parser_heartbeat(255) + parser_heartbeat(0) + parser_heartbeat(1)),
+        4U);
     EXPECT_EQ(parser.diagnostics().lost, 0U);
-    EXPECT_EQ(accepted(parser, heartbeat(1) + heartbeat(1)), 2U);
+    EXPECT_EQ(accepted(parser, parser_heartbeat(1) + parser_heartbeat(1)), 2U);
     EXPECT_EQ(parser.diagnostics().repeated, 2U);
-    EXPECT_EQ(accepted(parser, heartbeat(5)), 1U);
+    EXPECT_EQ(accepted(parser, parser_heartbeat(5)), 1U);
     EXPECT_EQ(parser.diagnostics().lost, 3U);
-    EXPECT_EQ(accepted(parser, heartbeat(4)), 1U);  // backwards: as if 254 had gone missing
+    EXPECT_EQ(accepted(parser, parser_heartbeat(4)), 1U);  // backwards: as if 254 had gone missing
     EXPECT_EQ(parser.diagnostics().lost, 3U + 254U);
-    EXPECT_EQ(accepted(parser, heartbeat(200, 1, 2) + heartbeat(90, 2, 1)), 2U);  // other senders count for themselves
+    EXPECT_EQ(accepted(parser, parser_heartbeat(200, 1, 2) + parser_heartbeat(90, 2, 1)),
+              2U);  // other senders count for themselves
     EXPECT_EQ(parser.diagnostics().lost, 3U + 254U);
 }
 
@@ -253,13 +258,13 @@ TEST(MavlinkParserDiagnostics, UntrackedSenders)
 {
     Parser parser;
     for (std::uint8_t system = 1; system <= kMaxSenders; ++system) {
-        EXPECT_EQ(accepted(parser, heartbeat(0, system)), 1U);
+        EXPECT_EQ(accepted(parser, parser_heartbeat(0, system)), 1U);
     }
     EXPECT_EQ(parser.diagnostics().untracked_senders, 0U);
-    EXPECT_EQ(accepted(parser, heartbeat(0, kMaxSenders + 1) + heartbeat(7, kMaxSenders + 1)), 2U);
+    EXPECT_EQ(accepted(parser, parser_heartbeat(0, kMaxSenders + 1) + parser_heartbeat(7, kMaxSenders + 1)), 2U);
     EXPECT_EQ(parser.diagnostics().untracked_senders, 2U);
     EXPECT_EQ(parser.diagnostics().lost, 0U);
-    EXPECT_EQ(accepted(parser, heartbeat(3, 1)), 1U);
+    EXPECT_EQ(accepted(parser, parser_heartbeat(3, 1)), 1U);
     EXPECT_EQ(parser.diagnostics().lost, 2U);
 }
 

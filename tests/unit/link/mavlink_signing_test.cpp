@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <gtest/gtest.h>
 #include <string>
 
 #include "firmware/link/mavlink/sha256.hpp"

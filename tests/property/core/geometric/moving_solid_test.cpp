@@ -32,7 +32,7 @@ double distance_of(const geometry::Shape& shape, const Vec3d& point)
     }
 }
 
-geometry::Shape random_solid(Random& random, const Vec3& centre)
+geometry::Shape random_moving_solid(Random& random, const Vec3& centre)
 {
     const Vec3 arm = RandomProblem::vector(random, 4.0F) + Vec3(0.1F, 0.0F, 0.0F);
     switch (random.below(4)) {
@@ -78,7 +78,7 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
                              random.uniform(0.2F, 1.8F) * p.problem.distance * p.problem.frame.axes.col(0) +
                              RandomProblem::vector(random, 5.0F);
             const bool grows = random.uniform() < 0.3F;
-            solids.push_back({random_solid(random, met - t * velocity), velocity,
+            solids.push_back({random_moving_solid(random, met - t * velocity), velocity,
                               random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.5F),
                               grows ? random.uniform(0.0F, 0.3F) : 0.0F, grows ? random.uniform(0.0F, 0.1F) : 0.0F});
         }
@@ -146,7 +146,7 @@ TEST(Planes, PartOnlyWhatIsApartAndTouchOnlyWhatTouches)
     for (std::uint64_t seed = 1; seed <= 200'000; ++seed) {
         Random random(seed);
         const Vec3 half(random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F));
-        const geometry::Shape solid = random_solid(random, RandomProblem::vector(random, 50.0F));
+        const geometry::Shape solid = random_moving_solid(random, RandomProblem::vector(random, 50.0F));
         const Vec3 a = solid.centre + RandomProblem::vector(random, 8.0F);
         const Vec3 b = a + RandomProblem::vector(random, random.uniform() < 0.3F ? 12.0F : 1.0F);
         const float clearance = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 1.0F);

@@ -25,7 +25,7 @@ Settings settings_for(Random& random)
     return settings;
 }
 
-world::PlanStatus run(const RandomProblem& p, const Settings& settings, Result& result)
+world::PlanStatus run_symmetric(const RandomProblem& p, const Settings& settings, Result& result)
 {
     WorkBudget budget(10'000'000);
     return solve(p.problem, settings, p.limits, p.airframe, budget, result);
@@ -60,7 +60,7 @@ TEST(PlanLaws, OrderOfThreatsDoesNotMatter)
         RandomProblem p(seed);
         Random random(seed * 13);
         const Settings settings = settings_for(random);
-        const world::PlanStatus status = run(p, settings, first);
+        const world::PlanStatus status = run_symmetric(p, settings, first);
         for (std::size_t i = p.threats.size(); i > 1; --i) {
             const std::size_t j = random.below(i);
             std::swap(p.threats[i - 1], p.threats[j]);
@@ -70,7 +70,7 @@ TEST(PlanLaws, OrderOfThreatsDoesNotMatter)
                 p.problem.main = i - 1;
             }
         }
-        ASSERT_EQ(run(p, settings, second), status) << "seed " << seed;
+        ASSERT_EQ(run_symmetric(p, settings, second), status) << "seed " << seed;
         ASSERT_EQ(first.chosen, second.chosen) << "seed " << seed;
         for (std::size_t i = 0; i < first.candidates.size(); ++i) {
             ASSERT_EQ(first.candidates[i].status, second.candidates[i].status) << "seed " << seed;
@@ -89,9 +89,9 @@ TEST(PlanLaws, SameInputSameOutput)
         const RandomProblem q(seed + 1);
         Random random(seed);
         const Settings settings = settings_for(random);
-        const world::PlanStatus status = run(p, settings, first);
-        static_cast<void>(run(q, settings, second));  // leaves its traces in `second`
-        ASSERT_EQ(run(p, settings, second), status);
+        const world::PlanStatus status = run_symmetric(p, settings, first);
+        static_cast<void>(run_symmetric(q, settings, second));  // leaves its traces in `second`
+        ASSERT_EQ(run_symmetric(p, settings, second), status);
         ASSERT_EQ(first.chosen, second.chosen);
         ASSERT_EQ(first.candidates.size(), second.candidates.size());
         for (std::size_t i = 0; i < first.candidates.size(); ++i) {
@@ -109,14 +109,14 @@ TEST(PlanLaws, PlaceDoesNotMatter)
         RandomProblem p(seed);
         Random random(seed * 29);
         const Settings settings = settings_for(random);
-        static_cast<void>(run(p, settings, first));
+        static_cast<void>(run_symmetric(p, settings, first));
         const Vec3 shift(random.uniform(-500.0F, 500.0F), random.uniform(-500.0F, 500.0F),
                          random.uniform(-100.0F, 100.0F));
         p.problem.frame.origin += shift;
         for (Threat& threat : p.threats) {
             threat.motion.position += shift;
         }
-        static_cast<void>(run(p, settings, second));
+        static_cast<void>(run_symmetric(p, settings, second));
         ASSERT_EQ(first.candidates.size(), second.candidates.size());
         for (std::size_t i = 0; i < first.candidates.size(); ++i) {
             expect_same(p, settings, first.candidates[i], second.candidates[i], seed);
@@ -137,7 +137,7 @@ TEST(PlanLaws, QuarterTurnsDoNotMatter)
         }
         Random random(seed * 31);
         const Settings settings = settings_for(random);
-        static_cast<void>(run(p, settings, first));
+        static_cast<void>(run_symmetric(p, settings, first));
         p.problem.frame = make_path_frame(turn * p.problem.frame.origin, turn * p.problem.frame.axes.col(0));
         p.problem.start_velocity = turn * p.problem.start_velocity;
         std::swap(p.limits.half_extents.x(), p.limits.half_extents.y());
@@ -145,7 +145,7 @@ TEST(PlanLaws, QuarterTurnsDoNotMatter)
             threat.motion.position = turn * threat.motion.position;
             threat.motion.velocity = turn * threat.motion.velocity;
         }
-        static_cast<void>(run(p, settings, second));
+        static_cast<void>(run_symmetric(p, settings, second));
         ASSERT_EQ(first.candidates.size(), second.candidates.size());
         for (std::size_t i = 0; i < first.candidates.size(); ++i) {
             expect_same(p, settings, first.candidates[i], second.candidates[i], seed);
@@ -165,14 +165,14 @@ TEST(PlanLaws, LeftAndRightAreMirrorImages)
         }
         Random random(seed * 37);
         const Settings settings = settings_for(random);
-        const world::PlanStatus status = run(p, settings, first);
+        const world::PlanStatus status = run_symmetric(p, settings, first);
         p.problem.frame = make_path_frame(mirror(p.problem.frame.origin), mirror(p.problem.frame.axes.col(0)));
         p.problem.start_velocity = mirror(p.problem.start_velocity);
         for (Threat& threat : p.threats) {
             threat.motion.position = mirror(threat.motion.position);
             threat.motion.velocity = mirror(threat.motion.velocity);
         }
-        const world::PlanStatus mirrored = run(p, settings, second);
+        const world::PlanStatus mirrored = run_symmetric(p, settings, second);
         // Plane theta mirrors to pi - theta with the offset unchanged; plane 0 to itself with the offset negated.
         std::size_t differences = 0;
         for (const Candidate& a : first.candidates) {

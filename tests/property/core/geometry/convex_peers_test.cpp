@@ -19,7 +19,7 @@ namespace {
 using oracle::Passage;
 using oracle::Point;
 
-struct Case {
+struct PeerCase {
     Vec3 half = Vec3::Zero();
     Vec3 from, to;
     Vec3 a, b;  ///< axis of the capsule; equal for a sphere
@@ -28,9 +28,9 @@ struct Case {
     Point own_from() const { return oracle::minus(oracle::to_double(from), oracle::to_double(a)); }
 };
 
-Case any_case(Random& random, bool sphere)
+PeerCase any_peer_case(Random& random, bool sphere)
 {
-    Case c;
+    PeerCase c;
     c.half = oracle::in_cube(random, 1.0F).cwiseAbs();
     c.from = oracle::in_cube(random, 4.0F);
     c.to = random.below(8) == 0 ? c.from : Vec3(oracle::in_cube(random, 4.0F));
@@ -41,7 +41,7 @@ Case any_case(Random& random, bool sphere)
 }
 
 /// Distance of the swept box from the sphere's centre, in double.
-double sphere_distance(const Case& c)
+double sphere_distance(const PeerCase& c)
 {
     const Passage passage(c.half, {c.from, c.to - c.from}, {c.a, Vec3::Zero()});
     return passage.distance(passage.closest(1.0));
@@ -50,15 +50,15 @@ double sphere_distance(const Case& c)
 // --- libccd as it comes, in double, without a budget
 
 struct SweptCube {
-    const Case& c;
+    const PeerCase& c;
 };
 struct Ball {
-    const Case& c;
+    const PeerCase& c;
 };
 
 void swept_cube_support(const void* object, const ccd_vec3_t* d, ccd_vec3_t* out)
 {
-    const Case& c = static_cast<const SweptCube*>(object)->c;
+    const PeerCase& c = static_cast<const SweptCube*>(object)->c;
     double along = 0;
     for (int i = 0; i < 3; ++i) {
         along += (double(c.to[i]) - double(c.from[i])) * d->v[i];
@@ -69,14 +69,14 @@ void swept_cube_support(const void* object, const ccd_vec3_t* d, ccd_vec3_t* out
 }
 void swept_cube_centre(const void* object, ccd_vec3_t* out)
 {
-    const Case& c = static_cast<const SweptCube*>(object)->c;
+    const PeerCase& c = static_cast<const SweptCube*>(object)->c;
     for (int i = 0; i < 3; ++i) {
         out->v[i] = 0.5 * (double(c.from[i]) + double(c.to[i]));
     }
 }
 void ball_support(const void* object, const ccd_vec3_t* d, ccd_vec3_t* out)
 {
-    const Case& c = static_cast<const Ball*>(object)->c;
+    const PeerCase& c = static_cast<const Ball*>(object)->c;
     const double length = std::sqrt(ccdVec3Dot(d, d));
     for (int i = 0; i < 3; ++i) {
         out->v[i] = double(c.a[i]) + (length > 0 ? double(c.radius) * d->v[i] / length : 0.0);
@@ -84,7 +84,7 @@ void ball_support(const void* object, const ccd_vec3_t* d, ccd_vec3_t* out)
 }
 void ball_centre(const void* object, ccd_vec3_t* out)
 {
-    const Case& c = static_cast<const Ball*>(object)->c;
+    const PeerCase& c = static_cast<const Ball*>(object)->c;
     ccdVec3Set(out, double(c.a.x()), double(c.a.y()), double(c.a.z()));
 }
 
@@ -138,7 +138,7 @@ TEST_F(ConvexPeers, SweptCubeAgainstSphere)
     std::size_t hits = 0;
     const ccd_t ccd = plain_libccd();
     for (std::size_t n = oracle::case_count(200'000); n > 0; --n) {
-        Case c = any_case(random, true);
+        PeerCase c = any_peer_case(random, true);
         const double distance = sphere_distance(c);
         if (n % 2 == 0) {  // grazing within a ten-thousandth
             c.radius = static_cast<float>(distance) * (1.0F + random.uniform(-1e-4F, 1e-4F));
@@ -173,7 +173,7 @@ TEST_F(ConvexPeers, SweptCubeAgainstCapsule)
     Opinion convex{"budgeted convex test against the closed form"};
     std::size_t hits = 0;
     for (std::size_t n = oracle::case_count(200'000); n > 0; --n) {
-        Case c = any_case(random, false);
+        PeerCase c = any_peer_case(random, false);
         const float distance = swept_distance(c.half, c.from, c.to, c.a, c.b);
         if (n % 2 == 0) {
             c.radius = distance * (1.0F + random.uniform(-1e-4F, 1e-4F));

@@ -14,7 +14,7 @@ namespace {
 constexpr ShapeKind kKinds[] = {ShapeKind::sphere, ShapeKind::box, ShapeKind::capsule, ShapeKind::cylinder,
                                 ShapeKind::hull};
 
-struct Case {
+struct ConvexCase {
     Vec3 half = Vec3::Zero();
     Vec3 from, to;
     Shape shape;
@@ -22,7 +22,7 @@ struct Case {
     float size = 1.0F;
 };
 
-void fill(Random& random, Case& c, ShapeKind kind)
+void fill(Random& random, ConvexCase& c, ShapeKind kind)
 {
     c.size = oracle::power_of_ten(random, -3.0F, 2.0F);
     const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 1000.0F : c.size);
@@ -36,14 +36,14 @@ void fill(Random& random, Case& c, ShapeKind kind)
 }
 
 /// The band of the header, of grazing cases that may count as contact [m]. A clear answer is always true.
-double band(const Case& c, float clearance = 0.0F)
+double band(const ConvexCase& c, float clearance = 0.0F)
 {
     const Vec3 extent = (c.shape.centre - c.from).cwiseAbs() + (c.to - c.from).cwiseAbs() + c.half;
     return 1e-5 * double(extent.sum() + bounding_radius(c.shape) + clearance);
 }
 
 /// A clearance of any size, often that of touching.
-float any_clearance(Random& random, const Case& c, double distance)
+float any_clearance(Random& random, const ConvexCase& c, double distance)
 {
     const auto about = static_cast<float>(distance);
     switch (random.below(4)) {
@@ -54,13 +54,13 @@ float any_clearance(Random& random, const Case& c, double distance)
     }
 }
 
-struct Tally {
+struct ConvexTally {
     std::size_t clear = 0, contact = 0, spent = 0, banded = 0, alarms = 0;
     std::uint32_t most_calls = 0;
     double widest = 0;
 
     /// `distance`: the true one, known within `uncertainty`.
-    void judge(const Case& c, float clearance, Contact found, double distance, double uncertainty)
+    void judge(const ConvexCase& c, float clearance, Contact found, double distance, double uncertainty)
     {
         const double gap = distance - double(clearance);
         clear += found == Contact::clear ? 1 : 0;
@@ -103,9 +103,9 @@ protected:
 
 TEST_F(Convex, ContactAgreesWithLeastNormPointsInDouble)
 {
-    Tally tally;
+    ConvexTally tally;
     for (std::size_t n = oracle::case_count(200'000); n > 0 && !HasFatalFailure(); --n) {
-        Case c;
+        ConvexCase c;
         fill(random, c, kKinds[random.below(5)]);
         const oracle::Bounds truth = oracle::swept_box_bounds(c.half, c.from, c.to, c.shape, 1e-9 * double(c.size));
         ASSERT_LE(truth.upper - truth.lower, 1e-6 * double(c.size)) << "the oracle has not converged";
@@ -125,7 +125,7 @@ TEST_F(Convex, DistanceIsALowerBoundWithinItsResolution)
     std::uint64_t units = 0;
     double worst = 0;
     for (std::size_t n = oracle::case_count(50'000); n > 0; --n) {
-        Case c;
+        ConvexCase c;
         fill(random, c, kKinds[random.below(5)]);
         const oracle::Bounds truth = oracle::swept_box_bounds(c.half, c.from, c.to, c.shape, 1e-9 * double(c.size));
         const float reach = random.uniform(0.0F, 4.0F * c.size);
@@ -151,7 +151,7 @@ TEST_F(Convex, ASpentBudgetIsNeverClear)
 {
     std::size_t spent = 0;
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        Case c;
+        ConvexCase c;
         fill(random, c, kKinds[random.below(5)]);
         const float clearance = random.uniform(0.0F, c.size);
         WorkBudget ample(kUnitsPerQuery);

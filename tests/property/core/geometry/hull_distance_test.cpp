@@ -50,20 +50,20 @@ double band(const std::vector<Vec3>& vertices, const Vec3& origin, float stretch
     return 3e-6 * most;
 }
 
-struct Tally {
+struct HullTally {
     std::size_t apart = 0, touching = 0;
     double worst = 0;  ///< shortfall beyond the resolution, in bands
     std::uint32_t most_turns = 0;
 };
 
-void print(const char* what, const Tally& tally)
+void print(const char* what, const HullTally& tally)
 {
     std::cout << what << ": apart=" << tally.apart << " touching=" << tally.touching << " worst shortfall "
               << tally.worst << " bands, most turns " << tally.most_turns << '\n';
 }
 
 /// The laws: never above the truth, no farther below it than promised, and the plane holds for every vertex.
-void check(const Separation& found, const oracle::Bounds& truth, double room, double resolution, Tally& tally)
+void check(const Separation& found, const oracle::Bounds& truth, double room, double resolution, HullTally& tally)
 {
     ASSERT_LE(double(found.distance), truth.upper);
     const double shortfall = std::max(truth.lower - double(found.distance) - resolution, 0.0);
@@ -90,7 +90,8 @@ Vec3 any_start(Random& random, const Separation& last)
 }
 
 /// One point and one hull.
-void check_point(Random& random, const Vec3& point, const std::vector<Vec3>& vertices, Tally& tally, double bands = 1.0)
+void check_point(Random& random, const Vec3& point, const std::vector<Vec3>& vertices, HullTally& tally,
+                 double bands = 1.0)
 {
     DistanceQuery query;
     query.stretch = any_stretch(random);
@@ -120,7 +121,7 @@ void check_point(Random& random, const Vec3& point, const std::vector<Vec3>& ver
 TEST(PointHullDistance, AgreesWithWolfesMethodAndItsPlaneHolds)
 {
     Random random(oracle::seed_of(11));
-    Tally tally;
+    HullTally tally;
     for (std::size_t n = 0; n < oracle::case_count(20'000); ++n) {
         const float size = oracle::power_of_ten(random, -2.0F, 2.0F);
         const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);
@@ -138,7 +139,7 @@ TEST(PointHullDistance, AgreesWithWolfesMethodAndItsPlaneHolds)
 TEST(PointHullDistance, OfTrianglesThinOnesTooAgreesWithWolfesMethod)
 {
     Random random(oracle::seed_of(15));
-    Tally tally;
+    HullTally tally;
     for (std::size_t n = 0; n < oracle::case_count(20'000); ++n) {
         const float size = oracle::power_of_ten(random, -2.0F, 2.0F);
         const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);
@@ -173,7 +174,7 @@ TEST(PointHullDistance, OfTrianglesThinOnesTooAgreesWithWolfesMethod)
 TEST(HullHullDistance, AgreesWithWolfesMethodAndItsPlaneParts)
 {
     Random random(oracle::seed_of(12));
-    Tally tally;
+    HullTally tally;
     for (std::size_t n = 0; n < oracle::case_count(20'000); ++n) {
         const float size = oracle::power_of_ten(random, -2.0F, 2.0F);
         const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);

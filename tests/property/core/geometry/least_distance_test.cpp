@@ -12,18 +12,18 @@ namespace {
 
 using oracle::Passage;
 
-struct Case {
+struct LeastCase {
     Vec3 half = Vec3::Zero();
     Motion own, threat;
     Seconds horizon = 1.0F;
 };
 
-Case any_case(Random& random)
+LeastCase any_least_case(Random& random)
 {
     const float size = oracle::power_of_ten(random, -3.0F, 2.0F);
     const float far = random.below(4) == 0 ? 1000.0F : size;
     const Vec3 centre = oracle::in_cube(random, far);
-    Case c;
+    LeastCase c;
     c.half = oracle::in_cube(random, size).cwiseAbs();
     c.own = {centre + oracle::in_cube(random, 3.0F * size), oracle::in_cube(random, size)};
     c.threat = {centre + oracle::in_cube(random, 3.0F * size), oracle::in_cube(random, size)};
@@ -40,14 +40,14 @@ Case any_case(Random& random)
 }
 
 /// Rounding that a distance may carry: of the relative coordinates, and of the way travelled since.
-double allowed(const Case& c)
+double allowed_least(const LeastCase& c)
 {
     const Vec3 relative = c.threat.position - c.own.position;
     const Vec3 way = c.horizon * (c.threat.velocity - c.own.velocity);
     return 5e-7 * double(relative.cwiseAbs().sum() + way.cwiseAbs().sum() + c.half.sum());
 }
 
-Approach run(const Case& c) { return least_distance(c.half, c.own, c.threat, c.horizon); }
+Approach least_of(const LeastCase& c) { return least_distance(c.half, c.own, c.threat, c.horizon); }
 
 class LeastDistance : public ::testing::Test {
 protected:
@@ -61,63 +61,63 @@ TEST_F(LeastDistance, AgreesWithBisectionInDouble)
     double worst = 0;
     double worst_when = 0;
     for (std::size_t n = oracle::case_count(1'000'000); n > 0; --n) {
-        const Case c = any_case(random);
+        const LeastCase c = any_least_case(random);
         const Passage passage(c.half, c.own, c.threat);
-        const Approach found = run(c);
+        const Approach found = least_of(c);
         const double least = passage.distance(passage.closest(double(c.horizon)));
         ASSERT_GE(found.when, 0.0F);
         ASSERT_LE(found.when, c.horizon);
-        worst = std::max(worst, std::abs(double(found.distance) - least) / allowed(c));
-        worst_when = std::max(worst_when, (passage.distance(double(found.when)) - least) / allowed(c));
+        worst = std::max(worst, std::abs(double(found.distance) - least) / allowed_least(c));
+        worst_when = std::max(worst_when, (passage.distance(double(found.when)) - least) / allowed_least(c));
         ASSERT_LE(worst, 1.0) << n << " found " << found.distance << " least " << least;
         ASSERT_LE(worst_when, 1.0) << n;
     }
     std::cout << "least_distance: worst error " << worst << ", worst distance at its instant " << worst_when
-              << " of the allowed\n";
+              << " of the allowed_least\n";
 }
 
 TEST_F(LeastDistance, KeepsItsValueUnderMirrorsPermutationsAndExchange)
 {
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        const Case c = any_case(random);
-        const float distance = run(c).distance;
-        Case mirrored = c;
+        const LeastCase c = any_least_case(random);
+        const float distance = least_of(c).distance;
+        LeastCase mirrored = c;
         const auto axis = static_cast<int>(random.below(3));
         for (Vec3* v :
              {&mirrored.own.position, &mirrored.own.velocity, &mirrored.threat.position, &mirrored.threat.velocity}) {
             (*v)[axis] = -(*v)[axis];
         }
         // Negation is exact, so not a single bit may change.
-        ASSERT_EQ(run(mirrored).distance, distance);
-        ASSERT_EQ(run(mirrored).when, run(c).when);
-        Case exchanged = c;
+        ASSERT_EQ(least_of(mirrored).distance, distance);
+        ASSERT_EQ(least_of(mirrored).when, least_of(c).when);
+        LeastCase exchanged = c;
         std::swap(exchanged.own, exchanged.threat);
-        ASSERT_EQ(run(exchanged).distance, distance);
-        Case turned = c;
+        ASSERT_EQ(least_of(exchanged).distance, distance);
+        LeastCase turned = c;
         for (Vec3* v : {&turned.half, &turned.own.position, &turned.own.velocity, &turned.threat.position,
                         &turned.threat.velocity}) {
             *v = Vec3(v->y(), v->z(), v->x());
         }
-        ASSERT_NEAR(double(run(turned).distance), double(distance), 2.0 * allowed(c));
+        ASSERT_NEAR(double(least_of(turned).distance), double(distance), 2.0 * allowed_least(c));
     }
 }
 
 TEST_F(LeastDistance, NeverGrowsWithTheHorizon)
 {
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        Case c = any_case(random);
-        const double longer = double(run(c).distance);
-        const double slack = allowed(c);
+        LeastCase c = any_least_case(random);
+        const double longer = double(least_of(c).distance);
+        const double slack = allowed_least(c);
         c.horizon *= random.uniform();
-        ASSERT_GE(double(run(c).distance), longer - 2.0 * slack);
+        ASSERT_GE(double(least_of(c).distance), longer - 2.0 * slack);
     }
 }
 
 TEST_F(LeastDistance, DependsOnRelativeMotionOnly)
 {
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        const Case c = any_case(random);
-        Case moved = c;
+        const LeastCase c = any_least_case(random);
+        LeastCase moved = c;
         const Vec3 by = oracle::in_cube(random, 10.0F);
         const Vec3 wind = oracle::in_cube(random, 10.0F);
         moved.own = {c.own.position + by, c.own.velocity + wind};
@@ -127,7 +127,8 @@ TEST_F(LeastDistance, DependsOnRelativeMotionOnly)
                                 double((moved.own.position.cwiseAbs() + moved.threat.position.cwiseAbs() +
                                         c.horizon * (moved.own.velocity.cwiseAbs() + moved.threat.velocity.cwiseAbs()))
                                            .sum());
-        ASSERT_NEAR(double(run(moved).distance), double(run(c).distance), 2.0 * allowed(c) + 2.0 * rounding);
+        ASSERT_NEAR(double(least_of(moved).distance), double(least_of(c).distance),
+                    2.0 * allowed_least(c) + 2.0 * rounding);
     }
 }
 
@@ -135,8 +136,8 @@ TEST_F(LeastDistance, IsZeroExactlyWhereAPointTouches)
 {
     std::size_t touching = 0;
     for (std::size_t n = oracle::case_count(200'000); n > 0; --n) {
-        const Case c = any_case(random);
-        const Approach found = run(c);
+        const LeastCase c = any_least_case(random);
+        const Approach found = least_of(c);
         const bool contact = contact_interval(c.half, c.own, c.threat, 0.0F, c.horizon).has_value();
         touching += contact ? 1 : 0;
         if (found.distance == 0.0F) {
@@ -144,7 +145,7 @@ TEST_F(LeastDistance, IsZeroExactlyWhereAPointTouches)
         }
         if (contact) {
             ASSERT_LE(double(found.distance),
-                      2.0 * allowed(c) +
+                      2.0 * allowed_least(c) +
                           1e-6 * double((c.threat.position - c.own.position).cwiseAbs().sum() + c.half.sum()));
         }
     }

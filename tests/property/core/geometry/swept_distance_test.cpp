@@ -13,15 +13,15 @@ namespace {
 using oracle::Passage;
 using oracle::Point;
 
-struct Case {
+struct SweptCase {
     Vec3 half = Vec3::Zero();
     Vec3 own_from, own_to, threat_from, threat_to;
 };
 
-float run(const Case& c) { return swept_distance(c.half, c.own_from, c.own_to, c.threat_from, c.threat_to); }
+float run(const SweptCase& c) { return swept_distance(c.half, c.own_from, c.own_to, c.threat_from, c.threat_to); }
 
 /// Least distance of the box from corner + s * threat - t * own: bisection over t on the slope of the least one over s.
-double least(const Case& c)
+double least(const SweptCase& c)
 {
     const Point half = oracle::to_double(c.half);
     const Point corner = oracle::minus(oracle::to_double(c.threat_from), oracle::to_double(c.own_from));
@@ -48,18 +48,18 @@ double least(const Case& c)
     return std::min({value(0.0), value(1.0), value(low), value(high)});
 }
 
-double allowed(const Case& c)
+double allowed_swept(const SweptCase& c)
 {
     return 5e-7 * double(((c.threat_from - c.own_from).cwiseAbs() + (c.threat_to - c.threat_from).cwiseAbs() +
                           (c.own_to - c.own_from).cwiseAbs() + c.half)
                              .sum());
 }
 
-Case any_case(Random& random)
+SweptCase any_swept_case(Random& random)
 {
     const float size = oracle::power_of_ten(random, -3.0F, 2.0F);
     const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 1000.0F : size);
-    Case c;
+    SweptCase c;
     c.half = oracle::in_cube(random, 0.3F * size).cwiseAbs();
     c.own_from = centre + oracle::in_cube(random, size);
     c.own_to = centre + oracle::in_cube(random, size);
@@ -117,25 +117,25 @@ TEST_F(SweptDistance, AgreesWithNestedBisectionInDouble)
     double worst = 0;
     std::size_t touching = 0;
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        const Case c = any_case(random);
+        const SweptCase c = any_swept_case(random);
         const double expected = least(c);
         const double found = double(run(c));
         touching += expected == 0.0 ? 1 : 0;
-        worst = std::max(worst, std::abs(found - expected) / allowed(c));
-        ASSERT_LE(std::abs(found - expected), allowed(c))
+        worst = std::max(worst, std::abs(found - expected) / allowed_swept(c));
+        ASSERT_LE(std::abs(found - expected), allowed_swept(c))
             << "case " << n << " found " << found << " expected " << expected << std::hexfloat << "\nhalf "
             << c.half.x() << " " << c.half.y() << " " << c.half.z();
     }
-    std::cout << "swept_distance: worst error " << worst << " of the allowed, " << touching << " touching\n";
+    std::cout << "swept_distance: worst error " << worst << " of the allowed_swept, " << touching << " touching\n";
     EXPECT_GT(touching, oracle::case_count(100'000) / 500);
 }
 
 TEST_F(SweptDistance, KeepsItsValueUnderReversalAndExchange)
 {
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        const Case c = any_case(random);
+        const SweptCase c = any_swept_case(random);
         const double distance = double(run(c));
-        const double slack = 2.0 * allowed(c);
+        const double slack = 2.0 * allowed_swept(c);
         ASSERT_NEAR(double(run({c.half, c.own_to, c.own_from, c.threat_from, c.threat_to})), distance, slack);
         ASSERT_NEAR(double(run({c.half, c.own_from, c.own_to, c.threat_to, c.threat_from})), distance, slack);
         ASSERT_NEAR(double(run({c.half, c.threat_from, c.threat_to, c.own_from, c.own_to})), distance, slack);
@@ -146,10 +146,10 @@ TEST_F(SweptDistance, KeepsItsValueUnderReversalAndExchange)
 TEST_F(SweptDistance, IsNeverAboveTheDistanceInTime)
 {
     for (std::size_t n = oracle::case_count(100'000); n > 0; --n) {
-        const Case c = any_case(random);
+        const SweptCase c = any_swept_case(random);
         const Approach timed = least_distance(c.half, {c.own_from, c.own_to - c.own_from},
                                               {c.threat_from, c.threat_to - c.threat_from}, 1.0F);
-        ASSERT_LE(double(run(c)), double(timed.distance) + 2.0 * allowed(c));
+        ASSERT_LE(double(run(c)), double(timed.distance) + 2.0 * allowed_swept(c));
     }
 }
 

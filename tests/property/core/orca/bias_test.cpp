@@ -69,7 +69,7 @@ Vector into_ball(const Vector& x, const Vector& centre, double radius)
 }
 
 /// A box of the corridor, kept clear of by 1.0 / 0.6 m (G-ORCA 6.3), and how near it is in these terms.
-struct Box {
+struct BoxScene {
     Vector low;
     Vector high;
     [[nodiscard]] Vector offset(const Vector& from) const
@@ -107,7 +107,7 @@ Vector nearest(const Vector& wanted, const std::vector<Plane>& planes, const Vec
     return x;
 }
 
-struct Outcome {
+struct BiasOutcome {
     double time = -1.0;  ///< both at their goals; -1: never
     double least = 1e9;  ///< distance
     double climb = 0.0;  ///< fastest vertical speed
@@ -116,13 +116,13 @@ struct Outcome {
 };
 
 /// Two vehicles at +-4 m and 1.5 m height change places.
-Outcome swap(const BiasSettings& settings, const std::vector<Box>& walls = {})
+BiasOutcome swap(const BiasSettings& settings, const std::vector<BoxScene>& walls = {})
 {
     std::array<Vector, 2> at{Vector(-4, 0, 1.5), Vector(4, 0, 1.5)};
     const std::array<Vector, 2> goals{at[1], at[0]};
     std::array<Vector, 2> velocity{Vector::Zero(), Vector::Zero()};
     std::array<Bias, 2> biases{Bias(settings), Bias(settings)};
-    Outcome outcome;
+    BiasOutcome outcome;
     for (int tick = 0; tick < 40 * 60 && outcome.time < 0.0; ++tick) {
         std::array<Vector, 2> commands;
         for (std::size_t i = 0; i < 2; ++i) {
@@ -136,7 +136,7 @@ Outcome swap(const BiasSettings& settings, const std::vector<Box>& walls = {})
             outcome.blocked = outcome.blocked || biased.blocked;
             std::vector<Plane> planes{plane_of(p, v, velocity[i], kConflict, false),
                                       plane_of(p, v, velocity[i], kWarning, true)};
-            for (const Box& wall : walls) {
+            for (const BoxScene& wall : walls) {
                 planes.push_back(wall.plane(at[i]));
                 outcome.wall = std::min(outcome.wall, wall.offset(at[i]).norm());
             }
@@ -161,7 +161,7 @@ TEST(BiasClosedLoop, S1WithoutABiasIsStuck)
     BiasSettings none;
     none.sideways = 0.0F;
     none.vertical = 0.0F;
-    const Outcome outcome = swap(none);
+    const BiasOutcome outcome = swap(none);
     EXPECT_EQ(outcome.time, -1.0);
     EXPECT_NEAR(outcome.least, 1.0, 0.02);
     EXPECT_TRUE(outcome.blocked);
@@ -172,7 +172,7 @@ TEST(BiasClosedLoop, S1WithTheHorizontalBias)
 {
     BiasSettings horizontal;
     horizontal.vertical = 0.0F;
-    const Outcome outcome = swap(horizontal);
+    const BiasOutcome outcome = swap(horizontal);
     std::printf("[ measured ] S1 with H-bias: %.1f s, least distance %.4f m\n", outcome.time, outcome.least);
     EXPECT_NEAR(outcome.time, 15.1, 0.3);
     EXPECT_NEAR(outcome.least, 1.0, 2e-3);
@@ -182,14 +182,14 @@ TEST(BiasClosedLoop, S1WithTheHorizontalBias)
 /// "H+V-bias: same."
 TEST(BiasClosedLoop, S1WithBothBiases)
 {
-    const Outcome outcome = swap({});
+    const BiasOutcome outcome = swap({});
     EXPECT_NEAR(outcome.time, 15.1, 0.3);
     EXPECT_NEAR(outcome.least, 1.0, 2e-3);
     EXPECT_EQ(outcome.climb, 0.0);
 }
 
 /// Section 19.1, S2: walls that leave 0.6 m to the sides.
-const std::vector<Box> kCorridor{{Vector(-2, 1.3, 0), Vector(2, 2, 4)}, {Vector(-2, -2, 0), Vector(2, -1.3, 4)}};
+const std::vector<BoxScene> kCorridor{{Vector(-2, 1.3, 0), Vector(2, 2, 4)}, {Vector(-2, -2, 0), Vector(2, -1.3, 4)}};
 
 /// Section 10, S2-like corridor: without the V-bias stuck, and told so.
 TEST(BiasClosedLoop, S2WithoutTheVerticalBiasIsStuck)
@@ -198,7 +198,7 @@ TEST(BiasClosedLoop, S2WithoutTheVerticalBiasIsStuck)
         BiasSettings settings;
         settings.sideways = sideways;
         settings.vertical = 0.0F;
-        const Outcome outcome = swap(settings, kCorridor);
+        const BiasOutcome outcome = swap(settings, kCorridor);
         EXPECT_EQ(outcome.time, -1.0) << sideways;
         EXPECT_TRUE(outcome.blocked) << sideways;
         EXPECT_EQ(outcome.climb, 0.0) << sideways;
@@ -207,7 +207,7 @@ TEST(BiasClosedLoop, S2WithoutTheVerticalBiasIsStuck)
 /// Section 10, REFERENCE: with both 17.0 s by a change of altitude, obstacle margin 1.02.
 TEST(BiasClosedLoop, S2IsResolvedByAChangeOfAltitude)
 {
-    const Outcome outcome = swap({}, kCorridor);
+    const BiasOutcome outcome = swap({}, kCorridor);
     std::printf("[ measured ] S2 with H+V-bias: %.1f s, obstacle margin %.3f, least distance %.3f m\n", outcome.time,
                 outcome.wall, outcome.least);
     EXPECT_NEAR(outcome.time, 17.0, 1.0);

@@ -14,15 +14,15 @@
 namespace jink::orca {
 namespace {
 
-struct Seen {
+struct SeenByMonitor {
     Eigen::Vector3d nearest = Eigen::Vector3d::Zero();  ///< in the scaled space
     bool in_cylinder = false;
 };
 
 /// A triangle looked at point by point.
-Seen look(const Eigen::Vector3d (&corners)[3], double horizontal, double vertical)
+SeenByMonitor look(const Eigen::Vector3d (&corners)[3], double horizontal, double vertical)
 {
-    Seen seen;
+    SeenByMonitor seen;
     double least = 1e9;
     constexpr int kParts = 120;
     for (int i = 0; i <= kParts; ++i) {
@@ -60,7 +60,7 @@ TEST(MonitorLaws, NoPieceInTheCylinderIsMissed)
         }
         const auto horizontal = static_cast<double>(settings.obstacle_horizontal);
         const auto vertical = static_cast<double>(settings.obstacle_vertical);
-        const Seen seen = look(corners, horizontal, vertical);
+        const SeenByMonitor seen = look(corners, horizontal, vertical);
         const auto monitor = std::make_unique<Monitor>(settings);
         const MonitoredPiece piece{1, seen.nearest.cast<float>()};
         const MonitorReport report = monitor->update(TimePoint{1}, Vec3::Zero(), {}, {&piece, 1});

@@ -11,21 +11,21 @@
 namespace jink::reach {
 namespace {
 
-using P = Eigen::Vector2d;
+using LevelPoint = Eigen::Vector2d;
 
 /// Radius of the smallest circle, by trying every circle through two and three points.
 double smallest_radius(const std::vector<Vec2>& points)
 {
-    std::vector<P> p;
+    std::vector<LevelPoint> p;
     for (const Vec2& q : points) {
         p.push_back(q.cast<double>());
     }
     double best = p.size() == 1 ? 0.0 : 1e300;
-    const auto attempt = [&](const P& centre, double radius) {
+    const auto attempt = [&](const LevelPoint& centre, double radius) {
         if (!(radius < best)) {
             return;
         }
-        for (const P& q : p) {
+        for (const LevelPoint& q : p) {
             if ((q - centre).norm() > radius * (1.0 + 1e-9) + 1e-12) {
                 return;
             }
@@ -36,12 +36,12 @@ double smallest_radius(const std::vector<Vec2>& points)
         for (std::size_t j = i + 1; j < p.size(); ++j) {
             attempt(0.5 * (p[i] + p[j]), 0.5 * (p[i] - p[j]).norm());
             for (std::size_t k = j + 1; k < p.size(); ++k) {
-                const P b = p[j] - p[i];
-                const P c = p[k] - p[i];
+                const LevelPoint b = p[j] - p[i];
+                const LevelPoint c = p[k] - p[i];
                 const double twice = 2.0 * (b.x() * c.y() - b.y() * c.x());
                 if (twice != 0.0) {
-                    const P to((c.y() * b.squaredNorm() - b.y() * c.squaredNorm()) / twice,
-                               (b.x() * c.squaredNorm() - c.x() * b.squaredNorm()) / twice);
+                    const LevelPoint to((c.y() * b.squaredNorm() - b.y() * c.squaredNorm()) / twice,
+                                        (b.x() * c.squaredNorm() - c.x() * b.squaredNorm()) / twice);
                     attempt(p[i] + to, to.norm());
                 }
             }

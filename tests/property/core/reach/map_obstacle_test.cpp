@@ -15,7 +15,7 @@
 namespace jink::reach {
 namespace {
 
-using P = Point<double>;
+using Place = Point<double>;
 
 MapObstacle random_obstacle(Random& random)
 {
@@ -34,22 +34,22 @@ MapObstacle random_obstacle(Random& random)
 }
 
 /// A random point of the body or of what is within its margin, in double and with rotations written out.
-P random_point(Random& random, const MapObstacle& o, bool of_body)
+Place random_point(Random& random, const MapObstacle& o, bool of_body)
 {
     const auto within = [&](float size) { return 0.5 * static_cast<double>(size * random.uniform(-1.0F, 1.0F)); };
-    P p = P::Zero();
+    Place p = Place::Zero();
     double about = of_body ? 0.0 : static_cast<double>(o.margin);
     switch (o.shape) {
     case MapShape::ball: about += static_cast<double>(o.radius); break;
-    case MapShape::line: p = P(within(o.length), 0, 0); break;
-    case MapShape::plane: p = P(within(o.length), within(o.width), 0); break;
-    case MapShape::cuboid: p = P(within(o.length), within(o.width), within(o.depth)); break;
+    case MapShape::line: p = Place(within(o.length), 0, 0); break;
+    case MapShape::plane: p = Place(within(o.length), within(o.width), 0); break;
+    case MapShape::cuboid: p = Place(within(o.length), within(o.width), within(o.depth)); break;
     }
     const double z = static_cast<double>(random.uniform(-1.0F, 1.0F));
     const double azimuth = static_cast<double>(random.uniform(-kPi, kPi));
     const double level = std::sqrt(1.0 - z * z);
     p += about * std::cbrt(static_cast<double>(random.uniform())) *
-         P(level * std::cos(azimuth), level * std::sin(azimuth), z);
+         Place(level * std::cos(azimuth), level * std::sin(azimuth), z);
     // Roll about x, then pitch about y (nose down), then yaw about z.
     const auto turned = [](double a, double b, double angle) {
         return std::pair(a * std::cos(angle) - b * std::sin(angle), a * std::sin(angle) + b * std::cos(angle));
@@ -61,9 +61,9 @@ P random_point(Random& random, const MapObstacle& o, bool of_body)
 }
 
 /// Of a point in the world, seen from the grid.
-P seen_from(const GridPose& pose, const P& p)
+Place seen_from(const GridPose& pose, const Place& p)
 {
-    const P apart = (p - pose.position.cast<double>()) / static_cast<double>(pose.unit);
+    const Place apart = (p - pose.position.cast<double>()) / static_cast<double>(pose.unit);
     const double c = std::cos(static_cast<double>(pose.yaw));
     const double s = std::sin(static_cast<double>(pose.yaw));
     return {c * apart.x() + s * apart.y(), -s * apart.x() + c * apart.y(), apart.z()};

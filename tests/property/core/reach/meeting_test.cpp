@@ -13,7 +13,7 @@
 namespace jink::reach {
 namespace {
 
-using P = Point<double>;
+using PlaceAt = Point<double>;
 
 struct Case {
     Vec3 from, to;
@@ -46,7 +46,7 @@ Case random_case(Random& random)
     return c;
 }
 
-P at_share_of(const Case& c, double s) { return c.from.cast<double>() + s * (c.to - c.from).cast<double>(); }
+PlaceAt at_share_of(const Case& c, double s) { return c.from.cast<double>() + s * (c.to - c.from).cast<double>(); }
 double time_of(const Case& c, double s)
 {
     return static_cast<double>(c.t_from) + s * (static_cast<double>(c.t_to) - static_cast<double>(c.t_from));
@@ -56,7 +56,7 @@ double time_of(const Case& c, double s)
 double least_distance(const Case& c)
 {
     const auto apart = [&](double s) {
-        const P q = c.intruder.position.cast<double>() + time_of(c, s) * c.intruder.velocity.cast<double>();
+        const PlaceAt q = c.intruder.position.cast<double>() + time_of(c, s) * c.intruder.velocity.cast<double>();
         return (at_share_of(c, s) - q).norm();
     };
     constexpr int kSamples = 200;
@@ -118,20 +118,20 @@ TEST(MeetingLaws, NoDeviationWithinTheSpreadIsClear)
         if (speed == 0.0 || meets(c.from, c.to, c.t_from, c.t_to, c.intruder, c.margin)) {
             continue;
         }
-        const P along = c.intruder.velocity.cast<double>() / speed;
-        const P across = P::UnitZ().cross(along);
-        const P left = across.norm() < 1e-3 ? P(P::UnitX()) : P(across.normalized());
-        const P up = along.cross(left);
+        const PlaceAt along = c.intruder.velocity.cast<double>() / speed;
+        const PlaceAt across = PlaceAt::UnitZ().cross(along);
+        const PlaceAt left = across.norm() < 1e-3 ? PlaceAt(PlaceAt::UnitX()) : PlaceAt(across.normalized());
+        const PlaceAt up = along.cross(left);
         for (int k = 0; k < 100; ++k) {
             const double angle = static_cast<double>(random.uniform(-kPi, kPi));
             const double share = std::sqrt(static_cast<double>(random.uniform()));
-            const P direction =
+            const PlaceAt direction =
                 (along + share * std::cos(angle) * std::tan(static_cast<double>(c.intruder.horizontal)) * left +
                  share * std::sin(angle) * std::tan(static_cast<double>(c.intruder.vertical)) * up)
                     .normalized();
             const double error = static_cast<double>(c.intruder.speed_share * random.uniform(-1.0F, 1.0F));
             const double s = static_cast<double>(random.uniform());
-            const P q = c.intruder.position.cast<double>() + speed * (1.0 + error) * time_of(c, s) * direction;
+            const PlaceAt q = c.intruder.position.cast<double>() + speed * (1.0 + error) * time_of(c, s) * direction;
             ASSERT_GT((at_share_of(c, s) - q).norm(), static_cast<double>(c.intruder.radius + c.margin))
                 << "seed " << kSeed << ", case " << i << ", sample " << k;
         }

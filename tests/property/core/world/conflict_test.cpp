@@ -16,7 +16,7 @@ using test::kPlenty;
 using test::Scene;
 
 /// The way in double precision: straight to its end, then hovering.
-Vec3d on_way(const Way& way, double t)
+Vec3d place_on_way(const Way& way, double t)
 {
     const double flown = std::min(double(way.speed) * t, double(way.length));
     return way.origin.cast<double>() + way.direction.cast<double>() * flown;
@@ -25,7 +25,7 @@ Vec3d on_way(const Way& way, double t)
 double margin_at(const Scene& scene, const Way& way, const Track& track, double t)
 {
     const Vec3d threat = track.position.cast<double>() + track.velocity.cast<double>() * t;
-    return oracle::point_box(threat - on_way(way, t), scene.limits.half_extents.cast<double>()) -
+    return oracle::point_box(threat - place_on_way(way, t), scene.limits.half_extents.cast<double>()) -
            oracle::radius_of(scene, track, t);
 }
 
@@ -44,7 +44,7 @@ Scene any_scene(Random& random)
     // Aimed at some point of the way, more or less.
     const Way way = way_of(scene.situation());
     const Seconds meet = random.uniform(0.0F, 9.0F);
-    track.position = on_way(way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
+    track.position = place_on_way(way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
     track.sigma_position = random.uniform(0.0F, 0.3F);
     track.sigma_velocity = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.5F);
     track.max_acceleration = random.below(3) == 0 ? random.uniform(0.0F, 0.5F) : 0.0F;
@@ -95,7 +95,7 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
         ASSERT_LE(then, growth(scene, track, lookahead, 0.5) + 2e-3) << "case " << i << ": too early";
         ASSERT_GE(conflict.time_to_closest, conflict.time_to_loss);
         ASSERT_LE(double(conflict.time_to_closest), lookahead + 1e-3);
-        const Vec3d own = on_way(way, double(conflict.time_to_closest));
+        const Vec3d own = place_on_way(way, double(conflict.time_to_closest));
         const Vec3d threat = (track.position + track.velocity * conflict.time_to_closest).cast<double>();
         ASSERT_NEAR((own - conflict.own_at_closest.cast<double>()).norm(), 0, 1e-3) << "case " << i;
         ASSERT_NEAR((threat - conflict.threat_at_closest.cast<double>()).norm(), 0, 1e-3) << "case " << i;
@@ -107,7 +107,7 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
         if (conflict.time_to_closest > conflict.time_to_loss) {
             for (double t = 0; t <= lookahead; t += 0.01) {
                 const double distance =
-                    (on_way(way, t) - track.position.cast<double>() - track.velocity.cast<double>() * t).norm();
+                    (place_on_way(way, t) - track.position.cast<double>() - track.velocity.cast<double>() * t).norm();
                 ASSERT_GE(distance, double(conflict.miss_distance) - 1e-3) << "case " << i << " at " << t;
             }
         }
@@ -170,7 +170,7 @@ TEST(MainConflict, SolidsAreFoundInTime)
         const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);
         const auto distance_until = [&](double t) {
             return geometry::oracle::swept_box_bounds(scene.limits.half_extents, way.origin,
-                                                      on_way(way, t).cast<float>(), shape, 1e-4);
+                                                      place_on_way(way, t).cast<float>(), shape, 1e-4);
         };
         WorkBudget budget(kPlenty);
         Conflict conflict;

@@ -19,7 +19,7 @@ using test::Scene;
 using test::separation;
 
 /// The code may say that much more than the truth: rounding of coordinates up to 100 m.
-constexpr double kOptimism = 1e-3;
+constexpr double kSeparationOptimism = 1e-3;
 
 struct Case {
     Scene scene;
@@ -28,7 +28,7 @@ struct Case {
     std::vector<std::vector<Vec3>> vertices;  // of hulls
 };
 
-path::TimedPath any_flight(Random& random, std::size_t points, float speed)
+path::TimedPath random_flight(Random& random, std::size_t points, float speed)
 {
     path::TimedPath path;
     Vec3 position = in_cube(random, 5.0F);
@@ -67,7 +67,7 @@ Case any_case(Random& random, bool with_solids)
         Vec3(random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F), random.uniform(0.2F, 1.5F));
     c.scene.own.sigma_position = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.4F);
     c.scene.k_sigma = random.uniform(0.0F, 4.0F);
-    c.path = any_flight(random, 1 + random.below(random.below(3) == 0 ? kMaxPathPoints : 12), 8.0F);
+    c.path = random_flight(random, 1 + random.below(random.below(3) == 0 ? kMaxPathPoints : 12), 8.0F);
     c.horizon = random.below(4) == 0 ? random.uniform(0.0F, 3.0F) : 100.0F;
     for (std::size_t n = random.below(4); n > 0; --n) {
         c.scene.tracks.push_back(any_track(random, c.scene.now));
@@ -186,7 +186,7 @@ void compare(bool with_solids, std::uint64_t default_seed, std::size_t cases)
             continue;  // solids have no depth that an oracle could agree on: see the escape tests
         }
         const Separation found = separation(c.scene, c.path, c.horizon, escape);
-        ASSERT_LE(double(found.margin), e.least + kOptimism) << "case " << i;
+        ASSERT_LE(double(found.margin), e.least + kSeparationOptimism) << "case " << i;
         if (e.solid_in_contact) {
             ASSERT_LT(found.margin, 0.0F) << "case " << i;
             continue;
@@ -199,7 +199,8 @@ void compare(bool with_solids, std::uint64_t default_seed, std::size_t cases)
         if (found.against.kind == ThreatKind::track &&
             oracle::track_margin_at(c.scene, c.path, found.against.index, 0.0) >= 0) {
             const double then = oracle::track_margin_at(c.scene, c.path, found.against.index, double(found.when));
-            ASSERT_NEAR(std::max(then, -double(kSeparationCap)), double(found.margin), e.pessimism + kOptimism)
+            ASSERT_NEAR(std::max(then, -double(kSeparationCap)), double(found.margin),
+                        e.pessimism + kSeparationOptimism)
                 << "case " << i;
         }
     }
@@ -308,7 +309,7 @@ TEST(SeparationAt, IsThePlainMarginOfThatInstant)
             ASSERT_LT(found.margin, 0.0F) << "case " << i;
             continue;
         }
-        ASSERT_LE(double(found.margin), least + kOptimism) << "case " << i;
+        ASSERT_LE(double(found.margin), least + kSeparationOptimism) << "case " << i;
         ASSERT_GE(double(found.margin), std::min(least, capped) - 2e-3) << "case " << i;
         ASSERT_EQ(found.when, found.against.kind == ThreatKind::none ? 0.0F : t);
     }

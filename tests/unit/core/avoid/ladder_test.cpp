@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/numbers.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -16,8 +17,6 @@ namespace {
 
 using namespace test;
 using world::ManoeuvreKind;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Each of these says "found".
 struct BadAnswer {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -11,8 +12,6 @@ namespace {
 
 using namespace test;
 using world::ManoeuvreKind;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(Supervisors, TheWorkOfEachUpdateIsTold)
 {

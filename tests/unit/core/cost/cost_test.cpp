@@ -4,16 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <vector>
 
+#include "tests/numbers.hpp"
 #include "tests/oracle/cost_oracle.hpp"
 
 namespace jink::cost {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 path::TimedPath level(float length, int points = 5)
 {

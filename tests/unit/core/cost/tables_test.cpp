@@ -4,18 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/cost/tables_default.hpp"
 #include "core/cost/tables_uav2.hpp"
 #include "core/geometric/offsets.hpp"
 #include "core/geometric/planner.hpp"
+#include "tests/numbers.hpp"
 
 namespace jink::cost::tables {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr CurveQuery kLevel{.family = 0, .offset = 2.0F, .distance = 10.0F, .speed = 5.0F};
 
 TEST(CostTables, FitThePlannersCurves)
@@ -125,13 +123,13 @@ TEST(CostTables, WhatTheyDoNotHoldIsRefused)
     expect_refused(with([](CurveQuery& q) { q.family = 3; }), "family");
     expect_refused(with([](CurveQuery& q) { q.offset = 12.8011F; }), "too far right");
     expect_refused(with([](CurveQuery& q) { q.offset = -12.8011F; }), "too far left");
-    expect_refused(with([](CurveQuery& q) { q.offset = kNaN; }), "offset");
+    expect_refused(with([](CurveQuery& q) { q.offset = kNan; }), "offset");
     expect_refused(with([](CurveQuery& q) { q.offset = kInfinity; }), "endless offset");
-    for (const float bad : {0.0F, -1.0F, kNaN, kInfinity}) {
+    for (const float bad : {0.0F, -1.0F, kNan, kInfinity}) {
         expect_refused(with([bad](CurveQuery& q) { q.distance = bad; }), "distance");
         expect_refused(with([bad](CurveQuery& q) { q.speed = bad; }), "speed");
     }
-    for (const float bad : {1.1F, -1.1F, kNaN, kInfinity}) {
+    for (const float bad : {1.1F, -1.1F, kNan, kInfinity}) {
         expect_refused(with([bad](CurveQuery& q) { q.along_z = bad; }), "leg");
         expect_refused(with([bad](CurveQuery& q) { q.side_z = bad; }), "plane");
     }
@@ -157,8 +155,8 @@ TEST(CostTables, SmoothnessAloneIsTheSameAndRefusesTheSame)
     }
     EXPECT_FALSE(smoothness(kDefault, 3, 1.0F, 10.0F)) << "family";
     EXPECT_FALSE(smoothness(kDefault, 0, 12.8011F, 10.0F)) << "offset";
-    EXPECT_FALSE(smoothness(kDefault, 0, kNaN, 10.0F)) << "offset";
-    for (const float bad : {0.0F, -1.0F, kNaN, kInfinity}) {
+    EXPECT_FALSE(smoothness(kDefault, 0, kNan, 10.0F)) << "offset";
+    for (const float bad : {0.0F, -1.0F, kNan, kInfinity}) {
         EXPECT_FALSE(smoothness(kDefault, 0, 1.0F, bad)) << "distance";
     }
     EXPECT_FALSE(smoothness(Tables{}, 0, 1.0F, 10.0F)) << "no tables at all";

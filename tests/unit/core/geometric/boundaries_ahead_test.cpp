@@ -2,18 +2,14 @@
 // What a manoeuvre has ahead of it, straight or a route: what is refused of it, when it begins, and what a route costs.
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "core/base/work_units.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
 namespace {
 
 using world::PlanStatus;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 /// Straight on along the leg of a scene that begins at (0, 0, 50), from 10 m on.
 path::Route straight_route()

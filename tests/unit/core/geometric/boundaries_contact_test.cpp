@@ -18,7 +18,7 @@ namespace {
 using world::PlanStatus;
 using world::ThreatKind;
 
-float below(float x) { return std::nextafter(x, -std::numeric_limits<float>::infinity()); }
+float just_below(float x) { return std::nextafter(x, -std::numeric_limits<float>::infinity()); }
 
 const std::array kDirections{Vec3(1.0F, 0.0F, 0.0F),  Vec3(-1.0F, 0.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F),
                              Vec3(0.0F, -1.0F, 0.0F), Vec3(0.0F, 0.0F, 1.0F),  Vec3(0.0F, 0.0F, -1.0F)};
@@ -156,7 +156,7 @@ TEST(ContactBorder, KeepInIsUsedUpToItsLastNumber)
     scene.limits.half_extents = Vec3(3.0F, 4.0F, 1.0F);
     const float end = scene.end().x();
     scene.airspace.has_keep_in = true;
-    for (float radius = end + 5.0F; radius > end + 4.99F; radius = below(radius)) {
+    for (float radius = end + 5.0F; radius > end + 4.99F; radius = just_below(radius)) {
         scene.airspace.keep_in_radius = radius;
         ASSERT_EQ(scene.status() == CandidateStatus::chosen, radius - 5.0F >= end) << "no farther, and as far";
     }

@@ -3,15 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/geometric/curve.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Allowance for the rounding of differences (curve.cpp).
 constexpr float kRounding = 1.001F;
 

@@ -13,7 +13,7 @@ namespace {
 
 using world::PlanStatus;
 
-float below(float x) { return std::nextafter(x, 0.0F); }
+float next_below(float x) { return std::nextafter(x, 0.0F); }
 
 /// A sphere that stands `ahead` of a vehicle in whose way numbers are exact: the collision point is its centre.
 struct SphereAhead : Flight {
@@ -39,7 +39,7 @@ TEST(PlanBorder, TwoAndAHalfRadiiAreNotTooClose)
 {
     SphereAhead on_it(1.25F);
     EXPECT_NE(on_it.plan_unchecked(0.0F), PlanStatus::too_close);
-    SphereAhead nearer(below(1.25F));
+    SphereAhead nearer(next_below(1.25F));
     EXPECT_EQ(nearer.plan_unchecked(0.0F), PlanStatus::too_close);
 }
 
@@ -48,7 +48,7 @@ TEST(PlanBorder, TheStartIsMovedWhereFourTimesTheWayAreLeft)
     SphereAhead on_it(5.0F);
     ASSERT_EQ(on_it.plan_unchecked(0.125F), PlanStatus::found);
     EXPECT_TRUE(on_it.begins_later()) << "4 m are left after 1 m";
-    SphereAhead nearer(below(5.0F));
+    SphereAhead nearer(next_below(5.0F));
     ASSERT_EQ(nearer.plan_unchecked(0.125F), PlanStatus::found);
     EXPECT_FALSE(nearer.begins_later());
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/geometric/planner.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
@@ -17,12 +18,10 @@ namespace {
 using world::PlanStatus;
 using world::ThreatKind;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kLeast = std::numeric_limits<float>::denorm_min();
 
-float above(float x) { return std::nextafter(x, kInfinity); }
-float below(float x) { return std::nextafter(x, -kInfinity); }
+float limit_above(float x) { return std::nextafter(x, kInfinity); }
+float limit_below(float x) { return std::nextafter(x, -kInfinity); }
 
 template <class T, class Change>
 void expect_settings(bool expected, Change change, std::initializer_list<T> values)
@@ -66,7 +65,7 @@ TEST(SettingsLimits, AsManyCandidatesAsFitAndNotOneMore)
         s.extra_planes = static_cast<std::uint16_t>(planes - 1);
         return is_valid(s);
     };
-    static_assert(kMaxCandidates == 512, "the products below");
+    static_assert(kMaxCandidates == 512, "the products limit_below");
     EXPECT_TRUE(of(true, true, 16, 16));
     EXPECT_FALSE(of(true, true, 18, 16));
     EXPECT_FALSE(of(true, true, 16, 17));
@@ -96,10 +95,10 @@ TEST(SettingsLimits, CostAndLookaheadHaveTheirRanges)
 {
     const auto cost = [](Settings& s, float x) { s.max_cost = x; };
     expect_settings<float>(true, cost, {kLeast, 1.0F});
-    expect_settings<float>(false, cost, {0.0F, -1.0F, above(1.0F), kInfinity, kNan});
+    expect_settings<float>(false, cost, {0.0F, -1.0F, limit_above(1.0F), kInfinity, kNan});
     const auto lookahead = [](Settings& s, float x) { s.lookahead = x; };
     expect_settings<float>(true, lookahead, {1.0F, 60.0F});
-    expect_settings<float>(false, lookahead, {below(1.0F), above(60.0F), kInfinity, kNan});
+    expect_settings<float>(false, lookahead, {limit_below(1.0F), limit_above(60.0F), kInfinity, kNan});
     const auto weight = [](Settings& s, float x) { s.weights.time = x; };
     expect_settings<float>(false, weight, {kNan});
     const auto passing = [](Settings& s, float x) { s.weights.passing = x; };
@@ -264,14 +263,14 @@ TEST(StatusLimits, TwoAndAHalfRadiiAreNotTooClose)
     Scene scene;
     scene.problem.distance = 2.5F;
     EXPECT_NE(scene.run(), PlanStatus::too_close);
-    scene.problem.distance = below(2.5F);
+    scene.problem.distance = limit_below(2.5F);
     EXPECT_EQ(scene.run(), PlanStatus::too_close);
     // The body counts where it is known, however uncertain its place.
     scene.problem.main_radius = 4.0F;
     EXPECT_EQ(scene.run(), PlanStatus::too_close);
     scene.problem.body_radius = 0.5F;
     EXPECT_NE(scene.run(), PlanStatus::too_close);
-    scene.problem.distance = below(1.25F);
+    scene.problem.distance = limit_below(1.25F);
     EXPECT_EQ(scene.run(), PlanStatus::too_close);
 }
 
@@ -312,10 +311,10 @@ TEST(StatusLimits, TouchingFloorOrCeilingIsNotLeavingTheAirspace)
         Scene scene;
         scene.settings.escape_from_margin = escape;
         scene.airspace.has_floor = true;
-        scene.airspace.floor = 49.0F;  // exactly below the box
+        scene.airspace.floor = 49.0F;  // exactly limit_below the box
         expect_level_candidates(scene, false, ThreatKind::floor);
         if (!escape) {
-            scene.airspace.floor = above(49.0F);
+            scene.airspace.floor = limit_above(49.0F);
             expect_level_candidates(scene, true, ThreatKind::floor);
         }
         scene.airspace.has_floor = false;
@@ -323,7 +322,7 @@ TEST(StatusLimits, TouchingFloorOrCeilingIsNotLeavingTheAirspace)
         scene.airspace.ceiling = 51.0F;
         expect_level_candidates(scene, false, ThreatKind::ceiling);
         if (!escape) {
-            scene.airspace.ceiling = below(51.0F);
+            scene.airspace.ceiling = limit_below(51.0F);
             expect_level_candidates(scene, true, ThreatKind::ceiling);
         }
     }

@@ -3,17 +3,15 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "core/geometric/planner.hpp"
+#include "tests/numbers.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
 namespace {
 
 using world::PlanStatus;
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 TEST(Solve, FindsAWayRoundOneStaticThreat)
 {

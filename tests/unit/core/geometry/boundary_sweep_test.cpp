@@ -18,7 +18,7 @@
 namespace jink::geometry {
 namespace {
 
-const Vec3 kZero = Vec3::Zero();
+const Vec3 kOrigin = Vec3::Zero();
 
 TEST(SweepBorder, TheSlowestSpeedThatCountsArrivesInItsTime)
 {
@@ -51,8 +51,8 @@ TEST(SweepBorder, TheSlowestSpeedThatCountsArrivesInItsTime)
 TEST(SweepBorder, PointsWhoseWaysCrossTouch)
 {
     // No box, no radius: the plane of both ways goes through the only point there is.
-    EXPECT_EQ(swept_distance(kZero, -Vec3::UnitX(), Vec3::UnitX(), -Vec3::UnitY(), Vec3::UnitY()), 0.0F);
-    EXPECT_EQ(swept_distance(kZero, Vec3(-3.0F, 1.0F, 2.0F), Vec3(1.0F, 1.0F, 2.0F), Vec3(0.0F, 1.0F, -2.0F),
+    EXPECT_EQ(swept_distance(kOrigin, -Vec3::UnitX(), Vec3::UnitX(), -Vec3::UnitY(), Vec3::UnitY()), 0.0F);
+    EXPECT_EQ(swept_distance(kOrigin, Vec3(-3.0F, 1.0F, 2.0F), Vec3(1.0F, 1.0F, 2.0F), Vec3(0.0F, 1.0F, -2.0F),
                              Vec3(0.0F, 1.0F, 3.0F)),
               0.0F);
     // A flat box in their plane, and one that its own way passes edgewise.
@@ -102,11 +102,11 @@ TEST(SweepBorder, TheBoxDistanceKnowsEverySide)
         }
     }
     EXPECT_EQ(box_distance(half, Vec3(-4.0F, 6.0F, -3.0F)), 5.0F);
-    EXPECT_EQ(box_distance(kZero, Vec3(2.0F, -3.0F, 6.0F)), 7.0F);
+    EXPECT_EQ(box_distance(kOrigin, Vec3(2.0F, -3.0F, 6.0F)), 7.0F);
     for (std::uint64_t seed = 1; seed <= 1'000; ++seed) {
         Random random(seed);
         const Vec3 point(random.uniform(-9.0F, 9.0F), random.uniform(-9.0F, 9.0F), random.uniform(-9.0F, 9.0F));
-        ASSERT_EQ(box_distance(half, point), least_distance(half, {}, {point, kZero}, 1.0F).distance)
+        ASSERT_EQ(box_distance(half, point), least_distance(half, {}, {point, kOrigin}, 1.0F).distance)
             << "sweep.hpp: to the last bit, seed " << seed;
     }
 }
@@ -120,7 +120,7 @@ TEST(SweepBorder, TheGlanceKeepsOffTheBorderByItsShareOfAllLengths)
         const Vec3 place(0.0F, 0.0F, most + share * 1e-5F * sizes);
         return glance(half, place, place, radius);
     };
-    for (const Vec3& half : {kZero, Vec3(0.0F, 0.0F, 1.0F), Vec3(5.0F, 1.0F, 0.5F)}) {
+    for (const Vec3& half : {kOrigin, Vec3(0.0F, 0.0F, 1.0F), Vec3(5.0F, 1.0F, 0.5F)}) {
         for (const float radius : {0.5F, 8.0F}) {
             EXPECT_EQ(at_gap(half, radius, 0.9F), Glance::unclear);
             EXPECT_EQ(at_gap(half, radius, 1.1F), Glance::apart);
@@ -141,7 +141,7 @@ TEST(SweepBorder, ASphereIsAPointMovedPastTheBox)
         const Vec3 to = any(9.0F);
         const Shape sphere = make_sphere(any(9.0F), random.uniform());
         const detail::SweptBox box{half, from, to};
-        const float distance = least_distance(half, {from, to - from}, {sphere.centre, kZero}, 1.0F).distance;
+        const float distance = least_distance(half, {from, to - from}, {sphere.centre, kOrigin}, 1.0F).distance;
         WorkBudget budget(units::kSphereQuery);
         ASSERT_EQ(swept_box_distance(half, from, to, sphere, 100.0F, 0.0F, budget),
                   std::max(distance - sphere.radius - box.slack(sphere), 0.0F))

@@ -16,35 +16,36 @@
 namespace jink::geometry {
 namespace {
 
-const Vec3 kZero = Vec3::Zero();
+const Vec3 kNoSize = Vec3::Zero();
 const Vec3 kAway(3.0F, -4.0F, 12.0F);
 
 float next_after(float x) { return std::nextafter(x, std::numeric_limits<float>::max()); }
 
 TEST(Border, PointsAtOnePlaceAreInContactForAsLongAsTheyStay)
 {
-    const auto of_box = contact_interval(kZero, {}, {}, 0.0F, 5.0F);
+    const auto of_box = contact_interval(kNoSize, {}, {}, 0.0F, 5.0F);
     ASSERT_TRUE(of_box);
     EXPECT_EQ(of_box->first, 0.0F);
     EXPECT_EQ(of_box->last, 5.0F);
     const auto of_sphere = contact_interval({}, {}, 0.0F, 5.0F);
     ASSERT_TRUE(of_sphere);
     EXPECT_EQ(of_sphere->last, 5.0F);
-    EXPECT_EQ(glance(kZero, kZero, kZero, 0.0F), Glance::touches);
-    EXPECT_EQ(swept_distance(kZero, kZero, kZero, kZero, kZero), 0.0F);
-    EXPECT_EQ(point_segment_distance(kZero, kZero, kZero), 0.0F);
-    for (const Shape& shape : {make_sphere(kZero, 0.0F), make_capsule(kZero, kZero, 0.0F),
-                               make_cylinder(kZero, kZero, 0.0F), make_box(kZero, kZero)}) {
+    EXPECT_EQ(glance(kNoSize, kNoSize, kNoSize, 0.0F), Glance::touches);
+    EXPECT_EQ(swept_distance(kNoSize, kNoSize, kNoSize, kNoSize, kNoSize), 0.0F);
+    EXPECT_EQ(point_segment_distance(kNoSize, kNoSize, kNoSize), 0.0F);
+    for (const Shape& shape : {make_sphere(kNoSize, 0.0F), make_capsule(kNoSize, kNoSize, 0.0F),
+                               make_cylinder(kNoSize, kNoSize, 0.0F), make_box(kNoSize, kNoSize)}) {
         WorkBudget budget(kUnitsPerQuery);
-        EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, shape, 0.0F, budget), Contact::contact) << int(shape.kind);
-        EXPECT_EQ(swept_box_distance(kZero, kZero, kZero, shape, 1.0F, 0.0F, budget), 0.0F) << int(shape.kind);
+        EXPECT_EQ(swept_box_contact(kNoSize, kNoSize, kNoSize, shape, 0.0F, budget), Contact::contact)
+            << int(shape.kind);
+        EXPECT_EQ(swept_box_distance(kNoSize, kNoSize, kNoSize, shape, 1.0F, 0.0F, budget), 0.0F) << int(shape.kind);
     }
 }
 
 TEST(Border, PointsThatPartAtOnceMetAtTheStart)
 {
-    const Motion leaving{kZero, kAway};
-    const auto of_box = contact_interval(kZero, {}, leaving, 0.0F, 5.0F);
+    const Motion leaving{kNoSize, kAway};
+    const auto of_box = contact_interval(kNoSize, {}, leaving, 0.0F, 5.0F);
     ASSERT_TRUE(of_box);
     EXPECT_EQ(of_box->first, 0.0F);
     EXPECT_EQ(of_box->last, 0.0F);
@@ -59,12 +60,12 @@ TEST(Border, PointsThatMeetAtTheEndOfTheHorizonHaveMet)
     // All numbers are exact: the threat arrives at 4 s.
     const Motion coming{Vec3(-12.0F, 16.0F, -48.0F), kAway};
     for (const auto& contact :
-         {contact_interval(kZero, {}, coming, 0.0F, 4.0F), contact_interval({}, coming, 0.0F, 4.0F)}) {
+         {contact_interval(kNoSize, {}, coming, 0.0F, 4.0F), contact_interval({}, coming, 0.0F, 4.0F)}) {
         ASSERT_TRUE(contact);
         EXPECT_NEAR(contact->first, 4.0F, 1e-4F);
         EXPECT_EQ(contact->last, 4.0F);
     }
-    EXPECT_FALSE(contact_interval(kZero, {}, coming, 0.0F, 3.9F));
+    EXPECT_FALSE(contact_interval(kNoSize, {}, coming, 0.0F, 3.9F));
     EXPECT_FALSE(contact_interval({}, coming, 0.0F, 3.9F));
 }
 
@@ -103,7 +104,7 @@ TEST(Border, ASpeedTooSmallToBeSquaredIsRest)
     const Vec3 slow(1e-30F, 0.0F, -1e-25F);
     for (const float x : {1.5F, 2.5F}) {
         const Motion creeping{Vec3(x, 0.0F, 0.0F), slow};
-        const Motion still{Vec3(x, 0.0F, 0.0F), kZero};
+        const Motion still{Vec3(x, 0.0F, 0.0F), kNoSize};
         const Approach approach = least_distance(Vec3::Ones(), {}, creeping, 100.0F);
         EXPECT_EQ(approach.distance, x - 1.0F);
         EXPECT_EQ(approach.when, 0.0F);
@@ -125,9 +126,9 @@ TEST(Border, AxesAreValidUpToTheirTolerance)
         for (const float sign : {1.0F, -1.0F}) {
             Mat3 axes = Mat3::Identity();
             axes(row, column) = sign * 1e-3F;
-            EXPECT_TRUE(is_valid(make_box(kZero, Vec3::Ones(), axes)));
+            EXPECT_TRUE(is_valid(make_box(kNoSize, Vec3::Ones(), axes)));
             axes(row, column) = sign * next_after(1e-3F);
-            EXPECT_FALSE(is_valid(make_box(kZero, Vec3::Ones(), axes)));
+            EXPECT_FALSE(is_valid(make_box(kNoSize, Vec3::Ones(), axes)));
         }
     }
 }
@@ -137,15 +138,15 @@ TEST(Border, APlaneFoundAtOnceCostsOneTurn)
     // Inside of the bounding sphere, so that a search is needed; the line of the centres is square to both faces.
     const Shape shape = make_box(Vec3(2.5F, 0.0F, 0.0F), Vec3::Ones());
     WorkBudget budget(kUnitsPerQuery);
-    EXPECT_EQ(swept_box_contact(Vec3::Ones(), kZero, kZero, shape, 0.0F, budget), Contact::clear);
+    EXPECT_EQ(swept_box_contact(Vec3::Ones(), kNoSize, kNoSize, shape, 0.0F, budget), Contact::clear);
     EXPECT_EQ(budget.spent(), units::kSolidQuery + units::kExactTurn);
     budget = WorkBudget(kUnitsPerQuery);
-    const float proven = swept_box_distance(Vec3::Ones(), kZero, kZero, shape, 10.0F, 3.0F, budget);
+    const float proven = swept_box_distance(Vec3::Ones(), kNoSize, kNoSize, shape, 10.0F, 3.0F, budget);
     EXPECT_NEAR(proven, 0.5F, 1e-4F);
     EXPECT_EQ(budget.spent(), units::kSolidQuery + units::kSearchTurn);
     // Reached exactly: no more to be learnt.
     budget = WorkBudget(kUnitsPerQuery);
-    EXPECT_EQ(swept_box_distance(Vec3::Ones(), kZero, kZero, shape, proven, 0.0F, budget), proven);
+    EXPECT_EQ(swept_box_distance(Vec3::Ones(), kNoSize, kNoSize, shape, proven, 0.0F, budget), proven);
     EXPECT_EQ(budget.spent(), units::kSolidQuery + units::kSearchTurn);
 }
 
@@ -169,9 +170,9 @@ TEST(Border, EverySolidIsTouchedAtItsClearance)
                                make_capsule(above - Vec3(0.0F, 0.0F, 0.5F), above + Vec3(0.0F, 0.0F, 0.5F), 0.5F),
                                make_cylinder(above - Vec3::UnitX(), above + Vec3::UnitX(), 1.0F)}) {
         WorkBudget budget(100'000);
-        EXPECT_EQ(swept_box_contact(Vec3::Ones(), kZero, kZero, shape, 4.0F, budget), Contact::contact);
-        EXPECT_EQ(swept_box_contact(Vec3::Ones(), kZero, kZero, shape, 4.001F, budget), Contact::contact);
-        EXPECT_EQ(swept_box_contact(Vec3::Ones(), kZero, kZero, shape, 3.999F, budget), Contact::clear);
+        EXPECT_EQ(swept_box_contact(Vec3::Ones(), kNoSize, kNoSize, shape, 4.0F, budget), Contact::contact);
+        EXPECT_EQ(swept_box_contact(Vec3::Ones(), kNoSize, kNoSize, shape, 4.001F, budget), Contact::contact);
+        EXPECT_EQ(swept_box_contact(Vec3::Ones(), kNoSize, kNoSize, shape, 3.999F, budget), Contact::clear);
         EXPECT_FALSE(budget.exhausted());
     }
 }

@@ -11,8 +11,8 @@
 namespace jink::geometry {
 namespace {
 
-const Vec3 kHalf(1.0F, 1.0F, 1.0F);
-const Vec3 kZero = Vec3::Zero();
+const Vec3 kConvexHalf(1.0F, 1.0F, 1.0F);
+const Vec3 kStill = Vec3::Zero();
 const std::array<Vec3, 4> kWedge{Vec3(0.0F, -1.0F, -1.0F), Vec3(0.0F, 1.0F, -1.0F), Vec3(2.0F, 0.0F, -1.0F),
                                  Vec3(0.0F, 0.0F, 1.0F)};
 
@@ -27,13 +27,13 @@ std::array<Shape, 5> one_of_each(const Vec3& centre)
 Contact contact(const Vec3& from, const Vec3& to, const Shape& shape, float clearance = 0.0F)
 {
     WorkBudget budget(kUnitsPerQuery);
-    return swept_box_contact(kHalf, from, to, shape, clearance, budget);
+    return swept_box_contact(kConvexHalf, from, to, shape, clearance, budget);
 }
 
 float distance(const Vec3& from, const Vec3& to, const Shape& shape, float reach = 100.0F, float resolution = 1e-4F)
 {
     WorkBudget budget(kUnitsPerQuery);
-    return swept_box_distance(kHalf, from, to, shape, reach, resolution, budget);
+    return swept_box_distance(kConvexHalf, from, to, shape, reach, resolution, budget);
 }
 
 TEST(SweptBoxContact, WithEachKindOnItsWayAndBesideIt)
@@ -64,25 +64,26 @@ TEST(SweptBoxContact, ASweptBoxIsNotTheBoxAroundItsWay)
 
 TEST(SweptBoxContact, TouchingCounts)
 {
-    EXPECT_EQ(contact(kZero, kZero, make_box({2.0F, 0.0F, 0.0F}, Vec3::Ones())), Contact::contact);
-    EXPECT_EQ(contact(kZero, kZero, make_box({2.001F, 0.0F, 0.0F}, Vec3::Ones())), Contact::clear);
-    EXPECT_EQ(contact(kZero, kZero, make_box({2.5F, 0.0F, 0.0F}, Vec3::Ones()), 0.5F), Contact::contact);
-    EXPECT_EQ(contact(kZero, kZero, make_sphere({3.0F, 0.0F, 0.0F}, 2.0F)), Contact::contact);
+    EXPECT_EQ(contact(kStill, kStill, make_box({2.0F, 0.0F, 0.0F}, Vec3::Ones())), Contact::contact);
+    EXPECT_EQ(contact(kStill, kStill, make_box({2.001F, 0.0F, 0.0F}, Vec3::Ones())), Contact::clear);
+    EXPECT_EQ(contact(kStill, kStill, make_box({2.5F, 0.0F, 0.0F}, Vec3::Ones()), 0.5F), Contact::contact);
+    EXPECT_EQ(contact(kStill, kStill, make_sphere({3.0F, 0.0F, 0.0F}, 2.0F)), Contact::contact);
     // Corner to corner, edge to edge.
-    EXPECT_EQ(contact(kZero, kZero, make_box({2.0F, 2.0F, 2.0F}, Vec3::Ones())), Contact::contact);
-    EXPECT_EQ(contact(kZero, kZero, make_box({2.0F, 2.0F, 0.0F}, Vec3::Ones())), Contact::contact);
+    EXPECT_EQ(contact(kStill, kStill, make_box({2.0F, 2.0F, 2.0F}, Vec3::Ones())), Contact::contact);
+    EXPECT_EQ(contact(kStill, kStill, make_box({2.0F, 2.0F, 0.0F}, Vec3::Ones())), Contact::contact);
 }
 
 TEST(SweptBoxContact, OfThingsWithoutSize)
 {
-    const std::array<Vec3, 1> point{kZero};
+    const std::array<Vec3, 1> point{kStill};
     WorkBudget budget(10'000);
-    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_hull(point, kZero), 0.0F, budget), Contact::contact);
-    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_hull(point, Vec3::UnitX()), 0.0F, budget), Contact::clear);
-    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_hull(point, Vec3::UnitX()), 1.0F, budget), Contact::contact);
-    EXPECT_EQ(swept_box_contact(kZero, -Vec3::UnitX(), Vec3::UnitX(), make_hull(point, kZero), 0.0F, budget),
+    EXPECT_EQ(swept_box_contact(kStill, kStill, kStill, make_hull(point, kStill), 0.0F, budget), Contact::contact);
+    EXPECT_EQ(swept_box_contact(kStill, kStill, kStill, make_hull(point, Vec3::UnitX()), 0.0F, budget), Contact::clear);
+    EXPECT_EQ(swept_box_contact(kStill, kStill, kStill, make_hull(point, Vec3::UnitX()), 1.0F, budget),
               Contact::contact);
-    EXPECT_EQ(swept_box_contact(kZero, kZero, kZero, make_box(kZero, kZero), 0.0F, budget), Contact::contact);
+    EXPECT_EQ(swept_box_contact(kStill, -Vec3::UnitX(), Vec3::UnitX(), make_hull(point, kStill), 0.0F, budget),
+              Contact::contact);
+    EXPECT_EQ(swept_box_contact(kStill, kStill, kStill, make_box(kStill, kStill), 0.0F, budget), Contact::contact);
     EXPECT_FALSE(budget.exhausted());
 }
 
@@ -92,12 +93,12 @@ TEST(SweptBoxContact, TheSameAtMillimetresAndAtAKilometre)
         const Mat3 axes = Eigen::AngleAxisf(0.7F, Vec3(1.0F, 2.0F, 3.0F).normalized()).toRotationMatrix();
         const Vec3 at = scale * Vec3(3.0F, 0.3F, -0.2F);
         const Shape shape = make_box(at, scale * Vec3(1.0F, 0.5F, 0.2F), axes);
-        const Vec3 half = scale * kHalf;
+        const Vec3 half = scale * kConvexHalf;
         WorkBudget budget(10'000);
-        const float apart = swept_box_distance(half, kZero, kZero, shape, 100.0F * scale, 0.0F, budget);
+        const float apart = swept_box_distance(half, kStill, kStill, shape, 100.0F * scale, 0.0F, budget);
         EXPECT_GT(apart, 0.5F * scale);
-        EXPECT_EQ(swept_box_contact(half, kZero, kZero, shape, apart * 0.9999F, budget), Contact::clear);
-        EXPECT_EQ(swept_box_contact(half, kZero, kZero, shape, apart * 1.0001F, budget), Contact::contact);
+        EXPECT_EQ(swept_box_contact(half, kStill, kStill, shape, apart * 0.9999F, budget), Contact::clear);
+        EXPECT_EQ(swept_box_contact(half, kStill, kStill, shape, apart * 1.0001F, budget), Contact::contact);
     }
 }
 
@@ -107,16 +108,16 @@ TEST(SweptBoxContact, ABudgetTooSmallIsSpentAndNeverClear)
     const Mat3 axes = Eigen::AngleAxisf(0.6F, Vec3(1.0F, 1.0F, 0.3F).normalized()).toRotationMatrix();
     const Shape shape = make_box({1.7F, 1.5F, 1.1F}, {1.0F, 0.6F, 0.4F}, axes);
     WorkBudget ample(kUnitsPerQuery);
-    const Contact full = swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, ample);
+    const Contact full = swept_box_contact(kConvexHalf, kStill, kStill, shape, 0.0F, ample);
     ASSERT_GE(ample.spent(), units::kSolidQuery + 2 * units::kExactTurn);
     for (std::uint32_t units = 0; units < ample.spent(); ++units) {
         WorkBudget budget(units);
-        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, budget), Contact::budget_spent) << units;
+        EXPECT_EQ(swept_box_contact(kConvexHalf, kStill, kStill, shape, 0.0F, budget), Contact::budget_spent) << units;
         EXPECT_TRUE(budget.exhausted());
         EXPECT_LE(budget.spent(), units);
     }
     WorkBudget exact(ample.spent());
-    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, exact), full);
+    EXPECT_EQ(swept_box_contact(kConvexHalf, kStill, kStill, shape, 0.0F, exact), full);
     EXPECT_FALSE(exact.exhausted());
 }
 
@@ -127,11 +128,11 @@ TEST(SweptBoxContact, ClosedFormsTakeTheirWeight)
          {make_capsule({3.0F, 0.0F, 0.0F}, {4.0F, 0.0F, 0.0F}, 1.0F), units::kCapsuleQuery}}};
     for (const auto& [shape, weight] : weighed) {
         WorkBudget less(weight - 1);
-        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, less), Contact::budget_spent);
+        EXPECT_EQ(swept_box_contact(kConvexHalf, kStill, kStill, shape, 0.0F, less), Contact::budget_spent);
         less = WorkBudget(weight - 1);
-        EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, shape, 10.0F, 0.01F, less), 0.0F);
+        EXPECT_EQ(swept_box_distance(kConvexHalf, kStill, kStill, shape, 10.0F, 0.01F, less), 0.0F);
         WorkBudget exact(weight);
-        EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, shape, 0.0F, exact), Contact::clear);
+        EXPECT_EQ(swept_box_contact(kConvexHalf, kStill, kStill, shape, 0.0F, exact), Contact::clear);
         EXPECT_EQ(exact.spent(), weight);
         EXPECT_FALSE(exact.exhausted());
     }
@@ -141,14 +142,14 @@ TEST(SweptBoxContact, BeyondTheBoundingSphereNoSearchIsPaidFor)
 {
     const Shape far = make_box({9.0F, 0.0F, 0.0F}, Vec3::Ones());
     WorkBudget exact(2 * units::kSolidQuery);
-    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, far, 1.0F, exact), Contact::clear);
-    EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, far, 5.0F, 0.01F, exact), 5.0F);
+    EXPECT_EQ(swept_box_contact(kConvexHalf, kStill, kStill, far, 1.0F, exact), Contact::clear);
+    EXPECT_EQ(swept_box_distance(kConvexHalf, kStill, kStill, far, 5.0F, 0.01F, exact), 5.0F);
     EXPECT_FALSE(exact.exhausted());
     EXPECT_EQ(exact.left(), 0U);
     WorkBudget less(units::kSolidQuery - 1);
-    EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, far, 1.0F, less), Contact::budget_spent);
+    EXPECT_EQ(swept_box_contact(kConvexHalf, kStill, kStill, far, 1.0F, less), Contact::budget_spent);
     less = WorkBudget(units::kSolidQuery - 1);
-    EXPECT_EQ(swept_box_distance(kHalf, kZero, kZero, far, 5.0F, 0.01F, less), 0.0F);
+    EXPECT_EQ(swept_box_distance(kConvexHalf, kStill, kStill, far, 5.0F, 0.01F, less), 0.0F);
 }
 
 TEST(SweptBoxContact, AHullPaysForItsVertices)
@@ -159,7 +160,7 @@ TEST(SweptBoxContact, AHullPaysForItsVertices)
     }
     const auto spent = [](const Shape& shape) {
         WorkBudget budget(kUnitsPerQuery);
-        EXPECT_GT(swept_box_distance(kHalf, kZero, kZero, shape, 10.0F, 0.0F, budget), 0.0F);
+        EXPECT_GT(swept_box_distance(kConvexHalf, kStill, kStill, shape, 10.0F, 0.0F, budget), 0.0F);
         return budget.spent() - units::kSolidQuery;
     };
     const Vec3 at(1.5F, 1.7F, 0.4F);
@@ -175,7 +176,7 @@ TEST(SweptBoxDistance, OfEachKind)
     const auto shapes = one_of_each(centre);
     const std::array<float, 5> expected{5.0F, 5.0F, 5.5F, 5.0F, 5.0F};
     for (std::size_t i = 0; i < shapes.size(); ++i) {
-        const float found = distance(kZero, kZero, shapes[i]);
+        const float found = distance(kStill, kStill, shapes[i]);
         EXPECT_LE(found, expected[i]) << i;
         EXPECT_NEAR(found, expected[i], 3e-4F) << i;
     }
@@ -184,11 +185,11 @@ TEST(SweptBoxDistance, OfEachKind)
 TEST(SweptBoxDistance, IsZeroInContactAndCappedAtReach)
 {
     for (const Shape& shape : one_of_each({0.5F, 0.0F, 0.0F})) {
-        EXPECT_EQ(distance(kZero, kZero, shape), 0.0F) << int(shape.kind);
+        EXPECT_EQ(distance(kStill, kStill, shape), 0.0F) << int(shape.kind);
     }
     for (const Shape& shape : one_of_each({8.0F, 0.0F, 0.0F})) {
-        EXPECT_EQ(distance(kZero, kZero, shape, 2.0F), 2.0F) << int(shape.kind);
-        EXPECT_EQ(distance(kZero, kZero, shape, 0.0F), 0.0F) << int(shape.kind);
+        EXPECT_EQ(distance(kStill, kStill, shape, 2.0F), 2.0F) << int(shape.kind);
+        EXPECT_EQ(distance(kStill, kStill, shape, 0.0F), 0.0F) << int(shape.kind);
     }
 }
 
@@ -196,10 +197,10 @@ TEST(SweptBoxDistance, IsZeroWhenTheBudgetRunsOut)
 {
     const Shape shape = make_cylinder({2.5F, -1.0F, 0.3F}, {2.0F, 2.0F, 3.0F}, 0.7F);
     WorkBudget ample(kUnitsPerQuery);
-    ASSERT_GT(swept_box_distance(kHalf, kZero, Vec3::UnitZ(), shape, 10.0F, 0.0F, ample), 0.0F);
+    ASSERT_GT(swept_box_distance(kConvexHalf, kStill, Vec3::UnitZ(), shape, 10.0F, 0.0F, ample), 0.0F);
     for (std::uint32_t units = 0; units < ample.spent(); ++units) {
         WorkBudget budget(units);
-        EXPECT_EQ(swept_box_distance(kHalf, kZero, Vec3::UnitZ(), shape, 10.0F, 0.0F, budget), 0.0F);
+        EXPECT_EQ(swept_box_distance(kConvexHalf, kStill, Vec3::UnitZ(), shape, 10.0F, 0.0F, budget), 0.0F);
         EXPECT_TRUE(budget.exhausted());
     }
 }
@@ -207,8 +208,8 @@ TEST(SweptBoxDistance, IsZeroWhenTheBudgetRunsOut)
 TEST(SweptBoxDistance, AHullNeedNotHoldItsOwnCentre)
 {
     const std::array<Vec3, 2> far{Vec3(10.0F, 0.0F, -1.0F), Vec3(10.0F, 0.0F, 1.0F)};
-    EXPECT_NEAR(distance(kZero, kZero, make_hull(far, kZero)), 9.0F, 1e-3F);
-    EXPECT_EQ(contact(kZero, kZero, make_hull(far, kZero)), Contact::clear);
+    EXPECT_NEAR(distance(kStill, kStill, make_hull(far, kStill)), 9.0F, 1e-3F);
+    EXPECT_EQ(contact(kStill, kStill, make_hull(far, kStill)), Contact::clear);
 }
 
 }  // namespace

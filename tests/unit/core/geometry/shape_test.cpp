@@ -5,18 +5,15 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 
 #include "core/base/random.hpp"
 #include "core/capacity.hpp"
+#include "tests/numbers.hpp"
 
 namespace jink::geometry {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 const std::array<Vec3, 4> kTetrahedron{Vec3(0.0F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F),
                                        Vec3(0.0F, 0.0F, 1.0F)};

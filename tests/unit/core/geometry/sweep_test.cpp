@@ -8,15 +8,15 @@
 namespace jink::geometry {
 namespace {
 
-const Vec3 kHalf(1.0F, 2.0F, 3.0F);
-const Vec3 kZero = Vec3::Zero();
+const Vec3 kSweepHalf(1.0F, 2.0F, 3.0F);
+const Vec3 kNowhere = Vec3::Zero();
 
-Motion at(float x, float y, float z) { return {Vec3(x, y, z), kZero}; }
+Motion at(float x, float y, float z) { return {Vec3(x, y, z), kNowhere}; }
 Motion moving(const Vec3& position, const Vec3& velocity) { return {position, velocity}; }
 
 TEST(ContactInterval, CrossesTheBoxFaceToFace)
 {
-    const auto contact = contact_interval(kHalf, {}, moving({-5.0F, 0.0F, 0.0F}, {2.0F, 0.0F, 0.0F}), 1.0F, 10.0F);
+    const auto contact = contact_interval(kSweepHalf, {}, moving({-5.0F, 0.0F, 0.0F}, {2.0F, 0.0F, 0.0F}), 1.0F, 10.0F);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->first, 1.5F, 1e-5F);
     EXPECT_NEAR(contact->last, 3.5F, 1e-5F);
@@ -24,7 +24,7 @@ TEST(ContactInterval, CrossesTheBoxFaceToFace)
 
 TEST(ContactInterval, BothMovingIsTheRelativeMotion)
 {
-    const auto contact = contact_interval(kHalf, moving({0.0F, 0.0F, 0.0F}, {-1.0F, 0.0F, 0.0F}),
+    const auto contact = contact_interval(kSweepHalf, moving({0.0F, 0.0F, 0.0F}, {-1.0F, 0.0F, 0.0F}),
                                           moving({-5.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}), 1.0F, 10.0F);
     ASSERT_TRUE(contact);
     EXPECT_NEAR(contact->first, 1.5F, 1e-5F);
@@ -35,31 +35,31 @@ TEST(ContactInterval, RoundsTheCornerInsteadOfFillingIt)
 {
     // Passing the edge x = 1, y = 2 at 0.8 in both axes: 1.13 away, outside of a sphere of 1 but inside of the square
     // corner.
-    EXPECT_FALSE(contact_interval(kHalf, {}, moving({1.8F, 2.8F, -9.0F}, {0.0F, 0.0F, 1.0F}), 1.0F, 100.0F));
+    EXPECT_FALSE(contact_interval(kSweepHalf, {}, moving({1.8F, 2.8F, -9.0F}, {0.0F, 0.0F, 1.0F}), 1.0F, 100.0F));
     // The same at 0.7: 0.99 away.
-    EXPECT_TRUE(contact_interval(kHalf, {}, moving({1.7F, 2.7F, -9.0F}, {0.0F, 0.0F, 1.0F}), 1.0F, 100.0F));
+    EXPECT_TRUE(contact_interval(kSweepHalf, {}, moving({1.7F, 2.7F, -9.0F}, {0.0F, 0.0F, 1.0F}), 1.0F, 100.0F));
     // Past the corner (1, 2, 3), diagonally: 0.6 in each axis is 1.04 away, 0.57 is 0.99.
-    EXPECT_FALSE(contact_interval(kHalf, {}, moving({5.6F, -1.4F, 3.6F}, {-1.0F, 1.0F, 0.0F}), 1.0F, 100.0F));
-    EXPECT_TRUE(contact_interval(kHalf, {}, moving({5.57F, -1.43F, 3.57F}, {-1.0F, 1.0F, 0.0F}), 1.0F, 100.0F));
+    EXPECT_FALSE(contact_interval(kSweepHalf, {}, moving({5.6F, -1.4F, 3.6F}, {-1.0F, 1.0F, 0.0F}), 1.0F, 100.0F));
+    EXPECT_TRUE(contact_interval(kSweepHalf, {}, moving({5.57F, -1.43F, 3.57F}, {-1.0F, 1.0F, 0.0F}), 1.0F, 100.0F));
 }
 
 TEST(ContactInterval, TouchingAFaceCounts)
 {
-    const auto along = contact_interval(kHalf, {}, moving({2.0F, -10.0F, 0.0F}, {0.0F, 1.0F, 0.0F}), 1.0F, 100.0F);
+    const auto along = contact_interval(kSweepHalf, {}, moving({2.0F, -10.0F, 0.0F}, {0.0F, 1.0F, 0.0F}), 1.0F, 100.0F);
     ASSERT_TRUE(along);
     EXPECT_NEAR(along->first, 8.0F, 0.01F);
     EXPECT_NEAR(along->last, 12.0F, 0.01F);
-    EXPECT_TRUE(contact_interval(kHalf, {}, at(2.0F, 0.0F, 0.0F), 1.0F, 1.0F));
-    EXPECT_FALSE(contact_interval(kHalf, {}, at(2.0001F, 0.0F, 0.0F), 1.0F, 1.0F));
+    EXPECT_TRUE(contact_interval(kSweepHalf, {}, at(2.0F, 0.0F, 0.0F), 1.0F, 1.0F));
+    EXPECT_FALSE(contact_interval(kSweepHalf, {}, at(2.0001F, 0.0F, 0.0F), 1.0F, 1.0F));
 }
 
 TEST(ContactInterval, StartingInsideBeginsAtZero)
 {
-    const auto leaving = contact_interval(kHalf, {}, moving(kZero, {1.0F, 0.0F, 0.0F}), 1.0F, 10.0F);
+    const auto leaving = contact_interval(kSweepHalf, {}, moving(kNowhere, {1.0F, 0.0F, 0.0F}), 1.0F, 10.0F);
     ASSERT_TRUE(leaving);
     EXPECT_EQ(leaving->first, 0.0F);
     EXPECT_NEAR(leaving->last, 2.0F, 1e-5F);
-    const auto staying = contact_interval(kHalf, {}, at(0.5F, 0.0F, 0.0F), 0.0F, 7.0F);
+    const auto staying = contact_interval(kSweepHalf, {}, at(0.5F, 0.0F, 0.0F), 0.0F, 7.0F);
     ASSERT_TRUE(staying);
     EXPECT_EQ(staying->first, 0.0F);
     EXPECT_EQ(staying->last, 7.0F);
@@ -68,18 +68,18 @@ TEST(ContactInterval, StartingInsideBeginsAtZero)
 TEST(ContactInterval, OutsideTheHorizonDoesNotCount)
 {
     const Motion threat = moving({-5.0F, 0.0F, 0.0F}, {2.0F, 0.0F, 0.0F});
-    EXPECT_FALSE(contact_interval(kHalf, {}, threat, 1.0F, 1.49F));
-    const auto clipped = contact_interval(kHalf, {}, threat, 1.0F, 2.0F);
+    EXPECT_FALSE(contact_interval(kSweepHalf, {}, threat, 1.0F, 1.49F));
+    const auto clipped = contact_interval(kSweepHalf, {}, threat, 1.0F, 2.0F);
     ASSERT_TRUE(clipped);
     EXPECT_EQ(clipped->last, 2.0F);
     // Already past.
-    EXPECT_FALSE(contact_interval(kHalf, {}, moving({5.0F, 0.0F, 0.0F}, {2.0F, 0.0F, 0.0F}), 1.0F, 100.0F));
+    EXPECT_FALSE(contact_interval(kSweepHalf, {}, moving({5.0F, 0.0F, 0.0F}, {2.0F, 0.0F, 0.0F}), 1.0F, 100.0F));
 }
 
 TEST(ContactInterval, ABoxWithoutSizeIsASphere)
 {
     const Motion threat = moving({-5.0F, 0.6F, 0.0F}, {2.0F, 0.0F, 0.0F});
-    const auto box = contact_interval(kZero, {}, threat, 1.0F, 10.0F);
+    const auto box = contact_interval(kNowhere, {}, threat, 1.0F, 10.0F);
     const auto sphere = contact_interval({}, threat, 1.0F, 10.0F);
     ASSERT_TRUE(box && sphere);
     EXPECT_NEAR(box->first, 2.1F, 1e-5F);
@@ -107,21 +107,21 @@ TEST(ContactInterval, SpheresAtRestTouchOrDoNot)
 
 TEST(LeastDistance, OfNoHorizonIsTheDistanceNow)
 {
-    const Approach now = least_distance(kHalf, {}, moving({4.0F, 6.0F, 0.0F}, {-1.0F, -1.0F, -1.0F}), 0.0F);
+    const Approach now = least_distance(kSweepHalf, {}, moving({4.0F, 6.0F, 0.0F}, {-1.0F, -1.0F, -1.0F}), 0.0F);
     EXPECT_EQ(now.distance, 5.0F);
     EXPECT_EQ(now.when, 0.0F);
 }
 
 TEST(LeastDistance, AtTheEndWhenStillClosing)
 {
-    const Approach found = least_distance(kHalf, {}, moving({11.0F, 0.0F, 0.0F}, {-1.0F, 0.0F, 0.0F}), 4.0F);
+    const Approach found = least_distance(kSweepHalf, {}, moving({11.0F, 0.0F, 0.0F}, {-1.0F, 0.0F, 0.0F}), 4.0F);
     EXPECT_FLOAT_EQ(found.distance, 6.0F);
     EXPECT_EQ(found.when, 4.0F);
 }
 
 TEST(LeastDistance, PassingAnEdgeIsAtItsFoot)
 {
-    const Approach found = least_distance(kHalf, {}, moving({5.0F, -2.0F, 0.0F}, {-1.0F, 1.0F, 0.0F}), 100.0F);
+    const Approach found = least_distance(kSweepHalf, {}, moving({5.0F, -2.0F, 0.0F}, {-1.0F, 1.0F, 0.0F}), 100.0F);
     // The line x + y = 3 goes through the edge x = 1, y = 2.
     EXPECT_NEAR(found.distance, 0.0F, 1e-6F);
     EXPECT_NEAR(found.when, 4.0F, 1e-5F);
@@ -129,7 +129,7 @@ TEST(LeastDistance, PassingAnEdgeIsAtItsFoot)
 
 TEST(SweptDistance, OfTwoPointsIsTheBoxDistance)
 {
-    EXPECT_EQ(swept_distance(kHalf, kZero, kZero, {4.0F, 6.0F, 0.0F}, {4.0F, 6.0F, 0.0F}), 5.0F);
+    EXPECT_EQ(swept_distance(kSweepHalf, kNowhere, kNowhere, {4.0F, 6.0F, 0.0F}, {4.0F, 6.0F, 0.0F}), 5.0F);
 }
 
 TEST(SweptDistance, IgnoresTime)
@@ -139,24 +139,24 @@ TEST(SweptDistance, IgnoresTime)
     const Vec3 b(10.0F, 0.0F, 0.0F);
     const Vec3 c(9.0F, -10.0F, 0.0F);
     const Vec3 d(9.0F, 10.0F, 0.0F);
-    EXPECT_EQ(swept_distance(kHalf, a, b, c, d), 0.0F);
-    EXPECT_GT(least_distance(kHalf, {a, b - a}, {c, d - c}, 1.0F).distance, 1.0F);
+    EXPECT_EQ(swept_distance(kSweepHalf, a, b, c, d), 0.0F);
+    EXPECT_GT(least_distance(kSweepHalf, {a, b - a}, {c, d - c}, 1.0F).distance, 1.0F);
 }
 
 TEST(SweptDistance, OfParallelAndOfOpposedWays)
 {
     const Vec3 a(0.0F, 0.0F, 0.0F);
     const Vec3 b(10.0F, 0.0F, 0.0F);
-    EXPECT_FLOAT_EQ(swept_distance(kHalf, a, b, {0.0F, 5.0F, 0.0F}, {10.0F, 5.0F, 0.0F}), 3.0F);
-    EXPECT_FLOAT_EQ(swept_distance(kHalf, a, b, {30.0F, 5.0F, 0.0F}, {15.0F, 5.0F, 0.0F}), 5.0F);
+    EXPECT_FLOAT_EQ(swept_distance(kSweepHalf, a, b, {0.0F, 5.0F, 0.0F}, {10.0F, 5.0F, 0.0F}), 3.0F);
+    EXPECT_FLOAT_EQ(swept_distance(kSweepHalf, a, b, {30.0F, 5.0F, 0.0F}, {15.0F, 5.0F, 0.0F}), 5.0F);
 }
 
 TEST(PointSegmentDistance, ToTheInsideTheEndsAndAPoint)
 {
-    EXPECT_FLOAT_EQ(point_segment_distance({5.0F, 3.0F, 4.0F}, kZero, {10.0F, 0.0F, 0.0F}), 5.0F);
-    EXPECT_FLOAT_EQ(point_segment_distance({-3.0F, 4.0F, 0.0F}, kZero, {10.0F, 0.0F, 0.0F}), 5.0F);
-    EXPECT_FLOAT_EQ(point_segment_distance({13.0F, 0.0F, -4.0F}, kZero, {10.0F, 0.0F, 0.0F}), 5.0F);
-    EXPECT_FLOAT_EQ(point_segment_distance({3.0F, 0.0F, -4.0F}, kZero, kZero), 5.0F);
+    EXPECT_FLOAT_EQ(point_segment_distance({5.0F, 3.0F, 4.0F}, kNowhere, {10.0F, 0.0F, 0.0F}), 5.0F);
+    EXPECT_FLOAT_EQ(point_segment_distance({-3.0F, 4.0F, 0.0F}, kNowhere, {10.0F, 0.0F, 0.0F}), 5.0F);
+    EXPECT_FLOAT_EQ(point_segment_distance({13.0F, 0.0F, -4.0F}, kNowhere, {10.0F, 0.0F, 0.0F}), 5.0F);
+    EXPECT_FLOAT_EQ(point_segment_distance({3.0F, 0.0F, -4.0F}, kNowhere, kNowhere), 5.0F);
 }
 
 }  // namespace

@@ -2,19 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "core/orca/velocity_filter.hpp"
+#include "tests/numbers.hpp"
 
 // A filter that is flown tick by tick, for its tests.
 
 namespace jink::orca::flown {
 
-inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 inline constexpr std::uint32_t kPlenty = 1'000'000;
 
 /// A filter that is flown perfectly, each command looked at: finite, and within both balls of the limits.

@@ -12,10 +12,10 @@
 namespace jink::orca {
 namespace {
 
-constexpr std::uint32_t kPlenty = 1'000'000;
-constexpr float kExact = 2e-6F;
+constexpr std::uint32_t kProgramPlenty = 1'000'000;
+constexpr float kProgramExact = 2e-6F;
 
-void expect_near(const Vec3& a, const Vec3& b, float tolerance = kExact)
+void expect_vector_near(const Vec3& a, const Vec3& b, float tolerance = kProgramExact)
 {
     EXPECT_NEAR(a.x(), b.x(), tolerance);
     EXPECT_NEAR(a.y(), b.y(), tolerance);
@@ -32,7 +32,7 @@ HalfSpace plane(const Vec3& q, const Vec3& normal, Level level = Level::warning)
 }
 
 Solution solve_for(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
-                   std::uint32_t units = kPlenty)
+                   std::uint32_t units = kProgramPlenty)
 {
     Scratch<64> scratch;
     WorkBudget budget(units);
@@ -48,20 +48,20 @@ Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vecto
     for (const HalfSpace& p : planes) {
         rows.push_back({p.normal, p.offset});
     }
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kProgramPlenty);
     return optimum<float>(rows, balls, {preferred, false}, Tolerance<float>(2.0F), budget);
 }
 
 void expect_solved(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
-                   const Vec3& expected, float tolerance = kExact)
+                   const Vec3& expected, float tolerance = kProgramExact)
 {
     const Solution solution = solve_for(planes, balls, preferred);
     EXPECT_EQ(solution.status, 0U);
-    expect_near(solution.velocity, expected, tolerance);
+    expect_vector_near(solution.velocity, expected, tolerance);
     const Optimum<float> incremental = row_by_row(planes, balls, preferred);
     EXPECT_EQ(incremental.found, Found::optimum);
     EXPECT_EQ(incremental.satisfied, planes.size());
-    expect_near(incremental.x, expected, tolerance);
+    expect_vector_near(incremental.x, expected, tolerance);
 }
 
 const HalfSpace kG2a = plane({0, 0.3F, 0}, {0, 1, 0});
@@ -75,7 +75,7 @@ TEST(OrcaCheckVectors, G2) { expect_solved({kG2a, kG2b}, kTwo, {1, -0.5F, 0.2F},
 TEST(OrcaCheckVectors, G3)
 {
     const HalfSpace third = plane({0, 0, 0.4F}, {0, 0.6F, 0.8F});
-    EXPECT_NEAR(third.offset, 0.32F, kExact);
+    EXPECT_NEAR(third.offset, 0.32F, kProgramExact);
     expect_solved({kG2a, kG2b, third}, kTwo, {1, -0.5F, 0.2F}, {0.5F, 0.3F, 0.2F});
 }
 TEST(OrcaCheckVectors, G4)
@@ -85,7 +85,7 @@ TEST(OrcaCheckVectors, G4)
     EXPECT_EQ(solution.status, kRelaxedWarning);
     EXPECT_EQ(solution.level, Level::warning);
     EXPECT_NEAR(solution.broken[3], 1.0F, 1e-5F);
-    expect_near(solution.velocity, {1, 0, 0}, 1e-5F);  // not (0, 0, 0), where the whole way along is lost
+    expect_vector_near(solution.velocity, {1, 0, 0}, 1e-5F);  // not (0, 0, 0), where the whole way along is lost
 }
 TEST(OrcaCheckVectors, G5)
 {
@@ -95,7 +95,7 @@ TEST(OrcaCheckVectors, G5)
     EXPECT_EQ(solution.status, kRelaxedWarning);
     EXPECT_EQ(solution.broken[2], 0.0F);
     EXPECT_NEAR(solution.broken[3], 1.0F, 1e-5F);
-    expect_near(solution.velocity, {-1, 0, 0}, 1e-5F);
+    expect_vector_near(solution.velocity, {-1, 0, 0}, 1e-5F);
 }
 TEST(OrcaCheckVectors, G6) { expect_solved({}, kG6, {3, 0.5F, 0}, {1.489286F, 0.178964F, 0}); }
 TEST(OrcaCheckVectors, G7)
@@ -116,7 +116,7 @@ TEST(OrcaCheckVectors, G9)
     const Solution solution = solve_for(planes, kTwo, {0.3F, 0.2F, 0.1F});
     EXPECT_EQ(solution.status, kRelaxedWarning);
     EXPECT_NEAR(solution.broken[3], 1.0F, 1e-5F);
-    expect_near(solution.velocity, {0.3F, 0.2F, 0}, 2e-4F);  // the shift against rounding is 1e-4
+    expect_vector_near(solution.velocity, {0.3F, 0.2F, 0}, 2e-4F);  // the shift against rounding is 1e-4
 }
 
 TEST(Program, NamesTheHalfSpacesThatHold)
@@ -144,7 +144,7 @@ TEST(Program, EachLevelGivesWayForThoseBeforeIt)
     EXPECT_EQ(solution.level, Level::conflict);
     EXPECT_NEAR(solution.broken[2], 0.25F, 1e-5F);
     EXPECT_EQ(solution.broken[3], 0.0F);
-    expect_near(solution.velocity, {0.5F, 0, 1}, 2e-4F);
+    expect_vector_near(solution.velocity, {0.5F, 0, 1}, 2e-4F);
 
     solution = solve_for(joined(joined(clash(Level::obstacles, 0.5F), clash(Level::conflict, 0.25F)),
                                 joined({soft}, clash(Level::warning, 0.75F))),
@@ -161,7 +161,7 @@ TEST(Program, EachLevelGivesWayForThoseBeforeIt)
     EXPECT_EQ(solution.status, kInfeasibleDynamics);
     EXPECT_EQ(solution.level, Level::limits);
     EXPECT_EQ(solution.velocity, Vec3(Vec3::Zero()));
-    EXPECT_NEAR(solution.broken[0], 0.5F, kExact);
+    EXPECT_NEAR(solution.broken[0], 0.5F, kProgramExact);
 }
 
 TEST(Program, WhatYieldsFasterGivesWayFarther)
@@ -177,7 +177,7 @@ TEST(Program, BallsThatDoNotMeetAreDynamicsThatContradict)
 {
     const std::vector<Ball> apart{{Vec3::Zero(), 1.0F}, {{3, 0, 0}, 1.0F}};
     Scratch<8> scratch;
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kProgramPlenty);
     const Solution solution = solve({{}, apart, {1, 0, 0}, {2.5F, 0, 0}}, scratch.view(), budget);
     EXPECT_EQ(solution.status, kInfeasibleDynamics);
     EXPECT_TRUE(is_finite(solution.velocity));
@@ -191,7 +191,7 @@ TEST(Program, RefusesWhatIsNoNumber)
     Scratch<8> scratch;
     const auto refused = [&](const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& wanted,
                              const Vec3& last) {
-        WorkBudget budget(kPlenty);
+        WorkBudget budget(kProgramPlenty);
         const Solution solution = solve({planes, balls, wanted, last}, scratch.view(), budget);
         EXPECT_EQ(solution.status, kBadInput);
         EXPECT_TRUE(is_finite(solution.velocity));
@@ -241,7 +241,7 @@ TEST(Program, OutOfWorkItTakesTheBestOfAFew)
         EXPECT_LE((solution.velocity - Vec3(1, 0, 0)).norm(), 1.1F + 1e-6F);
         EXPECT_LE(budget.spent(), units);
     }
-    WorkBudget budget(kPlenty);
+    WorkBudget budget(kProgramPlenty);
     EXPECT_EQ(solve({planes, balls, {1.5F, 0, 0}, {1, 0, 0}}, scratch.view(), budget).status, 0U);
 }
 
@@ -258,7 +258,7 @@ TEST(Program, OrderWithinALevelChangesNothing)
         std::rotate(planes.begin(), planes.begin() + 1, planes.end());
         const Solution solution = solve_for(planes, kTwo, {1, -0.5F, 0.2F});
         EXPECT_EQ(solution.status, 0U);
-        expect_near(solution.velocity, {0.5F, 0.3F, 0.2F});
+        expect_vector_near(solution.velocity, {0.5F, 0.3F, 0.2F});
     }
 }
 
@@ -272,7 +272,7 @@ TEST(Program, StandsStillWhereThatIsAll)
     }
     const Solution solution = solve_for(planes, kTwo, {1, -0.5F, 0.2F});
     EXPECT_EQ(solution.status, 0U);
-    expect_near(solution.velocity, Vec3::Zero());
+    expect_vector_near(solution.velocity, Vec3::Zero());
 }
 
 TEST(Program, IntoBallsIsAlwaysWithin)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What goes wrong: one status for each cause, and a command within the limits whatever it is (G-ORCA specification,
 // T7).
+#include <gtest/gtest.h>
+
 #include "core/orca/velocity_filter.hpp"
 
 #include <array>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The filter's tick: the identity where nothing is near, what holds a command, and what is said of it.
+#include <gtest/gtest.h>
+
 #include "core/orca/velocity_filter.hpp"
 
 #include <array>

@@ -13,7 +13,7 @@
 namespace jink::reach {
 namespace {
 
-constexpr float kDegree = 0.0174532925F;
+constexpr float kScanDegree = 0.0174532925F;
 
 TEST(LidarScans, AreasAreThoseOfTheDerivedFigures)
 {
@@ -39,7 +39,7 @@ TEST(LidarScans, VisibilityFallsBehindWhatStopsRays)
     const Grid<float> grid;
     LidarScan scan;
     // 20 rays in each direction: 4 across 12.857 degrees, 5 up 12.
-    ASSERT_TRUE(scan.configure(grid, 90.0F / 28.0F * kDegree, 2.4F * kDegree));
+    ASSERT_TRUE(scan.configure(grid, 90.0F / 28.0F * kScanDegree, 2.4F * kScanDegree));
     ASSERT_EQ(scan.rays(3, 2), 20U);
     std::array<float, 10> v{};
     const auto expect = [&](std::initializer_list<float> steps, std::initializer_list<int> until) {
@@ -68,16 +68,16 @@ TEST(LidarScans, VisibilityFallsBehindWhatStopsRays)
 /// The same plate at 5 m and at 10 m: a quarter of the hits, the same rating but for whole rays.
 TEST(LidarScans, APlateIsRatedAlikeNearAndFar)
 {
-    const Grid<float> grid(10, 7, 5, 12.0F, 45.0F * kDegree, 30.0F * kDegree);
+    const Grid<float> grid(10, 7, 5, 12.0F, 45.0F * kScanDegree, 30.0F * kScanDegree);
     LidarScan scan;
-    ASSERT_TRUE(scan.configure(grid, 0.2F * kDegree, 0.2F * kDegree));
+    ASSERT_TRUE(scan.configure(grid, 0.2F * kScanDegree, 0.2F * kScanDegree));
     const auto rating = [&](float distance) {
         scan.begin();
         // A plate of 0.1 m2 across the middle direction.
         const float half = 0.5F * std::sqrt(0.1F) / distance;
         Located at;
-        for (float h = -half; h <= half; h += 0.2F * kDegree) {
-            for (float v = -half; v <= half; v += 0.2F * kDegree) {
+        for (float h = -half; h <= half; h += 0.2F * kScanDegree) {
+            for (float v = -half; v <= half; v += 0.2F * kScanDegree) {
                 const Polar<float> point{distance, h, v};
                 EXPECT_EQ(scan.add(point), PointStatus::counted);
                 at = grid.locate(point);
@@ -96,10 +96,10 @@ TEST(LidarScans, EveryPointIsAnsweredFor)
     const Grid<float> grid;
     LidarScan scan;
     EXPECT_EQ(scan.add(Point<float>(1, 0, 0)), PointStatus::outside) << "not configured";
-    EXPECT_FALSE(scan.configure(grid, 20.0F * kDegree, 2.0F * kDegree)) << "columns without a ray";
+    EXPECT_FALSE(scan.configure(grid, 20.0F * kScanDegree, 2.0F * kScanDegree)) << "columns without a ray";
     EXPECT_FALSE(scan.configure(grid, 0.0F, 1.0F));
     EXPECT_FALSE(scan.configure(Grid<float>(16, 16, 16, 1.0F, 1.0F, 1.0F), 0.01F, 0.01F)) << "too large";
-    ASSERT_TRUE(scan.configure(grid, 1.0F * kDegree, 1.0F * kDegree));
+    ASSERT_TRUE(scan.configure(grid, 1.0F * kScanDegree, 1.0F * kScanDegree));
     EXPECT_EQ(scan.add(Point<float>(5, 0, 0)), PointStatus::counted);
     EXPECT_EQ(scan.add(Point<float>(11, 0, 0)), PointStatus::beyond);
     EXPECT_EQ(scan.add(Point<float>(-5, 0, 0)), PointStatus::outside);

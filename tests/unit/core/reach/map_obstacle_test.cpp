@@ -11,7 +11,7 @@
 namespace jink::reach {
 namespace {
 
-constexpr float kRight = 0.5F * kPi;
+constexpr float kRightHand = 0.5F * kPi;
 
 Closure look(const Grid<float>& grid, const CellPlace& place, const MapObstacle& obstacle, const GridPose& pose = {})
 {
@@ -129,7 +129,7 @@ TEST(MapObstacles, TheMainAxisTurnsAsTheConventionsSay)
     line.margin = 0.05F;
     EXPECT_EQ(look(grid, {3, 3, 2}, line), Closure::hard) << "from 3 to 7 ahead";
     EXPECT_EQ(look(grid, {4, 5, 2}, line), Closure::none);
-    line.yaw = kRight;
+    line.yaw = kRightHand;
     EXPECT_EQ(look(grid, {3, 3, 2}, line), Closure::none);
     EXPECT_EQ(look(grid, {5, 4, 2}, line), Closure::hard) << "from 2 right to 2 left";
     EXPECT_EQ(look(grid, {5, 2, 2}, line), Closure::hard);
@@ -139,7 +139,7 @@ TEST(MapObstacles, TheMainAxisTurnsAsTheConventionsSay)
     EXPECT_NEAR(body.axes(2, 0), -std::sqrt(0.5F), 1e-6F) << "nose down";
     GridPose pose;
     pose.position = Vec3(5, -5, 0);
-    pose.yaw = kRight;
+    pose.yaw = kRightHand;
     line.pitch = 0.0F;
     EXPECT_EQ(look(grid, {5, 4, 2}, line, pose), Closure::hard) << "across, seen from the south";
     pose.unit = 10.0F;

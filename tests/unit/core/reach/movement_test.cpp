@@ -12,7 +12,7 @@
 namespace jink::reach {
 namespace {
 
-constexpr double kDegree = 0.017453292519943295;
+constexpr double kMovementDegree = 0.017453292519943295;
 constexpr auto S = Movement::straight;
 constexpr auto L = Movement::left;
 constexpr auto R = Movement::right;
@@ -55,12 +55,12 @@ TEST(Movements, EndWhereTheReferenceResultsSay)
         EXPECT_NEAR(end.position.x(), c.x, 1e-6);
         EXPECT_NEAR(end.position.y(), c.y, 1e-6);
         EXPECT_NEAR(end.position.z(), c.z, 1e-6);
-        EXPECT_NEAR(end.pitch, c.pitch * kDegree, 1e-9);
-        EXPECT_NEAR(end.yaw, c.yaw * kDegree, 1e-9);
+        EXPECT_NEAR(end.pitch, c.pitch * kMovementDegree, 1e-9);
+        EXPECT_NEAR(end.yaw, c.yaw * kMovementDegree, 1e-9);
         const Polar<double> polar = to_polar(end.position);
         EXPECT_NEAR(polar.distance, c.distance, 1e-6);
-        EXPECT_NEAR(polar.horizontal / kDegree, c.horizontal, 5e-5);
-        EXPECT_NEAR(polar.vertical / kDegree, c.vertical, 5e-5);
+        EXPECT_NEAR(polar.horizontal / kMovementDegree, c.horizontal, 5e-5);
+        EXPECT_NEAR(polar.vertical / kMovementDegree, c.vertical, 5e-5);
         const Pose<float> single = fly<float>(c.movements);
         EXPECT_NEAR((single.position.cast<double>() - end.position).norm(), 0.0, 4e-6);
     }
@@ -88,7 +88,8 @@ TEST(Movements, AgreeWithTheFigureOfTheClosedForm)
     Pose<double> from;
     from.pitch = 0.2;
     from.yaw = -0.3;
-    const Point<double> by = arc_displacement(1.0, from.pitch, from.yaw, 15.0 * kDegree, 15.0 * kDegree);
+    const Point<double> by =
+        arc_displacement(1.0, from.pitch, from.yaw, 15.0 * kMovementDegree, 15.0 * kMovementDegree);
     EXPECT_NEAR(by.x(), 0.9266430943, 1e-9);
     EXPECT_NEAR(by.y(), -0.1600825478, 1e-9);
     EXPECT_NEAR(by.z(), -0.3239670116, 1e-9);
@@ -115,8 +116,8 @@ TEST(Movements, AreThoseOfTheCorrectedTable)
         EXPECT_NEAR(end.position.x(), row.x, 1e-6);
         EXPECT_NEAR(end.position.y(), row.y, 1e-6);
         EXPECT_NEAR(end.position.z(), row.z, 1e-6);
-        EXPECT_NEAR(end.pitch, row.pitch * kDegree, 1e-12);
-        EXPECT_NEAR(end.yaw, row.yaw * kDegree, 1e-12);
+        EXPECT_NEAR(end.pitch, row.pitch * kMovementDegree, 1e-12);
+        EXPECT_NEAR(end.yaw, row.yaw * kMovementDegree, 1e-12);
     }
 }
 
@@ -132,9 +133,9 @@ TEST(Movements, WithEndHeadingAreStraight)
 TEST(Movements, AShareOfOneLiesOnIt)
 {
     const Pose<double> half = at_share(Pose<double>{}, UL, 0.5, MovementStep<double>{});
-    EXPECT_NEAR(half.yaw, 7.5 * kDegree, 1e-12);
+    EXPECT_NEAR(half.yaw, 7.5 * kMovementDegree, 1e-12);
     // The second half, from there, leads to the same end: half as long, half the turn.
-    const MovementStep<double> rest{0.5, 7.5 * kDegree, 7.5 * kDegree};
+    const MovementStep<double> rest{0.5, 7.5 * kMovementDegree, 7.5 * kMovementDegree};
     const Pose<double> end = apply(half, UL, rest);
     const Pose<double> whole = fly<double>({UL});
     EXPECT_NEAR((end.position - whole.position).norm(), 0.0, 1e-12);

@@ -11,8 +11,8 @@
 namespace jink::reach {
 namespace {
 
-constexpr auto kStraight = Movement::straight;
-constexpr auto kLeft = Movement::left;
+constexpr auto kGoStraight = Movement::straight;
+constexpr auto kGoLeft = Movement::left;
 
 FlightState standing()
 {
@@ -22,13 +22,13 @@ FlightState standing()
 }
 
 /// Stay is straight at speed 0, Move(v) straight at v.
-const std::vector<Order> kExample{{kStraight, 5.0F, 10.0F}, {kStraight, 10.0F, 0.0F}, {kStraight, 7.0F, 4.0F}};
+const std::vector<Order> kExample{{kGoStraight, 5.0F, 10.0F}, {kGoStraight, 10.0F, 0.0F}, {kGoStraight, 7.0F, 4.0F}};
 
 /// Section 4.3, REFERENCE RESULTS: Move 5 s at 10 m/s, Stay 10 s, Move 7 s at 4 m/s; p(5) = 50, p(15) = 50, p(22) = 78.
 TEST(Predictor, ChainsTheExampleOfTheSource)
 {
     Trajectory trajectory;
-    ASSERT_EQ(predict({}, Segments(), standing(), {kStraight, 0.0F}, 0.0F, kExample, trajectory),
+    ASSERT_EQ(predict({}, Segments(), standing(), {kGoStraight, 0.0F}, 0.0F, kExample, trajectory),
               PredictStatus::complete);
     EXPECT_EQ(trajectory.end(), 22.0F);
     const auto p = [&](float t) {
@@ -48,7 +48,7 @@ TEST(Predictor, ChainsTheExampleOfTheSource)
 TEST(Predictor, TheEndOfAnOrderIsItsOwn)
 {
     Trajectory trajectory;
-    ASSERT_EQ(predict({}, Segments(), standing(), {kStraight, 0.0F}, 0.0F, kExample, trajectory),
+    ASSERT_EQ(predict({}, Segments(), standing(), {kGoStraight, 0.0F}, 0.0F, kExample, trajectory),
               PredictStatus::complete);
     FlightState state;
     ASSERT_TRUE(project(trajectory, 0.0F, state));
@@ -82,9 +82,9 @@ TEST(Predictor, TheBuilderPutsInTheChanges)
     AutomatonSettings settings;
     settings.transitions = {0.2F, 0.1F, 0.4F};
     const FlightState start;
-    const std::vector<Order> orders{{kLeft, 2.0F, 1.0F}, {Movement::right, 2.0F, 1.0F}, {Movement::up, 2.0F, 3.0F}};
+    const std::vector<Order> orders{{kGoLeft, 2.0F, 1.0F}, {Movement::right, 2.0F, 1.0F}, {Movement::up, 2.0F, 3.0F}};
     Trajectory t;
-    ASSERT_EQ(predict(settings, Segments(), start, {kStraight, 1.0F}, 0.0F, orders, t), PredictStatus::complete);
+    ASSERT_EQ(predict(settings, Segments(), start, {kGoStraight, 1.0F}, 0.0F, orders, t), PredictStatus::complete);
     EXPECT_FLOAT_EQ(t.legs[0].entry, 0.2F);
     EXPECT_EQ(t.legs[0].leave, 0.0F) << "something follows";
     EXPECT_FLOAT_EQ(t.legs[1].entry, 0.4F) << "out of one turn and into the other";
@@ -109,15 +109,15 @@ TEST(Predictor, TheBuilderPutsInTheChanges)
 TEST(Predictor, TheLeastDurationHasRoomForAllChanges)
 {
     AutomatonSettings settings;
-    EXPECT_EQ(least_duration(settings, {kStraight, 1.0F, 1.0F}), 1.0F);
+    EXPECT_EQ(least_duration(settings, {kGoStraight, 1.0F, 1.0F}), 1.0F);
     settings.least_holding = 0.5F;
     settings.transitions = {0.2F, 0.05F, 0.1F};
-    EXPECT_FLOAT_EQ(least_duration(settings, {kStraight, 1.0F, 1.0F}), 0.5F + 0.2F);
-    EXPECT_FLOAT_EQ(least_duration(settings, {kLeft, 1.0F, 1.0F}), 0.5F + 0.4F + 0.2F);
+    EXPECT_FLOAT_EQ(least_duration(settings, {kGoStraight, 1.0F, 1.0F}), 0.5F + 0.2F);
+    EXPECT_FLOAT_EQ(least_duration(settings, {kGoLeft, 1.0F, 1.0F}), 0.5F + 0.4F + 0.2F);
     EXPECT_FLOAT_EQ(least_duration(settings, {Movement::up, 1.0F, 1.0F}), 0.5F + 0.2F + 0.05F);
     Trajectory t;
-    const Order good{kLeft, 1.1F, 1.0F};
-    const Order bad{kLeft, 1.09F, 1.0F};
+    const Order good{kGoLeft, 1.1F, 1.0F};
+    const Order bad{kGoLeft, 1.09F, 1.0F};
     EXPECT_EQ(predict(settings, Segments(), {}, {}, 0.0F, {&good, 1}, t), PredictStatus::complete);
     EXPECT_EQ(predict(settings, Segments(), {}, {}, 0.0F, {&bad, 1}, t), PredictStatus::refused);
     EXPECT_EQ(t.not_emitted, 1U);
@@ -127,10 +127,11 @@ TEST(Predictor, TheLeastDurationHasRoomForAllChanges)
 TEST(Predictor, WhatCannotBeFlownEndsTheTrajectory)
 {
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-    const std::vector<Order> wrong{{kLeft, kNaN, 1.0F}, {kLeft, -1.0F, 1.0F}, {kLeft, INFINITY, 1.0F},
-                                   {kLeft, 1.0F, kNaN}, {kLeft, 1.0F, -1.0F}, {static_cast<Movement>(9), 1.0F, 1.0F}};
+    const std::vector<Order> wrong{{kGoLeft, kNaN, 1.0F},     {kGoLeft, -1.0F, 1.0F},
+                                   {kGoLeft, INFINITY, 1.0F}, {kGoLeft, 1.0F, kNaN},
+                                   {kGoLeft, 1.0F, -1.0F},    {static_cast<Movement>(9), 1.0F, 1.0F}};
     for (const Order& order : wrong) {
-        const std::vector<Order> orders{{kStraight, 1.0F, 1.0F}, order, {kStraight, 1.0F, 1.0F}};
+        const std::vector<Order> orders{{kGoStraight, 1.0F, 1.0F}, order, {kGoStraight, 1.0F, 1.0F}};
         Trajectory t;
         EXPECT_EQ(predict({}, Segments(), {}, {}, 0.0F, orders, t), PredictStatus::refused);
         EXPECT_EQ(t.legs.size(), 1U);
@@ -155,17 +156,17 @@ TEST(Predictor, TheSegmentIsThatOfTheStateBefore)
     ASSERT_EQ(segments.set(1, {0.1F, 0.4F, 2.0F}), SegmentStatus::good);
     FlightState start;
     start.speed = 4.0F;
-    std::vector<Order> orders{{kLeft, 1.0F, 6.0F}, {kLeft, 1.0F, 6.0F}, {kLeft, 1.0F, 12.0F}};
+    std::vector<Order> orders{{kGoLeft, 1.0F, 6.0F}, {kGoLeft, 1.0F, 6.0F}, {kGoLeft, 1.0F, 12.0F}};
     Trajectory t;
-    EXPECT_EQ(predict({}, segments, start, {kStraight, 4.0F}, 0.0F, orders, t), PredictStatus::refused)
+    EXPECT_EQ(predict({}, segments, start, {kGoStraight, 4.0F}, 0.0F, orders, t), PredictStatus::refused)
         << "6 m/s more than the segment has";
     ASSERT_EQ(t.legs.size(), 2U);
     EXPECT_NEAR(at(t.legs[0], 1.0F).pose.yaw, 0.1F, 1e-6F) << "slow before, though fast in it";
     EXPECT_NEAR(at(t.legs[1], 1.0F).pose.yaw, 0.5F, 1e-6F);
     EXPECT_EQ(t.outside, 0U);
-    orders = {{kStraight, 1.0F, 12.0F}, {kStraight, 1.0F, 12.0F}};
+    orders = {{kGoStraight, 1.0F, 12.0F}, {kGoStraight, 1.0F, 12.0F}};
     start.speed = 11.0F;
-    EXPECT_EQ(predict({}, segments, start, {kStraight, 11.0F}, 0.0F, orders, t), PredictStatus::complete);
+    EXPECT_EQ(predict({}, segments, start, {kGoStraight, 11.0F}, 0.0F, orders, t), PredictStatus::complete);
     EXPECT_EQ(t.outside, 2U) << "beyond the envelope, and said so";
 }
 
@@ -173,7 +174,7 @@ TEST(Predictor, TheSegmentIsThatOfTheStateBefore)
 TEST(Predictor, SamplesHaveTheStartAndEveryEnd)
 {
     Trajectory t;
-    ASSERT_EQ(predict({}, Segments(), standing(), {kStraight, 0.0F}, 100.0F, kExample, t), PredictStatus::complete);
+    ASSERT_EQ(predict({}, Segments(), standing(), {kGoStraight, 0.0F}, 100.0F, kExample, t), PredictStatus::complete);
     Reference reference;
     ASSERT_EQ(sample(t, 1, reference), PredictStatus::complete);
     ASSERT_EQ(reference.samples.size(), 4U);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/world/obstacle_table.hpp"
-
-#include <limits>
+#include "tests/numbers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +8,6 @@ namespace jink::world {
 namespace {
 
 constexpr TimePoint kNow{50'000'000};
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 Obstacle ball(ObstacleId id, const Vec3& centre, float radius = 1.0F)
 {
@@ -43,7 +40,7 @@ TEST_F(ObstacleTables, CreatesAndRenewsInOrderOfId)
 TEST_F(ObstacleTables, InvalidShapesAreRefused)
 {
     std::vector<geometry::Shape> bad;
-    for (const float number : {kNan, kInf, -kInf}) {
+    for (const float number : {kNan, kInfinity, -kInfinity}) {
         bad.push_back(geometry::make_sphere(Vec3(number, 0, 0), 1.0F));
         bad.push_back(geometry::make_sphere(Vec3::Zero(), number));
         bad.push_back(geometry::make_box(Vec3::Zero(), Vec3(1, number, 1)));

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/world/track_table.hpp"
+#include "tests/numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
 namespace jink::world {
 namespace {
 
-constexpr TimePoint kNow{100'000'000};
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr TimePoint kTime{100'000'000};
 
-TrackMeasurement sighting(TrackId id, const Vec3& position, TimePoint stamp = kNow)
+TrackMeasurement sighting(TrackId id, const Vec3& position, TimePoint stamp = kTime)
 {
     TrackMeasurement m;
     m.id = id;
@@ -43,14 +41,14 @@ TEST_F(TrackTables, FirstSightingIsTakenAsItIs)
     m.velocity = Vec3(1, -2, 0.5F);
     m.max_acceleration = 2.0F;
     m.source = TrackSource::datalink;
-    EXPECT_EQ(table.update(m, own, kNow), TrackStatus::created);
+    EXPECT_EQ(table.update(m, own, kTime), TrackStatus::created);
     EXPECT_EQ(table.diagnostics().created, 1U);
-    const auto tracks = table.snapshot(kNow);
+    const auto tracks = table.snapshot(kTime);
     ASSERT_EQ(tracks.size(), 1U);
     EXPECT_EQ(tracks[0].id, 7U);
     EXPECT_EQ(tracks[0].position, m.position);
     EXPECT_EQ(tracks[0].velocity, m.velocity);
-    EXPECT_EQ(tracks[0].stamp, kNow);
+    EXPECT_EQ(tracks[0].stamp, kTime);
     EXPECT_EQ(tracks[0].radius, 1.0F);
     EXPECT_EQ(tracks[0].sigma_position, 0.5F);
     EXPECT_EQ(tracks[0].sigma_velocity, 0.3F);
@@ -62,7 +60,7 @@ TEST_F(TrackTables, FirstSightingIsTakenAsItIs)
 TEST_F(TrackTables, TheNewestSightingSaysWhetherItIsCooperative)
 {
     for (int i = 0; i < 6; ++i) {
-        TrackMeasurement m = sighting(7, Vec3(10, 20, 30), {kNow.us + i * 100'000});
+        TrackMeasurement m = sighting(7, Vec3(10, 20, 30), {kTime.us + i * 100'000});
         m.cooperative = i % 3 == 1;  // filtered, and started anew by a jump
         m.position.x() += i >= 3 ? 500.0F : 0.0F;
         m.source = m.cooperative ? TrackSource::utm : TrackSource::adsb;
@@ -81,22 +79,22 @@ TEST_F(TrackTables, WithoutVelocityTheFirstSightingStandsWithALargeDoubt)
     m.has_velocity = false;
     m.velocity = Vec3(99, 99, 99);
     m.sigma_velocity = 0.0F;
-    EXPECT_EQ(table.update(m, own, kNow), TrackStatus::created);
-    const auto tracks = table.snapshot(kNow);
+    EXPECT_EQ(table.update(m, own, kTime), TrackStatus::created);
+    const auto tracks = table.snapshot(kTime);
     EXPECT_EQ(tracks[0].velocity, Vec3(0, 0, 0));
     EXPECT_EQ(tracks[0].sigma_velocity, TrackTableSettings{}.first_sigma_velocity);
 }
 
 TEST_F(TrackTables, NaNAndInfinityInAnyFieldAreRefused)
 {
-    for (const float bad : {kNan, kInf, -kInf}) {
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
         for (int field = 0; field < 10; ++field) {
             TrackMeasurement m = sighting(1, Vec3(1, 2, 3));
             float* const fields[] = {&m.position.x(),   &m.position.y(),    &m.position.z(), &m.velocity.x(),
                                      &m.velocity.y(),   &m.velocity.z(),    &m.radius,       &m.sigma_position,
                                      &m.sigma_velocity, &m.max_acceleration};
             *fields[field] = bad;
-            EXPECT_EQ(table.update(m, own, kNow), TrackStatus::not_finite) << bad << " in field " << field;
+            EXPECT_EQ(table.update(m, own, kTime), TrackStatus::not_finite) << bad << " in field " << field;
         }
     }
     EXPECT_EQ(table.diagnostics().not_finite, 30U);
@@ -110,7 +108,7 @@ TEST_F(TrackTables, RangesAreRefusedBeyondTheirEdgesOnly)
         TrackTable fresh;
         TrackMeasurement m = sighting(1, Vec3(1, 2, 3));
         change(m);
-        const TrackStatus result = fresh.update(m, own, kNow);
+        const TrackStatus result = fresh.update(m, own, kTime);
         EXPECT_EQ(fresh.diagnostics().out_of_range, result == TrackStatus::out_of_range ? 1U : 0U);
         return result;
     };
@@ -132,8 +130,8 @@ TEST_F(TrackTables, RangesAreRefusedBeyondTheirEdgesOnly)
 TEST_F(TrackTables, RangeCountsFromTheVehicleNotFromTheOrigin)
 {
     own.position = Vec3(1e5F, 0, 0);
-    EXPECT_EQ(table.update(sighting(1, Vec3(1, 2, 3)), own, kNow), TrackStatus::out_of_range);
-    EXPECT_EQ(table.update(sighting(1, Vec3(1.1e5F, 2, 3)), own, kNow), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(1, Vec3(1, 2, 3)), own, kTime), TrackStatus::out_of_range);
+    EXPECT_EQ(table.update(sighting(1, Vec3(1.1e5F, 2, 3)), own, kTime), TrackStatus::created);
 }
 
 TEST_F(TrackTables, SizesThatFloatCannotSquareAreRefused)
@@ -146,7 +144,7 @@ TEST_F(TrackTables, SizesThatFloatCannotSquareAreRefused)
                 continue;  // a body without extent and a track that never turns are fine
             }
             *fields[field] = absurd;
-            EXPECT_EQ(table.update(m, own, kNow), TrackStatus::out_of_range) << absurd << " in field " << field;
+            EXPECT_EQ(table.update(m, own, kTime), TrackStatus::out_of_range) << absurd << " in field " << field;
         }
     }
 }
@@ -154,12 +152,13 @@ TEST_F(TrackTables, SizesThatFloatCannotSquareAreRefused)
 TEST_F(TrackTables, StaleAndFutureStamps)
 {
     const TrackTableSettings settings;
-    EXPECT_EQ(table.update(sighting(1, Vec3::Zero(), kNow - settings.max_age - 0.001F), own, kNow), TrackStatus::stale);
-    EXPECT_EQ(table.update(sighting(1, Vec3::Zero(), kNow - settings.max_age + 0.001F), own, kNow),
+    EXPECT_EQ(table.update(sighting(1, Vec3::Zero(), kTime - settings.max_age - 0.001F), own, kTime),
+              TrackStatus::stale);
+    EXPECT_EQ(table.update(sighting(1, Vec3::Zero(), kTime - settings.max_age + 0.001F), own, kTime),
               TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(2, Vec3::Zero(), kNow + settings.future_slack + 0.001F), own, kNow),
+    EXPECT_EQ(table.update(sighting(2, Vec3::Zero(), kTime + settings.future_slack + 0.001F), own, kTime),
               TrackStatus::future);
-    EXPECT_EQ(table.update(sighting(2, Vec3::Zero(), kNow + settings.future_slack - 0.001F), own, kNow),
+    EXPECT_EQ(table.update(sighting(2, Vec3::Zero(), kTime + settings.future_slack - 0.001F), own, kTime),
               TrackStatus::created);
     EXPECT_EQ(table.diagnostics().stale, 1U);
     EXPECT_EQ(table.diagnostics().future, 1U);
@@ -168,25 +167,25 @@ TEST_F(TrackTables, StaleAndFutureStamps)
 
 TEST_F(TrackTables, AnOlderOrEqualStampOfAKnownTrackChangesNothing)
 {
-    EXPECT_EQ(table.update(sighting(1, Vec3(5, 0, 0)), own, kNow), TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(1, Vec3(50, 0, 0)), own, kNow), TrackStatus::stale);
-    EXPECT_EQ(table.update(sighting(1, Vec3(50, 0, 0), kNow - 1.0F), own, kNow), TrackStatus::stale);
-    EXPECT_EQ(table.snapshot(kNow)[0].position, Vec3(5, 0, 0));
+    EXPECT_EQ(table.update(sighting(1, Vec3(5, 0, 0)), own, kTime), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(1, Vec3(50, 0, 0)), own, kTime), TrackStatus::stale);
+    EXPECT_EQ(table.update(sighting(1, Vec3(50, 0, 0), kTime - 1.0F), own, kTime), TrackStatus::stale);
+    EXPECT_EQ(table.snapshot(kTime)[0].position, Vec3(5, 0, 0));
     EXPECT_EQ(table.diagnostics().stale, 2U);
 }
 
 TEST_F(TrackTables, AJumpStartsTheTrackAnewFromTheSighting)
 {
-    EXPECT_EQ(table.update(sighting(1, Vec3::Zero()), own, kNow), TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(1, Vec3(100, 0, 0), kNow + 1.0F), own, kNow + 1.0F), TrackStatus::updated);
+    EXPECT_EQ(table.update(sighting(1, Vec3::Zero()), own, kTime), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(1, Vec3(100, 0, 0), kTime + 1.0F), own, kTime + 1.0F), TrackStatus::updated);
     EXPECT_EQ(table.diagnostics().jumps, 1U);
-    EXPECT_EQ(table.snapshot(kNow + 1.0F)[0].position, Vec3(100, 0, 0));
-    EXPECT_EQ(table.snapshot(kNow + 1.0F)[0].sigma_position, 0.5F);
-    TrackMeasurement turned = sighting(1, Vec3(100, 0, 0), kNow + 1.1F);
+    EXPECT_EQ(table.snapshot(kTime + 1.0F)[0].position, Vec3(100, 0, 0));
+    EXPECT_EQ(table.snapshot(kTime + 1.0F)[0].sigma_position, 0.5F);
+    TrackMeasurement turned = sighting(1, Vec3(100, 0, 0), kTime + 1.1F);
     turned.velocity = Vec3(0, 30, 0);
-    EXPECT_EQ(table.update(turned, own, kNow + 1.1F), TrackStatus::updated);
+    EXPECT_EQ(table.update(turned, own, kTime + 1.1F), TrackStatus::updated);
     EXPECT_EQ(table.diagnostics().jumps, 2U);
-    EXPECT_EQ(table.snapshot(kNow + 1.1F)[0].velocity, Vec3(0, 30, 0));
+    EXPECT_EQ(table.snapshot(kTime + 1.1F)[0].velocity, Vec3(0, 30, 0));
 }
 
 /// 5 m/s, turning with 3 m/s2: what the filter says must stay within its own doubt, or start anew.
@@ -197,12 +196,12 @@ TEST_F(TrackTables, ATurningIntruderIsFollowed)
         const float t = 0.1F * static_cast<float>(i);
         const float angle = 0.6F * t;
         const Vec3 position(8.333F * std::sin(angle), 8.333F * (1.0F - std::cos(angle)), 0);
-        TrackMeasurement m = sighting(1, position, kNow + t);
+        TrackMeasurement m = sighting(1, position, kTime + t);
         m.velocity = Vec3(5.0F * std::cos(angle), 5.0F * std::sin(angle), 0);
         m.sigma_position = 0.2F;
         m.sigma_velocity = 0.2F;
-        EXPECT_TRUE(table.update(m, own, kNow + t) <= TrackStatus::created);
-        worst = std::max(worst, (table.snapshot(kNow + t)[0].position - position).norm());
+        EXPECT_TRUE(table.update(m, own, kTime + t) <= TrackStatus::created);
+        worst = std::max(worst, (table.snapshot(kTime + t)[0].position - position).norm());
     }
     // Centripetal 3 m/s2 against a filter made for 0.5: it lags, by less than three sigmas of one sighting.
     EXPECT_LT(worst, 0.6F);
@@ -211,39 +210,39 @@ TEST_F(TrackTables, ATurningIntruderIsFollowed)
 
 TEST_F(TrackTables, SnapshotExtrapolatesAndSortsById)
 {
-    TrackMeasurement m = sighting(9, Vec3(0, 0, 10), kNow - 2.0F);
+    TrackMeasurement m = sighting(9, Vec3(0, 0, 10), kTime - 2.0F);
     m.velocity = Vec3(3, 0, 0);
-    EXPECT_EQ(table.update(m, own, kNow), TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(4, Vec3(1, 1, 1)), own, kNow), TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(6, Vec3(2, 2, 2)), own, kNow), TrackStatus::created);
-    const auto tracks = table.snapshot(kNow);
+    EXPECT_EQ(table.update(m, own, kTime), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(4, Vec3(1, 1, 1)), own, kTime), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(6, Vec3(2, 2, 2)), own, kTime), TrackStatus::created);
+    const auto tracks = table.snapshot(kTime);
     ASSERT_EQ(tracks.size(), 3U);
     EXPECT_EQ(tracks[0].id, 4U);
     EXPECT_EQ(tracks[1].id, 6U);
     EXPECT_EQ(tracks[2].id, 9U);
     EXPECT_NEAR(tracks[2].position.x(), 6.0F, 1e-4F);
-    EXPECT_EQ(tracks[2].stamp, kNow - 2.0F) << "the stamp stays, so that doubt grows from it";
+    EXPECT_EQ(tracks[2].stamp, kTime - 2.0F) << "the stamp stays, so that doubt grows from it";
 }
 
 TEST_F(TrackTables, ExpiryByAge)
 {
     const TrackTableSettings settings;
     for (TrackId id = 0; id < 5; ++id) {
-        static_cast<void>(table.update(sighting(id, Vec3::Zero(), kNow - 0.5F * static_cast<float>(id)), own, kNow));
+        static_cast<void>(table.update(sighting(id, Vec3::Zero(), kTime - 0.5F * static_cast<float>(id)), own, kTime));
     }
-    table.expire(kNow);
+    table.expire(kTime);
     EXPECT_EQ(table.size(), 5U);
-    table.expire(kNow + settings.max_age - 1.25F);  // 3 and 4 are older than max_age now
+    table.expire(kTime + settings.max_age - 1.25F);  // 3 and 4 are older than max_age now
     EXPECT_EQ(table.size(), 3U);
     EXPECT_EQ(table.diagnostics().expired, 2U);
-    const auto left = table.snapshot(kNow);
+    const auto left = table.snapshot(kTime);
     for (std::size_t i = 0; i < left.size(); ++i) {
         EXPECT_EQ(left[i].id, i);
     }
-    table.expire(kNow + 100.0F);
+    table.expire(kTime + 100.0F);
     EXPECT_EQ(table.size(), 0U);
     EXPECT_EQ(table.diagnostics().expired, 5U);
-    EXPECT_TRUE(table.snapshot(kNow).empty());
+    EXPECT_TRUE(table.snapshot(kTime).empty());
 }
 
 /// Each status has a sighting that provokes it, and moves its own counter and no other.
@@ -252,17 +251,17 @@ TEST_F(TrackTables, EachStatusCountsAsItself)
     using Counter = std::uint32_t TrackDiagnostics::*;
     const auto provoke = [&](const TrackMeasurement& m, TrackStatus status, Counter counter) {
         const TrackDiagnostics before = table.diagnostics();
-        EXPECT_EQ(table.update(m, own, kNow), status);
+        EXPECT_EQ(table.update(m, own, kTime), status);
         EXPECT_EQ(table.diagnostics().*counter, before.*counter + 1);
         EXPECT_EQ(sum(table.diagnostics()), sum(before) + 1);
     };
     const Vec3 near(100, 0, 0);
-    const TimePoint earlier = kNow - 0.2F;
+    const TimePoint earlier = kTime - 0.2F;
     provoke(sighting(0, near, earlier), TrackStatus::created, &TrackDiagnostics::created);
     provoke(sighting(0, near), TrackStatus::updated, &TrackDiagnostics::updated);
     provoke(sighting(0, near), TrackStatus::stale, &TrackDiagnostics::stale);
-    provoke(sighting(1, near, kNow - 10.0F), TrackStatus::stale, &TrackDiagnostics::stale);
-    provoke(sighting(1, near, kNow + 10.0F), TrackStatus::future, &TrackDiagnostics::future);
+    provoke(sighting(1, near, kTime - 10.0F), TrackStatus::stale, &TrackDiagnostics::stale);
+    provoke(sighting(1, near, kTime + 10.0F), TrackStatus::future, &TrackDiagnostics::future);
     provoke(sighting(1, Vec3(kNan, 0, 0)), TrackStatus::not_finite, &TrackDiagnostics::not_finite);
     provoke(sighting(1, Vec3(1e6F, 0, 0)), TrackStatus::out_of_range, &TrackDiagnostics::out_of_range);
     for (std::size_t i = 1; i < kMaxTracks; ++i) {
@@ -280,18 +279,19 @@ TEST_F(TrackTables, CapacityLessOneFullAndOneMore)
     const auto at = [](std::size_t i) { return Vec3(100.0F + static_cast<float>(i), 0, 0); };
     for (std::size_t i = 0; i < kMaxTracks; ++i) {
         EXPECT_EQ(table.size(), i);
-        EXPECT_EQ(table.update(sighting(static_cast<TrackId>(i), at(i)), own, kNow), TrackStatus::created);
+        EXPECT_EQ(table.update(sighting(static_cast<TrackId>(i), at(i)), own, kTime), TrackStatus::created);
     }
-    EXPECT_EQ(table.update(sighting(900, at(kMaxTracks)), own, kNow), TrackStatus::full) << "farther than all";
+    EXPECT_EQ(table.update(sighting(900, at(kMaxTracks)), own, kTime), TrackStatus::full) << "farther than all";
     EXPECT_EQ(table.size(), kMaxTracks);
-    EXPECT_EQ(table.update(sighting(901, Vec3(50, 0, 0)), own, kNow), TrackStatus::replaced);
+    EXPECT_EQ(table.update(sighting(901, Vec3(50, 0, 0)), own, kTime), TrackStatus::replaced);
     EXPECT_EQ(table.diagnostics().full, 1U);
     EXPECT_EQ(table.diagnostics().replaced, 1U);
-    const auto tracks = table.snapshot(kNow);
+    const auto tracks = table.snapshot(kTime);
     ASSERT_EQ(tracks.size(), kMaxTracks);
     EXPECT_EQ(tracks[kMaxTracks - 1].id, 901U);
     EXPECT_EQ(tracks[kMaxTracks - 2].id, kMaxTracks - 2) << "the farthest one gave way";
-    EXPECT_EQ(table.update(sighting(0, at(0) + Vec3(0.1F, 0, 0), kNow + 0.1F), own, kNow + 0.1F), TrackStatus::updated)
+    EXPECT_EQ(table.update(sighting(0, at(0) + Vec3(0.1F, 0, 0), kTime + 0.1F), own, kTime + 0.1F),
+              TrackStatus::updated)
         << "known ones are updated in a full table";
 }
 
@@ -301,10 +301,10 @@ TEST_F(TrackTables, WhatGivesWayIsJudgedByTheBodysSurface)
     for (std::size_t i = 0; i < kMaxTracks; ++i) {
         TrackMeasurement m = sighting(static_cast<TrackId>(i), Vec3(100, static_cast<float>(i) * 0.01F, 0));
         m.radius = i == 3 ? 0.5F : 1.0F;
-        EXPECT_EQ(table.update(m, own, kNow), TrackStatus::created);
+        EXPECT_EQ(table.update(m, own, kTime), TrackStatus::created);
     }
-    EXPECT_EQ(table.update(sighting(900, Vec3(99.9F, 0, 0)), own, kNow), TrackStatus::replaced);
-    const auto tracks = table.snapshot(kNow);
+    EXPECT_EQ(table.update(sighting(900, Vec3(99.9F, 0, 0)), own, kTime), TrackStatus::replaced);
+    const auto tracks = table.snapshot(kTime);
     EXPECT_TRUE(std::none_of(tracks.begin(), tracks.end(), [](const Track& t) { return t.id == 3; }));
 }
 
@@ -313,25 +313,25 @@ TEST_F(TrackTables, WhatGivesWayIsJudgedByTheBodysSurface)
 TEST_F(TrackTables, WhatGivesWayIsJudgedWhereItIsNow)
 {
     own.velocity = Vec3(20, 0, 0);
-    TrackMeasurement met = sighting(1, Vec3(100, -28, 0), kNow - 2.0F);
+    TrackMeasurement met = sighting(1, Vec3(100, -28, 0), kTime - 2.0F);
     met.velocity = Vec3(0, 4, 0);  // now at (100, -20): both reach (100, 0) in 5 s
-    EXPECT_EQ(table.update(met, own, kNow), TrackStatus::created);
+    EXPECT_EQ(table.update(met, own, kTime), TrackStatus::created);
     for (std::size_t i = 1; i < kMaxTracks; ++i) {
         const float offset = 4.0F + 0.01F * static_cast<float>(i);
         TrackMeasurement m = sighting(static_cast<TrackId>(i + 1), Vec3(200, offset, 0));
-        EXPECT_EQ(table.update(m, own, kNow), TrackStatus::created);
+        EXPECT_EQ(table.update(m, own, kTime), TrackStatus::created);
     }
-    EXPECT_EQ(table.update(sighting(900, Vec3(200, 4, 0)), own, kNow), TrackStatus::replaced);
-    EXPECT_EQ(table.snapshot(kNow)[0].id, 1U) << "the one on collision course has to stay";
+    EXPECT_EQ(table.update(sighting(900, Vec3(200, 4, 0)), own, kTime), TrackStatus::replaced);
+    EXPECT_EQ(table.snapshot(kTime)[0].id, 1U) << "the one on collision course has to stay";
 }
 
 TEST_F(TrackTables, ClearForgetsTracksAndKeepsCounts)
 {
-    static_cast<void>(table.update(sighting(1, Vec3::Zero()), own, kNow));
+    static_cast<void>(table.update(sighting(1, Vec3::Zero()), own, kTime));
     table.clear();
     EXPECT_EQ(table.size(), 0U);
     EXPECT_EQ(table.diagnostics().created, 1U);
-    EXPECT_EQ(table.update(sighting(1, Vec3::Zero()), own, kNow), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(1, Vec3::Zero()), own, kTime), TrackStatus::created);
 }
 
 TEST_F(TrackTables, SettingsTakeEffectAtOnce)
@@ -339,8 +339,8 @@ TEST_F(TrackTables, SettingsTakeEffectAtOnce)
     TrackTableSettings settings;
     settings.max_range = 10.0F;
     table.configure(settings);
-    EXPECT_EQ(table.update(sighting(1, Vec3(11, 0, 0)), own, kNow), TrackStatus::out_of_range);
-    EXPECT_EQ(table.update(sighting(1, Vec3(9, 0, 0)), own, kNow), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(1, Vec3(11, 0, 0)), own, kTime), TrackStatus::out_of_range);
+    EXPECT_EQ(table.update(sighting(1, Vec3(9, 0, 0)), own, kTime), TrackStatus::created);
 }
 
 }  // namespace
