@@ -6,6 +6,7 @@ top=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 logs=$top/build/logs
 started=$SECONDS
 step_number=0
+rm -f "$logs/steps.txt"  # of each step its seconds: toolchain/report/test_times
 
 # try_step "what it does" log-name command...
 # One line when it starts, one when it ends, a sign of life each minute; the log's end when it fails.
@@ -37,6 +38,7 @@ try_step() {
         return 1
     fi
     printf '[%d] %s: %d s\n' "$step_number" "$what" $((SECONDS - begin))
+    printf '  %8d s  %s\n' $((SECONDS - begin)) "$what" >>"$logs/steps.txt"
 }
 
 # The same, and the end of everything when it fails.
