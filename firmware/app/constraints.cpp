@@ -30,7 +30,7 @@ world::Barrel moved(const Constraint& constraint, Seconds age, const std::option
 
 }  // namespace
 
-bool ConstraintTable::accepts(const Constraint& constraint, TimePoint now) const noexcept
+bool ConstraintTable::accepts(const Constraint& constraint, TimePoint now) noexcept
 {
     return world::is_valid(constraint.barrel) && constraint.stamp <= now + kFutureSlack;
 }

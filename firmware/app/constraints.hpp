@@ -2,25 +2,16 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <span>
 
 #include "core/base/static_vector.hpp"
 #include "core/capacity.hpp"
-#include "core/world/barrel.hpp"
-#include "firmware/link/global_position.hpp"
+#include "firmware/link/constraint.hpp"
 
 namespace jink::app {
 
-/// A closed volume or a storm cell as it is told.
-struct Constraint {
-    /// Where it was at `stamp`: about `about`, heights above it; without one in the autopilot's local frame.
-    world::Barrel barrel;
-    TimePoint stamp{};                                         ///< on the co-processor's clock
-    TimePoint ends{std::numeric_limits<std::int64_t>::max()};  ///< it counts no longer after this
-    std::optional<link::GlobalPosition> about;
-};
+using link::Constraint;
 
 struct ConstraintDiagnostics {
     std::uint32_t told = 0;
@@ -63,6 +54,8 @@ public:
     [[nodiscard]] bool lacks_origin() const noexcept { return lacks_origin_; }
     [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
     [[nodiscard]] const ConstraintDiagnostics& diagnostics() const noexcept { return diagnostics_; }
+    /// Whether `tell` at `now` would keep this constraint. O(1).
+    [[nodiscard]] static bool accepts(const Constraint& constraint, TimePoint now) noexcept;
 
 private:
     struct Entry {
@@ -71,7 +64,6 @@ private:
     };
     void merge(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
                const Vec3& own, TimePoint now) noexcept;
-    [[nodiscard]] bool accepts(const Constraint& constraint, TimePoint now) const noexcept;
 
     StaticVector<Entry, kMaxBarrels> entries_;
     StaticVector<world::Barrel, kMaxBarrels> placed_;

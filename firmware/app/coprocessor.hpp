@@ -11,6 +11,7 @@
 #include "core/reach/planner.hpp"
 #include "core/world/obstacle_table.hpp"
 #include "core/world/track_table.hpp"
+#include "firmware/app/constraint_upload.hpp"
 #include "firmware/app/constraints.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/parameters.hpp"
@@ -139,9 +140,9 @@ public:
     /// The scans that are forwarded go to this picture, and reach sets plan by it. After use_clouds(); it outlives
     /// this.
     void let_reach_sets_see(ReachPicture& picture) noexcept;
-    /// What is closed from now on, in place of all that was told before: kept clear of like every other threat, by all
-    /// methods and the final check. Constraints in the local frame are the autopilot's. What is wrong is refused and
-    /// counted (ConstraintDiagnostics); what is too much is merged.
+    /// What is closed from now on, in place of all that was set before, here or over the link: kept clear of like every
+    /// other threat, by all methods and the final check. Constraints in the local frame are the autopilot's. What is
+    /// wrong is refused and counted (ConstraintDiagnostics); what is too much is merged.
     void set_constraints(std::span<const Constraint> constraints, TimePoint now) noexcept
     {
         constraints_.tell(constraints, link_.origin(), own_.position, now);
@@ -174,6 +175,10 @@ public:
     [[nodiscard]] const ConstraintDiagnostics& constraint_diagnostics() const noexcept
     {
         return constraints_.diagnostics();
+    }
+    [[nodiscard]] const ConstraintUploadDiagnostics& constraint_upload_diagnostics() const noexcept
+    {
+        return constraint_upload_.diagnostics();
     }
     [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
@@ -209,6 +214,7 @@ private:
     void take_clouds(TimePoint now) noexcept;
     void take_params() noexcept;
     void take_commands() noexcept;
+    void take_constraints(TimePoint now) noexcept;
     void apply_configuration() noexcept;
     [[nodiscard]] avoid::Settings supervisor_settings() const noexcept;
     void prepare_last_words() noexcept;
@@ -257,6 +263,7 @@ private:
     world::TrackTable tracks_;
     world::ObstacleTable obstacles_;
     ConstraintTable constraints_;
+    ConstraintUpload constraint_upload_;
     link::Inbox inbox_;
     std::array<std::byte, kMaxBytesPerStep> bytes_{};
 

@@ -251,6 +251,18 @@ void Coprocessor::take_commands() noexcept
     }
 }
 
+void Coprocessor::take_constraints(TimePoint now) noexcept
+{
+    for (const link::ConstraintPart& part : inbox_.constraints) {
+        const link::ConstraintResult result = constraint_upload_.take(part, now);
+        if (constraint_upload_.is_new()) {
+            set_constraints(constraint_upload_.set(), now);
+            constraint_upload_.mark_in_force();
+        }
+        link_.acknowledge(part, result);
+    }
+}
+
 void Coprocessor::take_inbox(TimePoint now) noexcept
 {
     take_autopilot(now);
@@ -278,6 +290,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
     take_clouds(now);
     take_params();
     take_commands();
+    take_constraints(now);
     inbox_.clear();
 }
 

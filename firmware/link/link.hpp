@@ -106,6 +106,8 @@ public:
     virtual void send_text(Severity severity, std::string_view text) noexcept = 0;
     virtual void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept = 0;
     virtual void acknowledge(const CommandRequest& request, CommandResult result) noexcept = 0;
+    /// Tells the sender of a part of a set of constraints what became of it.
+    virtual void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept = 0;
     /// Asks the autopilot for its external mode (GUIDED, OFFBOARD).
     virtual void request_external_mode() noexcept = 0;
     /// Asks for a mode by its wire number: giving the former mode back.

@@ -9,6 +9,7 @@
 #include "core/base/time.hpp"
 #include "core/base/vec3.hpp"
 #include "core/world/world.hpp"
+#include "firmware/link/constraint.hpp"
 
 // What a link tells the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's
 // clock. Every number in here is finite; reports with numbers that are not were refused and counted by the link.
@@ -150,6 +151,7 @@ struct Inbox {
     StaticVector<RangeReading, 16> readings;
     StaticVector<ParamRequest, 16> params;
     StaticVector<CommandRequest, 8> commands;
+    StaticVector<ConstraintPart, 4> constraints;
     StaticVector<ModeAnswer, 4> mode_answers;
 
     void clear() noexcept
@@ -160,6 +162,7 @@ struct Inbox {
         readings.clear();
         params.clear();
         commands.clear();
+        constraints.clear();
         mode_answers.clear();
     }
 };

@@ -255,6 +255,9 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched) c
     const app::ConstraintDiagnostics& a = coprocessor.constraint_diagnostics();
     std::fprintf(f, "  \"areas_told\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n", a.told,
                  a.refused, a.merged, a.grown);
+    const app::ConstraintUploadDiagnostics& u = coprocessor.constraint_upload_diagnostics();
+    std::fprintf(f, "  \"area_sets\": %u, \"area_sets_abandoned\": %u, \"area_parts_refused\": %u,\n", u.sets,
+                 u.abandoned, u.refused);
     if (watched.bus != nullptr) {
         write_bus(f, *watched.bus);
     }

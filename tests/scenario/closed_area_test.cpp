@@ -7,7 +7,9 @@
 #include <cmath>
 
 #include "core/base/random.hpp"
-#include "firmware/linux/airspace_file.hpp"
+#include "firmware/link/mavlink/constraint_message.hpp"
+#include "firmware/link/mavlink/parser.hpp"
+#include "toolchain/sim/area_sender.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 #include "toolchain/sim/scenario_writer.hpp"
@@ -41,7 +43,7 @@ TEST(ClosedArea, WhatFliesOnIntoOneCollides)
     EXPECT_LT(record.closest_area, -1.0);
 }
 
-TEST(ClosedArea, TheCoprocessorIsToldAndKeepsOut)
+TEST(ClosedArea, TheCoprocessorAcknowledgesAndKeepsOut)
 {
     const Record record = fly_in_process(parse_scenario(kAcross, "across.yaml"));
     EXPECT_GE(record.closest_area, 0.7);
@@ -87,26 +89,73 @@ TEST(ClosedArea, WhatIsWrongIsNamed)
     EXPECT_NE(refusal(good + ", colour: 1").find("colour"), std::string::npos);
 }
 
-/// What the daemon is given in a file is what the co-processor in process is told.
-TEST(ClosedArea, TheDaemonsFileSaysTheSame)
+TEST(AreaSender, RepeatsWhatIsNotAnsweredAndThenFallsSilent)
 {
-    const Scenario scenario = parse_scenario(kAcross, "across.yaml");
-    constexpr double kBegan = 1.79e9;
-    constexpr TimePoint kStart{7'000'000};
-    files::Complaints complaints;
-    const auto read = files::parse_airspace(airspace_text(scenario.areas, kBegan), "a.yaml",
-                                            {kBegan + 3.0, {10'000'000}}, complaints);
-    ASSERT_TRUE(read) << complaints.size();
-    const std::vector<app::Constraint> told = constraints_of(scenario.areas, kStart);
-    ASSERT_EQ(read->size(), told.size());
-    EXPECT_EQ((*read)[0].stamp, told[0].stamp);
-    EXPECT_FALSE((*read)[0].about);
-    EXPECT_EQ((*read)[0].barrel.circle.centre, told[0].barrel.circle.centre);
-    EXPECT_EQ((*read)[0].barrel.circle.radius, told[0].barrel.circle.radius);
-    EXPECT_EQ((*read)[0].barrel.velocity, told[0].barrel.velocity);
-    EXPECT_EQ((*read)[0].barrel.bottom, told[0].barrel.bottom);
-    EXPECT_EQ((*read)[0].barrel.top, told[0].barrel.top);
-    EXPECT_EQ((*read)[0].barrel.margin, told[0].barrel.margin);
+    const std::vector<ClosedArea> areas{ClosedArea{.name = "a", .top = 9.0}, ClosedArea{.name = "b", .top = 9.0}};
+    AreaSender sender(areas);
+    link::mavlink::Parser parser;
+    FrameWriter answers;
+    const auto parts_at = [&](Micros now) {
+        std::vector<link::ConstraintPart> parts;
+        const std::vector<std::byte> bytes = sender.send(now);
+        std::span<const std::byte> rest = bytes;
+        while (const auto frame = parser.next(rest)) {
+            link::mavlink::Tunnel m;
+            parts.emplace_back();
+            EXPECT_TRUE(decode(*frame, m) && read_constraint(m, {now}, parts.back()));
+        }
+        return parts;
+    };
+    const auto answer = [&](std::uint8_t index, link::ConstraintResult result) {
+        link::mavlink::Tunnel m = link::mavlink::constraint_answer({1, index, result});
+        m.target_system = kGroundStation.system;
+        m.target_component = kGroundStation.component;
+        answers.bytes().clear();
+        answers.write(m, {1, 196});
+        sender.receive(answers.bytes(), 0);
+    };
+    ASSERT_EQ(parts_at(0).size(), 2U);
+    EXPECT_TRUE(parts_at(kSecond / 10).empty()) << "not yet";
+    answer(1, link::ConstraintResult::kept);
+    const auto again = parts_at(kSecond / 2);
+    ASSERT_EQ(again.size(), 1U);
+    EXPECT_EQ(again[0].index, 0);
+    EXPECT_EQ(again[0].count, 2);
+    EXPECT_EQ(again[0].constraint.stamp.us, 0) << "where the area was when the flight began";
+    EXPECT_NE(sender.fault(), "");
+    answer(0, link::ConstraintResult::in_force);
+    EXPECT_TRUE(parts_at(kSecond).empty());
+    EXPECT_EQ(sender.fault(), "");
+}
+
+TEST(AreaSender, ARefusalOrSilenceIsAFaultOfTheFlight)
+{
+    const std::vector<ClosedArea> areas{ClosedArea{.name = "storm", .top = 9.0}};
+    AreaSender sender(areas);
+    static_cast<void>(sender.send(0));
+    EXPECT_EQ(sender.fault(), "closed area storm was not acknowledged");
+    FrameWriter answers;
+    link::mavlink::Tunnel m = link::mavlink::constraint_answer({1, 0, link::ConstraintResult::out_of_range});
+    m.target_system = kGroundStation.system;
+    m.target_component = kGroundStation.component;
+    answers.write(m, {1, 196});
+    sender.receive(answers.bytes(), 0);
+    EXPECT_EQ(sender.fault(), "closed area storm was refused, result 3");
+    EXPECT_EQ(AreaSender({}).fault(), "");
+}
+
+/// A vehicle that hears of a closed area only near it has had less time than the scenario says.
+TEST(AreaSender, ALateAcknowledgementIsAFault)
+{
+    const std::vector<ClosedArea> areas{ClosedArea{.name = "storm", .top = 9.0}};
+    AreaSender sender(areas);
+    FrameWriter answers;
+    link::mavlink::Tunnel m = link::mavlink::constraint_answer({1, 0, link::ConstraintResult::in_force});
+    m.target_system = kGroundStation.system;
+    m.target_component = kGroundStation.component;
+    answers.write(m, {1, 196});
+    sender.receive(answers.bytes(), 4 * kSecond);
+    EXPECT_EQ(sender.fault(), "closed areas were in force after 4 s only");
 }
 
 }  // namespace

@@ -49,10 +49,6 @@ public:
     /// @param port, watchdog  outlive the bench
     Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& setup);
 
-    void close(const std::vector<ClosedArea>& areas, TimePoint now)
-    {
-        coprocessor_->set_constraints(constraints_of(areas, now), now);
-    }
     void step(TimePoint now);
 
     /// Plans that went by the parameters' settings although others were handed over: those of a step that took a

@@ -118,8 +118,6 @@ Child::Threads Child::threads() const
 
 void Child::ask_to_stop() const { ::kill(pid_, SIGTERM); }
 
-void Child::ask_to_read_again() const { ::kill(pid_, SIGHUP); }
-
 std::string Child::ending() const
 {
     if (WIFSIGNALED(status_)) {

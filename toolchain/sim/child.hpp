@@ -49,8 +49,6 @@ public:
     /// True while it runs.
     [[nodiscard]] bool running();
     void ask_to_stop() const;
-    /// SIGHUP: its files have changed.
-    void ask_to_read_again() const;
     struct Thread {
         double ran = 0.0;     ///< [s]
         double waited = 0.0;  ///< ready to run, until it last got a processor [s]

@@ -2,11 +2,7 @@
 #include "toolchain/sim/closed_area.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <fstream>
-#include <sstream>
-#include <stdexcept>
 
 #include "toolchain/sim/scenario_parts.hpp"
 
@@ -37,31 +33,6 @@ std::vector<app::Constraint> constraints_of(const std::vector<ClosedArea>& areas
         constraints.push_back(constraint);
     }
     return constraints;
-}
-
-std::string airspace_text(const std::vector<ClosedArea>& areas, double began)
-{
-    std::ostringstream out;
-    out << "frame: local\nareas:\n" << std::fixed;
-    for (const ClosedArea& area : areas) {
-        out << "  - {centre: [" << area.centre.x() << ", " << area.centre.y() << "], radius: " << area.radius
-            << ", bottom: " << area.bottom << ", top: " << area.top << ", margin: " << area.margin << ", velocity: ["
-            << area.velocity.x() << ", " << area.velocity.y() << "], known_at: " << began << "}\n";
-    }
-    return out.str();
-}
-
-void write_airspace(const std::filesystem::path& file, const std::vector<ClosedArea>& areas)
-{
-    const std::chrono::duration<double> now = std::chrono::system_clock::now().time_since_epoch();
-    const std::filesystem::path fresh = file.string() + ".new";
-    std::ofstream out(fresh);
-    out << airspace_text(areas, now.count());
-    out.close();
-    if (!out) {
-        throw std::runtime_error(fresh.string() + " cannot be written");
-    }
-    std::filesystem::rename(fresh, file);
 }
 
 namespace detail {

@@ -10,8 +10,8 @@
 
 namespace jink::sim {
 
-/// A closed volume or a storm cell: an upright cylinder that goes straight on. The co-processor is told of it at the
-/// start of the flight, as it is.
+/// A closed volume or a storm cell: an upright cylinder that goes straight on. A ground station reports it at the start
+/// of the flight (AreaSender).
 struct ClosedArea {
     std::string name;
     double radius = 1.0;         ///< [m]
@@ -27,12 +27,7 @@ struct ClosedArea {
 /// Distance of a point from the body at time `t` [m]; inside it below 0, by the least way out.
 [[nodiscard]] double surface_distance(const ClosedArea& area, double t, const Vec& point);
 
-/// As a co-processor is told that has its clock at `start` when the flight begins.
+/// As reported by a sender whose clock shows `start` when the flight begins.
 [[nodiscard]] std::vector<app::Constraint> constraints_of(const std::vector<ClosedArea>& areas, TimePoint start);
-
-/// As jinkd reads it (firmware/linux/airspace_file.hpp), the flight having begun at `began` seconds since 1970.
-[[nodiscard]] std::string airspace_text(const std::vector<ClosedArea>& areas, double began);
-/// The same written now into a file, at once for whoever reads it. @throws std::runtime_error when that fails
-void write_airspace(const std::filesystem::path& file, const std::vector<ClosedArea>& areas);
 
 }  // namespace jink::sim

@@ -99,14 +99,10 @@ std::optional<Inside> read_summary(const std::filesystem::path& file)
 std::string transport_of(const Computer& computer) { return computer.emulated() ? computer.machine : "daemon"; }
 
 std::vector<std::string> command_of(const Computer& computer, const std::string& line,
-                                    const std::filesystem::path& summary, const std::filesystem::path& airspace,
-                                    bool realtime)
+                                    const std::filesystem::path& summary, bool realtime)
 {
     std::vector<std::string> command{computer.program.string(), "--serial", line, "--status-period", "1", "--summary",
                                      summary.string()};
-    if (!airspace.empty()) {
-        command.insert(command.end(), {"--airspace", airspace.string()});
-    }
     if (realtime) {
         command.insert(command.end(), {"--realtime", std::to_string(kDaemonPriority)});
     }
@@ -117,23 +113,14 @@ Record fly_daemon_once(const Scenario& scenario, const Computer& computer, const
 {
     const std::filesystem::path summary = folder / (scenario.name + ".json");
     std::filesystem::remove(summary);
-    const std::filesystem::path airspace = scenario.areas.empty() ? "" : folder / (scenario.name + ".airspace.yaml");
-    if (!airspace.empty()) {
-        write_airspace(airspace, scenario.areas);
-    }
     PseudoTerminal line;
-    const std::vector<std::string> command = command_of(computer, line.path(), summary, airspace, go_first());
+    const std::vector<std::string> command = command_of(computer, line.path(), summary, go_first());
     Plant plant(scenario);
     Record notes;
     Record record;
     {
         Child child(command, folder / (scenario.name + ".log"));
         if (wait_for_life(child, line, plant)) {
-            if (!airspace.empty()) {
-                // Now the flight begins, and what moves is where it is said to be.
-                write_airspace(airspace, scenario.areas);
-                child.ask_to_read_again();
-            }
             fly_on_time(plant, line, child, notes);
             record = plant.record();
             if (child.running()) {
@@ -191,9 +178,6 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Co
     for (const Scenario& scenario : scenarios) {
         if (scenario.planner != PlannerKind::product) {
             throw std::runtime_error(scenario.name + ": 'planner: source' is flown in process only");
-        }
-        if (computer.emulated() && !scenario.areas.empty()) {
-            throw std::runtime_error(scenario.name + ": no image has an input for closed areas");
         }
         if (scenario.lidar) {
             throw std::runtime_error(scenario.name + ": what a LiDAR sees is flown in process only");

@@ -67,7 +67,6 @@ Record fly(const Scenario& scenario, const Timing& timing, hal::ManualClock& clo
            Tap& tap, Lidar* lidar)
 {
     Plant plant(scenario);
-    bench.close(scenario.areas, {clock.now_us()});
     Ticks ticks(timing);
     std::array<std::byte, 4096> buffer{};
     bool overflow = false;

@@ -29,7 +29,8 @@ constexpr double kStillWarned = 5.0;
 }  // namespace
 
 Plant::Plant(const Scenario& scenario)
-    : scenario_(scenario), world_(scenario), autopilot_(world_), flips_(scenario.mission), sides_(scenario.mission)
+    : scenario_(scenario), world_(scenario), autopilot_(world_), areas_(scenario.areas), flips_(scenario.mission),
+      sides_(scenario.mission)
 {
     take_notes();
 }
@@ -45,6 +46,7 @@ void Plant::deliver(std::span<const std::byte> bytes)
 {
     if (!cable_pulled()) {
         autopilot_.receive(bytes);
+        areas_.receive(bytes, world_.now());
     }
 }
 
@@ -82,6 +84,7 @@ bool Plant::is_below_floor() const
 void Plant::step()
 {
     autopilot_.step();
+    autopilot_.relay(areas_.send(world_.now()));
     below_floor_ = below_floor_ || is_below_floor();
     if (goal_at_ < 0 && (world_.own().position - scenario_.mission.back()).norm() <= kAtGoal) {
         goal_at_ = world_.now();
@@ -164,6 +167,9 @@ Record Plant::record() const
     record.samples = samples_;
     for (const std::string& name : autopilot_.parameters_missing()) {
         record.faults.push_back("parameter " + name + " was not taken");
+    }
+    if (const std::string fault = areas_.fault(); !fault.empty()) {
+        record.faults.push_back(fault);
     }
     return record;
 }

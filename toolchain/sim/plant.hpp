@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "toolchain/sim/area_sender.hpp"
 #include "toolchain/sim/record.hpp"
 
 namespace jink::sim {
@@ -46,6 +47,7 @@ private:
     const Scenario& scenario_;
     World world_;
     Autopilot autopilot_;
+    AreaSender areas_;
     FlipCounter flips_;
     SideLog sides_;
     std::vector<Sample> samples_;

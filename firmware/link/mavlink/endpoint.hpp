@@ -63,6 +63,8 @@
 //   plus the armed bit (128) as heard.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
 //   that is not a finite REAL32 has value_finite = false.
+// * TUNNEL addressed to us alone, of the type kConstraintPayload: one closed area of a set (constraint_message.hpp). A
+//   payload that cannot be read is answered at once, and counts out_of_range; every other part is passed on.
 // * Set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot.
 // * A line that has been silent for 0.1 s in mid-frame: what is pending is searched once more (Parser::flush).
 
@@ -104,6 +106,7 @@ public:
     void send_text(Severity severity, std::string_view text) noexcept override;
     void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept override;
     void acknowledge(const CommandRequest& request, CommandResult result) noexcept override;
+    void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept override;
     void request_external_mode() noexcept override;
     void request_mode(std::uint32_t custom_mode) noexcept override;
     void request_hold_mode() noexcept override;
@@ -164,6 +167,7 @@ private:
     void end_pausing_scan(TimePoint now) noexcept;
     void on_command(const Context& c) noexcept;
     void on_param(const Context& c) noexcept;
+    void on_tunnel(const Context& c) noexcept;
 
     [[nodiscard]] bool from_autopilot(const Frame& frame) const noexcept;
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;

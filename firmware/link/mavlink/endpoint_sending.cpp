@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // All that goes out: time, rates and the mission asked for, modes, set-points, answers, last words.
+#include "firmware/link/mavlink/constraint_message.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
 #include "firmware/link/mavlink/own_messages.hpp"
@@ -214,6 +215,14 @@ CommandLong Endpoint::mode_command(std::uint32_t custom_mode) const noexcept
 void Endpoint::send_mode(std::uint32_t custom_mode) noexcept
 {
     send(mode_command(custom_mode), Perishable::mode_request);
+}
+
+void Endpoint::acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept
+{
+    Tunnel m = constraint_answer({part.set, part.index, result});
+    m.target_system = part.from_system;
+    m.target_component = part.from_component;
+    send(m);
 }
 
 void Endpoint::request_external_mode() noexcept { send_mode(external_mode(autopilot_.stack, vehicle_class_)); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/link/mavlink/constraint_message.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
 
@@ -157,6 +158,7 @@ void Endpoint::dispatch_requests(const Context& c) noexcept
     case ParamRequestRead::kInfo.id:
     case ParamRequestList::kInfo.id:
     case ParamSet::kInfo.id: on_param(c); break;
+    case Tunnel::kInfo.id: on_tunnel(c); break;
     default: ++diagnostics_.frames_ignored;
     }
 }
@@ -175,6 +177,27 @@ void Endpoint::on_command(const Context& c) noexcept
                                  c.frame.header.component_id};
     if (!c.inbox.commands.try_push_back(request)) {
         ++diagnostics_.inbox_full;
+    }
+}
+
+void Endpoint::on_tunnel(const Context& c) noexcept
+{
+    Tunnel m;
+    static_cast<void>(decode(c.frame, m));
+    if (!for_us(m.target_system, m.target_component) || m.payload_type != kConstraintPayload ||
+        is_constraint_answer(m)) {
+        ++diagnostics_.frames_ignored;
+        return;
+    }
+    ConstraintPart part;
+    const bool readable = read_constraint(m, c.now, part);
+    part.from_system = c.frame.header.system_id;
+    part.from_component = c.frame.header.component_id;
+    if (!readable) {
+        ++diagnostics_.out_of_range;
+        acknowledge(part, ConstraintResult::malformed);
+    } else if (!c.inbox.constraints.try_push_back(part)) {
+        ++diagnostics_.inbox_full;  // not answered: the sender repeats what is not
     }
 }
 

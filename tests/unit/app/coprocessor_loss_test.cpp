@@ -122,6 +122,10 @@ public:
     {
         honest_.acknowledge(request, result);
     }
+    void acknowledge(const link::ConstraintPart& part, link::ConstraintResult result) noexcept override
+    {
+        honest_.acknowledge(part, result);
+    }
     void request_external_mode() noexcept override { honest_.request_external_mode(); }
     void request_mode(std::uint32_t mode) noexcept override { honest_.request_mode(mode); }
     void request_hold_mode() noexcept override { honest_.request_hold_mode(); }

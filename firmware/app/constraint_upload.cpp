@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/constraint_upload.hpp"
+
+#include "firmware/app/constraints.hpp"
+#include "firmware/link/mavlink/geodesy.hpp"
+
+namespace jink::app {
+
+bool ConstraintUpload::belongs(const link::ConstraintPart& part) const noexcept
+{
+    return has_set_ && part.set == number_ && part.count == count_ && part.from_system == from_system_ &&
+           part.from_component == from_component_;
+}
+
+void ConstraintUpload::begin(const link::ConstraintPart& part) noexcept
+{
+    diagnostics_.abandoned += has_set_ && !is_complete_ ? 1U : 0U;
+    has_set_ = true;
+    is_complete_ = in_force_ = false;
+    received_.reset();
+    number_ = part.set;
+    count_ = part.count;
+    from_system_ = part.from_system;
+    from_component_ = part.from_component;
+}
+
+link::ConstraintResult ConstraintUpload::take(const link::ConstraintPart& part, TimePoint now) noexcept
+{
+    if (part.count > link::kMaxReportedConstraints) {
+        ++diagnostics_.refused;
+        return link::ConstraintResult::too_many;
+    }
+    const link::Constraint& constraint = part.constraint;
+    const bool is_sound = ConstraintTable::accepts(constraint, now) &&
+                          (!constraint.about || link::mavlink::is_on_earth(*constraint.about));
+    if (part.count > 0 && !is_sound) {
+        ++diagnostics_.refused;
+        return link::ConstraintResult::out_of_range;
+    }
+    if (!belongs(part)) {
+        begin(part);
+    }
+    if (part.count > 0) {
+        parts_[part.index] = constraint;
+        received_.set(part.index);
+    }
+    const bool was_complete = is_complete_;
+    is_complete_ = received_.count() == count_;
+    in_force_ = false;
+    diagnostics_.sets += is_complete_ && !was_complete ? 1U : 0U;
+    return is_complete_ ? link::ConstraintResult::in_force : link::ConstraintResult::kept;
+}
+
+}  // namespace jink::app

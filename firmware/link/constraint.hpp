@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "core/base/time.hpp"
+#include "core/world/barrel.hpp"
+#include "firmware/link/global_position.hpp"
+
+namespace jink::link {
+
+/// Closed volume or storm cell: an upright cylinder between two heights, at rest or in straight level motion.
+struct Constraint {
+    /// Where the volume was at `stamp`, relative to `about`, heights above it; without `about` in the autopilot's local
+    /// frame (ENU).
+    world::Barrel barrel;
+    TimePoint stamp{};                                         ///< on the co-processor's clock
+    TimePoint ends{std::numeric_limits<std::int64_t>::max()};  ///< the volume is open after this instant
+    std::optional<GlobalPosition> about;
+};
+
+/// Constraints that one set may have over a link. A board keeps fewer apart (kMaxBarrels) and merges the rest.
+inline constexpr std::size_t kMaxReportedConstraints = 8;
+
+/// One constraint of a set as a link received it, and who sent it.
+struct ConstraintPart {
+    Constraint constraint;   ///< empty where the set is (count 0)
+    std::uint8_t set = 0;    ///< the sender's number of the set
+    std::uint8_t index = 0;  ///< 0 ... count - 1; 0 where the count is 0
+    std::uint8_t count = 0;  ///< constraints of the set, 0 ... 255
+    std::uint8_t from_system = 0;
+    std::uint8_t from_component = 0;
+};
+
+/// What became of a part. The values are those on the wire.
+enum class ConstraintResult : std::uint8_t {
+    kept = 0,          ///< the set lacks other parts
+    in_force = 1,      ///< the whole set counts from now on
+    malformed = 2,     ///< length, version, kind or index
+    out_of_range = 3,  ///< non-finite or beyond the limits of world::is_valid
+    too_many = 4,      ///< count above kMaxReportedConstraints
+};
+
+}  // namespace jink::link
