@@ -118,12 +118,11 @@ protected:
     ConstraintResult report(const ConstraintPart& part)
     {
         link::mavlink::Tunnel m = link::mavlink::constraint_message(part, f->now);
-        m.target_system = 1;
-        m.target_component = 196;
-        f->port.clear_written();
+        m.target_system = test::wire::kSystem;
+        m.target_component = test::wire::kUs;
         f->feed(m);
         f->fly(1);
-        const auto answers = test::all_of<link::mavlink::Tunnel>(f->out);
+        const auto answers = f->said_of<link::mavlink::Tunnel>();
         EXPECT_EQ(answers.size(), 1U);
         link::mavlink::ConstraintAnswer answer;
         EXPECT_TRUE(!answers.empty() && link::mavlink::read_constraint_answer(answers[0], answer));
