@@ -42,7 +42,7 @@ link::ConstraintResult ConstraintUpload::take(const link::ConstraintPart& part, 
     }
     if (part.count > 0) {
         parts_[part.index] = constraint;
-        received_.set(part.index);
+        received_[part.index] = true;  // set() throws
     }
     const bool was_complete = is_complete_;
     is_complete_ = received_.count() == count_;
