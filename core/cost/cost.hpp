@@ -25,7 +25,7 @@ struct Terms {
     float smoothness_penalised = 0.0F;  ///< S_rp
     float closeness = 0.0F;             ///< M [1/m]; infinity on contact, 0 with nothing moving
     float energy = 0.0F;                ///< E [J]
-    float hover_power = 0.0F;           ///< summed over segments [W]
+    float hover_power = 0.0F;           ///< mean over the path's time [W]
     float passing = 0.0F;               ///< where moving threats are passed: 0 behind them, 1 in front of them
     float beyond = 0.0F;                ///< time from abeam of the collision point until the end [s]
 };
@@ -142,7 +142,8 @@ private:
 /// Rotor power at vertical speed `climb_rate` [m/s], positive up (momentum theory; Pinheiro 4.1.6 with the bracket
 /// mended) [W].
 [[nodiscard]] float rotor_power(float climb_rate, const vehicle::Airframe& airframe) noexcept;
-/// Sum of `rotor_power` over the segments [W].
+/// Mean of `rotor_power` over the time of the path, each segment at the climb rate of its beginning; path not empty
+/// [W].
 [[nodiscard]] float hover_power(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
 
 /// Section 6: natural logarithm, clipped to [0, 1]. Time beyond the collision point: over the upper cap of the time.

@@ -57,11 +57,12 @@ float rotor_power(float climb_rate, const vehicle::Airframe& airframe) noexcept
 float hover_power(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept
 {
     const Rotor rotor(airframe);
-    float sum = 0.0F;
+    float work = 0.0F;
     for (std::size_t i = 0; i + 1 < path.points.size(); ++i) {
-        sum += rotor.power(path.points[i].velocity.z());
+        work += rotor.power(path.points[i].velocity.z()) * (path.points[i + 1].time - path.points[i].time);
     }
-    return sum;
+    const Seconds duration = path.points.back().time - path.points.front().time;
+    return duration > 0.0F ? work / duration : rotor.power(path.points.front().velocity.z());
 }
 
 }  // namespace jink::cost

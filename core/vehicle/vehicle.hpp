@@ -41,12 +41,9 @@ struct Airframe {
     float chord = 0.035F;           ///< of a blade [m]
     float rotor_radius = 0.1905F;   ///< [m]
     float rotors = 4.0F;
-    float air_density = 1.225F;  ///< [kg/m3]
-    float blade_drag_coefficient =
-        0.5F;  ///< [-]; the source reads it from the same setting as the one above, which makes the
-               ///< profile power large: fit to compare paths, not to size a battery
-    float tip_speed =
-        272.2F;  ///< of a blade [m/s]; its bound by the source, 0.8 of the speed of sound (Pinheiro 4.1.6)
+    float air_density = 1.225F;             ///< [kg/m3]
+    float blade_drag_coefficient = 0.012F;  ///< of a blade's section [-]; ours. Pinheiro reads the body's 0.5 here
+    float tip_speed = 100.0F;  ///< of a blade in hover [m/s]; ours. Pinheiro takes its bound, 0.8 of the speed of sound
 };
 
 /// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the

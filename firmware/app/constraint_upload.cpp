@@ -17,7 +17,7 @@ void ConstraintUpload::begin(const link::ConstraintPart& part) noexcept
     diagnostics_.abandoned += has_set_ && !is_complete_ ? 1U : 0U;
     has_set_ = true;
     is_complete_ = in_force_ = false;
-    received_.reset();
+    received_ = 0;
     number_ = part.set;
     count_ = part.count;
     from_system_ = part.from_system;
@@ -42,10 +42,10 @@ link::ConstraintResult ConstraintUpload::take(const link::ConstraintPart& part, 
     }
     if (part.count > 0) {
         parts_[part.index] = constraint;
-        received_[part.index] = true;  // set() throws
+        received_ |= 1U << part.index;
     }
     const bool was_complete = is_complete_;
-    is_complete_ = received_.count() == count_;
+    is_complete_ = received_ + 1U == 1U << count_;
     in_force_ = false;
     diagnostics_.sets += is_complete_ && !was_complete ? 1U : 0U;
     return is_complete_ ? link::ConstraintResult::in_force : link::ConstraintResult::kept;

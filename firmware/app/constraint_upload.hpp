@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -43,7 +42,8 @@ private:
     void begin(const link::ConstraintPart& part) noexcept;
 
     std::array<link::Constraint, link::kMaxReportedConstraints> parts_{};
-    std::bitset<link::kMaxReportedConstraints> received_;
+    static_assert(link::kMaxReportedConstraints < 32);
+    std::uint32_t received_ = 0;  ///< bit i: part i
     std::size_t count_ = 0;
     bool has_set_ = false;
     bool is_complete_ = false;

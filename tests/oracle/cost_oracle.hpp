@@ -34,7 +34,7 @@ P3 to_double(const V& v)
 struct Vehicle {
     double speed = 5.0, climb = 3.0, descent = 3.0;
     double mass = 3.0, drag = 0.5, area = 2.5, density = 1.225;
-    double blades = 2.0, chord = 0.035, rotor_radius = 0.1905, rotors = 4.0, blade_drag = 0.5, tip = 272.2;
+    double blades = 2.0, chord = 0.035, rotor_radius = 0.1905, rotors = 4.0, blade_drag = 0.012, tip = 100.0;
 };
 
 struct Flight {
@@ -106,11 +106,11 @@ inline double rotor_power(double climb_rate, const Vehicle& vehicle)
 
 inline double hover_power(const Flight& f, const Vehicle& vehicle)
 {
-    double sum = 0.0;
+    double work = 0.0;
     for (std::size_t i = 0; i + 1 < f.v.size(); ++i) {
-        sum += rotor_power(f.v[i][2], vehicle);
+        work += rotor_power(f.v[i][2], vehicle) * (f.t[i + 1] - f.t[i]);
     }
-    return sum;
+    return work / (f.t.back() - f.t.front());
 }
 
 /// numpy.gradient with unit spacing.

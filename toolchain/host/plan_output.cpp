@@ -202,7 +202,7 @@ std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome)
         as_double(file.main_radius), s.security == geometric::SecurityMode::swept ? "swept" : "time-aware",
         s.offset_rule == geometric::OffsetRule::source ? "source's" : "clearing", int{s.offsets}, int{s.extra_planes});
     out += "terms: T time [s], S smoothness, S_rp the same with rotation penalty, M closeness [1/m], E energy [J], P "
-           "rotor power [W]; "
+           "mean rotor power [W]; "
            "then T, S_rp, M, E on 0 to 1, and the total cost\n\n";
     if (!outcome.result.candidates.empty()) {
         out += "  #  kind       plane  offset  status                     T       S    S_rp       M        E         P "

@@ -280,11 +280,17 @@ def space(flight):
     return _png(figure)
 
 
-FAN = {"chosen": (CHOSEN, 2.6, 4), "available": (AVAILABLE, 1.5, 3), "not_flyable": (NOT_FLYABLE, 0.9, 1)}
+FAN = {"chosen": (CHOSEN, 2.6, 4), "available": (AVAILABLE, 1.5, 3), "not_flyable": (NOT_FLYABLE, 0.9, 1),
+       "not_evaluated": (LEG, 0.9, 0)}
 
 
 def _fan_style(status):
     return FAN.get(status, (UNAVAILABLE, 1.0, 2))
+
+
+def _dashes(status):
+    """What was never checked is drawn dashed: nothing is known of it."""
+    return (0, (4, 3)) if status == "not_evaluated" else "solid"
 
 
 def fan_counts(flight):
@@ -308,7 +314,7 @@ def fan(flight):
     axes = figure.add_axes([0, 0, 1, 1], projection="3d")
     for status, points in curves:
         colour, width, _ = _fan_style(status)
-        axes.plot(*points.T, color=colour, lw=width)
+        axes.plot(*points.T, color=colour, lw=width, linestyle=_dashes(status))
     everything = np.vstack([c for _, c in curves])
     low, high = everything.min(axis=0), everything.max(axis=0)
     margin = np.maximum(0.05 * (high - low), 1.0)
@@ -325,7 +331,7 @@ def fan_behind(flight):
     figure.subplots_adjust(left=0.11, right=0.98, bottom=0.14, top=0.97)
     for status, points in curves:
         colour, width, order = _fan_style(status)
-        axes.plot(points[:, 1], points[:, 2], color=colour, lw=width, zorder=order + 1)
+        axes.plot(points[:, 1], points[:, 2], color=colour, lw=width, linestyle=_dashes(status), zorder=order + 1)
         straight = np.linspace(points[0], points[-1], len(points))
         apex = points[np.argmax(np.linalg.norm(points - straight, axis=1))]
         axes.plot([apex[1]], [apex[2]], "o", color=colour, ms=6 if status == "chosen" else 4.5, zorder=order + 2)

@@ -156,7 +156,7 @@ def fan_words(flight):
                                  (figures.AVAILABLE, available, "available, but dearer: longer, less smooth, or nearer to traffic"),
                                  (figures.UNAVAILABLE, touching, "unavailable: would touch something"),
                                  (figures.NOT_FLYABLE, stiff, "unavailable: more than the vehicle can fly"),
-                                 (figures.LEG, unseen, "not looked at: the work budget was used up")):
+                                 (figures.LEG, unseen, "not checked (dashed): the work units were used up")):
         if count:
             parts.append(f'<span class="key"><i style="background:{colour}"></i><span>{count} {words}</span></span>')
     if flight.first_candidate:

@@ -178,6 +178,7 @@ TEST(RotorPower, HoverByHand)
     airframe.blade_drag_coefficient = 0.0F;
     EXPECT_NEAR(rotor_power(0.0F, airframe), 1.15F * 29.43F * 5.1324F, 0.02F);
     airframe.blade_drag_coefficient = 0.5F;
+    airframe.tip_speed = 272.2F;
     EXPECT_NEAR(rotor_power(0.0F, airframe) - 1.15F * 29.43F * 5.1324F, 82365.0F, 20.0F);
 }
 
@@ -208,7 +209,26 @@ TEST(RotorPower, ClimbCostsMoreDescentInMomentumTheoryLess)
     EXPECT_LT(rotor_power(-15.0F, airframe), rotor_power(0.0F, airframe));
 }
 
-TEST(HoverPower, SumOverSegments) { EXPECT_NEAR(hover_power(level(20.0F, 5), {}), 4.0F * rotor_power(0.0F, {}), 1.0F); }
+/// Small quadrotors of 3 kg hover at 60 to 120 W per kilogram.
+TEST(RotorPower, TheDefaultVehicleHoversAtSomeHundredsOfWatts)
+{
+    EXPECT_GT(rotor_power(0.0F, {}), 180.0F);
+    EXPECT_LT(rotor_power(0.0F, {}), 360.0F);
+}
+
+TEST(HoverPower, IsAMeanWhateverTheNumberOfPoints)
+{
+    EXPECT_NEAR(hover_power(level(20.0F, 5), {}), rotor_power(0.0F, {}), 0.1F);
+    EXPECT_NEAR(hover_power(level(20.0F, 50), {}), rotor_power(0.0F, {}), 0.1F);
+}
+
+TEST(HoverPower, ASegmentCountsByItsTime)
+{
+    path::TimedPath path = level(20.0F, 3);
+    path.points[1].velocity.z() = 3.0F;
+    path.points[1].time = path.points[0].time + 0.25F * (path.points[2].time - path.points[0].time);
+    EXPECT_NEAR(hover_power(path, {}), 0.25F * rotor_power(0.0F, {}) + 0.75F * rotor_power(3.0F, {}), 0.1F);
+}
 
 TEST(Normalise, TableLimitsAndClipping)
 {
