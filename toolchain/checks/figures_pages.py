@@ -29,10 +29,10 @@ class Page:
 
 
 def pattern(text):
-    """Of a text with {} for figures: white space is any, so that a line may be broken elsewhere."""
+    """Of a text with {} for figures, {n} for numbers that are none of them, {*} for anything on the line: white space is any, so that a line may be broken elsewhere."""
     out = []
-    for part in re.split(r"(\{\}|\{\*\}|\s+)", text):
-        out.append(f"({NUMBER})" if part == "{}" else r"[^\n]*?" if part == "{*}" else r"\s+" if part.isspace() else re.escape(part))
+    for part in re.split(r"(\{\}|\{n\}|\{\*\}|\s+)", text):
+        out.append(f"({NUMBER})" if part == "{}" else NUMBER if part == "{n}" else r"[^\n]*?" if part == "{*}" else r"\s+" if part.isspace() else re.escape(part))
     return re.compile("".join(out))
 
 

@@ -66,7 +66,8 @@ def values_of(figure, output, lines_on_page):
     found = [m.groups() for m in re.finditer(figure.printed, output, re.M)]
     if not found:
         raise Failed(f"{figure.of}: nothing printed is like {figure.printed} (for \"{figure.text}\")")
-    return list(sum(found, ()) if figure.each else found[0])
+    groups = sum(found, ()) if figure.each else found[0]
+    return [value or "0" for value in groups]  # what is not printed at all did not happen
 
 
 def values_of_record(figure, top, command):
