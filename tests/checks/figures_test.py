@@ -56,11 +56,9 @@ class OnACopy(unittest.TestCase):
         kept = path.read_bytes()
         try:
             path.write_text(text, encoding="utf-8")
-            figures_digest.of_file.cache_clear()
             return [p for p in figures_check.Book(self.top).all() if str(p) not in self.before]
         finally:
             path.write_bytes(kept)
-            figures_digest.of_file.cache_clear()
 
     def wants(self, page, begin, end, what):
         text = page.text[:begin] + other(page.text[begin:end]) + page.text[end:]
@@ -122,7 +120,6 @@ class OnACopy(unittest.TestCase):
         return book.lock
 
     def states(self):
-        figures_digest.of_file.cache_clear()
         book = figures_check.Book(self.top)
         return {c.name: book.state(c) for c in self.evidence() if c.kind == "long"}
 
@@ -147,7 +144,6 @@ class OnACopy(unittest.TestCase):
         finally:
             lock.write_bytes(kept)
             source.write_text(text, encoding="utf-8")
-            figures_digest.of_file.cache_clear()
 
     def test_an_unknown_command_on_each_page_is_found(self):
         for page in figures_check.Book(self.top).pages.values():

@@ -60,8 +60,14 @@ class Book:
         self.lock = Lock(self.top)
         self.pages = {name: pages.Page(name, (self.top / name).read_text(encoding="utf-8")) for name in self.registry.pages}
         self.found = {}  # (command, figure's key): places on the page
-        self.problems = []
+        self.problems, self.digests = [], {}
         self._find()
+
+    def digest(self, command):
+        globs = tuple(command.sources)
+        if globs not in self.digests:
+            self.digests[globs] = figures_digest.of_sources(self.top, globs)
+        return self.digests[globs]
 
     def _find(self):
         for command in self.registry.commands.values():
@@ -95,7 +101,7 @@ class Book:
             return "quick"
         if command.dated:
             return "dated" if self.lock.commands[command.name].get("commit") == command.commit else "stale"
-        return "fresh" if kept == figures_digest.of_sources(self.top, command.sources) else "stale"
+        return "fresh" if kept == self.digest(command) else "stale"
 
     def evidence(self):
         for command in self.registry.commands.values():

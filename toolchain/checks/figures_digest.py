@@ -39,8 +39,13 @@ def plain(path, text):
     return "\n".join(line for line in lines if line and not (path.suffix in HASHED and line.lstrip().startswith("#") and not line.startswith("#!")))
 
 
-@functools.lru_cache(maxsize=None)
 def of_file(path):
+    status = path.stat()
+    return _of_file(path, status.st_mtime_ns, status.st_size)
+
+
+@functools.lru_cache(maxsize=None)
+def _of_file(path, *_):
     data = path.read_bytes()
     try:
         data = plain(path, data.decode("utf-8")).encode()
