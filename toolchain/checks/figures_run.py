@@ -27,11 +27,21 @@ def prepare(folder, top, build):
         link = folder / name
         if not link.is_symlink():
             link.symlink_to(top / name)
-    host = folder / "build/host"
-    if host.is_symlink() and host.resolve() != build.resolve():
-        host.unlink()
-    if not host.is_symlink():
-        host.symlink_to(build.resolve())
+    for name, place in (("host", build.resolve()), ("bench", top / "build/bench")):
+        link = folder / "build" / name
+        if link.is_symlink():
+            link.unlink()
+        link.symlink_to(place)
+
+
+def outdated(build, top):
+    """Whether programs of this tree's build are older than its sources. A build of another tree is taken as it is."""
+    cache = build / "CMakeCache.txt"
+    if not cache.exists() or f"CMAKE_HOME_DIRECTORY:INTERNAL={top}\n" not in cache.read_text(encoding="utf-8"):
+        return False
+    done = subprocess.run(["ninja", "-C", str(build), "-n"], capture_output=True, text=True)
+    steps = [line for line in done.stdout.splitlines() if line.startswith("[") and not re.search("Re-checking globbed|Re-running CMake", line)]
+    return bool(steps)
 
 
 def run(command, top, build, folder):
