@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs the commands of the registry, as they are written on the page, and finds the figures in what they print."""
+import json
+import os
+import pathlib
+import re
+import subprocess
+import time
+
+PROGRAMS = ("toolchain/sim", "toolchain/host", "toolchain/mpi", "firmware/linux")
+LINKED = ("core", "firmware", "hal", "tests", "toolchain", "CMakePresets.json")
+
+
+class Failed(Exception):
+    """A command did not end as it should, or a figure is not in its output."""
+
+
+def environment(build):
+    folders = [str(build / place) for place in PROGRAMS]
+    return {**os.environ, "PATH": os.pathsep.join(folders + [os.environ["PATH"]]), "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def prepare(folder, top, build):
+    """A folder in which the paths of a page's command are those of the tree, and what it writes stays out of the tree."""
+    (folder / "build").mkdir(parents=True, exist_ok=True)
+    for name in LINKED:
+        link = folder / name
+        if not link.is_symlink():
+            link.symlink_to(top / name)
+    for name, place in (("host", build.resolve()), ("bench", top / "build/bench")):
+        link = folder / "build" / name
+        if link.is_symlink():
+            link.unlink()
+        link.symlink_to(place)
+
+
+def outdated(build, top):
+    """Whether programs of this tree's build are older than its sources. A build of another tree is taken as it is."""
+    cache = build / "CMakeCache.txt"
+    if not cache.exists() or f"CMAKE_HOME_DIRECTORY:INTERNAL={top}\n" not in cache.read_text(encoding="utf-8"):
+        return False
+    done = subprocess.run(["ninja", "-C", str(build), "-n"], capture_output=True, text=True)
+    steps = [line for line in done.stdout.splitlines() if line.startswith("[") and not re.search("Re-checking globbed|Re-running CMake", line)]
+    return bool(steps)
+
+
+def run(command, top, build, folder):
+    """(output, seconds)"""
+    where = top
+    if not command.in_tree:
+        prepare(folder, top, build)
+        where = folder
+    began = time.monotonic()
+    # Each line has to end well; several lines are one command after the other.
+    done = subprocess.run(["bash", "-c", "set -eo pipefail\n" + command.run], cwd=where, env=environment(build), stdin=subprocess.DEVNULL,
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
+    if done.returncode not in command.status:
+        raise Failed(f"{command.name}: exit status {done.returncode}: {command.run}\n" + "\n".join(done.stdout.splitlines()[-10:]))
+    return done.stdout, time.monotonic() - began
+
+
+def at(value, way):
+    for key in way.split("/"):
+        value = value[int(key)] if isinstance(value, list) else value[key]
+    return value
+
+
+def values_of(figure, output, lines_on_page):
+    """What the output says of a figure: printed numbers as text, or the lines of a block."""
+    if figure.block is not None:
+        lines = output.splitlines()
+        begin = next((i for i, line in enumerate(lines) if (line + "\n").startswith(figure.block.split("\n")[0])), None)
+        if begin is None:
+            raise Failed(f"{figure.of}: nothing printed begins with \"{figure.block}\"")
+        return lines[begin:begin + lines_on_page]
+    found = [m.groups() for m in re.finditer(figure.printed, output, re.M)]
+    if not found:
+        raise Failed(f"{figure.of}: nothing printed is like {figure.printed} (for \"{figure.text}\")")
+    groups = sum(found, ()) if figure.each else found[0]
+    return [value or "0" for value in groups]  # what is not printed at all did not happen
+
+
+def values_of_record(figure, top, command):
+    record = json.loads((top / command.record).read_text(encoding="utf-8"))
+    return [str(at(record, way)) for way in figure.json]
+
+
+def stamp(top, command, digest):
+    """Notes the digest in the record, which the command has written."""
+    path = pathlib.Path(top / command.record)
+    record = json.loads(path.read_text(encoding="utf-8"))
+    way, _, key = (command.stamp or "sources").rpartition("/")
+    (at(record, way) if way else record)[key] = digest
+    path.write_text(compact(record, top), encoding="utf-8")
+
+
+def compact(record, top):
+    import sys
+    sys.path.insert(0, str(top / "toolchain/report"))
+    import records
+    return records.compact_json(record)
