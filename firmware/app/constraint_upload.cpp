@@ -5,6 +5,20 @@
 #include "firmware/link/mavlink/geodesy.hpp"
 
 namespace jink::app {
+namespace {
+
+/// The same area, whenever it was sent: the instant of its position varies with the line's delay.
+bool is_repetition(const link::Constraint& a, const link::Constraint& b) noexcept
+{
+    const TimePoint never = link::Constraint{}.ends;
+    const bool same_end =
+        a.ends == never || b.ends == never ? a.ends == b.ends : a.ends.us - a.stamp.us == b.ends.us - b.stamp.us;
+    return same_end && a.about == b.about && a.barrel.circle.centre == b.barrel.circle.centre &&
+           a.barrel.circle.radius == b.barrel.circle.radius && a.barrel.velocity == b.barrel.velocity &&
+           a.barrel.bottom == b.barrel.bottom && a.barrel.top == b.barrel.top && a.barrel.margin == b.barrel.margin;
+}
+
+}  // namespace
 
 bool ConstraintUpload::belongs(const link::ConstraintPart& part) const noexcept
 {
@@ -37,7 +51,9 @@ link::ConstraintResult ConstraintUpload::take(const link::ConstraintPart& part, 
         ++diagnostics_.refused;
         return link::ConstraintResult::out_of_range;
     }
-    if (!belongs(part)) {
+    const bool is_other =
+        is_complete_ && belongs(part) && part.count > 0 && !is_repetition(parts_[part.index], constraint);
+    if (is_other || !belongs(part)) {
         begin(part);
     }
     if (part.count > 0) {

@@ -17,11 +17,11 @@ struct ConstraintUploadDiagnostics {
 };
 
 /// Collects the parts of a set of constraints, in any order. The set in force does not change before the new one is
-/// complete. A part that comes again replaces its former value, in a complete set too: the set is then new again, so
-/// that a sender that starts anew with the same number is never answered with the areas of its former start.
+/// complete. A part that comes again replaces its former value in an incomplete set.
 ///
-/// A set is told from the former by its sender, its number and its count. A part of another set abandons an incomplete
-/// one.
+/// A set differs from the former by its sender, its number or its count; from a complete one also by any value of a
+/// part but its stamp. A sender that starts anew with the same number therefore replaces its former areas as a whole,
+/// and a sender whose answer was lost repeats the part as it was. A part of another set abandons an incomplete one.
 ///
 /// Memory: 72 bytes for each of kMaxReportedConstraints.
 class ConstraintUpload {

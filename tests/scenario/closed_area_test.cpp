@@ -10,6 +10,7 @@
 #include "firmware/link/mavlink/constraint_message.hpp"
 #include "firmware/link/mavlink/parser.hpp"
 #include "toolchain/sim/area_sender.hpp"
+#include "toolchain/sim/daemon.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 #include "toolchain/sim/scenario_writer.hpp"
@@ -156,6 +157,29 @@ TEST(AreaSender, ALateAcknowledgementIsAFault)
     answers.write(m, {1, 196});
     sender.receive(answers.bytes(), 4 * kSecond);
     EXPECT_EQ(sender.fault(), "closed areas were in force after 4 s only");
+}
+
+/// One scenario without an input keeps the others from nothing: it is left out by name.
+TEST(NamedScenarios, OnlyThoseWithALidarHaveNoInputOnDaemonAndImages)
+{
+    std::size_t with_areas = 0;
+    std::size_t left_out = 0;
+    for (const auto& file : scenario_files(JINK_SCENARIOS)) {
+        const Scenario scenario = load_scenario(file);
+        with_areas += scenario.areas.empty() ? 0U : 1U;
+        left_out += no_input_for(scenario).empty() ? 0U : 1U;
+        EXPECT_EQ(no_input_for(scenario), scenario.lidar ? "a LiDAR is simulated in process only" : "") << file;
+    }
+    EXPECT_GE(with_areas, 1U);
+    EXPECT_GE(left_out, 1U);
+}
+
+TEST(NamedScenarios, ThePublishedPlannerIsFlownInProcessOnly)
+{
+    Scenario scenario = parse_scenario(kAcross, "across.yaml");
+    EXPECT_EQ(no_input_for(scenario), "");
+    scenario.planner = PlannerKind::source;
+    EXPECT_EQ(no_input_for(scenario), "'planner: source' is flown in process only");
 }
 
 }  // namespace

@@ -157,6 +157,14 @@ bool says_nothing(const Scenario& scenario, const Record& record)
 
 }  // namespace
 
+std::string no_input_for(const Scenario& scenario)
+{
+    if (scenario.planner != PlannerKind::product) {
+        return "'planner: source' is flown in process only";
+    }
+    return scenario.lidar ? "a LiDAR is simulated in process only" : "";
+}
+
 Record fly_daemon(const Scenario& scenario, const Computer& computer, const std::filesystem::path& folder)
 {
     Record record = fly_once(scenario, computer, folder);
@@ -176,11 +184,8 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Co
                                 const std::filesystem::path& folder, unsigned at_once)
 {
     for (const Scenario& scenario : scenarios) {
-        if (scenario.planner != PlannerKind::product) {
-            throw std::runtime_error(scenario.name + ": 'planner: source' is flown in process only");
-        }
-        if (scenario.lidar) {
-            throw std::runtime_error(scenario.name + ": what a LiDAR sees is flown in process only");
+        if (const std::string reason = no_input_for(scenario); !reason.empty()) {
+            throw std::runtime_error(scenario.name + ": " + reason);
         }
     }
     std::vector<Record> records(scenarios.size());

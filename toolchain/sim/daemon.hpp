@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "toolchain/sim/record.hpp"
 
@@ -14,6 +16,9 @@ struct Computer {
 
     [[nodiscard]] bool emulated() const noexcept { return !machine.empty(); }
 };
+
+/// Why neither jinkd nor an image can fly the scenario; empty where both can.
+[[nodiscard]] std::string no_input_for(const Scenario& scenario);
 
 /// Flies a scenario against the real program. jinkd, in real time: starts `jinkd --serial PTY` on a pseudo-terminal,
 /// plays the autopilot at its master end, stops jinkd with SIGTERM and wants a clean exit; takes as long as the flight;
@@ -32,6 +37,7 @@ struct Computer {
                                 const std::filesystem::path& folder);
 
 /// Several at once, `at_once` of them, in the order of the scenarios.
+/// @throws std::runtime_error before any flight where no_input_for() one of them has a reason
 [[nodiscard]] std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Computer& computer,
                                               const std::filesystem::path& folder, unsigned at_once);
 

@@ -65,8 +65,8 @@ std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_
     std::vector<Scenario> scenarios;
     for (const std::string& file : files) {
         scenarios.push_back(load_scenario(file));
-        if (real_time && scenarios.back().lidar) {
-            std::cout << scenarios.back().name << ": left out, a LiDAR is simulated in process only\n";
+        if (const std::string reason = no_input_for(scenarios.back()); real_time && !reason.empty()) {
+            std::cout << scenarios.back().name << ": left out, " << reason << "\n";
             scenarios.pop_back();
         }
     }

@@ -59,6 +59,62 @@ TEST(ConstraintUpload, ThePartOfACompleteSetReplacesTheFormer)
     EXPECT_EQ(upload.set()[0].barrel.circle.centre.x(), 500.0F);
 }
 
+/// With two areas that change places, a mixture of both sets would leave one of them open.
+TEST(ConstraintUpload, ASetWithTheNumberOfTheOneInForceReplacesItAsAWhole)
+{
+    ConstraintUpload upload;
+    EXPECT_EQ(upload.take(part_of(1, 0, 2, 10.0F), kAt), ConstraintResult::kept);
+    EXPECT_EQ(upload.take(part_of(1, 1, 2, 500.0F), kAt), ConstraintResult::in_force);
+    upload.mark_in_force();
+    EXPECT_EQ(upload.take(part_of(1, 0, 2, 500.0F), kAt), ConstraintResult::kept);
+    EXPECT_FALSE(upload.is_new());
+    EXPECT_EQ(upload.take(part_of(1, 1, 2, 10.0F), kAt), ConstraintResult::in_force);
+    ASSERT_TRUE(upload.is_new());
+    EXPECT_EQ(upload.set()[0].barrel.circle.centre.x(), 500.0F);
+    EXPECT_EQ(upload.set()[1].barrel.circle.centre.x(), 10.0F);
+    EXPECT_EQ(upload.diagnostics().sets, 2U);
+    EXPECT_EQ(upload.diagnostics().abandoned, 0U);
+}
+
+TEST(ConstraintUpload, EachValueThatDiffersFromTheSetInForceBeginsAnother)
+{
+    const auto result_after = [](const auto& change) {
+        ConstraintUpload upload;
+        static_cast<void>(upload.take(part_of(1, 0, 2), kAt));
+        EXPECT_EQ(upload.take(part_of(1, 1, 2), kAt), ConstraintResult::in_force);
+        ConstraintPart part = part_of(1, 1, 2);
+        change(part.constraint);
+        return upload.take(part, kAt);
+    };
+    EXPECT_EQ(result_after([](link::Constraint&) {}), ConstraintResult::in_force) << "its answer was lost";
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.stamp = {kAt.us - 3000}; }), ConstraintResult::in_force)
+        << "the line's delay varies";
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.circle.centre.y() = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.circle.radius = 11.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.velocity.x() = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.bottom = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.top = 99.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.margin = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.ends = kAt + 60.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) {
+                  c.about = link::GlobalPosition{1, 2, 0};
+              }),
+              ConstraintResult::kept);
+}
+
+/// The end counts from the instant of the position, which the line's delay moves.
+TEST(ConstraintUpload, ARepetitionWithAnEndIsRecognized)
+{
+    ConstraintUpload upload;
+    ConstraintPart part = part_of(1, 0, 2);
+    part.constraint.ends = part.constraint.stamp + 60.0F;
+    static_cast<void>(upload.take(part, kAt));
+    EXPECT_EQ(upload.take(part_of(1, 1, 2), kAt), ConstraintResult::in_force);
+    part.constraint.stamp.us -= 3000;
+    part.constraint.ends.us -= 3000;
+    EXPECT_EQ(upload.take(part, kAt), ConstraintResult::in_force);
+}
+
 TEST(ConstraintUpload, AnotherSetSenderOrCountAbandonsAnIncompleteOne)
 {
     ConstraintUpload upload;
