@@ -4,6 +4,7 @@
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -151,6 +152,36 @@ class OnACopy(unittest.TestCase):
                 for block in ("```sh\nflies --fast    # a comment\n```\n", "```\njink fly \\\n    faster\n```\n"):
                     found = [p for p in self.found_after(page.name, page.text + "\n" + block) if "does not know the command" in p.text]
                     self.assertEqual([p.page for p in found], [page.name])
+
+    def test_a_dated_figure_is_refused_where_the_page_does_not_show_its_commit(self):
+        book = figures_check.Book(self.top)
+        dated = [c for c in book.registry.commands.values() if c.dated]
+        self.assertTrue(dated)
+        for command in dated:
+            page = book.pages[command.figures[0].page]
+            found = self.found_after(page.name, page.text.replace(f"commit {command.commit}", "some commit"))
+            self.assertTrue(any("does not say that it was recorded on commit" in p.text for p in found), command.name)
+
+    def test_only_numbers_that_belong_to_no_command_can_be_sealed(self):
+        book = figures_check.Book(self.top)
+        command, figure = next((c, f) for c in book.registry.commands.values() for f in c.figures if f.page == "README.md" and c.kind == "quick")
+        page = book.pages["README.md"]
+        (begin, end), lock = book.found[command.name, figure.key][0][0], self.top / figures_check.LOCK
+        kept = lock.read_bytes()
+        seal = [sys.executable, str(TOP / "toolchain/checks/figures"), "--top", str(self.top), "--seal", "README.md"]
+        try:
+            (self.top / "README.md").write_text(page.text[:begin] + other(page.text[begin:end]) + page.text[end:], encoding="utf-8")
+            done = subprocess.run(seal, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 1, done.stdout)
+            self.assertIn("belong to commands", done.stdout)
+            (self.top / "README.md").write_text(page.text + "\nA number: 4711\n", encoding="utf-8")
+            done = subprocess.run(seal, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertIn("nothing was sealed, 4711 stands", done.stdout)
+            self.assertFalse([p for p in figures_check.Book(self.top).seals() if p.page == "README.md"])
+        finally:
+            (self.top / "README.md").write_text(page.text, encoding="utf-8")
+            lock.write_bytes(kept)
 
     def test_a_command_that_no_page_gives_any_more_is_found(self):
         page = figures_check.Book(self.top).pages["docs/closed_loop.md"]
