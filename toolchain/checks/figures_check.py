@@ -103,7 +103,8 @@ class Book:
             return "dated" if self.lock.commands[command.name].get("commit") == command.commit else "stale"
         return "fresh" if kept == self.digest(command) else "stale"
 
-    def evidence(self):
+    def evidence(self, any_age=False):
+        """any_age: accepts figures that were recorded on other code, or never"""
         for command in self.registry.commands.values():
             if not command.has_figures:
                 continue
@@ -111,10 +112,11 @@ class Book:
             again = RECORD.format(command.name)
             page = command.pages[0] if command.pages else ""
             if state == "never":
-                yield Problem(f"{command.name}: never recorded: run {again}", page)
+                if not any_age:
+                    yield Problem(f"{command.name}: never recorded: run {again}", page)
                 if command.kind != "record":
                     continue
-            if state == "stale":
+            if state == "stale" and not any_age:
                 yield Problem(f"{command.name}: recorded on other code: run {again}", page)
             if state == "dated":
                 for name in {f.page for f in command.figures}:
@@ -235,8 +237,8 @@ class Book:
             rows.setdefault(line, []).append(token)
         self.lock.seals[name] = [" ".join(row) for row in rows.values()]
 
-    def all(self):
-        return [*self.problems, *self.evidence(), *self.commands(), *self.seals()]
+    def all(self, any_age=False):
+        return [*self.problems, *self.evidence(any_age), *self.commands(), *self.seals()]
 
 
 def changes(kept, there, page):
