@@ -34,14 +34,16 @@ def prepare(folder, top, build):
         link.symlink_to(place)
 
 
-def outdated(build, top):
-    """Whether programs of this tree's build are older than its sources. A build of another tree is taken as it is."""
+def unfit(build, top):
+    """Why a build's programs are not those of this tree's sources, or nothing."""
     cache = build / "CMakeCache.txt"
-    if not cache.exists() or f"CMAKE_HOME_DIRECTORY:INTERNAL={top}\n" not in cache.read_text(encoding="utf-8"):
-        return False
+    if not cache.exists():
+        return "is no build folder"
+    if f"CMAKE_HOME_DIRECTORY:INTERNAL={top}\n" not in cache.read_text(encoding="utf-8"):
+        return f"was not built of {top}"
     done = subprocess.run(["ninja", "-C", str(build), "-n"], capture_output=True, text=True)
     steps = [line for line in done.stdout.splitlines() if line.startswith("[") and not re.search("Re-checking globbed|Re-running CMake", line)]
-    return bool(steps)
+    return "is older than its sources: build it first" if steps or done.returncode else None
 
 
 def run(command, top, build, folder):
