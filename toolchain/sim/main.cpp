@@ -70,6 +70,9 @@ std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_
             scenarios.pop_back();
         }
     }
+    if (scenarios.empty()) {
+        throw std::runtime_error("no scenario is left to be flown");
+    }
     return scenarios;
 }
 
