@@ -30,7 +30,8 @@ class Page:
 
 
 def pattern(text):
-    """Of a text with {} for figures, {n} for numbers that are none of them, {*} for anything on the line: white space is any, so that a line may be broken elsewhere."""
+    """Of a text with {} for figures, {n} for other numbers, {*} for anything on the line; any white space matches, so that
+    a line may be broken elsewhere."""
     out = []
     for part in re.split(r"(\{\}|\{n\}|\{\*\}|\s+)", text):
         out.append(f"({NUMBER})" if part == "{}" else NUMBER if part == "{n}" else r"[^\n]*?" if part == "{*}" else r"\s+" if part.isspace() else re.escape(part))
