@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws maps of convex pieces, as `jink mesh measure --figures` hands them over on standard input, all in one PNG."""
 import pathlib

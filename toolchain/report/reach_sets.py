@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
 """Draws reach sets, as `jink reach measure --figures` hands them over on standard input, one PNG each."""
 import math

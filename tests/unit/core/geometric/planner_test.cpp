@@ -121,6 +121,41 @@ TEST(PlannerStatus, NoneAvailable)
     EXPECT_EQ(flight.out.by, world::MethodId::none);
 }
 
+/// A closed area of 2 m radius on the leg, from the ground to 100 m.
+world::Barrel closed_area_ahead()
+{
+    world::Barrel area;
+    area.circle = {{30.0F, 0.5F}, 2.0F};
+    area.top = 100.0F;
+    return area;
+}
+
+/// Its curves lead around spheres and solids. A closed area, even a small one, is left to the other methods.
+TEST(PlannerStatus, ClosedAreaAheadIsLeftToOtherMethods)
+{
+    Flight flight;
+    const world::Barrel area = closed_area_ahead();
+    flight.airspace.barrels = {&area, 1};
+    EXPECT_EQ(flight.plan(), PlanStatus::none_available);
+    EXPECT_EQ(flight.out.by, world::MethodId::none);
+}
+
+TEST(PlannerStatus, BudgetSpentAtAClosedAreaIsSaid)
+{
+    const world::Barrel area = closed_area_ahead();
+    std::uint32_t spent = 0;
+    PlanStatus status = PlanStatus::budget_spent;
+    for (std::uint32_t units = 1; status == PlanStatus::budget_spent && units < 1000; ++units) {
+        Flight flight;
+        flight.airspace.barrels = {&area, 1};
+        flight.budget = WorkBudget{units};
+        status = flight.plan();
+        spent += status == PlanStatus::budget_spent ? 1U : 0U;
+    }
+    EXPECT_EQ(status, PlanStatus::none_available);
+    EXPECT_GE(spent, 1U);
+}
+
 TEST(PlannerStatus, BudgetSpent)
 {
     Flight flight;
