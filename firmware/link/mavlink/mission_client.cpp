@@ -108,9 +108,12 @@ void MissionClient::current(const MissionProgress& progress, TimePoint now) noex
     progress_ = progress;
     check_due_ = check_due_ || other;
     is_verified_ = is_verified_ && !(lone_ && other);
+    const bool another = progress.total != read_total_ || progress.id != read_id_;
     if (!has_current_) {
         has_current_ = true;
-    } else if (!stale_ && (progress.total != read_total_ || progress.id != read_id_)) {
+    } else if (another && stale_) {
+        drop();  // while somebody else's transfer keeps us from reading
+    } else if (another) {
         invalidate(now);
     } else if (!stale_ && state_ == State::idle && !lone_ && id_ != 0 && progress.id == id_) {
         is_verified_ = true;

@@ -110,11 +110,13 @@ struct Talk {
             MissionCurrent current;
             MissionCount count;
             MissionItemInt item;
+            MissionRequestInt request;
             if (decode(frame.frame(), current)) {
                 announced.push_back({now, current.mission_id});
                 announced_sequence = current.seq;
             } else if ((decode(frame.frame(), count) && count.target_system == kStation) ||
-                       (decode(frame.frame(), item) && item.target_system == kStation)) {
+                       (decode(frame.frame(), item) && item.target_system == kStation) ||
+                       (decode(frame.frame(), request) && request.target_system == kStation)) {
                 station_seen = std::min(station_seen, now);
             }
         }
@@ -202,8 +204,12 @@ double fly_px4(std::uint64_t seed, bool lossy)
             t.server.replace(1 + t.random.below(14));
         } else if (random && t.random.below(150) == 0) {
             t.server.current = static_cast<std::uint16_t>(t.random.below(t.server.mission.size()));
-        } else if (random && t.now < end - 10.0 && t.random.below(1500) == 0) {
-            t.server.station_reads(t.now);
+        } else if (random && t.now < end - 10.0 && t.random.below(1000) == 0) {
+            if (t.random.below(2) == 0) {
+                t.server.station_reads(t.now);
+            } else {
+                t.server.station_writes(1 + t.random.below(14), t.now);
+            }
             t.station_seen = kNever;
             stations = t.now;
         } else if (random && lossy && t.random.below(500) == 0) {

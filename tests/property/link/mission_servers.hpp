@@ -148,7 +148,9 @@ public:
         MissionRequestInt request;
         MissionAck ack;
         const std::pair from{frame.header.system_id, frame.header.component_id};
-        if (takes(frame, list)) {
+        if (takes(frame, list) && uploading_until_ > 0.0) {
+            texts.not_partner.push_back(sent);  // "Mission download request ignored, already active"
+        } else if (takes(frame, list)) {
             sends_ = sends_ && next_ != mission.size();
             last_ = now;
             sends_ = true;
@@ -171,6 +173,13 @@ public:
     }
     void tick(double now) override
     {
+        if (uploading_until_ > 0.0 && now >= uploading_until_) {
+            uploading_until_ = 0.0;
+            replace(uploaded_);
+            say(to<MissionAck>(kStation, kStationId), now);
+        } else if (uploading_until_ > 0.0) {
+            say(to<MissionRequestInt>(kStation, kStationId), now);
+        }
         if (sends_ && now - last_ > 5.0) {
             sends_ = false;
             ++texts.timeout;
@@ -184,6 +193,14 @@ public:
             m.mission_id = id();
             say(m, now);
         }
+    }
+    /// A ground station writes a mission over the same line: it becomes the partner.
+    void station_writes(std::size_t n, double now)
+    {
+        partner_ = {kStation, kStationId};
+        sends_ = false;
+        uploaded_ = n;
+        uploading_until_ = now + random_.uniform(0.1F, 2.0F);
     }
     /// A ground station reads the mission over the same line: it becomes the partner.
     void station_reads(double now)
@@ -240,6 +257,8 @@ private:
     }
 
     bool sends_ = false;
+    double uploading_until_ = 0.0;
+    std::size_t uploaded_ = 0;
     std::size_t next_ = 0;
     std::size_t transfer_count_ = 0;
     std::pair<std::uint8_t, std::uint8_t> partner_{0, 0};

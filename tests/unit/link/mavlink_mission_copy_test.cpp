@@ -29,6 +29,21 @@ TEST_F(MavlinkMissionCopy, ALongMissionIsKeptAroundItsCurrentItem)
     steps(0.05F);
 }
 
+TEST_F(MavlinkMissionCopy, AMissionAnnouncedWhileOthersTransferIsNotTheCopy)
+{
+    progress = {0, 3, 77, false};
+    current(1);
+    read(mission_of(3), 77);
+    current(1);
+    ASSERT_NE(client.goal(), nullptr);
+    client.others(true, false, now);
+    current(1);
+    EXPECT_NE(client.goal(), nullptr) << "an upload has changed nothing yet";
+    progress.id = 78;
+    current(1);
+    EXPECT_EQ(client.goal(), nullptr);
+}
+
 TEST_F(MavlinkMissionCopy, DoItemsArePassedOverAndUnknownOnesAreNot)
 {
     auto mission = mission_of(6);
