@@ -85,7 +85,7 @@ void NominalPaths::reset() noexcept
     turn_rate_ = steady_now_ = 0.0F;
     disagreeing_ = agreeing_ = 0.0F;
     believed_ = true;
-    kept_.copy_from(live_);
+    outdated_ = true;
 }
 
 void NominalPaths::sample(const vehicle::VehicleState& measured) noexcept
@@ -279,6 +279,10 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
     }
     intend(own, limits, in_control);
     extrapolate(own, limits);
+    if (outdated_) {
+        kept_.copy_from(live_);
+        outdated_ = false;
+    }
     on_motion_ = in_control ? on_motion_ || !has_leg_ : !believes_leg();
 }
 

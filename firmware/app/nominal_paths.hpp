@@ -104,6 +104,7 @@ private:
     bool in_control_ = false;
     bool on_motion_ = true;  ///< the primary one
     bool was_on_motion_ = false;
+    bool outdated_ = false;  ///< what is kept: the frame has jumped
     std::uint32_t doubted_ = 0;
     world::Reference intended_;
     Motion live_;

@@ -208,6 +208,18 @@ TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
     EXPECT_EQ(paths.primary().leg.end, leg.end) << "what is left to solve is the leg's conflict";
 }
 
+TEST_F(NominalPathsTest, WhatIsKeptIsMadeAnewWhenTheFrameJumps)
+{
+    has_leg = false;
+    fly(Vec3(5, 0, 0), 2.0F);
+    fly(Vec3(0, 5, 0), 1.0F, 0.0F, true);
+    paths.reset();
+    own.position += Vec3(1000, 0, 0);
+    fly(Vec3(0, 5, 0), 1.0F, 0.0F, true);
+    EXPECT_NEAR(paths.primary().leg.start.x(), own.position.x(), 0.1F);
+    EXPECT_NEAR(paths.primary().leg.end.x(), own.position.x(), 0.1F);
+}
+
 TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
 {
     has_leg = false;
