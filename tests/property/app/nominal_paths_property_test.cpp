@@ -18,11 +18,13 @@ std::uint64_t nominal_setting(const char* name, std::uint64_t otherwise)
     return text != nullptr ? std::strtoull(text, nullptr, 10) : otherwise;
 }
 
-enum class Behaviour { circle, replaced_leg, stands, fast, set_points };
-constexpr Behaviour kBehaviours[] = {Behaviour::circle, Behaviour::replaced_leg, Behaviour::stands, Behaviour::fast,
-                                     Behaviour::set_points};
-constexpr const char* kNames[] = {"circle", "replaced leg", "stands", "12 m/s at VEH_CRUISE 5",
-                                  "controller set-points"};
+enum class Behaviour { circle, replaced_leg, stands, fast, set_points, corners };
+constexpr Behaviour kBehaviours[] = {Behaviour::circle, Behaviour::replaced_leg, Behaviour::stands,
+                                     Behaviour::fast,   Behaviour::set_points,   Behaviour::corners};
+constexpr const char* kNames[] = {
+    "circle", "replaced leg", "stands", "12 m/s at VEH_CRUISE 5", "controller set-points", "corners, legs known"};
+
+Vec3 level(float course) { return {std::cos(course), std::sin(course), 0.0F}; }
 
 Course straight(const Vec3& from, const Vec3& velocity)
 {
@@ -40,11 +42,47 @@ Course circle(const Vec3& centre, float radius, float speed, float phase, float 
             }};
 }
 
-Vec3 level(float course) { return {std::cos(course), std::sin(course), 0.0F}; }
+/// Legs of 40 to 80 m at 5 m/s, one after the other.
+struct Corners {
+    std::vector<Vec3> points;
+    std::vector<Seconds> times;  ///< when each point is reached
+
+    [[nodiscard]] std::size_t leg_at(Seconds t) const
+    {
+        std::size_t i = 0;
+        while (i + 2 < points.size() && t >= times[i + 1]) {
+            ++i;
+        }
+        return i;
+    }
+    [[nodiscard]] Vec3 velocity(Seconds t) const
+    {
+        const std::size_t i = leg_at(t);
+        return (points[i + 1] - points[i]) / (times[i + 1] - times[i]);
+    }
+    [[nodiscard]] Vec3 position(Seconds t) const
+    {
+        const std::size_t i = leg_at(t);
+        return points[i] + (t - times[i]) * velocity(t);
+    }
+};
+
+Corners draw_corners(Random& random, const Vec3& from, float heading)
+{
+    Corners c{{from}, {0.0F}};
+    for (int i = 0; i < 12; ++i) {
+        const float length = random.uniform(40.0F, 80.0F);
+        c.points.emplace_back(c.points.back() + length * level(heading));
+        c.times.push_back(c.times.back() + length / 5.0F);
+        heading += (random.below(2) == 0 ? 1.0F : -1.0F) * random.uniform(0.5F, 2.0F);
+    }
+    return c;
+}
 
 /// A flight of one kind, and its true course.
 struct Drawn {
     Course course;
+    Corners corners;
     std::unique_ptr<DirectFlight> flight;
 };
 
@@ -73,6 +111,12 @@ Drawn draw(Behaviour behaviour, Random& random)
         leg.speed = 0.0F;
         break;
     case Behaviour::set_points: d.course = straight(from, 5.0F * level(heading)); break;
+    case Behaviour::corners:
+        d.corners = draw_corners(random, from, heading);
+        d.course = {[c = d.corners](Seconds t) { return c.position(t); },
+                    [c = d.corners](Seconds t) { return c.velocity(t); }};
+        leg = {d.corners.points[0], d.corners.points[1], 5.0F};
+        break;
     }
     d.flight = std::make_unique<DirectFlight>(d.course, Parameters{}, random.next());
     d.flight->leg = leg;
@@ -89,6 +133,10 @@ void advance(Drawn& d, Behaviour behaviour)
         if ((ahead - before.end).norm() > 0.5F) {
             d.flight->leg = {before.end, ahead, 0.0F};
         }
+    }
+    if (behaviour == Behaviour::corners) {
+        const std::size_t i = d.corners.leg_at(d.flight->mission_time());
+        d.flight->leg = {d.corners.points[i], d.corners.points[i + 1], 5.0F};
     }
     d.flight->tick();
 }

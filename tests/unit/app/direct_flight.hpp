@@ -143,6 +143,8 @@ public:
             tick();
         }
     }
+    /// Of the course [s].
+    [[nodiscard]] Seconds mission_time() const { return mission_time_; }
     [[nodiscard]] int said(std::string_view text) const
     {
         return static_cast<int>(
