@@ -138,6 +138,7 @@ public:
     /// 0 until an autopilot was heard.
     [[nodiscard]] std::uint8_t system_id() const noexcept { return system_; }
     [[nodiscard]] bool has_origin() const noexcept { return origin_rank_ > 0; }
+    [[nodiscard]] bool has_home() const noexcept { return has_home_; }
 
 private:
     struct Context {
