@@ -198,12 +198,6 @@ public:
     }
     /// Home in the local frame [m]; its origin until it was received.
     [[nodiscard]] const Vec3& home() const noexcept { return home_; }
-    /// The nominal path that conflicts are looked for along at `now`: a believed leg, or the measured motion.
-    struct Nominal {
-        world::Reference reference;
-        bool is_leg = false;
-    };
-    [[nodiscard]] Nominal nominal(TimePoint now) const noexcept { return {reference_at(own_at(now)), has_leg_}; }
     /// As a plan at `now` has them, until the next step.
     [[nodiscard]] std::span<const world::Track> tracks(TimePoint now) noexcept { return tracks_.snapshot(now); }
 

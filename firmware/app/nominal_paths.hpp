@@ -54,6 +54,8 @@ public:
 
     /// The path that is flown in control. Valid until the next update.
     [[nodiscard]] const world::Reference& primary() const noexcept { return on_motion_ ? motion() : intended_; }
+    /// The primary path is the leg that the link reports; otherwise it is the measured motion.
+    [[nodiscard]] bool is_intended() const noexcept { return !on_motion_; }
     /// The other one; null where there is none.
     [[nodiscard]] const world::Reference* other() const noexcept;
     [[nodiscard]] bool believes_leg() const noexcept { return has_leg_ && believed_; }

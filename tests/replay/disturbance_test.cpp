@@ -81,7 +81,7 @@ std::vector<sim::Belief> replayed(const Recording& recording, const std::vector<
     std::vector<sim::WireRecord> records = recording.wire.records;
     std::erase_if(records, [](const sim::WireRecord& r) { return r.direction == sim::WireDirection::from_autopilot; });
     const std::int64_t start = sim::clock_start_of(records);
-    const auto run = std::make_unique<sim::Replay>(app::Parameters(), start);
+    const auto run = std::make_unique<sim::Replay>(app::Parameters(), start, sim::RecordedMission(records));
     std::vector<sim::Belief> beliefs;
     std::size_t next = 0;
     const sim::Micros end = sim::to_micros(recording.wire.records.back().time);

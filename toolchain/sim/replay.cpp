@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <deque>
+#include <utility>
 
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
@@ -15,6 +16,7 @@ namespace jink::sim {
 namespace {
 
 constexpr std::uint8_t kAutopilotComponentId = 1;
+constexpr std::uint8_t kOwnComponentId = 196;
 constexpr std::uint8_t kFixedWingType = 1;
 /// The co-processor's clock at the start of a recording that does not say it [us].
 constexpr std::int64_t kUnknownStart = kSecond;
@@ -39,7 +41,7 @@ std::optional<Globe> globe_of(const std::optional<link::GlobalPosition>& place)
 
 }  // namespace
 
-/// The end of a line that brings what it is given, and takes everything. Reads the TIMESYNC requests.
+/// The end of a line that brings what it is given, and takes everything. Reads the requests that are answered.
 class Replay::Port final : public hal::SerialPort {
 public:
     void bring(std::span<const std::byte> bytes) { waiting_.insert(waiting_.end(), bytes.begin(), bytes.end()); }
@@ -58,12 +60,21 @@ public:
         const std::size_t n = from.size();
         while (const auto frame = parser_.next(from)) {
             link::mavlink::Timesync sync;
+            link::mavlink::MissionRequestInt item;
             if (link::mavlink::decode(*frame, sync) && sync.tc1 == 0) {
                 asked_ = sync.ts1;
+            } else if (frame->message_id == link::mavlink::MissionRequestList::kInfo.id) {
+                wants_count_ = true;
+            } else if (link::mavlink::decode(*frame, item)) {
+                wanted_item_ = item.seq;
             }
         }
         return n;
     }
+    /// Whether MISSION_REQUEST_LIST came since the last call.
+    [[nodiscard]] bool take_list_request() { return std::exchange(wants_count_, false); }
+    /// The newest MISSION_REQUEST_INT since the last call.
+    [[nodiscard]] std::optional<std::uint16_t> take_item_request() { return std::exchange(wanted_item_, std::nullopt); }
     /// TIMESYNC.ts1 of the newest request [ns]; 0: none.
     [[nodiscard]] std::int64_t asked() const noexcept { return asked_; }
     [[nodiscard]] hal::PortHealth health() const noexcept override { return health_; }
@@ -73,10 +84,12 @@ private:
     hal::PortHealth health_{hal::PortState::open};
     link::mavlink::Parser parser_;
     std::int64_t asked_ = 0;
+    bool wants_count_ = false;
+    std::optional<std::uint16_t> wanted_item_;
 };
 
-Replay::Replay(const app::Parameters& parameters, std::int64_t clock_start)
-    : clock_start_(clock_start), port_(std::make_unique<Port>()),
+Replay::Replay(const app::Parameters& parameters, std::int64_t clock_start, std::optional<RecordedMission> mission)
+    : clock_start_(clock_start), mission_(std::move(mission)), port_(std::make_unique<Port>()),
       endpoint_(std::make_unique<link::mavlink::Endpoint>()),
       coprocessor_(std::make_unique<app::Coprocessor>(*endpoint_, *port_, watchdog_, parameters))
 {
@@ -118,17 +131,46 @@ void Replay::answer_timesync(Micros now)
     }
     const std::int64_t asked = port_->asked() / 1000;
     const std::int64_t middle = asked + (clock_start_ + now - asked) / 2;
-    const link::mavlink::Timesync answer{(told_clock_->remote + middle - told_clock_->at) * 1000, port_->asked(), 0, 0};
-    std::array<std::byte, link::mavlink::kMaxFrame> frame{};
-    const std::size_t n = link::mavlink::encode(answer, told_clock_->from, frame);
-    port_->bring({frame.data(), n});
+    bring(link::mavlink::Timesync{(told_clock_->remote + middle - told_clock_->at) * 1000, port_->asked(), 0, 0});
     told_clock_.reset();
+}
+
+/// As the autopilot of the recording.
+template <class M>
+void Replay::bring(const M& message)
+{
+    std::array<std::byte, link::mavlink::kMaxFrame> frame{};
+    const std::size_t n = link::mavlink::encode(message, {endpoint_->system_id(), kAutopilotComponentId, 0}, frame);
+    port_->bring({frame.data(), n});
+}
+
+/// Not within a frame either.
+void Replay::answer_mission(Micros now)
+{
+    if (!mission_ || parser_.pending() != 0) {
+        return;
+    }
+    if (port_->take_list_request()) {
+        if (auto count = mission_->count(now)) {
+            count->target_system = endpoint_->system_id();
+            count->target_component = kOwnComponentId;
+            bring(*count);
+        }
+    }
+    if (const auto wanted = port_->take_item_request()) {
+        if (auto item = mission_->item(*wanted, now)) {
+            item->target_system = endpoint_->system_id();
+            item->target_component = kOwnComponentId;
+            bring(*item);
+        }
+    }
 }
 
 void Replay::step(Micros now)
 {
     now_ = now;
     answer_timesync(now);
+    answer_mission(now);
     report_ = coprocessor_->step({clock_start_ + now});
 }
 
@@ -156,9 +198,10 @@ Belief Replay::belief() const
         const vehicle::VehicleState& own = coprocessor_->own();
         belief.position = (own.position + own.velocity * (now - own.stamp)).cast<double>();
         belief.velocity = own.velocity.cast<double>();
-        const app::Coprocessor::Nominal nominal = coprocessor_->nominal(now);
-        belief.nominal = {nominal.is_leg, nominal.reference.leg.end.cast<double>(),
-                          static_cast<double>(nominal.reference.leg.speed)};
+        const app::NominalPaths& paths = coprocessor_->nominal_paths();
+        const world::Reference& nominal = paths.primary();
+        const Vec3 end = nominal.route != nullptr ? nominal.route->at(nominal.route->length()).position : nominal.leg.end;
+        belief.nominal = {paths.is_intended(), end.cast<double>(), static_cast<double>(nominal.leg.speed)};
     }
     return belief;
 }
@@ -187,7 +230,7 @@ void replay(std::span<const WireRecord> records, const app::Parameters& paramete
     if (records.empty()) {
         return;
     }
-    const auto run = std::make_unique<Replay>(parameters, clock_start_of(records));
+    const auto run = std::make_unique<Replay>(parameters, clock_start_of(records), RecordedMission(records));
     const Micros end = to_micros(records.back().time);
     std::size_t next = 0;
     for (Micros now = 0; now <= end; now += Replay::kStep) {

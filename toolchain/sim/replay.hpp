@@ -12,6 +12,7 @@
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/parser.hpp"
 #include "hal/memory/counting_watchdog.hpp"
+#include "toolchain/sim/recorded_mission.hpp"
 #include "toolchain/sim/scenario.hpp"
 #include "toolchain/sim/wire_file.hpp"
 
@@ -52,17 +53,19 @@ struct Belief {
 };
 
 /// The co-processor at the receiving end of a recorded stream: Endpoint and Coprocessor of the product, on the clock of
-/// the recording. What it sends goes nowhere: the recorded autopilot answered the jinkd of the recording.
-///
-/// One answer is told once more: a TIMESYNC answer repeats the request of the recorded jinkd, and the endpoint takes
-/// none but the answer to its own. Behind each recorded answer follows one to the endpoint's newest request, with the
-/// autopilot's clock in the middle of that round trip. Everything else is fed byte by byte.
+/// the recording. The recorded autopilot answered the jinkd of the recording; everything that it sent is fed byte by
+/// byte. What the endpoint sends has no effect, but for two kinds of requests:
+/// * TIMESYNC: a recorded answer repeats the request of the recorded jinkd, and the endpoint takes none but the answer to
+///   its own. Behind each recorded answer follows one to the endpoint's newest request, with the autopilot's clock in the
+///   middle of that round trip.
+/// * The mission: requests are answered by RecordedMission, in the next step.
 class Replay {
 public:
     static constexpr Micros kStep = 20'000;
 
     /// @param clock_start  time of the co-processor's clock when the recording begins [us] (clock_start_of)
-    Replay(const app::Parameters& parameters, std::int64_t clock_start);
+    /// @param mission      that the endpoint reads; without one its requests are not answered
+    Replay(const app::Parameters& parameters, std::int64_t clock_start, std::optional<RecordedMission> mission = {});
     ~Replay();
     Replay(const Replay&) = delete;
     Replay& operator=(const Replay&) = delete;
@@ -89,8 +92,12 @@ private:
     };
     void hear(Micros time, const link::mavlink::Frame& frame);
     void answer_timesync(Micros now);
+    void answer_mission(Micros now);
+    template <class M>
+    void bring(const M& message);
 
     std::int64_t clock_start_;
+    std::optional<RecordedMission> mission_;
     Micros now_ = 0;
     std::unique_ptr<Port> port_;
     hal::CountingWatchdog watchdog_;
