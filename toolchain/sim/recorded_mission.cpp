@@ -7,7 +7,8 @@ namespace jink::sim {
 namespace {
 
 constexpr std::uint8_t kFlightController = 1;
-constexpr std::uint8_t kMissionType = 0;  ///< MAV_MISSION_TYPE_MISSION; others are fences and rally points
+constexpr std::uint8_t kMissionType = 0;   ///< MAV_MISSION_TYPE_MISSION; others are fences and rally points
+constexpr std::uint16_t kNoTotal = 65535;  ///< MISSION_CURRENT.total without a mission; 0: not said
 constexpr std::uint8_t kMissionFrame = 2;  ///< MAV_FRAME_MISSION: an item without a place
 
 /// Newest answer up to `now` that `fits`, else the first one after it.
@@ -28,6 +29,7 @@ const Answer* nearest(const std::vector<Answer>& answers, Micros now, Fits fits)
 RecordedMission::RecordedMission(std::span<const WireRecord> records)
 {
     link::mavlink::Parser parser;
+    std::uint32_t mission = 0;
     for (const WireRecord& record : records) {
         if (record.direction != WireDirection::from_autopilot) {
             continue;
@@ -36,13 +38,21 @@ RecordedMission::RecordedMission(std::span<const WireRecord> records)
         while (const auto frame = parser.next(bytes)) {
             link::mavlink::MissionCount count;
             link::mavlink::MissionItemInt item;
+            link::mavlink::MissionCurrent current;
             if (frame->header.component_id != kFlightController) {
                 continue;
             }
             if (link::mavlink::decode(*frame, count) && count.mission_type == kMissionType) {
                 counts_.push_back({to_micros(record.time), count});
+                mission = count.opaque_id;
             } else if (link::mavlink::decode(*frame, item) && item.mission_type == kMissionType) {
-                items_.push_back({to_micros(record.time), item});
+                items_.push_back({to_micros(record.time), {item, mission}});
+            } else if (link::mavlink::decode(*frame, current)) {
+                const bool same = !announcements_.empty() && announcements_.back().message.total == current.total &&
+                                  announcements_.back().message.mission_id == current.mission_id;
+                if (!same) {
+                    announcements_.push_back({to_micros(record.time), current});
+                }
             }
         }
     }
@@ -50,7 +60,18 @@ RecordedMission::RecordedMission(std::span<const WireRecord> records)
 
 std::optional<link::mavlink::MissionCount> RecordedMission::count(Micros now) const
 {
-    const auto* const answer = nearest(counts_, now, [](const auto&) { return true; });
+    const auto* const announced = nearest(announcements_, now, [](const auto&) { return true; });
+    const std::uint16_t total = announced != nullptr ? announced->message.total : std::uint16_t{0};
+    const bool says_total = total != 0 && total != kNoTotal;
+    if (says_total && announced->message.mission_id != 0) {
+        link::mavlink::MissionCount count;
+        count.count = total;
+        count.opaque_id = announced->message.mission_id;
+        return count;
+    }
+    const auto fits = [&](const link::mavlink::MissionCount& count) { return !says_total || count.count == total; };
+    const auto* answer = nearest(counts_, now, fits);
+    answer = answer != nullptr ? answer : nearest(counts_, now, [](const auto&) { return true; });
     return answer != nullptr ? std::optional(answer->message) : std::nullopt;
 }
 
@@ -60,8 +81,10 @@ std::optional<link::mavlink::MissionItemInt> RecordedMission::item(std::uint16_t
     if (!whole || sequence >= whole->count) {
         return std::nullopt;
     }
-    if (const auto* const answer = nearest(items_, now, [&](const auto& item) { return item.seq == sequence; })) {
-        return answer->message;
+    if (const auto* const answer = nearest(items_, now, [&](const Item& item) {
+            return item.message.seq == sequence && item.mission == whole->opaque_id;
+        })) {
+        return answer->message.message;
     }
     link::mavlink::MissionItemInt unknown;
     unknown.seq = sequence;

@@ -200,7 +200,8 @@ Belief Replay::belief() const
         belief.velocity = own.velocity.cast<double>();
         const app::NominalPaths& paths = coprocessor_->nominal_paths();
         const world::Reference& nominal = paths.primary();
-        const Vec3 end = nominal.route != nullptr ? nominal.route->at(nominal.route->length()).position : nominal.leg.end;
+        const Vec3 end =
+            nominal.route != nullptr ? nominal.route->at(nominal.route->length()).position : nominal.leg.end;
         belief.nominal = {paths.is_intended(), end.cast<double>(), static_cast<double>(nominal.leg.speed)};
     }
     return belief;

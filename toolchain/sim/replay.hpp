@@ -55,9 +55,10 @@ struct Belief {
 /// The co-processor at the receiving end of a recorded stream: Endpoint and Coprocessor of the product, on the clock of
 /// the recording. The recorded autopilot answered the jinkd of the recording; everything that it sent is fed byte by
 /// byte. What the endpoint sends has no effect, but for two kinds of requests:
-/// * TIMESYNC: a recorded answer repeats the request of the recorded jinkd, and the endpoint takes none but the answer to
-///   its own. Behind each recorded answer follows one to the endpoint's newest request, with the autopilot's clock in the
-///   middle of that round trip.
+/// * TIMESYNC: a recorded answer repeats the request of the recorded jinkd, and the endpoint takes none but the answer
+/// to
+///   its own. Behind each recorded answer follows one to the endpoint's newest request, with the autopilot's clock in
+///   the middle of that round trip.
 /// * The mission: requests are answered by RecordedMission, in the next step.
 class Replay {
 public:
