@@ -106,6 +106,14 @@ vehicle::VehicleState Coprocessor::own_at(TimePoint now) const noexcept
     return own;
 }
 
+/// The mission's leg, while the autopilot flies the mission or we lead it. An external mode that is not ours leads
+/// somewhere else.
+const world::Leg* Coprocessor::flown_leg() const noexcept
+{
+    const bool led_by_others = autopilot_.mode == link::FlightMode::external && !takeover_.streaming();
+    return has_leg_ && !led_by_others ? &leg_ : nullptr;
+}
+
 world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
 {
     const Configuration& c = parameters_.configuration();
@@ -229,7 +237,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     report.own_source = fresh ? own_source_ : OwnSource::none;
     const vehicle::VehicleState own = own_at(now);
     if (fresh && c.mode != ActMode::off && !passive_) {
-        nominal_.update(own_, own, has_leg_ ? &leg_ : nullptr, c.limits, takeover_.in_control());
+        nominal_.update(own_, own, flown_leg(), c.limits, takeover_.in_control());
         const world::Airspace air = airspace(now);
         const world::Situation situation{now,
                                          own,

@@ -234,6 +234,7 @@ private:
     void remove_obstacles(std::uint32_t first, std::size_t n) noexcept;
     [[nodiscard]] std::uint16_t find_faults(TimePoint now, bool late) const noexcept;
     [[nodiscard]] vehicle::VehicleState own_at(TimePoint now) const noexcept;
+    [[nodiscard]] const world::Leg* flown_leg() const noexcept;
     [[nodiscard]] world::Airspace airspace(TimePoint now) const noexcept;
     void note_block(const avoid::Guidance& guidance) noexcept;
     void control(TimePoint now, StepReport& report) noexcept;

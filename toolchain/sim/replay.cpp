@@ -202,7 +202,8 @@ Belief Replay::belief() const
         const world::Reference& nominal = paths.primary();
         const Vec3 end =
             nominal.route != nullptr ? nominal.route->at(nominal.route->length()).position : nominal.leg.end;
-        belief.nominal = {paths.is_intended(), end.cast<double>(), static_cast<double>(nominal.leg.speed)};
+        belief.nominal = {paths.is_intended(), end.cast<double>(), static_cast<double>(nominal.leg.speed),
+                          nominal.route != nullptr};
     }
     return belief;
 }

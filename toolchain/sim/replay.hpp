@@ -27,6 +27,7 @@ struct NominalBelief {
     bool is_route = false;  ///< a believed leg; otherwise the measured motion
     Vec end = Vec::Zero();  ///< of the leg, or where the measured motion leads within its prediction [m]
     double speed = 0.0;     ///< [m/s]
+    bool turns = false;     ///< the measured motion begins with an arc
 };
 
 /// A place on the globe.

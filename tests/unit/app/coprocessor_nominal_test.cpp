@@ -69,6 +69,39 @@ TEST_F(WayBlocked, NeverWithoutPatience)
     EXPECT_LE(f.said(link::Severity::critical), 1) << "once per conflict";
 }
 
+/// A ground station leads the vehicle away from its mission: the mission's leg says nothing of where it goes.
+TEST(NominalPath, IsTheMeasuredMotionInAnExternalModeThatIsNotOurs)
+{
+    DirectFlight f(east(5.0F), Parameters{}, 1);
+    f.reports_leg = true;
+    f.leg = {Vec3(0, 0, 50), Vec3(500, 0, 50), 5.0F};
+    f.fly(5.0F);
+    ASSERT_TRUE(f.coprocessor.nominal_paths().is_intended());
+    f.mode = link::FlightMode::external;
+    f.fly(1.5F);
+    EXPECT_FALSE(f.coprocessor.nominal_paths().is_intended());
+    f.mode = link::FlightMode::mission;
+    f.fly(1.5F);
+    EXPECT_TRUE(f.coprocessor.nominal_paths().is_intended());
+}
+
+TEST(NominalPath, IsTheMissionsLegWhileWeLead)
+{
+    DirectFlight f(east(5.0F), Parameters{}, 1);
+    f.reports_leg = true;
+    f.leg = {Vec3(0, 0, 50), Vec3(500, 0, 50), 5.0F};
+    f.intruders = {{Vec3(150, 0, 50), Vec3(-5, 0, 0), 0.0F}};
+    int led = 0;
+    for (int i = 0; i < 300 && f.given_back.empty(); ++i) {
+        f.fly(0.1F);
+        if (f.mode == link::FlightMode::external) {
+            ++led;
+            EXPECT_TRUE(f.coprocessor.nominal_paths().is_intended()) << i;
+        }
+    }
+    EXPECT_GT(led, 20);
+}
+
 /// Intruders that come at a standing vehicle: an escape that keeps clear is no reason for a CRITICAL text.
 TEST(WhatIsSaid, NothingCriticalOfAnEscapeThatKeepsClear)
 {
