@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
@@ -16,6 +17,7 @@ import figures_check  # noqa: E402
 import figures_digest  # noqa: E402
 import figures_pages  # noqa: E402
 import figures_registry  # noqa: E402
+import figures_run  # noqa: E402
 
 COPIED = ("README.md", "CONTRIBUTING.md", "CMakeLists.txt", "CMakePresets.json", "docs", "core", "firmware", "hal", "tests/checks", "tests/timing", "tests/target",
           "tests/scenario", "tests/property", "tests/unit", "tests/mutation", "toolchain")
@@ -31,6 +33,28 @@ def other(token):
 
 def texts(problems):
     return {str(p) for p in problems}
+
+
+class CampaignOfOtherSources(unittest.TestCase):
+    """What a former run of other sources has left is begun anew; every other failure stays one."""
+
+    def run_with(self, script):
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            (folder / "out").mkdir()
+            (folder / "out/old").touch()
+            command = types.SimpleNamespace(name="campaign", run=script, status=(0,), in_tree=False)
+            return figures_run.run_again(command, TOP, folder, folder)[0]
+
+    def test_begun_anew(self):
+        script = "if [ -e out/old ]; then echo 'out belongs to another set-up: x'; exit 2; fi; echo fresh"
+        self.assertEqual(self.run_with(script), "fresh\n")
+
+    def test_other_failures_stay(self):
+        with self.assertRaises(figures_run.Failed):
+            self.run_with("[ ! -e out/old ] || echo 'disk full'; exit 2")
+        with self.assertRaises(figures_run.Failed):
+            self.run_with("echo 'out belongs to another set-up: x'; exit 2")
 
 
 class OnACopy(unittest.TestCase):

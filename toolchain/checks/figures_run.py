@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import time
 
@@ -59,6 +60,17 @@ def run(command, top, build, folder):
     if done.returncode not in command.status:
         raise Failed(f"{command.name}: exit status {done.returncode}: {command.run}\n" + "\n".join(done.stdout.splitlines()[-10:]))
     return done.stdout, time.monotonic() - began
+
+
+def run_again(command, top, build, folder):
+    """As run(); a campaign that was begun by other sources is begun anew, one of the same sources is taken up."""
+    try:
+        return run(command, top, build, folder)
+    except Failed as failed:
+        if "belongs to another set-up" not in str(failed) or not (folder / "out").is_dir():
+            raise
+    shutil.rmtree(folder / "out")
+    return run(command, top, build, folder)
 
 
 def at(value, way):
