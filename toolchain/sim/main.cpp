@@ -18,6 +18,7 @@
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/phases.hpp"
 #include "toolchain/sim/random_scenario.hpp"
+#include "toolchain/sim/recorded_command.hpp"
 #include "toolchain/sim/report.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 #include "toolchain/sim/swarm_command.hpp"
@@ -366,6 +367,8 @@ int main(int argc, char** argv)
     const CLI::App& encounters_command = add_encounters(cli, encounters, true);
     SwarmOptions swarm;
     const CLI::App& swarm_command = add_swarm(cli, swarm);
+    RecordedOptions recorded;
+    const CLI::App& recorded_command = add_recorded(cli, recorded);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
@@ -377,6 +380,10 @@ int main(int argc, char** argv)
         }
         if (swarm_command.parsed()) {
             return run_swarm(swarm);
+        }
+        if (recorded_command.parsed()) {
+            run_recorded(recorded, std::cout);
+            return EXIT_SUCCESS;
         }
         if (fly_command->parsed()) {
             const bool plain = options.daemon.empty() && options.image.empty() && options.link == "serial";
