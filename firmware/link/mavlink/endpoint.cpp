@@ -87,6 +87,7 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
     case Odometry::kInfo.id: on_odometry(c); break;
     case GlobalPositionInt::kInfo.id: on_global_position(c); break;
     case GpsRawInt::kInfo.id: on_gps(c); break;
+    case ScaledPressure::kInfo.id: on_pressure(c); break;
     case GpsGlobalOrigin::kInfo.id: on_origin(c); break;
     case HomePosition::kInfo.id: on_home(c); break;
     case PositionTargetLocalNed::kInfo.id: on_position_target(c); break;
@@ -156,8 +157,8 @@ void Endpoint::note(ClockEvent event) noexcept
     ++diagnostics_.clock_relocks;
     if (event == ClockEvent::relocked_backward) {
         rebooted_ = true;
-        has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_target_ = has_mission_leg_ = leg_waits_ = leg_moved_ =
-            false;
+        has_pressure_ = has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_target_ = has_mission_leg_ =
+            leg_waits_ = leg_moved_ = false;
         origin_rank_ = 0;
         mission_.forget();
         streams_.restart();
@@ -192,7 +193,10 @@ void Endpoint::on_command_ack(const Context& c) noexcept
     }
     constexpr std::uint8_t kInProgress = 5;
     if (m.command == kSetMessageInterval) {
-        diagnostics_.rates_refused += m.result == 0 || m.result == kInProgress ? 0U : 1U;
+        if (m.result != 0 && m.result != kInProgress) {
+            ++diagnostics_.rates_refused;
+            streams_.refused();
+        }
         return;
     }
     if (m.result != kInProgress && !c.inbox.mode_answers.try_push_back({m.result == 0, m.result})) {
