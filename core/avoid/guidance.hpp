@@ -49,6 +49,12 @@ struct Settings {
     Seconds blocked_patience = 2.0F;    ///< standing in front of something this long, the vehicle gives ground [s]
     float give_ground_speed = 1.0F;     ///< backwards, 0: never [m/s]
     Seconds give_ground_limit = 10.0F;  ///< per conflict, at most [s]
+    /// Control is kept at least this long, on the nominal path once that is clear: a conflict that comes and goes makes
+    /// one take-over, not several, 0..60 [s].
+    Seconds least_control = 5.0F;
+    /// Blocked by what stands for so long, without getting anywhere, control is given up and a hold asked for; 0: never
+    /// [s].
+    Seconds patience = 20.0F;
     /// Of the units below at most for the plans of one update, so that checks and fallbacks have theirs.
     std::uint32_t plan_budget = 20000;
     /// Of these kept back for each method that is asked after another one.
@@ -65,7 +71,10 @@ struct Guidance {
     bool wants_control = false;    ///< the vehicle should follow `velocity`
     Vec3 velocity = Vec3::Zero();  ///< command [m/s]; valid when wants_control
     bool has_conflict = false;
-    world::Conflict conflict;              ///< of the way, when has_conflict
+    world::Conflict conflict;     ///< of the nominal path that counts, when has_conflict
+    bool on_other = false;        ///< that is the other nominal path, because its conflict comes first
+    bool other_conflict = false;  ///< control is kept because the other nominal path is not clear
+    bool blocked = false;         ///< given up (Settings::patience): to be handed over to the autopilot's hold mode
     float margin = world::kSeparationCap;  ///< least predicted margin of what is flown or offered [m]
     world::ManoeuvreKind kind = world::ManoeuvreKind::follow_path;
     world::PlanStatus plan_status =
@@ -89,6 +98,10 @@ struct Diagnostics {
     std::uint32_t escapes = 0;           ///< fallbacks that had to move
     std::uint32_t holds = 0;             ///< flights beside the leg begun, because the way back was not clear
     std::uint32_t rejoined = 0;
+    std::uint32_t on_other = 0;  ///< conflicts begun on the other nominal path
+    std::uint32_t kept_control =
+        0;                      ///< updates in which the other nominal path alone kept control from being given back
+    std::uint32_t blocked = 0;  ///< times given up in front of what stands
     std::uint32_t control_lost = 0;  ///< control ended while it was wanted
     std::uint32_t budget_spent = 0;  ///< updates that ran out of work budget
     std::uint32_t most_work = 0;     ///< units, the worst update

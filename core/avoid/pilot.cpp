@@ -21,6 +21,10 @@ constexpr float kFaster = 1.3F;
 constexpr float kSameSide = 0.5F;
 /// Clear or not is all that is asked.
 constexpr world::Cutoff kSignAlone{0.0F, 0.0F, {}};
+/// Slower than this, a conflict lies too near for a plan around it [m/s].
+constexpr float kCreeping = 1.5F;
+/// Share of the fallback horizon that is left for getting out of the way: sooner, the fallback sees no need to.
+constexpr float kGetGoing = 0.75F;
 /// Time between two looks [s].
 constexpr Seconds kLookAgain = 1.0F;
 
@@ -45,6 +49,7 @@ void Pilot::reset() noexcept
 {
     state_ = State::watching;
     had_control_ = has_flying_ = has_fallback_ = standing_ = beside_ = was_clear_ = was_free_ = has_commanded_ = false;
+    gave_back_ = blocked_ = on_other_ = false;
     ground_given_ = 0.0F;
 }
 
@@ -54,8 +59,15 @@ bool Pilot::due(const Tick& tick, Seconds time_to_loss) const noexcept
     return time_to_loss <= settings_.commit || urgent(tick, time_to_loss);
 }
 
-/// Nearer than this, it is time to stop.
-Seconds Pilot::last_moment(const Tick& tick) const noexcept { return time_to_stop(tick.s, settings_); }
+/// Nearer than this, it is time to stop; or to get going, where the vehicle as good as stands in the way of traffic:
+/// stopping mends nothing then.
+Seconds Pilot::last_moment(const Tick& tick) const noexcept
+{
+    const bool stays = tick.way.length <= settings_.on_leg || tick.way.speed < kCreeping;
+    const bool traffic = tick.out.has_conflict && tick.out.conflict.threat.kind == world::ThreatKind::track;
+    const Seconds stop = time_to_stop(tick.s, settings_);
+    return stays && traffic ? std::max(stop, kGetGoing * settings_.fallback_horizon) : stop;
+}
 
 bool Pilot::urgent(const Tick& tick, Seconds time_to_loss) const noexcept { return time_to_loss <= last_moment(tick); }
 
@@ -154,13 +166,23 @@ void Pilot::fall_back(Tick& tick) noexcept
 
 void Pilot::watch(Tick& tick) noexcept
 {
+    if (stays_given_up(tick)) {
+        return;
+    }
+    if (tick.in_control && !gave_back_) {
+        // Ours, whether the conflict is still there or not: control is given back by rejoining alone.
+        enter_rejoining();
+        rejoin(tick);
+        return;
+    }
     if (!tick.out.has_conflict) {
         if (tick.in_control) {
-            // Ours without a reason (granted late, or being given back): keep to the leg meanwhile.
+            // Being given back: keep to the leg meanwhile.
             follow_way(tick);
             tick.out.wants_control =
                 cross_track(tick.s) > 2.0F * settings_.on_leg && !is_held(tick.s, tick.taken, settings_.on_leg);
             if (tick.out.wants_control) {
+                keep_control(tick.s.now);
                 enter_rejoining();
             }
             return;
@@ -171,8 +193,10 @@ void Pilot::watch(Tick& tick) noexcept
         has_fallback_ = false;
         return;
     }
-    if (tick.in_control && keep_beside(tick)) {
+    if (tick.in_control) {
+        keep_control(tick.s.now);
         enter_rejoining();
+        rejoin(tick);
         return;
     }
     const Seconds left = tick.out.conflict.time_to_loss;
@@ -180,9 +204,6 @@ void Pilot::watch(Tick& tick) noexcept
         take(tick);
     } else if (urgent(tick, left)) {
         fall_back(tick);
-    } else if (tick.in_control) {
-        enter_rejoining();
-        follow_way(tick);
     }
 }
 
@@ -301,29 +322,41 @@ void Pilot::brake(Tick& tick) noexcept
     give_ground(tick);
 }
 
-Guidance Pilot::update(const world::Situation& given, bool in_control, const Ladder& ladder) noexcept
+Guidance Pilot::update(const world::Situation& given, const world::Reference* other, bool in_control,
+                       const Ladder& ladder) noexcept
 {
     ++diagnostics_.updates;
-    if (had_control_ && !in_control && state_ != State::watching) {
-        ++diagnostics_.control_lost;
-        reset();
+    note_control(given.now, in_control);
+    world::Situation first = given;
+    first.flying = has_flying_ ? &flying_ : nullptr;
+    first.commanded = in_control && has_commanded_ ? &commanded_ : nullptr;
+    const world::Situation second = with_reference(first, other != nullptr ? *other : given.reference);
+    Tick looked{first,
+                other != nullptr ? &second : nullptr,
+                in_control,
+                ladder,
+                WorkBudget(settings_.budget),
+                world::way_of(first),
+                {},
+                false,
+                Vec3::Zero(),
+                false};
+    choose_nominal(looked);
+    Tick tick{looked.out.on_other ? second : first,
+              looked.other,
+              in_control,
+              ladder,
+              looked.budget,
+              looked.way,
+              looked.out,
+              false,
+              Vec3::Zero(),
+              false};
+    const Vec3 off = has_flying_ ? beside_leg(tick.s).off : Vec3(Vec3::Zero());
+    const float far = off.norm();
+    if (far > settings_.on_leg) {
+        flying_.side = off / far;
     }
-    had_control_ = in_control;
-
-    if (has_flying_) {
-        const Vec3 off = beside_leg(given).off;
-        const float far = off.norm();
-        if (far > settings_.on_leg) {
-            flying_.side = off / far;
-        }
-    }
-    world::Situation situation = given;
-    situation.flying = has_flying_ ? &flying_ : nullptr;
-    situation.commanded = in_control && has_commanded_ ? &commanded_ : nullptr;
-    Tick tick{situation, in_control,   ladder, WorkBudget(settings_.budget), world::way_of(situation), {},
-              false,     Vec3::Zero(), false};
-    tick.out.has_conflict =
-        world::main_conflict(situation, tick.way, settings_.lookahead, tick.budget, tick.out.conflict);
     diagnostics_.conflicts += tick.out.has_conflict && !in_conflict_ ? 1U : 0U;
     if (!tick.out.has_conflict && in_conflict_) {
         ground_given_ = 0.0F;
@@ -337,11 +370,12 @@ Guidance Pilot::update(const world::Situation& given, bool in_control, const Lad
     case State::rejoining: rejoin(tick); break;
     case State::braking: brake(tick); break;
     }
+    note_block(tick);
     tick.out.state = state_;
     tick.out.work = tick.budget.spent();
-    last_update_ = situation.now;
+    last_update_ = given.now;
     has_commanded_ = in_control && tick.out.wants_control;
-    commanded_ = {tick.out.velocity, situation.now};
+    commanded_ = {tick.out.velocity, given.now};
     diagnostics_.budget_spent += tick.budget.exhausted() || tick.ran_out ? 1U : 0U;
     diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());
     return tick.out;

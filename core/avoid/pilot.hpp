@@ -21,13 +21,15 @@ struct Ladder {
 
 /// The state machine of the supervisor, free of the methods' types. See Supervisor.
 ///
-/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: two conflict searches, at most
-/// one plan, two checks, one flight beside the leg and one fallback choice; all under Settings::budget.
+/// Memory: two manoeuvres (about 2 KiB each with 64 path points). One update: two conflict searches, three
+/// with two nominal paths, at most one plan, two checks, one flight beside the leg and one fallback choice; all under
+/// Settings::budget.
 class Pilot {
 public:
     explicit Pilot(const Settings& settings) noexcept : settings_(settings) {}
 
-    Guidance update(const world::Situation& given, bool in_control, const Ladder& ladder) noexcept;
+    Guidance update(const world::Situation& given, const world::Reference* other, bool in_control,
+                    const Ladder& ladder) noexcept;
 
     /// Forgets what is flown: after a pilot took over, after the estimator was reset. What was counted stays.
     void reset() noexcept;
@@ -62,6 +64,13 @@ private:
     [[nodiscard]] bool find_faster(Tick& tick) noexcept;
     void give_ground(Tick& tick) noexcept;
     void note_clearness(Tick& tick) noexcept;
+    void note_control(TimePoint now, bool in_control) noexcept;
+    void keep_control(TimePoint now) noexcept;
+    [[nodiscard]] bool counts(const Tick& tick, const world::Conflict& conflict) const noexcept;
+    void choose_nominal(Tick& tick) noexcept;
+    [[nodiscard]] bool may_give_back(Tick& tick) noexcept;
+    [[nodiscard]] bool stays_given_up(Tick& tick) noexcept;
+    void note_block(Tick& tick) noexcept;
 
     Settings settings_;
     Diagnostics diagnostics_;
@@ -84,6 +93,12 @@ private:
     Seconds ground_given_ = 0.0F;
     TimePoint last_update_;
     Fallback fallback_;
+    bool gave_back_ = false;  ///< while still in control
+    bool blocked_ = false;    ///< given up, likewise
+    bool on_other_ = false;   ///< the last conflict that was seen
+    TimePoint control_since_;
+    Vec3 block_at_ = Vec3::Zero();  ///< where the vehicle is since block_since_, more or less
+    TimePoint block_since_;
     Vec3 chosen_side_ = Vec3::Zero();  ///< of what is flown, when it was taken; its own side follows the flight
     world::Manoeuvre flying_;
     world::Manoeuvre answer_;

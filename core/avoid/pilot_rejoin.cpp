@@ -168,9 +168,10 @@ void Pilot::rejoin(Tick& tick) noexcept
     // Held at a bound, the vehicle is as near to its leg as we may bring it.
     const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg ||
                       is_held(tick.s, tick.taken, settings_.on_leg);
-    if (back && way_clear_for(tick, settings_.settle)) {
+    if (back && way_clear_for(tick, settings_.settle) && may_give_back(tick)) {
         ++diagnostics_.rejoined;
         state_ = State::watching;
+        gave_back_ = true;
         has_flying_ = false;
         // The velocity stays valid: it is flown until the autopilot has its mode back.
         tick.out.wants_control = false;

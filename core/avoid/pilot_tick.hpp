@@ -46,8 +46,19 @@ struct Wider {
     }
 };
 
+/// The same situation with another nominal path.
+[[nodiscard]] inline world::Situation with_reference(const world::Situation& s,
+                                                     const world::Reference& reference) noexcept
+{
+    world::Situation other{s.now,       s.own,      s.limits, s.airframe, reference, s.tracks,
+                           s.obstacles, s.airspace, s.flying, s.k_sigma,  s.own_id,  s.commanded};
+    other.shared_horizon = s.shared_horizon;
+    return other;
+}
+
 struct Pilot::Tick {
     const world::Situation& s;
+    const world::Situation* other = nullptr;  ///< with the other nominal path; null without one
     bool in_control = false;
     const Ladder& ladder;
     WorkBudget budget;

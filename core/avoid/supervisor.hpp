@@ -26,9 +26,14 @@ public:
     {
     }
 
-    Guidance update(const world::Situation& situation, bool in_control) noexcept
+    /// `other`: a second nominal path, may be null. While not in control the one whose loss of separation comes first
+    /// counts (Guidance::on_other); in control, `situation`'s alone is flown, and control is not given back while the
+    /// other one is in conflict (Guidance::other_conflict). An obstacle or a closed area on the other one counts once
+    /// it is time to stop: before that, the vehicle may still turn where its leg ends.
+    Guidance update(const world::Situation& situation, bool in_control,
+                    const world::Reference* other = nullptr) noexcept
     {
-        return pilot_.update(situation, in_control, {this, &Supervisor::ladder});
+        return pilot_.update(situation, other, in_control, {this, &Supervisor::ladder});
     }
 
     void reset() noexcept { pilot_.reset(); }

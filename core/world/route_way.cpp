@@ -11,6 +11,9 @@ namespace {
 constexpr float kNoDistance = 1e-3F;
 /// The way aims at least this far ahead, past the end of a segment if need be [m].
 constexpr float kLeastAhead = 1.0F;
+/// A piece that ends this close to the look-ahead ends with it: sums of times are rounded, and how many pieces there
+/// are must not depend on that [s].
+constexpr Seconds kSliver = 1e-4F;
 
 float ahead_of(const path::RouteSegment& segment, const path::Abeam& abeam) noexcept
 {
@@ -104,7 +107,7 @@ void RoutePieces::add(const Vec3& from, const Vec3& to, float length) noexcept
     }
     const float speed = vehicle::clamped_velocity(span, speed_, limits_).norm();
     const Seconds duration = length / speed;
-    const Seconds end = std::min(now_ + duration, lookahead_);
+    const Seconds end = now_ + duration >= lookahead_ - kSliver ? lookahead_ : now_ + duration;
     pieces_.unchecked_push_back({{from, span / duration}, now_, end, flown_});
     now_ = end;
     flown_ += length;

@@ -40,6 +40,7 @@ void Coprocessor::read_bus(TimePoint now) noexcept
 void Coprocessor::forget_places() noexcept
 {
     supervisor_.reset();
+    nominal_.reset();
     tracks_.clear();
     obstacles_.clear();
     has_ground_ = false;
@@ -100,6 +101,7 @@ void Coprocessor::use_own(const link::OwnStateReport& report, OwnSource source) 
 {
     if (has_own_ && own_source_ != source) {
         supervisor_.reset();  // the place jumps by what the two differ
+        nominal_.reset();
     }
     own_ = report.state;
     own_yaw_known_ = report.has_yaw;

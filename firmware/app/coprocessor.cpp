@@ -16,9 +16,6 @@ constexpr Seconds kProvingPeriod = 0.2F;
 constexpr float kNewCommand = 1.0F;
 /// A step that comes this long after the last one means that we were not there when we should have been [s].
 constexpr Seconds kStall = 0.5F;
-/// Speed from which the own motion itself is taken for the way, where no leg is known [m/s].
-constexpr float kMoving = 0.5F;
-constexpr float kWayAhead = 60.0F;  // [s]
 
 /// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs.
 constexpr auto kPictureUnits =
@@ -109,23 +106,12 @@ vehicle::VehicleState Coprocessor::own_at(TimePoint now) const noexcept
     return own;
 }
 
-world::Reference Coprocessor::reference_at(const vehicle::VehicleState& own) const noexcept
+/// The mission's leg, while the autopilot flies the mission or we lead it. An external mode that is not ours leads
+/// somewhere else.
+const world::Leg* Coprocessor::flown_leg() const noexcept
 {
-    world::Reference reference;
-    reference.valid = true;
-    const float cruise = parameters_.configuration().limits.cruise_speed;
-    if (has_leg_) {
-        reference.leg = leg_;
-        reference.leg.speed = leg_.speed > 0.0F ? leg_.speed : cruise;
-        return reference;
-    }
-    const float speed = own.velocity.norm();
-    reference.leg = {own.position, own.position, cruise};
-    if (speed > kMoving) {
-        reference.leg.end += own.velocity * kWayAhead;
-        reference.leg.speed = speed;
-    }
-    return reference;
+    const bool led_by_others = autopilot_.mode == link::FlightMode::external && !takeover_.streaming();
+    return has_leg_ && !led_by_others ? &leg_ : nullptr;
 }
 
 world::Airspace Coprocessor::airspace(TimePoint now) const noexcept
@@ -207,7 +193,13 @@ void Coprocessor::ask_autopilot(const TakeoverOutput& output, TimePoint now) noe
     }
     switch (output.action) {
     case TakeoverAction::request_external: link_.request_external_mode(); break;
-    case TakeoverAction::request_former: link_.request_mode(takeover_.former_mode()); break;
+    case TakeoverAction::request_former:
+        if (way_blocked_) {
+            link_.request_hold_mode();
+        } else {
+            link_.request_mode(takeover_.former_mode());
+        }
+        break;
     case TakeoverAction::request_hold: link_.request_hold_mode(); break;
     case TakeoverAction::none: return;
     }
@@ -223,6 +215,21 @@ void Coprocessor::drop_stale(TimePoint now) noexcept
     }
 }
 
+/// The way is blocked: the hold mode is asked for in place of the former one. What it holds in is our own choice; any
+/// mode after it is somebody else's, who may be guarded again.
+void Coprocessor::note_block(const avoid::Guidance& guidance) noexcept
+{
+    if (guidance.blocked && !way_blocked_) {
+        say(link::Severity::warning, "jink: way blocked, autopilot holds");
+    }
+    way_blocked_ = guidance.blocked || (way_blocked_ && !takeover_.in_control());
+    const bool chosen = new_autopilot_report_ && autopilot_.mode != link::FlightMode::hold;
+    if (way_blocked_ && takeover_.control() == Control::overruled && chosen) {
+        takeover_.drop(false);
+        way_blocked_ = false;
+    }
+}
+
 void Coprocessor::control(TimePoint now, StepReport& report) noexcept
 {
     const Configuration& c = parameters_.configuration();
@@ -230,15 +237,24 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     report.own_source = fresh ? own_source_ : OwnSource::none;
     const vehicle::VehicleState own = own_at(now);
     if (fresh && c.mode != ActMode::off && !passive_) {
-        const world::Reference reference = reference_at(own);
+        nominal_.update(own_, own, flown_leg(), c.limits, takeover_.in_control());
         const world::Airspace air = airspace(now);
-        const world::Situation situation{
-            now, own,     c.limits,  c.airframe,       reference, tracks_.snapshot(now), obstacles_.obstacles(),
-            air, nullptr, c.k_sigma, link_.own_track()};
+        const world::Situation situation{now,
+                                         own,
+                                         c.limits,
+                                         c.airframe,
+                                         nominal_.primary(),
+                                         tracks_.snapshot(now),
+                                         obstacles_.obstacles(),
+                                         air,
+                                         nullptr,
+                                         c.k_sigma,
+                                         link_.own_track()};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
         report.barrels = static_cast<std::uint16_t>(air.barrels.size());
-        report.guidance = supervisor_.update(situation, takeover_.in_control());
+        report.guidance = supervisor_.update(situation, takeover_.in_control(), nominal_.other());
+        nominal_.note(report.guidance.has_conflict, report.guidance.on_other, report.guidance.other_conflict);
         report.work = report.guidance.work;
     }
     if (!is_finite(own.velocity) || !is_finite(report.guidance.velocity)) {
@@ -257,12 +273,16 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     input.mode_accepted = mode_accepted_;
     input.keep_stream = c.standby_stream;
     input.link_alive = (report.faults & bit(Fault::port_lost)) == 0;
+    note_block(report.guidance);
     const TakeoverOutput output = takeover_.update(input, now);
     ask_autopilot(output, now);
     if (output.event == TakeoverEvent::overruled) {
         supervisor_.reset();
     }
-    announce(output.event);
+    // The hold that was asked for, and said, is no news.
+    const bool as_asked =
+        way_blocked_ && output.event == TakeoverEvent::overruled && autopilot_.mode == link::FlightMode::hold;
+    announce(as_asked ? TakeoverEvent::none : output.event);
     send_setpoint(now, own, report);
     drop_stale(now);
     report.control = takeover_.control();

@@ -13,6 +13,7 @@
 #include "core/world/track_table.hpp"
 #include "firmware/app/constraint_upload.hpp"
 #include "firmware/app/constraints.hpp"
+#include "firmware/app/nominal_paths.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/app/takeover.hpp"
@@ -181,6 +182,7 @@ public:
         return constraint_upload_.diagnostics();
     }
     [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
+    [[nodiscard]] const NominalPaths& nominal_paths() const noexcept { return nominal_; }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
     [[nodiscard]] const geometric::Planner& planner() const noexcept { return planner_; }
     /// For studies on a bench: settings that no parameter reaches. The next change of a parameter takes them back.
@@ -189,6 +191,13 @@ public:
     [[nodiscard]] const orca::Planner& orca_planner() const noexcept { return orca_; }
     [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
     [[nodiscard]] const vehicle::VehicleState& own() const noexcept { return own_; }
+    /// The autopilot as last heard; nullptr: never.
+    [[nodiscard]] const link::AutopilotReport* autopilot() const noexcept
+    {
+        return has_autopilot_ ? &autopilot_ : nullptr;
+    }
+    /// Home in the local frame [m]; its origin until it was received.
+    [[nodiscard]] const Vec3& home() const noexcept { return home_; }
     /// As a plan at `now` has them, until the next step.
     [[nodiscard]] std::span<const world::Track> tracks(TimePoint now) noexcept { return tracks_.snapshot(now); }
 
@@ -225,14 +234,16 @@ private:
     void remove_obstacles(std::uint32_t first, std::size_t n) noexcept;
     [[nodiscard]] std::uint16_t find_faults(TimePoint now, bool late) const noexcept;
     [[nodiscard]] vehicle::VehicleState own_at(TimePoint now) const noexcept;
-    [[nodiscard]] world::Reference reference_at(const vehicle::VehicleState& own) const noexcept;
+    [[nodiscard]] const world::Leg* flown_leg() const noexcept;
     [[nodiscard]] world::Airspace airspace(TimePoint now) const noexcept;
+    void note_block(const avoid::Guidance& guidance) noexcept;
     void control(TimePoint now, StepReport& report) noexcept;
     [[nodiscard]] Seconds setpoint_period() const noexcept;
     void send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept;
     void ask_autopilot(const TakeoverOutput& output, TimePoint now) noexcept;
     void drop_stale(TimePoint now) noexcept;
     void tell(TimePoint now, const StepReport& report) noexcept;
+    void tell_braking(TimePoint now, const avoid::Guidance& guidance) noexcept;
     void announce(TakeoverEvent event) noexcept;
     void warn_of_conflict(TimePoint now, const StepReport& report) noexcept;
     [[nodiscard]] link::SystemState system_state(const StepReport& report) const noexcept;
@@ -288,6 +299,8 @@ private:
     bool mode_accepted_ = false;
     world::Leg leg_;
     bool has_leg_ = false;
+    NominalPaths nominal_;
+    bool way_blocked_ = false;  ///< given up in front of what stands: a hold is asked for, or held
     Vec3 home_ = Vec3::Zero();
     bool has_ground_ = false;  ///< seen by a sensor that looks down
     float ground_ = 0.0F;
@@ -305,8 +318,10 @@ private:
     TimePoint last_collision_;
     bool heartbeat_sent_ = false;
     link::SystemState told_state_ = link::SystemState::boot;
-    avoid::State told_guidance_ = avoid::State::watching;
     bool told_conflict_ = false;
+    bool told_unsafe_ = false;   ///< in this conflict
+    bool told_braking_ = false;  ///< likewise
+    TimePoint last_conflict_;
     Diagnostics diagnostics_;
     hal::LastWords* last_words_ = nullptr;
     Clouds* clouds_ = nullptr;

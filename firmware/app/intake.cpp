@@ -74,6 +74,7 @@ void Coprocessor::take_autopilot(TimePoint now) noexcept
         takeover_.drop(false);
         forget_places();
         has_own_ = has_autopilot_own_ = has_leg_ = false;
+        home_ = Vec3::Zero();  // that of the frame before lies anywhere in the new one
     }
 }
 

@@ -72,6 +72,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_COOP", 7, 0, 15, true,
      "who shares the reaction, sum of: 1 systems of the link, 2 UTM, 4 UAVs of ADS-B, 8 all of it"},
     {"JNK_OWN_ICAO", 0, 0, 16777215, true, "own transponder's address: heard back, it is no traffic; 0 not known"},
+    {"JNK_PATIENCE", 20, 0, 600, false, "blocked by what stands for so long: hand over to the hold mode [s]; 0 never"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -83,6 +84,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.supervisor.lookahead = at(Param::lookahead);
     c.supervisor.reserve = at(Param::reserve);
     c.supervisor.settle = at(Param::settle);
+    c.supervisor.patience = at(Param::patience);
     c.limits.half_extents = Vec3(at(Param::half_xy), at(Param::half_xy), at(Param::half_z));
     c.limits.kind = whole(Param::fixed_wing) == 1 ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
     c.limits.cruise_speed = at(Param::cruise);

@@ -76,6 +76,7 @@ enum class Param : std::uint8_t {
     unseen,
     coop,
     own_address,
+    patience,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);

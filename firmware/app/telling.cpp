@@ -7,6 +7,8 @@ namespace {
 
 constexpr Seconds kHeartbeatPeriod = 1.0F;
 constexpr Seconds kCollisionPeriod = 0.5F;
+/// Without a conflict for so long, the next one is another one [s].
+constexpr Seconds kConflictOver = 5.0F;
 
 }  // namespace
 
@@ -62,10 +64,26 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
         warn_of_conflict(now, report);
     }
     told_conflict_ = g.has_conflict;
-    if (g.state != told_guidance_ && g.state == avoid::State::braking) {
-        say(link::Severity::critical, "jink: nothing safe, braking");
+    tell_braking(now, g);
+}
+
+/// That nothing is safe is CRITICAL once in a conflict; a fallback that keeps clear is a warning, once too. A conflict
+/// that comes and goes is one.
+void Coprocessor::tell_braking(TimePoint now, const avoid::Guidance& g) noexcept
+{
+    last_conflict_ = g.has_conflict || g.state == avoid::State::braking ? now : last_conflict_;
+    if (now - last_conflict_ > kConflictOver) {
+        told_unsafe_ = told_braking_ = false;
     }
-    told_guidance_ = g.state;
+    if (g.state == avoid::State::braking && g.wants_control) {
+        if (g.margin < 0.0F && !told_unsafe_) {
+            told_unsafe_ = told_braking_ = true;
+            say(link::Severity::critical, "jink: nothing safe, braking");
+        } else if (!told_braking_) {
+            told_braking_ = true;
+            say(link::Severity::warning, "jink: no way around, braking");
+        }
+    }
 }
 
 /// Before anything of this step goes out, so that they are newer than all of it.

@@ -95,8 +95,9 @@ struct RangeReading {
     std::uint8_t sensor = 0;
 };
 
+/// Straight line that the autopilot flies by itself, from where it began.
 struct LegReport {
-    world::Leg leg;  ///< speed 0: not said
+    world::Leg leg;  ///< speed: ground speed that the mission asks for, which the autopilot may not reach; 0: not said
 };
 
 inline constexpr std::size_t kParamNameLength = 16;
@@ -143,7 +144,7 @@ struct Inbox {
     bool has_leg = false;
     LegReport leg;
     bool leg_lost = false;  ///< the autopilot flies to where we do not know: what was told before is over
-    bool has_home = false;
+    bool has_home = false;  ///< not before both home and the origin are known; a later report replaces the one before
     Vec3 home = Vec3::Zero();
     bool has_scan = false;
     RangeScan scan;

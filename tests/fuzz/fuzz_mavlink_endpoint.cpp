@@ -72,7 +72,7 @@ void check_inbox(const Inbox& inbox, TimePoint now)
     JINK_FUZZ_CHECK(!inbox.has_home || inbox.home.norm() <= kFar);
     if (inbox.has_leg) {
         JINK_FUZZ_CHECK(inbox.leg.leg.start.norm() <= kFar && inbox.leg.leg.end.norm() <= kFar);
-        JINK_FUZZ_CHECK(inbox.leg.leg.speed == 0.0F);
+        JINK_FUZZ_CHECK(inbox.leg.leg.speed >= 0.0F && inbox.leg.leg.speed < 400.0F);
     }
     for (const TrackReport& t : inbox.tracks) {
         JINK_FUZZ_CHECK(t.stamp <= now && is_finite(t.position) && t.position.norm() < kRound);

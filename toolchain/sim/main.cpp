@@ -18,6 +18,7 @@
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/phases.hpp"
 #include "toolchain/sim/random_scenario.hpp"
+#include "toolchain/sim/replay_command.hpp"
 #include "toolchain/sim/report.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 #include "toolchain/sim/swarm_command.hpp"
@@ -186,7 +187,6 @@ Computer computer_of(const Options& options)
 
 int fly(const Options& options)
 {
-    make_folder(options);
     std::vector<ReportedFlight> flights;
     const bool in_process = options.daemon.empty() && options.image.empty();
     const std::vector<Scenario> scenarios = load_all(options.files, !in_process);
@@ -247,7 +247,6 @@ int phases(const Options& options)
 
 int demo(const Options& options)
 {
-    make_folder(options);
     const auto began = std::chrono::steady_clock::now();
     const Computer computer = computer_of(options);
     std::vector<std::string> files;
@@ -279,15 +278,10 @@ int demo(const Options& options)
     return result;
 }
 
-int random(const Options& options)
-{
-    make_folder(options);
-    return finish(options, fly_random(options.seed, options.count, 2));
-}
+int random(const Options& options) { return finish(options, fly_random(options.seed, options.count, 2)); }
 
 int crowd(const Options& options)
 {
-    make_folder(options);
     std::vector<ReportedFlight> flights;
     for (unsigned i = 0; i < options.count; ++i) {
         const Scenario scenario = crowded_scenario(options.seed + i);
@@ -366,17 +360,23 @@ int main(int argc, char** argv)
     const CLI::App& encounters_command = add_encounters(cli, encounters, true);
     SwarmOptions swarm;
     const CLI::App& swarm_command = add_swarm(cli, swarm);
+    ReplayOptions recording;
+    const CLI::App& replay_command = add_replay(cli, recording);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         return cli.exit(e) == 0 ? EXIT_SUCCESS : kRefused;
     }
     try {
+        make_folder(options);
         if (encounters_command.parsed()) {
             return run_encounters(encounters);
         }
         if (swarm_command.parsed()) {
             return run_swarm(swarm);
+        }
+        if (replay_command.parsed()) {
+            return run_replay(recording, std::cout, std::cerr);
         }
         if (fly_command->parsed()) {
             const bool plain = options.daemon.empty() && options.image.empty() && options.link == "serial";

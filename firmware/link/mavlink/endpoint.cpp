@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reception: who speaks, in which mode, by which clock. Own state and leg: endpoint_state.cpp. Sensors and requests:
-// endpoint_sensors.cpp. Traffic: endpoint_traffic.cpp. Points in space: endpoint_points.cpp. Sending:
-// endpoint_sending.cpp.
+// Reception: who speaks, in which mode, by which clock. Own state, origin and home: endpoint_state.cpp. Mission and
+// leg: endpoint_mission.cpp. Sensors and requests: endpoint_sensors.cpp. Traffic: endpoint_traffic.cpp. Points in
+// space: endpoint_points.cpp. Sending: endpoint_sending.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -50,14 +50,7 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
                                   p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
                                   p.stale_signature + p.signature_streams;
     diagnostics_.systems_evicted = neighbours_.evicted();
-    const bool fetched = mission_.take_leg() || leg_moved_;
-    leg_moved_ = false;
-    if (fetched || leg_waits_) {
-        resolve_leg(inbox);
-    }
-    if (mission_.take_loss() || (fetched && !has_mission_leg_)) {
-        lose_leg(inbox);
-    }
+    update_leg(inbox, now);
 }
 
 void Endpoint::dispatch(const Context& c) noexcept
@@ -75,6 +68,9 @@ void Endpoint::dispatch(const Context& c) noexcept
 
 void Endpoint::dispatch_autopilot(const Context& c) noexcept
 {
+    if (dispatch_mission(c)) {
+        return;
+    }
     if (!from_autopilot(c.frame)) {
         dispatch_sensors(c);
         return;
@@ -89,28 +85,13 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
     case GpsRawInt::kInfo.id: on_gps(c); break;
     case GpsGlobalOrigin::kInfo.id: on_origin(c); break;
     case HomePosition::kInfo.id: on_home(c); break;
-    case PositionTargetLocalNed::kInfo.id: on_position_target(c); break;
     case CommandAck::kInfo.id: on_command_ack(c); break;
     case ExtendedSysState::kInfo.id: {
         ExtendedSysState m;
         autopilot_.landed = decode(c.frame, m) && m.landed_state == 1;
         break;
     }
-    case MissionCurrent::kInfo.id: {
-        MissionCurrent m;
-        if (decode(c.frame, m)) {
-            mission_.current(m.seq);
-        }
-        break;
-    }
-    case MissionCount::kInfo.id: {
-        MissionCount m;
-        if (decode(c.frame, m) && m.mission_type == 0) {
-            mission_.count(m.count, c.now);
-        }
-        break;
-    }
-    case MissionItemInt::kInfo.id: on_mission_item(c); break;
+    case Statustext::kInfo.id: on_status_text(c); break;
     default: dispatch_sensors(c);
     }
 }
@@ -131,6 +112,8 @@ void Endpoint::on_heartbeat(const Context& c) noexcept
         ++diagnostics_.frames_ignored;
         return;
     }
+    const FlightMode mode_before = autopilot_.mode;
+    const bool was_armed = autopilot_.armed;
     autopilot_.stamp = c.now;
     autopilot_.stack = m.autopilot == kAutopilotPx4         ? AutopilotStack::px4
                        : m.autopilot == kAutopilotArduPilot ? AutopilotStack::ardupilot
@@ -140,6 +123,8 @@ void Endpoint::on_heartbeat(const Context& c) noexcept
     autopilot_.armed = (m.base_mode & kArmed) != 0;
     autopilot_.custom_mode = m.custom_mode;
     autopilot_.mode = classify(autopilot_.stack, vehicle_class_, m.custom_mode);
+    mission_.set_lone(autopilot_.stack == AutopilotStack::ardupilot);
+    note_mode(mode_before, was_armed);
     // A reboot noticed earlier in the same batch must not be lost when a second heartbeat follows.
     const bool pending_reboot = c.inbox.has_autopilot && c.inbox.autopilot.rebooted;
     c.inbox.autopilot = autopilot_;
@@ -156,8 +141,8 @@ void Endpoint::note(ClockEvent event) noexcept
     ++diagnostics_.clock_relocks;
     if (event == ClockEvent::relocked_backward) {
         rebooted_ = true;
-        has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_target_ = has_mission_leg_ = leg_waits_ = leg_moved_ =
-            false;
+        has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_home_on_globe_ = false;
+        is_mission_flown_ = has_leg_ = has_anchor_ = has_former_ = has_reached_ = false;
         origin_rank_ = 0;
         mission_.forget();
         streams_.restart();

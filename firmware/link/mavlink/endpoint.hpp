@@ -28,11 +28,14 @@
 // * ClockSync: TIMESYNC requests once a second, lowest-round-trip filter, fallback to the least one-way delay seen;
 //   re-locks are counted (clock_relocks), and one that goes back counts as the autopilot's restart: origin, mission and
 //   own state are forgotten. We answer the autopilot's TIMESYNC requests.
-// * Origin of the local frame: GPS_GLOBAL_ORIGIN; else HOME_POSITION (its lat/lon/alt less its local x, y, z); else
-//   GLOBAL_POSITION_INT less LOCAL_POSITION_NED when both are younger than 0.2 s. Until known, ADSB_VEHICLE counts
-//   no_origin. Local plane: north = dlat * R, east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (the
-//   wrap at 180 degrees is handled). Above 85 degrees of latitude there is no origin. Another origin places the mission
-//   leg anew, and moves the traffic that waits in the inbox; what was taken out of it before is the application's.
+// * Origin of the local frame: GPS_GLOBAL_ORIGIN; else GLOBAL_POSITION_INT less LOCAL_POSITION_NED, both carried to one
+//   time and 0.2 s apart at most. Until known, ADSB_VEHICLE counts no_origin. Local plane: north = dlat * R, east =
+//   dlon * R cos(lat0), R = 6378137 m, from int32 differences (the wrap at 180 degrees is handled). Above 85 degrees of
+//   latitude there is no origin. Another origin places home and the mission leg anew, and moves the traffic that waits
+//   in the inbox; what was taken out of it before is the application's.
+// * Home: latitude, longitude and altitude of HOME_POSITION, placed by the origin; not reported before both are known.
+//   Its local x, y, z are not read: ArduPilot sends zeros, wherever home is. Origin and home that do not come are asked
+//   for by COMMAND_LONG REQUEST_MESSAGE (512), 2 s after the first HEARTBEAT and every 4 s.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
 //   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
 //   emitter_type 19 (point obstacle): at_rest, velocity zero; 14 (UAV): unmanned. Ids: track_ids.hpp.
@@ -53,11 +56,19 @@
 //   0.3 s) and 1 (a place in the local frame, made relative by own place and yaw), else no_origin; other frames are
 //   out_of_range. Farther than max_distance: nothing in that direction; nearer than min_distance: at min_distance. A
 //   scan is what comes with one time stamp and sensor_type, and ends with the next or a pause of 0.05 s.
-// * Leg: POSITION_TARGET_LOCAL_NED (frame 1) while not in the external mode: from the position when it changed to the
-//   target; mission items: MISSION_CURRENT tells the sequence number, then MISSION_REQUEST_LIST / MISSION_COUNT /
-//   MISSION_REQUEST_INT for seq and seq - 1 / MISSION_ACK; frames 0, 3, 5, 6 (global, or relative to home) and 1; items
-//   without a place of their own, or that cannot be placed, or do not come, end the leg that was told before; a
-//   mission leg wins over the position target.
+// * Leg: where the mission's current item is flown to; endpoint_mission.cpp. Reported while armed and in the mission
+// mode
+//   and in an external mode that follows the mission mode directly (ours); lost in any other mode.
+//   Start: the own position when the item, its place or the mode changes, or on arming: ArduCopter flies from where it
+//   stands when an item starts or AUTO resumes. Or the end of the former leg, where MISSION_ITEM_REACHED says that it
+//   was reached, within 15 m (PX4's acceptance radius is 10 m): both stacks then fly along the line between the items.
+//   End: WAYPOINT (16): its place. LOITER_UNLIM, LOITER_TIME (17, 19) of a copter: their place, until within 3 m. LAND
+//   (21) of a copter: level to above its place, until within 3 m. TAKEOFF (22) of a copter: straight up to its height;
+//   PX4 goes on to its place afterwards. An altitude of 0 means the present one to ArduPilot. Everything else is not
+//   known: LOITER_TURNS, LOITER_TO_ALT, SPLINE_WAYPOINT, RTL, circles of a plane, items without a place of their own,
+//   above terrain, or that cannot be placed yet. Frames: 0, 3, 5, 6 (global, or relative to home) and 1.
+//   POSITION_TARGET_LOCAL_NED is not read: PX4 sends its controller's set-point, ArduCopter (0, 0, 0) during a take-off
+//   in GUIDED.
 // * Rates: what comes too seldom is asked for by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
 // * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
 //   plus the armed bit (128) as heard.
@@ -76,8 +87,8 @@ struct EndpointOptions {
     float max_stamp_age = 1.0F;  ///< older own-state stamps are refused [s]
 };
 
-/// See the head of this file. Memory: about 6 KiB, most of it the transmit buffer. Frames that are refused are counted
-/// by the parser, reports that are refused by `diagnostics`.
+/// See the head of this file. Memory: about 6 KiB, most of it the transmit buffer, and 20 bytes per mission item.
+/// Frames that are refused are counted by the parser, reports that are refused by `diagnostics`.
 class Endpoint final : public Link {
 public:
     /// Room for the longest burst of one step (a heartbeat, a set-point, texts, three parameters) many times over.
@@ -127,6 +138,7 @@ public:
     /// 0 until an autopilot was heard.
     [[nodiscard]] std::uint8_t system_id() const noexcept { return system_; }
     [[nodiscard]] bool has_origin() const noexcept { return origin_rank_ > 0; }
+    [[nodiscard]] bool has_home() const noexcept { return has_home_; }
 
 private:
     struct Context {
@@ -148,8 +160,15 @@ private:
     void on_global_position(const Context& c) noexcept;
     void on_origin(const Context& c) noexcept;
     void on_home(const Context& c) noexcept;
-    void on_position_target(const Context& c) noexcept;
+    [[nodiscard]] bool dispatch_mission(const Context& c) noexcept;
+    template <class M>
+    [[nodiscard]] bool asks_autopilot(const Frame& frame) const noexcept;
+    void on_mission_current(const Context& c) noexcept;
+    void on_mission_count(const Context& c) noexcept;
     void on_mission_item(const Context& c) noexcept;
+    void on_mission_ack(const Context& c) noexcept;
+    void on_mission_reached(const Context& c) noexcept;
+    void on_status_text(const Context& c) noexcept;
     void on_command_ack(const Context& c) noexcept;
     void on_timesync(const Context& c) noexcept;
     void on_adsb(const Context& c) noexcept;
@@ -176,9 +195,19 @@ private:
     void note_attitude(float roll, float pitch, float heading, TimePoint now) noexcept;
     [[nodiscard]] bool knows_yaw(TimePoint now) const noexcept;
     void set_origin(const std::optional<GlobalPosition>& origin, int rank, Inbox& inbox) noexcept;
-    [[nodiscard]] bool place(const MissionPoint& point, Vec3& local) const noexcept;
-    void resolve_leg(Inbox& inbox) noexcept;
-    void lose_leg(Inbox& inbox) noexcept;
+    void place_home(Inbox& inbox) noexcept;
+    void note_mode(FlightMode before, bool was_armed) noexcept;
+    void note_others_transfer(bool upload, bool ended, TimePoint now) noexcept;
+    [[nodiscard]] bool place_on_map(const MissionItem& item, Vec3& local) const noexcept;
+    [[nodiscard]] bool place_height(const MissionItem& item, float& height) const noexcept;
+    [[nodiscard]] bool find_goal(const MissionItem& item, Vec3& goal) noexcept;
+    [[nodiscard]] bool find_takeoff_goal(const MissionItem& item, Vec3& goal) noexcept;
+    [[nodiscard]] std::optional<world::Leg> find_leg(TimePoint now) noexcept;
+    void anchor_leg(TimePoint now) noexcept;
+    void settle_anchor() noexcept;
+    void update_leg(Inbox& inbox, TimePoint now) noexcept;
+    void ask_for_places(TimePoint now) noexcept;
+    void service_mission(TimePoint now) noexcept;
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
     [[nodiscard]] CommandLong mode_command(std::uint32_t custom_mode) const noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
@@ -218,21 +247,37 @@ private:
     TimePoint last_odometry_;
     std::uint8_t reset_counter_ = 0;
     bool has_local_ = false;
+    bool has_local_boot_ = false;  ///< local_boot_ms_ is the stamp of own_.position
+    std::uint32_t local_boot_ms_ = 0;
     TimePoint local_heard_;
 
-    int origin_rank_ = 0;  ///< 0 none, 1 own global less local position, 2 home, 3 GPS_GLOBAL_ORIGIN
+    int origin_rank_ = 0;  ///< 0 none, 1 own global less local position, 2 GPS_GLOBAL_ORIGIN
     GlobalPosition origin_;
     bool has_undulation_ = false;
     std::int32_t undulation_ = 0;              ///< of the geoid over the ellipsoid, here [mm]
     std::array<std::uint8_t, 18> own_name_{};  ///< to traffic management; zeros: not known
-    bool has_home_ = false;
+    bool has_home_on_globe_ = false;
+    GlobalPosition home_on_globe_;
+    bool has_home_ = false;  ///< both home and origin are known
     Vec3 home_ = Vec3::Zero();
+    TimePoint places_asked_;
 
-    bool has_target_ = false;
-    Vec3 target_ = Vec3::Zero();
-    bool has_mission_leg_ = false;
-    bool leg_waits_ = false;  ///< both ends are here, but cannot be placed yet
-    bool leg_moved_ = false;  ///< it was placed by an origin that holds no more
+    bool is_mission_flown_ = false;  ///< in the mission mode, or in an external mode that followed it
+    bool has_leg_ = false;           ///< as reported
+    world::Leg leg_;
+    bool has_anchor_ = false;
+    Vec3 anchor_ = Vec3::Zero();  ///< where the leg starts
+    bool had_leg_ = false;        ///< leg_ started at this anchor
+    TimePoint anchored_;
+    std::uint32_t anchor_version_ = 0;
+    std::uint16_t anchor_sequence_ = 0;
+    bool is_goal_reached_ = false;  ///< of the item anchored for: from there on it is flown otherwise than to its place
+    bool has_former_ = false;       ///< the leg that was flown before this one, in the same mission
+    Vec3 former_end_ = Vec3::Zero();
+    std::uint16_t former_sequence_ = 0;
+    bool has_reached_ = false;
+    std::uint16_t reached_sequence_ = 0;
+    TimePoint reached_;
 
     /// Of single points that came with one stamp.
     bool is_scan_open_ = false;

@@ -12,6 +12,10 @@ constexpr std::uint8_t kUsualSystem = 1;
 constexpr std::uint8_t kCustomModeEnabled = 1;
 constexpr std::uint16_t kVelocityOnly = 0x0DC7;
 constexpr Seconds kTimesyncPeriod = 1.0F;
+constexpr Seconds kFirstPlaces = 2.0F;
+constexpr Seconds kPlacesPeriod = 4.0F;
+constexpr std::uint8_t kMissionAccepted = 0;    // MAV_MISSION_ACCEPTED
+constexpr std::uint8_t kMissionCancelled = 15;  // MAV_MISSION_OPERATION_CANCELLED
 
 }  // namespace
 
@@ -114,7 +118,41 @@ void Endpoint::service(TimePoint now) noexcept
         send(request);
     }
     ask_for_streams(now);
-    switch (mission_.next(now)) {
+    ask_for_places(now);
+    service_mission(now);
+}
+
+/// Origin and home: what places traffic and mission must not wait for the first period of a stream.
+void Endpoint::ask_for_places(TimePoint now) noexcept
+{
+    if (!asks_for_rates_ || autopilot_.stack == AutopilotStack::unknown || (origin_rank_ > 1 && has_home_on_globe_)) {
+        return;
+    }
+    if (places_asked_.us == 0) {
+        places_asked_ = now + (kFirstPlaces - kPlacesPeriod);
+    }
+    if (now - places_asked_ < kPlacesPeriod) {
+        return;
+    }
+    places_asked_ = now;
+    CommandLong m;
+    m.command = kRequestMessage;
+    m.target_system = system_;
+    m.target_component = kAutopilotComponent;
+    if (origin_rank_ < 2) {
+        m.param1 = static_cast<float>(GpsGlobalOrigin::kInfo.id);
+        send(m);
+    }
+    if (!has_home_on_globe_) {
+        m.param1 = static_cast<float>(HomePosition::kInfo.id);
+        send(m);
+    }
+}
+
+void Endpoint::service_mission(TimePoint now) noexcept
+{
+    const MissionStep step = mission_.next(now);
+    switch (step) {
     case MissionStep::list: {
         MissionRequestList m;
         m.target_system = system_;
@@ -130,8 +168,10 @@ void Endpoint::service(TimePoint now) noexcept
         send(m);
         break;
     }
-    case MissionStep::finish: {
+    case MissionStep::accept:
+    case MissionStep::cancel: {
         MissionAck m;
+        m.type = step == MissionStep::accept ? kMissionAccepted : kMissionCancelled;
         m.target_system = system_;
         m.target_component = kAutopilotComponent;
         send(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Own state, origin and leg.
+// Own state, origin and home. Mission and leg: endpoint_mission.cpp.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +12,8 @@
 namespace jink::link::mavlink {
 namespace {
 
-constexpr std::uint8_t kFrameGlobalRelative = 3;
-constexpr std::uint8_t kFrameGlobalInt = 5;
-constexpr std::uint8_t kFrameGlobalRelativeInt = 6;
 constexpr std::uint8_t kFrameBodyNed = 8;
-/// Own positions and speeds beyond these are no vehicle's of ours [m, m/s].
-constexpr float kLargestPosition = 200000.0F;
+/// Own speeds beyond this are no vehicle's of ours [m/s].
 constexpr float kLargestSpeed = 400.0F;
 /// LOCAL_POSITION_NED is passed over while ODOMETRY, which says more, is younger than this [s].
 constexpr Seconds kOdometryFresh = 1.0F;
@@ -27,8 +23,8 @@ constexpr Seconds kPairAge = 0.2F;
 constexpr Seconds kYawFresh = 1.0F;
 /// Angles on the wire lie within a turn either way [rad].
 constexpr float kLargestAngle = 2.0F * kPi;
-/// A target that moves less is the same target [m].
-constexpr float kSameTarget = 0.5F;
+/// An origin from own positions that is off by more is taken anew [m].
+constexpr float kOriginMoved = 5.0F;
 
 bool plausible(const Vec3& position, const Vec3& velocity) noexcept
 {
@@ -114,7 +110,8 @@ void Endpoint::on_local_position(const Context& c) noexcept
     own_.position = position;
     own_.velocity = velocity;
     own_.sigma_position = own_.sigma_velocity = 0.0F;
-    has_local_ = true;
+    has_local_ = has_local_boot_ = true;
+    local_boot_ms_ = m.time_boot_ms;
     local_heard_ = c.now;
     deliver_own_state(c.inbox, stamp);
 }
@@ -197,7 +194,12 @@ void Endpoint::on_odometry(const Context& c) noexcept
     own_.sigma_position = sigma_of(m.pose_covariance);
     own_.sigma_velocity = sigma_of(m.velocity_covariance);
     has_local_ = true;
+    has_local_boot_ = m.time_usec < kSince1970;
+    local_boot_ms_ = static_cast<std::uint32_t>(m.time_usec / 1000);
     local_heard_ = c.now;
+    // The local frame has jumped: the leg starts where the vehicle is in the new one.
+    has_anchor_ = has_anchor_ && !reset;
+    has_former_ = has_former_ && !reset;
     c.inbox.own_state.estimator_reset = c.inbox.own_state.estimator_reset || reset;
     deliver_own_state(c.inbox, stamp);
 }
@@ -216,10 +218,21 @@ void Endpoint::set_origin(const std::optional<GlobalPosition>& origin, int rank,
         for (TrackReport& track : inbox.tracks) {
             track.position += by;
         }
-        leg_moved_ = has_mission_leg_;
     }
     origin_ = *origin;
     origin_rank_ = rank;
+    place_home(inbox);
+}
+
+void Endpoint::place_home(Inbox& inbox) noexcept
+{
+    const Vec3 local = to_local(home_on_globe_, origin_);
+    has_home_ = has_home_on_globe_ && origin_rank_ > 0 && local.norm() <= kLargestPosition;
+    if (has_home_) {
+        home_ = local;
+        inbox.home = local;
+        inbox.has_home = true;
+    }
 }
 
 void Endpoint::on_global_position(const Context& c) noexcept
@@ -227,15 +240,21 @@ void Endpoint::on_global_position(const Context& c) noexcept
     GlobalPositionInt m;
     static_cast<void>(decode(c.frame, m));
     const GlobalPosition own{m.lat, m.lon, m.alt};
-    if (origin_rank_ > 1 || !has_local_ || c.now - local_heard_ > kPairAge) {
+    // Both are stamped by one clock; the difference of two 32-bit stamps is right across their wrap.
+    const auto ahead_ms = static_cast<std::int32_t>(m.time_boot_ms - local_boot_ms_);
+    const Seconds ahead = static_cast<float>(ahead_ms) * 1e-3F;
+    const bool is_pair =
+        has_local_ && has_local_boot_ && c.now - local_heard_ <= kPairAge && std::abs(ahead) <= kPairAge;
+    if (origin_rank_ > 1 || !is_pair) {
         return;
     }
     if (!is_on_earth(own) || (m.lat == 0 && m.lon == 0)) {
         ++diagnostics_.out_of_range;
         return;
     }
-    if (origin_rank_ == 0) {
-        set_origin(to_global(-own_.position, own), 1, c.inbox);
+    const Vec3 position = own_.position + own_.velocity * ahead;
+    if (origin_rank_ == 0 || (to_local(own, origin_) - position).norm() > kOriginMoved) {
+        set_origin(to_global(-position, own), 1, c.inbox);
     }
 }
 
@@ -243,121 +262,22 @@ void Endpoint::on_origin(const Context& c) noexcept
 {
     GpsGlobalOrigin m;
     static_cast<void>(decode(c.frame, m));
-    set_origin(GlobalPosition{m.latitude, m.longitude, m.altitude}, 3, c.inbox);
+    set_origin(GlobalPosition{m.latitude, m.longitude, m.altitude}, 2, c.inbox);
 }
 
 void Endpoint::on_home(const Context& c) noexcept
 {
     HomePosition m;
     static_cast<void>(decode(c.frame, m));
-    const Vec3 local = swap_ned_enu({m.x, m.y, m.z});
-    if (!is_finite(local)) {
-        ++diagnostics_.not_finite;
-        return;
-    }
     const GlobalPosition home{m.latitude, m.longitude, m.altitude};
-    if (!is_on_earth(home) || local.norm() > kLargestPosition) {
+    if (!is_on_earth(home) || (m.latitude == 0 && m.longitude == 0)) {
         ++diagnostics_.out_of_range;
         return;
     }
-    if (origin_rank_ < 2) {
-        set_origin(to_global(-local, home), 2, c.inbox);
-    }
-    home_ = local;
-    has_home_ = true;
-    c.inbox.home = local;
-    c.inbox.has_home = true;
-}
-
-void Endpoint::on_position_target(const Context& c) noexcept
-{
-    PositionTargetLocalNed m;
-    static_cast<void>(decode(c.frame, m));
-    constexpr std::uint16_t kPositionIgnored = 7;
-    const bool usable = m.coordinate_frame == kFrameLocalNed && (m.type_mask & kPositionIgnored) == 0;
-    if (autopilot_.mode == FlightMode::external || has_mission_leg_ || !usable || !has_local_) {
-        ++diagnostics_.frames_ignored;
-        return;
-    }
-    const Vec3 target = swap_ned_enu({m.x, m.y, m.z});
-    if (!is_finite(target)) {
-        ++diagnostics_.not_finite;
-        return;
-    }
-    if (target.norm() > kLargestPosition) {
-        ++diagnostics_.out_of_range;
-        return;
-    }
-    if (has_target_ && (target - target_).norm() < kSameTarget) {
-        return;
-    }
-    has_target_ = true;
-    target_ = target;
-    c.inbox.leg.leg = {own_.position, target, 0.0F};
-    c.inbox.has_leg = true;
-}
-
-void Endpoint::on_mission_item(const Context& c) noexcept
-{
-    MissionItemInt m;
-    static_cast<void>(decode(c.frame, m));
-    if (m.mission_type != 0 || !for_us(m.target_system, m.target_component)) {
-        ++diagnostics_.frames_ignored;
-        return;
-    }
-    if (!std::isfinite(m.z)) {
-        ++diagnostics_.not_finite;
-        return;
-    }
-    if (!mission_.item(m.seq, m.command, {true, m.frame, m.x, m.y, m.z}, c.now)) {
-        ++diagnostics_.frames_ignored;
-    }
-}
-
-/// Where a mission point lies in the local frame; false while that cannot be known.
-bool Endpoint::place(const MissionPoint& point, Vec3& local) const noexcept
-{
-    if (point.frame == kFrameLocalNed) {
-        local = swap_ned_enu({static_cast<float>(point.x) * 1e-4F, static_cast<float>(point.y) * 1e-4F, point.z});
-        return true;
-    }
-    const bool relative = point.frame == kFrameGlobalRelative || point.frame == kFrameGlobalRelativeInt;
-    const bool absolute = point.frame == kFrameGlobal || point.frame == kFrameGlobalInt;
-    // Latitude and longitude 0 stand for "here" in ArduPilot's items; the greatest integer for "not said".
-    const bool has_place = is_on_earth({point.x, point.y, 0}) && (point.x != 0 || point.y != 0);
-    if (origin_rank_ == 0 || (!relative && !absolute) || (relative && !has_home_) || !has_place) {
-        return false;
-    }
-    local = to_local({point.x, point.y, origin_.alt}, origin_);
-    local.z() = relative ? home_.z() + point.z : point.z - static_cast<float>(origin_.alt) * 1e-3F;
-    return true;
-}
-
-/// The autopilot flies on to a place that is not known: the leg before it is over.
-void Endpoint::lose_leg(Inbox& inbox) noexcept
-{
-    has_mission_leg_ = has_target_ = false;
-    inbox.has_leg = false;
-    inbox.leg_lost = true;
-}
-
-void Endpoint::resolve_leg(Inbox& inbox) noexcept
-{
-    has_mission_leg_ = false;
-    Vec3 from = own_.position;
-    Vec3 to;
-    leg_waits_ = !mission_.to().known || !has_local_ || !place(mission_.to(), to) ||
-                 (mission_.from().known && !place(mission_.from(), from));
-    if (leg_waits_) {
-        return;
-    }
-    if (from.norm() > kLargestPosition || to.norm() > kLargestPosition) {
-        ++diagnostics_.out_of_range;
-        return;
-    }
-    has_mission_leg_ = true;
-    inbox.leg.leg = {from, to, 0.0F};
-    inbox.has_leg = true;
+    home_on_globe_ = home;
+    has_home_on_globe_ = true;
+    place_home(c.inbox);
+    diagnostics_.out_of_range += origin_rank_ > 0 && !has_home_ ? 1U : 0U;
 }
 
 }  // namespace jink::link::mavlink

@@ -21,7 +21,6 @@ constexpr std::array<Need, StreamRequests::kMessages> kNeeds{{
     {{LocalPositionNed::kInfo.id, Odometry::kInfo.id, 0}, 20'000, 1.0F, 10},
     // A heading places ranges for a second.
     {{AttitudeQuaternion::kInfo.id, Attitude::kInfo.id, Odometry::kInfo.id}, 100'000, 1.0F, 4},
-    {{PositionTargetLocalNed::kInfo.id, 0, 0}, 500'000, 3.0F, 1},
     {{MissionCurrent::kInfo.id, 0, 0}, 500'000, 3.0F, 1},
     {{ExtendedSysState::kInfo.id, 0, 0}, 1'000'000, 4.0F, 1},
     {{GpsGlobalOrigin::kInfo.id, 0, 0}, 5'000'000, 12.0F, 1},

@@ -24,7 +24,7 @@ struct StreamRequest {
 /// O(1).
 class StreamRequests {
 public:
-    static constexpr std::size_t kMessages = 7;
+    static constexpr std::size_t kMessages = 6;
     static constexpr int kTries = 5;
     static constexpr Seconds kRest = 30.0F;
 

@@ -11,47 +11,29 @@ namespace {
 
 class CoprocessorLeg : public ::testing::Test {
 protected:
-    /// Hovering on a leg that leads north, with an obstacle on it.
+    /// Standing still on a leg that leads north, with an obstacle on it.
     void SetUp() override
     {
+        f.hovers = true;
+        f.obeys = false;  // nobody takes over: the leg alone is looked at
+        f.velocity = Vec3::Zero();
         ASSERT_TRUE(f.until([](const StepReport& r) { return r.faults == 0; }, 200));
-        f.fly(60);
-        f.mode = wire::kCopterLoiter;
         f.fly(300);
         f.obstacles = {f.position + Vec3(0.0F, 15.0F, 0.0F)};
-        f.fly(30);
-        ASSERT_TRUE(f.last.guidance.has_conflict) << "the leg leads through it";
+        ASSERT_TRUE(f.until([](const StepReport& r) { return r.guidance.has_conflict; }, 30))
+            << "the leg leads through it";
     }
-    void next_item(std::uint16_t seq)
-    {
-        MissionCurrent current;
-        current.seq = seq;
-        f.feed(current);
-        f.fly(2);
-        ASSERT_EQ(f.coprocessor.diagnostics().legs_dropped, 0U) << "not before it is known where it leads";
-    }
-    void answer_count(std::uint16_t n)
-    {
-        MissionCount count;
-        count.count = n;
-        count.target_system = wire::kSystem;
-        count.target_component = wire::kUs;
-        f.feed(count);
-        f.fly(2);
-    }
-    void answer_item(std::uint16_t seq, std::uint8_t frame, std::uint16_t command = 16)
+    void next_item(std::uint8_t frame, std::uint16_t command = 16)
     {
         MissionItemInt item;
-        item.seq = seq;
         item.frame = frame;
         item.x = 473977420;
         item.y = 85465940;
         item.z = 50.0F;
         item.command = command;
-        item.target_system = wire::kSystem;
-        item.target_component = wire::kUs;
-        f.feed(item);
-        f.fly(2);
+        f.mission.push_back(item);
+        f.mission_current = 2;
+        f.fly(60);
     }
     void expect_dropped()
     {
@@ -64,9 +46,7 @@ protected:
 
 TEST_F(CoprocessorLeg, AnItemThatCannotBePlacedEndsTheOldOne)
 {
-    ASSERT_NO_FATAL_FAILURE(next_item(0));
-    answer_count(3);
-    answer_item(0, 10);  // above terrain
+    next_item(10);  // above terrain
     expect_dropped();
     f.fly(100);
     expect_dropped();
@@ -74,9 +54,7 @@ TEST_F(CoprocessorLeg, AnItemThatCannotBePlacedEndsTheOldOne)
 
 TEST_F(CoprocessorLeg, AnItemAboveAHomeThatIsNotKnownEndsTheOldOneAndIsTakenUpWhenItIs)
 {
-    ASSERT_NO_FATAL_FAILURE(next_item(0));
-    answer_count(3);
-    answer_item(0, 6);
+    next_item(6);
     expect_dropped();
     HomePosition home;
     home.latitude = 473977420;
@@ -84,27 +62,34 @@ TEST_F(CoprocessorLeg, AnItemAboveAHomeThatIsNotKnownEndsTheOldOneAndIsTakenUpWh
     home.altitude = 488000;
     home.q = {1.0F, 0.0F, 0.0F, 0.0F};
     f.feed(home);
-    f.obstacles = {f.position + Vec3(15.0F, -1.0F, 0.0F)};
-    f.fly(30);
-    EXPECT_TRUE(f.last.guidance.has_conflict) << "the new leg leads east";
+    f.obstacles = {f.position + Vec3(15.0F, -f.position.y() * 0.02F, 0.0F)};
+    ASSERT_TRUE(f.until([](const StepReport& r) { return r.guidance.has_conflict; }, 60)) << "the new leg leads east";
     EXPECT_EQ(f.coprocessor.diagnostics().legs_dropped, 1U);
 }
 
 TEST_F(CoprocessorLeg, AnItemWithoutAPlaceEndsTheOldOne)
 {
-    ASSERT_NO_FATAL_FAILURE(next_item(0));
-    answer_count(3);
-    answer_item(0, 0, 20);  // return to launch
+    next_item(0, 20);  // return to launch
     expect_dropped();
 }
 
 TEST_F(CoprocessorLeg, AnItemThatDoesNotComeEndsTheOldOneOnce)
 {
-    ASSERT_NO_FATAL_FAILURE(next_item(0));
+    f.answers_mission = false;
+    next_item(6);
     f.fly(50 * 4);
     expect_dropped();
     f.fly(50 * 30);
     expect_dropped();
+}
+
+TEST_F(CoprocessorLeg, LeavingTheMissionEndsTheLegAndReturningBeginsItAnew)
+{
+    f.mode = wire::kCopterLoiter;
+    f.fly(60);
+    expect_dropped();
+    f.mode = wire::kCopterAuto;
+    EXPECT_TRUE(f.until([](const StepReport& r) { return r.guidance.has_conflict; }, 60));
 }
 
 }  // namespace

@@ -44,19 +44,15 @@ TEST(CoprocessorTraffic, OfUnknownClimbIsAConflictAsEarlyAsOfKnown)
     }
 }
 
-/// A copter whose autopilot has told its home alone: `aside` metres east of where it truly lies. Something stands 40 m
+/// A copter whose autopilot has told a first origin `aside` metres east of where it truly lies. Something stands 40 m
 /// ahead in its way.
-struct MisplacedHome {
-    explicit MisplacedHome(float aside)
+struct MisplacedOrigin {
+    explicit MisplacedOrigin(float aside)
     {
         f.ticks = 1;  // the origin is a second away
         f.feed(wire::heartbeat(wire::kCopterAuto, true, 3));
-        const GlobalPosition home = to_global(Vec3(aside, 0.0F, 0.0F), kOrigin).value();
-        HomePosition m;
-        m.latitude = home.lat;
-        m.longitude = home.lon;
-        m.altitude = home.alt;
-        f.feed(m);
+        const GlobalPosition first = to_global(Vec3(aside, 0.0F, 0.0F), kOrigin).value();
+        f.feed(wire::origin(first.lat, first.lon, first.alt));
         f.fly(10);
         AdsbVehicle mast = wire::adsb(9, to_global(f.position + Vec3(0.0F, 40.0F, 0.0F), kOrigin).value());
         mast.emitter_type = 19;
@@ -71,7 +67,7 @@ struct MisplacedHome {
 TEST(CoprocessorTraffic, MovesWithTheOriginWithoutAnotherReport)
 {
     for (const float aside : {30.0F, -30.0F, 200.0F}) {
-        MisplacedHome m(aside);
+        MisplacedOrigin m(aside);
         ASSERT_EQ(m.f.last.tracks, 1U);
         ASSERT_FALSE(m.f.last.guidance.has_conflict) << "as far as can be known";
         m.f.feed(wire::origin());
@@ -88,7 +84,7 @@ TEST(CoprocessorTraffic, MovesWithTheOriginWithoutAnotherReport)
 
 TEST(CoprocessorTraffic, FromBeyondTheMapIsForgottenAndCounted)
 {
-    MisplacedHome m(link::mavlink::kMapReach + 500.0F);
+    MisplacedOrigin m(link::mavlink::kMapReach + 500.0F);
     ASSERT_EQ(m.f.last.tracks, 1U);
     m.f.feed(wire::origin());
     m.f.fly(1);

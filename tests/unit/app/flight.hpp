@@ -105,13 +105,10 @@ public:
         if (own_state) {
             feed(wire::local_position(boot_ms(), position, velocity));
         }
-        if (ticks % 50 == 0 && mode == mission_mode()) {
-            PositionTargetLocalNed target;
-            target.time_boot_ms = boot_ms();
-            target.x = 2000.0F;
-            target.z = -50.0F;
-            target.coordinate_frame = 1;
-            feed(target);
+        if (ticks % 50 == 0) {
+            MissionCurrent current;
+            current.seq = mission_current;
+            feed(current);
         }
         if (ticks % 10 == 0) {
             for (std::size_t i = 0; i < obstacles.size(); ++i) {
@@ -135,6 +132,9 @@ public:
             stream_since_ = now - last_heard_ > 0.5F ? now : stream_since_;
             last_heard_ = now;
             command_ = Vec3(m.vy, m.vx, -m.vz);
+        }
+        if (answers_mission) {
+            answer_mission();
         }
         for (const CommandLong& m : said_of<CommandLong>()) {
             if (m.command != 176) {
@@ -217,6 +217,11 @@ public:
     bool acknowledges = false;  ///< answers requests by COMMAND_ACK
     bool px4 = false;           ///< a PX4; set `mode` too
     bool armed = true;
+    bool hovers = false;  ///< stands still on its mission
+    bool answers_mission = true;
+    std::uint16_t mission_current = 1;
+    /// Home, and one waypoint 2 km to the north.
+    std::vector<MissionItemInt> mission{waypoint(0, 0.0F), waypoint(20'000'000, 50.0F)};
     std::uint32_t mode = wire::kCopterAuto;
     Vec3 position = Vec3(0.0F, 0.0F, 50.0F);
     Vec3 velocity = Vec3(0.0F, 5.0F, 0.0F);
@@ -234,10 +239,38 @@ public:
     Coprocessor coprocessor;
 
 private:
+    void answer_mission()
+    {
+        if (!said_of<MissionRequestList>().empty()) {
+            MissionCount count;
+            count.count = static_cast<std::uint16_t>(mission.size());
+            count.target_system = wire::kSystem;
+            count.target_component = wire::kUs;
+            feed(count);
+        }
+        for (const MissionRequestInt& m : said_of<MissionRequestInt>()) {
+            if (m.seq < mission.size()) {
+                MissionItemInt item = mission[m.seq];
+                item.seq = m.seq;
+                item.target_system = wire::kSystem;
+                item.target_component = wire::kUs;
+                feed(item);
+            }
+        }
+    }
+    static MissionItemInt waypoint(std::int32_t north_0_1_mm, float height)
+    {
+        MissionItemInt item;
+        item.command = 16;
+        item.frame = 1;
+        item.x = north_0_1_mm;
+        item.z = -height;
+        return item;
+    }
     void move()
     {
         Vec3 wanted = Vec3::Zero();
-        if (mode == mission_mode()) {
+        if (mode == mission_mode() && !hovers) {
             const auto back = [](float error) { return std::clamp(-0.5F * error, -2.0F, 2.0F); };
             wanted = Vec3(back(position.x()), 5.0F, back(position.z() - 50.0F));
         } else if (mode == external_mode()) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the endpoint makes of the autopilot's reports on its clock and its origin.
+#include <map>
+
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -113,29 +115,43 @@ TEST_F(MavlinkEndpointClockAndOrigin, OriginsByRank)
     global.lat = 470000000;
     global.lon = 80000000;
     global.alt = 500000;
-    autopilot(global);
+    const auto own_global = [&] {
+        global.time_boot_ms = boot_ms();
+        autopilot(global);
+    };
+    own_global();
     EXPECT_FALSE(endpoint->has_origin()) << "no local position to set it against";
     local_position({100, 0, -10});
     wait(0.5F);
-    autopilot(global);
+    own_global();
     EXPECT_FALSE(endpoint->has_origin()) << "too far apart in time";
     local_position({100, 0, -10});
     GlobalPositionInt nowhere;
+    nowhere.time_boot_ms = boot_ms();
     autopilot(nowhere);
     EXPECT_FALSE(endpoint->has_origin());
     EXPECT_EQ(count().out_of_range, 1U);
-    autopilot(global);
-    EXPECT_TRUE(endpoint->has_origin());
+    local_position({100, 0, -10}, {20, 0, -5});
+    wait(0.1F);
+    own_global();
+    ASSERT_TRUE(endpoint->has_origin());
+    const Vec3 there = to_local({470000000, 80000000, 500000}, endpoint->origin().value());
+    expect_near(there, {0, 102, 10.5F}, 0.1F);
+    local_position({110, 0, -10});
+    own_global();
+    EXPECT_NEAR(to_local({470000000, 80000000, 500000}, endpoint->origin().value()).y(), 110.0F, 0.1F)
+        << "the local frame has moved";
+    origin();
+    EXPECT_EQ(endpoint->origin()->lat, 473977420);
+    local_position({100, 0, -10});
+    own_global();
+    EXPECT_EQ(endpoint->origin()->lat, 473977420) << "of higher rank";
 }
 
 TEST_F(MavlinkEndpointClockAndOrigin, AnotherOriginMovesTrafficOfTheSameStep)
 {
     heartbeat();
-    HomePosition home;
-    home.latitude = 473977420;
-    home.longitude = 85455940;
-    home.altitude = 480000;
-    autopilot(home);
+    origin(473977420, 85455940, 480000);
     AdsbVehicle other;
     other.ICAO_address = 1;
     other.lat = 473987420;
@@ -151,29 +167,69 @@ TEST_F(MavlinkEndpointClockAndOrigin, AnotherOriginMovesTrafficOfTheSameStep)
     EXPECT_NEAR(inbox->tracks[0].position.z(), 112.0F, 1e-3F);
 }
 
-TEST_F(MavlinkEndpointClockAndOrigin, HomeIsAnOriginAndIsTold)
+TEST_F(MavlinkEndpointClockAndOrigin, HomeIsPlacedByItsCoordinatesAndNotByItsLocalOnes)
 {
     heartbeat();
     HomePosition m;
-    m.latitude = 470000000;
-    m.longitude = 80000000;
+    m.latitude = 473977420;
+    m.longitude = 85455940;
     m.altitude = 500000;
-    m.x = 5;
-    m.y = 6;
-    m.z = -7;
     autopilot(m);
-    EXPECT_TRUE(endpoint->has_origin());
+    EXPECT_FALSE(endpoint->has_origin()) << "ArduPilot's x, y, z are 0 wherever home is";
+    EXPECT_FALSE(inbox->has_home) << "rather not known than wrong";
+    origin();
     ASSERT_TRUE(inbox->has_home);
-    EXPECT_EQ(inbox->home, Vec3(6, 5, 7));
+    EXPECT_NEAR(inbox->home.z(), 12.0F, 1e-3F) << "below ground in 200 of 200 flights";
     clear();
     m.x = kNan;
+    m.latitude += 10000;
     autopilot(m);
-    EXPECT_EQ(count().not_finite, 1U);
-    m.x = 0;
+    ASSERT_TRUE(inbox->has_home);
+    expect_near(inbox->home, {0, 111.3F, 12}, 0.1F);
+    clear();
     m.latitude = 950000000;
     autopilot(m);
-    EXPECT_EQ(count().out_of_range, 1U);
+    m.latitude = m.longitude = 0;
+    autopilot(m);
+    EXPECT_EQ(count().out_of_range, 2U);
     EXPECT_FALSE(inbox->has_home);
+}
+
+TEST_F(MavlinkEndpointClockAndOrigin, OriginAndHomeThatDoNotComeAreAskedForEveryFourSeconds)
+{
+    heartbeat();
+    endpoint->ask_for_rates(true);
+    std::map<float, int> asked;
+    const auto run = [&](float seconds) {
+        asked.clear();
+        for (float t = 0.0F; t < seconds; t += 0.02F) {
+            wait(0.02F);
+            endpoint->service(now);
+            for (const Received& f : sent()) {
+                CommandLong m;
+                asked[decode(f.frame(), m) && m.command == 512 ? m.param1 : -1.0F] += 1;
+            }
+        }
+    };
+    run(3.0F);
+    EXPECT_EQ(asked[49.0F], 1);
+    EXPECT_EQ(asked[242.0F], 1);
+    run(8.0F);
+    EXPECT_EQ(asked[49.0F], 2);
+    origin();
+    run(8.0F);
+    EXPECT_EQ(asked[49.0F], 0);
+    EXPECT_EQ(asked[242.0F], 2);
+    HomePosition home;
+    home.latitude = 473977420;
+    home.longitude = 85455940;
+    autopilot(home);
+    run(8.0F);
+    EXPECT_EQ(asked[242.0F], 0);
+    endpoint = std::make_unique<Endpoint>();
+    heartbeat();
+    run(8.0F);
+    EXPECT_EQ(asked[242.0F], 0) << "only when told to ask";
 }
 
 TEST_F(MavlinkEndpointClockAndOrigin, NoOriginNearThePolesOrOffTheEarth)
@@ -185,10 +241,11 @@ TEST_F(MavlinkEndpointClockAndOrigin, NoOriginNearThePolesOrOffTheEarth)
     origin(std::numeric_limits<std::int32_t>::min(), 0, 0);
     HomePosition m;
     m.latitude = 900000000;
-    m.x = 1000;
+    m.longitude = 1;
     autopilot(m);
     EXPECT_FALSE(endpoint->has_origin());
-    EXPECT_EQ(count().out_of_range, 5U);
+    EXPECT_FALSE(inbox->has_home);
+    EXPECT_EQ(count().out_of_range, 4U);
 }
 
 }  // namespace

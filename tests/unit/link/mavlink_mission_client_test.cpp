@@ -1,160 +1,204 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "firmware/link/mavlink/mission_client.hpp"
-
-#include <gtest/gtest.h>
+// Which requests a mission client makes, and when.
+#include "tests/unit/link/mission_client_fixture.hpp"
 
 namespace jink::link::mavlink {
 namespace {
 
-constexpr std::uint16_t kWaypoint = 16;
+using namespace test;
+using MavlinkMissionClient = MissionClientTest;
 
-MissionPoint point(std::int32_t x) { return {true, 0, x, 0, 0.0F}; }
-
-struct MavlinkMissionClient : ::testing::Test {
-    MissionClient client;
-    TimePoint now{5'000'000};
-    void wait(float s) { now = now + s; }
-    MissionStep next() { return client.next(now); }
-};
-
-TEST_F(MavlinkMissionClient, FetchesTheCurrentItemAndTheOneBefore)
+TEST_F(MavlinkMissionClient, RequestsItemsInOrderFromZeroAndEndsTheTransferThreeTimes)
 {
     EXPECT_EQ(next(), MissionStep::none);
-    client.current(4);
+    current(4);
+    const auto mission = mission_of(6);
     EXPECT_EQ(next(), MissionStep::list);
     EXPECT_EQ(next(), MissionStep::none);
-    client.count(9, now);
-    EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_EQ(client.wanted(), 4);
-    EXPECT_TRUE(client.item(4, kWaypoint, point(44), now));
-    EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_EQ(client.wanted(), 3);
-    EXPECT_FALSE(client.take_leg());
-    EXPECT_TRUE(client.item(3, kWaypoint, point(33), now));
-    EXPECT_TRUE(client.take_leg());
-    EXPECT_FALSE(client.take_leg()) << "once";
-    EXPECT_TRUE(client.from().known);
-    EXPECT_EQ(client.from().x, 33);
-    EXPECT_EQ(client.to().x, 44);
-    EXPECT_EQ(next(), MissionStep::finish);
-    EXPECT_EQ(next(), MissionStep::none);
+    client.count(6, 0, now);
+    for (std::uint16_t i = 0; i < 6; ++i) {
+        ASSERT_EQ(next(), MissionStep::item);
+        EXPECT_EQ(client.wanted(), i);
+        EXPECT_TRUE(client.item(i, mission[i], 0.0F, 0.0F, now));
+    }
+    ASSERT_NE(client.goal(), nullptr);
+    EXPECT_EQ(client.goal()->x, 104);
+    EXPECT_EQ(steps(4.0F), std::vector<MissionStep>(3, MissionStep::accept));
 }
 
-TEST_F(MavlinkMissionClient, TheFirstItemHasNoneBefore)
+TEST_F(MavlinkMissionClient, AnotherCurrentItemOfAKnownMissionIsNotRequestedAgain)
 {
-    client.current(0);
-    EXPECT_EQ(next(), MissionStep::list);
-    client.count(1, now);
-    EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_TRUE(client.item(0, kWaypoint, point(1), now));
-    EXPECT_TRUE(client.take_leg());
-    EXPECT_FALSE(client.from().known);
+    progress.total = 6;
+    current(4);
+    EXPECT_EQ(read(mission_of(6)).size(), 6U);
+    steps(2.0F);
+    const std::uint32_t version = client.version();
+    current(5);
+    EXPECT_EQ(client.goal()->x, 105);
+    EXPECT_GT(client.version(), version);
+    EXPECT_TRUE(steps(60.0F).empty()) << "PX4 says by id and total when there is another mission";
 }
 
-TEST_F(MavlinkMissionClient, AnItemBeforeWithoutAPlaceStartsTheLegWhereTheVehicleIs)
+TEST_F(MavlinkMissionClient, AnEmptyMissionIsEndedToo)
 {
-    client.current(2);
+    current(0);
     EXPECT_EQ(next(), MissionStep::list);
-    client.count(3, now);
-    EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_TRUE(client.item(2, kWaypoint, point(2), now));
-    EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_TRUE(client.item(1, 178, point(1), now));  // DO_CHANGE_SPEED
-    EXPECT_TRUE(client.take_leg());
-    EXPECT_FALSE(client.from().known);
+    client.count(0, 0, now);
+    EXPECT_EQ(steps(2.0F), std::vector<MissionStep>(3, MissionStep::accept)) << "else PX4: Operation timeout";
+    EXPECT_EQ(client.goal(), nullptr);
 }
 
-TEST_F(MavlinkMissionClient, ACurrentItemWithoutAPlaceGivesNoLeg)
+TEST_F(MavlinkMissionClient, AnotherIdOrTotalDropsTheCopyAndReadsAnew)
 {
-    client.current(2);
+    for (const bool by_id : {true, false}) {
+        client.forget();
+        progress = {0, 3, 77, false};
+        current(1);
+        read(mission_of(3), 77);
+        steps(2.0F);
+        EXPECT_EQ(client.goal(), nullptr) << "it may have been replaced while it was read";
+        current(1);
+        ASSERT_NE(client.goal(), nullptr);
+        progress.id += by_id ? 1 : 0;
+        progress.total = by_id ? 3 : 4;
+        current(1);
+        EXPECT_EQ(client.goal(), nullptr) << "not known until it is read";
+        EXPECT_EQ(read(mission_of(by_id ? 3 : 4), progress.id).size(), by_id ? 3U : 4U);
+        current(1);
+        EXPECT_NE(client.goal(), nullptr);
+    }
+}
+
+TEST_F(MavlinkMissionClient, AMissionReplacedDuringTheTransferEndsIt)
+{
+    progress = {0, 5, 77, false};
+    current(1);
     EXPECT_EQ(next(), MissionStep::list);
-    client.count(3, now);
+    client.count(5, 77, now);
     EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_TRUE(client.item(2, 20, point(2), now));  // RETURN_TO_LAUNCH
-    EXPECT_FALSE(client.take_leg());
-    EXPECT_EQ(next(), MissionStep::none);
+    client.item(0, at(1), 0.0F, 0.0F, now);
+    progress = {0, 2, 78, false};  // now of two items: a request for the third brings PX4's CRITICAL text
+    current(1);
+    EXPECT_EQ(steps(1.05F), std::vector<MissionStep>(3, MissionStep::cancel));
+    EXPECT_EQ(read(mission_of(2), 78), (std::vector<std::uint16_t>{0, 1}));
+}
+
+TEST_F(MavlinkMissionClient, AnotherCountThatAnswersARepetitionEndsTheTransfer)
+{
+    current(1);
+    EXPECT_EQ(next(), MissionStep::list);
+    wait(1.05F);
+    EXPECT_EQ(next(), MissionStep::list);
+    client.count(10, 77, now);
+    EXPECT_EQ(next(), MissionStep::item);
+    client.count(2, 78, now);  // replaced between the two: PX4 takes requests for two items
+    EXPECT_EQ(steps(1.05F), std::vector<MissionStep>(3, MissionStep::cancel));
+    EXPECT_EQ(read(mission_of(2), 78), (std::vector<std::uint16_t>{0, 1}));
+}
+
+TEST_F(MavlinkMissionClient, AnotherItemThatBecomesCurrentDuringTheComparisonIsNotVerifiedByIt)
+{
+    client.set_lone(true);
+    current(2);
+    const auto mission = mission_of(6);
+    read(mission);
+    EXPECT_EQ(next(), MissionStep::list);
+    client.count(6, 0, now);
+    EXPECT_EQ(next(), MissionStep::item);
+    current(4);
+    EXPECT_TRUE(client.item(2, mission[2], 0.0F, 0.0F, now));
+    EXPECT_EQ(client.goal(), nullptr);
+    compare(mission);
+    ASSERT_NE(client.goal(), nullptr);
+    EXPECT_EQ(client.goal()->x, 104);
 }
 
 TEST_F(MavlinkMissionClient, OnlyWhatWasAskedForIsTaken)
 {
-    EXPECT_FALSE(client.item(0, kWaypoint, point(0), now));
-    client.count(5, now);
+    EXPECT_FALSE(client.item(0, at(0), 0.0F, 0.0F, now));
+    client.count(5, 0, now);
     EXPECT_EQ(next(), MissionStep::none);
-    client.current(3);
-    EXPECT_FALSE(client.item(3, kWaypoint, point(3), now)) << "not asked yet";
+    current(1);
+    EXPECT_FALSE(client.item(0, at(0), 0.0F, 0.0F, now)) << "not asked yet";
     EXPECT_EQ(next(), MissionStep::list);
-    client.count(5, now);
-    client.count(5, now);
+    client.count(5, 0, now);
+    client.count(5, 0, now);
     EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_FALSE(client.item(2, kWaypoint, point(2), now));
-    EXPECT_FALSE(client.item(4, kWaypoint, point(4), now));
-    EXPECT_TRUE(client.item(3, kWaypoint, point(3), now));
-    EXPECT_FALSE(client.item(3, kWaypoint, point(9), now)) << "doubled by the line";
-    EXPECT_EQ(client.to().x, 3);
+    EXPECT_FALSE(client.item(1, at(1), 0.0F, 0.0F, now));
+    EXPECT_TRUE(client.item(0, at(0), 0.0F, 0.0F, now));
+    EXPECT_FALSE(client.item(0, at(9), 0.0F, 0.0F, now)) << "doubled by the line";
+    EXPECT_EQ(next(), MissionStep::item);
+    EXPECT_EQ(client.wanted(), 1);
 }
 
-TEST_F(MavlinkMissionClient, AsksThreeTimesThenSulks)
+TEST_F(MavlinkMissionClient, AListThatIsNotAnsweredIsRepeatedBeforePx4TimesOutAndNeverEnded)
 {
-    client.current(1);
+    current(1);
+    TimePoint last = now;
     int lists = 0;
-    for (int tick = 0; tick < 50 * 8; ++tick) {
-        lists += next() == MissionStep::list ? 1 : 0;
-        wait(0.02F);
+    for (int tick = 0; tick < 600; ++tick) {
+        const MissionStep step = next();
+        ASSERT_TRUE(step == MissionStep::none || step == MissionStep::list) << "PX4: partner id mismatch";
+        if (step == MissionStep::list) {
+            EXPECT_LT(now - last, 4.9F);
+            last = now;
+            ++lists;
+        }
+        wait(0.1F);
     }
-    EXPECT_EQ(lists, 3);
-    for (int tick = 0; tick < 50 * 10; ++tick) {
-        lists += next() == MissionStep::list ? 1 : 0;
-        wait(0.02F);
-    }
-    EXPECT_GT(lists, 3) << "tries again after 10 s";
+    EXPECT_LE(lists, 32);
+    EXPECT_GE(lists, 24);
 }
 
-TEST_F(MavlinkMissionClient, AnItemThatIsLostIsAskedForAgain)
+TEST_F(MavlinkMissionClient, AnItemThatIsLostIsRequestedAgainAndAGivenUpTransferIsEnded)
 {
-    client.current(1);
+    current(1);
     EXPECT_EQ(next(), MissionStep::list);
-    client.count(2, now);
-    int items = 0;
-    for (int tick = 0; tick < 50 * 5; ++tick) {
-        items += next() == MissionStep::item ? 1 : 0;
-        wait(0.02F);
-    }
-    EXPECT_EQ(items, 3);
+    client.count(2, 0, now);
+    const std::vector<MissionStep> all = steps(4.4F);
+    EXPECT_EQ(all, (std::vector<MissionStep>{MissionStep::item, MissionStep::item, MissionStep::item,
+                                             MissionStep::cancel, MissionStep::cancel, MissionStep::cancel}));
+    EXPECT_EQ(client.wanted(), 0);
 }
 
-TEST_F(MavlinkMissionClient, ACurrentItemBeyondTheMissionIsGivenUp)
+TEST_F(MavlinkMissionClient, ARefusalEndsTheTransferWithoutAnAnswer)
 {
-    client.current(7);
+    current(1);
     EXPECT_EQ(next(), MissionStep::list);
-    client.count(7, now);
-    EXPECT_EQ(next(), MissionStep::none);
-    wait(10.5F);
-    EXPECT_EQ(next(), MissionStep::none);
-    EXPECT_EQ(next(), MissionStep::list);
+    client.refused(0, now);
+    client.refused(14, now);  // denied: somebody uploads
+    EXPECT_TRUE(steps(0.8F).empty());
+    wait(0.3F);
+    EXPECT_EQ(read(mission_of(2)).size(), 2U);
 }
 
-TEST_F(MavlinkMissionClient, TheNextItemStartsOver)
+TEST_F(MavlinkMissionClient, NothingIsSentDuringSomebodyElsesTransfer)
 {
-    client.current(1);
+    current(1);
     EXPECT_EQ(next(), MissionStep::list);
-    client.count(5, now);
+    client.count(2, 0, now);
     EXPECT_EQ(next(), MissionStep::item);
-    EXPECT_TRUE(client.item(1, kWaypoint, point(1), now));
-    client.current(2);  // while item 0 is still on its way
-    EXPECT_FALSE(client.item(0, kWaypoint, point(0), now));
-    EXPECT_FALSE(client.take_leg());
-    EXPECT_EQ(next(), MissionStep::list);
-    client.current(2);
-    EXPECT_EQ(next(), MissionStep::none) << "the same again changes nothing";
+    client.others(true, false, now);
+    EXPECT_FALSE(client.item(0, at(0), 0.0F, 0.0F, now));
+    EXPECT_TRUE(steps(8.5F).empty());
+    client.others(true, true, now);
+    EXPECT_TRUE(steps(0.8F).empty());
+    wait(0.3F);
+    EXPECT_EQ(read(mission_of(2)).size(), 2U) << "it may be another mission";
 }
 
-TEST_F(MavlinkMissionClient, ForgetsEverything)
+TEST_F(MavlinkMissionClient, SilenceIsTakenForARestartAndTheTransferBeginsAnew)
 {
-    client.current(1);
-    client.forget();
-    EXPECT_EQ(next(), MissionStep::none);
-    client.current(1);
+    client.heard(now);
+    current(1);
     EXPECT_EQ(next(), MissionStep::list);
+    client.count(2, 0, now);
+    EXPECT_EQ(next(), MissionStep::item);
+    now = now + 2.5F;
+    client.heard(now);
+    EXPECT_TRUE(steps(1.8F).empty()) << "late answers are no answers to the next request";
+    wait(0.3F);
+    EXPECT_EQ(next(), MissionStep::list) << "a rebooted PX4 answers an item's request with partner id mismatch";
 }
 
 }  // namespace

@@ -99,7 +99,9 @@ TEST(Rejoining, BelowTheFloorItGoesNoDeeper)
     f.scene.airspace.floor = 25.0F;
     f.scene.own.position = Vec3(20, 0, 22);
     FakeMethod method = never();
-    Supervisor supervisor(quick(), method);
+    Settings settings = quick();
+    settings.settle = settings.least_control = 0.0F;
+    Supervisor supervisor(settings, method);
     const Guidance g = f.update(supervisor, true);
     EXPECT_FALSE(g.wants_control) << "above its leg, as near as our command may bring it";
     EXPECT_GE(g.velocity.z(), 0.0F);

@@ -106,14 +106,23 @@ TEST(Watching, WithoutAPlanItWaitsUntilTheLastMoment)
     EXPECT_NE(g.kind, ManoeuvreKind::follow_path);
 }
 
-TEST(Watching, GrantedWithoutAReasonItKeepsToTheLegAndLetsGo)
+TEST(Watching, GrantedAfterTheConflictIsOverItKeepsToTheLegForAWhileAndLetsGo)
 {
     Flight f;
     FakeMethod method = always(kLeft);
-    Supervisor supervisor(quick(), method);
-    const Guidance g = f.update(supervisor, true);
+    Settings settings = quick();
+    settings.least_control = 2.0F;
+    Supervisor supervisor(settings, method);
+    Guidance g = f.update(supervisor, true);
+    Seconds kept = 0.0F;
+    while (g.wants_control && kept < 10.0F) {
+        EXPECT_NEAR((g.velocity - Vec3(5, 0, 0)).norm(), 0.0F, 1e-3F);
+        f.pass(g.velocity, 0.05F);
+        kept += 0.05F;
+        g = f.update(supervisor, true);
+    }
+    EXPECT_NEAR(kept, 2.0F, 0.06F) << "a conflict that comes and goes makes one take-over";
     EXPECT_EQ(g.state, State::watching);
-    EXPECT_FALSE(g.wants_control);
     EXPECT_NEAR((g.velocity - Vec3(5, 0, 0)).norm(), 0.0F, 1e-3F) << "valid all the same: it may be flown for a while";
     f.scene.own.position = Vec3(20, 8, 30);
     const Guidance off = f.update(supervisor, true);

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Coprocessor::step: a way that is blocked for good, and what is said in a conflict.
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/app/direct_flight.hpp"
+
+namespace jink::app::test {
+namespace {
+
+Course east(float speed)
+{
+    return {[=](Seconds t) { return Vec3(speed * t, 0.0F, 50.0F); }, [=](Seconds) { return Vec3(speed, 0.0F, 0.0F); }};
+}
+
+/// A mission that leads through a wall, which a scanner sees.
+class WayBlocked : public ::testing::Test {
+protected:
+    WayBlocked()
+    {
+        Parameters parameters;
+        static_cast<void>(parameters.set(Param::patience, 6.0F));
+        flight = std::make_unique<DirectFlight>(east(5.0F), parameters, 1);
+        flight->reports_leg = true;
+        flight->leg = {Vec3(0, 0, 50), Vec3(500, 0, 50), 5.0F};
+        flight->wall_at = 60.0F;
+    }
+    std::unique_ptr<DirectFlight> flight;
+};
+
+TEST_F(WayBlocked, EndsInTheHoldModeAfterThePatienceSaidOnce)
+{
+    flight->fly(45.0F);
+    EXPECT_EQ(flight->mode, link::FlightMode::hold);
+    EXPECT_EQ(flight->said("jink: way blocked, autopilot holds"), 1);
+    EXPECT_EQ(flight->said("jink: mode changed by others, hands off"), 0) << "the hold is what was asked for";
+    EXPECT_LE(flight->said(link::Severity::critical), 1);
+    EXPECT_LE(flight->taken.size(), 2U);
+    const std::size_t taken = flight->taken.size();
+    flight->fly(25.0F);
+    EXPECT_EQ(flight->taken.size(), taken) << "the pilot decides";
+    EXPECT_EQ(flight->said("jink: way blocked, autopilot holds"), 1);
+}
+
+TEST_F(WayBlocked, IsGuardedAgainOnceThePilotChoosesTheMission)
+{
+    flight->fly(45.0F);
+    ASSERT_EQ(flight->mode, link::FlightMode::hold);
+    const std::size_t taken = flight->taken.size();
+    flight->mode = link::FlightMode::mission;
+    flight->fly(25.0F);
+    EXPECT_GT(flight->taken.size(), taken);
+    EXPECT_LT(flight->state.position.x(), 59.0F) << "the own box stays clear of it";
+    EXPECT_EQ(flight->mode, link::FlightMode::hold);
+    EXPECT_EQ(flight->said("jink: way blocked, autopilot holds"), 2);
+}
+
+TEST_F(WayBlocked, NeverWithoutPatience)
+{
+    Parameters parameters = flight->coprocessor.parameters();
+    ASSERT_EQ(parameters.set(Param::patience, 0.0F), ParamStatus::ok);
+    DirectFlight f(east(5.0F), parameters, 1);
+    f.reports_leg = true;
+    f.leg = flight->leg;
+    f.wall_at = 60.0F;
+    f.fly(45.0F);
+    EXPECT_EQ(f.said("jink: way blocked, autopilot holds"), 0);
+    EXPECT_LE(f.said(link::Severity::critical), 1) << "once per conflict";
+}
+
+/// A ground station leads the vehicle away from its mission: the mission's leg says nothing of where it goes.
+TEST(NominalPath, IsTheMeasuredMotionInAnExternalModeThatIsNotOurs)
+{
+    DirectFlight f(east(5.0F), Parameters{}, 1);
+    f.reports_leg = true;
+    f.leg = {Vec3(0, 0, 50), Vec3(500, 0, 50), 5.0F};
+    f.fly(5.0F);
+    ASSERT_TRUE(f.coprocessor.nominal_paths().is_intended());
+    f.mode = link::FlightMode::external;
+    f.fly(1.5F);
+    EXPECT_FALSE(f.coprocessor.nominal_paths().is_intended());
+    f.mode = link::FlightMode::mission;
+    f.fly(1.5F);
+    EXPECT_TRUE(f.coprocessor.nominal_paths().is_intended());
+}
+
+TEST(NominalPath, IsTheMissionsLegWhileWeLead)
+{
+    DirectFlight f(east(5.0F), Parameters{}, 1);
+    f.reports_leg = true;
+    f.leg = {Vec3(0, 0, 50), Vec3(500, 0, 50), 5.0F};
+    f.intruders = {{Vec3(150, 0, 50), Vec3(-5, 0, 0), 0.0F}};
+    int led = 0;
+    for (int i = 0; i < 300 && f.given_back.empty(); ++i) {
+        f.fly(0.1F);
+        if (f.mode == link::FlightMode::external) {
+            ++led;
+            EXPECT_TRUE(f.coprocessor.nominal_paths().is_intended()) << i;
+        }
+    }
+    EXPECT_GT(led, 20);
+}
+
+/// Intruders that come at a standing vehicle: an escape that keeps clear is no reason for a CRITICAL text.
+TEST(WhatIsSaid, NothingCriticalOfAnEscapeThatKeepsClear)
+{
+    DirectFlight f(east(0.0F), Parameters{}, 1);
+    f.reports_leg = true;
+    f.leg = {Vec3(0, 0, 50), Vec3(500, 0, 50), 5.0F};
+    f.intruders = {{Vec3(-100, 0, 50), Vec3(10, 0, 0), 0.0F}};
+    f.fly(30.0F);
+    EXPECT_EQ(f.taken.size(), 1U);
+    EXPECT_EQ(f.given_back.size(), 1U);
+    EXPECT_GT(f.nearest, 2.0F);
+    EXPECT_EQ(f.said(link::Severity::critical), 0);
+}
+
+}  // namespace
+}  // namespace jink::app::test

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NominalPaths: what it expects of a vehicle that turns, stands, leaves its leg, or flies faster than the parameter.
+#include "firmware/app/nominal_paths.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace jink::app {
+namespace {
+
+class NominalPathsTest : public ::testing::Test {
+protected:
+    NominalPathsTest() { own.position = Vec3(0, 0, 50); }
+
+    void update(bool in_control = false)
+    {
+        own.stamp = now;
+        paths.update(own, own, has_leg ? &leg : nullptr, limits, in_control);
+    }
+    /// Flies at `velocity`, which turns at `rate` [rad/s], for `span`.
+    void fly(Vec3 velocity, Seconds span, float rate = 0.0F, bool in_control = false)
+    {
+        constexpr Seconds kDt = 0.02F;
+        for (Seconds t = 0.0F; t < span; t += kDt) {
+            const float c = std::cos(rate * kDt);
+            const float s = std::sin(rate * kDt);
+            velocity = Vec3(c * velocity.x() - s * velocity.y(), s * velocity.x() + c * velocity.y(), velocity.z());
+            own.velocity = velocity;
+            own.position += kDt * velocity;
+            now = now + kDt;
+            update(in_control);
+        }
+    }
+    /// Where the path leads in `t` seconds, from the own position.
+    [[nodiscard]] static Vec3 ahead(const world::Reference& r, Seconds t)
+    {
+        if (r.route != nullptr) {
+            return r.route->at(r.leg.speed * t).position;
+        }
+        const Vec3 span = r.leg.end - r.leg.start;
+        return r.leg.start + std::min(1.0F, r.leg.speed * t / std::max(span.norm(), 1e-3F)) * span;
+    }
+
+    NominalPaths paths;
+    vehicle::VehicleState own;
+    vehicle::VehicleLimits limits;
+    world::Leg leg{Vec3(0, 0, 50), Vec3(500, 0, 50), 0.0F};
+    bool has_leg = true;
+    TimePoint now{1'000'000};
+};
+
+TEST_F(NominalPathsTest, WithoutALegTheMotionIsTheOnlyOne)
+{
+    has_leg = false;
+    fly(Vec3(3, 4, 0), 0.2F);
+    EXPECT_EQ(paths.other(), nullptr);
+    EXPECT_TRUE(paths.primary().valid);
+    EXPECT_LT((ahead(paths.primary(), 2.0F) - own.position - Vec3(6, 8, 0)).norm(), 1e-3F);
+}
+
+TEST_F(NominalPathsTest, TheMotionStandsBesideABelievedLeg)
+{
+    fly(Vec3(5, 0, 0), 2.0F);
+    EXPECT_EQ(paths.primary().leg.end, leg.end);
+    ASSERT_NE(paths.other(), nullptr);
+    EXPECT_LT((ahead(*paths.other(), 2.0F) - own.position - Vec3(10, 0, 0)).norm(), 1e-3F);
+}
+
+TEST_F(NominalPathsTest, StandingItStays)
+{
+    update();
+    ASSERT_NE(paths.other(), nullptr);
+    EXPECT_EQ(paths.other()->leg.end, own.position);
+    EXPECT_EQ(paths.other()->route, nullptr);
+    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed) << "from rest by the parameter";
+}
+
+TEST_F(NominalPathsTest, ATurnIsAnArcOfHalfATurnThenStraightOn)
+{
+    has_leg = false;
+    for (const float rate : {0.5F, -0.5F}) {
+        paths.reset();
+        now = now + 5.0F;
+        fly(Vec3(5, 0, 0), 1.5F, rate);
+        EXPECT_NEAR(paths.turn_rate(), rate, 0.01F);
+        ASSERT_NE(paths.primary().route, nullptr);
+        const world::Reference& r = paths.primary();
+        const Vec3 forward = own.velocity / 5.0F;
+        const Vec3 inwards = std::copysign(1.0F, rate) * Vec3(-forward.y(), forward.x(), 0.0F);
+        const float radius = 5.0F / std::abs(rate);
+        const auto on_circle = [&](Seconds t) {
+            const float angle = std::abs(rate) * t;
+            return Vec3(own.position + radius * (std::sin(angle) * forward + (1.0F - std::cos(angle)) * inwards));
+        };
+        EXPECT_LT((ahead(r, 2.0F) - on_circle(2.0F)).norm(), 0.3F);
+        EXPECT_LT((ahead(r, 5.0F) - on_circle(5.0F)).norm(), 1.0F);
+        const Seconds half = kPi / std::abs(rate);
+        EXPECT_LT((ahead(r, half + 2.0F) - (on_circle(half) - 10.0F * forward)).norm(), 1.5F);
+    }
+}
+
+TEST_F(NominalPathsTest, AClimbingTurnClimbs)
+{
+    has_leg = false;
+    fly(Vec3(5, 0, 1), 1.5F, 0.4F);
+    ASSERT_NE(paths.primary().route, nullptr);
+    EXPECT_NEAR(ahead(paths.primary(), 4.0F).z() - own.position.z(), 4.0F, 0.5F);
+}
+
+TEST_F(NominalPathsTest, NoiseIsNoTurn)
+{
+    has_leg = false;
+    for (int i = 0; i < 500; ++i) {
+        fly(Vec3(5, i % 2 == 0 ? 0.1F : -0.1F, 0), 0.02F);
+        EXPECT_EQ(paths.primary().route, nullptr);
+    }
+}
+
+TEST_F(NominalPathsTest, ALegThatTheMotionContradictsIsDroppedAndTakenBack)
+{
+    fly(Vec3(5, 0, 0), 2.0F);
+    fly(Vec3(0, 5, 0), 1.3F);
+    EXPECT_TRUE(paths.believes_leg());
+    fly(Vec3(0, 5, 0), 0.4F);
+    EXPECT_FALSE(paths.believes_leg());
+    EXPECT_EQ(paths.legs_doubted(), 1U);
+    EXPECT_EQ(paths.other(), nullptr);
+    EXPECT_LT((ahead(paths.primary(), 2.0F) - own.position - Vec3(0, 10, 0)).norm(), 1e-3F);
+    fly(Vec3(5, -1, 0), 0.8F);
+    EXPECT_FALSE(paths.believes_leg());
+    fly(Vec3(5, -1, 0), 0.4F);
+    EXPECT_TRUE(paths.believes_leg());
+}
+
+TEST_F(NominalPathsTest, AnotherLegIsBelievedAtOnce)
+{
+    fly(Vec3(0, 5, 0), 3.0F);
+    ASSERT_FALSE(paths.believes_leg());
+    leg = {own.position, own.position + Vec3(0, 300, 0), 0.0F};
+    update();
+    EXPECT_TRUE(paths.believes_leg());
+}
+
+TEST_F(NominalPathsTest, GettingFurtherOffContradictsAtASmallAngleToo)
+{
+    fly(Vec3(4.5F, 2.0F, 0), 4.0F);
+    EXPECT_FALSE(paths.believes_leg());
+}
+
+TEST_F(NominalPathsTest, StandingAcceleratingReturningAndTurningAtTheEndContradictNothing)
+{
+    fly(Vec3(0.1F, 0.3F, 0), 5.0F);
+    EXPECT_TRUE(paths.believes_leg()) << "stands";
+    for (int i = 0; i < 50; ++i) {
+        fly(Vec3(0.1F * static_cast<float>(i), 0, 0), 0.1F);
+    }
+    EXPECT_TRUE(paths.believes_leg()) << "accelerates";
+    own.position.y() += 30.0F;
+    fly(Vec3(0, -5, 0), 5.0F);
+    EXPECT_TRUE(paths.believes_leg()) << "flies straight back to it";
+    own.position = leg.end - Vec3(6, 0, 0);
+    fly(Vec3(3, 4, 0), 2.0F);
+    EXPECT_TRUE(paths.believes_leg()) << "turns at its end";
+    EXPECT_EQ(paths.legs_doubted(), 0U);
+}
+
+TEST_F(NominalPathsTest, FlownFasterThanTheParameterItIsExpectedAtThatSpeed)
+{
+    fly(Vec3(12, 0, 0), 2.0F);
+    EXPECT_NEAR(paths.primary().leg.speed, 12.0F, 0.01F);
+    fly(Vec3(0, 0, 0), 2.0F);
+    EXPECT_NEAR(paths.primary().leg.speed, 12.0F, 0.01F) << "it will fly on at the speed that it flew";
+    leg.speed = 7.0F;
+    update();
+    EXPECT_NEAR(paths.primary().leg.speed, 7.0F, 0.01F) << "the mission says so";
+    fly(Vec3(3, 0, 0), 2.0F);
+    EXPECT_NEAR(paths.primary().leg.speed, 3.0F, 0.01F) << "it flies steadily otherwise";
+    fly(Vec3(9, 0, 0), 0.1F);
+    EXPECT_NEAR(paths.primary().leg.speed, 9.0F, 0.01F) << "and never slower than it flies now";
+}
+
+TEST_F(NominalPathsTest, AcceleratingItIsExpectedAtTheSpeedToCome)
+{
+    for (int i = 0; i < 20; ++i) {
+        fly(Vec3(0.2F * static_cast<float>(i), 0, 0), 0.1F);
+    }
+    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+    ASSERT_NE(paths.other(), nullptr);
+    EXPECT_NEAR(paths.other()->leg.speed, 3.8F, 0.01F) << "the motion says the other";
+}
+
+TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
+{
+    fly(Vec3(5, 0, 0), 2.0F);
+    fly(Vec3(0, 5, 0), 0.5F);
+    ASSERT_TRUE(paths.believes_leg());
+    paths.note(true, true, false);
+    const Vec3 at = own.position;
+    fly(Vec3(-5, 0, 0), 3.0F, 0.0F, true);
+    EXPECT_LT((paths.primary().leg.start - at).norm(), 0.2F);
+    EXPECT_GT(paths.primary().leg.end.y(), 100.0F) << "not where our commands lead";
+    ASSERT_NE(paths.other(), nullptr);
+    EXPECT_EQ(paths.other()->leg.end, leg.end) << "the leg has to be clear too";
+    EXPECT_TRUE(paths.believes_leg()) << "our commands say nothing of the autopilot's intent";
+    paths.note(false, false, true);
+    update(true);
+    EXPECT_EQ(paths.primary().leg.end, leg.end) << "what is left to solve is the leg's conflict";
+}
+
+TEST_F(NominalPathsTest, WhatIsKeptIsMadeAnewWhenTheFrameJumps)
+{
+    has_leg = false;
+    fly(Vec3(5, 0, 0), 2.0F);
+    fly(Vec3(0, 5, 0), 1.0F, 0.0F, true);
+    paths.reset();
+    own.position += Vec3(1000, 0, 0);
+    fly(Vec3(0, 5, 0), 1.0F, 0.0F, true);
+    EXPECT_NEAR(paths.primary().leg.start.x(), own.position.x(), 0.1F);
+    EXPECT_NEAR(paths.primary().leg.end.x(), own.position.x(), 0.1F);
+}
+
+TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
+{
+    has_leg = false;
+    fly(Vec3(5, 0, 0), 1.5F, 0.5F);
+    const Vec3 at = own.position;
+    fly(Vec3(0, 0, 2), 3.0F, 0.0F, true);
+    ASSERT_NE(paths.primary().route, nullptr);
+    EXPECT_LT((paths.primary().route->at(0.0F).position - at).norm(), 0.2F);
+}
+
+TEST_F(NominalPathsTest, TakenOverOnTheLegTheLegIsFlown)
+{
+    fly(Vec3(5, 0, 0), 2.0F);
+    paths.note(true, false, false);
+    fly(Vec3(3, 3, 0), 3.0F, 0.0F, true);
+    EXPECT_EQ(paths.primary().leg.end, leg.end);
+    EXPECT_NEAR(paths.primary().leg.speed, 5.0F, 0.01F);
+    has_leg = false;
+    update(true);
+    EXPECT_GT(paths.primary().leg.end.x(), 100.0F) << "a leg lost in control: the motion at the take-over";
+    EXPECT_NEAR(paths.primary().leg.end.y(), 0.0F, 0.1F);
+    EXPECT_EQ(paths.other(), nullptr);
+}
+
+}  // namespace
+}  // namespace jink::app
