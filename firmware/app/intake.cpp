@@ -71,6 +71,8 @@ void Coprocessor::take_autopilot(TimePoint now) noexcept
     has_autopilot_ = true;
     if (autopilot_.rebooted) {
         ++diagnostics_.autopilot_reboots;
+        say(link::Severity::warning,
+            takeover_.in_control() ? "jink: autopilot restarted, control dropped" : "jink: autopilot restarted");
         takeover_.drop(false);
         forget_places();
         has_own_ = has_autopilot_own_ = has_leg_ = false;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/link/mavlink/clock_sync.hpp"
 
+#include <algorithm>
+
 namespace jink::link::mavlink {
 
 void ClockSync::Window::add(std::int64_t offset, std::int64_t quality, std::int64_t now) noexcept
@@ -37,9 +39,19 @@ void ClockSync::restart(Window& window, std::int64_t sample, std::int64_t qualit
     window.add(sample, quality, now);
 }
 
+bool ClockSync::decide_round_trips(std::int64_t now) noexcept
+{
+    if (round_trip_.current.known && now - round_trip_at_ > kRoundTripAge && one_way_.current.known) {
+        round_trip_ = {};
+        disagreements_ = 0;
+    }
+    return round_trip_.current.known;
+}
+
 ClockEvent ClockSync::one_way(std::int64_t remote, std::int64_t arrived) noexcept
 {
     const std::int64_t sample = arrived - remote;
+    const bool by_round_trips = decide_round_trips(arrived);
     const std::optional<std::int64_t> known = offset();
     if (!known) {
         newest_ = remote;
@@ -49,12 +61,13 @@ ClockEvent ClockSync::one_way(std::int64_t remote, std::int64_t arrived) noexcep
     const bool from_future = sample < *known - kJump;
     const bool late = sample > *known + kJump;
     const bool from_past = late && remote < newest_ - kJump;
-    ahead_ = from_future ? ahead_ + 1 : 0;
+    ahead_ = from_future && !by_round_trips ? ahead_ + 1 : 0;
     behind_ = from_past ? behind_ + 1 : 0;
     if (ahead_ >= kJumpsToBelieve || behind_ >= kJumpsToBelieve) {
+        const bool restarted = from_past || *known - sample > kLongestDelay;
         newest_ = remote;
         restart(one_way_, sample, sample, arrived);
-        return from_past ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
+        return restarted ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
     }
     if (from_future || from_past) {
         return ClockEvent::none;
@@ -74,22 +87,29 @@ ClockEvent ClockSync::round_trip(std::int64_t sent, std::int64_t remote, std::in
         return ClockEvent::none;
     }
     const std::int64_t sample = sent + took / 2 - remote;
+    static_cast<void>(decide_round_trips(received));
     const std::optional<std::int64_t> known = offset();
-    const std::int64_t slack = kJump + took / 2;
-    if (known && (sample - *known > slack || *known - sample > slack)) {
-        if (++disagreements_ < kJumpsToBelieve) {
+    // Half the duration of a round trip is what its midpoint may be off, of the known one as of this one.
+    const std::int64_t doubt = kJump + took / 2 + (round_trip_.current.known ? round_trip_.best().quality / 2 : 0);
+    const bool above = known && sample - *known > doubt;
+    const bool below = known && *known - sample > doubt;
+    if (above || below) {
+        disagreements_ = above ? std::max(disagreements_, 0) + 1 : std::min(disagreements_, 0) - 1;
+        if (disagreements_ < kJumpsToBelieve && disagreements_ > -kJumpsToBelieve) {
             return ClockEvent::none;
         }
         newest_ = remote;
         restart(round_trip_, sample, took, received);
+        round_trip_at_ = received;
         // A greater offset means that the remote clock shows less than before: it went back.
-        return sample > *known ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
+        return above ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
     }
     disagreements_ = 0;
     if (!known) {
         newest_ = remote;
     }
     round_trip_.add(sample, took, received);
+    round_trip_at_ = received;
     return ClockEvent::none;
 }
 
@@ -109,6 +129,18 @@ std::int64_t ClockSync::extend(std::uint32_t boot_ms) noexcept
     }
     last_ms_ = boot_ms;
     return extended_ms_ * 1000;
+}
+
+std::int64_t ClockSync::extend(std::uint32_t boot_ms, std::int64_t arrived) noexcept
+{
+    if (round_trip_.current.known) {
+        const std::int64_t shows = (arrived - round_trip_.best().offset) / 1000;
+        extended_ms_ = shows + static_cast<std::int32_t>(boot_ms - static_cast<std::uint32_t>(shows));
+        extended_known_ = true;
+        last_ms_ = boot_ms;
+        return extended_ms_ * 1000;
+    }
+    return extend(boot_ms);
 }
 
 void ClockSync::forget() noexcept { *this = {}; }

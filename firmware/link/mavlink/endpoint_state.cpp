@@ -100,7 +100,7 @@ void Endpoint::on_local_position(const Context& c) noexcept
         return;
     }
     TimePoint stamp;
-    if (!stamp_of(clock_.extend(m.time_boot_ms), c.now, stamp)) {
+    if (!stamp_of(clock_.extend(m.time_boot_ms, c.now.us), c.now, stamp)) {
         return;
     }
     if (has_odometry_ && c.now - last_odometry_ < kOdometryFresh) {

@@ -264,6 +264,10 @@ TEST(CoprocessorReboot, ForgetsEverythingThatTheOldAutopilotSaidAndRecovers)
     f->mode = wire::kCopterLoiter;
     const auto rebooted = [&](const StepReport&) { return f->coprocessor.diagnostics().autopilot_reboots > 0; };
     ASSERT_TRUE(f->until(rebooted, 200));
+    const auto texts = f->said_of<Statustext>();
+    EXPECT_TRUE(std::any_of(texts.begin(), texts.end(), [](const Statustext& m) {
+        return std::string_view(m.text.data()).starts_with("jink: autopilot restarted");
+    })) << "the pilot must know why nobody avoids any more";
     EXPECT_EQ(f->coprocessor.flying(), nullptr);
     EXPECT_EQ(f->last.control, Control::autopilot);
     EXPECT_FALSE(f->last.setpoint_sent);

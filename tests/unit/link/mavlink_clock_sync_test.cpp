@@ -176,6 +176,99 @@ TEST(MavlinkClockSync, BootClockIsExtendedOverItsWrapAndBack)
     EXPECT_EQ(clock.extend(0x00000020U), 0x100000020LL * 1000);
 }
 
+TEST(MavlinkClockSync, ABlockedReadWithTheClockReadBeforeItIsNoRestart)
+{
+    // The clock was read, then the read blocked for 0.5 s: what came meanwhile seems to come from the future.
+    ClockSync clock;
+    std::int64_t t = 0;
+    for (; t < 10'000'000; t += 40'000) {
+        clock.one_way(t, kOffset + t + 3'000);
+        if (t % 1'000'000 == 0) {
+            clock.round_trip(kOffset + t, t + 5'000, kOffset + t + 10'000);
+        }
+    }
+    for (std::int64_t i = 0; i < 12; ++i) {
+        EXPECT_EQ(clock.one_way(t + i * 40'000, kOffset + t), ClockEvent::none);
+    }
+    for (t += 500'000; t < 20'000'000; t += 40'000) {
+        EXPECT_EQ(clock.one_way(t, kOffset + t + 3'000), ClockEvent::none);
+        if (t % 1'000'000 < 40'000) {
+            EXPECT_EQ(clock.round_trip(kOffset + t, t + 5'000, kOffset + t + 10'000), ClockEvent::none);
+        }
+    }
+    EXPECT_EQ(clock.to_local(0), kOffset);
+}
+
+TEST(MavlinkClockSync, ASlowFirstRoundTripIsNoRestart)
+{
+    ClockSync clock;  // 0.9 s there, nothing back: its midpoint is 0.45 s off
+    clock.round_trip(kOffset, 900'000, kOffset + 900'000);
+    for (std::int64_t t = 1'000'000; t < 10'000'000; t += 1'000'000) {
+        EXPECT_EQ(clock.round_trip(kOffset + t, t + 2'000, kOffset + t + 4'000), ClockEvent::none);
+    }
+    EXPECT_EQ(clock.to_local(0), kOffset);
+}
+
+TEST(MavlinkClockSync, OneWaySamplesTakeOverWhenAnswersEnd)
+{
+    // The remote clock is 100 ppm fast and answers no more after a minute: an hour later the map is off by 0.36 s.
+    ClockSync clock;
+    for (std::int64_t t = 0; t < 3'600'000'000; t += 200'000) {
+        const std::int64_t remote = t + t / 10'000;
+        EXPECT_EQ(clock.one_way(remote, kOffset + t + 5'000), ClockEvent::none);
+        if (t < 60'000'000 && t % 1'000'000 == 0) {
+            clock.round_trip(kOffset + t - 4'000, remote, kOffset + t + 4'000);
+        }
+        const std::int64_t mapped = *clock.to_local(remote);
+        ASSERT_NEAR(static_cast<double>(mapped), static_cast<double>(kOffset + t), 7'000.0) << t;
+    }
+}
+
+TEST(MavlinkClockSync, FollowsAnAutopilotThatWrappedBeforeWeStarted)
+{
+    constexpr std::int64_t kUp = (1LL << 32) * 1000 + 5'000'000;  // 49.7 days and 5 s [us]
+    ClockSync clock;
+    int relocks = 0;
+    for (std::int64_t t = 0; t < 20'000'000; t += 40'000) {
+        const auto low = static_cast<std::uint32_t>((kUp + t) / 1000);
+        const std::int64_t extended = clock.extend(low, kOffset + t);
+        relocks += clock.one_way(extended, kOffset + t) != ClockEvent::none ? 1 : 0;
+        if (t % 1'000'000 == 0) {
+            const ClockEvent event = clock.round_trip(kOffset + t, kUp + t, kOffset + t);
+            EXPECT_NE(event, ClockEvent::relocked_backward);
+            relocks += event != ClockEvent::none ? 1 : 0;
+        }
+        EXPECT_EQ(clock.to_local(clock.extend(low, kOffset + t)), kOffset + t) << t;
+    }
+    EXPECT_LE(relocks, 1);
+}
+
+TEST(MavlinkClockSync, ARestartAfterMoreThanHalfTheWrapIsARestart)
+{
+    constexpr std::int64_t kUp = 30LL * 86'400 * 1'000'000;  // [us]
+    for (const bool answers : {false, true}) {
+        ClockSync clock;
+        for (std::int64_t t = 0; t < 4'000'000; t += 40'000) {
+            clock.one_way(clock.extend(static_cast<std::uint32_t>((kUp + t) / 1000), kOffset + t), kOffset + t);
+            if (answers && t % 1'000'000 == 0) {
+                clock.round_trip(kOffset + t, kUp + t, kOffset + t);
+            }
+        }
+        int restarts = 0;
+        for (std::int64_t t = 4'000'000; t < 10'000'000; t += 40'000) {
+            const std::int64_t boot = t - 3'000'000;
+            const auto low = static_cast<std::uint32_t>(boot / 1000);
+            restarts += clock.one_way(clock.extend(low, kOffset + t), kOffset + t) == ClockEvent::relocked_backward;
+            if (answers && t % 1'000'000 == 0) {
+                restarts += clock.round_trip(kOffset + t, boot, kOffset + t) == ClockEvent::relocked_backward;
+            }
+        }
+        EXPECT_EQ(restarts, 1) << answers;
+        const auto low = static_cast<std::uint32_t>(7'000);
+        EXPECT_EQ(clock.to_local(clock.extend(low, kOffset + 10'000'000)), kOffset + 10'000'000) << answers;
+    }
+}
+
 TEST(MavlinkClockSync, ForgetsEverything)
 {
     ClockSync clock;
