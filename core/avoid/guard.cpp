@@ -11,12 +11,12 @@ namespace jink::avoid {
 namespace {
 
 using path::PathPoint;
-using path::TimedPath;
+using path::Prediction;
 
 /// A fallback that was chosen stays unless another is better by this much [m].
 constexpr float kFallbackHysteresis = 0.1F;
-/// Points kept free for the braking tail.
-constexpr std::size_t kTailPoints = 12;
+/// Points kept free for the braking tail; it takes those that the flight leaves too.
+constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4);
 constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
 
 /// Units of a prediction over `span` in steps of `step`, each of `each`: more than any budget for a span beyond
@@ -28,35 +28,50 @@ std::uint32_t prediction_units(Seconds span, Seconds step, std::uint32_t each) n
     return units < kBeyondMeasure ? static_cast<std::uint32_t>(units) : std::numeric_limits<std::uint32_t>::max();
 }
 
-/// State at the end of a predicted flight.
-vehicle::VehicleState end_state(const vehicle::VehicleState& own, const TimedPath& flight) noexcept
+/// Until the vehicle stands, level and vertically.
+Seconds time_to_stand(const Vec3& velocity, const vehicle::VehicleLimits& limits) noexcept
 {
-    vehicle::VehicleState end = own;
-    end.position = flight.points.back().position;
-    end.velocity = flight.points.back().velocity;
-    return end;
+    vehicle::VehicleLimits vertical = limits;
+    vertical.max_acceleration = limits.max_vertical_acceleration;
+    return std::max(vehicle::stopping_time(velocity.norm(), limits),
+                    vehicle::stopping_time(std::abs(velocity.z()), vertical));
 }
 
 /// Flight under a turn that never ends, by the vehicle model. False, and nothing predicted, without the units for it.
 bool predict_turn(const world::Situation& s, float direction, const Settings& settings, WorkBudget& budget,
-                  TimedPath& out) noexcept
+                  Prediction& out) noexcept
 {
-    vehicle::VehicleState state = s.own;
-    out.points.clear();
-    Seconds t = 0.0F;
-    out.points.unchecked_push_back({state.position, state.velocity, t});
-    const Seconds step =
-        std::max(settings.prediction_step, settings.fallback_horizon / static_cast<float>(kMaxPathPoints - 1));
-    if (!budget.spend(prediction_units(settings.fallback_horizon, step, units::kTurnStep))) {
+    const std::uint32_t setpoints = path::setpoints_of(settings.fallback_horizon);
+    if (!budget.spend(setpoints * units::kTurnStep)) {
         return false;
     }
-    while (t < settings.fallback_horizon && !out.points.full()) {
-        const Vec3 from = state.position;
-        vehicle::advance(state, turn_command(state, s.limits, direction), s.limits, step);
-        out.points.back().velocity = (state.position - from) / step;
-        t += step;
-        out.points.unchecked_push_back({state.position, out.points.back().velocity, t});
+    const auto chords = static_cast<std::uint32_t>(kMaxPathPoints - 1);
+    const std::uint32_t length =
+        std::max(path::setpoints_of(settings.prediction_step), (setpoints + chords - 1) / chords);
+    vehicle::VehicleState state = s.own;
+    path::ChordWriter writer(s.limits, out);
+    writer.begin(s.own);
+    for (std::uint32_t i = 1; i <= setpoints; ++i) {
+        state.velocity = writer.velocity();
+        writer.fly(turn_command(state, s.limits, direction), path::kSetpointPeriod);
+        if (i % length == 0 || i == setpoints) {
+            writer.end_chord(static_cast<float>(i) * path::kSetpointPeriod);
+        }
     }
+    return true;
+}
+
+/// The flight after the manoeuvre's end: to a stand, or straight on for as long as a stop would take for a fixed wing.
+bool predict_tail(const world::Situation& s, const Settings& settings, WorkBudget& budget, Prediction& flight) noexcept
+{
+    const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
+    const Seconds span = time_to_stand(flight.velocity, s.limits);
+    const std::size_t chords = kMaxPathPoints - flight.path.points.size();
+    const Seconds step = std::max(settings.prediction_step, span / static_cast<float>(chords - 1));
+    if (!budget.spend(prediction_units(span + step, step, units::kCommandStep))) {
+        return false;
+    }
+    path::extend_by_velocity_command(stops ? Vec3(Vec3::Zero()) : flight.velocity, span, step, s.limits, flight);
     return true;
 }
 
@@ -88,6 +103,10 @@ public:
         : s_(s), settings_(settings), budget_(budget), horizon_(horizon),
           step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
     {
+        // As many chords as steps of this length: the first two are short.
+        constexpr Seconds kFirstTwo = 3.0F * path::kSetpointPeriod;
+        const float chords = std::ceil(horizon / step_);
+        later_step_ = chords > 2.0F && horizon > kFirstTwo ? (horizon - kFirstTwo) / (chords - 2.0F) : step_;
     }
 
     /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
@@ -96,7 +115,7 @@ public:
         if (!budget_.spend(prediction_units(horizon_, step_, units::kCommandStep))) {
             return -world::kSeparationCap;
         }
-        path::predict_velocity_command(s_.own, command, horizon_, step_, s_.limits, flight_);
+        path::predict_velocity_command(s_.own, command, horizon_, later_step_, s_.limits, flight_);
         const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, settings_.escape,
                                                                 {cut, world::kSeparationCap, nearest_});
         nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
@@ -120,8 +139,9 @@ private:
     WorkBudget& budget_;
     Seconds horizon_;
     Seconds step_;
+    Seconds later_step_ = 0.0F;
     world::ThreatRef nearest_;
-    TimedPath flight_;
+    Prediction flight_;
 };
 
 /// A command at cruise speed by its course from `ahead` [rad] and its climb [m/s].
@@ -178,7 +198,7 @@ Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous
     Fallback best{world::ManoeuvreKind::hold_turn, Vec3::Zero(), -world::kSeparationCap};
     bool first = true;
     float best_rank = 0.0F;
-    TimedPath flight;
+    Prediction flight;
     for (const float direction : {1.0F, -1.0F}) {
         const float margin =
             predict_turn(s, direction, settings, budget, flight)
@@ -245,31 +265,28 @@ world::Separation check_manoeuvre(const world::Situation& situation, const world
     if (is_command) {
         s.shared_horizon = time_to_stop(s, settings);
     }
+    const world::Separation contact{-world::kSeparationCap, 0.0F, {}};
     const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
     const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
-    const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 2));
-    if (!budget.spend(prediction_units(rest + step, std::min(step, path::kFollowerPeriod), units::kFlightPart)) ||
-        !budget.spend(kTailPoints * units::kCommandStep)) {
-        return {-world::kSeparationCap, 0.0F, {}};
-    }
-    TimedPath flight;
+    Prediction flight;
     if (is_command && rest > 0.0F) {
+        const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 4));
+        if (!budget.spend(kFlightPoints * units::kCommandStep)) {
+            return contact;
+        }
         path::predict_velocity_command(s.own, manoeuvre.command, rest, step, s.limits, flight);
     } else {
-        path::predict_flight(s.own, manoeuvre.path, start, step, s.limits, settings.gains, flight);
+        if (!budget.spend(prediction_units(rest, path::kSetpointPeriod, units::kFlightPart))) {
+            return contact;
+        }
+        path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, settings.gains,
+                             kFlightPoints, flight);
     }
-    while (flight.points.size() > kFlightPoints) {
-        flight.points.pop_back();
+    if (!predict_tail(s, settings, budget, flight)) {
+        return contact;
     }
-    if (!flight.points.empty()) {
-        const vehicle::VehicleState end = end_state(s.own, flight);
-        const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
-        const Seconds span = vehicle::stopping_time(end.velocity.norm(), s.limits);
-        path::extend_by_velocity_command(end, stops ? Vec3(Vec3::Zero()) : end.velocity, span,
-                                         std::max(settings.prediction_step, span / static_cast<float>(kTailPoints - 2)),
-                                         s.limits, flight);
-    }
-    return world::least_separation(s, flight, std::min(flight.duration(), horizon), budget, settings.escape, cutoff);
+    return world::least_separation(s, flight, std::min(flight.path.duration(), horizon), budget, settings.escape,
+                                   cutoff);
 }
 
 float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,

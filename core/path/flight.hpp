@@ -7,9 +7,9 @@
 #include "core/path/follower.hpp"
 #include "core/vehicle/motion.hpp"
 
-// A predicted flight, part by part: what predict_flight and predict_velocity_command are made of. Several flights flown
-// in turn, a part each, take little longer than one, because none has to wait for another's roots and divisions.
-// Private to this room and core/geometric.
+// A planner's candidate flight, part by part, coarser than the final check's (prediction.hpp). Several flights flown in
+// turn, a part each, take little longer than one, because none has to wait for another's roots and divisions. Private
+// to this room and core/geometric.
 
 namespace jink::path::detail {
 
@@ -64,7 +64,9 @@ struct Fineness {
     Seconds afterwards = kFollowerPeriod;                        ///< and of this much from the step that begins then on
 };
 
-/// See predict_flight. `path`, `limits` and `gains` outlive this. 160 bytes.
+/// The vehicle model follows `path` from `state`, taken as being at path time `start`, in steps of `dt` > 0, to the end
+/// of the path or until kMaxPathPoints; the last step is shortened to end with the path. Each step is flown in parts of
+/// kFollowerPeriod at most. `path`, `limits` and `gains` outlive this. 160 bytes.
 class Flight {
 public:
     Flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,

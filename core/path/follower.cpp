@@ -105,44 +105,21 @@ Vec3 follow(const TimedPath& path, Seconds t, const Vec3& position, const vehicl
     return detail::command(path, t, search(path, t), ahead, search(path, ahead), position, limits, gains);
 }
 
-void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,
-                    const vehicle::VehicleLimits& limits, const FollowerGains& gains, TimedPath& out) noexcept
-{
-    detail::Flight flight(state, path, start, dt, limits, gains);
-    vehicle::detail::Fading fading(limits.velocity_lag);
-    out.points.clear();
-    out.points.unchecked_push_back({state.position, state.velocity, 0.0F});
-    while (!flight.ended()) {
-        for (int i = 0; i < flight.parts(); ++i) {
-            flight.fly(i, fading);
-        }
-        flight.end_step();
-        append(out, flight.position(), flight.time());
-    }
-}
-
-void extend_by_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
-                                const vehicle::VehicleLimits& limits, TimedPath& out) noexcept
-{
-    vehicle::VehicleState flown = state;
-    vehicle::detail::Fading fading(limits.velocity_lag);
-    const Seconds begin = out.duration();
-    const detail::Steps steps(horizon, dt, kMaxPathPoints - 1);
-    Seconds from = 0.0F;
-    for (std::size_t step = 1; step <= steps.count && !out.points.full(); ++step) {
-        const Seconds to = steps.end_of(step);
-        vehicle::detail::move(flown.position, flown.velocity, command, limits, to - from, fading);
-        append(out, flown.position, begin + to);
-        from = to;
-    }
-}
-
 void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
                               const vehicle::VehicleLimits& limits, TimedPath& out) noexcept
 {
     out.points.clear();
     out.points.unchecked_push_back({state.position, state.velocity, 0.0F});
-    extend_by_velocity_command(state, command, horizon, dt, limits, out);
+    vehicle::VehicleState flown = state;
+    vehicle::detail::Fading fading(limits.velocity_lag);
+    const detail::Steps steps(horizon, dt, kMaxPathPoints - 1);
+    Seconds from = 0.0F;
+    for (std::size_t step = 1; step <= steps.count && !out.points.full(); ++step) {
+        const Seconds to = steps.end_of(step);
+        vehicle::detail::move(flown.position, flown.velocity, command, limits, to - from, fading);
+        append(out, flown.position, to);
+        from = to;
+    }
 }
 
 }  // namespace jink::path

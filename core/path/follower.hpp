@@ -11,7 +11,8 @@ struct FollowerGains {
     float max_correction = 2.0F;  ///< bound of the correction [m/s]
 };
 
-/// The follower is taken to command at least this often [s]; predictions step no coarser inside.
+/// Planners predict candidates with a command at least this often [s] until the vehicle has found the path. What is
+/// chosen is checked with set-points as they are sent (prediction.hpp).
 inline constexpr Seconds kFollowerPeriod = 0.1F;
 
 /// Velocity command [m/s] that keeps a vehicle on a timed path: the path's velocity one loop lag ahead, blended across
@@ -27,22 +28,9 @@ inline constexpr Seconds kFollowerPeriod = 0.1F;
 [[nodiscard]] Vec3 follow(const TimedPath& path, Seconds t, const Vec3& position, const vehicle::VehicleLimits& limits,
                           const FollowerGains& gains) noexcept;
 
-/// What the vehicle will really fly: `follow` and the vehicle model stepped from `state` (taken as being at path time
-/// `start`), in steps of `dt` > 0, to the end of the path or until `out` is full; the last step is shortened to end
-/// with the path. out.points[0] is the present position at time 0. Each step is flown in sub-steps of kFollowerPeriod
-/// at most; between two points of `out` the flight bends away from the chord by max_acceleration * dt^2 / 8 at most.
-/// Path not empty. When nothing of the path is left, one point remains. O(steps * dt / kFollowerPeriod * log points).
-void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds dt,
-                    const vehicle::VehicleLimits& limits, const FollowerGains& gains, TimedPath& out) noexcept;
-
-/// Adds to `out`, which ends where `state` is, the flight from there on when `command` is held for `horizon` > 0
-/// seconds: steps of `dt`, the last one shortened, or until `out` is full. The velocity of the point that it ends with
-/// becomes that of its first step. O(steps).
-void extend_by_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
-                                const vehicle::VehicleLimits& limits, TimedPath& out) noexcept;
-
-/// The flight from `state` when `command` is held for `horizon` > 0 seconds: brake when it is zero. As above, steps of
-/// `dt` (exact at each point), the last one shortened, or until `out` is full. O(steps).
+/// The flight from `state` when `command` is held for `horizon` > 0 seconds: brake when it is zero. Steps of `dt`
+/// (exact at each point), the last one shortened, or until `out` is full. Between two points the flight leaves the
+/// chord by max_acceleration * dt^2 / 8 at most, which prediction.hpp states chord by chord. O(steps).
 void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds dt,
                               const vehicle::VehicleLimits& limits, TimedPath& out) noexcept;
 

@@ -62,8 +62,8 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
     for (const Bounds& chunk : flight.chunks()) {
         const Vec3 a = ball.position + ball.velocity * chunk.start;
         const Vec3 b = ball.position + ball.velocity * chunk.end;
-        const float bound =
-            boxes_apart(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) - radius_at(chunk.end);
+        const float bound = boxes_apart(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) -
+                            radius_at(chunk.end) - chunk.sagitta;
         if (bound >= best.margin) {
             continue;
         }
@@ -77,7 +77,7 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
             const Vec3 along = ball.velocity - p.velocity;
             // The surface is largest at the end of the piece: growth adds to it, and what was shrunk has grown back.
             if (stays_beyond(best.margin, half, from, from + along * p.duration,
-                             radius_at(end) - shrink_at(shrunk, escape, end))) {
+                             radius_at(end) + p.sagitta.any - shrink_at(shrunk, escape, end))) {
                 continue;
             }
             const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
@@ -92,7 +92,8 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
                 }
                 const Motion own{p.from + p.velocity * offset, p.velocity};
                 const Motion other{ball.position + ball.velocity * start, ball.velocity};
-                const float radius = radius_at(start + length) - shrink_at(shrunk, escape, start + length);
+                const float radius =
+                    radius_at(start + length) + p.sagitta.any - shrink_at(shrunk, escape, start + length);
                 if (parts > 1 &&
                     stays_beyond(best.margin, half, from + along * offset, from + along * (offset + length), radius)) {
                     continue;
@@ -134,8 +135,8 @@ void against_solid(const Situation& situation, const Flight& flight, const geome
         return start < 0.0F ? slack - start : 0.0F;
     };
     for (const Bounds& chunk : flight.chunks()) {
-        const float bound =
-            boxes_apart(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach - extra;
+        const float bound = boxes_apart(chunk.low - half, chunk.high + half, shape.centre, shape.centre) - reach -
+                            extra - chunk.sagitta;
         if (bound >= best.margin) {
             continue;
         }
@@ -145,7 +146,8 @@ void against_solid(const Situation& situation, const Flight& flight, const geome
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
             const Piece p = flight.piece(i);
             const Vec3 to_centre = shape.centre - p.from;
-            if (stays_beyond(best.margin, half, to_centre, to_centre - p.velocity * p.duration, reach + extra)) {
+            const float grown = extra + p.sagitta.any;
+            if (stays_beyond(best.margin, half, to_centre, to_centre - p.velocity * p.duration, reach + grown)) {
                 continue;
             }
             if (shrunk < 0.0F) {
@@ -158,7 +160,7 @@ void against_solid(const Situation& situation, const Flight& flight, const geome
                 const Seconds offset = length * static_cast<float>(part);
                 const Seconds start = p.start + offset;
                 const Vec3 from = p.from + p.velocity * offset;
-                const float margin = obstacle_margin(half, from, from + p.velocity * length, shape, budget, extra);
+                const float margin = obstacle_margin(half, from, from + p.velocity * length, shape, budget, grown);
                 if (budget.exhausted()) {
                     consider(best, -kSeparationCap, start, ref);
                     return;
@@ -222,8 +224,9 @@ void against_airspace(const Situation& situation, const Flight& flight, const Es
         const Seconds whole = escape.speed > 0.0F ? shrunk / escape.speed : 0.0F;
         for (std::size_t i = 0; i < flight.size(); ++i) {
             const Piece p = flight.piece(i);
+            const float sagitta = kind == ThreatKind::keep_in ? p.sagitta.any : p.sagitta.vertical;
             const auto judge = [&](Seconds t) {
-                const float margin = margin_of(p.from + p.velocity * (t - p.start));
+                const float margin = margin_of(p.from + p.velocity * (t - p.start)) - sagitta;
                 consider(best, margin + shrink_at(shrunk, escape, t), t, {kind, 0});
             };
             judge(p.start);
@@ -235,10 +238,9 @@ void against_airspace(const Situation& situation, const Flight& flight, const Es
     });
 }
 
-}  // namespace
-
-Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points, Seconds horizon,
-                            WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
+Separation separation_of(const Situation& situation, std::span<const path::PathPoint> points,
+                         std::span<const path::Sagitta> sagittas, Seconds horizon, WorkBudget& budget,
+                         const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
     Separation best{cutoff.above, 0.0F, {}};
     if (points.empty()) {
@@ -250,11 +252,11 @@ Separation least_separation(const Situation& situation, std::span<const path::Pa
     if (!paid(budget, kLook + points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
         return best;
     }
-    const Flight flight(points, horizon);
+    const Flight flight(points, sagittas, horizon);
     // What is looked at of those that share the reaction.
     std::optional<Flight> shared;
     if (situation.shared_horizon < horizon) {
-        shared.emplace(points, situation.shared_horizon);
+        shared.emplace(points, sagittas, situation.shared_horizon);
     }
     const auto flight_for = [&](std::size_t index) noexcept -> const Flight& {
         return shared && situation.tracks[index].cooperative ? *shared : flight;
@@ -276,6 +278,21 @@ Separation least_separation(const Situation& situation, std::span<const path::Pa
         against_obstacle(situation, flight, i, escape, budget, best);
     }
     return best;
+}
+
+}  // namespace
+
+Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points, Seconds horizon,
+                            WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
+{
+    return separation_of(situation, points, {}, horizon, budget, escape, cutoff);
+}
+
+Separation least_separation(const Situation& situation, const path::Prediction& flight, Seconds horizon,
+                            WorkBudget& budget, const EscapeRule& escape, const Cutoff& cutoff) noexcept
+{
+    return separation_of(situation, {flight.path.points.data(), flight.path.points.size()},
+                         {flight.sagittas.data(), flight.sagittas.size()}, horizon, budget, escape, cutoff);
 }
 
 Separation separation_at(const Situation& situation, const Vec3& position, Seconds t, WorkBudget& budget) noexcept

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/base/work_budget.hpp"
+#include "core/path/prediction.hpp"
 #include "core/world/world.hpp"
 
 namespace jink::world {
@@ -65,6 +66,13 @@ struct Cutoff {
     return least_separation(situation, std::span(path.points.data(), path.points.size()), horizon, budget, escape,
                             cutoff);
 }
+
+/// The same for a predicted flight: each threat is met as much earlier as the flight may leave its chord there
+/// (path::Sagitta; floor and ceiling: its vertical part). The margin is never above that of the flight itself by more
+/// than said above, and below it by two sagittas more at most.
+[[nodiscard]] Separation least_separation(const Situation& situation, const path::Prediction& flight, Seconds horizon,
+                                          WorkBudget& budget, const EscapeRule& escape = {},
+                                          const Cutoff& cutoff = {}) noexcept;
 
 /// The same at one instant, `t` seconds after Situation::now, with no escape rule: how close is everything now.
 /// `position`: own box centre. A budget that runs out counts as

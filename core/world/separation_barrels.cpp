@@ -41,7 +41,7 @@ struct BarrelCheck {
         const float apart = boxes_apart(chunk.low - half, chunk.high + half, {low.x(), low.y(), barrel.bottom},
                                         {high.x(), high.y(), barrel.top});
         // Where they overlap it may be as deep as anything.
-        return apart <= 0.0F || apart - extra < best;
+        return apart <= 0.0F || apart - extra - chunk.sagitta < best;
     }
 
     /// With the surface growing, then with the whole body.
@@ -55,7 +55,7 @@ struct BarrelCheck {
             if (!(span > 0.0F) && (escapes || p.duration > 0.0F)) {
                 continue;
             }
-            const float outset = extra - shrink_at(shrunk, escape, from);
+            const float outset = extra + p.sagitta.any - shrink_at(shrunk, escape, from);
             const BarrelApproach approach(half, {p.from + p.velocity * (from - p.start), p.velocity}, barrel, from,
                                           outset, escapes ? escape.speed : 0.0F);
             const geometry::Approach near = approach.least(span, best.margin, budget);

@@ -21,6 +21,7 @@ struct Piece {
     Vec3 velocity;
     Seconds start;
     Seconds duration;
+    path::Sagitta sagitta;
 };
 
 struct Bounds {
@@ -29,13 +30,16 @@ struct Bounds {
     Seconds start;
     Seconds end;
     std::size_t first;
-    std::size_t last;  ///< one past the last piece
+    std::size_t last;      ///< one past the last piece
+    float sagitta = 0.0F;  ///< greatest of the pieces [m]
 };
 
-/// A path until `horizon` as the pieces it is made of, and boxes about some of them at a time.
+/// A path until `horizon` as the pieces it is made of, and boxes about some of them at a time. Without sagittas the
+/// pieces are straight.
 class Flight {
 public:
-    Flight(std::span<const path::PathPoint> points, Seconds horizon) noexcept : points_(points), horizon_(horizon)
+    Flight(std::span<const path::PathPoint> points, std::span<const path::Sagitta> sagittas, Seconds horizon) noexcept
+        : points_(points), sagittas_(sagittas), horizon_(horizon)
     {
         while (count_ + 1 < points.size() && points[count_].time < horizon) {
             ++count_;
@@ -52,9 +56,10 @@ public:
     {
         const path::PathPoint& from = points_[i];
         if (stands_) {
-            return {from.position, Vec3::Zero(), 0.0F, 0.0F};
+            return {from.position, Vec3::Zero(), 0.0F, 0.0F, {}};
         }
-        return {from.position, from.velocity, from.time, std::min(points_[i + 1].time, horizon_) - from.time};
+        return {from.position, from.velocity, from.time, std::min(points_[i + 1].time, horizon_) - from.time,
+                i < sagittas_.size() ? sagittas_[i] : path::Sagitta{}};
     }
     [[nodiscard]] const Vec3& begin() const noexcept { return points_.front().position; }
     [[nodiscard]] const auto& chunks() const noexcept { return chunks_; }
@@ -63,18 +68,20 @@ private:
     [[nodiscard]] Bounds bounds(std::size_t first, std::size_t last) const noexcept
     {
         const Piece begin = piece(first);
-        Bounds b{begin.from, begin.from, begin.start, 0.0F, first, last};
+        Bounds b{begin.from, begin.from, begin.start, 0.0F, first, last, 0.0F};
         for (std::size_t i = first; i < last; ++i) {
             const Piece p = piece(i);
             const Vec3 to = p.from + p.velocity * p.duration;
             b.low = b.low.cwiseMin(p.from).cwiseMin(to);
             b.high = b.high.cwiseMax(p.from).cwiseMax(to);
             b.end = p.start + p.duration;
+            b.sagitta = std::max(b.sagitta, p.sagitta.any);
         }
         return b;
     }
 
     std::span<const path::PathPoint> points_;
+    std::span<const path::Sagitta> sagittas_;
     Seconds horizon_;
     std::size_t count_ = 0;
     bool stands_ = false;

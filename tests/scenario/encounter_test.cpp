@@ -14,12 +14,15 @@
 
 #include "core/world/conflict.hpp"
 #include "core/world/track_table.hpp"
-#include "tests/scenario/encounter_file.hpp"
+#include "toolchain/sim/recorded_encounter.hpp"
 
 namespace jink::test {
 namespace {
 
 namespace fs = std::filesystem;
+using sim::Aircraft;
+using sim::Fix;
+using sim::Paired;
 
 constexpr float kWellClear = 0.66F * 1852.0F;
 constexpr float kLookahead = 60.0F;
@@ -60,7 +63,7 @@ Truth truth_of(const Aircraft& own, const Aircraft& other)
     Truth truth;
     const double end = std::min(own.fixes.back().time, other.fixes.back().time);
     for (double t = own.fixes.front().time; t <= end; t += 0.01) {
-        const double distance = (own.position_at(t) - other.position_at(t)).norm();
+        const double distance = (own.at(t).position - other.at(t).position).norm();
         if (distance < truth.miss) {
             truth.miss = distance;
             truth.closest_at = t;
@@ -92,9 +95,7 @@ std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, floa
     const vehicle::Airframe airframe;
     const world::Airspace airspace;
     std::vector<Prediction> all;
-    for (std::size_t i = 0; i < std::min(own.fixes.size(), other.fixes.size()); ++i) {
-        const Fix& mine = own.fixes[i];
-        const Fix& theirs = other.fixes[i];
+    for (const auto& [mine, theirs] : sim::pair_by_time(own, other).fixes) {
         vehicle::VehicleState state;
         state.stamp = at(mine.time);
         state.position = mine.position.cast<float>();
@@ -130,7 +131,7 @@ std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, floa
 
 class RecordedEncounter : public ::testing::TestWithParam<fs::path> {
 protected:
-    Encounter encounter = read_encounter(GetParam());
+    sim::RecordedEncounter encounter = sim::read_encounter(GetParam());
     const Aircraft& own = encounter.aircraft[0];
     const Aircraft& other = encounter.aircraft[1];
     Truth truth = truth_of(own, other);
@@ -138,11 +139,12 @@ protected:
 
 TEST_P(RecordedEncounter, BothAircraftAreRecordedTogether)
 {
-    ASSERT_GE(own.fixes.size(), 60U);
-    ASSERT_EQ(own.fixes.size(), other.fixes.size());
-    for (std::size_t i = 0; i < own.fixes.size(); ++i) {
-        ASSERT_EQ(own.fixes[i].time, other.fixes[i].time);
-    }
+    const Paired paired = sim::pair_by_time(own, other);
+    ASSERT_GE(paired.fixes.size(), 60U);
+    EXPECT_EQ(paired.fixes.size(), own.fixes.size());
+    EXPECT_EQ(paired.unmatched, 0U);
+    EXPECT_EQ(paired.interpolated, 0U);
+    EXPECT_EQ(encounter.reordered, 0U);
     // Positions and velocities of the file belong together: a wrong unit or a wrong column would show here.
     for (const Aircraft* aircraft : {&own, &other}) {
         for (std::size_t i = 1; i < aircraft->fixes.size(); ++i) {

@@ -18,6 +18,7 @@
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/phases.hpp"
 #include "toolchain/sim/random_scenario.hpp"
+#include "toolchain/sim/recorded_command.hpp"
 #include "toolchain/sim/replay_command.hpp"
 #include "toolchain/sim/report.hpp"
 #include "toolchain/sim/scenario_file.hpp"
@@ -362,6 +363,8 @@ int main(int argc, char** argv)
     const CLI::App& swarm_command = add_swarm(cli, swarm);
     ReplayOptions recording;
     const CLI::App& replay_command = add_replay(cli, recording);
+    RecordedOptions recorded;
+    const CLI::App& recorded_command = add_recorded(cli, recorded);
     try {
         cli.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
@@ -377,6 +380,10 @@ int main(int argc, char** argv)
         }
         if (replay_command.parsed()) {
             return run_replay(recording, std::cout, std::cerr);
+        }
+        if (recorded_command.parsed()) {
+            run_recorded(recorded, std::cout);
+            return EXIT_SUCCESS;
         }
         if (fly_command->parsed()) {
             const bool plain = options.daemon.empty() && options.image.empty() && options.link == "serial";

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "core/path/follower.hpp"
+#include "core/vehicle/motion.hpp"
+
+// A flight as the final check sees it: set-points as the application sends them, and chords that say how far the flight
+// leaves them.
+
+namespace jink::path {
+
+/// The application sends set-points this often at least, by default (parameter JNK_RATE) [s].
+inline constexpr Seconds kSetpointPeriod = 0.05F;
+
+/// How far a flight leaves the straight motion between two of its points, at most [m].
+struct Sagitta {
+    float any = 0.0F;       ///< in any direction
+    float vertical = 0.0F;  ///< up or down
+};
+
+/// A predicted flight. kMaxPathPoints * 36 bytes + 32.
+struct Prediction {
+    TimedPath path;
+    StaticVector<Sagitta, kMaxPathPoints> sagittas;  ///< of the chord that begins at the point of the same index
+    Vec3 velocity = Vec3::Zero();                    ///< at the last point [m/s]; that of the path is its chord's
+};
+
+/// Writes a flight of the vehicle model into a Prediction, chord by chord.
+///
+/// While a command is held, the model's acceleration never grows. The sagitta of a chord of duration dt is at most
+/// a dt^2 / 8, with a the greatest acceleration at the beginning of any of its parts.
+class ChordWriter {
+public:
+    /// Continues `out`, or begins it with begin(). All outlive this.
+    ChordWriter(const vehicle::VehicleLimits& limits, Prediction& out) noexcept
+        : limits_(limits), out_(out), fading_(limits.velocity_lag),
+          // Without a lag each velocity error is flown off at the limit.
+          per_squared_lag_(limits.velocity_lag > kLeastLag ? 1.0F / (limits.velocity_lag * limits.velocity_lag)
+                                                           : 1.0F / (kLeastLag * kLeastLag))
+    {
+        if (!out.path.points.empty()) {
+            position_ = out.path.points.back().position;
+            velocity_ = out.velocity;
+        }
+    }
+    ChordWriter(const ChordWriter&) = delete;
+    ChordWriter& operator=(const ChordWriter&) = delete;
+
+    /// Empties the Prediction but for the state, at time 0.
+    void begin(const vehicle::VehicleState& state) noexcept
+    {
+        out_.path.points.clear();
+        out_.sagittas.clear();
+        out_.path.points.unchecked_push_back({state.position, state.velocity, 0.0F});
+        out_.velocity = state.velocity;
+        position_ = state.position;
+        velocity_ = state.velocity;
+    }
+
+    /// A part of the next chord: `command` held for `dt` > 0. O(1).
+    void fly(const Vec3& command, Seconds dt) noexcept
+    {
+        note_acceleration(command);
+        vehicle::detail::move(position_, velocity_, command, limits_, dt, fading_);
+    }
+
+    /// Ends the chord at `time`, later than the last point. The Prediction is not full. O(1).
+    void end_chord(Seconds time) noexcept;
+
+    [[nodiscard]] const Vec3& position() const noexcept { return position_; }
+    [[nodiscard]] const Vec3& velocity() const noexcept { return velocity_; }
+
+private:
+    static constexpr Seconds kLeastLag = 1e-5F;
+
+    void note_acceleration(const Vec3& command) noexcept
+    {
+        const Vec3 error = velocity_ - Vec3(command.x(), command.y(),
+                                            std::clamp(command.z(), -limits_.max_descent, limits_.max_climb));
+        const float level = std::min((error.x() * error.x() + error.y() * error.y()) * per_squared_lag_,
+                                     limits_.max_acceleration * limits_.max_acceleration);
+        const float vertical = std::min(error.z() * error.z() * per_squared_lag_,
+                                        limits_.max_vertical_acceleration * limits_.max_vertical_acceleration);
+        squared_any_ = std::max(squared_any_, level + vertical);
+        squared_vertical_ = std::max(squared_vertical_, vertical);
+    }
+
+    const vehicle::VehicleLimits& limits_;
+    Prediction& out_;
+    vehicle::detail::Fading fading_;
+    float per_squared_lag_;  ///< [1/s2]
+    float squared_any_ = 0.0F;
+    float squared_vertical_ = 0.0F;
+    Vec3 position_ = Vec3::Zero();
+    Vec3 velocity_ = Vec3::Zero();
+};
+
+/// What the vehicle will really fly: `follow` at every kSetpointPeriod from `start` on, and the vehicle model in
+/// between, from `state` (taken as being at path time `start`). The last command is held until the first set-point at
+/// or after the end of the path, so the flight is up to kSetpointPeriod longer than the rest of the path.
+///
+/// Chords are whole periods long: one, two, then `step` (at least one), longer where the flight would have more than
+/// `most` points (4..kMaxPathPoints). The first two are short because they count most where something is near already.
+/// out.path.points[0] is the present position at time 0. If nothing of the path is left, one point remains. Path not
+/// empty, with setpoints_of(rest) less than kMaxSetpoints.
+///
+/// Exact but for rounding: 1e-4 m within 100 m of the origin. O(rest / kSetpointPeriod).
+void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds step,
+                    const vehicle::VehicleLimits& limits, const FollowerGains& gains, std::size_t most,
+                    Prediction& out) noexcept;
+
+/// Set-points before the end of a path of which `rest` [s] is left; kMaxSetpoints where there are more.
+inline constexpr std::uint32_t kMaxSetpoints = 1'000'000;
+[[nodiscard]] std::uint32_t setpoints_of(Seconds rest) noexcept;
+
+/// The flight from `state` when `command` is held for `horizon` > 0 seconds: brake when it is zero. Chords of one and
+/// two periods, then of `step`, the last one shortened, or until `out` is full. O(horizon / step).
+void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds step,
+                              const vehicle::VehicleLimits& limits, Prediction& out) noexcept;
+
+/// Adds to `out`, not empty, the flight from its end on when `command` is held for `horizon` seconds: chords of `step`,
+/// the last one shortened, or until `out` is full. The velocity of the point that it ended with becomes that of the
+/// first chord. O(horizon / step).
+void extend_by_velocity_command(const Vec3& command, Seconds horizon, Seconds step,
+                                const vehicle::VehicleLimits& limits, Prediction& out) noexcept;
+
+}  // namespace jink::path

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The final check against dense flight in double precision (flown_densely.hpp), on manoeuvres that graze threats
+// (drawn_manoeuvre.hpp).
+//
+// Law: the margin that is stated is never above the flight's true margin by more than kStatedAccuracy. So no manoeuvre
+// that is told clear enters the safety box by more than that.
+#include <gtest/gtest.h>
+
+#include "tests/property/core/avoid/drawn_manoeuvre.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using dense::DenseFlight;
+using dense::Drawn;
+using dense::Flying;
+using dense::kAmple;
+using geometry::oracle::case_count;
+using geometry::oracle::seed_of;
+
+/// As core/avoid/guard.hpp says, within 100 m of the origin [m].
+constexpr double kStatedAccuracy = 2e-3;
+
+/// What is told of it. `direction`: in which a fallback turns.
+float told_of(const Drawn& d, float& direction)
+{
+    WorkBudget budget(kAmple);
+    const world::Situation situation = d.scene.situation();
+    if (d.flying == Flying::held) {
+        return command_margin(situation, d.manoeuvre.command, d.settings, budget);
+    }
+    if (d.flying == Flying::fallback_turn) {
+        const Fallback fallback = choose_fallback(situation, {}, nullptr, d.settings, budget);
+        direction = fallback.command.z();
+        return fallback.margin;
+    }
+    return check_manoeuvre(situation, d.manoeuvre, d.settings, budget).margin;
+}
+
+double true_margin(const Drawn& d, const DenseFlight& flight, double floor)
+{
+    const double shared = d.manoeuvre.kind == world::ManoeuvreKind::velocity && d.flying != Flying::held
+                              ? double(time_to_stop(d.scene.situation(), d.settings))
+                              : 1e9;
+    double least = dense::least_of_all(d.scene, flight, d.settings, shared, floor);
+    for (const world::Obstacle& o : d.scene.obstacles) {
+        const bool sphere = o.shape.kind == geometry::ShapeKind::sphere;
+        // As least_separation says: what solids inside a margin are granted more.
+        const double extra_slack = sphere ? 0.0 : 0.15;
+        const auto margin = [&](double t) {
+            return dense::obstacle_margin_at(d.scene, o.shape, flight.at(t).position);
+        };
+        least = std::min(least,
+                         dense::least_margin(margin, flight.end(), flight.fastest() + double(d.settings.escape.speed),
+                                             d.settings.escape, extra_slack, floor));
+    }
+    return least;
+}
+
+struct Counts {
+    int checked = 0;
+    int clear = 0;
+    int above = 0;       ///< told more than there is
+    int entered = 0;     ///< and told clear, and enters the box
+    double worst = 0.0;  ///< told above the truth by this much [m]
+    double deepest = 0.0;
+    double below = 0.0;  ///< sum of what is told too little, of flights told clear [m]
+};
+
+Counts compare(std::uint64_t default_seed, std::size_t cases, bool solids)
+{
+    const std::uint64_t seed = seed_of(default_seed);
+    Random random(seed);
+    Counts counts;
+    for (std::size_t i = 0; i < cases; ++i) {
+        Drawn d;
+        if (!dense::draw(random, d, solids)) {
+            continue;
+        }
+        float direction = 1.0F;
+        const float told = told_of(d, direction);
+        const double floor = double(told) - kStatedAccuracy;
+        ++counts.checked;
+        counts.clear += told >= 0.0F ? 1 : 0;
+        const double truth = true_margin(d, dense::fly(d, direction), floor);
+        if (truth < floor) {
+            counts.worst = std::max(counts.worst, double(told) - truth);
+            if (counts.above++ < 5) {
+                ADD_FAILURE() << "seed " << seed << " case " << i << " of kind " << static_cast<int>(d.flying)
+                              << ": told " << told << " m, flown " << truth << " m";
+            }
+        } else if (told >= 0.0F && told < 5.0F) {
+            counts.below += truth - double(told);
+        }
+        if (told >= 0.0F && truth < -kStatedAccuracy) {
+            ++counts.entered;
+            counts.deepest = std::max(counts.deepest, -truth);
+        }
+    }
+    std::printf("[ measured ] %d manoeuvres, %d told clear, of these %d enter the box by more than %.0f mm, %.1f cm at "
+                "most; %d told above the truth, %.3f m at most; told clear and below it by %.0f mm on average\n",
+                counts.checked, counts.clear, counts.entered, 1e3 * kStatedAccuracy, 1e2 * counts.deepest, counts.above,
+                counts.worst, counts.clear > 0 ? 1e3 * counts.below / counts.clear : 0.0);
+    return counts;
+}
+
+TEST(FinalCheckLaws, WhatIsToldClearStaysOutOfTheBoxWhenFlownDensely)
+{
+    const Counts counts = compare(20261124, case_count(4000), false);
+    EXPECT_EQ(counts.entered, 0);
+    EXPECT_EQ(counts.above, 0);
+    EXPECT_GT(counts.clear * 4, counts.checked) << "a check that refuses all is of no use";
+}
+
+TEST(FinalCheckLaws, SolidsAreMetAsFlownToo)
+{
+    const Counts counts = compare(20261125, case_count(200), true);
+    EXPECT_EQ(counts.entered, 0);
+    EXPECT_EQ(counts.above, 0);
+    EXPECT_GT(counts.clear * 8, counts.checked);
+}
+
+}  // namespace
+}  // namespace jink::avoid

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "toolchain/sim/vec.hpp"
+
+// Columns of recorded encounters and their units (recorded_encounter.hpp). Private to the reader.
+
+namespace jink::sim {
+
+/// Separated by blanks or commas.
+[[nodiscard]] std::vector<std::string> words_of(std::string line);
+
+/// What a row says, in SI but for the angles of a global place.
+struct RecordedRow {
+    std::string name;
+    double time = 0.0;           ///< [s]
+    Vec place = Vec::Zero();     ///< latitude, longitude [deg] and altitude [m], or a local position [m]
+    Vec velocity = Vec::Zero();  ///< east, north, up [m/s]
+};
+
+/// Where the columns that are read stand, and by how much their values are multiplied.
+class RecordedColumns {
+public:
+    /// @throws std::runtime_error when one is missing
+    explicit RecordedColumns(const std::vector<std::string>& names);
+
+    /// False where these are no units but the first row. @throws std::runtime_error
+    [[nodiscard]] bool take_units(const std::vector<std::string>& words);
+    /// @throws std::runtime_error
+    [[nodiscard]] RecordedRow row(const std::vector<std::string>& words) const;
+    [[nodiscard]] bool global() const noexcept { return global_; }
+
+private:
+    struct Column {
+        std::size_t index = 0;
+        char quantity = '-';  ///< l: length, a: angle, v: speed, t: time
+        double factor = 1.0;
+    };
+    [[nodiscard]] double value(const Column& column, const std::vector<std::string>& words) const;
+
+    std::vector<std::string> names_;
+    std::size_t name_ = 0;
+    Column time_;
+    bool clock_ = false;
+    bool global_ = false;
+    bool polar_ = false;  ///< track and ground speed
+    std::array<Column, 3> place_;
+    std::array<Column, 3> velocity_;
+};
+
+}  // namespace jink::sim
