@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/linux/complaint.hpp"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 namespace jink::files {
 namespace {
@@ -160,24 +164,41 @@ std::optional<std::string> read_text_file(const std::filesystem::path& path, Com
         complaints.push_back({0, 0, why, path.string()});
         return std::nullopt;
     };
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) {
-        return refuse("no such file");
+    // O_NONBLOCK: a FIFO that nobody writes would hold up whoever opens it.
+    const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (file < 0) {
+        return refuse(errno == ENOENT || errno == ENOTDIR ? "no such file" : "cannot be opened");
     }
-    if (std::filesystem::is_directory(status)) {
-        return refuse("is a directory");
-    }
-    std::ifstream stream(path, std::ios::binary);
-    if (!stream) {
-        return refuse("cannot be opened");
-    }
-    std::string text(kMaxFileSize + 1, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (stream.bad()) {
+    struct Closer {
+        int descriptor;
+        ~Closer() { ::close(descriptor); }
+    } const closer{file};
+    struct stat status {};
+    if (::fstat(file, &status) != 0) {
         return refuse("cannot be read");
     }
-    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (S_ISDIR(status.st_mode)) {
+        return refuse("is a directory");
+    }
+    if (!S_ISREG(status.st_mode)) {
+        return refuse("is not a regular file");
+    }
+    std::string text(kMaxFileSize + 1, '\0');
+    std::size_t size = 0;
+    while (size < text.size()) {
+        const ssize_t n = ::read(file, text.data() + size, text.size() - size);
+        if (n < 0 && errno == EINTR) {
+            continue;
+        }
+        if (n < 0) {
+            return refuse("cannot be read");
+        }
+        if (n == 0) {
+            break;
+        }
+        size += static_cast<std::size_t>(n);
+    }
+    text.resize(size);
     if (text.size() > kMaxFileSize) {
         return refuse("is larger than 1 MiB: not a hand-written file");
     }

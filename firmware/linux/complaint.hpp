@@ -54,7 +54,8 @@ enum class NumberStatus { ok, not_a_number, not_finite, too_big };
 
 /// Files of hand-written text are far below this [bytes]; more is refused before it is read.
 inline constexpr std::size_t kMaxFileSize = 1U << 20U;
-/// Whole text of a regular file; a complaint and nothing when it cannot be read or is larger than kMaxFileSize.
+/// Whole text of a regular file; a complaint and nothing when it cannot be read or is larger than kMaxFileSize. FIFOs,
+/// sockets and devices are refused without waiting for them.
 [[nodiscard]] std::optional<std::string> read_text_file(const std::filesystem::path& path, Complaints& complaints);
 
 }  // namespace jink::files

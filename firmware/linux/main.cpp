@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jinkd: the co-processor on Linux. One thread, one 50 Hz loop; everything that decides is Coprocessor::step().
+// jinkd: the co-processor on Linux. One 50 Hz loop; everything that decides is Coprocessor::step(). What may block
+// (status lines, messages, files) is done by one thread of lower priority: background.hpp.
 #include <sched.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -24,10 +26,13 @@
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/airspace_file.hpp"
-#include "firmware/linux/cloud_line.hpp"
+#include "firmware/linux/background.hpp"
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/node_identity.hpp"
 #include "firmware/linux/param_file.hpp"
+#include "firmware/linux/param_store.hpp"
+#include "firmware/linux/ports.hpp"
+#include "firmware/linux/read_ahead.hpp"
 #include "firmware/linux/status.hpp"
 #include "hal/linux/linux_watchdog.hpp"
 #include "hal/linux/socket_can_port.hpp"
@@ -37,10 +42,9 @@
 namespace {
 
 using namespace jink;
+using host::complain_now;
 
 constexpr std::int64_t kTickMicroseconds = 20'000;
-constexpr std::int64_t kReconnectPeriod = 500'000;
-constexpr std::uint32_t kDefaultBaud = 921600;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -55,6 +59,7 @@ struct Options {
     std::string cloud;
     std::string vehicle_file;
     std::string param_file;
+    std::string state_file;
     std::string airspace_file;
     std::string watchdog;
     std::string summary;
@@ -65,30 +70,12 @@ struct Options {
     bool quiet = false;
 };
 
-/// DEV[:BAUD]; a colon that is not followed by digits alone belongs to the device's name.
-bool split_device(const std::string& text, std::string& device, std::uint32_t& baud)
-{
-    const std::size_t colon = text.rfind(':');
-    const bool has_baud = colon != std::string::npos && colon + 1 < text.size() &&
-                          text.find_first_not_of("0123456789", colon + 1) == std::string::npos;
-    device = has_baud ? text.substr(0, colon) : text;
-    baud = kDefaultBaud;
-    if (has_baud) {
-        const unsigned long value = std::strtoul(text.c_str() + colon + 1, nullptr, 10);
-        if (value == 0 || value > 20'000'000UL) {
-            return false;
-        }
-        baud = static_cast<std::uint32_t>(value);
-    }
-    return !device.empty();
-}
-
 void go_realtime(int priority)
 {
     sched_param param{};
     param.sched_priority = priority;
     if (sched_setscheduler(0, SCHED_FIFO, &param) != 0 || mlockall(MCL_CURRENT | MCL_FUTURE) != 0) {
-        std::fprintf(stderr, "jinkd: no real-time priority: %s\n", std::strerror(errno));
+        complain_now(std::string("no real-time priority: ") + std::strerror(errno));
     }
 }
 
@@ -97,12 +84,13 @@ void sleep_until(std::int64_t us)
     timespec t{};
     t.tv_sec = us / 1'000'000;
     t.tv_nsec = us % 1'000'000 * 1000;
-    // Woken early by a signal: the loop looks at the stop flag.
-    static_cast<void>(clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr));
+    // A signal ends the sleep. Only the one that ends the loop may: steps must not come early, however many signals do.
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR && stop_requested == 0) {
+    }
 }
 
 /// Sleeps until `us`; a cloud line is emptied a thousand times a second meanwhile: its driver holds little.
-void wait_until(std::int64_t us, hal::SystemClock& clock, host::CloudLine* cloud)
+void wait_until(std::int64_t us, hal::SystemClock& clock, host::ReadAhead* cloud)
 {
     constexpr std::int64_t kPumpPeriod = 1'000;
     while (cloud != nullptr && stop_requested == 0) {
@@ -128,71 +116,14 @@ void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
     }
 }
 
-const char* text_of(hal::OpenStatus status)
-{
-    switch (status) {
-    case hal::OpenStatus::ok: return "open";
-    case hal::OpenStatus::bad_path: return "not a usable path";
-    case hal::OpenStatus::bad_baud: return "baud rate must be above zero";
-    case hal::OpenStatus::no_device: return "no such device";
-    case hal::OpenStatus::access_denied: return "no permission, or held by another program";
-    case hal::OpenStatus::not_a_serial_device: return "not a serial device";
-    case hal::OpenStatus::settings_refused: return "the driver does not take this baud rate";
-    case hal::OpenStatus::failed: break;
-    }
-    return "cannot be opened";
-}
-
-const char* text_of(hal::CanOpenStatus status)
-{
-    switch (status) {
-    case hal::CanOpenStatus::ok: return "open";
-    case hal::CanOpenStatus::bad_name: return "not a name that an interface can have";
-    case hal::CanOpenStatus::no_can: return "this kernel has no SocketCAN (AF_CAN); the modules are can and can-raw";
-    case hal::CanOpenStatus::no_interface: return "no such interface";
-    case hal::CanOpenStatus::not_can: return "not a CAN interface";
-    case hal::CanOpenStatus::access_denied: return "no permission";
-    case hal::CanOpenStatus::too_many_filters:
-    case hal::CanOpenStatus::no_fd:
-    case hal::CanOpenStatus::failed: break;
-    }
-    return "cannot be opened";
-}
-
-/// False, and said why, where time cannot mend it.
-bool open_serial(hal::TermiosSerialPort& port, const std::string& device, std::uint32_t baud)
-{
-    const hal::OpenStatus opened = port.open(device, baud, kReconnectPeriod);
-    const bool is_final = opened == hal::OpenStatus::bad_path || opened == hal::OpenStatus::bad_baud ||
-                          opened == hal::OpenStatus::not_a_serial_device || opened == hal::OpenStatus::settings_refused;
-    if (opened != hal::OpenStatus::ok) {
-        std::fprintf(stderr, "jinkd: %s: %s%s\n", device.c_str(), text_of(opened), is_final ? "" : "; going on trying");
-    }
-    return !is_final;
-}
-
-/// The same for a CAN interface. One that is down is open, and waited for.
-bool open_can(hal::SocketCanPort& port, const std::string& interface)
-{
-    const hal::CanOpenStatus opened = port.open(interface, {}, kReconnectPeriod);
-    const bool is_final = opened != hal::CanOpenStatus::ok && port.health().state == hal::CanState::closed;
-    if (opened != hal::CanOpenStatus::ok) {
-        std::fprintf(stderr, "jinkd: %s: %s%s\n", interface.c_str(), text_of(opened),
-                     is_final ? "" : "; going on trying");
-    } else if (port.health().state == hal::CanState::down) {
-        std::fprintf(stderr, "jinkd: %s: down; waiting until it is set up\n", interface.c_str());
-    }
-    return !is_final;
-}
-
 void complain(const files::Complaints& complaints)
 {
     for (const files::Complaint& complaint : complaints) {
-        std::fprintf(stderr, "jinkd: %s\n", files::to_string(complaint).c_str());
+        complain_now(files::to_string(complaint));
     }
 }
 
-/// False, and said why, where the file is not good: what was closed before stays so.
+/// Before the first step. False, and said why, where the file is not good.
 bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor)
 {
     timespec t{};
@@ -204,9 +135,41 @@ bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coproc
     complain(complaints);
     if (constraints) {
         coprocessor.set_constraints(*constraints, now);
-        std::fprintf(stderr, "jinkd: %s: %zu areas are closed\n", file.c_str(), constraints->size());
+        complain_now(file + ": " + std::to_string(constraints->size()) + " areas are closed");
     }
     return constraints.has_value();
+}
+
+/// Parameters that were set over a link before the last stop. What is wrong there is left out, and said.
+void load_state(const std::string& file, app::Parameters& parameters)
+{
+    if (file.empty()) {
+        return;
+    }
+    files::Complaints complaints;
+    const files::StateLoad load = files::load_state(file, parameters, complaints);
+    complain(complaints);
+    if (load.taken + load.refused > 0) {
+        complain_now(file + ": " + std::to_string(load.taken) + " parameters as set over a link, " +
+                     std::to_string(load.refused) + " lines left out");
+    }
+}
+
+/// A closed pipe or a full quota is an error of a write, not a reason to die.
+void ignore_what_outputs_raise()
+{
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);
+}
+
+void catch_signals()
+{
+    struct sigaction action {};
+    action.sa_handler = request_stop;
+    sigaction(SIGTERM, &action, nullptr);
+    sigaction(SIGINT, &action, nullptr);
+    action.sa_handler = request_reload;  // a terminal that hangs up is no reason to stop either
+    sigaction(SIGHUP, &action, nullptr);
 }
 
 link::dronecan::NodeOptions node_options(const Options& options)
@@ -219,53 +182,86 @@ link::dronecan::NodeOptions node_options(const Options& options)
     node.software.major = JINK_VERSION_MAJOR;
     node.software.minor = JINK_VERSION_MINOR;
     if (!identity.lasting) {
-        std::fprintf(stderr, "jinkd: no /etc/machine-id: the node's unique id is another at each start\n");
+        complain_now("no /etc/machine-id: the node's unique id is another at each start");
     }
     return node;
 }
 
-int run(const Options& options, const app::Parameters& parameters, const std::string& device, std::uint32_t baud)
+/// What the background thread has read, and what it is to store. Never waits.
+class Housekeeping {
+public:
+    Housekeeping(host::Background& background, app::Coprocessor& coprocessor, bool has_airspace)
+        : background_(background), coprocessor_(coprocessor), has_airspace_(has_airspace),
+          stored_(coprocessor.parameters().generation())
+    {
+    }
+
+    void work(TimePoint now)
+    {
+        if (reload_requested != 0) {
+            reload_requested = 0;
+            if (has_airspace_) {
+                background_.reload();
+            } else if (!told_no_airspace_) {
+                background_.print(host::Stream::error, "jinkd: SIGHUP: there is no airspace file to read anew");
+                told_no_airspace_ = true;
+            }
+        }
+        if (std::unique_ptr<host::Areas> areas = background_.take_areas()) {
+            coprocessor_.set_constraints(*areas, now);
+            background_.done(std::move(areas));
+        }
+        const app::Parameters& parameters = coprocessor_.parameters();
+        if (parameters.generation() != stored_ && background_.store(parameters.values())) {
+            stored_ = parameters.generation();
+        }
+    }
+
+private:
+    host::Background& background_;
+    app::Coprocessor& coprocessor_;
+    bool has_airspace_;
+    bool told_no_airspace_ = false;
+    std::uint32_t stored_;
+};
+
+int run(const Options& options, const files::ParamValues& initial, const app::Parameters& parameters,
+        const std::string& device, std::uint32_t baud)
 {
     hal::SystemClock clock;
     hal::TermiosSerialPort serial;
     hal::SocketCanPort can;
+    host::CanReadAhead frames(can, app::CanBus::kMaxFramesPerStep);
     std::optional<app::CanBus> bus;
     hal::LinuxWatchdog watchdog;
-    if (!device.empty() && !open_serial(serial, device, baud)) {
+    if (!device.empty() && !host::open_serial(serial, device, baud)) {
         return EXIT_FAILURE;
     }
     if (!options.can.empty()) {
-        if (!open_can(can, options.can)) {
+        if (!host::open_can(can, options.can)) {
             return EXIT_FAILURE;
         }
-        bus.emplace(can, node_options(options));
+        bus.emplace(frames, node_options(options));
     }
-    hal::SerialPort& port = device.empty() ? bus->serial() : serial;
-    constexpr int kWatchdogSeconds = 5;
-    if (!options.watchdog.empty() &&
-        watchdog.open_device(options.watchdog, kWatchdogSeconds) != hal::WatchdogStatus::ok) {
-        std::fprintf(stderr, "jinkd: watchdog %s cannot be used\n", options.watchdog.c_str());
+    host::ReadAhead line(serial, app::Coprocessor::kMaxBytesPerStep);
+    hal::SerialPort& port = device.empty() ? bus->serial() : line;
+    if (!host::open_watchdog(watchdog, options.watchdog)) {
         return EXIT_FAILURE;
-    }
-    if (const char* address = std::getenv("NOTIFY_SOCKET"); address != nullptr) {
-        if (watchdog.open_notify(address) != hal::WatchdogStatus::ok || !watchdog.notify_ready()) {
-            std::fprintf(stderr, "jinkd: the service manager's socket cannot be used\n");
-        }
     }
 
     hal::TermiosSerialPort cloud_port;
-    std::optional<host::CloudLine> cloud_line;
+    std::optional<host::ReadAhead> cloud_line;
     if (!options.cloud.empty()) {
         std::string cloud_device;
         std::uint32_t cloud_baud = 0;
-        if (!split_device(options.cloud, cloud_device, cloud_baud)) {
-            std::fprintf(stderr, "jinkd: --cloud %s: expected DEV[:BAUD]\n", options.cloud.c_str());
+        if (!host::split_device(options.cloud, cloud_device, cloud_baud)) {
+            complain_now("--cloud " + options.cloud + ": expected DEV[:BAUD]");
             return EXIT_FAILURE;
         }
-        if (!open_serial(cloud_port, cloud_device, cloud_baud)) {
+        if (!host::open_serial(cloud_port, cloud_device, cloud_baud)) {
             return EXIT_FAILURE;
         }
-        cloud_line.emplace(cloud_port);
+        cloud_line.emplace(cloud_port, host::ReadAhead::kCloudRoom);
     }
     // Single points of the link count without a port too.
     const auto clouds = std::make_unique<app::CloudInput>(cloud_line ? &*cloud_line : nullptr);
@@ -281,7 +277,7 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
         coprocessor->let_reach_sets_see(*picture);
     }
     if (reach::check(app::reach_sets()) != reach::SetStatus::good) {
-        std::fprintf(stderr, "jinkd: the reach sets are damaged and left out\n");
+        complain_now("the reach sets are damaged and left out");
         coprocessor->leave_out_reach_sets();
     }
     if (!options.airspace_file.empty() && !load_airspace(options.airspace_file, clock, *coprocessor)) {
@@ -289,35 +285,41 @@ int run(const Options& options, const app::Parameters& parameters, const std::st
     }
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
-
-    std::int64_t next = clock.now_us();
-    while (stop_requested == 0) {
-        const std::int64_t began = clock.now_us();
-        serial.service(began);
-        can.service(began);
-        cloud_port.service(began);
-        if (reload_requested != 0) {
-            reload_requested = 0;
-            static_cast<void>(load_airspace(options.airspace_file, clock, *coprocessor));
+    host::BackgroundCounts counts;
+    {
+        host::Background background({options.airspace_file, options.state_file, initial});
+        Housekeeping housekeeping(background, *coprocessor, !options.airspace_file.empty());
+        if (options.realtime > 0) {
+            go_realtime(options.realtime);  // this thread alone
         }
-        const app::StepReport report = coprocessor->step({began});
-        log.note(report, watched, began, clock.now_us() - began);
-        next += kTickMicroseconds;
-        const std::int64_t now = clock.now_us();
-        if (next < now) {
-            next = now;  // late: do not try to catch up by a burst of steps
+        std::int64_t next = clock.now_us();
+        while (stop_requested == 0) {
+            serial.service(clock.now_us());
+            can.service(clock.now_us());
+            cloud_port.service(clock.now_us());
+            line.pump();
+            frames.pump();
+            const std::int64_t began = clock.now_us();  // after the bytes were read: nothing is newer
+            housekeeping.work({began});
+            const app::StepReport report = coprocessor->step({began});
+            if (const auto text = log.note(report, watched, began, clock.now_us() - began)) {
+                background.print(host::Stream::out, *text);
+            }
+            next += kTickMicroseconds;
+            next = std::max(next, clock.now_us());  // late: do not try to catch up by a burst of steps
+            wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
         }
-        wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
+        coprocessor->shut_down({clock.now_us()});
+        let_go_out(serial, clock);
+        watchdog.close();
+        serial.close();
+        if (!options.quiet) {
+            background.print(host::Stream::error, "jinkd: stopped");
+        }
+        counts = background.counts();
     }
-    coprocessor->shut_down({clock.now_us()});
-    let_go_out(serial, clock);
-    watchdog.close();
-    serial.close();
-    if (!options.quiet) {
-        std::fprintf(stderr, "jinkd: stopped\n");
-    }
-    if (!options.summary.empty() && !log.write_summary(options.summary, watched)) {
-        std::fprintf(stderr, "jinkd: %s cannot be written\n", options.summary.c_str());
+    if (!options.summary.empty() && !log.write_summary(options.summary, watched, counts)) {
+        complain_now(options.summary + " cannot be written");
         return EXIT_FAILURE;
     }
     return EXIT_SUCCESS;
@@ -345,6 +347,9 @@ int main(int argc, char** argv)
                    "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
     cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
+    cli.add_option("--state", options.state_file,
+                   "file that keeps parameters set over MAVLink or the bus; wins over the files above. Without this "
+                   "option: the parameter file's name with .state, if there is one");
     cli.add_option("--airspace", options.airspace_file,
                    "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
     cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
@@ -358,36 +363,32 @@ int main(int argc, char** argv)
     cli.add_flag("--quiet", options.quiet, "errors only");
     CLI11_PARSE(cli, argc, argv);
 
+    ignore_what_outputs_raise();
+    catch_signals();
     if (serial->empty() && can->empty()) {
-        std::fprintf(stderr, "jinkd: --serial or --can is needed\n");
+        complain_now("--serial or --can is needed");
         return EXIT_FAILURE;
     }
     std::string device;
     std::uint32_t baud = 0;
     if (!can->empty() && options.can.empty()) {
-        std::fprintf(stderr, "jinkd: --can: the name of an interface is needed\n");
+        complain_now("--can: the name of an interface is needed");
         return EXIT_FAILURE;
     }
-    if (!serial->empty() && !split_device(options.serial, device, baud)) {
-        std::fprintf(stderr, "jinkd: --serial %s: expected DEV[:BAUD]\n", options.serial.c_str());
+    if (!serial->empty() && !host::split_device(options.serial, device, baud)) {
+        complain_now("--serial " + options.serial + ": expected DEV[:BAUD]");
         return EXIT_FAILURE;
     }
     files::Complaints complaints;
-    const auto parameters = files::load_parameters(options.vehicle_file, options.param_file, complaints);
+    auto parameters = files::load_parameters(options.vehicle_file, options.param_file, complaints);
     complain(complaints);
     if (!parameters) {
         return EXIT_FAILURE;
     }
-    struct sigaction action {};
-    action.sa_handler = request_stop;
-    sigaction(SIGTERM, &action, nullptr);
-    sigaction(SIGINT, &action, nullptr);
-    if (!options.airspace_file.empty()) {
-        action.sa_handler = request_reload;
-        sigaction(SIGHUP, &action, nullptr);
+    const files::ParamValues initial = parameters->values();
+    if (options.state_file.empty() && !options.param_file.empty()) {
+        options.state_file = options.param_file + ".state";
     }
-    if (options.realtime > 0) {
-        go_realtime(options.realtime);
-    }
-    return run(options, *parameters, device, baud);
+    load_state(options.state_file, *parameters);
+    return run(options, initial, *parameters, device, baud);
 }

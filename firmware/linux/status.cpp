@@ -2,8 +2,9 @@
 #include "firmware/linux/status.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
-#include <memory>
+#include <cstdlib>
 
 namespace jink::host {
 namespace {
@@ -145,9 +146,42 @@ void write_clouds(std::FILE* f, const app::CloudInput& clouds)
     std::fprintf(f, "},\n");
 }
 
+std::string status_line(const app::StepReport& report, const Watched& watched, std::int64_t longest_us)
+{
+    std::array<char, Background::kLineBytes> text{};
+    std::size_t size = 0;
+    const auto add = [&](const char* format, auto... values) {
+        const int n = std::snprintf(text.data() + size, text.size() - size, format, values...);
+        size = std::min(size + static_cast<std::size_t>(std::max(n, 0)), text.size() - 1);
+    };
+    const avoid::Guidance& g = report.guidance;
+    add("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
+        name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
+        report.obstacles);
+    if (report.barrels > 0) {
+        add("areas %2u ", report.barrels);
+    }
+    if (g.has_conflict) {
+        add("conflict in %.1f s ", static_cast<double>(g.conflict.time_to_loss));
+    }
+    if (report.faults != 0) {
+        add("faults 0x%x ", report.faults);
+    }
+    if (watched.bus != nullptr) {
+        const hal::CanHealth h = watched.bus->health();
+        add("can %s node %u frames %llu/%llu ", name_of(h.state), watched.bus->endpoint().node().id(),
+            static_cast<unsigned long long>(h.frames_in), static_cast<unsigned long long>(h.frames_out));
+    }
+    const link::LinkDiagnostics& l = watched.endpoint.diagnostics();
+    add("frames %u/%u refused %u step max %lld us", l.frames_in, l.frames_out, l.frames_refused,
+        static_cast<long long>(longest_us));
+    return {text.data(), size};
+}
+
 }  // namespace
 
-void StatusLog::note(const app::StepReport& report, const Watched& watched, std::int64_t now_us, std::int64_t took_us)
+std::optional<std::string> StatusLog::note(const app::StepReport& report, const Watched& watched, std::int64_t now_us,
+                                           std::int64_t took_us)
 {
     const app::Coprocessor& coprocessor = watched.coprocessor;
     ++steps_;
@@ -165,42 +199,23 @@ void StatusLog::note(const app::StepReport& report, const Watched& watched, std:
         longest_plan_us_ = std::max(longest_plan_us_, took_us);
     }
     if (period_us_ <= 0 || now_us - last_line_us_ < period_us_) {
-        return;
+        return std::nullopt;
     }
     last_line_us_ = now_us;
-    const avoid::Guidance& g = report.guidance;
-    std::printf("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
-                name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
-                report.obstacles);
-    if (report.barrels > 0) {
-        std::printf("areas %2u ", report.barrels);
-    }
-    if (g.has_conflict) {
-        std::printf("conflict in %.1f s ", static_cast<double>(g.conflict.time_to_loss));
-    }
-    if (report.faults != 0) {
-        std::printf("faults 0x%x ", report.faults);
-    }
-    if (watched.bus != nullptr) {
-        const hal::CanHealth h = watched.bus->health();
-        std::printf("can %s node %u frames %llu/%llu ", name_of(h.state), watched.bus->endpoint().node().id(),
-                    static_cast<unsigned long long>(h.frames_in), static_cast<unsigned long long>(h.frames_out));
-    }
-    const link::LinkDiagnostics& l = watched.endpoint.diagnostics();
-    std::printf("frames %u/%u refused %u step max %lld us\n", l.frames_in, l.frames_out, l.frames_refused,
-                static_cast<long long>(longest_us_));
-    std::fflush(stdout);
+    return status_line(report, watched, longest_us_);
 }
 
-bool StatusLog::write_summary(const std::string& path, const Watched& watched) const
+bool StatusLog::write_summary(const std::string& path, const Watched& watched, const BackgroundCounts& counts) const
 {
     const app::Coprocessor& coprocessor = watched.coprocessor;
     const hal::PortHealth port = watched.port.health();
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "w"), &std::fclose);
-    if (!file) {
+    // Written in memory first: the file may be one that blocks or takes nothing.
+    char* text = nullptr;
+    std::size_t size = 0;
+    std::FILE* f = ::open_memstream(&text, &size);
+    if (f == nullptr) {
         return false;
     }
-    std::FILE* f = file.get();
     const app::Diagnostics& d = coprocessor.diagnostics();
     const avoid::Diagnostics& s = coprocessor.supervisor_diagnostics();
     const app::TakeoverDiagnostics& t = coprocessor.takeover_diagnostics();
@@ -262,9 +277,15 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched) c
         write_bus(f, *watched.bus);
     }
     write_clouds(f, watched.clouds);
+    std::fprintf(f,
+                 "  \"lines_dropped\": %u, \"airspace_reloads\": %u, \"airspace_reload_failures\": %u, "
+                 "\"params_stored\": %u, \"params_store_failures\": %u,\n",
+                 counts.dropped, counts.reloads, counts.reload_failures, counts.stores, counts.store_failures);
     std::fprintf(f, "  \"port_disconnects\": %llu, \"port_reconnects\": %llu\n}\n",
                  static_cast<unsigned long long>(port.disconnects), static_cast<unsigned long long>(port.reconnects));
-    return std::ferror(f) == 0;
+    const bool written = std::fclose(f) == 0 && write_file(path, {text, size});
+    std::free(text);
+    return written;
 }
 
 }  // namespace jink::host

@@ -3,12 +3,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "firmware/app/can_bus.hpp"
 #include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "firmware/linux/background.hpp"
 #include "hal/serial_port.hpp"
 
 namespace jink::host {
@@ -28,10 +30,13 @@ public:
     /// @param period  seconds between status lines on standard output; 0: none
     explicit StatusLog(double period) : period_us_(static_cast<std::int64_t>(period * 1e6)) {}
 
-    void note(const app::StepReport& report, const Watched& watched, std::int64_t now_us, std::int64_t took_us);
+    /// Counts a step. @return the status line, where one is due
+    std::optional<std::string> note(const app::StepReport& report, const Watched& watched, std::int64_t now_us,
+                                    std::int64_t took_us);
 
     /// JSON; false when the file cannot be written.
-    [[nodiscard]] bool write_summary(const std::string& path, const Watched& watched) const;
+    [[nodiscard]] bool write_summary(const std::string& path, const Watched& watched,
+                                     const BackgroundCounts& counts) const;
 
 private:
     /// Step times in bins of 10 us; the last one takes all that is longer.

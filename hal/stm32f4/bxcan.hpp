@@ -51,7 +51,7 @@ public:
         if (!becomes(kMasterStatus, kInitialising, 0)) {
             return false;  // the bus is stuck dominant: eleven recessive bits in a row are what it waits for
         }
-        state_.store(CanState::active, std::memory_order_relaxed);
+        look_.store(static_cast<std::uint32_t>(CanState::active), std::memory_order_relaxed);
         return true;
     }
 
@@ -77,12 +77,12 @@ public:
             ++health_.frames_bad;
             return false;
         }
-        const CanState state = state_.load(std::memory_order_relaxed);
+        const CanState now = state();
         Compact item{frame.id, {}, frame.length, frame.extended, frame.remote};
         if (!frame.remote) {
             std::memcpy(item.data, frame.data.data(), frame.length);
         }
-        if (state == CanState::closed || state == CanState::bus_off || !to_send_.push(item)) {
+        if (now == CanState::closed || now == CanState::bus_off || !to_send_.push(item)) {
             ++health_.frames_refused;
             return false;
         }
@@ -94,11 +94,11 @@ public:
     [[nodiscard]] CanHealth health() const noexcept override
     {
         CanHealth health = health_;
-        health.state = state_.load(std::memory_order_relaxed);
+        health.state = state();
         health.overruns = overruns_.load(std::memory_order_relaxed);
         health.bus_errors = bus_errors_.load(std::memory_order_relaxed);
         health.bus_offs = bus_offs_.load(std::memory_order_relaxed);
-        health.restarts = restarts_.load(std::memory_order_relaxed);
+        health.restarts = restarts_.load(std::memory_order_relaxed) + restarts_seen_;
         return health;
     }
 
@@ -142,7 +142,7 @@ public:
             count(bus_errors_);
             registers_.write(kErrors, kErrorSetBySoftware);
         }
-        const CanState before = state_.load(std::memory_order_relaxed);
+        const CanState before = state();
         const CanState now = (errors & kBusOff) != 0         ? CanState::bus_off
                              : (errors & kErrorPassive) != 0 ? CanState::error_passive
                                                              : CanState::active;
@@ -152,21 +152,30 @@ public:
         if (now != CanState::bus_off && before == CanState::bus_off) {
             count(restarts_);
         }
-        state_.store(now, std::memory_order_relaxed);
+        look_.store((look_.load(std::memory_order_relaxed) & ~kStateBits) + kStateBits + 1U +
+                        static_cast<std::uint32_t>(now),
+                    std::memory_order_relaxed);
         registers_.write(kMasterStatus, kErrorInterrupt);
     }
 
     /// Looks at the state when no interrupt tells: the return from bus off raises none, nor does that from error
     /// passive. Once per tick. O(1).
+    ///
+    /// The status interrupt may come between the look and what follows from it. Then its state stands: a controller
+    /// that has just left the bus is never said to be on it.
     void service() noexcept
     {
-        const CanState before = state_.load(std::memory_order_relaxed);
+        std::uint32_t look = look_.load(std::memory_order_relaxed);
+        const CanState before = state_of(look);
         const std::uint32_t errors = registers_.read(kErrors);
-        if (before == CanState::bus_off && (errors & kBusOff) == 0) {
-            count(restarts_);
-            state_.store(CanState::active, std::memory_order_relaxed);
-        } else if (before == CanState::error_passive && (errors & (kBusOff | kErrorPassive)) == 0) {
-            state_.store(CanState::active, std::memory_order_relaxed);
+        const bool back = before == CanState::bus_off && (errors & kBusOff) == 0;
+        const bool better = before == CanState::error_passive && (errors & (kBusOff | kErrorPassive)) == 0;
+        const std::uint32_t active = (look & ~kStateBits) | static_cast<std::uint32_t>(CanState::active);
+        if ((!back && !better) || !look_.compare_exchange_strong(look, active, std::memory_order_relaxed)) {
+            return;  // nothing new, or the interrupt knows better
+        }
+        if (back) {
+            restarts_seen_ += 1U;
         }
     }
 
@@ -226,6 +235,13 @@ private:
     static constexpr std::uint32_t kMailboxes = 3;
     /// Looks: eleven recessive bits at 125 kbit/s take 88 us.
     static constexpr std::uint32_t kPatience = 100'000;
+
+    static constexpr std::uint32_t kStateBits = 0xFF;
+    [[nodiscard]] static CanState state_of(std::uint32_t look) noexcept
+    {
+        return static_cast<CanState>(look & kStateBits);
+    }
+    [[nodiscard]] CanState state() const noexcept { return state_of(look_.load(std::memory_order_relaxed)); }
 
     static void count(std::atomic<std::uint32_t>& counter) noexcept
     {
@@ -291,11 +307,14 @@ private:
     Ring<Compact, kReceiveFrames> received_;
     Ring<Compact, kTransmitFrames> to_send_;
     CanHealth health_;  ///< the main program's side of it
-    std::atomic<CanState> state_{CanState::closed};
+    /// The state, and above kStateBits the number of status interrupts: what service() concludes holds only if none
+    /// came.
+    std::atomic<std::uint32_t> look_{static_cast<std::uint32_t>(CanState::closed)};
     std::atomic<std::uint32_t> overruns_{0};
     std::atomic<std::uint32_t> bus_errors_{0};
     std::atomic<std::uint32_t> bus_offs_{0};
-    std::atomic<std::uint32_t> restarts_{0};
+    std::atomic<std::uint32_t> restarts_{0};  ///< counted by the interrupt
+    std::uint32_t restarts_seen_ = 0;         ///< and by service()
 };
 
 }  // namespace jink::hal::stm32f4

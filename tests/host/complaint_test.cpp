@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <sys/stat.h>
+
 #include <gtest/gtest.h>
 
 #include "firmware/linux/complaint.hpp"
@@ -122,6 +124,18 @@ TEST(NearestName, FindsWhatWasMeant)
     EXPECT_EQ(nearest_name("x", {}), std::nullopt);
     EXPECT_EQ(suggestion("sped", names), "; did you mean 'speed'?");
     EXPECT_EQ(suggestion("altitude", names), "");
+}
+
+TEST(ReadTextFile, AFifoAndADeviceAreRefusedWithoutWaiting)
+{
+    const Scratch scratch;
+    const std::string fifo = (scratch.path() / "fifo").string();
+    ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+    Complaints complaints;
+    EXPECT_FALSE(read_text_file(fifo, complaints));
+    EXPECT_FALSE(read_text_file("/dev/zero", complaints));
+    ASSERT_EQ(complaints.size(), 2U);
+    EXPECT_EQ(complaints[0].text, "is not a regular file");
 }
 
 TEST(ReadTextFile, RefusesWhatIsNoHandWrittenFile)

@@ -22,13 +22,21 @@ void Tunnel::receive(Node& node, const Transfer& transfer) noexcept
     if (transfer.type.id != TunnelTargetted::kType.id || !node.decode(transfer, message)) {
         return;
     }
-    const bool known = options_.peer != kAnonymous;
-    const bool port = options_.serial < 0 || message.serial == options_.serial;
+    const bool is_silent = wanted_peer_ == kAnonymous && options_.peer != kAnonymous &&
+                           transfer.stamp - heard_ > kPeerSilence && transfer.source != options_.peer;
+    const bool known = options_.peer != kAnonymous && !is_silent;
+    const std::int8_t serial = is_silent ? wanted_serial_ : options_.serial;
+    const bool port = serial < 0 || message.serial == serial;
     if (node.id() == kAnonymous || message.target != node.id() || !is_mavlink(message.protocol) || !port ||
         message.serial < 0 || transfer.source == kAnonymous || (known && transfer.source != options_.peer)) {
         ++diagnostics_.not_ours;
         return;
     }
+    if (is_silent) {
+        ++diagnostics_.peers_changed;
+        size_ = 0;  // in the middle of a frame of the former peer
+    }
+    heard_ = transfer.stamp;
     if (!known) {
         options_.peer = transfer.source;
         options_.serial = message.serial;

@@ -3,7 +3,9 @@
 #include "hal/stm32f4/bxcan.hpp"
 
 #include <deque>
+#include <functional>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -36,6 +38,7 @@ struct Model {
     std::deque<std::array<std::uint32_t, 4>> fifo;
     bool overrun = false, error_interrupt = false, stuck = false, woken = false;
     std::vector<WireFrame> line;
+    std::function<void()> after_look;  ///< an interrupt right behind a look at the errors, once
 
     std::uint32_t read(std::uint32_t offset)
     {
@@ -58,7 +61,13 @@ struct Model {
         case 0x00C:
             return static_cast<std::uint32_t>(fifo.size()) | (fifo.size() == 3 ? 8U : 0U) | (overrun ? 16U : 0U);
         case 0x014: return interrupts;
-        case 0x018: return errors;
+        case 0x018: {
+            const std::uint32_t seen = errors;
+            if (const auto interrupt = std::exchange(after_look, nullptr)) {
+                interrupt();
+            }
+            return seen;
+        }
         case 0x01C: return timing;
         default: ADD_FAILURE() << "not read: " << offset; return 0;
         }
@@ -324,6 +333,30 @@ TEST_F(BxCanTest, ErrorsBusOffAndTheReturnAreSeenAndCountedOnce)
     EXPECT_EQ(can.health().state, CanState::active);
     EXPECT_EQ(can.health().restarts, 1U);
     EXPECT_TRUE(can.send({}));
+}
+
+TEST_F(BxCanTest, BusOffBetweenALookAndItsConclusionStands)
+{
+    for (const std::uint32_t before : {2U, 4U | 2U}) {  // passive, or off the bus and just back
+        start();
+        model.errors = before;
+        can.on_status();
+        model.errors = 0;
+        model.after_look = [&] {
+            if (before != 2U) {
+                can.on_status();  // back on it, and off again at once
+            }
+            model.errors = 4U | 2U;
+            can.on_status();
+        };
+        can.service();
+        EXPECT_EQ(can.health().state, CanState::bus_off) << before;
+        EXPECT_FALSE(can.send({})) << before;
+        model.errors = 0;
+        can.service();
+        EXPECT_EQ(can.health().state, CanState::active);
+        EXPECT_EQ(can.health().restarts, can.health().bus_offs) << before;
+    }
 }
 
 TEST_F(BxCanTest, WhatNoClassicFrameCanBeIsRefused)

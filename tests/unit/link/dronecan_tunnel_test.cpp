@@ -93,6 +93,41 @@ TEST_F(DronecanTunnel, OfOthersIsNotOurs)
     EXPECT_EQ(read_all(tunnel), "e");
 }
 
+TEST_F(DronecanTunnel, APeerThatFellSilentGivesWayToAnother)
+{
+    Node node(fixed());
+    Tunnel tunnel;
+    const auto from = [&](std::uint8_t source, float at, std::int8_t serial) {
+        const TunnelTargetted message = packet("x", kOwn, serial);
+        Bytes payload(TunnelTargetted::kType.max_length);
+        std::size_t size = 0;
+        ASSERT_EQ(encode(message, payload, size), CodecStatus::ok);
+        payload.resize(size);
+        Transfer transfer;
+        transfer.type = TunnelTargetted::kType;
+        transfer.source = source;
+        transfer.stamp = TimePoint{0} + at;
+        transfer.payload = payload;
+        tunnel.receive(node, transfer);
+    };
+    from(20, 1.0F, 2);
+    from(21, 5.9F, 3);
+    EXPECT_EQ(tunnel.peer(), 20) << "heard 4.9 s ago";
+    EXPECT_EQ(tunnel.diagnostics().not_ours, 1U);
+    from(21, 6.1F, 3);
+    EXPECT_EQ(tunnel.peer(), 21) << "the autopilot came back with another node id";
+    EXPECT_EQ(tunnel.diagnostics().peers_changed, 1U);
+    EXPECT_EQ(read_all(tunnel), "x") << "what the former peer began is not continued";
+    from(20, 7.0F, 2);
+    EXPECT_EQ(tunnel.peer(), 21);
+
+    Tunnel given({20, 2, 1});
+    tunnel = given;
+    from(20, 1.0F, 2);
+    from(21, 100.0F, 2);
+    EXPECT_EQ(tunnel.peer(), 20) << "a peer that was given stays";
+}
+
 TEST_F(DronecanTunnel, WhatIsNotReadInTimeGivesWayOldestFirst)
 {
     Node node(fixed());
