@@ -6,6 +6,7 @@
 
 #include "core/base/work_units.hpp"
 #include "core/reach/lidar_scan.hpp"
+#include "firmware/app/hold_choice.hpp"
 
 namespace jink::app {
 namespace {
@@ -16,6 +17,12 @@ constexpr Seconds kProvingPeriod = 0.2F;
 constexpr float kNewCommand = 1.0F;
 /// A step that comes this long after the last one means that we were not there when we should have been [s].
 constexpr Seconds kStall = 0.5F;
+
+/// With so much waiting for the line, nothing is asked that may be asked again [bytes].
+constexpr std::size_t kBacklog = 1024;
+
+/// What is said in these goes nowhere.
+constexpr unsigned kDeadLine = bit(Fault::port_lost) | bit(Fault::autopilot_silent);
 
 /// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs.
 constexpr auto kPictureUnits =
@@ -188,7 +195,7 @@ void Coprocessor::send_setpoint(TimePoint now, const vehicle::VehicleState& own,
 /// ago, least of all when somebody else has chosen one.
 void Coprocessor::ask_autopilot(const TakeoverOutput& output, TimePoint now) noexcept
 {
-    if (output.event != TakeoverEvent::none || now - last_mode_request_ >= Takeover::kConfirm) {
+    if (output.event != TakeoverEvent::none || now - last_mode_request_ >= ModeEvidence::kAnswer) {
         link_.drop_mode_request();
     }
     switch (output.action) {
@@ -201,7 +208,11 @@ void Coprocessor::ask_autopilot(const TakeoverOutput& output, TimePoint now) noe
         }
         break;
     case TakeoverAction::request_hold: link_.request_hold_mode(); break;
-    case TakeoverAction::none: return;
+    case TakeoverAction::none:
+        if (output.ask_heartbeat && link_.pending().size() < kBacklog) {
+            link_.request_heartbeat();
+        }
+        return;
     }
     last_mode_request_ = now;
 }
@@ -228,6 +239,46 @@ void Coprocessor::note_block(const avoid::Guidance& guidance) noexcept
         takeover_.drop(false);
         way_blocked_ = false;
     }
+}
+
+/// Not in control: it is time to stop, and to stop is safer than to go on.
+bool Coprocessor::is_hold_urgent(TimePoint now, const vehicle::VehicleState& own,
+                                 const avoid::Guidance& guidance) noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    const Seconds stopping = vehicle::stopping_time(own.velocity.norm(), c.limits) + c.supervisor.reserve;
+    if (!guidance.has_conflict || guidance.conflict.time_to_loss > stopping) {
+        return false;
+    }
+    const auto tracks = tracks_.snapshot(now);
+    const world::ThreatRef threat = guidance.conflict.threat;
+    const bool is_track = threat.kind == world::ThreatKind::track && threat.index < tracks.size();
+    return is_stopping_safer(own, c.limits, guidance.conflict, is_track ? &tracks[threat.index] : nullptr);
+}
+
+TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleState& own,
+                                          const StepReport& report) noexcept
+{
+    const Configuration& c = parameters_.configuration();
+    TakeoverInput input;
+    input.wants_control = report.guidance.wants_control;
+    input.in_conflict = report.guidance.has_conflict;
+    input.may_act = report.faults == 0 && c.mode == ActMode::act;
+    input.urgent_hold = !takeover_.in_control() && is_hold_urgent(now, own, report.guidance);
+    input.has_report = new_autopilot_report_;
+    input.report_is_late = (report.faults & bit(Fault::late)) != 0;
+    input.report = autopilot_;
+    input.mode_denied = mode_denied_;
+    input.mode_accepted = mode_accepted_;
+    input.keep_stream = c.standby_stream;
+    input.link_alive = (report.faults & bit(Fault::port_lost)) == 0;
+    input.sticks_moved = sticks_moved_;
+    if (takeover_.control() == Control::ours) {
+        input.unfollowed = follow_check_.update(last_velocity_, own_.velocity, c.limits, now);
+    } else {
+        follow_check_.reset();
+    }
+    return input;
 }
 
 void Coprocessor::control(TimePoint now, StepReport& report) noexcept
@@ -261,18 +312,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
         diagnostics_.setpoints_withheld += setpoint_period() > 0.0F ? 1U : 0U;
         report.faults = static_cast<std::uint16_t>(report.faults | bit(Fault::not_finite));
     }
-    TakeoverInput input;
-    input.wants_control = report.guidance.wants_control;
-    input.in_conflict = report.guidance.has_conflict;
-    input.may_act = report.faults == 0 && c.mode == ActMode::act;
-    const Seconds stopping = vehicle::stopping_time(own.velocity.norm(), c.limits) + c.supervisor.reserve;
-    input.urgent_hold = report.guidance.has_conflict && report.guidance.conflict.time_to_loss <= stopping;
-    input.has_report = new_autopilot_report_;
-    input.report = autopilot_;
-    input.mode_denied = mode_denied_;
-    input.mode_accepted = mode_accepted_;
-    input.keep_stream = c.standby_stream;
-    input.link_alive = (report.faults & bit(Fault::port_lost)) == 0;
+    const TakeoverInput input = takeover_input(now, own, report);
     note_block(report.guidance);
     const TakeoverOutput output = takeover_.update(input, now);
     ask_autopilot(output, now);
@@ -283,6 +323,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     const bool as_asked =
         way_blocked_ && output.event == TakeoverEvent::overruled && autopilot_.mode == link::FlightMode::hold;
     announce(as_asked ? TakeoverEvent::none : output.event);
+    loss_untold_ = loss_untold_ || (output.event == TakeoverEvent::lost && (report.faults & kDeadLine) != 0);
     send_setpoint(now, own, report);
     drop_stale(now);
     report.control = takeover_.control();

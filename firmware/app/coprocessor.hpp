@@ -13,9 +13,11 @@
 #include "core/world/track_table.hpp"
 #include "firmware/app/constraint_upload.hpp"
 #include "firmware/app/constraints.hpp"
+#include "firmware/app/follow_check.hpp"
 #include "firmware/app/nominal_paths.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/parameters.hpp"
+#include "firmware/app/stick_watch.hpp"
 #include "firmware/app/takeover.hpp"
 #include "firmware/app/text.hpp"
 #include "firmware/link/link.hpp"
@@ -238,6 +240,11 @@ private:
     [[nodiscard]] world::Airspace airspace(TimePoint now) const noexcept;
     void note_block(const avoid::Guidance& guidance) noexcept;
     void control(TimePoint now, StepReport& report) noexcept;
+    [[nodiscard]] TakeoverInput takeover_input(TimePoint now, const vehicle::VehicleState& own,
+                                               const StepReport& report) noexcept;
+    [[nodiscard]] bool is_hold_urgent(TimePoint now, const vehicle::VehicleState& own,
+                                      const avoid::Guidance& guidance) noexcept;
+    void tell_autopilot_state(const StepReport& report) noexcept;
     [[nodiscard]] Seconds setpoint_period() const noexcept;
     void send_setpoint(TimePoint now, const vehicle::VehicleState& own, StepReport& report) noexcept;
     void ask_autopilot(const TakeoverOutput& output, TimePoint now) noexcept;
@@ -271,6 +278,11 @@ private:
     bool told_left_out_ = false;
     bool told_unsuited_ = false;
     Takeover takeover_;
+    FollowCheck follow_check_;
+    StickWatch stick_watch_;
+    bool sticks_moved_ = false;
+    bool told_advising_ = false;  ///< that this vehicle cannot be steered
+    bool loss_untold_ = false;    ///< control was lost while the line was down
     world::TrackTable tracks_;
     world::ObstacleTable obstacles_;
     ConstraintTable constraints_;

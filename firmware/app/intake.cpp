@@ -287,6 +287,8 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
                                [](const link::ModeAnswer& a) { return !a.accepted; });
     mode_accepted_ = std::any_of(inbox_.mode_answers.begin(), inbox_.mode_answers.end(),
                                  [](const link::ModeAnswer& a) { return a.accepted; });
+    sticks_moved_ = stick_watch_.update(inbox_.has_sticks ? &inbox_.sticks : nullptr, takeover_.streaming(),
+                                        parameters_.configuration().sticks);
     take_tracks(now);
     take_scan(now);
     take_readings();

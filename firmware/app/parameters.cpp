@@ -73,6 +73,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
      "who shares the reaction, sum of: 1 systems of the link, 2 UTM, 4 UAVs of ADS-B, 8 all of it"},
     {"JNK_OWN_ICAO", 0, 0, 16777215, true, "own transponder's address: heard back, it is no traffic; 0 not known"},
     {"JNK_PATIENCE", 20, 0, 600, false, "blocked by what stands for so long: hand over to the hold mode [s]; 0 never"},
+    {"JNK_STICKS", 30, 0, 100, false, "sticks moved by so much end a take-over [% of half their travel]; 0 never"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -123,6 +124,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.standby_stream = whole(Param::standby) == 1;
     c.ask_rates = whole(Param::ask_rates) == 1;
     c.tell_near = whole(Param::tell_near) == 1;
+    c.sticks = 0.01F * at(Param::sticks);
     geometric::Settings& g = c.planner;
     // What the supervisor sees as a conflict the planner has to see too.
     g.lookahead = c.supervisor.lookahead;

@@ -77,6 +77,7 @@ enum class Param : std::uint8_t {
     coop,
     own_address,
     patience,
+    sticks,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -127,6 +128,7 @@ struct Configuration {
     bool standby_stream = false;
     bool ask_rates = true;
     bool tell_near = false;
+    float sticks = 0.3F;  ///< moved by so much they end a take-over [of half their travel]; 0: never
 };
 
 /// Values with their checks. A refused change changes nothing.

@@ -13,10 +13,35 @@ void Takeover::drop(bool by_fault) noexcept
         tries_ = 0;
         hold_due_ = false;
         hold_tries_ = 0;
+        unfollowed_ = false;
     }
     control_ = Control::autopilot;
+    back_due_ = false;
     proving_ = false;
     mode_ = FlightMode::unknown;
+}
+
+/// When the newest HEARTBEAT came, and how often they come.
+void Takeover::note_report(const TakeoverInput& input, TimePoint now) noexcept
+{
+    if (input.mode_accepted && control_ != Control::ours) {
+        evidence_.note_accepted(now);
+    }
+    if (!input.has_report) {
+        return;
+    }
+    mode_ = input.report.mode;
+    unfollowed_ = unfollowed_ && input.report.armed;
+    if (evidence_.was_silent(kClaim, now) && !in_control() && claim_ != Claim::none) {
+        // Nobody knows who flew meanwhile.
+        claim_ = Claim::none;
+        hold_due_ = back_due_ = false;
+        found_ = false;
+    }
+    if (input.report_is_late) {
+        return;
+    }
+    evidence_.note_heartbeat(now);
 }
 
 /// A mode that is neither the one we left nor the one we asked for, or no longer armed: somebody else decided.
@@ -61,6 +86,11 @@ TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint no
     if (hold_tries_ > 0 && !unanswered && !unheeded) {
         return TakeoverAction::none;
     }
+    // A hold must not wait for an answer, but it must not be asked for on old evidence either.
+    if (!evidence_.is_newer_than_requests() || !evidence_.is_fresh(now)) {
+        evidence_.need_heartbeat();
+        return TakeoverAction::none;
+    }
     ++hold_tries_;
     ++diagnostics_.hold_requests;
     hold_acked_ = false;
@@ -100,15 +130,21 @@ TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcep
         claim_ = Claim::none;
     }
     expire_claim(input, now);
-    if (claim_ != Claim::none && input.may_act && mode_ == FlightMode::external) {
+    if (claim_ != Claim::none && input.may_act && mode_ == FlightMode::external && !unfollowed_) {
         // A fault of ours is over, or the grant came late, and nobody else has changed the mode: ours to give back.
-        return take(now);
+        evidence_.need_heartbeat();
+        return evidence_.is_fresh(now) ? take(now) : TakeoverOutput{};
     }
     if (const TakeoverAction hold = insist_on_hold(input, now); hold != TakeoverAction::none) {
         return {hold, TakeoverEvent::none};
     }
-    const bool free = mode_ == FlightMode::mission && input.report.armed && !input.report.landed;
-    if (input.wants_control && input.may_act && free) {
+    const bool free = mode_ == FlightMode::mission && input.report.armed && !input.report.landed &&
+                      input.report.steerable && !unfollowed_;
+    if (!input.wants_control || !input.may_act || !free) {
+        return {};
+    }
+    static_cast<void>(evidence_.is_clear_to_ask(now));  // the answer is there when the request is due
+    if (evidence_.is_fresh(now)) {
         control_ = Control::announcing;
         former_mode_ = input.report.custom_mode;
         since_ = now;
@@ -128,21 +164,34 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     if (control_ == Control::announcing) {
         expire_claim(input, now);
     }
-    if (!input.wants_control && control_ == Control::announcing) {
+    if (control_ == Control::announcing && (!input.wants_control || !evidence_.is_fresh(now))) {
         control_ = Control::autopilot;
+        if (input.wants_control) {
+            evidence_.need_heartbeat();
+        }
         return {};
     }
     const Seconds waited = now - since_;
     if (control_ == Control::announcing && now - streaming_since_ < kAnnounce) {
+        static_cast<void>(evidence_.is_clear_to_ask(now));
         return {};
     }
     denied_ = control_ == Control::requesting && (denied_ || input.mode_denied);
     const bool unproven = input.report.stack == link::AutopilotStack::px4 && now - streaming_since_ < kProof;
-    const bool again = unproven ? denied_ && waited >= kAskAgain : input.mode_denied && waited >= kAnnounce;
+    const bool again = denied_ && waited >= (unproven ? kAskAgain : kAnnounce);
     if (control_ == Control::requesting && waited < kConfirm && !again) {
         return {};
     }
-    if (unproven || tries_ < kTries) {
+    if (control_ == Control::requesting && !input.wants_control) {
+        control_ = Control::autopilot;  // not asked for again; a late grant is still ours to give back
+        return {};
+    }
+    const bool may_try = unproven || tries_ < kTries;
+    const bool clear = may_try && evidence_.is_clear_to_ask(now);
+    if (may_try && !clear && waited < static_cast<float>(kTries) * kConfirm) {
+        return {};
+    }
+    if (clear) {
         tries_ += unproven ? 0 : 1;
         ++diagnostics_.requests;
         denied_ = false;
@@ -184,7 +233,7 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
         control_ = Control::ours;
         return {};
     }
-    if (control_ == Control::ours || now - since_ >= kConfirm) {
+    if ((control_ == Control::ours || now - since_ >= kConfirm) && evidence_.is_clear_to_ask(now)) {
         control_ = Control::returning;
         asked_back_ = true;
         since_ = now;
@@ -200,8 +249,17 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
         if (tries_ == 0 || mode_ != FlightMode::hold || !input.report.armed) {
             return overrule();
         }
+        const bool news = unfollowed_ && claim_ != Claim::none;
         claim_ = Claim::none;  // the hold that we asked for: what follows it is somebody else's choice
+        if (news) {
+            ++diagnostics_.held;
+            return {TakeoverAction::none, TakeoverEvent::held};
+        }
     }
+    if (unfollowed_) {
+        return keep_off(input, now);
+    }
+    expire_claim(input, now);
     if (mode_ == FlightMode::external && claim_ != Claim::none && input.may_act) {
         // Granted late, after we had given up waiting: without a stream the vehicle would stop there for good.
         return take(now);
@@ -212,7 +270,7 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
     }
     const bool still_flying = mode_ == FlightMode::mission;
     if (input.urgent_hold && input.may_act && still_flying && tries_ < kTries &&
-        (tries_ == 0 || now - since_ >= kConfirm)) {
+        (tries_ == 0 || now - since_ >= kConfirm) && evidence_.is_clear_to_ask(now)) {
         ++tries_;
         ++diagnostics_.hold_requests;
         since_ = now;
@@ -221,37 +279,110 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
     return {};
 }
 
+/// Hands off after the pilot's choice, after sticks that moved or after commands that were not followed.
+TakeoverOutput Takeover::keep_off(const TakeoverInput& input, TimePoint now) noexcept
+{
+    const bool over = input.has_report && (mode_ != FlightMode::external || !input.report.armed);
+    // A HEARTBEAT may have been sent before a request of ours was granted.
+    if (over && (claim_ != Claim::asked || foreign(input) || now - asked_ >= kConfirm)) {
+        back_due_ = false;
+        claim_ = Claim::none;
+    }
+    if (!input.in_conflict && !input.wants_control && !back_due_) {
+        control_ = Control::autopilot;
+        return idle(input, now);
+    }
+    if (unfollowed_) {
+        return {insist_on_hold(input, now), TakeoverEvent::none};
+    }
+    const bool due = back_due_ && input.link_alive && mode_ == FlightMode::external && back_tries_ < kTries &&
+                     (back_tries_ == 0 || now - back_asked_ >= kConfirm);
+    if (due && evidence_.is_clear_to_ask(now)) {
+        ++back_tries_;
+        back_asked_ = now;
+        return {TakeoverAction::request_former, TakeoverEvent::none};
+    }
+    back_due_ = back_due_ && (back_tries_ < kTries || now - back_asked_ < kConfirm);
+    return {};
+}
+
+/// The pilot has the sticks: no command of ours from here on. Whatever mode the pilot chooses stands; until then the
+/// former one is asked for, so that the vehicle is not left without anybody who commands it.
+TakeoverOutput Takeover::yield_to_sticks(const TakeoverInput& input, TimePoint now) noexcept
+{
+    control_ = Control::overruled;
+    tries_ = 0;
+    back_due_ = claim_ != Claim::none;
+    back_tries_ = 0;
+    ++diagnostics_.sticks;
+    return {keep_off(input, now).action, TakeoverEvent::sticks};
+}
+
+TakeoverOutput Takeover::give_up(const TakeoverInput& input, TimePoint now) noexcept
+{
+    control_ = Control::refused;
+    unfollowed_ = true;
+    tries_ = kTries;
+    hold_due_ = true;
+    hold_acked_ = false;
+    hold_tries_ = 0;
+    ++diagnostics_.unfollowed;
+    return {insist_on_hold(input, now), TakeoverEvent::unfollowed};
+}
+
+/// A fault of ours while streaming.
+TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcept
+{
+    const bool flown = in_control();
+    drop(true);
+    if (flown) {
+        hold_due_ = true;
+        hold_acked_ = false;
+        hold_tries_ = 0;
+        return {insist_on_hold(input, now), TakeoverEvent::lost};
+    }
+    // Control was never given, nothing is lost: fall silent; this tick's report still counts.
+    mode_ = input.has_report ? input.report.mode : FlightMode::unknown;
+    return idle(input, now);
+}
+
 TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexcept
 {
     const bool was_streaming = streaming() || proving_;
-    const TakeoverOutput output = decide(input, now);
+    note_report(input, now);
+    TakeoverOutput output = decide(input, now);
+    if (output.action != TakeoverAction::none) {
+        evidence_.note_request(now);
+    }
+    if (input.has_report && !found_) {
+        found_ = true;
+        const bool lone = input.report.armed && mode_ == FlightMode::external && claim_ == Claim::none;
+        output.event = lone && output.event == TakeoverEvent::none ? TakeoverEvent::found : output.event;
+    }
     proving_ = control_ == Control::autopilot && claim_ == Claim::none && input.keep_stream && input.may_act &&
                input.report.stack == link::AutopilotStack::px4 && mode_ == FlightMode::mission && input.report.armed &&
-               !input.report.landed;
+               !input.report.landed && input.report.steerable && !unfollowed_;
     if (!was_streaming && (streaming() || proving_)) {
         streaming_since_ = now;
     }
+    output.ask_heartbeat = evidence_.is_due(in_control(), control_ == Control::requesting, now);
+    diagnostics_.heartbeats_asked += output.ask_heartbeat ? 1U : 0U;
     return output;
 }
 
 TakeoverOutput Takeover::decide(const TakeoverInput& input, TimePoint now) noexcept
 {
-    if (input.has_report) {
-        mode_ = input.report.mode;
-    }
     const bool yields = foreign(input) || (in_control() && input.has_report && mode_ != FlightMode::external);
-    if (streaming() && !input.may_act && !yields) {
-        const bool flown = in_control();
-        drop(true);
-        if (flown) {
-            hold_due_ = true;
-            hold_acked_ = false;
-            hold_tries_ = 0;
-            return {insist_on_hold(input, now), TakeoverEvent::lost};
+    if (streaming() && !yields) {
+        if (input.sticks_moved) {
+            return yield_to_sticks(input, now);
         }
-        // Control was never given, nothing is lost: fall silent; this tick's report still counts.
-        mode_ = input.has_report ? input.report.mode : FlightMode::unknown;
-        return idle(input, now);
+        if (!input.may_act) {
+            return lose(input, now);
+        }
+        if (in_control() && input.unfollowed) {
+            return give_up(input, now);
+        }
     }
     switch (control_) {
     case Control::autopilot: return idle(input, now);
@@ -260,11 +391,7 @@ TakeoverOutput Takeover::decide(const TakeoverInput& input, TimePoint now) noexc
     case Control::ours:
     case Control::returning: return fly(input, now);
     case Control::refused: return stand_by(input, now);
-    case Control::overruled:
-        if (!input.in_conflict && !input.wants_control) {
-            control_ = Control::autopilot;
-        }
-        return {};
+    case Control::overruled: return keep_off(input, now);
     }
     return {};
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "firmware/app/mode_evidence.hpp"
 #include "firmware/link/messages.hpp"
 
 namespace jink::app {
@@ -29,26 +30,33 @@ enum class TakeoverEvent : std::uint8_t {
     gave_back,
     refused,
     overruled,
-    lost,  ///< a fault of ours while in control: silent, and the autopilot is asked to hold
-    held,  ///< the hold mode asked for at a loss came after control had been taken up again
+    lost,        ///< a fault of ours while in control: silent, and the autopilot is asked to hold
+    held,        ///< the hold mode came that was asked for after control was given up
+    sticks,      ///< the pilot moved the sticks: hands off, and the former mode is asked for
+    unfollowed,  ///< the vehicle does not follow our commands: silent, and the autopilot is asked to hold
+    found,       ///< the autopilot is armed in its external mode, and nobody knows whose that is: left alone
 };
 
 struct TakeoverInput {
     bool wants_control = false;    ///< the supervisor has something to fly
     bool in_conflict = false;      ///< a conflict is still predicted
     bool may_act = false;          ///< acting is allowed and everything needed is healthy
-    bool urgent_hold = false;      ///< what it wants is to brake
+    bool urgent_hold = false;      ///< not in control, it is time to stop, and to stop is safer than to go on
     bool has_report = false;       ///< a HEARTBEAT of the autopilot arrived since the last tick
+    bool report_is_late = false;   ///< it may have waited for us: we were not there when it came
     link::AutopilotReport report;  ///< the newest one
     bool mode_denied = false;      ///< a COMMAND_ACK refused the mode
     bool mode_accepted = false;    ///< a COMMAND_ACK accepted the mode
     bool link_alive = true;        ///< what is asked for can leave
     bool keep_stream = false;      ///< prove the stream to a PX4 before it is needed
+    bool sticks_moved = false;     ///< by the pilot, since streaming() began
+    bool unfollowed = false;       ///< the vehicle's motion shows that it does not follow what we command
 };
 
 struct TakeoverOutput {
     TakeoverAction action = TakeoverAction::none;
     TakeoverEvent event = TakeoverEvent::none;
+    bool ask_heartbeat = false;  ///< ask the autopilot for a HEARTBEAT now
 };
 
 struct TakeoverDiagnostics {
@@ -60,6 +68,9 @@ struct TakeoverDiagnostics {
     std::uint32_t lost_by_fault = 0;  ///< control dropped because of a fault of ours
     std::uint32_t hold_requests = 0;  ///< after a loss or a refusal
     std::uint32_t held = 0;           ///< TakeoverEvent::held
+    std::uint32_t sticks = 0;         ///< TakeoverEvent::sticks
+    std::uint32_t unfollowed = 0;     ///< TakeoverEvent::unfollowed
+    std::uint32_t heartbeats_asked = 0;
 };
 
 /// Taking over and giving back as autopilots want it: stream first, ask for the external mode, wait for the HEARTBEAT
@@ -74,6 +85,19 @@ struct TakeoverDiagnostics {
 ///
 /// A loss of control asks for the hold mode, again and again (kHoldTries) until a HEARTBEAT shows any other mode than
 /// the external one: the hold, or somebody else's choice.
+///
+/// A mode is asked for on fresh evidence alone (ModeEvidence): a HEARTBEAT that shows the mode that the request is
+/// meant for. One is asked for as soon as control is wanted, so that the answer is there when the request is due.
+/// Without such evidence nothing is asked for and no new stream begins. What remains: a pilot's choice within the time
+/// that a HEARTBEAT and a request take on the line, or within the 1.5 periods on a line that does not answer. No
+/// autopilot offers a request that depends on its present mode.
+///
+/// The former mode is the one that stood at the take-over. The claim to give it back ends with any other mode seen, or
+/// when no HEARTBEAT came for kClaim: a pilot may have flown meanwhile.
+///
+/// Sticks that moved end the take-over at once; the former mode is asked for without a stream, kTries at most.
+/// Commands that are not followed end it as well: the hold mode is asked for, and until the vehicle is disarmed nothing
+/// is taken over again. A vehicle that cannot be steered (AutopilotReport::steerable) is never taken over.
 ///
 /// Pure: no messages, no clock; O(1) per tick.
 class Takeover {
@@ -98,6 +122,11 @@ public:
     {
         return control_ == Control::ours || control_ == Control::returning;
     }
+    /// The newest HEARTBEAT showed the external mode and is fresh enough to ask for another one.
+    [[nodiscard]] bool may_ask_to_hold(TimePoint now) const noexcept
+    {
+        return in_control() && evidence_.is_newer_than_requests() && evidence_.is_fresh(now);
+    }
     [[nodiscard]] const TakeoverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 
     /// Stream this long before the request; autopilots refuse a mode whose set-points they have not seen [s].
@@ -112,13 +141,20 @@ public:
     /// The hold mode is asked for again after this long without an answer, after kConfirm where it was accepted [s].
     static constexpr Seconds kHoldRepeat = 0.5F;
     static constexpr int kHoldTries = 5;
+    /// A silence longer than this ends the claim to an external mode [s].
+    static constexpr Seconds kClaim = 10.0F;
 
 private:
+    void note_report(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput decide(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput idle(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput ask(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput fly(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput stand_by(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput keep_off(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput yield_to_sticks(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput give_up(const TakeoverInput& input, TimePoint now) noexcept;
+    [[nodiscard]] TakeoverOutput lose(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] bool foreign(const TakeoverInput& input) const noexcept;
     [[nodiscard]] TakeoverOutput overrule() noexcept;
     [[nodiscard]] TakeoverOutput take(TimePoint now) noexcept;
@@ -148,6 +184,13 @@ private:
     bool hold_acked_ = false;  ///< the last request of the hold mode was accepted
     int hold_tries_ = 0;       ///< since the loss
     TimePoint hold_asked_;
+    bool back_due_ = false;  ///< sticks were moved: the former mode is asked for, without a stream
+    int back_tries_ = 0;
+    TimePoint back_asked_;
+    bool unfollowed_ = false;  ///< since the vehicle was armed
+    bool found_ = false;       ///< the first HEARTBEAT was looked at
+
+    ModeEvidence evidence_;
     TakeoverDiagnostics diagnostics_;
 };
 

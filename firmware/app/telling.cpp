@@ -39,6 +39,9 @@ void Coprocessor::announce(TakeoverEvent event) noexcept
     case TakeoverEvent::overruled: say(Severity::warning, "jink: mode changed by others, hands off"); break;
     case TakeoverEvent::lost: say(Severity::critical, "jink: fault while avoiding, control dropped"); break;
     case TakeoverEvent::held: say(Severity::warning, "jink: autopilot holds, as asked"); break;
+    case TakeoverEvent::sticks: say(Severity::warning, "jink: sticks moved, hands off"); break;
+    case TakeoverEvent::unfollowed: say(Severity::critical, "jink: set-points not followed, asks to hold"); break;
+    case TakeoverEvent::found: say(Severity::notice, "jink: found in external mode, left alone"); break;
     case TakeoverEvent::none: break;
     }
 }
@@ -59,12 +62,31 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
         told_state_ = report.state;
     }
     tell_notices();
+    tell_autopilot_state(report);
     const avoid::Guidance& g = report.guidance;
     if (g.has_conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
         warn_of_conflict(now, report);
     }
     told_conflict_ = g.has_conflict;
     tell_braking(now, g);
+}
+
+/// Once each: that this vehicle is not steered, and, when the line is back, why it holds.
+void Coprocessor::tell_autopilot_state(const StepReport& report) noexcept
+{
+    if (!new_autopilot_report_) {
+        return;
+    }
+    const bool advises = parameters_.configuration().mode == ActMode::act && !autopilot_.steerable && autopilot_.armed;
+    if (advises && !told_advising_) {
+        told_advising_ = true;
+        say(link::Severity::notice, "jink: cannot steer this vehicle, advising only");
+    }
+    const unsigned dead = bit(Fault::port_lost) | bit(Fault::autopilot_silent);
+    if (loss_untold_ && (report.faults & dead) == 0) {
+        loss_untold_ = false;
+        say(link::Severity::warning, "jink: line lost while avoiding, control dropped");
+    }
 }
 
 /// That nothing is safe is CRITICAL once in a conflict; a fallback that keeps clear is a warning, once too. A conflict
@@ -92,7 +114,7 @@ void Coprocessor::prepare_last_words() noexcept
     if (last_words_ == nullptr) {
         return;
     }
-    const bool hold = takeover_.in_control();
+    const bool hold = takeover_.may_ask_to_hold(last_step_);
     const std::string_view text = passive_ ? ""  // told by then, and again and again in a row of faults
                                   : hold   ? "jink: processor fault, hold asked, restarting"
                                            : "jink: processor fault, restarting";
@@ -123,7 +145,7 @@ void Coprocessor::shut_down(TimePoint now) noexcept
 {
     link_.drop_setpoint();
     link_.drop_mode_request();
-    if (takeover_.in_control()) {
+    if (takeover_.may_ask_to_hold(now)) {
         link_.request_hold_mode();
     }
     takeover_.drop(false);

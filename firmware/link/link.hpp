@@ -112,6 +112,8 @@ public:
     virtual void request_external_mode() noexcept = 0;
     /// Asks for a mode by its wire number: giving the former mode back.
     virtual void request_mode(std::uint32_t custom_mode) noexcept = 0;
+    /// Asks the autopilot to send its HEARTBEAT now: what mode it is in.
+    virtual void request_heartbeat() noexcept = 0;
     /// Asks for the stack's holding mode (BRAKE/LOITER, AUTO.LOITER).
     virtual void request_hold_mode() noexcept = 0;
 

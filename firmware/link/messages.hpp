@@ -39,6 +39,7 @@ struct AutopilotReport {
     bool armed = false;
     bool landed = false;
     bool fixed_wing = false;
+    bool steerable = true;  ///< a kind of vehicle that flies velocity set-points in the external mode
     bool rebooted = false;  ///< its boot clock or sequence started again since the last report
 };
 
@@ -133,6 +134,13 @@ struct ModeAnswer {
     std::uint8_t result = 0;  ///< as on the wire
 };
 
+/// Where the pilot's sticks are, as the autopilot hears them. Reports of a receiver that has lost its transmitter, or
+/// that does not say, do not become one.
+struct SticksReport {
+    bool from_radio = true;         ///< false: a joystick of a ground station
+    std::array<float, 4> sticks{};  ///< of half the travel, -1 to 1 and a little beyond; in the order of the source
+};
+
 /// Everything heard since the last tick. Filled by the link, emptied by the application. About 5 KiB.
 struct Inbox {
     bool has_own_state = false;
@@ -146,6 +154,8 @@ struct Inbox {
     bool leg_lost = false;  ///< the autopilot flies to where we do not know: what was told before is over
     bool has_home = false;  ///< not before both home and the origin are known; a later report replaces the one before
     Vec3 home = Vec3::Zero();
+    bool has_sticks = false;
+    SticksReport sticks;  ///< the newest
     bool has_scan = false;
     RangeScan scan;
     StaticVector<TrackReport, kMaxTrackReports> tracks;
@@ -157,6 +167,7 @@ struct Inbox {
 
     void clear() noexcept
     {
+        has_sticks = false;
         has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
         own_state.estimator_reset = bus_state.estimator_reset = false;
         tracks.clear();

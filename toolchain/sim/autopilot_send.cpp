@@ -117,6 +117,8 @@ bool Autopilot::send_message(int id)
         writer_.write(position);
     } else if (id == static_cast<int>(ExtendedSysState::kInfo.id)) {
         writer_.write(ExtendedSysState{0, kInAir});
+    } else if (id == static_cast<int>(Heartbeat::kInfo.id)) {
+        send_heartbeat();  // as both stacks do
     } else {
         return false;
     }

@@ -55,10 +55,10 @@ inline constexpr std::array<MessageInfo, 293> kCatalogue{{
     {62, 183, 26, 255},  // NAV_CONTROLLER_OUTPUT, passed over
     {63, 119, 181, 255},  // GLOBAL_POSITION_INT_COV, passed over
     {64, 191, 225, 225},  // LOCAL_POSITION_NED_COV
-    {65, 118, 42, 255},  // RC_CHANNELS, passed over
+    {65, 118, 42, 42},  // RC_CHANNELS
     {66, 148, 6, 6},  // REQUEST_DATA_STREAM
     {67, 21, 4, 255},  // DATA_STREAM, passed over
-    {69, 243, 11, 255},  // MANUAL_CONTROL, passed over
+    {69, 243, 11, 30},  // MANUAL_CONTROL
     {70, 124, 18, 255},  // RC_CHANNELS_OVERRIDE, passed over
     {73, 38, 37, 38},  // MISSION_ITEM_INT
     {74, 20, 20, 255},  // VFR_HUD, passed over

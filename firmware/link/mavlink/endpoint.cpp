@@ -89,9 +89,12 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
     case ExtendedSysState::kInfo.id: {
         ExtendedSysState m;
         autopilot_.landed = decode(c.frame, m) && m.landed_state == 1;
+        vtol_state_ = m.vtol_state;
         break;
     }
     case Statustext::kInfo.id: on_status_text(c); break;
+    case RcChannels::kInfo.id:
+    case ManualControl::kInfo.id: on_sticks(c); break;
     default: dispatch_sensors(c);
     }
 }
@@ -118,7 +121,8 @@ void Endpoint::on_heartbeat(const Context& c) noexcept
     autopilot_.stack = m.autopilot == kAutopilotPx4         ? AutopilotStack::px4
                        : m.autopilot == kAutopilotArduPilot ? AutopilotStack::ardupilot
                                                             : AutopilotStack::unknown;
-    vehicle_class_ = m.type == kTypeFixedWing ? VehicleClass::plane : VehicleClass::copter;
+    vehicle_class_ = vehicle_class(autopilot_.stack, m.type);
+    autopilot_.steerable = is_steerable(autopilot_.stack, m.type, vtol_state_);
     autopilot_.fixed_wing = m.type == kTypeFixedWing;
     autopilot_.armed = (m.base_mode & kArmed) != 0;
     autopilot_.custom_mode = m.custom_mode;

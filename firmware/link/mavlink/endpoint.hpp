@@ -69,9 +69,18 @@
 //   above terrain, or that cannot be placed yet. Frames: 0, 3, 5, 6 (global, or relative to home) and 1.
 //   POSITION_TARGET_LOCAL_NED is not read: PX4 sends its controller's set-point, ArduCopter (0, 0, 0) during a take-off
 //   in GUIDED.
+// * Sticks: channels 1 to 4 of RC_CHANNELS (1000 to 2000 us), and MANUAL_CONTROL. A report is passed over whole, not
+//   counted, when it has fewer than four channels, one of the four is 0, 65535 or outside of 800 to 2200 us, or the
+//   third is below 1000 us: that is how receivers say that the transmitter is lost (ArduPilot's FS_THR_VALUE). rssi is
+//   not read: many receivers do not give any. MANUAL_CONTROL: beyond +-1000 (INT16_MAX: no such axis) likewise.
 // * Rates: what comes too seldom is asked for by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
 // * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
-//   plus the armed bit (128) as heard.
+//   plus the armed bit (128) as heard. A HEARTBEAT is asked for by COMMAND_LONG REQUEST_MESSAGE (512) with param1 = 0:
+//   both stacks send it at once, and answer ACCEPTED. SET_MESSAGE_INTERVAL of HEARTBEAT is refused by PX4.
+// * Vehicles that follow set-points of a velocity: multirotors and helicopters of both stacks, and a VTOL of PX4 while
+//   EXTENDED_SYS_STATE says that it hovers. Everything else is reported as not steerable: ArduPlane, also as a
+//   QuadPlane (Q_MAV_TYPE), takes the altitude alone; PX4's fixed wing follows positions, not velocities; rovers,
+//   boats, submarines, trackers, airships and what does not say what it is.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
 //   that is not a finite REAL32 has value_finite = false.
 // * TUNNEL addressed to us alone, of the type kConstraintPayload: one closed area of a set (constraint_message.hpp). A
@@ -120,6 +129,7 @@ public:
     void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept override;
     void request_external_mode() noexcept override;
     void request_mode(std::uint32_t custom_mode) noexcept override;
+    void request_heartbeat() noexcept override;
     void request_hold_mode() noexcept override;
     /// O(bytes), and a SHA-256 per frame where frames are signed.
     [[nodiscard]] std::size_t compose_last_words(std::span<std::byte> out, bool hold,
@@ -184,6 +194,7 @@ private:
     [[nodiscard]] bool make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& point) noexcept;
     void follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept;
     void end_pausing_scan(TimePoint now) noexcept;
+    void on_sticks(const Context& c) noexcept;
     void on_command(const Context& c) noexcept;
     void on_param(const Context& c) noexcept;
     void on_tunnel(const Context& c) noexcept;
@@ -236,6 +247,7 @@ private:
 
     AutopilotReport autopilot_;
     VehicleClass vehicle_class_ = VehicleClass::copter;
+    std::uint8_t vtol_state_ = 0;  ///< MAV_VTOL_STATE
     bool rebooted_ = false;
 
     vehicle::VehicleState own_;

@@ -267,6 +267,16 @@ void Endpoint::acknowledge(const ConstraintPart& part, ConstraintResult result) 
 
 void Endpoint::request_external_mode() noexcept { send_mode(external_mode(autopilot_.stack, vehicle_class_)); }
 void Endpoint::request_mode(std::uint32_t custom_mode) noexcept { send_mode(custom_mode); }
+void Endpoint::request_heartbeat() noexcept
+{
+    CommandLong m;
+    m.command = kRequestMessage;
+    m.target_system = system_;
+    m.target_component = kAutopilotComponent;
+    m.param1 = static_cast<float>(Heartbeat::kInfo.id);
+    send(m);
+}
+
 void Endpoint::request_hold_mode() noexcept { send_mode(hold_mode(autopilot_.stack, vehicle_class_)); }
 
 std::size_t Endpoint::compose_last_words(std::span<std::byte> out, bool hold, std::string_view text) noexcept

@@ -163,6 +163,38 @@ void Endpoint::dispatch_requests(const Context& c) noexcept
     }
 }
 
+/// The pilot's sticks, where they are known.
+void Endpoint::on_sticks(const Context& c) noexcept
+{
+    SticksReport report;
+    RcChannels radio;
+    ManualControl joystick;
+    if (decode(c.frame, radio)) {
+        constexpr float kLowest = 800.0F, kHighest = 2200.0F, kCentre = 1500.0F, kHalfTravel = 500.0F;
+        constexpr std::uint16_t kThrottleLost = 1000;
+        const std::array<std::uint16_t, 4> raw{radio.chan1_raw, radio.chan2_raw, radio.chan3_raw, radio.chan4_raw};
+        bool known = radio.chancount >= raw.size() && raw[2] >= kThrottleLost;
+        for (std::size_t i = 0; i < raw.size(); ++i) {
+            const auto width = static_cast<float>(raw[i]);
+            known = known && width >= kLowest && width <= kHighest;
+            report.sticks[i] = (width - kCentre) / kHalfTravel;
+        }
+        c.inbox.has_sticks = c.inbox.has_sticks || known;
+        c.inbox.sticks = known ? report : c.inbox.sticks;
+    } else if (decode(c.frame, joystick)) {
+        constexpr float kFull = 1000.0F;
+        const std::array<std::int16_t, 4> raw{joystick.x, joystick.y, joystick.z, joystick.r};
+        bool known = true;
+        for (std::size_t i = 0; i < raw.size(); ++i) {
+            report.sticks[i] = static_cast<float>(raw[i]) / kFull;
+            known = known && report.sticks[i] >= -1.0F && report.sticks[i] <= 1.0F;
+        }
+        report.from_radio = false;
+        c.inbox.has_sticks = c.inbox.has_sticks || known;
+        c.inbox.sticks = known ? report : c.inbox.sticks;
+    }
+}
+
 void Endpoint::on_command(const Context& c) noexcept
 {
     CommandLong m;

@@ -512,6 +512,57 @@ inline constexpr std::array<Field, 12> LocalPositionNedCov::kFields{{
     {offsetof(LocalPositionNedCov, estimator_type), 224, 1, FieldType::u8},
 }};
 
+/// RC_CHANNELS (65), common.
+struct RcChannels {
+    std::uint32_t time_boot_ms = 0;  ///< [ms]
+    std::uint16_t chan1_raw = 0;  ///< [us]
+    std::uint16_t chan2_raw = 0;  ///< [us]
+    std::uint16_t chan3_raw = 0;  ///< [us]
+    std::uint16_t chan4_raw = 0;  ///< [us]
+    std::uint16_t chan5_raw = 0;  ///< [us]
+    std::uint16_t chan6_raw = 0;  ///< [us]
+    std::uint16_t chan7_raw = 0;  ///< [us]
+    std::uint16_t chan8_raw = 0;  ///< [us]
+    std::uint16_t chan9_raw = 0;  ///< [us]
+    std::uint16_t chan10_raw = 0;  ///< [us]
+    std::uint16_t chan11_raw = 0;  ///< [us]
+    std::uint16_t chan12_raw = 0;  ///< [us]
+    std::uint16_t chan13_raw = 0;  ///< [us]
+    std::uint16_t chan14_raw = 0;  ///< [us]
+    std::uint16_t chan15_raw = 0;  ///< [us]
+    std::uint16_t chan16_raw = 0;  ///< [us]
+    std::uint16_t chan17_raw = 0;  ///< [us]
+    std::uint16_t chan18_raw = 0;  ///< [us]
+    std::uint8_t chancount = 0;
+    std::uint8_t rssi = 0;
+
+    static constexpr MessageInfo kInfo{65, 118, 42, 42};
+    static const std::array<Field, 21> kFields;
+};
+inline constexpr std::array<Field, 21> RcChannels::kFields{{
+    {offsetof(RcChannels, time_boot_ms), 0, 1, FieldType::u32},
+    {offsetof(RcChannels, chan1_raw), 4, 1, FieldType::u16},
+    {offsetof(RcChannels, chan2_raw), 6, 1, FieldType::u16},
+    {offsetof(RcChannels, chan3_raw), 8, 1, FieldType::u16},
+    {offsetof(RcChannels, chan4_raw), 10, 1, FieldType::u16},
+    {offsetof(RcChannels, chan5_raw), 12, 1, FieldType::u16},
+    {offsetof(RcChannels, chan6_raw), 14, 1, FieldType::u16},
+    {offsetof(RcChannels, chan7_raw), 16, 1, FieldType::u16},
+    {offsetof(RcChannels, chan8_raw), 18, 1, FieldType::u16},
+    {offsetof(RcChannels, chan9_raw), 20, 1, FieldType::u16},
+    {offsetof(RcChannels, chan10_raw), 22, 1, FieldType::u16},
+    {offsetof(RcChannels, chan11_raw), 24, 1, FieldType::u16},
+    {offsetof(RcChannels, chan12_raw), 26, 1, FieldType::u16},
+    {offsetof(RcChannels, chan13_raw), 28, 1, FieldType::u16},
+    {offsetof(RcChannels, chan14_raw), 30, 1, FieldType::u16},
+    {offsetof(RcChannels, chan15_raw), 32, 1, FieldType::u16},
+    {offsetof(RcChannels, chan16_raw), 34, 1, FieldType::u16},
+    {offsetof(RcChannels, chan17_raw), 36, 1, FieldType::u16},
+    {offsetof(RcChannels, chan18_raw), 38, 1, FieldType::u16},
+    {offsetof(RcChannels, chancount), 40, 1, FieldType::u8},
+    {offsetof(RcChannels, rssi), 41, 1, FieldType::u8},
+}};
+
 /// REQUEST_DATA_STREAM (66), common, superseded.
 struct RequestDataStream {
     std::uint16_t req_message_rate = 0;  ///< [Hz]
@@ -529,6 +580,47 @@ inline constexpr std::array<Field, 5> RequestDataStream::kFields{{
     {offsetof(RequestDataStream, target_component), 3, 1, FieldType::u8},
     {offsetof(RequestDataStream, req_stream_id), 4, 1, FieldType::u8},
     {offsetof(RequestDataStream, start_stop), 5, 1, FieldType::u8},
+}};
+
+/// MANUAL_CONTROL (69), common.
+struct ManualControl {
+    std::int16_t x = 0;
+    std::int16_t y = 0;
+    std::int16_t z = 0;
+    std::int16_t r = 0;
+    std::uint16_t buttons = 0;
+    std::uint8_t target = 0;
+    std::uint16_t buttons2 = 0;  ///< extension
+    std::uint8_t enabled_extensions = 0;  ///< extension
+    std::int16_t s = 0;  ///< extension
+    std::int16_t t = 0;  ///< extension
+    std::int16_t aux1 = 0;  ///< extension
+    std::int16_t aux2 = 0;  ///< extension
+    std::int16_t aux3 = 0;  ///< extension
+    std::int16_t aux4 = 0;  ///< extension
+    std::int16_t aux5 = 0;  ///< extension
+    std::int16_t aux6 = 0;  ///< extension
+
+    static constexpr MessageInfo kInfo{69, 243, 11, 30};
+    static const std::array<Field, 16> kFields;
+};
+inline constexpr std::array<Field, 16> ManualControl::kFields{{
+    {offsetof(ManualControl, x), 0, 1, FieldType::i16},
+    {offsetof(ManualControl, y), 2, 1, FieldType::i16},
+    {offsetof(ManualControl, z), 4, 1, FieldType::i16},
+    {offsetof(ManualControl, r), 6, 1, FieldType::i16},
+    {offsetof(ManualControl, buttons), 8, 1, FieldType::u16},
+    {offsetof(ManualControl, target), 10, 1, FieldType::u8},
+    {offsetof(ManualControl, buttons2), 11, 1, FieldType::u16},
+    {offsetof(ManualControl, enabled_extensions), 13, 1, FieldType::u8},
+    {offsetof(ManualControl, s), 14, 1, FieldType::i16},
+    {offsetof(ManualControl, t), 16, 1, FieldType::i16},
+    {offsetof(ManualControl, aux1), 18, 1, FieldType::i16},
+    {offsetof(ManualControl, aux2), 20, 1, FieldType::i16},
+    {offsetof(ManualControl, aux3), 22, 1, FieldType::i16},
+    {offsetof(ManualControl, aux4), 24, 1, FieldType::i16},
+    {offsetof(ManualControl, aux5), 26, 1, FieldType::i16},
+    {offsetof(ManualControl, aux6), 28, 1, FieldType::i16},
 }};
 
 /// MISSION_ITEM_INT (73), common.
@@ -1778,7 +1870,9 @@ using AllMessages = MessageList<
     GpsGlobalOrigin,
     MissionRequestInt,
     LocalPositionNedCov,
+    RcChannels,
     RequestDataStream,
+    ManualControl,
     MissionItemInt,
     CommandInt,
     CommandLong,

@@ -61,7 +61,40 @@ FlightMode classify_px4(std::uint32_t custom) noexcept
     }
 }
 
+/// MAV_TYPE: quadrotor, coaxial, helicopter, hexarotor, octorotor, tricopter, dodecarotor, decarotor, other multirotor.
+bool is_rotorcraft(std::uint8_t mav_type) noexcept
+{
+    switch (mav_type) {
+    case 2:
+    case 3:
+    case 4:
+    case 13:
+    case 14:
+    case 15:
+    case 29:
+    case 35:
+    case 43: return true;
+    default: return false;
+    }
+}
+
+bool is_vtol(std::uint8_t mav_type) noexcept { return mav_type >= 19 && mav_type <= 25; }
+
 }  // namespace
+
+VehicleClass vehicle_class(AutopilotStack stack, std::uint8_t mav_type) noexcept
+{
+    constexpr std::uint8_t kFixedWing = 1;
+    const bool plane = mav_type == kFixedWing || (stack == AutopilotStack::ardupilot && is_vtol(mav_type));
+    return plane ? VehicleClass::plane : VehicleClass::copter;
+}
+
+bool is_steerable(AutopilotStack stack, std::uint8_t mav_type, std::uint8_t vtol_state) noexcept
+{
+    constexpr std::uint8_t kHovers = 3;  // MAV_VTOL_STATE_MC
+    const bool hovering_vtol = stack == AutopilotStack::px4 && is_vtol(mav_type) && vtol_state == kHovers;
+    return stack != AutopilotStack::unknown && (is_rotorcraft(mav_type) || hovering_vtol);
+}
 
 FlightMode classify(AutopilotStack stack, VehicleClass vehicle, std::uint32_t custom_mode) noexcept
 {

@@ -10,6 +10,11 @@ namespace jink::link::mavlink {
 /// Mode numbers of the autopilots (their own sources; docs/links.md "Taking over and giving back").
 enum class VehicleClass : std::uint8_t { copter, plane };
 
+/// Whose mode numbers and rules hold for a vehicle. ArduPilot's VTOLs are QuadPlanes: ArduPlane (Q_MAV_TYPE).
+[[nodiscard]] VehicleClass vehicle_class(AutopilotStack stack, std::uint8_t mav_type) noexcept;
+/// Whether the vehicle flies a velocity that SET_POSITION_TARGET_LOCAL_NED commands in the external mode.
+/// @param vtol_state  MAV_VTOL_STATE of EXTENDED_SYS_STATE; 0: unknown
+[[nodiscard]] bool is_steerable(AutopilotStack stack, std::uint8_t mav_type, std::uint8_t vtol_state) noexcept;
 /// What a custom_mode means.
 [[nodiscard]] FlightMode classify(AutopilotStack stack, VehicleClass vehicle, std::uint32_t custom_mode) noexcept;
 /// custom_mode of the mode that follows a companion's set-points, and of the one that holds.

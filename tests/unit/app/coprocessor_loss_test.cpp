@@ -128,6 +128,7 @@ public:
     }
     void request_external_mode() noexcept override { honest_.request_external_mode(); }
     void request_mode(std::uint32_t mode) noexcept override { honest_.request_mode(mode); }
+    void request_heartbeat() noexcept override { honest_.request_heartbeat(); }
     void request_hold_mode() noexcept override { honest_.request_hold_mode(); }
     std::optional<link::GlobalPosition> origin() const noexcept override { return honest_.origin(); }
     std::size_t compose_last_words(std::span<std::byte> out, bool hold, std::string_view text) noexcept override

@@ -97,7 +97,7 @@ public:
         move();
         if (heartbeats && (ticks % 50 == 0 || mode != told_mode_)) {
             told_mode_ = mode;
-            feed(wire::heartbeat(mode, armed, px4 ? 12 : 3));
+            feed(wire::heartbeat(mode, armed, px4 ? 12 : 3, mav_type));
         }
         if (ticks % 50 == 0) {
             feed(wire::origin());
@@ -137,6 +137,9 @@ public:
             answer_mission();
         }
         for (const CommandLong& m : said_of<CommandLong>()) {
+            if (m.command == 512 && m.param1 == 0.0F && heartbeats && answers_requests) {
+                feed(wire::heartbeat(mode, armed, px4 ? 12 : 3, mav_type));  // as both stacks do
+            }
             if (m.command != 176) {
                 continue;
             }
@@ -213,9 +216,12 @@ public:
     int ticks = 0;
     bool heartbeats = true;
     bool own_state = true;
-    bool obeys = true;          ///< grants the modes it is asked for
-    bool acknowledges = false;  ///< answers requests by COMMAND_ACK
-    bool px4 = false;           ///< a PX4; set `mode` too
+    bool obeys = true;             ///< grants the modes it is asked for
+    bool acknowledges = false;     ///< answers requests by COMMAND_ACK
+    bool px4 = false;              ///< a PX4; set `mode` too
+    bool deaf = false;             ///< grants the external mode and flies on as on its mission
+    bool answers_requests = true;  ///< sends a HEARTBEAT when it is asked for
+    std::uint8_t mav_type = 2;
     bool armed = true;
     bool hovers = false;  ///< stands still on its mission
     bool answers_mission = true;
@@ -274,7 +280,7 @@ private:
             const auto back = [](float error) { return std::clamp(-0.5F * error, -2.0F, 2.0F); };
             wanted = Vec3(back(position.x()), 5.0F, back(position.z() - 50.0F));
         } else if (mode == external_mode()) {
-            wanted = command_;
+            wanted = deaf ? Vec3(0.0F, 5.0F, 0.0F) : command_;
         }
         constexpr float kDt = 0.02F;
         constexpr float kLag = 0.25F;

@@ -93,7 +93,8 @@ struct Witness {
         if (after.takeover.in_control()) {
             requests = 0;
         }
-        const auto waits = [](Control c) { return c == Control::requesting || c == Control::refused; };
+        // Once it no longer asks, an external mode long after its last request is a pilot's.
+        const auto waits = [](Control c) { return c == Control::requesting; };
         const bool waiting = waits(before) && waits(after.control());
         const bool unanswered = !waiting && after.now - requested >= Takeover::kConfirm;
         if (foreign || out.event == TakeoverEvent::overruled || out.event == TakeoverEvent::gave_back ||

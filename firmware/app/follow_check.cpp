@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/follow_check.hpp"
+
+#include <algorithm>
+
+namespace jink::app {
+namespace {
+
+/// Ticks longer than this are stalls, in which nobody knows what was flown [s].
+constexpr Seconds kLongestTick = 0.1F;
+
+bool is_followed(const Vec3& command, const Vec3& velocity) noexcept
+{
+    const float speed = command.norm();
+    const float tolerance = std::max(FollowCheck::kTolerance, FollowCheck::kShare * speed);
+    if ((command - velocity).norm() <= tolerance) {
+        return true;
+    }
+    if (speed <= FollowCheck::kTolerance) {
+        return false;
+    }
+    const Vec3 direction = command / speed;
+    const float along = velocity.dot(direction);
+    return along >= FollowCheck::kSlow * speed && along <= speed && (velocity - along * direction).norm() <= tolerance;
+}
+
+}  // namespace
+
+bool FollowCheck::update(const Vec3& command, const Vec3& velocity, const vehicle::VehicleLimits& limits,
+                         TimePoint now) noexcept
+{
+    const Seconds dt = std::clamp(now - last_, 0.0F, kLongestTick);
+    const Vec3 change = velocity - velocity_;
+    last_ = now;
+    velocity_ = velocity;
+    if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
+        begun_ = is_finite(velocity);
+        return false;
+    }
+    const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
+    const Vec3 error = command - (velocity - change);
+    if (is_followed(command, velocity)) {
+        missing_ = std::max(missing_ - expected * dt, 0.0F);
+        return false;
+    }
+    const float towards = change.dot(error) / std::max(error.norm(), 1e-3F);
+    missing_ = std::max(missing_ + expected * dt - towards, 0.0F);
+    return missing_ >= expected * kPatience;
+}
+
+}  // namespace jink::app

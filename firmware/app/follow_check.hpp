@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/base/time.hpp"
+#include "core/base/vec3.hpp"
+#include "core/vehicle/vehicle.hpp"
+
+namespace jink::app {
+
+/// Tells from the own motion whether the vehicle follows the velocities that it is commanded.
+///
+/// A vehicle that follows changes its velocity towards the command. While the two differ by more than the tolerance,
+/// a modest change is expected (kExpected of the configured acceleration, kMaxExpected at most); what is missing adds
+/// up, and what exceeds it is taken off again. A second's worth of the expected change missing means: not followed.
+///
+/// Tolerance: the larger of kTolerance and kShare of the commanded speed. A vehicle that flies where it shall, only
+/// more slowly (kSlow), counts as following: autopilots have speed limits of their own.
+/// A vehicle that ignores a command is noticed 1 s after the command differs from its motion. No alarm for a vehicle
+/// that answers with 2.5 m/s2 and a lag of 0.6 s after a dead time of 0.3 s, in gusts
+/// (tests/property/app/follow_check_property_test.cpp).
+///
+/// Pure, O(1).
+class FollowCheck {
+public:
+    /// Forgets what was missing: call while nothing is commanded.
+    void reset() noexcept { *this = {}; }
+
+    /// One tick under a command.
+    ///
+    /// @param command   velocity commanded during the tick [m/s]
+    /// @param velocity  own velocity, newest [m/s]
+    /// @return true: not followed
+    [[nodiscard]] bool update(const Vec3& command, const Vec3& velocity, const vehicle::VehicleLimits& limits,
+                              TimePoint now) noexcept;
+
+    static constexpr float kTolerance = 1.0F;    ///< [m/s]
+    static constexpr float kShare = 0.3F;        ///< [-]
+    static constexpr float kSlow = 0.5F;         ///< [-]
+    static constexpr float kExpected = 0.3F;     ///< [-]
+    static constexpr float kMaxExpected = 1.5F;  ///< [m/s2]
+    static constexpr Seconds kPatience = 1.0F;
+
+private:
+    bool begun_ = false;
+    TimePoint last_;
+    Vec3 velocity_ = Vec3::Zero();
+    float missing_ = 0.0F;  ///< change of velocity [m/s]
+};
+
+}  // namespace jink::app

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/vehicle/vehicle.hpp"
+#include "core/world/conflict.hpp"
+#include "core/world/world.hpp"
+
+namespace jink::app {
+
+/// Whether an autopilot that does not give control had better stop than fly on. Asked once there is just the time to
+/// stop before the conflict.
+///
+/// In front of what stands: always. Traffic flies on: stopping helps where the place at which the vehicle comes to rest
+/// is farther from the traffic's path, from then on and for kHoldAhead, than the vehicle's own path, by kHoldBetter at
+/// least. A crossing is such a case. An intruder from ahead or behind is not: it would hit a vehicle that stands.
+///
+/// @param track  the threat as in the situation of `own`; nullptr: an obstacle or closed area
+[[nodiscard]] bool is_stopping_safer(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,
+                                     const world::Conflict& conflict, const world::Track* track) noexcept;
+
+inline constexpr Seconds kHoldAhead = 30.0F;
+inline constexpr float kHoldBetter = 1.0F;  // [m]
+
+}  // namespace jink::app

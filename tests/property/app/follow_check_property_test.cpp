@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A vehicle that follows is never accused, one that does not is found within the time stated. JINK_CASES and JINK_SEED.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "core/base/random.hpp"
+#include "firmware/app/follow_check.hpp"
+
+namespace jink::app {
+namespace {
+
+constexpr float kStep = 0.02F;
+
+std::uint64_t number_of(const char* name, std::uint64_t normal)
+{
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::strtoull(text, nullptr, 0) : normal;
+}
+
+/// Velocity in double, written independently of core's vehicle: dead time, first-order lag, an acceleration that is
+/// limited and itself takes time, a speed limit, and gusts that push the ground speed and are fought.
+struct Craft {
+    double acceleration = 2.5, lag = 0.6, dead = 0.2, jerk = 5.0, top = 20.0, gust = 0.0;
+    std::array<double, 3> v{}, a{}, push{};
+    std::array<std::array<double, 3>, 20> delayed{};
+    std::size_t at = 0;
+
+    void step(const Vec3& command, Random& random)
+    {
+        const std::size_t lead = static_cast<std::size_t>(dead / static_cast<double>(kStep));
+        double speed = 0.0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            delayed[(at + lead) % delayed.size()][i] = static_cast<double>(command[static_cast<int>(i)]);
+            speed += delayed[at][i] * delayed[at][i];
+        }
+        speed = std::sqrt(speed);
+        const double cut = speed > top ? top / speed : 1.0;
+        double wanted = 0.0;
+        std::array<double, 3> want{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            want[i] = (cut * delayed[at][i] - v[i]) / lag;
+            wanted += want[i] * want[i];
+        }
+        wanted = std::sqrt(wanted);
+        const double limit = wanted > acceleration ? acceleration / wanted : 1.0;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double change = std::clamp(limit * want[i] - a[i], -jerk * 0.02, jerk * 0.02);
+            a[i] += change;
+            // A gust of a second's memory; the autopilot's loop takes out what it pushed, with its lag.
+            push[i] += -push[i] * 0.02 + gust * std::sqrt(2.0 * 0.02) * static_cast<double>(random.normal());
+            v[i] += (a[i] + 0.5 * push[i]) * 0.02;
+        }
+        at = (at + 1) % delayed.size();
+    }
+    [[nodiscard]] Vec3 seen(Random& random, float sigma) const
+    {
+        return {static_cast<float>(v[0]) + sigma * random.normal(), static_cast<float>(v[1]) + sigma * random.normal(),
+                static_cast<float>(v[2]) + sigma * random.normal()};
+    }
+};
+
+Vec3 random_command(Random& random)
+{
+    const float speed = random.uniform(0.0F, 12.0F);
+    const Vec3 direction(random.normal(), random.normal(), 0.3F * random.normal());
+    return direction.norm() > 1e-3F ? Vec3(direction.normalized() * speed) : Vec3(Vec3::Zero());
+}
+
+TEST(FollowCheckLaw, AVehicleThatFollowsIsNeverAccused)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 4000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20260725);
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        Craft craft;
+        craft.acceleration = static_cast<double>(random.uniform(2.5F, 6.0F));
+        craft.lag = static_cast<double>(random.uniform(0.2F, 0.6F));
+        craft.dead = static_cast<double>(random.uniform(0.0F, 0.3F));
+        craft.jerk = static_cast<double>(random.uniform(5.0F, 20.0F));
+        craft.top = static_cast<double>(random.uniform(0.0F, 1.0F) < 0.2F ? 7.0F : 20.0F);
+        craft.gust = static_cast<double>(random.uniform(0.0F, 1.0F));
+        const Vec3 first = random_command(random);
+        for (std::size_t k = 0; k < 3; ++k) {
+            craft.v[k] = static_cast<double>(first[static_cast<int>(k)]);
+            for (auto& d : craft.delayed) {
+                d[k] = craft.v[k];
+            }
+        }
+        const auto every = 1 + random.below(5);  // ticks between own states
+        const float sigma = random.uniform(0.0F, 0.15F);
+        FollowCheck check;
+        Vec3 command = first;
+        Vec3 seen = first;
+        for (std::uint64_t tick = 0; tick < 400; ++tick) {
+            if (random.below(75) == 0) {
+                command = random_command(random);
+            }
+            craft.step(command, random);
+            seen = tick % every == 0 ? craft.seen(random, sigma) : seen;
+            const TimePoint now{1'000'000 + static_cast<std::int64_t>(tick) * 20'000};
+            ASSERT_FALSE(check.update(command, seen, {}, now))
+                << "at " << static_cast<float>(tick) * kStep << " s; JINK_CASES=1 JINK_SEED=" << seed + i;
+        }
+    }
+}
+
+TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 4000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20260726);
+    float longest = 0.0F;
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        const Vec3 velocity = random_command(random);
+        Vec3 command = random_command(random);
+        // Clearly another one: a manoeuvre that hardly differs from the mission needs no following.
+        while ((command - velocity).norm() < std::max(1.5F, 0.5F * command.norm()) + 0.5F) {
+            command = random_command(random);
+        }
+        const float along = command.norm() > 1.0F ? velocity.dot(command.normalized()) / command.norm() : 0.0F;
+        if (along >= 0.45F) {
+            continue;  // flies that way anyhow, only more slowly
+        }
+        const float sigma = random.uniform(0.0F, 0.1F);
+        FollowCheck check;
+        float found = -1.0F;
+        for (int tick = 0; tick < 150 && found < 0.0F; ++tick) {
+            const Vec3 noise(random.normal(), random.normal(), random.normal());
+            const TimePoint now{1'000'000 + tick * 20'000LL};
+            found = check.update(command, velocity + sigma * noise, {}, now) ? static_cast<float>(tick) * kStep : found;
+        }
+        ASSERT_GE(found, 0.5F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
+        ASSERT_LE(found, 1.5F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
+        longest = std::max(longest, found);
+    }
+    std::printf("[ follow    ] found after %.2f s at most\n", static_cast<double>(longest));
+}
+
+}  // namespace
+}  // namespace jink::app

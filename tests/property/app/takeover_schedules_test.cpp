@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Who is in control, over random schedules: an autopilot with its own rules, a line that delays and loses, a pilot, and
+// a witness that knows only what went over the line. JINK_CASES and JINK_SEED are taken.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+
+#include "tests/property/app/takeover_world.hpp"
+
+namespace jink::app {
+namespace {
+
+using namespace test;
+
+std::uint64_t asked_for(const char* name, std::uint64_t normal)
+{
+    const char* text = std::getenv(name);
+    return text != nullptr ? std::strtoull(text, nullptr, 0) : normal;
+}
+
+World random_world(Random& random)
+{
+    World w;
+    w.px4 = random.below(2) == 0;
+    w.serves = random.below(4) != 0;
+    w.refuses = random.below(6) == 0;
+    constexpr std::array kPeriods{kSecond, kSecond, kSecond, kSecond / 2, kSecond / 5};
+    w.period = w.px4 ? kSecond : kPeriods[random.below(kPeriods.size())];
+    w.latency = 1 + static_cast<int>(random.below(3));
+    w.jitter = random.below(3) == 0 ? 1 + static_cast<int>(random.below(15)) : 0;
+    constexpr std::array kLosses{0.0F, 0.0F, 0.02F, 0.2F, 0.6F};
+    w.loss = kLosses[random.below(kLosses.size())];
+    w.proof = w.px4 && random.below(2) == 0 ? kSecond : 0;
+    w.phase = static_cast<int>(random.below(kSecond));
+    return w;
+}
+
+/// What the schedules reached: a law over schedules in which nothing happens proves nothing.
+struct Tally {
+    long taken = 0, given_back = 0, overruled = 0, refused = 0, lost = 0, sticks = 0, unfollowed = 0, held = 0;
+    long pilots = 0, unknowable = 0;
+
+    void add(const Takeover& t)
+    {
+        const TakeoverDiagnostics& d = t.diagnostics();
+        taken += d.taken;
+        given_back += d.given_back;
+        overruled += d.overruled;
+        refused += d.refused;
+        lost += d.lost_by_fault;
+        sticks += d.sticks;
+        unfollowed += d.unfollowed;
+        held += d.held;
+    }
+};
+
+class Schedule {
+public:
+    explicit Schedule(std::uint64_t seed) : random_(seed), world_(random_world(random_)) {}
+
+    /// nullptr, or what is broken, and when.
+    [[nodiscard]] const char* run(int ticks, Tally& tally)
+    {
+        rest_ = random_.below(3) == 0 ? 25 : 120;
+        for (tick_ = 0; tick_ < ticks; ++tick_) {
+            machine_.hear(tick_);
+            act_as_pilot(tally);
+            machine_.step(tick_);
+            const TakeoverInput input = receive();
+            const TakeoverOutput out = takeover_.update(input, TimePoint{1'000'000 + tick_ * 20'000LL});
+            witness_.sticks = witness_.sticks || (out.event == TakeoverEvent::sticks);
+            if (const char* broken = witness_.check(out, takeover_, tick_, input.wants_control)) {
+                return broken;
+            }
+            transmit(out, tally);
+            streamed_ = takeover_.streaming();
+        }
+        tally.add(takeover_);
+        return nullptr;
+    }
+    [[nodiscard]] int tick() const { return tick_; }
+
+private:
+    void act_as_pilot(Tally& tally)
+    {
+        if (random_.below(static_cast<std::uint64_t>(rest_) * 3U) != 0) {
+            return;
+        }
+        constexpr std::array<std::uint32_t, 8> kChoices{kManual,   kManual,   kHold,     kMissionA,
+                                                        kMissionA, kMissionB, kExternal, 0};
+        const std::uint32_t choice = kChoices[random_.below(kChoices.size())];
+        ++tally.pilots;
+        if (choice == 0) {
+            machine_.armed = !machine_.armed;
+        } else {
+            machine_.enter(choice, tick_);
+            pilot_at_ = tick_;
+        }
+    }
+
+    TakeoverInput receive()
+    {
+        if (random_.below(static_cast<std::uint64_t>(rest_)) == 0) {
+            conflict_ = !conflict_;
+        }
+        fault_ =
+            fault_ > 0
+                ? fault_ - 1
+                : (random_.below(600) == 0 ? static_cast<int>(1 + random_.below(random_.below(5) == 0 ? 600 : 60)) : 0);
+        TakeoverInput input;
+        input.wants_control = input.in_conflict = conflict_;
+        input.may_act = fault_ == 0;
+        input.urgent_hold = conflict_ && random_.below(3) == 0;
+        input.keep_stream = world_.phase % 7 == 0;
+        input.sticks_moved = streamed_ && (sticks_ || random_.below(400) == 0);
+        sticks_ = input.sticks_moved;
+        input.unfollowed = random_.below(1500) == 0;
+        Beat beat;
+        while (machine_.beats.take(tick_, beat)) {
+            witness_.hear(beat, tick_, takeover_.control());
+            input.has_report = true;
+            report_.stack = world_.px4 ? link::AutopilotStack::px4 : link::AutopilotStack::ardupilot;
+            report_.custom_mode = beat.number;
+            report_.mode = meaning(beat.number);
+            report_.armed = beat.armed;
+        }
+        input.report = report_;
+        bool accepted = false;
+        while (machine_.answers.take(tick_, accepted)) {
+            input.mode_accepted = input.mode_accepted || accepted;
+            input.mode_denied = input.mode_denied || !accepted;
+            witness_.accepted_at = accepted ? tick_ : witness_.accepted_at;
+        }
+        return input;
+    }
+
+    void transmit(const TakeoverOutput& out, Tally& tally)
+    {
+        Request request;
+        request.action = out.action;
+        request.number = out.action == TakeoverAction::request_external ? static_cast<std::uint32_t>(kExternal)
+                         : out.action == TakeoverAction::request_hold   ? static_cast<std::uint32_t>(kHold)
+                                                                        : takeover_.former_mode();
+        request.poll = out.action == TakeoverAction::none;
+        // A pilot's choice that no HEARTBEAT could have told yet.
+        tally.unknowable += out.action != TakeoverAction::none && pilot_at_ > witness_.newest.sent ? 1 : 0;
+        if ((out.action != TakeoverAction::none || out.ask_heartbeat) && !machine_.lost()) {
+            machine_.requests.send(request, machine_.later(tick_));
+        }
+        if (takeover_.streaming()) {
+            machine_.hear_setpoint(tick_);
+        }
+    }
+
+    Random random_;
+    World world_;
+    Machine machine_{world_, random_};
+    Witness witness_{world_};
+    Takeover takeover_;
+    link::AutopilotReport report_;
+    int rest_ = 100;  ///< mean time between changes of the conflict [ticks]
+    int tick_ = 0;
+    bool conflict_ = false;
+    int fault_ = 0;
+    bool streamed_ = false;
+    bool sticks_ = false;
+    int pilot_at_ = kNever;
+};
+
+TEST(TakeoverSchedules, NoPilotIsOverriddenOnceKnown)
+{
+    const std::uint64_t cases = asked_for("JINK_CASES", 100'000);
+    const std::uint64_t seed = asked_for("JINK_SEED", 20260724);
+    Tally tally;
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Schedule schedule(seed + i);
+        const char* broken = schedule.run(300, tally);
+        ASSERT_EQ(broken, nullptr) << broken << " at tick " << schedule.tick()
+                                   << "; JINK_CASES=1 JINK_SEED=" << seed + i;
+    }
+    std::printf(
+        "[ schedules] %llu: pilot acted %ld times; taken %ld, given back %ld, overruled %ld, refused %ld, lost %ld, "
+        "sticks %ld, unfollowed %ld, held %ld; choices that no HEARTBEAT could have told: %ld\n",
+        static_cast<unsigned long long>(cases), tally.pilots, tally.taken, tally.given_back, tally.overruled,
+        tally.refused, tally.lost, tally.sticks, tally.unfollowed, tally.held, tally.unknowable);
+    if (cases >= 1000) {
+        EXPECT_GT(tally.taken, 0);
+        EXPECT_GT(tally.given_back, 0);
+        EXPECT_GT(tally.overruled, 0);
+        EXPECT_GT(tally.refused, 0);
+        EXPECT_GT(tally.lost, 0);
+        EXPECT_GT(tally.sticks, 0);
+        EXPECT_GT(tally.unfollowed, 0);
+        EXPECT_GT(tally.held, 0);
+    }
+}
+
+struct Times {
+    int taken = kNever;  ///< ticks from the conflict until in control
+    int back = kNever;   ///< ticks from its end until given back
+};
+
+/// A healthy line: a conflict begins at `begins` and lasts 5 s.
+Times fly_once(const World& world, int begins)
+{
+    Random random(1);
+    Machine machine{world, random};
+    Takeover takeover;
+    link::AutopilotReport report;
+    report.stack = world.px4 ? link::AutopilotStack::px4 : link::AutopilotStack::ardupilot;
+    Times times;
+    const int ends = begins + 5 * kSecond;
+    for (int tick = 0; tick < ends + 5 * kSecond; ++tick) {
+        machine.hear(tick);
+        machine.step(tick);
+        TakeoverInput input;
+        Beat beat;
+        while (machine.beats.take(tick, beat)) {
+            input.has_report = true;
+            report.custom_mode = beat.number;
+            report.mode = meaning(beat.number);
+            report.armed = true;
+        }
+        bool accepted = false;
+        while (machine.answers.take(tick, accepted)) {
+            input.mode_accepted = accepted;
+            input.mode_denied = !accepted;
+        }
+        input.report = report;
+        input.may_act = true;
+        input.wants_control = input.in_conflict = tick >= begins && tick < ends;
+        const TakeoverOutput out = takeover.update(input, TimePoint{1'000'000 + tick * 20'000LL});
+        times.taken = out.event == TakeoverEvent::took_over ? tick - begins : times.taken;
+        times.back = out.event == TakeoverEvent::gave_back ? tick - ends : times.back;
+        if (takeover.streaming()) {
+            machine.hear_setpoint(tick);
+        }
+        if (out.action != TakeoverAction::none || out.ask_heartbeat) {
+            const std::uint32_t number = out.action == TakeoverAction::request_external
+                                             ? static_cast<std::uint32_t>(kExternal)
+                                             : takeover.former_mode();
+            machine.requests.send({out.action, number, out.action == TakeoverAction::none}, machine.later(tick));
+        }
+    }
+    return times;
+}
+
+/// Every phase of the HEARTBEAT, latency and stack. A line that does not answer waits for kAnswer, and a PX4's 1 Hz for
+/// the confirmation.
+TEST(TakeoverSchedules, ControlIsTakenAndGivenBackInTimeOnAHealthyLine)
+{
+    for (const bool px4 : {false, true}) {
+        for (const bool serves : {true, false}) {
+            for (const int proof : {0, kSecond}) {
+                for (int latency = 1; latency <= 3; ++latency) {
+                    for (int phase = 0; phase < kSecond; ++phase) {
+                        World world;
+                        world.px4 = px4;
+                        world.serves = serves;
+                        world.proof = px4 ? proof : 0;
+                        world.latency = latency;
+                        world.phase = phase;
+                        const Times times = fly_once(world, 6 * kSecond);
+                        const float beat = serves || !px4 ? 0.0F : 1.0F;
+                        const float old_rule = px4 && proof > 0 ? (serves ? 1.3F : 2.3F) : 0.0F;
+                        const float limit = (serves ? 0.4F : 0.5F) + beat + old_rule;
+                        const auto seconds = [](int ticks) { return static_cast<float>(ticks) * kTickTime; };
+                        ASSERT_GE(times.taken, 0) << px4 << serves << proof << ' ' << latency << ' ' << phase;
+                        ASSERT_LE(seconds(times.taken), limit)
+                            << px4 << serves << proof << ' ' << latency << ' ' << phase;
+                        ASSERT_GE(times.back, 0) << px4 << serves << proof << ' ' << latency << ' ' << phase;
+                        ASSERT_LE(seconds(times.back), (serves ? 0.6F : 0.5F) + (serves ? 0.0F : 1.0F) + beat)
+                            << px4 << serves << proof << ' ' << latency << ' ' << phase;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace jink::app
