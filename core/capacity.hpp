@@ -53,9 +53,13 @@ namespace jink {
 
 /// Tracks kept at once: 31 vehicles of a swarm, 25 obstacles that move, and traffic beside them. 32, which boards have,
 /// cover an ADS-B receiver's nearest traffic plus own detections.
-/// When full, the track whose closest approach is farthest away gives way, and TrackTable counts it.
+/// When full, the least urgent track gives way (TrackTable), and TrackTable counts it.
 inline constexpr std::size_t kMaxTracks = JINK_MAX_TRACKS;
 static_assert(kMaxTracks >= 1 && kMaxTracks <= 256);
+
+/// Tracks kept under one id: two aircraft with one address, the ghost that a jump leaves, and one more. Beyond that the
+/// least urgent track of the id gives way, and TrackTable counts it.
+inline constexpr std::size_t kMaxSameId = 4;
 
 /// Obstacles known at once: a 72-sector range scan, and 24 surveyed ones.
 /// When full, the obstacle farthest from the vehicle gives way, and ObstacleTable counts it.

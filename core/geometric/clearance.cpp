@@ -101,7 +101,7 @@ Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
     const Threat t = threat_at_start(problem_, threat);
     return {t.motion.position - problem_.frame.origin,
             t.motion.velocity,
-            half_,
+            half_ + t.half_height * Vec3::UnitZ(),
             t.radius,
             t.radius_rate,
             t.radius_acceleration};

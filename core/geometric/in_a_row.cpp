@@ -65,7 +65,8 @@ bool first_met(const Problem& problem, const geometry::Motion& own, const Vec3& 
     }
     for (std::size_t i = 0; i < problem.threats.size(); ++i) {
         const Threat threat = threat_at_start(problem, i);
-        look(i, threat.motion, half, threat.radius, threat.radius_rate + 0.5F * threat.radius_acceleration * horizon);
+        look(i, threat.motion, half + threat.half_height * Vec3::UnitZ(), threat.radius,
+             threat.radius_rate + 0.5F * threat.radius_acceleration * horizon);
     }
     for (const world::Obstacle& obstacle : problem.obstacles) {
         Vec3 box;

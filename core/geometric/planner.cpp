@@ -25,6 +25,7 @@ Threat threat_of(const Situation& situation, const world::Track& track, Seconds 
     threat.radius = growth.radius;
     threat.radius_rate = growth.rate;
     threat.radius_acceleration = growth.acceleration;
+    threat.half_height = track.half_height;
     return threat;
 }
 

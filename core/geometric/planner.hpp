@@ -142,6 +142,7 @@ struct Threat {
     float radius = 0.0F;               ///< at t = 0 [m], uncertainty included
     float radius_rate = 0.0F;          ///< growth by velocity uncertainty [m/s]
     float radius_acceleration = 0.0F;  ///< growth by unknown acceleration [m/s2], as radius += a t^2 / 2
+    float half_height = 0.0F;          ///< of the upright capsule that the sphere is swept to [m]
 };
 
 /// Moving solids of one problem. They come from problem files and callers of `solve`; a Situation's tracks are spheres.

@@ -51,12 +51,14 @@ Neighbour neighbour_of(const world::Situation& s, const world::Track& track, con
                        const FilterSettings& settings, Seconds ahead, Seconds stale) noexcept
 {
     Neighbour out;
-    out.position = track.position + ahead * track.velocity - own.position;
+    out.position =
+        world::nearest_in_height(track, track.position + ahead * track.velocity, own.position.z()) - own.position;
     out.velocity = track.velocity;
     const Seconds t = time_of_closest(out.position, track.velocity - own.velocity, settings.pair.horizon);
     const float radius = world::threat_radius(s, track, t + ahead);
     out.half_width = radius;
-    out.half_height = radius;
+    // No taller than half-spaces can be made for: what is left of an uncertain height the final check keeps clear.
+    out.half_height = std::max(radius, std::min(radius + track.half_height, radius / kTallest));
     out.max_speed = std::max(settings.limits.max_speed, track.velocity.norm());
     out.acceleration = track.max_acceleration;
     out.id = track.id;

@@ -76,7 +76,8 @@ void CellFusion::rate_track(const world::Situation& situation, const world::Trac
     const ReachSet& set = *placed.set;
     const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
     Intruder intruder;
-    intruder.position = placed.to_set(track.position + track.velocity * lead);
+    intruder.position =
+        placed.to_set(world::nearest_in_height(track, track.position + track.velocity * lead, placed.origin.z()));
     intruder.velocity = turned(placed, track.velocity) / placed.unit;
     intruder.radius =
         (world::growth_of(situation, track, lead).at(longest) + situation.limits.half_extents.norm()) / placed.unit;

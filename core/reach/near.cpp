@@ -89,8 +89,9 @@ void NearThreats::add_track(const world::Situation& situation, const world::Trac
                             Seconds lead, float range) noexcept
 {
     NearThreat threat;
-    threat.half = situation.limits.half_extents;
-    threat.body = threat.half.norm();
+    threat.half = world::box_against(situation, track);
+    threat.is_tall = track.half_height > 0.0F;
+    threat.body = threat.is_tall ? std::hypot(threat.half.x(), threat.half.y()) : threat.half.norm();
     threat.position = track.position + track.velocity * lead;
     threat.velocity = track.velocity;
     threat.growth = world::growth_of(situation, track, lead);
@@ -98,7 +99,7 @@ void NearThreats::add_track(const world::Situation& situation, const world::Trac
     threat.room = rule_.room;
     const Seconds last = placed.period * static_cast<float>(kMaxDepth);
     const float apart = geometry::point_segment_distance(placed.origin, threat.position, threat.at(last));
-    if (apart > range + threat.growth.at(last) + threat.body) {
+    if (apart > range + threat.growth.at(last) + threat.half.norm()) {
         return;
     }
     threat.shrunk =

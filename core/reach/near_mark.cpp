@@ -122,10 +122,14 @@ void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std:
         return;
     }
     const Vec3 at_start = placed.to_set(near.position);
-    const Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
+    Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
+    // What is tall climbs little of its height meanwhile: all of that counts as height, so that level times are
+    // nearest.
+    const float climb = near.is_tall ? std::abs(near.velocity.z()) * longest : 0.0F;
+    per_period.z() = near.is_tall ? 0.0F : per_period.z();
     const float speed_squared = per_period.squaredNorm();
     const float per_speed = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
-    const float height = near.is_tall ? near.half.z() / placed.unit : 0.0F;
+    const float height = near.is_tall ? (near.half.z() + climb) / placed.unit : 0.0F;
     const Vec3 early = at_start + cells.earliest * per_period;
     const Vec3 late = at_start + cells.latest * per_period;
     const Vec3 size(around, around, around + height);

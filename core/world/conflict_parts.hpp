@@ -55,7 +55,7 @@ Seconds closest_time(const Parts& phases, const Track& track) noexcept
 template <class Piece>
 Seconds loss_within(const Situation& situation, const Piece& phase, const Track& track, WorkBudget& budget) noexcept
 {
-    const Vec3& half = situation.limits.half_extents;
+    const Vec3 half = box_against(situation, track);
     const Seconds span = phase.end - phase.start;
     const geometry::Motion threat{track.position + track.velocity * phase.start, track.velocity};
     if (span <= 0.0F ||
@@ -161,7 +161,8 @@ bool predict(const Situation& situation, const Parts& phases, const PositionAt& 
     out.time_to_loss = loss;
     out.time_to_closest = std::max(closest, loss);
     out.own_at_closest = position_at(out.time_to_closest);
-    out.threat_at_closest = track.position + track.velocity * out.time_to_closest;
+    out.threat_at_closest =
+        nearest_in_height(track, track.position + track.velocity * out.time_to_closest, out.own_at_closest.z());
     out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
     out.radius_at_closest = threat_radius(situation, track, out.time_to_closest);
     out.margin = geometry::box_distance(situation.limits.half_extents, out.threat_at_closest - out.own_at_closest) -

@@ -111,7 +111,7 @@ void against_track(const Situation& situation, const Flight& flight, std::size_t
     const Track& track = situation.tracks[index];
     const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
     against_ball(
-        flight, situation.limits.half_extents, {track.position, track.velocity}, grows,
+        flight, box_against(situation, track), {track.position, track.velocity}, grows,
         [&](Seconds t) { return threat_radius(situation, track, t); },
         {ThreatKind::track, static_cast<std::uint16_t>(index)}, escape, budget, best);
 }
@@ -306,7 +306,10 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
             return best;
         }
         const Vec3 centre = track.position + track.velocity * t;
-        consider(best, geometry::box_distance(half, centre - position) - threat_radius(situation, track, t), t, ref);
+        consider(best,
+                 geometry::box_distance(box_against(situation, track), centre - position) -
+                     threat_radius(situation, track, t),
+                 t, ref);
     }
     for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
         const geometry::Shape& shape = situation.obstacles[i].shape;

@@ -2,6 +2,7 @@
 #include "core/world/track_table.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,15 +14,16 @@ constexpr float kLeastSigma = 1e-4F;
 /// No aircraft's: larger ones would swell a sphere over everything, or float's range [m/s2].
 constexpr float kLargestAcceleration = 1000.0F;
 
-/// Distance at the closest approach from `now` on, both flying straight on [m].
-float closest_approach(const Track& track, const vehicle::VehicleState& own, TimePoint now) noexcept
-{
-    const Vec3 gap = track.position + track.velocity * (now - track.stamp) - own.position;
-    const Vec3 closing = track.velocity - own.velocity;
-    const float speed2 = closing.squaredNorm();
-    const float t = speed2 > 1e-9F ? std::max(0.0F, -gap.dot(closing) / speed2) : 0.0F;
-    return (gap + closing * t).norm() - track.radius;
-}
+/// Miss distance that counts as a second of time to the closest approach: either side's way in a second of an unhurried
+/// manoeuvre [m/s].
+constexpr float kMissSpeed = 3.0F;
+/// Sightings from which a track is confirmed.
+constexpr unsigned kConfirmed = 3;
+/// A track that just began, and one that began during a flood, count as so much less urgent.
+constexpr float kNewcomer = 1.5F;
+constexpr float kNewcomerInFlood = 2.0F;
+constexpr float kOwnSensor = 0.5F;
+constexpr Seconds kFloodWindow = 1.0F;
 
 std::uint32_t& counter(TrackDiagnostics& d, TrackStatus status) noexcept
 {
@@ -41,10 +43,26 @@ std::uint32_t& counter(TrackDiagnostics& d, TrackStatus status) noexcept
 bool all_finite(const TrackMeasurement& m) noexcept
 {
     return is_finite(m.position) && is_finite(m.velocity) && std::isfinite(m.radius) &&
-           std::isfinite(m.sigma_position) && std::isfinite(m.sigma_velocity) && std::isfinite(m.max_acceleration);
+           std::isfinite(m.sigma_position) && std::isfinite(m.sigma_velocity) && std::isfinite(m.max_acceleration) &&
+           std::isfinite(m.half_height);
 }
 
 }  // namespace
+
+float urgency(const Track& track, unsigned sightings, bool flood, const vehicle::VehicleState& own,
+              TimePoint now) noexcept
+{
+    const Seconds age = now - track.stamp;
+    const Vec3 centre = track.position + track.velocity * age;
+    const Vec3 gap = nearest_in_height(track, centre, own.position.z()) - own.position;
+    const Vec3 closing = track.velocity - own.velocity;
+    const float speed2 = closing.squaredNorm();
+    const float t = speed2 > 1e-9F ? std::max(0.0F, -gap.dot(closing) / speed2) : 0.0F;
+    const float miss = std::max(0.0F, (gap + closing * t).norm() - track.radius);
+    const float newcomer = sightings >= kConfirmed ? 1.0F : flood ? kNewcomerInFlood : kNewcomer;
+    const float seen_here = track.source == TrackSource::own_sensor ? kOwnSensor : 1.0F;
+    return (t + miss / kMissSpeed + std::max(0.0F, age)) * newcomer * seen_here;
+}
 
 TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleState& own, TimePoint now) const noexcept
 {
@@ -52,10 +70,10 @@ TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleS
         return TrackStatus::not_finite;
     }
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
-    const bool sizes_ok = within(m.radius, 0.0F, settings_.max_range) &&
-                          within(m.sigma_position, kLeastSigma, settings_.max_range) &&
-                          within(m.max_acceleration, 0.0F, kLargestAcceleration) &&
-                          (!m.has_velocity || within(m.sigma_velocity, kLeastSigma, settings_.max_speed));
+    const bool sizes_ok =
+        within(m.radius, 0.0F, settings_.max_range) && within(m.sigma_position, kLeastSigma, settings_.max_range) &&
+        within(m.max_acceleration, 0.0F, kLargestAcceleration) && within(m.half_height, 0.0F, settings_.max_range) &&
+        (!m.has_velocity || within(m.sigma_velocity, kLeastSigma, settings_.max_speed));
     if (!sizes_ok || !((m.position - own.position).norm() <= settings_.max_range) ||
         !(m.velocity.norm() <= settings_.max_speed)) {
         return TrackStatus::out_of_range;
@@ -73,9 +91,18 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
     entry.variance_position = m.sigma_position * m.sigma_position;
     const float sigma_velocity = m.has_velocity ? m.sigma_velocity : settings_.first_sigma_velocity;
     entry.variance_velocity = sigma_velocity * sigma_velocity;
-    entry.track = {m.id,     m.stamp,          m.position,     m.has_velocity ? m.velocity : Vec3(Vec3::Zero()),
-                   m.radius, m.sigma_position, sigma_velocity, m.max_acceleration,
-                   m.source, m.cooperative};
+    entry.track = {m.id,
+                   m.stamp,
+                   m.position,
+                   m.has_velocity ? m.velocity : Vec3(Vec3::Zero()),
+                   m.radius,
+                   m.sigma_position,
+                   sigma_velocity,
+                   m.max_acceleration,
+                   m.source,
+                   m.cooperative,
+                   0,
+                   m.half_height};
     return entry;
 }
 
@@ -104,7 +131,9 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     if (innovation.squaredNorm() > gate2 * (ppp + r) || (m.has_velocity && turn.squaredNorm() > gate2 * (pvv + rv))) {
         // It did not do what the filter believes: the newest sighting is the truth.
         ++diagnostics_.jumps;
+        const std::uint8_t instance = e.track.instance;
         e = start(m);
+        e.track.instance = instance;
         return;
     }
     const float gain_p = ppp / (ppp + r);
@@ -127,35 +156,121 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_position = vpp;
     e.covariance = vpv;
     e.variance_velocity = vvv;
-    e.track = {m.id,           m.stamp,        position,           velocity, m.radius,
-               std::sqrt(vpp), std::sqrt(vvv), m.max_acceleration, m.source, m.cooperative};
+    e.track = {m.id,     m.stamp,        position,         velocity,
+               m.radius, std::sqrt(vpp), std::sqrt(vvv),   m.max_acceleration,
+               m.source, m.cooperative,  e.track.instance, m.half_height};
+    e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
+}
+
+/// Whether the track could have reached the sighting; `cost` says how well it fits, the less the better.
+bool TrackTable::fit(const Entry& e, const TrackMeasurement& m, float& cost) const noexcept
+{
+    // A late sighting is compared with where the track was then.
+    const Seconds dt = m.stamp - e.track.stamp;
+    const Seconds apart = std::abs(dt);
+    const float q = settings_.process_acceleration * settings_.process_acceleration;
+    const float spread = e.variance_position + apart * (2.0F * e.covariance + apart * e.variance_velocity) +
+                         q * apart * apart * apart / 3.0F + m.sigma_position * m.sigma_position;
+    Vec3 gap = m.position - (e.track.position + e.track.velocity * dt);
+    const float by_height = std::min(std::abs(gap.z()), e.track.half_height + m.half_height);
+    gap.z() -= std::copysign(by_height, gap.z());
+    const float acceleration = settings_.reach_acceleration + std::max(e.track.max_acceleration, m.max_acceleration);
+    const float turned = 0.5F * acceleration * apart * apart;
+    cost = gap.squaredNorm() / spread;
+    if (m.has_velocity) {
+        const float spread_velocity = e.variance_velocity + q * apart + m.sigma_velocity * m.sigma_velocity;
+        cost += (m.velocity - e.track.velocity).squaredNorm() / spread_velocity;
+    }
+    return gap.norm() <= settings_.jump_gate * std::sqrt(spread) + turned;
+}
+
+float TrackTable::urgency_of(const Entry& e, const vehicle::VehicleState& own, TimePoint now) const noexcept
+{
+    return urgency(e.track, e.sightings, new_in_second_ > settings_.flood, own, now);
+}
+
+std::size_t TrackTable::least_urgent(const vehicle::VehicleState& own, TimePoint now) const noexcept
+{
+    std::size_t worst = 0;
+    float most = -1.0F;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const float its = urgency_of(entries_[i], own, now);
+        worst = its > most ? i : worst;
+        most = std::max(most, its);
+    }
+    return worst;
+}
+
+TrackTable::Match TrackTable::match(const TrackMeasurement& m, const vehicle::VehicleState& own,
+                                    TimePoint now) const noexcept
+{
+    Match out;
+    float least_cost = std::numeric_limits<float>::infinity();
+    float most = -1.0F;
+    unsigned taken = 0;
+    for (std::size_t i = 0; i < entries_.size(); ++i) {
+        const Entry& e = entries_[i];
+        if (e.track.id != m.id) {
+            continue;
+        }
+        taken |= 1U << e.track.instance;
+        ++out.count;
+        const float its = urgency_of(e, own, now);
+        out.least_urgent = its > most ? i : out.least_urgent;
+        most = std::max(most, its);
+        const bool same_kind = (e.track.half_height > 0.0F) == (m.half_height > 0.0F);
+        float cost = 0.0F;
+        if (same_kind && fit(e, m, cost) && cost < least_cost) {
+            least_cost = cost;
+            out.best = i;
+        }
+    }
+    out.free_instance = static_cast<std::uint8_t>(std::countr_one(taken));
+    return out;
+}
+
+void TrackTable::note_new(TimePoint now) noexcept
+{
+    if (now - second_began_ >= kFloodWindow || now < second_began_) {
+        second_began_ = now;
+        new_in_second_ = 0;
+    }
+    ++new_in_second_;
+    diagnostics_.floods += new_in_second_ == settings_.flood + 1 ? 1U : 0U;
+}
+
+/// A track for a sighting that fits none.
+TrackStatus TrackTable::add(const TrackMeasurement& m, const Match& match, const vehicle::VehicleState& own,
+                            TimePoint now) noexcept
+{
+    note_new(now);
+    Entry fresh = start(m);
+    fresh.track.instance = match.free_instance;
+    const bool id_full = match.count >= kMaxSameId;
+    diagnostics_.doubled += match.count > 0 ? 1U : 0U;
+    if (!id_full && entries_.try_push_back(fresh)) {
+        return TrackStatus::created;
+    }
+    Entry& victim = entries_[id_full ? match.least_urgent : least_urgent(own, now)];
+    if (!(urgency_of(fresh, own, now) < urgency_of(victim, own, now))) {
+        return TrackStatus::full;
+    }
+    fresh.track.instance = id_full ? victim.track.instance : match.free_instance;
+    victim = fresh;
+    return TrackStatus::replaced;
 }
 
 TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::VehicleState& own, TimePoint now) noexcept
 {
     TrackStatus status = admit(m, own, now);
     if (status == TrackStatus::updated) {
-        auto* const known =
-            std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.track.id == m.id; });
-        if (known != entries_.end()) {
-            if (m.stamp <= known->track.stamp) {
-                status = TrackStatus::stale;
-            } else {
-                filter(*known, m);
-            }
-        } else if (entries_.try_push_back(start(m))) {
-            status = TrackStatus::created;
+        const Match found = match(m, own, now);
+        if (found.best == kNone) {
+            status = add(m, found, own, now);
+        } else if (m.stamp <= entries_[found.best].track.stamp) {
+            status = TrackStatus::stale;
         } else {
-            const Entry fresh = start(m);
-            auto* const farthest =
-                std::max_element(entries_.begin(), entries_.end(), [&](const Entry& a, const Entry& b) {
-                    return closest_approach(a.track, own, now) < closest_approach(b.track, own, now);
-                });
-            status = TrackStatus::full;
-            if (closest_approach(fresh.track, own, now) < closest_approach(farthest->track, own, now)) {
-                *farthest = fresh;
-                status = TrackStatus::replaced;
-            }
+            filter(entries_[found.best], m);
         }
     }
     ++counter(diagnostics_, status);
@@ -182,7 +297,10 @@ std::span<const Track> TrackTable::snapshot(TimePoint now) noexcept
         track.position += track.velocity * (now - track.stamp);
         std::size_t at = snapshot_.size();
         snapshot_.unchecked_push_back(track);
-        for (; at > 0 && snapshot_[at - 1].id > track.id; --at) {
+        const auto comes_after = [&](const Track& other) {
+            return other.id != track.id ? other.id > track.id : other.instance > track.instance;
+        };
+        for (; at > 0 && comes_after(snapshot_[at - 1]); --at) {
             snapshot_[at] = snapshot_[at - 1];
         }
         snapshot_[at] = track;

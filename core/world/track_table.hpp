@@ -23,26 +23,29 @@ struct TrackMeasurement {
     float max_acceleration = 0.0F;  ///< [m/s2], >= 0
     TrackSource source = TrackSource::adsb;
     bool cooperative = false;  ///< as in Track; the newest sighting's word counts
+    float half_height = 0.0F;  ///< uncertainty of the height of `position` beside sigma_position [m], >= 0
 };
 
 enum class TrackStatus : std::uint8_t {
     updated,
     created,
-    replaced,      ///< table full: the track with the farthest closest approach gave way
+    replaced,      ///< table full, or kMaxSameId tracks of this id: the least urgent one gave way
     not_finite,    ///< NaN or infinity
     out_of_range,  ///< farther, larger or less certain than `max_range`, faster or less certain in that than
                    ///< `max_speed`, sigmas below 0.1 mm, acceleration not in 0..1000 m/s2
-    stale,         ///< older than `max_age`, or not newer than what is known
+    stale,         ///< older than `max_age`, or not newer than the track that it fits
     future,        ///< stamped later than now
-    full,          ///< table full and this one is the least dangerous
+    full,          ///< table full, or kMaxSameId tracks of this id, and the sighting is the least urgent
 };
 
-/// Counters since start; each sighting adds to exactly one but `expired` and `jumps`.
+/// Counters since start; each sighting adds to exactly one of the first eight.
 struct TrackDiagnostics {
     std::uint32_t updated = 0, created = 0, replaced = 0, not_finite = 0, out_of_range = 0, stale = 0, future = 0,
                   full = 0;
     std::uint32_t expired = 0;  ///< dropped by age
     std::uint32_t jumps = 0;    ///< sightings so far from the prediction that the track was started anew from them
+    std::uint32_t doubled = 0;  ///< tracks started beside another of the same id, which could not have got there
+    std::uint32_t floods = 0;   ///< seconds with more new tracks than `flood`
 };
 
 struct TrackTableSettings {
@@ -53,9 +56,24 @@ struct TrackTableSettings {
     float first_sigma_velocity = 5.0F;  ///< of a track first seen without velocity [m/s]
     float jump_gate = 6.0F;             ///< innovation in standard deviations beyond which a track starts anew
     Seconds future_slack = 0.05F;       ///< stamps may lie this far ahead of now [s]
+    float reach_acceleration = 10.0F;   ///< aircraft accelerate no faster, beside their max_acceleration [m/s2]
+    std::uint16_t flood = 16;           ///< new tracks in a second beyond which more are a flood
 };
 
+/// How urgent a track is [s]; the smaller, the more urgent. The time to the closest approach to `own`, both flying
+/// straight on, plus a second for each 3 m of miss distance, plus the track's age. A track of an own sensor counts
+/// half; a track that was sighted fewer than three times counts 1.5 times, and twice during a flood. O(1).
+[[nodiscard]] float urgency(const Track& track, unsigned sightings, bool flood, const vehicle::VehicleState& own,
+                            TimePoint now) noexcept;
+
 /// Tracks under a constant-velocity Kalman filter, one variance for the three axes.
+///
+/// Two aircraft may share an id. A sighting belongs to a track of its id that could have reached its place: the
+/// prediction, `jump_gate` standard deviations of both, and `reach_acceleration` over the time between. A sighting that
+/// no track of its id could have reached starts another one beside them. Of several tracks the sighting goes to the one
+/// that it fits best in place and velocity. A track that really jumped leaves a ghost, which ages out as any other.
+/// Sightings of an uncertain height and those of a known one have tracks of their own. Two aircraft of one id that are
+/// first seen nearer to each other than that reach share a track until they part.
 ///
 /// Memory: kMaxTracks * (sizeof(Track) + 16) bytes. Nothing is dropped without a count.
 class TrackTable {
@@ -68,8 +86,8 @@ public:
     /// Drops tracks older than `max_age`. O(kMaxTracks).
     void expire(TimePoint now) noexcept;
 
-    /// Tracks extrapolated to `now`, in order of id (so that order of arrival changes nothing); their sigmas stay those
-    /// at their stamp. O(kMaxTracks^2). The view is valid until the next call of any member.
+    /// Tracks extrapolated to `now`, in order of id and instance (so that order of arrival changes nothing); their
+    /// sigmas stay those at their stamp. O(kMaxTracks^2). The view is valid until the next call of any member.
     [[nodiscard]] std::span<const Track> snapshot(TimePoint now) noexcept;
 
     /// Id of track `index` of the last snapshot.
@@ -88,15 +106,34 @@ private:
         float variance_position = 0.0F;
         float covariance = 0.0F;
         float variance_velocity = 0.0F;
+        std::uint16_t sightings = 1;  ///< saturates
     };
+    /// The tracks of one id, and which of them a sighting fits.
+    struct Match {
+        std::size_t best = kNone;          ///< that could have reached it; kNone: no track could
+        std::size_t least_urgent = kNone;  ///< of those of the id
+        std::size_t count = 0;
+        std::uint8_t free_instance = 0;
+    };
+    static constexpr std::size_t kNone = kMaxTracks;
 
     [[nodiscard]] TrackStatus admit(const TrackMeasurement& m, const vehicle::VehicleState& own,
                                     TimePoint now) const noexcept;
     [[nodiscard]] Entry start(const TrackMeasurement& m) const noexcept;
     void filter(Entry& entry, const TrackMeasurement& m) noexcept;
+    [[nodiscard]] bool fit(const Entry& entry, const TrackMeasurement& m, float& cost) const noexcept;
+    [[nodiscard]] Match match(const TrackMeasurement& m, const vehicle::VehicleState& own,
+                              TimePoint now) const noexcept;
+    [[nodiscard]] float urgency_of(const Entry& e, const vehicle::VehicleState& own, TimePoint now) const noexcept;
+    [[nodiscard]] std::size_t least_urgent(const vehicle::VehicleState& own, TimePoint now) const noexcept;
+    [[nodiscard]] TrackStatus add(const TrackMeasurement& m, const Match& match, const vehicle::VehicleState& own,
+                                  TimePoint now) noexcept;
+    void note_new(TimePoint now) noexcept;
 
     TrackTableSettings settings_;
     TrackDiagnostics diagnostics_;
+    TimePoint second_began_;
+    std::uint16_t new_in_second_ = 0;
     StaticVector<Entry, kMaxTracks> entries_;
     StaticVector<Track, kMaxTracks> snapshot_;
 };

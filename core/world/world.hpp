@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -27,9 +28,10 @@ enum class TrackSource : std::uint8_t {
     utm,         ///< by its own word to whoever manages the traffic
 };
 
-/// A moving threat: a sphere with a straight motion and what is not known of it.
+/// A moving threat: a sphere with a straight motion and its uncertainty. Where `half_height` is above 0 the height of
+/// its centre is uncertain by that much either way: the threat is an upright capsule.
 struct Track {
-    TrackId id = 0;
+    TrackId id = 0;                 ///< as reported; two aircraft under one id are told apart by `instance`
     TimePoint stamp{};              ///< of the newest measurement in it
     Vec3 position = Vec3::Zero();   ///< [m]; in a Situation: at Situation::now
     Vec3 velocity = Vec3::Zero();   ///< [m/s]
@@ -38,7 +40,9 @@ struct Track {
     float sigma_velocity = 0.0F;    ///< [m/s]
     float max_acceleration = 0.0F;  ///< bound on what it may do unannounced [m/s2]
     TrackSource source = TrackSource::adsb;
-    bool cooperative = false;  ///< it takes its share in avoiding us, as we take ours; else all of it is ours
+    bool cooperative = false;   ///< it takes its share in avoiding us, as we take ours; else all of it is ours
+    std::uint8_t instance = 0;  ///< id and instance together are unique in a table
+    float half_height = 0.0F;   ///< uncertainty of the height, all of it, beside the sphere's growth [m]
 };
 
 struct Obstacle {
@@ -130,6 +134,18 @@ enum class PlanStatus : std::uint8_t {
 /// uncertainty included) grown from its stamp on, and half its acceleration bound times t squared. The only place where
 /// threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
+
+/// Half extents of the own box as this track meets it: taller by the track's `half_height`. A box against an upright
+/// capsule is the taller box against the capsule's sphere; exact. O(1).
+[[nodiscard]] inline Vec3 box_against(const Situation& situation, const Track& track) noexcept
+{
+    return situation.limits.half_extents + track.half_height * Vec3::UnitZ();
+}
+/// The point of a track's upright axis that is nearest in height to `height`, its centre being at `centre`. O(1).
+[[nodiscard]] inline Vec3 nearest_in_height(const Track& track, const Vec3& centre, float height) noexcept
+{
+    return {centre.x(), centre.y(), std::clamp(height, centre.z() - track.half_height, centre.z() + track.half_height)};
+}
 
 /// A radius as a polynomial of time.
 struct Growth {

@@ -277,6 +277,7 @@ private:
     avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner> supervisor_;
     bool told_left_out_ = false;
     bool told_unsuited_ = false;
+    bool told_flood_ = false;
     Takeover takeover_;
     FollowCheck follow_check_;
     StickWatch stick_watch_;

@@ -37,6 +37,17 @@ bool is_cooperative(const link::TrackReport& report, const Configuration& c) noe
     return false;
 }
 
+/// Uncertainty of a height, all that counts as possible of it [m].
+float half_height_of(const link::TrackReport& report, const Configuration& c) noexcept
+{
+    switch (report.height) {
+    case link::HeightSource::pressure: return c.k_sigma * c.sigma_baro;
+    case link::HeightSource::compared: return report.height_spread + c.k_sigma * c.sigma_compared;
+    case link::HeightSource::geometric: break;
+    }
+    return 0.0F;
+}
+
 }  // namespace
 
 void Coprocessor::take_own_state(TimePoint now) noexcept
@@ -96,6 +107,7 @@ void Coprocessor::take_tracks(TimePoint now) noexcept
         m.source = report.source;
         m.cooperative = is_cooperative(report, c);
         m.sigma_position = report.sigma_position > 0.0F ? report.sigma_position : c.track_sigma_position;
+        m.half_height = half_height_of(report, c);
         if (report.at_rest) {
             m.has_velocity = true;
             m.sigma_velocity = kRestSigma;

@@ -74,7 +74,7 @@ NearObjects find_near(const vehicle::VehicleState& own, std::span<const world::T
 {
     Nearest nearest(own.yaw);
     for (const world::Track& track : tracks) {
-        const Vec3 offset = track.position - own.position;
+        const Vec3 offset = world::nearest_in_height(track, track.position, own.position.z()) - own.position;
         nearest.add(offset, offset.norm() - track.radius - k_sigma * track.sigma_position);
     }
     for (const world::Obstacle& obstacle : obstacles) {

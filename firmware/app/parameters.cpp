@@ -74,6 +74,8 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_OWN_ICAO", 0, 0, 16777215, true, "own transponder's address: heard back, it is no traffic; 0 not known"},
     {"JNK_PATIENCE", 20, 0, 600, false, "blocked by what stands for so long: hand over to the hold mode [s]; 0 never"},
     {"JNK_STICKS", 30, 0, 100, false, "sticks moved by so much end a take-over [% of half their travel]; 0 never"},
+    {"TRK_SIG_BARO", 30, 0, 300, false, "noise of a traffic's pressure altitude, one standard deviation [m]"},
+    {"TRK_SIG_BARO_D", 5, 0, 300, false, "the same of its difference to the own pressure altitude [m]"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v) noexcept
@@ -116,6 +118,8 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.coop_unmanned = (whole(Param::coop) & 4U) != 0;
     c.coop_all = (whole(Param::coop) & 8U) != 0;
     c.own_address = whole(Param::own_address);
+    c.sigma_baro = at(Param::sigma_baro);
+    c.sigma_compared = at(Param::sigma_compared);
     c.scan_height = at(Param::scan_height);
     c.scan_keep = at(Param::scan_keep);
     c.own_age = at(Param::own_age);

@@ -78,6 +78,8 @@ enum class Param : std::uint8_t {
     own_address,
     patience,
     sticks,
+    sigma_baro,
+    sigma_compared,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
@@ -119,7 +121,9 @@ struct Configuration {
     float floor = 0.0F, ceiling = 0.0F, keep_in = 0.0F;  ///< above and about home [m]
     float track_radius = 1.0F, point_radius = 1.0F;      ///< of traffic that does not say its size [m]
     float track_sigma_position = 0.5F, track_sigma_velocity = 0.3F, track_acceleration = 0.0F, track_latency = 0.1F;
-    float scan_height = 10.0F;  ///< half height given to what a level scan sees [m]
+    float sigma_baro = 30.0F;     ///< of the height of traffic that is a pressure altitude [m]
+    float sigma_compared = 5.0F;  ///< of a difference of two pressure altitudes [m]
+    float scan_height = 10.0F;    ///< half height given to what a level scan sees [m]
     bool coop_systems = true, coop_utm = true, coop_unmanned = true, coop_all = false;  ///< who shares the reaction
     std::uint32_t own_address = 0;                                                      ///< 24 bits; 0: not known
     Seconds scan_keep = 1.0F;

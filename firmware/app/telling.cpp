@@ -133,6 +133,12 @@ void Coprocessor::tell_notices() noexcept
         say(link::Severity::critical, "jink: reach sets damaged, left out");
         told_left_out_ = true;
     }
+    const world::TrackDiagnostics& t = tracks_.diagnostics();
+    const bool flooded = t.floods + t.replaced + t.full > 0;
+    if (flooded && !told_flood_ && has_autopilot_) {
+        say(link::Severity::warning, "jink: too much traffic, some is left out");
+        told_flood_ = true;
+    }
     const Configuration& c = parameters_.configuration();
     const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::LadderOrder::first;
     if (unsuited && !told_unsuited_ && has_autopilot_) {

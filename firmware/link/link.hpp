@@ -65,6 +65,9 @@ struct LinkDiagnostics {
     std::uint32_t rate_requests = 0;       ///< messages asked for
     std::uint32_t rates_refused = 0;       ///< answers that did not grant one
     std::uint32_t own_heard = 0;           ///< what we say of ourselves, come back as if it were another's
+    std::uint32_t pressure_heights = 0;    ///< traffic whose height is a pressure altitude
+    std::uint32_t heights_compared = 0;    ///< of that, beside the own pressure altitude
+    std::uint32_t traffic_relayed = 0;     ///< ADSB_VEHICLE of other systems, accepted
     std::uint32_t systems_evicted = 0;     ///< others of the link whose clock was forgotten: there are too many
 };
 

@@ -50,6 +50,13 @@ struct OwnStateReport {
     bool estimator_reset = false;  ///< position jumped by a reset of the estimator
 };
 
+/// How the height of another aircraft was measured.
+enum class HeightSource : std::uint8_t {
+    geometric,  ///< by satellites, or told as exact
+    pressure,   ///< pressure altitude, and our own is not known: the air pressure at sea level is unknown
+    compared,   ///< pressure altitude beside our own: TrackReport::height_spread
+};
+
 /// A sighting of another aircraft.
 struct TrackReport {
     world::TrackId id = 0;
@@ -65,6 +72,10 @@ struct TrackReport {
         false;  ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
     bool unmanned = false;  ///< says so, or is a vehicle like ours
     bool helpless = false;  ///< says that it will not give way: disarmed, on the ground, in an emergency
+    HeightSource height = HeightSource::geometric;
+    /// compared: the height as told and the height by the difference of pressures both lie within this of `position`
+    /// [m].
+    float height_spread = 0.0F;
 };
 
 /// Sightings that one step may bring: more than a line of 921600 baud carries in 20 ms to a board (kMaxTracks 32).

@@ -232,6 +232,8 @@ void Endpoint::on_traffic(const Context& c) noexcept
     report.stamp = c.transfer.stamp - static_cast<Seconds>(m.tslc);
     const auto height = static_cast<std::int32_t>(std::lround(m.altitude * 1e3F));
     report.position = mavlink::to_local({m.latitude, m.longitude, height}, options_.origin);
+    constexpr std::uint8_t kPressureAltitude = 1;
+    report.height = m.altitude_type == kPressureAltitude ? HeightSource::pressure : HeightSource::geometric;
     report.at_rest = m.traffic_type == TrafficReport::kPointObstacle;
     report.unmanned = m.traffic_type == TrafficReport::kUnmanned;
     report.has_velocity = report.at_rest || moves;
@@ -270,10 +272,12 @@ void Endpoint::on_measurement(const Context& c) noexcept
     reading.max_range = said;
     reading.half_angle =
         m.field_of_view >= kLeastFieldOfView ? std::min(0.5F * m.field_of_view, 0.5F * kPi) : kDefaultHalfAngle;
-    constexpr float kStep = kPi / 12.0F;
+    constexpr float kStep = kPi / 15.0F;  // CoarseOrientation.ANGLE_MULTIPLIER = 4.7746: 15 steps are half a turn
     const Vec3 body = beam_of_angles(static_cast<float>(m.roll_pitch_yaw[1]) * kStep,
                                      static_cast<float>(m.roll_pitch_yaw[2]) * kStep);
-    place(c, reading, body, m.sensor);
+    constexpr int kHalf = 16;  // of five bits
+    const auto beam = static_cast<std::uint32_t>((m.roll_pitch_yaw[1] + kHalf) * 64 + m.roll_pitch_yaw[2] + kHalf);
+    place(c, reading, body, static_cast<std::uint32_t>(m.sensor) << 12U | beam);
 }
 
 void Endpoint::on_proximity(const Context& c) noexcept
@@ -296,21 +300,23 @@ void Endpoint::on_proximity(const Context& c) noexcept
     reading.range = m.distance;
     reading.max_range = m.distance;
     reading.half_angle = kDefaultHalfAngle;
-    place(c, reading, beam_of_angles(m.pitch * kDegree, m.yaw * kDegree), m.sensor | kProximityBeams);
+    const Vec3 body = beam_of_angles(m.pitch * kDegree, m.yaw * kDegree);
+    // Steps of 15 degrees in both angles.
+    constexpr float kSteps = 12.0F / kPi;
+    const auto yaw = static_cast<std::uint32_t>(std::lround(std::atan2(body.y(), body.x()) * kSteps) + 12) % 24U;
+    const auto pitch =
+        static_cast<std::uint32_t>(std::lround(std::asin(std::clamp(-body.z(), -1.0F, 1.0F)) * kSteps) + 6);
+    place(c, reading, body, (m.sensor | kProximityBeams) << 12U | pitch << 6U | yaw);
 }
 
-void Endpoint::place(const Context& c, RangeReading& reading, const Vec3& body, std::uint32_t sensor) noexcept
+void Endpoint::place(const Context& c, RangeReading& reading, const Vec3& body, std::uint32_t beam) noexcept
 {
     if (!has_attitude_ || c.now - attitude_heard_ > kAttitudeFresh) {
         ++diagnostics_.no_origin;
         return;
     }
-    // Two nodes may use the same sensor id. Steps of 15 degrees in both angles.
-    constexpr float kSteps = 12.0F / kPi;
-    const auto yaw = static_cast<std::uint32_t>(std::lround(std::atan2(body.y(), body.x()) * kSteps) + 12) % 24U;
-    const auto pitch =
-        static_cast<std::uint32_t>(std::lround(std::asin(std::clamp(-body.z(), -1.0F, 1.0F)) * kSteps) + 6);
-    const std::uint32_t key = static_cast<std::uint32_t>(c.transfer.source) << 24U | sensor << 12U | pitch << 6U | yaw;
+    // Two nodes may use the same sensor id.
+    const std::uint32_t key = static_cast<std::uint32_t>(c.transfer.source) << 24U | beam;
     reading.sensor = beam_of(key, c.now);
     reading.direction = mavlink::swap_ned_enu(turn(attitude_, body));
     if (!c.inbox.readings.try_push_back(reading)) {

@@ -22,7 +22,7 @@
 //   not be older than 1 s (no_origin). "Too close" stands at what it says, at 0 where that is no distance; "too far" is
 //   nothing seen; undefined, no data, not connected, or a beam of undefined orientation: out_of_range.
 //   A sensor that looks about names one id for all directions: readings get a number per sensor and direction (steps of
-//   15 degrees), so that one does not take the place of another; see kBeams.
+//   15 degrees; Measurement: of 12), so that one does not take the place of another; see kBeams.
 // * Stamps on the wire are not believed unless EndpointOptions says so: many sensors write their own clock there.
 
 namespace jink::link::dronecan {
@@ -107,7 +107,7 @@ private:
     void on_traffic(const Context& c) noexcept;
     void on_measurement(const Context& c) noexcept;
     void on_proximity(const Context& c) noexcept;
-    void place(const Context& c, RangeReading& reading, const Vec3& body, std::uint32_t sensor) noexcept;
+    void place(const Context& c, RangeReading& reading, const Vec3& body, std::uint32_t beam) noexcept;
     /// False, and counted, while another node is followed. `changed`: from one node to another.
     [[nodiscard]] bool follow(Source& source, const Context& c, bool& changed) noexcept;
     [[nodiscard]] bool stamp_of(std::uint64_t wire, const Context& c, TimePoint& stamp) noexcept;

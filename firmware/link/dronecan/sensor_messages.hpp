@@ -12,7 +12,7 @@ struct RangeMeasurement {
     enum class Reading : std::uint8_t { undefined = 0, valid = 1, too_close = 2, too_far = 3 };
     std::uint64_t stamp = 0;  ///< [us] of the bus's common clock, 56 bits; 0: not said
     std::uint8_t sensor = 0;
-    std::array<std::int8_t, 3> roll_pitch_yaw{};  ///< of the beam, body frame (FRD), twelfths of half a turn
+    std::array<std::int8_t, 3> roll_pitch_yaw{};  ///< of the beam, body frame (FRD), fifteenths of half a turn
     bool orientation_defined = false;
     float field_of_view = 0.0F;    ///< [rad]
     std::uint8_t sensor_type = 0;  ///< 1 sonar, 2 lidar, 3 radar

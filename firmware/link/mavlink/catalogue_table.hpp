@@ -26,7 +26,7 @@ inline constexpr std::array<MessageInfo, 293> kCatalogue{{
     {26, 170, 22, 255},  // SCALED_IMU, passed over
     {27, 144, 26, 255},  // RAW_IMU, passed over
     {28, 67, 16, 255},  // RAW_PRESSURE, passed over
-    {29, 115, 14, 255},  // SCALED_PRESSURE, passed over
+    {29, 115, 14, 16},  // SCALED_PRESSURE
     {30, 39, 28, 28},  // ATTITUDE
     {31, 246, 32, 48},  // ATTITUDE_QUATERNION
     {32, 185, 28, 28},  // LOCAL_POSITION_NED

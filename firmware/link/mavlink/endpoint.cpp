@@ -83,6 +83,7 @@ void Endpoint::dispatch_autopilot(const Context& c) noexcept
     case Odometry::kInfo.id: on_odometry(c); break;
     case GlobalPositionInt::kInfo.id: on_global_position(c); break;
     case GpsRawInt::kInfo.id: on_gps(c); break;
+    case ScaledPressure::kInfo.id: on_pressure(c); break;
     case GpsGlobalOrigin::kInfo.id: on_origin(c); break;
     case HomePosition::kInfo.id: on_home(c); break;
     case CommandAck::kInfo.id: on_command_ack(c); break;
@@ -145,7 +146,7 @@ void Endpoint::note(ClockEvent event) noexcept
     ++diagnostics_.clock_relocks;
     if (event == ClockEvent::relocked_backward) {
         rebooted_ = true;
-        has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_home_on_globe_ = false;
+        has_pressure_ = has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_home_on_globe_ = false;
         is_mission_flown_ = has_leg_ = has_anchor_ = has_former_ = has_reached_ = false;
         origin_rank_ = 0;
         mission_.forget();
@@ -181,7 +182,10 @@ void Endpoint::on_command_ack(const Context& c) noexcept
     }
     constexpr std::uint8_t kInProgress = 5;
     if (m.command == kSetMessageInterval) {
-        diagnostics_.rates_refused += m.result == 0 || m.result == kInProgress ? 0U : 1U;
+        if (m.result != 0 && m.result != kInProgress) {
+            ++diagnostics_.rates_refused;
+            streams_.refused();
+        }
         return;
     }
     if (m.result != kInProgress && !c.inbox.mode_answers.try_push_back({m.result == 0, m.result})) {

@@ -19,8 +19,9 @@
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its
 //   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing but HEARTBEAT is
-//   sent, as system 1. Own state, modes and legs are taken from that autopilot alone; transponders' traffic and ranges
-//   from any component of our system.
+//   sent, as system 1. Own state, modes and legs are taken from that autopilot alone; ranges from any component of our
+//   system; transponders' traffic from any component of any system but the autopilots (component 1) of other systems,
+//   whose receivers hear us too (traffic_relayed counts other systems' traffic).
 // * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION or ATTITUDE (yaw), ODOMETRY (all of it:
 //   velocity in its child frame turned by q, sigmas from the covariances when not NaN, reset_counter; frame_id other
 //   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 1 s. Stamps are mapped by ClockSync; older
@@ -39,7 +40,11 @@
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
 //   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
 //   emitter_type 19 (point obstacle): at_rest, velocity zero; 14 (UAV): unmanned. Ids: track_ids.hpp.
-//   Stamp = now - tslc (the application takes the assumed latency off).
+//   Stamp = now - tslc (the application takes the assumed latency off). altitude_type 1 is geometric; 0 and all others
+//   are pressure altitudes. Senders differ in whether these refer to the standard 1013.25 hPa or to QNH: where our own
+//   pressure altitude is known (SCALED_PRESSURE not older than 10 s, beside own height), the report holds both
+//   readings, the altitude as told and our own height plus the difference of pressure altitudes
+//   (HeightSource::compared).
 // * GLOBAL_POSITION_INT of other systems' autopilots (component 1): a track by its system id. Stamped by that system's
 //   boot clock (Neighbours). Latitude and longitude 0: out_of_range. helpless while its last HEARTBEAT says disarmed.
 //   Their LOCAL_POSITION_NED is passed over: it is about an origin of their own.
@@ -51,7 +56,9 @@
 // * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by a yaw not older than 1 s, else no_origin);
 //   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
 //   min_distance means "nearer than that" and is kept as min_distance. A second scan within a tick takes the place of
-//   the first (inbox_full). DISTANCE_SENSOR orientations 0-7 (by yaw, as above), 24, 25.
+//   the first (inbox_full). DISTANCE_SENSOR orientations 0-7 (by yaw, as above), 24, 25. From ArduPilot's proximity
+//   library (the autopilot, ids 10 to 19): a distance at max_distance means nothing seen, and a level field of view of
+//   0 is a sector of 45 degrees.
 // * OBSTACLE_DISTANCE_3D, where somebody takes points: frame 12 (body, levelled by a roll and pitch not older than
 //   0.3 s) and 1 (a place in the local frame, made relative by own place and yaw), else no_origin; other frames are
 //   out_of_range. Farther than max_distance: nothing in that direction; nearer than min_distance: at min_distance. A
@@ -184,6 +191,8 @@ private:
     void on_adsb(const Context& c) noexcept;
     void on_neighbour(const Context& c) noexcept;
     void on_gps(const Context& c) noexcept;
+    void on_pressure(const Context& c) noexcept;
+    void judge_height(const AdsbVehicle& m, TimePoint now, TrackReport& report) noexcept;
     [[nodiscard]] bool can_place(bool is_sound) noexcept;
     void on_utm(const Context& c) noexcept;
     [[nodiscard]] bool is_own(const Frame& frame, const UtmGlobalPosition& m, bool named) noexcept;
@@ -266,6 +275,9 @@ private:
     int origin_rank_ = 0;  ///< 0 none, 1 own global less local position, 2 GPS_GLOBAL_ORIGIN
     GlobalPosition origin_;
     bool has_undulation_ = false;
+    bool has_pressure_ = false;
+    float height_over_pressure_ = 0.0F;  ///< own height less own pressure altitude [m]
+    TimePoint pressure_heard_;
     std::int32_t undulation_ = 0;              ///< of the geoid over the ellipsoid, here [mm]
     std::array<std::uint8_t, 18> own_name_{};  ///< to traffic management; zeros: not known
     bool has_home_on_globe_ = false;

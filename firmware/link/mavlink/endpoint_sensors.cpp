@@ -15,6 +15,11 @@ constexpr float kCentimetre = 0.01F;
 constexpr float kDegree = kPi / 180.0F;
 /// Beam width taken for a range finder that does not say its own: half angle [rad].
 constexpr float kDefaultHalfAngle = 0.1F;
+/// Ids of the readings of ArduPilot's proximity library: eight level sectors, and one upwards.
+constexpr std::uint8_t kFirstProximityId = 10;
+constexpr std::uint8_t kLastProximityId = 19;
+/// A sector of that library: half angle [rad].
+constexpr float kProximityHalfAngle = kPi / 8.0F;
 /// A field of view below this is taken for not said [rad].
 constexpr float kLeastFieldOfView = 1e-3F;
 
@@ -25,7 +30,9 @@ void Endpoint::dispatch_sensors(const Context& c) noexcept
     const bool same_system = c.frame.header.system_id == system_;
     switch (c.frame.message_id) {
     case AdsbVehicle::kInfo.id:
-        if (same_system) {
+        // Other vehicles' autopilots pass on what they hear, and that is us as well.
+        if (same_system || c.frame.header.component_id != kAutopilotComponent) {
+            diagnostics_.traffic_relayed += same_system ? 0U : 1U;
             on_adsb(c);
             return;
         }
@@ -117,6 +124,9 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     constexpr std::uint8_t kDown = 25;
     constexpr std::uint8_t kInvalidSignal = 1;
     const bool level = m.orientation <= 7;
+    // That library sends max_distance for a sector in which it sees nothing.
+    const bool proximity = from_autopilot(c.frame) && autopilot_.stack == AutopilotStack::ardupilot &&
+                           m.id >= kFirstProximityId && m.id <= kLastProximityId;
     if (!std::isfinite(m.horizontal_fov) || !std::isfinite(m.vertical_fov)) {
         ++diagnostics_.not_finite;
         return;
@@ -134,12 +144,13 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     reading.stamp = c.now;
     reading.sensor = m.id;
     reading.max_range = static_cast<float>(m.max_distance) * kCentimetre;
-    reading.range = m.current_distance > m.max_distance
+    reading.range = m.current_distance > m.max_distance || (proximity && m.current_distance == m.max_distance)
                         ? RangeScan::kNothing
                         : static_cast<float>(std::max(m.current_distance, m.min_distance)) * kCentimetre;
     // Level, what is above or below does not matter; straight up or down, the wider of the two.
     const float fov = level ? m.horizontal_fov : std::max(m.horizontal_fov, m.vertical_fov);
-    reading.half_angle = fov >= kLeastFieldOfView ? std::min(0.5F * fov, 0.5F * kPi) : kDefaultHalfAngle;
+    const float unsaid = proximity && level ? kProximityHalfAngle : kDefaultHalfAngle;
+    reading.half_angle = fov >= kLeastFieldOfView ? std::min(0.5F * fov, 0.5F * kPi) : unsaid;
     if (level) {
         const float yaw = own_.yaw - static_cast<float>(m.orientation) * 45.0F * kDegree;
         reading.direction = Vec3(std::cos(yaw), std::sin(yaw), 0.0F);

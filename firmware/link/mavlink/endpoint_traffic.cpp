@@ -38,6 +38,17 @@ constexpr std::int32_t kLargestUndulation = 120'000;
 /// Height of what is known above the ellipsoid alone, one standard deviation: three of them hold the geoid [m].
 constexpr float kUnknownUndulation = 36.0F;
 
+constexpr std::uint8_t kGeometricAltitude = 1;  // ADSB_ALTITUDE_TYPE
+/// Own height and own pressure belong together when they are this close in time [s].
+constexpr Seconds kPressurePair = 1.0F;
+/// The difference of height and pressure altitude is kept this long: weather changes slower [s].
+constexpr Seconds kPressureFresh = 10.0F;
+/// The air pressure at sea level stays within 60 hPa of the standard; a larger difference is no weather [m].
+constexpr float kLargestPressureError = 600.0F;
+/// Pressures that a barometer in the air may show [hPa].
+constexpr float kLeastPressure = 100.0F;
+constexpr float kMostPressure = 1200.0F;
+
 constexpr float kMillimetre = 1e-3F;
 constexpr float kCentimetrePerSecond = 0.01F;
 constexpr float kCentidegree = 0.01F * kPi / 180.0F;
@@ -47,6 +58,15 @@ Vec3 velocity_of(std::int16_t north, std::int16_t east, std::int16_t down) noexc
 {
     return kCentimetrePerSecond *
            swap_ned_enu({static_cast<float>(north), static_cast<float>(east), static_cast<float>(down)});
+}
+
+/// Pressure altitude [m] of a pressure [hPa]: ICAO standard atmosphere, below 11 km.
+float pressure_altitude(float pressure) noexcept
+{
+    constexpr float kSeaLevel = 1013.25F;
+    constexpr float kScale = 44330.77F;
+    constexpr float kExponent = 0.190263F;
+    return kScale * (1.0F - std::pow(pressure / kSeaLevel, kExponent));
 }
 
 /// Some send zeros where they do not know.
@@ -99,7 +119,48 @@ void Endpoint::on_adsb(const Context& c) noexcept
         report.velocity = Vec3(speed * std::cos(yaw), speed * std::sin(yaw), climb);
         report.sigma_velocity = climb_known ? 0.0F : kUnknownClimb;
     }
+    judge_height(m, c.now, report);
     deliver(report, c.inbox);
+}
+
+/// Two readings of a pressure altitude are in use: against the standard pressure (as transponders send it) and against
+/// QNH (as the message's name says). The report holds both where our own pressure altitude is known.
+void Endpoint::judge_height(const AdsbVehicle& m, TimePoint now, TrackReport& report) noexcept
+{
+    if (m.altitude_type == kGeometricAltitude) {
+        return;
+    }
+    ++diagnostics_.pressure_heights;
+    report.height = HeightSource::pressure;
+    if (has_pressure_ && now - pressure_heard_ <= kPressureFresh) {
+        ++diagnostics_.heights_compared;
+        report.height = HeightSource::compared;
+        report.position.z() += 0.5F * height_over_pressure_;
+        report.height_spread = 0.5F * std::abs(height_over_pressure_);
+    }
+}
+
+/// Our own pressure altitude beside our own height.
+void Endpoint::on_pressure(const Context& c) noexcept
+{
+    ScaledPressure m;
+    static_cast<void>(decode(c.frame, m));
+    if (!std::isfinite(m.press_abs)) {
+        ++diagnostics_.not_finite;
+        return;
+    }
+    if (m.press_abs < kLeastPressure || m.press_abs > kMostPressure) {
+        ++diagnostics_.out_of_range;
+        return;
+    }
+    if (origin_rank_ == 0 || !has_local_ || c.now - local_heard_ > kPressurePair) {
+        return;  // there will be another one
+    }
+    const float height = static_cast<float>(origin_.alt) * kMillimetre + own_.position.z();
+    height_over_pressure_ = height - pressure_altitude(m.press_abs);
+    has_pressure_ = std::abs(height_over_pressure_) <= kLargestPressureError;
+    diagnostics_.out_of_range += has_pressure_ ? 0U : 1U;
+    pressure_heard_ = c.now;
 }
 
 /// Another system's word of where it is. Its local position is of no use: that is about an origin of its own, and says

@@ -211,6 +211,25 @@ inline constexpr std::array<Field, 16> GpsRawInt::kFields{{
     {offsetof(GpsRawInt, yaw), 50, 1, FieldType::u16},
 }};
 
+/// SCALED_PRESSURE (29), common.
+struct ScaledPressure {
+    std::uint32_t time_boot_ms = 0;  ///< [ms]
+    float press_abs = 0.0F;  ///< [hPa]
+    float press_diff = 0.0F;  ///< [hPa]
+    std::int16_t temperature = 0;  ///< [cdegC]
+    std::int16_t temperature_press_diff = 0;  ///< [cdegC] extension
+
+    static constexpr MessageInfo kInfo{29, 115, 14, 16};
+    static const std::array<Field, 5> kFields;
+};
+inline constexpr std::array<Field, 5> ScaledPressure::kFields{{
+    {offsetof(ScaledPressure, time_boot_ms), 0, 1, FieldType::u32},
+    {offsetof(ScaledPressure, press_abs), 4, 1, FieldType::f32},
+    {offsetof(ScaledPressure, press_diff), 8, 1, FieldType::f32},
+    {offsetof(ScaledPressure, temperature), 12, 1, FieldType::i16},
+    {offsetof(ScaledPressure, temperature_press_diff), 14, 1, FieldType::i16},
+}};
+
 /// ATTITUDE (30), common.
 struct Attitude {
     std::uint32_t time_boot_ms = 0;  ///< [ms]
@@ -1855,6 +1874,7 @@ using AllMessages = MessageList<
     ParamValue,
     ParamSet,
     GpsRawInt,
+    ScaledPressure,
     Attitude,
     AttitudeQuaternion,
     LocalPositionNed,

@@ -14,6 +14,7 @@ struct Need {
     std::int32_t interval_us;
     Seconds window;
     std::uint32_t least;  ///< in a window
+    bool optional = false;
 };
 
 constexpr std::array<Need, StreamRequests::kMessages> kNeeds{{
@@ -25,6 +26,10 @@ constexpr std::array<Need, StreamRequests::kMessages> kNeeds{{
     {{ExtendedSysState::kInfo.id, 0, 0}, 1'000'000, 4.0F, 1},
     {{GpsGlobalOrigin::kInfo.id, 0, 0}, 5'000'000, 12.0F, 1},
     {{HomePosition::kInfo.id, 0, 0}, 5'000'000, 12.0F, 1},
+    // ArduPilot sends one aircraft at a time, and each at most once a second.
+    {{AdsbVehicle::kInfo.id, 0, 0}, 50'000, 6.0F, 1, true},
+    // For the height of traffic that has a barometer alone.
+    {{ScaledPressure::kInfo.id, 0, 0}, 1'000'000, 6.0F, 1, true},
 }};
 
 }  // namespace
@@ -39,6 +44,13 @@ void StreamRequests::heard(std::uint32_t message_id) noexcept
     }
 }
 
+void StreamRequests::refused() noexcept
+{
+    if (last_ < kMessages && kNeeds[last_].optional) {
+        watches_[last_].given_up = true;
+    }
+}
+
 std::optional<StreamRequest> StreamRequests::next(TimePoint now) noexcept
 {
     if (!begun_) {
@@ -50,7 +62,7 @@ std::optional<StreamRequest> StreamRequests::next(TimePoint now) noexcept
     for (std::size_t i = 0; i < kMessages; ++i) {
         Watch& watch = watches_[i];
         const Need& need = kNeeds[i];
-        if (now - watch.began < need.window) {
+        if (watch.given_up || now - watch.began < need.window) {
             continue;
         }
         const bool enough = watch.count >= need.least;
@@ -61,6 +73,7 @@ std::optional<StreamRequest> StreamRequests::next(TimePoint now) noexcept
         } else if (watch.tries < kTries || now - watch.asked >= kRest) {
             watch.tries = std::min(watch.tries + 1, kTries);
             watch.asked = now;
+            last_ = i;
             return StreamRequest{need.messages[0], need.interval_us};
         }
     }

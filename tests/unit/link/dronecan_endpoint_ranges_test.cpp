@@ -74,14 +74,17 @@ TEST_F(DronecanEndpoint, RangeFinders)
 {
     give(attitude(0.0));
     give(measurement());
-    give(measurement(-6));     // nose down by 90 degrees: to the ground
-    give(measurement(0, -6));  // left: west
-    ASSERT_EQ(inbox.readings.size(), 3U);
+    give(measurement(-5));      // nose down by 60 degrees
+    give(measurement(0, -5));   // 60 degrees to the left
+    give(measurement(0, -15));  // backwards
+    // CoarseOrientation: radians times 4.7746482927568605, which is 15 / pi.
+    ASSERT_EQ(inbox.readings.size(), 4U);
     expect_near(inbox.readings[0].direction, {0.0F, 1.0F, 0.0F}, 1e-6F);
     EXPECT_EQ(inbox.readings[0].range, 8.0F);
     EXPECT_NEAR(inbox.readings[0].half_angle, 0.1F, 1e-4F);
-    expect_near(inbox.readings[1].direction, {0.0F, 0.0F, -1.0F}, 1e-6F);
-    expect_near(inbox.readings[2].direction, {-1.0F, 0.0F, 0.0F}, 1e-6F);
+    expect_near(inbox.readings[1].direction, {0.0F, 0.5F, -0.8660254F}, 1e-6F);
+    expect_near(inbox.readings[2].direction, {-0.8660254F, 0.5F, 0.0F}, 1e-6F);
+    expect_near(inbox.readings[3].direction, {0.0F, -1.0F, 0.0F}, 1e-6F);
 
     inbox.clear();
     RangeMeasurement m = measurement();

@@ -37,7 +37,8 @@ Asked run(StreamRequests& streams, float seconds, const std::map<std::uint32_t, 
     return asked;
 }
 
-const std::map<std::uint32_t, float> kAll{{32, 50.0F}, {31, 10.0F}, {42, 2.0F}, {245, 1.0F}, {49, 0.2F}, {242, 0.2F}};
+const std::map<std::uint32_t, float> kAll{{32, 50.0F}, {31, 10.0F}, {42, 2.0F}, {245, 1.0F},
+                                          {49, 0.2F},  {242, 0.2F}, {246, 1.0F}, {29, 1.0F}};
 
 TEST(MavlinkStreamRequests, NothingIsAskedForThatComes)
 {
@@ -59,6 +60,21 @@ TEST(MavlinkStreamRequests, EverythingIsAskedForThatDoesNotAtMostOnceASecond)
     }
     EXPECT_EQ(asked.at.at(32).size(), 6U);
     EXPECT_NEAR(asked.at.at(32)[5] - asked.at.at(32)[4], StreamRequests::kRest, 1.0F);
+}
+
+/// An ArduPilot without ADS-B answers each request for ADSB_VEHICLE with a text to the pilot.
+TEST(MavlinkStreamRequests, RefusedTrafficIsNotAskedForAgainButPositionIs)
+{
+    for (const std::uint32_t missing : {246U, 29U, 32U}) {
+        auto rates = kAll;
+        rates.erase(missing);
+        StreamRequests streams;
+        ASSERT_EQ(run(streams, 6.5F, rates).at.count(missing), 1U);
+        streams.refused();
+        EXPECT_EQ(run(streams, 100.0F, rates, 106.5F).at.count(missing), missing == 32U ? 1U : 0U) << missing;
+        streams.restart();
+        EXPECT_EQ(run(streams, 6.5F, rates, 300.0F).at.count(missing), 1U) << "another autopilot";
+    }
 }
 
 TEST(MavlinkStreamRequests, TooSeldomIsAskedForToo)

@@ -350,6 +350,7 @@ TEST(TrackFilter, AFullTableKeepsTheMostDangerousInAnyOrder)
                 (m.position - own.position).cast<double>() + m.velocity.cast<double>() * double(kStart - m.stamp);
             const Eigen::Vector3d closing = (m.velocity - own.velocity).cast<double>();
             double best = gap.norm();
+            double when = 0;
             for (double t = 0, step = 64; step > 1e-4; step /= 2) {
                 while ((gap + closing * (t + step)).norm() < best && t < 1e4) {
                     t += step;
@@ -359,8 +360,10 @@ TEST(TrackFilter, AFullTableKeepsTheMostDangerousInAnyOrder)
                     t -= step;
                     best = (gap + closing * t).norm();
                 }
+                when = t;
             }
-            danger.emplace_back(best - double(m.radius), id);
+            // Seconds: the time to it, one for each 3 m of it, and the age.
+            danger.emplace_back(when + std::max(best - double(m.radius), 0.0) / 3.0 + double(kStart - m.stamp), id);
         }
         std::sort(danger.begin(), danger.end());
         if (danger[kMaxTracks].first - danger[kMaxTracks - 1].first < 0.01) {

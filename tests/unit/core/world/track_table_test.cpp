@@ -61,8 +61,8 @@ TEST_F(TrackTables, TheNewestSightingSaysWhetherItIsCooperative)
 {
     for (int i = 0; i < 6; ++i) {
         TrackMeasurement m = sighting(7, Vec3(10, 20, 30), {kTime.us + i * 100'000});
-        m.cooperative = i % 3 == 1;  // filtered, and started anew by a jump
-        m.position.x() += i >= 3 ? 500.0F : 0.0F;
+        m.cooperative = i % 3 == 1;  // filtered, and started anew by a jump of the velocity
+        m.velocity.x() += i >= 3 ? 50.0F : 0.0F;
         m.source = m.cooperative ? TrackSource::utm : TrackSource::adsb;
         static_cast<void>(table.update(m, own, m.stamp));
         const auto tracks = table.snapshot(m.stamp);
@@ -168,24 +168,26 @@ TEST_F(TrackTables, StaleAndFutureStamps)
 TEST_F(TrackTables, AnOlderOrEqualStampOfAKnownTrackChangesNothing)
 {
     EXPECT_EQ(table.update(sighting(1, Vec3(5, 0, 0)), own, kTime), TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(1, Vec3(50, 0, 0)), own, kTime), TrackStatus::stale);
-    EXPECT_EQ(table.update(sighting(1, Vec3(50, 0, 0), kTime - 1.0F), own, kTime), TrackStatus::stale);
+    EXPECT_EQ(table.update(sighting(1, Vec3(6, 0, 0)), own, kTime), TrackStatus::stale);
+    EXPECT_EQ(table.update(sighting(1, Vec3(6, 0, 0), kTime - 1.0F), own, kTime), TrackStatus::stale);
     EXPECT_EQ(table.snapshot(kTime)[0].position, Vec3(5, 0, 0));
     EXPECT_EQ(table.diagnostics().stale, 2U);
 }
 
-TEST_F(TrackTables, AJumpStartsTheTrackAnewFromTheSighting)
+TEST_F(TrackTables, AJumpWithinReachStartsTheTrackAnewFromTheSighting)
 {
+    // In a second: 5 m by acceleration, and 6 standard deviations of 0.85 m.
     EXPECT_EQ(table.update(sighting(1, Vec3::Zero()), own, kTime), TrackStatus::created);
-    EXPECT_EQ(table.update(sighting(1, Vec3(100, 0, 0), kTime + 1.0F), own, kTime + 1.0F), TrackStatus::updated);
+    EXPECT_EQ(table.update(sighting(1, Vec3(8, 0, 0), kTime + 1.0F), own, kTime + 1.0F), TrackStatus::updated);
     EXPECT_EQ(table.diagnostics().jumps, 1U);
-    EXPECT_EQ(table.snapshot(kTime + 1.0F)[0].position, Vec3(100, 0, 0));
+    EXPECT_EQ(table.snapshot(kTime + 1.0F)[0].position, Vec3(8, 0, 0));
     EXPECT_EQ(table.snapshot(kTime + 1.0F)[0].sigma_position, 0.5F);
-    TrackMeasurement turned = sighting(1, Vec3(100, 0, 0), kTime + 1.1F);
+    TrackMeasurement turned = sighting(1, Vec3(8, 0, 0), kTime + 1.1F);
     turned.velocity = Vec3(0, 30, 0);
     EXPECT_EQ(table.update(turned, own, kTime + 1.1F), TrackStatus::updated);
     EXPECT_EQ(table.diagnostics().jumps, 2U);
     EXPECT_EQ(table.snapshot(kTime + 1.1F)[0].velocity, Vec3(0, 30, 0));
+    EXPECT_EQ(table.diagnostics().doubled, 0U);
 }
 
 /// 5 m/s, turning with 3 m/s2: what the filter says must stay within its own doubt, or start anew.
