@@ -164,7 +164,7 @@ Paired pair_by_time(const Aircraft& own, const Aircraft& other)
         if (next != other.fixes.end() && next->time == fix.time) {
             paired.fixes.push_back({fix, *next});
         } else if (next != other.fixes.begin() && next != other.fixes.end() &&
-                   next->time - (next - 1)->time <= kLongestGap) {
+                   next->time - (next - 1)->time <= kLongestFixGap) {
             paired.fixes.push_back({fix, between(*(next - 1), *next, fix.time)});
             ++paired.interpolated;
         } else {

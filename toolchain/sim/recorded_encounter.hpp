@@ -62,7 +62,7 @@ struct Paired {
 };
 
 /// The other aircraft is known at the times of its fixes, and between two of them that are at most this far apart [s].
-inline constexpr double kLongestGap = 5.0;
+inline constexpr double kLongestFixGap = 5.0;
 
 /// Paired by time, never by row.
 [[nodiscard]] Paired pair_by_time(const Aircraft& own, const Aircraft& other);

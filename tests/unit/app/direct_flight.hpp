@@ -51,6 +51,7 @@ public:
     void acknowledge(const link::ConstraintPart& /*part*/, link::ConstraintResult /*result*/) noexcept override {}
     void request_external_mode() noexcept override { asked = link::FlightMode::external; }
     void request_mode(std::uint32_t /*mode*/) noexcept override { asked = link::FlightMode::mission; }
+    void request_heartbeat() noexcept override { ++heartbeats_asked_for; }
     void request_hold_mode() noexcept override { asked = link::FlightMode::hold; }
     std::optional<link::GlobalPosition> origin() const noexcept override { return std::nullopt; }
     std::size_t compose_last_words(std::span<std::byte> /*out*/, bool /*hold*/,
@@ -64,6 +65,7 @@ public:
     Vec3 command = Vec3::Zero();
     std::optional<link::FlightMode> asked;
     std::vector<SaidText> texts;
+    int heartbeats_asked_for = 0;
     link::LinkDiagnostics counts;
 };
 

@@ -8,7 +8,7 @@ namespace jink::link::mavlink {
 namespace {
 
 using namespace test;
-using MavlinkEndpointSticks = EndpointTest;
+using MavlinkEndpointSticks = HeardEndpointTest;
 
 RcChannels centred()
 {
@@ -77,10 +77,9 @@ TEST_F(MavlinkEndpointSticks, OnlyTheAutopilotsCount)
 
 TEST_F(MavlinkEndpointSticks, HeartbeatIsAskedForByRequestMessage)
 {
-    heartbeat();
     static_cast<void>(sent());
     endpoint->request_heartbeat();
-    const auto asked = all_of<CommandLong>(sent());
+    const auto asked = only<CommandLong>(sent());
     ASSERT_EQ(asked.size(), 1U);
     EXPECT_EQ(asked[0].command, 512);
     EXPECT_EQ(asked[0].param1, 0.0F);
