@@ -15,12 +15,8 @@ constexpr float kNowhere = 15.0F;
 /// Slower than this, nothing is under way that could still lead past [m/s].
 constexpr float kAtRest = 0.3F;
 
-/// Whether the conflict is one with something that moves.
-bool is_traffic(const world::Situation& s, const world::Conflict& conflict) noexcept
-{
-    return conflict.threat.kind == world::ThreatKind::track &&
-           s.tracks[conflict.threat.index].velocity.squaredNorm() > kAtRest * kAtRest;
-}
+/// Whether the conflict is with traffic: one that stands may move on.
+bool is_traffic(const world::Conflict& conflict) noexcept { return conflict.threat.kind == world::ThreatKind::track; }
 
 /// Whether traffic comes too near to a vehicle that stays here. The main conflict does not say: what blocks the way is
 /// met first.
@@ -123,7 +119,7 @@ bool Pilot::stays_given_up(Tick& tick) noexcept
 /// Gives up where what stands on the nominal path has kept the vehicle from getting anywhere for too long.
 void Pilot::note_block(Tick& tick) noexcept
 {
-    const bool moves = tick.out.has_conflict && is_traffic(tick.s, tick.out.conflict);
+    const bool moves = tick.out.has_conflict && is_traffic(tick.out.conflict);
     const Vec3& at = tick.s.own.position;
     if (!tick.in_control || moves || (at - block_at_).squaredNorm() > kNowhere * kNowhere) {
         block_at_ = at;
