@@ -39,7 +39,7 @@ struct AutopilotReport {
     bool armed = false;
     bool landed = false;
     bool fixed_wing = false;
-    bool steerable = true;  ///< a kind of vehicle that flies velocity set-points in the external mode
+    bool steerable = true;  ///< a kind of vehicle that flies the velocities that Link sends in the external mode
     bool rebooted = false;  ///< its boot clock or sequence started again since the last report
 };
 

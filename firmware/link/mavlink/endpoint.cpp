@@ -149,6 +149,7 @@ void Endpoint::note(ClockEvent event) noexcept
         has_pressure_ = has_yaw_ = has_odometry_ = has_local_ = has_home_ = has_home_on_globe_ = false;
         is_mission_flown_ = has_leg_ = has_anchor_ = has_former_ = has_reached_ = false;
         origin_rank_ = 0;
+        vtol_state_ = kVtolUnheard;
         mission_.forget();
         streams_.restart();
     }
@@ -175,12 +176,20 @@ bool Endpoint::stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) n
 void Endpoint::on_command_ack(const Context& c) noexcept
 {
     CommandAck m;
-    const bool known = decode(c.frame, m) && (m.command == kDoSetMode || m.command == kSetMessageInterval);
+    const bool known = decode(c.frame, m) &&
+                       (m.command == kDoSetMode || m.command == kSetMessageInterval || m.command == kDoReposition);
     if (!known || (m.target_system != 0 && !for_us(m.target_system, m.target_component))) {
         ++diagnostics_.frames_ignored;
         return;
     }
+    constexpr std::uint8_t kDenied = 2;
     constexpr std::uint8_t kInProgress = 5;
+    if (m.command == kDoReposition) {
+        if (m.result == kDenied) {
+            plane_.note_refusal();
+        }
+        return;
+    }
     if (m.command == kSetMessageInterval) {
         if (m.result != 0 && m.result != kInProgress) {
             ++diagnostics_.rates_refused;

@@ -10,6 +10,7 @@
 #include "firmware/link/mavlink/modes.hpp"
 #include "firmware/link/mavlink/neighbours.hpp"
 #include "firmware/link/mavlink/parser.hpp"
+#include "firmware/link/mavlink/plane_steering.hpp"
 #include "firmware/link/mavlink/stream_requests.hpp"
 #include "firmware/link/mavlink/transmit_buffer.hpp"
 #include "firmware/link/track_ids.hpp"
@@ -85,14 +86,17 @@
 //   plus the armed bit (128) as heard. A HEARTBEAT is asked for by COMMAND_LONG REQUEST_MESSAGE (512) with param1 = 0:
 //   both stacks send it at once, and answer ACCEPTED. SET_MESSAGE_INTERVAL of HEARTBEAT is refused by PX4.
 // * Vehicles that follow set-points of a velocity: multirotors and helicopters of both stacks, and a VTOL of PX4 while
-//   EXTENDED_SYS_STATE says that it hovers. Everything else is reported as not steerable: ArduPlane, also as a
-//   QuadPlane (Q_MAV_TYPE), takes the altitude alone; PX4's fixed wing follows positions, not velocities; rovers,
-//   boats, submarines, trackers, airships and what does not say what it is.
+//   EXTENDED_SYS_STATE says that it hovers. ArduPlane takes guided points (below) while EXTENDED_SYS_STATE says that it
+//   is no VTOL. Everything else is reported as not steerable: QuadPlanes, PX4's fixed wing, rovers, boats, submarines,
+//   trackers, airships and what does not say what it is.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
 //   that is not a finite REAL32 has value_finite = false.
 // * TUNNEL addressed to us alone, of the type kConstraintPayload: one closed area of a set (constraint_message.hpp). A
 //   payload that cannot be read is answered at once, and counts out_of_range; every other part is passed on.
-// * Set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot.
+// * Set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot. To ArduPlane: COMMAND_INT
+//   DO_REPOSITION (192), frame 5, param1 = -1, param2 to param4 = 0 (no change of mode, own loiter radius, clockwise),
+//   at most every 0.5 s, while its HEARTBEAT shows GUIDED and the origin is known (PlaneSteering). An answer DENIED
+//   brings the point nearer.
 // * A line that has been silent for 0.1 s in mid-frame: what is pending is searched once more (Parser::flush).
 
 namespace jink::link::mavlink {
@@ -231,6 +235,8 @@ private:
     void deliver_own_state(Inbox& inbox, TimePoint stamp) noexcept;
     [[nodiscard]] CommandLong mode_command(std::uint32_t custom_mode) const noexcept;
     void send_mode(std::uint32_t custom_mode) noexcept;
+    [[nodiscard]] bool takes_guided_points() const noexcept;
+    void send_guided_point(const Vec3& velocity, TimePoint now) noexcept;
     template <Message M>
     [[nodiscard]] std::size_t encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept;
     void ask_for_streams(TimePoint now) noexcept;
@@ -256,7 +262,8 @@ private:
 
     AutopilotReport autopilot_;
     VehicleClass vehicle_class_ = VehicleClass::copter;
-    std::uint8_t vtol_state_ = 0;  ///< MAV_VTOL_STATE
+    std::uint8_t vtol_state_ = kVtolUnheard;  ///< MAV_VTOL_STATE
+    PlaneSteering plane_;
     bool rebooted_ = false;
 
     vehicle::VehicleState own_;

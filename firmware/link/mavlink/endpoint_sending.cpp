@@ -14,6 +14,7 @@ constexpr std::uint16_t kVelocityOnly = 0x0DC7;
 constexpr Seconds kTimesyncPeriod = 1.0F;
 constexpr Seconds kFirstPlaces = 2.0F;
 constexpr Seconds kPlacesPeriod = 4.0F;
+constexpr float kNoSpeed = -1.0F;               // of DO_REPOSITION: as it is
 constexpr std::uint8_t kMissionAccepted = 0;    // MAV_MISSION_ACCEPTED
 constexpr std::uint8_t kMissionCancelled = 15;  // MAV_MISSION_OPERATION_CANCELLED
 
@@ -25,7 +26,10 @@ void Endpoint::take_back(Perishable kind) noexcept
         return;
     }
     switch (kind) {
-    case Perishable::setpoint: ++diagnostics_.setpoints_dropped; break;
+    case Perishable::setpoint:
+        ++diagnostics_.setpoints_dropped;
+        plane_.forget_last();
+        break;
     case Perishable::mode_request: ++diagnostics_.requests_dropped; break;
     case Perishable::heartbeat: ++diagnostics_.heartbeats_dropped; break;
     case Perishable::no: break;
@@ -183,8 +187,41 @@ void Endpoint::service_mission(TimePoint now) noexcept
 
 void Endpoint::send_heartbeat(SystemState state) noexcept { send(heartbeat_of(state), Perishable::heartbeat); }
 
+bool Endpoint::takes_guided_points() const noexcept
+{
+    return autopilot_.stack == AutopilotStack::ardupilot && vehicle_class_ == VehicleClass::plane;
+}
+
+/// ArduPlane in GUIDED discards velocities. In any other mode it answers DO_REPOSITION with FAILED: nothing is sent.
+void Endpoint::send_guided_point(const Vec3& velocity, TimePoint now) noexcept
+{
+    if (autopilot_.mode != FlightMode::external || origin_rank_ == 0) {
+        plane_.reset();
+        return;
+    }
+    const std::optional<Vec3> point = plane_.next(velocity, own_.position, now);
+    const std::optional<GlobalPosition> place = point ? to_global(*point, origin_) : std::nullopt;
+    if (!place) {
+        return;
+    }
+    CommandInt m;
+    m.param1 = kNoSpeed;
+    m.x = place->lat;
+    m.y = place->lon;
+    m.z = static_cast<float>(place->alt) * 1e-3F;
+    m.command = kDoReposition;
+    m.target_system = system_;
+    m.target_component = kAutopilotComponent;
+    m.frame = kFrameGlobalInt;
+    send(m, Perishable::setpoint);
+}
+
 void Endpoint::send_velocity(const Vec3& velocity, TimePoint now) noexcept
 {
+    if (takes_guided_points()) {
+        send_guided_point(velocity, now);
+        return;
+    }
     const Vec3 ned = swap_ned_enu(velocity);
     SetPositionTargetLocalNed m;
     m.time_boot_ms = static_cast<std::uint32_t>(now.us / 1000);

@@ -4,6 +4,8 @@
 namespace jink::link::mavlink {
 namespace {
 
+constexpr std::uint8_t kFixedWing = 1;
+
 FlightMode classify_copter(std::uint32_t mode) noexcept
 {
     switch (mode) {
@@ -84,16 +86,17 @@ bool is_vtol(std::uint8_t mav_type) noexcept { return mav_type >= 19 && mav_type
 
 VehicleClass vehicle_class(AutopilotStack stack, std::uint8_t mav_type) noexcept
 {
-    constexpr std::uint8_t kFixedWing = 1;
     const bool plane = mav_type == kFixedWing || (stack == AutopilotStack::ardupilot && is_vtol(mav_type));
     return plane ? VehicleClass::plane : VehicleClass::copter;
 }
 
 bool is_steerable(AutopilotStack stack, std::uint8_t mav_type, std::uint8_t vtol_state) noexcept
 {
+    constexpr std::uint8_t kNoVtol = 0;  // MAV_VTOL_STATE_UNDEFINED
     constexpr std::uint8_t kHovers = 3;  // MAV_VTOL_STATE_MC
+    const bool plane = stack == AutopilotStack::ardupilot && mav_type == kFixedWing && vtol_state == kNoVtol;
     const bool hovering_vtol = stack == AutopilotStack::px4 && is_vtol(mav_type) && vtol_state == kHovers;
-    return stack != AutopilotStack::unknown && (is_rotorcraft(mav_type) || hovering_vtol);
+    return stack != AutopilotStack::unknown && (is_rotorcraft(mav_type) || hovering_vtol || plane);
 }
 
 FlightMode classify(AutopilotStack stack, VehicleClass vehicle, std::uint32_t custom_mode) noexcept

@@ -12,8 +12,12 @@ enum class VehicleClass : std::uint8_t { copter, plane };
 
 /// Whose mode numbers and rules hold for a vehicle. ArduPilot's VTOLs are QuadPlanes: ArduPlane (Q_MAV_TYPE).
 [[nodiscard]] VehicleClass vehicle_class(AutopilotStack stack, std::uint8_t mav_type) noexcept;
-/// Whether the vehicle flies a velocity that SET_POSITION_TARGET_LOCAL_NED commands in the external mode.
-/// @param vtol_state  MAV_VTOL_STATE of EXTENDED_SYS_STATE; 0: unknown
+/// No EXTENDED_SYS_STATE was heard. MAV_VTOL_STATE 0 says that the vehicle is no VTOL, or that nobody knows.
+inline constexpr std::uint8_t kVtolUnheard = 255;
+
+/// Whether jink can steer the vehicle in the external mode: by velocities, or a plane of ArduPlane by guided points.
+/// ArduPlane reports a QuadPlane as a fixed wing too (Q_MAV_TYPE 0); its vtol_state tells them apart.
+/// @param vtol_state  MAV_VTOL_STATE of EXTENDED_SYS_STATE, or kVtolUnheard
 [[nodiscard]] bool is_steerable(AutopilotStack stack, std::uint8_t mav_type, std::uint8_t vtol_state) noexcept;
 /// What a custom_mode means.
 [[nodiscard]] FlightMode classify(AutopilotStack stack, VehicleClass vehicle, std::uint32_t custom_mode) noexcept;

@@ -14,12 +14,14 @@ inline constexpr std::uint8_t kReal32 = 9;              // MAV_PARAM_TYPE_REAL32
 
 // MAV_CMD
 inline constexpr std::uint16_t kDoSetMode = 176;
+inline constexpr std::uint16_t kDoReposition = 192;
 inline constexpr std::uint16_t kSetMessageInterval = 511;
 inline constexpr std::uint16_t kRequestMessage = 512;
 
 // MAV_FRAME
 inline constexpr std::uint8_t kFrameGlobal = 0;
 inline constexpr std::uint8_t kFrameLocalNed = 1;
+inline constexpr std::uint8_t kFrameGlobalInt = 5;
 inline constexpr std::uint8_t kFrameBodyFrd = 12;
 
 /// Places farther from the origin are no vehicle's of ours [m].
