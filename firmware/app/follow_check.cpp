@@ -24,11 +24,24 @@ bool is_followed(const Vec3& command, const Vec3& velocity) noexcept
     return along >= FollowCheck::kSlow * speed && along <= speed && (velocity - along * direction).norm() <= tolerance;
 }
 
+/// The command's course and climb at the speed that is flown.
+Vec3 at_speed_of(const Vec3& velocity, const Vec3& command) noexcept
+{
+    const float speed = command.head<2>().norm();
+    if (!is_finite(command) || !is_finite(velocity) || speed <= FollowCheck::kTolerance) {
+        return command;
+    }
+    const float share = velocity.head<2>().norm() / speed;
+    return {command.x() * share, command.y() * share, command.z()};
+}
+
 }  // namespace
 
-bool FollowCheck::update(const Vec3& command, const Vec3& velocity, const vehicle::VehicleLimits& limits,
+bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle::VehicleLimits& limits,
                          TimePoint now) noexcept
 {
+    const bool wing = limits.kind == vehicle::VehicleKind::fixed_wing;
+    const Vec3 command = wing ? at_speed_of(velocity, asked) : asked;
     const Seconds dt = std::clamp(now - last_, 0.0F, kLongestTick);
     const Vec3 change = velocity - velocity_;
     last_ = now;
@@ -43,9 +56,10 @@ bool FollowCheck::update(const Vec3& command, const Vec3& velocity, const vehicl
         missing_ = std::max(missing_ - expected * dt, 0.0F);
         return false;
     }
-    const float towards = change.dot(error) / std::max(error.norm(), 1e-3F);
+    const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
+    const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
     missing_ = std::max(missing_ + expected * dt - towards, 0.0F);
-    return missing_ >= expected * kPatience;
+    return missing_ >= expected * (wing ? kWingPatience : kPatience);
 }
 
 }  // namespace jink::app

@@ -19,6 +19,9 @@ namespace jink::app {
 /// that answers with 2.5 m/s2 and a lag of 0.6 s after a dead time of 0.3 s, in gusts
 /// (tests/property/app/follow_check_property_test.cpp).
 ///
+/// A fixed wing is commanded course and climb alone, so its speed is not compared. It has to be told first and then to
+/// roll in: kWingPatience seconds' worth may be missing.
+///
 /// Pure, O(1).
 class FollowCheck {
 public:
@@ -27,10 +30,10 @@ public:
 
     /// One tick under a command.
     ///
-    /// @param command   velocity commanded during the tick [m/s]
+    /// @param asked     velocity commanded during the tick [m/s]
     /// @param velocity  own velocity, newest [m/s]
     /// @return true: not followed
-    [[nodiscard]] bool update(const Vec3& command, const Vec3& velocity, const vehicle::VehicleLimits& limits,
+    [[nodiscard]] bool update(const Vec3& asked, const Vec3& velocity, const vehicle::VehicleLimits& limits,
                               TimePoint now) noexcept;
 
     static constexpr float kTolerance = 1.0F;    ///< [m/s]
@@ -39,6 +42,7 @@ public:
     static constexpr float kExpected = 0.3F;     ///< [-]
     static constexpr float kMaxExpected = 1.5F;  ///< [m/s2]
     static constexpr Seconds kPatience = 1.0F;
+    static constexpr Seconds kWingPatience = 2.5F;
 
 private:
     bool begun_ = false;

@@ -139,5 +139,96 @@ TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
     std::printf("[ follow    ] found after %.2f s at most\n", static_cast<double>(longest));
 }
 
+/// A plane in double, independent of core and of the simulator: points reach it twice a second, it begins to roll
+/// after a dead time, banks with a lag and turns its course by an L1 law; its speed is its own.
+struct Wing {
+    double course = 0.0, speed = 18.0, bank = 0.5, roll = 0.5, gain = 0.55, dead = 0.3, pace = 0.5;
+    double lateral = 0.0, climb = 0.0, heard = 0.0, heard_climb = 0.0, next = 0.0;
+
+    void step(double wanted, double wanted_climb, double time)
+    {
+        if (time >= next) {
+            heard = wanted;
+            heard_climb = wanted_climb;
+            next = time + pace;
+        }
+        const double error = time < dead ? 0.0 : std::clamp(std::remainder(heard - course, 2.0 * M_PI), -1.57, 1.57);
+        const double demand = std::clamp(gain * speed * std::sin(error), -9.81 * bank, 9.81 * bank);
+        lateral += (demand - lateral) * 0.02 / roll;
+        course += lateral / speed * 0.02;
+        climb += std::clamp((heard_climb - climb) / 1.5, -1.0, 1.0) * 0.02;
+    }
+    [[nodiscard]] Vec3 seen() const
+    {
+        return {static_cast<float>(speed * std::cos(course)), static_cast<float>(speed * std::sin(course)),
+                static_cast<float>(climb)};
+    }
+};
+
+vehicle::VehicleLimits wing_limits(float acceleration)
+{
+    vehicle::VehicleLimits limits;
+    limits.kind = vehicle::VehicleKind::fixed_wing;
+    limits.cruise_speed = 18.0F;
+    limits.max_acceleration = acceleration;
+    return limits;
+}
+
+TEST(FollowCheckLaw, APlaneThatRollsInAndTurnsIsNeverAccused)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 2000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20260801);
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        Wing wing;
+        wing.course = static_cast<double>(random.uniform(-3.1F, 3.1F));
+        wing.speed = static_cast<double>(random.uniform(13.0F, 24.0F));
+        wing.bank = static_cast<double>(random.uniform(0.4F, 0.8F));
+        wing.roll = static_cast<double>(random.uniform(0.3F, 0.6F));
+        wing.dead = static_cast<double>(random.uniform(0.0F, 0.5F));
+        const vehicle::VehicleLimits limits = wing_limits(random.uniform(3.0F, 6.0F));
+        double wanted = wing.course;
+        double rate = 0.0;
+        float told = 18.0F, climb = 0.0F;
+        FollowCheck check;
+        for (int tick = 0; tick < 600; ++tick) {
+            if (tick % 250 == 10) {
+                const bool circles = random.below(3) == 0;
+                wanted += circles ? 0.0 : static_cast<double>(random.uniform(-1.5F, 1.5F));
+                rate = circles ? static_cast<double>(random.uniform(-0.17F, 0.17F)) : 0.0;
+                told = random.uniform(12.0F, 24.0F);
+                climb = random.uniform(-2.0F, 2.0F);
+            }
+            wanted += rate * 0.02;
+            wing.step(wanted, static_cast<double>(climb), 0.02 * tick);
+            const Vec3 command(told * static_cast<float>(std::cos(wanted)), told * static_cast<float>(std::sin(wanted)),
+                               climb);
+            ASSERT_FALSE(check.update(command, wing.seen(), limits, {1'000'000 + tick * 20'000LL}))
+                << "at " << 0.02 * tick << " s; JINK_CASES=1 JINK_SEED=" << seed + i;
+        }
+    }
+}
+
+TEST(FollowCheckLaw, APlaneThatFliesStraightOnIsFoundWithinThreeSeconds)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 2000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20260802);
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        const float turn = random.uniform(0.4F, 2.7F) * (random.below(2) == 0 ? 1.0F : -1.0F);
+        const float told = random.uniform(12.0F, 24.0F);
+        const Vec3 command(told * std::cos(turn), told * std::sin(turn), 0.0F);
+        const vehicle::VehicleLimits limits = wing_limits(random.uniform(3.0F, 6.0F));
+        FollowCheck check;
+        float found = -1.0F;
+        for (int tick = 0; tick < 250 && found < 0.0F; ++tick) {
+            const bool alarm = check.update(command, Vec3(18.0F, 0.0F, 0.0F), limits, {1'000'000 + tick * 20'000LL});
+            found = alarm ? static_cast<float>(tick) * kStep : found;
+        }
+        ASSERT_GE(found, 2.0F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
+        ASSERT_LE(found, 3.0F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
+    }
+}
+
 }  // namespace
 }  // namespace jink::app
