@@ -256,6 +256,13 @@ bool Coprocessor::is_hold_urgent(TimePoint now, const vehicle::VehicleState& own
     return is_stopping_safer(own, c.limits, guidance.conflict, is_track ? &tracks[threat.index] : nullptr);
 }
 
+/// A plane is steered as the plane that VEH_FIXED_WING describes, never as a vehicle that stops.
+bool Coprocessor::can_steer() const noexcept
+{
+    const bool wing = parameters_.configuration().limits.kind == vehicle::VehicleKind::fixed_wing;
+    return autopilot_.steerable && (!autopilot_.fixed_wing || wing);
+}
+
 TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleState& own,
                                           const StepReport& report) noexcept
 {
@@ -268,6 +275,7 @@ TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleS
     input.has_report = new_autopilot_report_;
     input.report_is_late = (report.faults & bit(Fault::late)) != 0;
     input.report = autopilot_;
+    input.report.steerable = can_steer() && (!autopilot_.fixed_wing || link_.origin().has_value());
     input.mode_denied = mode_denied_;
     input.mode_accepted = mode_accepted_;
     input.keep_stream = c.standby_stream;

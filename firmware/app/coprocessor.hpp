@@ -242,6 +242,7 @@ private:
     void control(TimePoint now, StepReport& report) noexcept;
     [[nodiscard]] TakeoverInput takeover_input(TimePoint now, const vehicle::VehicleState& own,
                                                const StepReport& report) noexcept;
+    [[nodiscard]] bool can_steer() const noexcept;
     [[nodiscard]] bool is_hold_urgent(TimePoint now, const vehicle::VehicleState& own,
                                       const avoid::Guidance& guidance) noexcept;
     void tell_autopilot_state(const StepReport& report) noexcept;
@@ -282,8 +283,9 @@ private:
     FollowCheck follow_check_;
     StickWatch stick_watch_;
     bool sticks_moved_ = false;
-    bool told_advising_ = false;  ///< that this vehicle cannot be steered
-    bool loss_untold_ = false;    ///< control was lost while the line was down
+    bool told_advising_ = false;   ///< that this vehicle cannot be steered
+    int unsteerable_reports_ = 0;  ///< HEARTBEATs in a row
+    bool loss_untold_ = false;     ///< control was lost while the line was down
     world::TrackTable tracks_;
     world::ObstacleTable obstacles_;
     ConstraintTable constraints_;

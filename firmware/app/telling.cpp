@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the co-processor says of itself: heartbeats, texts and its last words.
+#include <algorithm>
+
 #include "firmware/app/coprocessor.hpp"
 
 namespace jink::app {
@@ -9,6 +11,8 @@ constexpr Seconds kHeartbeatPeriod = 1.0F;
 constexpr Seconds kCollisionPeriod = 0.5F;
 /// Without a conflict for so long, the next one is another one [s].
 constexpr Seconds kConflictOver = 5.0F;
+/// A vehicle counts as not steerable after so many HEARTBEATs: EXTENDED_SYS_STATE and parameters may come later.
+constexpr int kUnsteerableReports = 6;
 
 }  // namespace
 
@@ -77,8 +81,9 @@ void Coprocessor::tell_autopilot_state(const StepReport& report) noexcept
     if (!new_autopilot_report_) {
         return;
     }
-    const bool advises = parameters_.configuration().mode == ActMode::act && !autopilot_.steerable && autopilot_.armed;
-    if (advises && !told_advising_) {
+    const bool advises = parameters_.configuration().mode == ActMode::act && !can_steer() && autopilot_.armed;
+    unsteerable_reports_ = advises ? std::min(unsteerable_reports_ + 1, kUnsteerableReports) : 0;
+    if (unsteerable_reports_ == kUnsteerableReports && !told_advising_) {
         told_advising_ = true;
         say(link::Severity::notice, "jink: cannot steer this vehicle, advising only");
     }

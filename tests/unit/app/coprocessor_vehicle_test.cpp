@@ -81,6 +81,51 @@ TEST_F(CoprocessorVehicle, PlaneIsAdvisedOnly)
     EXPECT_EQ(times("advising only"), 1);
 }
 
+/// A plane of ArduPlane that says that it is no VTOL.
+Parameters plane_parameters(float fixed_wing)
+{
+    Parameters parameters;
+    EXPECT_EQ(parameters.set(Param::fixed_wing, fixed_wing), ParamStatus::ok);
+    return parameters;
+}
+
+TEST_F(CoprocessorVehicle, PlaneThatIsSetUpAsAMultirotorIsAdvisedOnly)
+{
+    f->mav_type = 1;
+    f->mode = 10;
+    f->feed(ExtendedSysState{0, 2});
+    begin();
+    f->feed(ExtendedSysState{0, 2});
+    fly(600);
+    EXPECT_TRUE(f->requested.empty());
+    EXPECT_EQ(times("advising only"), 1);
+}
+
+TEST_F(CoprocessorVehicle, PlaneIsTakenOverAndGetsGuidedPointsAndNoVelocities)
+{
+    f = std::make_unique<Flight>(plane_parameters(1.0F));
+    f->mav_type = 1;
+    f->mode = 10;
+    f->deaf = true;
+    fly(10);
+    f->feed(ExtendedSysState{0, 2});
+    begin();
+    std::size_t points = 0;
+    for (int i = 0; i < 600; ++i) {
+        fly(1);
+        for (const CommandInt& m : f->said_of<CommandInt>()) {
+            EXPECT_EQ(m.command, 192);
+            EXPECT_EQ(f->mode, 15U) << "in GUIDED alone";
+            ++points;
+        }
+    }
+    ASSERT_FALSE(f->requested.empty());
+    EXPECT_EQ(f->requested.front(), 15.0F);
+    EXPECT_GT(points, 0U);
+    EXPECT_EQ(f->setpoints, 0) << "SET_POSITION_TARGET_LOCAL_NED";
+    EXPECT_EQ(times("advising only"), 0);
+}
+
 TEST_F(CoprocessorVehicle, ThatIgnoresSetpointsIsGivenBackWithinASecondAndAHalfAndAskedToHold)
 {
     f->deaf = true;

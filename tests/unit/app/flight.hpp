@@ -207,8 +207,15 @@ public:
         std::erase_if(found, [](const CommandLong& m) { return m.command != 176; });
         return found;
     }
-    [[nodiscard]] std::uint32_t mission_mode() const { return px4 ? px4_mode(4, 4) : wire::kCopterAuto; }
-    [[nodiscard]] std::uint32_t external_mode() const { return px4 ? px4_mode(6, 0) : wire::kCopterGuided; }
+    [[nodiscard]] std::uint32_t mission_mode() const
+    {
+        return px4 ? px4_mode(4, 4) : is_plane() ? 10 : wire::kCopterAuto;
+    }
+    [[nodiscard]] std::uint32_t external_mode() const
+    {
+        return px4 ? px4_mode(6, 0) : is_plane() ? 15 : wire::kCopterGuided;
+    }
+    [[nodiscard]] bool is_plane() const { return mav_type == 1; }
     [[nodiscard]] std::uint32_t boot_ms() const { return static_cast<std::uint32_t>(boot_us / 1000); }
 
     TimePoint now{10'000'000};
