@@ -21,8 +21,8 @@ constexpr double kStopped = 0.3;  // [m/s]
 }  // namespace
 
 Autopilot::Autopilot(World& world)
-    : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world), writer_(scenario_.system),
-      told_(scenario_.threats.size(), -1)
+    : world_(world), scenario_(world.scenario()), mission_(scenario_), plane_(scenario_.vehicle), receiver_(world),
+      writer_(scenario_.system), told_(scenario_.threats.size(), -1)
 {
     for (const auto& [name, value] : scenario_.parameters) {
         wanted_.push_back({name, static_cast<float>(value), false});
@@ -59,6 +59,7 @@ void Autopilot::enter(Mode mode, bool asked)
     mode_since_ = world_.now();
     last_change_was_asked_ = asked;
     holding_ = false;
+    plane_.hold(world_.own().position);
     if (mode == Mode::external) {
         ++takeovers_;
         last_followed_ = world_.now();
@@ -87,7 +88,7 @@ void Autopilot::suffer_faults()
 
 void Autopilot::watch_setpoints()
 {
-    if (mode_ != Mode::external) {
+    if (mode_ != Mode::external || is_plane()) {
         return;
     }
     const Micros silent = world_.now() - last_followed_;
@@ -103,6 +104,9 @@ void Autopilot::watch_setpoints()
 Vec Autopilot::wanted_velocity()
 {
     const Truth& own = world_.own();
+    if (is_plane() && (mode_ == Mode::external || mode_ == Mode::hold || mode_ == Mode::brake)) {
+        return plane_.command(own);
+    }
     switch (mode_) {
     case Mode::mission: return mission_.command(own.position);
     case Mode::external:

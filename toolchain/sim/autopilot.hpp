@@ -8,6 +8,7 @@
 
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/link/mavlink/parser.hpp"
+#include "toolchain/sim/arduplane.hpp"
 #include "toolchain/sim/frame_writer.hpp"
 #include "toolchain/sim/mission_pilot.hpp"
 #include "toolchain/sim/sensors.hpp"
@@ -53,7 +54,7 @@ struct Heard {
 /// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/links.md): ArduPilot takes velocities in
 /// GUIDED only and stops 3 s after the last one; PX4 goes into OFFBOARD only after more than a second of set-points
 /// that came at 2 Hz or more, as it documents (releases up to v1.14 and v1.16 grant it earlier in fact), and leaves it
-/// for AUTO.LOITER 1 s after the last one.
+/// for AUTO.LOITER 1 s after the last one. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
 class Autopilot {
 public:
     /// @param world  outlives the autopilot
@@ -98,6 +99,7 @@ private:
     void hear_heartbeat(const link::mavlink::Heartbeat& heartbeat);
     void hear_setpoint(const link::mavlink::SetPositionTargetLocalNed& target);
     void hear_command(const link::mavlink::CommandLong& command, link::mavlink::Header from);
+    void hear_command_int(const link::mavlink::CommandInt& command, link::mavlink::Header from);
     void hear_param(const link::mavlink::ParamValue& value);
     void answer_timesync(const link::mavlink::Timesync& sync, link::mavlink::Header from);
     void answer_mission(const link::mavlink::Frame& frame);
@@ -123,6 +125,7 @@ private:
     [[nodiscard]] Micros boot_us() const noexcept;
     [[nodiscard]] std::uint32_t boot_ms() const noexcept { return static_cast<std::uint32_t>(boot_us() / 1000); }
     [[nodiscard]] bool due(Micros period, Micros phase = 0) const noexcept { return world_.now() % period == phase; }
+    [[nodiscard]] bool is_plane() const noexcept { return scenario_.vehicle.min_speed > 0.0; }
     [[nodiscard]] bool rebooting() const noexcept;
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;
     [[nodiscard]] std::uint16_t home_items() const noexcept;
@@ -130,6 +133,7 @@ private:
     World& world_;
     const Scenario& scenario_;
     MissionPilot mission_;
+    PlaneGuidance plane_;
     TrafficReceiver receiver_;
     link::mavlink::Parser parser_;
     FrameWriter writer_;

@@ -54,6 +54,7 @@ void Autopilot::handle(const Frame& frame)
     Heartbeat heartbeat;
     SetPositionTargetLocalNed target;
     CommandLong command;
+    CommandInt command_int;
     ParamValue value;
     Timesync sync;
     Statustext text;
@@ -64,6 +65,8 @@ void Autopilot::handle(const Frame& frame)
         hear_setpoint(target);
     } else if (decode(frame, command)) {
         hear_command(command, frame.header);
+    } else if (decode(frame, command_int)) {
+        hear_command_int(command_int, frame.header);
     } else if (decode(frame, value)) {
         hear_param(value);
     } else if (decode(frame, sync)) {
@@ -93,7 +96,7 @@ void Autopilot::hear_setpoint(const SetPositionTargetLocalNed& target)
     ++heard_.setpoints;
     const Vec velocity(static_cast<double>(target.vy), static_cast<double>(target.vx), -static_cast<double>(target.vz));
     const bool good = for_us(target.target_system, target.target_component) && target.type_mask == kVelocityMask &&
-                      target.coordinate_frame == kLocalNed && velocity.allFinite();
+                      target.coordinate_frame == kLocalNed && velocity.allFinite() && !is_plane();
     if (!good) {
         ++heard_.bad_setpoints;
         return;
@@ -115,7 +118,7 @@ void Autopilot::hear_setpoint(const SetPositionTargetLocalNed& target)
 
 std::uint8_t Autopilot::set_mode(const CommandLong& command)
 {
-    const auto mode = requested_mode(scenario_.stack, command.param2, command.param3);
+    const auto mode = requested_mode(scenario_.stack, command.param2, command.param3, is_plane());
     if (command.param1 != kCustomModeEnabled && command.param1 != kCustomModeEnabled + kArmed) {
         return kDenied;
     }
@@ -152,6 +155,26 @@ void Autopilot::hear_command(const CommandLong& command, Header from)
         ack.result = kAccepted;  // every rate is fixed here
     } else if (command.command == kRequestMessage) {
         ack.result = send_message(static_cast<int>(command.param1)) ? kAccepted : kUnsupported;
+    }
+    ack.target_system = from.system_id;
+    ack.target_component = from.component_id;
+    writer_.write(ack);
+}
+
+/// ArduPlane alone is sent these.
+void Autopilot::hear_command_int(const CommandInt& command, Header from)
+{
+    if (!for_us(command.target_system, command.target_component)) {
+        return;
+    }
+    ++heard_.setpoints;
+    CommandAck ack;
+    ack.command = command.command;
+    ack.result = is_plane() ? plane_.hear(command, mode_ == Mode::external, world_.own().position) : kUnsupported;
+    heard_.bad_setpoints += ack.result == kAccepted || mode_ != Mode::external ? 0U : 1U;
+    if (mode_ != Mode::external && mode_ != Mode::mission && !last_change_was_asked_ &&
+        world_.now() - mode_since_ > kGrace) {
+        ++heard_.setpoints_overruled;
     }
     ack.target_system = from.system_id;
     ack.target_component = from.component_id;

@@ -14,6 +14,7 @@ using namespace link::mavlink;
 
 namespace {
 
+constexpr std::uint8_t kFixedWing = 1;
 constexpr std::uint8_t kQuadrotor = 2;
 constexpr std::uint8_t kArdupilot = 3;
 constexpr std::uint8_t kPx4 = 12;
@@ -55,8 +56,8 @@ std::uint16_t centidegrees(double radians) noexcept
 Heartbeat Autopilot::heartbeat() const
 {
     Heartbeat heartbeat;
-    heartbeat.custom_mode = custom_mode(scenario_.stack, mode_);
-    heartbeat.type = kQuadrotor;
+    heartbeat.custom_mode = custom_mode(scenario_.stack, mode_, is_plane());
+    heartbeat.type = is_plane() ? kFixedWing : kQuadrotor;
     heartbeat.autopilot = scenario_.stack == Stack::ardupilot ? kArdupilot : kPx4;
     heartbeat.base_mode = kArmedAndCustom;
     heartbeat.system_status = kStateActive;

@@ -40,6 +40,14 @@ Degrees on_sphere(double north, double east) noexcept
 
 }  // namespace
 
+Vec to_local(const GlobalPosition& global) noexcept
+{
+    const double north = (static_cast<double>(global.lat) - kHomeLatitude * 1e7) * kArdupilotScaling;
+    const double east = (static_cast<double>(global.lon) - kHomeLongitude * 1e7) * kArdupilotScaling *
+                        std::cos(kHomeLatitude / kDegrees);
+    return {east, north, static_cast<double>(global.alt) * 1e-3 - kHomeAltitude};
+}
+
 GlobalPosition to_global(const Vec& local, Stack stack) noexcept
 {
     const Degrees d = stack == Stack::ardupilot ? on_plane(local.y(), local.x()) : on_sphere(local.y(), local.x());

@@ -23,5 +23,7 @@ inline constexpr double kHomeAltitude = 570.0;
 /// constant scaling factor, PX4's azimuthal equidistant projection on a sphere of 6371000 m. On purpose neither is the
 /// co-processor's.
 [[nodiscard]] GlobalPosition to_global(const Vec& local, Stack stack) noexcept;
+/// The inverse of ArduPilot's.
+[[nodiscard]] Vec to_local(const GlobalPosition& global) noexcept;
 
 }  // namespace jink::sim

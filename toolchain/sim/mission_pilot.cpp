@@ -8,6 +8,8 @@ namespace {
 
 /// The leg is flown towards the point this far ahead [m].
 constexpr double kCarrot = 6.0;
+/// And that of a plane: NAVL1_PERIOD 17, NAVL1_DAMPING 0.75 [s].
+constexpr double kPlaneCarrot = 4.06;
 /// Approach of the last waypoint [1/s].
 constexpr double kHoverGain = 0.8;
 
@@ -31,10 +33,11 @@ Vec MissionPilot::command(const Vec& position)
         ++target_;
     }
     const bool last = target_ + 1 == scenario_.mission.size();
+    const double ahead = scenario_.vehicle.min_speed > 0.0 ? kPlaneCarrot * scenario_.vehicle.cruise : kCarrot;
     const Vec to_end = scenario_.mission[target_] - position;
     const double speed =
         last ? std::min(scenario_.vehicle.cruise, kHoverGain * to_end.norm()) : scenario_.vehicle.cruise;
-    return along(abeam(position, kCarrot) - position, speed, scenario_.vehicle);
+    return along(abeam(position, ahead) - position, speed, scenario_.vehicle);
 }
 
 double MissionPilot::cross_track(const Vec& position) const { return (position - abeam(position, 0.0)).norm(); }

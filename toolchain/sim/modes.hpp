@@ -8,9 +8,20 @@
 
 namespace jink::sim {
 
-/// HEARTBEAT.custom_mode of a mode, from the autopilots' own sources: Copter's numbers, PX4's main << 16 | sub << 24.
-[[nodiscard]] constexpr std::uint32_t custom_mode(Stack stack, Mode mode) noexcept
+/// HEARTBEAT.custom_mode of a mode, from the autopilots' own sources: Copter's or ArduPlane's numbers, PX4's
+/// main << 16 | sub << 24.
+[[nodiscard]] constexpr std::uint32_t custom_mode(Stack stack, Mode mode, bool plane = false) noexcept
 {
+    if (plane) {
+        switch (mode) {
+        case Mode::mission: return 10;   // AUTO
+        case Mode::external: return 15;  // GUIDED
+        case Mode::hold:
+        case Mode::brake: return 12;  // LOITER
+        case Mode::home: return 11;   // RTL
+        case Mode::pilot: return 6;   // FLY_BY_WIRE_B
+        }
+    }
     const auto px4 = [](std::uint32_t main, std::uint32_t sub) { return main << 16U | sub << 24U; };
     const bool ardupilot = stack == Stack::ardupilot;
     switch (mode) {
@@ -25,10 +36,11 @@ namespace jink::sim {
 }
 
 /// The mode that param2 and param3 of DO_SET_MODE ask for; nothing for numbers that are none of ours.
-[[nodiscard]] constexpr std::optional<Mode> requested_mode(Stack stack, float param2, float param3) noexcept
+[[nodiscard]] constexpr std::optional<Mode> requested_mode(Stack stack, float param2, float param3,
+                                                           bool plane = false) noexcept
 {
     for (const Mode mode : {Mode::mission, Mode::external, Mode::hold, Mode::brake, Mode::home, Mode::pilot}) {
-        const std::uint32_t number = custom_mode(stack, mode);
+        const std::uint32_t number = custom_mode(stack, mode, plane);
         const float first =
             stack == Stack::ardupilot ? static_cast<float>(number) : static_cast<float>(number >> 16U & 0xFFU);
         const float second = stack == Stack::ardupilot ? param3 : static_cast<float>(number >> 24U);

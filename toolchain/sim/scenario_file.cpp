@@ -32,6 +32,7 @@ void read_vehicle(YamlMap& root, TruthLimits& v)
     number(*map, "max_climb", v.max_climb, {0.1F, 50.0F});
     number(*map, "max_descent", v.max_descent, {0.1F, 50.0F});
     number(*map, "max_yaw_rate", v.max_yaw_rate, {0.05F, 20.0F});
+    number(*map, "min_speed", v.min_speed, {0.0F, 100.0F});
     number(*map, "max_course_rate", v.max_course_rate, {0.0F, 20.0F});
     map->finish();
 }

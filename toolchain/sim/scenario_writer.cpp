@@ -60,6 +60,7 @@ void put_vehicle(YAML::Emitter& out, const TruthLimits& v)
     put(out, "max_climb", v.max_climb);
     put(out, "max_descent", v.max_descent);
     put(out, "max_yaw_rate", v.max_yaw_rate);
+    put(out, "min_speed", v.min_speed);
     put(out, "max_course_rate", v.max_course_rate);
     out << EndMap;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "toolchain/sim/arduplane.hpp"
+
 namespace jink::sim {
 namespace {
 
@@ -49,6 +51,10 @@ void turn_nose(Truth& truth, const TruthLimits& limits, double dt) noexcept
 
 void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept
 {
+    if (limits.min_speed > 0.0) {
+        move_plane(truth, command, limits, dt);
+        return;
+    }
     Vec goal = command;
     goal.z() = std::clamp(goal.z(), -limits.max_descent, limits.max_climb);
     const double w = limits.omega;

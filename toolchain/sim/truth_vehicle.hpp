@@ -15,6 +15,7 @@ struct TruthLimits {
     double max_climb = 3.0;                  ///< [m/s]
     double max_descent = 3.0;                ///< [m/s]
     double max_yaw_rate = 1.5;               ///< the nose follows the course this fast at most [rad/s]
+    double min_speed = 0.0;                  ///< of a fixed wing, flown as arduplane.hpp says [m/s]; 0: a multirotor
     double max_course_rate =
         0.0;  ///< turn rate of the velocity above 0.5 m/s [rad/s]; 0: only the acceleration bounds it
 };
