@@ -42,10 +42,10 @@ class Lists:
 
 
 class Outcome:
-    """What became of `mutants`, which are some of `all_mutants` of `rooms`; the tests of `above` ran too."""
+    """What became of `mutants`, which are some of `all_mutants` of the sources in `folders`; the tests of `above` ran too."""
 
-    def __init__(self, mutants, all_mutants, by_key, lists, rooms, above):
-        self.mutants, self.by_key, self.lists, self.rooms = mutants, by_key, lists, rooms
+    def __init__(self, mutants, all_mutants, by_key, lists, folders, above):
+        self.mutants, self.by_key, self.lists, self.folders = mutants, by_key, lists, set(folders)
         self.existing = {m.key for m in all_mutants}
         self.known = lists.survivors | set(lists.equivalent) | (set() if above else lists.above)
         self.surviving = [m for m in mutants if by_key[m.key]["how"] == "survived"]
@@ -88,6 +88,9 @@ class Outcome:
         for complaint in self.complaints():
             print(f"mutate: {complaint}", file=sys.stderr)
 
+    def _is_mine(self, key):
+        return key.partition(" | ")[0].rpartition("/")[0] in self.folders
+
     def complaints(self):
         """Survivors that are on no list; lines of the lists that were run and killed, or that are no mutants (any more)."""
         surviving = {m.key for m in self.surviving}
@@ -96,12 +99,12 @@ class Outcome:
         dead = (self.known - self.lists.above) & run - surviving
         out += [f"is listed and killed: {key} by {self.by_key[key]['by']}" for key in sorted(dead)]
         listed = self.known | self.lists.above
-        mine = {key for key in listed if key.split("/")[1:2] and key.split("/")[1] in self.rooms}
+        mine = {key for key in listed if self._is_mine(key)}
         return out + [f"is listed and does not exist: {key}" for key in sorted(mine - self.existing)]
 
     def write_survivors(self):
         listed = [*self.lists.survivors, *(ABOVE + key for key in self.lists.above)]
-        keys = sorted(line for line in listed if line.removeprefix(ABOVE).split("/")[1] not in self.rooms)
+        keys = sorted(line for line in listed if not self._is_mine(line.removeprefix(ABOVE)))
         keys += [m.key for m in self.surviving if m.key not in self.lists.equivalent]
         for m in self.mutants:
             killer = self.by_key[m.key]["by"].partition(".")[0]

@@ -63,15 +63,14 @@ def write_if_new(path, data):
         path.write_bytes(data)
 
 
-def write_tree(root, folder, sites, header, original):
-    """The sources of `folder` below root/`folder` with the sites rewritten, beside `header`, a copy of
-    `original`."""
+def write_trees(root, folders, sites, header, original):
+    """The sources of `folders` below root with the sites rewritten, beside `header`, a copy of `original`."""
     out = header.parent
     by_file = {}
     for site in sites:
         by_file.setdefault(site.file, []).append(site)
     kept = set()
-    for path in sorted((root / folder).rglob("*")):
+    for path in sorted(p for folder in folders for p in (root / folder).rglob("*")):
         if not path.is_file():
             continue
         name = path.relative_to(root)
@@ -81,7 +80,7 @@ def write_tree(root, folder, sites, header, original):
             data = include + rewritten(data, by_file[str(name)])
         write_if_new(out / name, data)
         kept.add(out / name)
-    for path in sorted((out / folder).rglob("*")):
+    for path in sorted(p for folder in folders for p in (out / folder).rglob("*")):
         if path.is_file() and path not in kept:
             path.unlink()
     write_if_new(header, original.read_bytes())

@@ -17,12 +17,17 @@ class Failed(Exception):
     pass
 
 
-def build(repository, root, folder, mutants, rooms, programs, jobs):
-    """Configures and builds `folder`/tests from `folder`/source; returns the folder of the programs."""
+def build(repository, root, folder, mutants, needed, programs, jobs):
+    """Configures and builds `folder`/tests from `folder`/source; returns the folder of the programs.
+
+    needed: folders of sources; programs: {name: folder of its tests}
+    """
     out = folder / "tests"
     configure = ["cmake", "-G", "Ninja", "-S", repository / "toolchain/mutation", "-B", out, f"-DJINK_REPOSITORY={repository}",
                  f"-DJINK_ROOT={root}", f"-DJINK_SOURCES={folder / 'source'}", f"-DJINK_MUTANTS={mutants}",
-                 f"-DJINK_ROOMS={';'.join(rooms)}", f"-DJINK_PROGRAMS={';'.join(programs)}", "-DCMAKE_BUILD_TYPE=Release"]
+                 f"-DJINK_FOLDERS={';'.join(needed)}",
+                 f"-DJINK_PROGRAMS={';'.join(programs)}", f"-DJINK_TESTS={';'.join(map(str, programs.values()))}",
+                 "-DCMAKE_BUILD_TYPE=Release"]
     for command in (configure, ["cmake", "--build", out, "--parallel", str(jobs)]):
         done = subprocess.run([*nice, *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
         if done.returncode != 0:
@@ -126,7 +131,7 @@ def order(tests, room):
 
 def judge(mutant, tests, results):
     """Runs the tests that could tell the mutant apart until one does."""
-    room = pathlib.PurePosixPath(mutant.site.file).parent.name
+    room = pathlib.PurePosixPath(mutant.site.file).parts[1]
     left = [test for test in tests if test.differs[mutant.number]]
     while left:
         test = order(left, room)[0]

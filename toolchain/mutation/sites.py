@@ -12,6 +12,7 @@ import shlex
 import subprocess
 
 CLANG = "clang++-14"
+TREES = ("core", "firmware", "hal")  # all that is flashed, below root
 
 # operator: (kind, function of mutation.hpp, mutants in its order)
 RELATIONS = {
@@ -33,7 +34,7 @@ FUNCTIONS = {"FunctionDecl", "CXXMethodDecl", "CXXConstructorDecl", "CXXDestruct
 NOT_RUN = {"StaticAssertDecl", "ConstantExpr", "CXXNoexceptExpr", "UnaryExprOrTypeTraitExpr", "CXXDefaultArgExpr",
            "CXXDefaultInitExpr", "TypeTraitExpr"}
 REAL = {"float", "double"}
-# What does something besides answering, in these rooms: spends a budget, writes a variable.
+# What does something besides answering: spends a budget, writes a variable.
 ACTS = re.compile(rb"\bbudget|\bspend\b|\+\+|--|(?<![=!<>])=(?!=)")
 COMMENT = re.compile(rb"/\*.*?\*/|//[^\n]*", re.DOTALL)
 
@@ -154,8 +155,10 @@ class Finder:
         elif kind == "UnaryOperator" and node.get("opcode") == "-" and self.type_of(node) in REAL:
             self.add(node, function, constant, "unary -", "minus", inner, ("sign dropped",))
         elif kind in ("IfStmt", "WhileStmt", "ConditionalOperator"):
-            place = sum(bool(node.get(has)) for has in ("hasInit", "hasVar"))
-            if not node.get("isConstexpr") and place < len(inner):
+            place = bool(node.get("hasInit"))
+            if node.get("hasVar"):
+                self.count("conditions that declare", node)
+            elif not node.get("isConstexpr") and place < len(inner):
                 self.look_at_condition(inner[place], function, constant)
         elif kind == "CallExpr":
             self.look_at_call(node, function, constant)
@@ -286,16 +289,22 @@ def find(root, files, flags, namespace):
     return ordered, {why: len(places) for why, places in sorted(left_out.items())}
 
 
-def rooms_needed(root, folders):
-    """Rooms of core that the sources in `folders` and in the rooms themselves include."""
-    rooms, todo = set(), list(folders)
+def folder_of(root, room):
+    """The folder of a room, below root; None where there is none."""
+    return next((name for name in (f"core/{room}", f"firmware/{room}", room) if room and (root / name).is_dir()), None)
+
+
+def folders_needed(root, folders):
+    """Folders, below root, of what the sources in `folders` and in those folders themselves include."""
+    needed, todo = set(), list(folders)
+    include = re.compile(rf'^#include "((?:{"|".join(TREES)})(?:/\w+)*)/\w+\.hpp"', re.MULTILINE)
     while todo:
         for path in sorted(todo.pop().glob("*.?pp")):
-            for room in re.findall(r'^#include "core/(\w+)/', path.read_text(), re.MULTILINE):
-                if room not in rooms:
-                    rooms.add(room)
-                    todo.append(root / "core" / room)
-    return sorted(rooms)
+            for folder in include.findall(path.read_text()):
+                if folder not in needed:
+                    needed.add(folder)
+                    todo.append(root / folder)
+    return sorted(needed)
 
 
 def cached(path, key, compute):
