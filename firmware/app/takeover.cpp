@@ -184,6 +184,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     }
     if (control_ == Control::requesting && !input.wants_control) {
         control_ = Control::autopilot;  // not asked for again; a late grant is still ours to give back
+        expire_claim(input, now);
         return {};
     }
     const bool may_try = unproven || tries_ < kTries;
@@ -201,6 +202,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return {TakeoverAction::request_external, TakeoverEvent::none};
     }
     control_ = Control::refused;
+    expire_claim(input, now);
     ++diagnostics_.refused;
     tries_ = 0;
     return {TakeoverAction::none, TakeoverEvent::refused};
@@ -365,7 +367,8 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
     if (!was_streaming && (streaming() || proving_)) {
         streaming_since_ = now;
     }
-    output.ask_heartbeat = evidence_.is_due(in_control(), control_ == Control::requesting, now);
+    const bool unconfirmed = control_ == Control::requesting || control_ == Control::returning;
+    output.ask_heartbeat = evidence_.is_due(in_control(), unconfirmed, now);
     diagnostics_.heartbeats_asked += output.ask_heartbeat ? 1U : 0U;
     return output;
 }

@@ -171,6 +171,7 @@ struct Witness {
     int request_at = kNever;
     int external_at = kNever;
     int accepted_at = kNever;
+    TakeoverAction last_action = TakeoverAction::none;
     std::uint32_t left = 0;  ///< mission shown when the external mode was last asked for
     bool claim = false;      ///< an external mode seen may be due to us
     bool seen_external = false;
@@ -223,9 +224,11 @@ struct Witness {
         if (tick - beat_at > allowed) {
             return "asks for a mode on an old HEARTBEAT";
         }
-        if (accepted_at > request_at && (beat_at < accepted_at || tick - request_at < kSecond / 2)) {
+        if (accepted_at > request_at && out.action == last_action &&
+            (beat_at < accepted_at || tick - request_at < kSecond / 2)) {
             return "repeats a request that was accepted";
         }
+        last_action = out.action;
         return check_action(out.action, takeover, tick);
     }
 
