@@ -348,11 +348,24 @@ TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcep
     return idle(input, now);
 }
 
+/// The first of two HEARTBEATs that came within a tick: what it shows counts, but it is no evidence to ask on.
+TakeoverEvent Takeover::heed_earlier(const TakeoverInput& input, TimePoint now) noexcept
+{
+    TakeoverInput earlier = input;
+    earlier.report = input.earlier;
+    earlier.report_is_late = true;
+    note_report(earlier, now);
+    evidence_.discard();
+    return decide(earlier, now).event;
+}
+
 TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexcept
 {
     const bool was_streaming = streaming() || proving_;
+    const TakeoverEvent earlier = input.has_report && input.has_earlier ? heed_earlier(input, now) : TakeoverEvent::none;
     note_report(input, now);
     TakeoverOutput output = decide(input, now);
+    output.event = output.event == TakeoverEvent::none ? earlier : output.event;
     if (output.action != TakeoverAction::none) {
         evidence_.note_request(now);
     }

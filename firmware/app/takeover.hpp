@@ -45,6 +45,8 @@ struct TakeoverInput {
     bool has_report = false;       ///< a HEARTBEAT of the autopilot arrived since the last tick
     bool report_is_late = false;   ///< it may have waited for us: we were not there when it came
     link::AutopilotReport report;  ///< the newest one
+    bool has_earlier = false;      ///< another HEARTBEAT arrived before `report` since the last tick
+    link::AutopilotReport earlier;
     bool mode_denied = false;      ///< a COMMAND_ACK refused the mode
     bool mode_accepted = false;    ///< a COMMAND_ACK accepted the mode
     bool link_alive = true;        ///< what is asked for can leave
@@ -145,6 +147,7 @@ public:
     static constexpr Seconds kClaim = 10.0F;
 
 private:
+    [[nodiscard]] TakeoverEvent heed_earlier(const TakeoverInput& input, TimePoint now) noexcept;
     void note_report(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput decide(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput idle(const TakeoverInput& input, TimePoint now) noexcept;

@@ -76,6 +76,7 @@ struct Request {
     TakeoverAction action = TakeoverAction::none;
     std::uint32_t number = 0;
     bool poll = false;
+    int sent = 0;
 };
 
 /// One schedule's circumstances.
@@ -89,6 +90,20 @@ struct World {
     float loss = 0.0F;     ///< of a frame, either way
     int proof = 0;         ///< a PX4 grants the external mode to a stream that old [ticks]
     int phase = 0;
+
+    /// A pilot's mode older than this when a request leaves was to be known [ticks]: what a HEARTBEAT takes and may be
+    /// old, ModeEvidence::kFresh where every request of one is answered in time, 1.5 periods otherwise.
+    [[nodiscard]] int knowable() const
+    {
+        const bool answers = serves && loss <= 0.0F && jitter == 0;
+        return (answers ? kSecond / 10 : kSecond * 3 / 2) + latency + jitter + 1;
+    }
+};
+
+/// The pilot's modes that a granted request of jink ended.
+struct Overridden {
+    int known = 0;       ///< chosen longer ago than World::knowable
+    int unknowable = 0;  ///< chosen while HEARTBEAT or request were on the line
 };
 
 /// The autopilot behind the line.
@@ -99,6 +114,9 @@ struct Machine {
     bool armed = true;
     int last_setpoint = kNever;
     int stream_since = kNever;
+    int chosen_at = kNever;
+    bool is_chosen = false;  ///< by the pilot: the present mode, neither the mission nor the external mode
+    Overridden overridden{};
     Line<Beat> beats{};
     Line<Request> requests{};
     Line<bool> answers{};
@@ -119,11 +137,18 @@ struct Machine {
     void enter(std::uint32_t next, int tick)
     {
         const bool change = next != number;
+        is_chosen = is_chosen && !change;
         number = next;
         last_setpoint = next == kExternal ? tick : last_setpoint;
         if (change && !world.px4) {
             beat(tick, true);  // ArduPilot sends one with each change of mode
         }
+    }
+    void choose(std::uint32_t next, int tick)
+    {
+        enter(next, tick);
+        is_chosen = next == kManual || next == kHold;
+        chosen_at = tick;
     }
     void hear(int tick)
     {
@@ -139,6 +164,9 @@ struct Machine {
             const bool streamed = tick - last_setpoint <= kSecond / 2 && tick - stream_since >= world.proof;
             const bool granted = !external || (!world.refuses && (!world.px4 || streamed));
             if (granted) {
+                if (is_chosen && armed && request.number != number) {
+                    ++(request.sent - chosen_at > world.knowable() ? overridden.known : overridden.unknowable);
+                }
                 enter(request.number, tick);
             }
             if (!lost()) {
