@@ -268,8 +268,7 @@ TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleS
     input.has_report = new_autopilot_report_;
     input.report_is_late = (report.faults & bit(Fault::late)) != 0;
     input.report = autopilot_;
-    input.has_earlier = has_earlier_report_;
-    input.earlier = earlier_report_;
+    input.earlier = {earlier_reports_.begin(), earlier_reports_.end()};
     input.mode_denied = mode_denied_;
     input.mode_accepted = mode_accepted_;
     input.keep_stream = c.standby_stream;

@@ -308,8 +308,7 @@ private:
     link::AutopilotReport autopilot_;
     bool has_autopilot_ = false;
     bool new_autopilot_report_ = false;
-    bool has_earlier_report_ = false;  ///< another HEARTBEAT before it in this step
-    link::AutopilotReport earlier_report_;
+    decltype(link::Inbox::earlier_autopilot) earlier_reports_;
     bool mode_denied_ = false;
     bool mode_accepted_ = false;
     world::Leg leg_;

@@ -35,16 +35,27 @@ bool FollowCheck::update(const Vec3& command, const Vec3& velocity, const vehicl
     velocity_ = velocity;
     if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
         begun_ = is_finite(velocity);
+        reference_ = command;
         return false;
     }
     const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
+    if ((command - reference_).norm() > kTolerance) {
+        // What the command before asked for still goes on for a while.
+        missing_ = is_proven_ ? -expected * kAllowance : missing_;
+        is_proven_ = false;
+        progress_ = 0.0F;
+        reference_ = command;
+    }
     const Vec3 error = command - (velocity - change);
     if (is_followed(command, velocity)) {
         missing_ = std::max(missing_ - expected * dt, 0.0F);
+        is_proven_ = true;
         return false;
     }
     const float towards = change.dot(error) / std::max(error.norm(), 1e-3F);
-    missing_ = std::max(missing_ + expected * dt - towards, 0.0F);
+    progress_ += towards;
+    is_proven_ = is_proven_ || progress_ >= expected * kPatience;
+    missing_ = std::max(missing_ + expected * dt - towards, std::min(missing_, 0.0F));
     return missing_ >= expected * kPatience;
 }
 

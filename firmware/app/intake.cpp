@@ -75,12 +75,11 @@ void Coprocessor::take_autopilot(TimePoint now) noexcept
 {
     static_cast<void>(now);
     new_autopilot_report_ = inbox_.has_autopilot;
-    has_earlier_report_ = inbox_.has_earlier_autopilot;
+    earlier_reports_ = inbox_.earlier_autopilot;
     if (!inbox_.has_autopilot) {
         return;
     }
     autopilot_ = inbox_.autopilot;
-    earlier_report_ = inbox_.earlier_autopilot;
     has_autopilot_ = true;
     if (autopilot_.rebooted) {
         ++diagnostics_.autopilot_reboots;

@@ -43,12 +43,6 @@ struct AutopilotReport {
     bool rebooted = false;  ///< its boot clock or sequence started again since the last report
 };
 
-/// Shows a mode that jink never asks for and never takes over from, or a disarmed vehicle.
-[[nodiscard]] constexpr bool is_foreign(const AutopilotReport& report) noexcept
-{
-    return !report.armed || (report.mode != FlightMode::external && report.mode != FlightMode::mission);
-}
-
 /// Own state. Fields not known keep their last value.
 struct OwnStateReport {
     vehicle::VehicleState state;
@@ -166,9 +160,8 @@ struct Inbox {
     OwnStateReport bus_state;  ///< as a receiver on the sensor bus measures it
     bool has_autopilot = false;
     AutopilotReport autopilot;  ///< the newest
-    /// One before it in the same step; of several the first that is_foreign.
-    bool has_earlier_autopilot = false;
-    AutopilotReport earlier_autopilot;
+    /// Those before it in the same step that showed another mode, in their order. When full, the last gives way.
+    StaticVector<AutopilotReport, 3> earlier_autopilot;
     bool has_leg = false;
     LegReport leg;
     bool leg_lost = false;  ///< the autopilot flies to where we do not know: what was told before is over
@@ -187,7 +180,8 @@ struct Inbox {
 
     void clear() noexcept
     {
-        has_sticks = has_earlier_autopilot = false;
+        has_sticks = false;
+        earlier_autopilot.clear();
         has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
         own_state.estimator_reset = bus_state.estimator_reset = false;
         tracks.clear();

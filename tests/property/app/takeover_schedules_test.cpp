@@ -123,11 +123,11 @@ private:
         sticks_ = input.sticks_moved;
         input.unfollowed = random_.below(1500) == 0;
         Beat beat;
+        beat_count_ = 0;
         while (machine_.beats.take(tick_, beat)) {
             witness_.hear(beat, tick_, takeover_.control());
-            if (input.has_report && !(input.has_earlier && is_foreign(input.earlier))) {
-                input.has_earlier = true;  // as the link reports them
-                input.earlier = report_;
+            if (input.has_report && beat_count_ < earlier_.size()) {
+                earlier_[beat_count_++] = report_;
             }
             input.has_report = true;
             report_.stack = world_.px4 ? link::AutopilotStack::px4 : link::AutopilotStack::ardupilot;
@@ -136,6 +136,7 @@ private:
             report_.armed = beat.armed;
         }
         input.report = report_;
+        input.earlier = {earlier_.data(), beat_count_};
         bool accepted = false;
         while (machine_.answers.take(tick_, accepted)) {
             input.mode_accepted = input.mode_accepted || accepted;
@@ -168,6 +169,8 @@ private:
     Witness witness_{world_};
     Takeover takeover_;
     link::AutopilotReport report_;
+    std::array<link::AutopilotReport, 16> earlier_;  ///< since the last tick
+    std::size_t beat_count_ = 0;
     int rest_ = 100;  ///< mean time between changes of the conflict [ticks]
     int tick_ = 0;
     bool conflict_ = false;

@@ -101,7 +101,8 @@ struct Witness {
             (s.beat == Beat::former && (unanswered || flown))) {
             due = false;
         }
-        flown = (flown || after.takeover.in_control()) && due;
+        // Seen under a fault, and over again: somebody else has ended it.
+        flown = (flown || after.takeover.in_control() || s.beat == Beat::external) && due;
         if (out.action == TakeoverAction::request_external) {
             due = true;
             requested = after.now;
