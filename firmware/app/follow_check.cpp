@@ -34,11 +34,12 @@ bool FollowCheck::update(const Vec3& command, const Vec3& velocity, const vehicl
     last_ = now;
     velocity_ = velocity;
     if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
-        begun_ = is_finite(velocity);
+        begun_ = is_finite(velocity) && is_finite(command);
         reference_ = command;
         return false;
     }
     const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
+    const Vec3 error = command - (velocity - change);
     if ((command - reference_).norm() > kTolerance) {
         // What the command before asked for still goes on for a while.
         missing_ = is_proven_ ? -expected * kAllowance : missing_;
@@ -46,9 +47,8 @@ bool FollowCheck::update(const Vec3& command, const Vec3& velocity, const vehicl
         progress_ = 0.0F;
         reference_ = command;
     }
-    const Vec3 error = command - (velocity - change);
     if (is_followed(command, velocity)) {
-        missing_ = std::max(missing_ - expected * dt, 0.0F);
+        missing_ = std::max(missing_ - expected * dt, std::min(missing_, 0.0F));
         is_proven_ = true;
         return false;
     }

@@ -97,9 +97,9 @@ TEST(FollowCheckLaw, AVehicleThatFollowsIsNeverAccused)
         Vec3 seen = first;
         std::uint64_t next = random.below(100);
         for (std::uint64_t tick = 0; tick < 400; ++tick) {
-            // Another manoeuvre no sooner than this: the supervisor keeps one that is still clear.
+            // Another manoeuvre after 2 s or more: the supervisor keeps one that is still clear.
             if (tick >= next) {
-                next = tick + 75 + random.below(100);
+                next = tick + 100 + random.below(100);
                 command = random_command(random);
             }
             craft.step(command, random);
@@ -107,7 +107,8 @@ TEST(FollowCheckLaw, AVehicleThatFollowsIsNeverAccused)
             const TimePoint now{1'000'000 + static_cast<std::int64_t>(tick) * 20'000};
             if (check.update(command, seen, {}, now)) {
                 ++accused;
-                EXPECT_GT(accused, 1U) << "at " << static_cast<float>(tick) * kStep << " s; JINK_CASES=1 JINK_SEED=" << seed + i;
+                EXPECT_GT(accused, 1U) << "at " << static_cast<float>(tick) * kStep
+                                       << " s; JINK_CASES=1 JINK_SEED=" << seed + i;
                 break;
             }
         }
@@ -145,6 +146,20 @@ TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
         longest = std::max(longest, found);
     }
     std::printf("[ follow    ] found after %.2f s at most\n", static_cast<double>(longest));
+}
+
+TEST(FollowCheckLaw, AVehicleThatStopsFollowingIsFoundAfterTheAllowance)
+{
+    const Vec3 north(0.0F, 5.0F, 0.0F), east(5.0F, 0.0F, 0.0F);
+    FollowCheck check;
+    float found = -1.0F;
+    for (int tick = 0; tick < 500 && found < 0.0F; ++tick) {
+        const TimePoint now{1'000'000 + tick * 20'000LL};
+        const float time = static_cast<float>(tick) * kStep;
+        found = check.update(tick < 100 ? north : east, north, {}, now) ? time : found;
+    }
+    EXPECT_GE(found, 2.0F + FollowCheck::kPatience);
+    EXPECT_LE(found, 2.1F + FollowCheck::kPatience + FollowCheck::kAllowance);
 }
 
 }  // namespace

@@ -198,9 +198,9 @@ TEST(TakeoverSchedules, NoPilotIsOverriddenOnceKnown)
         "[ schedules] %llu: pilots overridden %ld, broken %llu; pilot acted %ld times, %ld times while a HEARTBEAT or "
         "request was on the line; taken %ld, given back %ld, overruled %ld, refused %ld, lost %ld, sticks %ld, "
         "unfollowed %ld, held %ld\n",
-        static_cast<unsigned long long>(cases), tally.overridden, static_cast<unsigned long long>(broken),
-        tally.pilots, tally.unknowable, tally.taken, tally.given_back, tally.overruled, tally.refused, tally.lost,
-        tally.sticks, tally.unfollowed, tally.held);
+        static_cast<unsigned long long>(cases), tally.overridden, static_cast<unsigned long long>(broken), tally.pilots,
+        tally.unknowable, tally.taken, tally.given_back, tally.overruled, tally.refused, tally.lost, tally.sticks,
+        tally.unfollowed, tally.held);
     if (cases >= 1000) {
         EXPECT_GT(tally.taken, 0);
         EXPECT_GT(tally.given_back, 0);
@@ -296,10 +296,11 @@ TEST(TakeoverSchedules, ControlIsTakenAndGivenBackInTimeOnAHealthyLine)
                     }
                 }
                 const float mean = static_cast<float>(sum) / static_cast<float>(flights);
-                std::printf("[ taken     ] %s, 1 Hz, %s, stream of %.0f s wanted: after %.2f s on average, %.2f s at most\n",
-                            px4 ? "PX4" : "ArduPilot", serves ? "requests of HEARTBEATs served" : "not served",
-                            static_cast<double>(proof) / kSecond, static_cast<double>(mean * kTickTime),
-                            static_cast<double>(static_cast<float>(latest) * kTickTime));
+                std::printf(
+                    "[ taken     ] %s, 1 Hz, %s, stream of %.0f s wanted: after %.2f s on average, %.2f s at most\n",
+                    px4 ? "PX4" : "ArduPilot", serves ? "requests of HEARTBEATs served" : "not served",
+                    static_cast<double>(proof) / kSecond, static_cast<double>(mean * kTickTime),
+                    static_cast<double>(static_cast<float>(latest) * kTickTime));
             }
         }
     }

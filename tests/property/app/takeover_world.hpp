@@ -205,8 +205,8 @@ struct Witness {
     TakeoverAction last_action = TakeoverAction::none;
     bool effect_seen = false;       ///< another mode since the last request
     std::uint32_t number_then = 0;  ///< shown when it was made
-    std::uint32_t left = 0;  ///< mission shown when the external mode was last asked for
-    bool claim = false;      ///< an external mode seen may be due to us
+    std::uint32_t left = 0;         ///< mission shown when the external mode was last asked for
+    bool claim = false;             ///< an external mode seen may be due to us
     bool seen_external = false;
     bool hands_off = false;
     bool sticks = false;
@@ -226,8 +226,9 @@ struct Witness {
             claim = seen_external = false;
         }
         given_back_at = beat.number == left && seen_before ? tick : given_back_at;
-        const bool engaged = given_back_at != tick && (control == Control::announcing || control == Control::requesting ||
-                             control == Control::ours || control == Control::returning);
+        const bool engaged =
+            given_back_at != tick && (control == Control::announcing || control == Control::requesting ||
+                                      control == Control::ours || control == Control::returning);
         hands_off = hands_off || (engaged && !ours && beat.number != kHold);
     }
 

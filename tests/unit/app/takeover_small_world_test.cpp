@@ -193,10 +193,10 @@ TEST(TakeoverSmallWorld, EverySequenceOfStepsFromEveryState)
         request,
         fly,
         give_back,
-        then(give_back, {kWant}),                         // a new conflict while returning
-        then(request, {shown, shown, wait}),              // refused
-        then(request, {fault(Beat::none)}),               // asked, then a fault
-        then(fly, {fault(Beat::none)}),                   // lost
+        then(give_back, {kWant}),                           // a new conflict while returning
+        then(request, {shown, shown, wait}),                // refused
+        then(request, {fault(Beat::none)}),                 // asked, then a fault
+        then(fly, {fault(Beat::none)}),                     // lost
         then(request, {shown, shown, fault(Beat::former)})  // a fault after the last try
     };
     for (const std::vector<Step>& way : ways) {
