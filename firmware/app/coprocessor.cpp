@@ -276,6 +276,7 @@ TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleS
     input.report_is_late = (report.faults & bit(Fault::late)) != 0;
     input.report = autopilot_;
     input.report.steerable = can_steer() && (!autopilot_.fixed_wing || link_.origin().has_value());
+    input.earlier = {earlier_reports_.begin(), earlier_reports_.end()};
     input.mode_denied = mode_denied_;
     input.mode_accepted = mode_accepted_;
     input.keep_stream = c.standby_stream;

@@ -310,6 +310,7 @@ private:
     link::AutopilotReport autopilot_;
     bool has_autopilot_ = false;
     bool new_autopilot_report_ = false;
+    decltype(link::Inbox::earlier_autopilot) earlier_reports_;
     bool mode_denied_ = false;
     bool mode_accepted_ = false;
     world::Leg leg_;

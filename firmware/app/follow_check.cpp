@@ -47,18 +47,29 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     last_ = now;
     velocity_ = velocity;
     if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
-        begun_ = is_finite(velocity);
+        begun_ = is_finite(velocity) && is_finite(command);
+        reference_ = command;
         return false;
     }
     const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
     const Vec3 error = command - (velocity - change);
+    if ((command - reference_).norm() > kTolerance) {
+        // What the command before asked for still goes on for a while.
+        missing_ = is_proven_ ? -expected * kAllowance : missing_;
+        is_proven_ = false;
+        progress_ = 0.0F;
+        reference_ = command;
+    }
     if (is_followed(command, velocity)) {
-        missing_ = std::max(missing_ - expected * dt, 0.0F);
+        missing_ = std::max(missing_ - expected * dt, std::min(missing_, 0.0F));
+        is_proven_ = true;
         return false;
     }
     const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
     const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
-    missing_ = std::max(missing_ + expected * dt - towards, 0.0F);
+    progress_ += towards;
+    is_proven_ = is_proven_ || progress_ >= expected * kPatience;
+    missing_ = std::max(missing_ + expected * dt - towards, std::min(missing_, 0.0F));
     return missing_ >= expected * (wing ? kWingPatience : kPatience);
 }
 

@@ -10,9 +10,9 @@ namespace jink::app {
 /// Whether an autopilot that does not give control had better stop than fly on. Asked once there is just the time to
 /// stop before the conflict.
 ///
-/// In front of what stands: always. Traffic flies on: stopping helps where the place at which the vehicle comes to rest
-/// is farther from the traffic's path, from then on and for kHoldAhead, than the vehicle's own path, by kHoldBetter at
-/// least. A crossing is such a case. An intruder from ahead or behind is not: it would hit a vehicle that stands.
+/// In front of what stands: always. Traffic flies on: stopping helps where the vehicle stays farther from it than on
+/// its own path, by kHoldBetter at least, while it brakes and at rest, for kHoldAhead. A crossing is such a case. An
+/// intruder from ahead or behind is not: it would hit a vehicle that brakes or stands.
 ///
 /// @param track  the threat as in the situation of `own`; nullptr: an obstacle or closed area
 [[nodiscard]] bool is_stopping_safer(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,

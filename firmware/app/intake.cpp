@@ -75,6 +75,7 @@ void Coprocessor::take_autopilot(TimePoint now) noexcept
 {
     static_cast<void>(now);
     new_autopilot_report_ = inbox_.has_autopilot;
+    earlier_reports_ = inbox_.earlier_autopilot;
     if (!inbox_.has_autopilot) {
         return;
     }

@@ -13,7 +13,7 @@ void ModeEvidence::note_heartbeat(TimePoint now) noexcept
         period_ = std::max(std::min(gaps_[0], gaps_[1]), std::min(std::max(gaps_[0], gaps_[1]), gaps_[2]));
     }
     heard_unasked_ = !has_polled_;
-    has_polled_ = false;
+    has_polled_ = is_void_ = false;
     has_heard_ = true;
     heard_ = now;
 }

@@ -21,6 +21,8 @@ class ModeEvidence {
 public:
     /// A HEARTBEAT arrived.
     void note_heartbeat(TimePoint now) noexcept;
+    /// Nothing is known of the present mode until another HEARTBEAT arrives.
+    void discard() noexcept { is_void_ = true; }
     /// A mode is asked for.
     void note_request(TimePoint now) noexcept;
     /// The last request was accepted; a HEARTBEAT of the same tick may have come after the answer.
@@ -28,11 +30,11 @@ public:
 
     [[nodiscard]] bool is_newer_than_requests() const noexcept
     {
-        return has_heard_ && (!has_asked_ || heard_ > barrier_);
+        return has_heard_ && !is_void_ && (!has_asked_ || heard_ > barrier_);
     }
     [[nodiscard]] bool is_fresh(TimePoint now) const noexcept
     {
-        return has_heard_ && now - heard_ <= kPeriods * period_;
+        return has_heard_ && !is_void_ && now - heard_ <= kPeriods * period_;
     }
     /// No HEARTBEAT for longer than `time`; false before the first one.
     [[nodiscard]] bool was_silent(Seconds time, TimePoint now) const noexcept
@@ -64,6 +66,7 @@ public:
 
 private:
     bool has_heard_ = false;
+    bool is_void_ = false;        ///< the newest is no evidence
     bool heard_unasked_ = false;  ///< the newest came by itself
     TimePoint heard_;             ///< the newest
     bool has_asked_ = false;      ///< for any mode

@@ -24,13 +24,15 @@ void Takeover::drop(bool by_fault) noexcept
 /// When the newest HEARTBEAT came, and how often they come.
 void Takeover::note_report(const TakeoverInput& input, TimePoint now) noexcept
 {
-    if (input.mode_accepted && control_ != Control::ours) {
+    const bool is_seen = last_action_ == TakeoverAction::request_external && mode_ == FlightMode::external;
+    if (input.mode_accepted && !is_seen) {
         evidence_.note_accepted(now);
     }
     if (!input.has_report) {
         return;
     }
     mode_ = input.report.mode;
+    is_claim_seen_ = claim_ != Claim::none && (is_claim_seen_ || mode_ == FlightMode::external);
     unfollowed_ = unfollowed_ && input.report.armed;
     if (evidence_.was_silent(kClaim, now) && !in_control() && claim_ != Claim::none) {
         // Nobody knows who flew meanwhile.
@@ -66,7 +68,7 @@ TakeoverOutput Takeover::overrule() noexcept
 /// Another mode seen after the time for a confirmation: an external mode from now on is not due to us.
 void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
 {
-    if (input.has_report && mode_ != FlightMode::external && (claim_ == Claim::held || now - asked_ >= kConfirm)) {
+    if (input.has_report && mode_ != FlightMode::external && (is_claim_seen_ || now - asked_ >= kConfirm)) {
         claim_ = Claim::none;
     }
 }
@@ -172,7 +174,9 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return {};
     }
     const Seconds waited = now - since_;
-    if (control_ == Control::announcing && now - streaming_since_ < kAnnounce) {
+    // Asked for just before a fault that is over: its answer may be on the way.
+    const bool is_open = claim_ == Claim::asked && now - asked_ < kConfirm;
+    if (control_ == Control::announcing && (now - streaming_since_ < kAnnounce || is_open)) {
         static_cast<void>(evidence_.is_clear_to_ask(now));
         return {};
     }
@@ -184,6 +188,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     }
     if (control_ == Control::requesting && !input.wants_control) {
         control_ = Control::autopilot;  // not asked for again; a late grant is still ours to give back
+        expire_claim(input, now);
         return {};
     }
     const bool may_try = unproven || tries_ < kTries;
@@ -197,10 +202,12 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         denied_ = false;
         control_ = Control::requesting;
         claim_ = Claim::asked;
+        is_claim_seen_ = false;
         since_ = asked_ = now;
         return {TakeoverAction::request_external, TakeoverEvent::none};
     }
     control_ = Control::refused;
+    expire_claim(input, now);
     ++diagnostics_.refused;
     tries_ = 0;
     return {TakeoverAction::none, TakeoverEvent::refused};
@@ -233,7 +240,9 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
         control_ = Control::ours;
         return {};
     }
-    if ((control_ == Control::ours || now - since_ >= kConfirm) && evidence_.is_clear_to_ask(now)) {
+    const bool on_its_way = asked_back_ && now - since_ < kConfirm;
+    control_ = on_its_way ? Control::returning : control_;
+    if (!on_its_way && evidence_.is_clear_to_ask(now)) {
         control_ = Control::returning;
         asked_back_ = true;
         since_ = now;
@@ -284,7 +293,7 @@ TakeoverOutput Takeover::keep_off(const TakeoverInput& input, TimePoint now) noe
 {
     const bool over = input.has_report && (mode_ != FlightMode::external || !input.report.armed);
     // A HEARTBEAT may have been sent before a request of ours was granted.
-    if (over && (claim_ != Claim::asked || foreign(input) || now - asked_ >= kConfirm)) {
+    if (over && (is_claim_seen_ || foreign(input) || now - asked_ >= kConfirm)) {
         back_due_ = false;
         claim_ = Claim::none;
     }
@@ -313,7 +322,9 @@ TakeoverOutput Takeover::yield_to_sticks(const TakeoverInput& input, TimePoint n
     control_ = Control::overruled;
     tries_ = 0;
     back_due_ = claim_ != Claim::none;
-    back_tries_ = 0;
+    const bool on_its_way = asked_back_ && now - since_ < kConfirm;
+    back_tries_ = on_its_way ? 1 : 0;
+    back_asked_ = since_;
     ++diagnostics_.sticks;
     return {keep_off(input, now).action, TakeoverEvent::sticks};
 }
@@ -346,13 +357,36 @@ TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcep
     return idle(input, now);
 }
 
+/// What HEARTBEATs before the newest one show counts, but is no evidence to ask on.
+TakeoverEvent Takeover::heed_earlier(const TakeoverInput& input, TimePoint now) noexcept
+{
+    TakeoverEvent event = TakeoverEvent::none;
+    TakeoverInput earlier = input;
+    earlier.has_report = earlier.report_is_late = true;
+    earlier.earlier = {};
+    for (const link::AutopilotReport& report : input.earlier) {
+        earlier.report = report;
+        if (!foreign(earlier) && report.mode == mode_) {
+            continue;  // no news
+        }
+        note_report(earlier, now);
+        evidence_.discard();
+        const TakeoverEvent seen = decide(earlier, now).event;
+        event = seen != TakeoverEvent::none ? seen : event;
+    }
+    return event;
+}
+
 TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexcept
 {
     const bool was_streaming = streaming() || proving_;
+    const TakeoverEvent earlier = heed_earlier(input, now);
     note_report(input, now);
     TakeoverOutput output = decide(input, now);
+    output.event = output.event == TakeoverEvent::none ? earlier : output.event;
     if (output.action != TakeoverAction::none) {
         evidence_.note_request(now);
+        last_action_ = output.action;
     }
     if (input.has_report && !found_) {
         found_ = true;
@@ -365,7 +399,8 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
     if (!was_streaming && (streaming() || proving_)) {
         streaming_since_ = now;
     }
-    output.ask_heartbeat = evidence_.is_due(in_control(), control_ == Control::requesting, now);
+    const bool unconfirmed = control_ == Control::requesting || control_ == Control::returning;
+    output.ask_heartbeat = evidence_.is_due(in_control(), unconfirmed, now);
     diagnostics_.heartbeats_asked += output.ask_heartbeat ? 1U : 0U;
     return output;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "firmware/app/mode_evidence.hpp"
 #include "firmware/link/messages.hpp"
@@ -45,12 +46,14 @@ struct TakeoverInput {
     bool has_report = false;       ///< a HEARTBEAT of the autopilot arrived since the last tick
     bool report_is_late = false;   ///< it may have waited for us: we were not there when it came
     link::AutopilotReport report;  ///< the newest one
-    bool mode_denied = false;      ///< a COMMAND_ACK refused the mode
-    bool mode_accepted = false;    ///< a COMMAND_ACK accepted the mode
-    bool link_alive = true;        ///< what is asked for can leave
-    bool keep_stream = false;      ///< prove the stream to a PX4 before it is needed
-    bool sticks_moved = false;     ///< by the pilot, since streaming() began
-    bool unfollowed = false;       ///< the vehicle's motion shows that it does not follow what we command
+    /// HEARTBEATs that arrived before `report` since the last tick and showed another mode.
+    std::span<const link::AutopilotReport> earlier{};
+    bool mode_denied = false;    ///< a COMMAND_ACK refused the mode
+    bool mode_accepted = false;  ///< a COMMAND_ACK accepted the mode
+    bool link_alive = true;      ///< what is asked for can leave
+    bool keep_stream = false;    ///< prove the stream to a PX4 before it is needed
+    bool sticks_moved = false;   ///< by the pilot, since streaming() began
+    bool unfollowed = false;     ///< the vehicle's motion shows that it does not follow what we command
 };
 
 struct TakeoverOutput {
@@ -145,6 +148,7 @@ public:
     static constexpr Seconds kClaim = 10.0F;
 
 private:
+    TakeoverEvent heed_earlier(const TakeoverInput& input, TimePoint now) noexcept;
     void note_report(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput decide(const TakeoverInput& input, TimePoint now) noexcept;
     [[nodiscard]] TakeoverOutput idle(const TakeoverInput& input, TimePoint now) noexcept;
@@ -176,7 +180,8 @@ private:
     TimePoint asked_;  ///< the last request of the external mode
     int tries_ = 0;    ///< in this conflict: of the external mode, once refused of the hold mode
     Claim claim_ = Claim::none;
-    bool asked_back_ = false;  ///< the former mode was asked for and its confirmation may still be on its way
+    bool is_claim_seen_ = false;  ///< a HEARTBEAT has shown the external mode since: any other mode ends the claim
+    bool asked_back_ = false;     ///< the former mode was asked for and its confirmation may still be on its way
     bool proving_ = false;
     TimePoint streaming_since_;
     bool denied_ = false;      ///< the last request of the external mode
@@ -187,8 +192,9 @@ private:
     bool back_due_ = false;  ///< sticks were moved: the former mode is asked for, without a stream
     int back_tries_ = 0;
     TimePoint back_asked_;
-    bool unfollowed_ = false;  ///< since the vehicle was armed
-    bool found_ = false;       ///< the first HEARTBEAT was looked at
+    bool unfollowed_ = false;                            ///< since the vehicle was armed
+    TakeoverAction last_action_ = TakeoverAction::none;  ///< asked for last
+    bool found_ = false;                                 ///< the first HEARTBEAT was looked at
 
     ModeEvidence evidence_;
     TakeoverDiagnostics diagnostics_;

@@ -159,7 +159,9 @@ struct Inbox {
     bool has_bus_state = false;
     OwnStateReport bus_state;  ///< as a receiver on the sensor bus measures it
     bool has_autopilot = false;
-    AutopilotReport autopilot;
+    AutopilotReport autopilot;  ///< the newest
+    /// Those before it in the same step that showed another mode, in their order. When full, the last gives way.
+    StaticVector<AutopilotReport, 3> earlier_autopilot;
     bool has_leg = false;
     LegReport leg;
     bool leg_lost = false;  ///< the autopilot flies to where we do not know: what was told before is over
@@ -179,6 +181,7 @@ struct Inbox {
     void clear() noexcept
     {
         has_sticks = false;
+        earlier_autopilot.clear();
         has_own_state = has_bus_state = has_autopilot = has_leg = leg_lost = has_home = has_scan = false;
         own_state.estimator_reset = bus_state.estimator_reset = false;
         tracks.clear();

@@ -132,6 +132,11 @@ void Endpoint::on_heartbeat(const Context& c) noexcept
     note_mode(mode_before, was_armed);
     // A reboot noticed earlier in the same batch must not be lost when a second heartbeat follows.
     const bool pending_reboot = c.inbox.has_autopilot && c.inbox.autopilot.rebooted;
+    const AutopilotReport& last = c.inbox.autopilot;
+    const bool differs = last.custom_mode != m.custom_mode || last.armed != autopilot_.armed;
+    if (c.inbox.has_autopilot && differs && !c.inbox.earlier_autopilot.try_push_back(last)) {
+        c.inbox.earlier_autopilot.back() = last;
+    }
     c.inbox.autopilot = autopilot_;
     c.inbox.autopilot.rebooted = rebooted_ || pending_reboot;
     c.inbox.has_autopilot = true;

@@ -76,6 +76,7 @@ struct Request {
     TakeoverAction action = TakeoverAction::none;
     std::uint32_t number = 0;
     bool poll = false;
+    int sent = 0;
 };
 
 /// One schedule's circumstances.
@@ -89,6 +90,20 @@ struct World {
     float loss = 0.0F;     ///< of a frame, either way
     int proof = 0;         ///< a PX4 grants the external mode to a stream that old [ticks]
     int phase = 0;
+
+    /// A pilot's mode older than this when a request leaves was to be known [ticks]: what a HEARTBEAT takes and may be
+    /// old, ModeEvidence::kFresh where every request of one is answered in time, 1.5 periods otherwise.
+    [[nodiscard]] int knowable() const
+    {
+        const bool answers = serves && loss <= 0.0F && jitter == 0;
+        return (answers ? kSecond / 10 : kSecond * 3 / 2) + latency + jitter + 1;
+    }
+};
+
+/// The pilot's modes that a granted request of jink ended.
+struct Overridden {
+    int known = 0;       ///< chosen longer ago than World::knowable
+    int unknowable = 0;  ///< chosen while HEARTBEAT or request were on the line
 };
 
 /// The autopilot behind the line.
@@ -99,9 +114,13 @@ struct Machine {
     bool armed = true;
     int last_setpoint = kNever;
     int stream_since = kNever;
+    int chosen_at = kNever;
+    bool is_chosen = false;  ///< by the pilot: the present mode, neither the mission nor the external mode
+    Overridden overridden{};
     Line<Beat> beats{};
     Line<Request> requests{};
     Line<bool> answers{};
+    int last_arrival = kNever;  ///< of HEARTBEATs and answers: one line, in their order
 
     [[nodiscard]] bool lost() const { return world.loss > 0.0F && random.uniform() < world.loss; }
     [[nodiscard]] int later(int tick) const
@@ -110,20 +129,28 @@ struct Machine {
             world.jitter > 0 ? static_cast<int>(random.below(static_cast<std::uint64_t>(world.jitter))) : 0;
         return tick + world.latency + extra;
     }
+    int next_arrival(int tick) { return last_arrival = std::max(last_arrival, later(tick)); }
     void beat(int tick, bool natural)
     {
         if (!lost()) {
-            beats.send({number, armed, tick, natural}, later(tick));
+            beats.send({number, armed, tick, natural}, next_arrival(tick));
         }
     }
     void enter(std::uint32_t next, int tick)
     {
         const bool change = next != number;
+        is_chosen = is_chosen && !change;
         number = next;
         last_setpoint = next == kExternal ? tick : last_setpoint;
         if (change && !world.px4) {
             beat(tick, true);  // ArduPilot sends one with each change of mode
         }
+    }
+    void choose(std::uint32_t next, int tick)
+    {
+        enter(next, tick);
+        is_chosen = next == kManual || next == kHold;
+        chosen_at = tick;
     }
     void hear(int tick)
     {
@@ -139,10 +166,13 @@ struct Machine {
             const bool streamed = tick - last_setpoint <= kSecond / 2 && tick - stream_since >= world.proof;
             const bool granted = !external || (!world.refuses && (!world.px4 || streamed));
             if (granted) {
+                if (is_chosen && armed && request.number != number) {
+                    ++(request.sent - chosen_at > world.knowable() ? overridden.known : overridden.unknowable);
+                }
                 enter(request.number, tick);
             }
             if (!lost()) {
-                answers.send(granted, later(tick));
+                answers.send(granted, next_arrival(tick));
             }
         }
     }
@@ -171,26 +201,34 @@ struct Witness {
     int request_at = kNever;
     int external_at = kNever;
     int accepted_at = kNever;
-    std::uint32_t left = 0;  ///< mission shown when the external mode was last asked for
-    bool claim = false;      ///< an external mode seen may be due to us
+    int given_back_at = kNever;
+    TakeoverAction last_action = TakeoverAction::none;
+    bool effect_seen = false;       ///< another mode since the last request
+    std::uint32_t number_then = 0;  ///< shown when it was made
+    std::uint32_t left = 0;         ///< mission shown when the external mode was last asked for
+    bool claim = false;             ///< an external mode seen may be due to us
     bool seen_external = false;
     bool hands_off = false;
     bool sticks = false;
-    bool was_streaming = false;
+    bool was_announcing = false;
 
     void hear(const Beat& beat, int tick, Control control)
     {
         newest = beat;
         beat_at = tick;
         naturals += beat.natural ? 1 : 0;
+        effect_seen = effect_seen || beat.number != number_then;
+        const bool seen_before = seen_external;
         const bool ours = beat.armed && (beat.number == kExternal || beat.number == left);
         if (beat.number == kExternal && beat.armed) {
             seen_external = seen_external || claim;
         } else if (!ours || seen_external || (tick - external_at >= kSecond && control != Control::requesting)) {
             claim = seen_external = false;
         }
-        const bool engaged = control == Control::announcing || control == Control::requesting ||
-                             control == Control::ours || control == Control::returning;
+        given_back_at = beat.number == left && seen_before ? tick : given_back_at;
+        const bool engaged =
+            given_back_at != tick && (control == Control::announcing || control == Control::requesting ||
+                                      control == Control::ours || control == Control::returning);
         hands_off = hands_off || (engaged && !ours && beat.number != kHold);
     }
 
@@ -198,10 +236,11 @@ struct Witness {
     {
         hands_off = hands_off && wants;
         sticks = sticks && wants;
-        if (takeover.streaming() && !was_streaming && is_mission(newest.number)) {
+        const bool announces = takeover.control() == Control::announcing;
+        if (announces && !was_announcing && is_mission(newest.number)) {
             left = newest.number;
         }
-        was_streaming = takeover.streaming();
+        was_announcing = announces;
         const bool fit = newest.armed && (newest.number == kExternal || is_mission(newest.number));
         if (takeover.streaming() && (beat_at == kNever || !fit)) {
             return "streams although the newest HEARTBEAT shows somebody else's mode";
@@ -223,9 +262,13 @@ struct Witness {
         if (tick - beat_at > allowed) {
             return "asks for a mode on an old HEARTBEAT";
         }
-        if (accepted_at > request_at && (beat_at < accepted_at || tick - request_at < kSecond / 2)) {
+        if (accepted_at > request_at && !effect_seen && out.action == last_action &&
+            (beat_at < accepted_at || tick - request_at < kSecond / 2)) {
             return "repeats a request that was accepted";
         }
+        effect_seen = false;
+        last_action = out.action;
+        number_then = newest.number;
         return check_action(out.action, takeover, tick);
     }
 

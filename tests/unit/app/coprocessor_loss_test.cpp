@@ -83,8 +83,19 @@ TEST_F(CoprocessorLoss, AsksOnceTheLineIsBack)
     EXPECT_EQ(holds(), 0U);
     f->own_state = false;
     f->port.state = hal::PortState::open;
-    f->fly(1);
-    EXPECT_EQ(holds(), 1U);
+    f->fly(10);
+    EXPECT_EQ(holds(), 1U) << "one HEARTBEAT, asked for, must show that the external mode still stands";
+}
+
+TEST_F(CoprocessorLoss, PilotWhoTookOverWhileTheLineWasLostIsNotAskedToHold)
+{
+    f->port.state = hal::PortState::lost;
+    f->fly(100);
+    f->mode = 0U;  // STABILIZE
+    f->own_state = false;
+    f->port.state = hal::PortState::open;
+    f->fly(300);
+    EXPECT_EQ(holds(), 0U);
 }
 
 /// A link that breaks its promise: every number in the inbox is finite.

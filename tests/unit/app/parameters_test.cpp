@@ -337,6 +337,7 @@ std::vector<Route> routes()
         same(Param::time_low, 1.5F, [](C c) { return c.planner.caps.time_low; }),
         same(Param::time_high, 9.5F, [](C c) { return c.planner.caps.time_high; }),
         same(Param::latency, 0.2F, [](C c) { return c.planner.latency; }),
+        {Param::sticks, 45.0F, [](C c) { return c.sticks; }, 0.45F},
         same(Param::patience, 12.5F, [](C c) { return c.supervisor.patience; }),
     };
 }

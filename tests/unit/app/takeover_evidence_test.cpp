@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mode is asked for on fresh evidence alone: what a pilot chose meanwhile is not overridden.
+#include <array>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/takeover_bench.hpp"
@@ -28,6 +30,16 @@ int requests_within(Bench& b, float seconds, const Step& s = kWant)
         asked += b.step(s).action != TakeoverAction::none ? 1 : 0;
     }
     return asked;
+}
+
+Bench in_control_of(link::AutopilotStack stack)
+{
+    Bench b = on_mission(stack);
+    b.step(wants(Beat::former));
+    requests_within(b, 0.1F);
+    b.step(wants(Beat::external));
+    EXPECT_EQ(b.control(), Control::ours);
+    return b;
 }
 
 TEST(TakeoverEvidence, PilotsChoiceInALostHeartbeatIsNotOverridden)
@@ -69,7 +81,8 @@ TEST(TakeoverEvidence, AnswerLetsTheRequestGoAtOnce)
     EXPECT_TRUE(b.step(kWant).ask_heartbeat);
     b.step(kWant);
     b.step(wants(Beat::former));
-    EXPECT_EQ(b.step(kWant).action, TakeoverAction::request_external) << "0.06 s after the conflict began";
+    EXPECT_EQ(b.step(wants(Beat::none, 0.021F)).action, TakeoverAction::request_external)
+        << "0.06 s after the stream began";
 }
 
 TEST(TakeoverEvidence, WithoutAnAnswerAHeartbeatOfOneAndAHalfPeriodsIsGoodEnough)
@@ -111,8 +124,8 @@ TEST(TakeoverEvidence, RefusedRequestIsNotRepeatedBeforeAnotherHeartbeat)
         EXPECT_EQ(requests_within(b, 0.1F), 1);
         b.step(denied(0.02F));
         EXPECT_EQ(requests_within(b, 0.8F), 0);
-        b.step(wants(Beat::former));
-        EXPECT_EQ(requests_within(b, 0.1F), 1);
+        EXPECT_EQ(b.step(wants(Beat::former)).action, TakeoverAction::request_external);
+        EXPECT_EQ(requests_within(b, 0.8F), 0);
     }
 }
 
@@ -184,6 +197,46 @@ TEST(TakeoverEvidence, SilenceOfMoreThanTenSecondsEndsTheClaim)
     EXPECT_FALSE(b.takeover.streaming());
 }
 
+TEST(TakeoverEvidence, ExternalModeSeenAndOverDuringAFaultIsNotClaimedAgain)
+{
+    Bench b = on_mission(link::AutopilotStack::ardupilot);
+    b.step(wants(Beat::former));
+    EXPECT_EQ(requests_within(b, 0.1F), 1);
+    b.step(fault(Beat::none));
+    b.step(fault(Beat::external));
+    b.step(fault(Beat::former));  // the pilot's choice
+    b.step(wants(Beat::external, 0.1F));
+    EXPECT_FALSE(b.takeover.streaming());
+}
+
+/// As the application reports HEARTBEATs that arrive within one step.
+TakeoverOutput with_two(Bench& b, const Step& first, const Step& newest)
+{
+    b.now = b.now + newest.dt;
+    TakeoverInput input = input_of(newest);
+    const std::array<link::AutopilotReport, 1> earlier{input_of(first).report};
+    input.earlier = earlier;
+    return b.takeover.update(input, b.now);
+}
+
+TEST(TakeoverEvidence, PilotsModeBeforeALateGrantInOneStepIsNotMissed)
+{
+    Bench b = on_mission(link::AutopilotStack::ardupilot);
+    b.step(wants(Beat::former));
+    EXPECT_EQ(requests_within(b, 0.1F), 1);
+    EXPECT_EQ(with_two(b, wants(Beat::manual), wants(Beat::external)).event, TakeoverEvent::overruled);
+    EXPECT_FALSE(b.takeover.streaming());
+    EXPECT_EQ(requests_within(b, 3.0F), 0);
+}
+
+TEST(TakeoverEvidence, EarlierOfTwoHeartbeatsIsNoEvidenceToAskOn)
+{
+    Bench b = in_control_of(link::AutopilotStack::ardupilot);
+    const TakeoverOutput out = with_two(b, calm(Beat::external), calm(Beat::manual));
+    EXPECT_EQ(out.action, TakeoverAction::none);
+    EXPECT_EQ(out.event, TakeoverEvent::overruled);
+}
+
 TEST(TakeoverEvidence, ExternalModeFoundAtTheStartIsSaidOnceAndLeftAlone)
 {
     Bench b;
@@ -208,16 +261,6 @@ TEST(TakeoverEvidence, ModeGivenBackIsTheOneOfTheTakeoverNotAnOlderOne)
     EXPECT_EQ(b.takeover.update(other, b.now).event, TakeoverEvent::overruled);
 }
 
-Bench in_control()
-{
-    Bench b = on_mission(link::AutopilotStack::ardupilot);
-    b.step(wants(Beat::former));
-    requests_within(b, 0.1F);
-    b.step(wants(Beat::external));
-    EXPECT_EQ(b.control(), Control::ours);
-    return b;
-}
-
 TakeoverOutput with(Bench& b, Step s, bool sticks, bool unfollowed)
 {
     b.now = b.now + s.dt;
@@ -230,7 +273,7 @@ TakeoverOutput with(Bench& b, Step s, bool sticks, bool unfollowed)
 
 TEST(TakeoverSticks, EndTheStreamAtOnceAndAskForTheFormerMode)
 {
-    Bench b = in_control();
+    Bench b = in_control_of(link::AutopilotStack::ardupilot);
     const TakeoverOutput out = with(b, kWant, true, false);
     EXPECT_EQ(out.event, TakeoverEvent::sticks);
     EXPECT_EQ(out.action, TakeoverAction::request_former);
@@ -245,7 +288,7 @@ TEST(TakeoverSticks, EndTheStreamAtOnceAndAskForTheFormerMode)
 
 TEST(TakeoverSticks, PilotsModeAfterwardsStands)
 {
-    Bench b = in_control();
+    Bench b = in_control_of(link::AutopilotStack::ardupilot);
     with(b, kWant, true, false);
     b.step(wants(Beat::manual));
     EXPECT_EQ(requests_within(b, 3.0F), 0);
@@ -274,7 +317,7 @@ TEST(TakeoverSticks, GrantThatComesAfterwardsIsGivenBackWithoutAStream)
 
 TEST(TakeoverUnfollowed, GivesUpAsksForTheHoldAndOnlyAdvisesUntilDisarmed)
 {
-    Bench b = in_control();
+    Bench b = in_control_of(link::AutopilotStack::ardupilot);
     const TakeoverOutput out = with(b, kWant, false, true);
     EXPECT_EQ(out.event, TakeoverEvent::unfollowed);
     EXPECT_EQ(out.action, TakeoverAction::request_hold);

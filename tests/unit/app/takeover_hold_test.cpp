@@ -76,10 +76,25 @@ TEST(TakeoverHold, IsNotWastedOnALostLine)
 {
     Bench b = flying();
     EXPECT_EQ(b.step(dead(Beat::none, 0.02F)).action, TakeoverAction::none);
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 9; ++i) {
         EXPECT_EQ(b.step(dead(Beat::none, 1.0F)).action, TakeoverAction::none);
     }
-    EXPECT_EQ(b.step(fault(Beat::none)).action, TakeoverAction::request_hold) << "as soon as there is a line";
+    const TakeoverOutput back = b.step(fault(Beat::none));
+    EXPECT_EQ(back.action, TakeoverAction::none) << "what the autopilot does now is not known yet";
+    EXPECT_TRUE(back.ask_heartbeat);
+    EXPECT_EQ(b.step(fault(Beat::external)).action, TakeoverAction::request_hold) << "the answer";
+}
+
+TEST(TakeoverHold, IsNotAskedForOfAPilotWhoTookOverWhileTheLineWasLost)
+{
+    for (const Beat beat : {Beat::manual, Beat::former, Beat::hold, Beat::disarmed}) {
+        Bench b = flying();
+        b.step(dead(Beat::none, 0.02F));
+        b.step(dead(Beat::none, 5.0F));
+        for (int i = 0; i < 20; ++i) {
+            EXPECT_EQ(b.step(fault(beat, 0.1F)).action, TakeoverAction::none) << describe(fault(beat));
+        }
+    }
 }
 
 TEST(TakeoverHold, ComesAfterControlWasTakenUpAgainAndIsNobodyElses)
@@ -122,10 +137,12 @@ TEST(TakeoverPx4, IsAskedAgainUntilTheStreamIsOldEnough)
     bool denied_next = false;
     int asked = 0;
     bool granted = false;
+    bool asked_for = false;
     for (int i = 0; i < 200 && !granted; ++i) {
-        Step s = kWant;
+        Step s = asked_for ? wants(Beat::former) : kWant;  // requests of a HEARTBEAT are served
         s.denied = denied_next;
         const TakeoverOutput out = b.step(s);
+        asked_for = out.ask_heartbeat;
         ASSERT_TRUE(b.takeover.streaming());
         denied_next = false;
         if (out.action == TakeoverAction::request_external) {
@@ -148,13 +165,17 @@ TEST(TakeoverPx4, ThatNeverGrantsIsGivenUpAfterThreeMoreTries)
     const TimePoint began = b.now;
     bool denied_next = false;
     int asked = 0;
+    bool asked_for = false;
     while (b.control() != Control::refused && b.now - began < 20.0F) {
-        Step s = kWant;
+        Step s = asked_for ? wants(Beat::former) : kWant;
         s.denied = denied_next;
-        denied_next = b.step(s).action == TakeoverAction::request_external;
+        const TakeoverOutput out = b.step(s);
+        asked_for = out.ask_heartbeat;
+        denied_next = out.action == TakeoverAction::request_external;
         asked += denied_next ? 1 : 0;
     }
     EXPECT_EQ(b.control(), Control::refused);
+    EXPECT_GE(asked, 4 + Takeover::kTries);
     EXPECT_LE(asked, 7 + Takeover::kTries);
     EXPECT_LT(b.now - began, Takeover::kProof + 3.1F * Takeover::kConfirm + 1.0F);
 }
@@ -165,8 +186,8 @@ TEST(TakeoverPx4, WithoutAnAnswerIsAskedOnceASecond)
     b.stack = link::AutopilotStack::px4;
     b.step(wants(Beat::former));
     EXPECT_EQ(b.step(wants(Beat::none, 0.1F)).action, TakeoverAction::request_external);
-    EXPECT_EQ(b.step(wants(Beat::none, 0.9F)).action, TakeoverAction::none);
-    EXPECT_EQ(b.step(wants(Beat::none, 0.11F)).action, TakeoverAction::request_external);
+    EXPECT_EQ(b.step(wants(Beat::former, 0.9F)).action, TakeoverAction::none);
+    EXPECT_EQ(b.step(wants(Beat::former, 0.11F)).action, TakeoverAction::request_external);
 }
 
 }  // namespace

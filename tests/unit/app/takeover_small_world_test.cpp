@@ -101,7 +101,8 @@ struct Witness {
             (s.beat == Beat::former && (unanswered || flown))) {
             due = false;
         }
-        flown = (flown || after.takeover.in_control()) && due;
+        // Seen under a fault, and over again: somebody else has ended it.
+        flown = (flown || after.takeover.in_control() || s.beat == Beat::external) && due;
         if (out.action == TakeoverAction::request_external) {
             due = true;
             requested = after.now;
@@ -186,17 +187,17 @@ TEST(TakeoverSmallWorld, EverySequenceOfStepsFromEveryState)
     };
     const std::vector<Step> fly = then(request, {wants(Beat::external, 0.2F)});
     const std::vector<Step> give_back = then(fly, {calm(Beat::external, 1.0F)});
-    const Step wait = wants(Beat::none, 1.01F);
+    const Step wait = wants(Beat::none, 1.01F), shown = wants(Beat::former, 1.01F);
     const std::vector<std::vector<Step>> ways{
         {},
         request,
         fly,
         give_back,
-        then(give_back, {kWant}),                         // a new conflict while returning
-        then(request, {wait, wait, wait}),                // refused
-        then(request, {fault(Beat::none)}),               // asked, then a fault
-        then(fly, {fault(Beat::none)}),                   // lost
-        then(request, {wait, wait, fault(Beat::former)})  // a fault after the last try
+        then(give_back, {kWant}),                           // a new conflict while returning
+        then(request, {shown, shown, wait}),                // refused
+        then(request, {fault(Beat::none)}),                 // asked, then a fault
+        then(fly, {fault(Beat::none)}),                     // lost
+        then(request, {shown, shown, fault(Beat::former)})  // a fault after the last try
     };
     for (const std::vector<Step>& way : ways) {
         Search search;

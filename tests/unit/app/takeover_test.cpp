@@ -37,8 +37,8 @@ Bench returning()
 Bench refused()
 {
     Bench b = requesting();
-    b.step(wants(Beat::none, 1.01F));
-    b.step(wants(Beat::none, 1.01F));
+    EXPECT_EQ(b.step(wants(Beat::former, 1.01F)).action, TakeoverAction::request_external);
+    EXPECT_EQ(b.step(wants(Beat::former, 1.01F)).action, TakeoverAction::request_external);
     EXPECT_EQ(b.control(), Control::requesting);
     EXPECT_EQ(b.step(wants(Beat::none, 1.01F)).event, TakeoverEvent::refused);
     EXPECT_EQ(b.control(), Control::refused);
@@ -124,8 +124,9 @@ TEST(Takeover, DenialShortensTheWait)
 {
     Bench b = requesting();
     EXPECT_EQ(b.step(denied(0.02F)).action, TakeoverAction::none);
-    EXPECT_EQ(b.step(denied(0.05F)).action, TakeoverAction::request_external);
-    EXPECT_EQ(b.step(denied(0.07F)).action, TakeoverAction::request_external);
+    EXPECT_EQ(b.step(wants(Beat::former, 0.05F)).action, TakeoverAction::request_external);
+    EXPECT_EQ(b.step(denied(0.07F)).action, TakeoverAction::none) << "no HEARTBEAT since the request";
+    EXPECT_EQ(b.step(wants(Beat::former)).action, TakeoverAction::request_external);
     EXPECT_EQ(b.step(denied(0.07F)).event, TakeoverEvent::refused);
 }
 
