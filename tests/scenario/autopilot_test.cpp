@@ -137,18 +137,21 @@ TEST(Modes, AreTheStacksOwnNumbers)
     EXPECT_EQ(custom_mode(Stack::px4, Mode::pilot), 0x00030000U);
 }
 
-TEST(SimAutopilot, TelemetryComesAtItsRates)
+// Rates of both: recorded from the real ones (docs/closed_loop.md).
+TEST(SimAutopilot, ArdupilotStreamsWhatTheCoprocessorAsksFor)
 {
     Line line(kArdupilotFlight);
     line.run(10.0);
     EXPECT_EQ(line.count<Heartbeat>(), 10);
     EXPECT_EQ(line.count<LocalPositionNed>(), 500);
-    EXPECT_EQ(line.count<AttitudeQuaternion>(), 250);
-    EXPECT_EQ(line.count<GlobalPositionInt>(), 50);
+    EXPECT_EQ(line.count<AttitudeQuaternion>(), 100);
+    EXPECT_EQ(line.count<GlobalPositionInt>(), 0);
+    EXPECT_EQ(line.count<PositionTargetLocalNed>(), 0);  // not in AUTO
+    EXPECT_EQ(line.count<MissionCurrent>(), 20);
     EXPECT_EQ(line.count<ExtendedSysState>(), 10);
     EXPECT_EQ(line.count<GpsGlobalOrigin>(), 2);
     EXPECT_EQ(line.count<HomePosition>(), 2);
-    EXPECT_EQ(line.count<Timesync>(), 10);
+    EXPECT_EQ(line.count<Timesync>(), 1);
     const auto position = line.heard<LocalPositionNed>();
     ASSERT_TRUE(position);
     EXPECT_NEAR(static_cast<double>(position->y), 49.9, 0.2);  // east
@@ -159,6 +162,29 @@ TEST(SimAutopilot, TelemetryComesAtItsRates)
     ASSERT_TRUE(attitude);
     EXPECT_NEAR(2.0 * std::atan2(static_cast<double>(attitude->q4), static_cast<double>(attitude->q1)), M_PI / 2.0,
                 1e-6);
+}
+
+TEST(SimAutopilot, Px4StreamsByItself)
+{
+    Line line(kPx4Flight);
+    line.run(10.0);
+    EXPECT_EQ(line.count<Heartbeat>(), 10);
+    EXPECT_EQ(line.count<LocalPositionNed>(), 300);
+    EXPECT_EQ(line.count<Odometry>(), 300);
+    EXPECT_EQ(line.count<AttitudeQuaternion>(), 500);
+    EXPECT_EQ(line.count<Attitude>(), 1000);
+    EXPECT_EQ(line.count<GlobalPositionInt>(), 500);
+    EXPECT_EQ(line.count<ExtendedSysState>(), 50);
+    EXPECT_EQ(line.count<GpsGlobalOrigin>(), 1);
+    EXPECT_EQ(line.count<HomePosition>(), 5);
+    EXPECT_EQ(line.count<Timesync>(), 100);
+    EXPECT_EQ(line.count<PositionTargetLocalNed>(), 100);
+    EXPECT_EQ(line.count<MissionCurrent>(), 10);
+    const auto odometry = line.heard<Odometry>();
+    const auto position = line.heard<LocalPositionNed>();
+    ASSERT_TRUE(odometry && position);
+    EXPECT_NEAR(static_cast<double>(odometry->y), static_cast<double>(position->y), 0.2);
+    EXPECT_NEAR(static_cast<double>(odometry->vy), static_cast<double>(position->vy), 0.05);
 }
 
 TEST(SimAutopilot, Px4RefusesOffboardWithoutARecentSetpoint)

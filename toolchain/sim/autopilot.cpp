@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "firmware/link/mavlink/text.hpp"
+
 namespace jink::sim {
 namespace {
 
@@ -17,13 +19,21 @@ constexpr Micros kPx4Timeout = 1 * kSecond;
 /// Position hold: pull towards the place where it stopped [1/s].
 constexpr double kHoldGain = 0.8;
 constexpr double kStopped = 0.3;  // [m/s]
+constexpr std::uint8_t kNotice = 5;  // MAV_SEVERITY_NOTICE
+constexpr double kLandSpeed = 1.5;  // [m/s]
 
 }  // namespace
 
 Autopilot::Autopilot(World& world)
     : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world), writer_(scenario_.system),
-      told_(scenario_.threats.size(), -1)
+      server_(scenario_.stack, writer_), told_(scenario_.threats.size(), -1)
 {
+    if (scenario_.flight) {
+        mode_ = scenario_.flight->mode;
+        if (!scenario_.flight->items.empty()) {
+            items_.emplace(scenario_);
+        }
+    }
     for (const auto& [name, value] : scenario_.parameters) {
         wanted_.push_back({name, static_cast<float>(value), false});
     }
@@ -65,7 +75,37 @@ void Autopilot::enter(Mode mode, bool asked)
         // GUIDED starts by holding its place; OFFBOARD goes on with the stream that it has seen.
         has_external_setpoint_ = scenario_.stack == Stack::px4;
     }
-    send_heartbeat();
+    if (mode == Mode::mission && items_) {
+        items_->resume(world_.own());
+    } else if (mode == Mode::mission && scenario_.stack == Stack::ardupilot) {
+        mission_.resume(world_.own().position);
+    }
+    if (scenario_.stack == Stack::ardupilot) {
+        send_heartbeat();  // PX4 does not: once a second, whatever happens
+    }
+}
+
+/// What a ground station on another line does.
+void Autopilot::follow_others()
+{
+    if (!scenario_.flight) {
+        return;
+    }
+    const NominalFlight& flight = *scenario_.flight;
+    if (flight.mission_at >= 0.0 && !sent_to_mission_ && world_.now() >= to_micros(flight.mission_at)) {
+        sent_to_mission_ = true;
+        enter(Mode::mission, false);
+    }
+    if (items_ && flight.upload_at >= 0.0 && !uploaded_ && world_.now() >= to_micros(flight.upload_at)) {
+        uploaded_ = true;
+        items_->replace(flight.uploaded, world_.own());
+        if (scenario_.stack == Stack::ardupilot) {
+            link::mavlink::Statustext text;
+            text.severity = kNotice;
+            static_cast<void>(link::mavlink::set_text(text.text, "Auto mission changed, restarted command"));
+            writer_.write(text);
+        }
+    }
 }
 
 void Autopilot::suffer_faults()
@@ -79,6 +119,8 @@ void Autopilot::suffer_faults()
         rebooted_ = true;
         writer_.restart();
         writer_.bytes().clear();
+        told_origin_ = false;
+        server_.restart();
         if (mode_ == Mode::external) {
             enter(Mode::hold, false);
         }
@@ -100,21 +142,38 @@ void Autopilot::watch_setpoints()
     }
 }
 
+Vec Autopilot::mission_velocity()
+{
+    return items_ ? items_->command(world_.own()) : mission_.command(world_.own().position);
+}
+
 Vec Autopilot::wanted_velocity()
 {
     const Truth& own = world_.own();
     switch (mode_) {
-    case Mode::mission: return mission_.command(own.position);
+    case Mode::mission: return mission_velocity();
     case Mode::external:
         if (has_external_setpoint_) {
             return setpoint_;
         }
         break;
-    case Mode::pilot: return scenario_.faults.pilot_velocity;
+    case Mode::pilot:
+        if (!scenario_.flight) {
+            return scenario_.faults.pilot_velocity;
+        }
+        if (scenario_.flight->moved_at >= 0.0 && world_.now() >= to_micros(scenario_.flight->moved_at)) {
+            return scenario_.flight->stick;
+        }
+        break;
     case Mode::home: {
-        const Vec to_home(-own.position.x(), -own.position.y(), 0.0);
+        const Vec to_home(scenario_.home.x() - own.position.x(), scenario_.home.y() - own.position.y(), 0.0);
         return along(to_home, std::min(scenario_.vehicle.cruise, kHoldGain * to_home.norm()), scenario_.vehicle);
     }
+    case Mode::guided: {
+        const Vec left = scenario_.flight ? Vec(scenario_.flight->target - own.position) : Vec(Vec::Zero());
+        return along(left, std::min(scenario_.vehicle.cruise, kHoldGain * left.norm()), scenario_.vehicle);
+    }
+    case Mode::land: return Vec(0.0, 0.0, own.position.z() > scenario_.home.z() + 0.2 ? -kLandSpeed : 0.0);
     case Mode::hold:
     case Mode::brake: break;
     }
@@ -128,7 +187,9 @@ Vec Autopilot::wanted_velocity()
 void Autopilot::step()
 {
     suffer_faults();
+    follow_others();
     if (!rebooting()) {
+        server_.step(world_.now());
         send_telemetry();
     }
     send_traffic();

@@ -15,7 +15,11 @@ constexpr double kHoverGain = 0.8;
 
 Vec MissionPilot::abeam(const Vec& position, double ahead) const
 {
-    const Vec& from = scenario_.mission[target_ - 1];
+    return abeam(scenario_.mission[target_ - 1], position, ahead);
+}
+
+Vec MissionPilot::abeam(const Vec& from, const Vec& position, double ahead) const
+{
     const Vec span = scenario_.mission[target_] - from;
     const double length = span.norm();
     if (length == 0.0) {
@@ -29,12 +33,14 @@ Vec MissionPilot::command(const Vec& position)
 {
     if (target_ + 1 < scenario_.mission.size() && (position - scenario_.mission[target_]).norm() < scenario_.reached) {
         ++target_;
+        from_.reset();
     }
     const bool last = target_ + 1 == scenario_.mission.size();
     const Vec to_end = scenario_.mission[target_] - position;
     const double speed =
         last ? std::min(scenario_.vehicle.cruise, kHoverGain * to_end.norm()) : scenario_.vehicle.cruise;
-    return along(abeam(position, kCarrot) - position, speed, scenario_.vehicle);
+    const Vec from = from_.value_or(scenario_.mission[target_ - 1]);
+    return along(abeam(from, position, kCarrot) - position, speed, scenario_.vehicle);
 }
 
 double MissionPilot::cross_track(const Vec& position) const { return (position - abeam(position, 0.0)).norm(); }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "toolchain/sim/scenario.hpp"
 
 namespace jink::sim {
@@ -15,6 +17,9 @@ public:
     /// Velocity command at a place; moves on to the next waypoint when the present one is reached.
     [[nodiscard]] Vec command(const Vec& position);
 
+    /// ArduPilot: the mission mode is entered, and the present waypoint is flown to from here.
+    void resume(const Vec& position) { from_ = position; }
+
     /// Index of the waypoint that is flown to, >= 1.
     [[nodiscard]] std::size_t target() const noexcept { return target_; }
     /// Distance from the present leg [m].
@@ -24,9 +29,11 @@ public:
 
 private:
     [[nodiscard]] Vec abeam(const Vec& position, double ahead) const;
+    [[nodiscard]] Vec abeam(const Vec& from, const Vec& position, double ahead) const;
 
     const Scenario& scenario_;
     std::size_t target_ = 1;
+    std::optional<Vec> from_;  ///< where the present leg is flown from, if that is not the waypoint before
 };
 
 }  // namespace jink::sim

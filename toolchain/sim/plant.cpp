@@ -168,6 +168,9 @@ Record Plant::record() const
     for (const std::string& name : autopilot_.parameters_missing()) {
         record.faults.push_back("parameter " + name + " was not taken");
     }
+    for (const std::string& text : autopilot_.critical_texts()) {
+        record.faults.push_back("the autopilot told the pilot \"" + text + "\"");
+    }
     if (const std::string fault = areas_.fault(); !fault.empty()) {
         record.faults.push_back(fault);
     }

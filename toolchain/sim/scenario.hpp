@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "toolchain/sim/closed_area.hpp"
+#include "toolchain/sim/mission_item.hpp"
 #include "toolchain/sim/threat.hpp"
 #include "toolchain/sim/truth_vehicle.hpp"
 
@@ -21,9 +22,6 @@ enum class PlannerKind : std::uint8_t {
     product,  ///< as flashed: what its parameters say
     source,   ///< geometric::source_settings(), with the co-processor's look-ahead; in process only
 };
-
-/// What the autopilot is doing, whatever its stack calls it.
-enum class Mode : std::uint8_t { mission, external, hold, brake, home, pilot };
 
 enum class Outcome : std::uint8_t {
     clear,      ///< no manoeuvre needed, none flown
@@ -103,7 +101,7 @@ struct Scenario {
     double duration = 20.0;        ///< at most [s]
     double promise = 0.7;          ///< least distance from the vehicle's centre to a true surface [m]
     double body_radius = 0.5;      ///< of the vehicle [m]
-    std::optional<double> floor;   ///< the centre stays this high above home [m]
+    std::optional<double> floor;   ///< the centre stays this high above the origin of the local frame [m]
     std::optional<double> ground;  ///< height of the plane that the LiDAR sees [m]
     bool to_goal = false;          ///< ends at the last waypoint, and not when all threats are past
     TruthLimits vehicle;
@@ -111,6 +109,9 @@ struct Scenario {
     Vec start_velocity = Vec::Zero();
     std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
     double reached = 2.0;      ///< a waypoint is, within this; not in files [m]
+    /// What is flown in place of `mission`, whose last waypoint stays the goal; not in files.
+    std::optional<NominalFlight> flight;
+    Vec home = Vec::Zero();  ///< in the local frame, whose origin is the estimator's; not in files
     std::vector<Threat> threats;
     std::vector<ClosedArea> areas;
     TrafficSensor traffic;
