@@ -18,9 +18,9 @@ constexpr Micros kArdupilotTimeout = 3 * kSecond;
 constexpr Micros kPx4Timeout = 1 * kSecond;
 /// Position hold: pull towards the place where it stopped [1/s].
 constexpr double kHoldGain = 0.8;
-constexpr double kStopped = 0.3;  // [m/s]
+constexpr double kStopped = 0.3;     // [m/s]
 constexpr std::uint8_t kNotice = 5;  // MAV_SEVERITY_NOTICE
-constexpr double kLandSpeed = 1.5;  // [m/s]
+constexpr double kLandSpeed = 1.5;   // [m/s]
 
 }  // namespace
 

@@ -48,7 +48,8 @@ struct Heard {
     unsigned setpoints_overruled = 0;  ///< sent more than 0.2 s after somebody else had chosen a mode
     Micros longest_setpoint_gap = 0;   ///< while in external mode
     unsigned warnings = 0;             ///< COLLISION
-    Micros last_warning = -1;          ///< of them [us]
+    Micros first_warning = -1;         ///< of them [us]
+    Micros last_warning = -1;          ///< [us]
     unsigned external_requests = 0;
     unsigned refused_requests = 0;  ///< of any mode
     std::vector<Text> texts;

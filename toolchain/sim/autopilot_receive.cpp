@@ -73,6 +73,7 @@ void Autopilot::handle(const Frame& frame)
         heard_.texts.push_back({world_.seconds(), text.severity, std::string(text_of(text.text))});
     } else if (decode(frame, collision)) {
         ++heard_.warnings;
+        heard_.first_warning = heard_.first_warning < 0 ? world_.now() : heard_.first_warning;
         heard_.last_warning = world_.now();
     } else if (MissionServer::is_for(frame)) {
         server_.receive(frame, mission_items(), mission_id(), world_.now());
@@ -151,8 +152,7 @@ void Autopilot::hear_command(const CommandLong& command, Header from)
         heard_.refused_requests += ack.result == kAccepted ? 0U : 1U;
     } else if (command.command == kSetMessageInterval) {
         // Every rate is fixed here. PX4 refuses one for HEARTBEAT.
-        const bool refused =
-            scenario_.stack == Stack::px4 && command.param1 == static_cast<float>(Heartbeat::kInfo.id);
+        const bool refused = scenario_.stack == Stack::px4 && command.param1 == static_cast<float>(Heartbeat::kInfo.id);
         ack.result = refused ? kFailed : kAccepted;
     } else if (command.command == kRequestMessage) {
         ack.result = send_message(static_cast<int>(command.param1)) ? kAccepted : kUnsupported;

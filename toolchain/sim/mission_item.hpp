@@ -23,9 +23,9 @@ enum class Mode : std::uint8_t {
 /// What a mission item asks for.
 enum class ItemKind : std::uint8_t {
     waypoint,
-    spline,   ///< curve to the place; ArduPilot only
-    turns,    ///< circles about the place, LOITER_TURNS; ArduPilot only
-    wait,     ///< stays at the place, LOITER_TIME
+    spline,  ///< curve to the place; ArduPilot only
+    turns,   ///< circles about the place, LOITER_TURNS; ArduPilot only
+    wait,    ///< stays at the place, LOITER_TIME
     take_off,
     land,
     home,   ///< RETURN_TO_LAUNCH
@@ -36,7 +36,8 @@ enum class ItemKind : std::uint8_t {
 struct Item {
     ItemKind kind = ItemKind::waypoint;
     Vec place = Vec::Zero();  ///< in the local frame
-    /// turns: radius [m]; wait: [s]; speed: [m/s]; jump: index of the item that follows, counted without ArduPilot's home
+    /// turns: radius [m]; wait: [s]; speed: [m/s]; jump: index of the item that follows, counted without ArduPilot's
+    /// home
     double value = 0.0;
     int count = 0;  ///< turns: how many; jump: how often
 };

@@ -9,10 +9,10 @@ using namespace link::mavlink;
 
 namespace {
 
-constexpr std::uint8_t kMissionError = 1;        // MAV_MISSION_ERROR
-constexpr std::uint8_t kInvalidSequence = 13;    // MAV_MISSION_INVALID_SEQUENCE
-constexpr std::uint8_t kCritical = 2;            // MAV_SEVERITY_CRITICAL
-constexpr Micros kTransferTime = 5 * kSecond;    // MAVLINK_MISSION_PROTOCOL_TIMEOUT_DEFAULT
+constexpr std::uint8_t kMissionError = 1;      // MAV_MISSION_ERROR
+constexpr std::uint8_t kInvalidSequence = 13;  // MAV_MISSION_INVALID_SEQUENCE
+constexpr std::uint8_t kCritical = 2;          // MAV_SEVERITY_CRITICAL
+constexpr Micros kTransferTime = 5 * kSecond;  // MAVLINK_MISSION_PROTOCOL_TIMEOUT_DEFAULT
 
 }  // namespace
 

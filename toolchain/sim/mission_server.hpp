@@ -16,8 +16,8 @@ namespace jink::sim {
 ///
 /// ArduPilot answers each request by its item, in any order. PX4 (MavlinkMissionManager) serves a transfer: opened by
 /// MISSION_REQUEST_LIST, items in order from 0, the last one once more where it is repeated, ended by MISSION_ACK.
-/// Every other request ends the transfer with a CRITICAL text to the pilot; so does a transfer that rests for 5 s, and a
-/// request or MISSION_ACK of whom it does not take for its partner.
+/// Every other request ends the transfer with a CRITICAL text to the pilot; so does a transfer that rests for 5 s, and
+/// a request or MISSION_ACK of whom it does not take for its partner.
 class MissionServer {
 public:
     /// @param writer  outlives the server

@@ -156,6 +156,7 @@ Record Plant::record() const
     record.lowest = world_.lowest();
     record.below_floor = below_floor_;
     record.heard = autopilot_.heard();
+    record.critical_texts = static_cast<unsigned>(autopilot_.critical_texts().size());
     record.mission = scenario_.mission;
     record.threats = scenario_.threats;
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
