@@ -25,7 +25,8 @@ constexpr double kLandSpeed = 1.5;   // [m/s]
 }  // namespace
 
 Autopilot::Autopilot(World& world)
-    : world_(world), scenario_(world.scenario()), mission_(scenario_), receiver_(world), writer_(scenario_.system),
+    : world_(world), scenario_(world.scenario()), mission_(scenario_),
+      estimate_(scenario_.own, scenario_.seed), receiver_(world), writer_(scenario_.system),
       server_(scenario_.stack, writer_), told_(scenario_.threats.size(), -1)
 {
     if (scenario_.flight) {
@@ -38,6 +39,7 @@ Autopilot::Autopilot(World& world)
         wanted_.push_back({name, static_cast<float>(value), false});
     }
     parameters_verified_ = wanted_.empty() ? 0 : -1;
+    estimate_.step(world.own());
 }
 
 Micros Autopilot::boot_us() const noexcept
@@ -142,9 +144,12 @@ void Autopilot::watch_setpoints()
     }
 }
 
+/// By its own estimate of where it is.
 Vec Autopilot::mission_velocity()
 {
-    return items_ ? items_->command(world_.own()) : mission_.command(world_.own().position);
+    Truth own = world_.own();
+    own.position += estimate_.bias();
+    return items_ ? items_->command(own) : mission_.command(own.position);
 }
 
 Vec Autopilot::wanted_velocity()
@@ -186,6 +191,7 @@ Vec Autopilot::wanted_velocity()
 
 void Autopilot::step()
 {
+    estimate_.step(world_.own());
     suffer_faults();
     follow_others();
     if (!rebooting()) {

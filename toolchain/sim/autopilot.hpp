@@ -151,6 +151,7 @@ private:
     const Scenario& scenario_;
     MissionPilot mission_;
     std::optional<ItemPilot> items_;  ///< flown in place of `mission_`
+    OwnEstimate estimate_;
     TrafficReceiver receiver_;
     link::mavlink::Parser parser_;
     FrameWriter writer_;

@@ -82,7 +82,7 @@ void Autopilot::send_heartbeat() { writer_.write(heartbeat()); }
 void Autopilot::send_own_state()
 {
     const bool px4 = scenario_.stack == Stack::px4;
-    const Truth& own = world_.own();
+    const Truth& own = estimate_.told();
     const Vec& p = own.position;
     const Vec& v = own.velocity;
     const double heading = compass(own.yaw);
@@ -116,7 +116,7 @@ void Autopilot::send_own_state()
 
 void Autopilot::send_odometry()
 {
-    const Truth& own = world_.own();
+    const Truth& own = estimate_.told();
     const double half = 0.5 * compass(own.yaw);
     Odometry m;
     m.time_usec = static_cast<std::uint64_t>(boot_us());
@@ -141,7 +141,7 @@ void Autopilot::send_odometry()
 
 GlobalPositionInt Autopilot::global_position() const
 {
-    const Truth& own = world_.own();
+    const Truth& own = estimate_.told();
     const Vec& v = own.velocity;
     const GlobalPosition global = to_global(own.position, scenario_.stack);
     return {boot_ms(),

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "toolchain/sim/closed_area.hpp"
+#include "toolchain/sim/disturbance.hpp"
 #include "toolchain/sim/mission_item.hpp"
 #include "toolchain/sim/threat.hpp"
 #include "toolchain/sim/truth_vehicle.hpp"
@@ -45,6 +46,8 @@ struct TrafficSensor {
     double latency = 0.1;         ///< from measurement to arrival [s]
     double jitter = 0.0;          ///< on top, uniform [s]
     double dropout = 0.0;         ///< share of sightings that never arrive
+    /// As an ADS-B transponder: cells of 5.1 m, heights in steps of 25 ft, speeds of 1 kt and 64 ft/min.
+    bool quantised = false;
     Micros phase = 0;             ///< first sighting after a threat appears; not in files: timing.hpp
 };
 
@@ -116,6 +119,8 @@ struct Scenario {
     std::vector<ClosedArea> areas;
     TrafficSensor traffic;
     ScanSensor scan;
+    OwnSensor own;
+    Wind wind;
     std::optional<LidarSensor> lidar;
     std::map<std::string, double> parameters;  ///< set at the start, verified
     Faults faults;
