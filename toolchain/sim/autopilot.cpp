@@ -25,9 +25,9 @@ constexpr double kLandSpeed = 1.5;   // [m/s]
 }  // namespace
 
 Autopilot::Autopilot(World& world)
-    : world_(world), scenario_(world.scenario()), mission_(scenario_),
-      estimate_(scenario_.own, scenario_.seed), receiver_(world), writer_(scenario_.system),
-      server_(scenario_.stack, writer_), told_(scenario_.threats.size(), -1)
+    : world_(world), scenario_(world.scenario()), mission_(scenario_), estimate_(scenario_.own, scenario_.seed),
+      receiver_(world), writer_(scenario_.system), server_(scenario_.stack, writer_),
+      told_(scenario_.threats.size(), -1)
 {
     if (scenario_.flight) {
         mode_ = scenario_.flight->mode;

@@ -112,7 +112,6 @@ private:
     [[nodiscard]] std::uint8_t set_mode(const link::mavlink::CommandLong& command);
     [[nodiscard]] bool send_message(int id);
     [[nodiscard]] link::mavlink::HomePosition home_position() const;
-    [[nodiscard]] Vec target_place() const;
 
     void enter(Mode mode, bool asked);
     void suffer_faults();

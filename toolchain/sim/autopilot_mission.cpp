@@ -58,11 +58,6 @@ std::uint32_t Autopilot::mission_id() const noexcept
     return scenario_.stack == Stack::px4 ? kMissionId + (uploaded_ ? 1U : 0U) : 0U;
 }
 
-Vec Autopilot::target_place() const
-{
-    return items_ ? items_->items()[items_->index()].place : scenario_.mission[mission_.target()];
-}
-
 MissionItemInt Autopilot::item_at(const Item& item, std::size_t index) const
 {
     MissionItemInt message;

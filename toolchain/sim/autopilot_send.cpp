@@ -43,6 +43,8 @@ constexpr double kHomeWander = 1.0;
 constexpr float kOdometryPosition = 0.042F;
 constexpr float kOdometryVelocity = 0.0105F;
 constexpr std::uint8_t kEstimatorAutopilot = 8;
+/// The controller's place is so far ahead of the vehicle [s].
+constexpr double kPlaceAhead = 0.1;
 
 float as_float(double value) noexcept { return static_cast<float>(value); }
 std::int16_t centi(double metres_per_second) noexcept
@@ -215,31 +217,34 @@ void Autopilot::send_slow()
     send_mission_state();
 }
 
-/// ArduPilot tells the set-point of GUIDED alone; PX4 that of its controller, always.
+/// ArduPilot tells the set-point of GUIDED alone; PX4 its controller's, always: a place right ahead of the vehicle, and
+/// none in OFFBOARD by velocities.
 void Autopilot::send_target()
 {
     const bool px4 = scenario_.stack == Stack::px4;
-    if (!often(px4 ? 10 : 2) || (mode_ != Mode::external && (!px4 || mode_ != Mode::mission))) {
+    if (!often(px4 ? 10 : 2) || (!px4 && mode_ != Mode::external && mode_ != Mode::guided)) {
         return;
     }
-    const Vec place = target_place();
     PositionTargetLocalNed target;
     target.time_boot_ms = boot_ms();
     target.coordinate_frame = kLocalNed;
-    if (mode_ == Mode::mission) {
-        target.type_mask = kPositionMask;
-        target.x = as_float(place.y());
-        target.y = as_float(place.x());
-        target.z = as_float(-place.z());
-    } else {
+    Vec velocity = command_;
+    Vec place = estimate_.told().position + kPlaceAhead * command_;
+    if (mode_ == Mode::external) {
+        velocity = setpoint_;
         target.type_mask = px4 ? kPositionIgnored : kArdupilotVelocityTarget;
-        if (px4) {
-            target.x = target.y = target.z = std::numeric_limits<float>::quiet_NaN();
-        }
-        target.vx = as_float(setpoint_.y());
-        target.vy = as_float(setpoint_.x());
-        target.vz = as_float(-setpoint_.z());
+        place = px4 ? Vec(Vec::Constant(std::numeric_limits<double>::quiet_NaN())) : Vec(Vec::Zero());
+    } else if (!px4) {
+        velocity.setZero();
+        target.type_mask = kPositionMask;
+        place = scenario_.flight ? scenario_.flight->target : place;
     }
+    target.x = as_float(place.y());
+    target.y = as_float(place.x());
+    target.z = as_float(-place.z());
+    target.vx = as_float(velocity.y());
+    target.vy = as_float(velocity.x());
+    target.vz = as_float(-velocity.z());
     writer_.write(target);
 }
 

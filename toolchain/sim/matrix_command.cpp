@@ -127,6 +127,28 @@ void print_cells(std::ostream& out, const MatrixOptions& options, const std::vec
     }
 }
 
+void print(std::ostream& out, const Vec& v) { out << " " << v.x() << " " << v.y() << " " << v.z(); }
+
+/// Each change of mode, and where the vehicle is every 5 s, about home.
+void print_samples(std::ostream& out, const Scenario& scenario, const Record& record)
+{
+    constexpr std::size_t kEvery = 250;
+    Mode before = Mode::brake;
+    for (std::size_t i = 0; i < record.samples.size(); ++i) {
+        const Sample& sample = record.samples[i];
+        if (sample.mode != before || i % kEvery == 0) {
+            out << "  " << sample.time << " s  " << to_string(sample.mode) << " at";
+            print(out, sample.position - scenario.home);
+            out << " m, velocity";
+            print(out, sample.velocity);
+            out << " m/s, command";
+            print(out, sample.setpoint);
+            out << " m/s\n";
+        }
+        before = sample.mode;
+    }
+}
+
 /// The flights of the cells once more, with what was said and broken in each.
 void print_flights(std::ostream& out, const MatrixOptions& options, const std::vector<Cell>& cells)
 {
@@ -144,13 +166,7 @@ void print_flights(std::ostream& out, const MatrixOptions& options, const std::v
             for (const std::string& fault : record.faults) {
                 out << "  fault: " << fault << "\n";
             }
-            Mode before = Mode::brake;
-            for (const Sample& sample : record.samples) {
-                if (sample.mode != before) {
-                    out << "  " << sample.time << " s  mode " << to_string(sample.mode) << "\n";
-                }
-                before = sample.mode;
-            }
+            print_samples(out, scenario, record);
         }
     }
 }

@@ -48,7 +48,7 @@ struct TrafficSensor {
     double dropout = 0.0;         ///< share of sightings that never arrive
     /// As an ADS-B transponder: cells of 5.1 m, heights in steps of 25 ft, speeds of 1 kt and 64 ft/min.
     bool quantised = false;
-    Micros phase = 0;             ///< first sighting after a threat appears; not in files: timing.hpp
+    Micros phase = 0;  ///< first sighting after a threat appears; not in files: timing.hpp
 };
 
 /// Level range scan.

@@ -12,10 +12,10 @@ namespace {
 constexpr int kRays = 5;
 
 // Steps of an ADS-B position, height and velocity: 6 degrees in 2^17, 25 ft, 1 kt, 64 ft/min.
-constexpr double kCell = 5.1;            // [m]
-constexpr double kAltitudeStep = 7.62;   // [m]
-constexpr double kSpeedStep = 0.5144;    // [m/s]
-constexpr double kClimbStep = 0.3251;    // [m/s]
+constexpr double kCell = 5.1;           // [m]
+constexpr double kAltitudeStep = 7.62;  // [m]
+constexpr double kSpeedStep = 0.5144;   // [m/s]
+constexpr double kClimbStep = 0.3251;   // [m/s]
 
 Vec rounded_to(const Vec& value, const Vec& step)
 {
