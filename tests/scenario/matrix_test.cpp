@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include <gtest/gtest.h>
 
 #include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/scenario_file.hpp"
 
 namespace jink::sim {
 namespace {
@@ -26,15 +28,16 @@ TEST(Matrix, MissionsAreFlownToTheirGoalWithoutACoprocessor)
     }
 }
 
+// Half of the cells: the autopilots take turns.
 TEST(Matrix, EveryIntruderHitsAVehicleThatFliesOn)
 {
-    for (const Flyer flyer : kFlyers) {
-        for (const Behaviour behaviour : kBehaviours) {
-            for (const Meeting meeting : kMeetings) {
-                if (can_fly(flyer, behaviour)) {
-                    const Scenario scenario = matrix_scenario(flyer, behaviour, meeting, 11);
-                    EXPECT_LT(fly_alone(scenario).closest.surface, 0.5) << scenario.name;
-                }
+    std::size_t turn = 0;
+    for (const Behaviour behaviour : kBehaviours) {
+        for (const Meeting meeting : kMeetings) {
+            const Flyer flyer = kFlyers[++turn % kFlyers.size()];
+            if (can_fly(flyer, behaviour)) {
+                const Scenario scenario = matrix_scenario(flyer, behaviour, meeting, 11);
+                EXPECT_LT(fly_alone(scenario).closest.surface, 0.5) << scenario.name;
             }
         }
     }
@@ -72,6 +75,48 @@ TEST(Matrix, SpeedChangesAreFlown)
         fastest = std::max(fastest, sample.velocity.norm());
     }
     EXPECT_NEAR(fastest, 10.0, 0.7);
+}
+
+/// A wall of pillars 2 m apart across the leg, as high as one likes, seen by a level range scan.
+Scenario wall_flight(const std::string& stack, int pillars)
+{
+    return parse_scenario("stack: " + stack + R"(
+duration: 100
+to_goal: true
+vehicle: {omega: 3.3, max_acceleration: 2.5, max_vertical_acceleration: 2.5, max_climb: 2.5, max_descent: 1.5}
+mission: [[0, 0, 30], [100, 0, 30]]
+scan: {rate: 10, range: 25}
+parameters: {VEH_ACC: 2.5, VEH_LAG: 0.55, VEH_ACC_Z: 2.5, VEH_CLIMB: 2.5, VEH_DESCENT: 1.5}
+expect: {outcome: [avoided, braked]}
+threats:
+  - {name: wall, radius: 1.0, half_height: 40, position: [45, 0, 30], sensed_by: scan,
+     grid: {step: 2.0, direction: [0, 1, 0], up: 1, across: )" +
+                              std::to_string(pillars) + "}}\n",
+                          "wall_" + stack);
+}
+
+TEST(WallByScan, OneOf22MetresIsPassedAndTheMissionFinished)
+{
+    for (const char* const stack : {"ardupilot", "px4"}) {
+        const Record record = fly_in_process(wall_flight(stack, 11));
+        EXPECT_GT(record.closest.surface, 1.0) << stack;
+        EXPECT_GT(record.goal_at, 0.0) << stack;
+        EXPECT_EQ(record.final_mode, Mode::mission) << stack;
+    }
+}
+
+TEST(WallByScan, BeforeOneWithoutAnEndControlIsGivenBackWithAText)
+{
+    for (const char* const stack : {"ardupilot", "px4"}) {
+        const Record record = fly_in_process(wall_flight(stack, 41));
+        const auto& texts = record.heard.texts;
+        EXPECT_GT(record.closest.surface, 1.0) << stack;
+        EXPECT_TRUE(record.final_mode == Mode::hold || record.final_mode == Mode::brake) << stack;
+        EXPECT_TRUE(std::any_of(texts.begin(), texts.end(), [](const Text& text) {
+            return text.text == "jink: way blocked, autopilot holds";
+        })) << stack;
+        EXPECT_TRUE(std::none_of(texts.begin(), texts.end(), [](const Text& text) { return text.severity <= 2; }));
+    }
 }
 
 TEST(Matrix, NamesAreDistinct)
