@@ -17,7 +17,7 @@ RecordedEncounter read_text(const std::string& text)
 }
 
 /// What is thrown about it.
-std::string refusal(const std::string& text)
+std::string refusal_of_recording(const std::string& text)
 {
     try {
         static_cast<void>(read_text(text));
@@ -108,22 +108,23 @@ TEST(RecordedEncounterFile, WithoutUnitsItIsDaidalussOwn)
 TEST(RecordedEncounterFile, RefusesWithItsLine)
 {
     const std::string units = kLocalNames + kMetres;
-    EXPECT_EQ(refusal("NAME sx sy sz vx vy time\n"), "some.daa:1: column vz is missing");
-    EXPECT_EQ(refusal("# a remark\n\nsx sy sz vx vy vz time\n"), "some.daa:3: column name is missing");
-    EXPECT_EQ(refusal(kLocalNames + "[none] [m] [furlong] [m] [m/s] [m/s] [m/s] [s]\n" + kTwoRows),
+    EXPECT_EQ(refusal_of_recording("NAME sx sy sz vx vy time\n"), "some.daa:1: column vz is missing");
+    EXPECT_EQ(refusal_of_recording("# a remark\n\nsx sy sz vx vy vz time\n"), "some.daa:3: column name is missing");
+    EXPECT_EQ(refusal_of_recording(kLocalNames + "[none] [m] [furlong] [m] [m/s] [m/s] [m/s] [s]\n" + kTwoRows),
               "some.daa:2: unit furlong of column sy is not known");
-    EXPECT_EQ(refusal(kLocalNames + "[none] [m] [m] [m] [m/s] [deg] [m/s] [s]\n" + kTwoRows),
+    EXPECT_EQ(refusal_of_recording(kLocalNames + "[none] [m] [m] [m] [m/s] [deg] [m/s] [s]\n" + kTwoRows),
               "some.daa:2: unit deg is none of column vy");
-    EXPECT_EQ(refusal(kLocalNames + "[none] [m] [m]\n" + kTwoRows), "some.daa:2: expected 8 units");
-    EXPECT_EQ(refusal(units + "Own 0 0 0 1 1 1\n"), "some.daa:3: expected 8 fields");
-    EXPECT_EQ(refusal(units + "Own 0 x 0 1 1 1 0\n"), "some.daa:3: column sy: x is not a number");
-    EXPECT_EQ(refusal(units + "Own 0 0 0 1 nan 1 0\n"), "some.daa:3: column vy: nan is not a number");
-    EXPECT_EQ(refusal(units + "Own 0 0 0 1 1 1 1s\n"), "some.daa:3: column time: 1s is not a number");
-    EXPECT_EQ(refusal(units + kTwoRows + "Own 1 0 0 1 1 1 0\n"), "some.daa:5: a second fix of Own at 0.000000 s");
-    EXPECT_EQ(refusal(units + "\" 0 0 0 1 1 1 0\n"), "some.daa:3: no aircraft is named before");
-    EXPECT_EQ(refusal(units + "Own 0 0 0 1 1 1 0\n"), "some.daa: fewer than two aircraft");
-    EXPECT_EQ(refusal(""), "some.daa: fewer than two aircraft");
-    EXPECT_EQ(refusal("NAME lat lon alt vx vy vz time\nOwn 91 0 0 0 0 0 0\n"),
+    EXPECT_EQ(refusal_of_recording(kLocalNames + "[none] [m] [m]\n" + kTwoRows), "some.daa:2: expected 8 units");
+    EXPECT_EQ(refusal_of_recording(units + "Own 0 0 0 1 1 1\n"), "some.daa:3: expected 8 fields");
+    EXPECT_EQ(refusal_of_recording(units + "Own 0 x 0 1 1 1 0\n"), "some.daa:3: column sy: x is not a number");
+    EXPECT_EQ(refusal_of_recording(units + "Own 0 0 0 1 nan 1 0\n"), "some.daa:3: column vy: nan is not a number");
+    EXPECT_EQ(refusal_of_recording(units + "Own 0 0 0 1 1 1 1s\n"), "some.daa:3: column time: 1s is not a number");
+    EXPECT_EQ(refusal_of_recording(units + kTwoRows + "Own 1 0 0 1 1 1 0\n"),
+              "some.daa:5: a second fix of Own at 0.000000 s");
+    EXPECT_EQ(refusal_of_recording(units + "\" 0 0 0 1 1 1 0\n"), "some.daa:3: no aircraft is named before");
+    EXPECT_EQ(refusal_of_recording(units + "Own 0 0 0 1 1 1 0\n"), "some.daa: fewer than two aircraft");
+    EXPECT_EQ(refusal_of_recording(""), "some.daa: fewer than two aircraft");
+    EXPECT_EQ(refusal_of_recording("NAME lat lon alt vx vy vz time\nOwn 91 0 0 0 0 0 0\n"),
               "some.daa:2: a latitude of 91.000000 deg");
 }
 
