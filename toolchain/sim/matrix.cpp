@@ -100,14 +100,15 @@ std::string_view to_string(Meeting meeting) noexcept
 
 std::string_view to_string(Flyer flyer) noexcept { return flyer == Flyer::px4 ? "px4" : "arducopter"; }
 
-Cell fly_cell(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t from, std::size_t count)
+Cell fly_cell(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t from, std::size_t count,
+              Conditions conditions)
 {
     Cell cell;
     cell.flyer = flyer;
     cell.behaviour = behaviour;
     cell.meeting = meeting;
     for (std::size_t i = 0; i < count; ++i) {
-        const Scenario scenario = matrix_scenario(flyer, behaviour, meeting, from + i);
+        const Scenario scenario = matrix_scenario(flyer, behaviour, meeting, from + i, conditions);
         add_flight(scenario, fly_in_process(scenario), cell);
     }
     return cell;

@@ -63,8 +63,14 @@ struct Nominal {
 };
 [[nodiscard]] Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed);
 
+enum class Conditions : std::uint8_t {
+    calm,   ///< sightings at 5 Hz with 0.3 m of noise
+    rough,  ///< ADS-B at 1 Hz in its steps, an estimator with bias, drift and latency, gusts of a wind of 15 kt
+};
+
 /// One flight of a cell: one intruder, aimed at where the vehicle is without a co-processor.
-[[nodiscard]] Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t seed);
+[[nodiscard]] Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t seed,
+                                       Conditions conditions = Conditions::calm);
 
 struct Cell {
     Flyer flyer = Flyer::arducopter;
@@ -85,6 +91,7 @@ struct Cell {
 };
 
 /// Flies `count` seeds of a cell in process, from `from` on.
-[[nodiscard]] Cell fly_cell(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t from, std::size_t count);
+[[nodiscard]] Cell fly_cell(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t from, std::size_t count,
+                            Conditions conditions = Conditions::calm);
 
 }  // namespace jink::sim

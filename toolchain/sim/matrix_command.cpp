@@ -32,6 +32,8 @@ bool is_wanted(const std::string& name, One one)
     return name.empty() || name == to_string(one);
 }
 
+Conditions conditions_of(const MatrixOptions& options) { return options.rough ? Conditions::rough : Conditions::calm; }
+
 std::vector<Cell> wanted_cells(const MatrixOptions& options)
 {
     std::vector<Cell> cells;
@@ -59,7 +61,8 @@ void fly_cells(const MatrixOptions& options, std::vector<Cell>& cells)
         workers.emplace_back([&] {
             for (std::size_t k = next++; k < cells.size(); k = next++) {
                 const Cell& c = cells[k];
-                cells[k] = fly_cell(c.flyer, c.behaviour, c.meeting, options.from, options.count);
+                cells[k] =
+                    fly_cell(c.flyer, c.behaviour, c.meeting, options.from, options.count, conditions_of(options));
             }
         });
     }
@@ -154,7 +157,8 @@ void print_flights(std::ostream& out, const MatrixOptions& options, const std::v
 {
     for (const Cell& cell : cells) {
         for (std::size_t i = 0; i < options.count; ++i) {
-            const Scenario scenario = matrix_scenario(cell.flyer, cell.behaviour, cell.meeting, options.from + i);
+            const Scenario scenario =
+                matrix_scenario(cell.flyer, cell.behaviour, cell.meeting, options.from + i, conditions_of(options));
             const Record record = fly_in_process(scenario);
             out << scenario.name << ": meets at " << nominal_flight(cell.flyer, cell.behaviour, scenario.seed).meets_at
                 << " s, told at " << record.told.front() << " s, least " << record.closest.surface << " m at "
@@ -186,6 +190,8 @@ CLI::App& add_matrix(CLI::App& cli, MatrixOptions& options)
     command->add_option("--autopilot", options.flyer, "this one alone")->check(CLI::IsMember(names_of(kFlyers)));
     command->add_option("--threads", options.threads, "default 2")->check(CLI::Range(1U, 1024U));
     command->add_flag("--brief", options.brief, "a line for all encounters of a behaviour");
+    command->add_flag("--rough", options.rough,
+                      "1 Hz ADS-B in its steps, an estimator with bias and latency, gusts of a wind of 15 kt");
     command->add_flag("--texts", options.texts, "and what was said, flight by flight");
     return *command;
 }

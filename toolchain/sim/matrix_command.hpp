@@ -22,6 +22,7 @@ struct MatrixOptions {
     unsigned threads = 2;
     bool brief = false;  ///< a line per behaviour and autopilot
     bool texts = false;
+    bool rough = false;
 };
 
 CLI::App& add_matrix(CLI::App& cli, MatrixOptions& options);

@@ -202,6 +202,16 @@ Sample motion_at(const Scenario& scenario, double time)
     return after == alone.samples.end() ? alone.samples.back() : *after;
 }
 
+void roughen(Scenario& s)
+{
+    s.traffic.rate = 1.0;
+    s.traffic.quantised = true;
+    s.own.latency = 0.15;
+    s.own.bias = 1.5;
+    s.own.bias_vertical = 1.5;
+    s.wind.at_20_ft = 7.7;
+}
+
 }  // namespace
 
 bool is_mission(Behaviour behaviour) noexcept { return behaviour < Behaviour::hold; }
@@ -253,7 +263,7 @@ Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed)
     return nominal;
 }
 
-Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t seed)
+Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t seed, Conditions conditions)
 {
     Nominal nominal = nominal_flight(flyer, behaviour, seed);
     Scenario& s = nominal.scenario;
@@ -282,6 +292,9 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
     s.threats = {threat};
     s.name += "_" + std::string(to_string(meeting));
     default_radii(s);
+    if (conditions == Conditions::rough) {
+        roughen(s);
+    }
     return s;
 }
 
