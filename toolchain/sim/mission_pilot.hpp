@@ -24,8 +24,11 @@ public:
     [[nodiscard]] std::size_t target() const noexcept { return target_; }
     /// Distance from the present leg [m].
     [[nodiscard]] double cross_track(const Vec& position) const;
-    /// Of the present leg, where it is nearest [m].
-    [[nodiscard]] double height_abeam(const Vec& position) const { return abeam(position, 0.0).z(); }
+    /// Of the present leg as it is flown, where it is nearest [m].
+    [[nodiscard]] double height_abeam(const Vec& position) const
+    {
+        return abeam(from_.value_or(scenario_.mission[target_ - 1]), position, 0.0).z();
+    }
 
 private:
     [[nodiscard]] Vec abeam(const Vec& position, double ahead) const;
