@@ -179,8 +179,8 @@ void Pilot::watch(Tick& tick) noexcept
         if (tick.in_control) {
             // Being given back: keep to the leg meanwhile.
             follow_way(tick);
-            tick.out.wants_control =
-                cross_track(tick.s) > 2.0F * settings_.on_leg && !is_held(tick.s, tick.taken, settings_.on_leg);
+            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg &&
+                                     !is_held(tick.s, tick.taken, tick.out.velocity, settings_.on_leg);
             if (tick.out.wants_control) {
                 keep_control(tick.s.now);
                 enter_rejoining();

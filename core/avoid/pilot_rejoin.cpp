@@ -81,11 +81,13 @@ Beside beside_leg(const world::Situation& s) noexcept
     return beside;
 }
 
-bool is_held(const world::Situation& s, const Vec3& taken, float on_leg) noexcept
+bool is_held(const world::Situation& s, const Vec3& taken, const Vec3& left, float on_leg) noexcept
 {
+    /// Slower than this nothing is gained by going on [m/s].
+    constexpr float kStanding = 0.2F;
     const Vec3 off = beside_leg(s).off;
     const bool beside = std::hypot(off.x(), off.y()) > on_leg;
-    return std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && !beside);
+    return std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && (!beside || left.norm() < kStanding));
 }
 
 void Pilot::enter_rejoining() noexcept
@@ -167,7 +169,7 @@ void Pilot::rejoin(Tick& tick) noexcept
     follow_way(tick);
     // Held at a bound, the vehicle is as near to its leg as we may bring it.
     const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg ||
-                      is_held(tick.s, tick.taken, settings_.on_leg);
+                      is_held(tick.s, tick.taken, tick.out.velocity, settings_.on_leg);
     if (back && way_clear_for(tick, settings_.settle) && may_give_back(tick)) {
         ++diagnostics_.rejoined;
         state_ = State::watching;

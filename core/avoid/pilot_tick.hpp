@@ -21,9 +21,11 @@ struct Beside {
 /// O(segments).
 [[nodiscard]] Beside beside_leg(const world::Situation& situation) noexcept;
 
-/// Whether the vehicle is as near to its leg as bounds let it be, which take `taken` [m/s] off its way there: above or
-/// below it, or at the keep-in radius. O(1), O(segments).
-[[nodiscard]] bool is_held(const world::Situation& situation, const Vec3& taken, float on_leg) noexcept;
+/// Whether the vehicle is as near to its leg as bounds let it be, which take `taken` [m/s] off its way there and leave
+/// `left` [m/s]: above or below it, at the keep-in radius, or where floor or ceiling leave next to nothing. The last is
+/// a steep leg: above its continuation below the floor the vehicle stays beside the leg. O(1), O(segments).
+[[nodiscard]] bool is_held(const world::Situation& situation, const Vec3& taken, const Vec3& left,
+                           float on_leg) noexcept;
 
 /// The same situation for a vehicle with `extra` more to every side.
 struct Wider {

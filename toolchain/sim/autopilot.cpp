@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "firmware/link/mavlink/text.hpp"
+
 namespace jink::sim {
 namespace {
 
@@ -16,18 +18,28 @@ constexpr Micros kArdupilotTimeout = 3 * kSecond;
 constexpr Micros kPx4Timeout = 1 * kSecond;
 /// Position hold: pull towards the place where it stopped [1/s].
 constexpr double kHoldGain = 0.8;
-constexpr double kStopped = 0.3;  // [m/s]
+constexpr double kStopped = 0.3;     // [m/s]
+constexpr std::uint8_t kNotice = 5;  // MAV_SEVERITY_NOTICE
+constexpr double kLandSpeed = 1.5;   // [m/s]
 
 }  // namespace
 
 Autopilot::Autopilot(World& world)
-    : world_(world), scenario_(world.scenario()), mission_(scenario_), plane_(scenario_.vehicle), receiver_(world),
-      writer_(scenario_.system), told_(scenario_.threats.size(), -1)
+    : world_(world), scenario_(world.scenario()), mission_(scenario_), plane_(scenario_.vehicle),
+      estimate_(scenario_.own, scenario_.seed), receiver_(world), writer_(scenario_.system),
+      server_(scenario_.stack, writer_), told_(scenario_.threats.size(), -1)
 {
+    if (scenario_.flight) {
+        mode_ = scenario_.flight->mode;
+        if (!scenario_.flight->items.empty()) {
+            items_.emplace(scenario_);
+        }
+    }
     for (const auto& [name, value] : scenario_.parameters) {
         wanted_.push_back({name, static_cast<float>(value), false});
     }
     parameters_verified_ = wanted_.empty() ? 0 : -1;
+    estimate_.step(world.own());
 }
 
 Micros Autopilot::boot_us() const noexcept
@@ -66,7 +78,37 @@ void Autopilot::enter(Mode mode, bool asked)
         // GUIDED starts by holding its place; OFFBOARD goes on with the stream that it has seen.
         has_external_setpoint_ = scenario_.stack == Stack::px4;
     }
-    send_heartbeat();
+    if (mode == Mode::mission && items_) {
+        items_->resume(world_.own());
+    } else if (mode == Mode::mission && scenario_.stack == Stack::ardupilot) {
+        mission_.resume(world_.own().position);
+    }
+    if (scenario_.stack == Stack::ardupilot) {
+        send_heartbeat();  // PX4 does not: once a second, whatever happens
+    }
+}
+
+/// What a ground station on another line does.
+void Autopilot::follow_others()
+{
+    if (!scenario_.flight) {
+        return;
+    }
+    const NominalFlight& flight = *scenario_.flight;
+    if (flight.mission_at >= 0.0 && !sent_to_mission_ && world_.now() >= to_micros(flight.mission_at)) {
+        sent_to_mission_ = true;
+        enter(Mode::mission, false);
+    }
+    if (items_ && flight.upload_at >= 0.0 && !uploaded_ && world_.now() >= to_micros(flight.upload_at)) {
+        uploaded_ = true;
+        items_->replace(flight.uploaded, world_.own());
+        if (scenario_.stack == Stack::ardupilot) {
+            link::mavlink::Statustext text;
+            text.severity = kNotice;
+            static_cast<void>(link::mavlink::set_text(text.text, "Auto mission changed, restarted command"));
+            writer_.write(text);
+        }
+    }
 }
 
 void Autopilot::suffer_faults()
@@ -80,6 +122,8 @@ void Autopilot::suffer_faults()
         rebooted_ = true;
         writer_.restart();
         writer_.bytes().clear();
+        told_origin_ = false;
+        server_.restart();
         if (mode_ == Mode::external) {
             enter(Mode::hold, false);
         }
@@ -101,6 +145,14 @@ void Autopilot::watch_setpoints()
     }
 }
 
+/// By its own estimate of where it is.
+Vec Autopilot::mission_velocity()
+{
+    Truth own = world_.own();
+    own.position += estimate_.bias();
+    return items_ ? items_->command(own) : mission_.command(own.position);
+}
+
 Vec Autopilot::wanted_velocity()
 {
     const Truth& own = world_.own();
@@ -108,17 +160,29 @@ Vec Autopilot::wanted_velocity()
         return plane_.command(own);
     }
     switch (mode_) {
-    case Mode::mission: return mission_.command(own.position);
+    case Mode::mission: return mission_velocity();
     case Mode::external:
         if (has_external_setpoint_) {
             return setpoint_;
         }
         break;
-    case Mode::pilot: return scenario_.faults.pilot_velocity;
+    case Mode::pilot:
+        if (!scenario_.flight) {
+            return scenario_.faults.pilot_velocity;
+        }
+        if (scenario_.flight->moved_at >= 0.0 && world_.now() >= to_micros(scenario_.flight->moved_at)) {
+            return scenario_.flight->stick;
+        }
+        break;
     case Mode::home: {
-        const Vec to_home(-own.position.x(), -own.position.y(), 0.0);
+        const Vec to_home(scenario_.home.x() - own.position.x(), scenario_.home.y() - own.position.y(), 0.0);
         return along(to_home, std::min(scenario_.vehicle.cruise, kHoldGain * to_home.norm()), scenario_.vehicle);
     }
+    case Mode::guided: {
+        const Vec left = scenario_.flight ? Vec(scenario_.flight->target - own.position) : Vec(Vec::Zero());
+        return along(left, std::min(scenario_.vehicle.cruise, kHoldGain * left.norm()), scenario_.vehicle);
+    }
+    case Mode::land: return Vec(0.0, 0.0, own.position.z() > scenario_.home.z() + 0.2 ? -kLandSpeed : 0.0);
     case Mode::hold:
     case Mode::brake: break;
     }
@@ -131,8 +195,11 @@ Vec Autopilot::wanted_velocity()
 
 void Autopilot::step()
 {
+    estimate_.step(world_.own());
     suffer_faults();
+    follow_others();
     if (!rebooting()) {
+        server_.step(world_.now());
         send_telemetry();
     }
     send_traffic();

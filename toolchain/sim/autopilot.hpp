@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,7 +11,9 @@
 #include "firmware/link/mavlink/parser.hpp"
 #include "toolchain/sim/arduplane.hpp"
 #include "toolchain/sim/frame_writer.hpp"
+#include "toolchain/sim/item_pilot.hpp"
 #include "toolchain/sim/mission_pilot.hpp"
+#include "toolchain/sim/mission_server.hpp"
 #include "toolchain/sim/sensors.hpp"
 #include "toolchain/sim/world.hpp"
 
@@ -22,6 +25,9 @@ inline constexpr std::uint8_t kJink = 196;
 inline constexpr std::uint8_t kLocalNed = 1;
 /// SET_POSITION_TARGET_LOCAL_NED with everything ignored but the velocity: links.md, B.1.
 inline constexpr std::uint16_t kVelocityMask = 0x0DC7;
+
+/// PX4's checksum of the mission, in MISSION_COUNT and MISSION_CURRENT.
+inline constexpr std::uint32_t kMissionId = 2089934376;
 
 /// A STATUSTEXT as heard.
 struct Text {
@@ -43,7 +49,8 @@ struct Heard {
     unsigned setpoints_overruled = 0;  ///< sent more than 0.2 s after somebody else had chosen a mode
     Micros longest_setpoint_gap = 0;   ///< while in external mode
     unsigned warnings = 0;             ///< COLLISION
-    Micros last_warning = -1;          ///< of them [us]
+    Micros first_warning = -1;         ///< of them [us]
+    Micros last_warning = -1;          ///< [us]
     unsigned external_requests = 0;
     unsigned refused_requests = 0;  ///< of any mode
     std::vector<Text> texts;
@@ -75,6 +82,8 @@ public:
     [[nodiscard]] Mode mode() const noexcept { return mode_; }
     [[nodiscard]] const Heard& heard() const noexcept { return heard_; }
     [[nodiscard]] const MissionPilot& mission() const noexcept { return mission_; }
+    /// CRITICAL texts that the co-processor made it say to the pilot.
+    [[nodiscard]] const std::vector<std::string>& critical_texts() const noexcept { return server_.critical(); }
     /// The set-point in force [m/s], external mode.
     [[nodiscard]] const Vec& setpoint() const noexcept { return setpoint_; }
     [[nodiscard]] const Vec& command() const noexcept { return command_; }
@@ -102,28 +111,38 @@ private:
     void hear_command_int(const link::mavlink::CommandInt& command, link::mavlink::Header from);
     void hear_param(const link::mavlink::ParamValue& value);
     void answer_timesync(const link::mavlink::Timesync& sync, link::mavlink::Header from);
-    void answer_mission(const link::mavlink::Frame& frame);
     [[nodiscard]] std::uint8_t set_mode(const link::mavlink::CommandLong& command);
     [[nodiscard]] bool send_message(int id);
+    [[nodiscard]] link::mavlink::HomePosition home_position() const;
 
     void enter(Mode mode, bool asked);
     void suffer_faults();
+    void follow_others();
     void watch_setpoints();
+    [[nodiscard]] Vec mission_velocity();
+    [[nodiscard]] std::vector<link::mavlink::MissionItemInt> mission_items() const;
+    [[nodiscard]] link::mavlink::MissionItemInt item_at(const Item& item, std::size_t index) const;
+    [[nodiscard]] std::uint16_t sequence() const noexcept;
+    [[nodiscard]] std::uint32_t mission_id() const noexcept;
     [[nodiscard]] Vec wanted_velocity();
 
     void send_telemetry();
     void send_heartbeat();
     void send_own_state();
+    void send_odometry();
+    void send_mission_state();
     void send_slow();
     void send_target();
     void send_parameters();
     void send_traffic();
     void send_scan();
-    void send_mission_item(std::uint16_t seq, std::uint8_t frame, const Vec& place, std::uint8_t system,
-                           std::uint8_t component);
-
     [[nodiscard]] Micros boot_us() const noexcept;
     [[nodiscard]] std::uint32_t boot_ms() const noexcept { return static_cast<std::uint32_t>(boot_us() / 1000); }
+    /// `rate` times a second, from the start on; intervals differ by kStep where it is no divisor.
+    [[nodiscard]] bool often(Micros rate) const noexcept
+    {
+        return world_.now() == 0 || world_.now() * rate / kSecond != (world_.now() - kStep) * rate / kSecond;
+    }
     [[nodiscard]] bool due(Micros period, Micros phase = 0) const noexcept { return world_.now() % period == phase; }
     [[nodiscard]] bool is_plane() const noexcept { return scenario_.vehicle.min_speed > 0.0; }
     [[nodiscard]] bool rebooting() const noexcept;
@@ -134,9 +153,12 @@ private:
     const Scenario& scenario_;
     MissionPilot mission_;
     PlaneGuidance plane_;
+    std::optional<ItemPilot> items_;  ///< flown in place of `mission_`
+    OwnEstimate estimate_;
     TrafficReceiver receiver_;
     link::mavlink::Parser parser_;
     FrameWriter writer_;
+    MissionServer server_;
     Heard heard_;
     std::vector<Wanted> wanted_;
     Micros parameters_verified_ = -1;
@@ -156,6 +178,10 @@ private:
     Vec command_ = Vec::Zero();
     Vec hold_at_ = Vec::Zero();
     bool holding_ = false;
+    bool told_origin_ = false;  ///< since the boot
+    bool uploaded_ = false;     ///< the ground station's mission has come
+    bool sent_to_mission_ = false;
+    std::uint16_t told_sequence_ = 0;
 };
 
 }  // namespace jink::sim

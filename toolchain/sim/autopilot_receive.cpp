@@ -17,6 +17,7 @@ constexpr std::uint8_t kAccepted = 0;
 constexpr std::uint8_t kTemporarilyRejected = 1;
 constexpr std::uint8_t kDenied = 2;
 constexpr std::uint8_t kUnsupported = 3;
+constexpr std::uint8_t kFailed = 4;
 constexpr std::uint16_t kDoSetMode = 176;
 constexpr std::uint16_t kSetMessageInterval = 511;
 constexpr std::uint16_t kRequestMessage = 512;
@@ -75,9 +76,10 @@ void Autopilot::handle(const Frame& frame)
         heard_.texts.push_back({world_.seconds(), text.severity, std::string(text_of(text.text))});
     } else if (decode(frame, collision)) {
         ++heard_.warnings;
+        heard_.first_warning = heard_.first_warning < 0 ? world_.now() : heard_.first_warning;
         heard_.last_warning = world_.now();
-    } else {
-        answer_mission(frame);
+    } else if (MissionServer::is_for(frame)) {
+        server_.receive(frame, mission_items(), mission_id(), world_.now());
     }
 }
 
@@ -152,13 +154,18 @@ void Autopilot::hear_command(const CommandLong& command, Header from)
         ack.result = set_mode(command);
         heard_.refused_requests += ack.result == kAccepted ? 0U : 1U;
     } else if (command.command == kSetMessageInterval) {
-        ack.result = kAccepted;  // every rate is fixed here
+        // Every rate is fixed here. PX4 refuses one for HEARTBEAT.
+        const bool refused = scenario_.stack == Stack::px4 && command.param1 == static_cast<float>(Heartbeat::kInfo.id);
+        ack.result = refused ? kFailed : kAccepted;
     } else if (command.command == kRequestMessage) {
         ack.result = send_message(static_cast<int>(command.param1)) ? kAccepted : kUnsupported;
     }
     ack.target_system = from.system_id;
     ack.target_component = from.component_id;
     writer_.write(ack);
+    if (command.command == kDoSetMode && scenario_.stack == Stack::px4 && ack.result == kAccepted) {
+        writer_.write(ack);  // once by the MAVLink module, once by the commander
+    }
 }
 
 /// ArduPlane alone is sent these.

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the autopilot tells, and how often.
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "core/base/random.hpp"
 #include "firmware/link/mavlink/text.hpp"
 #include "toolchain/sim/autopilot.hpp"
 #include "toolchain/sim/geodesy.hpp"
@@ -18,20 +20,32 @@ constexpr std::uint8_t kFixedWing = 1;
 constexpr std::uint8_t kQuadrotor = 2;
 constexpr std::uint8_t kArdupilot = 3;
 constexpr std::uint8_t kPx4 = 12;
-constexpr std::uint8_t kArmedAndCustom = 128 + 1;
+/// HEARTBEAT.base_mode of an armed vehicle, as recorded: ArduCopter; PX4 in AUTO and in OFFBOARD.
+constexpr std::uint8_t kArdupilotArmed = 217;
+constexpr std::uint8_t kPx4Auto = 157;
+constexpr std::uint8_t kPx4Offboard = 145;
 constexpr std::uint8_t kStateActive = 4;
 constexpr std::uint8_t kInAir = 2;
 constexpr std::uint8_t kReal32 = 9;
-constexpr std::uint16_t kNavWaypoint = 16;
-constexpr std::uint8_t kFrameGlobal = 0;
-constexpr std::uint8_t kFrameRelative = 3;
-constexpr std::uint8_t kFrameRelativeInt = 6;
 constexpr std::uint8_t kBodyFrd = 12;
 constexpr std::uint8_t kPointObstacle = 19;
 constexpr std::uint8_t kLightAircraft = 1;
 /// Coordinates, altitude, heading, velocity, vertical velocity are valid; simulated.
 constexpr std::uint16_t kAdsbFlags = 1 + 2 + 4 + 8 + 64 + 128;
 constexpr std::uint16_t kPositionMask = 0x0DF8;
+/// ArduPilot's mask for a velocity set-point in POSITION_TARGET_LOCAL_NED: yaw is ignored, yaw rate too.
+constexpr std::uint16_t kArdupilotVelocityTarget = 0x0C07;
+/// PX4's mask for a velocity set-point: x, y and z are NaN.
+constexpr std::uint16_t kPositionIgnored = 0x0007;
+/// PX4's height of home, as recorded: changes every few seconds by up to this, either way [us], [m].
+constexpr Micros kHomeSteady = 8 * kSecond;
+constexpr double kHomeWander = 1.0;
+/// Variances of PX4's ODOMETRY, as recorded in flight [m2, m2/s2].
+constexpr float kOdometryPosition = 0.042F;
+constexpr float kOdometryVelocity = 0.0105F;
+constexpr std::uint8_t kEstimatorAutopilot = 8;
+/// The controller's place is so far ahead of the vehicle [s].
+constexpr double kPlaceAhead = 0.1;
 
 float as_float(double value) noexcept { return static_cast<float>(value); }
 std::int16_t centi(double metres_per_second) noexcept
@@ -59,7 +73,9 @@ Heartbeat Autopilot::heartbeat() const
     heartbeat.custom_mode = custom_mode(scenario_.stack, mode_, is_plane());
     heartbeat.type = is_plane() ? kFixedWing : kQuadrotor;
     heartbeat.autopilot = scenario_.stack == Stack::ardupilot ? kArdupilot : kPx4;
-    heartbeat.base_mode = kArmedAndCustom;
+    heartbeat.base_mode = scenario_.stack == Stack::ardupilot ? kArdupilotArmed
+                          : mode_ == Mode::external           ? kPx4Offboard
+                                                              : kPx4Auto;
     heartbeat.system_status = kStateActive;
     return heartbeat;
 }
@@ -68,54 +84,107 @@ void Autopilot::send_heartbeat() { writer_.write(heartbeat()); }
 
 void Autopilot::send_own_state()
 {
-    const Truth& own = world_.own();
+    const bool px4 = scenario_.stack == Stack::px4;
+    const Truth& own = estimate_.told();
     const Vec& p = own.position;
     const Vec& v = own.velocity;
-    if (due(20'000)) {
+    const double heading = compass(own.yaw);
+    if (often(px4 ? 30 : 50)) {
         writer_.write(LocalPositionNed{boot_ms(), as_float(p.y()), as_float(p.x()), as_float(-p.z()), as_float(v.y()),
                                        as_float(v.x()), as_float(-v.z())});
     }
-    if (due(40'000)) {
+    if (often(px4 ? 50 : 10)) {
         AttitudeQuaternion attitude;
         attitude.time_boot_ms = boot_ms();
-        const double half = 0.5 * compass(own.yaw);
-        attitude.q1 = as_float(std::cos(half));
-        attitude.q4 = as_float(std::sin(half));
+        attitude.q1 = as_float(std::cos(0.5 * heading));
+        attitude.q4 = as_float(std::sin(0.5 * heading));
         writer_.write(attitude);
     }
-    if (due(200'000)) {
+    if (!px4) {
+        return;
+    }
+    if (often(100)) {
+        Attitude attitude;
+        attitude.time_boot_ms = boot_ms();
+        attitude.yaw = as_float(std::remainder(heading, 2.0 * std::numbers::pi));
+        writer_.write(attitude);
+    }
+    if (often(50)) {
         writer_.write(global_position());
     }
+    if (often(30)) {
+        send_odometry();
+    }
+}
+
+void Autopilot::send_odometry()
+{
+    const Truth& own = estimate_.told();
+    const double half = 0.5 * compass(own.yaw);
+    Odometry m;
+    m.time_usec = static_cast<std::uint64_t>(boot_us());
+    m.x = as_float(own.position.y());
+    m.y = as_float(own.position.x());
+    m.z = as_float(-own.position.z());
+    m.q = {as_float(std::cos(half)), 0.0F, 0.0F, as_float(std::sin(half))};
+    m.vx = as_float(own.velocity.y());
+    m.vy = as_float(own.velocity.x());
+    m.vz = as_float(-own.velocity.z());
+    m.pose_covariance.fill(std::numeric_limits<float>::quiet_NaN());
+    m.velocity_covariance.fill(std::numeric_limits<float>::quiet_NaN());
+    for (const std::size_t diagonal : {0U, 6U, 11U}) {
+        m.pose_covariance[diagonal] = kOdometryPosition;
+        m.velocity_covariance[diagonal] = kOdometryVelocity;
+    }
+    m.frame_id = kLocalNed;
+    m.child_frame_id = kLocalNed;
+    m.estimator_type = kEstimatorAutopilot;
+    writer_.write(m);
 }
 
 GlobalPositionInt Autopilot::global_position() const
 {
-    const Truth& own = world_.own();
+    const Truth& own = estimate_.told();
     const Vec& v = own.velocity;
     const GlobalPosition global = to_global(own.position, scenario_.stack);
     return {boot_ms(),
             global.lat,
             global.lon,
             global.alt,
-            static_cast<std::int32_t>(std::lround(own.position.z() * 1e3)),
+            static_cast<std::int32_t>(std::lround((own.position.z() - scenario_.home.z()) * 1e3)),
             centi(v.y()),
             centi(v.x()),
             centi(-v.z()),
             centidegrees(compass(own.yaw))};
 }
 
+/// ArduPilot's x, y and z are 0 always. PX4's height of home wanders, local and global alike.
+HomePosition Autopilot::home_position() const
+{
+    HomePosition message;
+    Vec home = scenario_.home;
+    if (scenario_.stack == Stack::px4) {
+        Random random(scenario_.seed * 7919U + static_cast<std::uint64_t>(world_.now() / kHomeSteady));
+        home.z() += kHomeWander * (2.0 * static_cast<double>(random.uniform()) - 1.0);
+        message.x = as_float(home.y());
+        message.y = as_float(home.x());
+        message.z = as_float(-home.z());
+    }
+    const GlobalPosition global = to_global(home, scenario_.stack);
+    message.latitude = global.lat;
+    message.longitude = global.lon;
+    message.altitude = global.alt;
+    message.q = {1.0F, 0.0F, 0.0F, 0.0F};
+    return message;
+}
+
 bool Autopilot::send_message(int id)
 {
-    const GlobalPosition home = to_global(Vec::Zero(), scenario_.stack);
     if (id == static_cast<int>(GpsGlobalOrigin::kInfo.id)) {
-        writer_.write(GpsGlobalOrigin{home.lat, home.lon, home.alt, static_cast<std::uint64_t>(boot_us())});
+        const GlobalPosition origin = to_global(Vec::Zero(), scenario_.stack);
+        writer_.write(GpsGlobalOrigin{origin.lat, origin.lon, origin.alt, static_cast<std::uint64_t>(boot_us())});
     } else if (id == static_cast<int>(HomePosition::kInfo.id)) {
-        HomePosition position;
-        position.latitude = home.lat;
-        position.longitude = home.lon;
-        position.altitude = home.alt;
-        position.q = {1.0F, 0.0F, 0.0F, 0.0F};
-        writer_.write(position);
+        writer_.write(home_position());
     } else if (id == static_cast<int>(ExtendedSysState::kInfo.id)) {
         writer_.write(ExtendedSysState{0, kInAir});
     } else if (id == static_cast<int>(Heartbeat::kInfo.id)) {
@@ -126,51 +195,57 @@ bool Autopilot::send_message(int id)
     return true;
 }
 
-std::uint16_t Autopilot::home_items() const noexcept
-{
-    // ArduPilot's item 0 is home, its mission starts with item 1.
-    return scenario_.stack == Stack::ardupilot ? 1 : 0;
-}
-
 void Autopilot::send_slow()
 {
-    if (due(kSecond)) {
+    const bool px4 = scenario_.stack == Stack::px4;
+    if (often(1)) {
         send_heartbeat();
+    }
+    if (often(px4 ? 5 : 1)) {
         static_cast<void>(send_message(static_cast<int>(ExtendedSysState::kInfo.id)));
+    }
+    if (px4 ? often(10) : due(10 * kSecond)) {
         writer_.write(Timesync{0, boot_us() * 1000, 0, 0});
     }
-    if (due(5 * kSecond)) {
+    // PX4 tells the origin once; ArduPilot as often as home, where the co-processor has asked for both.
+    if (px4 ? !told_origin_ : due(5 * kSecond)) {
         static_cast<void>(send_message(static_cast<int>(GpsGlobalOrigin::kInfo.id)));
+        told_origin_ = true;
+    }
+    if (due(px4 ? 2 * kSecond : 5 * kSecond)) {
         static_cast<void>(send_message(static_cast<int>(HomePosition::kInfo.id)));
     }
-    if (due(kSecond / 2)) {
-        MissionCurrent current;
-        current.seq = static_cast<std::uint16_t>(mission_.target() + home_items());
-        current.total = static_cast<std::uint16_t>(scenario_.mission.size() + home_items());
-        writer_.write(current);
-    }
+    send_mission_state();
 }
 
+/// ArduPilot tells the set-point of GUIDED alone; PX4 its controller's, always: a place right ahead of the vehicle, and
+/// none in OFFBOARD by velocities.
 void Autopilot::send_target()
 {
-    if (!due(kSecond / 5, 10'000) || (mode_ != Mode::mission && mode_ != Mode::external)) {
+    const bool px4 = scenario_.stack == Stack::px4;
+    if (!often(px4 ? 10 : 2) || (!px4 && mode_ != Mode::external && mode_ != Mode::guided)) {
         return;
     }
-    const Vec& place = scenario_.mission[mission_.target()];
     PositionTargetLocalNed target;
     target.time_boot_ms = boot_ms();
     target.coordinate_frame = kLocalNed;
-    if (mode_ == Mode::mission) {
+    Vec velocity = command_;
+    Vec place = estimate_.told().position + kPlaceAhead * command_;
+    if (mode_ == Mode::external) {
+        velocity = setpoint_;
+        target.type_mask = px4 ? kPositionIgnored : kArdupilotVelocityTarget;
+        place = px4 ? Vec(Vec::Constant(std::numeric_limits<double>::quiet_NaN())) : Vec(Vec::Zero());
+    } else if (!px4) {
+        velocity.setZero();
         target.type_mask = kPositionMask;
-        target.x = as_float(place.y());
-        target.y = as_float(place.x());
-        target.z = as_float(-place.z());
-    } else {
-        target.type_mask = kVelocityMask;
-        target.vx = as_float(setpoint_.y());
-        target.vy = as_float(setpoint_.x());
-        target.vz = as_float(-setpoint_.z());
+        place = scenario_.flight ? scenario_.flight->target : place;
     }
+    target.x = as_float(place.y());
+    target.y = as_float(place.x());
+    target.z = as_float(-place.z());
+    target.vx = as_float(velocity.y());
+    target.vy = as_float(velocity.x());
+    target.vz = as_float(-velocity.z());
     writer_.write(target);
 }
 
@@ -218,7 +293,8 @@ void Autopilot::send_traffic()
         vehicle.heading = centidegrees(compass(std::atan2(seen.velocity.y(), seen.velocity.x())));
         vehicle.hor_velocity = static_cast<std::uint16_t>(std::lround(speed * 100.0));
         vehicle.ver_velocity = centi(seen.velocity.z());
-        writer_.write(vehicle, kAdsbReceiver);
+        // PX4 passes on, as its own, what its ground station told it.
+        writer_.write(vehicle, scenario_.stack == Stack::px4 ? kAutopilot : kAdsbReceiver);
         told_[seen.threat] = told_[seen.threat] < 0 ? world_.now() : told_[seen.threat];
     }
 }
@@ -246,50 +322,6 @@ void Autopilot::send_scan()
                                                : static_cast<std::uint16_t>(std::lround(ranges[i] * 100.0));
     }
     writer_.write(message, kRangefinder);
-}
-
-void Autopilot::send_mission_item(std::uint16_t seq, std::uint8_t frame, const Vec& place, std::uint8_t system,
-                                  std::uint8_t component)
-{
-    const GlobalPosition global = to_global(place, scenario_.stack);
-    MissionItemInt item;
-    item.x = global.lat;
-    item.y = global.lon;
-    item.z = frame == kFrameGlobal ? as_float(kHomeAltitude + place.z()) : as_float(place.z());
-    item.seq = seq;
-    item.command = kNavWaypoint;
-    item.target_system = system;
-    item.target_component = component;
-    item.frame = frame;
-    item.current = seq == mission_.target() + home_items() ? 1 : 0;
-    item.autocontinue = 1;
-    writer_.write(item);
-}
-
-void Autopilot::answer_mission(const Frame& frame)
-{
-    MissionRequestList list;
-    MissionRequestInt request;
-    const std::uint16_t total = static_cast<std::uint16_t>(scenario_.mission.size() + home_items());
-    const std::uint8_t system = frame.header.system_id;
-    const std::uint8_t component = frame.header.component_id;
-    if (decode(frame, list)) {
-        MissionCount count;
-        count.count = total;
-        count.target_system = system;
-        count.target_component = component;
-        writer_.write(count);
-    } else if (decode(frame, request)) {
-        if (request.seq >= total) {
-            constexpr std::uint8_t kInvalidSequence = 13;
-            writer_.write(MissionAck{system, component, kInvalidSequence, 0, 0});
-            return;
-        }
-        const bool home = request.seq < home_items();
-        const Vec place = home ? Vec(Vec::Zero()) : scenario_.mission[request.seq - home_items()];
-        const std::uint8_t relative = scenario_.stack == Stack::ardupilot ? kFrameRelative : kFrameRelativeInt;
-        send_mission_item(request.seq, home ? kFrameGlobal : relative, place, system, component);
-    }
 }
 
 }  // namespace jink::sim

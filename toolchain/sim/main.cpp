@@ -16,6 +16,7 @@
 #include "toolchain/sim/encounters_command.hpp"
 #include "toolchain/sim/envelope.hpp"
 #include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/matrix_command.hpp"
 #include "toolchain/sim/phases.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/recorded_command.hpp"
@@ -363,6 +364,8 @@ int main(int argc, char** argv)
     const CLI::App& swarm_command = add_swarm(cli, swarm);
     ReplayOptions recording;
     const CLI::App& replay_command = add_replay(cli, recording);
+    MatrixOptions matrix;
+    const CLI::App& matrix_command = add_matrix(cli, matrix);
     RecordedOptions recorded;
     const CLI::App& recorded_command = add_recorded(cli, recorded);
     try {
@@ -380,6 +383,9 @@ int main(int argc, char** argv)
         }
         if (replay_command.parsed()) {
             return run_replay(recording, std::cout, std::cerr);
+        }
+        if (matrix_command.parsed()) {
+            return run_matrix(matrix, std::cout);
         }
         if (recorded_command.parsed()) {
             run_recorded(recorded, std::cout);

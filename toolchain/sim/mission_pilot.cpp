@@ -17,7 +17,11 @@ constexpr double kHoverGain = 0.8;
 
 Vec MissionPilot::abeam(const Vec& position, double ahead) const
 {
-    const Vec& from = scenario_.mission[target_ - 1];
+    return abeam(scenario_.mission[target_ - 1], position, ahead);
+}
+
+Vec MissionPilot::abeam(const Vec& from, const Vec& position, double ahead) const
+{
     const Vec span = scenario_.mission[target_] - from;
     const double length = span.norm();
     if (length == 0.0) {
@@ -31,13 +35,15 @@ Vec MissionPilot::command(const Vec& position)
 {
     if (target_ + 1 < scenario_.mission.size() && (position - scenario_.mission[target_]).norm() < scenario_.reached) {
         ++target_;
+        from_.reset();
     }
     const bool last = target_ + 1 == scenario_.mission.size();
     const double ahead = scenario_.vehicle.min_speed > 0.0 ? kPlaneCarrot * scenario_.vehicle.cruise : kCarrot;
     const Vec to_end = scenario_.mission[target_] - position;
     const double speed =
         last ? std::min(scenario_.vehicle.cruise, kHoverGain * to_end.norm()) : scenario_.vehicle.cruise;
-    return along(abeam(position, ahead) - position, speed, scenario_.vehicle);
+    const Vec from = from_.value_or(scenario_.mission[target_ - 1]);
+    return along(abeam(from, position, ahead) - position, speed, scenario_.vehicle);
 }
 
 double MissionPilot::cross_track(const Vec& position) const { return (position - abeam(position, 0.0)).norm(); }

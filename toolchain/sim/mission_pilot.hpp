@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+
 #include "toolchain/sim/scenario.hpp"
 
 namespace jink::sim {
@@ -15,18 +17,26 @@ public:
     /// Velocity command at a place; moves on to the next waypoint when the present one is reached.
     [[nodiscard]] Vec command(const Vec& position);
 
+    /// ArduPilot: the mission mode is entered, and the present waypoint is flown to from here.
+    void resume(const Vec& position) { from_ = position; }
+
     /// Index of the waypoint that is flown to, >= 1.
     [[nodiscard]] std::size_t target() const noexcept { return target_; }
     /// Distance from the present leg [m].
     [[nodiscard]] double cross_track(const Vec& position) const;
-    /// Of the present leg, where it is nearest [m].
-    [[nodiscard]] double height_abeam(const Vec& position) const { return abeam(position, 0.0).z(); }
+    /// Of the present leg as it is flown, where it is nearest [m].
+    [[nodiscard]] double height_abeam(const Vec& position) const
+    {
+        return abeam(from_.value_or(scenario_.mission[target_ - 1]), position, 0.0).z();
+    }
 
 private:
     [[nodiscard]] Vec abeam(const Vec& position, double ahead) const;
+    [[nodiscard]] Vec abeam(const Vec& from, const Vec& position, double ahead) const;
 
     const Scenario& scenario_;
     std::size_t target_ = 1;
+    std::optional<Vec> from_;  ///< where the present leg is flown from, if that is not the waypoint before
 };
 
 }  // namespace jink::sim

@@ -30,6 +30,8 @@ namespace jink::sim {
     case Mode::hold: return ardupilot ? 5 : px4(4, 3);      // LOITER; AUTO.LOITER
     case Mode::brake: return ardupilot ? 17 : px4(4, 3);    // BRAKE; PX4 has none
     case Mode::home: return ardupilot ? 6 : px4(4, 5);      // RTL; AUTO.RTL
+    case Mode::land: return ardupilot ? 9 : px4(4, 6);      // LAND; AUTO.LAND
+    case Mode::guided: return ardupilot ? 4 : px4(4, 3);    // GUIDED; AUTO.LOITER
     case Mode::pilot: break;
     }
     return ardupilot ? 16 : px4(3, 0);  // POSHOLD; POSCTL
@@ -39,7 +41,8 @@ namespace jink::sim {
 [[nodiscard]] constexpr std::optional<Mode> requested_mode(Stack stack, float param2, float param3,
                                                            bool plane = false) noexcept
 {
-    for (const Mode mode : {Mode::mission, Mode::external, Mode::hold, Mode::brake, Mode::home, Mode::pilot}) {
+    for (const Mode mode :
+         {Mode::mission, Mode::external, Mode::hold, Mode::brake, Mode::home, Mode::pilot, Mode::land}) {
         const std::uint32_t number = custom_mode(stack, mode, plane);
         const float first =
             stack == Stack::ardupilot ? static_cast<float>(number) : static_cast<float>(number >> 16U & 0xFFU);

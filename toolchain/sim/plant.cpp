@@ -156,6 +156,7 @@ Record Plant::record() const
     record.lowest = world_.lowest();
     record.below_floor = below_floor_;
     record.heard = autopilot_.heard();
+    record.critical_texts = static_cast<unsigned>(autopilot_.critical_texts().size());
     record.mission = scenario_.mission;
     record.threats = scenario_.threats;
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
@@ -167,6 +168,9 @@ Record Plant::record() const
     record.samples = samples_;
     for (const std::string& name : autopilot_.parameters_missing()) {
         record.faults.push_back("parameter " + name + " was not taken");
+    }
+    for (const std::string& text : autopilot_.critical_texts()) {
+        record.faults.push_back("the autopilot told the pilot \"" + text + "\"");
     }
     if (const std::string fault = areas_.fault(); !fault.empty()) {
         record.faults.push_back(fault);

@@ -76,10 +76,11 @@ struct Record {
     double lowest = 0.0;       ///< least height of the centre [m]
     bool below_floor = false;  ///< was below it where the leg is not: a mission may lead there by itself
     Heard heard;
-    unsigned late_steps = 0;   ///< real time: steps begun more than a tick late
-    double latest_step = 0.0;  ///< real time: the latest of them [s]
-    double held_up = 0.0;      ///< emulated: the machine kept the emulator from running, the longest [s]
-    unsigned repeats = 0;      ///< real time: flights thrown away before because the machine stood still
+    unsigned critical_texts = 0;  ///< of the autopilot, caused by the co-processor
+    unsigned late_steps = 0;      ///< real time: steps begun more than a tick late
+    double latest_step = 0.0;     ///< real time: the latest of them [s]
+    double held_up = 0.0;         ///< emulated: the machine kept the emulator from running, the longest [s]
+    unsigned repeats = 0;         ///< real time: flights thrown away before because the machine stood still
     std::vector<Vec> mission;
     std::vector<Threat> threats;
     std::vector<double> appeared;  ///< when each threat appeared; negative: never [s]

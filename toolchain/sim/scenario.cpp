@@ -24,6 +24,8 @@ std::string_view to_string(Mode mode) noexcept
     case Mode::hold: return "hold";
     case Mode::brake: return "brake";
     case Mode::home: return "home";
+    case Mode::land: return "land";
+    case Mode::guided: return "guided";
     case Mode::pilot: break;
     }
     return "pilot";

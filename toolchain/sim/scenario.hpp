@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "toolchain/sim/closed_area.hpp"
+#include "toolchain/sim/disturbance.hpp"
+#include "toolchain/sim/mission_item.hpp"
 #include "toolchain/sim/threat.hpp"
 #include "toolchain/sim/truth_vehicle.hpp"
 
@@ -21,9 +23,6 @@ enum class PlannerKind : std::uint8_t {
     product,  ///< as flashed: what its parameters say
     source,   ///< geometric::source_settings(), with the co-processor's look-ahead; in process only
 };
-
-/// What the autopilot is doing, whatever its stack calls it.
-enum class Mode : std::uint8_t { mission, external, hold, brake, home, pilot };
 
 enum class Outcome : std::uint8_t {
     clear,      ///< no manoeuvre needed, none flown
@@ -47,7 +46,9 @@ struct TrafficSensor {
     double latency = 0.1;         ///< from measurement to arrival [s]
     double jitter = 0.0;          ///< on top, uniform [s]
     double dropout = 0.0;         ///< share of sightings that never arrive
-    Micros phase = 0;             ///< first sighting after a threat appears; not in files: timing.hpp
+    /// As an ADS-B transponder: cells of 5.1 m, heights in steps of 25 ft, speeds of 1 kt and 64 ft/min.
+    bool quantised = false;
+    Micros phase = 0;  ///< first sighting after a threat appears; not in files: timing.hpp
 };
 
 /// Level range scan.
@@ -103,7 +104,7 @@ struct Scenario {
     double duration = 20.0;        ///< at most [s]
     double promise = 0.7;          ///< least distance from the vehicle's centre to a true surface [m]
     double body_radius = 0.5;      ///< of the vehicle [m]
-    std::optional<double> floor;   ///< the centre stays this high above home [m]
+    std::optional<double> floor;   ///< the centre stays this high above the origin of the local frame [m]
     std::optional<double> ground;  ///< height of the plane that the LiDAR sees [m]
     bool to_goal = false;          ///< ends at the last waypoint, and not when all threats are past
     TruthLimits vehicle;
@@ -111,10 +112,15 @@ struct Scenario {
     Vec start_velocity = Vec::Zero();
     std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
     double reached = 2.0;      ///< a waypoint is, within this; not in files [m]
+    /// What is flown in place of `mission`, whose last waypoint stays the goal; not in files.
+    std::optional<NominalFlight> flight;
+    Vec home = Vec::Zero();  ///< in the local frame, whose origin is the estimator's; not in files
     std::vector<Threat> threats;
     std::vector<ClosedArea> areas;
     TrafficSensor traffic;
     ScanSensor scan;
+    OwnSensor own;
+    Wind wind;
     std::optional<LidarSensor> lidar;
     std::map<std::string, double> parameters;  ///< set at the start, verified
     Faults faults;

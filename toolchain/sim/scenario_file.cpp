@@ -46,11 +46,23 @@ void read_sensors(YamlMap& root, Scenario& s)
         number(*map, "latency", s.traffic.latency, {0.0F, 5.0F});
         number(*map, "jitter", s.traffic.jitter, {0.0F, 5.0F});
         number(*map, "dropout", s.traffic.dropout, {0.0F, 1.0F});
+        s.traffic.quantised = map->boolean("quantised").value_or(false);
         map->finish();
     }
     if (auto map = root.map("scan")) {
         number(*map, "rate", s.scan.rate, {1.0F, 50.0F});
         number(*map, "range", s.scan.range, {1.0F, 600.0F});
+        map->finish();
+    }
+    if (auto map = root.map("own")) {
+        number(*map, "latency", s.own.latency, {0.0F, 5.0F});
+        number(*map, "bias", s.own.bias, {0.0F, 100.0F});
+        number(*map, "bias_vertical", s.own.bias_vertical, {0.0F, 100.0F});
+        number(*map, "bias_time", s.own.bias_time, {0.1F, 1e4F});
+        map->finish();
+    }
+    if (auto map = root.map("wind")) {
+        number(*map, "at_20_ft", s.wind.at_20_ft, {0.0F, 50.0F});
         map->finish();
     }
     if (auto map = root.map("lidar")) {

@@ -126,9 +126,17 @@ void put_sensors(YAML::Emitter& out, const Scenario& s)
     put(out, "latency", s.traffic.latency);
     put(out, "jitter", s.traffic.jitter);
     put(out, "dropout", s.traffic.dropout);
+    out << Key << "quantised" << Value << s.traffic.quantised;
     out << EndMap << Key << "scan" << Value << BeginMap;
     put(out, "rate", s.scan.rate);
     put(out, "range", s.scan.range);
+    out << EndMap << Key << "own" << Value << BeginMap;
+    put(out, "latency", s.own.latency);
+    put(out, "bias", s.own.bias);
+    put(out, "bias_vertical", s.own.bias_vertical);
+    put(out, "bias_time", s.own.bias_time);
+    out << EndMap << Key << "wind" << Value << BeginMap;
+    put(out, "at_20_ft", s.wind.at_20_ft);
     out << EndMap;
     if (s.lidar) {
         out << Key << "lidar" << Value << BeginMap;

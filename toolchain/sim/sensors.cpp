@@ -11,6 +11,17 @@ namespace {
 /// Rays per sector of a scan.
 constexpr int kRays = 5;
 
+// Steps of an ADS-B position, height and velocity: 6 degrees in 2^17, 25 ft, 1 kt, 64 ft/min.
+constexpr double kCell = 5.1;           // [m]
+constexpr double kAltitudeStep = 7.62;  // [m]
+constexpr double kSpeedStep = 0.5144;   // [m/s]
+constexpr double kClimbStep = 0.3251;   // [m/s]
+
+Vec rounded_to(const Vec& value, const Vec& step)
+{
+    return (value.array() / step.array()).round().matrix().cwiseProduct(step);
+}
+
 double normal(Random& random) { return static_cast<double>(random.normal()); }
 
 Vec noise(Random& random, double sigma)
@@ -62,6 +73,10 @@ void TrafficReceiver::sight(std::size_t i, Channel& channel)
                   Vec::Zero()};
     if (threat.sensed_by == SensedBy::traffic) {
         seen.velocity = threat.velocity_at(world_.seconds()) + velocity_noise;
+    }
+    if (sensor.quantised) {
+        seen.position = rounded_to(seen.position, Vec(kCell, kCell, kAltitudeStep));
+        seen.velocity = rounded_to(seen.velocity, Vec(kSpeedStep, kSpeedStep, kClimbStep));
     }
     channel.under_way.push_back(seen);
 }

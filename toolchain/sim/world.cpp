@@ -5,8 +5,15 @@
 #include <cmath>
 
 namespace jink::sim {
+namespace {
 
-World::World(const Scenario& scenario) : scenario_(scenario), lowest_(scenario.start_position.z())
+/// A gust accelerates a multirotor by this much of its speed before the velocity loop answers [1/s].
+constexpr double kDragRate = 0.3;
+
+}  // namespace
+
+World::World(const Scenario& scenario)
+    : scenario_(scenario), gusts_(scenario.wind, scenario.seed), lowest_(scenario.start_position.z())
 {
     own_.position = scenario.start_position;
     own_.velocity = scenario.start_velocity;
@@ -58,6 +65,11 @@ void World::step(const Vec& command)
     const Vec own_before = own_.position;
     before_ = positions_;
     now_ += kStep;
+    if (!gusts_.is_calm()) {
+        const double level_speed = own_.velocity.head<2>().norm();
+        gusts_.step(own_.position.z() - scenario_.home.z(), level_speed + scenario_.wind.at_20_ft);
+        own_.velocity += kDragRate * to_seconds(kStep) * gusts_.velocity(own_.yaw);
+    }
     fly(own_, command, scenario_.vehicle, to_seconds(kStep));
     for (std::size_t i = 0; i < positions_.size(); ++i) {
         positions_[i] = scenario_.threats[i].position_at(seconds());

@@ -51,6 +51,7 @@ private:
     const Scenario& scenario_;
     Micros now_ = 0;
     Truth own_;
+    Gusts gusts_;
     std::vector<Vec> positions_;
     std::vector<Vec> before_;
     std::vector<Micros> appeared_;

@@ -91,6 +91,29 @@ TEST(Rejoining, AFloorAboveTheLegIsKept)
     }
 }
 
+/// A descent that goes on below the floor: above what is left of it the vehicle stands, beside it for good.
+TEST(Rejoining, ADescentThatEndsBelowTheFloorIsGivenBack)
+{
+    for (const Vec3& slope : {Vec3(-12, 0, -90), Vec3(-30, 10, -90), Vec3(0, 0, -90)}) {
+        Flight f;
+        f.scene.leg(Vec3(0, 0, 40), Vec3(0, 0, 40) + slope, 1.5F);
+        f.scene.airspace.has_floor = true;
+        f.scene.airspace.floor = 25.0F;
+        f.scene.own.position = Vec3(4, 6, 34);
+        f.scene.own.velocity = Vec3::Zero();
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        EXPECT_LT(rejoin(f, supervisor, 1200), 1200) << slope.x();
+        EXPECT_EQ(supervisor.state(), State::watching);
+        Guidance g = f.update(supervisor, true);
+        for (int i = 0; i < 40; ++i) {
+            EXPECT_FALSE(g.wants_control) << "control is not taken back, " << slope.x();
+            f.pass(g.velocity, 0.05F);
+            g = f.update(supervisor, true);
+        }
+    }
+}
+
 TEST(Rejoining, BelowTheFloorItGoesNoDeeper)
 {
     Flight f;

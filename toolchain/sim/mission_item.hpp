@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "toolchain/sim/vec.hpp"
+
+namespace jink::sim {
+
+/// What the autopilot is doing, whatever its stack calls it.
+enum class Mode : std::uint8_t {
+    mission,
+    external,  ///< GUIDED or OFFBOARD, asked for by the co-processor
+    hold,
+    brake,
+    home,
+    pilot,
+    land,
+    guided,  ///< flies to a place that somebody else chose: ArduPilot's GUIDED, PX4's AUTO.LOITER after DO_REPOSITION
+};
+
+/// What a mission item asks for.
+enum class ItemKind : std::uint8_t {
+    waypoint,
+    spline,  ///< curve to the place; ArduPilot only
+    turns,   ///< circles about the place, LOITER_TURNS; ArduPilot only
+    wait,    ///< stays at the place, LOITER_TIME
+    take_off,
+    land,
+    home,   ///< RETURN_TO_LAUNCH
+    speed,  ///< DO_CHANGE_SPEED
+    jump,   ///< DO_JUMP
+};
+
+struct Item {
+    ItemKind kind = ItemKind::waypoint;
+    Vec place = Vec::Zero();  ///< in the local frame
+    /// turns: radius [m]; wait: [s]; speed: [m/s]; jump: index of the item that follows, counted without ArduPilot's
+    /// home
+    double value = 0.0;
+    int count = 0;  ///< turns: how many; jump: how often
+};
+
+/// A flight that is more than the legs between a scenario's waypoints.
+struct NominalFlight {
+    std::vector<Item> items;     ///< the mission
+    std::vector<Item> uploaded;  ///< by a ground station on another line, as many as `items`
+    double upload_at = -1.0;     ///< when [s]; negative: never
+    Mode mode = Mode::mission;   ///< at the start
+    Vec target = Vec::Zero();    ///< flown to in Mode::guided
+    double mission_at = -1.0;    ///< somebody else chooses Mode::mission then [s]; negative: never
+    double moved_at = -1.0;      ///< Mode::pilot: the place is held until then [s], and
+    Vec stick = Vec::Zero();     ///< this velocity flown from then on [m/s]
+};
+
+}  // namespace jink::sim
