@@ -89,7 +89,8 @@ TEST(ChooseFallback, BacksAwayAndDown)
         ASSERT_LT(margin_of(f, plain), 0.0F);
     }
     const Fallback chosen = fallback(f);
-    EXPECT_GT(chosen.margin, 0.2F);
+    // The flight's chords leave it by up to 25 mm (path::Sagitta): the margin is stated as much lower.
+    EXPECT_GT(chosen.margin, 0.2F - 0.025F);
     EXPECT_LT(chosen.command.x(), -3.0F);
     EXPECT_LT(chosen.command.z(), -2.9F);
 }
