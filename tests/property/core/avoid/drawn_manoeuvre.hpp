@@ -350,6 +350,7 @@ inline bool draw(Random& random, Drawn& d, bool solids)
 {
     Scene& s = d.scene;
     s.limits = any_vehicle(random);
+    s.own.stamp = s.now;
     s.own.position = in_cube(random, 40.0F);
     s.own.velocity = any_velocity(random, s.limits, random.uniform(0.0F, 1.0F) * s.limits.cruise_speed);
     s.own.yaw = std::atan2(s.own.velocity.y(), s.own.velocity.x());
