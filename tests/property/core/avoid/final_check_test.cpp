@@ -95,7 +95,9 @@ Counts compare(std::uint64_t default_seed, std::size_t cases, bool solids)
         counts.clear += told >= 0.0F ? 1 : 0;
         counts.clear_of[static_cast<std::size_t>(d.flying)][static_cast<std::size_t>(d.scene.limits.kind)] +=
             told >= 0.0F ? 1 : 0;
-        const double truth = true_margin(d, dense::fly(d, direction), floor);
+        // Margins beyond the cap are not told apart.
+        const double truth =
+            std::max(true_margin(d, dense::fly(d, direction), floor), -double(world::kSeparationCap));
         if (truth < floor) {
             counts.worst = std::max(counts.worst, double(told) - truth);
             if (counts.above++ < 5) {

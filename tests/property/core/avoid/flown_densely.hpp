@@ -159,7 +159,9 @@ struct Judged {
 
     [[nodiscard]] double operator()(double margin, double t) const
     {
-        return start < 0.0 ? margin + std::max(0.0, slack - start - speed * t) : margin;
+        // A start within rounding of the surface may be taken for one inside.
+        constexpr double kRounding = 1e-4;
+        return start < kRounding ? margin + std::max(0.0, slack - start - speed * t) : margin;
     }
 };
 
