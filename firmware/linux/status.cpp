@@ -258,9 +258,9 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
     std::fprintf(f,
                  "  \"tracks_created\": %u, \"tracks_refused\": %u, \"tracks_expired\": %u, \"tracks_dropped\": %u,\n",
                  k.created, k.not_finite + k.out_of_range + k.stale + k.future, k.expired, k.full + k.replaced);
-    std::fprintf(f,
-                 "  \"tracks_doubled\": %u, \"track_floods\": %u, \"pressure_heights\": %u, \"heights_compared\": %u,\n",
-                 k.doubled, k.floods, l.pressure_heights, l.heights_compared);
+    std::fprintf(
+        f, "  \"tracks_doubled\": %u, \"track_floods\": %u, \"pressure_heights\": %u, \"heights_compared\": %u,\n",
+        k.doubled, k.floods, l.pressure_heights, l.heights_compared);
     std::fprintf(f,
                  "  \"frames_in\": %u, \"frames_out\": %u, \"frames_refused\": %u, \"stale_stamps\": %u, "
                  "\"clock_relocks\": %u,\n",

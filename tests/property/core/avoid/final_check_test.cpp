@@ -96,8 +96,7 @@ Counts compare(std::uint64_t default_seed, std::size_t cases, bool solids)
         counts.clear_of[static_cast<std::size_t>(d.flying)][static_cast<std::size_t>(d.scene.limits.kind)] +=
             told >= 0.0F ? 1 : 0;
         // Margins beyond the cap are not told apart.
-        const double truth =
-            std::max(true_margin(d, dense::fly(d, direction), floor), -double(world::kSeparationCap));
+        const double truth = std::max(true_margin(d, dense::fly(d, direction), floor), -double(world::kSeparationCap));
         if (truth < floor) {
             counts.worst = std::max(counts.worst, double(told) - truth);
             if (counts.above++ < 5) {
