@@ -158,6 +158,9 @@ std::string status_line(const app::StepReport& report, const Watched& watched, s
     add("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
         name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
         report.obstacles);
+    if (report.uncertain_heights > 0) {
+        add("heights uncertain %2u ", report.uncertain_heights);
+    }
     if (report.barrels > 0) {
         add("areas %2u ", report.barrels);
     }

@@ -120,6 +120,7 @@ TEST(CoprocessorCrowd, HeightsOfSatellitesStillSeparate)
             }
         }));
         EXPECT_EQ(e.f->requested.empty(), type == 1) << int(type);
+        EXPECT_EQ(e.f->last.uncertain_heights, type == 1 ? 0 : 1) << int(type);
     }
 }
 
