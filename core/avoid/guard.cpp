@@ -112,7 +112,7 @@ public:
     /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
     float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
     {
-        if (!budget_.spend(prediction_units(horizon_, step_, units::kCommandStep))) {
+        if (!is_finite(command) || !budget_.spend(prediction_units(horizon_, step_, units::kCommandStep))) {
             return -world::kSeparationCap;
         }
         path::predict_velocity_command(s_.own, command, horizon_, later_step_, s_.limits, flight_);
@@ -221,6 +221,9 @@ Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous
 /// No method is trusted with this either: numbers, times that rise, a start that is not ahead.
 bool is_well_formed(const world::Manoeuvre& manoeuvre, TimePoint now) noexcept
 {
+    if (!is_finite(manoeuvre.command)) {
+        return false;
+    }
     Seconds before = -1.0F;
     for (const PathPoint& p : manoeuvre.path.points) {
         if (!is_finite(p.position) || !is_finite(p.velocity) || !std::isfinite(p.time) || p.time <= before) {

@@ -9,7 +9,8 @@ std::size_t count_near(const world::Situation& situation, float radius) noexcept
 {
     const Vec3& own = situation.own.position;
     const auto tracks = std::count_if(situation.tracks.begin(), situation.tracks.end(), [&](const world::Track& track) {
-        return (track.position - own).norm() <= radius + world::threat_radius(situation, track, 0.0F);
+        const Vec3 nearest = world::nearest_in_height(track, track.position, own.z());
+        return (nearest - own).norm() <= radius + world::threat_radius(situation, track, 0.0F);
     });
     const auto obstacles =
         std::count_if(situation.obstacles.begin(), situation.obstacles.end(), [&](const world::Obstacle& obstacle) {

@@ -29,6 +29,9 @@ struct Settings {
 /// * Vehicle: its box as the cylinder about it, obstacles and the airspace's bounds as hard half-spaces. Around each
 ///   track the region that keeps the box from the track's sphere, grown to when they are nearest, lies within the
 ///   conflict region.
+/// * An uncertain height (Track::half_height): the region is at most twice as high as wide, about the point of the
+///   capsule's axis that is nearest in height. So a command may lead over or under the rest of a taller capsule. The
+///   final check counts the whole capsule and refuses such a command.
 /// * Tracks that share the reaction (Track::cooperative, not stale) are left half of it, all others none. Of two such
 ///   vehicles neither closes in faster than both can undo (Conflict::at_rest), and the final check looks at them as far
 ///   ahead as the vehicle needs to stop (Situation::shared_horizon), at all others to the path's end.

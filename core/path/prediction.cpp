@@ -60,8 +60,7 @@ void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, S
     std::uint32_t end = 0;
     for (std::uint32_t i = 0; i < setpoints; ++i) {
         if (i == end) {
-            end = std::min(i + (chord < std::size(kFirstChords) ? std::min(kFirstChords[chord], length) : length),
-                           setpoints);
+            end = std::min(i + (chord < std::size(kFirstChords) ? kFirstChords[chord] : length), setpoints);
             ++chord;
         }
         const Seconds t = start + static_cast<float>(i) * kSetpointPeriod;

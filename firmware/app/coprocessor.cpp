@@ -311,6 +311,8 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
                                          c.k_sigma,
                                          link_.own_track()};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
+        report.uncertain_heights = static_cast<std::uint16_t>(std::count_if(
+            situation.tracks.begin(), situation.tracks.end(), [](const auto& t) { return t.half_height > 0.0F; }));
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
         report.barrels = static_cast<std::uint16_t>(air.barrels.size());
         report.guidance = supervisor_.update(situation, takeover_.in_control(), nominal_.other());

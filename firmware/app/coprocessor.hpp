@@ -62,6 +62,7 @@ struct StepReport {
     std::uint32_t bytes_in = 0;
     std::uint32_t bytes_out = 0;
     std::uint16_t tracks = 0;
+    std::uint16_t uncertain_heights = 0;  ///< tracks with a Track::half_height
     std::uint16_t obstacles = 0;
     std::uint16_t barrels = 0;  ///< closed volumes and storm cells that are known
     Control control = Control::autopilot;

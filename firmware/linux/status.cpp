@@ -158,6 +158,9 @@ std::string status_line(const app::StepReport& report, const Watched& watched, s
     add("%-9s port %-6s control %-10s %-9s tracks %2u obstacles %2u ", name_of(report.state),
         name_of(watched.port.health().state), name_of(report.control), name_of(g.state), report.tracks,
         report.obstacles);
+    if (report.uncertain_heights > 0) {
+        add("heights uncertain %2u ", report.uncertain_heights);
+    }
     if (report.barrels > 0) {
         add("areas %2u ", report.barrels);
     }
@@ -258,6 +261,9 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
     std::fprintf(f,
                  "  \"tracks_created\": %u, \"tracks_refused\": %u, \"tracks_expired\": %u, \"tracks_dropped\": %u,\n",
                  k.created, k.not_finite + k.out_of_range + k.stale + k.future, k.expired, k.full + k.replaced);
+    std::fprintf(
+        f, "  \"tracks_doubled\": %u, \"track_floods\": %u, \"pressure_heights\": %u, \"heights_compared\": %u,\n",
+        k.doubled, k.floods, l.pressure_heights, l.heights_compared);
     std::fprintf(f,
                  "  \"frames_in\": %u, \"frames_out\": %u, \"frames_refused\": %u, \"stale_stamps\": %u, "
                  "\"clock_relocks\": %u,\n",

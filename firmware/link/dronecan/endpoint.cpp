@@ -232,8 +232,10 @@ void Endpoint::on_traffic(const Context& c) noexcept
     report.stamp = c.transfer.stamp - static_cast<Seconds>(m.tslc);
     const auto height = static_cast<std::int32_t>(std::lround(m.altitude * 1e3F));
     report.position = mavlink::to_local({m.latitude, m.longitude, height}, options_.origin);
-    constexpr std::uint8_t kPressureAltitude = 1;
-    report.height = m.altitude_type == kPressureAltitude ? HeightSource::pressure : HeightSource::geometric;
+    if (m.altitude_type != TrafficReport::kGeometricAltitude) {
+        ++diagnostics_.pressure_heights;
+        report.height = HeightSource::pressure;
+    }
     report.at_rest = m.traffic_type == TrafficReport::kPointObstacle;
     report.unmanned = m.traffic_type == TrafficReport::kUnmanned;
     report.has_velocity = report.at_rest || moves;

@@ -59,7 +59,8 @@ struct TrafficReport {
     static constexpr TypeInfo kType{TransferKind::message, 20790, 0x71FB, 47};
     static constexpr std::uint8_t kUnmanned = 14;
     static constexpr std::uint8_t kPointObstacle = 19;
-    std::uint64_t stamp = 0;  ///< [us], 56 bits; 0: not said
+    static constexpr std::uint8_t kGeometricAltitude = 2;  ///< ALT_TYPE_WGS84
+    std::uint64_t stamp = 0;                               ///< [us], 56 bits; 0: not said
     std::uint32_t icao = 0;
     std::uint16_t tslc = 0;                    ///< [s] since it was last heard
     std::int32_t latitude = 0, longitude = 0;  ///< [deg 1e-7]
@@ -70,7 +71,7 @@ struct TrafficReport {
     std::array<std::uint8_t, 9> callsign{};
     std::uint8_t source = 0;  ///< 0 ADS-B, 1 UAT, 2 FLARM
     std::uint8_t traffic_type = 0;
-    std::uint8_t altitude_type = 0;  ///< 0 unknown, 1 pressure, 2 WGS84
+    std::uint8_t altitude_type = 0;  ///< 0 unknown, 1 pressure above mean sea level, 2 WGS84
     bool position_valid = false, heading_valid = false, velocity_valid = false, callsign_valid = false;
     bool ident_valid = false, simulated = false, vertical_velocity_valid = false, baro_valid = false;
 

@@ -339,6 +339,9 @@ std::vector<Route> routes()
         same(Param::latency, 0.2F, [](C c) { return c.planner.latency; }),
         {Param::sticks, 45.0F, [](C c) { return c.sticks; }, 0.45F},
         same(Param::patience, 12.5F, [](C c) { return c.supervisor.patience; }),
+        {Param::sticks, 45, [](C c) { return c.sticks; }, 0.45F},
+        same(Param::sigma_baro, 31.5F, [](C c) { return c.sigma_baro; }),
+        same(Param::sigma_compared, 6.5F, [](C c) { return c.sigma_compared; }),
     };
 }
 

@@ -186,6 +186,18 @@ TEST_F(DronecanEndpoint, Traffic)
     EXPECT_EQ(inbox.tracks[4].id, 0x85000007U);
 }
 
+/// alt_type of the definition: 0 unknown, 1 pressure, 2 WGS84. An unknown kind of height is no geometric one.
+TEST_F(DronecanEndpoint, OnlyAHeightOfSatellitesIsGeometric)
+{
+    TrafficReport m = traffic();
+    for (std::uint8_t type = 0; type < 4; ++type) {
+        m.altitude_type = type;
+        give(m);
+        EXPECT_EQ(inbox.tracks[type].height == HeightSource::geometric, type == 2) << int(type);
+    }
+    EXPECT_EQ(seen().pressure_heights, 3U);
+}
+
 TEST_F(DronecanEndpoint, BadTrafficIsRefused)
 {
     TrafficReport m = traffic();

@@ -37,7 +37,7 @@ Asked run(StreamRequests& streams, float seconds, const std::map<std::uint32_t, 
     return asked;
 }
 
-const std::map<std::uint32_t, float> kAll{{32, 50.0F}, {31, 10.0F}, {42, 2.0F}, {245, 1.0F},
+const std::map<std::uint32_t, float> kAll{{32, 50.0F}, {31, 10.0F}, {42, 2.0F},  {245, 1.0F},
                                           {49, 0.2F},  {242, 0.2F}, {246, 1.0F}, {29, 1.0F}};
 
 TEST(MavlinkStreamRequests, NothingIsAskedForThatComes)

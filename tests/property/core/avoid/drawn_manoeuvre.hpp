@@ -230,13 +230,16 @@ inline void place_ball(Random& random, Drawn& d, const DenseFlight& flight, doub
         track.sigma_velocity = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.3F);
         track.max_acceleration = random.below(3) == 0 ? random.uniform(0.0F, 0.5F) : 0.0F;
         track.cooperative = random.below(4) == 0;
+        track.half_height = random.below(4) == 0 ? random.uniform(0.0F, 60.0F) : 0.0F;
     }
     const double radius = moves ? world::oracle::radius_of(s, track, t)
                                 : double(track.radius) + double(s.k_sigma) * double(s.own.sigma_position);
     const Vec3d half = s.limits.half_extents.cast<double>();
     const Vec3d direction = across.cast<double>();
     const double far = placed([&](double x) { return world::oracle::point_box(direction * x, half) - radius; }, wanted);
-    const Vec3d centre = own.position + direction * far - track.velocity.cast<double>() * t;
+    // Of an uncertain height: the end that looks this way is what the flight grazes.
+    const double shift = std::copysign(double(track.half_height), direction.z());
+    const Vec3d centre = own.position + direction * far + shift * Vec3d::UnitZ() - track.velocity.cast<double>() * t;
     if (moves) {
         track.position = centre.cast<float>();
         s.tracks.push_back(track);
@@ -347,6 +350,7 @@ inline bool draw(Random& random, Drawn& d, bool solids)
 {
     Scene& s = d.scene;
     s.limits = any_vehicle(random);
+    s.own.stamp = s.now;
     s.own.position = in_cube(random, 40.0F);
     s.own.velocity = any_velocity(random, s.limits, random.uniform(0.0F, 1.0F) * s.limits.cruise_speed);
     s.own.yaw = std::atan2(s.own.velocity.y(), s.own.velocity.x());

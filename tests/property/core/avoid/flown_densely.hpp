@@ -159,7 +159,9 @@ struct Judged {
 
     [[nodiscard]] double operator()(double margin, double t) const
     {
-        return start < 0.0 ? margin + std::max(0.0, slack - start - speed * t) : margin;
+        // A start within rounding of the surface may be taken for one inside.
+        constexpr double kRounding = 1e-4;
+        return start < kRounding ? margin + std::max(0.0, slack - start - speed * t) : margin;
     }
 };
 
@@ -167,11 +169,10 @@ struct Judged {
 /// `rate` [m/s] lets the margin fall, but no less than a millisecond: the distance to a convex body is smooth, so that
 /// between two such instants it falls by less than a millimetre more.
 template <class Margin>
-double least_margin(const Margin& margin, double end, double rate, const world::EscapeRule& escape, double extra_slack,
-                    double floor)
+double least_margin(const Margin& margin, double end, double rate, const world::EscapeRule& escape, double floor)
 {
     constexpr double kFinest = 1e-3;
-    const Judged judged{margin(0.0), double(escape.slack) + extra_slack, double(escape.speed)};
+    const Judged judged{margin(0.0), double(escape.slack), double(escape.speed)};
     double least = 1e9;
     for (double t = 0.0;;) {
         const double value = judged(margin(t), t);
@@ -197,25 +198,26 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
         const double rate = own_rate + double(track.velocity.norm()) +
                             double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
         const auto margin = [&](double t) {
-            const Vec3d threat = track.position.cast<double>() + track.velocity.cast<double>() * t;
-            return world::oracle::point_box(threat - flight.at(t).position, half) -
-                   world::oracle::radius_of(scene, track, t);
+            Vec3d gap = track.position.cast<double>() + track.velocity.cast<double>() * t - flight.at(t).position;
+            // Whichever of its possible heights is nearest.
+            gap.z() -= std::clamp(gap.z(), -double(track.half_height), double(track.half_height));
+            return world::oracle::point_box(gap, half) - world::oracle::radius_of(scene, track, t);
         };
-        least = std::min(least, least_margin(margin, until, rate, settings.escape, 0.0, floor));
+        least = std::min(least, least_margin(margin, until, rate, settings.escape, floor));
     }
     for (const world::Barrel& barrel : scene.airspace.barrels) {
         const auto margin = [&](double t) {
             return world::oracle::barrel_margin_at(scene, flight.at(t).position, barrel, t);
         };
         const double rate = own_rate + double(barrel.velocity.norm());
-        least = std::min(least, least_margin(margin, end, rate, settings.escape, 0.0, floor));
+        least = std::min(least, least_margin(margin, end, rate, settings.escape, floor));
     }
     const auto bound = [&](bool active, world::ThreatKind kind) {
         if (active) {
             const auto margin = [&](double t) {
                 return world::oracle::bound_margin_at(scene, flight.at(t).position, kind);
             };
-            least = std::min(least, least_margin(margin, end, own_rate, settings.escape, 0.0, floor));
+            least = std::min(least, least_margin(margin, end, own_rate, settings.escape, floor));
         }
     };
     bound(scene.airspace.has_floor, world::ThreatKind::floor);

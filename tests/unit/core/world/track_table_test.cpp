@@ -63,6 +63,7 @@ TEST_F(TrackTables, TheNewestSightingSaysWhetherItIsCooperative)
         TrackMeasurement m = sighting(7, Vec3(10, 20, 30), {kTime.us + i * 100'000});
         m.cooperative = i % 3 == 1;  // filtered, and started anew by a jump of the velocity
         m.velocity.x() += i >= 3 ? 50.0F : 0.0F;
+        m.position.x() += i > 3 ? 5.0F * static_cast<float>(i - 3) : 0.0F;
         m.source = m.cooperative ? TrackSource::utm : TrackSource::adsb;
         static_cast<void>(table.update(m, own, m.stamp));
         const auto tracks = table.snapshot(m.stamp);
