@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/linux/housekeeping.hpp"
+
+#include <ctime>
+#include <memory>
+#include <utility>
+
+namespace jink::host {
+
+void Housekeeping::reload()
+{
+    if (has_airspace_) {
+        background_.reload();
+    } else if (!told_no_airspace_) {
+        background_.print(Stream::error, "jinkd: SIGHUP: there is no airspace file to read anew");
+        told_no_airspace_ = true;
+    }
+}
+
+bool Housekeeping::store_signing()
+{
+    return background_.store_signing({signing_.has_key(), signing_.key(), signing_.time(), given_});
+}
+
+void Housekeeping::work(TimePoint now)
+{
+    if (std::unique_ptr<Areas> areas = background_.take_areas()) {
+        coprocessor_.set_constraints(*areas, now);
+        background_.done(std::move(areas));
+    }
+    const app::Parameters& parameters = coprocessor_.parameters();
+    if (parameters.generation() != stored_params_ && background_.store(parameters.values())) {
+        stored_params_ = parameters.generation();
+    }
+    if (endpoint_.parser_diagnostics().signed_unchecked > 0 && !told_unchecked_) {
+        background_.print(Stream::error,
+                          "jinkd: frames on the link are signed and no key is set: signatures are not checked, and the "
+                          "signer may refuse what jink sends (--signing-key)");
+        told_unchecked_ = true;
+    }
+    const bool is_due = now.us - signing_stored_.us >= link::mavlink::Signing::kStorePeriod || !has_stored_signing_;
+    if (((signing_.has_key() && is_due) || signing_.generation() != stored_key_) && store_signing()) {
+        has_stored_signing_ = true;
+        stored_key_ = signing_.generation();
+        signing_stored_ = now;
+    }
+}
+
+void Housekeeping::store_all()
+{
+    const app::Parameters& parameters = coprocessor_.parameters();
+    bool params_wait = parameters.generation() != stored_params_;
+    bool signing_waits = signing_.has_key() || signing_.generation() != stored_key_;
+    for (int i = 0; i < 100 && (params_wait || signing_waits); ++i) {  // the thread holds the lock for microseconds
+        params_wait = params_wait && !background_.store(parameters.values());
+        signing_waits = signing_waits && !store_signing();
+        const timespec pause{0, 1'000'000};
+        ::nanosleep(&pause, nullptr);
+    }
+}
+
+}  // namespace jink::host
