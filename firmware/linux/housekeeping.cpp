@@ -19,7 +19,12 @@ void Housekeeping::reload()
 
 bool Housekeeping::store_signing()
 {
-    return background_.store_signing({signing_.has_key(), signing_.key(), signing_.time(), given_});
+    if (!background_.store_signing({signing_.has_key(), signing_.key(), signing_.time(), given_})) {
+        return false;
+    }
+    stored_key_ = signing_.generation();
+    stored_time_ = signing_.time();
+    return true;
 }
 
 void Housekeeping::work(TimePoint now)
@@ -38,11 +43,9 @@ void Housekeeping::work(TimePoint now)
                           "signer may refuse what jink sends (--signing-key)");
         told_unchecked_ = true;
     }
-    const bool is_due = now.us - signing_stored_.us >= link::mavlink::Signing::kStorePeriod || !has_stored_signing_;
-    if (((signing_.has_key() && is_due) || signing_.generation() != stored_key_) && store_signing()) {
-        has_stored_signing_ = true;
-        stored_key_ = signing_.generation();
-        signing_stored_ = now;
+    const bool is_due = signing_.has_key() && signing_.time() - stored_time_ >= link::mavlink::Signing::kStoreStep;
+    if (is_due || signing_.generation() != stored_key_) {
+        static_cast<void>(store_signing());
     }
 }
 

@@ -26,7 +26,8 @@ public:
     void has_airspace(bool yes) { has_airspace_ = yes; }
     /// A SIGHUP has come.
     void reload();
-    /// Once per step. Signing's time is stored at the start, every Signing::kStorePeriod, and with every change of key.
+    /// Once per step. Signing's time is stored at the start, whenever it has moved by Signing::kStoreStep,
+    /// and with every change of key.
     void work(TimePoint now);
     /// At the end: hands over what the last steps have changed.
     void store_all();
@@ -43,9 +44,8 @@ private:
     bool told_no_airspace_ = false;
     bool told_unchecked_ = false;
     std::uint32_t stored_params_;
-    bool has_stored_signing_ = false;
-    std::uint32_t stored_key_ = 0;
-    TimePoint signing_stored_;
+    std::uint32_t stored_key_ = 0;   ///< Signing::generation() as stored
+    std::uint64_t stored_time_ = 0;  ///< Signing::time() as stored
 };
 
 }  // namespace jink::host

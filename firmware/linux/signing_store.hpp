@@ -45,7 +45,8 @@ struct SigningState {
 /// @param clock     time of the system clock [10 us since 2015]; 0: not known
 /// @return nothing, with complaints, when the key file is not good or the store is damaged and no key file says what
 /// the key is. The key of the store counts when it was set over the link while this key file was in use, or when there
-/// is no key file; else that of the key file. `time` is the later of the clock's and the stored one plus a minute.
+/// is no key file; else that of the key file. `time` is the later of the clock's and the stored one plus
+/// Signing::kRestartMargin.
 [[nodiscard]] std::optional<SigningState> load_signing(const std::string& key_file, const std::string& store,
                                                        std::uint64_t clock, Complaints& complaints);
 

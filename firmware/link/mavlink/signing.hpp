@@ -36,17 +36,20 @@ struct UnsignedFrames {
 /// MAVLink 2 signing with one key: checks what comes in, signs what goes out. Without a key it does neither.
 ///
 /// Times count 10 us since 2015-01-01 UTC in 48 bits. The owner gives at the start the later of its clock's time and
-/// the time that it has stored plus kRestartMargin, and stores `time()` every kStorePeriod: the time must never go back
-/// over a restart, or peers take our frames for replays and we take replays for new. `time()` rises with the clock, with
-/// every frame signed and with every valid frame of a peer that is ahead; the last of its 48 bits is never passed.
+/// the time that it has stored plus kRestartMargin, and stores `time()` whenever it has moved by kStoreStep: the time
+/// must never go back over a restart, or peers take our frames for replays. `time()` rises with the clock, with every
+/// frame signed and with every valid frame of a peer that is ahead; the value of 48 ones is never passed.
 ///
-/// Source: mavlink.io, guide/message_signing; margin and period as in ArduPilot's GCS_Signing.cpp.
+/// The margin is kStoreStep, and a minute in which the first frame of a sender may be behind, and half a minute more:
+/// nothing that was heard before a restart is taken after it. Peers that are behind then follow our first frame.
+///
+/// Source: mavlink.io, guide/message_signing. ArduPilot's GCS_Signing.cpp stores every 30 s and adds one minute.
 class Signing {
 public:
     using Key = std::array<std::byte, 32>;
     static constexpr std::uint64_t kLatestTime = (std::uint64_t{1} << 48U) - 1U;
-    static constexpr std::uint64_t kRestartMargin = 6'000'000;  ///< one minute
-    static constexpr std::int64_t kStorePeriod = 30'000'000;    ///< [us]
+    static constexpr std::uint64_t kStoreStep = 3'000'000;       ///< 30 s
+    static constexpr std::uint64_t kRestartMargin = 12'000'000;  ///< two minutes
 
     /// No key.
     Signing() noexcept = default;
