@@ -61,9 +61,11 @@ TEST(CoprocessorUptime, AnAvoidanceAcrossEveryWrapIsTheSameAvoidance)
     ASSERT_GT(young.setpoints, 100);
     ASSERT_LE(young.longest_silence, 1'500'000);
     EXPECT_EQ(young.stale, 0U);
-    for (const std::int64_t wrap : {1LL << 31, 1LL << 32, kMillisecondWrap / 2, kMillisecondWrap, 4 * kMillisecondWrap,
-                                    1LL << 52, 1LL << 53}) {
-        for (const std::int64_t before : {2'000'000LL, 9'000'000LL, 14'000'000LL}) {
+    constexpr std::array<std::int64_t, 7> kWraps{
+        1LL << 31, 1LL << 32, kMillisecondWrap / 2, kMillisecondWrap, 4 * kMillisecondWrap, 1LL << 52, 1LL << 53};
+    constexpr std::array<std::int64_t, 3> kBefore{2'000'000, 9'000'000, 14'000'000};
+    for (const std::int64_t wrap : kWraps) {
+        for (const std::int64_t before : kBefore) {
             const UptimeTrace ours = fly_from(wrap - before, 3 * kStart, kTicks);
             EXPECT_EQ(ours, young) << "our clock wraps at " << wrap << " us after " << before << " us: " << ours.setpoints
                                    << " set-points";
