@@ -69,6 +69,8 @@ struct LinkDiagnostics {
     std::uint32_t heights_compared = 0;    ///< of that, beside the own pressure altitude
     std::uint32_t traffic_relayed = 0;     ///< ADSB_VEHICLE of other systems, accepted
     std::uint32_t systems_evicted = 0;     ///< others of the link whose clock was forgotten: there are too many
+    std::uint32_t keys_set = 0;            ///< for signatures, over the link; taking the key away counts too
+    std::uint32_t keys_refused = 0;        ///< not signed, armed, or no place to store them
 };
 
 /// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.

@@ -18,7 +18,9 @@
 #include <cstring>
 #include <ctime>
 #include <mutex>
+#include <optional>
 #include <thread>
+#include <utility>
 
 #include "firmware/linux/airspace_file.hpp"
 #include "firmware/linux/param_store.hpp"
@@ -107,6 +109,45 @@ struct Channel {
     [[nodiscard]] bool waits() const { return !backlog.empty() || ring.size() > 0; }
 };
 
+/// A file that is to be replaced as a whole. What could not be written is tried again.
+class Store {
+public:
+    Store(const char* failure, files::FileAccess access) : failure_(failure), access_(access) {}
+
+    void take(std::string text)
+    {
+        text_ = std::move(text);
+        is_due_ = true;
+        retry_at_ = 0;
+    }
+    [[nodiscard]] bool is_due() const { return is_due_; }
+    /// Writes what is due. `last`: now or never. @return what to complain of, once per row of failures
+    std::string work(const std::string& path, std::int64_t now, bool last)
+    {
+        is_due_ = is_due_ && !path.empty();
+        if (!is_due_ || (now < retry_at_ && !last)) {
+            return {};
+        }
+        const std::string why = files::replace_file(path, text_, access_);
+        is_due_ = !why.empty() && !last;
+        ++(why.empty() ? done : failed);
+        const bool is_news = !why.empty() && !told_;
+        told_ = !why.empty();
+        retry_at_ = now + kStoreRetry;
+        return is_news ? path + ": " + failure_ + ": " + why : std::string{};
+    }
+
+    std::atomic<std::uint32_t> done{0}, failed{0};
+
+private:
+    const char* failure_;
+    files::FileAccess access_;
+    std::string text_;
+    bool is_due_ = false;
+    bool told_ = false;
+    std::int64_t retry_at_ = 0;
+};
+
 }  // namespace detail
 
 struct Background::Shared {
@@ -121,16 +162,14 @@ struct Background::Shared {
     std::atomic<Areas*> ready{nullptr};
     std::atomic<Areas*> spent{nullptr};
     std::mutex values_mutex;
-    files::ParamValues values{};
-    bool has_values = false;  ///< guarded by values_mutex
-    std::atomic<std::uint32_t> dropped{0}, reloads{0}, reload_failures{0}, stores{0}, store_failures{0};
+    std::optional<files::ParamValues> values;      ///< to be stored; guarded by values_mutex
+    std::optional<files::SigningState> signature;  ///< likewise
+    std::atomic<std::uint32_t> dropped{0}, reloads{0}, reload_failures{0};
 
-    // The thread's own.
+    // The thread's own, but for their counters.
     hal::SystemClock clock;
-    files::ParamValues to_store{};
-    bool stores_now = false;
-    bool told_failure = false;
-    std::int64_t retry_at = 0;
+    detail::Store params{"parameters are not stored", files::FileAccess::everyone_reads};
+    detail::Store signing{"the signing key and time are not stored", files::FileAccess::owner_only};
 
     explicit Shared(const BackgroundFiles& given) : wanted(given)
     {
@@ -175,37 +214,32 @@ void Background::Shared::read_airspace()
 
 void Background::Shared::store_values()
 {
+    std::optional<files::ParamValues> new_values;
+    std::optional<files::SigningState> new_signature;
     {
         const std::lock_guard lock(values_mutex);
-        if (has_values) {
-            to_store = values;
-            stores_now = true;
-            retry_at = 0;
-            has_values = false;
-        }
+        std::swap(new_values, values);
+        std::swap(new_signature, signature);
     }
-    if (!stores_now || (retry_at != 0 && clock.now_us() < retry_at && !stop)) {
-        return;
+    if (new_values) {
+        params.take(files::state_text(wanted.initial, *new_values));
     }
-    const std::string text = files::state_text(wanted.initial, to_store);
-    if (const std::string why = files::replace_file(wanted.state, text); !why.empty()) {
-        ++store_failures;
-        retry_at = clock.now_us() + kStoreRetry;
-        if (!told_failure) {
-            complain(wanted.state + ": parameters are not stored: " + why);
-        }
-        told_failure = true;
-        stores_now = !stop;
-        return;
+    if (new_signature) {
+        signing.take(files::signing_text(*new_signature));
     }
-    ++stores;
-    told_failure = stores_now = false;
+    const std::int64_t now = clock.now_us();
+    if (const std::string why = params.work(wanted.state, now, stop); !why.empty()) {
+        complain(why);
+    }
+    if (const std::string why = signing.work(wanted.signing, now, stop); !why.empty()) {
+        complain(why);
+    }
 }
 
 /// False: the end.
 bool Background::Shared::work()
 {
-    if (waits() || stores_now) {
+    if (waits() || params.is_due() || signing.is_due()) {
         const timespec until = in_future(kPatience);
         ::sem_clockwait(&wake, CLOCK_MONOTONIC, &until);
     } else {
@@ -216,9 +250,7 @@ bool Background::Shared::work()
     if (reload.exchange(false) && !wanted.airspace.empty()) {
         read_airspace();
     }
-    if (!wanted.state.empty()) {
-        store_values();
-    }
+    store_values();
     for (detail::Channel& channel : channels) {
         dropped += channel.flush();
     }
@@ -292,29 +324,38 @@ void Background::done(std::unique_ptr<Areas> areas) noexcept
     ::sem_post(&shared_->wake);
 }
 
-bool Background::store(const files::ParamValues& values) noexcept
+template <class T>
+bool Background::hand_over(const T& value, std::optional<T>& place) noexcept
 {
     const std::unique_lock lock(shared_->values_mutex, std::try_to_lock);
     if (!lock.owns_lock()) {
         return false;
     }
-    shared_->values = values;
-    shared_->has_values = true;
+    place = value;
     ::sem_post(&shared_->wake);
     return true;
+}
+
+bool Background::store(const files::ParamValues& values) noexcept { return hand_over(values, shared_->values); }
+
+bool Background::store_signing(const files::SigningState& state) noexcept
+{
+    return hand_over(state, shared_->signature);
 }
 
 BackgroundCounts Background::counts() const noexcept
 {
     const Shared& s = *shared_;
-    return {s.dropped, s.reloads, s.reload_failures, s.stores, s.store_failures};
+    return {s.dropped, s.reloads, s.reload_failures, s.params.done, s.params.failed, s.signing.done, s.signing.failed};
 }
 
 void complain_now(std::string_view line)
 {
     const std::string text = "jinkd: " + std::string(line) + "\n";
-    constexpr int kWait = 100;
-    if (takes_bytes(STDERR_FILENO, kWait)) {
+    static int patience_ms = 100;  // once for all lines: a file may give cause for a thousand
+    const bool taken = takes_bytes(STDERR_FILENO, patience_ms);
+    patience_ms = taken ? patience_ms : 0;
+    if (taken) {
         static_cast<void>(!::write(STDERR_FILENO, text.data(), std::min<std::size_t>(text.size(), 4096)));
     }
 }

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "firmware/app/constraints.hpp"
 #include "firmware/linux/param_file.hpp"
+#include "firmware/linux/signing_store.hpp"
 
 namespace jink::host {
 
@@ -20,6 +22,7 @@ enum class Stream : std::uint8_t { out, error };
 struct BackgroundFiles {
     std::string airspace;          ///< read anew by reload(); may be empty
     std::string state;             ///< where store() writes; may be empty: nothing is stored
+    std::string signing;           ///< where store_signing() writes, for the owner's eyes alone; may be empty
     files::ParamValues initial{};  ///< parameters without the state file: values that differ are stored
 };
 
@@ -30,10 +33,12 @@ struct BackgroundCounts {
     std::uint32_t reload_failures = 0;
     std::uint32_t stores = 0;          ///< of parameters
     std::uint32_t store_failures = 0;  ///< read-only, full disk: tried again with the next change and every 10 s
+    std::uint32_t signing_stores = 0;
+    std::uint32_t signing_store_failures = 0;
 };
 
 /// A thread of lower priority that does all of jinkd that may block: it writes status lines and messages, reads and
-/// parses the airspace file, stores parameters.
+/// parses the airspace file, stores parameters and what signing needs.
 ///
 /// The methods below are for one thread, the control loop. They never wait for the background thread, a file, a pipe or
 /// a terminal. What does not fit is dropped whole and counted: kLines lines of kLineBytes wait per stream, and
@@ -64,12 +69,15 @@ public:
 
     /// Asks for these values to be stored. False: busy, ask again in the next step.
     [[nodiscard]] bool store(const files::ParamValues& values) noexcept;
+    [[nodiscard]] bool store_signing(const files::SigningState& state) noexcept;
 
     [[nodiscard]] BackgroundCounts counts() const noexcept;
 
 private:
     struct Shared;
     static void run(const std::shared_ptr<Shared>& shared);
+    template <class T>
+    [[nodiscard]] bool hand_over(const T& value, std::optional<T>& place) noexcept;
 
     // Shared with the thread, which may outlive this when a file system does not answer.
     std::shared_ptr<Shared> shared_;

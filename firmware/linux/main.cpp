@@ -28,6 +28,7 @@
 #include "firmware/linux/airspace_file.hpp"
 #include "firmware/linux/background.hpp"
 #include "firmware/linux/complaint.hpp"
+#include "firmware/linux/housekeeping.hpp"
 #include "firmware/linux/node_identity.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/param_store.hpp"
@@ -61,6 +62,7 @@ struct Options {
     std::string param_file;
     std::string state_file;
     std::string airspace_file;
+    host::SigningFiles signing;
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;
@@ -187,44 +189,6 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
-/// What the background thread has read, and what it is to store. Never waits.
-class Housekeeping {
-public:
-    Housekeeping(host::Background& background, app::Coprocessor& coprocessor, bool has_airspace)
-        : background_(background), coprocessor_(coprocessor), has_airspace_(has_airspace),
-          stored_(coprocessor.parameters().generation())
-    {
-    }
-
-    void work(TimePoint now)
-    {
-        if (reload_requested != 0) {
-            reload_requested = 0;
-            if (has_airspace_) {
-                background_.reload();
-            } else if (!told_no_airspace_) {
-                background_.print(host::Stream::error, "jinkd: SIGHUP: there is no airspace file to read anew");
-                told_no_airspace_ = true;
-            }
-        }
-        if (std::unique_ptr<host::Areas> areas = background_.take_areas()) {
-            coprocessor_.set_constraints(*areas, now);
-            background_.done(std::move(areas));
-        }
-        const app::Parameters& parameters = coprocessor_.parameters();
-        if (parameters.generation() != stored_ && background_.store(parameters.values())) {
-            stored_ = parameters.generation();
-        }
-    }
-
-private:
-    host::Background& background_;
-    app::Coprocessor& coprocessor_;
-    bool has_airspace_;
-    bool told_no_airspace_ = false;
-    std::uint32_t stored_;
-};
-
 int run(const Options& options, const files::ParamValues& initial, const app::Parameters& parameters,
         const std::string& device, std::uint32_t baud)
 {
@@ -268,7 +232,12 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
 
     link::mavlink::EndpointOptions link_options;
     link_options.system_id = static_cast<std::uint8_t>(options.system_id);
-    link::mavlink::Endpoint endpoint(link_options);
+    link::mavlink::Signing signing;
+    files::SigningState signing_state;
+    if (!host::set_up_signing(options.signing, signing_state, signing)) {
+        return EXIT_FAILURE;
+    }
+    link::mavlink::Endpoint endpoint(link_options, &signing);
     const auto coprocessor =
         std::make_unique<app::Coprocessor>(endpoint, port, watchdog, parameters, bus ? &*bus : nullptr);
     coprocessor->use_clouds(*clouds);
@@ -287,8 +256,9 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
     host::BackgroundCounts counts;
     {
-        host::Background background({options.airspace_file, options.state_file, initial});
-        Housekeeping housekeeping(background, *coprocessor, !options.airspace_file.empty());
+        host::Background background({options.airspace_file, options.state_file, options.signing.store, initial});
+        host::Housekeeping housekeeping(background, *coprocessor, endpoint, signing, signing_state.given);
+        housekeeping.has_airspace(!options.airspace_file.empty());
         if (options.realtime > 0) {
             go_realtime(options.realtime);  // this thread alone
         }
@@ -300,6 +270,10 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
             line.pump();
             frames.pump();
             const std::int64_t began = clock.now_us();  // after the bytes were read: nothing is newer
+            if (reload_requested != 0) {
+                reload_requested = 0;
+                housekeeping.reload();
+            }
             housekeeping.work({began});
             const app::StepReport report = coprocessor->step({began});
             if (const auto text = log.note(report, watched, began, clock.now_us() - began)) {
@@ -310,6 +284,7 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
             wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
         }
         coprocessor->shut_down({clock.now_us()});
+        housekeeping.store_all();
         let_go_out(serial, clock);
         watchdog.close();
         serial.close();
@@ -352,6 +327,11 @@ int main(int argc, char** argv)
                    "option: the parameter file's name with .state, if there is one");
     cli.add_option("--airspace", options.airspace_file,
                    "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
+    cli.add_option("--signing-key", options.signing.key,
+                   "file with the key of MAVLink signing: 64 hexadecimal digits, or 'passphrase TEXT'. Frames are then "
+                   "signed, and unsigned ones refused");
+    cli.add_option("--unsigned", options.signing.unsigned_frames,
+                   "unsigned frames that are taken although a key is set: none, all, or message ids, as 109,246");
     cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
         ->check(CLI::Range(0, 255));
     cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")
@@ -388,6 +368,11 @@ int main(int argc, char** argv)
     const files::ParamValues initial = parameters->values();
     if (options.state_file.empty() && !options.param_file.empty()) {
         options.state_file = options.param_file + ".state";
+    }
+    if (!options.state_file.empty()) {
+        options.signing.store = options.state_file + ".signing";
+    } else if (!options.signing.key.empty()) {
+        options.signing.store = options.signing.key + ".state";
     }
     load_state(options.state_file, *parameters);
     return run(options, initial, *parameters, device, baud);

@@ -2,6 +2,7 @@
 #include "firmware/linux/param_store.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -91,18 +92,32 @@ std::string state_text(const ParamValues& initial, const ParamValues& values)
             text += std::string(app::param_table()[i].name) + "," + to_text(values[i]) + "\n";
         }
     }
-    return text + end_line(text);
+    return with_checksum(text);
 }
 
-std::string replace_file(const std::string& path, std::string_view text)
+std::string with_checksum(const std::string& text) { return text + end_line(text); }
+
+std::optional<std::string_view> without_checksum(std::string_view text)
+{
+    const std::size_t end = text.rfind(kEnd);
+    if (end == std::string_view::npos || text.substr(end) != end_line(text.substr(0, end))) {
+        return std::nullopt;
+    }
+    return text.substr(0, end);
+}
+
+std::string replace_file(const std::string& path, std::string_view text, FileAccess access)
 {
     const std::string fresh = path + ".new";
-    const int file = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC, 0644);
+    const auto mode = static_cast<mode_t>(access);
+    const int file = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC, mode);
     if (file < 0) {
         return reason("cannot be opened");
     }
     std::string why;
-    if (!write_all(file, text)) {
+    if (access == FileAccess::owner_only && ::fchmod(file, mode) != 0) {  // it may be there already, with another mode
+        why = reason("cannot be kept secret");
+    } else if (!write_all(file, text)) {
         why = reason("cannot be written");
     } else if (::fsync(file) != 0) {
         why = reason("cannot be synchronised");
@@ -124,14 +139,14 @@ StateLoad apply_state(std::string_view text, const std::string& file, app::Param
                       Complaints& complaints)
 {
     StateLoad out;
-    const std::size_t end = text.rfind(kEnd);
-    if (end == std::string_view::npos || text.substr(end) != end_line(text.substr(0, end))) {
+    const std::optional<std::string_view> body = without_checksum(text);
+    if (!body) {
         complaints.push_back({0, 0, "its checksum is wrong: left out as a whole", file});
         out.refused = 1;
         return out;
     }
     ParamValues wanted = parameters.values();
-    std::string_view rest = text.substr(0, end);
+    std::string_view rest = *body;
     for (std::size_t number = 1; !rest.empty(); ++number) {
         const std::size_t size = rest.find('\n');
         Complaints found;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,9 +17,17 @@ namespace jink::files {
 /// Text of a state file: `values` as far as they differ from `initial`.
 [[nodiscard]] std::string state_text(const ParamValues& initial, const ParamValues& values);
 
+/// A text with a last line that holds the checksum of all before it, and the text before that line; nothing when it is
+/// not the right one.
+[[nodiscard]] std::string with_checksum(const std::string& text);
+[[nodiscard]] std::optional<std::string_view> without_checksum(std::string_view text);
+
+enum class FileAccess : unsigned { everyone_reads = 0644, owner_only = 0600 };
+
 /// Replaces a file as a whole: a new file beside it (PATH.new), fsync, rename, fsync of the folder. A power cut or a
 /// kill at any point leaves the former content or the new one. @return why not; empty on success
-[[nodiscard]] std::string replace_file(const std::string& path, std::string_view text);
+[[nodiscard]] std::string replace_file(const std::string& path, std::string_view text,
+                                       FileAccess access = FileAccess::everyone_reads);
 
 struct StateLoad {
     std::size_t taken = 0;

@@ -283,6 +283,15 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
         write_bus(f, *watched.bus);
     }
     write_clouds(f, watched.clouds);
+    const link::mavlink::ParserDiagnostics& p = watched.endpoint.parser_diagnostics();
+    std::fprintf(f,
+                 "  \"unsigned_refused\": %u, \"unsigned_taken\": %u, \"signed_unchecked\": %u, "
+                 "\"wrong_signatures\": %u, \"stale_signatures\": %u, \"signature_streams_full\": %u,\n",
+                 p.unsigned_refused, p.unsigned_taken, p.signed_unchecked, p.wrong_signature, p.stale_signature,
+                 p.signature_streams);
+    std::fprintf(f,
+                 "  \"keys_set\": %u, \"keys_refused\": %u, \"signing_stored\": %u, \"signing_store_failures\": %u,\n",
+                 l.keys_set, l.keys_refused, counts.signing_stores, counts.signing_store_failures);
     std::fprintf(f,
                  "  \"lines_dropped\": %u, \"airspace_reloads\": %u, \"airspace_reload_failures\": %u, "
                  "\"params_stored\": %u, \"params_store_failures\": %u,\n",

@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
@@ -88,8 +89,24 @@ public:
     void send(const M& message)
     {
         std::array<std::byte, kMaxFrame> frame{};
-        const std::size_t n = encode(message, {1, 1, sequence_++}, frame);
+        const Header header{1, 1, sequence_++};
+        const std::size_t n =
+            signing_ ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
         send_bytes({frame.data(), n});
+    }
+    /// From now on the autopilot signs and takes signed frames alone. Its clock stands at `time` and follows its peers.
+    void sign_with(const Signing::Key& key, std::uint64_t time)
+    {
+        signing_ = std::make_unique<Signing>(key, std::uint8_t{0}, time);
+        parser_ = std::make_unique<Parser>(signing_.get());
+    }
+    [[nodiscard]] const ParserDiagnostics& heard() const { return parser_->diagnostics(); }
+    /// Throws away what a former daemon has left on the line.
+    void drain() const
+    {
+        std::array<std::byte, 4096> bytes{};
+        while (read(master_, bytes.data(), bytes.size()) > 0) {
+        }
     }
     void send_bytes(std::span<const std::byte> bytes) const
     {
@@ -115,7 +132,7 @@ public:
             }
             std::span<const std::byte> input(bytes.data(), static_cast<std::size_t>(n));
             std::optional<M> found;
-            while (const auto frame = parser_.next(input)) {
+            while (const auto frame = parser_->next(input)) {
                 M m;
                 if (decode(*frame, m) && frame->header.component_id == 196) {
                     found = m;
@@ -133,7 +150,8 @@ private:
     int slave_ = -1;
     std::string path_;
     std::uint8_t sequence_ = 0;
-    Parser parser_;
+    std::unique_ptr<Signing> signing_;
+    std::unique_ptr<Parser> parser_ = std::make_unique<Parser>();
 };
 
 /// Second number of a schedstat file: ready to run, without a processor [s].

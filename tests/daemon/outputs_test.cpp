@@ -84,6 +84,22 @@ protected:
         expect_heartbeats(daemon, lasting, [] {});
     }
 
+    /// 1000 SIGHUPs, or JINK_HANGUPS of them (the long form: 10000), ten in each millisecond.
+    void hang_up(const Daemon& daemon)
+    {
+        const char* const given = std::getenv("JINK_HANGUPS");
+        const int wanted = given != nullptr ? std::atoi(given) : 1000;
+        int sent = 0;
+        const auto send_ten = [&] {
+            for (int i = 0; i < 10 && sent < wanted; ++i, ++sent) {
+                daemon.signal(SIGHUP);
+            }
+        };
+        while (sent < wanted) {
+            expect_heartbeats(daemon, milliseconds(1600), send_ten);
+        }
+    }
+
     /// Stops it. Each late step (over two ticks after the one before) must have been held up by the machine for a tick.
     std::string stop(Daemon& daemon)
     {
@@ -133,6 +149,7 @@ TEST_F(DaemonOutputs, ASummaryThatCannotBeWrittenIsAFailureAndNoHang)
 {
     ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
     for (const std::string& summary : {path("fifo"), std::string("/dev/full"), path("none/summary")}) {
+        cable.drain();  // else the HEARTBEAT of the daemon before is taken for that of this one
         Daemon daemon({"--serial", cable.path(), "--summary", summary}, scratch / "out");
         ASSERT_TRUE(cable.heartbeat(kPatience)) << summary;
         daemon.signal(SIGTERM);
@@ -141,21 +158,13 @@ TEST_F(DaemonOutputs, ASummaryThatCannotBeWrittenIsAFailureAndNoHang)
     }
 }
 
-TEST_F(DaemonOutputs, TenThousandHangupsWithoutAnAirspaceFile)
+TEST_F(DaemonOutputs, HangupsWithoutAnAirspaceFile)
 {
     const auto started = Clock::now();
     Daemon daemon(arguments(), scratch / "out");
     ASSERT_TRUE(cable.heartbeat(kPatience));
     const auto heard = Clock::now();
-    int sent = 0;
-    expect_heartbeats(daemon, milliseconds(2000), [&] {
-        for (int i = 0; i < 10 && sent < 10'000; ++i, ++sent) {
-            daemon.signal(SIGHUP);
-        }
-    });
-    for (; sent < 10'000; ++sent) {
-        daemon.signal(SIGHUP);
-    }
+    hang_up(daemon);
     expect_heartbeats(daemon, milliseconds(1200));  // nor may steps be missing afterwards
     const double held_up = daemon.waited();
     const std::chrono::duration<double> least = Clock::now() - heard;
@@ -165,19 +174,11 @@ TEST_F(DaemonOutputs, TenThousandHangupsWithoutAnAirspaceFile)
     EXPECT_LT(steps, 50.0 * most.count() + 5.0) << "a signal must not bring a step early";
 }
 
-TEST_F(DaemonOutputs, TenThousandHangupsWithTwoThousandAreas)
+TEST_F(DaemonOutputs, HangupsWithTwoThousandAreas)
 {
     Daemon daemon(arguments({"--airspace", airspace(2000)}), scratch / "out");
     ASSERT_TRUE(cable.heartbeat(kPatience));
-    int sent = 0;
-    expect_heartbeats(daemon, milliseconds(2500), [&] {
-        for (int i = 0; i < 10 && sent < 10'000; ++i, ++sent) {
-            daemon.signal(SIGHUP);
-        }
-    });
-    for (; sent < 10'000; ++sent) {
-        daemon.signal(SIGHUP);
-    }
+    hang_up(daemon);
     expect_heartbeats(daemon, milliseconds(1200));
     const std::string summary = stop(daemon);
     EXPECT_GT(number_of(summary, "airspace_reloads"), 0.0) << summary;
@@ -241,6 +242,7 @@ TEST_F(DaemonOutputs, ParametersSetOverTheLinkSurviveAKill)
 {
     std::ofstream(path("my.param")) << "TRK_AGE,7\n";
     for (const float value : {11.0F, 12.0F, 13.0F}) {
+        cable.drain();
         Daemon daemon({"--serial", cable.path(), "--params", path("my.param")}, scratch / "out");
         ASSERT_TRUE(cable.heartbeat(kPatience));
         ASSERT_TRUE(set_parameter(cable, "TRK_AGE", value));
@@ -254,6 +256,7 @@ TEST_F(DaemonOutputs, ParametersSetOverTheLinkSurviveAKill)
         EXPECT_NE(text_of(scratch / "my.param.state").find(wanted), std::string::npos);
         EXPECT_EQ(text_of(scratch / "my.param"), "TRK_AGE,7\n") << "the user's file is the user's";
     }
+    cable.drain();
     Daemon daemon({"--serial", cable.path(), "--params", path("my.param")}, scratch / "out");
     ASSERT_TRUE(cable.heartbeat(kPatience));
     EXPECT_NE(text_of(scratch / "out").find("1 parameters as set over a link"), std::string::npos)

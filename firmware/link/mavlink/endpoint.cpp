@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reception: who speaks, in which mode, by which clock. Own state, origin and home: endpoint_state.cpp. Mission and
 // leg: endpoint_mission.cpp. Sensors and requests: endpoint_sensors.cpp. Traffic: endpoint_traffic.cpp. Points in
-// space: endpoint_points.cpp. Sending: endpoint_sending.cpp.
+// space: endpoint_points.cpp. Sending: endpoint_sending.cpp. Keys: endpoint_signing.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -40,6 +40,9 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
 {
     const bool silent = bytes.empty() && now - last_byte_ > kSilence;
     last_byte_ = bytes.empty() ? last_byte_ : now;
+    if (signing_ != nullptr) {
+        signing_->follow_clock(now.us);
+    }
     while (const std::optional<Frame> frame = silent ? parser_.flush() : parser_.next(bytes)) {
         ++diagnostics_.frames_in;
         dispatch({*frame, now, inbox});
@@ -47,8 +50,8 @@ void Endpoint::receive(std::span<const std::byte> bytes, TimePoint now, Inbox& i
     end_pausing_scan(now);
     const ParserDiagnostics& p = parser_.diagnostics();
     diagnostics_.frames_refused = p.incompatible_flags + p.unknown_message + p.too_short + p.too_long + p.bad_checksum +
-                                  p.cut + p.signed_refused + p.unsigned_refused + p.wrong_signature +
-                                  p.stale_signature + p.signature_streams;
+                                  p.cut + p.unsigned_refused + p.wrong_signature + p.stale_signature +
+                                  p.signature_streams;
     diagnostics_.systems_evicted = neighbours_.evicted();
     update_leg(inbox, now);
 }

@@ -93,6 +93,9 @@
 //   that is not a finite REAL32 has value_finite = false.
 // * TUNNEL addressed to us alone, of the type kConstraintPayload: one closed area of a set (constraint_message.hpp). A
 //   payload that cannot be read is answered at once, and counts out_of_range; every other part is passed on.
+// * SETUP_SIGNING (256) addressed to us alone: another key, or with a key of zeros and a time of 0 no key any more.
+//   Taken where the owner stores keys, while the autopilot is disarmed, and, where a key is set, only when signed with
+//   it. The answer is a text; the message has no other. Counted: keys_set, keys_refused.
 // * Set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot. To ArduPlane: COMMAND_INT
 //   DO_REPOSITION (192), frame 5, param1 = -1, param2 to param4 = 0 (no change of mode, own loiter radius, clockwise),
 //   at most every 0.5 s, while its HEARTBEAT shows GUIDED and the origin is known (PlaneSteering). An answer DENIED
@@ -211,6 +214,7 @@ private:
     void on_command(const Context& c) noexcept;
     void on_param(const Context& c) noexcept;
     void on_tunnel(const Context& c) noexcept;
+    void on_setup_signing(const Context& c) noexcept;
 
     [[nodiscard]] bool from_autopilot(const Frame& frame) const noexcept;
     [[nodiscard]] bool for_us(std::uint8_t system, std::uint8_t component) const noexcept;

@@ -170,6 +170,7 @@ void Endpoint::dispatch_requests(const Context& c) noexcept
     case ParamRequestList::kInfo.id:
     case ParamSet::kInfo.id: on_param(c); break;
     case Tunnel::kInfo.id: on_tunnel(c); break;
+    case SetupSigning::kInfo.id: on_setup_signing(c); break;
     default: ++diagnostics_.frames_ignored;
     }
 }

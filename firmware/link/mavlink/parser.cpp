@@ -162,8 +162,10 @@ bool Parser::checksum_matches(const Candidate& candidate, const MessageInfo& inf
 Parser::Verdict Parser::check_signature(const Candidate& candidate) noexcept
 {
     std::uint32_t* cause = nullptr;
-    if (signing_ == nullptr) {
-        cause = candidate.is_signed ? &diagnostics_.signed_refused : nullptr;
+    if (signing_ == nullptr || !signing_->has_key()) {
+        diagnostics_.signed_unchecked += candidate.is_signed ? 1U : 0U;
+    } else if (!candidate.is_signed && signing_->takes_unsigned(candidate.message_id)) {
+        ++diagnostics_.unsigned_taken;
     } else if (!candidate.is_signed) {
         cause = &diagnostics_.unsigned_refused;
     } else {

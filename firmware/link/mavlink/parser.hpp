@@ -30,11 +30,14 @@ struct ParserDiagnostics {
     std::uint32_t cut = 0;  ///< given up incomplete by `flush`
 
     // Frames with the right checksum that are refused, and stepped over whole.
-    std::uint32_t signed_refused = 0;    ///< signed, and no key is set
     std::uint32_t unsigned_refused = 0;  ///< not signed, and a key is set
     std::uint32_t wrong_signature = 0;
     std::uint32_t stale_signature = 0;    ///< replayed, or more than a minute behind
     std::uint32_t signature_streams = 0;  ///< no room to remember a further signing sender
+
+    // Accepted frames whose sender is not proven.
+    std::uint32_t signed_unchecked = 0;  ///< signed, and no key is set
+    std::uint32_t unsigned_taken = 0;    ///< not signed, and a key is set: as Signing::take_unsigned says
 
     // Running numbers of accepted frames, per (system, component).
     std::uint32_t lost = 0;               ///< numbers skipped; a sender that restarts adds up to 255
@@ -68,8 +71,8 @@ enum class LongerPayload : std::uint8_t {
 /// Memory: 2 * kMaxFrame + kMaxPayload + 3 * kMaxSenders bytes and the counters.
 class Parser {
 public:
-    /// @param signing  key and times to check signatures with; must outlive the parser. nullptr: signed frames are
-    /// refused.
+    /// @param signing  key and times to check signatures with; must outlive the parser. nullptr, or without a key:
+    /// frames are taken as if they were not signed, as the official C library does.
     explicit Parser(Signing* signing = nullptr, LongerPayload longer = LongerPayload::reject) noexcept
         : signing_(signing), longer_(longer)
     {

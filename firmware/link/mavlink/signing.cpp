@@ -35,6 +35,55 @@ Signing::Hash Signing::hash(std::span<const std::byte> frame) const noexcept
     return first;
 }
 
+void Signing::set_key(const Key& key, std::uint64_t time) noexcept
+{
+    key_ = key;
+    has_key_ = true;
+    ++generation_;
+    advance_to(time);
+}
+
+void Signing::remove_key() noexcept
+{
+    key_ = {};
+    has_key_ = false;
+    ++generation_;
+}
+
+bool Signing::takes_unsigned(std::uint32_t message_id) const noexcept
+{
+    return unsigned_.all ||
+           std::find(unsigned_.messages.begin(), unsigned_.messages.end(), message_id) != unsigned_.messages.end();
+}
+
+void Signing::follow_clock(std::int64_t now_us) noexcept
+{
+    constexpr std::int64_t kUnit = 10;  // [us]
+    if (!has_clock_) {
+        has_clock_ = true;
+        clock_us_ = now_us;
+        clock_time_ = time_;
+    }
+    if (now_us > clock_us_) {
+        advance_to(clock_time_ + static_cast<std::uint64_t>((now_us - clock_us_) / kUnit));
+    }
+}
+
+/// A new sender: in a free place, or in that of one whose frames are stale whatever their time.
+bool Signing::remember(const Stream& stream) noexcept
+{
+    if (streams_.try_push_back(stream)) {
+        return true;
+    }
+    auto* const old =
+        std::find_if(streams_.begin(), streams_.end(), [this](const Stream& s) { return s.time + kOneMinute < time_; });
+    if (old == streams_.end()) {
+        return false;
+    }
+    *old = stream;
+    return true;
+}
+
 SignatureStatus Signing::check(std::span<const std::byte> frame) noexcept
 {
     const Hash expected = hash(frame);
@@ -55,7 +104,7 @@ SignatureStatus Signing::check(std::span<const std::byte> frame) noexcept
         return s.system_id == key.system_id && s.component_id == key.component_id && s.link_id == key.link_id;
     });
     if (stream == streams_.end()) {
-        if (!streams_.try_push_back(key)) {
+        if (!remember(key)) {
             return SignatureStatus::streams_full;
         }
     } else {
@@ -70,7 +119,7 @@ SignatureStatus Signing::check(std::span<const std::byte> frame) noexcept
 
 void Signing::sign(std::span<std::byte> frame) noexcept
 {
-    ++time_;
+    advance_to(time_ + 1);
     const std::span<std::byte> signature = frame.last(kSignatureSize);
     signature[0] = std::byte{link_id_};
     for (std::size_t i = 0; i < kTimeSize; ++i) {

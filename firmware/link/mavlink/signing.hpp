@@ -20,25 +20,67 @@ enum class SignatureStatus : std::uint8_t {
 };
 
 /// Senders whose last signature time is remembered. 16 covers an autopilot's components and two ground stations; each
-/// costs 16 bytes. When full a new stream is refused, since a forgotten time would open the door to replays.
+/// costs 16 bytes. When full, a sender more than a minute behind our time gives way: its frames are stale anyway. If
+/// there is none, a new sender is refused, since a forgotten time would open the door to replays.
 inline constexpr std::size_t kMaxSignedStreams = 16;
 
-/// MAVLink 2 signing with one key: checks what comes in, signs what goes out.
+/// Messages whose unsigned frames are taken although a key is set. 8 are more than any stack takes (PX4: 3).
+inline constexpr std::size_t kMaxUnsignedMessages = 8;
+
+/// Which unsigned frames are taken although a key is set. By default: no frame.
+struct UnsignedFrames {
+    bool all = false;  ///< the link as a whole
+    StaticVector<std::uint32_t, kMaxUnsignedMessages> messages;
+};
+
+/// MAVLink 2 signing with one key: checks what comes in, signs what goes out. Without a key it does neither.
 ///
-/// Times count 10 us since 2015-01-01 UTC in 48 bits. Without a clock the owner gives the last value it has stored
-/// plus a margin; the time must never go back over a restart, or peers take our frames for replays. `time()` rises with
-/// every frame signed and with every valid frame of a peer that is ahead.
+/// Times count 10 us since 2015-01-01 UTC in 48 bits. The owner gives at the start the later of its clock's time and
+/// the time that it has stored plus kRestartMargin, and stores `time()` whenever it has moved by kStoreStep: the time
+/// must never go back over a restart, or peers take our frames for replays. `time()` rises with the clock, with every
+/// frame signed and with every valid frame of a peer that is ahead; the value of 48 ones is never passed.
+///
+/// The margin is kStoreStep, and a minute in which the first frame of a sender may be behind, and half a minute more:
+/// nothing that was heard before a restart is taken after it. Peers that are behind then follow our first frame.
+///
+/// Source: mavlink.io, guide/message_signing. ArduPilot's GCS_Signing.cpp stores every 30 s and adds one minute.
 class Signing {
 public:
     using Key = std::array<std::byte, 32>;
+    static constexpr std::uint64_t kLatestTime = (std::uint64_t{1} << 48U) - 1U;
+    static constexpr std::uint64_t kStoreStep = 3'000'000;       ///< 30 s
+    static constexpr std::uint64_t kRestartMargin = 12'000'000;  ///< two minutes
 
+    /// No key.
+    Signing() noexcept = default;
     Signing(const Key& key, std::uint8_t link_id, std::uint64_t time) noexcept
-        : key_(key), time_(time), link_id_(link_id)
+        : key_(key), time_(time), link_id_(link_id), has_key_(true)
     {
     }
 
+    [[nodiscard]] bool has_key() const noexcept { return has_key_; }
+    [[nodiscard]] const Key& key() const noexcept { return key_; }
+    /// Grows with each change of the key: what has been stored is out of date.
+    [[nodiscard]] std::uint32_t generation() const noexcept { return generation_; }
+    /// The senders' times stay: what is a replay stays one.
+    void set_key(const Key& key, std::uint64_t time) noexcept;
+    void remove_key() noexcept;
+
+    /// Whether the owner stores keys. If not, a key from the link is refused: after a restart it would be missing.
+    void let_keys_be_set(bool stored) noexcept { keys_are_stored_ = stored; }
+    [[nodiscard]] bool keys_can_be_set() const noexcept { return keys_are_stored_; }
+
+    void take_unsigned(const UnsignedFrames& frames) noexcept { unsigned_ = frames; }
+    [[nodiscard]] bool takes_unsigned(std::uint32_t message_id) const noexcept;
+
     /// Moves the time forward; an earlier one is ignored.
-    void advance_to(std::uint64_t time) noexcept { time_ = time > time_ ? time : time_; }
+    void advance_to(std::uint64_t time) noexcept
+    {
+        time = time < kLatestTime ? time : kLatestTime;
+        time_ = time > time_ ? time : time_;
+    }
+    /// Moves the time forward with the owner's monotonic clock [us]. The first call sets the reference.
+    void follow_clock(std::int64_t now_us) noexcept;
     [[nodiscard]] std::uint64_t time() const noexcept { return time_; }
 
     /// Judges a whole signed v2 frame, signature at its end. Remembers its time when valid.
@@ -56,11 +98,19 @@ private:
     using Hash = std::array<std::byte, 6>;
 
     [[nodiscard]] Hash hash(std::span<const std::byte> frame) const noexcept;
+    [[nodiscard]] bool remember(const Stream& stream) noexcept;
 
-    Key key_;
-    std::uint64_t time_;
+    Key key_{};
+    std::uint64_t time_ = 0;
+    std::uint64_t clock_time_ = 0;  ///< time that belongs to clock_us_
+    std::int64_t clock_us_ = 0;
     StaticVector<Stream, kMaxSignedStreams> streams_;
-    std::uint8_t link_id_;
+    UnsignedFrames unsigned_;
+    std::uint32_t generation_ = 0;
+    std::uint8_t link_id_ = 0;
+    bool has_key_ = false;
+    bool has_clock_ = false;
+    bool keys_are_stored_ = false;
 };
 
 }  // namespace jink::link::mavlink

@@ -251,17 +251,17 @@ TEST_F(BadInput, SystemZero)
               static_cast<std::uint16_t>(Fault::no_autopilot));
 }
 
-TEST_F(BadInput, SignedWhenSigningIsOff)
+TEST_F(BadInput, SignedWhileNoKeyIsSet)
 {
     signer.emplace(Signing::Key{}, std::uint8_t{1}, std::uint64_t{1} << 40U);
     for_each_message([&]<class M>() {
-        const std::uint32_t before = endpoint->parser_diagnostics().signed_refused;
+        const std::uint32_t before = endpoint->parser_diagnostics().signed_unchecked;
         arrive(signed_bytes(random_message<M>(random)));
         std::optional<Signing> kept;
         std::swap(kept, signer);
         expect_next_good_frame("message " + std::to_string(M::kInfo.id));
         std::swap(kept, signer);
-        EXPECT_EQ(endpoint->parser_diagnostics().signed_refused, before + 1) << M::kInfo.id;
+        EXPECT_EQ(endpoint->parser_diagnostics().signed_unchecked, before + 1) << M::kInfo.id;
     });
 }
 

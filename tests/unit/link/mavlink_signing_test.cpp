@@ -32,6 +32,22 @@ TEST(MavlinkSha256, KnownAnswers)
     EXPECT_EQ(sha256_hex(std::string(64, 'a')), "ffe054fe7ae0cb6dc65c3af9b61d5209f439851db43d0ba5997337df154668eb");
 }
 
+// python3 -c "import hashlib as l; h = l.sha256(); [h.update(l.sha256(bytes((7 * i + n) % 256 for i in
+// range(n))).digest()) for n in range(301)]; print(h.hexdigest())"
+TEST(MavlinkSha256, EveryLengthUpTo300AsPythonHasIt)
+{
+    Sha256 chain;
+    for (unsigned n = 0; n <= 300; ++n) {
+        Sha256 sha;
+        for (unsigned i = 0; i < n; ++i) {
+            const std::byte b{static_cast<std::uint8_t>(7 * i + n)};
+            sha.add({&b, 1});
+        }
+        chain.add(sha.finish());
+    }
+    EXPECT_EQ(to_hex(chain.finish()), "60d63ff40b5558727a9b786ac0be9300f7ca58fd9ddd3b2f3681b369018a87dc");
+}
+
 constexpr std::uint64_t kNow = 34'715'520'000'000;
 constexpr std::uint64_t kMinute = 6'000'000;
 
@@ -57,15 +73,148 @@ struct Receiver {
     std::size_t accepted(const Bytes& bytes) { return parse(parser, bytes).size(); }
 };
 
-TEST(MavlinkSigning, SignedFramesAreRefusedWithoutAKey)
+TEST(MavlinkSigning, SignedFramesAreTakenUncheckedWithoutAKey)
 {
-    Parser parser;
-    Bytes stream = signed_frame(kNow);
-    const Bytes next = frame_of(Heartbeat{});
-    stream.insert(stream.end(), next.begin(), next.end());
-    EXPECT_EQ(parse(parser, stream).size(), 1U);
-    EXPECT_EQ(parser.diagnostics().signed_refused, 1U);
-    EXPECT_EQ(parser.diagnostics().noise_bytes, 0U) << "the signature must not be searched for frames";
+    Signing none;
+    for (Signing* const signing : {static_cast<Signing*>(nullptr), &none}) {
+        Parser parser(signing);
+        Bytes stream = signed_frame(kNow);
+        const Bytes next = frame_of(Heartbeat{});
+        stream.insert(stream.end(), next.begin(), next.end());
+        EXPECT_EQ(parse(parser, stream).size(), 2U);
+        EXPECT_EQ(parser.diagnostics().signed_unchecked, 1U);
+        EXPECT_EQ(parser.diagnostics().noise_bytes, 0U) << "the signature must not be searched for frames";
+    }
+    EXPECT_EQ(none.time(), 0U) << "a time that nobody has checked";
+}
+
+TEST(MavlinkSigning, NoUnsignedMessageIsTakenByDefaultWhenAKeyIsSet)
+{
+    Random random(3);
+    Receiver receiver;
+    std::uint32_t sent = 0;
+    for_each_message([&]<class M>() {
+        EXPECT_EQ(receiver.accepted(frame_of(random_message<M>(random))), 0U) << M::kInfo.id;
+        ++sent;
+        if (M::kInfo.id < 256) {
+            EXPECT_EQ(receiver.accepted(legacy_frame_of(random_message<M>(random))), 0U) << M::kInfo.id;
+            ++sent;
+        }
+    });
+    EXPECT_EQ(receiver.parser.diagnostics().unsigned_refused, sent);
+    EXPECT_EQ(receiver.parser.diagnostics().unsigned_taken, 0U);
+}
+
+TEST(MavlinkSigning, UnsignedFramesAreTakenWhereSaid)
+{
+    Receiver receiver;
+    UnsignedFrames frames;
+    ASSERT_TRUE(frames.messages.try_push_back(AdsbVehicle::kInfo.id));
+    receiver.signing.take_unsigned(frames);
+    EXPECT_EQ(receiver.accepted(frame_of(AdsbVehicle{})), 1U);
+    EXPECT_EQ(receiver.accepted(frame_of(Heartbeat{})), 0U);
+    const Bytes wrong = signed_frame(kNow, 8);
+    EXPECT_EQ(receiver.accepted(wrong), 0U);
+    frames.all = true;
+    receiver.signing.take_unsigned(frames);
+    EXPECT_EQ(receiver.accepted(frame_of(Heartbeat{})), 1U);
+    EXPECT_EQ(receiver.accepted(wrong), 0U) << "a wrong signature is worse than none";
+    EXPECT_EQ(receiver.parser.diagnostics().unsigned_taken, 2U);
+    EXPECT_EQ(receiver.parser.diagnostics().wrong_signature, 2U);
+}
+
+TEST(MavlinkSigning, AnotherKeyTakesTheOldOnesPlaceAndReplaysStayReplays)
+{
+    Receiver receiver;
+    const Bytes first = signed_frame(kNow + 10);
+    EXPECT_EQ(receiver.accepted(first), 1U);
+    receiver.signing.set_key(key_of(8), 0);
+    EXPECT_EQ(receiver.signing.time(), kNow + 11) << "an earlier time is ignored";
+    EXPECT_EQ(receiver.accepted(signed_frame(kNow + 20)), 0U) << "the old key";
+    EXPECT_EQ(receiver.accepted(signed_frame(kNow + 20, 8)), 1U);
+    receiver.signing.set_key(key_of(7), 0);
+    EXPECT_EQ(receiver.accepted(first), 0U) << "heard before the key was changed there and back";
+    receiver.signing.remove_key();
+    EXPECT_FALSE(receiver.signing.has_key());
+    EXPECT_EQ(receiver.accepted(frame_of(Heartbeat{})), 1U);
+    EXPECT_EQ(receiver.signing.generation(), 3U);
+}
+
+TEST(MavlinkSigning, TimeFollowsTheClockButNeverBack)
+{
+    Signing signing(key_of(7), 0, kNow);
+    signing.follow_clock(5'000'000);
+    EXPECT_EQ(signing.time(), kNow);
+    signing.follow_clock(35'000'000);
+    EXPECT_EQ(signing.time(), kNow + 3'000'000) << "30 s";
+    signing.follow_clock(1'000'000);
+    EXPECT_EQ(signing.time(), kNow + 3'000'000);
+    signing.advance_to(kNow + kMinute);
+    signing.follow_clock(36'000'000);
+    EXPECT_EQ(signing.time(), kNow + kMinute) << "a peer was ahead of our clock";
+}
+
+/// 30 s of frames at 50 Hz, the longest that stays unstored.
+template <class F>
+void for_one_store_step(F each)
+{
+    for (std::int64_t us = 20'000; us <= 30'000'000; us += 20'000) {
+        each(us);
+    }
+}
+
+TEST(MavlinkSigning, ARestartBeforeTheNextStoreSignsWithNewerTimes)
+{
+    Signing before(key_of(7), 0, kNow);
+    before.follow_clock(0);
+    const std::uint64_t stored = before.time();
+    Receiver peer;
+    Bytes out;
+    const auto say = [&](Signing& signing) {
+        out.resize(kMaxFrame);
+        out.resize(encode_signed(Heartbeat{}, {1, 196, 0}, signing, out));
+        return peer.accepted(out);
+    };
+    for_one_store_step([&](std::int64_t us) {
+        before.follow_clock(us);
+        ASSERT_EQ(say(before), 1U);
+    });
+    Signing after(key_of(7), 0, stored + Signing::kRestartMargin);
+    EXPECT_EQ(say(after), 1U);
+    EXPECT_EQ(say(before), 0U) << "the peer tells old from new";
+}
+
+TEST(MavlinkSigning, NothingHeardBeforeARestartIsTakenAfterIt)
+{
+    // A receiver that restarts has no memory of its senders: the margin alone must refuse all that it had heard.
+    Receiver before;
+    before.signing.follow_clock(0);
+    const std::uint64_t stored = before.signing.time();
+    std::vector<Bytes> heard;
+    for_one_store_step([&](std::int64_t us) {
+        before.signing.follow_clock(us);
+        heard.push_back(signed_frame(kNow + static_cast<std::uint64_t>(us) / 10));
+        ASSERT_EQ(before.accepted(heard.back()), 1U);
+    });
+    Receiver after;
+    after.signing.advance_to(stored + Signing::kRestartMargin);
+    for (const Bytes& frame : heard) {
+        ASSERT_EQ(after.accepted(frame), 0U);
+    }
+    // The sender hears us, goes on from there, and is heard again.
+    EXPECT_EQ(after.accepted(signed_frame(after.signing.time())), 1U);
+}
+
+TEST(MavlinkSigning, TheValueOf48OnesIsNeverPassed)
+{
+    Signing signing(key_of(7), 0, Signing::kLatestTime - 1);
+    Bytes out(kMaxFrame);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_GT(encode_signed(Heartbeat{}, {1, 1, 0}, signing, out), 0U);
+        EXPECT_EQ(signing.time(), Signing::kLatestTime) << "after a wrap every peer would take us for a replay";
+    }
+    signing.advance_to(~std::uint64_t{0});
+    EXPECT_EQ(signing.time(), Signing::kLatestTime);
 }
 
 TEST(MavlinkSigning, UnsignedFramesAreRefusedWithAKey)
@@ -148,6 +297,22 @@ TEST(MavlinkSigning, FurtherStreamsAreRefusedWhenTheTableIsFull)
     EXPECT_EQ(receiver.accepted(signed_frame(kNow, 7, {kMaxSignedStreams + 1, 1, 0})), 0U);
     EXPECT_EQ(receiver.parser.diagnostics().signature_streams, 1U);
     EXPECT_EQ(receiver.accepted(signed_frame(kNow + 1, 7, {1, 1, 0})), 1U) << "known ones go on";
+}
+
+TEST(MavlinkSigning, AFullTableGivesUpASenderWhoseFramesAreStaleAnyway)
+{
+    Receiver receiver;
+    const Bytes first = signed_frame(kNow, 7, {1, 1, 0});
+    EXPECT_EQ(receiver.accepted(first), 1U);
+    receiver.signing.advance_to(kNow + kMinute + 2);
+    for (unsigned system = 2; system <= kMaxSignedStreams + 1; ++system) {
+        const Header header{static_cast<std::uint8_t>(system), 1, 0};
+        EXPECT_EQ(receiver.accepted(signed_frame(kNow + kMinute, 7, header)), 1U) << system;
+    }
+    EXPECT_EQ(receiver.parser.diagnostics().signature_streams, 0U);
+    EXPECT_EQ(receiver.accepted(first), 0U) << "forgotten, and stale all the same";
+    EXPECT_EQ(receiver.accepted(signed_frame(kNow + kMinute, 7, {1, 1, 0})), 0U) << "no place free";
+    EXPECT_EQ(receiver.parser.diagnostics().signature_streams, 1U);
 }
 
 TEST(MavlinkSigning, EveryMessageSurvivesSigning)
