@@ -95,6 +95,11 @@ struct TakeoverDiagnostics {
 /// that a HEARTBEAT and a request take on the line, or within the 1.5 periods on a line that does not answer. No
 /// autopilot offers a request that depends on its present mode.
 ///
+/// While nothing is heard, no mode is asked for, the hold mode included: the pilot may fly by now. The autopilot's own
+/// rule for a stream that ends stops the vehicle. A HEARTBEAT is asked for every ModeEvidence::kPoll, and the first one
+/// that shows the external mode lets the request go. HEARTBEATs before the newest of a tick are no evidence, but each
+/// change of mode in them counts.
+///
 /// The former mode is the one that stood at the take-over. The claim to give it back ends with any other mode seen, or
 /// when no HEARTBEAT came for kClaim: a pilot may have flown meanwhile.
 ///

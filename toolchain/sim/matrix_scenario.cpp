@@ -81,7 +81,7 @@ Times lay_out_mission(Behaviour behaviour, const Field& f, Scenario& s, NominalF
         fill({waypoint(f.at(0, 0)), waypoint(f.at(120, 0)), waypoint(f.at(420, 0))});
         return {18.0, 24.0};
     case Behaviour::speed_change:
-        fill({waypoint(f.at(0, 0)), {ItemKind::speed, {}, 10.0, 0}, waypoint(f.at(250, 0)), waypoint(f.at(330, 0))});
+        fill({waypoint(f.at(0, 0)), {ItemKind::speed, Vec::Zero(), 10.0, 0}, waypoint(f.at(250, 0)), waypoint(f.at(330, 0))});
         return {14.0, 20.0};
     case Behaviour::turns:
         fill({waypoint(f.at(0, 0)), {ItemKind::turns, f.at(50, 0), 20.0, 2}, waypoint(f.at(150, 0))});
@@ -109,7 +109,7 @@ Times lay_out_mission(Behaviour behaviour, const Field& f, Scenario& s, NominalF
         fill({waypoint(f.at(0, 0)),
               waypoint(f.at(40, 0)),
               waypoint(f.at(40, 40)),
-              {ItemKind::jump, {}, 0.0, 1},
+              {ItemKind::jump, Vec::Zero(), 0.0, 1},
               waypoint(f.at(-60, 40))});
         return {19.0, 24.0};
     case Behaviour::spline:
@@ -290,7 +290,7 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
     }
     threat.appears_at = meets_at - seen_before;
     s.threats = {threat};
-    s.name += "_" + std::string(to_string(meeting));
+    s.name.append("_").append(to_string(meeting));
     default_radii(s);
     if (conditions == Conditions::rough) {
         roughen(s);

@@ -7,7 +7,7 @@ namespace jink::sim {
 namespace {
 
 /// The leg is flown towards the point this far ahead [m].
-constexpr double kCarrot = 6.0;
+constexpr double kLegCarrot = 6.0;
 /// And that of a plane: NAVL1_PERIOD 17, NAVL1_DAMPING 0.75 [s].
 constexpr double kPlaneCarrot = 4.06;
 /// Approach of the last waypoint [1/s].
@@ -38,7 +38,7 @@ Vec MissionPilot::command(const Vec& position)
         from_.reset();
     }
     const bool last = target_ + 1 == scenario_.mission.size();
-    const double ahead = scenario_.vehicle.min_speed > 0.0 ? kPlaneCarrot * scenario_.vehicle.cruise : kCarrot;
+    const double ahead = scenario_.vehicle.min_speed > 0.0 ? kPlaneCarrot * scenario_.vehicle.cruise : kLegCarrot;
     const Vec to_end = scenario_.mission[target_] - position;
     const double speed =
         last ? std::min(scenario_.vehicle.cruise, kHoverGain * to_end.norm()) : scenario_.vehicle.cruise;

@@ -148,6 +148,7 @@ TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
     std::printf("[ follow    ] found after %.2f s at most\n", static_cast<double>(longest));
 }
 
+<<<<<<< HEAD
 /// A plane in double, independent of core and of the simulator: points reach it twice a second, it begins to roll
 /// after a dead time, banks with a lag and turns its course by an L1 law; its speed is its own.
 struct Wing {
@@ -237,19 +238,36 @@ TEST(FollowCheckLaw, APlaneThatFliesStraightOnIsFoundWithinThreeSeconds)
         ASSERT_GE(found, 2.0F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
         ASSERT_LE(found, 3.0F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
     }
+=======
+TEST(FollowCheckLaw, FirstManoeuvreThatIsIgnoredIsFoundEarlyAlsoAfterACommandThatWasFlownAnyway)
+{
+    const Vec3 north(0.0F, 5.0F, 0.0F), east(5.0F, 0.0F, 0.0F);
+    FollowCheck check;
+    Random random(7);
+    float found = -1.0F;
+    for (int tick = 0; tick < 500 && found < 0.0F; ++tick) {
+        const Vec3 noise(random.normal(), random.normal(), random.normal());
+        const TimePoint now{1'000'000 + tick * 20'000LL};
+        const bool ignored = check.update(tick < 100 ? north : east, north + 0.1F * noise, {}, now);
+        found = ignored ? static_cast<float>(tick) * kStep : found;
+    }
+    EXPECT_GE(found, 2.9F);
+    EXPECT_LE(found, 3.5F) << "the manoeuvre begins at 2 s";
+>>>>>>> h_takeover
 }
 
 TEST(FollowCheckLaw, AVehicleThatStopsFollowingIsFoundAfterTheAllowance)
 {
     const Vec3 north(0.0F, 5.0F, 0.0F), east(5.0F, 0.0F, 0.0F);
     FollowCheck check;
+    Vec3 velocity = Vec3::Zero();
     float found = -1.0F;
     for (int tick = 0; tick < 500 && found < 0.0F; ++tick) {
+        velocity.y() = std::min(velocity.y() + 0.06F, 5.0F);  // 3 m/s2
         const TimePoint now{1'000'000 + tick * 20'000LL};
-        const float time = static_cast<float>(tick) * kStep;
-        found = check.update(tick < 100 ? north : east, north, {}, now) ? time : found;
+        found = check.update(tick < 100 ? north : east, velocity, {}, now) ? static_cast<float>(tick) * kStep : found;
     }
-    EXPECT_GE(found, 2.0F + FollowCheck::kPatience);
+    EXPECT_GE(found, 1.9F + FollowCheck::kPatience + FollowCheck::kAllowance);
     EXPECT_LE(found, 2.1F + FollowCheck::kPatience + FollowCheck::kAllowance);
 }
 
