@@ -148,7 +148,6 @@ TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
     std::printf("[ follow    ] found after %.2f s at most\n", static_cast<double>(longest));
 }
 
-<<<<<<< HEAD
 /// A plane in double, independent of core and of the simulator: points reach it twice a second, it begins to roll
 /// after a dead time, banks with a lag and turns its course by an L1 law; its speed is its own.
 struct Wing {
@@ -238,7 +237,8 @@ TEST(FollowCheckLaw, APlaneThatFliesStraightOnIsFoundWithinThreeSeconds)
         ASSERT_GE(found, 2.0F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
         ASSERT_LE(found, 3.0F) << "JINK_CASES=1 JINK_SEED=" << seed + i;
     }
-=======
+}
+
 TEST(FollowCheckLaw, FirstManoeuvreThatIsIgnoredIsFoundEarlyAlsoAfterACommandThatWasFlownAnyway)
 {
     const Vec3 north(0.0F, 5.0F, 0.0F), east(5.0F, 0.0F, 0.0F);
@@ -253,7 +253,6 @@ TEST(FollowCheckLaw, FirstManoeuvreThatIsIgnoredIsFoundEarlyAlsoAfterACommandTha
     }
     EXPECT_GE(found, 2.9F);
     EXPECT_LE(found, 3.5F) << "the manoeuvre begins at 2 s";
->>>>>>> h_takeover
 }
 
 TEST(FollowCheckLaw, AVehicleThatStopsFollowingIsFoundAfterTheAllowance)
