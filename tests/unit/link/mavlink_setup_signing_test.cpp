@@ -9,14 +9,14 @@ namespace {
 
 using namespace test;
 
-constexpr std::uint64_t kStart = 34'715'520'000'000;
+constexpr std::uint64_t kSetupTime = 34'715'520'000'000;
 
 class SetupSigningTest : public EndpointTest {
 protected:
     void SetUp() override
     {
         signing.let_keys_be_set(true);
-        signing.advance_to(kStart);
+        signing.advance_to(kSetupTime);
         endpoint = std::make_unique<Endpoint>(EndpointOptions{}, &signing);
         heartbeat(3, 3, false);
         clear();
@@ -28,7 +28,7 @@ protected:
         key.fill(std::byte{fill});
         return key;
     }
-    static SetupSigning request(unsigned char fill, std::uint64_t time = kStart)
+    static SetupSigning request(unsigned char fill, std::uint64_t time = kSetupTime)
     {
         SetupSigning m;
         m.target_system = kSystem;
@@ -71,7 +71,7 @@ TEST_F(SetupSigningTest, TheFirstKeyComesUnsignedAndHoldsFromThenOn)
     ASSERT_TRUE(signing.has_key());
     EXPECT_EQ(signing.key(), key_of(9));
     EXPECT_EQ(count().keys_set, 1U);
-    Signing ears_key(key_of(9), 3, kStart);
+    Signing ears_key(key_of(9), 3, kSetupTime);
     EXPECT_EQ(answer(&ears_key), "jink: signing key set");
     clear();
     heartbeat(3, 3, false);
@@ -113,7 +113,7 @@ TEST_F(SetupSigningTest, ZerosTakeTheKeyAwayAndTheAnswerIsStillSigned)
     endpoint->consume(endpoint->pending().size());
     signed_from_ground(request(0, 0), 9);
     EXPECT_FALSE(signing.has_key());
-    Signing ears_key(key_of(9), 3, kStart);
+    Signing ears_key(key_of(9), 3, kSetupTime);
     EXPECT_EQ(answer(&ears_key), "jink: signing is off");
     clear();
     heartbeat(3, 3, false);
@@ -161,9 +161,9 @@ TEST_F(SetupSigningTest, ATimeBeyond48BitsIsRefusedAndAnEarlierOneMovesNothingBa
     EXPECT_EQ(answer(nullptr), "jink: no signing key set: time out of range");
     from(255, 190, request(9, 5));
     EXPECT_TRUE(signing.has_key());
-    EXPECT_GE(signing.time(), kStart);
-    signed_from_ground(request(9, kStart + 60'000'000), 9);
-    EXPECT_GE(signing.time(), kStart + 60'000'000);
+    EXPECT_GE(signing.time(), kSetupTime);
+    signed_from_ground(request(9, kSetupTime + 60'000'000), 9);
+    EXPECT_GE(signing.time(), kSetupTime + 60'000'000);
 }
 
 TEST_F(SetupSigningTest, AnAutopilotThatSignsIsHeardBeforeThereIsAKey)
@@ -172,7 +172,7 @@ TEST_F(SetupSigningTest, AnAutopilotThatSignsIsHeardBeforeThereIsAKey)
     signing = Signing();
     signing.let_keys_be_set(true);
     endpoint = std::make_unique<Endpoint>(EndpointOptions{}, &signing);
-    Signing autopilots(key_of(9), 0, kStart);
+    Signing autopilots(key_of(9), 0, kSetupTime);
     Heartbeat m;
     m.autopilot = 3;
     Bytes frame(kMaxFrame);
