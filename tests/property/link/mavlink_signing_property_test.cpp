@@ -68,6 +68,9 @@ TEST(MavlinkSigningLaws, NoFlippedBitOfASignedFrameIsAccepted)
                 if (repaired) {
                     repair_checksum(bad);
                 }
+                if (bad == good) {  // a bit of the checksum, repaired
+                    continue;
+                }
                 Signing ours(property_key(7), 0, kSigningStart);
                 Parser parser(&ours, LongerPayload::accept);
                 const std::size_t found = parse(parser, bad, 1U << 20U, true).size();
