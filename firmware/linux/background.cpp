@@ -353,8 +353,10 @@ BackgroundCounts Background::counts() const noexcept
 void complain_now(std::string_view line)
 {
     const std::string text = "jinkd: " + std::string(line) + "\n";
-    constexpr int kWait = 100;
-    if (takes_bytes(STDERR_FILENO, kWait)) {
+    static int patience_ms = 100;  // once for all lines: a file may give cause for a thousand
+    const bool taken = takes_bytes(STDERR_FILENO, patience_ms);
+    patience_ms = taken ? patience_ms : 0;
+    if (taken) {
         static_cast<void>(!::write(STDERR_FILENO, text.data(), std::min<std::size_t>(text.size(), 4096)));
     }
 }
