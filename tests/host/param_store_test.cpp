@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parameters that outlive a restart: cut files, foreign lines, values that no longer fit, kills between two steps.
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -162,6 +163,28 @@ TEST(ParamStore, AFileThatIsNotThereIsNoComplaintAndAFifoIsOne)
     ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
     EXPECT_EQ(load_state(fifo, parameters, complaints).refused, 1U);
     EXPECT_EQ(complaints.size(), 1U);
+}
+
+TEST(ParamStore, AFullDiskLeavesTheFormerContent)
+{
+    // A limit on the size of files stands for the disk: a write then ends short, and the next one fails.
+    const Scratch scratch;
+    const std::string path = scratch.write("state", "the former content").string();
+    for (const rlim_t room : {rlim_t{0}, rlim_t{1}, rlim_t{100}}) {
+        const pid_t child = fork();
+        if (child == 0) {
+            signal(SIGXFSZ, SIG_IGN);
+            const rlimit limit{room, room};
+            setrlimit(RLIMIT_FSIZE, &limit);
+            _exit(replace_file(path, std::string(200, 'x')).empty() ? 0 : 7);
+        }
+        int status = 0;
+        waitpid(child, &status, 0);
+        EXPECT_TRUE(WIFEXITED(status));
+        EXPECT_EQ(WEXITSTATUS(status), 7) << room;
+        EXPECT_EQ(slurp(path), "the former content") << room;
+        EXPECT_FALSE(std::filesystem::exists(path + ".new")) << room;
+    }
 }
 
 TEST(ParamStore, WhatCannotBeWrittenSaysWhyAndLeavesNothingBehind)
