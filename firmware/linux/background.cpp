@@ -346,8 +346,7 @@ bool Background::store_signing(const files::SigningState& state) noexcept
 BackgroundCounts Background::counts() const noexcept
 {
     const Shared& s = *shared_;
-    return {s.dropped,       s.reloads,      s.reload_failures, s.params.done,
-            s.params.failed, s.signing.done, s.signing.failed};
+    return {s.dropped, s.reloads, s.reload_failures, s.params.done, s.params.failed, s.signing.done, s.signing.failed};
 }
 
 void complain_now(std::string_view line)

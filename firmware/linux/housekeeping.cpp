@@ -7,6 +7,37 @@
 
 namespace jink::host {
 
+bool set_up_signing(const SigningFiles& files, jink::files::SigningState& state, link::mavlink::Signing& signing)
+{
+    link::mavlink::UnsignedFrames frames;
+    if (!jink::files::parse_unsigned_frames(files.unsigned_frames, frames)) {
+        complain_now("--unsigned " + files.unsigned_frames + ": expected none, all, or up to 8 message ids");
+        return false;
+    }
+    timespec t{};
+    ::clock_gettime(CLOCK_REALTIME, &t);
+    const std::uint64_t clock = jink::files::signing_clock(t.tv_sec * std::int64_t{1'000'000} + t.tv_nsec / 1000);
+    jink::files::Complaints complaints;
+    const auto loaded = jink::files::load_signing(files.key, files.store, clock, complaints);
+    for (const jink::files::Complaint& complaint : complaints) {
+        complain_now(jink::files::to_string(complaint));
+    }
+    if (!loaded) {
+        return false;
+    }
+    state = *loaded;
+    signing.take_unsigned(frames);
+    signing.let_keys_be_set(!files.store.empty());
+    signing.advance_to(state.time);
+    if (state.has_key) {
+        signing.set_key(state.key, state.time);
+        complain_now(frames.all                ? "frames are signed; unsigned ones are taken too"
+                     : frames.messages.empty() ? "frames are signed; unsigned ones are refused"
+                                               : "frames are signed; unsigned ones are refused, with exceptions");
+    }
+    return true;
+}
+
 void Housekeeping::reload()
 {
     if (has_airspace_) {

@@ -11,6 +11,16 @@
 
 namespace jink::host {
 
+struct SigningFiles {
+    std::string key;                       ///< of --signing-key; may be empty
+    std::string store;                     ///< the signing state; empty: keys are not taken from the link
+    std::string unsigned_frames = "none";  ///< of --unsigned
+};
+
+/// Key, time and exceptions. False, and said why, where jinkd must not start.
+[[nodiscard]] bool set_up_signing(const SigningFiles& files, files::SigningState& state,
+                                  link::mavlink::Signing& signing);
+
 /// The control loop's side of the background thread: hands over what is to be stored and takes what has been read.
 /// Never waits. All references outlive this.
 class Housekeeping {

@@ -62,9 +62,7 @@ struct Options {
     std::string param_file;
     std::string state_file;
     std::string airspace_file;
-    std::string key_file;
-    std::string signing_file;
-    std::string unsigned_frames = "none";
+    host::SigningFiles signing;
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;
@@ -191,36 +189,6 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
-/// Key, time and exceptions. False, and said why, where jinkd must not start.
-bool set_up_signing(const Options& options, files::SigningState& state, link::mavlink::Signing& signing)
-{
-    link::mavlink::UnsignedFrames frames;
-    if (!files::parse_unsigned_frames(options.unsigned_frames, frames)) {
-        complain_now("--unsigned " + options.unsigned_frames + ": expected none, all, or up to 8 message ids");
-        return false;
-    }
-    timespec t{};
-    ::clock_gettime(CLOCK_REALTIME, &t);
-    const std::uint64_t clock = files::signing_clock(t.tv_sec * std::int64_t{1'000'000} + t.tv_nsec / 1000);
-    files::Complaints complaints;
-    const auto loaded = files::load_signing(options.key_file, options.signing_file, clock, complaints);
-    complain(complaints);
-    if (!loaded) {
-        return false;
-    }
-    state = *loaded;
-    signing.take_unsigned(frames);
-    signing.let_keys_be_set(!options.signing_file.empty());
-    signing.advance_to(state.time);
-    if (state.has_key) {
-        signing.set_key(state.key, state.time);
-        complain_now(frames.all                ? "frames are signed; unsigned ones are taken too"
-                     : frames.messages.empty() ? "frames are signed; unsigned ones are refused"
-                                               : "frames are signed; unsigned ones are refused, with exceptions");
-    }
-    return true;
-}
-
 int run(const Options& options, const files::ParamValues& initial, const app::Parameters& parameters,
         const std::string& device, std::uint32_t baud)
 {
@@ -266,7 +234,7 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
     link_options.system_id = static_cast<std::uint8_t>(options.system_id);
     link::mavlink::Signing signing;
     files::SigningState signing_state;
-    if (!set_up_signing(options, signing_state, signing)) {
+    if (!host::set_up_signing(options.signing, signing_state, signing)) {
         return EXIT_FAILURE;
     }
     link::mavlink::Endpoint endpoint(link_options, &signing);
@@ -288,7 +256,7 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
     host::BackgroundCounts counts;
     {
-        host::Background background({options.airspace_file, options.state_file, options.signing_file, initial});
+        host::Background background({options.airspace_file, options.state_file, options.signing.store, initial});
         host::Housekeeping housekeeping(background, *coprocessor, endpoint, signing, signing_state.given);
         housekeeping.has_airspace(!options.airspace_file.empty());
         if (options.realtime > 0) {
@@ -359,10 +327,10 @@ int main(int argc, char** argv)
                    "option: the parameter file's name with .state, if there is one");
     cli.add_option("--airspace", options.airspace_file,
                    "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
-    cli.add_option("--signing-key", options.key_file,
+    cli.add_option("--signing-key", options.signing.key,
                    "file with the key of MAVLink signing: 64 hexadecimal digits, or 'passphrase TEXT'. Frames are then "
                    "signed, and unsigned ones refused");
-    cli.add_option("--unsigned", options.unsigned_frames,
+    cli.add_option("--unsigned", options.signing.unsigned_frames,
                    "unsigned frames that are taken although a key is set: none, all, or message ids, as 109,246");
     cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
         ->check(CLI::Range(0, 255));
@@ -402,9 +370,9 @@ int main(int argc, char** argv)
         options.state_file = options.param_file + ".state";
     }
     if (!options.state_file.empty()) {
-        options.signing_file = options.state_file + ".signing";
-    } else if (!options.key_file.empty()) {
-        options.signing_file = options.key_file + ".state";
+        options.signing.store = options.state_file + ".signing";
+    } else if (!options.signing.key.empty()) {
+        options.signing.store = options.signing.key + ".state";
     }
     load_state(options.state_file, *parameters);
     return run(options, initial, *parameters, device, baud);

@@ -83,10 +83,9 @@ std::optional<SigningKey> parse_key_file(std::string_view text, const std::strin
         const auto read =
             phrase ? digest_of(std::as_bytes(std::span(line.substr(kPassphrase.size())))) : key_from_hex(line);
         if (!read || key) {
-            complaints.push_back({number, 0,
-                                  key ? "there is a key already"
-                                      : "neither 64 hexadecimal digits nor 'passphrase' and a text",
-                                  file});
+            complaints.push_back(
+                {number, 0,
+                 key ? "there is a key already" : "neither 64 hexadecimal digits nor 'passphrase' and a text", file});
             return std::nullopt;
         }
         key = read;

@@ -90,7 +90,8 @@ public:
     {
         std::array<std::byte, kMaxFrame> frame{};
         const Header header{1, 1, sequence_++};
-        const std::size_t n = signing_ ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
+        const std::size_t n =
+            signing_ ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
         send_bytes({frame.data(), n});
     }
     /// From now on the autopilot signs and takes signed frames alone. Its clock stands at `time` and follows its peers.

@@ -79,8 +79,7 @@ Outcome run(Parser& parser, std::span<const std::byte> bytes, std::size_t chunk)
     JINK_FUZZ_CHECK(parser.pending() == 0);
     JINK_FUZZ_CHECK(d.accepted == outcome.frames);
     JINK_FUZZ_CHECK(d.noise_bytes + outcome.frame_bytes <= total);
-    const bool refused_whole =
-        d.unsigned_refused + d.wrong_signature + d.stale_signature + d.signature_streams > 0;
+    const bool refused_whole = d.unsigned_refused + d.wrong_signature + d.stale_signature + d.signature_streams > 0;
     JINK_FUZZ_CHECK(refused_whole || d.noise_bytes + outcome.frame_bytes == total);
     JINK_FUZZ_CHECK(d.checksum_bytes <= total * (kMaxFrame - 1));
     return outcome;

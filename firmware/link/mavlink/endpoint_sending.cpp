@@ -37,7 +37,8 @@ std::size_t Endpoint::encode_as(const M& message, std::uint8_t sequence, std::sp
 {
     // 0 is nobody's id: until the autopilot is known, its usual one.
     const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence};
-    return signing_ != nullptr && signing_->has_key() ? encode_signed(message, header, *signing_, out) : encode(message, header, out);
+    return signing_ != nullptr && signing_->has_key() ? encode_signed(message, header, *signing_, out)
+                                                      : encode(message, header, out);
 }
 
 template <Message M>

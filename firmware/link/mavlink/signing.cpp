@@ -75,8 +75,8 @@ bool Signing::remember(const Stream& stream) noexcept
     if (streams_.try_push_back(stream)) {
         return true;
     }
-    auto* const old = std::find_if(streams_.begin(), streams_.end(),
-                                   [this](const Stream& s) { return s.time + kOneMinute < time_; });
+    auto* const old =
+        std::find_if(streams_.begin(), streams_.end(), [this](const Stream& s) { return s.time + kOneMinute < time_; });
     if (old == streams_.end()) {
         return false;
     }

@@ -102,7 +102,7 @@ private:
 
     Key key_{};
     std::uint64_t time_ = 0;
-    std::uint64_t clock_time_ = 0;   ///< time that belongs to clock_us_
+    std::uint64_t clock_time_ = 0;  ///< time that belongs to clock_us_
     std::int64_t clock_us_ = 0;
     StaticVector<Stream, kMaxSignedStreams> streams_;
     UnsignedFrames unsigned_;

@@ -114,9 +114,9 @@ TEST(MavlinkSigningLaws, RandomOrdersOfFramesAgainstABookOfTimes)
                 const std::uint64_t spread = random.below(10) == 0 ? 3 * kBehind : 2000;
                 stamp = time - spread + random.below(static_cast<unsigned>(2 * spread)) + 1;
                 Signing sender(property_key(7), static_cast<std::uint8_t>(std::get<2>(who)), stamp - 1);
-                frame = signed_by(sender, Heartbeat{},
-                                  {static_cast<std::uint8_t>(std::get<0>(who)),
-                                   static_cast<std::uint8_t>(std::get<1>(who)), 0});
+                frame = signed_by(
+                    sender, Heartbeat{},
+                    {static_cast<std::uint8_t>(std::get<0>(who)), static_cast<std::uint8_t>(std::get<1>(who)), 0});
             }
             const auto last = book.find(who);
             const bool expected = stamp + kBehind >= time && (last == book.end() || stamp > last->second);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Uptime is no matter: a flight with an avoidance in it goes the same way, tick by tick, wherever the clocks of jink and
-// of the autopilot stand, and across each value at which a narrower count of them would wrap.
+// Uptime is no matter: a flight with an avoidance in it goes the same way, tick by tick, wherever the clocks of jink
+// and of the autopilot stand, and across each value at which a narrower count of them would wrap.
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <memory>
@@ -67,8 +67,8 @@ TEST(CoprocessorUptime, AnAvoidanceAcrossEveryWrapIsTheSameAvoidance)
     for (const std::int64_t wrap : kWraps) {
         for (const std::int64_t before : kBefore) {
             const UptimeTrace ours = fly_from(wrap - before, 3 * kStart, kTicks);
-            EXPECT_EQ(ours, young) << "our clock wraps at " << wrap << " us after " << before << " us: " << ours.setpoints
-                                   << " set-points";
+            EXPECT_EQ(ours, young) << "our clock wraps at " << wrap << " us after " << before
+                                   << " us: " << ours.setpoints << " set-points";
             const UptimeTrace theirs = fly_from(kStart, wrap - before, kTicks);
             EXPECT_EQ(theirs, young) << "theirs at " << wrap << " us after " << before << " us";
             const UptimeTrace both = fly_from(wrap - before, wrap - before, kTicks);

@@ -143,7 +143,8 @@ TEST_F(SetupSigningTest, WithoutAPlaceToStoreItNoKeyIsTaken)
 
 TEST_F(SetupSigningTest, OthersAndBroadcastsAreNotForUs)
 {
-    for (const auto& [system, component] : {std::pair{kSystem, 1}, {kSystem, 0}, {0, 0}, {0, int{kUs}}, {8, int{kUs}}}) {
+    for (const auto& [system, component] :
+         {std::pair{kSystem, 1}, {kSystem, 0}, {0, 0}, {0, int{kUs}}, {8, int{kUs}}}) {
         SetupSigning m = request(9);
         m.target_system = static_cast<std::uint8_t>(system);
         m.target_component = static_cast<std::uint8_t>(component);
