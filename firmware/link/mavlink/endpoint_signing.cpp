@@ -23,7 +23,7 @@ void Endpoint::on_setup_signing(const Context& c) noexcept
         refusal = "jink: no signing key set: message not signed";
     } else if (autopilot_.armed) {
         refusal = "jink: no signing key set: armed";
-    } else if (m.initial_timestamp > Signing::kLatestTime) {
+    } else if (m.initial_timestamp > Signing::kLatestStart) {
         refusal = "jink: no signing key set: time out of range";
     }
     if (refusal != nullptr) {

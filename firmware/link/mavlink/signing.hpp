@@ -47,7 +47,9 @@ struct UnsignedFrames {
 class Signing {
 public:
     using Key = std::array<std::byte, 32>;
-    static constexpr std::uint64_t kLatestTime = (std::uint64_t{1} << 48U) - 1U;
+    static constexpr std::uint64_t kLatestTime = (std::uint64_t{1} << 48U) - 1U;  ///< in 2104
+    /// Latest time to begin with, in 2098: from the very end of the scale no further frame could be signed.
+    static constexpr std::uint64_t kLatestStart = kLatestTime - (std::uint64_t{1} << 44U);
     static constexpr std::uint64_t kStoreStep = 3'000'000;       ///< 30 s
     static constexpr std::uint64_t kRestartMargin = 12'000'000;  ///< two minutes
 

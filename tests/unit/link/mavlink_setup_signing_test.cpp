@@ -155,11 +155,14 @@ TEST_F(SetupSigningTest, OthersAndBroadcastsAreNotForUs)
     EXPECT_TRUE(endpoint->pending().empty());
 }
 
-TEST_F(SetupSigningTest, ATimeBeyond48BitsIsRefusedAndAnEarlierOneMovesNothingBack)
+TEST_F(SetupSigningTest, ATimeNearTheEndOf48BitsIsRefusedAndAnEarlierOneMovesNothingBack)
 {
-    from(255, 190, request(9, Signing::kLatestTime + 1));
-    EXPECT_FALSE(signing.has_key());
-    EXPECT_EQ(answer(nullptr), "jink: no signing key set: time out of range");
+    for (const std::uint64_t time : {Signing::kLatestTime + 1, Signing::kLatestTime, Signing::kLatestStart + 1}) {
+        from(255, 190, request(9, time));
+        EXPECT_FALSE(signing.has_key()) << time;
+        EXPECT_EQ(answer(nullptr), "jink: no signing key set: time out of range");
+        EXPECT_EQ(signing.time(), kSetupTime) << "nobody without a key may spend our time";
+    }
     from(255, 190, request(9, 5));
     EXPECT_TRUE(signing.has_key());
     EXPECT_GE(signing.time(), kSetupTime);
