@@ -50,10 +50,12 @@ avoid::Settings Coprocessor::supervisor_settings() const noexcept
     avoid::Settings settings = c.supervisor;
     settings.order = leaves_reach_out_ || c.reach_unsuited ? avoid::LadderOrder::first : settings.order;
     if (reach_picture_ != nullptr) {
-        // Laying a scan over a set would take most of what a plan may, and a way through clutter takes the rest.
-        settings.plan_budget += kPictureUnits;
+        // Laying a scan over a set would take most of what a plan may, and a way through clutter takes more than the
+        // rest: each of two methods has nearly a whole plan's units, and the checks and fallbacks keep theirs.
+        const std::uint32_t more = kPictureUnits + settings.plan_budget;
+        settings.plan_budget += more;
         settings.kept_for_next = settings.plan_budget / 2;  // whichever of both is asked first
-        settings.budget += kPictureUnits;
+        settings.budget += more;
     }
     return settings;
 }
