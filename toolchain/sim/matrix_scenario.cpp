@@ -81,7 +81,10 @@ Times lay_out_mission(Behaviour behaviour, const Field& f, Scenario& s, NominalF
         fill({waypoint(f.at(0, 0)), waypoint(f.at(120, 0)), waypoint(f.at(420, 0))});
         return {18.0, 24.0};
     case Behaviour::speed_change:
-        fill({waypoint(f.at(0, 0)), {ItemKind::speed, Vec::Zero(), 10.0, 0}, waypoint(f.at(250, 0)), waypoint(f.at(330, 0))});
+        fill({waypoint(f.at(0, 0)),
+              {ItemKind::speed, Vec::Zero(), 10.0, 0},
+              waypoint(f.at(250, 0)),
+              waypoint(f.at(330, 0))});
         return {14.0, 20.0};
     case Behaviour::turns:
         fill({waypoint(f.at(0, 0)), {ItemKind::turns, f.at(50, 0), 20.0, 2}, waypoint(f.at(150, 0))});

@@ -14,14 +14,14 @@ namespace jink::sim {
 {
     if (plane) {
         switch (mode) {
-        case Mode::mission: return 10;   // AUTO
+        case Mode::mission: return 10;  // AUTO
         case Mode::external:
         case Mode::guided: return 15;  // GUIDED
         case Mode::hold:
         case Mode::brake: return 12;  // LOITER
         case Mode::home:
         case Mode::land: return 11;  // RTL: it has no LAND
-        case Mode::pilot: return 6;   // FLY_BY_WIRE_B
+        case Mode::pilot: return 6;  // FLY_BY_WIRE_B
         }
     }
     const auto px4 = [](std::uint32_t main, std::uint32_t sub) { return main << 16U | sub << 24U; };
