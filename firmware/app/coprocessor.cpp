@@ -261,8 +261,11 @@ bool Coprocessor::is_hold_urgent(TimePoint now, const vehicle::VehicleState& own
 /// A plane is steered as the plane that VEH_FIXED_WING describes, never as a vehicle that stops.
 bool Coprocessor::can_steer() const noexcept
 {
-    const bool wing = parameters_.configuration().limits.kind == vehicle::VehicleKind::fixed_wing;
-    return autopilot_.steerable && (!autopilot_.fixed_wing || wing);
+    const Configuration& c = parameters_.configuration();
+    // A plane keeps its own speed: it cannot fly what reciprocal avoidance asks for.
+    const bool as_wing = c.limits.kind == vehicle::VehicleKind::fixed_wing &&
+                         c.supervisor.reactive == avoid::Reactive::never;
+    return autopilot_.steerable && (!autopilot_.fixed_wing || as_wing);
 }
 
 TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleState& own,

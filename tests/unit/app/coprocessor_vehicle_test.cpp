@@ -101,6 +101,23 @@ TEST_F(CoprocessorVehicle, PlaneThatIsSetUpAsAMultirotorIsAdvisedOnly)
     EXPECT_EQ(times("advising only"), 1);
 }
 
+TEST_F(CoprocessorVehicle, PlaneUnderReciprocalAvoidanceIsAdvisedOnlyBecauseItKeepsItsSpeed)
+{
+    for (const float methods : {4.0F, 5.0F}) {
+        Parameters parameters = plane_parameters(1.0F);
+        ASSERT_EQ(parameters.set(Param::methods, methods), ParamStatus::ok);
+        f = std::make_unique<Flight>(parameters);
+        f->mav_type = 1;
+        f->mode = 10;
+        f->feed(ExtendedSysState{0, 2});
+        begin();
+        f->feed(ExtendedSysState{0, 2});
+        fly(600);
+        EXPECT_TRUE(f->requested.empty()) << methods;
+        EXPECT_EQ(times("advising only"), 1) << methods;
+    }
+}
+
 TEST_F(CoprocessorVehicle, PlaneIsTakenOverAndGetsGuidedPointsAndNoVelocities)
 {
     f = std::make_unique<Flight>(plane_parameters(1.0F));
