@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/path/prediction.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "core/path/flight.hpp"
@@ -9,7 +10,7 @@ namespace jink::path {
 namespace {
 
 /// Periods of the first two chords.
-constexpr std::uint32_t kFirstChords[] = {1, 2};
+constexpr std::array<std::uint32_t, 2> kFirstChords{1, 2};
 constexpr std::uint32_t kInFirstChords = kFirstChords[0] + kFirstChords[1];
 
 /// Periods of each chord after the first two, so that `setpoints` fit into `most` points.

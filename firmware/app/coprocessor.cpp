@@ -263,8 +263,8 @@ bool Coprocessor::can_steer() const noexcept
 {
     const Configuration& c = parameters_.configuration();
     // A plane keeps its own speed: it cannot fly what reciprocal avoidance asks for.
-    const bool as_wing = c.limits.kind == vehicle::VehicleKind::fixed_wing &&
-                         c.supervisor.reactive == avoid::Reactive::never;
+    const bool as_wing =
+        c.limits.kind == vehicle::VehicleKind::fixed_wing && c.supervisor.reactive == avoid::Reactive::never;
     return autopilot_.steerable && (!autopilot_.fixed_wing || as_wing);
 }
 

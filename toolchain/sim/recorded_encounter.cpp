@@ -13,26 +13,30 @@
 namespace jink::sim {
 namespace {
 
-/// A plane about a place, by metres per degree on the WGS84 ellipsoid.
-class TangentPlane {
+/// A map about a place: metres along its meridian, and along the parallel of each fix, on the WGS84 ellipsoid.
+/// Distances between places near to each other are true wherever they are.
+class LocalMap {
 public:
-    TangentPlane(double lat, double lon) : lat_(lat), lon_(lon)
-    {
-        constexpr double kMajor = 6378137.0;
-        constexpr double kEccentricity2 = 6.69437999014e-3;
-        constexpr double kPerDegree = std::numbers::pi / 180.0;
-        const double s = std::sin(lat * kPerDegree);
-        const double w = 1.0 - kEccentricity2 * s * s;
-        north_ = kMajor * (1.0 - kEccentricity2) / (w * std::sqrt(w)) * kPerDegree;
-        east_ = kMajor / std::sqrt(w) * std::cos(lat * kPerDegree) * kPerDegree;
-    }
+    LocalMap(double lat, double lon) : lat_(lat), lon_(lon) {}
     [[nodiscard]] Vec place(double lat, double lon, double alt) const
     {
-        return {std::remainder(lon - lon_, 360.0) * east_, (lat - lat_) * north_, alt};
+        const double w = latitude_term(0.5 * (lat + lat_));
+        const double north = kMajor * (1.0 - kEccentricity2) / (w * std::sqrt(w)) * kPerDegree;
+        const double east = kMajor / std::sqrt(latitude_term(lat)) * std::cos(lat * kPerDegree) * kPerDegree;
+        return {std::remainder(lon - lon_, 360.0) * east, (lat - lat_) * north, alt};
     }
 
 private:
-    double lat_, lon_, north_ = 0.0, east_ = 0.0;
+    static constexpr double kMajor = 6378137.0;
+    static constexpr double kEccentricity2 = 6.69437999014e-3;
+    static constexpr double kPerDegree = std::numbers::pi / 180.0;
+
+    static double latitude_term(double lat)
+    {
+        const double s = std::sin(lat * kPerDegree);
+        return 1.0 - kEccentricity2 * s * s;
+    }
+    double lat_, lon_;
 };
 
 class EncounterReader {
@@ -88,10 +92,10 @@ private:
         fix.velocity = row.velocity;
         fix.position = row.place;
         if (columns_->global()) {
-            if (!plane_) {
-                plane_.emplace(row.place.x(), row.place.y());
+            if (!map_) {
+                map_.emplace(row.place.x(), row.place.y());
             }
-            fix.position = plane_->place(row.place.x(), row.place.y(), row.place.z());
+            fix.position = map_->place(row.place.x(), row.place.y(), row.place.z());
         }
         std::vector<Fix>& fixes = fixes_of(name);
         last_name_ = name;
@@ -118,7 +122,7 @@ private:
     RecordedEncounter encounter_;
     std::optional<RecordedColumns> columns_;
     bool units_known_ = false;
-    std::optional<TangentPlane> plane_;
+    std::optional<LocalMap> map_;
     std::string last_name_;
 };
 

@@ -107,6 +107,7 @@ TEST_F(CoprocessorVehicle, PlaneUnderReciprocalAvoidanceIsAdvisedOnlyBecauseItKe
         Parameters parameters = plane_parameters(1.0F);
         ASSERT_EQ(parameters.set(Param::methods, methods), ParamStatus::ok);
         f = std::make_unique<Flight>(parameters);
+        said.clear();
         f->mav_type = 1;
         f->mode = 10;
         f->feed(ExtendedSysState{0, 2});
