@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "firmware/app/takeover.hpp"
@@ -92,5 +93,15 @@ inline constexpr Step wants(Beat beat, float dt = 0.02F) { return {true, true, b
 inline constexpr Step calm(Beat beat, float dt = 0.02F) { return {false, true, beat, dt, false}; }
 inline constexpr Step fault(Beat beat, float dt = 0.02F) { return {true, false, beat, dt, false}; }
 inline constexpr Step denied(float dt) { return {true, true, Beat::none, dt, true}; }
+
+/// As the application reports HEARTBEATs that arrive within one step.
+inline TakeoverOutput with_two(Bench& b, const Step& first, const Step& newest)
+{
+    b.now = b.now + newest.dt;
+    TakeoverInput input = input_of(newest);
+    const std::array<link::AutopilotReport, 1> earlier{input_of(first).report};
+    input.earlier = earlier;
+    return b.takeover.update(input, b.now);
+}
 
 }  // namespace jink::app::test

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mode is asked for on fresh evidence alone: what a pilot chose meanwhile is not overridden.
-#include <array>
-
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/takeover_bench.hpp"
@@ -209,16 +207,6 @@ TEST(TakeoverEvidence, ExternalModeSeenAndOverDuringAFaultIsNotClaimedAgain)
     EXPECT_FALSE(b.takeover.streaming());
 }
 
-/// As the application reports HEARTBEATs that arrive within one step.
-TakeoverOutput with_two(Bench& b, const Step& first, const Step& newest)
-{
-    b.now = b.now + newest.dt;
-    TakeoverInput input = input_of(newest);
-    const std::array<link::AutopilotReport, 1> earlier{input_of(first).report};
-    input.earlier = earlier;
-    return b.takeover.update(input, b.now);
-}
-
 TEST(TakeoverEvidence, PilotsModeBeforeALateGrantInOneStepIsNotMissed)
 {
     Bench b = on_mission(link::AutopilotStack::ardupilot);
@@ -313,6 +301,16 @@ TEST(TakeoverSticks, GrantThatComesAfterwardsIsGivenBackWithoutAStream)
     with(b, kWant, true, false);
     EXPECT_EQ(b.step(wants(Beat::external, 0.1F)).action, TakeoverAction::request_former);
     EXPECT_FALSE(b.takeover.streaming());
+}
+
+TEST(TakeoverSticks, GrantInTheFirstOfTwoHeartbeatsIsGivenBackInThatStep)
+{
+    Bench b = on_mission(link::AutopilotStack::ardupilot);
+    b.step(wants(Beat::former));
+    EXPECT_EQ(requests_within(b, 0.1F), 1);
+    with(b, kWant, true, false);
+    b.step(wants(Beat::former));  // sent before the grant
+    EXPECT_EQ(with_two(b, wants(Beat::external), wants(Beat::external)).action, TakeoverAction::request_former);
 }
 
 TEST(TakeoverUnfollowed, GivesUpAsksForTheHoldAndOnlyAdvisesUntilDisarmed)

@@ -72,6 +72,16 @@ TEST(TakeoverHold, AnyOtherModeSeenEndsIt)
     }
 }
 
+TEST(TakeoverHold, IsNotAskedForOfAPilotWhoCommandsTheExternalModeAfterwards)
+{
+    Bench b = lost();
+    EXPECT_EQ(b.step(fault(Beat::manual, 0.6F)).event, TakeoverEvent::overruled);
+    for (int i = 0; i < 20; ++i) {
+        const Step calm_fault{false, false, Beat::external, 0.5F};
+        EXPECT_EQ(b.step(calm_fault).action, TakeoverAction::none) << "the conflict is over, the fault is not";
+    }
+}
+
 TEST(TakeoverHold, IsNotWastedOnALostLine)
 {
     Bench b = flying();
