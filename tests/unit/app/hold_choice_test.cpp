@@ -31,6 +31,14 @@ TEST(HoldChoice, InFrontOfWhatStandsItHolds)
     EXPECT_TRUE(is_stopping_safer(standing.own, standing.limits, standing.conflict, nullptr)) << "an obstacle, an area";
 }
 
+TEST(HoldChoice, InFrontOfWhatStandsItHoldsAlsoWhereItComesToRestBesideIt)
+{
+    EXPECT_TRUE(Case(Vec3::Zero(), 3.0F).holds()) << "3.75 m to stop";
+    EXPECT_TRUE(Case(Vec3(0.0F, -0.4F, 0.0F), 3.0F).holds()) << "what creeps stands";
+    EXPECT_TRUE(Case(Vec3::Zero(), 10.0F, 9.0F).holds()) << "however wide the pass";
+    EXPECT_FALSE(Case(Vec3(0.0F, -0.6F, 0.0F), 3.0F).holds()) << "it comes nearer";
+}
+
 TEST(HoldChoice, BeforeACrossingItHolds)
 {
     EXPECT_TRUE(Case(Vec3(6.0F, 0.0F, 0.0F), 10.0F).holds());
@@ -44,11 +52,24 @@ TEST(HoldChoice, InTheWayOfAnIntruderTheMissionGoesOn)
     EXPECT_FALSE(Case(Vec3(0.0F, 12.0F, 0.0F), 10.0F).holds()) << "from behind";
 }
 
+TEST(HoldChoice, IntruderThatComesHalfAMinuteAfterTheStopCounts)
+{
+    Case late(Vec3(0.0F, -1.0F, 0.0F), 10.0F);
+    late.track.position = Vec3(0.0F, 25.0F, 0.0F);  // 3.75 m and 1.6 s to stop
+    EXPECT_FALSE(late.holds()) << "20 s later";
+    late.track.position.y() = 50.0F;
+    EXPECT_TRUE(late.holds()) << "45 s later";
+}
+
 TEST(HoldChoice, WhatStandsAlreadyCannotStop)
 {
     Case still(Vec3(6.0F, 0.0F, 0.0F), 10.0F);
     still.own.velocity = Vec3::Zero();
     EXPECT_FALSE(still.holds());
+    still.own.velocity.y() = 0.9F * vehicle::kStandstillSpeed;
+    EXPECT_FALSE(still.holds());
+    still.own.velocity.y() = vehicle::kStandstillSpeed;
+    EXPECT_TRUE(still.holds()) << "it does not stand yet";
 }
 
 TEST(HoldChoice, APassThatIsWideEnoughIsNotStoppedFor)
