@@ -29,6 +29,46 @@ TEST(StickWatch, RestIsWhereTheyWereBeforeTheTakeover)
     EXPECT_FALSE(watch.update(nullptr, false, kThreshold)) << "until the stream ends";
 }
 
+TEST(StickWatch, RestIsTheNewestReportBeforeTheTakeover)
+{
+    StickWatch watch;
+    see(watch, at(-0.5F), false);
+    see(watch, at(0.5F), false);
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_FALSE(see(watch, at(0.5F)));
+    }
+    see(watch, at(-0.5F));
+    EXPECT_TRUE(see(watch, at(-0.5F)));
+}
+
+TEST(StickWatch, ThresholdItselfCounts)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    see(watch, at(kThreshold));
+    EXPECT_TRUE(see(watch, at(kThreshold)));
+}
+
+TEST(StickWatch, SticksThatMovedAndReturnedHaveMoved)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    see(watch, at(0.9F));
+    EXPECT_TRUE(see(watch, at(0.9F)));
+    EXPECT_TRUE(see(watch, at(0.0F)));
+    EXPECT_TRUE(see(watch, at(0.9F, 0.9F, false))) << "the first report of another source";
+}
+
+TEST(StickWatch, ReportOfAFormerTakeoverDoesNotCount)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    EXPECT_FALSE(see(watch, at(0.9F)));
+    see(watch, at(0.0F), false);
+    EXPECT_FALSE(see(watch, at(0.9F))) << "one in this one";
+    EXPECT_TRUE(see(watch, at(0.9F)));
+}
+
 TEST(StickWatch, OneReportAloneIsNoise)
 {
     StickWatch watch;
@@ -78,6 +118,10 @@ TEST(StickWatch, ThresholdZeroWatchesNothing)
     for (int i = 0; i < 5; ++i) {
         EXPECT_FALSE(see(watch, at(1.0F), true, 0.0F));
     }
+    see(watch, at(0.0F), false);
+    see(watch, at(1.0F));
+    EXPECT_TRUE(see(watch, at(1.0F)));
+    EXPECT_FALSE(watch.update(nullptr, true, 0.0F)) << "set to 0 in flight";
 }
 
 }  // namespace
