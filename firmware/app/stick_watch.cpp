@@ -8,6 +8,10 @@ namespace jink::app {
 bool StickWatch::update(const link::SticksReport* report, bool streaming, float threshold) noexcept
 {
     moved_ = moved_ && streaming && threshold > 0.0F;
+    if (was_streaming_ && !streaming) {
+        sources_ = {};  // what a former take-over saw says nothing of the next one
+    }
+    was_streaming_ = streaming;
     if (report == nullptr) {
         return moved_;
     }

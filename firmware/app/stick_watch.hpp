@@ -36,6 +36,7 @@ private:
     };
     std::array<Source, 2> sources_{};
     bool moved_ = false;
+    bool was_streaming_ = false;
 };
 
 }  // namespace jink::app

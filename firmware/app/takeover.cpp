@@ -77,7 +77,7 @@ void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
 /// a pilot chose is not fought: whatever it is, it ends this.
 TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept
 {
-    hold_due_ = hold_due_ && claim_ == Claim::held && !(input.has_report && mode_ != FlightMode::external);
+    hold_due_ = hold_due_ && claim_ == Claim::held && !(input.has_report && input.report.mode != FlightMode::external);
     hold_acked_ = hold_acked_ || input.mode_accepted;
     if (!hold_due_ || !input.link_alive || hold_tries_ >= kHoldTries) {
         return TakeoverAction::none;

@@ -111,6 +111,16 @@ TEST(StickWatch, FirstReportOfTheStreamIsTheRestWhereNoneCameBefore)
     EXPECT_TRUE(see(watch, at(0.5F)));
 }
 
+TEST(StickWatch, FormerTakeoverLeavesNothingForTheNextOne)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    EXPECT_FALSE(see(watch, at(0.9F))) << "one report away";
+    EXPECT_FALSE(watch.update(nullptr, false, 0.3F));
+    EXPECT_FALSE(see(watch, at(0.9F))) << "the rest of this one";
+    EXPECT_FALSE(see(watch, at(0.9F)));
+}
+
 TEST(StickWatch, ThresholdZeroWatchesNothing)
 {
     StickWatch watch;

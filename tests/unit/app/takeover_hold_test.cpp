@@ -167,6 +167,17 @@ TEST(TakeoverPx4, IsAskedAgainUntilTheStreamIsOldEnough)
     EXPECT_EQ(b.step(wants(Beat::external)).event, TakeoverEvent::took_over);
 }
 
+TEST(TakeoverHold, IsAskedForAlsoWhereAHeartbeatComesInTheStepOfTheLoss)
+{
+    Bench b;
+    b.step(wants(Beat::former));
+    b.step(wants(Beat::none, 0.1F));
+    ASSERT_EQ(b.step(wants(Beat::external, 0.2F)).event, TakeoverEvent::took_over);
+    const TakeoverOutput out = b.step(fault(Beat::external));
+    EXPECT_EQ(out.event, TakeoverEvent::lost);
+    EXPECT_EQ(out.action, TakeoverAction::request_hold);
+}
+
 TEST(TakeoverPx4, ThatNeverGrantsIsGivenUpAfterThreeMoreTries)
 {
     Bench b;
