@@ -58,8 +58,8 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
         missing_ = is_proven_ ? -expected * kAllowance : missing_;
         is_proven_ = false;
         progress_ = 0.0F;
-        reference_ = command;
     }
+    reference_ = command;
     const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
     const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
     progress_ += error.norm() > kTolerance ? towards : 0.0F;           // nearer than that it would be noise

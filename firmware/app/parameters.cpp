@@ -24,7 +24,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_RATE", 20, 10, 50, true, "set-points per second while avoiding"},
     {"TRK_RADIUS", 1, 0.05F, 500, false, "radius of traffic [m]"},
     {"TRK_RADIUS_PT", 1, 0.05F, 500, false, "radius of traffic that is an obstacle at rest [m]"},
-    {"TRK_SIGMA_P", 0.5F, 0.01F, 500, false, "position noise of traffic, one standard deviation [m]"},
+    {"TRK_SIGMA_P", 1.5F, 0.01F, 500, false, "position noise of traffic, one standard deviation [m]"},
     {"TRK_SIGMA_V", 0.3F, 0.01F, 100, false, "velocity noise of traffic, one standard deviation [m/s]"},
     {"TRK_ACCEL", 0, 0, 50, false, "acceleration that traffic may show unannounced [m/s2]"},
     {"TRK_LATENCY", 0.1F, 0, 2, false, "age of a traffic report on arrival [s]"},

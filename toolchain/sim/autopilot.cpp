@@ -149,7 +149,7 @@ void Autopilot::watch_setpoints()
 Vec Autopilot::mission_velocity()
 {
     Truth own = world_.own();
-    own.position += estimate_.bias();
+    own.position = believed_position();
     return items_ ? items_->command(own) : mission_.command(own.position);
 }
 

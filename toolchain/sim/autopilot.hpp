@@ -79,6 +79,8 @@ public:
     /// Everything to be sent since the last call.
     [[nodiscard]] std::vector<std::byte> take_output();
 
+    /// Where its own estimate puts it, before latency [m].
+    [[nodiscard]] Vec believed_position() const { return world_.own().position + estimate_.bias(); }
     [[nodiscard]] Mode mode() const noexcept { return mode_; }
     [[nodiscard]] const Heard& heard() const noexcept { return heard_; }
     [[nodiscard]] const MissionPilot& mission() const noexcept { return mission_; }

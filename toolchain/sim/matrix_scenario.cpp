@@ -270,6 +270,9 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
 {
     Nominal nominal = nominal_flight(flyer, behaviour, seed);
     Scenario& s = nominal.scenario;
+    if (conditions == Conditions::rough) {
+        roughen(s);
+    }
     const double meets_at = nominal.meets_at;
     const Sample own = motion_at(s, meets_at);
     Random random(seed * 2147483647U + static_cast<std::uint64_t>(behaviour) * 101U +
@@ -295,9 +298,6 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
     s.threats = {threat};
     s.name.append("_").append(to_string(meeting));
     default_radii(s);
-    if (conditions == Conditions::rough) {
-        roughen(s);
-    }
     return s;
 }
 
