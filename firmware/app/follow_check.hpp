@@ -15,7 +15,8 @@ namespace jink::app {
 ///
 /// Tolerance: the larger of kTolerance and kShare of the commanded speed. A vehicle that flies where it shall, only
 /// more slowly (kSlow), counts as following: autopilots have speed limits of their own.
-/// A command that turns little by little is one command; a change by more than kTolerance within a tick is another.
+/// A command that turns little by little is one command for this; a change by more than kTolerance in one tick is
+/// another.
 /// A vehicle that came closer to a command by kTolerance has kAllowance more for another command: it first undoes what
 /// the command before asked for, after a dead time and with limited jerk. From full acceleration to full braking this
 /// takes so long. A vehicle that ignores the first command is noticed 1 s after the command differs from its motion,
@@ -53,9 +54,10 @@ private:
     TimePoint last_;
     Vec3 velocity_ = Vec3::Zero();
     float missing_ = 0.0F;           ///< change of velocity [m/s]
-    Vec3 reference_ = Vec3::Zero();  ///< the command of the tick before
-    float progress_ = 0.0F;          ///< towards the command, since it last changed by a step [m/s]
-    bool is_proven_ = false;         ///< came closer by kTolerance since then
+    Vec3 command_ = Vec3::Zero();    ///< of the tick before
+    Vec3 reference_ = Vec3::Zero();  ///< the command that is_proven_ is about
+    Vec3 start_ = Vec3::Zero();      ///< the velocity from which the vehicle has to come closer
+    bool is_proven_ = false;         ///< came closer by kTolerance
 };
 
 }  // namespace jink::app
