@@ -166,7 +166,7 @@ TEST(CoprocessorBus, NothingIsSteeredByTheBussOwnState)
 
 TEST(CoprocessorBus, ThereIsOneFrameAndItIsTheAutopilots)
 {
-    const auto b = bench({{Param::tell_near, 1.0F}});
+    const auto b = bench({{Param::tell_near, 1.0F}, {Param::track_sigma_p, 0.5F}});
     // Until the first HEARTBEAT: about the first fix, 300 m from the autopilot's origin.
     b->f.heartbeats = b->f.own_state = false;
     const Vec3 start(300.0F, 0.0F, 50.0F);
@@ -362,7 +362,8 @@ TEST(CoprocessorBus, WhatIsNearIsToldOnlyWhenAskedForAndPlaced)
 {
     for (const bool on : {false, true}) {
         for (const bool heading : {false, true}) {
-            const auto b = bench({{Param::tell_near, on ? 1.0F : 0.0F}, {Param::mode, 1.0F}});
+            const auto b =
+                bench({{Param::tell_near, on ? 1.0F : 0.0F}, {Param::mode, 1.0F}, {Param::track_sigma_p, 0.5F}});
             b->fly(60);
             for (int i = 0; i < 100; ++i) {
                 if (heading) {
