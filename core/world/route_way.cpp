@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
+
 namespace jink::world {
 namespace {
 
@@ -92,7 +94,7 @@ void RoutePieces::add_segment(const path::RouteSegment& segment, float from, flo
         position = next;
     }
     if (segment.is_arc()) {
-        const float half = std::sin(0.25F * chord / segment.radius);
+        const float half = sine_cosine(0.25F * chord / segment.radius).sine;
         off_ = std::max(off_, kChordSlack + 1.01F * segment.radius * 2.0F * half * half);
     }
 }

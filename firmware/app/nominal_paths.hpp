@@ -23,6 +23,10 @@ namespace jink::app {
 /// greater speed always is. So the intended path says where the vehicle would be at the speed that it is going to have,
 /// from rest or out of a corner too, and the measured motion where it would be at the one that it has.
 ///
+/// Turn rate: least squares over the angles between successive samples of the level velocity (direction_angle of their
+/// cross and dot product). Accuracy against double precision: 1e-5 rad/s, while the ground speed stays above kMoving;
+/// 0 otherwise. No function of the C library but the square root, so every target has the same paths to the bit.
+///
 /// From a take-over on the measured motion as it was then is kept: control is given back along the path that the
 /// conflict was on. 1 KiB. O(samples) per update.
 class NominalPaths {
@@ -68,9 +72,8 @@ public:
 private:
     struct Sample {
         TimePoint at;
-        float heading = 0.0F;  ///< counter-clockwise from east, unwrapped [rad]
-        float speed = 0.0F;    ///< [m/s]
-        float level = 0.0F;    ///< speed over ground [m/s]
+        float turned = 0.0F;           ///< since the sample before, counter-clockwise [rad]
+        Vec3 velocity = Vec3::Zero();  ///< [m/s]
     };
     /// A reference with the route that it may point to.
     struct Motion {

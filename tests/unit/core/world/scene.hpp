@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/world/conflict.hpp"
+#include "core/world/track_table.hpp"
 
 namespace jink::world::test {
 
@@ -71,6 +72,21 @@ inline path::TimedPath flight(const std::vector<Vec3>& positions, Seconds step)
         path.points.unchecked_push_back({positions[i], velocity, step * static_cast<float>(i)});
     }
     return path;
+}
+
+/// Position and velocity of an aircraft as a receiver measures them.
+inline TrackMeasurement sighting(TrackId id, const Vec3& position, const Vec3& velocity, TimePoint stamp)
+{
+    TrackMeasurement m;
+    m.id = id;
+    m.stamp = stamp;
+    m.position = position;
+    m.velocity = velocity;
+    m.has_velocity = true;
+    m.radius = 1.0F;
+    m.sigma_position = 0.5F;
+    m.sigma_velocity = 0.3F;
+    return m;
 }
 
 /// Units that no test of one query uses up.

@@ -5,25 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "core/world/track_table.hpp"
+#include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
 namespace {
 
 constexpr TimePoint kBegin{50'000'000};
-
-TrackMeasurement heard(TrackId id, const Vec3& position, const Vec3& velocity, TimePoint stamp)
-{
-    TrackMeasurement m;
-    m.id = id;
-    m.stamp = stamp;
-    m.position = position;
-    m.velocity = velocity;
-    m.has_velocity = true;
-    m.radius = 1.0F;
-    m.sigma_position = 0.5F;
-    m.sigma_velocity = 0.3F;
-    return m;
-}
 
 struct TrackDoubling : testing::Test {
     TrackTable table;
@@ -31,7 +18,7 @@ struct TrackDoubling : testing::Test {
 
     TrackStatus hear(TrackId id, const Vec3& position, const Vec3& velocity, TimePoint at)
     {
-        return table.update(heard(id, position, velocity, at), own, at);
+        return table.update(test::sighting(id, position, velocity, at), own, at);
     }
     [[nodiscard]] bool knows(const Vec3& place, TimePoint at)
     {
@@ -118,7 +105,7 @@ TEST_F(TrackDoubling, AManyfoldIdKeepsItsMostUrgentOnes)
 
 TEST_F(TrackDoubling, AnUncertainHeightHasATrackOfItsOwn)
 {
-    TrackMeasurement m = heard(7, Vec3(100, 0, 10), Vec3::Zero(), kBegin);
+    TrackMeasurement m = test::sighting(7, Vec3(100, 0, 10), Vec3::Zero(), kBegin);
     EXPECT_EQ(table.update(m, own, kBegin), TrackStatus::created);
     m.half_height = 90.0F;
     m.position.z() = 60.0F;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/world/track_table.hpp"
 #include "tests/numbers.hpp"
+#include "tests/unit/core/world/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,15 +15,7 @@ constexpr TimePoint kTime{100'000'000};
 
 TrackMeasurement sighting(TrackId id, const Vec3& position, TimePoint stamp = kTime)
 {
-    TrackMeasurement m;
-    m.id = id;
-    m.stamp = stamp;
-    m.position = position;
-    m.has_velocity = true;
-    m.radius = 1.0F;
-    m.sigma_position = 0.5F;
-    m.sigma_velocity = 0.3F;
-    return m;
+    return test::sighting(id, position, Vec3::Zero(), stamp);
 }
 
 struct TrackTables : testing::Test {
