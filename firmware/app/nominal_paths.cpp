@@ -260,6 +260,16 @@ void NominalPaths::extrapolate(const vehicle::VehicleState& own, const vehicle::
     }
 }
 
+/// What drifts in gusts is going nowhere: its place is kept, not a path that it would be brought back to.
+void NominalPaths::keep(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept
+{
+    kept_.copy_from(live_);
+    if (own.velocity.norm() < kMoving) {
+        kept_.reference.route = nullptr;
+        kept_.reference.leg = {own.position, own.position, limits.cruise_speed};
+    }
+}
+
 const world::Reference* NominalPaths::other() const noexcept
 {
     if (!on_motion_) {
@@ -272,7 +282,7 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
                           const world::Leg* leg, const vehicle::VehicleLimits& limits, bool in_control) noexcept
 {
     if (in_control && !in_control_) {
-        kept_.copy_from(live_);
+        keep(own, limits);
         on_motion_ = was_on_motion_ || !believes_leg();
     }
     in_control_ = in_control;
@@ -288,7 +298,7 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
     intend(own, limits, in_control);
     extrapolate(own, limits);
     if (outdated_) {
-        kept_.copy_from(live_);
+        keep(own, limits);
         outdated_ = false;
     }
     on_motion_ = in_control ? on_motion_ || !has_leg_ : !believes_leg();

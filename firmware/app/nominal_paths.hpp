@@ -28,10 +28,10 @@ namespace jink::app {
 /// 0 otherwise. No function of the C library but the square root, so every target has the same paths to the bit.
 ///
 /// From a take-over on the measured motion as it was then is kept: control is given back along the path that the
-/// conflict was on. 1 KiB. O(samples) per update.
+/// conflict was on. Of motion slower than kMoving the place alone is kept. 1 KiB. O(samples) per update.
 class NominalPaths {
 public:
-    static constexpr float kMoving = 1.0F;          ///< slower motion contradicts no leg [m/s]
+    static constexpr float kMoving = 1.0F;          ///< slower motion contradicts no leg and leads nowhere [m/s]
     static constexpr float kStanding = 0.5F;        ///< slower motion is taken for standing [m/s]
     static constexpr Seconds kContradicted = 1.5F;  ///< [s]
     static constexpr Seconds kAgreed = 1.0F;        ///< [s]
@@ -90,6 +90,7 @@ private:
     void judge_leg(const vehicle::VehicleState& own) noexcept;
     void intend(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, bool in_control) noexcept;
     void extrapolate(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept;
+    void keep(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept;
     [[nodiscard]] bool add_turn(const vehicle::VehicleState& own) noexcept;
     [[nodiscard]] const world::Reference& motion() const noexcept
     {
