@@ -5,10 +5,11 @@ Usage: same_flight.py JINK_SIM BUILD_FOLDER TARGET ...
 
 The flights are flown in process and recorded; the first target (the program of this machine) has to write the very same
 bytes again. On the others every state, fault, plan, chosen candidate and count of work has to be the same in every step;
-commands and margins may differ by rounding (TOLERANCE) and the largest difference is printed. Where the measured motion
-turns, the arc comes from atan2, sin and cos, whose last bits differ between C libraries; how many turns an iteration takes
-may follow. In one step of WORK_STEPS the work may therefore differ by WORK_TOLERANCE of itself, and nothing else; in one
-of PLANE_WORK_STEPS in the flights of planes, whose way back is one long turn.
+commands and margins may differ by rounding (TOLERANCE) and the largest difference is printed. Nominal paths and routes are
+the same to the bit (core/base/angle.hpp); the C library's expm1 in the vehicle model and its atan2 and asin in what the
+link reads are not, and how many turns an iteration takes may follow. In one step of WORK_STEPS the work may therefore
+differ by WORK_TOLERANCE of itself, and nothing else; in one of PLANE_WORK_STEPS in the flights of planes, whose way back
+is one long turn.
 
 A board without room for the large reach sets flies without any here, and is compared with this machine's program that
 does so too; same_choice.py compares plans by the reduced sets. Flights for which images have no input (fly.py) are left
