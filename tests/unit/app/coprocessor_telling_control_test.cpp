@@ -8,6 +8,7 @@ namespace jink::app::test {
 namespace {
 
 using link::Severity;
+using link::SystemState;
 
 TEST(TellingControl, WhoFliesIsSaidOnceAsWhatItIs)
 {
@@ -153,6 +154,115 @@ TEST(TellingLine, ThatWasLostInControlIsSaidWhenItIsBackAndOnce)
         EXPECT_EQ(t->said("jink: line lost while avoiding, control dropped"), silent ? 0 : 1)
             << "own state was lost first, and that was said while the line was there";
     }
+}
+
+TEST(TellingBraking, NothingSafeIsAnEmergencyWhileTheVehicleBrakes)
+{
+    int emergencies = 0, safe_brakes = 0, unsafe_before = 0;
+    for (const auto& [ahead, speed] : {std::pair{15.0F, 10.0F}, {25.0F, 30.0F}, {25.0F, 10.0F}, {40.0F, 30.0F}}) {
+        const auto t = teller();
+        t->fly(60);
+        t->put_ahead(ahead, Vec3(-speed, 0.0F, 0.0F));
+        for (int i = 0; i < 150; ++i) {
+            t->step();
+            const avoid::Guidance& g = t->last.guidance;
+            const bool brakes = g.state == avoid::State::braking;
+            const bool unsafe = g.wants_control && g.margin < 0.0F;
+            ASSERT_EQ(t->last.faults, 0);
+            EXPECT_EQ(t->last.state, brakes && unsafe ? SystemState::emergency : SystemState::active) << i;
+            emergencies += brakes && unsafe ? 1 : 0;
+            safe_brakes += brakes && !unsafe ? 1 : 0;
+            unsafe_before += !brakes && unsafe ? 1 : 0;
+        }
+    }
+    EXPECT_GT(emergencies, 0);
+    EXPECT_GT(safe_brakes, 0);
+    EXPECT_GT(unsafe_before, 0);
+}
+
+TEST(TellingBraking, NothingSafeIsCriticalOnceWhenTheVehicleBrakes)
+{
+    const auto t = teller();
+    t->fly(60);
+    t->put_ahead(25.0F, Vec3(-30.0F, 0.0F, 0.0F));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.state == SystemState::emergency; }, 50));
+    EXPECT_EQ(t->said("jink: nothing safe"), 1) << "in the step of the emergency";
+    EXPECT_TRUE(t->said_as(Severity::critical, "jink: nothing safe, braking"));
+    t->fly(100);
+    EXPECT_EQ(t->said("jink: nothing safe"), 1);
+    EXPECT_EQ(t->said("jink: no way around"), 0) << "worse was said";
+}
+
+TEST(TellingBraking, FallbackThatKeepsClearIsAWarningOnceAndWorseIsSaidAfterIt)
+{
+    const auto t = teller();
+    t->own.velocity = Vec3::Zero();
+    t->fly(60);
+    t->put_ahead(1.0F);
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.state == avoid::State::braking; }, 50));
+    ASSERT_EQ(t->last.state, SystemState::active);
+    EXPECT_TRUE(t->said_as(Severity::warning, "jink: no way around, braking"));
+    EXPECT_EQ(t->said("jink: nothing safe"), 0);
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.state == SystemState::emergency; }, 50));
+    EXPECT_EQ(t->said("jink: nothing safe"), 1);
+    t->fly(30);
+    EXPECT_EQ(t->said("jink: nothing safe"), 1);
+    EXPECT_EQ(t->said("jink: no way around"), 1);
+    const auto clear = teller();
+    clear->fly(60);
+    clear->put_ahead(25.0F, Vec3(-10.0F, 0.0F, 0.0F));
+    clear->fly(150);
+    EXPECT_EQ(clear->said("jink: n"), 0) << "it never braked";
+}
+
+/// Steps since the last one of a conflict, the braking after it included.
+int quiet_steps(Teller& t, int most)
+{
+    int quiet = 0;
+    for (int i = 0; i < 600 && quiet < most; ++i) {
+        t.step();
+        const bool on = t.last.guidance.has_conflict || t.last.guidance.state == avoid::State::braking;
+        quiet = on ? 0 : quiet + 1;
+    }
+    return quiet;
+}
+
+TEST(TellingBraking, ConflictThatComesBackWithinFiveSecondsIsTheSame)
+{
+    for (const int pause : {235, 265}) {
+        const auto t = teller();
+        t->fly(60);
+        t->put_ahead(25.0F, Vec3(-30.0F, 0.0F, 0.0F));
+        t->fly(20);
+        ASSERT_EQ(quiet_steps(*t, pause), pause);
+        ASSERT_EQ(t->said("jink: nothing safe"), 1);
+        t->traffic.clear();
+        t->put_ahead(25.0F, Vec3(-30.0F, 0.0F, 0.0F));
+        ASSERT_TRUE(t->until([](const StepReport& r) { return r.state == SystemState::emergency; }, 50)) << pause;
+        EXPECT_EQ(t->said("jink: nothing safe"), pause < 250 ? 1 : 2);
+    }
+}
+
+TEST(TellingBraking, ConflictThatGoesOnIsTheSameHoweverLong)
+{
+    const auto t = teller();
+    t->fly(60);
+    t->put_ahead(25.0F, Vec3(-30.0F, 0.0F, 0.0F));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.state == SystemState::emergency; }, 50));
+    t->put_ahead(38.0F, Vec3::Zero());
+    int longest = 0, quiet = 0, braked = 0;
+    for (int i = 0; i < 330; ++i) {
+        t->step();
+        const bool on = t->last.guidance.has_conflict || t->last.guidance.state == avoid::State::braking;
+        braked = t->last.guidance.state == avoid::State::braking ? i : braked;
+        quiet = on ? 0 : quiet + 1;
+        longest = std::max(longest, quiet);
+    }
+    ASSERT_EQ(longest, 0) << "in conflict all the time";
+    ASSERT_LT(braked, 60) << "and for more than 5 s without braking";
+    t->put_ahead(25.0F, Vec3(-30.0F, 0.0F, 0.0F));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.state == SystemState::emergency; }, 50));
+    EXPECT_EQ(t->said("jink: nothing safe"), 1);
 }
 
 }  // namespace
