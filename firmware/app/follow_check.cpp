@@ -24,11 +24,11 @@ bool is_followed(const Vec3& command, const Vec3& velocity) noexcept
     return along >= FollowCheck::kSlow * speed && along <= speed && (velocity - along * direction).norm() <= tolerance;
 }
 
-/// The command's course and climb at the speed that is flown.
+/// The command's course and climb at the speed that is flown. Non-finite where the command is.
 Vec3 at_speed_of(const Vec3& velocity, const Vec3& command) noexcept
 {
     const float speed = command.head<2>().norm();
-    if (!is_finite(command) || !is_finite(velocity) || speed <= FollowCheck::kTolerance) {
+    if (speed <= FollowCheck::kTolerance) {
         return command;
     }
     const float share = velocity.head<2>().norm() / speed;

@@ -20,7 +20,8 @@ namespace jink::app {
 /// A vehicle that came closer to a command by kTolerance has kAllowance more for another command: it first undoes what
 /// the command before asked for, after a dead time and with limited jerk. From full acceleration to full braking this
 /// takes so long. A vehicle that ignores the first command is noticed 1 s after the command differs from its motion,
-/// one that ignores a later command after 1 s + kAllowance. No alarm for a vehicle that answers with 2.5 m/s2 and a lag
+/// one that ignores a later command after 1 s + kAllowance. A command that differs by kTolerance at most is the same
+/// command. No alarm for a vehicle that answers with 2.5 m/s2 and a lag
 /// of 0.6 s after a dead time of 0.3 s, in gusts (tests/property/app/follow_check_property_test.cpp).
 ///
 /// A fixed wing is commanded course and climb alone, so its speed is not compared. It has to be told first and then to

@@ -123,6 +123,77 @@ TEST(Echo, CeilingCoversItsCapAndLiesWhollyAtTheRangeOrBehindIt)
     }
 }
 
+TEST(Echo, LevelPartIsAsHighAsSaidAndLooksWhereTheBeamDoes)
+{
+    const Vec3 origin(100.0F, -50.0F, 30.0F);
+    for (const float yaw : {0.0F, 0.5F * kPi, kPi, -0.5F * kPi, 2.0F}) {
+        const geometry::Shape s = level_echo(origin, yaw, 20.0F, 0.05F, 7.0F);
+        ASSERT_EQ(s.kind, geometry::ShapeKind::capsule);
+        const Vec3 off = s.centre - origin;
+        EXPECT_NEAR(off.z(), 0.0F, 1e-4F);
+        EXPECT_NEAR(std::cos(yaw) * off.y() - std::sin(yaw) * off.x(), 0.0F, 1e-3F) << yaw;
+        EXPECT_GT(std::cos(yaw) * off.x() + std::sin(yaw) * off.y(), 20.0F) << "behind the arc";
+        EXPECT_NEAR(s.half.z(), 7.0F, 1e-4F);
+        EXPECT_NEAR(std::abs(s.axes.col(2).z()), 1.0F, 1e-5F) << "upright";
+        // The top and the bottom are 7 m and the radius away.
+        EXPECT_LT(distance(s, (s.centre + Vec3(0, 0, 7.0F + s.radius - 0.01F)).cast<double>()), 0.0);
+        EXPECT_GT(distance(s, (s.centre - Vec3(0, 0, 7.0F + s.radius + 0.01F)).cast<double>()), 0.0);
+    }
+}
+
+TEST(Echo, EvenAThinBeamGivesABodyOfTheLeastRadius)
+{
+    for (const float range : {0.0F, 0.1F, 1.0F}) {
+        EXPECT_EQ(level_echo(Vec3::Zero(), 0.0F, range, 0.001F, 1.0F).radius, kLeastEchoRadius) << range;
+        EXPECT_EQ(slanted_echo(Vec3::Zero(), Vec3::UnitZ(), range, 0.001F).radius, kLeastEchoRadius) << range;
+    }
+    EXPECT_GT(level_echo(Vec3::Zero(), 0.0F, 40.0F, 0.08F, 1.0F).radius, 40.0F * std::sin(0.08F));
+    EXPECT_GT(slanted_echo(Vec3::Zero(), Vec3::UnitZ(), 40.0F, 0.5F).radius, 40.0F * std::sin(0.5F));
+}
+
+/// The ends of the arc lie on the surface: nothing is covered in vain beside the beam.
+TEST(Echo, EndsOfTheArcLieOnTheSurface)
+{
+    Draw draw(15);
+    for (int i = 0; i < 200; ++i) {
+        const double range = draw.within(5.0, 40.0);
+        const double half = draw.within(0.06, 0.5 * static_cast<double>(kWidestPart));
+        const geometry::Shape level =
+            level_echo(Vec3::Zero(), 0.0F, static_cast<float>(range), static_cast<float>(half), 5.0F);
+        EXPECT_NEAR(distance(level, range * Point(std::cos(half), std::sin(half), 0.0)), 0.0, kRounding) << i;
+        const geometry::Shape ball =
+            slanted_echo(Vec3::Zero(), Vec3::UnitX(), static_cast<float>(range), static_cast<float>(half));
+        EXPECT_NEAR(distance(ball, range * Point(std::cos(half), 0.0, std::sin(half))), 0.0, kRounding) << i;
+        EXPECT_GT(level.centre.x(), range * std::cos(half)) << "the centre lies behind the arc";
+        EXPECT_GT(ball.centre.x(), range * std::cos(half));
+    }
+}
+
+TEST(Echo, PartsAreAsFewAsTheWidestAllows)
+{
+    EXPECT_EQ(echo_parts(0.0F), 1U);
+    EXPECT_EQ(echo_parts(0.5F * kWidestPart), 1U) << "the widest part itself";
+    EXPECT_EQ(echo_parts(0.51F * kWidestPart), 2U);
+    EXPECT_EQ(echo_parts(kWidestPart), 2U);
+    EXPECT_EQ(echo_parts(1.6F * kWidestPart), 4U);
+    EXPECT_EQ(echo_parts(0.5F * kPi), kMaxEchoParts);
+    EXPECT_EQ(echo_parts(2.0F), kMaxEchoParts) << "half angles beyond a half circle do not exist";
+}
+
+TEST(Echo, CeilingIsAsThickAsItIsWideAndNeverNarrowerThanTheBeam)
+{
+    for (const float half_width : {2.0F, 10.0F}) {
+        for (const float half_angle : {0.1F, 1.0F}) {
+            const geometry::Shape s = ceiling_echo(Vec3(1, 2, 3), 6.0F, half_angle, half_width);
+            const float wide = std::max(half_width, 6.0F * std::sin(half_angle));
+            ASSERT_EQ(s.kind, geometry::ShapeKind::box);
+            EXPECT_EQ(s.half, Vec3(wide, wide, wide));
+            EXPECT_EQ(s.centre.head<2>(), (Vec3(1, 2, 3).head<2>()));
+            EXPECT_NEAR(s.centre.z() - s.half.z(), 3.0F + 6.0F * std::cos(half_angle), 1e-4F) << "its lower face";
+        }
+    }
+}
+
 class RangeSensors : public ::testing::Test {
 protected:
     void SetUp() override

@@ -201,5 +201,54 @@ TEST(FollowCheck, ResetForgetsWhatWasMissing)
     EXPECT_FOUND_AT(1.0F, f.found(kEast, kNorth));
 }
 
+TEST(FollowCheck, FollowingForAnInstantDoesNotUndoWhatIsMissing)
+{
+    Followed f;
+    EXPECT_FALSE(f.tick(kEast, kNorth));
+    int ticks = 0;
+    while (ticks < 400 && !f.tick(ticks % 4 == 3 ? kNorth : kEast, kNorth)) {
+        ++ticks;
+    }
+    EXPECT_NEAR(0.02F * static_cast<float>(ticks), 2.0F, 0.09F) << "of four ticks three are missing, one is taken off";
+}
+
+TEST(FollowCheck, CommandThatDiffersByTheToleranceIsTheSameOne)
+{
+    for (const float change : {FollowCheck::kTolerance, 1.001F * FollowCheck::kTolerance}) {
+        Followed f;
+        EXPECT_FALSE(f.changes(kNorth, Vec3::Zero(), kNorth, 2.0F));
+        const bool same = change <= FollowCheck::kTolerance;
+        const Vec3 next = kNorth - Vec3(0.0F, change, 0.0F);
+        EXPECT_FOUND_AT(FollowCheck::kPatience + (same ? 0.0F : FollowCheck::kAllowance), f.found(next, kEast))
+            << change;
+    }
+}
+
+TEST(FollowCheck, VehicleThatClosesTheWholeToleranceHasAnswered)
+{
+    for (const float off : {FollowCheck::kTolerance, 0.999F * FollowCheck::kTolerance}) {
+        Followed f;
+        EXPECT_FALSE(f.tick(kNorth, kNorth - Vec3(0.0F, off, 0.0F)));
+        EXPECT_FALSE(f.tick(kNorth, kNorth + Vec3(0.0F, 0.01F, 0.0F)));
+        const bool answered = off >= FollowCheck::kTolerance;
+        EXPECT_FOUND_AT(FollowCheck::kPatience + (answered ? FollowCheck::kAllowance : 0.0F),
+                        f.found(kEast, kNorth + Vec3(0.0F, 0.01F, 0.0F)))
+            << off;
+    }
+}
+
+TEST(FollowCheck, DescentThatIsIgnoredIsNoticed)
+{
+    EXPECT_FOUND_AT(1.0F, Followed().found(Vec3(0.0F, 0.0F, -3.0F), Vec3::Zero()));
+    EXPECT_FOUND_AT(2.5F, plane().found(Vec3(18.0F, 0.0F, 8.0F), Vec3(18.0F, 0.0F, 0.0F)));
+}
+
+TEST(FollowCheck, PlaneIsComparedByItsCourseAtItsOwnSpeed)
+{
+    EXPECT_FOUND_AT(2.5F, plane().found(Vec3(0.0F, 9.0F, 0.0F), Vec3(18.0F, 0.0F, 0.0F))) << "a right angle off";
+    EXPECT_LT(plane().found(Vec3(30.0F, 0.0F, 0.0F), Vec3(12.0F, 0.0F, 0.0F)), 0.0F) << "slower than commanded";
+    EXPECT_FOUND_AT(1.0F, Followed().found(Vec3(30.0F, 0.0F, 0.0F), Vec3(12.0F, 0.0F, 0.0F))) << "no plane";
+}
+
 }  // namespace
 }  // namespace jink::app

@@ -77,5 +77,43 @@ TEST(HoldChoice, APassThatIsWideEnoughIsNotStoppedFor)
     EXPECT_FALSE(Case(Vec3(6.0F, 0.0F, 0.0F), 10.0F, 9.0F).holds());
 }
 
+TEST(HoldChoice, GainItselfIsEnoughAndLessIsNot)
+{
+    Case behind(Vec3(0.0F, -2.0F, 0.0F), 10.0F);
+    behind.track.position = Vec3(0.0F, -4.0F, 0.0F);  // 4 m behind and going away: never nearer than now
+    behind.conflict.miss_distance = 4.0F - kHoldBetter;
+    EXPECT_TRUE(behind.holds());
+    behind.conflict.miss_distance = 4.001F - kHoldBetter;
+    EXPECT_FALSE(behind.holds());
+}
+
+TEST(HoldChoice, WhatFliesAtHalfAMetrePerSecondDoesNotStand)
+{
+    Case slow(Vec3(0.0F, -0.5F, 0.0F), 3.0F);
+    EXPECT_FALSE(slow.holds()) << "it comes nearer to where the vehicle rests";
+    slow.track.velocity.y() = -0.499F;
+    EXPECT_TRUE(slow.holds());
+}
+
+TEST(HoldChoice, ClosestPassWhileItBrakesCounts)
+{
+    // It crosses 1 m ahead within the first tenths of a second; afterwards it is far away.
+    Case early(Vec3(20.0F, 0.0F, 0.0F), 10.0F);
+    early.track.position = Vec3(-4.0F, 2.0F, 0.0F);
+    early.conflict.miss_distance = 0.5F;
+    EXPECT_FALSE(early.holds());
+    early.track.position = Vec3(-4.0F, 20.0F, 0.0F);
+    EXPECT_TRUE(early.holds()) << "the same pass, far ahead";
+}
+
+TEST(HoldChoice, TrafficAboveCountsByItsHeight)
+{
+    Case above(Vec3(0.0F, -8.0F, 0.0F), 20.0F);
+    above.track.position.z() += 5.0F;
+    EXPECT_TRUE(above.holds()) << "5 m above where it rests";
+    above.track.position.z() -= 4.0F;
+    EXPECT_FALSE(above.holds());
+}
+
 }  // namespace
 }  // namespace jink::app

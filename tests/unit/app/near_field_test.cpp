@@ -130,5 +130,159 @@ TEST(NearField, AnglesAreThoseOfTheNose)
     EXPECT_TRUE(find_near(own, {}, {&o, 1}, 3.0F).empty());
 }
 
+TEST(NearField, AnglesAgreeWithTheCompassForAnyNose)
+{
+    Random random(14);
+    for (int i = 0; i < 2000; ++i) {
+        vehicle::VehicleState own;
+        own.position = any(random, 100.0F);
+        own.yaw = random.uniform(-10.0F, 10.0F);
+        world::Track track;
+        const Vec3 off = any(random, 25.0F);
+        track.position = own.position + off;
+        track.radius = 0.1F;
+        if (off.norm() < 1.0F || off.head<2>().norm() < 0.5F) {
+            continue;
+        }
+        const NearObjects found = find_near(own, {&track, 1}, {}, 0.0F);
+        ASSERT_EQ(found.size(), 1U);
+        // Turned by the yaw that is told, clockwise, the nose looks at it.
+        const double nose = static_cast<double>(own.yaw) - static_cast<double>(found[0].yaw);
+        const double level = std::hypot(static_cast<double>(off.x()), static_cast<double>(off.y()));
+        ASSERT_NEAR(std::cos(nose), static_cast<double>(off.x()) / level, 1e-4) << i;
+        ASSERT_NEAR(std::sin(nose), static_cast<double>(off.y()) / level, 1e-4) << i;
+        ASSERT_NEAR(std::tan(static_cast<double>(found[0].pitch)), static_cast<double>(off.z()) / level, 1e-2) << i;
+        ASSERT_LE(std::abs(found[0].yaw), kPi + 1e-4F);
+        ASSERT_NEAR(found[0].distance, off.norm() - 0.1F, 1e-3F);
+    }
+}
+
+TEST(NearField, TrafficOfUncertainHeightIsAsNearAsItMayBe)
+{
+    vehicle::VehicleState own;
+    own.position = Vec3(0.0F, 0.0F, 50.0F);
+    world::Track track;
+    track.position = Vec3(20.0F, 0.0F, 80.0F);
+    track.radius = 1.0F;
+    track.half_height = 40.0F;
+    NearObjects found = find_near(own, {&track, 1}, {}, 3.0F);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found[0].distance, 19.0F, 1e-4F) << "it may be at our height";
+    EXPECT_NEAR(found[0].pitch, 0.0F, 1e-5F);
+    track.half_height = 15.0F;
+    found = find_near(own, {&track, 1}, {}, 3.0F);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found[0].distance, 24.0F, 1e-4F) << "20 m aside and 15 m above, less the body";
+    EXPECT_NEAR(found[0].pitch, std::atan2(15.0F, 20.0F), 1e-5F);
+}
+
+TEST(NearField, UncertaintyAndBodyBringTrafficNearer)
+{
+    vehicle::VehicleState own;
+    world::Track track;
+    track.position = Vec3(0.0F, 30.0F, 0.0F);
+    track.radius = 2.0F;
+    track.sigma_position = 1.5F;
+    EXPECT_NEAR(find_near(own, {&track, 1}, {}, 2.0F)[0].distance, 25.0F, 1e-4F);
+    track.radius = 40.0F;
+    EXPECT_EQ(find_near(own, {&track, 1}, {}, 2.0F)[0].distance, kNearLeast) << "within its body";
+}
+
+TEST(NearField, ObstacleThatHoldsTheVehicleLiesWhereItsCentreIs)
+{
+    vehicle::VehicleState own;
+    for (const float side : {-1.0F, 1.0F}) {
+        const world::Obstacle o{1, geometry::make_sphere({0.0F, side, 0.0F}, 5.0F)};
+        const NearObjects found = find_near(own, {}, {&o, 1}, 3.0F);
+        ASSERT_EQ(found.size(), 1U);
+        EXPECT_EQ(found[0].distance, kNearLeast);
+        EXPECT_NEAR(found[0].yaw, side * -0.5F * kPi, 1e-5F) << "left is counter-clockwise";
+    }
+}
+
+TEST(NearField, NearestOfTracksAndObstaclesOfASectorIsTold)
+{
+    vehicle::VehicleState own;
+    world::Track track;
+    track.position = Vec3(20.0F, 0.0F, 0.0F);
+    track.radius = 1.0F;
+    for (const float range : {10.0F, 30.0F}) {
+        const world::Obstacle o{1, geometry::make_sphere({range, 0.0F, 0.0F}, 1.0F)};
+        const NearObjects found = find_near(own, {&track, 1}, {&o, 1}, 3.0F);
+        ASSERT_EQ(found.size(), 1U);
+        EXPECT_NEAR(found[0].distance, std::min(range, 20.0F) - 1.0F, 1e-4F);
+    }
+}
+
+TEST(NearField, ReachEndsAtItsBoundAndTheLeastIsTold)
+{
+    vehicle::VehicleState own;
+    const auto told = [&](float surface) {
+        const world::Obstacle o{1, geometry::make_sphere({surface + 1.0F, 0.0F, 0.0F}, 1.0F)};
+        const NearObjects found = find_near(own, {}, {&o, 1}, 3.0F);
+        return found.empty() ? -1.0F : found[0].distance;
+    };
+    EXPECT_EQ(told(kNearReach), -1.0F);
+    EXPECT_NEAR(told(kNearReach - 0.01F), kNearReach - 0.01F, 1e-4F);
+    EXPECT_EQ(told(0.05F), kNearLeast);
+    EXPECT_NEAR(told(0.15F), 0.15F, 1e-5F);
+}
+
+TEST(NearField, PointOnTheSurfaceOrWithinIsNearestToItself)
+{
+    const Vec3 inside(0.5F, 0.2F, -0.3F);
+    const Shape shapes[] = {geometry::make_sphere(Vec3::Zero(), 1.0F), geometry::make_box(Vec3::Zero(), Vec3::Ones()),
+                            geometry::make_capsule(Vec3(0, 0, -2), Vec3(0, 0, 2), 1.0F)};
+    for (const Shape& shape : shapes) {
+        EXPECT_LT((nearest_point(shape, inside) - inside).norm(), 1e-6F);
+        EXPECT_LT((nearest_point(shape, Vec3(1.0F, 0.0F, 0.0F)) - Vec3(1.0F, 0.0F, 0.0F)).norm(), 1e-6F);
+        EXPECT_LT((nearest_point(shape, Vec3(3.0F, 0.0F, 0.0F)) - Vec3(1.0F, 0.0F, 0.0F)).norm(), 1e-6F);
+    }
+    const std::array<Vec3, 4> corners{Vec3(1, 0, 0), Vec3(-1, 1, 0), Vec3(-1, -1, 0), Vec3(0, 0, 2)};
+    const Shape hull = geometry::make_hull(corners, Vec3(10.0F, 0.0F, 0.0F));
+    const Vec3 nearest = nearest_point(hull, Vec3::Zero());
+    EXPECT_LE(nearest.x(), 8.0F) << "its bounding sphere: nearer than it is";
+    EXPECT_GE(nearest.x(), 7.99F);
+    EXPECT_EQ(nearest.tail<2>().norm(), 0.0F);
+}
+
+TEST(NearField, NearestPointOfACapsuleLiesOnItsCapsBeyondItsEnds)
+{
+    const Shape capsule = geometry::make_capsule(Vec3(10, 0, -2), Vec3(10, 0, 2), 1.0F);
+    for (const float end : {-1.0F, 1.0F}) {
+        const Vec3 nearest = nearest_point(capsule, Vec3(10.0F, 3.0F, end * 6.0F));
+        EXPECT_LT((nearest - Vec3(10.0F, 0.6F, end * 2.8F)).norm(), 1e-5F)
+            << "3 aside and 4 along from the cap's centre";
+        EXPECT_LT((nearest_point(capsule, Vec3(10.0F, 0.0F, end * 9.0F)) - Vec3(10.0F, 0.0F, end * 3.0F)).norm(),
+                  1e-5F);
+    }
+}
+
+TEST(NearField, NearestPointOfABoxLiesOnItsFacesEdgesAndCorners)
+{
+    const Shape box = geometry::make_box(Vec3(1, 2, 3), Vec3(2, 3, 4));
+    EXPECT_EQ(nearest_point(box, Vec3(10, 20, 30)), Vec3(3, 5, 7));
+    EXPECT_EQ(nearest_point(box, Vec3(-10, -20, -30)), Vec3(-1, -1, -1));
+    EXPECT_EQ(nearest_point(box, Vec3(10, 2, 3)), Vec3(3, 2, 3));
+    EXPECT_EQ(nearest_point(box, Vec3(0.5F, 1.5F, -9.0F)), Vec3(0.5F, 1.5F, -1.0F));
+}
+
+TEST(NearField, PointOfNoSizeIsItself)
+{
+    const Vec3 at(4.0F, 5.0F, 6.0F);
+    EXPECT_EQ(nearest_point(geometry::make_sphere(at, 0.0F), at), at);
+    EXPECT_EQ(nearest_point(geometry::make_sphere(at, 0.0F), Vec3::Zero()), at);
+}
+
+TEST(NearField, WallIsToldWhereItIsNearestNotWhereItsCentreIs)
+{
+    vehicle::VehicleState own;
+    const world::Obstacle wall{1, geometry::make_box({10.0F, 40.0F, 0.0F}, {1.0F, 50.0F, 5.0F})};
+    const NearObjects found = find_near(own, {}, {&wall, 1}, 3.0F);
+    ASSERT_EQ(found.size(), 1U);
+    EXPECT_NEAR(found[0].distance, 9.0F, 1e-5F);
+    EXPECT_NEAR(found[0].yaw, 0.0F, 1e-5F) << "straight ahead";
+}
+
 }  // namespace
 }  // namespace jink::app

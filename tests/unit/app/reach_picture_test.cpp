@@ -122,5 +122,110 @@ TEST(ReachPictures, RaysThatAreNotValidSeeNothing)
     EXPECT_EQ(std::count(blocks.begin(), blocks.end(), reach::kFree), 0);
 }
 
+/// The start of a scan, as the picture has it once the scan has ended.
+const reach::ScanStart& start_of(Flying& f)
+{
+    f.look();
+    EXPECT_EQ(f.picture.unused(), 0U);
+    return f.picture.picture().start();
+}
+
+TEST(ReachPictures, StartOfAScanIsCarriedFromTheOwnStateToItsStamp)
+{
+    for (const Seconds apart : {-0.4F, 0.0F, 0.3F}) {
+        Flying f;
+        f.scan.stamp = f.view.stamp + apart;
+        f.view.velocity = Vec3(3.0F, -4.0F, 1.0F);
+        f.view.yaw = 0.7F;
+        const reach::ScanStart& start = start_of(f);
+        EXPECT_EQ(start.stamp, f.scan.stamp);
+        EXPECT_LT((start.position - f.view.position - apart * f.view.velocity).norm(), 1e-4F) << apart;
+        EXPECT_EQ(start.nose, 0.7F);
+        EXPECT_NEAR(start.course, std::atan2(-4.0F, 3.0F), 1e-6F);
+        EXPECT_EQ(start.horizontal_pitch, f.scan.ray_pitch_level);
+        EXPECT_EQ(start.vertical_pitch, f.scan.ray_pitch_vertical);
+    }
+}
+
+TEST(ReachPictures, LayersAreAsThickAsAMovementIsLongAndNeverThinnerThanTheSlowest)
+{
+    const float slowest = reach_sets().speeds.front() * reach_sets().cruise_speed;
+    for (const float speed : {0.0F, 0.5F * slowest, slowest, 2.0F * slowest}) {
+        Flying f;
+        f.view.velocity = Vec3(0.0F, speed, 0.0F);
+        f.view.yaw = -0.4F;
+        const reach::ScanStart& start = start_of(f);
+        EXPECT_NEAR(start.unit, std::max(speed, slowest) * reach_sets().period, 1e-5F) << speed;
+        EXPECT_NEAR(start.course, speed < slowest ? -0.4F : 0.5F * kPi, 1e-6F)
+            << "slower, it may turn anywhere: along the nose";
+    }
+}
+
+TEST(ReachPictures, OwnStateMayBeAsOldAsItsBoundEitherWay)
+{
+    for (const std::int64_t us : {-500'000, 500'000}) {
+        Flying f;
+        f.scan.stamp = {f.view.stamp.us + us};
+        f.look();
+        EXPECT_EQ(f.picture.unused(), 0U) << us;
+        Flying late;
+        late.scan.stamp = {late.view.stamp.us + us + (us > 0 ? 1 : -1)};
+        late.look();
+        EXPECT_EQ(late.picture.unused(), 1U) << us;
+        EXPECT_FALSE(late.picture.picture().is_known());
+    }
+}
+
+TEST(ReachPictures, EachScanCountsAndOnlyWhatCannotBeUsedIsUnused)
+{
+    Flying f;
+    f.look();
+    f.scan.ray_pitch_level = 0.0F;
+    f.look();
+    f.scan.ray_pitch_level = 0.02F;
+    f.look();
+    EXPECT_EQ(f.picture.scans(), 3U);
+    EXPECT_EQ(f.picture.unused(), 1U);
+}
+
+/// Sets of a narrow grid first, or of a wide one: what is hit near the top of the wide one is known either way.
+TEST(ReachPictures, GridIsThatOfTheSetsThatReachWidest)
+{
+    const auto segments = reach_sets().segments;
+    const reach::ReachSet& wide = *segments.front().emergency;
+    ASSERT_GT(wide.grid.vertical(), segments.back().emergency->grid.vertical() + 0.1F);
+    std::vector<reach::SegmentSets> reversed(segments.rbegin(), segments.rend());
+    reach::VehicleSets sets = reach_sets();
+    sets.segments = reversed;
+    for (const reach::VehicleSets* each : {&reach_sets(), static_cast<const reach::VehicleSets*>(&sets)}) {
+        ReachPicture picture(*each);
+        Flying f;
+        picture.look_from(f.view);
+        picture.begin_scan(f.scan);
+        const float elevation = 0.8F * wide.grid.vertical();
+        picture.add(Ray::hit, 12.0F * Vec3(0.0F, std::cos(elevation), std::sin(elevation)));
+        picture.end_scan(0);
+        ASSERT_TRUE(picture.picture().is_known());
+        reach::Placed placed;
+        placed.set = &wide;
+        placed.origin = Vec3(10.0F, 20.5F, 30.0F);
+        placed.cosine = 0.0F;
+        placed.sine = 1.0F;
+        placed.unit = 5.0F * reach_sets().period;
+        std::vector<reach::Level> blocks(wide.grid.cells(), reach::kFree);
+        picture.picture().block_unseen(false);
+        WorkBudget budget(100'000);
+        const vehicle::VehicleState own;
+        const vehicle::VehicleLimits limits;
+        const vehicle::Airframe airframe;
+        const world::Reference reference;
+        const world::Airspace airspace;
+        const world::Situation now{f.scan.stamp, own, limits, airframe, reference, {}, {}, airspace};
+        ASSERT_EQ(picture.picture().rate(now, placed, reach::CellBalls(wide.grid), 0.0F, blocks, budget),
+                  reach::RateStatus::rated);
+        EXPECT_GT(std::count_if(blocks.begin(), blocks.end(), [](reach::Level b) { return b != reach::kFree; }), 0);
+    }
+}
+
 }  // namespace
 }  // namespace jink::app

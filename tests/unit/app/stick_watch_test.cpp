@@ -134,5 +134,56 @@ TEST(StickWatch, ThresholdZeroWatchesNothing)
     EXPECT_FALSE(watch.update(nullptr, true, 0.0F)) << "set to 0 in flight";
 }
 
+TEST(StickWatch, RestIsKnownHoweverLongBeforeTheTakeoverItWasReported)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_FALSE(watch.update(nullptr, false, kThreshold));
+    }
+    EXPECT_FALSE(watch.update(nullptr, true, kThreshold));
+    EXPECT_FALSE(see(watch, at(0.9F)));
+    EXPECT_TRUE(see(watch, at(0.9F))) << "the pilot moved them as the take-over began";
+}
+
+TEST(StickWatch, MovementEitherWayCounts)
+{
+    for (const float side : {-0.31F, 0.31F}) {
+        StickWatch watch;
+        see(watch, at(0.0F), false);
+        see(watch, at(side));
+        EXPECT_TRUE(see(watch, at(side))) << side;
+    }
+}
+
+TEST(StickWatch, TicksWithoutAReportDoNotBreakTheRow)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    EXPECT_FALSE(see(watch, at(0.9F)));
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_FALSE(watch.update(nullptr, true, kThreshold));
+    }
+    EXPECT_TRUE(see(watch, at(0.9F)));
+}
+
+TEST(StickWatch, AnotherStickMayBeAwayInTheSecondReport)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    EXPECT_FALSE(see(watch, at(0.9F)));
+    EXPECT_TRUE(see(watch, at(0.0F, 0.5F)));
+}
+
+TEST(StickWatch, WatchIsBackWhenTheThresholdIs)
+{
+    StickWatch watch;
+    see(watch, at(0.0F), false);
+    see(watch, at(0.9F));
+    ASSERT_TRUE(see(watch, at(0.9F)));
+    EXPECT_FALSE(see(watch, at(0.9F), true, 0.0F));
+    EXPECT_FALSE(watch.update(nullptr, true, kThreshold)) << "what was seen before is forgotten";
+}
+
 }  // namespace
 }  // namespace jink::app

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <string>
+
+#include <gtest/gtest.h>
 
 #include "firmware/app/takeover.hpp"
 
@@ -103,5 +106,49 @@ inline TakeoverOutput with_two(Bench& b, const Step& first, const Step& newest)
     input.earlier = earlier;
     return b.takeover.update(input, b.now);
 }
+
+using Change = std::function<void(TakeoverInput&)>;
+
+/// A step with an input that the alphabet of Step does not have. The newest report stays where none is new.
+inline TakeoverOutput varied(Bench& b, const Step& s, const Change& change)
+{
+    b.now = b.now + s.dt;
+    TakeoverInput input = input_of(s);
+    input.report = input.has_report ? input.report : b.last;
+    input.report.stack = b.stack;
+    input.keep_stream = b.keep_stream;
+    change(input);
+    b.last = input.report;
+    return b.takeover.update(input, b.now);
+}
+
+inline Bench awaiting()
+{
+    Bench b;
+    b.step(wants(Beat::former));
+    EXPECT_EQ(b.step(wants(Beat::none, 0.1F)).action, TakeoverAction::request_external);
+    return b;
+}
+
+inline Bench commanding()
+{
+    Bench b = awaiting();
+    EXPECT_EQ(b.step(wants(Beat::external, 0.2F)).event, TakeoverEvent::took_over);
+    return b;
+}
+
+inline Bench declined()
+{
+    Bench b = awaiting();
+    b.step(wants(Beat::former, 1.01F));
+    b.step(wants(Beat::former, 1.01F));
+    EXPECT_EQ(b.step(wants(Beat::none, 1.01F)).event, TakeoverEvent::refused);
+    return b;
+}
+
+inline const Change kPredictedAlone = [](TakeoverInput& in) { in.wants_control = in.urgent_hold = false; };
+inline const Change kFlownAlone = [](TakeoverInput& in) { in.in_conflict = in.urgent_hold = false; };
+inline const Change kSticks = [](TakeoverInput& in) { in.sticks_moved = true; };
+inline const Change kUnfollowed = [](TakeoverInput& in) { in.unfollowed = true; };
 
 }  // namespace jink::app::test
