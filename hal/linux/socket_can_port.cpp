@@ -32,11 +32,10 @@ CanOpenStatus cause_of(int error) noexcept
     }
 }
 
-/// Nothing that time could mend.
+/// Nothing that time could mend; bad_name and too_many_filters do not get as far as this.
 bool is_final(CanOpenStatus status) noexcept
 {
-    return status == CanOpenStatus::bad_name || status == CanOpenStatus::too_many_filters ||
-           status == CanOpenStatus::no_can || status == CanOpenStatus::not_can || status == CanOpenStatus::no_fd;
+    return status == CanOpenStatus::no_can || status == CanOpenStatus::not_can || status == CanOpenStatus::no_fd;
 }
 
 template <class T>

@@ -78,15 +78,15 @@ protected:
             return std::nullopt;
         }
         asked_about = interface->ifr_name;
-        if (missing_error != 0 || request == unanswered) {
-            errno = missing_error != 0 ? missing_error : EINVAL;
-            return -1;
-        }
         switch (request) {
         case SIOCGIFINDEX: interface->ifr_ifindex = index; break;
         case SIOCGIFHWADDR: interface->ifr_hwaddr.sa_family = hardware; break;
         case SIOCGIFMTU: interface->ifr_mtu = mtu; break;
         default: interface->ifr_flags = static_cast<short>(up ? IFF_UP : IFF_RUNNING); break;
+        }
+        if (missing_error != 0 || request == unanswered) {
+            errno = missing_error != 0 ? missing_error : EINVAL;
+            return -1;  // whatever stands in the answer
         }
         return 0;
     }};

@@ -154,6 +154,10 @@ TEST_F(SocketCan, TellsThatThereIsNoSuchInterface)
         EXPECT_FALSE(port.send({}));
     }
     EXPECT_EQ(port.health().downs, 0U) << "what was never there has not gone away";
+    missing_error = 0;
+    unanswered = SIOCGIFINDEX;
+    EXPECT_EQ(port.open("can0", {}, kRetry), CanOpenStatus::failed);
+    EXPECT_EQ(port.descriptor(), -1);
 }
 
 TEST_F(SocketCan, ASocketThatCannotBeBoundIsNotUsed)
