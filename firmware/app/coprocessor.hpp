@@ -232,6 +232,7 @@ private:
     void prepare_last_words() noexcept;
     void tell_notices() noexcept;
     void take_reading(const link::RangeReading& reading) noexcept;
+    [[nodiscard]] geometry::Shape overhead_echo(const link::RangeReading& reading) const noexcept;
     void place(std::uint32_t id, const geometry::Shape& shape, TimePoint expires) noexcept;
     void place_level(std::uint32_t first, float yaw, float range, float half_angle, TimePoint expires) noexcept;
     void remove_obstacles(std::uint32_t first, std::size_t n) noexcept;

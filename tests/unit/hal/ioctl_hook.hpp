@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <optional>
+
+#include <sys/types.h>
 
 namespace jink::hal::test {
 
@@ -16,6 +19,17 @@ public:
     ~IoctlHook();
     IoctlHook(const IoctlHook&) = delete;
     IoctlHook& operator=(const IoctlHook&) = delete;
+};
+
+/// The same for write(): what no machine's device answers on demand.
+class WriteHook {
+public:
+    using Answer = std::function<std::optional<ssize_t>(int descriptor, const void* data, std::size_t size)>;
+
+    explicit WriteHook(Answer answer);
+    ~WriteHook();
+    WriteHook(const WriteHook&) = delete;
+    WriteHook& operator=(const WriteHook&) = delete;
 };
 
 /// What the kernel says, hook or not.

@@ -15,12 +15,17 @@ namespace jink::hal::test {
 namespace {
 
 IoctlHook::Answer hook;
+WriteHook::Answer write_hook;
 
 }  // namespace
 
 IoctlHook::IoctlHook(Answer answer) { hook = std::move(answer); }
 
 IoctlHook::~IoctlHook() { hook = nullptr; }
+
+WriteHook::WriteHook(Answer answer) { write_hook = std::move(answer); }
+
+WriteHook::~WriteHook() { write_hook = nullptr; }
 
 int kernel_ioctl(int descriptor, unsigned long request, void* argument)
 {
@@ -47,9 +52,27 @@ TEST(IoctlHook, AnswersInTheKernelsPlaceWhileItLives)
     EXPECT_EQ(errno, EBADF);
 }
 
+TEST(WriteHook, AnswersInTheKernelsPlaceWhileItLives)
+{
+    int ends[2] = {-1, -1};
+    ASSERT_EQ(::pipe(ends), 0);
+    {
+        const WriteHook answering([&](int descriptor, const void*, std::size_t size) -> std::optional<ssize_t> {
+            return descriptor == ends[1] ? std::optional<ssize_t>(static_cast<ssize_t>(size) - 1) : std::nullopt;
+        });
+        EXPECT_EQ(::write(ends[1], "abc", 3), 2);
+        EXPECT_EQ(::write(-1, "abc", 3), -1);
+    }
+    char got[4] = {};
+    EXPECT_EQ(::write(ends[1], "de", 2), 2);
+    EXPECT_EQ(::read(ends[0], got, sizeof got), 2) << "what the hook has answered has gone nowhere";
+    ::close(ends[0]);
+    ::close(ends[1]);
+}
+
 }  // namespace jink::hal::test
 
-// Stands in front of the C library's ioctl for everything that is linked into this program.
+// Stand in front of the C library's functions for everything that is linked into this program.
 extern "C" int ioctl(int descriptor, unsigned long request, ...) noexcept
 {
     va_list arguments;
@@ -63,4 +86,15 @@ extern "C" int ioctl(int descriptor, unsigned long request, ...) noexcept
         }
     }
     return jink::hal::test::kernel_ioctl(descriptor, request, argument);
+}
+
+extern "C" ssize_t write(int descriptor, const void* data, std::size_t size)
+{
+    if (jink::hal::test::write_hook) {
+        const std::optional<ssize_t> answer = jink::hal::test::write_hook(descriptor, data, size);
+        if (answer) {
+            return *answer;
+        }
+    }
+    return static_cast<ssize_t>(::syscall(SYS_write, descriptor, data, size));
 }

@@ -266,12 +266,102 @@ TEST(LinuxWatchdog, RefusesUselessAddresses)
 {
     LinuxWatchdog watchdog;
     EXPECT_EQ(watchdog.open_notify(""), WatchdogStatus::bad_path);
+    EXPECT_EQ(watchdog.open_notify({}), WatchdogStatus::bad_path);
     EXPECT_EQ(watchdog.open_notify("@"), WatchdogStatus::bad_path);
     EXPECT_EQ(watchdog.open_notify("relative/path"), WatchdogStatus::bad_path);
     EXPECT_EQ(watchdog.open_notify("/" + std::string(107, 'x')), WatchdogStatus::bad_path);
     EXPECT_EQ(watchdog.open_notify("vsock:2:1234"), WatchdogStatus::bad_path);
     watchdog.feed();
     EXPECT_EQ(watchdog.counters().notify_errors, 0U);
+    EXPECT_EQ(watchdog.open_notify("/" + std::string(106, 'x')), WatchdogStatus::ok) << "the longest that fits";
+    EXPECT_EQ(watchdog.open_notify("/x"), WatchdogStatus::ok) << "the shortest";
+    EXPECT_EQ(watchdog.open_notify("@x"), WatchdogStatus::ok);
+}
+
+TEST(LinuxWatchdog, ALongPathThatFitsIsOnlyNotThere)
+{
+    LinuxWatchdog watchdog;
+    EXPECT_EQ(watchdog.open_device("/" + std::string(106, 'x'), 10), WatchdogStatus::no_device);
+}
+
+TEST(LinuxWatchdog, AnotherOutletTakesTheFormerOnesPlace)
+{
+    const FakeDevice first;
+    const FakeDevice second;
+    const IoctlHook hook([](int, unsigned long request, void*) -> std::optional<int> {
+        return request == WDIOC_SETTIMEOUT ? std::optional<int>(0) : std::nullopt;
+    });
+    const TemporaryFolder folder;
+    const Manager manager(folder / "notify");
+    LinuxWatchdog watchdog;
+    ASSERT_EQ(watchdog.open_device(first.path(), 10), WatchdogStatus::ok);
+    ASSERT_EQ(watchdog.open_device(second.path(), 20), WatchdogStatus::ok);
+    EXPECT_EQ(first.written(), "V") << "or it would reset the machine";
+    ASSERT_EQ(watchdog.open_notify(folder / "notify"), WatchdogStatus::ok);
+    watchdog.feed();
+    EXPECT_EQ(first.written(), "");
+    EXPECT_EQ(second.written(), std::string(1, '\0'));
+    EXPECT_EQ(manager.received(), "WATCHDOG=1");
+    EXPECT_EQ(watchdog.device_timeout_s(), 20);
+    EXPECT_EQ(watchdog.open_device("", 10), WatchdogStatus::bad_path);
+    EXPECT_EQ(second.written(), "V");
+    EXPECT_EQ(watchdog.open_notify("nowhere"), WatchdogStatus::bad_path);
+    watchdog.feed();
+    EXPECT_EQ(manager.received(), "");
+    EXPECT_EQ(watchdog.counters().notify_errors, 0U);
+}
+
+TEST(LinuxWatchdog, TheEndOfItsLifeDisarmsTheDevice)
+{
+    const FakeDevice device;
+    const IoctlHook hook([](int, unsigned long request, void*) -> std::optional<int> {
+        return request == WDIOC_SETTIMEOUT ? std::optional<int>(0) : std::nullopt;
+    });
+    {
+        LinuxWatchdog watchdog;
+        ASSERT_EQ(watchdog.open_device(device.path(), 10), WatchdogStatus::ok);
+    }
+    EXPECT_EQ(device.written(), "V");
+}
+
+TEST(LinuxWatchdog, CountsNoticesThatNobodyHeard)
+{
+    const TemporaryFolder folder;
+    LinuxWatchdog watchdog;
+    ASSERT_EQ(watchdog.open_notify(folder / "notify"), WatchdogStatus::ok);
+    EXPECT_FALSE(watchdog.notify_ready()) << "nobody listens";
+    const Manager manager(folder / "notify");
+    EXPECT_TRUE(watchdog.notify_ready());
+    EXPECT_EQ(watchdog.counters().notify_errors, 1U);
+    watchdog.close();
+    EXPECT_FALSE(watchdog.notify_ready());
+    EXPECT_EQ(watchdog.counters().notify_errors, 1U) << "without an outlet nothing can fail";
+}
+
+// A service may start a program without standard input: its first descriptor is then 0.
+TEST(LinuxWatchdog, WorksWithTheFirstDescriptor)
+{
+    const FakeDevice device;
+    const TemporaryFolder folder;
+    const Manager manager(folder / "notify");
+    const IoctlHook hook([](int, unsigned long request, void*) -> std::optional<int> {
+        return request == WDIOC_SETTIMEOUT ? std::optional<int>(0) : std::nullopt;
+    });
+    LinuxWatchdog watchdog;
+    const test::FreeDescriptorZero zero;
+    ASSERT_EQ(watchdog.open_device(device.path(), 10), WatchdogStatus::ok);
+    watchdog.feed();
+    EXPECT_EQ(device.written(), std::string(1, '\0'));
+    watchdog.close();
+    EXPECT_EQ(device.written(), "V");
+    EXPECT_EQ(::fcntl(0, F_GETFD), -1);
+    ASSERT_EQ(watchdog.open_notify(folder / "notify"), WatchdogStatus::ok);
+    EXPECT_TRUE(watchdog.notify_ready());
+    watchdog.feed();
+    EXPECT_EQ(manager.received(), "READY=1");
+    EXPECT_EQ(manager.received(), "WATCHDOG=1");
+    watchdog.close();
+    EXPECT_EQ(::fcntl(0, F_GETFD), -1);
 }
 
 }  // namespace

@@ -88,6 +88,27 @@ private:
     std::filesystem::path path_;
 };
 
+/// While it lives, descriptor 0 is free and the next to be opened, as in a program that was started without standard
+/// input.
+class FreeDescriptorZero {
+public:
+    FreeDescriptorZero() : kept_(::fcntl(0, F_DUPFD_CLOEXEC, 100)) { ::close(0); }
+    ~FreeDescriptorZero()
+    {
+        if (kept_ >= 0) {
+            ::dup2(kept_, 0);
+            ::close(kept_);
+        } else {
+            ::close(0);
+        }
+    }
+    FreeDescriptorZero(const FreeDescriptorZero&) = delete;
+    FreeDescriptorZero& operator=(const FreeDescriptorZero&) = delete;
+
+private:
+    int kept_;
+};
+
 /// Gives root's rights up while it lives, so that permissions count; nothing for other users.
 class AsNobody {
 public:

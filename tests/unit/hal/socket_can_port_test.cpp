@@ -1,91 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The SocketCAN port without a kernel that has CAN: its socket is one end of a pair of packet sockets, and the test is
 // the bus at the other end. Frames and error frames have the kernel's layout (linux/can.h, linux/can/error.h).
-#include "hal/linux/socket_can_port.hpp"
+#include <array>
 
-#include <cerrno>
-#include <cstring>
-#include <optional>
-
-#include <gtest/gtest.h>
-#include <linux/can.h>
-#include <linux/can/error.h>
-#include <linux/can/raw.h>
-#include <net/if.h>
-#include <net/if_arp.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
 #include <sys/syscall.h>
-#include <unistd.h>
+#include <sys/uio.h>
 
-#include "tests/unit/hal/ioctl_hook.hpp"
+#include "tests/unit/hal/socket_can_bench.hpp"
 
 namespace jink::hal::test {
 
-int bus_end = -1;  ///< set when the port opens its socket
-bool can_is_faked = false;
+FakeCan* fake_can = nullptr;
 
 namespace {
-
-constexpr std::int64_t kRetry = 100'000;
-
-class SocketCan : public testing::Test {
-protected:
-    SocketCan() { can_is_faked = true; }
-    ~SocketCan() override
-    {
-        can_is_faked = false;
-        if (bus_end >= 0) {
-            ::close(bus_end);
-            bus_end = -1;
-        }
-    }
-    SocketCan(const SocketCan&) = delete;
-    SocketCan& operator=(const SocketCan&) = delete;
-
-    bool up = true;
-    bool there = true;
-    IoctlHook hook{[this](int, unsigned long request, void* argument) -> std::optional<int> {
-        auto* const interface = static_cast<ifreq*>(argument);
-        if (request != SIOCGIFINDEX && request != SIOCGIFHWADDR && request != SIOCGIFFLAGS) {
-            return std::nullopt;
-        }
-        if (!there) {
-            errno = ENODEV;
-            return -1;
-        }
-        switch (request) {
-        case SIOCGIFINDEX: interface->ifr_ifindex = 3; break;
-        case SIOCGIFHWADDR: interface->ifr_hwaddr.sa_family = ARPHRD_CAN; break;
-        default: interface->ifr_flags = static_cast<short>(up ? IFF_UP : 0); break;
-        }
-        return 0;
-    }};
-    SocketCanPort port;
-
-    void open() { ASSERT_EQ(port.open("can0", {}, kRetry), CanOpenStatus::ok); }
-    /// Something from the controller, worked off by the port.
-    void error_frame(std::uint32_t id, std::uint8_t controller = 0)
-    {
-        can_frame raw{};
-        raw.can_id = id | CAN_ERR_FLAG;
-        raw.can_dlc = CAN_ERR_DLC;
-        raw.data[1] = controller;
-        ASSERT_EQ(::write(bus_end, &raw, CAN_MTU), static_cast<ssize_t>(CAN_MTU));
-        CanFrame frame;
-        EXPECT_FALSE(port.receive(frame)) << "an error frame is no frame";
-    }
-    /// Frames that have reached the bus.
-    [[nodiscard]] static std::size_t on_the_bus()
-    {
-        std::size_t n = 0;
-        can_frame raw{};
-        while (::recv(bus_end, &raw, sizeof raw, MSG_DONTWAIT) > 0) {
-            ++n;
-        }
-        return n;
-    }
-};
 
 TEST_F(SocketCan, SendsNothingWhileTheControllerIsOffTheBus)
 {
@@ -133,7 +60,7 @@ TEST_F(SocketCan, FramesComeAsTheKernelHasThem)
     raw.can_dlc = 3;
     raw.data[0] = 1;
     raw.data[2] = 9;
-    ASSERT_EQ(::write(bus_end, &raw, CAN_MTU), static_cast<ssize_t>(CAN_MTU));
+    ASSERT_EQ(::send(kernel.bus_end, &raw, CAN_MTU, 0), static_cast<ssize_t>(CAN_MTU));
     CanFrame frame;
     ASSERT_TRUE(port.receive(frame));
     EXPECT_TRUE(frame.extended);
@@ -145,7 +72,7 @@ TEST_F(SocketCan, FramesComeAsTheKernelHasThem)
     frame.remote = false;
     ASSERT_TRUE(port.send(frame));
     can_frame sent{};
-    ASSERT_EQ(::recv(bus_end, &sent, sizeof sent, MSG_DONTWAIT), static_cast<ssize_t>(CAN_MTU));
+    ASSERT_EQ(::recv(kernel.bus_end, &sent, sizeof sent, MSG_DONTWAIT), static_cast<ssize_t>(CAN_MTU));
     EXPECT_EQ(sent.can_id, raw.can_id);
     EXPECT_EQ(sent.can_dlc, 3);
     EXPECT_EQ(std::memcmp(sent.data, raw.data, 3), 0);
@@ -160,12 +87,12 @@ TEST_F(SocketCan, AnInterfaceThatGoesAndComesIsFollowed)
     up = true;
     port.service(1);
     EXPECT_EQ(port.health().state, CanState::active);
-    there = false;
+    missing_error = ENODEV;
     port.service(2);
     EXPECT_EQ(port.health().state, CanState::down);
     EXPECT_EQ(port.descriptor(), -1);
     EXPECT_FALSE(port.send({}));
-    there = true;
+    missing_error = 0;
     port.service(kRetry);
     EXPECT_EQ(port.health().state, CanState::active);
     EXPECT_EQ(port.health().downs, 2U);
@@ -173,38 +100,88 @@ TEST_F(SocketCan, AnInterfaceThatGoesAndComesIsFollowed)
 }
 
 }  // namespace
-
 }  // namespace jink::hal::test
 
 // Stand in front of the C library's functions for everything that is linked into this program.
 extern "C" int socket(int domain, int type, int protocol) noexcept
 {
-    if (domain != PF_CAN || !jink::hal::test::can_is_faked) {
+    jink::hal::test::FakeCan* const fake = jink::hal::test::fake_can;
+    if (domain != PF_CAN || fake == nullptr) {
         return static_cast<int>(::syscall(SYS_socket, domain, type, protocol));
+    }
+    if (fake->socket_error != 0) {
+        errno = fake->socket_error;
+        return -1;
     }
     int ends[2] = {-1, -1};
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC, 0, ends) != 0) {
         return -1;
     }
-    if (jink::hal::test::bus_end >= 0) {
-        ::close(jink::hal::test::bus_end);
+    if (fake->bus_end >= 0) {
+        ::close(fake->bus_end);
     }
-    jink::hal::test::bus_end = ends[1];
+    fake->bus_end = ends[1];
+    ++fake->opened;
     return ends[0];
 }
 
 extern "C" int setsockopt(int descriptor, int level, int option, const void* value, socklen_t size) noexcept
 {
-    if (level == SOL_CAN_RAW && jink::hal::test::can_is_faked) {
-        return 0;
+    jink::hal::test::FakeCan* const fake = jink::hal::test::fake_can;
+    if (fake == nullptr || (level != SOL_CAN_RAW && level != SOL_SOCKET)) {
+        return static_cast<int>(::syscall(SYS_setsockopt, descriptor, level, option, value, size));
     }
-    return static_cast<int>(::syscall(SYS_setsockopt, descriptor, level, option, value, size));
+    if (option == fake->refused_option) {
+        errno = EINVAL;
+        return -1;
+    }
+    if (level == SOL_CAN_RAW && option == CAN_RAW_ERR_FILTER) {
+        fake->error_mask = *static_cast<const can_err_mask_t*>(value);
+    } else if (level == SOL_CAN_RAW && option == CAN_RAW_FILTER) {
+        const auto* const filters = static_cast<const can_filter*>(value);
+        fake->filters.assign(filters, filters + size / sizeof(can_filter));
+    } else if (level == SOL_CAN_RAW && option == CAN_RAW_FD_FRAMES) {
+        fake->fd_frames = *static_cast<const int*>(value) == 1;
+    } else if (level == SOL_SOCKET && option == SO_RXQ_OVFL) {
+        fake->counts_drops = *static_cast<const int*>(value) == 1;
+    } else if (level == SOL_SOCKET && option == SO_RCVBUF) {
+        fake->receive_buffer = *static_cast<const int*>(value);
+    }
+    return 0;
 }
 
 extern "C" int bind(int descriptor, const sockaddr* address, socklen_t size) noexcept
 {
-    if (address->sa_family == AF_CAN && jink::hal::test::can_is_faked) {
-        return 0;
+    jink::hal::test::FakeCan* const fake = jink::hal::test::fake_can;
+    if (fake == nullptr || address->sa_family != AF_CAN) {
+        return static_cast<int>(::syscall(SYS_bind, descriptor, address, size));
     }
-    return static_cast<int>(::syscall(SYS_bind, descriptor, address, size));
+    if (fake->bind_error != 0) {
+        errno = fake->bind_error;
+        return -1;
+    }
+    fake->bound_to = reinterpret_cast<const sockaddr_can*>(address)->can_ifindex;
+    return 0;
+}
+
+extern "C" ssize_t recvmsg(int descriptor, msghdr* message, int flags)
+{
+    jink::hal::test::FakeCan* const fake = jink::hal::test::fake_can;
+    if (fake != nullptr && fake->read_error != 0) {
+        errno = fake->read_error;
+        return -1;
+    }
+    void* const control = message->msg_control;
+    const std::size_t room = message->msg_controllen;
+    const auto got = static_cast<ssize_t>(::syscall(SYS_recvmsg, descriptor, message, flags));
+    if (fake != nullptr && fake->ancillary && got >= 0 && room >= CMSG_SPACE(sizeof(std::uint32_t))) {
+        message->msg_control = control;
+        message->msg_controllen = CMSG_SPACE(sizeof(std::uint32_t));
+        cmsghdr* const header = CMSG_FIRSTHDR(message);
+        header->cmsg_level = fake->ancillary->level;
+        header->cmsg_type = fake->ancillary->type;
+        header->cmsg_len = CMSG_LEN(sizeof(std::uint32_t));
+        std::memcpy(CMSG_DATA(header), &fake->ancillary->value, sizeof(std::uint32_t));
+    }
+    return got;
 }

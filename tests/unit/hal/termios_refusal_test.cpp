@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Why a serial device does not open, and what drivers do that no test machine has.
+#include <array>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
@@ -85,6 +86,31 @@ TEST(TermiosSerialPort, RefusesADriverThatDoesNotTakeTheSettings)
     EXPECT_EQ(port.health().state, PortState::lost);
 }
 
+TEST(TermiosSerialPort, BelievesNoSettingsOfACallThatFailed)
+{
+    for (const unsigned long failing : {TCSETS2, TCGETS2}) {
+        SCOPED_TRACE(failing);
+        const Pty peer;
+        TermiosSerialPort port;
+        int answers_wanted = 0;
+        const IoctlHook hook([&](int descriptor, unsigned long request, void* argument) -> std::optional<int> {
+            if (request != TCSETS2 && request != TCGETS2) {
+                return std::nullopt;
+            }
+            const int result = test::kernel_ioctl(descriptor, request, argument);
+            const bool reads_back = request == TCGETS2 && ++answers_wanted == 2;
+            if (reads_back) {
+                auto* const settings = static_cast<termios2*>(argument);
+                settings->c_cflag = CS8 | CREAD | CLOCAL | BOTHER;
+                settings->c_ispeed = settings->c_ospeed = 57'600;
+            }
+            return request == failing && (request == TCSETS2 || reads_back) ? -1 : result;
+        });
+        EXPECT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::settings_refused);
+        EXPECT_EQ(port.actual_baud(), 0U);
+    }
+}
+
 /// A driver that takes all settings and then does something else.
 OpenStatus open_with_driver(TermiosSerialPort& port, std::uint32_t asked, const std::function<void(termios2&)>& change)
 {
@@ -116,6 +142,10 @@ TEST(TermiosSerialPort, ChecksWhatTheDriverMadeOfTheSettings)
     EXPECT_EQ(open_with_driver(port, 4'000'000'000U, rate(9600)), OpenStatus::settings_refused);
     const auto input_only = [](termios2& settings) { settings.c_ispeed = 9600; };
     EXPECT_EQ(open_with_driver(port, 100'000, input_only), OpenStatus::settings_refused);
+    const auto output_only = [](termios2& settings) { settings.c_ospeed = 9600; };
+    EXPECT_EQ(open_with_driver(port, 100'000, output_only), OpenStatus::settings_refused);
+    const auto two_stop_bits = [](termios2& settings) { settings.c_cflag |= CSTOPB; };
+    EXPECT_EQ(open_with_driver(port, 100'000, two_stop_bits), OpenStatus::settings_refused);
     const auto parity = [](termios2& settings) { settings.c_cflag |= PARENB; };
     EXPECT_EQ(open_with_driver(port, 100'000, parity), OpenStatus::settings_refused);
     const auto flow_control = [](termios2& settings) { settings.c_cflag |= CRTSCTS; };
@@ -153,6 +183,89 @@ TEST(TermiosSerialPort, CountsWhatTheDriverSaysWasLost)
     port.service(2);
     EXPECT_EQ(port.health().overruns, 7U);
     EXPECT_EQ(port.health().line_errors, 321U);
+    port.close();
+    driver.overrun = 50;
+    port.service(3);
+    EXPECT_EQ(port.health().overruns, 7U) << "a closed port counts nothing";
+}
+
+TEST(TermiosSerialPort, CountsNothingThatTheDriverDoesNotSay)
+{
+    const Pty peer;
+    std::optional<int> overruns;
+    const IoctlHook counting([&](int, unsigned long request, void* argument) -> std::optional<int> {
+        if (request != TIOCGICOUNT) {
+            return std::nullopt;
+        }
+        static_cast<serial_icounter_struct*>(argument)->overrun = overruns.value_or(99);
+        return overruns ? 0 : -1;
+    });
+    TermiosSerialPort port;
+    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    overruns = 7;  // since when is not known
+    port.service(0);
+    port.service(1);
+    EXPECT_EQ(port.health().overruns, 0U);
+    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    overruns.reset();
+    port.service(2);
+    EXPECT_EQ(port.health().overruns, 0U);
+    overruns = 9;
+    port.service(3);
+    EXPECT_EQ(port.health().overruns, 2U) << "the count that failed lost nothing";
+}
+
+TEST(TermiosSerialPort, WritesThatAreNotTakenNowAreNoError)
+{
+    const Pty peer;
+    TermiosSerialPort port;
+    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    const std::array<std::byte, 4> bytes{};
+    ssize_t answer = 0;
+    int error = 0;
+    int calls = 0;
+    const test::WriteHook hook([&](int descriptor, const void*, std::size_t) -> std::optional<ssize_t> {
+        if (descriptor != port.descriptor()) {
+            return std::nullopt;
+        }
+        errno = error;
+        return ++calls < 1000 ? answer : 4;
+    });
+    error = EIO;  // means nothing where the call did not fail
+    EXPECT_EQ(port.write(bytes), 0U);
+    answer = -1;
+    for (const int later : {EAGAIN, EINTR}) {
+        error = later;
+        EXPECT_EQ(port.write(bytes), 0U);
+    }
+    EXPECT_EQ(calls, 3);
+    EXPECT_EQ(port.health().bytes_refused, 12U);
+    EXPECT_EQ(port.health().write_errors, 0U);
+    EXPECT_EQ(port.health().state, PortState::open);
+    error = EIO;
+    EXPECT_EQ(port.write(bytes), 0U);
+    EXPECT_EQ(port.health().write_errors, 1U);
+    EXPECT_EQ(port.health().state, PortState::lost);
+}
+
+// A service may start a program without standard input: its first descriptor is then 0.
+TEST(TermiosSerialPort, WorksAsTheFirstDescriptor)
+{
+    const Pty peer;
+    TermiosSerialPort port;
+    const test::FreeDescriptorZero zero;
+    ASSERT_EQ(port.open(peer.path(), 57'600, kRetry), OpenStatus::ok);
+    ASSERT_EQ(port.descriptor(), 0);
+    const IoctlHook holding([&](int, unsigned long request, void* argument) -> std::optional<int> {
+        if (request != TIOCOUTQ) {
+            return std::nullopt;
+        }
+        *static_cast<int*>(argument) = 17;
+        return 0;
+    });
+    EXPECT_EQ(port.unsent(), 17U);
+    port.close();
+    EXPECT_EQ(::fcntl(0, F_GETFD), -1);
 }
 
 TEST(TermiosSerialPort, TellsWhatTheDriverStillHolds)

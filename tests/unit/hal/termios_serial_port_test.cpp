@@ -199,6 +199,7 @@ TEST(TermiosSerialPort, EmptySpansAreNothing)
     EXPECT_EQ(port.write({}), 0U);
     peer.hang_up();
     EXPECT_EQ(port.read({}), 0U);
+    EXPECT_EQ(port.write({}), 0U);
     EXPECT_EQ(port.health().state, PortState::open);
 }
 

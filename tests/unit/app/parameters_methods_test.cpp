@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What JNK_METHODS asks for, what several methods share, and the parameters as a bus is served them.
+#include <array>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "core/cost/tables_default.hpp"
+#include "firmware/app/param_service.hpp"
+#include "firmware/app/reach_sets.hpp"
+#include "tests/numbers.hpp"
+
+namespace jink::app {
+namespace {
+
+TEST(ParamMethods, EachNumberIsAnOrderAndWhetherReciprocalIsAsked)
+{
+    using Order = avoid::LadderOrder;
+    using Reactive = avoid::Reactive;
+    struct Case {
+        Order order;
+        Reactive reactive;
+    };
+    const std::array<Case, 6> cases{{{Order::first, Reactive::never},
+                                     {Order::as_given, Reactive::never},
+                                     {Order::reversed, Reactive::never},
+                                     {Order::last, Reactive::never},
+                                     {Order::as_given, Reactive::alone},
+                                     {Order::as_given, Reactive::first}}};
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        Parameters parameters;
+        ASSERT_EQ(parameters.set(Param::methods, static_cast<float>(i)), ParamStatus::ok);
+        const Configuration& c = parameters.configuration();
+        EXPECT_EQ(c.supervisor.reactive, cases[i].reactive) << i;
+        if (cases[i].reactive != Reactive::alone) {
+            EXPECT_EQ(c.supervisor.order, cases[i].order) << i;
+        }
+        EXPECT_EQ(c.orca.gives_up_blocked, cases[i].reactive != Reactive::alone) << "nobody is asked after it";
+    }
+}
+
+TEST(ParamMethods, AllSeeAsFarAndAnswerAsLate)
+{
+    Parameters parameters;
+    ASSERT_EQ(parameters.set(Param::lookahead, 13.0F), ParamStatus::ok);
+    ASSERT_EQ(parameters.set(Param::latency, 0.3F), ParamStatus::ok);
+    const Configuration& c = parameters.configuration();
+    EXPECT_EQ(c.supervisor.lookahead, 13.0F);
+    EXPECT_EQ(c.planner.lookahead, 13.0F);
+    EXPECT_EQ(c.orca.horizon, 13.0F);
+    EXPECT_EQ(c.planner.latency, 0.3F);
+    EXPECT_EQ(c.reach.latency, 0.3F);
+    EXPECT_EQ(c.orca.latency, 0.3F);
+    EXPECT_EQ(c.reach.room, c.supervisor.room);
+    EXPECT_EQ(c.reach.escape.slack, c.supervisor.escape.slack);
+    EXPECT_EQ(c.reach.escape.speed, c.supervisor.escape.speed);
+    EXPECT_EQ(c.reach.sets, &reach_sets());
+    EXPECT_FALSE(c.planner.check_acceleration) << "the predicted flight shows it";
+    EXPECT_EQ(c.planner.tables, &cost::tables::kDefault);
+}
+
+TEST(ParamMethods, WeightsAddUpToOne)
+{
+    Parameters parameters;
+    auto values = parameters.values();
+    values[static_cast<std::size_t>(Param::weight_smoothness)] = 0.2F;
+    values[static_cast<std::size_t>(Param::weight_time)] = 0.15F;
+    values[static_cast<std::size_t>(Param::weight_passing)] = 0.1F;
+    values[static_cast<std::size_t>(Param::weight_beyond)] = 0.05F;
+    ASSERT_EQ(parameters.set_all(values), ParamStatus::ok);
+    EXPECT_NEAR(parameters.configuration().planner.weights.closeness, 0.5F, 1e-6F);
+}
+
+TEST(ParamMethods, TheReachSetsOnlySuitTheirVehicle)
+{
+    Parameters parameters;
+    EXPECT_EQ(parameters.configuration().reach_unsuited,
+              !reach::suits(reach_sets(), parameters.configuration().limits));
+    EXPECT_FALSE(parameters.configuration().reach_unsuited) << "the default vehicle is theirs";
+}
+
+/// The time that costs 1 is stretched by the source's 1.15 and has to lie above that which costs 0.
+TEST(ParamMethods, TimesThatCostNothingAndAllLieApart)
+{
+    const auto fit = [](float low, float high) {
+        Parameters parameters;
+        auto values = parameters.values();
+        values[static_cast<std::size_t>(Param::time_low)] = low;
+        values[static_cast<std::size_t>(Param::time_high)] = high;
+        return parameters.set_all(values);
+    };
+    EXPECT_EQ(fit(9.0F, 8.0F), ParamStatus::ok);
+    EXPECT_EQ(fit(8.0F * 1.15F, 8.0F), ParamStatus::inconsistent) << "the same is not apart";
+    EXPECT_EQ(fit(9.3F, 8.0F), ParamStatus::inconsistent);
+}
+
+class ServedParams : public ::testing::Test {
+protected:
+    static link::ParamName name_of(std::string_view text)
+    {
+        link::ParamName name{};
+        std::copy(text.begin(), text.end(), name.begin());
+        return name;
+    }
+    static Parameters started_with(float lookahead)
+    {
+        Parameters parameters;
+        EXPECT_EQ(parameters.set(Param::lookahead, lookahead), ParamStatus::ok);
+        return parameters;
+    }
+    Parameters parameters = started_with(9.0F);
+    std::uint32_t set = 0;
+    std::uint32_t refused = 0;
+    ParamService service{parameters, set, refused};
+};
+
+TEST_F(ServedParams, ReadsEachWithItsLimitsAndWhatARestartBrings)
+{
+    for (std::uint16_t i = 0; i < kParamCount; ++i) {
+        link::ParamEntry entry;
+        ASSERT_TRUE(service.read(i, entry));
+        const ParamInfo& info = param_table()[i];
+        EXPECT_EQ(std::string(entry.name.data(), ::strnlen(entry.name.data(), entry.name.size())), info.name);
+        EXPECT_EQ(entry.low, info.low);
+        EXPECT_EQ(entry.high, info.high);
+        EXPECT_EQ(entry.integer, info.integer);
+        EXPECT_EQ(entry.value, parameters.values()[i]);
+        EXPECT_EQ(entry.initial, parameters.values()[i]);
+        std::uint16_t index = 0;
+        EXPECT_TRUE(service.find(entry.name, index));
+        EXPECT_EQ(index, i);
+    }
+    link::ParamEntry entry;
+    entry.name = name_of("LEFT_FROM_BEFORE");
+    EXPECT_FALSE(service.read(kParamCount, entry));
+    EXPECT_FALSE(service.read(65535, entry));
+    ASSERT_TRUE(service.read(0, entry));
+    EXPECT_EQ(entry.name[8], '\0') << "nothing of a longer one";
+    std::uint16_t index = 0;
+    EXPECT_FALSE(service.find(name_of("JNK_NOTHING"), index));
+    EXPECT_FALSE(service.find({}, index));
+}
+
+TEST_F(ServedParams, WritesWhatIsInRangeAndCountsTheRest)
+{
+    constexpr auto kIndex = static_cast<std::uint16_t>(Param::lookahead);
+    service.write(kIndex, 12.0F);
+    EXPECT_EQ(parameters.get(Param::lookahead), 12.0F);
+    EXPECT_EQ(set, 1U);
+    for (const float bad : {0.5F, 61.0F, kNan}) {
+        service.write(kIndex, bad);
+    }
+    service.write(kParamCount, 1.0F);
+    service.write(65535, 1.0F);
+    EXPECT_EQ(parameters.get(Param::lookahead), 12.0F);
+    EXPECT_EQ(set, 1U);
+    EXPECT_EQ(refused, 5U);
+    link::ParamEntry entry;
+    ASSERT_TRUE(service.read(kIndex, entry));
+    EXPECT_EQ(entry.value, 12.0F);
+    EXPECT_EQ(entry.initial, 9.0F) << "what it was started with";
+    EXPECT_FALSE(service.save());
+    EXPECT_TRUE(service.erase());
+    EXPECT_EQ(parameters.get(Param::lookahead), 9.0F);
+    EXPECT_EQ(set, 2U);
+    EXPECT_EQ(refused, 5U);
+}
+
+}  // namespace
+}  // namespace jink::app
