@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which settings are taken: each range at its ends, and just beyond them.
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "tests/numbers.hpp"
+#include "tests/unit/core/avoid/fakes.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+
+struct Range {
+    const char* name;
+    float& (*of)(Settings&);
+    float low;
+    float high;
+    friend void PrintTo(const Range& r, std::ostream* out) { *out << r.name; }
+};
+
+const Range kRanges[] = {
+    {"clutter_radius", [](Settings& s) -> float& { return s.clutter_radius; }, 1.0F, 200.0F},
+    {"lookahead", [](Settings& s) -> float& { return s.lookahead; }, 1.0F, 60.0F},
+    {"commit", [](Settings& s) -> float& { return s.commit; }, 0.5F, 60.0F},
+    {"room", [](Settings& s) -> float& { return s.room; }, 0.0F, 10.0F},
+    {"prediction_step", [](Settings& s) -> float& { return s.prediction_step; }, 0.02F, 0.5F},
+    {"fallback_horizon", [](Settings& s) -> float& { return s.fallback_horizon; }, 1.0F, 20.0F},
+    {"reserve", [](Settings& s) -> float& { return s.reserve; }, 0.0F, 5.0F},
+    {"settle", [](Settings& s) -> float& { return s.settle; }, 0.0F, 10.0F},
+    {"clear_extra", [](Settings& s) -> float& { return s.clear_extra; }, 0.0F, 10.0F},
+    {"on_leg", [](Settings& s) -> float& { return s.on_leg; }, 0.05F, 50.0F},
+    {"blocked_patience", [](Settings& s) -> float& { return s.blocked_patience; }, 0.0F, 600.0F},
+    {"give_ground_speed", [](Settings& s) -> float& { return s.give_ground_speed; }, 0.0F, 5.0F},
+    {"give_ground_limit", [](Settings& s) -> float& { return s.give_ground_limit; }, 0.0F, 600.0F},
+    {"least_control", [](Settings& s) -> float& { return s.least_control; }, 0.0F, 60.0F},
+    {"patience", [](Settings& s) -> float& { return s.patience; }, 0.0F, 600.0F},
+    {"position_gain", [](Settings& s) -> float& { return s.gains.position_gain; }, 0.0F, 10.0F},
+    {"max_correction", [](Settings& s) -> float& { return s.gains.max_correction; }, 0.0F, 10.0F},
+    {"escape_slack", [](Settings& s) -> float& { return s.escape.slack; }, 0.0F, 1.0F},
+    {"escape_speed", [](Settings& s) -> float& { return s.escape.speed; }, 0.0F, 10.0F},
+};
+
+struct SettingsRanges : testing::TestWithParam<Range> {
+    [[nodiscard]] static bool takes(float value)
+    {
+        Settings s;
+        GetParam().of(s) = value;
+        return is_valid(s);
+    }
+};
+
+TEST_P(SettingsRanges, HoldTheirEndsAndNothingBeyond)
+{
+    const Range& range = GetParam();
+    EXPECT_TRUE(takes(range.low));
+    EXPECT_TRUE(takes(range.high));
+    EXPECT_FALSE(takes(std::nextafter(range.low, -kInfinity)));
+    EXPECT_FALSE(takes(std::nextafter(range.high, kInfinity)));
+    for (const float bad : {kNan, kInfinity, -kInfinity}) {
+        EXPECT_FALSE(takes(bad)) << bad;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SettingsRanges, testing::ValuesIn(kRanges),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST(SettingsOfBudgets, HoldTheirEnds)
+{
+    const auto takes = [](std::uint32_t budget, std::uint32_t plan, std::uint32_t kept) {
+        Settings s;
+        s.budget = budget;
+        s.plan_budget = plan;
+        s.kept_for_next = kept;
+        return is_valid(s);
+    };
+    EXPECT_TRUE(takes(1000, 1000, 1000)) << "a plan may have all of it, and keep all of that back";
+    EXPECT_TRUE(takes(1000, 100, 100));
+    EXPECT_FALSE(takes(999, 100, 100));
+    EXPECT_FALSE(takes(1000, 99, 0));
+    EXPECT_FALSE(takes(1000, 1001, 0));
+    EXPECT_FALSE(takes(1000, 500, 501));
+}
+
+TEST(SettingsOfOrder, TakeWhatIsNamedAlone)
+{
+    for (int i = 0; i < 6; ++i) {
+        Settings s;
+        s.order = static_cast<LadderOrder>(i);
+        EXPECT_EQ(is_valid(s), i <= 3) << i;
+        s = {};
+        s.reactive = static_cast<Reactive>(i);
+        EXPECT_EQ(is_valid(s), i <= 2) << i;
+    }
+}
+
+TEST(Settings, ThatAreRefusedChangeNothing)
+{
+    FakeMethod method = never();
+    Settings first;
+    first.lookahead = 11.0F;
+    Supervisor supervisor(first, method);
+    Settings bad;
+    bad.lookahead = 12.0F;
+    bad.room = -1.0F;
+    EXPECT_FALSE(supervisor.configure(bad));
+    EXPECT_EQ(supervisor.settings().lookahead, 11.0F);
+    EXPECT_EQ(supervisor.settings().room, first.room);
+    bad.room = 1.0F;
+    EXPECT_TRUE(supervisor.configure(bad));
+    EXPECT_EQ(supervisor.settings().lookahead, 12.0F);
+    EXPECT_EQ(supervisor.settings().room, 1.0F);
+}
+
+}  // namespace
+}  // namespace jink::avoid
