@@ -185,5 +185,113 @@ TEST_F(Automaton, ALateStepCatchesUp)
     EXPECT_NEAR(automaton.running().from.pose.yaw, 3.0F * 15.0F * kPi / 180.0F, 1e-6F);
 }
 
+TEST_F(Automaton, APlanMayBeAsLongAsThereIsRoom)
+{
+    const std::vector<Order> full(kMaxPlanned, Order{kRight, 1.0F, 2.0F});
+    EXPECT_EQ(automaton.replan(full), PushStatus::taken);
+    EXPECT_EQ(automaton.planned().size(), kMaxPlanned);
+    EXPECT_EQ(automaton.planned()[0].movement, kRight);
+    EXPECT_EQ(automaton.refused(), 0U);
+}
+
+TEST_F(Automaton, NothingBeginsBeforeTheVehicleIsPlaced)
+{
+    MovementAutomaton fresh{AutomatonSettings{}, segments};
+    EXPECT_EQ(fresh.step(at_second(0)), StepStatus::ran_dry);
+    ASSERT_EQ(fresh.push({kLeft, 1.0F, 1.0F}), PushStatus::taken);
+    EXPECT_EQ(fresh.step(at_second(0)), StepStatus::ran_dry);
+    EXPECT_FALSE(fresh.is_running());
+    EXPECT_FALSE(fresh.project(at_second(0), state));
+}
+
+TEST_F(Automaton, APlanThatHasNotBegunIsKnownFromWhereTheVehicleIs)
+{
+    EXPECT_FALSE(automaton.project(at_second(0), state)) << "nothing is planned";
+    ASSERT_EQ(automaton.push({kStraight, 1.0F, 3.0F}), PushStatus::taken);
+    ASSERT_EQ(automaton.push({kStraight, 1.0F, 5.0F}), PushStatus::taken);
+    EXPECT_FLOAT_EQ(x_at(0.5), 1.5F);
+    EXPECT_FLOAT_EQ(x_at(2.0), 8.0F);
+    EXPECT_FALSE(automaton.project(at_second(2.1), state));
+    Trajectory all;
+    EXPECT_EQ(automaton.trajectory(all), PredictStatus::complete);
+    EXPECT_EQ(all.legs.size(), 2U);
+}
+
+/// Whole microseconds of the clock do not lose the end of a plan.
+TEST_F(Automaton, TwoMicrosecondsPastTheEndAreTheEnd)
+{
+    ASSERT_EQ(automaton.push({kStraight, 2.0F, 1.0F}), PushStatus::taken);
+    EXPECT_FLOAT_EQ(x_at(2.000002), 2.0F);
+    EXPECT_EQ(state.pose.position.x(), 2.0F);
+    EXPECT_FALSE(automaton.project(at_second(2.00001), state));
+    ASSERT_EQ(automaton.step(at_second(1.0)), StepStatus::running);
+    EXPECT_FLOAT_EQ(x_at(2.000002), 2.0F);
+    EXPECT_FALSE(automaton.project(at_second(2.00001), state));
+}
+
+/// What begins anew forgets the plan and what is under way, keeps the log, and counts time from there.
+TEST_F(Automaton, BeginningAnewForgetsThePlanAndKeepsTheLog)
+{
+    for (int i = 0; i < 3; ++i) {
+        ASSERT_EQ(automaton.push({kLeft, 1.0F, 1.0F}), PushStatus::taken);
+    }
+    ASSERT_EQ(automaton.step(at_second(1.5)), StepStatus::running);
+    FlightState there;
+    there.pose.position = Vec3(7, 8, 9);
+    there.speed = 4.0F;
+    automaton.begin(there, at_second(1.0));
+    EXPECT_FALSE(automaton.is_running());
+    EXPECT_TRUE(automaton.planned().empty());
+    EXPECT_EQ(automaton.executed(), 1U);
+    ASSERT_EQ(automaton.push({kStraight, 1.0F, 2.0F}), PushStatus::taken);
+    ASSERT_EQ(automaton.step(at_second(1.2)), StepStatus::running) << "it may begin earlier than the last step";
+    EXPECT_EQ(automaton.running_since(), at_second(1.0));
+    EXPECT_FLOAT_EQ(x_at(1.5), 8.0F) << "2 m/s for half a second";
+}
+
+/// A change of speed takes its time at the old speed; what was flown last says which change it is.
+TEST_F(Automaton, ChangesAreThoseFromWhatWasFlownLast)
+{
+    AutomatonSettings slow;
+    slow.transitions = {0.5F, 0.0F, 0.25F};
+    MovementAutomaton changing{slow, segments};
+    FlightState four;
+    four.speed = 4.0F;
+    changing.begin(four, at_second(0));
+    ASSERT_EQ(changing.push({kStraight, 2.0F, 4.0F}), PushStatus::taken);
+    ASSERT_EQ(changing.push({kLeft, 3.0F, 4.0F}), PushStatus::taken);
+    ASSERT_EQ(changing.push({kLeft, 3.0F, 4.0F}), PushStatus::taken);
+    ASSERT_EQ(changing.step(at_second(1)), StepStatus::running);
+    EXPECT_EQ(changing.running().entry, 0.0F) << "it flew straight at this speed";
+    ASSERT_EQ(changing.step(at_second(3)), StepStatus::running);
+    EXPECT_EQ(changing.running().entry, 0.5F) << "from straight flight into a turn";
+    EXPECT_EQ(changing.running().leave, 0.0F) << "a turn follows";
+    ASSERT_EQ(changing.step(at_second(6)), StepStatus::running);
+    EXPECT_EQ(changing.running().entry, 0.0F) << "it turns already";
+    EXPECT_EQ(changing.running().leave, 0.5F) << "nothing follows";
+    Trajectory all;
+    ASSERT_EQ(changing.trajectory(all), PredictStatus::complete);
+    ASSERT_EQ(all.legs.size(), 1U);
+    EXPECT_EQ(all.begin, 0.0F);
+    EXPECT_FLOAT_EQ(all.end(), 3.0F);
+    EXPECT_EQ(all.start.pose.position, changing.running().from.pose.position);
+}
+
+TEST_F(Automaton, TheTrajectoryIsWhatIsUnderWayAndWhatIsPlanned)
+{
+    for (const Movement movement : {kLeft, kStraight, kRight}) {
+        ASSERT_EQ(automaton.push({movement, 1.0F, 2.0F}), PushStatus::taken);
+    }
+    ASSERT_EQ(automaton.step(at_second(0.5)), StepStatus::running);
+    Trajectory all;
+    ASSERT_EQ(automaton.trajectory(all), PredictStatus::complete);
+    ASSERT_EQ(all.legs.size(), 3U);
+    EXPECT_EQ(all.legs[0].order.movement, kLeft);
+    EXPECT_EQ(all.legs[1].order.movement, kStraight);
+    EXPECT_EQ(all.legs[2].order.movement, kRight);
+    EXPECT_EQ(all.legs[1].begin, 1.0F);
+    EXPECT_EQ(all.end(), 3.0F);
+}
+
 }  // namespace
 }  // namespace jink::reach

@@ -142,5 +142,33 @@ TEST(Movements, AShareOfOneLiesOnIt)
     EXPECT_NEAR(end.pitch, whole.pitch, 1e-12);
 }
 
+TEST(Movements, WithEndHeadingClimbWhereTheirEndPoints)
+{
+    Pose<double> from;
+    from.position = Point<double>(1, 2, 3);
+    from.pitch = 10.0 * kMovementDegree;
+    from.yaw = 90.0 * kMovementDegree;
+    const auto end = [&](Movement movement, double share) {
+        return at_share(from, movement, share, MovementStep<double>{}, DisplacementModel::end_heading);
+    };
+    const Pose<double> down = end(Movement::down, 1.0);
+    EXPECT_NEAR(down.pitch, 25.0 * kMovementDegree, 1e-12);
+    EXPECT_NEAR(down.position.z(), 3.0 - std::sin(25.0 * kMovementDegree), 1e-12);
+    EXPECT_NEAR(down.position.y(), 2.0 + std::cos(25.0 * kMovementDegree), 1e-12);
+    const Pose<double> up = end(U, 0.5);
+    EXPECT_NEAR(up.pitch, -5.0 * kMovementDegree, 1e-12);
+    EXPECT_NEAR(up.position.z(), 3.0 + 0.5 * std::sin(5.0 * kMovementDegree), 1e-12);
+    const Pose<double> left = end(L, 1.0);
+    EXPECT_NEAR(left.yaw, 105.0 * kMovementDegree, 1e-12);
+    EXPECT_NEAR(left.position.x(), 1.0 - std::cos(10.0 * kMovementDegree) * std::sin(15.0 * kMovementDegree), 1e-12);
+}
+
+TEST(Movements, StraightFlightAloneIsSmooth)
+{
+    for (const Movement movement : kAllMovements) {
+        EXPECT_EQ(is_smooth(movement), movement == S);
+    }
+}
+
 }  // namespace
 }  // namespace jink::reach

@@ -57,5 +57,28 @@ TEST(SafetyMargins, TermsAddUpAndADirectiveOverrides)
     EXPECT_FLOAT_EQ(safety_margin(terms).directive, 3.0F);
 }
 
+/// Each term by itself makes a margin larger, sigmas threefold, and none stands for another.
+TEST(SafetyMargins, EveryTermCounts)
+{
+    const auto with = [](auto MarginTerms::*term, float value) {
+        MarginTerms terms;
+        terms.intruder_speed = 2.0F;
+        terms.intruder_frame = 0.5F;
+        terms.*term = value;
+        return safety_margin(terms).margin;
+    };
+    EXPECT_FLOAT_EQ(with(&MarginTerms::weather, 0.0F), 1.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::body_radius, 4.0F), 5.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::base, 4.0F), 5.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::own_sigma, 4.0F), 13.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::intruder_sigma, 4.0F), 13.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::intruder_speed, 4.0F), 2.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::intruder_frame, 4.0F), 8.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::weather, 4.0F), 5.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::airspace, 4.0F), 5.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::directive, 4.0F), 4.0F);
+    EXPECT_FLOAT_EQ(with(&MarginTerms::directive, 0.5F), 1.0F);
+}
+
 }  // namespace
 }  // namespace jink::reach

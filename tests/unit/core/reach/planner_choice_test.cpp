@@ -1,0 +1,402 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Which trajectory the reach planner takes: towards the goal, where it can stop, and by what its cells are rated.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/reach/planner.hpp"
+#include "tests/unit/core/reach/planner_bench.hpp"
+
+namespace jink::reach {
+namespace {
+
+using test::FakeSource;
+using test::PlannerBench;
+using world::PlanStatus;
+
+/// Navigation: straight on, left and right at once.
+class PlannerChoice : public ::testing::Test, protected PlannerBench {
+protected:
+    PlannerChoice()
+    {
+        test::SmallTree three(kGrid);
+        three.chain(Movement::straight, 4, 1024);
+        three.chain(Movement::left, 4, 1024);
+        three.chain(Movement::right, 4, 1024);
+        only(three);
+    }
+    enum class Way { nothing, straight, left, right, other };
+    /// Where the longest way found leads to.
+    Way way()
+    {
+        if (plan() != PlanStatus::found) {
+            return Way::nothing;
+        }
+        const Vec3 at = end() - own.position - settings.latency * own.velocity;
+        const float y = at.x() > 9.0F ? at.y() : NAN;
+        return std::abs(y) < 0.01F                    ? Way::straight
+               : std::abs(y - 2.5F * 0.9066F) < 0.01F ? Way::left
+               : std::abs(y + 2.5F * 0.9066F) < 0.01F ? Way::right
+                                                      : Way::other;
+    }
+    void leg(const Vec3& start, const Vec3& to) { reference.leg = {start, to, 5.0F}; }
+};
+
+// --- the goal ---
+
+TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
+{
+    EXPECT_EQ(way(), Way::straight);
+    // Beside the leg, the way back to it.
+    leg(Vec3(-20.0F, 4.0F, 30.0F), Vec3(500.0F, 4.0F, 30.0F));
+    EXPECT_EQ(way(), Way::left);
+    leg(Vec3(-20.0F, -4.0F, 30.0F), Vec3(500.0F, -4.0F, 30.0F));
+    EXPECT_EQ(way(), Way::right);
+    // Of a leg that leads aside the point 10.2 m on, wherever it began.
+    leg(Vec3::Zero() + 30.0F * Vec3::UnitZ(), Vec3(500.0F, 300.0F, 30.0F));
+    EXPECT_EQ(way(), Way::left);
+    leg(Vec3(-100.0F, 60.0F, 30.0F), Vec3(500.0F, -300.0F, 30.0F));
+    EXPECT_EQ(way(), Way::right);
+}
+
+TEST_F(PlannerChoice, ALegThatHasNotBegunIsFlownToFromItsStart)
+{
+    // Its start lies to the left at 20 m, so that the leg's point abeam is far behind it.
+    leg(Vec3(30.0F, 20.0F, 30.0F), Vec3(30.0F, 200.0F, 30.0F));
+    EXPECT_EQ(way(), Way::left);
+    // Without the bound the goal would lie behind the start: at the right.
+    leg(Vec3(12.0F, 6.0F, 30.0F), Vec3(12.0F, 200.0F, 30.0F));
+    own.position = Vec3(0.0F, -30.0F, 30.0F);
+    EXPECT_EQ(way(), Way::left);
+}
+
+TEST_F(PlannerChoice, ALegThatEndsWithinTheGridIsFlownToItsEnd)
+{
+    leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 6.0F, 0.0F, 30.0F));
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(end().x(), 0.5F + 7.5F, 1e-3F) << "the third movement ends in the cell of the leg's end";
+    EXPECT_EQ(report().path, PathStatus::found);
+    leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 4.0F, 0.0F, 30.0F));
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(end().x(), 0.5F + 5.0F, 1e-3F);
+    // The goal is 1.02 of the grid's range away at most, and so outside of it where the leg goes on.
+    leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 10.05F, 0.0F, 30.0F));
+    EXPECT_EQ(way(), Way::straight);
+}
+
+TEST_F(PlannerChoice, ALegOfNoLengthIsFlownTowards)
+{
+    leg(Vec3(0.0F, 100.0F, 30.0F), Vec3(0.0F, 100.0F, 30.0F));
+    EXPECT_EQ(way(), Way::left) << "the way leads there";
+    leg(Vec3(0.0F, -100.0F, 30.0F), Vec3(0.0F, -100.0F, 30.0F));
+    EXPECT_EQ(way(), Way::right);
+}
+
+TEST_F(PlannerChoice, ARouteIsFollowedAlongItsWayToItsEnd)
+{
+    path::Route route;
+    ASSERT_EQ(route.add_leg(Vec3(0, 0, 30), Vec3(500, 300, 30)), path::RouteStatus::ok);
+    leg(Vec3(0, 0, 30), Vec3(500, -300, 30));
+    reference.route = &route;
+    EXPECT_EQ(way(), Way::left) << "not along the leg";
+    path::Route ends;
+    ASSERT_EQ(ends.add_leg(Vec3(-20, 0, 30), Vec3(6.5F, 0, 30)), path::RouteStatus::ok);
+    reference.route = &ends;
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(end().x(), 8.0F, 1e-3F);
+}
+
+TEST_F(PlannerChoice, CellsAtTheSidesNearerThanTheRuleSaysAreNoExits)
+{
+    // To the left it ends at the side in the third layer, straight on in the fourth.
+    const Grid<float> narrow(4, 3, 3, 4.0F, 0.5F, 0.5F);
+    test::SmallTree tree(narrow);
+    NodeIndex at = tree.add(0, Movement::left, 100);
+    at = tree.add(at, Movement::left, 200);
+    at = tree.add(at, Movement::left, 300);
+    tree.chain(Movement::straight, 4, 100);
+    only(tree);
+    ASSERT_TRUE(narrow.place(tree.end(at)) == (CellPlace{2, 2, 1}));
+    leg(Vec3(0.0F, 0.0F, 30.0F), Vec3(0.0F, 500.0F, 30.0F));
+    settings.least_outer_layer = 2;
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_GT(end().y(), 2.0F);
+    settings.least_outer_layer = 3;
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(end().y(), 0.0F, 1e-3F);
+}
+
+// --- threats ---
+
+TEST_F(PlannerChoice, RoomToSpareComesFirstAndIsGivenUpForWantOfBetter)
+{
+    add_sphere(Vec3(8.0F, 0.0F, 30.0F + 0.5F + 0.3F + 0.45F), 0.3F);
+    EXPECT_NE(way(), Way::straight) << "0.45 m above the way, which bends by up to 0.12 m";
+    EXPECT_EQ(report().run, AvoidanceRun::soft_constraints);
+    obstacles.clear();
+    add_sphere(Vec3(8.0F, 0.0F, 30.0F + 0.5F + 0.3F + 1.5F), 0.3F);
+    EXPECT_EQ(way(), Way::straight) << "1.5 m above it";
+    settings.room = 2.0F;
+    EXPECT_NE(way(), Way::straight);
+    settings.room = 0.4F;
+    test::SmallTree alone(kGrid);
+    alone.chain(Movement::straight, 1, 1024);
+    only(alone);
+    obstacles.clear();
+    add_sphere(Vec3(2.0F, 0.0F, 30.0F + 0.5F + 0.3F + 0.3F), 0.3F);
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_EQ(report().run, AvoidanceRun::hard_constraints);
+    EXPECT_EQ(report().free_nodes, 1) << "free in the run of the answer";
+}
+
+TEST_F(PlannerChoice, NothingThatMeetsAnIntruderIsTakenForWantOfBetter)
+{
+    add_track(Vec3(3.0F, 0.0F, 30.0F), Vec3::Zero(), 0.4F);
+    EXPECT_EQ(way(), Way::nothing) << "it stands on all first movements";
+    tracks.clear();
+    add_track(Vec3(0.5F + 5.0F, 0.0F, 30.0F), Vec3::Zero(), 0.1F);
+    ASSERT_NE(way(), Way::straight);
+    EXPECT_NE(way(), Way::nothing);
+}
+
+TEST_F(PlannerChoice, AnIntruderIsMetWhereItIsWhenTheVehicleIsThere)
+{
+    // Comes down through (8, 0): when the vehicle is there, at 1.6 s from now, or 1 s before or after that.
+    const auto when = [&](float t) {
+        tracks.clear();
+        add_track(Vec3(8.0F, 0.0F, 30.0F + 10.0F * t), Vec3(0.0F, 0.0F, -10.0F), 0.3F);
+        return way();
+    };
+    EXPECT_NE(when(1.6F), Way::straight);
+    EXPECT_EQ(when(0.6F), Way::straight);
+    EXPECT_EQ(when(2.6F), Way::straight);
+}
+
+TEST_F(PlannerChoice, AClosedVolumeIsNeverEnteredAndItsMarginLast)
+{
+    test::SmallTree alone(kGrid);
+    alone.chain(Movement::straight, 1, 1024);
+    only(alone);
+    world::Barrel barrel;
+    barrel.circle = {world::Vec2(3.0F, 2.0F), 1.0F};
+    barrel.bottom = 0.0F;
+    barrel.top = 100.0F;
+    barrel.margin = 2.0F;
+    airspace.barrels = {&barrel, 1};
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_EQ(report().run, AvoidanceRun::hard_constraints) << "through the margin";
+    barrel.circle.centre.y() = 1.4F;
+    EXPECT_EQ(plan(), PlanStatus::none_available) << "its body";
+    barrel.circle.centre.y() = 5.0F;
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_EQ(report().run, AvoidanceRun::soft_constraints);
+}
+
+TEST_F(PlannerChoice, AStartThatTouchesMayBeLeftByTheEscapeRule)
+{
+    // 5 cm inside of a sphere that stands behind.
+    add_sphere(Vec3(-0.95F, 0.0F, 30.0F), 0.5F);
+    settings.latency = 0.0F;
+    settings.escape = {1.0F, 0.5F};
+    EXPECT_EQ(way(), Way::straight);
+    settings.escape.speed = 5.0F;
+    EXPECT_EQ(way(), Way::nothing) << "a rule that asks to draw apart faster";
+    settings.escape = {0.0F, 0.0F};
+    EXPECT_EQ(way(), Way::nothing) << "a rule that asks not to come nearer by anything";
+    obstacles.clear();
+    add_sphere(Vec3(0.95F, 0.0F, 30.0F), 0.5F);
+    settings.escape = {0.25F, 0.5F};
+    EXPECT_EQ(way(), Way::nothing) << "deeper is no escape";
+}
+
+// --- the stop at the end ---
+
+TEST_F(PlannerChoice, AMultirotorHasToStopAtTheEndOfItsPath)
+{
+    // The path ends at 10.5 m, the stop at 13.2; a wall from 12.5 on.
+    add_box(Vec3(13.0F, 0.0F, 30.0F), Vec3(0.5F, 1.0F, 5.0F));
+    const Way taken = way();
+    EXPECT_TRUE(taken == Way::left || taken == Way::right);
+    EXPECT_EQ(report().tries, 2);
+    limits.kind = vehicle::VehicleKind::fixed_wing;
+    EXPECT_EQ(way(), Way::straight) << "a wing flies on";
+    EXPECT_EQ(report().tries, 1);
+    limits.kind = vehicle::VehicleKind::multirotor;
+    obstacles.clear();
+    add_box(Vec3(14.8F, 0.0F, 30.0F), Vec3(0.5F, 1.0F, 5.0F));
+    EXPECT_EQ(way(), Way::straight) << "beyond the stop";
+}
+
+TEST_F(PlannerChoice, EndsAreTriedAsOftenAsTheSettingsSay)
+{
+    add_box(Vec3(13.0F, 0.0F, 30.0F), Vec3(0.5F, 1.0F, 5.0F));
+    settings.tries = 1;
+    EXPECT_EQ(plan(), PlanStatus::none_available);
+    EXPECT_EQ(report().tries, 1);
+    EXPECT_EQ(out.by, world::MethodId::none);
+    settings.tries = 2;
+    EXPECT_EQ(plan(), PlanStatus::found);
+    EXPECT_EQ(report().tries, 2);
+}
+
+/// What is struck out is an end, not what leads through it.
+TEST_F(PlannerChoice, WaysThroughAnEndThatDoesNotDoAreKept)
+{
+    test::SmallTree chain(kGrid);
+    chain.chain(Movement::straight, 2, 1024);
+    only(chain);
+    leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 2.0F, 0.0F, 30.0F));
+    // Falls through the place where the vehicle would stop after one movement, when it stands there.
+    add_track(Vec3(5.5F, 0.0F, 30.0F + 20.0F * 1.7F), Vec3(0.0F, 0.0F, -20.0F), 0.3F);
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_EQ(report().tries, 2);
+    EXPECT_NEAR(end().x(), 5.5F, 1e-3F) << "the second movement is by then past it";
+}
+
+/// The stop takes 1.555 s after the path's end, at 2.1 s from now; then the vehicle stands at 13.1 m.
+TEST_F(PlannerChoice, WhatCrossesTheStopCountsWhileTheVehicleIsThere)
+{
+    const auto falling = [&](float x, float t) {
+        tracks.clear();
+        add_track(Vec3(x, 0.0F, 30.0F + 20.0F * t), Vec3(0.0F, 0.0F, -20.0F), 0.3F);
+        return way();
+    };
+    EXPECT_NE(falling(12.5F, 2.6F), Way::straight);
+    EXPECT_NE(falling(13.0F, 3.5F), Way::straight) << "at the end of the stop";
+    EXPECT_EQ(falling(13.0F, 3.8F), Way::straight) << "after it";
+    EXPECT_EQ(falling(13.0F, 1.9F), Way::straight) << "before the vehicle comes";
+    EXPECT_EQ(falling(13.0F, 0.5F), Way::straight);
+}
+
+TEST_F(PlannerChoice, TheStopCountsFromThePathsEndNotFromTheLatency)
+{
+    settings.latency = 1.0F;
+    ASSERT_EQ(plan(), PlanStatus::found);
+    const Vec3 alone = end();
+    ASSERT_NEAR(alone.x(), 12.5F, 1e-3F);
+    const auto falling = [&](float t) {
+        tracks.clear();
+        add_track(Vec3(15.0F, 0.0F, 30.0F + 20.0F * t), Vec3(0.0F, 0.0F, -20.0F), 0.3F);
+        return plan() == PlanStatus::found && end() == alone;
+    };
+    // The path ends after 2.5 s, the stop after 4.055 s at 15.16 m.
+    EXPECT_FALSE(falling(3.9F));
+    EXPECT_TRUE(falling(4.4F)) << "1 s more would be too much";
+}
+
+// --- cells rated by a sensor ---
+
+TEST_F(PlannerChoice, ASourceRatesTheCellsOfACourseOnce)
+{
+    FakeSource picture;
+    planner.look_at(&picture);
+    EXPECT_EQ(way(), Way::straight);
+    EXPECT_EQ(picture.calls, 1U);
+    EXPECT_EQ(picture.lead, settings.latency);
+    EXPECT_EQ(picture.cells, kGrid.cells());
+    EXPECT_EQ(picture.free, kGrid.cells()) << "all are free before";
+    EXPECT_NEAR((picture.origin - Vec3(0.5F, 0.0F, 30.0F)).norm(), 0.0F, 1e-5F);
+    picture.blocked = {kGrid.index({3, 3, 1})};
+    EXPECT_NE(way(), Way::straight);
+    EXPECT_EQ(picture.calls, 2U) << "a plan anew, a look anew";
+    EXPECT_EQ(picture.free, kGrid.cells()) << "nothing is left of the plan before";
+    picture.blocked = {kGrid.index({0, 3, 1}), kGrid.index({0, 4, 1}), kGrid.index({0, 2, 1})};
+    EXPECT_EQ(way(), Way::nothing);
+    planner.look_at(nullptr);
+    EXPECT_EQ(way(), Way::straight);
+    EXPECT_EQ(picture.calls, 3U);
+}
+
+TEST_F(PlannerChoice, ACellThatIsSeenHardlyFreeIsTakenOnlyForWantOfBetter)
+{
+    FakeSource picture;
+    planner.look_at(&picture);
+    picture.blocked = {kGrid.index({3, 3, 1})};
+    picture.level = 3;
+    EXPECT_NE(way(), Way::straight);
+    EXPECT_EQ(report().run, AvoidanceRun::soft_constraints);
+    picture.blocked = {kGrid.index({0, 3, 1}), kGrid.index({0, 4, 1}), kGrid.index({0, 2, 1})};
+    EXPECT_EQ(way(), Way::straight);
+    EXPECT_EQ(report().run, AvoidanceRun::hard_constraints);
+    picture.level = 2;
+    EXPECT_EQ(way(), Way::nothing);
+}
+
+TEST_F(PlannerChoice, ABlindOrTiredSourceEndsThePlan)
+{
+    FakeSource picture;
+    planner.look_at(&picture);
+    picture.status = RateStatus::blind;
+    EXPECT_EQ(plan(), PlanStatus::none_available);
+    picture.status = RateStatus::budget_spent;
+    EXPECT_EQ(plan(), PlanStatus::budget_spent);
+    picture.status = RateStatus::nothing_known;
+    EXPECT_EQ(plan(), PlanStatus::found);
+    picture.status = RateStatus::rated;
+    FakeSource fusion;
+    planner.rate_cells_by(&fusion);
+    fusion.status = RateStatus::blind;
+    EXPECT_EQ(plan(), PlanStatus::none_available);
+    EXPECT_EQ(out.by, world::MethodId::none);
+}
+
+TEST_F(PlannerChoice, BothSetsOfACourseShareTheRatingWhereTheirCellsAreTheSame)
+{
+    FakeSource picture;
+    planner.look_at(&picture);
+    test::SmallTree straight(kGrid);
+    straight.chain(Movement::straight, 4, 1024);
+    test::SmallTree left(kGrid);
+    left.chain(Movement::left, 4, 1024);
+    const ReachSet* const first = keep(straight);
+    only(first, keep(left));
+    picture.blocked = {kGrid.index({0, 3, 1})};
+    EXPECT_EQ(way(), Way::left);
+    EXPECT_TRUE(report().emergency);
+    EXPECT_EQ(picture.calls, 1U);
+    const Grid<float> finer(4, 7, 5, 4.0F, 0.8F, 0.5F);
+    test::SmallTree other(finer);
+    other.chain(Movement::left, 4, 1024);
+    only(first, keep(other));
+    EXPECT_EQ(way(), Way::left);
+    EXPECT_EQ(picture.calls, 3U) << "cells that are others are rated by themselves";
+    EXPECT_EQ(picture.cells, finer.cells());
+    EXPECT_EQ(picture.free, finer.cells());
+    // A new course, a new rating.
+    own.velocity = Vec3::Zero();
+    only(first, first);
+    picture.blocked = {kGrid.index({0, 3, 1})};
+    EXPECT_EQ(plan(), PlanStatus::none_available);
+    EXPECT_EQ(picture.calls, 6U);
+}
+
+TEST_F(PlannerChoice, FusionRatesInsteadOfNodesAndForEachSet)
+{
+    FakeSource picture;
+    FakeSource fusion;
+    planner.look_at(&picture);
+    planner.rate_cells_by(&fusion);
+    add_sphere(Vec3(8.0F, 0.0F, 30.0F), 1.0F);
+    EXPECT_EQ(way(), Way::straight) << "its cells have said nothing of what is in the way";
+    EXPECT_EQ(fusion.calls, 1U);
+    EXPECT_EQ(picture.calls, 1U) << "both say what they know";
+    EXPECT_EQ(fusion.lead, settings.latency);
+    fusion.blocked = {kGrid.index({3, 3, 1})};
+    picture.blocked = {kGrid.index({3, 4, 1})};
+    EXPECT_EQ(way(), Way::right);
+    test::SmallTree straight(kGrid);
+    straight.chain(Movement::straight, 4, 1024);
+    test::SmallTree right(kGrid);
+    right.chain(Movement::right, 4, 1024);
+    const ReachSet* const first = keep(straight);
+    only(first, keep(right));
+    fusion.blocked = {kGrid.index({0, 3, 1})};
+    fusion.calls = picture.calls = 0;
+    EXPECT_EQ(way(), Way::right);
+    EXPECT_EQ(fusion.calls, 2U) << "times of cells are a set's own";
+    planner.rate_cells_by(nullptr);
+    EXPECT_NE(way(), Way::straight) << "the sphere is in the way again";
+}
+
+}  // namespace
+}  // namespace jink::reach
