@@ -103,7 +103,7 @@ bool ParamFlash::is_valid(const Place& place) const noexcept
 {
     const std::uint32_t most = (region_.sector_bytes() - place.offset) / 4U;
     const std::uint32_t entries = word(place, 2);
-    if (entries > most || words_of(entries) > most) {
+    if (entries > (most - words_of(0)) / kEntryWords) {
         return false;
     }
     const std::uint32_t last = words_of(entries) - 1U;

@@ -35,7 +35,8 @@ struct ParamFlashDiagnostics {
 /// O(record).
 class ParamFlash {
 public:
-    /// @param region  outlives this; each sector holds a record of all parameters, else save() fails
+    /// @param region  outlives this; sectors are multiples of 64 bytes, and hold a record of all parameters, else
+    ///                save() fails
     explicit ParamFlash(hal::FlashRegion& region) noexcept : region_(region) {}
 
     /// Puts the values of the newest record into `values`. They are not judged: anything that a float holds may be

@@ -270,13 +270,15 @@ public:
     }
     bool program(std::uint32_t sector, std::uint32_t offset, std::uint32_t word) noexcept override
     {
-        return programs && inner.program(sector, offset, lies ? word & 0xFFFF0000U : word) && !lies;
+        const bool done = programs && inner.program(sector, offset, lies || drops ? word & 0xFFFF0000U : word);
+        return drops || (done && !lies);
     }
     bool erase(std::uint32_t sector) noexcept override { return erases && (leaves || inner.erase(sector)); }
 
     SmallFlash inner;
     bool programs = true, erases = true;
     bool lies = false;    ///< other words than those asked for
+    bool drops = false;   ///< the same, and says that all is well
     bool leaves = false;  ///< says erased, and is not
 };
 
@@ -310,6 +312,9 @@ TEST(ParamFlash, AFailureIsCountedAndKeepsWhatIsThere)
         expect_failure("other words");
     }
     flash.lies = false;
+    flash.drops = true;
+    expect_failure("other words, said to be right");
+    flash.drops = false;
     EXPECT_TRUE(store.save(own(), own_with(Param::track_age, 20.0F)));
     EXPECT_EQ(restarted(flash), own_with(Param::track_age, 20.0F));
     EXPECT_EQ(store.diagnostics().writes, 9U);
@@ -326,6 +331,20 @@ TEST(ParamFlash, ARecordThatFitsNoSectorIsRefusedWithoutAnErase)
     EXPECT_FALSE(saved(flash, values));
     EXPECT_EQ(flash.erases(), 0U);
     EXPECT_EQ(restarted(flash), own_with(Param::track_age, 8.0F));
+}
+
+TEST(ParamFlash, ARecordThatFillsASectorToItsEndFits)
+{
+    hal::MemoryFlash<256> flash;  // twelve values: 64 words
+    for (const float offset : {1.0F, 2.0F, 3.0F}) {
+        ParamValues values = own();
+        for (std::size_t i = 0; i < 12; ++i) {
+            values[i] += offset;
+        }
+        ASSERT_TRUE(saved(flash, values));
+        EXPECT_EQ(restarted(flash), values);
+    }
+    EXPECT_EQ(flash.erases(), 2U);
 }
 
 TEST(ParamFlash, NothingIsJudgedByTheStore)
