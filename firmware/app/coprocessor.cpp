@@ -82,6 +82,19 @@ void Coprocessor::apply_configuration() noexcept
     tracks_.configure(c.tracks);
 }
 
+std::size_t Coprocessor::restore_parameters(const ParamValues& values) noexcept
+{
+    const std::size_t refused = parameters_.set_each(values);
+    apply_configuration();
+    return refused;
+}
+
+bool Coprocessor::is_disarmed(TimePoint now) const noexcept
+{
+    constexpr Seconds kFresh = 1.5F;  // one and a half periods: who has armed since is still on the ground
+    return has_autopilot_ && now - autopilot_.stamp <= kFresh && !autopilot_.armed && !takeover_.streaming();
+}
+
 void Coprocessor::read_port(TimePoint now, StepReport& report) noexcept
 {
     const std::size_t n = port_.read(bytes_);

@@ -226,6 +226,18 @@ ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) no
     return ParamStatus::ok;
 }
 
+std::size_t Parameters::set_each(const ParamValues& values) noexcept
+{
+    std::size_t refused = set_all(values) == ParamStatus::ok ? 0 : kParamCount;
+    for (int pass = 0; pass < 2 && refused > 0; ++pass) {
+        refused = 0;
+        for (std::size_t i = 0; i < kParamCount; ++i) {
+            refused += set(static_cast<Param>(i), values[i]) == ParamStatus::ok ? 0U : 1U;
+        }
+    }
+    return refused;
+}
+
 ParamStatus Parameters::set(Param p, float value) noexcept
 {
     std::array<float, kParamCount> changed = values_;

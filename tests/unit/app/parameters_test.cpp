@@ -345,6 +345,32 @@ std::vector<Route> routes()
     };
 }
 
+TEST(Parameters, SetEachTakesAllThatFitTogetherAndCountsTheRest)
+{
+    Parameters parameters;
+    // A floor above the present ceiling fits only after the new ceiling, which comes later.
+    EXPECT_EQ(parameters.set(Param::bounds, 3.0F), ParamStatus::ok);
+    Values wanted = parameters.values();
+    wanted[index_of(Param::floor)] = 200.0F;
+    wanted[index_of(Param::ceiling)] = 300.0F;
+    wanted[index_of(Param::track_age)] = 1e6F;
+    wanted[index_of(Param::mode)] = 1.0F;
+    EXPECT_EQ(parameters.set_each(wanted), 1U);
+    wanted[index_of(Param::track_age)] = 3.0F;
+    EXPECT_EQ(parameters.values(), wanted);
+    // Whichever comes first of two that exclude one another.
+    Parameters others;
+    Values clash = others.values();
+    clash[index_of(Param::time_low)] = 50.0F;
+    EXPECT_EQ(others.set_each(clash), 1U);
+    EXPECT_EQ(others.values(), Parameters().values());
+    const std::uint32_t generation = others.generation();
+    clash[index_of(Param::time_high)] = 100.0F;
+    EXPECT_EQ(others.set_each(clash), 0U);
+    EXPECT_EQ(others.values(), clash);
+    EXPECT_EQ(others.generation(), generation + 1) << "together, as one change";
+}
+
 TEST(Parameters, EachReachesItsPlaceInTheConfiguration)
 {
     std::set<Param> seen;
