@@ -129,6 +129,33 @@ bool Pilot::keep_beside(Tick& tick) noexcept
     return keeps;
 }
 
+/// A fixed wing needs seconds to turn to its way, and flies a long arc meanwhile, which the way does not show. While
+/// that arc is not clear the wing keeps its course; where that is not clear either, it falls back.
+bool Pilot::keep_course(Tick& tick) noexcept
+{
+    /// A half turn at 30 degrees of bank and 18 m/s takes 10 s, a quarter 5 s.
+    constexpr Seconds kTurning = 8.0F;
+    if (tick.s.limits.kind != vehicle::VehicleKind::fixed_wing || tick.s.tracks.empty()) {
+        return false;
+    }
+    const Seconds ahead = std::min(settings_.lookahead, kTurning);
+    const Vec3 back = kept_inside(tick.s, tick.way.direction * tick.way.speed);
+    if (command_margin(tick.s, back, ahead, settings_, tick.budget) >= 0.0F) {
+        return false;
+    }
+    const Vec3 on = kept_inside(tick.s, {tick.s.own.velocity.x(), tick.s.own.velocity.y(), 0.0F});
+    const float margin = command_margin(tick.s, on, ahead, settings_, tick.budget);
+    if (!(margin >= 0.0F)) {
+        fall_back(tick);
+        return true;
+    }
+    tick.out.wants_control = true;
+    tick.out.kind = world::ManoeuvreKind::velocity;
+    tick.out.velocity = on;
+    tick.out.margin = margin;
+    return true;
+}
+
 /// How long the way has been clear, with something to spare.
 void Pilot::note_clearness(Tick& tick) noexcept
 {
@@ -165,6 +192,9 @@ void Pilot::rejoin(Tick& tick) noexcept
             fall_back(tick);
             return;
         }
+    }
+    if (tick.in_control && keep_course(tick)) {
+        return;
     }
     follow_way(tick);
     // Held at a bound, the vehicle is as near to its leg as we may bring it.

@@ -8,6 +8,19 @@
 #include "core/vehicle/motion.hpp"
 
 namespace jink::vehicle {
+
+VehicleLimits limits_in_flight(const VehicleLimits& limits, const Vec3& velocity) noexcept
+{
+    constexpr float kFlying = 0.5F;
+    VehicleLimits flown = limits;
+    const float speed = std::hypot(velocity.x(), velocity.y());
+    const bool flies = std::isfinite(speed) && speed >= kFlying * limits.cruise_speed;
+    if (limits.kind == VehicleKind::fixed_wing && flies) {
+        flown.cruise_speed = speed;
+    }
+    return flown;
+}
+
 Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept
 {
     const float largest = direction.cwiseAbs().maxCoeff();

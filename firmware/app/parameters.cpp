@@ -9,6 +9,9 @@
 namespace jink::app {
 namespace {
 
+/// ArduPlane goes on straight from where it gets its mission back: nothing is gained by coming nearer to the leg [m].
+constexpr float kWingOnLeg = 10.0F;
+
 constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_MODE", 2, 0, 2, true, "0 off, 1 advise only, 2 take over and avoid"},
     {"JNK_LOOKAHEAD", 8, 1, 60, false, "conflicts are looked for this far ahead [s]"},
@@ -88,8 +91,10 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.supervisor.reserve = at(Param::reserve);
     c.supervisor.settle = at(Param::settle);
     c.supervisor.patience = at(Param::patience);
+    const bool wing = whole(Param::fixed_wing) == 1;
+    c.supervisor.on_leg = wing ? kWingOnLeg : c.supervisor.on_leg;
     c.limits.half_extents = Vec3(at(Param::half_xy), at(Param::half_xy), at(Param::half_z));
-    c.limits.kind = whole(Param::fixed_wing) == 1 ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
+    c.limits.kind = wing ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
     c.limits.cruise_speed = at(Param::cruise);
     c.limits.max_climb = at(Param::climb);
     c.limits.max_descent = at(Param::descent);

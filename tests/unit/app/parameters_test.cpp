@@ -309,6 +309,8 @@ std::vector<Route> routes()
         same(Param::lag, 0.3F, [](C c) { return c.limits.velocity_lag; }),
         {Param::fixed_wing, 1, [](C c) { return c.limits.kind == vehicle::VehicleKind::fixed_wing ? 1.0F : 0.0F; }, 1},
         {Param::fixed_wing, 0, [](C c) { return c.limits.kind == vehicle::VehicleKind::multirotor ? 1.0F : 0.0F; }, 1},
+        {Param::fixed_wing, 1, [](C c) { return c.supervisor.on_leg; }, 10},
+        {Param::fixed_wing, 0, [](C c) { return c.supervisor.on_leg; }, 1},
         same(Param::mass, 4.1F, [](C c) { return c.airframe.mass; }),
         same(Param::drag, 0.6F, [](C c) { return c.airframe.drag_coefficient; }),
         same(Param::area, 2.7F, [](C c) { return c.airframe.effective_area; }),
