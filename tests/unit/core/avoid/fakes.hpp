@@ -25,6 +25,12 @@ struct FakeMethod {
     }
 };
 
+/// One that decides every tick anew.
+struct ReactiveFake : FakeMethod {
+    static constexpr bool kReactive = true;
+    static constexpr bool kKeepsRoom = true;
+};
+
 inline Manoeuvre along(const Situation& s, const std::vector<Vec3>& positions, const Vec3& side)
 {
     Manoeuvre m;

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When flight beside the leg is begun, kept and left; and what is left for it.
+#include <gtest/gtest.h>
+
+#include "tests/unit/core/avoid/scripted.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+
+/// Off the leg, flying something that goes on outwards; the way back is blocked, beside the leg is free.
+struct Outside : Scripted {
+    /// `climb` metres above the leg; what is flown goes on at `speed`, `rise` metres up in 40.
+    Outside(float climb, float speed, float rise = 20.0F)
+    {
+        f.scene.own.velocity = Vec3(speed, 0, 0);
+        head_on(f, 45.0F);
+        next = [=](const Situation& s, Manoeuvre& out) {
+            out = at_speed(s, {s.own.position, s.own.position + Vec3(40, 0, rise)}, speed, Vec3(0, 0, 1));
+            return PlanStatus::found;
+        };
+        EXPECT_EQ(f.update(supervisor, true).state, State::avoiding);
+        f.scene.tracks.clear();
+        f.scene.own.position = Vec3(0, 0, 30.0F + climb);
+        f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);  // where the way back meets the leg
+    }
+    Supervisor<FakeMethod> supervisor{quick(), method};
+};
+
+TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsClearGoesOutAndIsNotSlow)
+{
+    Outside t(4.0F, 5.0F);
+    const Guidance g = t.f.update(t.supervisor, true);
+    ASSERT_TRUE(g.has_conflict);
+    EXPECT_GE(g.margin, 0.0F);
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_EQ(t.supervisor.diagnostics().holds, 0U);
+}
+
+TEST(BesideWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
+{
+    Outside t(4.0F, 5.0F);
+    t.f.scene.track(Vec3(32, 0, 48), Vec3::Zero(), 4.0F);
+    const Guidance g = t.f.update(t.supervisor, true);
+    EXPECT_EQ(g.state, State::rejoining);
+    EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
+    EXPECT_NEAR((g.velocity - Vec3(5, 0, 0)).norm(), 0.0F, 1e-4F);
+    EXPECT_GE(g.margin, quick().room);
+}
+
+TEST(BesideWhileAvoiding, IsTakenInsteadOfACrawl)
+{
+    Outside t(4.0F, 1.5F);
+    EXPECT_EQ(t.f.update(t.supervisor, true).state, State::rejoining);
+    EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
+}
+
+TEST(BesideWhileAvoiding, IsTakenWhereThePathLeadsBack)
+{
+    Outside t(4.0F, 5.0F, 7.0F);  // above its path: the command leads down
+    const Guidance g = t.f.update(t.supervisor, true);
+    ASSERT_TRUE(g.has_conflict);
+    EXPECT_EQ(g.state, State::rejoining);
+    EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
+}
+
+/// `y` metres beside the leg, with a threat on the way back and one `gap` metres beside the flight along the leg.
+Flight along_side(float y, float gap)
+{
+    Flight f;
+    f.scene.own.position = Vec3(20, y, 30);
+    f.scene.track(Vec3(32, 0, 30), Vec3::Zero(), 1.0F);  // where the way back meets the leg
+    f.scene.track(Vec3(40, y + 2.0F + gap, 30), Vec3::Zero(), 1.0F);
+    return f;
+}
+
+std::uint32_t holds_of(const Flight& f, const Settings& settings = quick())
+{
+    FakeMethod method = never();
+    Supervisor supervisor(settings, method);
+    const Guidance g = supervisor.update(f.scene.situation(), true);
+    EXPECT_TRUE(g.has_conflict);
+    return supervisor.diagnostics().holds;
+}
+
+TEST(BesideTheLeg, IsBegunWithRoomToSpareAndKeptWhileClear)
+{
+    EXPECT_EQ(holds_of(along_side(8.0F, 0.45F)), 1U);
+    EXPECT_EQ(holds_of(along_side(8.0F, 0.35F)), 0U) << "0.4 m are asked for";
+    Flight f = along_side(8.0F, 0.6F);
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    EXPECT_EQ(f.update(supervisor, true).state, State::rejoining);
+    f.scene.tracks[1].position.y() -= 0.4F;
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_NEAR((g.velocity - Vec3(5, 0, 0)).norm(), 0.0F, 1e-4F) << "0.2 m are enough to go on";
+    EXPECT_NEAR(g.margin, 0.2F, 0.05F);
+    f.scene.tracks[1].position.y() -= 0.4F;
+    EXPECT_GT((f.update(supervisor, true).velocity - Vec3(5, 0, 0)).norm(), 0.5F) << "contact is not";
+    f.scene.tracks[1].position.y() += 0.4F;
+    static_cast<void>(f.update(supervisor, true));
+    EXPECT_EQ(supervisor.diagnostics().holds, 1U) << "once left, it is begun with room again";
+}
+
+TEST(BesideTheLeg, ExactlyClearIsClear)
+{
+    Flight f;
+    f.scene.own.position = Vec3(20, 8, 30);
+    f.scene.track(Vec3(32, 0, 30), Vec3::Zero(), 1.0F);
+    f.scene.airspace.has_floor = true;
+    f.scene.airspace.floor = 29.0F;
+    Settings settings = quick();
+    settings.room = 0.0F;
+    EXPECT_EQ(holds_of(f, settings), 1U);
+    f.scene.airspace.floor = 29.01F;
+    EXPECT_EQ(holds_of(f, settings), 0U);
+}
+
+TEST(BesideTheLeg, BeginsBeyondTheLegsWidthAndBeforeItsEnd)
+{
+    const auto holds = [](float off, float left) {
+        Flight f;
+        f.scene.own.position = Vec3(20, 0, 30.0F + off);
+        f.scene.leg(Vec3(0, 0, 30), Vec3(20.0F + left, 0, 30), 5.0F);
+        f.scene.limits.half_extents = Vec3(0.25F, 0.25F, 0.25F);
+        f.scene.track(Vec3(31, 0, 29.2F), Vec3::Zero(), 1.0F);
+        f.scene.tracks[0].position.z() = 30.0F + off - 1.75F;
+        return holds_of(f);
+    };
+    EXPECT_EQ(holds(2.0F, 100.0F), 1U);
+    EXPECT_EQ(holds(1.0F, 100.0F), 0U) << "on it";
+    EXPECT_EQ(holds(1.01F, 100.0F), 1U);
+    EXPECT_EQ(holds(2.0F, 12.0F), 0U) << "12 m before the end there is no sense in it";
+    EXPECT_EQ(holds(2.0F, 12.01F), 1U);
+}
+
+/// What is checked is the whole look-ahead, not the fallback's horizon.
+TEST(BesideTheLeg, IsClearForAsLongAsConflictsAreLookedFor)
+{
+    Flight f = along_side(8.0F, 3.0F);
+    f.scene.track(Vec3(20.0F + 33.0F, 8, 30), Vec3::Zero(), 1.0F);  // met in 6.2 s
+    EXPECT_EQ(holds_of(f), 0U);
+}
+
+}  // namespace
+}  // namespace jink::avoid

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// When something is done: the commit time, the latest manoeuvre time, and which methods are asked with how much work.
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/numbers.hpp"
+#include "tests/unit/core/avoid/fakes.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using namespace test;
+using world::ManoeuvreKind;
+
+Seconds loss_in(const Flight& f)
+{
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    return supervisor.update(f.scene.situation(), false).conflict.time_to_loss;
+}
+
+Guidance once(const Flight& f, const Settings& settings, FakeMethod& method, bool in_control = false)
+{
+    Supervisor supervisor(settings, method);
+    return supervisor.update(f.scene.situation(), in_control);
+}
+
+TEST(Commit, APlanIsMadeFromTheCommitTimeOn)
+{
+    for (const bool in_control : {false, true}) {
+        Flight f;
+        head_on(f);
+        const Seconds loss = loss_in(f);
+        Settings settings = quick();
+        FakeMethod method = always(kLeft);
+        settings.commit = loss;
+        EXPECT_TRUE(once(f, settings, method, in_control).wants_control);
+        EXPECT_EQ(method.asked, 1);
+        settings.commit = std::nextafter(loss, 0.0F);
+        const Guidance g = once(f, settings, method, in_control);
+        EXPECT_EQ(g.wants_control, in_control);
+        EXPECT_EQ(g.plan_status, PlanStatus::no_conflict) << "none was made";
+        EXPECT_EQ(method.asked, 1);
+    }
+}
+
+TEST(Commit, ALatestManoeuvreTimeThatIsEarlierComesFirst)
+{
+    Flight f;
+    head_on(f, 21.0F);  // touches in 1.9 s; the stop takes longer with the reserve
+    Settings settings = quick();
+    settings.commit = 0.5F;
+    FakeMethod method = always(kLeft, 8.0F);
+    static_cast<void>(once(f, settings, method));
+    const int asked = method.asked;
+    EXPECT_GT(asked, 0);
+    settings.reserve = 0.0F;
+    EXPECT_FALSE(once(f, settings, method).wants_control);
+    EXPECT_EQ(method.asked, asked);
+}
+
+/// Standing, an obstacle in the way: the reserve alone is the latest time.
+TEST(LatestManoeuvreTime, IsTheStopAndTheReserve)
+{
+    Flight f;
+    f.scene.own.velocity = Vec3::Zero();
+    f.scene.obstacle(geometry::make_sphere(Vec3(12, 0, 30), 1.0F));
+    const Seconds loss = loss_in(f);
+    ASSERT_NEAR(loss, 2.0F, 1e-4F);
+    Settings settings = quick();
+    FakeMethod method = never();
+    settings.reserve = loss;
+    EXPECT_EQ(once(f, settings, method).kind, ManoeuvreKind::brake);
+    settings.reserve = std::nextafter(loss, 0.0F);
+    EXPECT_EQ(once(f, settings, method).kind, ManoeuvreKind::follow_path) << "nothing is done yet";
+    f.scene.own.velocity = Vec3(5, 0, 0);
+    settings.reserve = loss - vehicle::stopping_time(5.0F, f.scene.limits) + 1e-3F;
+    EXPECT_EQ(once(f, settings, method).kind, ManoeuvreKind::brake);
+    settings.reserve -= 2e-3F;
+    EXPECT_EQ(once(f, settings, method).kind, ManoeuvreKind::follow_path);
+}
+
+/// Crossing traffic that reaches the vehicle's place in `seconds`.
+Flight crossing(float way_speed, float way_length, Seconds seconds)
+{
+    Flight f;
+    f.scene.own.velocity = Vec3::Zero();
+    f.scene.leg(f.scene.own.position, f.scene.own.position + Vec3(way_length, 0, 0), way_speed);
+    f.scene.track(f.scene.own.position + Vec3(0, 2.0F + 10.0F * seconds, 0), Vec3(0, -10, 0), 1.0F);
+    return f;
+}
+
+/// As good as standing in the way of traffic, it gets going with three quarters of the fallback horizon left.
+TEST(LatestManoeuvreTime, IsEarlierWhereTheVehicleAsGoodAsStands)
+{
+    FakeMethod method = never();
+    const auto acts = [&](float speed, float length, Seconds seconds) {
+        return once(crossing(speed, length, seconds), quick(), method).wants_control;
+    };
+    EXPECT_TRUE(acts(0.3F, 300.0F, 2.9F)) << "creeping";
+    EXPECT_FALSE(acts(0.3F, 300.0F, 3.1F));
+    EXPECT_FALSE(acts(1.5F, 300.0F, 1.2F)) << "fast enough to stop later";
+    EXPECT_TRUE(acts(5.0F, 1.0F, 2.9F)) << "at the end of its leg";
+    EXPECT_FALSE(acts(5.0F, 1.0F, 3.1F));
+    EXPECT_FALSE(acts(2.0F, 1.2F, 2.9F)) << "the leg goes on for more than that";
+}
+
+TEST(LatestManoeuvreTime, StandingObstaclesAskForNoHurry)
+{
+    Flight f;
+    f.scene.own.velocity = Vec3::Zero();
+    f.scene.leg(f.scene.own.position, f.scene.own.position + Vec3(300, 0, 0), 1.0F);
+    f.scene.obstacle(geometry::make_sphere(f.scene.own.position + Vec3(4, 0, 0), 1.0F));  // touched in 2 s
+    FakeMethod method = never();
+    EXPECT_FALSE(once(f, quick(), method).wants_control) << "a second is left to stop";
+}
+
+/// A fast vehicle at the end of its leg needs longer to stop than to get going.
+TEST(LatestManoeuvreTime, IsNeverLaterThanTheStop)
+{
+    Flight f;
+    f.scene.limits.max_acceleration = 1.0F;
+    f.scene.own.velocity = Vec3(5, 0, 0);
+    f.scene.leg(f.scene.own.position, f.scene.own.position + Vec3(0.5F, 0, 0), 5.0F);
+    f.scene.track(f.scene.own.position + Vec3(0, 2.0F + 5.0F * 4.0F, 0), Vec3(0, -5, 0), 1.0F);
+    FakeMethod method = never();
+    const Seconds stop = vehicle::stopping_time(5.0F, f.scene.limits) + quick().reserve;
+    ASSERT_GT(stop, 5.0F);
+    EXPECT_TRUE(once(f, quick(), method).wants_control) << "4 s before";
+}
+
+// --- work ---
+
+TEST(PlanBudget, IsWhatIsLeftWhereThatIsLess)
+{
+    Flight f;
+    head_on(f);
+    Settings settings = quick();
+    settings.budget = settings.plan_budget = 1000;
+    settings.kept_for_next = 0;
+    std::vector<std::uint32_t> had;
+    FakeMethod method{[&](const Situation&, WorkBudget& budget, Manoeuvre&) {
+        had.push_back(budget.left());
+        return PlanStatus::none_available;
+    }};
+    const Guidance g = once(f, settings, method);
+    ASSERT_EQ(had.size(), 2U) << "for a wider vehicle, then as it is";
+    EXPECT_EQ(had[0], 1000U - g.work) << "the search for conflicts took its share";
+    EXPECT_LE(g.work, 1000U);
+}
+
+TEST(PlanBudget, ExhaustedByTheFirstOfTwoPlansIsCounted)
+{
+    // A velocity is flown; renewing it spends all. What was flown is met by something new: a second plan is found.
+    Flight f;
+    head_on(f, 30.0F);
+    int plan = 0;
+    ReactiveFake method{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+        ++plan;
+        if (plan == 2) {
+            while (budget.spend(1000)) {
+            }
+            return PlanStatus::budget_spent;
+        }
+        out = {};
+        out.kind = ManoeuvreKind::velocity;
+        out.start = s.now;
+        out.command = plan == 1 ? Vec3(4, 3, 0) : Vec3(0, -4, 3);
+        path::predict_velocity_command(s.own, out.command, 8.0F, 0.2F, s.limits, out.path);
+        return PlanStatus::found;
+    }}};
+    Settings settings = quick();
+    settings.reactive = Reactive::alone;
+    Supervisor supervisor(settings, method);
+    ASSERT_EQ(f.update(supervisor, true).state, State::avoiding);
+    EXPECT_EQ(supervisor.diagnostics().budget_spent, 0U);
+    f.scene.track(Vec3(11, 7, 30), Vec3::Zero(), 2.0F);
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_EQ(plan, 3);
+    EXPECT_EQ(g.plan_status, PlanStatus::found);
+    EXPECT_EQ(g.velocity, Vec3(0, -4, 3));
+    EXPECT_EQ(supervisor.diagnostics().budget_spent, 1U);
+}
+
+TEST(Budget, ExhaustedByAFallbackIsCounted)
+{
+    Flight f;
+    for (int i = 0; i < 40; ++i) {
+        f.scene.track(Vec3(9, 0.2F * static_cast<float>(i % 5), 30), Vec3(-3, 0, 0), 1.0F);
+    }
+    Settings settings = quick();
+    settings.budget = 3000;
+    settings.plan_budget = settings.kept_for_next = 100;
+    FakeMethod method = never();
+    Supervisor supervisor(settings, method);
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_EQ(g.state, State::braking);
+    EXPECT_EQ(g.work, 3000U);
+    EXPECT_EQ(supervisor.diagnostics().budget_spent, 1U);
+    EXPECT_EQ(supervisor.diagnostics().most_work, 3000U);
+    f.scene.tracks.clear();
+    static_cast<void>(f.update(supervisor, true));
+    EXPECT_EQ(supervisor.diagnostics().budget_spent, 1U);
+}
+
+/// A second nominal path costs a second search.
+TEST(Budget, WithoutAnotherPathThereIsOneSearch)
+{
+    Flight f;
+    f.scene.track(Vec3(500, 0, 30), Vec3::Zero());
+    FakeMethod method = never();
+    Supervisor alone(quick(), method);
+    Supervisor both(quick(), method);
+    const Situation s = f.scene.situation();
+    EXPECT_LT(alone.update(s, false).work, both.update(s, false, &f.scene.reference).work);
+}
+
+// --- which methods ---
+
+/// Level with floor: flown exactly on it, a margin of exactly 0 is clear.
+TEST(Answers, ThatAreExactlyClearAreTaken)
+{
+    Flight f;
+    head_on(f);
+    f.scene.airspace.has_floor = true;
+    f.scene.airspace.floor = 29.0F;
+    FakeMethod method{[](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = {};
+        out.kind = ManoeuvreKind::velocity;
+        out.start = s.now;
+        out.command = Vec3(0, 5, 0);
+        path::predict_velocity_command(s.own, out.command, 3.0F, 0.2F, s.limits, out.path);
+        return PlanStatus::found;
+    }};
+    Settings settings = quick();
+    settings.room = 0.0F;
+    const Guidance g = once(f, settings, method, true);
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_EQ(g.margin, 0.0F);
+}
+
+TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
+{
+    Flight f;
+    head_on(f);
+    FakeMethod first = always(kLeft);
+    FakeMethod second = always(-kLeft);
+    Supervisor supervisor(quick(), first, second);
+    static_cast<void>(f.update(supervisor, true));
+    EXPECT_EQ(supervisor.diagnostics().plans_found, 1U);
+    EXPECT_EQ(supervisor.diagnostics().found_by_next, 0U);
+}
+
+/// The order of the others holds beside a reactive method too.
+TEST(Answers, OnlyThoseThatTheOrderNamesAreAskedBesideAReactiveMethod)
+{
+    for (const LadderOrder order : {LadderOrder::first, LadderOrder::last}) {
+        Flight f;
+        head_on(f);
+        FakeMethod first = never();
+        FakeMethod second = never();
+        ReactiveFake reacting{never()};
+        Settings settings = quick();
+        settings.reactive = Reactive::first;
+        settings.order = order;
+        Supervisor supervisor(settings, first, second, reacting);
+        static_cast<void>(f.update(supervisor, false));
+        EXPECT_GT(reacting.asked, 0);
+        EXPECT_EQ(first.asked > 0, order == LadderOrder::first);
+        EXPECT_EQ(second.asked > 0, order == LadderOrder::last);
+    }
+}
+
+// --- clutter ---
+
+TEST(CountNear, SurfacesWithinTheRadius)
+{
+    Flight f;
+    const Vec3& own = f.scene.own.position;
+    f.scene.own.sigma_position = 0.5F;
+    world::Track& track = f.scene.track(own + Vec3(20, 0, 0), Vec3::Zero(), 2.0F);
+    EXPECT_EQ(count_near(f.scene.situation(), 16.5F), 1U) << "2 m of body and 1.5 m of uncertainty, exactly";
+    EXPECT_EQ(count_near(f.scene.situation(), std::nextafter(16.5F, 0.0F)), 0U);
+    track.position = own + Vec3(0, 0, 20);
+    track.half_height = 4.0F;
+    EXPECT_EQ(count_near(f.scene.situation(), 12.5F), 1U) << "its lowest possible height";
+    EXPECT_EQ(count_near(f.scene.situation(), std::nextafter(12.5F, 0.0F)), 0U);
+    f.scene.tracks.clear();
+    f.scene.obstacle(geometry::make_sphere(own + Vec3(0, -10, 0), 3.0F));
+    const float about = geometry::bounding_radius(f.scene.obstacles[0].shape);
+    EXPECT_NEAR(about, 3.0F, 0.01F);
+    const float exact = 10.0F - about;
+    ASSERT_EQ(exact + about, 10.0F);
+    EXPECT_EQ(count_near(f.scene.situation(), exact), 1U);
+    EXPECT_EQ(count_near(f.scene.situation(), exact - 1e-5F), 0U);
+    f.scene.obstacle(geometry::make_capsule(own + Vec3(12, 0, -5), own + Vec3(12, 0, 5), 1.0F));
+    EXPECT_EQ(count_near(f.scene.situation(), 5.9F), 0U) << "as the sphere about it, 6 m";
+    EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 2U);
+    f.scene.track(own, Vec3::Zero());
+    EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 3U) << "tracks and obstacles together";
+}
+
+TEST(RungsOf, AreTurnedRoundInClutterAlone)
+{
+    Flight f;
+    f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
+    Settings settings;
+    settings.clutter = 1;
+    const auto rungs = [&](std::size_t methods) { return rungs_of(methods, f.scene.situation(), settings); };
+    EXPECT_TRUE(rungs(3).backwards);
+    EXPECT_EQ(rungs(3).method(0), 2U);
+    EXPECT_EQ(rungs(3).method(2), 0U);
+    EXPECT_FALSE(rungs(1).backwards) << "one alone has no order";
+    EXPECT_EQ(rungs(1).count, 1U);
+    settings.clutter = 2;
+    EXPECT_FALSE(rungs(3).backwards) << "one is not two";
+    EXPECT_EQ(rungs(3).method(2), 2U);
+    settings.clutter = 0;
+    f.scene.tracks.clear();
+    EXPECT_FALSE(rungs(3).backwards) << "never, though none is as many as none";
+}
+
+}  // namespace
+}  // namespace jink::avoid

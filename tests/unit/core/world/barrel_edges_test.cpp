@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Barrels: exact limits, rounding at large coordinates, slopes, and what the search between two instants costs.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <gtest/gtest.h>
+
+#include "core/base/random.hpp"
+#include "core/base/work_units.hpp"
+#include "core/world/barrel.hpp"
+#include "tests/numbers.hpp"
+#include "tests/unit/core/world/scene.hpp"
+
+namespace jink::world {
+namespace {
+
+using namespace test;
+using detail::BarrelApproach;
+
+Barrel body(const Vec2& centre, float radius, float bottom, float top, const Vec2& velocity = Vec2::Zero())
+{
+    return {{centre, radius}, velocity, bottom, top, 0.0F};
+}
+
+TEST(BarrelEdges, LimitsAreTaken)
+{
+    const float far = 1e5F;
+    Barrel most = body(Vec2(far, -far), far, -far, far, Vec2(500, -500));
+    most.margin = far;
+    EXPECT_TRUE(is_valid(most));
+    const std::function<void(Barrel&)> beyond[] = {
+        [](Barrel& b) { b.circle.centre.x() *= 1.001F; },
+        [](Barrel& b) { b.circle.centre.y() *= 1.001F; },
+        [](Barrel& b) { b.circle.radius *= 1.001F; },
+        [](Barrel& b) { b.bottom *= 1.001F; },
+        [](Barrel& b) { b.top *= 1.001F; },
+        [](Barrel& b) { b.velocity.x() *= 1.001F; },
+        [](Barrel& b) { b.velocity.y() *= 1.001F; },
+        [](Barrel& b) { b.margin *= 1.001F; },
+        [](Barrel& b) { b.margin = -1e-6F; },
+        [](Barrel& b) { b.circle.radius = 0.0F; },
+        [](Barrel& b) { b.bottom = 5.0F, b.top = 4.0F; },
+    };
+    for (const auto& change : beyond) {
+        Barrel b = most;
+        change(b);
+        EXPECT_FALSE(is_valid(b));
+    }
+    most.bottom = most.top = 3.0F;
+    EXPECT_TRUE(is_valid(most)) << "as flat as can be";
+}
+
+double true_distance(const Vec3& half, const Vec3& own, const Barrel& b, double t)
+{
+    const double x = double(b.circle.centre.x()) + double(b.velocity.x()) * t - double(own.x());
+    const double y = double(b.circle.centre.y()) + double(b.velocity.y()) * t - double(own.y());
+    const auto off = [](double c, double h) { return c - std::clamp(c, -h, h); };
+    const double level = std::hypot(off(x, double(half.x())), off(y, double(half.y()))) - double(b.circle.radius);
+    const double z = double(own.z());
+    const double height = std::max(double(b.bottom) - double(half.z()) - z, z - double(half.z()) - double(b.top));
+    return level > 0.0 && height > 0.0 ? std::hypot(level, height) : std::max(level, height);
+}
+
+/// However far from the origin, and on whatever side: never above the truth, and 1e-6 of the coordinates below it.
+TEST(BarrelEdges, RoundingIsOnTheSafeSideAtLargeCoordinates)
+{
+    Random random(20261201);
+    for (int i = 0; i < 8000; ++i) {
+        const auto sized = [&](float most) {
+            const float size = most * std::pow(10.0F, random.uniform(-4.0F, 0.0F));
+            return random.below(2) == 0 ? size : -size;
+        };
+        Barrel b = body(Vec2(sized(5e4F), sized(5e4F)), std::abs(sized(5e3F)) + 0.1F, sized(1e4F), 0.0F,
+                        Vec2(sized(300.0F), sized(300.0F)));
+        b.top = b.bottom + std::abs(sized(1e4F));
+        const Vec3 half(random.uniform(0.2F, 3.0F), random.uniform(0.2F, 3.0F), random.uniform(0.2F, 3.0F));
+        const Seconds t = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 60.0F);
+        const Vec2 now = b.circle.centre + b.velocity * t;
+        const float near = random.below(2) == 0 ? 1.5F : 0.02F;
+        const Vec3 own(now.x() + near * sized(b.circle.radius), now.y() + near * sized(b.circle.radius),
+                       b.bottom + random.uniform(-1.2F, 2.2F) * (b.top - b.bottom));
+        const double truth = true_distance(half, own, b, double(t));
+        const double told = double(barrel_distance(half, own, b, t));
+        const double size = double(b.circle.centre.cwiseAbs().sum() + (b.velocity * t).cwiseAbs().sum() +
+                                   own.cwiseAbs().sum() + half.sum() + b.circle.radius) +
+                            std::abs(double(b.bottom)) + std::abs(double(b.top));
+        ASSERT_LE(told, truth) << i;
+        ASSERT_GE(told, truth - 1e-6 * size - 1e-6) << i;
+    }
+}
+
+/// A moving box against a moving body, `t` seconds after the beginning.
+struct Approaching {
+    explicit Approaching(Random& random)
+        : half(random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F)),
+          own{Vec3(random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-20, 20)),
+              Vec3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-3, 3))},
+          barrel(body(Vec2(random.uniform(-9, 9), random.uniform(-9, 9)), random.uniform(0.5F, 20.0F), -5.0F,
+                      random.uniform(-4.0F, 9.0F), Vec2(random.uniform(-6, 6), random.uniform(-6, 6)))),
+          outset(random.uniform(-0.5F, 0.9F)), growth(random.below(2) == 0 ? 0.0F : random.uniform(0.1F, 0.8F))
+    {
+    }
+    [[nodiscard]] double truth(double t) const
+    {
+        // The box at rest at its first place, the body's motion relative to it; heights likewise.
+        Barrel b = barrel;
+        const double z = double(own.position.z()) + double(own.velocity.z()) * t;
+        b.velocity -= own.velocity.head<2>();
+        const Vec3 at(own.position.x(), own.position.y(), static_cast<float>(z));
+        return true_distance(half, at, b, t) - double(outset) - double(growth) * t;
+    }
+    Vec3 half;
+    geometry::Motion own;
+    Barrel barrel;
+    float outset;
+    float growth;
+};
+
+TEST(BarrelApproach, LooksAreDistancesAndTheirSlopes)
+{
+    Random random(20261202);
+    int compared = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const Approaching a(random);
+        const BarrelApproach approach(a.half, a.own, a.barrel, 0.0F, a.outset, a.growth);
+        const float t = random.uniform(0.1F, 6.0F);
+        const auto look = approach.look(t);
+        ASSERT_LE(double(look.value), a.truth(double(t)) + 1e-5) << i;
+        ASSERT_GE(double(look.value), a.truth(double(t)) - 2e-3) << i;
+        const double h = 1e-3;
+        const double before = (a.truth(double(t)) - a.truth(double(t) - h)) / h;
+        const double after = (a.truth(double(t) + h) - a.truth(double(t))) / h;
+        if (std::abs(after - before) < 0.05) {
+            ++compared;
+            ASSERT_NEAR(double(look.slope), 0.5 * (before + after), 0.06) << i;
+        }
+    }
+    EXPECT_GT(compared, 3000);
+}
+
+/// Least value and its instant, against four hundred samples.
+TEST(BarrelApproach, TheLeastIsFoundWhereItIs)
+{
+    Random random(20261203);
+    std::uint32_t most_spent = 0;
+    std::uint32_t all = 0;
+    for (int i = 0; i < 600; ++i) {
+        const Approaching a(random);
+        const BarrelApproach approach(a.half, a.own, a.barrel, 0.0F, a.outset, a.growth);
+        const float span = random.uniform(0.5F, 12.0F);
+        WorkBudget budget(kPlenty);
+        const geometry::Approach near = approach.least(span, 1e9F, budget);
+        double least = 1e9;
+        for (int k = 0; k <= 400; ++k) {
+            least = std::min(least, a.truth(double(span) * k / 400.0));
+        }
+        ASSERT_LE(double(near.distance), least + 1e-5) << i;
+        ASSERT_GE(near.when, 0.0F);
+        ASSERT_LE(near.when, span);
+        ASSERT_LE(a.truth(double(near.when)), least + 3e-3) << i << ": that is where it is";
+        const double step = double(span) / 400.0 * 20.0;
+        ASSERT_GE(double(near.distance), least - 2e-3 - step) << i;
+        most_spent = std::max(most_spent, budget.spent());
+        all += budget.spent();
+        WorkBudget enough(kPlenty);
+        ASSERT_GE(approach.least(span, -1e8F, enough).distance, -1e8F);
+        ASSERT_EQ(enough.spent(), units::kBarrelPart) << "nothing is below that: no instant between is looked at";
+    }
+    EXPECT_LT(most_spent, units::kBarrelPart + (BarrelApproach::kTurns - 4) * units::kBarrelTurn);
+    EXPECT_LT(all, 600U * (units::kBarrelPart + 5 * units::kBarrelTurn));
+    std::printf("[ measured ] instants: %u units at most, %.1f on average\n", most_spent, double(all) / 600.0);
+}
+
+/// An approach that is nearest in the middle of its time.
+const BarrelApproach kPassing(Vec3::Ones(), {Vec3(-20, 8, 0), Vec3(5, 0, 0)},
+                              {{Vec2::Zero(), 3.0F}, Vec2::Zero(), -10.0F, 10.0F, 0.0F}, 0.0F, 0.0F, 0.0F);
+
+TEST(BarrelApproach, WithoutABudgetThereIsContact)
+{
+    WorkBudget plenty(kPlenty);
+    EXPECT_NEAR(kPassing.least(8.0F, 1e9F, plenty).distance, 4.0F, 1e-3F);
+    EXPECT_NEAR(kPassing.least(8.0F, 1e9F, plenty).when, 4.0F, 0.3F);
+    WorkBudget none(units::kBarrelPart - 1);
+    EXPECT_EQ(kPassing.least(8.0F, 1e9F, none).distance, -BarrelApproach::kNoBudget);
+    WorkBudget ends(units::kBarrelPart);
+    EXPECT_EQ(kPassing.least(8.0F, 1e9F, ends).distance, -BarrelApproach::kNoBudget);
+    WorkBudget no_contact(16);
+    EXPECT_EQ(kPassing.first_contact(4.0F, no_contact), 0.0F);
+}
+
+TEST(BarrelApproach, AtAnInstantItIsWhatItIsThere)
+{
+    WorkBudget budget(kPlenty);
+    const geometry::Approach near = kPassing.least(0.0F, 1e9F, budget);
+    EXPECT_EQ(near.when, 0.0F);
+    EXPECT_EQ(near.distance, kPassing.look(0.0F).value);
+}
+
+TEST(BarrelApproach, TheFirstContactIsNotLate)
+{
+    const BarrelApproach approach(Vec3::Ones(), {Vec3(-20, 0, 0), Vec3(5, 0, 0)},
+                                  body(Vec2::Zero(), 3.0F, -10.0F, 10.0F), 0.0F, 0.0F, 0.0F);
+    WorkBudget budget(kPlenty);
+    const Seconds first = approach.first_contact(4.0F, budget);
+    EXPECT_LE(first, 16.0F / 5.0F);
+    EXPECT_GE(first, 16.0F / 5.0F - 4.0F / 65536.0F - 1e-5F);
+}
+
+// --- conflicts with barrels ---
+
+struct BarrelOnTheWay : testing::Test {
+    BarrelOnTheWay()
+    {
+        scene.leg(Vec3(0, 0, 0), Vec3(100, 0, 0), 5.0F);
+        scene.own.sigma_position = 0.2F;
+    }
+    [[nodiscard]] bool meets(Conflict& out)
+    {
+        WorkBudget budget(kPlenty);
+        const Situation s = scene.situation();
+        return main_conflict(s, way_of(s), 12.0F, budget, out);
+    }
+    Scene scene;
+    Conflict found;
+};
+
+TEST_F(BarrelOnTheWay, IsToldAsTheBodyIsMet)
+{
+    scene.barrel(Vec2(30, 2), 4.0F, Vec2(0, -0.5F));
+    ASSERT_TRUE(meets(found));
+    EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0}));
+    EXPECT_NEAR(found.radius_at_closest, 4.0F + 0.6F, 1e-4F);
+    EXPECT_GE(found.time_to_closest, found.time_to_loss);
+    EXPECT_NEAR(found.own_at_closest.x(), 5.0F * found.time_to_closest, 1e-3F);
+    EXPECT_NEAR(found.threat_at_closest.x(), 30.0F, 1e-3F);
+    EXPECT_NEAR(found.threat_at_closest.y(), 2.0F - 0.5F * found.time_to_closest, 1e-3F);
+    EXPECT_NEAR(found.miss_distance, (found.threat_at_closest - found.own_at_closest).norm(), 1e-4F);
+    EXPECT_LT(found.margin, 0.0F);
+}
+
+/// The barrel's centre is told at the own height, or the nearest that it has.
+TEST_F(BarrelOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
+{
+    scene.barrel(Vec2(30, 0), 4.0F);
+    const auto height = [&](float bottom, float top) {
+        scene.barrels[0].bottom = bottom;
+        scene.barrels[0].top = top;
+        scene.airspace.barrels = scene.barrels;
+        EXPECT_TRUE(meets(found));
+        return found.threat_at_closest.z();
+    };
+    EXPECT_EQ(height(-20.0F, 20.0F), 0.0F);
+    EXPECT_EQ(height(0.5F, 20.0F), 0.5F) << "the box reaches up to it";
+    EXPECT_EQ(height(-20.0F, -0.75F), -0.75F);
+}
+
+/// Met at the way's end, long after it was reached.
+TEST_F(BarrelOnTheWay, AStormOverTheEndIsToldWhenItComes)
+{
+    scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
+    scene.barrel(Vec2(10, 30), 4.0F, Vec2(0, -3));
+    ASSERT_TRUE(meets(found));
+    // 30 - 4 - 1 - 0.6 m at 3 m/s.
+    EXPECT_NEAR(found.time_to_loss, 24.4F / 3.0F, 1e-2F);
+    EXPECT_NEAR(found.time_to_closest, 10.0F, 0.7F) << "over it by then";
+    EXPECT_NEAR(found.own_at_closest.x(), 10.0F, 1e-3F);
+    scene.barrels[0].velocity = Vec2(0, -2);
+    scene.airspace.barrels = scene.barrels;
+    EXPECT_FALSE(meets(found)) << "12.2 s";
+}
+
+/// Whatever is left of the budget: what could not be looked at is met now.
+TEST_F(BarrelOnTheWay, WhereTheBudgetRunsOutItIsMetNow)
+{
+    scene.barrel(Vec2(300, 0), 4.0F);
+    scene.barrel(Vec2(30, 2), 4.0F);
+    scene.airspace.barrels = scene.barrels;
+    const Situation s = scene.situation();
+    WorkBudget ample(kPlenty);
+    ASSERT_TRUE(main_conflict(s, way_of(s), 12.0F, ample, found));
+    ASSERT_EQ(found.threat.index, 1U);
+    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
+        WorkBudget budget(n);
+        Conflict now;
+        ASSERT_TRUE(main_conflict(s, way_of(s), 12.0F, budget, now)) << n;
+        ASSERT_EQ(now.time_to_loss, 0.0F) << n;
+        ASSERT_EQ(now.margin, -kSeparationCap) << n;
+        ASSERT_EQ(now.threat.kind, ThreatKind::barrel) << n;
+        ASSERT_EQ(now.threat.index, n < units::kConflictBarrel + units::kBarrelPart ? 0U : now.threat.index) << n;
+    }
+}
+
+}  // namespace
+}  // namespace jink::world

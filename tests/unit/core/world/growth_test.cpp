@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// How threats grow, and boxes against uncertain heights.
+#include <gtest/gtest.h>
+
+#include "tests/unit/core/world/scene.hpp"
+
+namespace jink::world {
+namespace {
+
+using namespace test;
+
+/// 2 m of body, 0.5 + 0.25 m of doubt about both places, 0.1 m/s about the velocity, 0.4 m/s2; three deviations.
+struct Growing : testing::Test {
+    Growing()
+    {
+        scene.own.sigma_position = 0.5F;
+        track = &scene.track(Vec3(10, 0, 0), Vec3::Zero(), 2.0F);
+        track->sigma_position = 0.25F;
+        track->sigma_velocity = 0.1F;
+        track->max_acceleration = 0.4F;
+    }
+    static float radius(float age) { return 2.0F + 3.0F * (0.5F + 0.25F + 0.1F * age) + 0.5F * 0.4F * age * age; }
+    Scene scene;
+    Track* track = nullptr;
+};
+
+TEST_F(Growing, AsAPolynomialOfTimeItIsTheRadius)
+{
+    for (const float age : {0.0F, 1.5F}) {
+        for (const float lead : {0.0F, 2.0F}) {
+            track->stamp = scene.now - age;
+            const Growth growth = growth_of(scene.situation(), *track, lead);
+            EXPECT_NEAR(growth.radius, radius(age + lead), 1e-5F);
+            EXPECT_NEAR(growth.rate, 0.3F + 0.4F * (age + lead), 1e-5F);
+            EXPECT_EQ(growth.acceleration, 0.4F);
+            for (const float t : {0.0F, 1.0F, 3.0F}) {
+                EXPECT_NEAR(growth.at(t), radius(age + lead + t), 1e-4F) << age << ' ' << lead << ' ' << t;
+            }
+        }
+    }
+}
+
+/// Never below threat_radius where the stamp lies ahead.
+TEST_F(Growing, AStampAheadGrowsFromNowOn)
+{
+    track->stamp = scene.now + 1.0F;
+    const Growth growth = growth_of(scene.situation(), *track, 0.0F);
+    EXPECT_NEAR(growth.radius, radius(0.0F), 1e-5F);
+    EXPECT_NEAR(growth.rate, 0.3F, 1e-5F);
+    for (const float t : {0.0F, 0.5F, 1.0F, 4.0F}) {
+        EXPECT_GE(growth.at(t), threat_radius(scene.situation(), *track, t)) << t;
+    }
+}
+
+TEST_F(Growing, NumbersByHand)
+{
+    const Growth growth{2.0F, 3.0F, 4.0F};
+    EXPECT_EQ(growth.at(0.0F), 2.0F);
+    EXPECT_EQ(growth.at(2.0F), 2.0F + 6.0F + 8.0F);
+}
+
+TEST_F(Growing, AnUncertainHeightMakesTheBoxTaller)
+{
+    track->half_height = 7.0F;
+    scene.limits.half_extents = Vec3(1, 2, 3);
+    EXPECT_EQ(box_against(scene.situation(), *track), Vec3(1, 2, 10));
+    EXPECT_EQ(nearest_in_height(*track, Vec3(1, 2, 50), 30.0F), Vec3(1, 2, 43));
+    EXPECT_EQ(nearest_in_height(*track, Vec3(1, 2, 50), 90.0F), Vec3(1, 2, 57));
+    EXPECT_EQ(nearest_in_height(*track, Vec3(1, 2, 50), 55.0F), Vec3(1, 2, 55));
+}
+
+}  // namespace
+}  // namespace jink::world
