@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
+#include <cmath>
 #include <deque>
-#include <functional>
 #include <vector>
 
 #include "core/reach/planner.hpp"
@@ -126,6 +128,33 @@ struct PlannerBench {
     Planner planner{Settings{}};
     world::Manoeuvre out;
     std::uint32_t spent = 0;
+};
+
+/// Navigation: straight on, left and right at once.
+class PlannerChoice : public ::testing::Test, protected PlannerBench {
+protected:
+    PlannerChoice()
+    {
+        SmallTree three(kGrid);
+        three.chain(Movement::straight, 4, 1024);
+        three.chain(Movement::left, 4, 1024);
+        three.chain(Movement::right, 4, 1024);
+        only(three);
+    }
+    enum class Way { nothing, straight, left, right, other };
+    Way way()
+    {
+        if (plan() != world::PlanStatus::found) {
+            return Way::nothing;
+        }
+        const Vec3 at = end() - own.position - settings.latency * own.velocity;
+        const float y = at.x() > 9.0F ? at.y() : NAN;
+        return std::abs(y) < 0.01F                    ? Way::straight
+               : std::abs(y - 2.5F * 0.9066F) < 0.01F ? Way::left
+               : std::abs(y + 2.5F * 0.9066F) < 0.01F ? Way::right
+                                                      : Way::other;
+    }
+    void leg(const Vec3& start, const Vec3& to) { reference.leg = {start, to, 5.0F}; }
 };
 
 /// Rates cells as it is told to, and remembers what it was asked.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which trajectory the reach planner takes: towards the goal, where it can stop, and by what its cells are rated.
+// Which trajectory the reach planner takes: towards the goal, clear of threats, where it can stop.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,39 +10,8 @@
 namespace jink::reach {
 namespace {
 
-using test::FakeSource;
-using test::PlannerBench;
+using test::PlannerChoice;
 using world::PlanStatus;
-
-/// Navigation: straight on, left and right at once.
-class PlannerChoice : public ::testing::Test, protected PlannerBench {
-protected:
-    PlannerChoice()
-    {
-        test::SmallTree three(kGrid);
-        three.chain(Movement::straight, 4, 1024);
-        three.chain(Movement::left, 4, 1024);
-        three.chain(Movement::right, 4, 1024);
-        only(three);
-    }
-    enum class Way { nothing, straight, left, right, other };
-    /// Where the longest way found leads to.
-    Way way()
-    {
-        if (plan() != PlanStatus::found) {
-            return Way::nothing;
-        }
-        const Vec3 at = end() - own.position - settings.latency * own.velocity;
-        const float y = at.x() > 9.0F ? at.y() : NAN;
-        return std::abs(y) < 0.01F                    ? Way::straight
-               : std::abs(y - 2.5F * 0.9066F) < 0.01F ? Way::left
-               : std::abs(y + 2.5F * 0.9066F) < 0.01F ? Way::right
-                                                      : Way::other;
-    }
-    void leg(const Vec3& start, const Vec3& to) { reference.leg = {start, to, 5.0F}; }
-};
-
-// --- the goal ---
 
 TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
 {
@@ -59,8 +28,18 @@ TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
     EXPECT_EQ(way(), Way::right);
 }
 
+TEST_F(PlannerChoice, TheGoalLiesOnTheLegNotOnTheWayBackToIt)
+{
+    // 1.2 m beside the leg: its point 10.2 m on lies 7.1 degrees to the left, the way there 5.7.
+    leg(Vec3(-20.0F, 1.2F, 30.0F), Vec3(500.0F, 1.2F, 30.0F));
+    EXPECT_EQ(way(), Way::left);
+}
+
 TEST_F(PlannerChoice, ALegThatHasNotBegunIsFlownToFromItsStart)
 {
+    // Its point abeam would be beside the grid's left end, its start is far ahead.
+    leg(Vec3(100.0F, 3.0F, 30.0F), Vec3(500.0F, 3.0F, 30.0F));
+    EXPECT_EQ(way(), Way::straight);
     // Its start lies to the left at 20 m, so that the leg's point abeam is far behind it.
     leg(Vec3(30.0F, 20.0F, 30.0F), Vec3(30.0F, 200.0F, 30.0F));
     EXPECT_EQ(way(), Way::left);
@@ -99,6 +78,10 @@ TEST_F(PlannerChoice, ARouteIsFollowedAlongItsWayToItsEnd)
     leg(Vec3(0, 0, 30), Vec3(500, -300, 30));
     reference.route = &route;
     EXPECT_EQ(way(), Way::left) << "not along the leg";
+    path::Route long_one;  // 7.1 degrees to the left: near the left end at 10.2 m, but far ahead at 500 m
+    ASSERT_EQ(long_one.add_leg(Vec3(0, 0, 30), Vec3(500.0F, 61.9F, 30)), path::RouteStatus::ok);
+    reference.route = &long_one;
+    EXPECT_EQ(way(), Way::left);
     path::Route ends;
     ASSERT_EQ(ends.add_leg(Vec3(-20, 0, 30), Vec3(6.5F, 0, 30)), path::RouteStatus::ok);
     reference.route = &ends;
@@ -266,6 +249,9 @@ TEST_F(PlannerChoice, WhatCrossesTheStopCountsWhileTheVehicleIsThere)
     EXPECT_EQ(falling(13.0F, 3.8F), Way::straight) << "after it";
     EXPECT_EQ(falling(13.0F, 1.9F), Way::straight) << "before the vehicle comes";
     EXPECT_EQ(falling(13.0F, 0.5F), Way::straight);
+    EXPECT_NE(falling(11.5F, 2.3F), Way::straight);
+    limits.kind = vehicle::VehicleKind::fixed_wing;
+    EXPECT_EQ(falling(11.5F, 2.3F), Way::straight) << "a wing has no stop";
 }
 
 TEST_F(PlannerChoice, TheStopCountsFromThePathsEndNotFromTheLatency)
@@ -282,120 +268,6 @@ TEST_F(PlannerChoice, TheStopCountsFromThePathsEndNotFromTheLatency)
     // The path ends after 2.5 s, the stop after 4.055 s at 15.16 m.
     EXPECT_FALSE(falling(3.9F));
     EXPECT_TRUE(falling(4.4F)) << "1 s more would be too much";
-}
-
-// --- cells rated by a sensor ---
-
-TEST_F(PlannerChoice, ASourceRatesTheCellsOfACourseOnce)
-{
-    FakeSource picture;
-    planner.look_at(&picture);
-    EXPECT_EQ(way(), Way::straight);
-    EXPECT_EQ(picture.calls, 1U);
-    EXPECT_EQ(picture.lead, settings.latency);
-    EXPECT_EQ(picture.cells, kGrid.cells());
-    EXPECT_EQ(picture.free, kGrid.cells()) << "all are free before";
-    EXPECT_NEAR((picture.origin - Vec3(0.5F, 0.0F, 30.0F)).norm(), 0.0F, 1e-5F);
-    picture.blocked = {kGrid.index({3, 3, 1})};
-    EXPECT_NE(way(), Way::straight);
-    EXPECT_EQ(picture.calls, 2U) << "a plan anew, a look anew";
-    EXPECT_EQ(picture.free, kGrid.cells()) << "nothing is left of the plan before";
-    picture.blocked = {kGrid.index({0, 3, 1}), kGrid.index({0, 4, 1}), kGrid.index({0, 2, 1})};
-    EXPECT_EQ(way(), Way::nothing);
-    planner.look_at(nullptr);
-    EXPECT_EQ(way(), Way::straight);
-    EXPECT_EQ(picture.calls, 3U);
-}
-
-TEST_F(PlannerChoice, ACellThatIsSeenHardlyFreeIsTakenOnlyForWantOfBetter)
-{
-    FakeSource picture;
-    planner.look_at(&picture);
-    picture.blocked = {kGrid.index({3, 3, 1})};
-    picture.level = 3;
-    EXPECT_NE(way(), Way::straight);
-    EXPECT_EQ(report().run, AvoidanceRun::soft_constraints);
-    picture.blocked = {kGrid.index({0, 3, 1}), kGrid.index({0, 4, 1}), kGrid.index({0, 2, 1})};
-    EXPECT_EQ(way(), Way::straight);
-    EXPECT_EQ(report().run, AvoidanceRun::hard_constraints);
-    picture.level = 2;
-    EXPECT_EQ(way(), Way::nothing);
-}
-
-TEST_F(PlannerChoice, ABlindOrTiredSourceEndsThePlan)
-{
-    FakeSource picture;
-    planner.look_at(&picture);
-    picture.status = RateStatus::blind;
-    EXPECT_EQ(plan(), PlanStatus::none_available);
-    picture.status = RateStatus::budget_spent;
-    EXPECT_EQ(plan(), PlanStatus::budget_spent);
-    picture.status = RateStatus::nothing_known;
-    EXPECT_EQ(plan(), PlanStatus::found);
-    picture.status = RateStatus::rated;
-    FakeSource fusion;
-    planner.rate_cells_by(&fusion);
-    fusion.status = RateStatus::blind;
-    EXPECT_EQ(plan(), PlanStatus::none_available);
-    EXPECT_EQ(out.by, world::MethodId::none);
-}
-
-TEST_F(PlannerChoice, BothSetsOfACourseShareTheRatingWhereTheirCellsAreTheSame)
-{
-    FakeSource picture;
-    planner.look_at(&picture);
-    test::SmallTree straight(kGrid);
-    straight.chain(Movement::straight, 4, 1024);
-    test::SmallTree left(kGrid);
-    left.chain(Movement::left, 4, 1024);
-    const ReachSet* const first = keep(straight);
-    only(first, keep(left));
-    picture.blocked = {kGrid.index({0, 3, 1})};
-    EXPECT_EQ(way(), Way::left);
-    EXPECT_TRUE(report().emergency);
-    EXPECT_EQ(picture.calls, 1U);
-    const Grid<float> finer(4, 7, 5, 4.0F, 0.8F, 0.5F);
-    test::SmallTree other(finer);
-    other.chain(Movement::left, 4, 1024);
-    only(first, keep(other));
-    EXPECT_EQ(way(), Way::left);
-    EXPECT_EQ(picture.calls, 3U) << "cells that are others are rated by themselves";
-    EXPECT_EQ(picture.cells, finer.cells());
-    EXPECT_EQ(picture.free, finer.cells());
-    // A new course, a new rating.
-    own.velocity = Vec3::Zero();
-    only(first, first);
-    picture.blocked = {kGrid.index({0, 3, 1})};
-    EXPECT_EQ(plan(), PlanStatus::none_available);
-    EXPECT_EQ(picture.calls, 6U);
-}
-
-TEST_F(PlannerChoice, FusionRatesInsteadOfNodesAndForEachSet)
-{
-    FakeSource picture;
-    FakeSource fusion;
-    planner.look_at(&picture);
-    planner.rate_cells_by(&fusion);
-    add_sphere(Vec3(8.0F, 0.0F, 30.0F), 1.0F);
-    EXPECT_EQ(way(), Way::straight) << "its cells have said nothing of what is in the way";
-    EXPECT_EQ(fusion.calls, 1U);
-    EXPECT_EQ(picture.calls, 1U) << "both say what they know";
-    EXPECT_EQ(fusion.lead, settings.latency);
-    fusion.blocked = {kGrid.index({3, 3, 1})};
-    picture.blocked = {kGrid.index({3, 4, 1})};
-    EXPECT_EQ(way(), Way::right);
-    test::SmallTree straight(kGrid);
-    straight.chain(Movement::straight, 4, 1024);
-    test::SmallTree right(kGrid);
-    right.chain(Movement::right, 4, 1024);
-    const ReachSet* const first = keep(straight);
-    only(first, keep(right));
-    fusion.blocked = {kGrid.index({0, 3, 1})};
-    fusion.calls = picture.calls = 0;
-    EXPECT_EQ(way(), Way::right);
-    EXPECT_EQ(fusion.calls, 2U) << "times of cells are a set's own";
-    planner.rate_cells_by(nullptr);
-    EXPECT_NE(way(), Way::straight) << "the sphere is in the way again";
 }
 
 }  // namespace

@@ -217,6 +217,29 @@ TEST_F(PlannerTest, StandingItTriesTheLeftThenTheRight)
     EXPECT_EQ(report().headings, 3);
 }
 
+TEST_F(PlannerTest, StandingItTurnsFromTheCourseOfItsWay)
+{
+    test::SmallTree ahead(kGrid);
+    ahead.chain(Movement::straight, 4, 1024);
+    only(ahead);
+    own.velocity = Vec3::Zero();
+    reference.leg = {Vec3(0.0F, -20.0F, 30.0F), Vec3(0.0F, 500.0F, 30.0F), 5.0F};
+    add_sphere(Vec3(0.0F, 1.15F, 30.0F), 0.2F);
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_NEAR(course(), 5.0F * kPi / 6.0F, 1e-3F) << "from north by 60 degrees to the left";
+}
+
+/// What it does upwards says nothing of one that hardly moves.
+TEST_F(PlannerTest, SinkingSlowlyItIsLevel)
+{
+    for (const float climb : {-1.0F, 1.0F}) {
+        own.velocity = Vec3(0.0F, 0.0F, climb);
+        ASSERT_EQ(plan(), PlanStatus::found);
+        EXPECT_NEAR(course(), 0.0F, 1e-3F);
+        EXPECT_FALSE(report().emergency);
+    }
+}
+
 TEST_F(PlannerTest, StandingOnALegStraightUpItFacesItsYaw)
 {
     own.velocity = Vec3::Zero();
@@ -277,150 +300,27 @@ TEST_F(PlannerTest, ASmallStepAsideHasNoSide)
     EXPECT_EQ(out.side, Vec3::Zero());
 }
 
-TEST_F(PlannerTest, WhatItIsNotForIsBadInputAndWritesNothing)
-{
-    reference.valid = false;
-    EXPECT_EQ(plan(), PlanStatus::bad_input);
-    EXPECT_EQ(out.by, world::MethodId::none);
-    reference.valid = true;
-    path::Route route;
-    reference.route = &route;
-    EXPECT_EQ(plan(), PlanStatus::bad_input) << "an empty route";
-    ASSERT_EQ(route.add_leg(Vec3(-20, 0, 30), Vec3(200, 0, 30)), path::RouteStatus::ok);
-    EXPECT_EQ(plan(), PlanStatus::found);
-    reference.route = nullptr;
-    for (std::size_t i = 0; i < kMaxTracks; ++i) {
-        add_track(Vec3(-1000, 0, 30), Vec3::Zero(), 0.5F);
-    }
-    EXPECT_EQ(plan(), PlanStatus::found) << "as many as there may be";
-    add_track(Vec3(-1000, 0, 30), Vec3::Zero(), 0.5F);
-    EXPECT_EQ(plan(), PlanStatus::bad_input);
-    tracks.clear();
-    for (std::size_t i = 0; i < kMaxObstacles; ++i) {
-        add_box(Vec3(-1000, 0, 30), Vec3::Ones());
-    }
-    EXPECT_EQ(plan(), PlanStatus::found);
-    add_box(Vec3(-1000, 0, 30), Vec3::Ones());
-    EXPECT_EQ(plan(), PlanStatus::bad_input);
-    obstacles.clear();
-    std::vector<world::Barrel> barrels(kMaxBarrels);
-    for (world::Barrel& barrel : barrels) {
-        barrel.circle = {world::Vec2(-1000, 0), 1.0F};
-        barrel.top = 10.0F;
-    }
-    airspace.barrels = barrels;
-    EXPECT_EQ(plan(), PlanStatus::found);
-    barrels.push_back(barrels.front());
-    airspace.barrels = barrels;
-    EXPECT_EQ(plan(), PlanStatus::bad_input);
-    Planner without{Settings{}};
-    airspace.barrels = {};
-    WorkBudget budget(kAllTheWork);
-    EXPECT_EQ(without.plan(view(), budget, out), PlanStatus::bad_input) << "no sets";
-}
-
-TEST_F(PlannerTest, SettingsOutOfRangeAreRefusedAndChangeNothing)
-{
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    const float infinite = std::numeric_limits<float>::infinity();
-    EXPECT_TRUE(is_valid(settings));
-    const auto with = [&](auto Settings::*member, auto value) {
-        Settings changed = settings;
-        changed.*member = value;
-        return is_valid(changed);
-    };
-    EXPECT_FALSE(with(&Settings::sets, static_cast<const VehicleSets*>(nullptr)));
-    EXPECT_TRUE(with(&Settings::room, 0.0F) && with(&Settings::room, 10.0F));
-    for (const float bad : {-0.1F, 10.1F, nan, infinite}) {
-        EXPECT_FALSE(with(&Settings::room, bad)) << bad;
-    }
-    EXPECT_TRUE(with(&Settings::latency, 0.0F) && with(&Settings::latency, 1.0F));
-    for (const float bad : {-0.1F, 1.1F, nan, infinite}) {
-        EXPECT_FALSE(with(&Settings::latency, bad)) << bad;
-    }
-    using Tries = std::uint8_t;
-    EXPECT_TRUE(with(&Settings::tries, Tries{1}) && with(&Settings::tries, Tries{64}));
-    EXPECT_FALSE(with(&Settings::tries, Tries{0}) || with(&Settings::tries, Tries{65}));
-    using Rule = world::EscapeRule;
-    EXPECT_TRUE(with(&Settings::escape, Rule{0.0F, 0.0F}));
-    for (const float bad : {-0.1F, nan, infinite}) {
-        EXPECT_FALSE(with(&Settings::escape, Rule{bad, 0.5F})) << bad;
-        EXPECT_FALSE(with(&Settings::escape, Rule{0.5F, bad})) << bad;
-    }
-    ASSERT_TRUE(planner.configure(settings));
-    Settings bad = settings;
-    bad.tries = 0;
-    bad.room = 1.0F;
-    EXPECT_FALSE(planner.configure(bad));
-    EXPECT_EQ(planner.settings().tries, settings.tries);
-    EXPECT_EQ(planner.settings().room, settings.room);
-}
-
-TEST_F(PlannerTest, SetsThatHaveNoRoomAreRefused)
-{
-    const auto fits = [&](const ReachSet* navigation, const ReachSet* emergency) {
-        only(pairs[0].navigation, pairs[0].emergency);
-        pairs[2] = {navigation, emergency, false};
-        return is_valid(settings);
-    };
-    const ReachSet good = *pairs[0].navigation;
-    const auto of = [&](std::size_t nodes, const Grid<float>& grid) {
-        static std::vector<NodeIndex> parents;
-        parents.assign(nodes, 0);
-        ReachSet set = good;
-        set.parent = parents;
-        set.grid = grid;
-        return fits(&set, &good) && fits(&good, &set);
-    };
-    EXPECT_TRUE(fits(&good, &good));
-    EXPECT_FALSE(fits(nullptr, &good));
-    EXPECT_FALSE(fits(&good, nullptr));
-    EXPECT_FALSE(of(0, kGrid));
-    EXPECT_TRUE(of(1, kGrid));
-    EXPECT_TRUE(of(kMaxReachNodes, kGrid));
-    EXPECT_FALSE(of(kMaxReachNodes + 1, kGrid));
-    EXPECT_TRUE(of(1, Grid<float>(kMaxReachCells / 64, 8, 8, 4.0F, 0.8F, 0.5F))) << "cells, and directions";
-    EXPECT_FALSE(of(1, Grid<float>(kMaxReachCells / 64 + 1, 8, 8, 4.0F, 0.8F, 0.5F)));
-    EXPECT_FALSE(of(1, Grid<float>(1, 13, 5, 4.0F, 0.8F, 0.5F)));
-}
-
-TEST_F(PlannerTest, AVehicleSuitsSetsThatAskNoMoreThanItCan)
-{
-    limits.max_acceleration = 5.0F;
-    limits.max_vertical_acceleration = 3.0F;
-    limits.max_climb = 3.0F;
-    limits.max_descent = 2.0F;
-    limits.cruise_speed = 10.0F;
-    EXPECT_TRUE(suits(sets, limits)) << "exactly what they were built for";
-    const auto with = [&](float vehicle::VehicleLimits::*limit, float share) {
-        vehicle::VehicleLimits changed = limits;
-        changed.*limit *= share;
-        return suits(sets, changed);
-    };
-    for (float vehicle::VehicleLimits::*limit :
-         {&vehicle::VehicleLimits::max_acceleration, &vehicle::VehicleLimits::max_vertical_acceleration,
-          &vehicle::VehicleLimits::max_climb, &vehicle::VehicleLimits::max_descent}) {
-        EXPECT_TRUE(with(limit, 1.5F));
-        EXPECT_TRUE(with(limit, 1.0F - 5e-5F)) << "rounding";
-        EXPECT_FALSE(with(limit, 0.999F));
-    }
-    EXPECT_TRUE(with(&vehicle::VehicleLimits::cruise_speed, 0.5F));
-    EXPECT_FALSE(with(&vehicle::VehicleLimits::cruise_speed, 1.001F)) << "it would cruise faster than they are for";
-}
-
 /// With less work than the answer takes there is none, and nothing is written.
 TEST_F(PlannerTest, ABudgetThatRunsOutIsNoAnswer)
 {
     add_track(Vec3(12.0F, 0.0F, 30.0F), Vec3::Zero(), 0.5F);
     add_box(Vec3(20.0F, 5.0F, 30.0F), Vec3::Ones());
-    ASSERT_EQ(plan(), PlanStatus::found);
-    const std::uint32_t needed = spent;
-    for (std::uint32_t units = 0; units < needed; ++units) {
-        ASSERT_EQ(plan(units), PlanStatus::budget_spent) << units;
-        ASSERT_EQ(out.by, world::MethodId::none) << units;
-        ASSERT_TRUE(out.path.points.empty()) << units;
-    }
-    EXPECT_EQ(plan(needed), PlanStatus::found);
+    const auto sweep = [&] {
+        ASSERT_EQ(plan(), PlanStatus::found);
+        const std::uint32_t needed = spent;
+        for (std::uint32_t units = 0; units < needed; ++units) {
+            ASSERT_EQ(plan(units), PlanStatus::budget_spent) << units;
+            ASSERT_EQ(out.by, world::MethodId::none) << units;
+            ASSERT_TRUE(out.path.points.empty()) << units;
+        }
+        EXPECT_EQ(plan(needed), PlanStatus::found);
+    };
+    sweep();
+    add_sphere(Vec3(3.6F, 0.75F, 30.0F), 0.3F);  // the emergency set
+    sweep();
+    EXPECT_TRUE(report().emergency);
+    limits.kind = vehicle::VehicleKind::fixed_wing;
+    sweep();
 }
 
 /// What is not a number is in the way, or gives no answer: never a way that is called free.
