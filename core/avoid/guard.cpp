@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/angle.hpp"
 #include "core/base/work_units.hpp"
 
 namespace jink::avoid {
@@ -84,8 +85,9 @@ constexpr int kRefinements = 3;
 Vec3 command_on(const Vec3& ahead, float course, float climb, const vehicle::VehicleLimits& limits) noexcept
 {
     const float level = std::sqrt(std::max(limits.cruise_speed * limits.cruise_speed - climb * climb, 0.0F));
-    const float c = level * std::cos(course);
-    const float s = level * std::sin(course);
+    const SineCosine turned = sine_cosine(course);
+    const float c = level * turned.cosine;
+    const float s = level * turned.sine;
     return {c * ahead.x() - s * ahead.y(), s * ahead.x() + c * ahead.y(), climb};
 }
 
@@ -308,12 +310,14 @@ Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits
 {
     Vec3 level(own.velocity.x(), own.velocity.y(), 0.0F);
     const float speed = level.norm();
-    level = speed > 0.1F ? Vec3(level / speed) : Vec3(std::cos(own.yaw), std::sin(own.yaw), 0.0F);
+    const SineCosine nose = sine_cosine(own.yaw);
+    level = speed > 0.1F ? Vec3(level / speed) : Vec3(nose.cosine, nose.sine, 0.0F);
     // The command leads the velocity by as much as the lag needs for full lateral acceleration.
     const float lead =
         std::min(limits.max_acceleration * std::max(limits.velocity_lag, 0.1F) / limits.cruise_speed, 0.7F);
-    const float c = std::cos(lead);
-    const float d = direction * std::sin(lead);
+    const SineCosine led = sine_cosine(lead);
+    const float c = led.cosine;
+    const float d = direction * led.sine;
     return limits.cruise_speed * Vec3(c * level.x() - d * level.y(), d * level.x() + c * level.y(), 0.0F);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/exponential.hpp"
 #include "core/base/finite.hpp"
 #include "core/vehicle/motion.hpp"
 
@@ -39,7 +40,7 @@ Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept
     const float knee = std::max(limits.max_acceleration * limits.velocity_lag, kStandstillSpeed);
     const Seconds ramp = std::max(speed - knee, 0.0F) / limits.max_acceleration;
     const float rest = std::min(speed, knee);
-    return rest > kStandstillSpeed ? ramp + limits.velocity_lag * std::log(rest / kStandstillSpeed) : ramp;
+    return rest > kStandstillSpeed ? ramp + limits.velocity_lag * natural_log(rest / kStandstillSpeed) : ramp;
 }
 
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept
