@@ -52,7 +52,7 @@ Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
     const Vec3 from_home(at.x() - air.home.x(), at.y() - air.home.y(), 0.0F);
     const float off = from_home.norm();
     if (air.has_keep_in && off > 0.0F) {
-        const float left = air.keep_in_radius - off - std::hypot(half.x(), half.y()) - extra;
+        const float left = air.keep_in_radius - off - half.head<2>().norm() - extra;
         const float outward = from_home.dot(kept) / off;
         const float most = std::max(0.0F, left) / kBoundTime;
         kept -= (std::max(0.0F, outward - most) / off) * from_home;
@@ -86,8 +86,8 @@ bool is_held(const world::Situation& s, const Vec3& taken, const Vec3& left, flo
     /// Slower than this nothing is gained by going on [m/s].
     constexpr float kStanding = 0.2F;
     const Vec3 off = beside_leg(s).off;
-    const bool beside = std::hypot(off.x(), off.y()) > on_leg;
-    return std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && (!beside || left.norm() < kStanding));
+    const bool beside = off.head<2>().norm() > on_leg;
+    return taken.head<2>().norm() > 0.0F || (taken.z() != 0.0F && (!beside || left.norm() < kStanding));
 }
 
 void Pilot::enter_rejoining() noexcept

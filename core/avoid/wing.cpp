@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
 #include "core/base/work_units.hpp"
 #include "core/path/prediction.hpp"
 #include "core/vehicle/motion.hpp"
@@ -58,7 +59,7 @@ Vec3 towards(const vehicle::VehicleState& own, const vehicle::VehicleLimits& lim
     // Nearer to the course than the turn leads, the command itself is flown.
     const float lead_across = v.x() * turn.y() - v.y() * turn.x();
     const float lead_along = v.x() * turn.x() + v.y() * turn.y();
-    const bool none = std::hypot(command.x(), command.y()) < vehicle::detail::kNoCourse;
+    const bool none = command.head<2>().norm() < vehicle::detail::kNoCourse;
     const bool on_course = none || (along > 0.0F && std::abs(across) * lead_along <= std::abs(lead_across) * along);
     turn.z() = command.z();
     return on_course ? command : turn;
@@ -99,8 +100,9 @@ constexpr float kWingCourses[] = {0.0F, 0.5F, -0.5F, 1.0F, -1.0F};
 Vec3 detail::command_on(const Vec3& ahead, float course, float climb, const vehicle::VehicleLimits& limits) noexcept
 {
     const float level = std::sqrt(std::max(limits.cruise_speed * limits.cruise_speed - climb * climb, 0.0F));
-    const float c = level * std::cos(course);
-    const float s = level * std::sin(course);
+    const SineCosine turned = sine_cosine(course);
+    const float c = level * turned.cosine;
+    const float s = level * turned.sine;
     return {c * ahead.x() - s * ahead.y(), s * ahead.x() + c * ahead.y(), climb};
 }
 
@@ -108,12 +110,14 @@ Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits
 {
     Vec3 level(own.velocity.x(), own.velocity.y(), 0.0F);
     const float speed = level.norm();
-    level = speed > 0.1F ? Vec3(level / speed) : Vec3(std::cos(own.yaw), std::sin(own.yaw), 0.0F);
+    const SineCosine nose = sine_cosine(own.yaw);
+    level = speed > 0.1F ? Vec3(level / speed) : Vec3(nose.cosine, nose.sine, 0.0F);
     // The command leads the velocity by as much as the lag needs for full lateral acceleration.
     const float lead =
         std::min(limits.max_acceleration * std::max(limits.velocity_lag, 0.1F) / limits.cruise_speed, 0.7F);
-    const float c = std::cos(lead);
-    const float d = direction * std::sin(lead);
+    const SineCosine led = sine_cosine(lead);
+    const float c = led.cosine;
+    const float d = direction * led.sine;
     return limits.cruise_speed * Vec3(c * level.x() - d * level.y(), d * level.x() + c * level.y(), 0.0F);
 }
 

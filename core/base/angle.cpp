@@ -20,7 +20,7 @@ constexpr float kTanEighth = 0.414213562373095049F;  ///< tan(pi / 8)
 
 SineCosine sine_cosine(float angle) noexcept
 {
-    if (!(std::abs(angle) <= kLargestAngle)) {
+    if (!(std::abs(angle) <= kMaxAngle)) {
         constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
         return {kNone, kNone};
     }

@@ -13,9 +13,9 @@ struct SineCosine {
 };
 
 /// Largest angle that sine_cosine() takes, either way [rad].
-inline constexpr float kLargestAngle = 1000.0F;
+inline constexpr float kMaxAngle = 1000.0F;
 
-/// Sine and cosine of an angle [rad]; both NaN beyond kLargestAngle and for non-finite angles.
+/// Sine and cosine of an angle [rad]; both NaN beyond kMaxAngle and for non-finite angles.
 ///
 /// Absolute error below 1e-7; below 0.5 rad the sine's relative error is below 1e-7 too. O(1).
 [[nodiscard]] SineCosine sine_cosine(float angle) noexcept;

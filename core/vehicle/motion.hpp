@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/base/exponential.hpp"
 #include "core/vehicle/vehicle.hpp"
 
 // The vehicle model of `advance`, inline for predictions that take it thousands of times. Private to rooms that
@@ -26,7 +27,7 @@ public:
         const auto bits = std::bit_cast<std::uint32_t>(dt);
         Entry& entry = entries_[(bits ^ (bits >> 4)) % entries_.size()];
         if (entry.dt != dt) {
-            entry = {dt, std::expm1(-dt / lag_)};
+            entry = {dt, -faded_share(dt / lag_)};
         }
         return entry.rest;
     }

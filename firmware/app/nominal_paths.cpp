@@ -261,12 +261,13 @@ void NominalPaths::extrapolate(const vehicle::VehicleState& own, const vehicle::
 }
 
 /// What drifts in gusts is going nowhere: its place is kept, not a path that it would be brought back to.
-void NominalPaths::keep(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept
+void NominalPaths::keep(const vehicle::VehicleLimits& limits) noexcept
 {
     kept_.copy_from(live_);
-    if (own.velocity.norm() < kMoving) {
-        kept_.reference.route = nullptr;
-        kept_.reference.leg = {own.position, own.position, limits.cruise_speed};
+    world::Reference& r = kept_.reference;
+    if (r.leg.end != r.leg.start && r.leg.speed < kMoving) {
+        r.route = nullptr;
+        r.leg = {r.leg.start, r.leg.start, limits.cruise_speed};
     }
 }
 
@@ -282,7 +283,7 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
                           const world::Leg* leg, const vehicle::VehicleLimits& limits, bool in_control) noexcept
 {
     if (in_control && !in_control_) {
-        keep(own, limits);
+        keep(limits);
         on_motion_ = was_on_motion_ || !believes_leg();
     }
     in_control_ = in_control;
@@ -298,7 +299,7 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
     intend(own, limits, in_control);
     extrapolate(own, limits);
     if (outdated_) {
-        keep(own, limits);
+        keep(limits);
         outdated_ = false;
     }
     on_motion_ = in_control ? on_motion_ || !has_leg_ : !believes_leg();

@@ -90,7 +90,7 @@ private:
     void judge_leg(const vehicle::VehicleState& own) noexcept;
     void intend(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, bool in_control) noexcept;
     void extrapolate(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept;
-    void keep(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept;
+    void keep(const vehicle::VehicleLimits& limits) noexcept;
     [[nodiscard]] bool add_turn(const vehicle::VehicleState& own) noexcept;
     [[nodiscard]] const world::Reference& motion() const noexcept
     {

@@ -38,14 +38,14 @@ TEST(Angle, SineAndCosineKeepTheirAccuracy)
     Random random(seed);
     for (std::size_t i = 0; i < case_count(100'000); ++i) {
         expect_sine_cosine(random.uniform(-6.2831855F, 6.2831855F));
-        expect_sine_cosine(random.uniform(-kLargestAngle, kLargestAngle));
+        expect_sine_cosine(random.uniform(-kMaxAngle, kMaxAngle));
         expect_sine_cosine(std::pow(10.0F, random.uniform(-30.0F, 0.0F)));
     }
 }
 
 TEST(Angle, NextToEveryEighthOfATurnTooTheyKeepIt)
 {
-    for (int eighth = -1270; eighth <= 1270; ++eighth) {  // kLargestAngle is 1273 eighths
+    for (int eighth = -1270; eighth <= 1270; ++eighth) {  // kMaxAngle is 1273 eighths
         const auto angle = static_cast<float>(eighth * (0.25 * 3.14159265358979323846));
         float below = angle;
         float above = angle;
@@ -72,7 +72,7 @@ TEST(Angle, SquaresOfSineAndCosineSumToOne)
 
 TEST(Angle, NoAngleGivesNoNumbers)
 {
-    const float too_large = std::nextafter(kLargestAngle, kInfinite);
+    const float too_large = std::nextafter(kMaxAngle, kInfinite);
     for (const float angle : {too_large, -too_large, kInfinite, -kInfinite, std::nanf("")}) {
         EXPECT_TRUE(std::isnan(sine_cosine(angle).sine)) << angle;
         EXPECT_TRUE(std::isnan(sine_cosine(angle).cosine)) << angle;
