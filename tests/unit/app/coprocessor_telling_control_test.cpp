@@ -156,6 +156,34 @@ TEST(TellingLine, ThatWasLostInControlIsSaidWhenItIsBackAndOnce)
     }
 }
 
+TEST(TellingLine, ThatIsLostIsNotSaidOverWhileItIsLost)
+{
+    const auto t = in_command();
+    t->port.state = hal::PortState::lost;
+    t->autopilot.mode = link::FlightMode::hold;
+    for (int i = 0; i < 50; ++i) {
+        t->beat();  // heard, but nothing goes out
+        t->step();
+        ASSERT_EQ(t->said("jink: line lost"), 0);
+    }
+    t->port.state = hal::PortState::open;
+    t->fly(60);
+    EXPECT_EQ(t->said("jink: line lost"), 0) << "the pilot chose another mode in the step of the loss";
+    const auto silent = in_command();
+    silent->port.state = hal::PortState::lost;
+    for (int i = 0; i < 50; ++i) {
+        silent->beat();
+        silent->step();
+        ASSERT_EQ(silent->said("jink: line lost"), 0) << i;
+    }
+    silent->port.state = hal::PortState::open;
+    silent->beat();
+    silent->step();
+    EXPECT_TRUE(silent->said_as(Severity::warning, "jink: line lost while avoiding, control dropped"));
+    silent->fly(100);
+    EXPECT_EQ(silent->said("jink: line lost"), 1);
+}
+
 TEST(TellingBraking, NothingSafeIsAnEmergencyWhileTheVehicleBrakes)
 {
     int emergencies = 0, safe_brakes = 0, unsafe_before = 0;

@@ -154,45 +154,101 @@ TEST(Warnings, AreHighWhenTheLossIsNearerThanTheStopAndASecond)
     EXPECT_GT(high, 3);
 }
 
-/// The action that a manoeuvre is reported as: what is flown, not what is met.
-TEST(Warnings, SayWhatIsFlownInControl)
-{
-    int horizontal = 0, vertical = 0, hover = 0, report = 0;
-    for (const float planes : {0.0F, 3.0F}) {
-        for (const bool high_wall : {false, true}) {
-            Parameters parameters;
-            ASSERT_EQ(parameters.set(Param::planes, planes), ParamStatus::ok);
-            ASSERT_EQ(parameters.set(Param::rotation_penalty, 0.0F), ParamStatus::ok);
-            const auto t = std::make_unique<Teller>(parameters);
-            t->fly(60);
-            if (high_wall) {  // so wide that above it is the shorter way
-                for (int k = -6; k <= 6; ++k) {
-                    t->put_ahead(50.0F, Vec3::Zero(), Vec3(0.0F, 2.0F * static_cast<float>(k), -0.5F));
-                }
-            } else {
-                t->put_ahead(50.0F, Vec3::Zero(), Vec3(0.0F, 0.4F, 0.0F));
-            }
-            for (int i = 0; i < 600; ++i) {
-                t->step();
-                for (const CollisionWarning& w : t->link.warnings) {
-                    const bool controls = t->last.control == Control::ours || t->last.control == Control::returning;
-                    const world::Manoeuvre* flying = t->coprocessor.flying();
-                    const bool steep = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
-                    const bool brakes = t->last.guidance.kind == world::ManoeuvreKind::brake;
-                    const CollisionAction expected = !controls ? CollisionAction::report
-                                                     : brakes  ? CollisionAction::hover
-                                                     : steep   ? CollisionAction::ascend_or_descend
-                                                               : CollisionAction::move_horizontally;
-                    EXPECT_EQ(w.action, expected);
-                    ++(!controls ? report : brakes ? hover : steep ? vertical : horizontal);
-                }
-            }
+/// Counts of the actions that were reported.
+struct Actions {
+    int report = 0, horizontal = 0, vertical = 0, hover = 0;
+
+    /// Each warning of the last step says what is flown, not what is met.
+    void check(const Teller& t)
+    {
+        for (const CollisionWarning& w : t.link.warnings) {
+            const bool controls = t.last.control == Control::ours || t.last.control == Control::returning;
+            const world::Manoeuvre* flying = t.coprocessor.flying();
+            const bool steep = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
+            const bool brakes = t.last.guidance.kind == world::ManoeuvreKind::brake;
+            const CollisionAction expected = !controls ? CollisionAction::report
+                                             : brakes  ? CollisionAction::hover
+                                             : steep   ? CollisionAction::ascend_or_descend
+                                                       : CollisionAction::move_horizontally;
+            EXPECT_EQ(w.action, expected);
+            ++(!controls ? report : brakes ? hover : steep ? vertical : horizontal);
         }
     }
-    EXPECT_GT(report, 0);
-    EXPECT_GT(horizontal, 0);
-    EXPECT_GT(vertical, 0);
-    std::printf("[ warnings ] report %d, horizontal %d, vertical %d, hover %d\n", report, horizontal, vertical, hover);
+};
+
+TEST(Warnings, SayWhetherItIsFlownAroundOverOrUnder)
+{
+    Actions actions;
+    for (const float offset : {-1.0F, 0.0F, 1.0F}) {
+        Parameters parameters;
+        ASSERT_EQ(parameters.set(Param::rotation_penalty, 0.0F), ParamStatus::ok);
+        const auto t = std::make_unique<Teller>(parameters);
+        t->fly(60);
+        // A row so wide that over or under it is the shorter way; or a single body.
+        for (int k = offset != 0.0F ? -6 : 0; k <= (offset != 0.0F ? 6 : 0); ++k) {
+            t->put_ahead(50.0F, Vec3::Zero(), Vec3(0.0F, 0.4F + 2.0F * static_cast<float>(k), offset));
+        }
+        const int vertical = actions.vertical;
+        float highest = 0.0F;
+        for (int i = 0; i < 600; ++i) {
+            t->step();
+            actions.check(*t);
+            const float side = t->coprocessor.flying() != nullptr ? t->coprocessor.flying()->side.z() : 0.0F;
+            highest = std::abs(side) > std::abs(highest) ? side : highest;
+        }
+        if (offset != 0.0F) {
+            EXPECT_LT(highest * offset, 0.0F) << "over what is lower, under what is higher";
+            EXPECT_GT(actions.vertical, vertical) << offset;
+        }
+    }
+    EXPECT_GT(actions.report, 0);
+    EXPECT_GT(actions.horizontal, 0);
+}
+
+/// A level scan of 72 sectors and 40 m, and the plane x = `wall`.
+link::RangeScan scan_of(const Teller& t, float wall)
+{
+    link::RangeScan scan;
+    scan.stamp = t.now;
+    scan.increment = 2.0F * kPi / 72.0F;
+    scan.min_range = 0.2F;
+    scan.max_range = 40.0F;
+    for (int i = 0; i < 72; ++i) {
+        const float range = (wall - t.own.position.x()) / std::cos(scan.increment * static_cast<float>(i));
+        scan.ranges.unchecked_push_back(range > 0.2F && range < 40.0F ? range : link::RangeScan::kNothing);
+    }
+    return scan;
+}
+
+TEST(Warnings, SayThatItBrakesInFrontOfAWall)
+{
+    Actions actions;
+    const auto t = teller();
+    t->fly(60);
+    const float wall = t->own.position.x() + 60.0F;
+    for (int i = 0; i < 1500 && actions.hover < 2; ++i) {
+        if (i % 5 == 0) {
+            t->link.next.has_scan = true;
+            t->link.next.scan = scan_of(*t, wall);
+        }
+        t->step();
+        actions.check(*t);
+    }
+    EXPECT_EQ(actions.hover, 2);
+}
+
+TEST(Warnings, OfAConflictThatComesBackAreSentAtOnce)
+{
+    const auto t = advising();
+    t->put_ahead(40.0F);
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+    t->fly(3);
+    t->own.velocity = Vec3(0.0F, 5.0F, 0.0F);
+    ASSERT_TRUE(t->until([](const StepReport& r) { return !r.guidance.has_conflict; }, 5));
+    t->own.velocity = Vec3(5.0F, 0.0F, 0.0F);
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }, 5));
+    EXPECT_EQ(t->link.warnings.size(), 1U) << "half a second after the last one is not waited for";
+    EXPECT_EQ(t->said("jink: conflict"), 2);
 }
 
 }  // namespace

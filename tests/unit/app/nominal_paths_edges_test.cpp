@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NominalPaths, the bounds of its contract: which motion contradicts a leg and for how long, what is a turn and what is
-// a steady speed, what is kept in control.
+// NominalPaths, the bounds of its contract: which motion contradicts a leg, which agrees with it, and for how long.
 #include "firmware/app/nominal_paths.hpp"
 
 #include <cmath>
@@ -35,17 +34,6 @@ protected:
             tick(kSixteenth, in_control);
         }
     }
-    /// Flies at `speed` on a heading that turns at `rate`.
-    void turn(float speed, float rate, Seconds span, float climb = 0.0F, bool in_control = false)
-    {
-        constexpr Seconds kDt = 0.02F;
-        for (int i = 0; i < static_cast<int>(std::lround(span / kDt)); ++i) {
-            heading += rate * kDt;
-            own.velocity = Vec3(speed * std::cos(heading), speed * std::sin(heading), climb);
-            own.position += kDt * own.velocity;
-            tick(kDt, in_control);
-        }
-    }
     /// Ticks of contradiction until the leg is doubted, 100 at most.
     int ticks_until_doubted(const Vec3& velocity)
     {
@@ -73,7 +61,6 @@ protected:
     vehicle::VehicleLimits limits;
     world::Leg leg{Vec3(0, 0, 50), Vec3(500, 0, 50), 0.0F};
     bool has_leg = true;
-    float heading = 0.0F;
     TimePoint now{1'000'000};
 };
 
@@ -165,6 +152,21 @@ TEST_F(NominalEdges, WayBackAimsTwelveMetresAheadOrStraightAtTheLeg)
     EXPECT_TRUE(is_doubted_by(Vec3(100, -40, 50), at_angle(150.0F)));
 }
 
+TEST_F(NominalEdges, TwoMetresThemselvesAreOnTheLeg)
+{
+    EXPECT_TRUE(is_doubted_by(Vec3(100, -2.0F, 50), at_angle(130.0F))) << "no way back from there";
+    EXPECT_FALSE(is_doubted_by(Vec3(100, -2.001F, 50), at_angle(130.0F)));
+    EXPECT_FALSE(is_doubted_by(Vec3(100, 2.0F, 50), at_angle(30.0F))) << "nor is it getting further off";
+    EXPECT_TRUE(is_doubted_by(Vec3(100, 2.001F, 50), at_angle(30.0F)));
+}
+
+TEST_F(NominalEdges, WithoutALegNothingIsDoubted)
+{
+    has_leg = false;
+    hold(Vec3(0, 5, 0), 100);
+    EXPECT_EQ(paths.legs_doubted(), 0U);
+}
+
 TEST_F(NominalEdges, BeforeItsStartAndBeyondItsEnd)
 {
     EXPECT_FALSE(is_doubted_by(Vec3(-40, 0, 50), Vec3(5, 0, 0)));
@@ -224,6 +226,7 @@ TEST_F(NominalEdges, ResetBelievesTheLegAgain)
     ASSERT_TRUE(is_doubted_by(Vec3(100, 0, 50), Vec3(0, 5, 0)));
     paths.reset();
     EXPECT_TRUE(paths.believes_leg());
+    EXPECT_EQ(paths.other(), nullptr) << "until the next update";
     hold(Vec3(0, 5, 0), 1);
     paths.reset();
     EXPECT_EQ(ticks_until_doubted(Vec3(0, 5, 0)), 24);
@@ -241,159 +244,6 @@ TEST_F(NominalEdges, StandingIsSlowerThanItsBound)
     hold(Vec3(3.0F, -4.0F, 1.0F), 1);
     EXPECT_LT((paths.primary().leg.end - own.position - 60.0F * own.velocity).norm(), 1e-3F);
     EXPECT_NEAR(paths.primary().leg.speed, std::sqrt(26.0F), 1e-5F);
-}
-
-TEST_F(NominalEdges, TurnRateIsTheSameOnEveryHeading)
-{
-    has_leg = false;
-    for (const float rate : {0.5F, -0.5F}) {
-        paths.reset();
-        turn(5.0F, rate, 1.5F);
-        for (int i = 0; i < 65; ++i) {
-            turn(5.0F, rate, 0.2F);
-            ASSERT_NEAR(paths.turn_rate(), rate, 0.005F) << "heading " << heading;
-            ASSERT_NE(paths.primary().route, nullptr);
-        }
-    }
-}
-
-TEST_F(NominalEdges, SlowerTurnThanTheLeastIsNone)
-{
-    has_leg = false;
-    for (const float side : {-1.0F, 1.0F}) {
-        paths.reset();
-        turn(5.0F, side * 0.058F, 1.5F);
-        EXPECT_EQ(paths.turn_rate(), 0.0F);
-        EXPECT_EQ(paths.primary().route, nullptr);
-        paths.reset();
-        turn(5.0F, side * 0.062F, 1.5F);
-        EXPECT_NEAR(paths.turn_rate(), side * 0.062F, 0.002F);
-        EXPECT_NE(paths.primary().route, nullptr);
-    }
-}
-
-TEST_F(NominalEdges, TurnOfASlowVehicleIsNone)
-{
-    has_leg = false;
-    turn(0.98F, 0.5F, 2.0F);
-    EXPECT_EQ(paths.turn_rate(), 0.0F);
-    turn(0.98F, 0.5F, 2.0F, 4.0F);
-    EXPECT_EQ(paths.turn_rate(), 0.0F) << "its climb does not count";
-    turn(1.02F, 0.5F, 2.0F);
-    EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
-}
-
-TEST_F(NominalEdges, TurnIsMeasuredOverMostOfASecondAndForgottenAfterIt)
-{
-    has_leg = false;
-    turn(5.0F, 0.5F, 0.7F);
-    EXPECT_EQ(paths.turn_rate(), 0.0F) << "too short to know";
-    turn(5.0F, 0.5F, 0.3F);
-    EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
-    turn(5.0F, 0.0F, 0.5F);
-    EXPECT_GT(paths.turn_rate(), 0.1F);
-    EXPECT_LT(paths.turn_rate(), 0.45F);
-    turn(5.0F, 0.0F, 0.7F);
-    EXPECT_EQ(paths.turn_rate(), 0.0F);
-    EXPECT_EQ(paths.primary().route, nullptr);
-}
-
-TEST_F(NominalEdges, GapInOwnStatesBeginsTheMeasurementAnew)
-{
-    has_leg = false;
-    for (const Seconds gap : {0.4F, 0.55F}) {
-        paths.reset();
-        turn(5.0F, 0.5F, 1.5F);
-        heading += 0.5F * gap;
-        own.velocity = Vec3(5.0F * std::cos(heading), 5.0F * std::sin(heading), 0.0F);
-        tick(gap);
-        if (gap < 0.5F) {
-            EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
-        } else {
-            EXPECT_EQ(paths.turn_rate(), 0.0F);
-            turn(5.0F, 0.5F, 0.6F);
-            EXPECT_EQ(paths.turn_rate(), 0.0F);
-            turn(5.0F, 0.5F, 0.4F);
-            EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
-        }
-    }
-}
-
-TEST_F(NominalEdges, ClockSetBackBeginsTheMeasurementAnew)
-{
-    has_leg = false;
-    turn(5.0F, 0.5F, 1.5F);
-    now = now + -5.0F;
-    turn(5.0F, 0.5F, 0.6F);
-    EXPECT_EQ(paths.turn_rate(), 0.0F);
-    turn(5.0F, 0.5F, 0.5F);
-    EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
-}
-
-TEST_F(NominalEdges, LevelTurnIsHalfACircleAndAMinuteBack)
-{
-    has_leg = false;
-    for (const float climb : {0.0F, 0.29F, -0.29F}) {
-        for (const float rate : {0.5F, -0.5F}) {
-            paths.reset();
-            turn(5.0F, rate, 1.5F, climb);
-            const world::Reference& r = paths.primary();
-            ASSERT_NE(r.route, nullptr);
-            const auto segments = r.route->segments();
-            ASSERT_EQ(segments.size(), 2U);
-            const Vec3 forward(std::cos(heading), std::sin(heading), 0.0F);
-            const Vec3 inwards = std::copysign(1.0F, rate) * Vec3(-forward.y(), forward.x(), 0.0F);
-            EXPECT_TRUE(segments[0].is_arc());
-            EXPECT_NEAR(segments[0].radius, 10.0F, 0.1F);
-            EXPECT_NEAR(segments[0].length, kPi * 10.0F, 0.3F);
-            EXPECT_LT((segments[0].start - own.position).norm(), 1e-2F);
-            EXPECT_LT((segments[0].along - forward).norm(), 1e-2F);
-            EXPECT_LT((segments[0].towards - inwards).norm(), 1e-2F);
-            EXPECT_FALSE(segments[1].is_arc());
-            EXPECT_LT((segments[1].start - own.position - 20.0F * inwards).norm(), 0.2F);
-            EXPECT_NEAR(segments[1].length, 60.0F * own.velocity.norm(), 0.5F);
-            const Vec3 back = (Vec3(0.0F, 0.0F, climb) - 5.0F * forward).normalized();
-            EXPECT_LT((segments[1].along - back).norm(), 1e-2F);
-            EXPECT_NEAR(r.leg.speed, own.velocity.norm(), 1e-4F);
-        }
-    }
-}
-
-TEST_F(NominalEdges, ClimbingTurnIsThreeLegsOnTheHelixAndClimbsOn)
-{
-    has_leg = false;
-    for (const float climb : {0.31F, 1.5F, -1.5F}) {
-        for (const float rate : {0.5F, -0.5F}) {
-            paths.reset();
-            turn(5.0F, rate, 1.5F, climb);
-            ASSERT_NE(paths.primary().route, nullptr);
-            const auto segments = paths.primary().route->segments();
-            ASSERT_EQ(segments.size(), 4U);
-            const Vec3 forward(std::cos(heading), std::sin(heading), 0.0F);
-            const Vec3 inwards = std::copysign(1.0F, rate) * Vec3(-forward.y(), forward.x(), 0.0F);
-            for (std::size_t i = 0; i <= 3; ++i) {
-                const float angle = kPi * static_cast<float>(i) / 3.0F;
-                const Vec3 on_helix = own.position + 10.0F * std::sin(angle) * forward +
-                                      10.0F * (1.0F - std::cos(angle)) * inwards +
-                                      Vec3(0.0F, 0.0F, climb * angle / 0.5F);
-                EXPECT_LT((segments[i].start - on_helix).norm(), 0.2F) << i << ' ' << climb << ' ' << rate;
-            }
-            const Vec3 back = (Vec3(0.0F, 0.0F, climb) - 5.0F * forward).normalized();
-            EXPECT_LT((segments[3].along - back).norm(), 1e-2F);
-            EXPECT_NEAR(segments[3].length, 60.0F * own.velocity.norm(), 0.5F);
-        }
-    }
-}
-
-TEST_F(NominalEdges, TurnOnTheSpotIsTakenForStraight)
-{
-    has_leg = false;
-    turn(1.2F, 2.6F, 2.0F);
-    ASSERT_GT(paths.turn_rate(), 2.4F) << "0.46 m of radius";
-    EXPECT_EQ(paths.primary().route, nullptr);
-    EXPECT_LT((paths.primary().leg.end - own.position - 60.0F * own.velocity).norm(), 1e-2F);
-    turn(1.5F, 2.6F, 2.0F);
-    EXPECT_NE(paths.primary().route, nullptr) << "0.58 m";
 }
 
 }  // namespace

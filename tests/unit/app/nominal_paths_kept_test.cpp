@@ -74,6 +74,7 @@ TEST_F(NominalKept, SteadyIsWithinHalfAMetrePerSecondForASecond)
         return meant();
     };
     EXPECT_EQ(after(0.55F), 4.0F) << "not steady: the parameter's";
+    EXPECT_EQ(after(0.5F), 4.0F) << "nor closer together than that";
     EXPECT_NEAR(after(0.45F), 8.225F, 0.1F) << "the mean";
     EXPECT_NEAR(after(0.55F), 8.225F, 0.1F) << "that of the flight before";
 }
@@ -148,6 +149,15 @@ TEST_F(NominalKept, TicksWithoutAConflictKeepWhichOneItWasOn)
     EXPECT_FALSE(paths.is_intended());
     fly(Vec3(5, 0, 0), 0.1F);
     paths.note(true, false, false);
+    tick(true);
+    EXPECT_TRUE(paths.is_intended());
+}
+
+TEST_F(NominalKept, ConflictOnTheLegIsNotOneOnTheMotionATickLater)
+{
+    fly(Vec3(5, 0, 0), 1.0F);
+    paths.note(true, false, false);
+    fly(Vec3(5, 0, 0), 0.1F);
     tick(true);
     EXPECT_TRUE(paths.is_intended());
 }
