@@ -229,7 +229,7 @@ TEST_F(StepRanges, AnOverheadReadingCoversAllThatItsBeamMayHaveSeen)
                 bench->fly(1);
                 const Vec3 up = steep(sine);
                 const Vec3 across = Vec3::UnitY();
-                const Vec3 along = up.cross(across);
+                const Vec3 along(-up.z(), 0.0F, up.x());
                 for (int i = 0; i < 12; ++i) {
                     const float turn = static_cast<float>(i) * kPi / 6.0F;
                     const Vec3 aside = std::cos(turn) * across + std::sin(turn) * along;
