@@ -186,6 +186,7 @@ TEST(ModeEvidenceEdges, OnlyWhatIsNeededUnconfirmedOrWatchedIsAskedFor)
     EXPECT_FALSE(due(false, true, false, ModeEvidence::kWatch - 0.001F));
     ModeEvidence never;
     EXPECT_TRUE(never.is_due(true, false, moment(0.0F)));
+    EXPECT_TRUE(ModeEvidence().is_due(true, false, TimePoint{1000})) << "wherever the clock begins";
     EXPECT_FALSE(ModeEvidence().is_due(false, false, moment(0.0F)));
 }
 

@@ -167,8 +167,17 @@ TEST_F(NominalEdges, WithoutALegNothingIsDoubted)
     EXPECT_EQ(paths.legs_doubted(), 0U);
 }
 
+TEST_F(NominalEdges, BesideTheLegItMayBeFollowedOrItsEndAimedAt)
+{
+    EXPECT_FALSE(is_doubted_by(Vec3(100, -12, 50), Vec3(5, 0, 0))) << "along it";
+    EXPECT_FALSE(is_doubted_by(Vec3(497, -1.9F, 50), at_angle(70.0F, 1.5F))) << "no farther than its end";
+    EXPECT_TRUE(is_doubted_by(Vec3(400, -1.9F, 50), at_angle(70.0F, 1.5F)));
+}
+
 TEST_F(NominalEdges, BeforeItsStartAndBeyondItsEnd)
 {
+    EXPECT_FALSE(is_doubted_by(Vec3(-40, 3, 50), at_angle(20.0F))) << "nearer to the start, not further off";
+    EXPECT_TRUE(is_doubted_by(Vec3(40, 3, 50), at_angle(20.0F)));
     EXPECT_FALSE(is_doubted_by(Vec3(-40, 0, 50), Vec3(5, 0, 0)));
     EXPECT_TRUE(is_doubted_by(Vec3(-40, 0, 50), Vec3(-5, 0, 0)));
     EXPECT_TRUE(is_doubted_by(Vec3(540, 0, 50), Vec3(5, 0, 0))) << "it flies on and on";

@@ -106,20 +106,33 @@ TEST(ReachPictures, WithoutAPlaceOrThePitchOfTheRaysThereIsNone)
     }
 }
 
-TEST(ReachPictures, RaysThatAreNotValidSeeNothing)
+/// Cells of a set along the course that are free where what is not seen is blocked, after a sweep of such rays.
+std::ptrdiff_t free_after(Ray ray)
 {
     Flying f;
     f.picture.look_from(f.view);
     f.picture.begin_scan(f.scan);
-    for (int i = 0; i < 20000; ++i) {
-        f.picture.add(Ray::invalid, Vec3(0.0F, 1.0F, 0.0F));
+    for (float h = -3.14F; h < 3.14F; h += 0.02F) {
+        for (float v = -0.7F; v < 0.7F; v += 0.02F) {
+            f.picture.add(ray, Vec3(std::cos(v) * std::cos(h), std::cos(v) * std::sin(h), std::sin(v)));
+        }
     }
     f.picture.end_scan(0);
     reach::Placed placed;
     placed.set = reach_sets().segments[1].emergency;
+    placed.origin = Vec3(10.0F, 20.5F, 30.0F);
+    placed.cosine = 0.0F;
+    placed.sine = 1.0F;
+    placed.unit = 5.0F * reach_sets().period;
     std::vector<reach::Level> blocks(placed.set->grid.cells());
     EXPECT_TRUE(f.rate(placed, true, blocks));
-    EXPECT_EQ(std::count(blocks.begin(), blocks.end(), reach::kFree), 0);
+    return std::count(blocks.begin(), blocks.end(), reach::kFree);
+}
+
+TEST(ReachPictures, RaysThatCameBackFromNowhereSeeAndThoseThatAreNotValidDoNot)
+{
+    EXPECT_GT(free_after(Ray::nothing), 100);
+    EXPECT_EQ(free_after(Ray::invalid), 0);
 }
 
 /// The start of a scan, as the picture has it once the scan has ended.

@@ -276,7 +276,7 @@ TEST(TakeoverEdges, SticksThatMoveWhileItReturnsWaitForTheAnswerOnItsWay)
     }
 }
 
-TEST(TakeoverEdges, SticksThatMoveAfterAnUnansweredReturnAskAtOnce)
+TEST(TakeoverEdges, SticksThatMoveAfterAnUnansweredReturnAskAtOnceAndThrice)
 {
     for (const std::int64_t early : {std::int64_t{0}, std::int64_t{1}}) {
         Bench b = given_back_at_once();
@@ -286,6 +286,12 @@ TEST(TakeoverEdges, SticksThatMoveAfterAnUnansweredReturnAskAtOnce)
         const TakeoverOutput out = sticks_moved(b, calm(Beat::external, 0.0F));
         EXPECT_EQ(out.event, TakeoverEvent::sticks);
         EXPECT_EQ(out.action, early == 0 ? TakeoverAction::request_former : TakeoverAction::none);
+        int requests = early == 0 ? 1 : 0;
+        for (int i = 0; i < 10; ++i) {
+            const TakeoverOutput next = step_at(b, b.now, 1.0F, wants(Beat::external));
+            requests += next.action == TakeoverAction::request_former ? 1 : 0;
+        }
+        EXPECT_EQ(requests, early == 0 ? Takeover::kTries : Takeover::kTries - 1) << "one was on its way";
     }
 }
 

@@ -115,18 +115,18 @@ TEST(TakeoverEnds, CommandsAreFollowedOrNotInControlAlone)
 
 TEST(TakeoverEnds, VehicleThatDoesNotFollowIsLeftAloneInTheExternalModeToo)
 {
-    Bench b = commanding();
-    ASSERT_EQ(varied(b, wants(Beat::external), kUnfollowed).action, TakeoverAction::request_hold);
-    EXPECT_EQ(b.takeover.diagnostics().unfollowed, 1U);
-    int holds = 1;
-    for (int i = 0; i < 40; ++i) {
-        holds += b.step(i < 3 ? wants(Beat::external, 0.25F) : calm(Beat::external, 0.25F)).action ==
-                         TakeoverAction::request_hold
-                     ? 1
-                     : 0;
-        EXPECT_FALSE(b.takeover.streaming()) << i;
+    for (const int conflict : {3, 20}) {  // steps that it lasts
+        Bench b = commanding();
+        ASSERT_EQ(varied(b, wants(Beat::external), kUnfollowed).action, TakeoverAction::request_hold);
+        EXPECT_EQ(b.takeover.diagnostics().unfollowed, 1U);
+        int holds = 1;
+        for (int i = 0; i < 20; ++i) {
+            const TakeoverOutput out = b.step(i < conflict ? wants(Beat::external, 0.5F) : calm(Beat::external, 0.5F));
+            holds += out.action == TakeoverAction::request_hold ? 1 : 0;
+            EXPECT_FALSE(b.takeover.streaming()) << i;
+        }
+        EXPECT_EQ(holds, Takeover::kHoldTries) << "in the conflict and after it";
     }
-    EXPECT_EQ(holds, Takeover::kHoldTries) << "also after the conflict";
 }
 
 TEST(TakeoverEnds, HoldOfAVehicleThatDoesNotFollowIsSaidOnce)

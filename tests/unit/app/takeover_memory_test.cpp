@@ -220,5 +220,81 @@ TEST(TakeoverMemory, NoStreamIsProvenToAVehicleThatDidNotFollow)
     EXPECT_TRUE(b.takeover.proving()) << "another flight";
 }
 
+TEST(TakeoverMemory, SticksBeforeARebootAreForgottenInTheNextTakeover)
+{
+    Bench b = commanding();
+    ASSERT_EQ(varied(b, wants(Beat::external), kSticks).action, TakeoverAction::request_former);
+    b.takeover.drop(false);
+    b.step(wants(Beat::former));
+    ASSERT_EQ(b.step(wants(Beat::none, 0.07F)).action, TakeoverAction::request_external);
+    ASSERT_EQ(b.step(wants(Beat::external)).event, TakeoverEvent::took_over);
+    ASSERT_EQ(b.step(wants(Beat::manual)).event, TakeoverEvent::overruled);
+    for (int i = 0; i < 5; ++i) {
+        EXPECT_EQ(b.step(wants(Beat::external, 0.5F)).action, TakeoverAction::none) << "the pilot's external mode";
+    }
+    b.step(calm(Beat::external));
+    EXPECT_EQ(b.control(), Control::autopilot);
+}
+
+TEST(TakeoverMemory, NoFormerModeIsAskedForAfterASilenceThatEndedTheClaim)
+{
+    for (const float silence : {9.0F, 11.0F}) {
+        Bench b = commanding();
+        const TakeoverOutput out = varied(b, kWant, [](TakeoverInput& in) {
+            in.sticks_moved = true;
+            in.link_alive = false;
+        });
+        ASSERT_EQ(out.event, TakeoverEvent::sticks);
+        ASSERT_EQ(out.action, TakeoverAction::none);
+        EXPECT_EQ(b.step(wants(Beat::external, silence)).action,
+                  silence < 10.0F ? TakeoverAction::request_former : TakeoverAction::none);
+    }
+}
+
+TEST(TakeoverMemory, TriesAreCountedAnewAfterATakeover)
+{
+    Bench b = awaiting();
+    b.step(wants(Beat::former, 1.01F));
+    ASSERT_EQ(b.step(wants(Beat::external, 0.2F)).event, TakeoverEvent::took_over);
+    const Step still = wants(Beat::external);
+    TakeoverInput input = input_of(still);
+    input.wants_control = false;
+    b.now = b.now + 0.02F;
+    ASSERT_EQ(b.takeover.update(input, b.now).action, TakeoverAction::request_former);
+    TakeoverInput back = input_of(wants(Beat::former));
+    b.now = b.now + 0.02F;
+    ASSERT_EQ(b.takeover.update(back, b.now).event, TakeoverEvent::gave_back);
+    int requests = 0;
+    for (int i = 0; i < 100 && b.control() != Control::refused; ++i) {
+        requests += b.step(wants(Beat::former, 0.1F)).action == TakeoverAction::request_external ? 1 : 0;
+    }
+    EXPECT_EQ(requests, Takeover::kTries) << "the same conflict, another take-over";
+}
+
+TEST(TakeoverMemory, DenialIsThatOfOneRequest)
+{
+    Bench b = awaiting();
+    b.step(denied(0.02F));
+    ASSERT_EQ(b.step(wants(Beat::former, 0.05F)).action, TakeoverAction::request_external);
+    for (int i = 0; i < 9; ++i) {
+        EXPECT_EQ(b.step(wants(Beat::former, 0.1F)).action, TakeoverAction::none) << "nobody has denied this one";
+    }
+    EXPECT_EQ(b.step(wants(Beat::former, 0.2F)).action, TakeoverAction::request_external);
+}
+
+TEST(TakeoverMemory, VehicleThatDoesNotFollowHasItsOwnHoldRequests)
+{
+    Bench b = commanding();
+    for (int i = 0; i < 20; ++i) {
+        Step s = fault(Beat::external, 0.5F);
+        s.accepted = i == 17;
+        b.step(s);
+    }
+    ASSERT_EQ(b.takeover.diagnostics().hold_requests, static_cast<std::uint32_t>(Takeover::kHoldTries));
+    ASSERT_EQ(b.step(wants(Beat::external)).event, TakeoverEvent::took_over);
+    EXPECT_EQ(varied(b, wants(Beat::external), kUnfollowed).action, TakeoverAction::request_hold);
+    EXPECT_EQ(b.step(wants(Beat::external, 0.51F)).action, TakeoverAction::request_hold) << "unanswered";
+}
+
 }  // namespace
 }  // namespace jink::app
