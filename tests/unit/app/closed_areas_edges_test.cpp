@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Closed areas and their upload at the limits: stamps, ends, growth, the origin, what a set differs by.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -73,13 +75,15 @@ TEST_F(ClosedAreas, CountsToTheMicrosecondOfItsEnd)
 
 TEST_F(ClosedAreas, AllOfItsBodyStaysAsTold)
 {
-    tell({closed_at(30, -40)});
-    const world::Barrel& b = table.barrels()[0];
-    EXPECT_EQ(b.circle.centre, world::Vec2(30, -40));
-    EXPECT_EQ(b.circle.radius, 10.0F);
-    EXPECT_EQ(b.bottom, 20.0F);
-    EXPECT_EQ(b.top, 100.0F);
-    EXPECT_EQ(b.margin, 5.0F);
+    for (const std::optional<link::GlobalPosition>& origin : {std::optional<link::GlobalPosition>(), {kArea}}) {
+        tell({closed_at(30, -40)}, origin);
+        const world::Barrel& b = table.barrels()[0];
+        EXPECT_EQ(b.circle.centre, world::Vec2(30, -40)) << "in the local frame, wherever that lies";
+        EXPECT_EQ(b.circle.radius, 10.0F);
+        EXPECT_EQ(b.bottom, 20.0F);
+        EXPECT_EQ(b.top, 100.0F);
+        EXPECT_EQ(b.margin, 5.0F);
+    }
 }
 
 /// Heights and the larger radius of a map that is 0.15 % off: 111.3 m north on our sphere.
@@ -159,15 +163,18 @@ TEST_F(ClosedAreas, WhatIsRefusedIsNoReasonToMerge)
 /// Those far from the vehicle are merged first, and what stands by itself keeps its place.
 TEST_F(ClosedAreas, WhatIsFarFromTheVehicleIsMerged)
 {
-    for (const bool on_the_globe : {false, true}) {
-        SCOPED_TRACE(on_the_globe);
+    enum class Told : std::uint8_t { locally, locally_with_an_origin, on_the_globe };
+    for (const Told how : {Told::locally, Told::locally_with_an_origin, Told::on_the_globe}) {
+        SCOPED_TRACE(static_cast<int>(how));
         std::vector<Constraint> told;
         for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
             told.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F));
         }
         std::optional<link::GlobalPosition> origin;
         float south = 0.0F;
-        if (on_the_globe) {
+        if (how == Told::locally_with_an_origin) {
+            origin = kArea;
+        } else if (how == Told::on_the_globe) {
             origin = kArea;
             origin->lat -= 50'000;  // 557 m
             south = 556.6F;
@@ -190,6 +197,38 @@ TEST_F(ClosedAreas, WhatIsFarFromTheVehicleIsMerged)
         EXPECT_TRUE(holds(last, 10.0F));
         EXPECT_FALSE(holds(0.0F, 10.0F));
     }
+}
+
+TEST_F(ClosedAreas, TooManyOnTheGlobeWaitForAnOriginToo)
+{
+    std::vector<Constraint> told;
+    for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
+        told.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F));
+        told.back().about = kArea;
+    }
+    tell(told);
+    EXPECT_TRUE(table.lacks_origin());
+    EXPECT_TRUE(table.barrels().empty());
+    table.place(kArea, kTold);
+    EXPECT_EQ(table.barrels().size(), kMaxBarrels);
+    EXPECT_EQ(table.diagnostics().merged, 1U);
+}
+
+/// One stamped ahead of us is neither moved back nor made smaller before it is merged.
+TEST_F(ClosedAreas, WhatIsMergedIsNoYoungerThanNow)
+{
+    std::vector<Constraint> told;
+    for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
+        told.push_back(closed_at(2000.0F * static_cast<float>(i), 0.0F, 30.0F, {0.0F, 50.0F}));
+        told.back().stamp = kTold + 0.4F;
+    }
+    tell(told);
+    const auto barrels = table.barrels();
+    const auto first = std::find_if(barrels.begin(), barrels.end(),
+                                    [](const world::Barrel& b) { return std::abs(b.circle.centre.x()) < 1.0F; });
+    ASSERT_NE(first, barrels.end());
+    // It stands from here on, and holds where it is now and where it will be.
+    EXPECT_LE((first->circle.centre - world::Vec2(0, 0)).norm() + 30.0F, first->circle.radius + 0.1F);
 }
 
 /// Whatever is merged ends with the last of them, and grows at twice the greatest speed once it is old.

@@ -182,6 +182,8 @@ struct StepBench {
     {
     }
 
+    explicit StepBench(const Parameters& parameters) : coprocessor(wire, port, watchdog, parameters) {}
+
     /// The autopilot's HEARTBEAT, in the next step.
     link::AutopilotReport& hear_autopilot()
     {

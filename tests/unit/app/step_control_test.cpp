@@ -1,80 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Taking over in Coprocessor::step: who is steered and by what, what waits for the line, what is asked for instead.
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
-#include "tests/unit/app/step_bench.hpp"
+#include "tests/unit/app/step_flight.hpp"
 
 namespace jink::app::test {
 namespace {
-
-using link::FlightMode;
-
-/// Flies, obeys modes and set-points, and sends a HEARTBEAT a second and when asked for one.
-struct StepFlight : StepBench {
-    using StepBench::StepBench;
-
-    StepReport tick()
-    {
-        if (ticks_++ % 50 == 0 || answer_due_) {
-            link::AutopilotReport& r = hear_autopilot();
-            r.mode = mode;
-            r.custom_mode = static_cast<std::uint32_t>(mode) + 10;
-            r.fixed_wing = fixed_wing;
-            r.steerable = steerable;
-            answer_due_ = false;
-        }
-        hear_own();
-        if (mast && ticks_ % 10 == 1) {
-            hear_mast(1, *mast);
-        }
-        const std::size_t asked = wire.requests.size();
-        step();
-        Vec3 wanted = mode == FlightMode::mission ? Vec3(0.0F, 5.0F, 0.0F) : Vec3(Vec3::Zero());
-        if (mode == FlightMode::external && !wire.velocities.empty()) {
-            wanted = deaf ? Vec3(0.0F, 5.0F, 0.0F) : wire.velocities.back();
-        }
-        velocity += (wanted - velocity) * (0.02F / 0.25F);
-        position += velocity * 0.02F;
-        for (std::size_t i = asked; i < wire.requests.size(); ++i) {
-            const std::string& r = wire.requests[i];
-            if (r == "heartbeat") {
-                answer_due_ = answers;
-            } else if (obeys) {
-                mode = r == "external" ? FlightMode::external : r == "hold" ? FlightMode::hold : FlightMode::mission;
-            }
-        }
-        return last;
-    }
-    template <class Done>
-    bool until(Done done, int limit = 600)
-    {
-        for (int i = 0; i < limit; ++i) {
-            if (done(tick())) {
-                return true;
-            }
-        }
-        return false;
-    }
-    [[nodiscard]] int asked_for(std::string_view what) const
-    {
-        return static_cast<int>(std::count(wire.requests.begin(), wire.requests.end(), what));
-    }
-    static bool ours(const StepReport& r) { return r.control == Control::ours; }
-
-    FlightMode mode = FlightMode::mission;
-    std::optional<Vec3> mast;  ///< stands there
-    bool fixed_wing = false;
-    bool steerable = true;
-    bool obeys = true;
-    bool answers = true;
-    bool deaf = false;
-
-private:
-    bool answer_due_ = false;
-    int ticks_ = 0;
-};
 
 const Vec3 kMast(0.4F, 60.0F, 50.0F);
 
@@ -103,7 +34,7 @@ TEST(StepControl, TheStreamSaysTheOwnMotionUntilTheVehicleFollows)
     EXPECT_EQ(f.counted().setpoints_withheld, 0U);
     ASSERT_TRUE(f.until([](const StepReport& r) { return r.control == Control::autopilot; }, 2000));
     EXPECT_EQ(f.asked_for("11"), 1) << "the mode that stood before, as on the wire";
-    EXPECT_EQ(f.mode, FlightMode::mission);
+    EXPECT_EQ(f.mode, link::FlightMode::mission);
     const std::size_t before = f.wire.velocities.size();
     f.until([](const StepReport&) { return false; }, 50);
     EXPECT_EQ(f.wire.velocities.size(), before);
