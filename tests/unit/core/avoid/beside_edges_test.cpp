@@ -131,6 +131,22 @@ TEST(BesideTheLeg, IsBegunWithRoomToSpareAndKeptWhileClear)
     EXPECT_EQ(supervisor.diagnostics().holds, 1U) << "once left, it is begun with room again";
 }
 
+TEST(BesideTheLeg, IsBegunAnewAfterTheWayBackWasClear)
+{
+    Flight f = along_side(8.0F, 0.6F);
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    static_cast<void>(f.update(supervisor, true));
+    ASSERT_EQ(supervisor.diagnostics().holds, 1U);
+    const std::vector<world::Track> tracks = f.scene.tracks;
+    f.scene.tracks.clear();
+    EXPECT_GT((f.update(supervisor, true).velocity - Vec3(5, 0, 0)).norm(), 0.5F) << "back to the leg";
+    f.scene.tracks = tracks;
+    f.scene.tracks[1].position.y() -= 0.4F;
+    EXPECT_GT((f.update(supervisor, true).velocity - Vec3(5, 0, 0)).norm(), 0.5F) << "0.2 m do not begin it";
+    EXPECT_EQ(supervisor.diagnostics().holds, 1U);
+}
+
 TEST(BesideTheLeg, ExactlyClearIsClear)
 {
     Flight f;

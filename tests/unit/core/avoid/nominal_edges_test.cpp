@@ -82,6 +82,49 @@ TEST(OtherPath, IsForgottenInControl)
     EXPECT_FALSE(t.update(6.0F, 6.4F).on_other) << "no advantage is left";
 }
 
+TEST(OtherPath, IsForgottenInControlThatIsGivenBack)
+{
+    TwoAhead t;
+    Settings settings = quick();
+    settings.settle = settings.least_control = 0.0F;
+    ASSERT_TRUE(t.supervisor.configure(settings));
+    EXPECT_TRUE(t.update(TwoAhead::kNever, 7.0F).on_other);
+    EXPECT_FALSE(t.update(TwoAhead::kNever, TwoAhead::kNever, true).wants_control);
+    EXPECT_FALSE(t.update(6.0F, 6.4F).on_other) << "no advantage is left";
+}
+
+/// Standing, its leg ahead: what comes to where it stands counts by how it stands, not by how it would fly.
+TEST(OtherPath, ThatStandsIsLeftInTime)
+{
+    TwoAhead t;
+    t.north.leg = {t.f.scene.own.position, t.f.scene.own.position, 5.0F};
+    const auto acts = [&](Seconds seconds) {
+        t.f.scene.tracks.clear();
+        t.f.scene.track(t.f.scene.own.position + Vec3(0, 2.0F + 10.0F * seconds, 0), Vec3(0, -10, 0), 1.0F);
+        const Guidance g = t.supervisor.update(t.f.scene.situation(), false, &t.north);
+        EXPECT_TRUE(g.on_other);
+        return g.wants_control;
+    };
+    EXPECT_FALSE(acts(3.1F));
+    EXPECT_TRUE(acts(2.9F));
+}
+
+/// Plans for the other path are checked against all traffic to their end, whoever shares the reaction.
+TEST(OtherPath, PlansForItAreCheckedAgainstCooperativeTraffic)
+{
+    TwoAhead t;
+    t.method = {[](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = along(s, {s.own.position, s.own.position + Vec3(0, 60, 0)}, kLeft);
+        return PlanStatus::found;
+    }};
+    t.place(Vec3(0, 1, 0), 4.0F);
+    t.f.scene.tracks[0].cooperative = true;
+    const Guidance g = t.supervisor.update(t.f.scene.situation(), false, &t.north);
+    EXPECT_TRUE(g.on_other);
+    EXPECT_EQ(g.plan_status, PlanStatus::none_available);
+    EXPECT_EQ(t.supervisor.diagnostics().answers_rejected, 2U);
+}
+
 TEST(OtherPath, AnObstacleCountsFromTheLatestManoeuvreTimeOn)
 {
     TwoAhead t;
