@@ -73,7 +73,7 @@ TEST(GivingUp, ForgetsWhatWasFlown)
     static_cast<void>(w.update(false));
     ASSERT_EQ(w.update().state, State::avoiding);
     finds = false;
-    w.f.scene.obstacle(geometry::make_box(Vec3(51, 0, 30), Vec3(1, 200, 200)));
+    w.f.scene.obstacle(geometry::make_box(Vec3(53, 0, 30), Vec3(0.8F, 200, 200)));
     ASSERT_EQ(w.update().state, State::braking);
     ASSERT_NE(w.supervisor.flying(), nullptr);
     EXPECT_TRUE(w.wait(20.0F, 0.5F).blocked);

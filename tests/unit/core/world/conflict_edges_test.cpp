@@ -77,11 +77,6 @@ TEST_F(ConflictEdges, AWayWithoutSpeedStands)
     EXPECT_EQ(found.own_at_closest, Vec3(1, 2, 3));
     scene.tracks.clear();
     EXPECT_FALSE(meets_there());
-    scene.obstacle(geometry::make_box(Vec3(3, 2, 3), Vec3(1.5F, 9, 9)));
-    ASSERT_TRUE(meets_there());
-    EXPECT_EQ(found.time_to_loss, 0.0F);
-    EXPECT_EQ(found.time_to_closest, 0.0F);
-    EXPECT_EQ(found.own_at_closest, Vec3(1, 2, 3));
 }
 
 TEST_F(ConflictEdges, AQuarterOfAMetreIsOnTheLeg)
