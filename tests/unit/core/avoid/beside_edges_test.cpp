@@ -9,28 +9,28 @@ namespace {
 
 using namespace test;
 
-/// Off the leg, flying something that goes on outwards; the way back is blocked, beside the leg is free.
+/// 4 m above the leg, on what is flown. The way back is blocked, flying on above the leg is free.
 struct Outside : Scripted {
-    /// `climb` metres above the leg; what is flown goes on at `speed`, `rise` metres up in 40.
-    Outside(float climb, float speed, float rise = 20.0F)
+    /// What is flown leads from 4 m above the leg `rise` metres up in the next 40, at `speed`.
+    Outside(float speed, float rise, const Settings& settings = quick()) : supervisor(settings, method)
     {
         f.scene.own.velocity = Vec3(speed, 0, 0);
-        head_on(f, 45.0F);
+        head_on(f, 48.0F);
         next = [=](const Situation& s, Manoeuvre& out) {
-            out = at_speed(s, {s.own.position, s.own.position + Vec3(40, 0, rise)}, speed, Vec3(0, 0, 1));
+            out = at_speed(s, {Vec3(0, 0, 34), Vec3(40, 0, 34.0F + rise)}, speed, Vec3(0, 0, 1));
             return PlanStatus::found;
         };
         EXPECT_EQ(f.update(supervisor, true).state, State::avoiding);
         f.scene.tracks.clear();
-        f.scene.own.position = Vec3(0, 0, 30.0F + climb);
+        f.scene.own.position = Vec3(0, 0, 34);
         f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);  // where the way back meets the leg
     }
-    Supervisor<FakeMethod> supervisor{quick(), method};
+    Supervisor<FakeMethod> supervisor;
 };
 
 TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsClearGoesOutAndIsNotSlow)
 {
-    Outside t(4.0F, 5.0F);
+    Outside t(5.0F, 10.0F);
     const Guidance g = t.f.update(t.supervisor, true);
     ASSERT_TRUE(g.has_conflict);
     EXPECT_GE(g.margin, 0.0F);
@@ -40,8 +40,8 @@ TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsClearGoesOutAndIsNotSlow)
 
 TEST(BesideWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
 {
-    Outside t(4.0F, 5.0F);
-    t.f.scene.track(Vec3(32, 0, 48), Vec3::Zero(), 4.0F);
+    Outside t(5.0F, 10.0F);
+    t.f.scene.track(Vec3(32, 0, 44), Vec3::Zero(), 4.0F);
     const Guidance g = t.f.update(t.supervisor, true);
     EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
@@ -51,18 +51,46 @@ TEST(BesideWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
 
 TEST(BesideWhileAvoiding, IsTakenInsteadOfACrawl)
 {
-    Outside t(4.0F, 1.5F);
-    EXPECT_EQ(t.f.update(t.supervisor, true).state, State::rejoining);
+    Outside t(1.5F, 10.0F);
+    const Guidance g = t.f.update(t.supervisor, true);
+    EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
 }
 
 TEST(BesideWhileAvoiding, IsTakenWhereThePathLeadsBack)
 {
-    Outside t(4.0F, 5.0F, 7.0F);  // above its path: the command leads down
+    Outside t(5.0F, -2.0F);
     const Guidance g = t.f.update(t.supervisor, true);
     ASSERT_TRUE(g.has_conflict);
     EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
+}
+
+/// Outwards and level on the floor: exactly clear is clear, and nothing else is looked for.
+TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
+{
+    Settings settings = quick();
+    settings.room = 0.0F;
+    Scripted t;
+    t.next = [](const Situation& s, Manoeuvre& out) {
+        out = at_speed(s, {Vec3(0, 4, 30), Vec3(40, 8, 30)}, 5.0F, kLeft);
+        return PlanStatus::found;
+    };
+    t.f.scene.airspace.has_floor = true;
+    t.f.scene.airspace.floor = 29.0F;
+    head_on(t.f, 48.0F);
+    Supervisor supervisor(settings, t.method);
+    ASSERT_EQ(t.f.update(supervisor, true).state, State::avoiding);
+    t.f.scene.tracks.clear();
+    t.f.scene.own.position = Vec3(0, 4, 30);
+    t.f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);
+    const Guidance g = t.f.update(supervisor, true);
+    ASSERT_TRUE(g.has_conflict);
+    EXPECT_EQ(g.margin, 0.0F);
+    EXPECT_EQ(g.state, State::avoiding);
+    EXPECT_FALSE(g.new_manoeuvre);
+    EXPECT_EQ(supervisor.diagnostics().holds, 0U);
+    EXPECT_EQ(supervisor.diagnostics().replans, 0U);
 }
 
 /// `y` metres beside the leg, with a threat on the way back and one `gap` metres beside the flight along the leg.
@@ -101,6 +129,22 @@ TEST(BesideTheLeg, IsBegunWithRoomToSpareAndKeptWhileClear)
     f.scene.tracks[1].position.y() += 0.4F;
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(supervisor.diagnostics().holds, 1U) << "once left, it is begun with room again";
+}
+
+TEST(BesideTheLeg, IsBegunAnewAfterTheWayBackWasClear)
+{
+    Flight f = along_side(8.0F, 0.6F);
+    FakeMethod method = never();
+    Supervisor supervisor(quick(), method);
+    static_cast<void>(f.update(supervisor, true));
+    ASSERT_EQ(supervisor.diagnostics().holds, 1U);
+    const std::vector<world::Track> tracks = f.scene.tracks;
+    f.scene.tracks.clear();
+    EXPECT_GT((f.update(supervisor, true).velocity - Vec3(5, 0, 0)).norm(), 0.5F) << "back to the leg";
+    f.scene.tracks = tracks;
+    f.scene.tracks[1].position.y() -= 0.4F;
+    EXPECT_GT((f.update(supervisor, true).velocity - Vec3(5, 0, 0)).norm(), 0.5F) << "0.2 m do not begin it";
+    EXPECT_EQ(supervisor.diagnostics().holds, 1U);
 }
 
 TEST(BesideTheLeg, ExactlyClearIsClear)

@@ -241,6 +241,20 @@ TEST(Answers, ThatAreExactlyClearAreTaken)
     EXPECT_EQ(g.margin, 0.0F);
 }
 
+TEST(Answers, AreToldWithTheirMargin)
+{
+    Flight f;
+    head_on(f);
+    FakeMethod method = always(kLeft);
+    const Guidance g = once(f, quick(), method);
+    ASSERT_EQ(g.plan_status, PlanStatus::found);
+    WorkBudget budget(world::test::kPlenty);
+    const Situation s = f.scene.situation();
+    const float margin = check_manoeuvre(s, detour(s, kLeft, 6.0F, 60.0F), quick(), budget).margin;
+    EXPECT_GT(margin, 1.0F);
+    EXPECT_NEAR(g.margin, margin - quick().room, 0.1F) << "for the wider vehicle that was asked for first";
+}
+
 TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
 {
     Flight f;

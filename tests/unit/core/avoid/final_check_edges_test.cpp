@@ -281,6 +281,65 @@ TEST(FinalCheckCosts, LongFlightsAreTakenInLongerChords)
     }
 }
 
+/// A command: room for all its points is paid for while it lasts, and its stop alone once it has ended.
+TEST(FinalCheckCosts, OfACommandDependOnItsChords)
+{
+    Flight f;
+    Settings coarse;
+    coarse.prediction_step = 0.5F;
+    const Manoeuvre m = held(f, Vec3(5, 0, 0), 4.0F);
+    EXPECT_GE(cost_of(f, m), cost_of(f, m, coarse) + 11 * units::kPathPiece) << "20 chords, or 8";
+    const std::uint32_t stop = stop_chords(f, 0.2F);
+    EXPECT_LE(cost_of(f, held(f, Vec3(5, 0, 0), 4.0F, 4.0F)),
+              (stop + 2) * (units::kCommandStep + units::kPathPiece) + 1);
+}
+
+float margin_within(const Flight& f, Seconds horizon, Seconds step, std::uint32_t& spent)
+{
+    Settings settings;
+    settings.prediction_step = step;
+    WorkBudget budget(kPlenty);
+    const float margin = command_margin(f.scene.situation(), Vec3(5, 0, 0), horizon, settings, budget);
+    spent = budget.spent();
+    return margin;
+}
+
+/// Whatever the horizon and the step: the flight reaches the horizon, and no farther.
+TEST(CommandMargin, ReachesTheHorizon)
+{
+    Flight f;
+    f.scene.track(Vec3(330, 0, 30), Vec3::Zero(), 1.0F);
+    f.scene.track(Vec3(5, 0, 30), Vec3::Zero(), 1.0F);
+    std::uint32_t spent = 0;
+    for (const Seconds step : {0.02F, 0.05F, 0.2F, 0.5F}) {
+        for (const Seconds horizon : {0.03F, 0.05F, 0.1F, 0.149F, 0.15F, 0.19F, 0.2F, 0.3F, 0.31F, 0.45F, 0.6F}) {
+            ASSERT_NEAR(margin_within(f, horizon, step, spent), 3.0F - 5.0F * horizon, 1e-3F) << horizon << ' ' << step;
+        }
+    }
+    f.scene.tracks.pop_back();
+    for (const Seconds step : {0.02F, 0.5F}) {
+        for (const Seconds horizon : {57.0F, 60.0F, 64.0F}) {
+            ASSERT_NEAR(margin_within(f, horizon, step, spent), 328.0F - 5.0F * horizon, 2e-2F)
+                << horizon << ' ' << step;
+        }
+    }
+}
+
+TEST(CommandMargin, TakesAsManyChordsAsTheStepAsksFor)
+{
+    Flight f;
+    std::uint32_t spent = 0;
+    const auto expected = [](std::uint32_t steps, std::uint32_t points) {
+        return steps * units::kCommandStep + 1 + points * units::kPathPiece;
+    };
+    static_cast<void>(margin_within(f, 4.0F, 0.2F, spent));
+    EXPECT_EQ(spent, expected(20, 21));
+    static_cast<void>(margin_within(f, 4.0F, 0.5F, spent));
+    EXPECT_EQ(spent, expected(8, 9));
+    static_cast<void>(margin_within(f, 1.0F, 0.5F, spent));
+    EXPECT_EQ(spent, expected(2, 5)) << "the first two are short";
+}
+
 /// The fallback of a fixed wing: either turn in set-points, and chords of the prediction's step.
 TEST(FallbackCosts, OfAFixedWingAreThoseOfTwoTurns)
 {

@@ -102,50 +102,22 @@ TEST(OtherSide, ATurnOverIsCountedByTheSideThatIsFlown)
     EXPECT_EQ(flips(Vec3(0, 0, 1)), 0U);
 }
 
-// --- the end ---
-
-TEST(Ends, ExactlyAtThePathsDuration)
+TEST(OtherSide, ATurnOverIsNotCountedByTheSideThatWasChosen)
 {
     Scripted t;
-    t.next = [](const Situation& s, Manoeuvre& out) {
-        out = at_speed(s, {s.own.position, s.own.position + Vec3(0, 40, 0)}, 4.0F, kLeft);
+    bool other = false;
+    t.next = [&](const Situation& s, Manoeuvre& out) {
+        out = detour(s, other ? Vec3(0, 0, 1) : kLeft, other ? 9.0F : 6.0F, other ? 40.0F : 60.0F);
+        out.side = other ? Vec3(0, -1, 0) : Vec3(0, 0, 1);  // called up, flown to the left, then called right
         return PlanStatus::found;
     };
     Supervisor supervisor(quick(), t.method);
-    ASSERT_EQ(avoid_head_on(t.f, supervisor).state, State::avoiding);
-    ASSERT_EQ(supervisor.flying()->path.duration(), 10.0F);
-    t.f.scene.own.position = Vec3(0, 40, 30);
-    t.f.scene.own.velocity = Vec3(0, 4, 0);
-    t.f.scene.tracks[0].velocity = Vec3::Zero();
-    t.f.scene.tracks[0].position = Vec3(20, 28, 30);  // in the way back, far enough
-    t.f.scene.now = t.f.scene.now + 9.99F;
-    t.f.scene.tracks[0].stamp = t.f.scene.now;
-    EXPECT_EQ(t.f.update(supervisor, true).state, State::avoiding);
-    t.f.scene.now = supervisor.flying()->start + 10.0F;
-    t.f.scene.tracks[0].position = Vec3(200, 28, 30);
-    EXPECT_EQ(t.f.update(supervisor, true).state, State::rejoining);
-}
-
-/// Rejoining by way of a velocity that is renewed counts once, and is done once.
-TEST(Ends, OfAVelocityOverAClearWayGiveBackOnce)
-{
-    Flight f;
-    head_on(f, 30.0F);
-    ReactiveFake method{{[](const Situation& s, WorkBudget&, Manoeuvre& out) {
-        out = velocity_of(s, Vec3(4, -3, 0));
-        return PlanStatus::found;
-    }}};
-    Settings settings = quick();
-    settings.reactive = Reactive::alone;
-    settings.settle = settings.least_control = 0.0F;
-    Supervisor supervisor(settings, method);
-    ASSERT_EQ(f.update(supervisor, true).state, State::avoiding);
-    f.scene.tracks.clear();
-    const Guidance g = f.update(supervisor, true);
-    EXPECT_EQ(g.state, State::watching);
-    EXPECT_FALSE(g.wants_control);
-    EXPECT_EQ(supervisor.diagnostics().rejoined, 1U);
-    EXPECT_EQ(supervisor.flying(), nullptr);
+    EXPECT_EQ(avoid_head_on(t.f, supervisor).state, State::avoiding);
+    t.f.scene.own.position.y() = 1.5F;
+    t.f.scene.track(Vec3(14, 3, 30), Vec3::Zero(), 3.0F);
+    other = true;
+    EXPECT_TRUE(t.f.update(supervisor, true).new_manoeuvre);
+    EXPECT_EQ(supervisor.diagnostics().flips, 1U);
 }
 
 // --- velocities ---

@@ -27,17 +27,73 @@ TEST(GivingUp, ExactlyAfterThePatience)
 {
     AtAWall w(giving_up());
     static_cast<void>(w.update(false));
-    EXPECT_FALSE(w.wait(19.5F, 0.5F).blocked);
+    const Guidance before = w.wait(19.5F, 0.5F);
+    EXPECT_FALSE(before.blocked);
     const Guidance g = w.after(0.5F);
+    EXPECT_EQ(g.work, before.work) << "without traffic nothing more is looked at";
     EXPECT_TRUE(g.blocked);
     EXPECT_FALSE(g.wants_control);
     EXPECT_EQ(g.kind, ManoeuvreKind::brake);
     EXPECT_EQ(g.state, State::watching);
     EXPECT_EQ(w.supervisor.flying(), nullptr);
-    EXPECT_TRUE(w.wait(10.0F, 0.5F).blocked) << "it stays given up";
+    const Guidance later = w.wait(10.0F, 0.5F);
+    EXPECT_TRUE(later.blocked) << "it stays given up";
+    EXPECT_EQ(later.kind, ManoeuvreKind::brake);
+    EXPECT_EQ(later.velocity, Vec3(0, 0, 0));
     EXPECT_EQ(w.supervisor.diagnostics().blocked, 1U);
     EXPECT_FALSE(w.after(0.1F, false).blocked) << "once control is gone";
     EXPECT_EQ(w.supervisor.diagnostics().control_lost, 0U);
+}
+
+/// Too near to the wall it would back away, and does not get to. Traffic far away has no part in it.
+TEST(GivingUp, InsideAMarginAllTheSame)
+{
+    AtAWall w(giving_up());
+    w.stand(Vec3(58.2F, 0, 30));
+    w.f.scene.track(Vec3(2000, 0, 30), Vec3::Zero(), 1.0F);
+    static_cast<void>(w.update(false));
+    const Guidance before = w.wait(19.5F, 0.5F);
+    EXPECT_EQ(before.kind, ManoeuvreKind::velocity);
+    EXPECT_FALSE(before.blocked);
+    const Guidance g = w.after(0.5F);
+    EXPECT_TRUE(g.blocked);
+    EXPECT_EQ(g.kind, ManoeuvreKind::brake);
+    EXPECT_EQ(g.velocity, Vec3(0, 0, 0));
+}
+
+/// What was flown before is forgotten with it.
+TEST(GivingUp, ForgetsWhatWasFlown)
+{
+    AtAWall w(giving_up());
+    bool finds = true;
+    w.method = {[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = along(s, {s.own.position, s.own.position - Vec3(20, 0, 0)}, Vec3(0, 0, 0));
+        return finds ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    static_cast<void>(w.update(false));
+    ASSERT_EQ(w.update().state, State::avoiding);
+    finds = false;
+    w.f.scene.obstacle(geometry::make_box(Vec3(53, 0, 30), Vec3(0.8F, 200, 200)));
+    ASSERT_EQ(w.update().state, State::braking);
+    ASSERT_NE(w.supervisor.flying(), nullptr);
+    EXPECT_TRUE(w.wait(20.0F, 0.5F).blocked);
+    EXPECT_EQ(w.supervisor.flying(), nullptr);
+}
+
+/// The wall is gone; what comes from the side is avoided all the same.
+TEST(GivingUp, IsOverWhenTrafficComesThoughTheWayIsClear)
+{
+    AtAWall w(giving_up());
+    static_cast<void>(w.update(false));
+    ASSERT_TRUE(w.wait(20.0F, 0.5F).blocked);
+    w.f.scene.obstacles.clear();
+    ASSERT_TRUE(w.after(0.5F).blocked);
+    w.f.scene.track(Vec3(55, 14, 30), Vec3(0, -4, 0), 1.0F);  // here in 3 s, when the way has led on
+    const Guidance g = w.after(0.1F);
+    EXPECT_FALSE(g.blocked);
+    EXPECT_TRUE(g.wants_control);
+    w.f.scene.tracks.clear();
+    EXPECT_TRUE(w.wait(4.8F).wants_control) << "for the least time";
 }
 
 TEST(GivingUp, CountsFromTheTakeOver)
@@ -105,6 +161,7 @@ TEST(GivingUp, NeverOfAFixedWing)
 TEST(GivingUp, NotWhereTheWayHasJustBecomeClear)
 {
     AtAWall w(giving_up());
+    static_cast<void>(w.update(false));
     EXPECT_FALSE(w.wait(19.5F, 0.5F).blocked);
     w.f.scene.obstacles.clear();
     EXPECT_FALSE(w.after(0.6F).blocked);
@@ -138,6 +195,8 @@ TEST(GivingUp, NotWhileTrafficComes)
         EXPECT_FALSE(w.wait(19.5F, 0.5F).blocked);
         w.f.scene.track(Vec3(55, distance, 30.0F + height), Vec3(0, -4, 0), 1.0F);
         const Guidance g = w.after(0.5F);
+        EXPECT_EQ(w.supervisor.diagnostics().blocked, g.blocked ? 1U : 0U);
+        EXPECT_EQ(g.state, g.blocked ? State::watching : State::braking);
         return g.blocked;
     };
     EXPECT_FALSE(blocked(16.0F, 0.0F)) << "here in 3.5 s";
@@ -174,6 +233,16 @@ TEST(GivenBackControl, IsNotTakenBackWhileNothingHappens)
     EXPECT_EQ(w.supervisor.diagnostics().control_lost, 0U) << "it was not wanted any more";
 }
 
+/// Each take-over has its own least time, whatever became of the one before.
+TEST(GivenBackControl, IsKeptForTheLeastTimeWhenItIsTakenAnew)
+{
+    GivenBack w;
+    static_cast<void>(w.wait(2.0F, 0.1F, false));
+    EXPECT_TRUE(w.after(0.1F).wants_control);
+    EXPECT_TRUE(w.wait(4.9F).wants_control);
+    EXPECT_FALSE(w.after(0.1F).wants_control);
+}
+
 TEST(GivenBackControl, IsKeptAfterAllForAConflictToCome)
 {
     GivenBack w;
@@ -197,6 +266,9 @@ TEST(GivenBackControl, IsKeptAfterAllWhereTheVehicleIsFarOffItsLeg)
     const Guidance g = w.after(0.1F);
     EXPECT_TRUE(g.wants_control);
     EXPECT_EQ(g.state, State::rejoining);
+    w.f.scene.own.position.y() = 0.0F;
+    EXPECT_TRUE(w.wait(4.9F).wants_control) << "for the least time once more";
+    EXPECT_FALSE(w.after(0.1F).wants_control);
 }
 
 /// What counts as back on the leg.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fallbacks while they last: what is offered and counted, what reset() forgets, backing off, and narrow ways.
+// Fallbacks while they last: what is offered and counted, what reset() forgets, and backing off.
 #include <cmath>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -87,6 +88,74 @@ TEST(Fallbacks, OfAFormerConflictAreForgotten)
     }
 }
 
+/// A fallback that ended with a plan does not stay either.
+TEST(Fallbacks, BeforeAManoeuvreAreForgotten)
+{
+    Waiting w;
+    bool finds = false;
+    w.method = {[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = along(s, {s.own.position, s.own.position + Vec3(0, 0, 12)}, Vec3(0, 0, 1));
+        return finds ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    w.stand(Vec3(0, 0, 30));
+    w.f.scene.leg(Vec3(0, 0, 30), Vec3(0, 0, 30));
+    w.f.scene.track(Vec3(0.4F, 12, 30), Vec3(0, -7, 0), 1.0F);
+    const Guidance first = w.update();
+    ASSERT_EQ(first.state, State::braking);
+    ASSERT_EQ(first.kind, ManoeuvreKind::velocity);
+    finds = true;
+    ASSERT_EQ(w.update().state, State::avoiding);
+    finds = false;
+    w.f.scene.tracks[0].position = Vec3(-0.4F, 12, 31.0F);
+    w.f.scene.tracks[0].radius = 3.0F;
+    WorkBudget budget(world::test::kPlenty);
+    const Situation s = w.f.scene.situation();
+    const Fallback fresh = choose_fallback(s, world::way_of(s), nullptr, w.settings, budget);
+    const Fallback before{ManoeuvreKind::velocity, first.velocity, 0.0F};
+    ASSERT_NE(choose_fallback(s, world::way_of(s), &before, w.settings, budget).command, fresh.command);
+    const Guidance g = w.update();
+    ASSERT_EQ(g.state, State::braking);
+    EXPECT_EQ(g.velocity, fresh.command);
+}
+
+/// A fixed wing turns away to either side.
+TEST(Fallbacks, OfAFixedWingTurnToTheSideThatIsFree)
+{
+    for (const float side : {1.0F, -1.0F}) {
+        Waiting w;
+        w.f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+        w.f.scene.limits.cruise_speed = 15.0F;
+        w.f.scene.own.velocity = Vec3(15, 0, 0);
+        w.f.scene.leg(Vec3(0, 0, 30), Vec3(900, 0, 30), 15.0F);
+        w.f.scene.track(Vec3(40, side * 3.0F, 30), Vec3::Zero(), 3.0F);
+        const Guidance g = w.update();
+        EXPECT_EQ(g.kind, ManoeuvreKind::hold_turn);
+        EXPECT_LT(side * g.velocity.y(), -0.5F);
+    }
+}
+
+/// Over in one update, and begun in the next: what was flown before neither counts as the beginning nor stays.
+TEST(Fallbacks, RightAfterAnotherAreNewOnes)
+{
+    Settings settings = quick();
+    settings.settle = 0.0F;
+    Waiting w(settings);
+    w.stand(Vec3(0, 0, 30));
+    w.f.scene.leg(Vec3(0, 0, 30), Vec3(0, 0, 30));
+    w.f.scene.track(Vec3(0.4F, 12, 30), Vec3(0, -7, 0), 1.0F);
+    const Guidance first = w.update();
+    EXPECT_EQ(first.state, State::braking);
+    EXPECT_EQ(first.kind, ManoeuvreKind::velocity);
+    w.f.scene.tracks.clear();
+    EXPECT_EQ(w.update().state, State::rejoining);
+    w.f.scene.track(Vec3(-0.4F, 12, 30), Vec3(0, -7, 0), 1.0F);
+    const Guidance g = w.update();
+    EXPECT_EQ(g.kind, ManoeuvreKind::velocity);
+    EXPECT_LT(g.velocity.x() * first.velocity.x(), 0.0F) << "to the other side";
+    EXPECT_EQ(w.supervisor.diagnostics().escapes, 2U);
+    EXPECT_EQ(w.supervisor.diagnostics().brakes, 2U);
+}
+
 /// What reset() forgets: the next updates are those of a supervisor that begins with them.
 TEST(Reset, LeavesNothingOfFormerFlightsBehind)
 {
@@ -164,6 +233,22 @@ TEST(GivingGround, BeginsAfterThePatience)
     EXPECT_EQ(g.velocity, Vec3(-1, 0, 0));
 }
 
+/// Another wait after each time that the way was clear.
+TEST(GivingGround, BeginsAnewAfterTheWayWasClear)
+{
+    Settings settings = quick();
+    settings.settle = 0.0F;
+    AtAWall w(settings);
+    static_cast<void>(w.update());
+    static_cast<void>(w.wait(1.9F));
+    const std::vector<world::Obstacle> wall = w.f.scene.obstacles;
+    w.f.scene.obstacles.clear();
+    EXPECT_EQ(w.after(0.05F).state, State::rejoining);
+    w.f.scene.obstacles = wall;
+    EXPECT_EQ(w.after(0.05F).state, State::braking);
+    EXPECT_EQ(w.wait(1.9F).kind, ManoeuvreKind::brake);
+}
+
 /// Faster than it backs off and a little more, the vehicle does not stand, and the wait begins anew.
 TEST(GivingGround, ByAVehicleThatStandsAlone)
 {
@@ -171,6 +256,7 @@ TEST(GivingGround, ByAVehicleThatStandsAlone)
     settings.blocked_patience = 0.0F;
     AtAWall w(settings);
     w.f.scene.own.velocity = Vec3(0.3F + 1.0F, 0, 0);
+    EXPECT_EQ(w.update().kind, ManoeuvreKind::brake);
     EXPECT_EQ(w.update().kind, ManoeuvreKind::brake);
     w.f.scene.own.velocity = Vec3(std::nextafter(1.3F, 0.0F), 0, 0);
     EXPECT_EQ(w.update().kind, ManoeuvreKind::velocity);
@@ -193,8 +279,9 @@ TEST(GivingGround, NeverAtSpeedZeroNorBeyondTheLimit)
     settings = quick();
     settings.give_ground_limit = 0.0F;
     AtAWall limited(settings);
-    EXPECT_EQ(limited.wait(10.0F).kind, ManoeuvreKind::brake);
-    EXPECT_EQ(limited.wait(5.0F).velocity, Vec3(0, 0, 0));
+    for (int i = 0; i < 60; ++i) {
+        ASSERT_EQ(limited.after(0.1F).velocity, Vec3(0, 0, 0)) << i;
+    }
 }
 
 /// Per conflict so much, a pause between updates counting as a second at most; a new conflict has its own.
@@ -249,55 +336,6 @@ TEST(GivingGround, WhereBackwardsIsExactlyClear)
     w.f.scene.airspace.home = Vec3(76, 0, 0);
     w.f.scene.airspace.keep_in_radius = 23.0F;
     EXPECT_EQ(w.update().velocity, Vec3(0, 0, 0)) << "there is no room behind";
-}
-
-// --- ways that are free but narrow ---
-
-/// Something 0.2 m beside the way: free, but not with half a metre to spare.
-struct Narrow : Waiting {
-    explicit Narrow() : Waiting(quick())
-    {
-        stand(Vec3(55, 0, 30));
-        f.scene.track(Vec3(63, 0, 30), Vec3::Zero(), 1.0F);
-        static_cast<void>(update());
-        f.scene.own.velocity = Vec3(5, 0, 0);
-        EXPECT_EQ(update().state, State::braking);
-        f.scene.own.velocity = Vec3::Zero();
-        EXPECT_EQ(update().state, State::braking);
-        asked = method.asked;
-        f.scene.tracks[0].position.y() = 2.2F;
-        EXPECT_FALSE(after(0.1F).has_conflict);
-    }
-    int asked = 0;
-};
-
-TEST(NarrowWays, AreTriedAfterThreeTimesTheSettlingTime)
-{
-    Narrow w;
-    EXPECT_EQ(w.wait(1.4F).state, State::braking);
-    EXPECT_EQ(w.method.asked, w.asked) << "no plan without a conflict";
-    EXPECT_EQ(w.after(0.1F).state, State::rejoining) << "1.5 s";
-}
-
-TEST(NarrowWays, AreWaitedAtAnewAfterEachConflict)
-{
-    Narrow w;
-    static_cast<void>(w.wait(1.0F));
-    w.f.scene.tracks[0].position.y() = 1.0F;
-    EXPECT_TRUE(w.after(0.1F).has_conflict);
-    w.f.scene.tracks[0].position.y() = 2.2F;
-    EXPECT_FALSE(w.after(0.1F).has_conflict);
-    EXPECT_EQ(w.wait(1.4F).state, State::braking);
-    EXPECT_EQ(w.after(0.1F).state, State::rejoining);
-}
-
-TEST(NarrowWays, WithMoreToSpareAreTrustedAfterTheSettlingTime)
-{
-    Narrow w;
-    w.f.scene.tracks[0].position.y() = 2.6F;
-    static_cast<void>(w.after(0.1F));
-    EXPECT_EQ(w.wait(0.4F).state, State::braking);
-    EXPECT_EQ(w.after(0.1F).state, State::rejoining) << "half a second";
 }
 
 }  // namespace

@@ -39,6 +39,35 @@ TEST(Consider, KeepsTheLeastAndIsBoundedBelow)
     EXPECT_EQ(best.when, 5.0F);
 }
 
+TEST(Consider, OfEqualMarginsTheFirstIsKept)
+{
+    Separation best;
+    detail::consider(best, 3.0F, 1.0F, {ThreatKind::floor, 0});
+    detail::consider(best, 3.0F, 2.0F, {ThreatKind::ceiling, 0});
+    EXPECT_EQ(best.against.kind, ThreatKind::floor);
+    EXPECT_EQ(best.when, 1.0F);
+}
+
+TEST(Paid, WithoutTheUnitsItIsContactThere)
+{
+    WorkBudget budget(10);
+    Separation best;
+    EXPECT_TRUE(detail::paid(budget, 10, best, 1.0F, {ThreatKind::track, 2}));
+    EXPECT_EQ(best.margin, kSeparationCap);
+    EXPECT_FALSE(detail::paid(budget, 1, best, 2.0F, {ThreatKind::track, 3}));
+    EXPECT_EQ(best.margin, -kSeparationCap);
+    EXPECT_EQ(best.when, 2.0F);
+    EXPECT_EQ(best.against, (ThreatRef{ThreatKind::track, 3}));
+}
+
+TEST(ShrinkAt, IsWhatIsLeftOfIt)
+{
+    EXPECT_EQ(detail::shrink_at(0.0F, {0.05F, 0.5F}, 0.0F), 0.0F);
+    EXPECT_EQ(detail::shrink_at(2.0F, {0.05F, 0.5F}, 0.0F), 2.0F);
+    EXPECT_EQ(detail::shrink_at(2.0F, {0.05F, 0.5F}, 3.0F), 0.5F);
+    EXPECT_EQ(detail::shrink_at(2.0F, {0.05F, 0.5F}, 9.0F), 0.0F);
+}
+
 TEST(LeastSeparationOfBadNumbers, IsContact)
 {
     using Spoil = std::function<void(Scene&, path::TimedPath&)>;

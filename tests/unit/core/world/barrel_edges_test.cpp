@@ -110,6 +110,22 @@ struct Approaching {
         const Vec3 at(own.position.x(), own.position.y(), static_cast<float>(z));
         return true_distance(half, at, b, t) - double(outset) - double(growth) * t;
     }
+    /// The same without rounding, however far it goes.
+    [[nodiscard]] double exact(double t) const
+    {
+        const auto off = [](double c, double h) { return c - std::clamp(c, -h, h); };
+        const auto gap = [&](int axis) {
+            return double(barrel.circle.centre[axis]) + double(barrel.velocity[axis]) * t -
+                   (double(own.position[axis]) + double(own.velocity[axis]) * t);
+        };
+        const double level =
+            std::hypot(off(gap(0), double(half.x())), off(gap(1), double(half.y()))) - double(barrel.circle.radius);
+        const double z = double(own.position.z()) + double(own.velocity.z()) * t;
+        const double height =
+            std::max(double(barrel.bottom) - double(half.z()) - z, z - double(half.z()) - double(barrel.top));
+        const double apart = level > 0.0 && height > 0.0 ? std::hypot(level, height) : std::max(level, height);
+        return apart - double(outset) - double(growth) * t;
+    }
     Vec3 half;
     geometry::Motion own;
     Barrel barrel;
@@ -137,6 +153,30 @@ TEST(BarrelApproach, LooksAreDistancesAndTheirSlopes)
         }
     }
     EXPECT_GT(compared, 3000);
+}
+
+/// Fast and long: what rounding may add is taken off, of each speed and growth, whatever its sign.
+TEST(BarrelApproach, LooksNeverSayMoreThanThereIs)
+{
+    Random random(20261204);
+    for (int i = 0; i < 6000; ++i) {
+        Approaching a(random);
+        const auto fast = [&] { return random.below(2) == 0 ? random.uniform(-400.0F, 400.0F) : 0.0F; };
+        const Seconds t = random.uniform(10.0F, 60.0F);
+        a.own.velocity = Vec3(fast(), fast(), random.below(3) == 0 ? 0.0F : random.uniform(-400.0F, 400.0F));
+        a.barrel.velocity = Vec2(fast(), fast());
+        // Near to each other after that time.
+        const Vec2 met = a.barrel.circle.centre + a.barrel.velocity * t;
+        a.own.position.head<2>() =
+            met - a.own.velocity.head<2>() * t + 1.3F * a.barrel.circle.radius * Vec2(random.uniform(-1, 1), 0.7F);
+        a.own.position.z() = random.uniform(-12.0F, 16.0F) - a.own.velocity.z() * t;
+        const BarrelApproach approach(a.half, a.own, a.barrel, 0.0F, a.outset, a.growth);
+        const double size = double(a.own.position.cwiseAbs().sum() + a.barrel.velocity.cwiseAbs().sum() * t +
+                                   a.own.velocity.cwiseAbs().sum() * t) +
+                            60.0;
+        ASSERT_LE(double(approach.look(t).value), a.exact(double(t))) << i;
+        ASSERT_GE(double(approach.look(t).value), a.exact(double(t)) - 2e-6 * size) << i;
+    }
 }
 
 /// Least value and its instant, against four hundred samples.
@@ -205,90 +245,6 @@ TEST(BarrelApproach, TheFirstContactIsNotLate)
     const Seconds first = approach.first_contact(4.0F, budget);
     EXPECT_LE(first, 16.0F / 5.0F);
     EXPECT_GE(first, 16.0F / 5.0F - 4.0F / 65536.0F - 1e-5F);
-}
-
-// --- conflicts with barrels ---
-
-struct BarrelOnTheWay : testing::Test {
-    BarrelOnTheWay()
-    {
-        scene.leg(Vec3(0, 0, 0), Vec3(100, 0, 0), 5.0F);
-        scene.own.sigma_position = 0.2F;
-    }
-    [[nodiscard]] bool meets(Conflict& out)
-    {
-        WorkBudget budget(kPlenty);
-        const Situation s = scene.situation();
-        return main_conflict(s, way_of(s), 12.0F, budget, out);
-    }
-    Scene scene;
-    Conflict found;
-};
-
-TEST_F(BarrelOnTheWay, IsToldAsTheBodyIsMet)
-{
-    scene.barrel(Vec2(30, 2), 4.0F, Vec2(0, -0.5F));
-    ASSERT_TRUE(meets(found));
-    EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0}));
-    EXPECT_NEAR(found.radius_at_closest, 4.0F + 0.6F, 1e-4F);
-    EXPECT_GE(found.time_to_closest, found.time_to_loss);
-    EXPECT_NEAR(found.own_at_closest.x(), 5.0F * found.time_to_closest, 1e-3F);
-    EXPECT_NEAR(found.threat_at_closest.x(), 30.0F, 1e-3F);
-    EXPECT_NEAR(found.threat_at_closest.y(), 2.0F - 0.5F * found.time_to_closest, 1e-3F);
-    EXPECT_NEAR(found.miss_distance, (found.threat_at_closest - found.own_at_closest).norm(), 1e-4F);
-    EXPECT_LT(found.margin, 0.0F);
-}
-
-/// The barrel's centre is told at the own height, or the nearest that it has.
-TEST_F(BarrelOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
-{
-    scene.barrel(Vec2(30, 0), 4.0F);
-    const auto height = [&](float bottom, float top) {
-        scene.barrels[0].bottom = bottom;
-        scene.barrels[0].top = top;
-        scene.airspace.barrels = scene.barrels;
-        EXPECT_TRUE(meets(found));
-        return found.threat_at_closest.z();
-    };
-    EXPECT_EQ(height(-20.0F, 20.0F), 0.0F);
-    EXPECT_EQ(height(0.5F, 20.0F), 0.5F) << "the box reaches up to it";
-    EXPECT_EQ(height(-20.0F, -0.75F), -0.75F);
-}
-
-/// Met at the way's end, long after it was reached.
-TEST_F(BarrelOnTheWay, AStormOverTheEndIsToldWhenItComes)
-{
-    scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
-    scene.barrel(Vec2(10, 30), 4.0F, Vec2(0, -3));
-    ASSERT_TRUE(meets(found));
-    // 30 - 4 - 1 - 0.6 m at 3 m/s.
-    EXPECT_NEAR(found.time_to_loss, 24.4F / 3.0F, 1e-2F);
-    EXPECT_NEAR(found.time_to_closest, 10.0F, 0.7F) << "over it by then";
-    EXPECT_NEAR(found.own_at_closest.x(), 10.0F, 1e-3F);
-    scene.barrels[0].velocity = Vec2(0, -2);
-    scene.airspace.barrels = scene.barrels;
-    EXPECT_FALSE(meets(found)) << "12.2 s";
-}
-
-/// Whatever is left of the budget: what could not be looked at is met now.
-TEST_F(BarrelOnTheWay, WhereTheBudgetRunsOutItIsMetNow)
-{
-    scene.barrel(Vec2(300, 0), 4.0F);
-    scene.barrel(Vec2(30, 2), 4.0F);
-    scene.airspace.barrels = scene.barrels;
-    const Situation s = scene.situation();
-    WorkBudget ample(kPlenty);
-    ASSERT_TRUE(main_conflict(s, way_of(s), 12.0F, ample, found));
-    ASSERT_EQ(found.threat.index, 1U);
-    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
-        WorkBudget budget(n);
-        Conflict now;
-        ASSERT_TRUE(main_conflict(s, way_of(s), 12.0F, budget, now)) << n;
-        ASSERT_EQ(now.time_to_loss, 0.0F) << n;
-        ASSERT_EQ(now.margin, -kSeparationCap) << n;
-        ASSERT_EQ(now.threat.kind, ThreatKind::barrel) << n;
-        ASSERT_EQ(now.threat.index, n < units::kConflictBarrel + units::kBarrelPart ? 0U : now.threat.index) << n;
-    }
 }
 
 }  // namespace

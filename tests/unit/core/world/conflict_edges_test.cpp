@@ -61,6 +61,24 @@ TEST_F(ConflictEdges, AnObstacleBehindTheEndIsNearestAtTheEnd)
     EXPECT_LT(found.time_to_loss, 2.0F);
 }
 
+/// A way without a speed is a place.
+TEST_F(ConflictEdges, AWayWithoutSpeedStands)
+{
+    scene.own.sigma_position = 0.0F;
+    const Way place{Vec3(1, 2, 3), Vec3::UnitX(), 0.0F, 0.0F, {}};
+    const auto meets_there = [&] {
+        WorkBudget budget(kPlenty);
+        return main_conflict(scene.situation(), place, 10.0F, budget, found);
+    };
+    scene.track(Vec3(21, 2, 3), Vec3(-5, 0, 0), 1.0F);
+    ASSERT_TRUE(meets_there());
+    EXPECT_NEAR(found.time_to_loss, 18.0F / 5.0F, 1e-4F);
+    EXPECT_NEAR(found.time_to_closest, 4.0F, 1e-4F);
+    EXPECT_EQ(found.own_at_closest, Vec3(1, 2, 3));
+    scene.tracks.clear();
+    EXPECT_FALSE(meets_there());
+}
+
 TEST_F(ConflictEdges, AQuarterOfAMetreIsOnTheLeg)
 {
     scene.own.position = Vec3(40, 0.25F, 0);

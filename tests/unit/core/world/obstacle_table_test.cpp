@@ -106,6 +106,47 @@ TEST_F(ObstacleTables, CapacityLessOneFullAndOneMore)
     EXPECT_EQ(table.update(ball(1000, Vec3(11, 0, 0)), later, own), ObstacleStatus::updated);
 }
 
+/// The smallest id there is goes to the front, of an empty table too.
+TEST_F(ObstacleTables, TheSmallestIdComesFirst)
+{
+    for (const ObstacleId id : {0U, 7U}) {
+        ObstacleTable fresh;
+        for (const ObstacleId other : {id, 9U, 0U, 8U}) {
+            static_cast<void>(fresh.update(ball(other, Vec3::Zero()), later, own));
+        }
+        ASSERT_EQ(fresh.obstacles().size(), id == 0U ? 3U : 4U);
+        EXPECT_EQ(fresh.obstacles()[0].id, 0U);
+        EXPECT_EQ(fresh.obstacles().back().id, 9U);
+    }
+}
+
+/// As far away as the farthest is not nearer.
+TEST_F(ObstacleTables, AnEquallyFarOneDoesNotReplaceTheFarthest)
+{
+    for (std::size_t i = 0; i < kMaxObstacles; ++i) {
+        static_cast<void>(table.update(ball(static_cast<ObstacleId>(i), Vec3(40, 0, 0)), later, own));
+    }
+    EXPECT_EQ(table.update(ball(2000, Vec3(0, -40, 0)), later, own), ObstacleStatus::full);
+    EXPECT_EQ(table.update(ball(2000, Vec3(0, -39.9F, 0)), later, own), ObstacleStatus::replaced);
+}
+
+/// A renewal has its own time, whatever its place in the table; an obstacle lives to the end of it.
+TEST_F(ObstacleTables, EachExpiresAtItsOwnTime)
+{
+    for (const ObstacleId id : {3U, 1U, 2U}) {
+        static_cast<void>(table.update(ball(id, Vec3::Zero()), kNow + static_cast<float>(id), own));
+    }
+    EXPECT_EQ(table.update(ball(2, Vec3::Zero()), kNow + 9.0F, own), ObstacleStatus::updated);
+    table.expire(kNow + 1.0F);
+    EXPECT_EQ(table.obstacles().size(), 3U) << "not before";
+    table.expire({(kNow + 1.0F).us + 1});
+    ASSERT_EQ(table.obstacles().size(), 2U);
+    table.expire(kNow + 5.0F);
+    ASSERT_EQ(table.obstacles().size(), 1U);
+    EXPECT_EQ(table.obstacles()[0].id, 2U);
+    EXPECT_EQ(table.diagnostics().expired, 2U);
+}
+
 TEST_F(ObstacleTables, OrderStaysSortedThroughReplacement)
 {
     for (std::size_t i = 0; i < 2 * kMaxObstacles; ++i) {

@@ -146,6 +146,33 @@ TEST(SeparationCosts, PiecesThatStayBeyondAreNotLookedAt)
     EXPECT_LT(cost(solid, eastwards()), cost(first, eastwards())) << "the nearer one first spares looks at the solid";
 }
 
+/// Each bound that is set is looked at for each point.
+TEST(SeparationCosts, EachBoundOfTheAirspaceIsPaidFor)
+{
+    const std::uint32_t none = cost(Scene(), eastwards());
+    for (bool Airspace::*bound : {&Airspace::has_floor, &Airspace::has_ceiling, &Airspace::has_keep_in}) {
+        Scene scene;
+        scene.airspace.*bound = true;
+        EXPECT_EQ(cost(scene, eastwards()), none + 9 * units::kBoundPiece);
+    }
+}
+
+/// A solid is looked at once for each piece; in parts only while the flight escapes from it.
+TEST(SeparationCosts, ASolidIsLookedAtInPartsOnlyDuringAnEscape)
+{
+    Scene scene;
+    scene.obstacle(geometry::make_box(Vec3(0.5F, 4.5F, 0), Vec3(3, 3, 3)));  // half a metre beside the box
+    const path::TimedPath one = flight({Vec3::Zero(), Vec3(1, 0, 0)}, 1.0F);
+    const std::uint32_t clear = cost(scene, one);
+    scene.obstacles[0].shape = geometry::make_box(Vec3(0.5F, 3.8F, 0), Vec3(3, 3, 3));  // inside by 0.2 m
+    const path::TimedPath out = flight({Vec3::Zero(), Vec3(0, -1, 0)}, 1.0F);
+    EXPECT_GE(separation(scene, out).margin, 0.0F);
+    EXPECT_GT(cost(scene, out), clear + 3 * units::kSolidQuery);
+    scene.obstacles[0].shape = geometry::make_box(Vec3(0.5F, 4.5F, 0), Vec3(3, 3, 3));
+    EXPECT_LT(cost(scene, one), cost(scene, flight({Vec3::Zero(), Vec3(0.5F, 0, 0), Vec3(1, 0, 0)}, 0.5F)))
+        << "two pieces are two looks";
+}
+
 /// While a shrunk surface grows back: pieces in which it takes half the slack, but no shorter than 20 ms.
 TEST(SeparationCosts, AnEscapeIsLookedAtInPiecesOfItsSlack)
 {

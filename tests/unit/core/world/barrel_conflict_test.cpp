@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What is told of a closed area on the way.
+#include <gtest/gtest.h>
+
+#include "core/base/work_units.hpp"
+#include "tests/unit/core/world/scene.hpp"
+
+namespace jink::world {
+namespace {
+
+using namespace test;
+
+struct BarrelOnTheWay : testing::Test {
+    BarrelOnTheWay()
+    {
+        scene.leg(Vec3(0, 0, 0), Vec3(100, 0, 0), 5.0F);
+        scene.own.sigma_position = 0.2F;
+    }
+    [[nodiscard]] bool meets(Conflict& out)
+    {
+        WorkBudget budget(kPlenty);
+        const Situation s = scene.situation();
+        return main_conflict(s, way_of(s), 12.0F, budget, out);
+    }
+    Scene scene;
+    Conflict found;
+};
+
+TEST_F(BarrelOnTheWay, IsToldAsTheBodyIsMet)
+{
+    scene.barrel(Vec2(30, 2), 4.0F, Vec2(0, -0.5F));
+    ASSERT_TRUE(meets(found));
+    EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0}));
+    EXPECT_NEAR(found.radius_at_closest, 4.0F + 0.6F, 1e-4F);
+    EXPECT_GE(found.time_to_closest, found.time_to_loss);
+    EXPECT_NEAR(found.own_at_closest.x(), 5.0F * found.time_to_closest, 1e-3F);
+    EXPECT_NEAR(found.threat_at_closest.x(), 30.0F, 1e-3F);
+    EXPECT_NEAR(found.threat_at_closest.y(), 2.0F - 0.5F * found.time_to_closest, 1e-3F);
+    EXPECT_NEAR(found.miss_distance, (found.threat_at_closest - found.own_at_closest).norm(), 1e-4F);
+    EXPECT_LT(found.margin, 0.0F);
+}
+
+/// The barrel's centre is told at the own height, or the nearest that it has.
+TEST_F(BarrelOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
+{
+    scene.barrel(Vec2(30, 0), 4.0F);
+    const auto height = [&](float bottom, float top) {
+        scene.barrels[0].bottom = bottom;
+        scene.barrels[0].top = top;
+        scene.airspace.barrels = scene.barrels;
+        EXPECT_TRUE(meets(found));
+        return found.threat_at_closest.z();
+    };
+    EXPECT_EQ(height(-20.0F, 20.0F), 0.0F);
+    EXPECT_EQ(height(0.5F, 20.0F), 0.5F) << "the box reaches up to it";
+    EXPECT_EQ(height(-20.0F, -0.75F), -0.75F);
+}
+
+/// Met at the way's end, long after it was reached.
+TEST_F(BarrelOnTheWay, AStormOverTheEndIsToldWhenItComes)
+{
+    scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
+    scene.barrel(Vec2(10, 30), 4.0F, Vec2(0, -3));
+    ASSERT_TRUE(meets(found));
+    // 30 - 4 - 1 - 0.6 m at 3 m/s.
+    EXPECT_NEAR(found.time_to_loss, 24.4F / 3.0F, 1e-2F);
+    EXPECT_NEAR(found.time_to_closest, 10.0F, 0.7F) << "over it by then";
+    EXPECT_NEAR(found.own_at_closest.x(), 10.0F, 1e-3F);
+    scene.barrels[0].velocity = Vec2(0, -2);
+    scene.airspace.barrels = scene.barrels;
+    EXPECT_FALSE(meets(found)) << "12.2 s";
+}
+
+/// Whatever is left of the budget: what could not be looked at is met now.
+TEST_F(BarrelOnTheWay, WhereTheBudgetRunsOutItIsMetNow)
+{
+    scene.barrel(Vec2(300, 0), 4.0F);
+    scene.barrel(Vec2(30, 2), 4.0F);
+    scene.airspace.barrels = scene.barrels;
+    const Situation s = scene.situation();
+    WorkBudget ample(kPlenty);
+    ASSERT_TRUE(main_conflict(s, way_of(s), 12.0F, ample, found));
+    ASSERT_EQ(found.threat.index, 1U);
+    for (std::uint32_t n = 0; n < ample.spent(); ++n) {
+        WorkBudget budget(n);
+        Conflict now;
+        ASSERT_TRUE(main_conflict(s, way_of(s), 12.0F, budget, now)) << n;
+        ASSERT_EQ(now.time_to_loss, 0.0F) << n;
+        ASSERT_EQ(now.margin, -kSeparationCap) << n;
+        ASSERT_EQ(now.threat.kind, ThreatKind::barrel) << n;
+        ASSERT_EQ(now.threat.index, n < units::kConflictBarrel + units::kBarrelPart ? 0U : now.threat.index) << n;
+    }
+}
+
+/// Into its rim at the way's end; it moves on over the vehicle that hovers there.
+TEST_F(BarrelOnTheWay, IsDeepestWhileItHovers)
+{
+    scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
+    scene.barrel(Vec2(18, 0), 6.0F, Vec2(-0.8F, 0));
+    ASSERT_TRUE(meets(found));
+    // 18 - 6 - 1.6 m at 5.8 m/s.
+    EXPECT_NEAR(found.time_to_loss, 10.4F / 5.8F, 1e-2F);
+    EXPECT_GT(found.time_to_closest, 4.0F);
+    EXPECT_LT(found.margin, -5.0F);
+    EXPECT_NEAR(found.own_at_closest.x(), 10.0F, 1e-3F);
+    EXPECT_NEAR(found.threat_at_closest.x(), 18.0F - 0.8F * found.time_to_closest, 1e-3F);
+}
+
+/// Touching exactly is contact; what passes a little beside it is none.
+TEST_F(BarrelOnTheWay, BesideItIsNoConflict)
+{
+    scene.barrel(Vec2(30, 5.7F), 4.0F);  // 0.1 m beside the box and its uncertainty
+    EXPECT_FALSE(meets(found));
+    scene.barrels[0].circle.centre.y() = 5.5F;
+    scene.airspace.barrels = scene.barrels;
+    EXPECT_TRUE(meets(found));
+}
+
+}  // namespace
+}  // namespace jink::world
