@@ -78,8 +78,10 @@ TEST_F(PlannerChoice, ARouteIsFollowedAlongItsWayToItsEnd)
     leg(Vec3(0, 0, 30), Vec3(500, -300, 30));
     reference.route = &route;
     EXPECT_EQ(way(), Way::left) << "not along the leg";
-    path::Route long_one;  // 7.1 degrees to the left: near the left end at 10.2 m, but far ahead at 500 m
-    ASSERT_EQ(long_one.add_leg(Vec3(0, 0, 30), Vec3(500.0F, 61.9F, 30)), path::RouteStatus::ok);
+    // 6.4 degrees to the left: as seen from where the vehicle answers, the point 10.2 m on lies in the column to the
+    // left (from 6.55 degrees on), one that is far does not.
+    path::Route long_one;
+    ASSERT_EQ(long_one.add_leg(Vec3(0, 0, 30), Vec3(500.0F, 56.1F, 30)), path::RouteStatus::ok);
     reference.route = &long_one;
     EXPECT_EQ(way(), Way::left);
     path::Route ends;

@@ -232,6 +232,11 @@ TEST_F(PlannerTest, StandingItTurnsFromTheCourseOfItsWay)
 /// What it does upwards says nothing of one that hardly moves.
 TEST_F(PlannerTest, SinkingSlowlyItIsLevel)
 {
+    test::SmallTree left(kGrid);
+    left.chain(Movement::left, 4, 1024);
+    const ReachSet* const steep = keep(left);
+    pairs[static_cast<std::size_t>(PitchSegment::descending)] = {steep, steep, false};
+    pairs[static_cast<std::size_t>(PitchSegment::climbing)] = {steep, steep, false};
     for (const float climb : {-1.0F, 1.0F}) {
         own.velocity = Vec3(0.0F, 0.0F, climb);
         ASSERT_EQ(plan(), PlanStatus::found);
