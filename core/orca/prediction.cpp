@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/exponential.hpp"
-
 namespace jink::orca {
 namespace {
 
@@ -18,7 +16,7 @@ void fly_command(Predicted& state, const Vec3& command, Seconds dt, Seconds lag)
         state.velocity = command;
         return;
     }
-    const float faded = faded_share(dt / lag);
+    const float faded = -std::expm1(-dt / lag);
     state.position += command * dt + error * (lag * faded);
     state.velocity -= error * faded;
 }

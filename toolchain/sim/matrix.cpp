@@ -98,15 +98,7 @@ std::string_view to_string(Meeting meeting) noexcept
     return "at_turn";
 }
 
-std::string_view to_string(Flyer flyer) noexcept
-{
-    switch (flyer) {
-    case Flyer::arducopter: return "arducopter";
-    case Flyer::arduplane: return "arduplane";
-    case Flyer::px4: break;
-    }
-    return "px4";
-}
+std::string_view to_string(Flyer flyer) noexcept { return flyer == Flyer::px4 ? "px4" : "arducopter"; }
 
 Cell fly_cell(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t from, std::size_t count,
               Conditions conditions)

@@ -11,8 +11,7 @@
 
 namespace jink::sim {
 
-/// What the vehicle does when the intruder meets it. Distances and speeds are a multirotor's; a plane's are in
-/// matrix_plane.cpp.
+/// What the vehicle does when the intruder meets it.
 enum class Behaviour : std::uint8_t {
     leg,           ///< a later leg of a mission at 5 m/s
     first_leg,     ///< the first leg, after a take-off in a guided mode
@@ -20,7 +19,7 @@ enum class Behaviour : std::uint8_t {
     fast,          ///< a mission at 12 m/s, which the co-processor's parameters do not say
     speed_change,  ///< DO_CHANGE_SPEED to 10 m/s
     turns,         ///< LOITER_TURNS
-    wait,          ///< LOITER_TIME: stands in the mission mode; a plane circles
+    wait,          ///< LOITER_TIME: stands in the mission mode
     take_off,      ///< TAKEOFF item
     land_item,     ///< LAND item
     home_item,     ///< RETURN_TO_LAUNCH item
@@ -30,7 +29,7 @@ enum class Behaviour : std::uint8_t {
     hold,          ///< LOITER, AUTO.LOITER
     home,          ///< RTL, AUTO.RTL
     land,          ///< LAND, AUTO.LAND
-    pilot,         ///< POSHOLD, POSCTL, FLY_BY_WIRE_B: left to itself, then moved
+    pilot,         ///< POSHOLD, POSCTL: holds its place, then is moved
     guided,        ///< somebody else's target
 };
 inline constexpr std::array kBehaviours{
@@ -45,15 +44,14 @@ inline constexpr std::array kMeetings{Meeting::head_on,    Meeting::from_left,  
                                       Meeting::at_turn};
 
 /// A column of the matrix: another one takes its vehicle and its parameters in matrix_scenario.cpp.
-enum class Flyer : std::uint8_t { arducopter, px4, arduplane };
-inline constexpr std::array kFlyers{Flyer::arducopter, Flyer::px4, Flyer::arduplane};
+enum class Flyer : std::uint8_t { arducopter, px4 };
+inline constexpr std::array kFlyers{Flyer::arducopter, Flyer::px4};
 
 [[nodiscard]] std::string_view to_string(Behaviour behaviour) noexcept;
 [[nodiscard]] std::string_view to_string(Meeting meeting) noexcept;
 [[nodiscard]] std::string_view to_string(Flyer flyer) noexcept;
 
-/// False where the autopilot does not know such an item or mode. ArduPlane has no splines and no LAND mode, and leaves
-/// the mission mode for RTL at a RETURN_TO_LAUNCH item.
+/// False where the autopilot does not know such an item.
 [[nodiscard]] bool can_fly(Flyer flyer, Behaviour behaviour) noexcept;
 /// The mission mode: the co-processor takes over there alone, and advises in all others.
 [[nodiscard]] bool is_mission(Behaviour behaviour) noexcept;
