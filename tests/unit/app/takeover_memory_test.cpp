@@ -66,6 +66,7 @@ TEST(TakeoverMemory, ExternalModeIsTakenUpAgainOnFreshEvidenceAlone)
 {
     Bench b = commanding();
     b.step(fault(Beat::external));
+    b.step(fault(Beat::external));  // seen since the loss
     b.step(fault(Beat::none, 2.0F));
     for (int i = 0; i < 20; ++i) {
         const TakeoverOutput out = b.step(wants(Beat::none, 0.1F));
@@ -294,6 +295,24 @@ TEST(TakeoverMemory, VehicleThatDoesNotFollowHasItsOwnHoldRequests)
     ASSERT_EQ(b.step(wants(Beat::external)).event, TakeoverEvent::took_over);
     EXPECT_EQ(varied(b, wants(Beat::external), kUnfollowed).action, TakeoverAction::request_hold);
     EXPECT_EQ(b.step(wants(Beat::external, 0.51F)).action, TakeoverAction::request_hold) << "unanswered";
+}
+
+TEST(TakeoverMemory, ExternalModeRightAfterTheReturnIsThePilots)
+{
+    Bench b = commanding();
+    ASSERT_EQ(b.step(calm(Beat::external)).action, TakeoverAction::request_former);
+    ASSERT_EQ(b.step(calm(Beat::former)).event, TakeoverEvent::gave_back);
+    EXPECT_EQ(b.step(wants(Beat::external)).event, TakeoverEvent::none);
+    EXPECT_FALSE(b.takeover.streaming());
+}
+
+TEST(TakeoverMemory, ExternalModeAfterARefusedMissionWentOnIsThePilots)
+{
+    Bench b = declined();
+    varied(b, wants(Beat::former), [](TakeoverInput& in) { in.urgent_hold = false; });
+    b.step(wants(Beat::external));
+    EXPECT_EQ(b.control(), Control::refused);
+    EXPECT_FALSE(b.takeover.streaming());
 }
 
 }  // namespace
