@@ -46,7 +46,7 @@ const std::pair<ThreatKind, Place> kBesideTheFourth[] = {
     {ThreatKind::track,
      [](Scene& s) { s.track(Vec3(3.5F, 4.0F, 0), Vec3::Zero(), 1.0F).sigma_velocity = 1e-7F; }},  // in parts
     {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_sphere(Vec3(3.5F, 4, 0), 1.0F)); }},
-    {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_box(Vec3(3.5F, 5, 0), Vec3(0.2F, 2, 2))); }},
+    {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_box(Vec3(3.5F, 5, 0), Vec3(0.02F, 2, 0.02F))); }},
     {ThreatKind::barrel, [](Scene& s) { s.barrel(Vec2(3.5F, 4), 1.0F); }},
 };
 
@@ -218,6 +218,24 @@ TEST(SeparationCosts, ACutOffEndsTheLook)
     Scene two;
     two.track(Vec3(4, 9, 0), Vec3::Zero(), 1.0F);
     EXPECT_EQ(cost(two, path, {}, {-kSeparationCap, kSeparationCap, {ThreatKind::track, 0}}), cost(two, path));
+}
+
+/// Whichever is looked at first, all others are looked at too.
+TEST(Cutoffs, AnyTrackMayBeTheFirstAndAllCount)
+{
+    Scene scene;
+    scene.track(Vec3(4, 9, 0), Vec3::Zero(), 1.0F);
+    scene.track(Vec3(4, 0, 0), Vec3::Zero(), 1.0F);
+    scene.track(Vec3(4, -6, 0), Vec3::Zero(), 1.0F);
+    for (const ThreatKind kind : {ThreatKind::none, ThreatKind::track, ThreatKind::obstacle}) {
+        for (std::uint16_t first = 0; first < 4; ++first) {
+            WorkBudget budget(kPlenty);
+            const Separation found = least_separation(scene.situation(), eastwards(), 100.0F, budget, {},
+                                                      {-kSeparationCap, kSeparationCap, {kind, first}});
+            EXPECT_NEAR(found.margin, -1.0F, 1e-4F) << first;
+            EXPECT_EQ(found.against, (ThreatRef{ThreatKind::track, 1})) << first;
+        }
+    }
 }
 
 /// Tracks that share the reaction until the shared horizon, all others to the end.
