@@ -9,61 +9,21 @@
 #include "firmware/app/cloud.hpp"
 #include "firmware/app/echo.hpp"
 #include "tests/numbers.hpp"
+#include "tests/unit/app/cloud_image_bench.hpp"
 
 namespace jink::app {
 namespace {
 
 using link::Ray;
 
-class CloudEdges : public ::testing::Test {
+class CloudEdges : public test::CloudImageBench {
 protected:
-    void SetUp() override
+    CloudEdges()
     {
-        image->give_to(*table);
-        view.is_placed = true;
-        view.stamp = now;
         view.half_extents = Vec3(2.0F, 1.5F, 1.0F);
-        image->look_from(view);
+        look();
     }
-    void begin()
-    {
-        image->look_from(view);
-        link::CloudScan s;
-        s.stamp = now;
-        s.max_range = 100.0F;
-        image->begin_scan(s);
-    }
-    std::size_t scan(const std::vector<Vec3>& hits, std::uint32_t lost = 0)
-    {
-        begin();
-        for (const Vec3& hit : hits) {
-            image->add(Ray::hit, hit);
-        }
-        image->end_scan(lost);
-        return obstacles().size();
-    }
-    [[nodiscard]] std::span<const world::Obstacle> obstacles() const { return table->obstacles(); }
-    [[nodiscard]] const CloudDiagnostics& count() const { return image->diagnostics(); }
-    [[nodiscard]] bool covers(const Vec3& place) const
-    {
-        for (const world::Obstacle& o : obstacles()) {
-            if ((o.shape.centre - place).norm() <= o.shape.radius) {
-                return true;
-            }
-        }
-        return false;
-    }
-    static Vec3 towards(float azimuth, float elevation, float range)
-    {
-        const float a = azimuth * kPi / 180.0F;
-        const float e = elevation * kPi / 180.0F;
-        return range * Vec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
-    }
-
-    std::unique_ptr<world::ObstacleTable> table = std::make_unique<world::ObstacleTable>();
-    std::unique_ptr<CloudObstacles> image = std::make_unique<CloudObstacles>(0x1000000);
-    CloudView view;
-    TimePoint now{20'000'000};
+    void before_scan() override { look(); }
 };
 
 TEST_F(CloudEdges, TheBodyEndsWithTheBox)
@@ -117,13 +77,13 @@ TEST_F(CloudEdges, APatchIsAMetreDeepOrThreeTenthsOfItsRange)
         table->clear();
         const float depth = CloudObstacles::patch_depth(nearest);
         const std::uint64_t behind = count().behind;
-        scan({towards(5, 8, nearest), towards(5, 8, nearest + depth), towards(5, 8, nearest + depth + 0.05F)});
+        scan({at(5, 8, nearest), at(5, 8, nearest + depth), at(5, 8, nearest + depth + 0.05F)});
         EXPECT_EQ(count().behind, behind + 1);
         ASSERT_EQ(obstacles().size(), 1U);
-        EXPECT_TRUE(covers(towards(5, 8, nearest)));
-        EXPECT_TRUE(covers(towards(5, 8, nearest + depth)));
-        EXPECT_FALSE(covers(towards(5, 8, nearest - 0.3F)));
-        EXPECT_FALSE(covers(towards(5, 8, nearest + depth + 0.3F)));
+        EXPECT_TRUE(is_covered(at(5, 8, nearest)));
+        EXPECT_TRUE(is_covered(at(5, 8, nearest + depth)));
+        EXPECT_FALSE(is_covered(at(5, 8, nearest - 0.3F)));
+        EXPECT_FALSE(is_covered(at(5, 8, nearest + depth + 0.3F)));
         EXPECT_NEAR(obstacles()[0].shape.radius, 0.5F * depth, 0.1F) << "no larger than it has to be";
     }
 }
@@ -137,22 +97,22 @@ TEST_F(CloudEdges, ASphereIsAsWideAsWhatWasSeenInItsBin)
         scan(hits);
         EXPECT_EQ(obstacles().size(), 1U);
         for (const Vec3& hit : hits) {
-            EXPECT_TRUE(covers(hit));
+            EXPECT_TRUE(is_covered(hit));
         }
         return obstacles().empty() ? 0.0F : obstacles()[0].shape.radius;
     };
-    EXPECT_EQ(radius_of({towards(5, 8, range)}), kLeastEchoRadius);
+    EXPECT_EQ(radius_of({at(5, 8, range)}), kLeastEchoRadius);
     // 6 degrees at 40 m are 4.19 m: half of that, and rounding by a 255th of the bin.
-    EXPECT_NEAR(radius_of({towards(2, 8, range), towards(8, 8, range)}), 2.09F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(8, 8, range), towards(2, 8, range)}), 2.09F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(5, 13, range), towards(5, 7, range)}), 2.09F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(5, -7, range), towards(5, -13, range)}), 2.09F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(5, 8, range), towards(5, 8, range + 6.0F)}), 3.0F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(-175, 8, range), towards(-179, 8, range)}), 1.39F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(175, 8, range), towards(179, 8, range)}), 1.39F, 0.06F);
-    EXPECT_NEAR(radius_of({towards(5, 44, range), towards(5, 38, range)}), 2.09F, 0.2F);
-    EXPECT_NEAR(radius_of({towards(5, 60, range), towards(5, 56, range)}), 1.39F, 0.3F) << "towards the pole";
-    EXPECT_NEAR(radius_of({towards(5, -60, range), towards(5, -56, range)}), 1.39F, 0.3F);
+    EXPECT_NEAR(radius_of({at(2, 8, range), at(8, 8, range)}), 2.09F, 0.06F);
+    EXPECT_NEAR(radius_of({at(8, 8, range), at(2, 8, range)}), 2.09F, 0.06F);
+    EXPECT_NEAR(radius_of({at(5, 13, range), at(5, 7, range)}), 2.09F, 0.06F);
+    EXPECT_NEAR(radius_of({at(5, -7, range), at(5, -13, range)}), 2.09F, 0.06F);
+    EXPECT_NEAR(radius_of({at(5, 8, range), at(5, 8, range + 6.0F)}), 3.0F, 0.06F);
+    EXPECT_NEAR(radius_of({at(-175, 8, range), at(-179, 8, range)}), 1.39F, 0.06F);
+    EXPECT_NEAR(radius_of({at(175, 8, range), at(179, 8, range)}), 1.39F, 0.06F);
+    EXPECT_NEAR(radius_of({at(5, 44, range), at(5, 38, range)}), 2.09F, 0.2F);
+    EXPECT_NEAR(radius_of({at(5, 60, range), at(5, 56, range)}), 1.39F, 0.3F) << "towards the pole";
+    EXPECT_NEAR(radius_of({at(5, -60, range), at(5, -56, range)}), 1.39F, 0.3F);
 }
 
 TEST_F(CloudEdges, AScanIsPlacedByAnOwnStateOfItsAgeAndNoOlder)
@@ -162,14 +122,14 @@ TEST_F(CloudEdges, AScanIsPlacedByAnOwnStateOfItsAgeAndNoOlder)
     view.stamp = {now.us - 500'000};
     EXPECT_EQ(scan({Vec3(20.0F, 1.0F, 0.0F)}), 1U) << "0.5 s to the microsecond";
     EXPECT_EQ(count().scans_unplaced, 0U);
-    EXPECT_TRUE(covers(Vec3(25.0F, -1.0F, 1.0F)));
+    EXPECT_TRUE(is_covered(Vec3(25.0F, -1.0F, 1.0F)));
     view.stamp.us -= 1;
     EXPECT_EQ(scan({Vec3(-20.0F, 1.0F, 0.0F)}), 1U);
     EXPECT_EQ(count().scans_unplaced, 1U);
     table->clear();
     view.stamp = {now.us + 2'000'000};
     EXPECT_EQ(scan({Vec3(20.0F, 1.0F, 0.0F)}), 1U) << "the link refuses scans that are too old";
-    EXPECT_TRUE(covers(Vec3(0.0F, 9.0F, -4.0F)));
+    EXPECT_TRUE(is_covered(Vec3(0.0F, 9.0F, -4.0F)));
 }
 
 TEST_F(CloudEdges, IsTurnedByTheYawAboutTheVehicle)
@@ -180,7 +140,7 @@ TEST_F(CloudEdges, IsTurnedByTheYawAboutTheVehicle)
     const Vec3 world(100.0F + std::cos(2.0F) * 30.0F - std::sin(2.0F) * 10.0F,
                      200.0F + std::sin(2.0F) * 30.0F + std::cos(2.0F) * 10.0F, 55.0F);
     ASSERT_EQ(obstacles().size(), 1U);
-    EXPECT_TRUE(covers(world));
+    EXPECT_TRUE(is_covered(world));
     EXPECT_LT((obstacles()[0].shape.centre - world).norm(), 0.05F);
     EXPECT_EQ(obstacles()[0].shape.radius, kLeastEchoRadius);
 }
@@ -192,13 +152,13 @@ TEST_F(CloudEdges, AViewHoldsForScansThatBeginAfterIt)
     image->look_from(view);
     image->add(Ray::hit, Vec3(20.0F, 1.0F, 0.0F));
     image->end_scan(0);
-    EXPECT_TRUE(covers(Vec3(20.0F, 1.0F, 0.0F)));
+    EXPECT_TRUE(is_covered(Vec3(20.0F, 1.0F, 0.0F)));
 }
 
 TEST_F(CloudEdges, WhatHidesADirectionOrIsBelowTheFloorIsKeptApart)
 {
-    const Vec3 far = towards(5, -18, 20);
-    const Vec3 body = towards(5, -18, 1);
+    const Vec3 far = at(5, -18, 20);
+    const Vec3 body = at(5, -18, 1);
     const auto remains = [&](const std::vector<std::pair<Ray, Vec3>>& rays) {
         table->clear();
         view.has_floor = false;
@@ -213,7 +173,7 @@ TEST_F(CloudEdges, WhatHidesADirectionOrIsBelowTheFloorIsKeptApart)
         image->end_scan(0);
         return obstacles().size() == 1;
     };
-    const Vec3 low = towards(5, -18, 40);
+    const Vec3 low = at(5, -18, 40);
     EXPECT_FALSE(remains({{Ray::hit, low}})) << "seen empty down to the floor";
     EXPECT_TRUE(remains({{Ray::hit, body}})) << "hidden";
     EXPECT_TRUE(remains({{Ray::hit, body}, {Ray::hit, low}})) << "in part";
@@ -229,19 +189,19 @@ TEST_F(CloudEdges, WhatHidesADirectionOrIsBelowTheFloorIsKeptApart)
 
 TEST_F(CloudEdges, LostRaysSpoilWhatIsSeenEmptyAndNothingElse)
 {
-    scan({towards(5, 8, 20), towards(95, 8, 20)});
+    scan({at(5, 8, 20), at(95, 8, 20)});
     begin();
-    image->add(Ray::nothing, towards(5, 8, 1));
-    image->add(Ray::hit, towards(95, 8, 30));
+    image->add(Ray::nothing, at(5, 8, 1));
+    image->add(Ray::hit, at(95, 8, 30));
     image->end_scan(3);
     EXPECT_EQ(count().lost, 3U);
     EXPECT_EQ(obstacles().size(), 2U);
-    EXPECT_TRUE(covers(towards(95, 8, 30)));
-    EXPECT_TRUE(covers(towards(5, 8, 20)));
+    EXPECT_TRUE(is_covered(at(95, 8, 30)));
+    EXPECT_TRUE(is_covered(at(5, 8, 20)));
     EXPECT_EQ(count().nothing, 1U);
     EXPECT_EQ(count().invalid, 0U);
     begin();
-    image->add(Ray::invalid, towards(5, 8, 1));
+    image->add(Ray::invalid, at(5, 8, 1));
     image->end_scan(0);
     EXPECT_EQ(count().invalid, 1U);
     EXPECT_EQ(count().scans, 3U);
@@ -254,17 +214,17 @@ TEST_F(CloudEdges, BinsAreTenDegreesWide)
     };
     for (int azimuth = -180; azimuth < 180; azimuth += 10) {
         const auto left = static_cast<float>(azimuth);
-        EXPECT_TRUE(same(towards(left + 0.1F, 0, 1), towards(left + 9.9F, 0, 7)));
-        EXPECT_FALSE(same(towards(left + 9.9F, 0, 1), towards(left + 10.1F, 0, 1)));
+        EXPECT_TRUE(same(at(left + 0.1F, 0, 1), at(left + 9.9F, 0, 7)));
+        EXPECT_FALSE(same(at(left + 9.9F, 0, 1), at(left + 10.1F, 0, 1)));
     }
     for (int elevation = -35; elevation < 35; elevation += 10) {
         const auto low = static_cast<float>(elevation);
-        EXPECT_TRUE(same(towards(5, low + 0.1F, 1), towards(5, low + 9.9F, 1)));
-        EXPECT_FALSE(same(towards(5, low + 9.9F, 1), towards(5, low + 10.1F, 1)));
-        EXPECT_FALSE(same(towards(5, low - 0.1F, 1), towards(5, low + 0.1F, 1)));
+        EXPECT_TRUE(same(at(5, low + 0.1F, 1), at(5, low + 9.9F, 1)));
+        EXPECT_FALSE(same(at(5, low + 9.9F, 1), at(5, low + 10.1F, 1)));
+        EXPECT_FALSE(same(at(5, low - 0.1F, 1), at(5, low + 0.1F, 1)));
     }
-    EXPECT_TRUE(same(towards(5, 35.1F, 1), towards(5, 89, 1)));
-    EXPECT_TRUE(same(towards(5, -35.1F, 1), towards(5, -89, 1)));
+    EXPECT_TRUE(same(at(5, 35.1F, 1), at(5, 89, 1)));
+    EXPECT_TRUE(same(at(5, -35.1F, 1), at(5, -89, 1)));
 }
 
 }  // namespace

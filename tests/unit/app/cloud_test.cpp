@@ -8,59 +8,21 @@
 
 #include "firmware/app/cloud.hpp"
 #include "firmware/app/echo.hpp"
+#include "tests/unit/app/cloud_image_bench.hpp"
 
 namespace jink::app {
 namespace {
 
 using link::Ray;
 
-class CloudImage : public ::testing::Test {
+class CloudImage : public test::CloudImageBench {
 protected:
-    void SetUp() override
+    CloudImage()
     {
-        image->give_to(*table);
-        view.is_placed = true;
-        view.stamp = now;
         view.position = Vec3(100, 200, 50);
         view.half_extents = Vec3(2, 2, 1);
         look();
     }
-    void look() { image->look_from(view); }
-    void begin(std::uint8_t sensor = 0)
-    {
-        link::CloudScan scan;
-        scan.stamp = now;
-        scan.sensor = sensor;
-        scan.max_range = 100.0F;
-        image->begin_scan(scan);
-    }
-    void scan(const std::vector<Vec3>& hits, std::uint32_t lost = 0, std::uint8_t sensor = 0)
-    {
-        begin(sensor);
-        for (const Vec3& hit : hits) {
-            image->add(Ray::hit, hit);
-        }
-        image->end_scan(lost);
-    }
-    [[nodiscard]] std::span<const world::Obstacle> obstacles() const { return table->obstacles(); }
-    [[nodiscard]] bool is_covered(const Vec3& world) const
-    {
-        return std::any_of(obstacles().begin(), obstacles().end(),
-                           [&](const world::Obstacle& o) { return (o.shape.centre - world).norm() <= o.shape.radius; });
-    }
-    [[nodiscard]] const CloudDiagnostics& count() const { return image->diagnostics(); }
-    /// At `azimuth` and `elevation` [degrees].
-    static Vec3 at(float azimuth, float elevation, float range)
-    {
-        const float a = azimuth * kPi / 180.0F;
-        const float e = elevation * kPi / 180.0F;
-        return range * Vec3(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
-    }
-
-    std::unique_ptr<world::ObstacleTable> table = std::make_unique<world::ObstacleTable>();
-    std::unique_ptr<CloudObstacles> image = std::make_unique<CloudObstacles>(0x1000000);
-    CloudView view;
-    TimePoint now{20'000'000};
 };
 
 TEST_F(CloudImage, OneHitIsASmallSphereThere)

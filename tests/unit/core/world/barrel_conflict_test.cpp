@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is told of a closed area on the way.
+// What is said about a closed area on the way.
 #include <gtest/gtest.h>
 
 #include "core/base/work_units.hpp"
