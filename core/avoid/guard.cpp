@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/avoid/wing.hpp"
 #include "core/base/work_units.hpp"
 
 namespace jink::avoid {
@@ -13,8 +14,6 @@ namespace {
 using path::PathPoint;
 using path::Prediction;
 
-/// A fallback that was chosen stays unless another is better by this much [m].
-constexpr float kFallbackHysteresis = 0.1F;
 /// Points kept free for the braking tail; it takes those that the flight leaves too.
 constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4);
 constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
@@ -37,30 +36,6 @@ Seconds time_to_stand(const Vec3& velocity, const vehicle::VehicleLimits& limits
                     vehicle::stopping_time(std::abs(velocity.z()), vertical));
 }
 
-/// Flight under a turn that never ends, by the vehicle model. False, and nothing predicted, without the units for it.
-bool predict_turn(const world::Situation& s, float direction, const Settings& settings, WorkBudget& budget,
-                  Prediction& out) noexcept
-{
-    const std::uint32_t setpoints = path::setpoints_of(settings.fallback_horizon);
-    if (!budget.spend(setpoints * units::kTurnStep)) {
-        return false;
-    }
-    const auto chords = static_cast<std::uint32_t>(kMaxPathPoints - 1);
-    const std::uint32_t length =
-        std::max(path::setpoints_of(settings.prediction_step), (setpoints + chords - 1) / chords);
-    vehicle::VehicleState state = s.own;
-    path::ChordWriter writer(s.limits, out);
-    writer.begin(s.own);
-    for (std::uint32_t i = 1; i <= setpoints; ++i) {
-        state.velocity = writer.velocity();
-        writer.fly(turn_command(state, s.limits, direction), path::kSetpointPeriod);
-        if (i % length == 0 || i == setpoints) {
-            writer.end_chord(static_cast<float>(i) * path::kSetpointPeriod);
-        }
-    }
-    return true;
-}
-
 /// The flight after the manoeuvre's end: to a stand, or straight on for as long as a stop would take for a fixed wing.
 bool predict_tail(const world::Situation& s, const Settings& settings, WorkBudget& budget, Prediction& flight) noexcept
 {
@@ -79,15 +54,6 @@ bool predict_tail(const world::Situation& s, const Settings& settings, WorkBudge
 constexpr int kCourses = 8;
 /// Rounds of finer steps about the best of them: to 6 degrees, and an eighth of the climb.
 constexpr int kRefinements = 3;
-
-/// A command at cruise speed: `climb` [m/s] of it upwards, the rest on a course (counter-clockwise from `ahead`).
-Vec3 command_on(const Vec3& ahead, float course, float climb, const vehicle::VehicleLimits& limits) noexcept
-{
-    const float level = std::sqrt(std::max(limits.cruise_speed * limits.cruise_speed - climb * climb, 0.0F));
-    const float c = level * std::cos(course);
-    const float s = level * std::sin(course);
-    return {c * ahead.x() - s * ahead.y(), s * ahead.x() + c * ahead.y(), climb};
-}
 
 /// A slanted command climbs as fast as the vehicle can, where that leaves at least as much for the level part.
 float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
@@ -163,7 +129,7 @@ void search_ways_out(const world::Situation& s, const world::Way& way, LeastHarm
     Course best_course;
     bool on_course = false;
     const auto attempt = [&](const Course& course) noexcept {
-        const bool better = search.attempt(command_on(ahead, course.angle, course.climb, s.limits), best);
+        const bool better = search.attempt(detail::command_on(ahead, course.angle, course.climb, s.limits), best);
         best_course = better ? course : best_course;
         on_course = on_course || better;
     };
@@ -190,32 +156,6 @@ void search_ways_out(const world::Situation& s, const world::Way& way, LeastHarm
         turn *= 0.5F;
         rise *= 0.5F;
     }
-}
-
-Fallback fixed_wing_fallback(const world::Situation& s, const Fallback* previous, const Settings& settings,
-                             WorkBudget& budget) noexcept
-{
-    Fallback best{world::ManoeuvreKind::hold_turn, Vec3::Zero(), -world::kSeparationCap};
-    bool first = true;
-    float best_rank = 0.0F;
-    Prediction flight;
-    for (const float direction : {1.0F, -1.0F}) {
-        const float margin =
-            predict_turn(s, direction, settings, budget, flight)
-                ? world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin
-                : -world::kSeparationCap;
-        const bool kept = previous != nullptr && previous->kind == world::ManoeuvreKind::hold_turn &&
-                          previous->command.z() * direction > 0.0F;
-        const float rank = margin + (kept ? kFallbackHysteresis : 0.0F);
-        if (first || rank > best_rank) {
-            // The sense of the turn travels in z: there is no vertical command in a hold turn.
-            best.command = Vec3(0.0F, 0.0F, direction);
-            best.margin = margin;
-            best_rank = rank;
-            first = false;
-        }
-    }
-    return best;
 }
 
 /// No method is trusted with this either: numbers, times that rise, a start that is not ahead.
@@ -295,7 +235,9 @@ world::Separation check_manoeuvre(const world::Situation& situation, const world
 float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,
                      WorkBudget& budget) noexcept
 {
-    return LeastHarm(s, settings, horizon, budget).margin_of(command);
+    return s.limits.kind == vehicle::VehicleKind::fixed_wing
+               ? detail::wing_margin(s, command, horizon, settings, budget)
+               : LeastHarm(s, settings, horizon, budget).margin_of(command);
 }
 
 float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings,
@@ -304,24 +246,11 @@ float command_margin(const world::Situation& s, const Vec3& command, const Setti
     return command_margin(s, command, settings.fallback_horizon, settings, budget);
 }
 
-Vec3 turn_command(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, float direction) noexcept
-{
-    Vec3 level(own.velocity.x(), own.velocity.y(), 0.0F);
-    const float speed = level.norm();
-    level = speed > 0.1F ? Vec3(level / speed) : Vec3(std::cos(own.yaw), std::sin(own.yaw), 0.0F);
-    // The command leads the velocity by as much as the lag needs for full lateral acceleration.
-    const float lead =
-        std::min(limits.max_acceleration * std::max(limits.velocity_lag, 0.1F) / limits.cruise_speed, 0.7F);
-    const float c = std::cos(lead);
-    const float d = direction * std::sin(lead);
-    return limits.cruise_speed * Vec3(c * level.x() - d * level.y(), d * level.x() + c * level.y(), 0.0F);
-}
-
 Fallback choose_fallback(const world::Situation& s, const world::Way& way, const Fallback* previous,
                          const Settings& settings, WorkBudget& budget) noexcept
 {
     if (s.limits.kind == vehicle::VehicleKind::fixed_wing) {
-        return fixed_wing_fallback(s, previous, settings, budget);
+        return detail::wing_fallback(s, previous, settings, budget);
     }
     LeastHarm search(s, settings, settings.fallback_horizon, budget);
     Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
@@ -336,7 +265,7 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
         }
     }
     search_ways_out(s, way, search, best);
-    const bool as_good = best.margin < 0.0F && kept_margin + kFallbackHysteresis >= best.margin;
+    const bool as_good = best.margin < 0.0F && kept_margin + detail::kFallbackHysteresis >= best.margin;
     if (as_good && kept_margin > -world::kSeparationCap) {
         return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
     }

@@ -37,7 +37,11 @@ struct Fallback {
     float margin = 0.0F;              ///< least predicted over the horizon [m]
 };
 
-/// Brake (a fixed wing: hold turn) when that is clear; else the one with the greatest least margin of brake and 26 ways
+/// Of a fixed wing: the better one of a level turn to either side; where neither is clear, the one with the greatest
+/// least margin of both and of 15 commands: on, and 0.5 and 1 rad to either side, level, climbing and descending. What
+/// was flown before stays unless another is 0.1 m better. O(17 * setpoints + 17 * points * threats).
+///
+/// Of a multirotor: brake when that is clear; else the one with the greatest least margin of brake and 26 ways
 /// at cruise speed (8 courses level, climbing and descending; straight up and down), refined three times by steps of
 /// course and of climb to all sides; what was flown before (`previous`, may be null) stays while it is clear, and where
 /// nothing is clear unless another is 0.1 m better. A way is looked at only until it is no better than the best so far,
@@ -47,8 +51,8 @@ struct Fallback {
 [[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
                                        const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 
-/// Least separation when `command` is held for `horizon` [s] > 0; without one, for the fallback horizon. As accurate as
-/// check_manoeuvre. O(points * threats).
+/// Least separation when `command` is held for `horizon` [s] > 0; without one, for the fallback horizon. A fixed wing
+/// turns to the command's course at its lateral limit. As accurate as check_manoeuvre. O(points * threats).
 [[nodiscard]] float command_margin(const world::Situation& situation, const Vec3& command, Seconds horizon,
                                    const Settings& settings, WorkBudget& budget) noexcept;
 [[nodiscard]] float command_margin(const world::Situation& situation, const Vec3& command, const Settings& settings,

@@ -61,6 +61,7 @@ private:
     [[nodiscard]] bool way_clear_for(const Tick& tick, Seconds span) const noexcept;
     void follow_way(Tick& tick) noexcept;
     [[nodiscard]] bool keep_beside(Tick& tick) noexcept;
+    [[nodiscard]] bool keep_course(Tick& tick) noexcept;
     [[nodiscard]] bool find_faster(Tick& tick) noexcept;
     void give_ground(Tick& tick) noexcept;
     void note_clearness(Tick& tick) noexcept;

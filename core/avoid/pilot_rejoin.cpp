@@ -52,7 +52,7 @@ Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
     const Vec3 from_home(at.x() - air.home.x(), at.y() - air.home.y(), 0.0F);
     const float off = from_home.norm();
     if (air.has_keep_in && off > 0.0F) {
-        const float left = air.keep_in_radius - off - std::hypot(half.x(), half.y()) - extra;
+        const float left = air.keep_in_radius - off - half.head<2>().norm() - extra;
         const float outward = from_home.dot(kept) / off;
         const float most = std::max(0.0F, left) / kBoundTime;
         kept -= (std::max(0.0F, outward - most) / off) * from_home;
@@ -86,8 +86,8 @@ bool is_held(const world::Situation& s, const Vec3& taken, const Vec3& left, flo
     /// Slower than this nothing is gained by going on [m/s].
     constexpr float kStanding = 0.2F;
     const Vec3 off = beside_leg(s).off;
-    const bool beside = std::hypot(off.x(), off.y()) > on_leg;
-    return std::hypot(taken.x(), taken.y()) > 0.0F || (taken.z() != 0.0F && (!beside || left.norm() < kStanding));
+    const bool beside = off.head<2>().norm() > on_leg;
+    return taken.head<2>().norm() > 0.0F || (taken.z() != 0.0F && (!beside || left.norm() < kStanding));
 }
 
 void Pilot::enter_rejoining() noexcept
@@ -129,6 +129,33 @@ bool Pilot::keep_beside(Tick& tick) noexcept
     return keeps;
 }
 
+/// A fixed wing needs seconds to turn to its way, and flies a long arc meanwhile, which the way does not show. While
+/// that arc is not clear the wing keeps its course; where that is not clear either, it falls back.
+bool Pilot::keep_course(Tick& tick) noexcept
+{
+    /// A half turn at 30 degrees of bank and 18 m/s takes 10 s, a quarter 5 s.
+    constexpr Seconds kTurning = 8.0F;
+    if (tick.s.limits.kind != vehicle::VehicleKind::fixed_wing || tick.s.tracks.empty()) {
+        return false;
+    }
+    const Seconds ahead = std::min(settings_.lookahead, kTurning);
+    const Vec3 back = kept_inside(tick.s, tick.way.direction * tick.way.speed);
+    if (command_margin(tick.s, back, ahead, settings_, tick.budget) >= 0.0F) {
+        return false;
+    }
+    const Vec3 on = kept_inside(tick.s, {tick.s.own.velocity.x(), tick.s.own.velocity.y(), 0.0F});
+    const float margin = command_margin(tick.s, on, ahead, settings_, tick.budget);
+    if (!(margin >= 0.0F)) {
+        fall_back(tick);
+        return true;
+    }
+    tick.out.wants_control = true;
+    tick.out.kind = world::ManoeuvreKind::velocity;
+    tick.out.velocity = on;
+    tick.out.margin = margin;
+    return true;
+}
+
 /// How long the way has been clear, with something to spare.
 void Pilot::note_clearness(Tick& tick) noexcept
 {
@@ -165,6 +192,9 @@ void Pilot::rejoin(Tick& tick) noexcept
             fall_back(tick);
             return;
         }
+    }
+    if (tick.in_control && keep_course(tick)) {
+        return;
     }
     follow_way(tick);
     // Held at a bound, the vehicle is as near to its leg as we may bring it.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/exponential.hpp"
 #include "core/cost/cost.hpp"
 
 namespace jink::cost {
@@ -16,7 +17,7 @@ float log_scale(float value, float low, float high) noexcept
     if (std::isinf(value)) {
         return 1.0F;
     }
-    return std::clamp((std::log(value) - low) / (high - low), 0.0F, 1.0F);
+    return std::clamp((natural_log(value) - low) / (high - low), 0.0F, 1.0F);
 }
 
 float min_max(float value, float low, float high) noexcept

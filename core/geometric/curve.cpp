@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
 #include "core/geometric/planner.hpp"
 
 namespace jink::geometric::detail {
@@ -40,7 +41,8 @@ UnitCurve make_unit_curve(Family family, std::uint16_t waypoints, float length) 
 
 Vec3 plane_direction(const PathFrame& frame, float plane) noexcept
 {
-    return std::cos(plane) * frame.axes.col(1) + std::sin(plane) * frame.axes.col(2);
+    const SineCosine turned = sine_cosine(plane);
+    return turned.cosine * frame.axes.col(1) + turned.sine * frame.axes.col(2);
 }
 
 void make_curve(const UnitCurve& unit, const Vec3& along, const Vec3& side, float distance, float offset, float speed,

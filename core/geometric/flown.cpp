@@ -31,13 +31,20 @@ bool brakes_at_end(const vehicle::VehicleLimits& limits) noexcept
     return limits.kind == vehicle::VehicleKind::multirotor;
 }
 
+float fastest_goal(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
+{
+    const float commanded = problem.speed + settings.gains.max_correction;
+    const bool wing = limits.kind == vehicle::VehicleKind::fixed_wing;
+    return wing ? std::max(commanded, limits.cruise_speed + std::max(limits.max_climb, limits.max_descent)) : commanded;
+}
+
 }  // namespace
 
 Flown::Flown(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
     : limits_(limits), settings_(settings), clearance_(problem, settings, limits),
       start_velocity_(problem.start_velocity),
-      // A velocity is always between the one before and a command: the path's, and a correction.
-      fastest_(kSpeedTolerance * std::max(start_velocity_.norm(), problem.speed + settings.gains.max_correction)),
+      // A velocity is always between the one before and what a command leads to: the path's, and a correction.
+      fastest_(kSpeedTolerance * std::max(start_velocity_.norm(), fastest_goal(problem, settings, limits))),
       fading_(limits.velocity_lag)
 {
 }

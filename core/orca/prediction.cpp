@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/exponential.hpp"
+
 namespace jink::orca {
 namespace {
 
@@ -16,7 +18,7 @@ void fly_command(Predicted& state, const Vec3& command, Seconds dt, Seconds lag)
         state.velocity = command;
         return;
     }
-    const float faded = -std::expm1(-dt / lag);
+    const float faded = faded_share(dt / lag);
     state.position += command * dt + error * (lag * faded);
     state.velocity -= error * faded;
 }

@@ -78,8 +78,7 @@ private:
 
     void note_acceleration(const Vec3& command) noexcept
     {
-        const Vec3 error = velocity_ - Vec3(command.x(), command.y(),
-                                            std::clamp(command.z(), -limits_.max_descent, limits_.max_climb));
+        const Vec3 error = velocity_ - vehicle::detail::goal_of(command, velocity_, limits_);
         const float level = std::min((error.x() * error.x() + error.y() * error.y()) * per_squared_lag_,
                                      limits_.max_acceleration * limits_.max_acceleration);
         const float vertical = std::min(error.z() * error.z() * per_squared_lag_,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
+
 namespace jink::path {
 namespace {
 
@@ -17,7 +19,7 @@ float nearest_on(const RouteSegment& segment, const Vec3& position) noexcept
         return std::clamp((position - segment.start).dot(segment.along), 0.0F, segment.length);
     }
     const Vec3 from_centre = position - segment.start - segment.radius * segment.towards;
-    const float turned = std::atan2(from_centre.dot(segment.along), -from_centre.dot(segment.towards));
+    const float turned = direction_angle(from_centre.dot(segment.along), -from_centre.dot(segment.towards));
     const float angle = turned < 0.0F ? turned + 2.0F * kPi : turned;
     const float whole = segment.length / segment.radius;
     if (angle <= whole) {
@@ -34,10 +36,9 @@ RoutePoint point_of(const RouteSegment& segment, float arc_length) noexcept
     if (!segment.is_arc() || arc_length < 0.0F) {
         return {segment.start + segment.along * arc_length, segment.along};
     }
-    const float angle = on / segment.radius;
-    const float half = std::sin(0.5F * angle);
-    const float sine = std::sin(angle);
-    const float rise = 2.0F * half * half;  // 1 - cosine, without its cancellation
+    const SineCosine half = sine_cosine(0.5F * (on / segment.radius));
+    const float sine = 2.0F * half.sine * half.cosine;
+    const float rise = 2.0F * half.sine * half.sine;  // 1 - cosine, without its cancellation
     const Vec3 along = (1.0F - rise) * segment.along + sine * segment.towards;
     const Vec3 position = segment.start + segment.radius * (sine * segment.along + rise * segment.towards);
     return {position + (arc_length - on) * along, along};

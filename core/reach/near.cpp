@@ -194,7 +194,8 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
             least = std::min(least, 0.5F * (before + after - length));
             before = after;
         }
-        return least <= radius ? kObstacle : least <= radius + rule_.room ? kNoRoom : kFree;
+        // The other way round what is not a number would be free.
+        return !(least > radius) ? kObstacle : !(least > radius + rule_.room) ? kNoRoom : kFree;
     }
     if (radius + rule_.room < 0.0F) {
         return kFree;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "core/base/exponential.hpp"
 #include "core/vehicle/vehicle.hpp"
 
 // The vehicle model of `advance`, inline for predictions that take it thousands of times. Private to rooms that
@@ -26,7 +27,7 @@ public:
         const auto bits = std::bit_cast<std::uint32_t>(dt);
         Entry& entry = entries_[(bits ^ (bits >> 4)) % entries_.size()];
         if (entry.dt != dt) {
-            entry = {dt, std::expm1(-dt / lag_)};
+            entry = {dt, -faded_share(dt / lag_)};
         }
         return entry.rest;
     }
@@ -73,12 +74,31 @@ inline Decay decay(float squared_error, float lag, float limit, Seconds dt, Fadi
     return {(knee + knee * rest) * per_error, (of_ramp - knee * lag * rest) * per_error};
 }
 
+/// A level command slower than this has no course [m/s].
+inline constexpr float kNoCourse = 1.0F;
+
+/// The velocity that a command leads to: climb and descent bounded. A fixed wing keeps its speed: it flies the course
+/// of the command at cruise speed, and on along its own where the command has none.
+[[nodiscard]] inline Vec3 goal_of(const Vec3& command, const Vec3& velocity, const VehicleLimits& limits) noexcept
+{
+    Vec3 goal = command;
+    goal.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
+    if (limits.kind == VehicleKind::fixed_wing) {
+        float squared = command.x() * command.x() + command.y() * command.y();
+        const Vec3& course = squared >= kNoCourse * kNoCourse ? command : velocity;
+        squared = course.x() * course.x() + course.y() * course.y();
+        const float scale = squared > 0.0F ? limits.cruise_speed / std::sqrt(squared) : 0.0F;
+        goal.x() = scale * course.x();
+        goal.y() = scale * course.y();
+    }
+    return goal;
+}
+
 /// `advance` without its stamp. `fading`: made with limits.velocity_lag.
 inline void move(Vec3& position, Vec3& velocity, const Vec3& command, const VehicleLimits& limits, Seconds dt,
                  Fading& fading) noexcept
 {
-    Vec3 goal = command;
-    goal.z() = std::clamp(command.z(), -limits.max_descent, limits.max_climb);
+    const Vec3 goal = goal_of(command, velocity, limits);
     const Vec3 error = velocity - goal;
 
     const Decay level =

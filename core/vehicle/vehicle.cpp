@@ -4,10 +4,24 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/exponential.hpp"
 #include "core/base/finite.hpp"
 #include "core/vehicle/motion.hpp"
 
 namespace jink::vehicle {
+
+VehicleLimits limits_in_flight(const VehicleLimits& limits, const Vec3& velocity) noexcept
+{
+    constexpr float kFlying = 0.5F;
+    VehicleLimits flown = limits;
+    const float speed = velocity.head<2>().norm();
+    const bool flies = std::isfinite(speed) && speed >= kFlying * limits.cruise_speed;
+    if (limits.kind == VehicleKind::fixed_wing && flies) {
+        flown.cruise_speed = speed;
+    }
+    return flown;
+}
+
 Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept
 {
     const float largest = direction.cwiseAbs().maxCoeff();
@@ -39,7 +53,7 @@ Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept
     const float knee = std::max(limits.max_acceleration * limits.velocity_lag, kStandstillSpeed);
     const Seconds ramp = std::max(speed - knee, 0.0F) / limits.max_acceleration;
     const float rest = std::min(speed, knee);
-    return rest > kStandstillSpeed ? ramp + limits.velocity_lag * std::log(rest / kStandstillSpeed) : ramp;
+    return rest > kStandstillSpeed ? ramp + limits.velocity_lag * natural_log(rest / kStandstillSpeed) : ramp;
 }
 
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept

@@ -46,6 +46,10 @@ struct Airframe {
     float tip_speed = 100.0F;  ///< of a blade in hover [m/s]; ours. Pinheiro takes its bound, 0.8 of the speed of sound
 };
 
+/// The limits of a vehicle that flies at `velocity`: a fixed wing keeps its own airspeed, so its cruise speed is the
+/// level speed that it flies. Below half of its cruise speed, and for a multirotor, they are as given. O(1).
+[[nodiscard]] VehicleLimits limits_in_flight(const VehicleLimits& limits, const Vec3& velocity) noexcept;
+
 /// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the
 /// climb or descent limit, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives zero. O(1).
 [[nodiscard]] Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept;
@@ -61,7 +65,9 @@ inline constexpr float kStandstillSpeed = 0.05F;
 
 /// One step of the vehicle model used for prediction: velocity follows `command` with the loop's lag (first order), its
 /// change bounded by the acceleration limits (horizontally as a vector, vertically by itself), the command's climb and
-/// descent bounded.
+/// descent bounded. A fixed wing flies the course of the command at cruise speed, however slow or fast the command is;
+/// a level command below 1 m/s has no course, and the wing keeps its own. In a turn the model cuts the corner between
+/// the two velocities: it is slower there than a wing (0.87 of the speed at most in 60 degrees).
 ///
 /// Integrated in closed form, position too: a step of 2 dt equals two steps of dt, whatever dt > 0 (float rounding).
 /// The stamp moves on by dt. O(1), two exponentials.

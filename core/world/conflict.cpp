@@ -135,6 +135,16 @@ bool detail::obstacle_conflict(const Situation& situation, const Way& way, std::
                         budget);
 }
 
+float rejoin_lookahead(const vehicle::VehicleLimits& limits, float speed, float height) noexcept
+{
+    constexpr Seconds kWingAhead = 4.0F;
+    if (limits.kind == vehicle::VehicleKind::multirotor) {
+        return kRejoinLookahead;
+    }
+    const Seconds climb = std::max(-height / limits.max_climb, height / limits.max_descent);
+    return std::max(kRejoinLookahead, speed * std::max(kWingAhead, climb));
+}
+
 Way way_of(const Situation& situation) noexcept
 {
     if (situation.reference.route != nullptr) {
@@ -146,12 +156,13 @@ Way way_of(const Situation& situation) noexcept
     const float length = span.norm();
     const Vec3 forward = length > 1e-3F ? Vec3(span / length) : Vec3::UnitX();
     const float along = std::clamp((own - leg.start).dot(forward), 0.0F, length);
-    const float off = (own - (leg.start + forward * along)).norm();
+    const Vec3 from_leg = own - (leg.start + forward * along);
+    const float off = from_leg.norm();
+    const float ahead = rejoin_lookahead(situation.limits, leg.speed, from_leg.z());
 
     Way way;
     way.origin = own;
-    const Vec3 aim =
-        off <= detail::kOnLeg ? leg.end : Vec3(leg.start + forward * std::min(along + kRejoinLookahead, length));
+    const Vec3 aim = off <= detail::kOnLeg ? leg.end : Vec3(leg.start + forward * std::min(along + ahead, length));
     const Vec3 to_aim = aim - own;
     const float distance = to_aim.norm();
     way.direction = distance > 1e-3F ? Vec3(to_aim / distance) : forward;

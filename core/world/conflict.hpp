@@ -32,6 +32,10 @@ struct Way {
 /// [m].
 inline constexpr float kRejoinLookahead = 12.0F;
 
+/// The same for a vehicle at `speed` [m/s], `height` [m] above or below the leg. A fixed wing comes back gently: 4 s of
+/// flight ahead at least, and as far as its climb needs.
+[[nodiscard]] float rejoin_lookahead(const vehicle::VehicleLimits& limits, float speed, float height) noexcept;
+
 /// A way that starts inside a margin and leaves it like this, for good, is no conflict: nothing ahead on it could mend
 /// the start. Gentler than what an own manoeuvre has to do, so that noise of a velocity does not make a conflict of
 /// whatever passes by.

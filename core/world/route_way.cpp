@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
+
 namespace jink::world {
 namespace {
 
@@ -15,13 +17,19 @@ constexpr float kLeastAhead = 1.0F;
 /// are must not depend on that [s].
 constexpr Seconds kSliver = 1e-4F;
 
-float ahead_of(const path::RouteSegment& segment, const path::Abeam& abeam) noexcept
+/// A fixed wing aims so much of an arc's radius ahead: it cuts the arc by 3 % of the radius.
+constexpr float kWingOnArc = 0.5F;
+
+float ahead_of(const Situation& situation, const path::RouteSegment& segment, const path::Abeam& abeam,
+               const Vec3& position) noexcept
 {
+    const bool wing = situation.limits.kind == vehicle::VehicleKind::fixed_wing;
+    const float most =
+        rejoin_lookahead(situation.limits, situation.reference.leg.speed, position.z() - abeam.point.position.z());
     const bool on_leg = !segment.is_arc() && abeam.off <= detail::kOnLeg;
-    const float least = std::min(kRejoinLookahead, std::max(kLeastAhead, 2.0F * abeam.off));
-    const float wanted = on_leg             ? abeam.left
-                         : segment.is_arc() ? std::min(kRejoinLookahead, std::sqrt(segment.radius) + 2.0F * abeam.off)
-                                            : kRejoinLookahead;
+    const float least = std::min(most, std::max(kLeastAhead, 2.0F * abeam.off));
+    const float on_arc = wing ? kWingOnArc * segment.radius : std::sqrt(segment.radius);
+    const float wanted = on_leg ? abeam.left : segment.is_arc() ? std::min(most, on_arc + 2.0F * abeam.off) : most;
     return std::max(std::min(wanted, abeam.left), least);
 }
 
@@ -33,7 +41,8 @@ Way way_along(const Situation& situation, const Vec3& position) noexcept
     const path::Route& route = *reference.route;
     const path::Abeam abeam = route.abeam_of(position, reference.segment);
     const float length = route.length();
-    const float joined = std::min(abeam.arc_length + ahead_of(route.segments()[abeam.segment], abeam), length);
+    const float joined =
+        std::min(abeam.arc_length + ahead_of(situation, route.segments()[abeam.segment], abeam, position), length);
     const path::RoutePoint aim = route.at(joined);
     const Vec3 to_aim = aim.position - position;
     const float distance = to_aim.norm();
@@ -92,7 +101,7 @@ void RoutePieces::add_segment(const path::RouteSegment& segment, float from, flo
         position = next;
     }
     if (segment.is_arc()) {
-        const float half = std::sin(0.25F * chord / segment.radius);
+        const float half = sine_cosine(0.25F * chord / segment.radius).sine;
         off_ = std::max(off_, kChordSlack + 1.01F * segment.radius * 2.0F * half * half);
     }
 }

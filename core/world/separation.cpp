@@ -204,12 +204,9 @@ void for_each_bound(const Situation& situation, const Judge& judge) noexcept
         judge([&](const Vec3& p) { return air.ceiling - p.z() - height; }, ThreatKind::ceiling);
     }
     if (air.has_keep_in) {
-        const float corner = std::hypot(half.x(), half.y()) + extra;
-        judge(
-            [&](const Vec3& p) {
-                return air.keep_in_radius - std::hypot(p.x() - air.home.x(), p.y() - air.home.y()) - corner;
-            },
-            ThreatKind::keep_in);
+        const float corner = half.head<2>().norm() + extra;
+        judge([&](const Vec3& p) { return air.keep_in_radius - (p - air.home).head<2>().norm() - corner; },
+              ThreatKind::keep_in);
     }
 }
 

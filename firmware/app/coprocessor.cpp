@@ -7,6 +7,7 @@
 #include "core/base/work_units.hpp"
 #include "core/reach/lidar_scan.hpp"
 #include "firmware/app/hold_choice.hpp"
+#include "firmware/app/wing_course.hpp"
 
 namespace jink::app {
 namespace {
@@ -80,6 +81,19 @@ void Coprocessor::apply_configuration() noexcept
     static_cast<void>(orca_.configure(c.orca));
     static_cast<void>(supervisor_.configure(supervisor_settings()));
     tracks_.configure(c.tracks);
+}
+
+std::size_t Coprocessor::restore_parameters(const ParamValues& values) noexcept
+{
+    const std::size_t refused = parameters_.set_each(values);
+    apply_configuration();
+    return refused;
+}
+
+bool Coprocessor::is_disarmed(TimePoint now) const noexcept
+{
+    constexpr Seconds kFresh = 1.5F;  // one and a half periods: who has armed since is still on the ground
+    return has_autopilot_ && now - autopilot_.stamp <= kFresh && !autopilot_.armed && !takeover_.streaming();
 }
 
 void Coprocessor::read_port(TimePoint now, StepReport& report) noexcept
@@ -180,7 +194,8 @@ void Coprocessor::send_setpoint(TimePoint now, const vehicle::VehicleState& own,
     const Seconds period = setpoint_period();
     // Until the autopilot follows us, the stream says what it does anyway.
     const bool leads = takeover_.in_control();
-    const Vec3 velocity = leads ? report.guidance.velocity : own.velocity;
+    const Vec3 wanted = leads ? report.guidance.velocity : own.velocity;
+    const Vec3 velocity = autopilot_.fixed_wing ? wing_course(wanted, own.velocity, last_velocity_) : wanted;
     // What is decided anew does not wait for its turn: a tenth of a second is half a metre at cruise speed.
     const bool anew = leads && (velocity - last_velocity_).squaredNorm() > kNewCommand * kNewCommand;
     if (period <= 0.0F || (!anew && now - last_setpoint_ < period - 0.5F * kTick)) {
@@ -302,11 +317,12 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
     report.own_source = fresh ? own_source_ : OwnSource::none;
     const vehicle::VehicleState own = own_at(now);
     if (fresh && c.mode != ActMode::off && !passive_) {
-        nominal_.update(own_, own, flown_leg(), c.limits, takeover_.in_control());
+        const vehicle::VehicleLimits limits = vehicle::limits_in_flight(c.limits, own.velocity);
+        nominal_.update(own_, own, flown_leg(), limits, takeover_.in_control());
         const world::Airspace air = airspace(now);
         const world::Situation situation{now,
                                          own,
-                                         c.limits,
+                                         limits,
                                          c.airframe,
                                          nominal_.primary(),
                                          tracks_.snapshot(now),

@@ -162,6 +162,15 @@ public:
         return notices_.try_push_back({severity, text});
     }
 
+    /// Values that outlived a restart come into force. Those of the constructor stay what "erase" brings back. Before
+    /// the first step. @return how many were refused: out of range, or not together with the others
+    std::size_t restore_parameters(const ParamValues& values) noexcept;
+    /// The parameters of this generation are what a restart brings: "save" on the bus is answered by it.
+    void note_stored(std::uint32_t generation) noexcept { param_service_.note_stored(generation); }
+    /// The autopilot says that it is disarmed, by a HEARTBEAT not older than 1.5 s, and nothing is being taken over: a
+    /// stall of seconds harms nobody.
+    [[nodiscard]] bool is_disarmed(TimePoint now) const noexcept;
+
     /// Says CRITICAL and stops streaming: called before an image stops on purpose. The bytes are written as far as the
     /// port takes them.
     void shut_down(TimePoint now) noexcept;
@@ -187,6 +196,8 @@ public:
     [[nodiscard]] const TakeoverDiagnostics& takeover_diagnostics() const noexcept { return takeover_.diagnostics(); }
     [[nodiscard]] const NominalPaths& nominal_paths() const noexcept { return nominal_; }
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
+    /// Those of the constructor.
+    [[nodiscard]] const ParamValues& initial_parameters() const noexcept { return param_service_.initial(); }
     [[nodiscard]] const geometric::Planner& planner() const noexcept { return planner_; }
     /// For studies on a bench: settings that no parameter reaches. The next change of a parameter takes them back.
     [[nodiscard]] geometric::Planner& planner() noexcept { return planner_; }
@@ -232,6 +243,7 @@ private:
     void prepare_last_words() noexcept;
     void tell_notices() noexcept;
     void take_reading(const link::RangeReading& reading) noexcept;
+    [[nodiscard]] geometry::Shape overhead_echo(const link::RangeReading& reading) const noexcept;
     void place(std::uint32_t id, const geometry::Shape& shape, TimePoint expires) noexcept;
     void place_level(std::uint32_t first, float yaw, float range, float half_angle, TimePoint expires) noexcept;
     void remove_obstacles(std::uint32_t first, std::size_t n) noexcept;

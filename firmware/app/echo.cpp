@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -20,9 +22,10 @@ struct Disc {
 /// Disc (or ball) through the ends of the arc at `range`, its middle inside.
 Disc over_arc(float range, float half_angle, float widths) noexcept
 {
-    const float half_width = range * std::sin(half_angle);
+    const SineCosine half = sine_cosine(half_angle);
+    const float half_width = range * half.sine;
     const float radius = std::max(kLeastEchoRadius, widths * half_width);
-    return {range * std::cos(half_angle) + std::sqrt(radius * radius - half_width * half_width), radius};
+    return {range * half.cosine + std::sqrt(radius * radius - half_width * half_width), radius};
 }
 
 }  // namespace
@@ -36,7 +39,8 @@ std::size_t echo_parts(float half_angle) noexcept
 geometry::Shape level_echo(const Vec3& origin, float yaw, float range, float half_angle, float half_height) noexcept
 {
     const Disc disc = over_arc(range, half_angle, kLevelRadius);
-    const Vec3 centre = origin + disc.distance * Vec3(std::cos(yaw), std::sin(yaw), 0.0F);
+    const SineCosine ahead = sine_cosine(yaw);
+    const Vec3 centre = origin + disc.distance * Vec3(ahead.cosine, ahead.sine, 0.0F);
     const Vec3 tall = half_height * Vec3::UnitZ();
     return geometry::make_capsule(centre - tall, centre + tall, disc.radius);
 }
@@ -49,8 +53,9 @@ geometry::Shape slanted_echo(const Vec3& origin, const Vec3& direction, float ra
 
 geometry::Shape ceiling_echo(const Vec3& origin, float range, float half_angle, float half_width) noexcept
 {
-    const float half = std::max(half_width, range * std::sin(half_angle));
-    const Vec3 centre = origin + Vec3(0.0F, 0.0F, range * std::cos(half_angle) + half);
+    const SineCosine edge = sine_cosine(half_angle);
+    const float half = std::max(half_width, range * edge.sine);
+    const Vec3 centre = origin + Vec3(0.0F, 0.0F, range * edge.cosine + half);
     return geometry::make_box(centre, Vec3(half, half, half));
 }
 

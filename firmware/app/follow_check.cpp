@@ -24,11 +24,11 @@ bool is_followed(const Vec3& command, const Vec3& velocity) noexcept
     return along >= FollowCheck::kSlow * speed && along <= speed && (velocity - along * direction).norm() <= tolerance;
 }
 
-/// The command's course and climb at the speed that is flown.
+/// The command's course and climb at the speed that is flown. Non-finite where the command is.
 Vec3 at_speed_of(const Vec3& velocity, const Vec3& command) noexcept
 {
     const float speed = command.head<2>().norm();
-    if (!is_finite(command) || !is_finite(velocity) || speed <= FollowCheck::kTolerance) {
+    if (speed <= FollowCheck::kTolerance) {
         return command;
     }
     const float share = velocity.head<2>().norm() / speed;
@@ -48,7 +48,8 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     velocity_ = velocity;
     if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
         begun_ = is_finite(velocity) && is_finite(command);
-        reference_ = command;
+        reference_ = command_ = command;
+        start_ = velocity;
         return false;
     }
     const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
@@ -56,14 +57,16 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     if ((command - reference_).norm() > kTolerance) {
         // What the command before asked for still goes on for a while.
         missing_ = is_proven_ ? -expected * kAllowance : missing_;
+        if (is_proven_ || (command - command_).norm() > kTolerance) {
+            start_ = velocity;
+        }
         is_proven_ = false;
-        progress_ = 0.0F;
         reference_ = command;
     }
+    command_ = command;
+    is_proven_ = is_proven_ || (command - start_).norm() - (command - velocity).norm() >= kTolerance;
     const float answered = change.dot(error) / std::max(error.norm(), 1e-3F);
     const float towards = wing ? std::max(answered, 0.0F) : answered;  // rolling out of a turn goes the wrong way
-    progress_ += error.norm() > kTolerance ? towards : 0.0F;           // nearer than that it would be noise
-    is_proven_ = is_proven_ || progress_ >= kTolerance;
     if (is_followed(command, velocity)) {
         missing_ = std::max(missing_ - expected * dt, std::min(missing_, 0.0F));
         return false;

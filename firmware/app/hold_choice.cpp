@@ -23,8 +23,7 @@ float closest_distance(const Vec3& apart, const Vec3& velocity, Seconds time) no
 bool is_stopping_safer(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,
                        const world::Conflict& conflict, const world::Track* track) noexcept
 {
-    constexpr float kStands = 0.5F;  // [m/s]
-    if (track == nullptr || track->velocity.norm() < kStands) {
+    if (track == nullptr || track->velocity.norm() < kHoldStands) {
         return true;
     }
     const float speed = own.velocity.norm();
@@ -43,7 +42,7 @@ bool is_stopping_safer(const vehicle::VehicleState& own, const vehicle::VehicleL
         other += track->velocity * slice;
     }
     closest = std::min(closest, closest_distance(other - stopping.position, track->velocity, kHoldAhead));
-    return closest > conflict.miss_distance + kHoldBetter;
+    return closest >= conflict.miss_distance + kHoldBetter;
 }
 
 }  // namespace jink::app

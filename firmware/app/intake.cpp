@@ -174,6 +174,15 @@ void Coprocessor::take_scan(TimePoint now) noexcept
     }
 }
 
+/// A beam that is not quite vertical sees a ceiling as low as its lowest edge, and as far aside.
+geometry::Shape Coprocessor::overhead_echo(const link::RangeReading& reading) const noexcept
+{
+    const float edge = std::acos(std::min(reading.direction.z(), 1.0F)) + reading.half_angle;
+    const float height = reading.range * std::cos(edge);
+    const float aside = std::max(parameters_.configuration().scan_height, reading.range * std::sin(edge));
+    return ceiling_echo(own_.position, height, 0.0F, aside);
+}
+
 void Coprocessor::take_reading(const link::RangeReading& reading) noexcept
 {
     const TimePoint expires = reading.stamp + parameters_.configuration().scan_keep;
@@ -193,9 +202,7 @@ void Coprocessor::take_reading(const link::RangeReading& reading) noexcept
     } else if (reading.half_angle > kWidestSteep) {
         ++diagnostics_.readings_refused;
     } else if (steepness > kUpwards) {
-        place(first,
-              ceiling_echo(own_.position, reading.range, reading.half_angle, parameters_.configuration().scan_height),
-              expires);
+        place(first, overhead_echo(reading), expires);
     } else {
         place(first, slanted_echo(own_.position, reading.direction, reading.range, reading.half_angle), expires);
     }

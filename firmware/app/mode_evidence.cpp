@@ -7,7 +7,7 @@ namespace jink::app {
 
 void ModeEvidence::note_heartbeat(TimePoint now) noexcept
 {
-    if (has_heard_ && !has_polled_ && heard_unasked_) {
+    if (!has_polled_ && heard_unasked_) {
         gaps_[next_gap_] = std::clamp(now - heard_, kShortestPeriod, kLongestPeriod);
         next_gap_ = (next_gap_ + 1) % gaps_.size();
         period_ = std::max(std::min(gaps_[0], gaps_[1]), std::min(std::max(gaps_[0], gaps_[1]), gaps_[2]));
@@ -25,12 +25,7 @@ void ModeEvidence::note_request(TimePoint now) noexcept
     waits_ = needed_ = false;
 }
 
-void ModeEvidence::note_accepted(TimePoint now) noexcept
-{
-    if (has_asked_) {
-        barrier_ = std::max(barrier_, TimePoint{now.us - 1});
-    }
-}
+void ModeEvidence::note_accepted(TimePoint now) noexcept { barrier_ = std::max(barrier_, TimePoint{now.us - 1}); }
 
 bool ModeEvidence::is_clear_to_ask(TimePoint now) noexcept
 {

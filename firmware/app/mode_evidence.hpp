@@ -11,8 +11,8 @@ namespace jink::app {
 /// How much the newest HEARTBEAT proves of the autopilot's present mode, and when to ask for another one.
 ///
 /// A HEARTBEAT proves nothing before it is newer than our last request of a mode, and than the accepted answer to it.
-/// It proves enough to ask for a mode while it is younger than kFresh. Where a HEARTBEAT that was asked for does not
-/// come within kAnswer, one younger than kPeriods of its own periods is good enough. Its period is the median of the
+/// It proves enough to ask for a mode while it is no older than kFresh. Where a HEARTBEAT that was asked for does not
+/// come within kAnswer, one no older than kPeriods of its own periods is good enough. Its period is the median of the
 /// last three gaps between HEARTBEATs that nobody asked for, kShortestPeriod to kLongestPeriod.
 ///
 /// Use: note_*() as they happen, is_clear_to_ask() in each tick in which a request of a mode is due, is_due() once at
@@ -48,8 +48,9 @@ public:
 
     /// At the end of a tick: whether to ask for a HEARTBEAT.
     ///
-    /// @param watched     in control: asked for when older than kWatch
-    /// @param unconfirmed a request was made, and its effect is to be seen soon
+    /// @param watched     in control: asked for from an age of kWatch on
+    /// @param unconfirmed a request was made, and its effect is to be seen soon: asked for, as for a mode that has to
+    ///                    be known, from an age of half kFresh on
     [[nodiscard]] bool is_due(bool watched, bool unconfirmed, TimePoint now) noexcept;
 
     /// A HEARTBEAT this young is evidence by itself [s]: about what a line and a pilot's hand take.
@@ -67,10 +68,10 @@ public:
 private:
     bool has_heard_ = false;
     bool is_void_ = false;        ///< the newest is no evidence
-    bool heard_unasked_ = false;  ///< the newest came by itself
+    bool heard_unasked_ = false;  ///< one was heard, and the newest came by itself
     TimePoint heard_;             ///< the newest
     bool has_asked_ = false;      ///< for any mode
-    TimePoint barrier_;           ///< that request, or its accepted answer
+    TimePoint barrier_;           ///< that request, or its accepted answer; counts once has_asked_
     Seconds period_ = kLongestPeriod;
     std::array<Seconds, 3> gaps_{kLongestPeriod, kLongestPeriod, kLongestPeriod};
     std::size_t next_gap_ = 0;

@@ -2,8 +2,10 @@
 #include "firmware/app/nominal_paths.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "core/base/angle.hpp"
 #include "core/world/conflict.hpp"
 
 namespace jink::app {
@@ -25,9 +27,14 @@ constexpr float kDeparting = 0.25F;
 constexpr float kBackAhead = world::kRejoinLookahead;
 /// Level motion may climb by so much: an arc lies level [m/s].
 constexpr float kLevel = 0.3F;
-constexpr int kTurnLegs = 3;  ///< of a turn that climbs
+/// Ends of the legs of a turn that climbs: after 60, 120 and 180 degrees.
+constexpr std::array<SineCosine, 3> kTurnLegs = {{{0.866025404F, 0.5F}, {0.866025404F, -0.5F}, {0.0F, -1.0F}}};
 
-float unwrapped(float angle, float near) noexcept { return near + std::remainder(angle - near, 2.0F * kPi); }
+/// Of the level parts, counter-clockwise from `a` to `b`, within half a turn either way [rad].
+float level_angle(const Vec3& a, const Vec3& b) noexcept
+{
+    return direction_angle(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
+}
 
 /// The leg as the vehicle sees it.
 struct Seen {
@@ -104,10 +111,8 @@ void NominalPaths::sample(const vehicle::VehicleState& measured) noexcept
         std::move(samples_.begin() + 1, samples_.end(), samples_.begin());
         samples_.pop_back();
     }
-    const Vec3& v = measured.velocity;
-    const float heading = std::atan2(v.y(), v.x());
-    const float near = samples_.empty() ? heading : samples_.back().heading;
-    samples_.unchecked_push_back({measured.stamp, unwrapped(heading, near), v.norm(), std::hypot(v.x(), v.y())});
+    const Vec3& before = samples_.empty() ? measured.velocity : samples_.back().velocity;
+    samples_.unchecked_push_back({measured.stamp, level_angle(before, measured.velocity), measured.velocity});
     estimate();
 }
 
@@ -117,32 +122,35 @@ void NominalPaths::estimate() noexcept
     turn_rate_ = steady_now_ = 0.0F;
     const TimePoint last = samples_.back().at;
     float n = 0.0F, t_sum = 0.0F, h_sum = 0.0F, tt = 0.0F, th = 0.0F, oldest = 0.0F, speeds = 0.0F;
-    float slowest = samples_.back().speed;
+    float h = 0.0F;  // heading, less the newest one
+    float slowest = samples_.back().velocity.norm();
     float fastest = slowest;
-    float level = samples_.back().level;
-    for (const Sample& s : samples_) {
+    bool moves = true;
+    for (std::size_t i = samples_.size(); i > 0; --i) {
+        const Sample& s = samples_[i - 1];
         const Seconds t = s.at - last;
         if (t < -kWindow - 0.5F * kSpacing) {
-            continue;
+            break;
         }
-        const float h = s.heading - samples_.back().heading;
         n += 1.0F;
         t_sum += t;
         h_sum += h;
         tt += t * t;
         th += t * h;
+        h -= s.turned;
         oldest = std::min(oldest, t);
-        speeds += s.speed;
-        slowest = std::min(slowest, s.speed);
-        fastest = std::max(fastest, s.speed);
-        level = std::min(level, s.level);
+        const float speed = s.velocity.norm();
+        speeds += speed;
+        slowest = std::min(slowest, speed);
+        fastest = std::max(fastest, speed);
+        moves = moves && s.velocity.head<2>().squaredNorm() > kMoving * kMoving;
     }
     const float spread = n * tt - t_sum * t_sum;
     if (oldest > -0.8F * kWindow || !(spread > 0.0F)) {
         return;
     }
     const float rate = (n * th - t_sum * h_sum) / spread;
-    turn_rate_ = level > kMoving && std::abs(rate) >= kLeastTurn ? rate : 0.0F;
+    turn_rate_ = moves && std::abs(rate) >= kLeastTurn ? rate : 0.0F;
     steady_now_ = slowest > kMoving && fastest - slowest < kSteady ? speeds / n : 0.0F;
 }
 
@@ -222,10 +230,10 @@ bool NominalPaths::add_turn(const vehicle::VehicleState& own) noexcept
         }
     } else {
         Vec3 at = own.position;
-        for (int i = 1; i <= kTurnLegs; ++i) {
-            const float angle = kPi * static_cast<float>(i) / static_cast<float>(kTurnLegs);
-            const Vec3 next = centre + radius * (std::sin(angle) * level / speed - std::cos(angle) * sense * left) +
-                              Vec3(0.0F, 0.0F, climb * angle / std::abs(turn_rate_));
+        const float rise = climb * (kPi / static_cast<float>(kTurnLegs.size())) / std::abs(turn_rate_);
+        for (const SineCosine& turned : kTurnLegs) {
+            const Vec3 on_circle = centre + radius * (turned.sine * level / speed - turned.cosine * sense * left);
+            const Vec3 next(on_circle.x(), on_circle.y(), at.z() + rise);
             if (route.add_leg(at, next) != path::RouteStatus::ok) {
                 return false;
             }
@@ -252,6 +260,17 @@ void NominalPaths::extrapolate(const vehicle::VehicleState& own, const vehicle::
     }
 }
 
+/// What drifts in gusts is going nowhere: its place is kept, not a path that it would be brought back to.
+void NominalPaths::keep(const vehicle::VehicleLimits& limits) noexcept
+{
+    kept_.copy_from(live_);
+    world::Reference& r = kept_.reference;
+    if (r.leg.end != r.leg.start && r.leg.speed < kMoving) {
+        r.route = nullptr;
+        r.leg = {r.leg.start, r.leg.start, limits.cruise_speed};
+    }
+}
+
 const world::Reference* NominalPaths::other() const noexcept
 {
     if (!on_motion_) {
@@ -264,7 +283,7 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
                           const world::Leg* leg, const vehicle::VehicleLimits& limits, bool in_control) noexcept
 {
     if (in_control && !in_control_) {
-        kept_.copy_from(live_);
+        keep(limits);
         on_motion_ = was_on_motion_ || !believes_leg();
     }
     in_control_ = in_control;
@@ -280,7 +299,7 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
     intend(own, limits, in_control);
     extrapolate(own, limits);
     if (outdated_) {
-        kept_.copy_from(live_);
+        keep(limits);
         outdated_ = false;
     }
     on_motion_ = in_control ? on_motion_ || !has_leg_ : !believes_leg();

@@ -9,6 +9,9 @@
 namespace jink::app {
 namespace {
 
+/// ArduPlane goes on straight from where it gets its mission back: nothing is gained by coming nearer to the leg [m].
+constexpr float kWingOnLeg = 10.0F;
+
 constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_MODE", 2, 0, 2, true, "0 off, 1 advise only, 2 take over and avoid"},
     {"JNK_LOOKAHEAD", 8, 1, 60, false, "conflicts are looked for this far ahead [s]"},
@@ -24,7 +27,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_RATE", 20, 10, 50, true, "set-points per second while avoiding"},
     {"TRK_RADIUS", 1, 0.05F, 500, false, "radius of traffic [m]"},
     {"TRK_RADIUS_PT", 1, 0.05F, 500, false, "radius of traffic that is an obstacle at rest [m]"},
-    {"TRK_SIGMA_P", 0.5F, 0.01F, 500, false, "position noise of traffic, one standard deviation [m]"},
+    {"TRK_SIGMA_P", 1.5F, 0.01F, 500, false, "position noise of traffic, one standard deviation [m]"},
     {"TRK_SIGMA_V", 0.3F, 0.01F, 100, false, "velocity noise of traffic, one standard deviation [m/s]"},
     {"TRK_ACCEL", 0, 0, 50, false, "acceleration that traffic may show unannounced [m/s2]"},
     {"TRK_LATENCY", 0.1F, 0, 2, false, "age of a traffic report on arrival [s]"},
@@ -88,8 +91,10 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.supervisor.reserve = at(Param::reserve);
     c.supervisor.settle = at(Param::settle);
     c.supervisor.patience = at(Param::patience);
+    const bool wing = whole(Param::fixed_wing) == 1;
+    c.supervisor.on_leg = wing ? kWingOnLeg : c.supervisor.on_leg;
     c.limits.half_extents = Vec3(at(Param::half_xy), at(Param::half_xy), at(Param::half_z));
-    c.limits.kind = whole(Param::fixed_wing) == 1 ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
+    c.limits.kind = wing ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
     c.limits.cruise_speed = at(Param::cruise);
     c.limits.max_climb = at(Param::climb);
     c.limits.max_descent = at(Param::descent);
@@ -224,6 +229,18 @@ ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) no
     configuration_ = candidate;
     ++generation_;
     return ParamStatus::ok;
+}
+
+std::size_t Parameters::set_each(const ParamValues& values) noexcept
+{
+    std::size_t refused = set_all(values) == ParamStatus::ok ? 0 : kParamCount;
+    for (int pass = 0; pass < 2 && refused > 0; ++pass) {
+        refused = 0;
+        for (std::size_t i = 0; i < kParamCount; ++i) {
+            refused += set(static_cast<Param>(i), values[i]) == ParamStatus::ok ? 0U : 1U;
+        }
+    }
+    return refused;
 }
 
 ParamStatus Parameters::set(Param p, float value) noexcept

@@ -83,6 +83,7 @@ enum class Param : std::uint8_t {
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
+using ParamValues = std::array<float, kParamCount>;
 
 struct ParamInfo {
     std::string_view name;  ///< at most 16 characters, as on the wire and in files
@@ -145,6 +146,9 @@ public:
     ParamStatus set(std::string_view name, float value) noexcept;
     /// Several at once, checked together: weights, caps, limits that only fit as a set. A refused set changes nothing.
     ParamStatus set_all(const std::array<float, kParamCount>& values) noexcept;
+    /// All of `values` where they fit together; else each for itself, in two passes because one may only fit after
+    /// another. @return how many were refused
+    std::size_t set_each(const ParamValues& values) noexcept;
     [[nodiscard]] const std::array<float, kParamCount>& values() const noexcept { return values_; }
 
     /// Index of a name (NUL or end of view ends it); kParamCount when unknown. O(kParamCount).

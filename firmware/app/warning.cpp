@@ -25,7 +25,7 @@ void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noex
                  : is_barrel ? kBarrelIds + c.threat.index
                              : obstacles_.obstacles()[c.threat.index].id;
     warning.time_to_closest = c.time_to_closest;
-    warning.horizontal_miss = std::hypot(miss.x(), miss.y());
+    warning.horizontal_miss = miss.head<2>().norm();
     warning.vertical_miss = std::abs(miss.z());
     warning.action = link::CollisionAction::report;
     if (takeover_.in_control()) {

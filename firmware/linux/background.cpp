@@ -152,6 +152,7 @@ private:
 
 struct Background::Shared {
     using Line = detail::Line;
+    using NewParams = std::pair<files::ParamValues, std::uint32_t>;  ///< and their generation
 
     BackgroundFiles wanted;
     sem_t wake{};
@@ -162,12 +163,15 @@ struct Background::Shared {
     std::atomic<Areas*> ready{nullptr};
     std::atomic<Areas*> spent{nullptr};
     std::mutex values_mutex;
-    std::optional<files::ParamValues> values;      ///< to be stored; guarded by values_mutex
+    std::optional<NewParams> values;               ///< to be stored; guarded by values_mutex
     std::optional<files::SigningState> signature;  ///< likewise
     std::atomic<std::uint32_t> dropped{0}, reloads{0}, reload_failures{0};
+    static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
+    std::atomic<std::uint64_t> stored{kNothing};  ///< generation of the parameters in the state file
 
     // The thread's own, but for their counters.
     hal::SystemClock clock;
+    std::uint32_t generation = 0;  ///< of what `params` has taken
     detail::Store params{"parameters are not stored", files::FileAccess::everyone_reads};
     detail::Store signing{"the signing key and time are not stored", files::FileAccess::owner_only};
 
@@ -214,7 +218,7 @@ void Background::Shared::read_airspace()
 
 void Background::Shared::store_values()
 {
-    std::optional<files::ParamValues> new_values;
+    std::optional<NewParams> new_values;
     std::optional<files::SigningState> new_signature;
     {
         const std::lock_guard lock(values_mutex);
@@ -222,14 +226,19 @@ void Background::Shared::store_values()
         std::swap(new_signature, signature);
     }
     if (new_values) {
-        params.take(files::state_text(wanted.initial, *new_values));
+        params.take(files::state_text(wanted.initial, new_values->first));
+        generation = new_values->second;
     }
     if (new_signature) {
         signing.take(files::signing_text(*new_signature));
     }
     const std::int64_t now = clock.now_us();
+    const std::uint32_t done = params.done;
     if (const std::string why = params.work(wanted.state, now, stop); !why.empty()) {
         complain(why);
+    }
+    if (params.done != done) {
+        stored = generation;
     }
     if (const std::string why = signing.work(wanted.signing, now, stop); !why.empty()) {
         complain(why);
@@ -336,7 +345,16 @@ bool Background::hand_over(const T& value, std::optional<T>& place) noexcept
     return true;
 }
 
-bool Background::store(const files::ParamValues& values) noexcept { return hand_over(values, shared_->values); }
+bool Background::store(const files::ParamValues& values, std::uint32_t generation) noexcept
+{
+    return hand_over(Shared::NewParams{values, generation}, shared_->values);
+}
+
+std::optional<std::uint32_t> Background::stored_generation() const noexcept
+{
+    const std::uint64_t stored = shared_->stored;
+    return stored == Shared::kNothing ? std::nullopt : std::optional(static_cast<std::uint32_t>(stored));
+}
 
 bool Background::store_signing(const files::SigningState& state) noexcept
 {

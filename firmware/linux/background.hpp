@@ -67,8 +67,11 @@ public:
     /// Leaves it to the thread to free the areas.
     void done(std::unique_ptr<Areas> areas) noexcept;
 
-    /// Asks for these values to be stored. False: busy, ask again in the next step.
-    [[nodiscard]] bool store(const files::ParamValues& values) noexcept;
+    /// Asks for these values to be stored, app::Parameters::values() of this generation. False: busy, ask again in the
+    /// next step.
+    [[nodiscard]] bool store(const files::ParamValues& values, std::uint32_t generation) noexcept;
+    /// Generation of the values that the state file holds for certain; nothing before the first store.
+    [[nodiscard]] std::optional<std::uint32_t> stored_generation() const noexcept;
     [[nodiscard]] bool store_signing(const files::SigningState& state) noexcept;
 
     [[nodiscard]] BackgroundCounts counts() const noexcept;

@@ -65,8 +65,11 @@ void Housekeeping::work(TimePoint now)
         background_.done(std::move(areas));
     }
     const app::Parameters& parameters = coprocessor_.parameters();
-    if (parameters.generation() != stored_params_ && background_.store(parameters.values())) {
+    if (parameters.generation() != stored_params_ && background_.store(parameters.values(), parameters.generation())) {
         stored_params_ = parameters.generation();
+    }
+    if (const auto generation = background_.stored_generation()) {
+        coprocessor_.note_stored(*generation);
     }
     if (endpoint_.parser_diagnostics().signed_unchecked > 0 && !told_unchecked_) {
         background_.print(Stream::error,
@@ -86,7 +89,7 @@ void Housekeeping::store_all()
     bool params_wait = parameters.generation() != stored_params_;
     bool signing_waits = signing_.has_key() || signing_.generation() != stored_key_;
     for (int i = 0; i < 100 && (params_wait || signing_waits); ++i) {  // the thread holds the lock for microseconds
-        params_wait = params_wait && !background_.store(parameters.values());
+        params_wait = params_wait && !background_.store(parameters.values(), parameters.generation());
         signing_waits = signing_waits && !store_signing();
         const timespec pause{0, 1'000'000};
         ::nanosleep(&pause, nullptr);

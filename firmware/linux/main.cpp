@@ -189,7 +189,9 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
-int run(const Options& options, const files::ParamValues& initial, const app::Parameters& parameters,
+/// @param initial  parameters of the files that people write
+/// @param stored   values in force: these, and over them what was set over a link before
+int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
         const std::string& device, std::uint32_t baud)
 {
     hal::SystemClock clock;
@@ -239,7 +241,11 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
     }
     link::mavlink::Endpoint endpoint(link_options, &signing);
     const auto coprocessor =
-        std::make_unique<app::Coprocessor>(endpoint, port, watchdog, parameters, bus ? &*bus : nullptr);
+        std::make_unique<app::Coprocessor>(endpoint, port, watchdog, initial, bus ? &*bus : nullptr);
+    static_cast<void>(coprocessor->restore_parameters(stored));  // checked together when they were read
+    if (!options.state_file.empty()) {
+        coprocessor->note_stored(coprocessor->parameters().generation());
+    }
     coprocessor->use_clouds(*clouds);
     const auto picture = std::make_unique<app::ReachPicture>(app::reach_sets());
     if (cloud_line) {
@@ -256,7 +262,8 @@ int run(const Options& options, const files::ParamValues& initial, const app::Pa
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
     host::BackgroundCounts counts;
     {
-        host::Background background({options.airspace_file, options.state_file, options.signing.store, initial});
+        host::Background background(
+            {options.airspace_file, options.state_file, options.signing.store, initial.values()});
         host::Housekeeping housekeeping(background, *coprocessor, endpoint, signing, signing_state.given);
         housekeeping.has_airspace(!options.airspace_file.empty());
         if (options.realtime > 0) {
@@ -365,7 +372,7 @@ int main(int argc, char** argv)
     if (!parameters) {
         return EXIT_FAILURE;
     }
-    const files::ParamValues initial = parameters->values();
+    const app::Parameters initial = *parameters;
     if (options.state_file.empty() && !options.param_file.empty()) {
         options.state_file = options.param_file + ".state";
     }
@@ -375,5 +382,5 @@ int main(int argc, char** argv)
         options.signing.store = options.signing.key + ".state";
     }
     load_state(options.state_file, *parameters);
-    return run(options, initial, *parameters, device, baud);
+    return run(options, initial, parameters->values(), device, baud);
 }

@@ -60,23 +60,17 @@ bool sync_folder(const std::string& path)
     return ::close(descriptor) == 0 && synced;
 }
 
-/// What fits together of values that do not: one after the other, twice, since one may only fit after another.
-std::size_t apply_singly(const ParamValues& wanted, const std::string& file, app::Parameters& parameters,
-                         Complaints& complaints)
+/// As many of the values as fit together. @return how many were refused
+std::size_t apply_each(const ParamValues& wanted, const std::string& file, app::Parameters& parameters,
+                       Complaints& complaints)
 {
-    std::size_t refused = 0;
-    for (int pass = 0; pass < 2; ++pass) {
-        refused = 0;
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            if (parameters.set(static_cast<app::Param>(i), wanted[i]) != app::ParamStatus::ok) {
-                ++refused;
-                if (pass == 1) {
-                    complaints.push_back({0, 0,
-                                          std::string(app::param_table()[i].name) + " = " + to_text(wanted[i]) +
-                                              " does not fit together with the others",
-                                          file});
-                }
-            }
+    const std::size_t refused = parameters.set_each(wanted);
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        if (refused > 0 && parameters.values()[i] != wanted[i]) {
+            complaints.push_back({0, 0,
+                                  std::string(app::param_table()[i].name) + " = " + to_text(wanted[i]) +
+                                      " does not fit together with the others",
+                                  file});
         }
     }
     return refused;
@@ -160,11 +154,9 @@ StateLoad apply_state(std::string_view text, const std::string& file, app::Param
         wanted = changed.value_or(wanted);
         rest = size == std::string_view::npos ? std::string_view{} : rest.substr(size + 1);
     }
-    if (parameters.set_all(wanted) != app::ParamStatus::ok) {
-        const std::size_t misfits = apply_singly(wanted, file, parameters, complaints);
-        out.refused += misfits;
-        out.taken -= std::min(out.taken, misfits);
-    }
+    const std::size_t misfits = apply_each(wanted, file, parameters, complaints);
+    out.refused += misfits;
+    out.taken -= std::min(out.taken, misfits);
     return out;
 }
 

@@ -4,6 +4,7 @@
 #include <new>
 
 #include "firmware/app/can_bus.hpp"
+#include "firmware/app/param_keeper.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cortex_m/cortex_m.hpp"
@@ -14,6 +15,7 @@
 #include "hal/last_words.hpp"
 #include "hal/stm32f4/bxcan.hpp"
 #include "hal/stm32f4/clock_tree.hpp"
+#include "hal/stm32f4/flash.hpp"
 #include "hal/stm32f4/independent_watchdog.hpp"
 #include "hal/stm32f4/reset_cause.hpp"
 #include "hal/stm32f4/usart.hpp"
@@ -32,6 +34,8 @@ constexpr std::uintptr_t kWatchdog = 0x40003000;
 constexpr std::uintptr_t kTimer2 = 0x40000000;
 constexpr std::uintptr_t kGpioB = 0x40020400;
 constexpr std::uintptr_t kCan1 = 0x40006400;
+constexpr std::uintptr_t kStore = 0x080C0000;  // sectors 10 and 11 of the flash (3.3): stm32f405.ld leaves them out
+constexpr std::uint32_t kStoreSector = 10;
 constexpr std::uintptr_t kUniqueId = 0x1FFF7A10;  // 96 bits (39.1)
 constexpr unsigned kCan1TransmitInterrupt = 19;
 constexpr unsigned kCan1ReceiveInterrupt = 20;
@@ -45,6 +49,8 @@ constexpr std::uint32_t kWatchdogMilliseconds = 250;
 /// And one that is this late is stopped with last words, before the watchdog at its quickest (0.68 of the above) does
 /// it without. Ticks of SysTick.
 constexpr std::uint32_t kGuardMilliseconds = 150;
+/// While a sector is erased, 2 s at most, the program stands still: the watchdog at its quickest acts after 2.8 s then.
+constexpr std::uint32_t kEraseMilliseconds = 4095;
 
 using Usart = hal::stm32f4::Usart<MappedRegisters, hal::cortex_m::Pend>;
 
@@ -53,6 +59,20 @@ Usart& usart() noexcept
     static Usart port(MappedRegisters{kUsart1}, hal::cortex_m::Pend(kUsart1Interrupt));
     return port;
 }
+
+using ChipWatchdog = hal::stm32f4::IndependentWatchdog<MappedRegisters>;
+
+/// Both watchdogs wait for a sector's erase, which only a running program begins.
+struct Patience {
+    ChipWatchdog* watchdog;
+    hal::cortex_m::GuardedWatchdog<ChipWatchdog>* guarded;
+
+    void operator()(bool erasing) const noexcept
+    {
+        watchdog->start(erasing ? kEraseMilliseconds : kWatchdogMilliseconds);
+        erasing ? guarded->pause() : guarded->feed();
+    }
+};
 
 using Can = hal::stm32f4::BxCan<MappedRegisters, hal::cortex_m::Pend>;
 
@@ -206,10 +226,14 @@ extern "C" void hal::cortex_m::jink_main()
     constexpr std::uintptr_t kCount = 0x24;
     static hal::CounterClock clock(hal::cortex_m::at(kTimer2 + kCount), hal::CounterClock::Direction::up, 1'000'000);
     static link::mavlink::Endpoint endpoint;
-    static hal::stm32f4::IndependentWatchdog watchdog{MappedRegisters{kWatchdog}};
+    static ChipWatchdog watchdog{MappedRegisters{kWatchdog}};
     static hal::cortex_m::GuardedWatchdog guarded(watchdog, kGuardMilliseconds);
     app::CanBus* const bus = start_can(clocks);
     static app::Coprocessor coprocessor(endpoint, usart(), guarded, app::Parameters(), bus);
+    static hal::stm32f4::Flash flash(MappedRegisters{kFlash}, MappedRegisters{kStore}, kStoreSector,
+                                     Patience{&watchdog, &guarded});
+    static app::ParamFlash stored(flash);
+    static app::ParamKeeper keeper(stored);
 
     static_cast<void>(usart().start(clocks.apb2, kBaud));
     settle_reset(cause);
@@ -221,6 +245,7 @@ extern "C" void hal::cortex_m::jink_main()
             hal::cortex_m::enable_interrupt(irq);
         }
     }
+    keeper.start(coprocessor);
     firmware::settle_reach_sets(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);
     if (bus == nullptr) {
@@ -234,5 +259,6 @@ extern "C" void hal::cortex_m::jink_main()
         if (can != nullptr) {
             can->service();
         }
+        keeper.work(coprocessor, {clock.now_us()});
     });
 }

@@ -32,11 +32,10 @@ CanOpenStatus cause_of(int error) noexcept
     }
 }
 
-/// Nothing that time could mend.
+/// Nothing that time could mend; bad_name and too_many_filters do not get as far as this.
 bool is_final(CanOpenStatus status) noexcept
 {
-    return status == CanOpenStatus::bad_name || status == CanOpenStatus::too_many_filters ||
-           status == CanOpenStatus::no_can || status == CanOpenStatus::not_can || status == CanOpenStatus::no_fd;
+    return status == CanOpenStatus::no_can || status == CanOpenStatus::not_can || status == CanOpenStatus::no_fd;
 }
 
 template <class T>
@@ -79,9 +78,9 @@ CanOpenStatus SocketCanPort::open(std::string_view interface, const SocketCanOpt
     retry_period_us_ = retry_period_us;
     next_attempt_us_ = 0;
     open_status_ = try_open();
-    health_.state = is_final(open_status_)                                                   ? CanState::closed
-                    : open_status_ == CanOpenStatus::ok && health_.state == CanState::active ? CanState::active
-                                                                                             : CanState::down;
+    if (health_.state != CanState::active) {  // no interface, or one that is not up
+        health_.state = is_final(open_status_) ? CanState::closed : CanState::down;
+    }
     return open_status_;
 }
 
@@ -162,11 +161,7 @@ void SocketCanPort::service(std::int64_t now_us) noexcept
         }
         next_attempt_us_ = now_us + retry_period_us_;
         open_status_ = try_open();
-        if (open_status_ != CanOpenStatus::ok) {
-            health_.state = CanState::down;
-        } else if (health_.state == CanState::active) {
-            ++health_.ups;
-        }
+        health_.ups += health_.state == CanState::active ? 1U : 0U;  // it was down
         return;
     }
     ifreq request = request_for(name_);

@@ -24,6 +24,7 @@ INDIRECT = [
     (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # who takes points: no image does
+    (r"3app10ParamFlash", [r"7stm32f45FlashI"]),
     (r"5reach7Planner(4look|7try_set)", []),  # who rates cells: nobody does on an image
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),

@@ -14,8 +14,7 @@ using Level = Eigen::Vector2d;
 
 constexpr double kPeriod = 17.0;        // NAVL1_PERIOD [s]
 constexpr double kDamping = 0.75;       // NAVL1_DAMPING
-constexpr double kLoiterRadius = 60.0;  // WP_LOITER_RAD [m]
-constexpr double kSlopeMin = 15.0;      // ALT_SLOPE_MIN [m]
+constexpr double kWaypointRadius = 90;  // WP_RADIUS [m]
 constexpr double kHeightTime = 5.0;     // TECS_TIME_CONST [s]
 constexpr double kRollTime = 0.5;       // RLL2SRV_TCONST [s]
 constexpr double kSpeedTime = 2.0;      // [s]
@@ -37,9 +36,28 @@ Level turned(const Level& v, double angle) noexcept
     return {std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y()};
 }
 
-/// AP_L1_Control::update_loiter, clockwise: lateral acceleration to the right [m/s2].
-double lateral_demand(const Level& from_centre, const Level& velocity) noexcept
+/// Course whose L1 law asks for this lateral acceleration to the right [m/s2].
+Vec course_of(const Level& velocity, double demand) noexcept
 {
+    const double speed = std::max(velocity.norm(), 1.0);
+    const double nu = std::asin(std::clamp(demand / (kL1 * speed), -1.0, 1.0));
+    const Level level = turned(velocity, -nu);
+    return {level.x(), level.y(), 0.0};
+}
+
+/// The course towards `goal`.
+Vec straight_to(const Level& goal, double speed) noexcept
+{
+    const Level level = goal.normalized() * speed;
+    return {level.x(), level.y(), 0.0};
+}
+
+}  // namespace
+
+PlaneCircle circle_course(const Truth& own, const Vec& centre, double radius) noexcept
+{
+    const Level velocity = own.velocity.head<2>();
+    const Level from_centre = (own.position - centre).head<2>();
     const double speed = std::max(velocity.norm(), 1.0);
     const double distance = from_centre.norm();
     const Level out = distance > 0.1 ? Level(from_centre / distance) : Level(velocity / speed);
@@ -49,16 +67,62 @@ double lateral_demand(const Level& from_centre, const Level& velocity) noexcept
     const double nu = std::clamp(std::atan2(across, inbound), -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);
     const double capture = kL1 * speed * std::sin(nu);
     const double omega = 2.0 * std::numbers::pi / kPeriod;
-    const double error = distance - kLoiterRadius;
+    const double error = distance - radius;
     double correction = error * omega * omega - inbound * 2.0 * kDamping * omega;
     if (inbound < 0.0 && across < 0.0) {
         correction = std::max(correction, 0.0);
     }
-    const double circle = correction + across * across / std::max(0.5 * kLoiterRadius, distance);
-    return error > 0.0 && capture < circle ? capture : circle;
+    const double circle = correction + across * across / std::max(0.5 * radius, distance);
+    const bool captures = error > 0.0 && capture < circle;
+    return {course_of(velocity, captures ? capture : circle), !captures};
 }
 
-}  // namespace
+Vec line_course(const Truth& own, const Vec& from, const Vec& to) noexcept
+{
+    const Level velocity = own.velocity.head<2>();
+    const double speed = std::max(velocity.norm(), 1.0);
+    const double ahead = kDamping * kPeriod * speed / std::numbers::pi;
+    const Level span = (to - from).head<2>();
+    const Level here = (own.position - from).head<2>();
+    const double length = span.norm();
+    const Level left = (to - own.position).head<2>();
+    if (length < 1e-3) {
+        return left.norm() < 1e-3 ? Vec(velocity.x(), velocity.y(), 0.0) : straight_to(left, speed);
+    }
+    const Level along = span / length;
+    const double done = here.dot(along);
+    if (here.norm() > ahead && done < -0.7071 * here.norm()) {
+        return straight_to(-here, speed);
+    }
+    if (done > length + 3.0 * speed) {
+        return straight_to(left, speed);
+    }
+    const double back = std::asin(std::clamp(cross(along, here) / ahead, -0.7071, 0.7071));
+    const Level level = turned(along, -back) * speed;
+    return {level.x(), level.y(), 0.0};
+}
+
+double turn_distance(double speed, double angle) noexcept
+{
+    const double right_angle = std::min(kWaypointRadius, kDamping * kPeriod * speed / std::numbers::pi);
+    return right_angle * std::min(angle / (0.5 * std::numbers::pi), 1.0);
+}
+
+double height_on_the_way(const Vec& from, const Vec& to, const Vec& here, bool climbs_at_once) noexcept
+{
+    const double rise = to.z() - from.z();
+    if (std::abs(rise) < kPlaneSlopeMin || (climbs_at_once && rise > 0.0)) {
+        return to.z();
+    }
+    const Level leg = (to - from).head<2>();
+    const double share = (here - from).head<2>().dot(leg) / std::max(leg.squaredNorm(), 1.0);
+    return from.z() + std::clamp(share, 0.0, 1.0) * rise;
+}
+
+double climb_to(double height, const Truth& own, const TruthLimits& limits) noexcept
+{
+    return std::clamp((height - own.position.z()) / kHeightTime, -limits.max_descent, limits.max_climb);
+}
 
 std::uint8_t PlaneGuidance::hear(const link::mavlink::CommandInt& command, bool guided, const Vec& here)
 {
@@ -82,20 +146,9 @@ std::uint8_t PlaneGuidance::hear(const link::mavlink::CommandInt& command, bool 
 
 Vec PlaneGuidance::command(const Truth& own) const
 {
-    const Level velocity = own.velocity.head<2>();
-    const Level from_centre = (own.position - point_).head<2>();
-    const double demand = lateral_demand(from_centre, velocity);
-    const double speed = std::max(velocity.norm(), 1.0);
-    const double nu = std::asin(std::clamp(demand / (kL1 * speed), -1.0, 1.0));
-    double height = point_.z();
-    if (from_.z() - point_.z() >= kSlopeMin) {
-        const Level leg = (point_ - from_).head<2>();
-        const double share = (own.position - from_).head<2>().dot(leg) / std::max(leg.squaredNorm(), 1.0);
-        height = from_.z() + std::clamp(share, 0.0, 1.0) * (point_.z() - from_.z());
-    }
-    const Level level = turned(velocity / speed * limits_.cruise, -nu);
-    return {level.x(), level.y(),
-            std::clamp((height - own.position.z()) / kHeightTime, -limits_.max_descent, limits_.max_climb)};
+    Vec command = circle_course(own, point_, kPlaneLoiterRadius).course;
+    command.z() = climb_to(height_on_the_way(from_, point_, own.position, true), own, limits_);
+    return command;
 }
 
 void move_plane(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept

@@ -8,6 +8,28 @@
 
 namespace jink::sim {
 
+/// ArduPlane's WP_LOITER_RAD, clockwise [m].
+inline constexpr double kPlaneLoiterRadius = 60.0;
+/// ArduPlane's ALT_SLOPE_MIN: a smaller change of height is flown at once [m].
+inline constexpr double kPlaneSlopeMin = 15.0;
+
+/// A clockwise circle about a place, as AP_L1_Control::update_loiter flies to it and along it.
+struct PlaneCircle {
+    Vec course = Vec::Zero();  ///< level velocity command for move_plane(), of the present speed [m/s]
+    bool reached = false;      ///< on the circle, and not on the way to it: reached_loiter_target()
+};
+[[nodiscard]] PlaneCircle circle_course(const Truth& own, const Vec& centre, double radius) noexcept;
+/// Level velocity command that follows the line from `from` to `to`, as AP_L1_Control::update_waypoint does.
+[[nodiscard]] Vec line_course(const Truth& own, const Vec& from, const Vec& to) noexcept;
+/// How far before a waypoint ArduPlane turns to the next one after `angle` [rad], 0 or more: turn_distance() with
+/// WP_RADIUS 90 [m].
+[[nodiscard]] double turn_distance(double speed, double angle) noexcept;
+/// Height to fly now on the way from `from` to `to`: Plane::setup_alt_slope. Climbs below 20 m above home, and where
+/// `climbs_at_once`, are flown at once.
+[[nodiscard]] double height_on_the_way(const Vec& from, const Vec& to, const Vec& here, bool climbs_at_once) noexcept;
+/// Rate of climb that reaches a height, TECS_TIME_CONST 5 [m/s].
+[[nodiscard]] double climb_to(double height, const Truth& own, const TruthLimits& limits) noexcept;
+
 /// What ArduPlane makes of a guided point, and its LOITER: GCS_MAVLINK_Plane::handle_command_int_do_reposition,
 /// Plane::set_guided_WP, Plane::setup_alt_slope, AP_L1_Control::update_loiter. Default parameters: NAVL1_PERIOD 17,
 /// NAVL1_DAMPING 0.75, WP_LOITER_RAD 60 (clockwise), ALT_SLOPE_MIN 15, TECS_TIME_CONST 5. No wind, no fence.
@@ -18,6 +40,12 @@ public:
 
     /// A mode was entered here: the point is the place of the aircraft.
     void hold(const Vec& here) { from_ = point_ = here; }
+    /// GUIDED to somebody else's point, RTL to home: flown to from here, then circled.
+    void go_to(const Vec& point, const Vec& here)
+    {
+        from_ = here;
+        point_ = point;
+    }
     /// @return MAV_RESULT: DO_REPOSITION in GUIDED alone; one that would change the mode counts as denied
     [[nodiscard]] std::uint8_t hear(const link::mavlink::CommandInt& command, bool guided, const Vec& here);
     /// Velocity command for move_plane().

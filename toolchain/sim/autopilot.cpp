@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "firmware/link/mavlink/text.hpp"
+#include "toolchain/sim/plane_item_pilot.hpp"
 
 namespace jink::sim {
 namespace {
@@ -21,20 +22,29 @@ constexpr double kHoldGain = 0.8;
 constexpr double kStopped = 0.3;     // [m/s]
 constexpr std::uint8_t kNotice = 5;  // MAV_SEVERITY_NOTICE
 constexpr double kLandSpeed = 1.5;   // [m/s]
+/// RTL_ALTITUDE of ArduPlane above home [m].
+constexpr double kPlaneHomeHeight = 100.0;
+
+std::unique_ptr<ItemPilot> pilot_of_items(const Scenario& scenario)
+{
+    if (!scenario.flight || scenario.flight->items.empty()) {
+        return nullptr;
+    }
+    return scenario.vehicle.min_speed > 0.0 ? std::make_unique<PlaneItemPilot>(scenario)
+                                            : std::make_unique<ItemPilot>(scenario);
+}
 
 }  // namespace
 
 Autopilot::Autopilot(World& world)
     : world_(world), scenario_(world.scenario()), mission_(scenario_), plane_(scenario_.vehicle),
-      estimate_(scenario_.own, scenario_.seed), receiver_(world), writer_(scenario_.system),
-      server_(scenario_.stack, writer_), told_(scenario_.threats.size(), -1)
+      items_(pilot_of_items(scenario_)), estimate_(scenario_.own, scenario_.seed), receiver_(world),
+      writer_(scenario_.system), server_(scenario_.stack, writer_), told_(scenario_.threats.size(), -1)
 {
     if (scenario_.flight) {
         mode_ = scenario_.flight->mode;
-        if (!scenario_.flight->items.empty()) {
-            items_.emplace(scenario_);
-        }
     }
+    aim_plane();
     for (const auto& [name, value] : scenario_.parameters) {
         wanted_.push_back({name, static_cast<float>(value), false});
     }
@@ -67,11 +77,14 @@ void Autopilot::enter(Mode mode, bool asked)
     if (mode == mode_) {
         return;
     }
+    if (mode_ == Mode::mission && items_) {
+        items_->leave();
+    }
     mode_ = mode;
     mode_since_ = world_.now();
     last_change_was_asked_ = asked;
     holding_ = false;
-    plane_.hold(world_.own().position);
+    aim_plane();
     if (mode == Mode::external) {
         ++takeovers_;
         last_followed_ = world_.now();
@@ -85,6 +98,19 @@ void Autopilot::enter(Mode mode, bool asked)
     }
     if (scenario_.stack == Stack::ardupilot) {
         send_heartbeat();  // PX4 does not: once a second, whatever happens
+    }
+}
+
+/// What a plane circles about in the mode that was entered.
+void Autopilot::aim_plane()
+{
+    const Vec& here = world_.own().position;
+    if (mode_ == Mode::guided && scenario_.flight) {
+        plane_.go_to(scenario_.flight->target, here);
+    } else if (mode_ == Mode::home) {
+        plane_.go_to(scenario_.home + Vec(0.0, 0.0, kPlaneHomeHeight), here);
+    } else {
+        plane_.hold(here);
     }
 }
 
@@ -102,7 +128,8 @@ void Autopilot::follow_others()
     if (items_ && flight.upload_at >= 0.0 && !uploaded_ && world_.now() >= to_micros(flight.upload_at)) {
         uploaded_ = true;
         items_->replace(flight.uploaded, world_.own());
-        if (scenario_.stack == Stack::ardupilot) {
+        // ArduCopter alone says so.
+        if (scenario_.stack == Stack::ardupilot && !is_plane()) {
             link::mavlink::Statustext text;
             text.severity = kNotice;
             static_cast<void>(link::mavlink::set_text(text.text, "Auto mission changed, restarted command"));
@@ -149,15 +176,49 @@ void Autopilot::watch_setpoints()
 Vec Autopilot::mission_velocity()
 {
     Truth own = world_.own();
-    own.position += estimate_.bias();
-    return items_ ? items_->command(own) : mission_.command(own.position);
+    own.position = believed_position();
+    if (!items_) {
+        return mission_.command(own.position);
+    }
+    const Vec command = items_->command(own);
+    world_.set_airspeed(items_->speed());
+    return command;
+}
+
+/// By the sticks; position hold where they are not moved.
+Vec Autopilot::pilot_velocity(const Truth& own)
+{
+    if (!scenario_.flight) {
+        return scenario_.faults.pilot_velocity;
+    }
+    if (scenario_.flight->moved_at >= 0.0 && world_.now() >= to_micros(scenario_.flight->moved_at)) {
+        return scenario_.flight->stick;
+    }
+    // FLY_BY_WIRE_B keeps its wings level and its height.
+    return is_plane() ? Vec(own.velocity.x(), own.velocity.y(), 0.0) : held_place(own);
+}
+
+/// Outside of the mission mode.
+Vec Autopilot::plane_velocity(const Truth& own)
+{
+    world_.set_airspeed(scenario_.vehicle.cruise);
+    return mode_ == Mode::pilot ? pilot_velocity(own) : plane_.command(own);
+}
+
+Vec Autopilot::held_place(const Truth& own)
+{
+    if (!holding_ && own.velocity.norm() < kStopped) {
+        holding_ = true;
+        hold_at_ = own.position;
+    }
+    return holding_ ? Vec(kHoldGain * (hold_at_ - own.position)) : Vec(Vec::Zero());
 }
 
 Vec Autopilot::wanted_velocity()
 {
     const Truth& own = world_.own();
-    if (is_plane() && (mode_ == Mode::external || mode_ == Mode::hold || mode_ == Mode::brake)) {
-        return plane_.command(own);
+    if (is_plane() && mode_ != Mode::mission) {
+        return plane_velocity(own);
     }
     switch (mode_) {
     case Mode::mission: return mission_velocity();
@@ -166,14 +227,7 @@ Vec Autopilot::wanted_velocity()
             return setpoint_;
         }
         break;
-    case Mode::pilot:
-        if (!scenario_.flight) {
-            return scenario_.faults.pilot_velocity;
-        }
-        if (scenario_.flight->moved_at >= 0.0 && world_.now() >= to_micros(scenario_.flight->moved_at)) {
-            return scenario_.flight->stick;
-        }
-        break;
+    case Mode::pilot: return pilot_velocity(own);
     case Mode::home: {
         const Vec to_home(scenario_.home.x() - own.position.x(), scenario_.home.y() - own.position.y(), 0.0);
         return along(to_home, std::min(scenario_.vehicle.cruise, kHoldGain * to_home.norm()), scenario_.vehicle);
@@ -186,11 +240,7 @@ Vec Autopilot::wanted_velocity()
     case Mode::hold:
     case Mode::brake: break;
     }
-    if (!holding_ && own.velocity.norm() < kStopped) {
-        holding_ = true;
-        hold_at_ = own.position;
-    }
-    return holding_ ? Vec(kHoldGain * (hold_at_ - own.position)) : Vec(Vec::Zero());
+    return held_place(own);
 }
 
 void Autopilot::step()

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -79,6 +80,8 @@ public:
     /// Everything to be sent since the last call.
     [[nodiscard]] std::vector<std::byte> take_output();
 
+    /// Where its own estimate puts it, before latency [m].
+    [[nodiscard]] Vec believed_position() const { return world_.own().position + estimate_.bias(); }
     [[nodiscard]] Mode mode() const noexcept { return mode_; }
     [[nodiscard]] const Heard& heard() const noexcept { return heard_; }
     [[nodiscard]] const MissionPilot& mission() const noexcept { return mission_; }
@@ -119,7 +122,11 @@ private:
     void suffer_faults();
     void follow_others();
     void watch_setpoints();
+    void aim_plane();
     [[nodiscard]] Vec mission_velocity();
+    [[nodiscard]] Vec pilot_velocity(const Truth& own);
+    [[nodiscard]] Vec held_place(const Truth& own);
+    [[nodiscard]] Vec plane_velocity(const Truth& own);
     [[nodiscard]] std::vector<link::mavlink::MissionItemInt> mission_items() const;
     [[nodiscard]] link::mavlink::MissionItemInt item_at(const Item& item, std::size_t index) const;
     [[nodiscard]] std::uint16_t sequence() const noexcept;
@@ -153,7 +160,7 @@ private:
     const Scenario& scenario_;
     MissionPilot mission_;
     PlaneGuidance plane_;
-    std::optional<ItemPilot> items_;  ///< flown in place of `mission_`
+    std::unique_ptr<ItemPilot> items_;  ///< flown in place of `mission_`
     OwnEstimate estimate_;
     TrafficReceiver receiver_;
     link::mavlink::Parser parser_;

@@ -20,6 +20,8 @@ constexpr std::uint8_t kMissionActive = 3;
 constexpr std::uint8_t kMissionPaused = 4;
 constexpr std::uint8_t kInMission = 1;
 constexpr std::uint8_t kMissionSuspended = 2;
+// DO_CHANGE_SPEED: SPEED_TYPE. ArduPlane takes a ground speed for the least one alone.
+constexpr float kAirspeed = 0.0F;
 constexpr float kGroundSpeed = 1.0F;
 constexpr float kNoChange = -1.0F;
 
@@ -27,6 +29,7 @@ std::uint16_t command_of(ItemKind kind) noexcept
 {
     switch (kind) {
     case ItemKind::waypoint: return 16;
+    case ItemKind::circle: return 17;
     case ItemKind::turns: return 18;
     case ItemKind::wait: return 19;
     case ItemKind::home: return 20;
@@ -75,7 +78,7 @@ MissionItemInt Autopilot::item_at(const Item& item, std::size_t index) const
         return message;
     case ItemKind::speed:
         message.frame = kFrameMission;
-        message.param1 = kGroundSpeed;
+        message.param1 = is_plane() ? kAirspeed : kGroundSpeed;
         message.param2 = value;
         message.param3 = kNoChange;
         return message;

@@ -38,11 +38,16 @@ void ItemPilot::resume(const Truth& own)
     share_ = 0.0;
 }
 
-void ItemPilot::replace(const std::vector<Item>& items, const Truth& own)
+void ItemPilot::take(const std::vector<Item>& items)
 {
     items_ = items;
     jumps_.assign(items_.size(), 0);
     index_ = std::min(index_, items_.size() - 1);
+}
+
+void ItemPilot::replace(const std::vector<Item>& items, const Truth& own)
+{
+    take(items);
     resume(own);
 }
 

@@ -5,9 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 #include <iostream>
-#include <map>
 #include <thread>
 
 #include <CLI/CLI.hpp>
@@ -17,7 +15,7 @@
 #include "toolchain/sim/envelope.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/matrix_command.hpp"
-#include "toolchain/sim/phases.hpp"
+#include "toolchain/sim/phases_command.hpp"
 #include "toolchain/sim/random_scenario.hpp"
 #include "toolchain/sim/recorded_command.hpp"
 #include "toolchain/sim/replay_command.hpp"
@@ -48,7 +46,6 @@ struct Options {
     bool quiet = false;
     bool judge = false;
     bool within_phases = false;
-    Spread spread;
 };
 
 /// jinkd beside this program, or where a build folder has it.
@@ -212,41 +209,6 @@ int fly(const Options& options)
     return finish(options, flights);
 }
 
-/// Every scenario in many timings: how often each end comes, and how near it went.
-int phases(const Options& options)
-{
-    unsigned unexpected = 0;
-    for (const Scenario& scenario : load_all(options.files, false)) {
-        const std::vector<Record> flights = fly_phases(scenario, options.seed, options.count, options.spread);
-        std::map<std::string, unsigned> ends;
-        std::vector<double> least;
-        for (std::size_t i = 0; i < flights.size(); ++i) {
-            const Record& flight = flights[i];
-            std::string end(to_string(flight.outcome));
-            end.append(flight.given_back ? ", given back" : "").append(", ").append(to_string(flight.final_mode));
-            ++ends[end];
-            least.push_back(flight.closest.surface);
-            const std::vector<std::string> missing = unmet(scenario, flight);
-            unexpected += missing.empty() ? 0U : 1U;
-            for (const std::string& what : missing) {
-                std::cout << scenario.name << ", seed " << options.seed + i << ": " << what << "\n";
-            }
-        }
-        std::sort(least.begin(), least.end());
-        std::cout << std::left << std::setw(24) << scenario.name << std::right << std::fixed << std::setprecision(2);
-        if (!least.empty()) {
-            std::cout << " least " << std::setw(6) << least.front() << " median " << std::setw(6)
-                      << least[least.size() / 2] << " most " << std::setw(6) << least.back() << " m:";
-        }
-        for (const auto& [end, n] : ends) {
-            std::cout << "  " << n << " x " << end << ";";
-        }
-        std::cout << std::endl;
-    }
-    std::cout << unexpected << " not as expected\n";
-    return unexpected == 0 ? EXIT_SUCCESS : EXIT_FAILURE;
-}
-
 int demo(const Options& options)
 {
     const auto began = std::chrono::steady_clock::now();
@@ -305,14 +267,8 @@ int main(int argc, char** argv)
         ->required()
         ->check(CLI::ExistingFile);
     fly_command->add_flag("--judge", options.judge, "search for a manoeuvre that keeps the promise, and go by that");
-    CLI::App* phases_command = cli.add_subcommand(
-        "phases", "fly scenario files in process, each of them in many phases of ticks, line and sensors");
-    phases_command->add_option("files", options.files, "scenario files")->required()->check(CLI::ExistingFile);
-    phases_command->add_flag("--sensors,!--sensors-fixed", options.spread.sensors, "vary their phases, or not");
-    phases_command->add_option("--held-up", options.spread.held_up_share, "share of ticks held up by 20 ms and more")
-        ->check(CLI::Range(0.0, 1.0));
-    phases_command->add_option("--held-up-most", options.spread.held_up_most, "and by at most this [us]")
-        ->check(CLI::Range(20'000, 1'000'000));
+    PhasesOptions phases;
+    const CLI::App& phases_command = add_phases(cli, phases);
     CLI::App* demo_command =
         cli.add_subcommand("demo", "all scenarios against jinkd, then random encounters in process");
     demo_command->add_option("--scenarios", options.scenarios, "folder of scenario files")
@@ -350,8 +306,8 @@ int main(int argc, char** argv)
         }
         command->add_option("--at-once", options.at_once, "flights in real time at once")->check(CLI::Range(1, 64));
     }
-    for (CLI::App* command : {random_command, demo_command, crowd_command, phases_command}) {
-        command->add_option("--count", options.count, "random encounters, or phases")->check(CLI::Range(0, 1000000));
+    for (CLI::App* command : {random_command, demo_command, crowd_command}) {
+        command->add_option("--count", options.count, "random encounters")->check(CLI::Range(0, 1000000));
         command->add_option("--seed", options.seed, "of the first one");
     }
     for (CLI::App* command : {fly_command, demo_command, random_command, crowd_command}) {
@@ -398,8 +354,8 @@ int main(int argc, char** argv)
             }
             return fly(options);
         }
-        if (phases_command->parsed()) {
-            return phases(options);
+        if (phases_command.parsed()) {
+            return run_phases(phases, std::cout);
         }
         return demo_command->parsed() ? demo(options) : crowd_command->parsed() ? crowd(options) : random(options);
     } catch (const std::exception& e) {

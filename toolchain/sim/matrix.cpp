@@ -98,7 +98,15 @@ std::string_view to_string(Meeting meeting) noexcept
     return "at_turn";
 }
 
-std::string_view to_string(Flyer flyer) noexcept { return flyer == Flyer::px4 ? "px4" : "arducopter"; }
+std::string_view to_string(Flyer flyer) noexcept
+{
+    switch (flyer) {
+    case Flyer::arducopter: return "arducopter";
+    case Flyer::arduplane: return "arduplane";
+    case Flyer::px4: break;
+    }
+    return "px4";
+}
 
 Cell fly_cell(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t from, std::size_t count,
               Conditions conditions)

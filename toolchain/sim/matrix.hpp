@@ -11,7 +11,8 @@
 
 namespace jink::sim {
 
-/// What the vehicle does when the intruder meets it.
+/// What the vehicle does when the intruder meets it. Distances and speeds are a multirotor's; a plane's are in
+/// matrix_plane.cpp.
 enum class Behaviour : std::uint8_t {
     leg,           ///< a later leg of a mission at 5 m/s
     first_leg,     ///< the first leg, after a take-off in a guided mode
@@ -19,7 +20,7 @@ enum class Behaviour : std::uint8_t {
     fast,          ///< a mission at 12 m/s, which the co-processor's parameters do not say
     speed_change,  ///< DO_CHANGE_SPEED to 10 m/s
     turns,         ///< LOITER_TURNS
-    wait,          ///< LOITER_TIME: stands in the mission mode
+    wait,          ///< LOITER_TIME: stands in the mission mode; a plane circles
     take_off,      ///< TAKEOFF item
     land_item,     ///< LAND item
     home_item,     ///< RETURN_TO_LAUNCH item
@@ -29,7 +30,7 @@ enum class Behaviour : std::uint8_t {
     hold,          ///< LOITER, AUTO.LOITER
     home,          ///< RTL, AUTO.RTL
     land,          ///< LAND, AUTO.LAND
-    pilot,         ///< POSHOLD, POSCTL: holds its place, then is moved
+    pilot,         ///< POSHOLD, POSCTL, FLY_BY_WIRE_B: left to itself, then moved
     guided,        ///< somebody else's target
 };
 inline constexpr std::array kBehaviours{
@@ -44,14 +45,15 @@ inline constexpr std::array kMeetings{Meeting::head_on,    Meeting::from_left,  
                                       Meeting::at_turn};
 
 /// A column of the matrix: another one takes its vehicle and its parameters in matrix_scenario.cpp.
-enum class Flyer : std::uint8_t { arducopter, px4 };
-inline constexpr std::array kFlyers{Flyer::arducopter, Flyer::px4};
+enum class Flyer : std::uint8_t { arducopter, px4, arduplane };
+inline constexpr std::array kFlyers{Flyer::arducopter, Flyer::px4, Flyer::arduplane};
 
 [[nodiscard]] std::string_view to_string(Behaviour behaviour) noexcept;
 [[nodiscard]] std::string_view to_string(Meeting meeting) noexcept;
 [[nodiscard]] std::string_view to_string(Flyer flyer) noexcept;
 
-/// False where the autopilot does not know such an item.
+/// False where the autopilot does not know such an item or mode. ArduPlane has no splines and no LAND mode, and leaves
+/// the mission mode for RTL at a RETURN_TO_LAUNCH item.
 [[nodiscard]] bool can_fly(Flyer flyer, Behaviour behaviour) noexcept;
 /// The mission mode: the co-processor takes over there alone, and advises in all others.
 [[nodiscard]] bool is_mission(Behaviour behaviour) noexcept;

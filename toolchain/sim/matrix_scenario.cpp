@@ -8,41 +8,20 @@
 #include "core/base/random.hpp"
 #include "toolchain/sim/in_process.hpp"
 #include "toolchain/sim/matrix.hpp"
+#include "toolchain/sim/matrix_parts.hpp"
 #include "toolchain/sim/scenario_file.hpp"
 
 namespace jink::sim {
 namespace {
 
-constexpr double kHeight = 30.0;      ///< of the missions above home [m]
 constexpr double kHomeHeight = 12.0;  ///< of home above the estimator's origin [m]
+constexpr double kHeight = 30.0;      ///< of the missions above home [m]
+constexpr double kPlaneHeight = 100.0;
 constexpr double kMissionTime = 150.0;
+constexpr double kPlaneMissionTime = 300.0;
 constexpr double kAfterwards = 8.0;
 constexpr double kCruiseSpeed = 5.0;
 constexpr double kFast = 12.0;
-
-double between(Random& random, double low, double high)
-{
-    return low + (high - low) * static_cast<double>(random.uniform());
-}
-
-/// Places about home, with x along a course that is drawn.
-class Field {
-public:
-    Field(const Vec& home, double course) : home_(home), x_(std::cos(course), std::sin(course), 0.0) {}
-
-    [[nodiscard]] Vec at(double x, double y, double height = kHeight) const
-    {
-        return home_ + along_course(x, y, height);
-    }
-    [[nodiscard]] Vec along_course(double x, double y, double z = 0.0) const
-    {
-        return x * x_ + y * Vec(-x_.y(), x_.x(), 0.0) + Vec(0.0, 0.0, z);
-    }
-
-private:
-    Vec home_;
-    Vec x_;
-};
 
 void set_vehicle(Scenario& s, Flyer flyer)
 {
@@ -62,13 +41,11 @@ void set_vehicle(Scenario& s, Flyer flyer)
                     {"VEH_LAG", px4 ? 0.36 : 0.55}};
 }
 
-using Items = std::vector<Item>;
-
-Item waypoint(const Vec& place) { return {ItemKind::waypoint, place, 0.0, 0}; }
-
-struct Times {
-    double from, to;
-};
+using detail::between;
+using detail::Field;
+using detail::Items;
+using detail::Times;
+using detail::waypoint;
 
 /// Missions that begin in the mission mode. Returns when the intruder meets the vehicle.
 Times lay_out_mission(Behaviour behaviour, const Field& f, Scenario& s, NominalFlight& flight)
@@ -175,18 +152,32 @@ Vec turned(const Vec& v, double angle)
             v.z()};
 }
 
+/// Intruders as fast as suits the vehicle that they meet.
+struct Intruders {
+    double radius = 0.5;                            ///< [m]
+    double slowest = 6.0, fastest = 12.0;           ///< [m/s]
+    double overtakes_by = 3.0, overtakes_at = 6.0;  ///< faster than the vehicle, from .. to [m/s]
+    double seen_late = 8.0, seen_early = 14.0;      ///< before they meet it, from .. to [s]
+};
+
+Intruders intruders_of(Flyer flyer)
+{
+    return flyer == Flyer::arduplane ? Intruders{3.0, 10.0, 20.0, 4.0, 8.0, 12.0, 18.0} : Intruders{};
+}
+
 /// The intruder's velocity when it meets a vehicle that flies at `own`, `height` above home.
-Vec velocity_of(Meeting meeting, const Vec& own, double height, double seen_before, Random& random)
+Vec velocity_of(Meeting meeting, const Intruders& kind, const Vec& own, double height, double seen_before,
+                Random& random)
 {
     const double course = between(random, -std::numbers::pi, std::numbers::pi);
     const double own_speed = level(own).norm();
     const Vec forward = own_speed > 0.5 ? Vec(level(own) / own_speed) : Vec(std::cos(course), std::sin(course), 0.0);
-    const double speed = between(random, 6.0, 12.0);
+    const double speed = between(random, kind.slowest, kind.fastest);
     switch (meeting) {
     case Meeting::head_on: return -forward * speed;
     case Meeting::from_left: return turned(forward, -0.5 * std::numbers::pi) * speed;
     case Meeting::from_right: return turned(forward, 0.5 * std::numbers::pi) * speed;
-    case Meeting::overtaking: return forward * (own_speed + between(random, 3.0, 6.0));
+    case Meeting::overtaking: return forward * (own_speed + between(random, kind.overtakes_by, kind.overtakes_at));
     case Meeting::from_above: return turned(forward, course) * speed + Vec(0.0, 0.0, -between(random, 1.0, 3.0));
     case Meeting::from_below:
         return turned(forward, course) * speed +
@@ -221,7 +212,13 @@ bool is_mission(Behaviour behaviour) noexcept { return behaviour < Behaviour::ho
 
 bool can_fly(Flyer flyer, Behaviour behaviour) noexcept
 {
-    return flyer != Flyer::px4 || (behaviour != Behaviour::turns && behaviour != Behaviour::spline);
+    switch (flyer) {
+    case Flyer::px4: return behaviour != Behaviour::turns && behaviour != Behaviour::spline;
+    case Flyer::arduplane:
+        return behaviour != Behaviour::spline && behaviour != Behaviour::home_item && behaviour != Behaviour::land;
+    case Flyer::arducopter: break;
+    }
+    return true;
 }
 
 Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed)
@@ -231,15 +228,22 @@ Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed)
     Scenario& s = nominal.scenario;
     s.name = std::string(to_string(flyer)) + "_" + std::string(to_string(behaviour)) + "_" + std::to_string(seed);
     s.seed = seed;
-    set_vehicle(s, flyer);
+    const bool plane = flyer == Flyer::arduplane;
+    if (plane) {
+        detail::set_plane(s);
+    } else {
+        set_vehicle(s, flyer);
+    }
     const double bearing = between(random, -std::numbers::pi, std::numbers::pi);
     s.home = between(random, 20.0, 60.0) * Vec(std::cos(bearing), std::sin(bearing), 0.0) + Vec(0.0, 0.0, kHomeHeight);
-    const Field field(s.home, between(random, -std::numbers::pi, std::numbers::pi));
+    const Field field(s.home, between(random, -std::numbers::pi, std::numbers::pi), plane ? kPlaneHeight : kHeight);
     s.start_position = field.at(0, 0);
     s.start_velocity = Vec::Zero();
     NominalFlight flight;
     Times times{};
-    if (begins_in_mission(behaviour)) {
+    if (plane) {
+        times = detail::lay_out_plane(behaviour, field, s, flight);
+    } else if (begins_in_mission(behaviour)) {
         times = lay_out_mission(behaviour, field, s, flight);
         const bool climbs = behaviour == Behaviour::take_off;
         s.start_velocity = climbs ? Vec(Vec::Zero()) : field.along_course(s.vehicle.cruise, 0.0);
@@ -248,7 +252,7 @@ Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed)
     }
     nominal.meets_at = between(random, times.from, times.to);
     s.to_goal = is_mission(behaviour);
-    s.duration = s.to_goal ? kMissionTime : nominal.meets_at + kAfterwards;
+    s.duration = s.to_goal ? plane ? kPlaneMissionTime : kMissionTime : nominal.meets_at + kAfterwards;
     const Items& last = flight.uploaded.empty() ? flight.items : flight.uploaded;
     s.mission = {s.start_position,
                  last.empty() ? Vec(s.start_position + field.along_course(200.0, 0.0)) : last.back().place};
@@ -270,15 +274,19 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
 {
     Nominal nominal = nominal_flight(flyer, behaviour, seed);
     Scenario& s = nominal.scenario;
+    if (conditions == Conditions::rough) {
+        roughen(s);
+    }
     const double meets_at = nominal.meets_at;
     const Sample own = motion_at(s, meets_at);
     Random random(seed * 2147483647U + static_cast<std::uint64_t>(behaviour) * 101U +
                   static_cast<std::uint64_t>(meeting) * 11U + 5U);
-    const double seen_before = std::min(meets_at, between(random, 8.0, 14.0));
+    const Intruders kind = intruders_of(flyer);
+    const double seen_before = std::min(meets_at, between(random, kind.seen_late, kind.seen_early));
     Threat threat;
     threat.name = "intruder";
-    threat.radius = 0.5;
-    const Vec velocity = velocity_of(meeting, own.velocity, own.position.z() - s.home.z(), seen_before, random);
+    threat.radius = kind.radius;
+    const Vec velocity = velocity_of(meeting, kind, own.velocity, own.position.z() - s.home.z(), seen_before, random);
     const Vec miss(between(random, -0.2, 0.2), between(random, -0.2, 0.2), between(random, -0.2, 0.2));
     const Vec place = own.position + miss;
     threat.velocity = velocity;
@@ -295,9 +303,6 @@ Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std:
     s.threats = {threat};
     s.name.append("_").append(to_string(meeting));
     default_radii(s);
-    if (conditions == Conditions::rough) {
-        roughen(s);
-    }
     return s;
 }
 

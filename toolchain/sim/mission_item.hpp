@@ -25,12 +25,13 @@ enum class ItemKind : std::uint8_t {
     waypoint,
     spline,  ///< curve to the place; ArduPilot only
     turns,   ///< circles about the place, LOITER_TURNS; ArduPilot only
-    wait,    ///< stays at the place, LOITER_TIME
+    wait,    ///< stays at the place, LOITER_TIME; a plane circles about it
     take_off,
     land,
-    home,   ///< RETURN_TO_LAUNCH
-    speed,  ///< DO_CHANGE_SPEED
-    jump,   ///< DO_JUMP
+    home,    ///< RETURN_TO_LAUNCH
+    speed,   ///< DO_CHANGE_SPEED
+    jump,    ///< DO_JUMP
+    circle,  ///< circles about the place for good, LOITER_UNLIM; planes only
 };
 
 struct Item {

@@ -21,8 +21,6 @@ constexpr double kLongestGap = 0.5;
 /// Longest gap between the co-processor's heartbeats [s].
 constexpr double kHeartbeatGap = 1.5;
 
-/// The last waypoint is reached within this [m].
-constexpr double kAtGoal = 3.0;
 /// A flight may end in external mode while a conflict was warned of this recently [s].
 constexpr double kStillWarned = 5.0;
 
@@ -86,7 +84,7 @@ void Plant::step()
     autopilot_.step();
     autopilot_.relay(areas_.send(world_.now()));
     below_floor_ = below_floor_ || is_below_floor();
-    if (goal_at_ < 0 && (world_.own().position - scenario_.mission.back()).norm() <= kAtGoal) {
+    if (goal_at_ < 0 && (autopilot_.believed_position() - scenario_.mission.back()).norm() <= scenario_.at_goal) {
         goal_at_ = world_.now();
     }
     if (autopilot_.mode() == Mode::external) {

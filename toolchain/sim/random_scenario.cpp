@@ -96,6 +96,7 @@ Scenario drawn(Random& random, const std::string& kind, std::uint64_t seed, cons
     s.traffic.dropout = 0.05;
     s.expect.outcomes = {Outcome::clear, Outcome::avoided, Outcome::braked};
     default_radii(s);
+    default_noise(s);
     return s;
 }
 
@@ -117,6 +118,7 @@ Scenario crowded_scenario(std::uint64_t seed)
     add_ring(s, s.start_position + s.start_velocity * kMeets, uniform(random, 8.0, 20.0));
     s.expect.outcomes = {Outcome::clear, Outcome::avoided, Outcome::braked, Outcome::breach, Outcome::collision};
     default_radii(s);
+    default_noise(s);
     return s;
 }
 

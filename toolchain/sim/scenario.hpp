@@ -112,6 +112,7 @@ struct Scenario {
     Vec start_velocity = Vec::Zero();
     std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
     double reached = 2.0;      ///< a waypoint is, within this; not in files [m]
+    double at_goal = 3.0;      ///< the last waypoint is reached within this; not in files [m]
     /// What is flown in place of `mission`, whose last waypoint stays the goal; not in files.
     std::optional<NominalFlight> flight;
     Vec home = Vec::Zero();  ///< in the local frame, whose origin is the estimator's; not in files

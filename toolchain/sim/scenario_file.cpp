@@ -221,6 +221,7 @@ Scenario read_scenario(const YAML::Node& node, const std::filesystem::path& name
     read_expectation(map, s.expect);
     map.finish();
     default_radii(s);
+    default_noise(s);
     return s;
 }
 
@@ -264,6 +265,12 @@ void default_radii(Scenario& scenario)
             at_least("TRK_RADIUS_PT", threat.radius);
         }
     }
+}
+
+void default_noise(Scenario& scenario)
+{
+    constexpr double kSigma = 0.5;  // [m]
+    scenario.parameters.try_emplace("TRK_SIGMA_P", kSigma);
 }
 
 BadScenario::BadScenario(files::Complaints complaints)

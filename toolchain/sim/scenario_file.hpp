@@ -40,4 +40,8 @@ private:
 /// does not: ADSB_VEHICLE carries no size, so the co-processor has to be told.
 void default_radii(Scenario& scenario);
 
+/// Sets TRK_SIGMA_P to 0.5 m where the scenario does not: its traffic sensor is better than the ADS-B that the
+/// parameter is delivered for.
+void default_noise(Scenario& scenario);
+
 }  // namespace jink::sim

@@ -64,8 +64,11 @@ void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt
     truth.velocity += dt * truth.acceleration;
     const double vertical = std::clamp(truth.velocity.z(), -limits.max_descent, limits.max_climb);
     if (vertical != truth.velocity.z()) {
+        // A gust may push against the limit for long: what pulls away from the limit goes on building up.
+        if (truth.acceleration.z() * truth.velocity.z() > 0.0) {
+            truth.acceleration.z() = 0.0;
+        }
         truth.velocity.z() = vertical;
-        truth.acceleration.z() = 0.0;
     }
     truth.position += 0.5 * dt * (before + truth.velocity);
 }

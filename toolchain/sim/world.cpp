@@ -13,7 +13,8 @@ constexpr double kDragRate = 0.3;
 }  // namespace
 
 World::World(const Scenario& scenario)
-    : scenario_(scenario), gusts_(scenario.wind, scenario.seed), lowest_(scenario.start_position.z())
+    : scenario_(scenario), limits_(scenario.vehicle), gusts_(scenario.wind, scenario.seed),
+      lowest_(scenario.start_position.z())
 {
     own_.position = scenario.start_position;
     own_.velocity = scenario.start_velocity;
@@ -70,7 +71,7 @@ void World::step(const Vec& command)
         gusts_.step(own_.position.z() - scenario_.home.z(), level_speed + scenario_.wind.at_20_ft);
         own_.velocity += kDragRate * to_seconds(kStep) * gusts_.velocity(own_.yaw);
     }
-    fly(own_, command, scenario_.vehicle, to_seconds(kStep));
+    fly(own_, command, limits_, to_seconds(kStep));
     for (std::size_t i = 0; i < positions_.size(); ++i) {
         positions_[i] = scenario_.threats[i].position_at(seconds());
     }

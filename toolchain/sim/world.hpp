@@ -25,6 +25,8 @@ public:
 
     /// One kStep of time under a velocity command. O(threats).
     void step(const Vec& command);
+    /// A plane holds this speed from now on; the scenario's cruise speed at first [m/s].
+    void set_airspeed(double speed) noexcept { limits_.cruise = speed; }
 
     [[nodiscard]] Micros now() const noexcept { return now_; }
     [[nodiscard]] double seconds() const noexcept { return to_seconds(now_); }
@@ -49,6 +51,7 @@ private:
     void measure(const Vec& own_before, const std::vector<Vec>& before);
 
     const Scenario& scenario_;
+    TruthLimits limits_;
     Micros now_ = 0;
     Truth own_;
     Gusts gusts_;

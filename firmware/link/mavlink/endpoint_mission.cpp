@@ -29,6 +29,9 @@ constexpr std::uint8_t kStateComplete = 5;  // MISSION_STATE_COMPLETE
 
 /// PX4 takes a waypoint for reached 10 m before (NAV_ACC_RAD), and MISSION_CURRENT says so up to 0.5 s later [m].
 constexpr float kCorner = 15.0F;
+/// ArduPlane by WP_RADIUS (90 m by default) or its L1 distance, whichever is less: 4.1 s of flight with NAVL1_PERIOD 17
+/// (AP_L1_Control::turn_distance), and MISSION_CURRENT says so up to 0.5 s later [m].
+constexpr float kPlaneCorner = 120.0F;
 /// MISSION_ITEM_REACHED and MISSION_CURRENT of one switch come this close to each other [s].
 constexpr Seconds kSwitchTime = 3.0F;
 /// A loiter or landing item is flown to its place until this near [m].
@@ -270,8 +273,9 @@ void Endpoint::anchor_leg(TimePoint now) noexcept
 /// The former item was reached, so this one is flown along the line between the two. Either message may come first.
 void Endpoint::settle_anchor() noexcept
 {
+    const float corner = vehicle_class_ == VehicleClass::plane ? kPlaneCorner : kCorner;
     const bool reached = has_former_ && has_reached_ && reached_sequence_ == former_sequence_ &&
-                         std::abs(reached_ - anchored_) <= kSwitchTime && (former_end_ - anchor_).norm() <= kCorner;
+                         std::abs(reached_ - anchored_) <= kSwitchTime && (former_end_ - anchor_).norm() <= corner;
     if (reached && !is_goal_reached_) {
         anchor_ = former_end_;
         has_former_ = false;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/base/angle.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
 
@@ -56,15 +57,16 @@ Vec3 turn(const std::array<float, 4>& q, const Vec3& v) noexcept
 // Of a unit quaternion from FRD to NED; z-y-x, as ATTITUDE has them [rad].
 float heading_of(const std::array<float, 4>& q) noexcept
 {
-    return std::atan2(2.0F * (q[0] * q[3] + q[1] * q[2]), 1.0F - 2.0F * (q[2] * q[2] + q[3] * q[3]));
+    return direction_angle(2.0F * (q[0] * q[3] + q[1] * q[2]), 1.0F - 2.0F * (q[2] * q[2] + q[3] * q[3]));
 }
 float pitch_of(const std::array<float, 4>& q) noexcept
 {
-    return std::asin(std::clamp(2.0F * (q[0] * q[2] - q[3] * q[1]), -1.0F, 1.0F));
+    const float sine = std::clamp(2.0F * (q[0] * q[2] - q[3] * q[1]), -1.0F, 1.0F);
+    return direction_angle(sine, std::sqrt((1.0F - sine) * (1.0F + sine)));
 }
 float roll_of(const std::array<float, 4>& q) noexcept
 {
-    return std::atan2(2.0F * (q[0] * q[1] + q[2] * q[3]), 1.0F - 2.0F * (q[1] * q[1] + q[2] * q[2]));
+    return direction_angle(2.0F * (q[0] * q[1] + q[2] * q[3]), 1.0F - 2.0F * (q[1] * q[1] + q[2] * q[2]));
 }
 
 bool is_unit(const std::array<float, 4>& q) noexcept

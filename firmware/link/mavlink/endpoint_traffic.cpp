@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/angle.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
 #include "firmware/link/track_ids.hpp"
@@ -116,7 +117,8 @@ void Endpoint::on_adsb(const Context& c) noexcept
         const float speed = static_cast<float>(m.hor_velocity) * kCentimetrePerSecond;
         const bool climb_known = (m.flags & kValidVerticalVelocity) != 0;
         const float climb = climb_known ? static_cast<float>(m.ver_velocity) * kCentimetrePerSecond : 0.0F;
-        report.velocity = Vec3(speed * std::cos(yaw), speed * std::sin(yaw), climb);
+        const SineCosine course = sine_cosine(yaw);
+        report.velocity = Vec3(speed * course.cosine, speed * course.sine, climb);
         report.sigma_velocity = climb_known ? 0.0F : kUnknownClimb;
     }
     judge_height(m, c.now, report);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 
 #include "core/base/random.hpp"
@@ -114,6 +115,39 @@ TEST(FollowCheckLaw, AVehicleThatFollowsIsNeverAccused)
         }
     }
     EXPECT_EQ(accused, 0U) << "of " << cases;
+}
+
+/// A plan that is renewed with each report bends the command little by little; then the other side is chosen.
+TEST(FollowCheckLaw, AVehicleThatFollowsABendingCommandIsNotAccusedWhenTheCommandTurnsOver)
+{
+    const std::uint64_t cases = number_of("JINK_CASES", 2000);
+    const std::uint64_t seed = number_of("JINK_SEED", 20261124);
+    std::uint64_t accused = 0;
+    for (std::uint64_t i = 0; i < cases; ++i) {
+        Random random(seed + i);
+        Craft craft;
+        craft.dead = static_cast<double>(random.uniform(0.0F, 0.15F));
+        craft.lag = static_cast<double>(random.uniform(0.2F, 0.4F));
+        craft.acceleration = static_cast<double>(random.uniform(2.5F, 4.0F));
+        craft.v = {-4.0, 3.0, 0.0};
+        for (auto& d : craft.delayed) {
+            d = craft.v;
+        }
+        const float rate = random.uniform(0.5F, 1.2F);  // [rad/s]
+        const auto flip = 60 + random.below(60);        // ticks
+        FollowCheck check;
+        for (std::uint64_t tick = 0; tick < flip + 60; ++tick) {
+            const float angle = 2.5F - rate * kStep * static_cast<float>(tick);
+            const Vec3 bent(5.0F * std::cos(angle), 5.0F * std::sin(angle), 0.0F);
+            const Vec3 command = tick < flip ? bent : Vec3(-bent.y(), bent.x(), 0.0F);
+            craft.step(command, random);
+            accused += check.update(command, craft.seen(random, 0.0F), {},
+                                    TimePoint{1'000'000 + static_cast<std::int64_t>(tick) * 20'000})
+                           ? 1U
+                           : 0U;
+        }
+        ASSERT_EQ(accused, 0U) << "JINK_CASES=1 JINK_SEED=" << seed + i;
+    }
 }
 
 TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)

@@ -359,6 +359,7 @@ int main(int argc, char** argv)
     const std::filesystem::path folder = ::mkdtemp(folder_name.data());
     jink::sim::Scenario scenario = jink::sim::parse_scenario(kScenario, "faults.yaml");
     jink::sim::default_radii(scenario);
+    jink::sim::default_noise(scenario);
     int failures = -1;
     try {
         failures = jink::sim::run_unheld([&](int attempt, double& held_up) {

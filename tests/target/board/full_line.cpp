@@ -59,6 +59,7 @@ sim::Scenario crowd_for(double seconds)
         s.threats.push_back(threat);
     }
     sim::default_radii(s);
+    sim::default_noise(s);
     s.parameters.clear();
     return s;
 }

@@ -166,7 +166,7 @@ TEST(CoprocessorBus, NothingIsSteeredByTheBussOwnState)
 
 TEST(CoprocessorBus, ThereIsOneFrameAndItIsTheAutopilots)
 {
-    const auto b = bench({{Param::tell_near, 1.0F}});
+    const auto b = bench({{Param::tell_near, 1.0F}, {Param::track_sigma_p, 0.5F}});
     // Until the first HEARTBEAT: about the first fix, 300 m from the autopilot's origin.
     b->f.heartbeats = b->f.own_state = false;
     const Vec3 start(300.0F, 0.0F, 50.0F);
@@ -317,7 +317,7 @@ TEST(CoprocessorBus, ParametersAreServed)
     const Parameters& now = b->f.coprocessor.parameters();
     can::GetSetResponse answer = set("JNK_LOOKAHEAD", 0, 12.5F, Tag::real);
     EXPECT_EQ(answer.value.real, 12.5F);
-    EXPECT_EQ(answer.initial.real, 9.0F) << "what a restart brings";
+    EXPECT_EQ(answer.initial.real, 9.0F) << "what erase brings";
     EXPECT_EQ(answer.low.real, 1.0F);
     EXPECT_EQ(answer.high.real, 60.0F);
     EXPECT_EQ(now.get(Param::lookahead), 12.5F);
@@ -350,19 +350,58 @@ TEST(CoprocessorBus, ParametersAreServed)
     b->ask(opcode);
     b->fly(2);
     EXPECT_FALSE(b->heard.opcodes.back().ok) << "there is nowhere to save to";
+    b->f.coprocessor.note_stored(now.generation());
+    b->ask(opcode);
+    b->fly(2);
+    EXPECT_TRUE(b->heard.opcodes.back().ok);
+    static_cast<void>(set("JNK_LOOKAHEAD", 0, 13.0F, Tag::real));
+    b->ask(opcode);
+    b->fly(2);
+    EXPECT_FALSE(b->heard.opcodes.back().ok) << "a change since then is not stored yet";
+    b->f.coprocessor.note_stored(now.generation());
+    b->ask(opcode);
+    b->fly(2);
+    EXPECT_TRUE(b->heard.opcodes.back().ok);
     opcode.opcode = can::ExecuteOpcodeRequest::kErase;
     b->ask(opcode);
     b->fly(2);
     EXPECT_TRUE(b->heard.opcodes.back().ok);
     EXPECT_EQ(now.get(Param::mode), 1.0F) << "not the table's 2: nobody asked for more than advice";
     EXPECT_EQ(now.get(Param::lookahead), 9.0F);
+    opcode.opcode = can::ExecuteOpcodeRequest::kSave;
+    b->ask(opcode);
+    b->fly(2);
+    EXPECT_FALSE(b->heard.opcodes.back().ok) << "a restart would bring what was erased";
+}
+
+TEST(CoprocessorBus, EraseBringsBackTheInitialValuesNotThoseThatWereStored)
+{
+    const auto b = bench({{Param::lookahead, 9.0F}});
+    ParamValues stored = b->f.coprocessor.initial_parameters();
+    stored[static_cast<std::size_t>(Param::lookahead)] = 12.0F;
+    EXPECT_EQ(b->f.coprocessor.restore_parameters(stored), 0U);
+    EXPECT_EQ(b->f.coprocessor.parameters().get(Param::lookahead), 12.0F);
+    EXPECT_EQ(b->f.coprocessor.planner().settings().lookahead, 12.0F) << "before the first step";
+    can::GetSetRequest ask;
+    ask.index = static_cast<std::uint16_t>(Param::lookahead);
+    b->ask(ask);
+    b->fly(2);
+    EXPECT_EQ(b->heard.params.back().value.real, 12.0F);
+    EXPECT_EQ(b->heard.params.back().initial.real, 9.0F);
+    can::ExecuteOpcodeRequest opcode;
+    opcode.opcode = can::ExecuteOpcodeRequest::kErase;
+    b->ask(opcode);
+    b->fly(2);
+    EXPECT_TRUE(b->heard.opcodes.back().ok);
+    EXPECT_EQ(b->f.coprocessor.parameters().get(Param::lookahead), 9.0F);
 }
 
 TEST(CoprocessorBus, WhatIsNearIsToldOnlyWhenAskedForAndPlaced)
 {
     for (const bool on : {false, true}) {
         for (const bool heading : {false, true}) {
-            const auto b = bench({{Param::tell_near, on ? 1.0F : 0.0F}, {Param::mode, 1.0F}});
+            const auto b =
+                bench({{Param::tell_near, on ? 1.0F : 0.0F}, {Param::mode, 1.0F}, {Param::track_sigma_p, 0.5F}});
             b->fly(60);
             for (int i = 0; i < 100; ++i) {
                 if (heading) {

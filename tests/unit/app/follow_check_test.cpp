@@ -224,6 +224,19 @@ TEST(FollowCheck, CommandThatDiffersByTheToleranceIsTheSameOne)
     }
 }
 
+TEST(FollowCheck, VehicleThatClosesTheWholeToleranceHasAnswered)
+{
+    for (const float off : {FollowCheck::kTolerance, 0.999F * FollowCheck::kTolerance}) {
+        Followed f;
+        EXPECT_FALSE(f.tick(kNorth, kNorth - Vec3(0.0F, off, 0.0F)));
+        EXPECT_FALSE(f.tick(kNorth, kNorth + Vec3(0.0F, 0.01F, 0.0F)));
+        const bool answered = off >= FollowCheck::kTolerance;
+        EXPECT_FOUND_AT(FollowCheck::kPatience + (answered ? FollowCheck::kAllowance : 0.0F),
+                        f.found(kEast, kNorth + Vec3(0.0F, 0.01F, 0.0F)))
+            << off;
+    }
+}
+
 TEST(FollowCheck, DescentThatIsIgnoredIsNoticed)
 {
     EXPECT_FOUND_AT(1.0F, Followed().found(Vec3(0.0F, 0.0F, -3.0F), Vec3::Zero()));

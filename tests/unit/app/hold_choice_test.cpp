@@ -77,6 +77,16 @@ TEST(HoldChoice, APassThatIsWideEnoughIsNotStoppedFor)
     EXPECT_FALSE(Case(Vec3(6.0F, 0.0F, 0.0F), 10.0F, 9.0F).holds());
 }
 
+TEST(HoldChoice, GainItselfIsEnoughAndLessIsNot)
+{
+    Case behind(Vec3(0.0F, -2.0F, 0.0F), 10.0F);
+    behind.track.position = Vec3(0.0F, -4.0F, 0.0F);  // 4 m behind and going away: never nearer than now
+    behind.conflict.miss_distance = 4.0F - kHoldBetter;
+    EXPECT_TRUE(behind.holds());
+    behind.conflict.miss_distance = 4.001F - kHoldBetter;
+    EXPECT_FALSE(behind.holds());
+}
+
 TEST(HoldChoice, WhatFliesAtHalfAMetrePerSecondDoesNotStand)
 {
     Case slow(Vec3(0.0F, -0.5F, 0.0F), 3.0F);

@@ -208,6 +208,19 @@ TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
     EXPECT_EQ(paths.primary().leg.end, leg.end) << "what is left to solve is the leg's conflict";
 }
 
+TEST_F(NominalPathsTest, OfAVehicleThatDriftsWhileItWaitsThePlaceIsKept)
+{
+    has_leg = false;
+    fly(Vec3(0.5F, 0.2F, 0.3F), 2.0F);
+    EXPECT_GT(paths.primary().leg.end.x() - own.position.x(), 10.0F) << "the drift counts for conflicts";
+    const Vec3 at = own.position;
+    fly(Vec3(3, 0, 0), 2.0F, 0.0F, true);
+    EXPECT_LT((paths.primary().leg.start - at).norm(), 0.2F);
+    EXPECT_EQ(paths.primary().leg.end, paths.primary().leg.start);
+    EXPECT_EQ(paths.primary().route, nullptr);
+    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+}
+
 TEST_F(NominalPathsTest, WhatIsKeptIsMadeAnewWhenTheFrameJumps)
 {
     has_leg = false;

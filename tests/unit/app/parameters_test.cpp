@@ -309,6 +309,8 @@ std::vector<Route> routes()
         same(Param::lag, 0.3F, [](C c) { return c.limits.velocity_lag; }),
         {Param::fixed_wing, 1, [](C c) { return c.limits.kind == vehicle::VehicleKind::fixed_wing ? 1.0F : 0.0F; }, 1},
         {Param::fixed_wing, 0, [](C c) { return c.limits.kind == vehicle::VehicleKind::multirotor ? 1.0F : 0.0F; }, 1},
+        {Param::fixed_wing, 1, [](C c) { return c.supervisor.on_leg; }, 10},
+        {Param::fixed_wing, 0, [](C c) { return c.supervisor.on_leg; }, 1},
         same(Param::mass, 4.1F, [](C c) { return c.airframe.mass; }),
         same(Param::drag, 0.6F, [](C c) { return c.airframe.drag_coefficient; }),
         same(Param::area, 2.7F, [](C c) { return c.airframe.effective_area; }),
@@ -343,6 +345,32 @@ std::vector<Route> routes()
         same(Param::sigma_baro, 31.5F, [](C c) { return c.sigma_baro; }),
         same(Param::sigma_compared, 6.5F, [](C c) { return c.sigma_compared; }),
     };
+}
+
+TEST(Parameters, SetEachTakesAllThatFitTogetherAndCountsTheRest)
+{
+    Parameters parameters;
+    // A floor above the present ceiling fits only after the new ceiling, which comes later.
+    EXPECT_EQ(parameters.set(Param::bounds, 3.0F), ParamStatus::ok);
+    Values wanted = parameters.values();
+    wanted[index_of(Param::floor)] = 200.0F;
+    wanted[index_of(Param::ceiling)] = 300.0F;
+    wanted[index_of(Param::track_age)] = 1e6F;
+    wanted[index_of(Param::mode)] = 1.0F;
+    EXPECT_EQ(parameters.set_each(wanted), 1U);
+    wanted[index_of(Param::track_age)] = 3.0F;
+    EXPECT_EQ(parameters.values(), wanted);
+    // Whichever comes first of two that exclude one another.
+    Parameters others;
+    Values clash = others.values();
+    clash[index_of(Param::time_low)] = 50.0F;
+    EXPECT_EQ(others.set_each(clash), 1U);
+    EXPECT_EQ(others.values(), Parameters().values());
+    const std::uint32_t generation = others.generation();
+    clash[index_of(Param::time_high)] = 100.0F;
+    EXPECT_EQ(others.set_each(clash), 0U);
+    EXPECT_EQ(others.values(), clash);
+    EXPECT_EQ(others.generation(), generation + 1) << "together, as one change";
 }
 
 TEST(Parameters, EachReachesItsPlaceInTheConfiguration)

@@ -184,6 +184,65 @@ TEST_F(StepRanges, WithoutAPlaceNothingIsTaken)
     EXPECT_EQ(bench->counted().readings, 0U);
 }
 
+TEST_F(StepRanges, ReadingsAreLevelSlantedCeilingOrGroundByTheirSteepness)
+{
+    const auto kind_of = [&](float sine) {
+        fly_to({});
+        static_cast<void>(reading(steep(sine), 10.0F));
+        bench->fly(1);
+        EXPECT_EQ(bench->counted().readings, 1U);
+        EXPECT_EQ(bench->counted().readings_refused, 0U);
+        EXPECT_LE(obstacles().size(), 1U);
+        if (obstacles().empty()) {
+            EXPECT_EQ(world.view.floor, bench->coprocessor.own().position.z() + 10.0F * sine + 2.0F) << "above ground";
+            return std::string("ground");
+        }
+        EXPECT_FALSE(covered(9.0F * steep(sine)));
+        EXPECT_TRUE(covered(10.01F * steep(sine)));
+        switch (obstacles()[0].shape.kind) {
+        case geometry::ShapeKind::capsule: return std::string("level");
+        case geometry::ShapeKind::sphere: return std::string("slanted");
+        default: return std::string("ceiling");
+        }
+    };
+    EXPECT_EQ(kind_of(-1.0F), "ground");
+    EXPECT_EQ(kind_of(-0.701F), "ground");
+    EXPECT_EQ(kind_of(-0.7F), "slanted");
+    EXPECT_EQ(kind_of(-0.021F), "slanted");
+    EXPECT_EQ(kind_of(-0.02F), "level");
+    EXPECT_EQ(kind_of(0.02F), "level");
+    EXPECT_EQ(kind_of(0.021F), "slanted");
+    EXPECT_EQ(kind_of(0.98F), "slanted");
+    EXPECT_EQ(kind_of(0.981F), "ceiling");
+    EXPECT_EQ(kind_of(1.0F), "ceiling");
+}
+
+/// Of an upward sensor aboard a vehicle that leans. Every place at the range within the beam may be what it saw.
+TEST_F(StepRanges, AnOverheadReadingCoversAllThatItsBeamMayHaveSeen)
+{
+    for (const float height : {0.5F, 10.0F}) {
+        for (const float sine : {0.981F, 0.99F, 1.0F}) {
+            for (const float half_angle : {0.0F, 0.05F, 0.3F}) {
+                SCOPED_TRACE(testing::Message() << height << ' ' << sine << ' ' << half_angle);
+                fly_to({{Param::scan_height, height}});
+                static_cast<void>(reading(steep(sine), 30.0F, half_angle));
+                bench->fly(1);
+                const Vec3 up = steep(sine);
+                const Vec3 across = Vec3::UnitY();
+                const Vec3 along(-up.z(), 0.0F, up.x());
+                for (int i = 0; i < 12; ++i) {
+                    const float turn = static_cast<float>(i) * kPi / 6.0F;
+                    const Vec3 aside = std::cos(turn) * across + std::sin(turn) * along;
+                    EXPECT_TRUE(covered(30.001F * (std::cos(half_angle) * up + std::sin(half_angle) * aside)));
+                }
+                const float lean = std::acos(sine);
+                EXPECT_FALSE(covered(Vec3(0.0F, 0.0F, 30.0F * std::cos(lean + half_angle) - 0.01F)));
+                EXPECT_FALSE(covered(Vec3(0.0F, std::max(height, 30.0F * std::sin(lean + half_angle)) + 0.1F, 30.1F)));
+            }
+        }
+    }
+}
+
 TEST_F(StepRanges, ALevelReadingLooksWhereItSaysAndAsWideAsItSays)
 {
     static_cast<void>(reading(Vec3(0.6F, -0.8F, 0.0F), 20.0F, 5.0F));

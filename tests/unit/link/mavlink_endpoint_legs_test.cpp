@@ -113,6 +113,32 @@ TEST_F(MavlinkEndpointLegs, AReachedItemIsWhereTheNextLegStarts)
     }
 }
 
+TEST_F(MavlinkEndpointLegs, APlaneTurnsToItsNextLegFarBeforeTheWaypoint)
+{
+    constexpr std::uint32_t kPlaneMission = 10;
+    for (const float before : {74.0F, 130.0F}) {
+        endpoint = std::make_unique<Endpoint>();
+        clear();
+        own = {0, 0, -30};
+        mission = {item_of(16, kLat, kLon, 488.0F, 0), north(300), item_of(16, kLat, kLon + 50000, 30)};
+        heartbeat(3, kPlaneMission, true, 1);
+        origin();
+        home();
+        local_position(own);
+        current(1);
+        run(0.5F);
+        expect_leg({0, 0, 30}, {0, 300, 30});
+        own = {300.0F - before, 0, -30};
+        run(0.1F);
+        clear();
+        reached(1);
+        current(2);
+        run(0.2F);
+        const bool turns = before < 120.0F;
+        expect_leg({0, turns ? 300.0F : 300.0F - before, 30}, {376.8F, 0, 30}, 0.5F);
+    }
+}
+
 TEST_F(MavlinkEndpointLegs, ATakeoffLeadsStraightUpWhateverItsPlace)
 {
     for (const std::int32_t lat : {0, kLat + 5000}) {

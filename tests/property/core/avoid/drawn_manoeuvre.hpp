@@ -177,14 +177,39 @@ inline bool draw_manoeuvre(Random& random, Drawn& d)
     return true;
 }
 
-/// `direction`: of a turn.
+/// A fixed wing turns to the command's course at its lateral limit, set-point by set-point, and flies on along it.
+inline void hold_as_wing(const Drawn& d, DenseFlight& flight)
+{
+    const vehicle::VehicleLimits& limits = d.scene.limits;
+    const Vec3& command = d.manoeuvre.command;
+    vehicle::VehicleState state = d.scene.own;
+    for (int i = 0; i < static_cast<int>(std::ceil(d.settings.fallback_horizon / kPeriod)); ++i) {
+        const Vec3d v = flight.last().velocity;
+        state.velocity = v.cast<float>();
+        const double off = std::remainder(
+            std::atan2(double(command.y()), double(command.x())) - std::atan2(v.y(), v.x()), 2.0 * double(kPi));
+        const Vec3 turn = turn_command(state, limits, off < 0.0 ? -1.0F : 1.0F);
+        const double lead = std::abs(std::remainder(
+            std::atan2(double(turn.y()), double(turn.x())) - std::atan2(v.y(), v.x()), 2.0 * double(kPi)));
+        const bool none = std::hypot(command.x(), command.y()) < 1.0F;
+        const Vec3 flown = none || std::abs(off) <= lead ? command : Vec3(turn.x(), turn.y(), command.z());
+        flight.hold(flown.cast<double>(), double(kPeriod));
+    }
+}
+
+/// `direction`: of a turn; 0: what is held is a command.
 inline DenseFlight fly(const Drawn& d, float direction)
 {
     if (d.flying != Flying::held && d.flying != Flying::fallback_turn) {
         return fly_densely(d.scene, d.manoeuvre, d.settings, kPeriod);
     }
     DenseFlight flight(d.scene.own, d.scene.limits);
-    if (d.flying == Flying::held) {
+    const bool held = d.flying == Flying::held || direction == 0.0F;
+    if (held && d.scene.limits.kind == vehicle::VehicleKind::fixed_wing) {
+        hold_as_wing(d, flight);
+        return flight;
+    }
+    if (held) {
         flight.hold(d.manoeuvre.command.cast<double>(), double(d.settings.fallback_horizon));
         return flight;
     }

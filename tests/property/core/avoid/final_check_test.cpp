@@ -23,8 +23,8 @@ using geometry::oracle::seed_of;
 /// As core/avoid/guard.hpp says, within 100 m of the origin [m].
 constexpr double kStatedAccuracy = 2e-3;
 
-/// What is told of it. `direction`: in which a fallback turns.
-float told_of(const Drawn& d, float& direction)
+/// What is told of it. `direction`: in which a fallback turns; 0 where it is a command, which `d` then holds.
+float told_of(Drawn& d, float& direction)
 {
     WorkBudget budget(kAmple);
     const world::Situation situation = d.scene.situation();
@@ -33,7 +33,9 @@ float told_of(const Drawn& d, float& direction)
     }
     if (d.flying == Flying::fallback_turn) {
         const Fallback fallback = choose_fallback(situation, {}, nullptr, d.settings, budget);
-        direction = fallback.command.z();
+        const bool turns = fallback.kind == world::ManoeuvreKind::hold_turn;
+        direction = turns ? fallback.command.z() : 0.0F;
+        d.manoeuvre.command = fallback.command;
         return fallback.margin;
     }
     return check_manoeuvre(situation, d.manoeuvre, d.settings, budget).margin;

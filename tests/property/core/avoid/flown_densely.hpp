@@ -56,6 +56,14 @@ public:
     {
         Vec3d goal = command;
         goal.z() = std::clamp(goal.z(), -double(limits_.max_descent), double(limits_.max_climb));
+        if (limits_.kind == vehicle::VehicleKind::fixed_wing) {
+            // Course of the command, or its own, at cruise speed.
+            const bool has_course = std::hypot(command.x(), command.y()) >= 1.0;
+            const Vec3d& course = has_course ? command : state_.velocity;
+            const double size = std::hypot(course.x(), course.y());
+            goal.x() = size > 0.0 ? course.x() * double(limits_.cruise_speed) / size : 0.0;
+            goal.y() = size > 0.0 ? course.y() * double(limits_.cruise_speed) / size : 0.0;
+        }
         parts_.push_back({end_, state_, goal});
         fastest_ = std::max({fastest_, state_.velocity.norm(), goal.norm()});
         state_ = after(parts_.back(), dt);

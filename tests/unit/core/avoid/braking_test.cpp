@@ -129,6 +129,35 @@ TEST(Braking, DoesNotBackIntoWhatIsBehind)
 }
 
 // On its way back it turned through traffic beside the way, and said that nothing is in conflict.
+TEST(Rejoining, AFixedWingKeepsItsCourseWhileTheTurnBackIsNotClear)
+{
+    for (const bool blocked : {false, true}) {
+        Flight f;
+        f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+        f.scene.limits.cruise_speed = 18.0F;
+        f.scene.limits.max_acceleration = 4.0F;
+        f.scene.limits.velocity_lag = 1.2F;
+        f.scene.leg(Vec3(0, 0, 30), Vec3(900, 0, 30), 18.0F);
+        f.scene.own.position = Vec3(100, 80, 30);
+        f.scene.own.velocity = Vec3(0, 18, 0);
+        if (blocked) {
+            // Where the turn back leads; the way, straight to the leg, passes it by 60 m.
+            f.scene.track(Vec3(135, 150, 30), Vec3::Zero(), 10.0F);
+        }
+        FakeMethod method = never();
+        Supervisor supervisor(quick(), method);
+        const Guidance g = f.update(supervisor, true);
+        EXPECT_FALSE(g.has_conflict);
+        EXPECT_TRUE(g.wants_control);
+        if (blocked) {
+            EXPECT_NEAR(g.velocity.x(), 0.0F, 1e-3F);
+            EXPECT_NEAR(g.velocity.y(), 18.0F, 1e-3F) << "on";
+        } else {
+            EXPECT_LT(g.velocity.y(), -5.0F) << "back to the leg";
+        }
+    }
+}
+
 TEST(Braking, OfAFixedWingIsATurnThatStays)
 {
     Flight f;

@@ -325,6 +325,38 @@ TEST(ChooseFallback, AFixedWingsMarginIsWhatItsTurnKeeps)
 }
 
 // Both turns were all that was looked at: the wing turned into what stood beside it.
+TEST(ChooseFallback, AFixedWingBetweenTwoThreatsGoesStraightOn)
+{
+    Flight f;
+    f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    f.scene.limits.cruise_speed = 15.0F;
+    f.scene.own.velocity = Vec3(15, 0, 0);
+    for (const float side : {-20.0F, 20.0F}) {
+        f.scene.track(f.scene.own.position + Vec3(30, side, 0), Vec3::Zero(), 10.0F);
+    }
+    const Fallback chosen = fallback(f);
+    ASSERT_EQ(chosen.kind, ManoeuvreKind::velocity);
+    EXPECT_GT(chosen.margin, 5.0F);
+    EXPECT_NEAR(chosen.command.y(), 0.0F, 1e-3F);
+    const Fallback second = fallback(f, &chosen);
+    EXPECT_EQ(second.command, chosen.command) << "stays";
+}
+
+TEST(ChooseFallback, AFixedWingBelowAWallClimbsOrDescends)
+{
+    Flight f;
+    f.scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    f.scene.limits.cruise_speed = 15.0F;
+    f.scene.limits.max_climb = f.scene.limits.max_descent = 3.0F;
+    f.scene.own.velocity = Vec3(15, 0, 0);
+    for (int i = -6; i <= 6; ++i) {
+        f.scene.track(f.scene.own.position + Vec3(45, 6.0F * static_cast<float>(i), 1.0F), Vec3::Zero(), 4.0F);
+    }
+    const Fallback chosen = fallback(f);
+    EXPECT_EQ(chosen.kind, ManoeuvreKind::velocity);
+    EXPECT_LT(chosen.command.z(), -1.0F) << "under what stands a metre above its height";
+}
+
 TEST(ChooseFallback, AFixedWingHoldsOnToATurnThatIsAboutAsGood)
 {
     Flight f;

@@ -328,5 +328,36 @@ TEST_F(PlannerTest, ABudgetThatRunsOutIsNoAnswer)
     sweep();
 }
 
+/// What is not a number is in the way, or gives no answer: never a way that is called free.
+TEST_F(PlannerTest, NumbersThatAreNotFiniteAreNeverClear)
+{
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        own.position = Vec3(bad, 0.0F, 30.0F);
+        EXPECT_NE(plan(), PlanStatus::found) << "own place";
+        own.position = Vec3(0.0F, 0.0F, bad);
+        EXPECT_NE(plan(), PlanStatus::found) << "own height";
+        own.position = Vec3(0.0F, 0.0F, 30.0F);
+        add_track(Vec3(10.0F, 0.0F, 30.0F), Vec3::Zero(), bad);
+        EXPECT_NE(plan(), PlanStatus::found) << "a track's radius";
+        tracks.clear();
+    }
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    add_track(Vec3(nan, 0.0F, 30.0F), Vec3::Zero(), 0.5F);
+    EXPECT_NE(plan(), PlanStatus::found) << "a track's place";
+    tracks.clear();
+    add_track(Vec3(10.0F, 0.0F, 30.0F), Vec3(0.0F, nan, 0.0F), 0.5F);
+    EXPECT_NE(plan(), PlanStatus::found) << "a track's velocity";
+    tracks.clear();
+    own.sigma_position = nan;
+    add_box(Vec3(3.5F, 0.0F, 30.0F), Vec3::Ones());
+    EXPECT_NE(plan(), PlanStatus::found) << "own uncertainty, a box";
+    obstacles.clear();
+    add_sphere(Vec3(3.5F, 0.0F, 30.0F), 1.0F);
+    EXPECT_NE(plan(), PlanStatus::found) << "own uncertainty, a sphere";
+    obstacles.clear();
+    add_track(Vec3(10.0F, 0.0F, 30.0F), Vec3::Zero(), 0.5F);
+    EXPECT_NE(plan(), PlanStatus::found) << "own uncertainty, a track";
+}
+
 }  // namespace
 }  // namespace jink::reach

@@ -186,6 +186,65 @@ TEST(IsValid, EachAirframeFigureIsChecked)
     }
 }
 
+VehicleLimits wing()
+{
+    VehicleLimits limits;
+    limits.kind = VehicleKind::fixed_wing;
+    limits.cruise_speed = 18.0F;
+    limits.max_climb = limits.max_descent = 2.0F;
+    limits.max_acceleration = 4.0F;
+    limits.max_vertical_acceleration = 1.0F;
+    limits.velocity_lag = 1.2F;
+    return limits;
+}
+
+// A steep part of a plan asks for 7 m/s; predicted as flown so, a plane of 18 m/s was 40 m ahead after 4 s.
+TEST(FixedWing, FliesTheCourseOfASlowCommandAtCruiseSpeed)
+{
+    VehicleState state;
+    state.velocity = Vec3(5.6F, -17.1F, 0.0F);
+    const Vec3 command(2.4F, -6.9F, -2.0F);
+    for (int i = 0; i < 200; ++i) {
+        advance(state, command, wing(), 0.05F);
+        EXPECT_NEAR(std::hypot(state.velocity.x(), state.velocity.y()), 18.0F, 0.3F) << i;
+    }
+    EXPECT_NEAR(state.velocity.x() / state.velocity.y(), command.x() / command.y(), 1e-3F);
+    EXPECT_NEAR(state.velocity.z(), -2.0F, 1e-2F);
+    EXPECT_GT(state.position.norm(), 170.0F);
+    VehicleLimits multirotor = wing();
+    multirotor.kind = VehicleKind::multirotor;
+    for (int i = 0; i < 200; ++i) {
+        advance(state, command, multirotor, 0.05F);
+    }
+    EXPECT_NEAR((state.velocity - command).norm(), 0.0F, 1e-2F) << "what can fly slowly does";
+}
+
+TEST(FixedWing, GoesOnWhereTheCommandHasNoCourse)
+{
+    for (const Vec3& command : {Vec3(0, 0, 0), Vec3(0.5F, 0.8F, 0), Vec3(0, 0, -1.0F)}) {
+        VehicleState state;
+        state.velocity = Vec3(-18.0F, 0.0F, 1.0F);
+        advance(state, command, wing(), 10.0F);
+        EXPECT_NEAR(state.velocity.x(), -18.0F, 1e-3F);
+        EXPECT_NEAR(state.velocity.y(), 0.0F, 1e-3F);
+        EXPECT_NEAR(state.velocity.z(), command.z(), 1e-2F);
+    }
+    VehicleState standing;
+    advance(standing, Vec3::Zero(), wing(), 1.0F);
+    EXPECT_EQ(standing.velocity, Vec3::Zero()) << "no course at all, and finite";
+}
+
+TEST(LimitsInFlight, AFixedWingsCruiseSpeedIsTheOneThatItFlies)
+{
+    EXPECT_FLOAT_EQ(limits_in_flight(wing(), Vec3(0, 22, 2)).cruise_speed, 22.0F);
+    EXPECT_FLOAT_EQ(limits_in_flight(wing(), Vec3(9, 0, 0)).cruise_speed, 9.0F);
+    EXPECT_FLOAT_EQ(limits_in_flight(wing(), Vec3(8.9F, 0, 2)).cruise_speed, 18.0F) << "on the ground, or hand-held";
+    EXPECT_FLOAT_EQ(limits_in_flight(wing(), Vec3(kNan, 22, 0)).cruise_speed, 18.0F);
+    VehicleLimits multirotor = wing();
+    multirotor.kind = VehicleKind::multirotor;
+    EXPECT_FLOAT_EQ(limits_in_flight(multirotor, Vec3(0, 22, 2)).cruise_speed, 18.0F);
+}
+
 TEST(Uav2, FiguresOfPinheiroTable45)
 {
     EXPECT_EQ(uav2_limits().cruise_speed, 15.0F);

@@ -38,6 +38,24 @@ TEST(WayOf, OffTheLegAimsAheadOnIt)
     EXPECT_NEAR(way.length, 12.0F * std::sqrt(2.0F) + 68.0F, 1e-3F);
 }
 
+TEST(WayOf, AFixedWingComesBackGentlyAndWithinItsClimb)
+{
+    Scene scene;
+    scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    scene.limits.cruise_speed = 18.0F;
+    scene.limits.max_climb = scene.limits.max_descent = 2.0F;
+    scene.leg(Vec3::Zero(), Vec3(900, 0, 0), 18.0F);
+    scene.own.position = Vec3(20, 20, 0);
+    EXPECT_NEAR((way_of(scene.situation()).direction - Vec3(72, -20, 0).normalized()).norm(), 0.0F, 1e-5F)
+        << "4 s of flight";
+    for (const float height : {-20.0F, 20.0F}) {
+        scene.own.position = Vec3(20, 0, height);
+        const Way way = way_of(scene.situation());
+        EXPECT_LE(std::abs(way.direction.z()) * 18.0F, 2.001F) << "as steep as it climbs";
+        EXPECT_NEAR(way.speed, 18.0F, 0.1F) << "it does not fly slower";
+    }
+}
+
 TEST(WayOf, NearItsEndAimsAtTheEndFromTheSide)
 {
     Scene scene;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Hands off: what is still asked for once control was refused, lost or given up.
+#include "firmware/app/takeover.hpp"
+
+namespace jink::app {
+
+using link::FlightMode;
+
+/// The hold mode, asked for when control was lost, until a HEARTBEAT shows that the external mode is over. A mode that
+/// a pilot chose is not fought: whatever it is, it ends this.
+TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept
+{
+    hold_due_ = hold_due_ && claim_ == Claim::held && !(input.has_report && input.report.mode != FlightMode::external);
+    hold_acked_ = hold_acked_ || input.mode_accepted;
+    if (!hold_due_ || !input.link_alive || hold_tries_ >= kHoldTries) {
+        return TakeoverAction::none;
+    }
+    const Seconds waited = now - hold_asked_;
+    const bool unanswered = !hold_acked_ && waited >= kHoldRepeat;
+    const bool unheeded = input.has_report && waited >= kConfirm;
+    if (hold_tries_ > 0 && !unanswered && !unheeded) {
+        return TakeoverAction::none;
+    }
+    // A hold must not wait for an answer, but it must not be asked for on old evidence either.
+    if (!evidence_.is_newer_than_requests() || !evidence_.is_fresh(now)) {
+        evidence_.need_heartbeat();
+        return TakeoverAction::none;
+    }
+    ++hold_tries_;
+    ++diagnostics_.hold_requests;
+    hold_acked_ = false;
+    hold_asked_ = now;
+    return TakeoverAction::request_hold;
+}
+
+/// A hold seen now answers what was asked for at a loss.
+bool Takeover::hold_is_ours(TimePoint now) const noexcept
+{
+    return mode_ == FlightMode::hold && hold_tries_ > 0 && now - hold_asked_ < kConfirm;
+}
+
+/// Refused: all that is left is to have the autopilot stop by itself before it is too late.
+TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noexcept
+{
+    if (foreign(input)) {
+        if (tries_ == 0 || mode_ != FlightMode::hold || !input.report.armed) {
+            return overrule();
+        }
+        const bool news = unfollowed_ && claim_ != Claim::none;
+        claim_ = Claim::none;  // the hold that we asked for: what follows it is somebody else's choice
+        if (news) {
+            ++diagnostics_.held;
+            return {TakeoverAction::none, TakeoverEvent::held};
+        }
+    }
+    if (unfollowed_) {
+        return keep_off(input, now);
+    }
+    expire_claim(input, now);
+    if (mode_ == FlightMode::external && claim_ != Claim::none && input.may_act) {
+        // Granted late, after we had given up waiting: without a stream the vehicle would stop there for good.
+        return take(now);
+    }
+    if (!input.in_conflict && !input.wants_control) {
+        control_ = Control::autopilot;
+        return idle(input, now);
+    }
+    const bool still_flying = mode_ == FlightMode::mission;
+    if (input.urgent_hold && input.may_act && still_flying && tries_ < kTries &&
+        (tries_ == 0 || now - since_ >= kConfirm) && evidence_.is_clear_to_ask(now)) {
+        ++tries_;
+        ++diagnostics_.hold_requests;
+        since_ = now;
+        return {TakeoverAction::request_hold, TakeoverEvent::none};
+    }
+    return {};
+}
+
+/// Hands off after the pilot's choice, after sticks that moved or after commands that were not followed.
+TakeoverOutput Takeover::keep_off(const TakeoverInput& input, TimePoint now) noexcept
+{
+    const bool over = input.has_report && (mode_ != FlightMode::external || !input.report.armed);
+    // A HEARTBEAT may have been sent before a request of ours was granted.
+    if (over && (is_claim_seen_ || foreign(input) || now - asked_ >= kConfirm)) {
+        back_due_ = false;
+        claim_ = Claim::none;
+    }
+    if (!input.in_conflict && !input.wants_control && !back_due_) {
+        control_ = Control::autopilot;
+        return idle(input, now);
+    }
+    if (unfollowed_) {
+        return {insist_on_hold(input, now), TakeoverEvent::none};
+    }
+    const bool due = back_due_ && input.link_alive && mode_ == FlightMode::external && back_tries_ < kTries &&
+                     (back_tries_ == 0 || now - back_asked_ >= kConfirm);
+    if (due && evidence_.is_clear_to_ask(now)) {
+        ++back_tries_;
+        back_asked_ = now;
+        return {TakeoverAction::request_former, TakeoverEvent::none};
+    }
+    back_due_ = back_due_ && (back_tries_ < kTries || now - back_asked_ < kConfirm);
+    return {};
+}
+
+/// The pilot has the sticks: no command of ours from here on. Whatever mode the pilot chooses stands; until then the
+/// former one is asked for, so that the vehicle is not left without anybody who commands it.
+TakeoverOutput Takeover::yield_to_sticks(const TakeoverInput& input, TimePoint now) noexcept
+{
+    control_ = Control::overruled;
+    tries_ = 0;
+    back_due_ = claim_ != Claim::none;
+    const bool on_its_way = asked_back_ && now - since_ < kConfirm;
+    back_tries_ = on_its_way ? 1 : 0;
+    back_asked_ = since_;
+    ++diagnostics_.sticks;
+    return {keep_off(input, now).action, TakeoverEvent::sticks};
+}
+
+TakeoverOutput Takeover::give_up(const TakeoverInput& input, TimePoint now) noexcept
+{
+    control_ = Control::refused;
+    unfollowed_ = true;
+    tries_ = kTries;
+    hold_due_ = true;
+    hold_acked_ = false;
+    hold_tries_ = 0;
+    ++diagnostics_.unfollowed;
+    return {insist_on_hold(input, now), TakeoverEvent::unfollowed};
+}
+
+/// A fault of ours while streaming.
+TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcept
+{
+    const bool flown = in_control();
+    drop(true);
+    if (flown) {
+        hold_due_ = true;
+        hold_acked_ = false;
+        hold_tries_ = 0;
+        return {insist_on_hold(input, now), TakeoverEvent::lost};
+    }
+    // Control was never given, nothing is lost: fall silent; this tick's report still counts.
+    mode_ = input.has_report ? input.report.mode : FlightMode::unknown;
+    return idle(input, now);
+}
+
+}  // namespace jink::app

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "toolchain/sim/timing.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace jink::sim {
+
+/// The command `phases` of jink-sim.
+struct PhasesOptions {
+    std::vector<std::string> files;
+    unsigned count = 50;
+    std::uint64_t seed = 1;
+    Spread spread;
+};
+
+CLI::App& add_phases(CLI::App& cli, PhasesOptions& options);
+
+/// Flies every scenario in many timings and prints how often each end comes, and how near it went.
+/// @return EXIT_SUCCESS when every flight ended as its file expects
+/// @throws std::runtime_error when a file is no scenario
+int run_phases(const PhasesOptions& options, std::ostream& out);
+
+}  // namespace jink::sim
