@@ -205,8 +205,8 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
     if (geometry::glance(threat.half, first, last, radius + rule_.room) == geometry::Glance::apart) {
         return kFree;
     }
-    if (radius < 0.0F) {
-        return kNoRoom;
+    if (!(radius >= 0.0F)) {  // what is not a number blocks
+        return radius < 0.0F ? kNoRoom : threat.is_track ? kIntruder : kObstacle;
     }
     const geometry::Glance glance = geometry::glance(threat.half, first, last, radius);
     if (glance == geometry::Glance::touches ||

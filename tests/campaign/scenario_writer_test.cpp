@@ -63,7 +63,7 @@ TEST(ScenarioWriter, KeepsEverythingThatAFileCanSay)
     s.threats = {flies, stands};
     s.traffic = {4.0, 0.3, 0.2, 0.15, 0.05, 0.1, 0};
     s.scan = {8.0, 25.0, 0};
-    s.parameters = {{"TRK_RADIUS", 1.5}, {"GEO_FLIP", 0.25}};
+    s.parameters = {{"TRK_RADIUS", 1.5}, {"GEO_FLIP", 0.25}, {"TRK_SIGMA_P", 0.7}};
     s.faults.pilot_takes_over = 5.0;
     s.faults.pilot_mode = Mode::pilot;
     s.faults.pilot_velocity = Vec(1, 0, 0);

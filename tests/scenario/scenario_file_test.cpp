@@ -103,7 +103,7 @@ TEST(ScenarioFile, TheVehicleStartsAtCruiseOnItsLeg)
     const Scenario s = parse_scenario(kLeast, "some.yaml");
     EXPECT_EQ(s.start_position, Vec(0, 0, 30));
     EXPECT_EQ(s.start_velocity, Vec(5, 0, 0));
-    EXPECT_TRUE(s.parameters.empty());
+    EXPECT_EQ(s.parameters, (std::map<std::string, double>{{"TRK_SIGMA_P", 0.5}})) << "the noise of its sensors";
 }
 
 TEST(ScenarioFile, RefusalsNameThePlaceAndTheReason)
