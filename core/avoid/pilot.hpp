@@ -62,6 +62,7 @@ private:
     void follow_way(Tick& tick) noexcept;
     [[nodiscard]] bool keep_beside(Tick& tick) noexcept;
     [[nodiscard]] bool keep_course(Tick& tick) noexcept;
+    [[nodiscard]] bool is_back(const Tick& tick) const noexcept;
     [[nodiscard]] bool find_faster(Tick& tick) noexcept;
     void give_ground(Tick& tick) noexcept;
     void note_clearness(Tick& tick) noexcept;

@@ -97,6 +97,21 @@ void Pilot::enter_rejoining() noexcept
     standing_ = false;
 }
 
+/// Near enough to the leg for control to be given back. Held at a bound, the vehicle is as near to it as we may bring
+/// it.
+bool Pilot::is_back(const Tick& tick) const noexcept
+{
+    const float on_leg = settings_.on_leg;
+    const bool held = is_held(tick.s, tick.taken, tick.out.velocity, on_leg);
+    if (cross_track(tick.s) <= on_leg || tick.way.length <= on_leg || held) {
+        return true;
+    }
+    // A fixed wing above or below its leg needs no turn to follow it; past its end nothing is left of it.
+    const Beside beside = beside_leg(tick.s);
+    return tick.s.limits.kind == vehicle::VehicleKind::fixed_wing &&
+           (beside.off.head<2>().norm() <= on_leg || beside.left <= 0.0F);
+}
+
 void Pilot::follow_way(Tick& tick) noexcept
 {
     tick.out.wants_control = true;
@@ -197,10 +212,7 @@ void Pilot::rejoin(Tick& tick) noexcept
         return;
     }
     follow_way(tick);
-    // Held at a bound, the vehicle is as near to its leg as we may bring it.
-    const bool back = cross_track(tick.s) <= settings_.on_leg || tick.way.length <= settings_.on_leg ||
-                      is_held(tick.s, tick.taken, tick.out.velocity, settings_.on_leg);
-    if (back && way_clear_for(tick, settings_.settle) && may_give_back(tick)) {
+    if (is_back(tick) && way_clear_for(tick, settings_.settle) && may_give_back(tick)) {
         ++diagnostics_.rejoined;
         state_ = State::watching;
         gave_back_ = true;

@@ -25,6 +25,8 @@ constexpr float kOffLeg = 2.0F;
 constexpr float kDeparting = 0.25F;
 /// The way back aims so far ahead, as world::way_of has it.
 constexpr float kBackAhead = world::kRejoinLookahead;
+/// Of the cruise speed: slower motion may be the drift of a vehicle that waits.
+constexpr float kDriftShare = 0.5F;
 /// Level motion may climb by so much: an arc lies level [m/s].
 constexpr float kLevel = 0.3F;
 /// Ends of the legs of a turn that climbs: after 60, 120 and 180 degrees.
@@ -265,7 +267,7 @@ void NominalPaths::keep(const vehicle::VehicleLimits& limits) noexcept
 {
     kept_.copy_from(live_);
     world::Reference& r = kept_.reference;
-    if (r.leg.end != r.leg.start && r.leg.speed < kMoving) {
+    if (r.leg.end != r.leg.start && r.leg.speed < std::min(kMoving, kDriftShare * limits.cruise_speed)) {
         r.route = nullptr;
         r.leg = {r.leg.start, r.leg.start, limits.cruise_speed};
     }

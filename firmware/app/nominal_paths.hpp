@@ -28,7 +28,8 @@ namespace jink::app {
 /// 0 otherwise. No function of the C library but the square root, so every target has the same paths to the bit.
 ///
 /// From a take-over on the measured motion as it was then is kept: control is given back along the path that the
-/// conflict was on. Of motion slower than kMoving the place alone is kept. 1 KiB. O(samples) per update.
+/// conflict was on. Of motion slower than kMoving and half the cruise speed the place alone is kept. 1 KiB. O(samples)
+/// per update.
 class NominalPaths {
 public:
     static constexpr float kMoving = 1.0F;          ///< slower motion contradicts no leg and leads nowhere [m/s]

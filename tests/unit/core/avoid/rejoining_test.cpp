@@ -153,5 +153,47 @@ TEST(Rejoining, CeilingAndKeepInAreKept)
     EXPECT_FALSE(g.wants_control);
 }
 
+/// Seconds until a vehicle gives back control that begins to rejoin the leg at `position`; -1: not within a minute.
+float gives_back_after(vehicle::VehicleKind kind, const Vec3& position)
+{
+    Flight f;
+    FakeMethod method = always(kLeft);
+    Supervisor supervisor(quick(), method);
+    f.scene.limits.kind = kind;
+    f.scene.limits.cruise_speed = 15.0F;
+    f.scene.leg(Vec3(0, 0, 30), Vec3(300, 0, 30), 15.0F);
+    f.scene.own.position = position;
+    f.scene.own.velocity = Vec3(15, 0, 0);
+    Guidance g = f.update(supervisor, true);
+    EXPECT_EQ(g.state, State::rejoining);
+    for (int steps = 0; steps < 1200; ++steps) {
+        if (!g.wants_control) {
+            return 0.05F * static_cast<float>(steps);
+        }
+        f.pass(Vec3(15, 0, 0), 0.05F);  // whatever it is told
+        g = f.update(supervisor, true);
+    }
+    return -1.0F;
+}
+
+TEST(Rejoining, AFixedWingAboveOrBelowItsLegHasNothingToTurnFor)
+{
+    using vehicle::VehicleKind;
+    for (const float height : {10.0F, 60.0F}) {
+        const float wing = gives_back_after(VehicleKind::fixed_wing, Vec3(20, 0, height));
+        EXPECT_NEAR(wing, 5.0F, 0.01F) << "control is kept for so long at least, " << height;
+        EXPECT_LT(gives_back_after(VehicleKind::multirotor, Vec3(20, 0, height)), 0.0F) << height;
+    }
+}
+
+TEST(Rejoining, AFixedWingBesideItsLegComesBackFirstUnlessItIsPastTheEnd)
+{
+    using vehicle::VehicleKind;
+    const float past = gives_back_after(VehicleKind::fixed_wing, Vec3(150, 40, 30));
+    EXPECT_NEAR(past, 10.0F, 0.3F) << "150 m at 15 m/s: then nothing of the leg is left";
+    EXPECT_LT(gives_back_after(VehicleKind::multirotor, Vec3(150, 40, 30)), 0.0F);
+    EXPECT_LT(gives_back_after(VehicleKind::fixed_wing, Vec3(310, 40, 30)), 5.01F) << "past it from the start";
+}
+
 }  // namespace
 }  // namespace jink::avoid
