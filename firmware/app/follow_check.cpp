@@ -48,10 +48,12 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
     velocity_ = velocity;
     if (!begun_ || !is_finite(command) || !is_finite(velocity)) {
         begun_ = is_finite(velocity) && is_finite(command);
+        commanded_ = 0.0F;
         reference_ = command_ = command;
         start_ = velocity;
         return false;
     }
+    commanded_ += dt;
     const float expected = std::min(kExpected * limits.max_acceleration, kMaxExpected);
     const Vec3 error = command - (velocity - change);
     if ((command - reference_).norm() > kTolerance) {
@@ -72,7 +74,8 @@ bool FollowCheck::update(const Vec3& asked, const Vec3& velocity, const vehicle:
         return false;
     }
     missing_ = std::max(missing_ + expected * dt - towards, std::min(missing_, 0.0F));
-    return missing_ >= expected * (wing ? kWingPatience : kPatience);
+    const Seconds patience = wing ? kWingPatience : kPatience;
+    return missing_ >= expected * patience && commanded_ >= patience;
 }
 
 }  // namespace jink::app

@@ -12,6 +12,7 @@ namespace jink::app {
 /// A vehicle that follows changes its velocity towards the command. While the two differ by more than the tolerance,
 /// a modest change is expected (kExpected of the configured acceleration, kMaxExpected at most); what is missing adds
 /// up, and what exceeds it is taken off again. A second's worth of the expected change missing means: not followed.
+/// Never within the first second: a gust may carry the vehicle away before it can answer.
 ///
 /// Tolerance: the larger of kTolerance and kShare of the commanded speed. A vehicle that flies where it shall, only
 /// more slowly (kSlow), counts as following: autopilots have speed limits of their own.
@@ -21,8 +22,8 @@ namespace jink::app {
 /// the command before asked for, after a dead time and with limited jerk. From full acceleration to full braking this
 /// takes so long. A vehicle that ignores the first command is noticed 1 s after the command differs from its motion,
 /// one that ignores a later command after 1 s + kAllowance. A command that differs by kTolerance at most is the same
-/// command. No alarm for a vehicle that answers with 2.5 m/s2 and a lag
-/// of 0.6 s after a dead time of 0.3 s, in gusts (tests/property/app/follow_check_property_test.cpp).
+/// command. No alarm for a vehicle that answers with 2.5 m/s2 and a lag of 0.6 s after a dead time of 0.3 s, in gusts
+/// (tests/property/app/follow_check_property_test.cpp).
 ///
 /// A fixed wing is commanded course and climb alone, so its speed is not compared. It has to be told first and then to
 /// roll in: kWingPatience seconds' worth may be missing.
@@ -52,6 +53,7 @@ public:
 
 private:
     bool begun_ = false;
+    Seconds commanded_ = 0.0F;
     TimePoint last_;
     Vec3 velocity_ = Vec3::Zero();
     float missing_ = 0.0F;           ///< change of velocity [m/s]

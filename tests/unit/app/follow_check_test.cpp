@@ -193,6 +193,18 @@ TEST(FollowCheck, AlarmComesWhenASecondsWorthIsMissing)
     EXPECT_EQ(ticks + 1, 16) << "1 s in steps that a float holds exactly";
 }
 
+TEST(FollowCheck, GustThatCarriesTheVehicleAwayAtFirstIsAnsweredBeforeAnyAlarm)
+{
+    Followed f;
+    Vec3 velocity = Vec3::Zero();
+    for (int i = 0; i < 200; ++i) {
+        // 0.3 s against the command with 3 m/s2, then with 2.5 m/s2 towards it.
+        const Vec3 change = 0.02F * (i < 15 ? Vec3(-3.0F * kNorth.normalized()) : Vec3(2.5F * kNorth.normalized()));
+        EXPECT_FALSE(f.tick(kNorth, velocity)) << i;
+        velocity += (velocity - kNorth).norm() > 0.05F ? change : Vec3(Vec3::Zero());
+    }
+}
+
 TEST(FollowCheck, ResetForgetsWhatWasMissing)
 {
     Followed f;
