@@ -2,6 +2,7 @@
 #include "core/avoid/wing.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/angle.hpp"
@@ -93,7 +94,7 @@ Fallback better_turn(const world::Situation& s, const Fallback* previous, const 
 }
 
 /// Courses of a fixed wing that is in no turn for good: on, and to both sides [rad].
-constexpr float kWingCourses[] = {0.0F, 0.5F, -0.5F, 1.0F, -1.0F};
+constexpr std::array<float, 5> kWingCourses = {0.0F, 0.5F, -0.5F, 1.0F, -1.0F};
 
 }  // namespace
 
@@ -144,7 +145,7 @@ Fallback detail::wing_fallback(const world::Situation& s, const Fallback* previo
     if (previous != nullptr && previous->kind == world::ManoeuvreKind::velocity) {
         kept_margin = detail::wing_margin(s, previous->command, settings.fallback_horizon, settings, budget);
     }
-    const float climbs[] = {0.0F, s.limits.max_climb, -s.limits.max_descent};
+    const std::array<float, 3> climbs = {0.0F, s.limits.max_climb, -s.limits.max_descent};
     for (const float climb : climbs) {
         for (const float course : kWingCourses) {
             const Vec3 command = detail::command_on(level / speed, course, climb, s.limits);

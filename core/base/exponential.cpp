@@ -30,7 +30,8 @@ float faded_share(float x) noexcept
     if (!(x < kAll)) {
         return x >= kAll ? 1.0F : x;
     }
-    const auto halvings = static_cast<int>(x * kPerLn2 + 0.5F);
+    const float up_by_half = x * kPerLn2 + 0.5F;
+    const auto halvings = static_cast<int>(up_by_half);
     const auto n = static_cast<float>(halvings);
     const float u = (n * kLn2High - x) + n * kLn2Low;  // e^-x is e^u / 2^n
     const float tail =
