@@ -94,9 +94,8 @@ auto path_of(const Parts& phases, bool hovers) noexcept
         }
     }
     const auto& last = phases[hovers ? phases.size() - 1 : 0];
-    const Vec3 velocity = points.empty() ? Vec3(Vec3::Zero()) : points.back().velocity;
     const Seconds span = last.end - last.start;
-    points.unchecked_push_back({last.own.position + last.own.velocity * span, velocity, last.end});
+    points.unchecked_push_back({last.own.position + last.own.velocity * span, last.own.velocity, last.end});
     return points;
 }
 
@@ -189,7 +188,7 @@ bool meets_barrel(const Situation& situation, const Parts& phases, const Positio
         const BarrelApproach approach(situation.limits.half_extents, phase.own, barrel, phase.start, extra, 0.0F);
         const bool paid_for = budget.spend(units::kConflictBarrel);
         const geometry::Approach near = approach.least(span, met ? out.margin : 0.0F, budget);
-        if (!met && (near.distance <= 0.0F || !paid_for)) {
+        if (!met && (!(near.distance > 0.0F) || !paid_for)) {
             met = true;
             loss = phase.start + approach.first_contact(near.when, budget);
             out.margin = near.distance;

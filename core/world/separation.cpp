@@ -316,7 +316,7 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
         }
         const float extra = situation.k_sigma * situation.own.sigma_position;
         const float near = (position - shape.centre).norm() - geometry::bounding_radius(shape) - half.norm() - extra;
-        if (near < best.margin) {
+        if (!(near >= best.margin)) {  // also where a number is not finite
             consider(best, obstacle_margin(half, position, position, shape, budget, extra), t, ref);
         }
     }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cmath>
 #include <limits>
 
 #include "core/world/barrel.hpp"
@@ -16,6 +17,7 @@ struct BarrelCheck {
     const EscapeRule& escape;
     ThreatRef ref;
     float extra = 0.0F;
+    float start_margin = 0.0F;
     float shrunk = 0.0F;
     /// Until then the surface grows evenly, so that the margin stays a convex function of time; afterwards it stands.
     Seconds whole = 0.0F;
@@ -25,7 +27,7 @@ struct BarrelCheck {
           escape(rule), ref{ThreatKind::barrel, static_cast<std::uint16_t>(index)},
           extra(situation.k_sigma * situation.own.sigma_position)
     {
-        const float start_margin = barrel_distance(half, begin, barrel, 0.0F) - extra;
+        start_margin = barrel_distance(half, begin, barrel, 0.0F) - extra;
         shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
         if (shrunk > 0.0F) {
             whole = escape.speed > 0.0F ? shrunk / escape.speed : std::numeric_limits<Seconds>::infinity();
@@ -77,6 +79,10 @@ void against_barrel(const Situation& situation, const Flight& flight, std::size_
         return;
     }
     const BarrelCheck check(situation, flight.begin(), index, escape);
+    if (std::isnan(check.start_margin)) {
+        consider(best, check.start_margin, 0.0F, ref);
+        return;
+    }
     for (const Bounds& chunk : flight.chunks()) {
         if (!check.may_matter(chunk, best.margin)) {
             continue;

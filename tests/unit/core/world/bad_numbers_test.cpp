@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/world/separation.hpp"
+#include "core/world/conflict.hpp"
 #include "core/world/separation_parts.hpp"
 #include "tests/numbers.hpp"
 #include "tests/unit/core/world/scene.hpp"
@@ -98,6 +98,110 @@ TEST(LeastSeparationOfBadNumbers, IsContact)
         spoil(scene, path);
         EXPECT_LT(separation(scene, path).margin, 0.0F) << number;
         ++number;
+    }
+}
+
+/// One threat of each kind 30 m beside the way, whose box is 1 m, and a number that is not finite.
+struct OneBadNumber {
+    ThreatKind kind;
+    std::function<void(Scene&)> spoil;
+};
+
+const OneBadNumber kBadNumbers[] = {
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].position.y() = kNan; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].velocity.x() = kNan; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].velocity.x() = -kInfinity; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].radius = kNan; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].radius = kInfinity; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].sigma_position = kNan; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].sigma_velocity = kInfinity; }},
+    {ThreatKind::track, [](Scene& s) { s.tracks[0].max_acceleration = kNan; }},
+    {ThreatKind::track, [](Scene& s) { s.own.sigma_position = kNan; }},
+    {ThreatKind::track, [](Scene& s) { s.k_sigma = kInfinity; }},
+    {ThreatKind::obstacle, [](Scene& s) { s.obstacles[0].shape.centre.x() = kNan; }},
+    {ThreatKind::obstacle, [](Scene& s) { s.obstacles[0].shape.radius = kNan; }},
+    {ThreatKind::obstacle, [](Scene& s) { s.own.sigma_position = kNan; }},
+    {ThreatKind::obstacle, [](Scene& s) { s.own.sigma_position = kInfinity; }},
+    {ThreatKind::obstacle, [](Scene& s) { s.k_sigma = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].circle.centre.y() = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].circle.radius = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].velocity.x() = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].velocity.y() = kInfinity; }},
+    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].bottom = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].top = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.limits.half_extents.x() = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.own.sigma_position = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.k_sigma = kNan; }},
+};
+
+struct BesideTheWay : testing::TestWithParam<OneBadNumber> {
+    BesideTheWay()
+    {
+        scene.leg(Vec3::Zero(), Vec3(100, 0, 0), 5.0F);
+        switch (GetParam().kind) {
+        case ThreatKind::track: scene.track(Vec3(20, 31, 0), Vec3::Zero(), 1.0F); break;
+        case ThreatKind::barrel: scene.barrel(Vec2(20, 31), 1.0F); break;
+        default: scene.obstacle(geometry::make_sphere(Vec3(20, 31, 0), 1.0F)); break;
+        }
+    }
+    [[nodiscard]] Separation now() const
+    {
+        WorkBudget budget(kPlenty);
+        return separation_at(scene.situation(), Vec3::Zero(), 0.0F, budget);
+    }
+    [[nodiscard]] bool meets(Conflict& out) const
+    {
+        WorkBudget budget(kPlenty);
+        return main_conflict(scene.situation(), way_of(scene.situation()), 10.0F, budget, out);
+    }
+    Scene scene;
+    const path::TimedPath path = flight({Vec3::Zero(), Vec3(20, 0, 0), Vec3(40, 0, 0)}, 4.0F);
+};
+
+TEST_P(BesideTheWay, ABadNumberIsContactAndAConflictNow)
+{
+    Conflict conflict;
+    ASSERT_GT(now().margin, 20.0F);
+    ASSERT_GT(separation(scene, path).margin, 20.0F);
+    ASSERT_FALSE(meets(conflict));
+    GetParam().spoil(scene);
+    EXPECT_LT(now().margin, 0.0F);
+    EXPECT_EQ(now().against, (ThreatRef{GetParam().kind, 0}));
+    EXPECT_LT(separation(scene, path).margin, 0.0F);
+    EXPECT_EQ(separation(scene, path).against, (ThreatRef{GetParam().kind, 0}));
+    ASSERT_TRUE(meets(conflict));
+    EXPECT_EQ(conflict.threat, (ThreatRef{GetParam().kind, 0}));
+    EXPECT_FALSE(conflict.margin >= 0.0F);
+}
+
+INSTANTIATE_TEST_SUITE_P(BadNumbers, BesideTheWay, testing::ValuesIn(kBadNumbers));
+
+/// The own place, and each place and velocity of a flight before its end.
+TEST(BadFlights, AreContactWithWhateverThereIs)
+{
+    for (const ThreatKind kind : {ThreatKind::track, ThreatKind::obstacle, ThreatKind::barrel}) {
+        Scene scene;
+        if (kind == ThreatKind::track) {
+            scene.track(Vec3(20, 31, 0), Vec3::Zero(), 1.0F);
+        } else if (kind == ThreatKind::barrel) {
+            scene.barrel(Vec2(20, 31), 1.0F);
+        } else {
+            scene.obstacle(geometry::make_sphere(Vec3(20, 31, 0), 1.0F));
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+            Vec3 own = Vec3::Zero();
+            own[axis] = kNan;
+            WorkBudget budget(kPlenty);
+            EXPECT_LT(separation_at(scene.situation(), own, 0.0F, budget).margin, 0.0F) << axis;
+            for (std::size_t point = 0; point < 2; ++point) {
+                path::TimedPath place = flight({Vec3::Zero(), Vec3(5, 0, 0), Vec3(10, 0, 0)}, 1.0F);
+                path::TimedPath velocity = place;
+                place.points[point].position[axis] = kNan;
+                velocity.points[point].velocity[axis] = kNan;
+                EXPECT_LT(separation(scene, place).margin, 0.0F) << static_cast<int>(kind) << axis << point;
+                EXPECT_LT(separation(scene, velocity).margin, 0.0F) << static_cast<int>(kind) << axis << point;
+            }
+        }
     }
 }
 

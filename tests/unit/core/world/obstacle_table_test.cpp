@@ -120,6 +120,21 @@ TEST_F(ObstacleTables, TheSmallestIdComesFirst)
     }
 }
 
+/// What lies before the table in memory is neither read for its order nor written.
+TEST_F(ObstacleTables, NothingBesideTheTableIsTouched)
+{
+    struct {
+        Obstacle before;
+        ObstacleTable table;
+    } place;
+    place.before.id = 4'000'000'000U;
+    for (const ObstacleId id : {9U, 5U, 1U}) {
+        EXPECT_EQ(place.table.update(ball(id, Vec3::Zero()), later, own), ObstacleStatus::created);
+        EXPECT_EQ(place.table.obstacles()[0].id, id);
+        EXPECT_EQ(place.before.id, 4'000'000'000U);
+    }
+}
+
 /// As far away as the farthest is not nearer.
 TEST_F(ObstacleTables, AnEquallyFarOneDoesNotReplaceTheFarthest)
 {
