@@ -22,9 +22,9 @@ TEST(VelocityFilterEdges, SettingsAtTheirEndsAreTaken)
         return filter.configure(s) == Unsafe::none;
     };
     EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = 1.0F; }));
-    EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = 2.0F; }));
+    EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = kMostCover; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 0.999F; }));
-    EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 2.001F; }));
+    EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 3.001F; }));
     EXPECT_TRUE(takes([](FilterSettings& s) { s.smoothing = CommandFilter::kMost; }));
     EXPECT_TRUE(takes([](FilterSettings& s) { s.tick = 0.0F; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.tick = -0.1F; }));

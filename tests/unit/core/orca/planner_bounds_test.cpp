@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Of many barrels the nearest ones, tracks that fly off, time between plans, and long horizons of the ORCA planner.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/unit/core/orca/orca_input.hpp"
+
+namespace jink::orca {
+namespace {
+
+using test::OrcaInput;
+using world::PlanStatus;
+
+/// Seven barrels about it at gaps from 1.0 m to 1.6 m, and room for five beside the airspace's own bounds: these five
+/// are kept, whatever the order, and none of the other two takes the place of one.
+TEST_F(OrcaInput, TheNearestBarrelsAreKeptInWhicheverOrderTheyCome)
+{
+    scene.airspace.has_floor = scene.airspace.has_ceiling = scene.airspace.has_keep_in = true;
+    scene.airspace.floor = -500.0F;
+    scene.airspace.ceiling = 500.0F;
+    scene.airspace.home = Vec3(1, 0, 0);
+    scene.airspace.keep_in_radius = 5000.0F;
+    const auto direction = [](int k) {
+        const float angle = 2.0F * kPi * static_cast<float>(k) / 7.0F;
+        return Vec3(std::cos(angle), std::sin(angle), 0.0F);
+    };
+    const auto gap = [](int k) { return 1.0F + 0.1F * static_cast<float>(k); };
+    const std::vector<std::vector<int>> orders{{0, 1, 2, 3, 4, 5, 6}, {6, 5, 4, 3, 2, 1, 0}, {3, 6, 0, 5, 1, 4, 2},
+                                               {5, 6, 4, 3, 0, 2, 1}, {2, 4, 1, 5, 0, 6, 3}, {0, 6, 1, 5, 2, 4, 3}};
+    for (const std::vector<int>& order : orders) {
+        scene.barrels.clear();
+        for (const int k : order) {
+            const Vec3 centre = (10.0F + kHalfWidth + gap(k)) * direction(k);
+            scene.barrel(world::Vec2(centre.x(), centre.y()), 10.0F).top = 60.0F;
+        }
+        for (int k = 0; k < 7; ++k) {
+            towards(direction(k));
+            const float along = command().dot(direction(k));
+            if (k < 5) {
+                EXPECT_NEAR(along, gap(k), 2e-3F) << k;
+            } else {
+                EXPECT_GT(along, gap(k) + 0.05F) << k << " is left to the final check";
+            }
+        }
+    }
+}
+
+/// One that flies off is nearest now: what is not known of it has grown since it was seen, and that is not taken back.
+TEST_F(OrcaInput, OneThatFliesOffIsAsUncertainAsItIsNow)
+{
+    scene.own.velocity = Vec3(5, 0, 0);
+    world::Track& track = scene.track(Vec3(30, 0, 30), Vec3(8, 0, 0));
+    track.stamp = scene.now - 2.0F;
+    track.sigma_velocity = 0.2F;
+    track.max_acceleration = 0.1F;
+    // Position and velocity are those of now; it is 2.1 s since it was seen when the command acts.
+    const float radius = 1.0F + 3.0F * 0.2F * 2.1F + 0.05F * 2.1F * 2.1F;
+    const float distance = 30.0F + 0.8F - 0.5F;
+    EXPECT_NEAR(nearest(), distance / (1.41421356F * (kHalfWidth + radius)), 2e-3F);
+}
+
+/// Plans at the same instant are timed by next to nothing, also where the commands are known and nothing is forgotten.
+TEST_F(OrcaInput, PlansAtTheSameInstantDoNotBlock)
+{
+    scene.airspace.has_keep_in = true;  // no way on
+    scene.airspace.home = Vec3(-100, 0, 0);
+    scene.airspace.keep_in_radius = 100.0F + kHalfWidth;
+    world::Commanded sent{Vec3::Zero(), scene.now};
+    scene.commanded = &sent;
+    for (int i = 0; i < 300; ++i) {
+        ASSERT_EQ(plan(), PlanStatus::found) << i;
+        ASSERT_EQ(planner.last().status & kBlocked, 0U) << i;
+    }
+}
+
+/// The flight is predicted to the end of the horizon, however long, in pieces of 0.2 s where there is room for them.
+TEST_F(OrcaInput, ThePathReachesTheEndOfTheHorizon)
+{
+    scene.own.velocity = Vec3(5, 0, 0);
+    for (const float horizon : {8.0F, 20.0F, 60.0F}) {
+        settings.horizon = horizon;
+        static_cast<void>(command());
+        EXPECT_NEAR(out.path.duration(), horizon, 1e-3F);
+        EXPECT_NEAR(out.path.points.back().position.x(), 5.0F * horizon, 1e-2F);
+    }
+    settings.horizon = 8.0F;
+    static_cast<void>(command());
+    EXPECT_LE(out.path.points.size(), 44U) << "40 pieces, and the first few periods";
+}
+
+/// A wing's reference ends, but it flies on at its speed; a multirotor ends there.
+TEST_F(OrcaInput, OnlyWhatCanStopSlowsDownBeforeTheEnd)
+{
+    scene.own.velocity = Vec3(5, 0, 0);
+    scene.leg(Vec3(-100, 0, 30), Vec3(3, 0, 30), 5.0F);
+    EXPECT_NEAR(command().x(), 3.0F, 1e-3F);
+    scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    EXPECT_NEAR(command().x(), 5.0F, 1e-3F);
+}
+
+/// Shared tracks are left half of the reaction only while they are fresh, at the instant of the plan and not of the
+/// command.
+TEST_F(OrcaInput, OfOldTracksNothingIsExpected)
+{
+    settings.stale = 0.5F;
+    settings.latency = 1.0F;
+    scene.own.velocity = Vec3(5, 0, 0);
+    world::Track& track = scene.track(Vec3(60, 0.5F, 30), Vec3(-5, 0, 0));
+    const float alone = command().y();
+    track.cooperative = true;
+    track.stamp = scene.now - 0.5F;
+    const float shared = command().y();
+    EXPECT_GT(shared, alone + 0.05F) << "half a second old, as it may be";
+    track.stamp = scene.now - 0.51F;
+    EXPECT_NEAR(command().y(), alone, 1e-3F);
+}
+
+}  // namespace
+}  // namespace jink::orca

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Ways along obstacles, sentence by sentence of their header: where a way ends, and what an exhausted budget says.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/unit/core/orca/obstacle_contract.hpp"
+
+namespace jink::orca {
+namespace {
+
+using test::ObstacleContract;
+
+/// What a coarse resolution leaves open is not clear: met 0.2 m before the end of the way.
+TEST_F(ObstacleContract, ACoarseResolutionDoesNotOverlookTheEndOfTheWay)
+{
+    settings.resolution = 0.5F;
+    add(geometry::make_sphere({5.8F, 0, 0}, 1.0F));
+    EXPECT_FALSE(way({1, 0, 0}, 4.0F).clear);
+    EXPECT_LE(way({1, 0, 0}, 4.0F).clear_until, 3.8F + 1e-3F);
+    const oracle::MapOfHulls hulls({{{4.8F, -1, -1}, {4.8F, 1, -1}, {4.8F, 0, 1}, {6, 0, 0}}});
+    map = &hulls.map();
+    obstacles.clear();
+    EXPECT_FALSE(way({1, 0, 0}, 4.0F).clear);
+}
+
+/// Within the resolution, but not at rest there: the step that is proven is taken.
+TEST_F(ObstacleContract, TheFirstStepIsTakenWhateverTheResolution)
+{
+    settings.resolution = 0.5F;
+    add(geometry::make_sphere({2.3F, 0, 0}, 1.0F));
+    const WayClearance found = way({1, 0, 0}, 4.0F);
+    EXPECT_FALSE(found.clear);
+    EXPECT_NEAR(found.clear_until, 0.3F, 1e-3F);
+}
+
+/// Contact at 3.677 m: a way that ends before it is clear, also where that shows at the second place only.
+TEST_F(ObstacleContract, AWayThatEndsShortlyBeforeTheContactIsClear)
+{
+    add(geometry::make_sphere({5, 1.5F, 0}, 1.0F));
+    const float contact = 5.0F - std::sqrt(4.0F - 2.25F);
+    for (const float length : {3.6F, 3.66F}) {
+        EXPECT_TRUE(way({1, 0, 0}, length).clear) << length;
+        EXPECT_EQ(way({1, 0, 0}, length).clear_until, length);
+    }
+    EXPECT_FALSE(way({1, 0, 0}, 3.7F).clear);
+    EXPECT_NEAR(way({1, 0, 0}, 3.7F).clear_until, contact, 1e-3F);
+}
+
+/// Without a way and without a budget nothing is known of the place itself.
+TEST_F(ObstacleContract, AWayOfNoLengthIsNotClearWithoutABudget)
+{
+    settings.vertical = 0.8F;
+    add(geometry::make_capsule({0.5F, -3, -2}, {0.5F, 3, 2}, 0.5F));
+    const WayClearance found = way({1, 0, 0}, 0.0F, 0);
+    EXPECT_FALSE(found.clear);
+    EXPECT_TRUE(found.bounded);
+    EXPECT_EQ(found.clear_until, 0.0F);
+}
+
+/// A contact that is proven stays so when the budget runs out at the next obstacle.
+TEST_F(ObstacleContract, AProvenContactIsNoBound)
+{
+    settings.vertical = 0.8F;
+    add(geometry::make_capsule({1.2F, -3, -2}, {1.2F, 3, 2}, 0.5F));
+    std::vector<WayClearance> alone;
+    for (std::uint32_t units = 0; units < 200; ++units) {
+        alone.push_back(way({1, 0, 0}, 4.0F, units));
+    }
+    ASSERT_FALSE(alone.back().clear || alone.back().bounded);
+    EXPECT_EQ(alone.back().clear_until, 0.0F) << "it is in its margin";
+    add(geometry::make_capsule({-1.2F, -3, -2}, {-1.2F, 3, 2}, 0.5F));
+    for (std::uint32_t units = 0; units < 200; ++units) {
+        const WayClearance both = way({1, 0, 0}, 4.0F, units);
+        EXPECT_FALSE(both.clear) << units;
+        if (!alone[units].bounded) {
+            EXPECT_FALSE(both.bounded) << units;
+            EXPECT_EQ(both.source, kFirstObstacleSource) << units;
+        }
+    }
+}
+
+/// Wherever the budget runs out the way is not said to be clear any farther than it is.
+TEST_F(ObstacleContract, AWayIsNeverClearBeyondWhatWasLookedAt)
+{
+    settings.vertical = 0.8F;
+    const oracle::MapOfHulls hulls({{{5, -2, -2}, {5, 2, -2}, {5, 0, 2}, {6, 0, 0}}});
+    map = &hulls.map();
+    add(geometry::make_capsule({5, 3, -3}, {4, 3, 3}, 0.5F));
+    const Vec3 velocity(1, 0.4F, 0.1F);
+    const WayClearance whole = way(velocity, 6.0F);
+    ASSERT_FALSE(whole.clear || whole.bounded);
+    std::uint32_t enough = 0;
+    for (std::uint32_t units = 0; units < 400; ++units) {
+        const WayClearance some = way(velocity, 6.0F, units);
+        EXPECT_FALSE(some.clear) << units;
+        EXPECT_LE(some.clear_until, whole.clear_until + 1e-4F) << units;
+        enough = some.bounded ? units + 1 : enough;
+    }
+    EXPECT_GT(enough, 3U);
+    EXPECT_LT(enough, 400U);
+    // And one that is clear needs all of its budget.
+    obstacles.clear();
+    const Vec3 beside(1, 0.6F, 0);
+    ASSERT_TRUE(way(beside, 6.0F).clear);
+    EXPECT_FALSE(way(beside, 6.0F, 0).clear);
+}
+
+}  // namespace
+}  // namespace jink::orca
