@@ -236,7 +236,7 @@ TEST(TellingBraking, FallbackThatKeepsClearIsAWarningOnceAndWorseIsSaidAfterIt)
     t->fly(30);
     EXPECT_EQ(t->said("jink: nothing safe"), 1);
     EXPECT_EQ(t->said("jink: no way around"), 1);
-    const auto clear = teller();
+    const auto clear = teller({{Param::track_sigma_p, 0.5F}});
     clear->fly(60);
     clear->put_ahead(25.0F, Vec3(-10.0F, 0.0F, 0.0F));
     clear->fly(150);

@@ -187,7 +187,7 @@ TEST(Echo, CeilingIsAsThickAsItIsWideAndNeverNarrowerThanTheBeam)
             const geometry::Shape s = ceiling_echo(Vec3(1, 2, 3), 6.0F, half_angle, half_width);
             const float wide = std::max(half_width, 6.0F * std::sin(half_angle));
             ASSERT_EQ(s.kind, geometry::ShapeKind::box);
-            EXPECT_EQ(s.half, Vec3(wide, wide, wide));
+            EXPECT_LT((s.half - Vec3(wide, wide, wide)).norm(), 1e-5F) << "the last bit is that of our own sine";
             EXPECT_EQ(s.centre.head<2>(), (Vec3(1, 2, 3).head<2>()));
             EXPECT_NEAR(s.centre.z() - s.half.z(), 3.0F + 6.0F * std::cos(half_angle), 1e-4F) << "its lower face";
         }
