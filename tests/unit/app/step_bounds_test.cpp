@@ -66,7 +66,8 @@ TEST(StepBounds, ACommandStaysWithinTheKeepInDistanceOfHome)
     EXPECT_GT(command({}, left, home).x(), 0.4F) << "past it on the right";
     EXPECT_GT(command({{Param::keep_in, 203.9F}}, left, home).x(), 0.4F) << "it is off";
     EXPECT_LT(command({{Param::bounds, 4.0F}, {Param::keep_in, 203.9F}}, left, home).x(), 0.2F);
-    EXPECT_GT(command({{Param::bounds, 4.0F}, {Param::keep_in, 203.9F}}, left).x(), 0.4F) << "about home, wherever it is";
+    EXPECT_GT(command({{Param::bounds, 4.0F}, {Param::keep_in, 203.9F}}, left).x(), 0.4F)
+        << "about home, wherever it is";
 }
 
 void set_by_wire(StepBench& b, std::string_view name, float value)
