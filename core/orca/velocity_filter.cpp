@@ -39,7 +39,7 @@ bool has_good_bias(const BiasSettings& s) noexcept
 bool has_good_numbers(const FilterSettings& s) noexcept
 {
     return is_valid(s.obstacles) && has_good_bias(s.bias) && is_positive(s.pair.conflict_ratio) &&
-           is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= kMostCover &&
+           is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= kLargestCover &&
            is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
            is_not_negative(s.tick) && is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) &&
            is_not_negative(s.loop.lag) && s.smoothing >= 1 && s.smoothing <= CommandFilter::kMost;

@@ -45,7 +45,7 @@ enum FilterBit : std::uint32_t {
 
 /// Largest FilterSettings::cover: a conflict region of half the warning region's size that covers the cylinder
 /// takes 2.83.
-inline constexpr float kMostCover = 3.0F;
+inline constexpr float kLargestCover = 3.0F;
 
 /// Everything that is set beforehand.
 struct FilterSettings {
@@ -54,7 +54,7 @@ struct FilterSettings {
     PairSettings pair;
     float half_width = 0.6F;   ///< own share of the warning region's radius [m], > 0
     float half_height = 0.3F;  ///< [m], > 0
-    float cover = 1.0F;        ///< in [1, kMostCover]; kCylinderCover to keep the cylinder of the same widths
+    float cover = 1.0F;        ///< in [1, kLargestCover]; kCylinderCover to keep the cylinder of the same widths
     std::uint32_t own_id = 0;
     Seconds stale = 1.0F;         ///< of a neighbour's age, after which nothing is expected of it
     float velocity_error = 0.1F;  ///< [m/s] of what is heard, for ages

@@ -22,7 +22,7 @@ TEST(VelocityFilterEdges, SettingsAtTheirEndsAreTaken)
         return filter.configure(s) == Unsafe::none;
     };
     EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = 1.0F; }));
-    EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = kMostCover; }));
+    EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = kLargestCover; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 0.999F; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 3.001F; }));
     EXPECT_TRUE(takes([](FilterSettings& s) { s.smoothing = CommandFilter::kMost; }));
