@@ -31,7 +31,7 @@ TimeInterval grown_box_interval(const PastBox& past, float reach, Seconds horizo
         if (speed > 0.0F) {
             inside.first = std::max(inside.first, (-edge - x) / speed);
             inside.last = std::min(inside.last, (edge - x) / speed);
-        } else if (std::abs(x) > edge) {
+        } else if (std::abs(x) > edge && speed == 0.0F) {
             return {1.0F, 0.0F};
         }
     }
@@ -77,7 +77,7 @@ TimeInterval around(const PastBox& past, const Instants& t, Seconds closest, flo
 std::optional<TimeInterval> contact_interval(const Vec3& half, const Motion& own, const Motion& threat, float radius,
                                              Seconds horizon) noexcept
 {
-    assert(half.minCoeff() >= 0.0F && radius >= 0.0F && horizon >= 0.0F);
+    assert(!(half.minCoeff() < 0.0F) && !(radius < 0.0F) && horizon >= 0.0F);
     const PastBox whole(half, threat.position - own.position, threat.velocity - own.velocity);
     const float reach = radius + kSlackShare * (whole.position().cwiseAbs().sum() + half.sum() + radius);
     const TimeInterval window = grown_box_interval(whole, reach, horizon);
@@ -98,13 +98,13 @@ std::optional<TimeInterval> contact_interval(const Vec3& half, const Motion& own
 std::optional<TimeInterval> contact_interval(const Motion& own, const Motion& threat, float radius,
                                              Seconds horizon) noexcept
 {
-    assert(radius >= 0.0F && horizon >= 0.0F);
+    assert(!(radius < 0.0F) && horizon >= 0.0F);
     const Vec3 position = threat.position - own.position;
     const Vec3 velocity = threat.velocity - own.velocity;
     const float reach = radius + kSlackShare * (position.cwiseAbs().sum() + radius);
     const float speed_squared = velocity.squaredNorm();
     if (speed_squared < detail::kAtRest * detail::kAtRest) {
-        return position.squaredNorm() <= reach * reach ? std::optional<TimeInterval>({0.0F, horizon}) : std::nullopt;
+        return position.squaredNorm() > reach * reach ? std::nullopt : std::optional<TimeInterval>({0.0F, horizon});
     }
     const Seconds closest = -position.dot(velocity) / speed_squared;
     const float depth = reach * reach - (position + closest * velocity).squaredNorm();

@@ -37,7 +37,8 @@ struct Approach {
 /// @param threat   motion of the sphere's centre
 /// @param radius   of the sphere [m], >= 0
 /// @param horizon  interval length [s], > 0
-/// @return first and last contact within [0, horizon], or nothing. Touching counts as contact.
+/// @return first and last contact within [0, horizon], or nothing. Touching counts as contact, and so does a NaN in
+///         `half`, `radius` or either motion where the other numbers do not exclude contact.
 ///
 /// Exact for straight motion but for float rounding, which works to the safe side. With
 /// e = 1e-6 * (sum of the relative position's magnitudes + sum of `half` + radius) [m]:

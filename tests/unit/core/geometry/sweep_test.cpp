@@ -43,6 +43,19 @@ TEST(ContactInterval, RoundsTheCornerInsteadOfFillingIt)
     EXPECT_TRUE(contact_interval(kSweepHalf, {}, moving({5.57F, -1.43F, 3.57F}, {-1.0F, 1.0F, 0.0F}), 1.0F, 100.0F));
 }
 
+TEST(ContactInterval, WhatIsNotANumberIsContact)
+{
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const Motion far = moving({50.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F});
+    ASSERT_FALSE(contact_interval(kSweepHalf, {}, far, 1.0F, 5.0F));
+    EXPECT_TRUE(contact_interval(kSweepHalf, {}, far, nan, 5.0F));
+    EXPECT_TRUE(contact_interval(Vec3(nan, 1.0F, 1.0F), {}, far, 1.0F, 5.0F));
+    EXPECT_TRUE(contact_interval(kSweepHalf, {}, moving({nan, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}), 1.0F, 5.0F));
+    EXPECT_TRUE(contact_interval(kSweepHalf, {}, moving({50.0F, 0.0F, 0.0F}, {nan, 0.0F, 0.0F}), 1.0F, 5.0F));
+    EXPECT_TRUE(contact_interval({}, at(50.0F, 0.0F, 0.0F), nan, 5.0F)) << "spheres at rest";
+    EXPECT_TRUE(contact_interval({}, at(nan, 0.0F, 0.0F), 1.0F, 5.0F));
+}
+
 TEST(ContactInterval, TouchingAFaceCounts)
 {
     const auto along = contact_interval(kSweepHalf, {}, moving({2.0F, -10.0F, 0.0F}, {0.0F, 1.0F, 0.0F}), 1.0F, 100.0F);
