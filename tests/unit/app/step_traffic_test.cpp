@@ -131,7 +131,8 @@ TEST(StepTraffic, AnUncertainHeightIsAsUncertainAsItsSource)
         EXPECT_EQ(b.last.uncertain_heights, found > 0.0F ? 1U : 0U);
         return found;
     };
-    EXPECT_EQ(half_height(link::HeightSource::geometric, 3.0F), 0.0F);
+    EXPECT_EQ(half_height(link::HeightSource::geometric, 3.0F), 3.0F) << "no barometer";
+    EXPECT_EQ(half_height(link::HeightSource::geometric, 0.0F), 0.0F);
     EXPECT_EQ(half_height(link::HeightSource::pressure, 3.0F), 40.0F);
     EXPECT_EQ(half_height(link::HeightSource::compared, 3.0F), 11.0F);
 }
