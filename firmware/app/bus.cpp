@@ -5,6 +5,7 @@
 
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/app/near_field.hpp"
+#include "firmware/link/geoid.hpp"
 #include "firmware/link/mavlink/geodesy.hpp"
 
 namespace jink::app {
@@ -65,13 +66,19 @@ void Coprocessor::follow_origin() noexcept
     placed_by_ = origin ? origin : placed_by_;
 }
 
-/// One frame for both: the autopilot's as soon as there is one. A place in another is worse than none.
+/// One frame for both: the autopilot's as soon as there is one. A place in another is worse than none. Geometric
+/// heights of the bus hold both readings, as those of the link do.
 ///
 /// @param bus_tracks  how many of the inbox's tracks came from the bus: they are the first
 void Coprocessor::settle_frame(std::size_t bus_tracks) noexcept
 {
     if (bus_ == nullptr || !(has_autopilot_ || inbox_.has_autopilot)) {
         return;
+    }
+    for (std::size_t i = 0; i < bus_tracks; ++i) {
+        if (inbox_.tracks[i].height == link::HeightSource::geometric) {
+            link::hold_both_readings(inbox_.tracks[i], link_.undulation());
+        }
     }
     const bool rebooted = inbox_.has_autopilot && inbox_.autopilot.rebooted;
     const std::optional<link::GlobalPosition> origin = link_.origin();

@@ -45,7 +45,7 @@ float half_height_of(const link::TrackReport& report, const Configuration& c) no
     case link::HeightSource::compared: return report.height_spread + c.k_sigma * c.sigma_compared;
     case link::HeightSource::geometric: break;
     }
-    return 0.0F;
+    return report.height_spread;
 }
 
 }  // namespace

@@ -124,6 +124,8 @@ public:
 
     /// Where the autopilot's local frame has its origin; nothing while that is not known.
     [[nodiscard]] virtual std::optional<GlobalPosition> origin() const noexcept = 0;
+    /// How far sea level lies above the ellipsoid around the vehicle [mm]; nothing while that is not known.
+    [[nodiscard]] virtual std::optional<std::int32_t> undulation() const noexcept { return std::nullopt; }
 
     /// Writes what is to be said when the processor faults, as the wire carries it: HEARTBEAT (EMERGENCY with `hold`,
     /// else CRITICAL), the request of the hold mode if `hold`, twice, and `text` unless it is empty. Nothing is queued.

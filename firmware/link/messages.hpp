@@ -54,7 +54,7 @@ struct OwnStateReport {
 enum class HeightSource : std::uint8_t {
     geometric,  ///< by satellites, or told as exact
     pressure,   ///< pressure altitude, and our own is not known: the air pressure at sea level is unknown
-    compared,   ///< pressure altitude beside our own: TrackReport::height_spread
+    compared,   ///< pressure altitude beside our own
 };
 
 /// A sighting of another aircraft.
@@ -73,8 +73,8 @@ struct TrackReport {
     bool unmanned = false;  ///< says so, or is a vehicle like ours
     bool helpless = false;  ///< says that it will not give way: disarmed, on the ground, in an emergency
     HeightSource height = HeightSource::geometric;
-    /// compared: the height as told and the height by the difference of pressures both lie within this of `position`
-    /// [m].
+    /// The possible readings of the height lie within this of `position` [m]. compared: as reported, and by the
+    /// difference of pressures. geometric: above sea level and above the ellipsoid; 0: they are the same or not known.
     float height_spread = 0.0F;
 };
 

@@ -18,7 +18,8 @@
 // * ahrs.Solution: attitude, taken as the turn from body (FRD) to world (NED). Not of length 1: out_of_range.
 // * trafficmonitor.TrafficReport: a track. Without a valid position or an altitude: out_of_range; before there is an
 //   origin: no_origin. traffic_type 19 (point obstacle): at_rest; 14 (UAV): unmanned. Stamp = now - tslc.
-//   alt_type 2 (WGS84): a geometric height. All others, unknown (0) included, count as a pressure altitude.
+//   alt_type 2 (WGS84): a geometric height, as reported; the application, which knows the undulation, holds both
+//   readings (geoid.hpp). All others, unknown (0) included, count as a pressure altitude.
 // * range_sensor.Measurement, proximity_sensor.Proximity: a reading along the beam, turned by the attitude, which may
 //   not be older than 1 s (no_origin). "Too close" stands at what it says, at 0 where that is no distance; "too far" is
 //   nothing seen; undefined, no data, not connected, or a beam of undefined orientation: out_of_range.

@@ -41,11 +41,13 @@
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
 //   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
 //   emitter_type 19 (point obstacle): at_rest, velocity zero; 14 (UAV): unmanned. Ids: track_ids.hpp.
-//   Stamp = now - tslc (the application takes the assumed latency off). altitude_type 1 is geometric; 0 and all others
-//   are pressure altitudes. Senders differ in whether these refer to the standard 1013.25 hPa or to QNH: where our own
-//   pressure altitude is known (SCALED_PRESSURE not older than 10 s, beside own height), the report holds both
-//   readings, the altitude as told and our own height plus the difference of pressure altitudes
-//   (HeightSource::compared).
+//   Stamp = now - tslc (the application takes the assumed latency off). altitude_type 1 is geometric: senders differ in
+//   whether it is above sea level or above the ellipsoid. Where the undulation is known (GPS_RAW_INT of the autopilot
+//   with a 3D fix, alt_ellipsoid not 0, at most 120 m apart; the last one counts, however old) the report holds both
+//   readings (geoid.hpp); until then the altitude as reported. 0 and all others are pressure altitudes. Senders differ
+//   in whether these refer to the standard 1013.25 hPa or to QNH: where our own pressure altitude is known
+//   (SCALED_PRESSURE not older than 10 s, beside own height), the report holds both readings, the altitude as told and
+//   our own height plus the difference of pressure altitudes (HeightSource::compared).
 // * GLOBAL_POSITION_INT of other systems' autopilots (component 1): a track by its system id. Stamped by that system's
 //   boot clock (Neighbours). Latitude and longitude 0: out_of_range. helpless while its last HEARTBEAT says disarmed.
 //   Their LOCAL_POSITION_NED is passed over: it is about an origin of their own.
@@ -153,6 +155,7 @@ public:
     {
         return origin_rank_ > 0 ? std::optional(origin_) : std::nullopt;
     }
+    [[nodiscard]] std::optional<std::int32_t> undulation() const noexcept override { return undulation_; }
     [[nodiscard]] world::TrackId own_track() const noexcept override
     {
         return system_ != 0 ? track_of_system(system_) : 0;
@@ -285,11 +288,10 @@ private:
 
     int origin_rank_ = 0;  ///< 0 none, 1 own global less local position, 2 GPS_GLOBAL_ORIGIN
     GlobalPosition origin_;
-    bool has_undulation_ = false;
     bool has_pressure_ = false;
     float height_over_pressure_ = 0.0F;  ///< own height less own pressure altitude [m]
     TimePoint pressure_heard_;
-    std::int32_t undulation_ = 0;              ///< of the geoid over the ellipsoid, here [mm]
+    std::optional<std::int32_t> undulation_;   ///< of the geoid over the ellipsoid, here [mm]
     std::array<std::uint8_t, 18> own_name_{};  ///< to traffic management; zeros: not known
     bool has_home_on_globe_ = false;
     GlobalPosition home_on_globe_;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/angle.hpp"
+#include "firmware/link/geoid.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
 #include "firmware/link/track_ids.hpp"
@@ -126,10 +127,12 @@ void Endpoint::on_adsb(const Context& c) noexcept
 }
 
 /// Two readings of a pressure altitude are in use: against the standard pressure (as transponders send it) and against
-/// QNH (as the message's name says). The report holds both where our own pressure altitude is known.
+/// QNH (as the message's name says). The report holds both where our own pressure altitude is known. A geometric one is
+/// above sea level by the message's definition, above the ellipsoid where a transponder's is passed on.
 void Endpoint::judge_height(const AdsbVehicle& m, TimePoint now, TrackReport& report) noexcept
 {
     if (m.altitude_type == kGeometricAltitude) {
+        hold_both_readings(report, undulation_);
         return;
     }
     ++diagnostics_.pressure_heights;
@@ -188,8 +191,8 @@ void Endpoint::on_neighbour(const Context& c) noexcept
     deliver(report, c.inbox);
 }
 
-/// What lies between mean sea level, of which all other heights are, and the ellipsoid, of which UTM_GLOBAL_POSITION's
-/// are: around here it is the same for everybody.
+/// What lies between mean sea level, of which own heights are, and the ellipsoid, of which UTM_GLOBAL_POSITION's are:
+/// around here it is the same for everybody.
 void Endpoint::on_gps(const Context& c) noexcept
 {
     GpsRawInt m;
@@ -200,7 +203,6 @@ void Endpoint::on_gps(const Context& c) noexcept
         return;
     }
     undulation_ = static_cast<std::int32_t>(undulation);
-    has_undulation_ = true;
 }
 
 /// Our own autopilot's says by which name we are known.
@@ -223,7 +225,7 @@ void Endpoint::on_utm(const Context& c) noexcept
         return;
     }
     constexpr unsigned kNeeded = kUtmHasPosition | kUtmHasAltitude;
-    const std::int64_t height = static_cast<std::int64_t>(m.alt) - (has_undulation_ ? undulation_ : 0);
+    const std::int64_t height = static_cast<std::int64_t>(m.alt) - undulation_.value_or(0);
     const GlobalPosition where{m.lat, m.lon, static_cast<std::int32_t>(height)};
     if (!can_place((m.flags & kNeeded) == kNeeded && is_place(where) && height == where.alt)) {
         return;
@@ -235,7 +237,7 @@ void Endpoint::on_utm(const Context& c) noexcept
     report.stamp = c.now;
     report.position = to_local(where, origin_);
     report.sigma_position = kMillimetre * static_cast<float>(std::max(m.h_acc, m.v_acc));
-    report.sigma_position = has_undulation_ ? report.sigma_position : report.sigma_position + kUnknownUndulation;
+    report.sigma_position = undulation_ ? report.sigma_position : report.sigma_position + kUnknownUndulation;
     report.has_velocity = (m.flags & kUtmHasLevelVelocity) != 0;
     if (report.has_velocity) {
         const bool climb_known = (m.flags & kUtmHasVerticalVelocity) != 0;

@@ -102,6 +102,36 @@ TEST(CoprocessorBus, TrafficFromTheBusIsAvoidedOverTheSerialLine)
     EXPECT_TRUE(b->heard.said("has control")) << "what is said to the autopilot is said to the bus";
 }
 
+/// Ahead at our height, reported 48 m higher: above the ellipsoid.
+TEST(CoprocessorBus, TrafficFromTheBusAboveTheEllipsoidIsInConflictOnceTheLinkKnowsTheUndulation)
+{
+    for (const bool known : {false, true}) {
+        const auto b = bench();
+        b->fly(60);
+        if (known) {
+            GpsRawInt gps;
+            gps.alt = 538'000;
+            gps.alt_ellipsoid = 586'000;
+            gps.fix_type = 3;
+            b->f.feed(gps);
+        }
+        const Vec3 reported = b->f.position + Vec3(0.0F, 45.0F, 48.0F);
+        bool conflict = false;
+        for (int i = 0; i < 100; ++i) {
+            if (i % 10 == 0) {
+                can::TrafficReport m = BusBench::traffic(reported);
+                m.traffic_type = can::TrafficReport::kPointObstacle;
+                m.altitude_type = can::TrafficReport::kGeometricAltitude;
+                b->give(m, 21);
+            }
+            const StepReport report = b->tick();
+            conflict = conflict || report.guidance.has_conflict;
+            ASSERT_EQ(report.uncertain_heights, known && report.tracks > 0 ? 1U : 0U);
+        }
+        EXPECT_EQ(conflict, known);
+    }
+}
+
 TEST(CoprocessorBus, TheAutopilotsOwnStateWinsWhileItIsFresh)
 {
     const auto b = bench();

@@ -106,6 +106,36 @@ TEST(CoprocessorCrowd, APressureAltitudeThatIsWrongIsStillAvoided)
     EXPECT_EQ(hits, 0) << "of " << flown;
 }
 
+/// At our height in truth, sea level 48 m above the ellipsoid or 35 m below; the sender may mean either.
+TEST(CoprocessorCrowd, AGeometricAltitudeAboveTheEllipsoidIsStillAvoided)
+{
+    int hits = 0;
+    int flown = 0;
+    for (const std::int32_t undulation : {48'000, -35'000}) {
+        for (const bool above_ellipsoid : {true, false}) {
+            for (int k = 0; k < kEncounters; k += 4) {
+                Encounter e(k);
+                const float offset = above_ellipsoid ? 1e-3F * static_cast<float>(undulation) : 0.0F;
+                const float least = e.fly([&](int i) {
+                    if (i % 100 == 0) {
+                        GpsRawInt m;
+                        m.alt = 538'000;
+                        m.alt_ellipsoid = m.alt + undulation;
+                        m.fix_type = 3;
+                        e.f->feed(m);
+                    }
+                    if (i % 10 == 1) {
+                        e.f->feed(seen_at(7, e.where + offset * Vec3::UnitZ(), e.velocity), 156);
+                    }
+                });
+                hits += least < kHit ? 1 : 0;
+                ++flown;
+            }
+        }
+    }
+    EXPECT_EQ(hits, 0) << "of " << flown;
+}
+
 /// What is said to be 60 m above may be at our height; where satellites say so, it is 60 m above.
 TEST(CoprocessorCrowd, HeightsOfSatellitesStillSeparate)
 {

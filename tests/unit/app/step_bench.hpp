@@ -83,6 +83,7 @@ struct StepLink final : link::Link {
     void request_heartbeat() noexcept override { requests.emplace_back("heartbeat"); }
     void request_hold_mode() noexcept override { requests.emplace_back("hold"); }
     std::optional<link::GlobalPosition> origin() const noexcept override { return where; }
+    std::optional<std::int32_t> undulation() const noexcept override { return above_ellipsoid; }
     std::size_t compose_last_words(std::span<std::byte> /*out*/, bool hold, std::string_view text) noexcept override
     {
         last_words = {hold, std::string(text)};
@@ -93,6 +94,7 @@ struct StepLink final : link::Link {
     link::Inbox in;
     std::vector<link::TrackReport> tracks;  ///< arrive with the next step, behind those of the bus
     std::optional<link::GlobalPosition> where;
+    std::optional<std::int32_t> above_ellipsoid;  ///< undulation [mm]
     std::vector<std::byte> waiting;
 
     std::size_t bytes_in = 0;

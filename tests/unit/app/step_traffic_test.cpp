@@ -131,9 +131,43 @@ TEST(StepTraffic, AnUncertainHeightIsAsUncertainAsItsSource)
         EXPECT_EQ(b.last.uncertain_heights, found > 0.0F ? 1U : 0U);
         return found;
     };
-    EXPECT_EQ(half_height(link::HeightSource::geometric, 3.0F), 0.0F);
+    EXPECT_EQ(half_height(link::HeightSource::geometric, 3.0F), 3.0F) << "no barometer";
+    EXPECT_EQ(half_height(link::HeightSource::geometric, 0.0F), 0.0F);
     EXPECT_EQ(half_height(link::HeightSource::pressure, 3.0F), 40.0F);
     EXPECT_EQ(half_height(link::HeightSource::compared, 3.0F), 11.0F);
+}
+
+/// The bus does not know the undulation, the link does. What came over the link holds both readings already.
+TEST(StepTraffic, OfTheBusHoldsBothReadingsOfAGeometricHeight)
+{
+    using link::HeightSource;
+    const auto track = [](HeightSource source, std::optional<std::int32_t> undulation, bool of_bus) {
+        StepBench b({{Param::sigma_baro, 20.0F}, {Param::k_sigma, 2.0F}}, StepBench::Bus::there);
+        b.wire.where = link::GlobalPosition{473977420, 85455940, 488000};
+        b.fly(2);
+        b.wire.above_ellipsoid = undulation;
+        link::TrackReport r = b.track_report(1, Vec3(100.0F, 0.0F, 50.0F));
+        r.height = source;
+        (of_bus ? b.bus.tracks : b.wire.tracks).push_back(r);
+        b.hear_own();
+        b.step();
+        const auto tracks = b.coprocessor.tracks(b.now);
+        EXPECT_EQ(tracks.size(), 1U);
+        return tracks.empty() ? world::Track{} : tracks[0];
+    };
+    for (const std::int32_t undulation : {48'000, -35'000}) {
+        const world::Track t = track(HeightSource::geometric, undulation, true);
+        EXPECT_NEAR(t.half_height, undulation > 0 ? 24.0F : 17.5F, 1e-3F);
+        EXPECT_NEAR(t.position.z(), undulation > 0 ? 26.0F : 67.5F, 1e-3F);
+    }
+    for (const world::Track& t :
+         {track(HeightSource::geometric, std::nullopt, true), track(HeightSource::geometric, 48'000, false)}) {
+        EXPECT_EQ(t.half_height, 0.0F);
+        EXPECT_NEAR(t.position.z(), 50.0F, 1e-3F);
+    }
+    const world::Track t = track(HeightSource::pressure, 48'000, true);
+    EXPECT_EQ(t.half_height, 40.0F);
+    EXPECT_NEAR(t.position.z(), 50.0F, 1e-3F);
 }
 
 TEST(StepTraffic, OwnTransponderIsNoTraffic)

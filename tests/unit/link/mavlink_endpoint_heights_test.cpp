@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pressure altitudes of traffic, traffic of other systems, and the ranges of ArduPilot's proximity library.
+// Heights of traffic by a barometer and by satellites, traffic of other systems, and the ranges of ArduPilot's
+// proximity library.
 #include <algorithm>
 #include <cmath>
 
@@ -46,6 +47,15 @@ protected:
         ScaledPressure m;
         m.press_abs = hectopascal;
         autopilot(m);
+    }
+    /// Sea level lies `undulation` [mm] above the ellipsoid here.
+    void gps(std::int32_t undulation, std::uint8_t fix = 3, std::uint8_t component = 1)
+    {
+        GpsRawInt m;
+        m.alt = 518000;
+        m.alt_ellipsoid = m.alt + undulation;
+        m.fix_type = fix;
+        from(kSystem, component, m);
     }
     TrackReport heard(std::uint8_t altitude_type, std::uint8_t system = kSystem, std::uint8_t component = 156)
     {
@@ -94,6 +104,58 @@ TEST_F(MavlinkEndpointHeights, BothReadingsOfAPressureAltitudeAreHeld)
     }
     EXPECT_EQ(heard(1).height, HeightSource::geometric);
     EXPECT_NEAR(inbox->tracks[0].position.z(), 100.0F, 0.01F);
+}
+
+/// MAVLink does not say whether a geometric altitude is above sea level or above the ellipsoid: in Germany 48 m apart.
+TEST_F(MavlinkEndpointHeights, BothReadingsOfAGeometricAltitudeAreHeld)
+{
+    for (const std::int32_t undulation : {48'000, -35'000, 120'000, -120'000, 1}) {  // changes in flight
+        gps(undulation);
+        const TrackReport t = heard(1);
+        EXPECT_EQ(t.height, HeightSource::geometric);
+        const float above_ellipsoid = 100.0F - 1e-3F * static_cast<float>(undulation);
+        EXPECT_NEAR(t.position.z() - t.height_spread, std::min(100.0F, above_ellipsoid), 0.01F) << undulation;
+        EXPECT_NEAR(t.position.z() + t.height_spread, std::max(100.0F, above_ellipsoid), 0.01F) << undulation;
+    }
+    EXPECT_EQ(count().pressure_heights, 0U);
+}
+
+TEST_F(MavlinkEndpointHeights, AGeometricAltitudeIsAsReportedUntilTheUndulationIsKnown)
+{
+    const auto as_reported = [&] {
+        const TrackReport t = heard(1);
+        return std::abs(t.position.z() - 100.0F) < 0.01F && t.height_spread == 0.0F;
+    };
+    EXPECT_TRUE(as_reported());
+    EXPECT_FALSE(endpoint->undulation());
+    gps(48'000, 2);  // no 3D fix
+    gps(-518'000);   // ellipsoid height 0: not said
+    gps(121'000);    // no geoid on earth
+    gps(-121'000);
+    gps(48'000, 3, 156);  // not the autopilot's
+    EXPECT_TRUE(as_reported());
+    EXPECT_FALSE(endpoint->undulation());
+    gps(48'000);
+    EXPECT_NEAR(heard(1).height_spread, 24.0F, 0.01F);
+    gps(121'000);
+    gps(10'000, 2);
+    EXPECT_NEAR(heard(1).height_spread, 24.0F, 0.01F) << "the last good one counts";
+    EXPECT_EQ(endpoint->undulation(), 48'000);
+    gps(0);
+    EXPECT_TRUE(as_reported()) << "sea level and ellipsoid are the same here";
+    EXPECT_EQ(endpoint->undulation(), 0);
+}
+
+TEST_F(MavlinkEndpointHeights, TheUndulationLeavesPressureAltitudesAlone)
+{
+    gps(48'000);
+    EXPECT_NEAR(heard(0).position.z(), 100.0F, 0.01F);
+    EXPECT_EQ(heard(0).height_spread, 0.0F);
+    pressure(standard_pressure(518.0 - 80.0));
+    const TrackReport t = heard(0);
+    EXPECT_EQ(t.height, HeightSource::compared);
+    EXPECT_NEAR(t.position.z(), 140.0F, 0.5F);
+    EXPECT_NEAR(t.height_spread, 40.0F, 0.5F);
 }
 
 TEST_F(MavlinkEndpointHeights, AnOwnPressureThatIsNoneIsNotUsed)
