@@ -82,7 +82,9 @@ RoutePieces::RoutePieces(const Situation& situation, const Way& way, Seconds loo
         }
         start += segment.length;
     }
-    if (now_ < lookahead_ || pieces_.empty()) {
+    if (now_ < lookahead_ && !pieces_.empty() && flown_ < way.length - 2.0F * kNoDistance) {
+        pieces_.back().end = lookahead_;  // what was too short for a piece is missing at the end
+    } else if (now_ < lookahead_ || pieces_.empty()) {
         const Vec3 end = way.length > 0.0F ? way.ahead.route->at(start).position : way.origin;
         pieces_.unchecked_push_back({{end, Vec3::Zero()}, now_, lookahead_, flown_});
     }

@@ -212,6 +212,26 @@ TEST_F(RoutePiecesTest, APartWithoutExtentIsPassed)
     EXPECT_NEAR(all[2].own.position.y(), 30.0F, 1e-4F);
 }
 
+/// What is too short for a piece does not take the vehicle to the route's end: it flies until the time is over.
+TEST_F(RoutePiecesTest, WhatIsTooShortForAPieceIsNotSpentAtTheRoutesEnd)
+{
+    leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
+    leg(Vec3(20, 0, 0), Vec3(20, 300, 0));
+    // 0.9 mm short of the corner it joins the route, in sight of it from the side.
+    scene.reference.leg.speed = 1.0F;
+    scene.own.position = Vec3(8.0F - 0.0009F, 4, 0);
+    const Way w = way();
+    ASSERT_NEAR(w.ahead.joined_at, 20.0F - 0.0009F, 1e-5F);
+    const RoutePieces all = pieces(w, 60.0F);
+    ASSERT_EQ(all.size(), 2U);
+    follow_on(all, 60.0F);
+    EXPECT_NEAR(all[1].own.velocity.y(), 1.0F, 1e-4F);
+    scene.track(Vec3(20, 300, 0), Vec3::Zero(), 1.0F);
+    Conflict found;
+    WorkBudget budget(kPlenty);
+    EXPECT_FALSE(main_conflict(scene.situation(), w, 60.0F, budget, found)) << "it is not there for minutes";
+}
+
 /// Exactly a millimetre from the end the way has no length, and the route's direction.
 TEST_F(RoutePiecesTest, AMillimetreFromTheEndNothingIsLeft)
 {
