@@ -56,6 +56,26 @@ TEST(LimitContract, TheReferenceKeepsToTheLeastSpeed)
     EXPECT_FALSE(limit_set(limits, {1.1e-6F, 0, 0}).stalled);
 }
 
+/// A turn of nearly a right angle is the most there is, less 0.01 rad.
+TEST(LimitContract, TheTurnEndsShortOfARightAngle)
+{
+    for (const float turn : {1.5F, 1.57F, 1.58F, 2.0F, 9.0F}) {
+        MotionLimits limits;
+        limits.turn_radius = limits.period / turn;
+        const LimitSet set = limit_set(limits, {1, 0, 0});
+        ASSERT_EQ(set.size, 2U);
+        const float most = std::min(turn, 0.5F * kPi - 0.01F);
+        const auto worst = [&](float by) {
+            const Vec3 turned(std::cos(by), std::sin(by), 0.0F);
+            return std::max(set.planes[0].violation(turned), set.planes[1].violation(turned));
+        };
+        for (const float side : {-1.0F, 1.0F}) {
+            EXPECT_LT(worst(side * (most - 0.002F)), 0.0F) << turn;
+            EXPECT_GT(worst(side * (most + 0.002F)), 0.0F) << turn;
+        }
+    }
+}
+
 /// A rate that is no less than the top speed needs no half-space.
 TEST(LimitContract, RatesBeyondTheTopSpeedBindNothing)
 {
