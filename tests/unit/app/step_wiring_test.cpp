@@ -57,6 +57,66 @@ TEST(StepWiring, AModeSeenBetweenTwoStepsIsAChoiceOfSomebodyElse)
     EXPECT_EQ(f.coprocessor.takeover_diagnostics().overruled, 1U);
 }
 
+/// Hands off while any conflict is predicted, also one that is too far away yet to be avoided.
+TEST(StepWiring, HandsStayOffWhileAConflictIsPredicted)
+{
+    StepFlight f;
+    f.mast = kMastAhead;
+    ASSERT_TRUE(f.until(StepFlight::ours));
+    f.intruder = f.position + Vec3(0.0F, 50.0F, 0.0F);
+    f.intruder_velocity = Vec3(0.0F, -6.0F, 0.0F);
+    let_pass(f, 11);
+    ASSERT_EQ(f.last.control, Control::ours);
+    f.mode = link::FlightMode::hold;
+    static_cast<void>(beat_in(f, f.mode));
+    f.tick();
+    ASSERT_EQ(f.last.control, Control::overruled);
+    int waits = 0;
+    for (int i = 0; i < 75; ++i) {
+        f.tick();
+        ASSERT_TRUE(f.last.guidance.has_conflict) << i;
+        EXPECT_EQ(f.last.control, Control::overruled) << i;
+        waits += f.last.guidance.wants_control ? 0 : 1;
+    }
+    EXPECT_GT(waits, 5) << "the vehicle stands, and the intruder is far";
+    f.intruder.reset();
+    let_pass(f, 400);
+    EXPECT_EQ(f.last.control, Control::autopilot) << "over";
+}
+
+/// A link that breaks its promise: every number that it hands over is finite.
+TEST(StepWiring, NoCommandThatIsNotFiniteGoesOutWhateverTheOwnStateSays)
+{
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        for (int field = 0; field < 8; ++field) {
+            SCOPED_TRACE(testing::Message() << bad << " in field " << field);
+            StepFlight f;
+            f.mast = kMastAhead;
+            ASSERT_TRUE(f.until(StepFlight::ours));
+            for (int i = 0; i < 12; ++i) {
+                vehicle::VehicleState& own = f.hear_own().state;
+                if (field < 3) {
+                    own.position[field] = bad;
+                } else if (field < 6) {
+                    own.velocity[field - 3] = bad;
+                } else {
+                    (field == 6 ? own.yaw : own.sigma_position) = bad;
+                }
+                if (i % 10 == 0) {
+                    f.hear_mast(1, kMastAhead);
+                }
+                f.step();
+                EXPECT_TRUE(is_finite(f.wire.velocities.back())) << i;
+                if (field >= 3 && field < 6) {
+                    EXPECT_TRUE(f.has(Fault::not_finite)) << i;
+                    EXPECT_NE(f.last.control, Control::ours) << i;
+                    EXPECT_FALSE(f.last.setpoint_sent) << i;
+                }
+            }
+        }
+    }
+}
+
 /// A HEARTBEAT that is found after a stall may have waited for us: no mode is asked for because of it.
 TEST(StepWiring, AHeartbeatThatWaitedForUsIsNoEvidence)
 {
