@@ -151,15 +151,36 @@ TEST_F(BluntCorners, AFifthAsFarBrokenIs)
 /// Half-spaces that may not give way hold those that do by many times their part.
 TEST_F(BluntCorners, LargeSharesAre)
 {
-    for (const float yield : {1.0F, 0.02F}) {
+    for (const float yield : {1.0F, 0.06F, 0.04F, 0.02F}) {
         planes = {below({1, 1, 1}, -0.5F), below({1, -1, -1}, -0.5F), below({-1, 1, -1}, -0.5F),
                   below({-1, -1, 1}, -0.5F)};
         for (HalfSpace& plane : planes) {
             plane.yield = yield;
         }
-        EXPECT_EQ(refined(), yield < 0.04F) << "their sum is one over the yield " << work();
+        EXPECT_EQ(refined(), yield < 0.05F) << "their sum is one over the yield, twenty are too many " << work();
         EXPECT_NEAR(solution.broken[2], 0.5F / yield, 1e-3F / yield);
     }
+}
+
+/// A contradiction of no more than rounding times the shares.
+TEST_F(BluntCorners, SmallContradictionsAre)
+{
+    for (const float by : {0.5F, 3e-5F}) {
+        planes = {below({1, 1, 1}, -by), below({1, -1, -1}, -by), below({-1, 1, -1}, -by), below({-1, -1, 1}, -by)};
+        EXPECT_EQ(refined(), by < 4e-5F) << work();
+        EXPECT_NEAR(solution.broken[2], by, 1e-5F);
+    }
+}
+
+/// A ball that is a point counts as one more that holds it.
+TEST_F(BluntCorners, ABallThatIsAPointBesideTwoIs)
+{
+    balls = {{Vec3::Zero(), 20.0F}, {{1, 0, 0}, 0.0F}};
+    planes = {below({1, 0, 0}, 1.0F)};
+    EXPECT_LE(work(), 32U);
+    planes.push_back(below({0, 1, 0}, 0.0F));
+    EXPECT_GT(work(), 32U);
+    EXPECT_LT((solution.velocity - Vec3(1, 0, 0)).norm(), 1e-6F);
 }
 
 }  // namespace
