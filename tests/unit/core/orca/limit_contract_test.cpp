@@ -197,6 +197,23 @@ TEST(LimitContract, WhatTheDelayAsksForIsEnough)
     EXPECT_GT(met, 3);
 }
 
+/// And of the ramp: as fast as the delay bears within what lies between both regions.
+TEST(LimitContract, TheRampThatTheDelayBearsIsNotTooFast)
+{
+    SafetyQuestion q;
+    const float delayed = 2.7182818F * q.delay;
+    const float most = q.across * (1.0F - q.pair.conflict_ratio) * (1.0F + 1e-5F);
+    int met = 0;
+    float ramp = most / delayed * (1.0F - 1e-6F);
+    for (int k = 0; k < 64; ++k) {
+        ramp = std::nextafter(ramp, 1.0F);
+        q.pair.ramp_speed = ramp;
+        EXPECT_EQ(check(q), ramp * delayed > most ? Unsafe::ramp_gain : Unsafe::none);
+        met += ramp * delayed == most ? 1 : 0;
+    }
+    EXPECT_GT(met, 0) << "to the bit";
+}
+
 // --- symmetry and progress ---
 
 TEST(BiasContract, WhoIsJustAsFarAwayBiasesNothing)

@@ -178,6 +178,34 @@ TEST_F(ObstacleContract, WithoutAnyBudgetTheBoundOfTheObstacleCounts)
     EXPECT_LE(mapped.speed_cap, 3.0F / 1.25F);
 }
 
+/// Of a piece that lies askew in its box: what is proven of it counts, and never less than is known of the box.
+TEST_F(ObstacleContract, OfAPieceThatIsCutShortTheBetterBoundCounts)
+{
+    // A plate that stands 4.24 m off, askew in a box that holds the vehicle.
+    const oracle::MapOfHulls hulls({{{-4, 10, -3}, {10, -4, -4}, {10, -4, 3}, {-3, 9, 4}, {8, 8, 0}, {3, 3, 5}}});
+    map = &hulls.map();
+    const ObstaclePlanes whole = planes();
+    const std::uint32_t needed = spent;
+    ASSERT_EQ(whole.planes.size(), 1U);
+    EXPECT_NEAR(whole.margin, std::sqrt(18.0F) - 1.0F, 1e-3F);
+    float most = 0.0F;
+    for (std::uint32_t units = 0; units < needed; ++units) {
+        const ObstaclePlanes some = planes(units);
+        ASSERT_TRUE(some.truncated) << units;
+        ASSERT_GE(some.speed_cap, 0.0F) << units;
+        ASSERT_LE(some.speed_cap, whole.margin + 1e-3F) << units;
+        most = std::max(most, some.speed_cap);
+    }
+    EXPECT_GT(most, 0.1F);
+    // One whose box begins 3 m off: never less than that.
+    const oracle::MapOfHulls off({{{3, 4, 0}, {7, -4, 0}, {7, 4, 3}, {7, 4, -3}}});
+    map = &off.map();
+    ASSERT_EQ(planes().planes.size(), 1U);
+    for (std::uint32_t units = spent; units-- > 0;) {
+        ASSERT_GE(planes(units).speed_cap, 3.0F - 1.0F - 1e-3F) << units;
+    }
+}
+
 // --- single obstacles ---
 
 TEST_F(ObstacleContract, ASearchWithoutABudgetHasNoDirection)

@@ -118,5 +118,61 @@ TEST_F(OrcaInput, OfOldTracksNothingIsExpected)
     EXPECT_NEAR(command().y(), alone, 1e-3F);
 }
 
+/// Each plan is of its own situation: tracks, barrels and obstacles of the one before are gone.
+TEST_F(OrcaInput, NothingOfTheSituationBeforeIsLeft)
+{
+    ASSERT_EQ(plan(), PlanStatus::found);
+    const Vec3 free = out.command;
+    scene.track(Vec3(4, 0, 30), Vec3::Zero());
+    scene.barrel(world::Vec2(0, 14), 10.0F).top = 60.0F;
+    scene.obstacle(geometry::make_box(Vec3(5, -3, 30), Vec3(1, 1, 9)));
+    scene.airspace.has_floor = true;
+    scene.airspace.floor = 29.5F;
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_GT((out.command - free).norm(), 0.5F);
+    EXPECT_TRUE(std::isfinite(planner.last().nearest) && std::isfinite(planner.last().margin));
+    scene.tracks.clear();
+    scene.barrels.clear();
+    scene.obstacles.clear();
+    scene.airspace = {};
+    planner.reset();
+    ASSERT_EQ(plan(), PlanStatus::found);
+    EXPECT_EQ(out.command, free);
+    EXPECT_TRUE(std::isinf(planner.last().nearest) && std::isinf(planner.last().margin));
+    EXPECT_EQ(planner.last().status, planner.last().status & kDelayClipped);
+}
+
+/// The answer is written whole, whatever was in its place; without an answer nothing is written.
+TEST_F(OrcaInput, TheAnswerReplacesWhatWasInItsPlace)
+{
+    const auto planned = [&](world::Manoeuvre& place, std::uint32_t units) {
+        planner = Planner(settings);
+        WorkBudget budget(units);
+        return planner.plan(scene.situation(), budget, place);
+    };
+    world::Manoeuvre clean;
+    ASSERT_EQ(planned(clean, world::test::kPlenty), PlanStatus::found);
+    world::Manoeuvre used;
+    used.kind = world::ManoeuvreKind::brake;
+    used.side = Vec3(1, 2, 3);
+    used.cost = 7.0F;
+    used.command = Vec3(9, 9, 9);
+    used.path = world::test::flight({Vec3(1, 1, 1), Vec3(2, 2, 2), Vec3(3, 3, 3)}, 1.0F);
+    world::Manoeuvre kept = used;
+    ASSERT_EQ(planned(kept, 30), PlanStatus::budget_spent);
+    EXPECT_EQ(kept.kind, used.kind);
+    EXPECT_EQ(kept.command, used.command);
+    EXPECT_EQ(kept.path.points.size(), 3U);
+    ASSERT_EQ(planned(used, world::test::kPlenty), PlanStatus::found);
+    EXPECT_EQ(used.kind, world::ManoeuvreKind::velocity);
+    EXPECT_EQ(used.by, world::MethodId::orca);
+    EXPECT_EQ(used.side, Vec3::Zero());
+    EXPECT_EQ(used.cost, 0.0F);
+    EXPECT_EQ(used.command, clean.command);
+    ASSERT_EQ(used.path.points.size(), clean.path.points.size());
+    EXPECT_EQ(used.path.points.front().position, clean.path.points.front().position);
+    EXPECT_EQ(used.path.points.back().position, clean.path.points.back().position);
+}
+
 }  // namespace
 }  // namespace jink::orca

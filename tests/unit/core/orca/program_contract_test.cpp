@@ -134,11 +134,12 @@ TEST(ProgramContract, LimitsThatContradictLeaveTheReferenceWhateverElseThereIs)
                                       at_least({-1, 0, 0}, 0.5F, Level::limits)};
         if (others) {
             planes.push_back(at_least({0, 1, 0}, 0.7F, Level::obstacles));
+            planes.push_back(at_least({0, -1, 0}, 0.1F, Level::obstacles));
             planes.push_back(at_least({0, 0, 1}, 0.9F, Level::warning));
         }
         const Vec3 reference(0.1F, 0.2F, 0.3F);
         const Solution solution = solution_of(planes, {{Vec3::Zero(), 4.0F}}, {1, 1, 1}, reference);
-        EXPECT_EQ(solution.status & kInfeasibleDynamics, kInfeasibleDynamics);
+        EXPECT_EQ(solution.status, kInfeasibleDynamics) << "and nothing else: no level was tried";
         EXPECT_EQ(solution.velocity, reference);
         EXPECT_EQ(solution.level, Level::limits);
         EXPECT_FLOAT_EQ(solution.broken[0], 0.6F);
@@ -147,6 +148,17 @@ TEST(ProgramContract, LimitsThatContradictLeaveTheReferenceWhateverElseThereIs)
             EXPECT_FLOAT_EQ(solution.broken[3], 0.6F);
         }
     }
+}
+
+/// Without any budget the point so far is the reference, not what was preferred.
+TEST(ProgramContract, WithoutABudgetTheReferenceIsKept)
+{
+    const std::vector<HalfSpace> planes{at_least({1, 0, 0}, -3.0F, Level::obstacles)};
+    const Vec3 reference(0.5F, 0.1F, 0);
+    const std::vector<Ball> balls{{Vec3::Zero(), 4.0F}, {reference, 0.5F}};
+    const Solution solution = solution_of(planes, balls, {0.8F, 0.1F, 0}, reference, 0);
+    EXPECT_EQ(solution.status, kWorkLimit);
+    EXPECT_EQ(solution.velocity, reference);
 }
 
 /// Of many half-spaces through nearly one point, more than the search holds at once, the optimum is that of all.
