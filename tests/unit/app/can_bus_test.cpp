@@ -280,6 +280,11 @@ TEST_F(CanBusTest, FdFramesAreRefusedAndCounted)
     step();
     EXPECT_EQ(bus.diagnostics().frames_foreign, 2U);
     EXPECT_EQ(bus.endpoint().node().receiver_diagnostics().bad_length, 2U);
+    frame.fd = false;
+    frame.length = 8;
+    port.in.push_back(frame);
+    step();
+    EXPECT_EQ(bus.diagnostics().frames_foreign, 2U) << "a classic one is none";
 }
 
 TEST_F(CanBusTest, AsksForANodeIdWhereItHasNone)
