@@ -40,6 +40,7 @@ TEST_F(MissionEdges, AnUploadThatFailedAwaitsNothing)
     EXPECT_EQ(static_cast<TaskStatus>(ack.status), TaskStatus::bad_point);
     EXPECT_EQ(ack.next, 0U);
     EXPECT_EQ(line_.generator.status(), path::GeneratorStatus::rejected) << "and nothing else is flown";
+    EXPECT_EQ(line_.upload(parts_of(6, line(30))), TaskStatus::accepted) << "the next one is free to come";
 }
 
 TEST_F(MissionEdges, TheSameNumberAndChecksumInOtherPartsIsAnotherUpload)
@@ -75,6 +76,22 @@ TEST_F(MissionEdges, WhatContinuesAPathThatIsOverIsRefusedAndThatIsShown)
     EXPECT_NE(status, TaskStatus::accepted);
     EXPECT_NE(status, TaskStatus::more);
     EXPECT_FALSE(protocol_.upload().is_open());
+}
+
+TEST_F(MissionEdges, EverythingThatTheOwnStateSaysIsKept)
+{
+    StateOwn s;
+    s.age_ms = 120;
+    s.position = {1, 2, 3};
+    s.velocity = {4, 5, 6};
+    s.yaw = -2.5F;
+    line_.send(s);
+    const vehicle::VehicleState own = input().own;
+    EXPECT_EQ(own.stamp.us, (line_.now - 0.01F).us - 120'000) << "its age, and the way";
+    EXPECT_EQ(own.position, Vec3(1, 2, 3));
+    EXPECT_EQ(own.velocity, Vec3(4, 5, 6));
+    EXPECT_EQ(own.yaw, -2.5F);
+    EXPECT_FALSE(input().hold);
 }
 
 /// The clock begins at zero: what never came is not young then.
