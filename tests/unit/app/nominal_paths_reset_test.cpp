@@ -109,6 +109,21 @@ TEST_F(NominalReset, MotionAtTheBoundIsKeptAsAPath)
     EXPECT_NEAR(paths.primary().leg.end.x() - paths.primary().leg.start.x(), 60.0F, 0.1F) << "it is not slower";
 }
 
+/// Of a ground speed that does not stay above kMoving the turn rate is 0.
+TEST_F(NominalReset, AtTheBoundOfMotionThereIsNoTurnRate)
+{
+    for (const float speed : {NominalPaths::kMoving, 1.001F * NominalPaths::kMoving}) {
+        paths.reset();
+        for (int i = 0; i < 12; ++i) {
+            own.velocity = i < 6 ? Vec3(speed, 0.0F, 0.0F) : Vec3(0.0F, speed, 0.0F);
+            now.us += 100'000;
+            show();
+        }
+        EXPECT_EQ(paths.turn_rate() > 0.5F, speed > NominalPaths::kMoving);
+        EXPECT_EQ(paths.turn_rate() == 0.0F, speed <= NominalPaths::kMoving);
+    }
+}
+
 /// Own states of 10 Hz and ticks of 50 Hz: each one is shown five times.
 TEST_F(NominalReset, AnOwnStateThatIsShownFiveTimesIsOneSample)
 {

@@ -210,6 +210,7 @@ TEST(ParamKeeper, TheBusIsToldWhetherARestartBringsThePresentValues)
     const auto b = std::make_unique<test::StepBench>(std::initializer_list<std::pair<Param, float>>{},
                                                      test::StepBench::Bus::there);
     keeper.start(b->coprocessor);
+    EXPECT_EQ(b->coprocessor.parameters().generation(), 0U) << "nothing is stored, nothing changes";
     ASSERT_NE(b->bus.params, nullptr);
     EXPECT_TRUE(b->bus.params->save());
     b->bus.params->write(static_cast<std::uint16_t>(Param::track_age), 9.0F);

@@ -54,6 +54,23 @@ TEST(StepDetails, ADenialIsAnsweredByAnotherRequestAtOnceAndAnAcceptanceIsNot)
     }
 }
 
+TEST(StepDetails, ARequestThatWaitsForTheLineIsTakenBackWhenAnAnswerIsNotToBeHadAnyMore)
+{
+    StepFlight f;
+    f.mast = kMastInTheWay;
+    f.obeys = false;
+    ASSERT_TRUE(f.until([&](const StepReport&) { return f.asked_for("external") == 1; }));
+    const int dropped = f.wire.requests_dropped;
+    for (int i = 0; i < 12; ++i) {
+        f.tick();
+    }
+    EXPECT_EQ(f.wire.requests_dropped, dropped);
+    f.coming_us = 10'000;
+    f.hear_own();
+    f.step(10'000);
+    EXPECT_EQ(f.wire.requests_dropped, dropped + 1) << "kAnswer to the microsecond";
+}
+
 TEST(StepDetails, EveryRequestedHeartbeatIsSentWhateverElseIsAskedInTheStep)
 {
     StepBench b;
