@@ -280,6 +280,26 @@ TEST_F(CanBusTest, FdFramesAreRefusedAndCounted)
     step();
     EXPECT_EQ(bus.diagnostics().frames_foreign, 2U);
     EXPECT_EQ(bus.endpoint().node().receiver_diagnostics().bad_length, 2U);
+    frame.fd = false;
+    frame.length = 8;
+    port.in.push_back(frame);
+    step();
+    EXPECT_EQ(bus.diagnostics().frames_foreign, 2U) << "a classic one is none";
+}
+
+/// Nothing waits: nothing is late or lost, however long nobody calls.
+TEST_F(CanBusTest, WithoutFramesThatWaitThereIsNoStallAndNoLoss)
+{
+    step();
+    step();
+    now.us += 300'000;
+    bus.service(now, {link::SystemState::active, false, 0});
+    EXPECT_EQ(bus.diagnostics().stalls, 0U);
+    port.health_.state = hal::CanState::bus_off;
+    now.us += 20'000;
+    bus.service(now, {link::SystemState::active, false, 0});
+    EXPECT_EQ(bus.diagnostics().losses, 0U);
+    EXPECT_EQ(bus.diagnostics().stalls, 0U);
 }
 
 TEST_F(CanBusTest, AsksForANodeIdWhereItHasNone)

@@ -56,6 +56,52 @@ TEST_F(WayBlocked, IsGuardedAgainOnceThePilotChoosesTheMission)
     EXPECT_EQ(flight->said("jink: way blocked, autopilot holds"), 2);
 }
 
+/// Hands off as long as it holds; a mode that a pilot chooses in its place is news.
+TEST_F(WayBlocked, HandsStayOffInTheHoldAndAPilotsOtherModeIsSaid)
+{
+    while (flight->time < 45.0F && flight->mode != link::FlightMode::hold) {
+        flight->tick();
+    }
+    ASSERT_EQ(flight->mode, link::FlightMode::hold);
+    flight->fly(1.5F);
+    for (int i = 0; i < 100; ++i) {
+        flight->fly(0.1F);
+        ASSERT_EQ(flight->last.control, Control::overruled) << i;
+    }
+    DirectFlight other(east(5.0F), flight->coprocessor.parameters(), 1);
+    other.reports_leg = true;
+    other.leg = flight->leg;
+    other.wall_at = 60.0F;
+    while (other.time < 45.0F && other.said("jink: way blocked, autopilot holds") == 0) {
+        other.tick();
+    }
+    ASSERT_EQ(other.said("jink: way blocked, autopilot holds"), 1);
+    other.mode = link::FlightMode::manual;
+    other.fly(0.5F);
+    EXPECT_EQ(other.said("jink: mode changed by others, hands off"), 1);
+}
+
+/// A way that was blocked is over once the pilot chooses the mission: what comes next is given back to the mission.
+TEST_F(WayBlocked, TheNextConflictIsGivenBackToTheMission)
+{
+    while (flight->time < 45.0F && flight->mode != link::FlightMode::hold) {
+        flight->tick();
+    }
+    ASSERT_EQ(flight->mode, link::FlightMode::hold);
+    flight->fly(2.0F);
+    flight->wall_at = 0.0F;
+    flight->fly(2.0F);
+    flight->mode = link::FlightMode::mission;
+    flight->fly(2.0F);
+    const std::size_t taken = flight->taken.size();
+    const Vec3 ahead(flight->state.position.x() + 70.0F, 0.0F, 50.0F);
+    flight->intruders = {{ahead + flight->time * Vec3(5.0F, 0.0F, 0.0F), Vec3(-5.0F, 0.0F, 0.0F), 0.0F}};
+    flight->fly(25.0F);
+    EXPECT_GT(flight->taken.size(), taken);
+    EXPECT_EQ(flight->mode, link::FlightMode::mission);
+    EXPECT_EQ(flight->said("jink: way blocked, autopilot holds"), 1);
+}
+
 TEST_F(WayBlocked, NeverWithoutPatience)
 {
     Parameters parameters = flight->coprocessor.parameters();

@@ -235,6 +235,7 @@ TEST(Warnings, SayThatItBrakesInFrontOfAWall)
         actions.check(*t);
     }
     EXPECT_EQ(actions.hover, 2);
+    EXPECT_EQ(t->said("jink: no way around, braking") + t->said("jink: nothing safe, braking"), 1) << "once";
 }
 
 TEST(Warnings, OfAConflictThatComesBackAreSentAtOnce)

@@ -65,6 +65,13 @@ TEST(FollowCheck, ToleranceItselfStillFollows)
     EXPECT_FOUND_AT(1.0F, Followed().found(Vec3(8.0F, 0.0F, 0.0F), Vec3(3.9F, 0.0F, 0.0F)));
 }
 
+TEST(FollowCheck, ToleranceGrowsWithTheCommandedSpeed)
+{
+    EXPECT_LT(Followed().found(Vec3(10.0F, 0.0F, 0.0F), Vec3(10.0F, 2.9F, 0.0F)), 0.0F) << "kShare of 10 m/s";
+    EXPECT_GE(Followed().found(Vec3(10.0F, 0.0F, 0.0F), Vec3(10.0F, 3.2F, 0.0F)), 0.0F);
+    EXPECT_GE(Followed().found(Vec3(2.0F, 0.0F, 0.0F), Vec3(2.0F, 1.1F, 0.0F)), 0.0F) << "kTolerance at least";
+}
+
 TEST(FollowCheck, FasterThanCommandedIsNotFollowed)
 {
     EXPECT_FOUND_AT(1.0F, Followed().found(Vec3(2.0F, 0.0F, 0.0F), Vec3(6.0F, 0.0F, 0.0F)));

@@ -10,6 +10,7 @@
 #include "firmware/app/param_keeper.hpp"
 #include "hal/memory/memory_flash.hpp"
 #include "tests/unit/app/flight.hpp"
+#include "tests/unit/app/step_bench.hpp"
 
 namespace jink::app {
 namespace {
@@ -183,6 +184,47 @@ TEST(ParamKeeper, AFailureIsSaidOnceAndTriedAgainAfterTenSeconds)
     board->set("TRK_AGE", 10.0F);
     board->fly(60);
     EXPECT_EQ(board->said("jink: parameters are not stored"), 2U) << "another row of failures";
+}
+
+TEST(ParamKeeper, AFailureIsNotTriedAgainBeforeItsTime)
+{
+    Store flash;
+    const auto board = std::make_unique<Board>(flash);
+    board->fly(60);
+    flash.cut_at(0, 0);
+    board->set("TRK_AGE", 9.0F);
+    board->fly(5);
+    flash.restore();
+    board->fly(480);
+    EXPECT_EQ(age_after_restart(flash), 3.0F) << "9.6 s";
+    board->fly(30);
+    EXPECT_EQ(age_after_restart(flash), 9.0F);
+}
+
+/// What "save" on the bus answers: whether a restart would bring the present values.
+TEST(ParamKeeper, TheBusIsToldWhetherARestartBringsThePresentValues)
+{
+    Store flash;
+    ParamFlash store(flash);
+    ParamKeeper keeper(store);
+    const auto b = std::make_unique<test::StepBench>(std::initializer_list<std::pair<Param, float>>{},
+                                                     test::StepBench::Bus::there);
+    keeper.start(b->coprocessor);
+    EXPECT_EQ(b->coprocessor.parameters().generation(), 0U) << "nothing is stored, nothing changes";
+    ASSERT_NE(b->bus.params, nullptr);
+    EXPECT_TRUE(b->bus.params->save());
+    b->bus.params->write(static_cast<std::uint16_t>(Param::track_age), 9.0F);
+    EXPECT_FALSE(b->bus.params->save());
+    b->hear_autopilot();
+    b->hear_own();
+    b->step();
+    keeper.work(b->coprocessor, b->now);
+    EXPECT_FALSE(b->bus.params->save()) << "armed";
+    b->hear_autopilot().armed = false;
+    b->step();
+    keeper.work(b->coprocessor, b->now);
+    EXPECT_TRUE(b->bus.params->save());
+    EXPECT_EQ(age_after_restart(flash), 9.0F);
 }
 
 TEST(ParamKeeper, DamageIsSaidToThePilot)

@@ -141,6 +141,17 @@ TEST_F(ServedParams, ReadsEachWithItsLimitsAndWhatARestartBrings)
     EXPECT_FALSE(service.find({}, index));
 }
 
+TEST(ServedParamsAtTheStart, NothingIsStoredBeforeItIsNoted)
+{
+    Parameters parameters;
+    std::uint32_t set = 0;
+    std::uint32_t refused = 0;
+    ParamService service(parameters, set, refused);
+    EXPECT_FALSE(service.save());
+    service.note_stored(0);
+    EXPECT_TRUE(service.save());
+}
+
 TEST_F(ServedParams, WritesWhatIsInRangeAndCountsTheRest)
 {
     constexpr auto kIndex = static_cast<std::uint16_t>(Param::lookahead);

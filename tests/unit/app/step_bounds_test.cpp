@@ -125,6 +125,7 @@ TEST(StepDisarmed, IsWhatAFreshHeartbeatSaysAndNothingElse)
 {
     StepBench b;
     EXPECT_FALSE(b.coprocessor.is_disarmed(b.now)) << "nobody has said so";
+    EXPECT_FALSE(b.coprocessor.is_disarmed({1'000'000})) << "soon after the start of the clock too";
     b.hear_autopilot().armed = false;
     b.hear_own();
     b.step();

@@ -56,6 +56,8 @@ TEST(StepFrame, FromTheFirstHeartbeatOnItIsTheAutopilots)
     b->hear_track(2, Vec3(50.0F, 0.0F, 50.0F));  // of the link, behind it in the inbox
     b->step();
     EXPECT_EQ(b->last.own_source, OwnSource::none) << "placed in a frame that is no more";
+    EXPECT_EQ(b->last.tracks, 0U) << "nothing is planned without a place";
+    EXPECT_EQ(b->last.work, 0U);
     ASSERT_EQ(b->coprocessor.tracks(b->now).size(), 1U);
     EXPECT_EQ(b->coprocessor.tracks(b->now)[0].id, 2U) << "what the link told stays";
     EXPECT_EQ(b->counted().bus_reports_dropped, 2U);

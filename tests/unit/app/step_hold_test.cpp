@@ -57,6 +57,28 @@ TEST(StepHold, TrafficThatStoppingHelpsAgainstIsStoppedForAndOtherIsNot)
     }
 }
 
+/// In front of a closed area stopping is safer, whoever else is known: another aircraft that follows is no threat of
+/// the conflict.
+TEST(StepHold, InFrontOfAClosedAreaItStopsWhateverOtherTrafficDoes)
+{
+    StepFlight f;
+    f.intruder = f.position + Vec3(0.0F, -40.0F, 0.0F);
+    f.intruder_velocity = f.velocity;
+    link::Constraint area;
+    area.barrel.circle = {{f.position.x(), f.position.y() + 75.0F}, 10.0F};
+    area.barrel.bottom = 0.0F;
+    area.barrel.top = 500.0F;
+    f.coprocessor.set_constraints({&area, 1}, f.now);
+    ASSERT_TRUE(refuse(f));
+    bool held = false;
+    for (int i = 0; i < 600 && !held; ++i) {
+        f.tick();
+        held = f.asked_for("hold") > 0;
+        ASSERT_FALSE(f.last.guidance.has_conflict && f.last.guidance.conflict.time_to_loss < 0.5F) << "too late";
+    }
+    EXPECT_TRUE(held);
+}
+
 TEST(StepHold, TheLegIsFlownOnWhileWeLead)
 {
     StepFlight f;

@@ -237,10 +237,19 @@ TEST_F(StepRanges, AnOverheadReadingCoversAllThatItsBeamMayHaveSeen)
                 }
                 const float lean = std::acos(sine);
                 EXPECT_FALSE(covered(Vec3(0.0F, 0.0F, 30.0F * std::cos(lean + half_angle) - 0.01F)));
+                EXPECT_TRUE(covered(Vec3(0.0F, 0.99F * height, 30.1F))) << "as wide as it is high";
                 EXPECT_FALSE(covered(Vec3(0.0F, std::max(height, 30.0F * std::sin(lean + half_angle)) + 0.1F, 30.1F)));
             }
         }
     }
+}
+
+TEST_F(StepRanges, ADirectionLongerThanOneByRoundingIsStraightUp)
+{
+    static_cast<void>(reading(Vec3(0.0F, 0.0F, std::nextafter(1.0F, 2.0F)), 30.0F));
+    bench->fly(1);
+    ASSERT_EQ(obstacles().size(), 1U);
+    EXPECT_TRUE(covered(Vec3(0.0F, 0.0F, 30.01F)));
 }
 
 TEST_F(StepRanges, ALevelReadingLooksWhereItSaysAndAsWideAsItSays)
@@ -348,6 +357,11 @@ TEST_F(StepRanges, TheGroundBoundsWithoutAnAutopilotToo)
     EXPECT_TRUE(look({{Param::floor, 30.0F}}, true));
     EXPECT_EQ(world.view.floor, 40.0F) << "10 m of ground and 30 above it, whatever home would be";
     EXPECT_FALSE(look({{Param::bounds, 6.0F}}, true));
+    fly_to({{Param::floor, 30.0F}});
+    bench->hear_own();
+    static_cast<void>(reading(steep(-1.0F), 70.0F));
+    bench->step();
+    EXPECT_EQ(world.view.floor, 10.0F) << "ground at -20 m";
 }
 
 TEST_F(StepRanges, TheFloorIsOnWhereTheParameterSaysSo)

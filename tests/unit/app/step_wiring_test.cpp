@@ -71,6 +71,7 @@ TEST(StepWiring, HandsStayOffWhileAConflictIsPredicted)
     static_cast<void>(beat_in(f, f.mode));
     f.tick();
     ASSERT_EQ(f.last.control, Control::overruled);
+    EXPECT_EQ(f.said("jink: mode changed by others, hands off"), 1) << "a hold that nobody asked for";
     int waits = 0;
     for (int i = 0; i < 75; ++i) {
         f.tick();

@@ -42,5 +42,29 @@ TEST(WingCourse, AReversalKeepsTheSideThatItBeganWith)
     }
 }
 
+/// Degrees from one course to another, -180 to 180.
+float turned(const Vec3& from, const Vec3& to) { return std::remainder(degrees_of(to) - degrees_of(from), 360.0F); }
+
+TEST(WingCourse, IsTheSameOnEveryOwnCourse)
+{
+    for (int i = 0; i < 24; ++i) {
+        const float heading = 15.0F * static_cast<float>(i);
+        const Vec3 own = at_angle(heading, 18.0F);
+        for (const float side : {-1.0F, 1.0F}) {
+            const Vec3 wide = at_angle(heading + side * 134.0F, 12.0F, 1.0F);
+            EXPECT_EQ(wing_course(wide, own, own), wide) << heading;
+            const Vec3 back = wing_course(at_angle(heading + side * 137.0F, 12.0F, 1.0F), own, own);
+            EXPECT_NEAR(turned(own, back), side * 120.0F, 0.1F) << heading << ": on the command's own side";
+            EXPECT_NEAR(std::hypot(back.x(), back.y()), 12.0F, 0.01F);
+            const Vec3 kept =
+                wing_course(at_angle(heading - side * 170.0F, 12.0F), own, at_angle(heading + side * 30.0F, 18.0F));
+            EXPECT_NEAR(turned(own, kept), side * 120.0F, 0.1F) << heading << ": on the side sent before";
+            const Vec3 unclear =
+                wing_course(at_angle(heading - side * 170.0F, 12.0F), own, at_angle(heading + side * 9.0F, 18.0F));
+            EXPECT_NEAR(turned(own, unclear), side * -120.0F, 0.1F) << heading << ": sent before on none clearly";
+        }
+    }
+}
+
 }  // namespace
 }  // namespace jink::app

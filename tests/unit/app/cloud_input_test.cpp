@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Point clouds on their way in: a step's share of a port that never ends, and what spoils a direction.
+#include "firmware/app/cloud_input.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/app/cloud_image_bench.hpp"
+
+namespace jink::app {
+namespace {
+
+/// Gives `part` bytes a read, for ever.
+struct EndlessPort final : hal::SerialPort {
+    std::size_t read(std::span<std::byte> into) noexcept override
+    {
+        const std::size_t n = std::min(into.size(), part);
+        std::fill_n(into.begin(), n, std::byte{0});
+        given += n;
+        return n;
+    }
+    std::size_t write(std::span<const std::byte> /*from*/) noexcept override { return 0; }
+    hal::PortHealth health() const noexcept override { return {}; }
+    std::size_t part = 1000;
+    std::size_t given = 0;
+};
+
+TEST(CloudPort, AStepReadsItsShareAndNoByteMore)
+{
+    for (const std::size_t part : {1000U, 4096U, 100'000U, 4095U}) {
+        EndlessPort port;
+        port.part = part;
+        const auto input = std::make_unique<CloudInput>(&port);
+        EXPECT_TRUE(input->has_port());
+        input->serve({1'000'000}, {});
+        EXPECT_EQ(port.given, kMaxCloudBytesPerStep) << part;
+        EXPECT_EQ(input->bytes_in(), kMaxCloudBytesPerStep);
+        EXPECT_EQ(input->full_steps(), 1U);
+        port.part = 0;
+        input->serve({1'020'000}, {});
+        EXPECT_EQ(input->bytes_in(), kMaxCloudBytesPerStep);
+        EXPECT_EQ(input->full_steps(), 1U);
+    }
+    EXPECT_FALSE(std::make_unique<CloudInput>()->has_port());
+}
+
+class SpoiledDirections : public test::CloudImageBench {
+protected:
+    SpoiledDirections()
+    {
+        view.half_extents = Vec3(2.0F, 1.5F, 1.0F);
+        look();
+    }
+};
+
+/// Part of the own vehicle in front of it takes nothing away that was seen beside it.
+TEST_F(SpoiledDirections, AHitOfTheBodyDoesNotHideAnotherHit)
+{
+    EXPECT_EQ(scan({at(1.0F, 1.0F, 20.0F), at(1.5F, 1.5F, 0.5F)}), 1U);
+    EXPECT_TRUE(is_covered(at(1.0F, 1.0F, 20.0F)));
+    EXPECT_EQ(scan({at(1.5F, 1.5F, 0.5F), at(1.0F, 1.0F, 20.0F)}), 1U);
+    EXPECT_EQ(count().body, 2U);
+    EXPECT_EQ(count().kept, 2U);
+}
+
+/// What is there beyond the reach is no reason to keep what is not.
+TEST_F(SpoiledDirections, AnEmptyDirectionStaysEmptyWithAHitBeyondTheReach)
+{
+    ASSERT_EQ(scan({at(1.0F, 1.0F, 20.0F)}), 1U);
+    begin();
+    image->add(link::Ray::nothing, at(1.0F, 1.0F, 1.0F));
+    image->add(link::Ray::hit, at(1.5F, 1.5F, 700.0F));
+    image->end_scan(0);
+    EXPECT_EQ(obstacles().size(), 0U);
+    EXPECT_EQ(count().beyond, 1U);
+    // A hit of the body hides what lies behind it: what was there stays.
+    ASSERT_EQ(scan({at(1.0F, 1.0F, 20.0F)}), 1U);
+    begin();
+    image->add(link::Ray::hit, at(1.5F, 1.5F, 0.5F));
+    image->add(link::Ray::nothing, at(1.0F, 1.0F, 1.0F));
+    image->end_scan(0);
+    EXPECT_EQ(obstacles().size(), 1U);
+}
+
+}  // namespace
+}  // namespace jink::app

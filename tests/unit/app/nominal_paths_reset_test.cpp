@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// NominalPaths: what is forgotten and made anew, and what slow motion or an own state that is shown again leave alone.
+#include "firmware/app/nominal_paths.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace jink::app {
+namespace {
+
+class NominalReset : public ::testing::Test {
+protected:
+    NominalReset() { own.position = Vec3(0.0F, 0.0F, 50.0F); }
+    void show(bool in_control = false)
+    {
+        own.stamp = now;
+        paths.update(own, own, has_leg ? &leg : nullptr, limits, in_control);
+    }
+    void fly(const Vec3& velocity, int ticks, bool in_control = false)
+    {
+        own.velocity = velocity;
+        for (int i = 0; i < ticks; ++i) {
+            now.us += 20'000;
+            own.position += 0.02F * own.velocity;
+            show(in_control);
+        }
+    }
+    /// To the left at 0.5 rad/s.
+    void turn(int ticks, float speed = 5.0F)
+    {
+        for (int i = 0; i < ticks; ++i) {
+            heading += 0.01F;
+            fly(Vec3(speed * std::cos(heading), speed * std::sin(heading), 0.0F), 1);
+        }
+    }
+
+    NominalPaths paths;
+    vehicle::VehicleState own;
+    vehicle::VehicleLimits limits;
+    world::Leg leg{Vec3(0, 0, 50), Vec3(2000, 0, 50), 0.0F};
+    bool has_leg = false;
+    float heading = 0.0F;
+    TimePoint now{1'000'000};
+};
+
+TEST_F(NominalReset, TheTurnOfTheFrameBeforeIsForgotten)
+{
+    turn(75);
+    ASSERT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
+    paths.reset();
+    EXPECT_EQ(paths.turn_rate(), 0.0F) << "at once";
+    turn(20);
+    EXPECT_EQ(paths.turn_rate(), 0.0F) << "0.4 s are too short to know";
+    EXPECT_EQ(paths.primary().route, nullptr);
+    turn(40);
+    EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
+}
+
+TEST_F(NominalReset, TheSteadySpeedOfTheFrameBeforeIsForgotten)
+{
+    has_leg = true;
+    leg.speed = 4.0F;
+    fly(Vec3(2, 0, 0), 100);
+    ASSERT_NEAR(paths.primary().leg.speed, 2.0F, 1e-3F) << "flown steadily";
+    paths.reset();
+    fly(Vec3(2, 0, 0), 2);
+    EXPECT_EQ(paths.primary().leg.speed, 4.0F) << "what is steady has to be measured anew";
+}
+
+/// Made anew once: from then on it is kept as before.
+TEST_F(NominalReset, ThePathOfAJumpInControlIsKeptFromThereOn)
+{
+    fly(Vec3(5, 0, 0), 100);
+    fly(Vec3(0, 5, 0), 10, true);
+    paths.reset();
+    own.position += Vec3(1000, 0, 0);
+    fly(Vec3(0, 5, 0), 1, true);
+    const Vec3 anew = paths.primary().leg.start;
+    EXPECT_LT((anew - own.position).norm(), 0.2F);
+    fly(Vec3(0, 5, 0), 50, true);
+    EXPECT_EQ(paths.primary().leg.start, anew);
+}
+
+TEST_F(NominalReset, AVehicleThatStopsInATurnStays)
+{
+    turn(75);
+    ASSERT_NE(paths.primary().route, nullptr);
+    fly(Vec3::Zero(), 1);
+    EXPECT_EQ(paths.primary().route, nullptr);
+    EXPECT_EQ(paths.primary().leg.end, own.position);
+}
+
+TEST_F(NominalReset, OfATurnThatHasBecomeSlowThePlaceIsKept)
+{
+    turn(77);  // the next tick is no sample
+    fly(Vec3(0.8F * std::cos(heading), 0.8F * std::sin(heading), 0.0F), 1);
+    ASSERT_NE(paths.primary().route, nullptr) << "its turn is that of the last second";
+    fly(own.velocity, 1, true);
+    EXPECT_EQ(paths.primary().route, nullptr);
+    EXPECT_EQ(paths.primary().leg.end, paths.primary().leg.start);
+    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+}
+
+TEST_F(NominalReset, MotionAtTheBoundIsKeptAsAPath)
+{
+    fly(Vec3(NominalPaths::kMoving, 0, 0), 100);
+    fly(Vec3(0, 3, 0), 10, true);
+    EXPECT_NEAR(paths.primary().leg.end.x() - paths.primary().leg.start.x(), 60.0F, 0.1F) << "it is not slower";
+}
+
+/// Of a ground speed that does not stay above kMoving the turn rate is 0.
+TEST_F(NominalReset, AtTheBoundOfMotionThereIsNoTurnRate)
+{
+    for (const float speed : {NominalPaths::kMoving, 1.001F * NominalPaths::kMoving}) {
+        paths.reset();
+        for (int i = 0; i < 12; ++i) {
+            own.velocity = i < 6 ? Vec3(speed, 0.0F, 0.0F) : Vec3(0.0F, speed, 0.0F);
+            now.us += 100'000;
+            show();
+        }
+        EXPECT_EQ(paths.turn_rate() > 0.5F, speed > NominalPaths::kMoving);
+        EXPECT_EQ(paths.turn_rate() == 0.0F, speed <= NominalPaths::kMoving);
+    }
+}
+
+/// Own states of 10 Hz and ticks of 50 Hz: each one is shown five times.
+TEST_F(NominalReset, AnOwnStateThatIsShownFiveTimesIsOneSample)
+{
+    for (int i = 0; i < 20; ++i) {
+        heading += 0.05F;
+        own.velocity = Vec3(5.0F * std::cos(heading), 5.0F * std::sin(heading), 0.0F);
+        now.us += 100'000;
+        for (int k = 0; k < 5; ++k) {
+            show();
+        }
+    }
+    EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
+}
+
+TEST_F(NominalReset, MotionThatWasSlowWithinTheSecondIsNotSteady)
+{
+    has_leg = true;
+    limits.cruise_speed = 4.0F;
+    fly(Vec3(0.9F, 0, 0), 60);
+    fly(Vec3(1.3F, 0, 0), 15);
+    EXPECT_EQ(paths.primary().leg.speed, 4.0F) << "from slow motion on, by the parameter";
+}
+
+TEST_F(NominalReset, SlowMotionSaysNothingOfASlowMissionsSpeed)
+{
+    has_leg = true;
+    leg.speed = 0.6F;
+    fly(Vec3(0.9F, 0, 0), 100);
+    EXPECT_EQ(paths.primary().leg.speed, 0.6F);
+    fly(Vec3(1.4F, 0, 0), 2);
+    EXPECT_NEAR(paths.primary().leg.speed, 1.4F, 1e-4F) << "faster than kMoving, and than the mission";
+}
+
+}  // namespace
+}  // namespace jink::app
