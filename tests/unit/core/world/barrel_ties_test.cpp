@@ -2,6 +2,7 @@
 // Barrels: numbers that are equal to the bit, level pieces, and least distances at the end of the time.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -139,6 +140,36 @@ TEST(BarrelFirstContact, IsAnInstantThatIsClear)
     EXPECT_LT(first, 2.0F);
     EXPECT_GE(first, 2.0F - 4.0F / 65536.0F);
     EXPECT_GT(p.approach().look(first).value, 0.0F);
+}
+
+/// Kilometres to a barrel that is passed within a second, sinking a little: crossings of tangents alone would creep.
+TEST(BarrelLeast, AShallowWayThroughAfterALongApproachIsFoundSoon)
+{
+    const auto sinking = [](const Vec3& half, const Vec3& own, float speed, float climb, float radius, float growth) {
+        Pair p;
+        p.half = half;
+        p.own = own;
+        p.velocity = Vec3(speed, 0, climb);
+        p.barrel.circle.radius = radius;
+        p.growth = growth;
+        return p;
+    };
+    const std::pair<Pair, Seconds> cases[] = {
+        {sinking(Vec3(1.50217485F, 1.3825804F, 1.11200559F), Vec3(-1904.36731F, 0.495028496F, -7.29862595F),
+                 164.987549F, -0.290684402F, 13.4511719F, 0.0F),
+         11.8654785F},
+        {sinking(Vec3(0.0447000265F, 2.588063F, 0.706349671F), Vec3(-4061.62817F, 0.17310977F, -6.90468216F),
+                 132.31691F, -0.0551209599F, 9.2569828F, 0.0F),
+         31.8490353F},
+        {sinking(Vec3(0.0251276158F, 0.0376205146F, 0.271417499F), Vec3(-4187.20801F, 26.0767517F, 1.88777542F),
+                 219.974564F, -0.127170637F, 46.4856682F, 0.116815738F),
+         19.0491791F},
+    };
+    for (const auto& [pair, span] : cases) {
+        WorkBudget budget(kPlenty);
+        EXPECT_LT(pair.approach().least(span, 1e9F, budget).distance, 0.0F);
+        EXPECT_LE(budget.spent(), units::kBarrelPart + 10 * units::kBarrelTurn);
+    }
 }
 
 }  // namespace

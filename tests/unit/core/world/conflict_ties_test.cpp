@@ -129,6 +129,19 @@ TEST_P(ConflictTies, BeforeAnythingIsLookedAtTheConflictIsNow)
     }
 }
 
+/// Where the budget runs out while a barrel is looked at, only the barrel is told, not a place that was not found.
+TEST_P(ConflictTies, ABarrelThatIsNotPaidForHasNoPlace)
+{
+    scene.barrel(Vec2(30, 0), 4.0F);
+    for (std::uint32_t n = before(); n < before() + units::kConflictBarrel + units::kBarrelPart; ++n) {
+        ASSERT_TRUE(meets(10.0F, n)) << n;
+        ASSERT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0})) << n;
+        ASSERT_EQ(found.time_to_loss, 0.0F) << n;
+        ASSERT_EQ(found.miss_distance, 0.0F) << n;
+        ASSERT_EQ(found.radius_at_closest, 0.0F) << n;
+    }
+}
+
 /// On a hovering vehicle's way a track that hardly moves counts as standing, one that moves a little
 /// more comes nearer until the end of the time.
 TEST_P(ConflictTies, WhatHardlyMovesIsNearestNow)
