@@ -283,6 +283,14 @@ TEST(ConflictBehindCorners, AnObstacleBeyondACornerIsNearestAtTheCorner)
     EXPECT_NEAR(found.time_to_loss, 39.5F / 5.0F, 1e-3F);
     EXPECT_NEAR(found.time_to_closest, 8.0F, 1e-3F);
     EXPECT_NEAR(found.miss_distance, 4.0F, 1e-3F);
+    // The same where the way ends at that corner: on arrival, not while it hovers there.
+    path::Route shorter;
+    ASSERT_EQ(shorter.add_leg(Vec3(0, 0, 0), Vec3(20, 0, 0)), path::RouteStatus::ok);
+    ASSERT_EQ(shorter.add_leg(Vec3(20, 0, 0), Vec3(20, 20, 0)), path::RouteStatus::ok);
+    scene.reference.route = &shorter;
+    ASSERT_TRUE(main_conflict(scene.situation(), way_of(scene.situation()), 12.0F, budget, found));
+    EXPECT_NEAR(found.time_to_closest, 8.0F, 1e-3F);
+    scene.reference.route = &route;
     // The same of a track, also for that one alone: behind the first corner.
     scene.obstacles.clear();
     scene.track(Vec3(20, 10, 0), Vec3::Zero(), 1.0F);
