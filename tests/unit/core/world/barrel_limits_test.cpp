@@ -9,6 +9,7 @@
 #include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/world/barrel.hpp"
+#include "tests/unit/core/world/barrel_pair.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -16,33 +17,6 @@ namespace {
 
 using namespace test;
 using detail::BarrelApproach;
-
-/// A box and a barrel that both may move, by name so that a test can change each number.
-struct Pair {
-    Vec3 half = Vec3(1, 1, 1);
-    Vec3 own = Vec3(-20, 8, 0);
-    Vec3 velocity = Vec3(5, 0, 0);
-    Barrel barrel{{Vec2(0, 0), 3.0F}, Vec2(0, 0), -10.0F, 10.0F, 0.0F};
-    Seconds start = 0.0F;
-    float outset = 0.0F;
-    float growth = 0.0F;
-
-    [[nodiscard]] BarrelApproach approach() const { return {half, {own, velocity}, barrel, start, outset, growth}; }
-    [[nodiscard]] double distance() const
-    {
-        const auto beyond = [](double c, double h) { return std::max(0.0, std::abs(c) - h); };
-        const double x = double(barrel.circle.centre.x()) + double(barrel.velocity.x()) * double(start);
-        const double y = double(barrel.circle.centre.y()) + double(barrel.velocity.y()) * double(start);
-        const double level =
-            std::hypot(beyond(x - double(own.x()), double(half.x())), beyond(y - double(own.y()), double(half.y()))) -
-            double(barrel.circle.radius);
-        const double below = double(barrel.bottom) - double(half.z()) - double(own.z());
-        const double above = double(own.z()) - double(half.z()) - double(barrel.top);
-        const double height = std::max(below, above);
-        const double apart = level > 0.0 && height > 0.0 ? std::hypot(level, height) : std::max(level, height);
-        return apart - double(outset);
-    }
-};
 
 /// Whichever number is the large one, what rounding may add is taken off for it: never above the truth.
 TEST(BarrelRounding, OneLargeNumberIsEnough)

@@ -173,5 +173,18 @@ TEST_F(ObstacleTables, OrderStaysSortedThroughReplacement)
     }
 }
 
+/// Full: of two that are equally far the one of the smaller id gives way; one as far as the farthest does not come in.
+TEST_F(ObstacleTables, OfEquallyFarOnesTheFirstGivesWay)
+{
+    for (ObstacleId id = 1; id <= kMaxObstacles; ++id) {
+        const float x = id == 2 ? -900.0F : id == 3 ? 900.0F : 10.0F + static_cast<float>(id);
+        ASSERT_EQ(table.update(ball(id, Vec3(x, 0, 0)), later, own), ObstacleStatus::created);
+    }
+    EXPECT_EQ(table.update(ball(5000, Vec3(0, 900, 0)), later, own), ObstacleStatus::full);
+    EXPECT_EQ(table.update(ball(5000, Vec3(0, 899, 0)), later, own), ObstacleStatus::replaced);
+    EXPECT_EQ(table.obstacles()[0].id, 1U);
+    EXPECT_EQ(table.obstacles()[1].id, 3U);
+}
+
 }  // namespace
 }  // namespace jink::world
