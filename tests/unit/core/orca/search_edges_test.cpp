@@ -159,13 +159,35 @@ TEST_F(BluntEdges, ThreeThatSpanATenthAreNotBlunt)
     }
 }
 
+/// What meets in a point, at angles of 45 degrees and more: three are no reason to compute more exactly, four are.
+TEST_F(BluntEdges, MoreThanThreeThroughOnePointAreBlunt)
+{
+    add_below({0.6F, 0.8F, 0}, 1.0F);
+    add_below({0.6F, -0.8F, 0}, 0.2F);
+    const Vec3 at(1.0F, 0.5F, 0);
+    EXPECT_FALSE(blunt(at));
+    balls = {{Vec3::Zero(), 16.0F}, {at - Vec3::UnitZ(), 1.0F}};
+    EXPECT_FALSE(blunt(at)) << "two planes and a ball";
+    add_below({0, 0.6F, 0.8F}, 0.3F);
+    EXPECT_TRUE(blunt(at)) << "three planes and a ball";
+    balls.pop_back();
+    EXPECT_FALSE(blunt(at)) << "three planes";
+    add_below({0, 0.6F, -0.8F}, 0.3F);
+    EXPECT_TRUE(blunt(at)) << "four planes";
+    rows.pop_back();
+    rows.pop_back();
+    rows.pop_back();
+    balls = {{at - 16.0F * Vec3::UnitZ(), 16.0F}, {at + Vec3::UnitY(), 1.0F}};
+    EXPECT_FALSE(blunt(at)) << "a plane and two balls";
+}
+
 // --- four that contradict each other ---
 
 /// y >= 0 and z >= 0 hold; x >= gap and x <= -gap give way by what their yield makes of it.
 template <class Real>
 class FourRows : public SearchEdges<Real> {
 protected:
-    bool blunt_corner(float gap, float yield = 1.0F, bool was_blunt = false)
+    bool blunt_corner(float gap, float yield = 1.0F)
     {
         this->scale = test::exact_scale<float>();
         this->clear();
@@ -173,20 +195,10 @@ protected:
         this->add_below(-Vec3::UnitZ(), 0.0F);
         this->add_below(-Vec3::UnitX(), -gap, yield);
         this->add_below(Vec3::UnitX(), -gap, yield);
-        if (was_blunt) {
-            this->rows.insert(this->rows.begin(), Row{Vec3(0, 1, 1e-2F), 0.0F});
-            this->yields.insert(this->yields.begin(), 1.0F);
-        }
-        const std::size_t n = this->rows.size();
         Search<Real> s = this->search({-1, -1, -1});
-        if (was_blunt) {
-            EXPECT_EQ(s.nearest(2), Found::optimum);
-            s.judge(2);
-            EXPECT_TRUE(s.is_blunt());
-        }
-        EXPECT_EQ(s.nearest(n), Found::nothing);
+        EXPECT_EQ(s.nearest(4), Found::nothing);
         d = -1.0F;
-        EXPECT_TRUE(s.relax_at_corner(n - 2, n, d));
+        EXPECT_TRUE(s.relax_at_corner(2, 4, d));
         x = s.x();
         return s.is_blunt();
     }
@@ -213,6 +225,29 @@ TYPED_TEST(FourRows, SharesAboveTwentyAreBlunt)
     EXPECT_FALSE(this->blunt_corner(0.25F, 0.05F));
     EXPECT_FLOAT_EQ(this->d, 5.0F);
     EXPECT_TRUE(this->blunt_corner(0.25F, 0.0499F));
+}
+
+/// What was blunt before stays so, whatever the corner is like.
+TYPED_TEST(SearchEdges, ACornerAfterABluntAnswerIsBlunt)
+{
+    for (const float inner : {15.0F, 14.0F}) {
+        this->clear();
+        this->add_below(-Vec3::UnitY(), -1.0F);
+        this->add_below(-Vec3::UnitZ(), -1.0F);
+        this->add_below(-Vec3::UnitX(), -0.25F);
+        this->add_below(Vec3::UnitX(), -0.25F);
+        // The second ball touches the first one from within, or lies within it.
+        this->balls = {{Vec3::Zero(), 16.0F}, {Vec3::UnitX(), inner}};
+        Search<TypeParam> s = this->search({20, 0, 0});
+        ASSERT_EQ(s.nearest(0), Found::optimum);
+        s.judge(0);
+        EXPECT_EQ(s.is_blunt(), inner == 15.0F);
+        ASSERT_EQ(s.nearest(4), Found::nothing);
+        float d = 0.0F;
+        ASSERT_TRUE(s.relax_at_corner(2, 4, d));
+        EXPECT_EQ(d, 0.25F);
+        EXPECT_EQ(s.is_blunt(), inner == 15.0F);
+    }
 }
 
 /// With nothing but two opposite ones there is no corner.
