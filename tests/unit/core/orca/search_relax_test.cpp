@@ -151,13 +151,13 @@ TYPED_TEST(SearchRelax, ABudgetThatRunsOutIsSaid)
         const Contradiction c(random);
         const Found whole = this->run(c, kAllUnits);
         const std::uint32_t needed = this->spent;
-        const Vec3 x = this->x;
+        const Vec3 answer = this->x;
         for (std::uint32_t units = 0; units < needed; units += 1 + needed / 60) {
             ASSERT_EQ(this->run(c, units), Found::exhausted) << units << " of " << needed << ", case " << i;
             ASSERT_LE(this->spent, units);
         }
         ASSERT_EQ(this->run(c, needed), whole) << i;
-        ASSERT_EQ(this->x, x);
+        ASSERT_EQ(this->x, answer);
     }
 }
 
