@@ -7,22 +7,14 @@
 
 #include "core/orca/program.hpp"
 #include "tests/unit/core/orca/enumerated.hpp"
+#include "tests/unit/core/orca/half_space.hpp"
 #include "tests/unit/core/orca/tolerances.hpp"
 
 namespace jink::orca {
 namespace {
 
 using test::above;
-
-HalfSpace at_least(const Vec3& normal, float offset, Level level = Level::warning, float yield = 1.0F)
-{
-    HalfSpace out;
-    out.normal = normal;
-    out.offset = offset;
-    out.level = level;
-    out.yield = yield;
-    return out;
-}
+using test::at_least;
 
 Solution solved(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
                 std::uint32_t units = 10'000'000)

@@ -8,18 +8,12 @@
 
 #include "core/orca/program.hpp"
 #include "tests/unit/core/orca/enumerated.hpp"
+#include "tests/unit/core/orca/half_space.hpp"
 
 namespace jink::orca {
 namespace {
 
-HalfSpace at_least(const Vec3& normal, float offset, Level level)
-{
-    HalfSpace out;
-    out.normal = normal;
-    out.offset = offset;
-    out.level = level;
-    return out;
-}
+using test::at_least;
 
 Solution solution_of(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
                      const Vec3& reference, std::uint32_t units = 1'000'000)
