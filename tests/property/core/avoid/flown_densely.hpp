@@ -65,6 +65,7 @@ public:
             goal.y() = size > 0.0 ? course.y() * double(limits_.cruise_speed) / size : 0.0;
         }
         parts_.push_back({end_, state_, goal});
+        farthest_ = farthest();
         fastest_ = std::max({fastest_, state_.velocity.norm(), goal.norm()});
         state_ = after(parts_.back(), dt);
         end_ += dt;
@@ -73,6 +74,9 @@ public:
     [[nodiscard]] double end() const { return end_; }
     /// No speed is above this [m/s].
     [[nodiscard]] double fastest() const { return fastest_; }
+    /// No coordinate at a set-point is above this [m].
+    [[nodiscard]] double farthest() const { return std::max(farthest_, state_.position.cwiseAbs().maxCoeff()); }
+    [[nodiscard]] std::size_t commands() const { return parts_.size(); }
     [[nodiscard]] FlownState at(double t) const
     {
         if (parts_.empty()) {
@@ -109,6 +113,7 @@ private:
     std::vector<Part> parts_;
     double end_ = 0.0;
     double fastest_ = 0.0;
+    double farthest_ = 0.0;
 };
 
 /// As the supervisor says: to a stand, or straight on with fixed wings.
