@@ -114,7 +114,7 @@ TEST_P(ConflictTies, ABarrelThatTouchesExactlyIsMet)
     EXPECT_GT(found.time_to_loss, 0.0F);
 }
 
-/// Where the budget runs out before the way is known, nothing is told of the obstacle but that it is met now.
+/// Where the budget runs out before the way is known, all that is said of the obstacle is that it is met now.
 TEST_P(ConflictTies, BeforeAnythingIsLookedAtTheConflictIsNow)
 {
     scene.obstacle(geometry::make_sphere(Vec3(40, 0, 0), 1.0F));
