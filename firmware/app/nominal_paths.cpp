@@ -273,6 +273,15 @@ void NominalPaths::keep(const vehicle::VehicleLimits& limits) noexcept
     }
 }
 
+/// A turn may come near to itself: what was flown of it is not flown again.
+void NominalPaths::progress(const vehicle::VehicleState& own) noexcept
+{
+    world::Reference& r = kept_.reference;
+    if (r.route != nullptr) {
+        r.segment = r.route->abeam_of(own.position, r.segment).segment;
+    }
+}
+
 const world::Reference* NominalPaths::other() const noexcept
 {
     if (!on_motion_) {
@@ -303,6 +312,9 @@ void NominalPaths::update(const vehicle::VehicleState& measured, const vehicle::
     if (outdated_) {
         keep(limits);
         outdated_ = false;
+    }
+    if (in_control) {
+        progress(own);
     }
     on_motion_ = in_control ? on_motion_ || !has_leg_ : !believes_leg();
 }

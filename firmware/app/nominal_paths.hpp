@@ -92,6 +92,7 @@ private:
     void intend(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits, bool in_control) noexcept;
     void extrapolate(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept;
     void keep(const vehicle::VehicleLimits& limits) noexcept;
+    void progress(const vehicle::VehicleState& own) noexcept;
     [[nodiscard]] bool add_turn(const vehicle::VehicleState& own) noexcept;
     [[nodiscard]] const world::Reference& motion() const noexcept
     {

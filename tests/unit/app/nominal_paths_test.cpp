@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
+#include "core/world/conflict.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -241,6 +244,38 @@ TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
     fly(Vec3(0, 0, 2), 3.0F, 0.0F, true);
     ASSERT_NE(paths.primary().route, nullptr);
     EXPECT_LT((paths.primary().route->at(0.0F).position - at).norm(), 0.2F);
+}
+
+/// A turn comes near to itself: its end leads back beside its beginning. From anywhere about it a vehicle that follows
+/// the way comes to the straight part and gets on.
+TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
+{
+    has_leg = false;
+    Random random(5);
+    const auto sign = [&random] { return random.below(2) == 0 ? -1.0F : 1.0F; };
+    const vehicle::Airframe airframe{};
+    const world::Airspace open;
+    for (int i = 0; i < 100; ++i) {
+        paths.reset();
+        now = now + 5.0F;
+        own.position = Vec3(0, 0, 50);
+        update();
+        const float climb = random.below(2) == 0 ? 0.0F : random.uniform(-1.0F, 1.0F);
+        fly(Vec3(4.7F, 0, climb), 1.5F, sign() * random.uniform(0.2F, 0.9F));
+        ASSERT_NE(paths.primary().route, nullptr) << i;
+        own.position += Vec3(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(-5, 5));
+        for (Seconds t = 0.0F; t < 30.0F; t += 0.02F) {
+            update(true);
+            const world::Way way =
+                world::way_of({now, own, limits, airframe, paths.primary(), {}, {}, open, nullptr, 3.0F, 0, nullptr});
+            own.velocity += 0.05F * (way.speed * way.direction - own.velocity);
+            own.position += 0.02F * own.velocity;
+            now = now + 0.02F;
+        }
+        const path::Abeam abeam = paths.primary().route->abeam_of(own.position, paths.primary().segment);
+        EXPECT_EQ(abeam.segment + 1, paths.primary().route->segments().size()) << i;
+        EXPECT_LT(abeam.off, 3.0F) << i;
+    }
 }
 
 TEST_F(NominalPathsTest, TakenOverOnTheLegTheLegIsFlown)
