@@ -71,12 +71,14 @@ void Plant::take_notes()
     samples_.push_back(sample);
 }
 
-/// Below the floor, and not because the leg leads there.
+/// Below the floor, and not because the leg leads there, or the autopilot by itself, which follows it more or less.
 bool Plant::is_below_floor() const
 {
+    constexpr double kFollowing = 0.5;
     const Vec& position = world_.own().position;
-    return scenario_.floor && position.z() < *scenario_.floor &&
-           autopilot_.mission().height_abeam(position) >= *scenario_.floor;
+    const double leg = autopilot_.mission().height_abeam(position);
+    const bool follows = autopilot_.mode() == Mode::mission && leg - position.z() <= kFollowing;
+    return scenario_.floor && position.z() < *scenario_.floor && leg >= *scenario_.floor && !follows;
 }
 
 void Plant::step()
