@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
 
 #include "core/world/world.hpp"
 
@@ -10,8 +11,9 @@ namespace jink::world {
 float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept
 {
     const Seconds age = std::max(0.0F, (situation.now - track.stamp) + t);
-    return track.radius +
-           situation.k_sigma * (situation.own.sigma_position + track.sigma_position + track.sigma_velocity * age) +
+    const float own = situation.own.sigma_position;
+    const float places = std::sqrt(own * own + track.sigma_position * track.sigma_position);
+    return track.radius + situation.k_sigma * (places + track.sigma_velocity * age) +
            0.5F * track.max_acceleration * age * age;
 }
 

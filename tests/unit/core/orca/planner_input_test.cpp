@@ -211,7 +211,7 @@ TEST_F(OrcaInput, ATracksSphereGrowsUntilItIsNearest)
     scene.tracks[0].sigma_position = 0.2F;
     scene.tracks[0].sigma_velocity = 0.1F;
     scene.own.sigma_position = 0.3F;
-    EXPECT_NEAR(kept(30.0F), 1.0F + 3.0F * (0.2F + 0.3F + 0.1F * 6.1F), 1e-2F);
+    EXPECT_NEAR(kept(30.0F), 1.0F + 3.0F * (std::sqrt(0.13F) + 0.1F * 6.1F), 1e-2F);
 }
 
 /// The nearest point of a tall one's axis, about which its region is at most twice as high as wide.

@@ -49,14 +49,14 @@ INSTANTIATE_TEST_SUITE_P(LegAndRoute, ConflictLimits, testing::Bool());
 
 TEST_P(ConflictLimits, ATrackIsMetByTheUncertainBoxAndAtItsAge)
 {
-    // Two seconds old: 1 m of body, 0.5 m of either place, 2 * 0.1 m/s for its age, 0.2 m/s2 from its stamp on.
+    // Two seconds old: 1 m of body, 0.5 m of either place, 0.2 m/s for its age, 0.2 m/s2 from its stamp on.
     Track& track = scene.track(Vec3(60, 0, 0), Vec3(-5, 0, 0), 1.0F);
     track.stamp = scene.now - 2.0F;
     track.sigma_position = 0.25F;
     track.sigma_velocity = 0.1F;
     track.max_acceleration = 0.2F;
     ASSERT_TRUE(meets());
-    const auto radius = [](float t) { return 1.0F + 0.5F + 0.5F + 0.2F * (t + 2.0F) + 0.1F * (t + 2.0F) * (t + 2.0F); };
+    const auto radius = [](float t) { return 1.0F + std::sqrt(0.5F) + 0.2F * (t + 2.0F) + 0.1F * (t + 2.0F) * (t + 2.0F); };
     // Met at t with 60 - 10 t = 3 + radius(t): a little before 4.6 s.
     const float loss = found.time_to_loss;
     EXPECT_LE(60.0F - 10.0F * loss, 3.0F + radius(loss + 0.5F) + 1e-3F);

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How threats grow, and boxes against uncertain heights.
+#include <cmath>
+#include <utility>
+
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -9,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// 2 m of body, 0.5 + 0.25 m of doubt about both places, 0.1 m/s about the velocity, 0.4 m/s2; three deviations.
+/// 2 m of body, 0.5 m of doubt about the own place and 0.25 about the other, 0.1 m/s about the velocity, 0.4 m/s2; three deviations.
 struct Growing : testing::Test {
     Growing()
     {
@@ -19,7 +23,7 @@ struct Growing : testing::Test {
         track->sigma_velocity = 0.1F;
         track->max_acceleration = 0.4F;
     }
-    static float radius(float age) { return 2.0F + 3.0F * (0.5F + 0.25F + 0.1F * age) + 0.5F * 0.4F * age * age; }
+    static float radius(float age) { return 2.0F + 3.0F * (std::sqrt(0.3125F) + 0.1F * age) + 0.5F * 0.4F * age * age; }
     Scene scene;
     Track* track = nullptr;
 };
@@ -37,6 +41,29 @@ TEST_F(Growing, AsAPolynomialOfTimeItIsTheRadius)
                 EXPECT_NEAR(growth.at(t), radius(age + lead + t), 1e-4F) << age << ' ' << lead << ' ' << t;
             }
         }
+    }
+}
+
+/// Errors of two places that have nothing to do with each other leave the radius as often as those of one place do, of
+/// which 2.9 % lie beyond three deviations.
+TEST_F(Growing, TheErrorsOfBothPlacesLeaveItAsOftenAsThoseOfOne)
+{
+    track->radius = track->sigma_velocity = track->max_acceleration = 0.0F;
+    Random random(7);
+    const auto error = [&random](float sigma) {
+        return Vec3(sigma * random.normal(), sigma * random.normal(), sigma * random.normal());
+    };
+    constexpr int kErrors = 40'000;
+    for (const auto& [own, other] : {std::pair(0.5F, 0.0F), std::pair(0.0F, 0.5F), std::pair(0.2F, 0.3F),
+                                     std::pair(0.4F, 0.4F)}) {
+        scene.own.sigma_position = own;
+        track->sigma_position = other;
+        const float reach = threat_radius(scene.situation(), *track, 0.0F);
+        int beyond = 0;
+        for (int i = 0; i < kErrors; ++i) {
+            beyond += (error(own) - error(other)).norm() > reach ? 1 : 0;
+        }
+        EXPECT_NEAR(static_cast<double>(beyond) / kErrors, 0.0292, 0.004) << own << ' ' << other;
     }
 }
 

@@ -25,11 +25,12 @@ TEST(ThreatRadius, AddsBodyDoubtAndAcceleration)
     track.sigma_position = 0.25F;
     track.sigma_velocity = 0.1F;
     track.max_acceleration = 0.2F;
-    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (0.5F + 0.25F + 0.4F) + 0.1F * 16.0F);
+    const float both = std::sqrt(0.5F * 0.5F + 0.25F * 0.25F);
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (both + 0.4F) + 0.1F * 16.0F);
     track.stamp = scene.now - 2.0F;
-    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (0.5F + 0.25F + 0.6F) + 0.1F * 36.0F);
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (both + 0.6F) + 0.1F * 36.0F);
     track.stamp = scene.now + 1.0F;
-    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 0.0F), 2.0F + 3.0F * 0.75F) << "no negative age";
+    EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 0.0F), 2.0F + 3.0F * both) << "no negative age";
     scene.k_sigma = 0.0F;
     track.stamp = scene.now;
     EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 0.1F * 16.0F);
