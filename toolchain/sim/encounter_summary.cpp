@@ -61,6 +61,12 @@ void put_outcomes(std::string& text, const Results& results)
         put_share(text, std::string(to_string(outcome)).c_str(),
                   count_if(results, [&](const EncounterResult& r) { return r.outcome == outcome; }), results.size());
     }
+    for (const Stack stack : {Stack::ardupilot, Stack::px4}) {
+        const auto flew = [stack](const EncounterResult& r) { return r.stack == stack; };
+        put_share(text, ("... avoided with " + std::string(to_string(stack))).c_str(),
+                  count_if(results, [&](const EncounterResult& r) { return flew(r) && r.outcome == Outcome::avoided; }),
+                  count_if(results, flew));
+    }
 }
 
 static_assert(kReaction == 0.05, "as the texts below have it");
