@@ -9,6 +9,7 @@
 #include "core/geometry/sweep.hpp"
 #include "core/world/barrel.hpp"
 #include "core/world/conflict.hpp"
+#include "core/world/growing_radius.hpp"
 
 // What the search for conflicts does for a straight way and for one along a route. Private to this room.
 
@@ -62,6 +63,7 @@ Seconds loss_within(const Situation& situation, const Piece& phase, const Track&
         !geometry::contact_interval(half, phase.own, threat, threat_radius(situation, track, phase.end), span)) {
         return -1.0F;
     }
+    const GrowingRadius radius_at(situation, track);
     const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
     const int pieces = grows ? static_cast<int>(std::ceil(span / kPiece)) : 1;
     const Seconds piece = span / static_cast<float>(pieces);
@@ -72,7 +74,7 @@ Seconds loss_within(const Situation& situation, const Piece& phase, const Track&
         const Seconds t = piece * static_cast<float>(i);
         const geometry::Motion own{phase.own.position + phase.own.velocity * t, phase.own.velocity};
         const geometry::Motion other{threat.position + threat.velocity * t, threat.velocity};
-        const float radius = threat_radius(situation, track, phase.start + t + piece);
+        const float radius = radius_at(phase.start + t + piece);
         if (const auto touch = geometry::contact_interval(half, own, other, radius, piece)) {
             return phase.start + t + touch->first;
         }

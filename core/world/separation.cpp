@@ -11,6 +11,7 @@
 #include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/barrel.hpp"
+#include "core/world/growing_radius.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "core/world/separation_parts.hpp"
 
@@ -110,10 +111,9 @@ void against_track(const Situation& situation, const Flight& flight, std::size_t
 {
     const Track& track = situation.tracks[index];
     const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
-    against_ball(
-        flight, box_against(situation, track), {track.position, track.velocity}, grows,
-        [&](Seconds t) { return threat_radius(situation, track, t); },
-        {ThreatKind::track, static_cast<std::uint16_t>(index)}, escape, budget, best);
+    const GrowingRadius radius_at(situation, track);
+    against_ball(flight, box_against(situation, track), {track.position, track.velocity}, grows, radius_at,
+                 {ThreatKind::track, static_cast<std::uint16_t>(index)}, escape, budget, best);
 }
 
 /// Margins of solids are told apart no finer than kObstacleResolution, and one query costs hundreds of support calls:

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
+#include "core/world/growing_radius.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -13,7 +14,8 @@ namespace {
 
 using namespace test;
 
-/// 2 m of body, 0.5 m of doubt about the own place and 0.25 about the other, 0.1 m/s about the velocity, 0.4 m/s2; three deviations.
+/// 2 m of body, 0.5 m of doubt about the own place and 0.25 about the other, 0.1 m/s about the velocity, 0.4 m/s2;
+/// three deviations.
 struct Growing : testing::Test {
     Growing()
     {
@@ -54,8 +56,8 @@ TEST_F(Growing, TheErrorsOfBothPlacesLeaveItAsOftenAsThoseOfOne)
         return Vec3(sigma * random.normal(), sigma * random.normal(), sigma * random.normal());
     };
     constexpr int kErrors = 40'000;
-    for (const auto& [own, other] : {std::pair(0.5F, 0.0F), std::pair(0.0F, 0.5F), std::pair(0.2F, 0.3F),
-                                     std::pair(0.4F, 0.4F)}) {
+    for (const auto& [own, other] :
+         {std::pair(0.5F, 0.0F), std::pair(0.0F, 0.5F), std::pair(0.2F, 0.3F), std::pair(0.4F, 0.4F)}) {
         scene.own.sigma_position = own;
         track->sigma_position = other;
         const float reach = threat_radius(scene.situation(), *track, 0.0F);
@@ -76,6 +78,17 @@ TEST_F(Growing, AStampAheadGrowsFromNowOn)
     EXPECT_NEAR(growth.rate, 0.3F, 1e-5F);
     for (const float t : {0.0F, 0.5F, 1.0F, 4.0F}) {
         EXPECT_GE(growth.at(t), threat_radius(scene.situation(), *track, t)) << t;
+    }
+}
+
+TEST_F(Growing, AtManyInstantsItIsTheSameRadius)
+{
+    for (const float age : {-3.0F, -0.5F, 0.0F, 1.5F}) {
+        track->stamp = scene.now - age;
+        const GrowingRadius radius_at(scene.situation(), *track);
+        for (const float t : {0.0F, 0.4F, 0.6F, 2.0F, 5.0F}) {
+            EXPECT_NEAR(radius_at(t), threat_radius(scene.situation(), *track, t), 1e-4F) << age << ' ' << t;
+        }
     }
 }
 
