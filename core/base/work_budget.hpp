@@ -8,9 +8,9 @@ namespace jink {
 /// Units of work that a computation may still spend.
 ///
 /// One unit stands for about 100 instructions of a Cortex-M7. What each kind of work costs is said by weights
-/// (work_units.hpp, and core/geometric for its candidates), before it is done; no work takes more than 150 instructions
+/// (work_units.hpp, and core/geometric for its candidates), before it is done; no work takes more than 160 instructions
 /// a unit in any recorded case, on the Cortex-M7 and on the Cortex-M4F, which pays more for doubles in software. So a
-/// budget bounds the instructions of what it counts: `units` * 150. Never time, so results do not depend on the
+/// budget bounds the instructions of what it counts: `units` * 160. Never time, so results do not depend on the
 /// machine; with the same weights they are the same, and where doubles are in software they differ only where a budget
 /// runs out.
 ///
