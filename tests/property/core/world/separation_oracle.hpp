@@ -40,9 +40,8 @@ inline double radius_of(const Scene& scene, const Track& track, double t)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6 + t);
     return double(track.radius) +
-           double(scene.k_sigma) *
-               (std::hypot(double(scene.own.sigma_position), double(track.sigma_position)) +
-                double(track.sigma_velocity) * age) +
+           double(scene.k_sigma) * (std::hypot(double(scene.own.sigma_position), double(track.sigma_position)) +
+                                    double(track.sigma_velocity) * age) +
            0.5 * double(track.max_acceleration) * age * age;
 }
 

@@ -56,7 +56,9 @@ TEST_P(ConflictLimits, ATrackIsMetByTheUncertainBoxAndAtItsAge)
     track.sigma_velocity = 0.1F;
     track.max_acceleration = 0.2F;
     ASSERT_TRUE(meets());
-    const auto radius = [](float t) { return 1.0F + std::sqrt(0.5F) + 0.2F * (t + 2.0F) + 0.1F * (t + 2.0F) * (t + 2.0F); };
+    const auto radius = [](float t) {
+        return 1.0F + std::sqrt(0.5F) + 0.2F * (t + 2.0F) + 0.1F * (t + 2.0F) * (t + 2.0F);
+    };
     // Met at t with 60 - 10 t = 3 + radius(t): a little before 4.6 s.
     const float loss = found.time_to_loss;
     EXPECT_LE(60.0F - 10.0F * loss, 3.0F + radius(loss + 0.5F) + 1e-3F);
