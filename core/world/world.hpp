@@ -130,11 +130,11 @@ enum class PlanStatus : std::uint8_t {
     bad_input,       ///< no leg, or settings out of range
 };
 
-/// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma standard deviations of where the two
-/// are to each other, and half its acceleration bound times its age squared. The errors of the own place and of the
-/// track's come from different sensors, so their variances add; that of the velocity adds by itself, as it is part of
-/// the place's. A sensor of our own shares the own error, which then cancels: the radius is on the safe side there. The
-/// only place where threats grow. O(1).
+/// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma standard deviations of the distance
+/// between the two, and half its acceleration bound times its age squared. The errors of the own position and of the
+/// track's position come from different sensors, so their variances add. The velocity's standard deviation times the
+/// age adds linearly, because its error and the position's are correlated. For a sensor of the vehicle's own, the own
+/// error cancels: conservative. The only place where threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
 
 /// Half extents of the own box as this track meets it: taller by the track's `half_height`. A box against an upright

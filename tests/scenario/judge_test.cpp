@@ -201,6 +201,12 @@ TEST(InProcess, TheFloorIsBrokenWhereTheLegIsNot)
     const Record low = fly_in_process(s);
     EXPECT_TRUE(low.below_floor);
     EXPECT_EQ(low.outcome, Outcome::failed);
+    // An autopilot that follows its own leg down through the floor is below it a little sooner.
+    const Vec down_the_leg = s.mission[1] - s.mission[0];
+    s.start_position = s.mission[0] + (20.2 - s.mission[0].z()) / down_the_leg.z() * down_the_leg - Vec(0, 0, 0.3);
+    const Record follows = fly_in_process(s);
+    EXPECT_LT(follows.lowest, 19.0);
+    EXPECT_FALSE(follows.below_floor);
 }
 
 TEST(InProcess, TheSameSeedGivesTheSameBytes)

@@ -9,8 +9,8 @@
 
 #include <Eigen/Dense>
 
-#include "core/orca/search.hpp"
 #include "tests/unit/core/orca/enumerated.hpp"
+#include "tests/unit/core/orca/search_rows.hpp"
 #include "tests/unit/core/orca/tolerances.hpp"
 
 namespace jink::orca {
@@ -20,46 +20,12 @@ using enumerated::unit;
 
 constexpr std::uint32_t kEnough = 10'000'000;
 
-/// Rows for velocities of 4 m/s, which are searched anew each time.
 template <class Real>
-class SearchContract : public ::testing::Test {
+class SearchContract : public test::SearchRows {
 protected:
-    void add(const Vec3& normal, float offset, float yield = 1.0F)
-    {
-        rows.push_back({normal, offset});
-        yields.push_back(yield);
-    }
-    void clear()
-    {
-        rows.clear();
-        yields.clear();
-    }
-    /// As they are, whatever an earlier search has made of them.
-    Search<Real> search(const Vec3& goal, WorkBudget& budget)
-    {
-        shifted = rows;
-        derived.resize(rows.size());
-        held.resize(rows.size() + 8);
-        return Search<Real>(balls, goal, {shifted, derived, yields, held}, scale, budget);
-    }
-    /// How far `x` is outside of the first `count` rows at most.
-    [[nodiscard]] float outside(std::size_t count, const Vec3& x) const
-    {
-        float out = 0.0F;
-        for (std::size_t i = 0; i < count; ++i) {
-            out = std::max(out, rows[i].violation(x));
-        }
-        return out;
-    }
-    /// And by how much of their yields outside of the others.
-    [[nodiscard]] float given_way(std::size_t from, const Vec3& x) const
-    {
-        float out = 0.0F;
-        for (std::size_t i = from; i < rows.size(); ++i) {
-            out = std::max(out, rows[i].violation(x) / yields[i]);
-        }
-        return out;
-    }
+    SearchContract() : SearchRows(40.0F) {}
+
+    Search<Real> search(const Vec3& goal, WorkBudget& budget) { return this->template search_for<Real>(goal, budget); }
     /// What holds the point pushes it to where it is from the goal, and none of it pulls: no other one is as near.
     void expect_nearest(const Search<Real>& found, const Vec3& goal) const
     {
@@ -74,14 +40,6 @@ protected:
         EXPECT_LE((normals * shares - way).norm(), 1e-4 * way.norm());
     }
     [[nodiscard]] float rounding() const { return 4.0F * Tolerance<float>(scale).outside; }
-
-    float scale = 4.0F;
-    std::vector<Row> rows;
-    std::vector<Row> shifted;
-    std::vector<Row> derived;
-    std::vector<float> yields;
-    std::vector<std::uint16_t> held;
-    std::vector<Ball> balls{{Vec3::Zero(), 40.0F}};
 };
 using ContractPrecisions = ::testing::Types<float, Wide>;
 TYPED_TEST_SUITE(SearchContract, ContractPrecisions);

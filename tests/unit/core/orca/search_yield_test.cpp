@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/orca/search.hpp"
 #include "tests/unit/core/orca/enumerated.hpp"
+#include "tests/unit/core/orca/search_rows.hpp"
 #include "tests/unit/core/orca/tolerances.hpp"
 
 namespace jink::orca {
@@ -21,17 +21,13 @@ constexpr std::uint32_t kAmple = 100'000'000;
 
 /// Rows, those from `hards` on of which give way.
 template <class Real>
-class SearchYield : public ::testing::Test {
+class SearchYield : public test::SearchRows {
 protected:
-    void add(const Vec3& normal, float offset, float yield = 1.0F)
-    {
-        rows.push_back({normal, offset});
-        yields.push_back(yield);
-    }
+    SearchYield() : SearchRows(60.0F) {}
+
     void clear()
     {
-        rows.clear();
-        yields.clear();
+        SearchRows::clear();
         hards = 0;
     }
     /// Of random directions, at `speed` [m/s].
@@ -48,10 +44,7 @@ protected:
     template <class R = Real>
     Search<R> search(WorkBudget& budget)
     {
-        given = rows;
-        derived.resize(rows.size());
-        held.resize(rows.size() + 8);
-        return Search<R>(balls, goal, {given, derived, yields, held}, scale, budget);
+        return search_for<R>(goal, budget);
     }
     /// Nothing holds all, and what does not give way leaves a point: then it gives way. Whether it has come to that.
     template <class R = Real>
@@ -59,32 +52,11 @@ protected:
     {
         return s.nearest(rows.size()) == Found::nothing && s.nearest(hards) == Found::optimum;
     }
-    [[nodiscard]] float outside(const Vec3& x) const
-    {
-        float out = 0.0F;
-        for (std::size_t i = 0; i < hards; ++i) {
-            out = std::max(out, rows[i].violation(x));
-        }
-        return out;
-    }
-    [[nodiscard]] float yielded(const Vec3& x) const
-    {
-        float out = 0.0F;
-        for (std::size_t i = hards; i < rows.size(); ++i) {
-            out = std::max(out, rows[i].violation(x) / yields[i]);
-        }
-        return out;
-    }
+    [[nodiscard]] float outside(const Vec3& x) const { return SearchRows::outside(hards, x); }
+    [[nodiscard]] float yielded(const Vec3& x) const { return given_way(hards, x); }
 
-    float scale = 4.0F;
     std::size_t hards = 0;
     Vec3 goal = Vec3::Zero();
-    std::vector<Row> rows;
-    std::vector<Row> given;  ///< as they have given way
-    std::vector<Row> derived;
-    std::vector<float> yields;
-    std::vector<std::uint16_t> held;
-    std::vector<Ball> balls{{Vec3::Zero(), 60.0F}};
 };
 using YieldPrecisions = ::testing::Types<float, Wide>;
 TYPED_TEST_SUITE(SearchYield, YieldPrecisions);
