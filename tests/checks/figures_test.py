@@ -170,6 +170,48 @@ class OnACopy(unittest.TestCase):
             lock.write_bytes(kept)
             source.write_text(text, encoding="utf-8")
 
+    def test_what_the_witness_holds_stays_while_it_prints_the_same(self):
+        lock, source = self.top / figures_check.LOCK, self.top / "core/base/work_budget.hpp"
+        kept, text = lock.read_bytes(), source.read_text(encoding="utf-8")
+
+        def witness(printed):
+            book = figures_check.Book(self.top)
+            book.lock.witness = {"digest": book.digest(book.registry.witness), "printed": printed}
+            book.lock.write()
+
+        try:
+            self.fresh().write()
+            witness(["flights: 1", "plans: 2"])
+            book = figures_check.Book(self.top)
+            held = {c.name for c in self.evidence() if c.witnessed}
+            self.assertTrue(held)
+            for name in held:
+                book.lock.commands[name]["witness"] = book.witness_printed()
+            book.lock.write()
+            self.assertEqual(set(self.states().values()), {"fresh"})
+
+            source.write_text(text + "\nint changed = 1;\n", encoding="utf-8")
+            self.assertNotIn("as before", self.states().values(), "the witness has not been run on these sources")
+            witness(["flights: 1", "plans: 2"])
+            for name, state in self.states().items():
+                self.assertIn(state, ("as before",) if name in held else ("stale", "fresh"), name)
+            self.assertFalse([p for p in figures_check.Book(self.top).evidence() if any(p.text.startswith(f"{n}: recorded on") for n in held)])
+            witness(["flights: 1", "plans: 3"])
+            self.assertEqual({self.states()[name] for name in held}, {"stale"}, "the witness prints something else")
+        finally:
+            lock.write_bytes(kept)
+            source.write_text(text, encoding="utf-8")
+
+    def test_a_command_cannot_be_held_by_a_witness_that_is_not_there(self):
+        registry = self.top / figures_registry.FILE
+        kept = registry.read_text(encoding="utf-8")
+        try:
+            registry.write_text(re.sub(r"\[witness\]\nrun = .*\nsources = .*\n", "", kept), encoding="utf-8")
+            with self.assertRaises(figures_registry.Wrong):
+                figures_registry.Registry(self.top)
+        finally:
+            registry.write_text(kept, encoding="utf-8")
+
     def test_an_unknown_command_on_each_page_is_found(self):
         for page in figures_check.Book(self.top).pages.values():
             with self.subTest(page=page.name):

@@ -2,6 +2,7 @@
 """Compares pages, registry and lock: what is wrong, by page and line."""
 import dataclasses
 import difflib
+import hashlib
 import json
 import pathlib
 import sys
@@ -33,6 +34,7 @@ class Lock:
         self.path = top / LOCK
         kept = json.loads(self.path.read_text(encoding="utf-8")) if self.path.exists() else {}
         self.commands, self.seals = kept.get("commands", {}), kept.get("seals", {})
+        self.witness = kept.get("witness", {})  # digest of its sources, commit, and what it printed
 
     def write(self):
         def block(mapping):
@@ -45,7 +47,8 @@ class Lock:
                 return "{" + "".join(f"{json.dumps(k)}: {json.dumps(v)}, " for k, v in head.items()) + '"values": {\n' + values + "}}"
             return "[\n" + ",\n".join(f"   {json.dumps(line, ensure_ascii=False)}" for line in value) + "]"
 
-        text = "{\n \"commands\": {\n" + block(self.commands) + "},\n \"seals\": {\n" + block(self.seals) + "}}\n"
+        witness = f" \"witness\": {json.dumps(self.witness, indent=1)},\n" if self.witness else ""
+        text = "{\n" + witness + " \"commands\": {\n" + block(self.commands) + "},\n \"seals\": {\n" + block(self.seals) + "}}\n"
         new = self.path.with_suffix(".new")
         new.write_text(text, encoding="utf-8")
         new.replace(self.path)
@@ -86,7 +89,7 @@ class Book:
     # --- recorded and printed figures
 
     def state(self, command):
-        """fresh, stale, never, dated or quick; quick ones are never stale, because they are run"""
+        """fresh, as before, stale, never, dated or quick; quick ones are never stale, because they are run"""
         if command.kind == "record":
             try:
                 record = json.loads((self.top / command.record).read_text(encoding="utf-8"))
@@ -101,7 +104,16 @@ class Book:
             return "quick"
         if command.dated:
             return "dated" if self.lock.commands[command.name].get("commit") == command.commit else "stale"
-        return "fresh" if kept == self.digest(command) else "stale"
+        if kept == self.digest(command):
+            return "fresh"
+        return "as before" if command.witnessed and self.lock.commands[command.name].get("witness") == self.witness_printed() is not None else "stale"
+
+    def witness_printed(self):
+        """What the witness printed, as a digest, where it was run on these sources; else None."""
+        of = self.registry.witness
+        if of is None or self.lock.witness.get("digest") != self.digest(of):
+            return None
+        return hashlib.sha256("\n".join(self.lock.witness["printed"]).encode()).hexdigest()[:24]
 
     def evidence(self, any_age=False):
         """any_age: accepts figures that were recorded on other code, or never"""

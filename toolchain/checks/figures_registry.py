@@ -54,10 +54,23 @@ class Figure:
         return self.scale[index % len(self.scale)]
 
 
+def expanded(globs, groups):
+    return [g for glob in globs for g in (groups[glob[1:]] if glob.startswith("@") else [glob])]
+
+
+class Witness:
+    """A quick command whose whole output is compared: where it is the same, two states of the sources decide alike."""
+    kind, name, status, in_tree = "witness", "witness", [0], False
+
+    def __init__(self, entry, groups):
+        refuse_unknown(entry, "witness", ("run", "sources"))
+        self.run, self.sources = entry["run"], expanded(entry["sources"], groups)
+
+
 class Command:
     def __init__(self, name, entry, groups):
         refuse_unknown(entry, name, ("name", "kind", "pages", "as_written", "run", "seconds", "figures", "sources", "reason", "record", "render", "stamp",
-                                     "dated", "commit", "minutes", "in_tree", "status"))
+                                     "dated", "commit", "minutes", "in_tree", "status", "witnessed"))
         self.name, self.kind = name, entry.get("kind")
         if self.kind not in KINDS:
             raise Wrong(f"{name}: kind is one of {', '.join(KINDS)}")
@@ -69,9 +82,8 @@ class Command:
         self.in_tree = entry.get("in_tree", False)  # the command writes into the tree: not run in a folder of its own
         self.status = entry.get("status", [0])  # exit statuses that are answers
         self.dated, self.commit, self.minutes = entry.get("dated", False), entry.get("commit"), entry.get("minutes", 0)
-        self.sources = []
-        for glob in entry.get("sources", []):
-            self.sources += groups[glob[1:]] if glob.startswith("@") else [glob]
+        self.sources = expanded(entry.get("sources", []), groups)
+        self.witnessed = entry.get("witnessed", False)  # stays as it is where the sources have changed and the witness has not
         self.figures = [Figure(name, self.pages[0] if self.pages else None, f) for f in entry.get("figures", [])]
         if self.kind == "not_run" and not self.reason:
             raise Wrong(f"{name}: says not why it is not run")
@@ -79,6 +91,8 @@ class Command:
             raise Wrong(f"{name}: says not which sources decide its figures")
         if self.kind == "record" and not self.record:
             raise Wrong(f"{name}: says not where its record is")
+        if self.witnessed and (self.kind != "long" or self.dated):
+            raise Wrong(f"{name}: witnessed is for long commands that are not dated")
         if self.dated and (self.kind != "long" or not self.commit or self.minutes <= LEAST_DATED):
             raise Wrong(f"{name}: dated is for long commands of more than {LEAST_DATED} minutes, with the commit that they ran on")
 
@@ -92,14 +106,17 @@ class Registry:
         self.top = top
         with open(top / FILE, "rb") as file:
             data = tomllib.load(file)
-        refuse_unknown(data, FILE, ("pages", "programs", "sources", "command"))
+        refuse_unknown(data, FILE, ("pages", "programs", "sources", "command", "witness"))
         self.programs = data["programs"]
         self.pages = sorted({p.relative_to(top).as_posix() for glob in data["pages"] for p in top.glob(glob)})
         self.commands = {}
+        self.witness = Witness(data["witness"], data["sources"]) if "witness" in data else None
         for entry in data["command"]:
             if entry["name"] in self.commands:
                 raise Wrong(f"{entry['name']} stands in {FILE} twice")
             self.commands[entry["name"]] = Command(entry["name"], entry, data["sources"])
+        if self.witness is None and any(c.witnessed for c in self.commands.values()):
+            raise Wrong("a command is witnessed, but there is no witness")
         keys = [(c.name, f.key) for c in self.commands.values() for f in c.figures]
         for key in {k for k in keys if keys.count(k) > 1}:
             raise Wrong(f"{key[0]}: {key[1]} stands there twice")
