@@ -328,9 +328,11 @@ Guidance Pilot::update(const world::Situation& given, const world::Reference* ot
     ++diagnostics_.updates;
     note_control(given.now, in_control);
     world::Situation first = given;
+    static_cast<void>(threats_.collect(given));
+    first.threats = threats_.all();
     first.flying = has_flying_ ? &flying_ : nullptr;
     first.commanded = in_control && has_commanded_ ? &commanded_ : nullptr;
-    const world::Situation second = with_reference(first, other != nullptr ? *other : given.reference);
+    const world::Situation second = world::with_reference(first, other != nullptr ? *other : given.reference);
     Tick looked{first,
                 other != nullptr ? &second : nullptr,
                 in_control,

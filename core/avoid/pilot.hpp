@@ -3,6 +3,7 @@
 
 #include "core/avoid/guard.hpp"
 #include "core/world/method.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 
@@ -76,6 +77,7 @@ private:
 
     Settings settings_;
     Diagnostics diagnostics_;
+    world::ThreatSet threats_;  ///< of this update
     State state_ = State::watching;
     bool had_control_ = false;
     bool in_conflict_ = false;

@@ -22,10 +22,10 @@ bool is_traffic(const world::Conflict& conflict) noexcept { return conflict.thre
 /// met first.
 bool traffic_comes(const world::Situation& s, const Settings& settings, WorkBudget& budget) noexcept
 {
-    const world::Airspace open;
-    const world::Situation alone{s.now, s.own, s.limits, s.airframe, s.reference, s.tracks,
-                                 {},    open,  nullptr,  s.k_sigma,  s.own_id,    s.commanded};
-    return !s.tracks.empty() && command_margin(alone, Vec3::Zero(), settings.fallback_horizon, settings, budget) < 0.0F;
+    world::Situation alone = s;
+    alone.threats = world::of_kind(s.threats, world::ThreatKind::track);
+    return !alone.threats.empty() &&
+           command_margin(alone, Vec3::Zero(), settings.fallback_horizon, settings, budget) < 0.0F;
 }
 
 }  // namespace

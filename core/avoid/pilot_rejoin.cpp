@@ -2,6 +2,7 @@
 // Back to the leg: when the way is clear, how it is flown, and what is flown while it is not.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/avoid/pilot_tick.hpp"
 #include "core/geometry/sweep.hpp"
@@ -38,25 +39,31 @@ constexpr Seconds kBoundTime = 1.0F;
 /// outside, the autopilot may go there, but not by our command.
 Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
 {
-    const world::Airspace& air = s.airspace;
     const Vec3& at = s.own.position;
     const Vec3& half = s.limits.half_extents;
-    const float extra = s.k_sigma * s.own.sigma_position;
     Vec3 kept = velocity;
-    if (air.has_ceiling) {
-        kept.z() = std::min(kept.z(), std::max(0.0F, air.ceiling - at.z() - half.z() - extra) / kBoundTime);
+    float lowest = -std::numeric_limits<float>::infinity();
+    for (const world::Threat& bound : s.threats) {
+        const float extra = bound.growth.radius;
+        if (bound.form == world::ThreatForm::floor) {
+            lowest = std::min(0.0F, bound.position.z() - at.z() + half.z() + extra) / kBoundTime;
+        } else if (bound.form == world::ThreatForm::ceiling) {
+            kept.z() = std::min(kept.z(), std::max(0.0F, bound.position.z() - at.z() - half.z() - extra) / kBoundTime);
+        } else if (bound.form == world::ThreatForm::keep_in) {
+            const Vec3 from_home(at.x() - bound.position.x(), at.y() - bound.position.y(), 0.0F);
+            const float off = from_home.norm();
+            if (off > 0.0F) {
+                const float left = bound.level_radius - off - half.head<2>().norm() - extra;
+                const float outward = from_home.dot(kept) / off;
+                const float most = std::max(0.0F, left) / kBoundTime;
+                kept -= (std::max(0.0F, outward - most) / off) * from_home;
+            }
+        } else {
+            break;
+        }
     }
-    if (air.has_floor) {
-        kept.z() = std::max(kept.z(), std::min(0.0F, air.floor - at.z() + half.z() + extra) / kBoundTime);
-    }
-    const Vec3 from_home(at.x() - air.home.x(), at.y() - air.home.y(), 0.0F);
-    const float off = from_home.norm();
-    if (air.has_keep_in && off > 0.0F) {
-        const float left = air.keep_in_radius - off - half.head<2>().norm() - extra;
-        const float outward = from_home.dot(kept) / off;
-        const float most = std::max(0.0F, left) / kBoundTime;
-        kept -= (std::max(0.0F, outward - most) / off) * from_home;
-    }
+    // Between a floor and a ceiling that leave nothing, up.
+    kept.z() = std::max(kept.z(), lowest);
     return kept;
 }
 
@@ -150,7 +157,8 @@ bool Pilot::keep_course(Tick& tick) noexcept
 {
     /// A half turn at 30 degrees of bank and 18 m/s takes 10 s, a quarter 5 s.
     constexpr Seconds kTurning = 8.0F;
-    if (tick.s.limits.kind != vehicle::VehicleKind::fixed_wing || tick.s.tracks.empty()) {
+    if (tick.s.limits.kind != vehicle::VehicleKind::fixed_wing ||
+        world::of_kind(tick.s.threats, world::ThreatKind::track).empty()) {
         return false;
     }
     const Seconds ahead = std::min(settings_.lookahead, kTurning);

@@ -33,30 +33,12 @@ struct Wider {
     world::Situation situation;
 
     Wider(const world::Situation& s, float extra) noexcept
-        : limits(widened(s.limits, extra)), situation{s.now,       s.own,     limits,      s.airframe,
-                                                      s.reference, s.tracks,  s.obstacles, s.airspace,
-                                                      s.flying,    s.k_sigma, s.own_id,    s.commanded}
+        : limits(vehicle::widened(s.limits, extra)), situation(world::with_limits(s, limits))
     {
     }
     Wider(const Wider&) = delete;
     Wider& operator=(const Wider&) = delete;
-
-    static vehicle::VehicleLimits widened(vehicle::VehicleLimits limits, float extra) noexcept
-    {
-        limits.half_extents += Vec3::Constant(extra);
-        return limits;
-    }
 };
-
-/// The same situation with another nominal path.
-[[nodiscard]] inline world::Situation with_reference(const world::Situation& s,
-                                                     const world::Reference& reference) noexcept
-{
-    world::Situation other{s.now,       s.own,      s.limits, s.airframe, reference, s.tracks,
-                           s.obstacles, s.airspace, s.flying, s.k_sigma,  s.own_id,  s.commanded};
-    other.shared_horizon = s.shared_horizon;
-    return other;
-}
 
 struct Pilot::Tick {
     const world::Situation& s;

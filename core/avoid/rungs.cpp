@@ -8,15 +8,16 @@ namespace jink::avoid {
 std::size_t count_near(const world::Situation& situation, float radius) noexcept
 {
     const Vec3& own = situation.own.position;
-    const auto tracks = std::count_if(situation.tracks.begin(), situation.tracks.end(), [&](const world::Track& track) {
-        const Vec3 nearest = world::nearest_in_height(track, track.position, own.z());
-        return (nearest - own).norm() <= radius + world::threat_radius(situation, track, 0.0F);
-    });
-    const auto obstacles =
-        std::count_if(situation.obstacles.begin(), situation.obstacles.end(), [&](const world::Obstacle& obstacle) {
-            return (obstacle.shape.centre - own).norm() <= radius + geometry::bounding_radius(obstacle.shape);
-        });
-    return static_cast<std::size_t>(tracks + obstacles);
+    const auto is_near = [&](const world::Threat& threat) {
+        switch (threat.ref.kind) {
+        case world::ThreatKind::track:
+            return (threat.nearest_in_height(0.0F, own.z()) - own).norm() <= radius + threat.radius_at(0.0F);
+        case world::ThreatKind::obstacle:
+            return (threat.position - own).norm() <= radius + geometry::bounding_radius(*threat.solid);
+        default: return false;
+        }
+    };
+    return static_cast<std::size_t>(std::count_if(situation.threats.begin(), situation.threats.end(), is_near));
 }
 
 Rungs rungs_of(std::size_t methods, const world::Situation& situation, const Settings& settings) noexcept

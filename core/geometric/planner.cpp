@@ -7,6 +7,7 @@
 #include "core/geometric/in_a_row.hpp"
 #include "core/world/conflict.hpp"
 #include "core/world/method.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::geometric {
 namespace {
@@ -16,12 +17,12 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// The track `lead` from now.
-Threat threat_of(const Situation& situation, const world::Track& track, Seconds lead) noexcept
+/// A track among the threats, `lead` from now.
+Threat threat_of(const world::Threat& track, Seconds lead) noexcept
 {
-    const world::Growth growth = world::growth_of(situation, track, lead);
+    const world::Growth growth = track.growth_from(lead);
     Threat threat;
-    threat.motion = {track.position + track.velocity * lead, track.velocity};
+    threat.motion = {track.position_at(lead), track.velocity};
     threat.radius = growth.radius;
     threat.radius_rate = growth.rate;
     threat.radius_acceleration = growth.acceleration;
@@ -39,7 +40,7 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
         problem.body_radius = std::max(situation.tracks[conflict.threat.index].radius, Planner::kLeastMainRadius);
     }
     problem.obstacles = situation.obstacles;
-    problem.obstacle_clearance = situation.k_sigma * situation.own.sigma_position;
+    problem.obstacle_clearance = world::own_uncertainty(situation);
     problem.airspace = &situation.airspace;
     problem.start_velocity = situation.own.velocity;
     problem.speed = way.speed;
@@ -177,7 +178,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     result_.cut_short = false;
     const path::Route* const route = situation.reference.route;
     if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
-        situation.tracks.size() > kMaxTracks) {
+        situation.threats.data() == nullptr) {
         return PlanStatus::bad_input;
     }
     const world::Way way = world::way_of(situation);
@@ -195,8 +196,8 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     }
     const Seconds lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);
     threats_.clear();
-    for (const world::Track& track : situation.tracks) {
-        threats_.unchecked_push_back(threat_of(situation, track, lead));
+    for (const world::Threat& track : world::of_kind(situation.threats, world::ThreatKind::track)) {
+        threats_.unchecked_push_back(threat_of(track, lead));
     }
     problem.threats = {threats_.data(), threats_.size()};
     std::size_t attempts = 0;

@@ -68,19 +68,19 @@ Neighbour neighbour_of(const world::Situation& s, const world::Track& track, con
 
 using Bounds = StaticVector<Bound, kMaxBounds>;
 
-void add_airspace(const world::Situation& s, const Vec3& position, const Cylinder& own, Bounds& out) noexcept
+/// A bound of the airspace; nothing of the keep-in where the vehicle is at its middle.
+void add_bound(const world::Threat& threat, const Vec3& position, const Cylinder& own, Bounds& out) noexcept
 {
-    const world::Airspace& air = s.airspace;
-    if (air.has_floor) {
-        out.unchecked_push_back({-Vec3::UnitZ(), position.z() - own.half_height - air.floor, 0.0F});
-    }
-    if (air.has_ceiling) {
-        out.unchecked_push_back({Vec3::UnitZ(), air.ceiling - position.z() - own.half_height, 0.0F});
-    }
-    const Vec3 from_home(position.x() - air.home.x(), position.y() - air.home.y(), 0.0F);
-    const float off = from_home.norm();
-    if (air.has_keep_in && off > 0.0F) {
-        out.unchecked_push_back({from_home / off, air.keep_in_radius - off - own.half_width, 0.0F});
+    if (threat.form == world::ThreatForm::floor) {
+        out.unchecked_push_back({-Vec3::UnitZ(), position.z() - own.half_height - threat.position.z(), 0.0F});
+    } else if (threat.form == world::ThreatForm::ceiling) {
+        out.unchecked_push_back({Vec3::UnitZ(), threat.position.z() - position.z() - own.half_height, 0.0F});
+    } else {
+        const Vec3 from_home(position.x() - threat.position.x(), position.y() - threat.position.y(), 0.0F);
+        const float off = from_home.norm();
+        if (off > 0.0F) {
+            out.unchecked_push_back({from_home / off, threat.level_radius - off - own.half_width, 0.0F});
+        }
     }
 }
 
@@ -101,26 +101,37 @@ Bound bound_of(const world::Barrel& barrel, const Vec3& position, const Cylinder
     return level;
 }
 
-/// The nearest barrels, as many as there is room for; what is left out the final check sees.
-void add_barrels(const world::Situation& s, const Vec3& position, const Cylinder& own, Seconds ahead,
-                 Bounds& out) noexcept
+/// The nearest cylinders, as many as there is room for behind the airspace's bounds; what is left out the final check
+/// sees.
+void add_cylinder(const Bound& bound, std::size_t first, Bounds& out) noexcept
 {
-    const std::size_t first = out.size();
-    for (const world::Barrel& barrel : s.airspace.barrels) {
-        const Bound bound = bound_of(barrel, position, own, ahead);
-        if (out.full()) {
-            if (out.size() == first || bound.gap >= out.back().gap) {
-                continue;
-            }
-            out.pop_back();
+    if (out.full()) {
+        if (out.size() == first || bound.gap >= out.back().gap) {
+            return;
         }
-        std::size_t at = out.size();
-        out.unchecked_push_back(bound);
-        for (; at > first && bound.gap < out[at - 1].gap; --at) {
-            out[at] = out[at - 1];
-        }
-        out[at] = bound;
+        out.pop_back();
     }
+    std::size_t at = out.size();
+    out.unchecked_push_back(bound);
+    for (; at > first && bound.gap < out[at - 1].gap; --at) {
+        out[at] = out[at - 1];
+    }
+    out[at] = bound;
+}
+
+Bounds bounds_of(const world::Situation& s, const Vec3& position, const Cylinder& own, Seconds ahead) noexcept
+{
+    Bounds out;
+    std::size_t first = 0;
+    for (const world::Threat& threat : s.threats) {
+        if (threat.is_bound()) {
+            add_bound(threat, position, own, out);
+            first = out.size();
+        } else if (threat.form == world::ThreatForm::cylinder) {
+            add_cylinder(bound_of(*threat.cylinder, position, own, ahead), first, out);
+        }
+    }
+    return out;
 }
 
 /// Along the way, slower before its end.
@@ -184,7 +195,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     pair.recovery_time = std::max(1.0F, delayed);
     pair.ramp_speed =
         ramp_speed_for(2.0F * out.cover * own.half_width, pair.conflict_ratio, out.delay, motion.acceleration);
-    const Cylinder kept = cylinder_of(limits.half_extents, s.k_sigma * s.own.sigma_position);
+    const Cylinder kept = cylinder_of(limits.half_extents, world::own_uncertainty(s));
     out.obstacles.horizontal = kept.half_width;
     out.obstacles.vertical = kept.half_height;
     out.obstacles.covers_cylinder = true;
@@ -211,7 +222,7 @@ void Planner::take_command(const world::Situation& s) noexcept
 
 world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, world::Manoeuvre& out) noexcept
 {
-    if (!s.reference.valid) {
+    if (!s.reference.valid || s.threats.data() == nullptr) {
         return world::PlanStatus::bad_input;
     }
     if (!budget.spend(kPlanUnits +
@@ -238,10 +249,8 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     }
     input.neighbours = {neighbours_.data(), neighbours_.size()};
     input.scene = {map_, s.obstacles};
-    Bounds bounds;
-    const Cylinder kept = cylinder_of(s.limits.half_extents, s.k_sigma * s.own.sigma_position);
-    add_airspace(s, input.own.position, kept, bounds);
-    add_barrels(s, input.own.position, kept, ahead, bounds);
+    const Cylinder kept = cylinder_of(s.limits.half_extents, world::own_uncertainty(s));
+    const Bounds bounds = bounds_of(s, input.own.position, kept, ahead);
     input.bounds = {bounds.data(), bounds.size()};
     decision_ = filter_.decide(input, budget);
     const Seconds step = std::max(kPathStep, settings.pair.horizon / static_cast<float>(kMaxPathPoints - 2));

@@ -105,8 +105,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     report_ = {};
     const path::Route* const route = situation.reference.route;
     if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
-        situation.tracks.size() > kMaxTracks || situation.obstacles.size() > kMaxObstacles ||
-        situation.airspace.barrels.size() > kMaxBarrels) {
+        situation.threats.data() == nullptr) {
         return PlanStatus::bad_input;
     }
     const VehicleSets& sets = *settings_.sets;

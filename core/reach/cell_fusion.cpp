@@ -100,7 +100,7 @@ void CellFusion::rate_obstacle(const world::Situation& situation, const geometry
                                std::span<Level> blocks) const noexcept
 {
     const Grid<float>& grid = placed.set->grid;
-    const float about = situation.limits.half_extents.norm() + situation.k_sigma * situation.own.sigma_position;
+    const float about = situation.limits.half_extents.norm() + world::own_uncertainty(situation);
     const MapBody body = body_of(shape, placed, about, rule_.room);
     if (body.centre.norm() - body.half.norm() - body.rounding - body.margin > grid.distance()) {
         return;
@@ -121,7 +121,7 @@ void CellFusion::rate_airspace(const world::Situation& situation, const Placed& 
 {
     const world::Airspace& air = situation.airspace;
     const Vec3& half = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const float extra = world::own_uncertainty(situation);
     const Grid<float>& grid = placed.set->grid;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const CellPlace place = grid.place(static_cast<CellIndex>(i));

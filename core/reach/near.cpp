@@ -85,59 +85,64 @@ void NearThreats::set_far(NearThreat& threat, Seconds last, const Placed& placed
     threat.far = threat.growth.at(last) + threat.body + threat.room + bulge_ + half_way;
 }
 
-void NearThreats::add_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
-                            Seconds lead, float range) noexcept
+void NearThreats::add_point(const world::Threat& threat, const Vec3& own, const Placed& placed, Seconds lead,
+                            float range) noexcept
 {
-    NearThreat threat;
-    threat.half = world::box_against(situation, track);
-    threat.is_tall = track.half_height > 0.0F;
-    threat.body = threat.is_tall ? std::hypot(threat.half.x(), threat.half.y()) : threat.half.norm();
-    threat.position = track.position + track.velocity * lead;
-    threat.velocity = track.velocity;
-    threat.growth = world::growth_of(situation, track, lead);
-    threat.is_track = true;
-    threat.room = rule_.room;
-    const Seconds last = placed.period * static_cast<float>(kMaxDepth);
-    const float apart = geometry::point_segment_distance(placed.origin, threat.position, threat.at(last));
-    if (apart > range + threat.growth.at(last) + threat.half.norm()) {
+    NearThreat near;
+    near.half = threat.box_against(own);
+    near.is_tall = threat.half_height > 0.0F;
+    near.is_track = threat.ref.kind == world::ThreatKind::track;
+    near.body = near.is_tall ? std::hypot(own.x(), own.y()) : own.norm();
+    near.position = threat.position_at(lead);
+    near.velocity = threat.velocity;
+    near.growth = threat.growth_from(lead);
+    near.room = rule_.room;
+    const Seconds last = near.is_track ? placed.period * static_cast<float>(kMaxDepth) : 0.0F;
+    const float margin = geometry::box_distance(near.half, near.position - placed.origin) - near.growth.at(0.0F);
+    const float apart = geometry::point_segment_distance(placed.origin, near.position, near.at(last));
+    if (near.is_track ? apart > range + near.growth.at(last) + near.half.norm() : margin > range) {
         return;
     }
-    threat.shrunk =
-        shrunk_by(geometry::box_distance(threat.half, threat.position - placed.origin) - threat.growth.at(0.0F));
-    set_far(threat, last, placed);
-    near_.unchecked_push_back(threat);
+    near.shrunk = shrunk_by(margin);
+    set_far(near, last, placed);
+    near_.unchecked_push_back(near);
 }
 
-void NearThreats::add_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
-                               float range) noexcept
+void NearThreats::add_solid(const world::Threat& threat, const Vec3& own, const Placed& placed, float range) noexcept
 {
-    NearThreat threat;
-    const Vec3& own = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
-    threat.position = shape.centre;
-    threat.room = rule_.room;
-    float radius = 0.0F;
-    if (world::as_sphere(shape, own, threat.half, radius)) {
-        threat.growth.radius = radius + extra;
-        threat.is_tall = threat.half.z() != own.z();
-        threat.body = threat.is_tall ? std::hypot(own.x(), own.y()) : own.norm();
-        const float margin = geometry::box_distance(threat.half, threat.position - placed.origin) - radius - extra;
-        if (margin > range) {
-            return;
-        }
-        threat.shrunk = shrunk_by(margin);
-        set_far(threat, 0.0F, placed);
-    } else {
-        threat.shape = &shape;
-        grow_by_box(threat, own);
-        threat.growth.radius = extra;
-        const float margin = distance_to(threat, placed.origin) - extra;
-        if (margin > range) {
-            return;
-        }
-        threat.shrunk = shrunk_by(margin);
+    NearThreat near;
+    near.shape = threat.solid;
+    near.position = threat.position;
+    near.room = rule_.room;
+    grow_by_box(near, own);
+    near.growth = threat.growth;
+    const float margin = distance_to(near, placed.origin) - near.growth.radius;
+    if (margin > range) {
+        return;
     }
-    near_.unchecked_push_back(threat);
+    near.shrunk = shrunk_by(margin);
+    near_.unchecked_push_back(near);
+}
+
+void NearThreats::add_bound(const world::Threat& threat, const Vec3& own, const Placed& placed) noexcept
+{
+    const float extra = threat.growth.radius;
+    const Vec3& at = placed.origin;
+    switch (threat.form) {
+    case world::ThreatForm::floor:
+        inside_.floor = threat.position.z() + own.z() + extra;
+        inside_.floor_shrunk = shrunk_by(at.z() - inside_.floor);
+        break;
+    case world::ThreatForm::ceiling:
+        inside_.ceiling = threat.position.z() - own.z() - extra;
+        inside_.ceiling_shrunk = shrunk_by(inside_.ceiling - at.z());
+        break;
+    default:
+        inside_.home = threat.position;
+        inside_.keep_in = threat.level_radius - std::hypot(own.x(), own.y()) - extra;
+        inside_.keep_in_shrunk = shrunk_by(inside_.keep_in - (at - inside_.home).head<2>().norm());
+        break;
+    }
 }
 
 void NearThreats::collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
@@ -146,30 +151,21 @@ void NearThreats::collect(const world::Situation& situation, const Placed& place
     rule_ = rule;
     bulge_ = placed.bulge();
     near_.clear();
+    inside_ = {};
+    const Vec3& own = situation.limits.half_extents;
     const float range = placed.unit * placed.set->grid.distance() + bulge_ + beyond + rule_.room;
-    for (const world::Track& track : situation.tracks) {
-        add_track(situation, track, placed, lead, range);
-    }
-    for (const world::Obstacle& obstacle : situation.obstacles) {
-        add_obstacle(situation, obstacle.shape, placed, range);
-    }
-    for (const world::Barrel& barrel : situation.airspace.barrels) {
-        add_barrel(situation, barrel, placed, lead, range);
+    for (const world::Threat& threat : situation.threats) {
+        switch (threat.form) {
+        case world::ThreatForm::point: add_point(threat, own, placed, lead, range); break;
+        case world::ThreatForm::solid: add_solid(threat, own, placed, range); break;
+        case world::ThreatForm::cylinder: add_cylinder(threat, own, placed, lead, range); break;
+        default: add_bound(threat, own, placed); break;
+        }
     }
     all_ = {};
     for (std::size_t i = 0; i < near_.size(); ++i) {
         all_.add(i);
     }
-    const world::Airspace& air = situation.airspace;
-    const Vec3& half = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
-    floor_ = air.has_floor ? air.floor + half.z() + extra : -kUnbounded;
-    ceiling_ = air.has_ceiling ? air.ceiling - half.z() - extra : kUnbounded;
-    keep_in_ = air.has_keep_in ? air.keep_in_radius - std::hypot(half.x(), half.y()) - extra : kUnbounded;
-    home_ = air.home;
-    floor_shrunk_ = shrunk_by(placed.origin.z() - floor_);
-    ceiling_shrunk_ = shrunk_by(ceiling_ - placed.origin.z());
-    keep_in_shrunk_ = shrunk_by(keep_in_ - (placed.origin - home_).head<2>().norm());
 }
 
 Level NearThreats::against(const NearThreat& threat, const Piece& piece) const noexcept
@@ -219,9 +215,10 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
 
 Level NearThreats::in_airspace(const Vec3& to, Seconds end) const noexcept
 {
-    const bool inside = to.z() >= floor_ - shrunk_at(floor_shrunk_, end) &&
-                        to.z() <= ceiling_ + shrunk_at(ceiling_shrunk_, end) &&
-                        (to - home_).head<2>().norm() <= keep_in_ + shrunk_at(keep_in_shrunk_, end);
+    const bool inside =
+        to.z() >= inside_.floor - shrunk_at(inside_.floor_shrunk, end) &&
+        to.z() <= inside_.ceiling + shrunk_at(inside_.ceiling_shrunk, end) &&
+        (to - inside_.home).head<2>().norm() <= inside_.keep_in + shrunk_at(inside_.keep_in_shrunk, end);
     return inside ? kFree : static_cast<Level>(AvoidanceRun::obstacles);
 }
 

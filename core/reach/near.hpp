@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "core/base/static_vector.hpp"
 #include "core/base/work_budget.hpp"
@@ -15,7 +16,7 @@
 
 namespace jink::reach::detail {
 
-/// Threats by number, as bits: tracks first, then obstacles, then barrels.
+/// Threats by number, as bits: in the order of the ThreatSet.
 struct ThreatBits {
     static constexpr std::size_t kMost = kMaxTracks + kMaxObstacles + kMaxBarrels;
     static constexpr std::size_t kWords = (kMost + 31) / 32;
@@ -99,12 +100,12 @@ private:
     [[nodiscard]] bool keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& budget) const noexcept;
     void mark_layer(const Placed& placed, const LayerCells& cells, std::size_t threat) noexcept;
     [[nodiscard]] Level in_airspace(const Vec3& to, Seconds end) const noexcept;
-    void add_track(const world::Situation& situation, const world::Track& track, const Placed& placed, Seconds lead,
+    void add_point(const world::Threat& threat, const Vec3& own, const Placed& placed, Seconds lead,
                    float range) noexcept;
-    void add_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+    void add_solid(const world::Threat& threat, const Vec3& own, const Placed& placed, float range) noexcept;
+    void add_cylinder(const world::Threat& threat, const Vec3& own, const Placed& placed, Seconds lead,
                       float range) noexcept;
-    void add_barrel(const world::Situation& situation, const world::Barrel& barrel, const Placed& placed, Seconds lead,
-                    float range) noexcept;
+    void add_bound(const world::Threat& threat, const Vec3& own, const Placed& placed) noexcept;
     [[nodiscard]] float shrunk_by(float margin_at_start) const noexcept;
     [[nodiscard]] float shrunk_at(float shrunk, Seconds t) const noexcept;
 
@@ -113,14 +114,18 @@ private:
     std::array<ThreatBits, kMaxReachCells> of_cell_{};
     ThreatBits all_;
     float bulge_ = 0.0F;  ///< of a movement [m]
-    // Of the airspace, grown by the own box: bounds of its centre.
-    float floor_ = 0.0F;
-    float ceiling_ = 0.0F;
-    float keep_in_ = 0.0F;
-    Vec3 home_ = Vec3::Zero();
-    float floor_shrunk_ = 0.0F;
-    float ceiling_shrunk_ = 0.0F;
-    float keep_in_shrunk_ = 0.0F;
+    /// Of the airspace, for the centre of the own box; without bounds nothing is out of it.
+    struct Inside {
+        static constexpr float kUnbounded = std::numeric_limits<float>::infinity();
+        float floor = -kUnbounded;
+        float ceiling = kUnbounded;
+        float keep_in = kUnbounded;
+        Vec3 home = Vec3::Zero();
+        float floor_shrunk = 0.0F;  ///< by the escape rule, at time 0
+        float ceiling_shrunk = 0.0F;
+        float keep_in_shrunk = 0.0F;
+    };
+    Inside inside_;
 };
 
 }  // namespace jink::reach::detail

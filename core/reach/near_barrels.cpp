@@ -38,31 +38,31 @@ bool touches_between(const NearThreat& barrel, const Vec3& first, const Vec3& la
 
 }  // namespace
 
-void NearThreats::add_barrel(const world::Situation& situation, const world::Barrel& barrel, const Placed& placed,
-                             Seconds lead, float range) noexcept
+void NearThreats::add_cylinder(const world::Threat& threat, const Vec3& own, const Placed& placed, Seconds lead,
+                               float range) noexcept
 {
-    NearThreat threat;
-    const Vec3& own = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
-    const world::Vec2 centre = barrel.circle.centre + lead * barrel.velocity;
-    threat.half = {own.x(), own.y(), 0.5F * (barrel.top - barrel.bottom) + own.z() + extra};
-    threat.position = {centre.x(), centre.y(), 0.5F * (barrel.top + barrel.bottom)};
-    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
-    threat.growth.radius = barrel.circle.radius + extra;
-    threat.body = std::hypot(own.x(), own.y());
-    threat.room = std::max(rule_.room, barrel.margin);
-    threat.is_tall = threat.is_barrel = true;
+    NearThreat near;
+    const world::Barrel& barrel = *threat.cylinder;
+    const float extra = threat.growth.radius;
+    const Vec3 centre = threat.position_at(lead);
+    near.half = {own.x(), own.y(), 0.5F * (barrel.top - barrel.bottom) + own.z() + extra};
+    near.position = {centre.x(), centre.y(), 0.5F * (barrel.top + barrel.bottom)};
+    near.velocity = threat.velocity;
+    near.growth.radius = barrel.circle.radius + extra;
+    near.body = std::hypot(own.x(), own.y());
+    near.room = std::max(rule_.room, barrel.margin);
+    near.is_tall = near.is_barrel = true;
     const Seconds last = placed.period * static_cast<float>(kMaxDepth);
     const auto level = [](const Vec3& v) { return Vec3(v.x(), v.y(), 0.0F); };
     const float apart =
-        geometry::point_segment_distance(level(placed.origin), level(threat.position), level(threat.at(last)));
-    const float height = std::abs(placed.origin.z() - threat.position.z()) - threat.half.z();
-    if (apart > range + threat.growth.radius + threat.body + barrel.margin || height > range) {
+        geometry::point_segment_distance(level(placed.origin), level(near.position), level(near.at(last)));
+    const float height = std::abs(placed.origin.z() - near.position.z()) - near.half.z();
+    if (apart > range + near.growth.radius + near.body + barrel.margin || height > range) {
         return;
     }
-    threat.shrunk = shrunk_by(world::barrel_distance(own, placed.origin, barrel, lead) - extra);
-    set_far(threat, last, placed);
-    near_.unchecked_push_back(threat);
+    near.shrunk = shrunk_by(world::barrel_distance(own, placed.origin, barrel, lead) - extra);
+    set_far(near, last, placed);
+    near_.unchecked_push_back(near);
 }
 
 /// A flat-ended solid: the level distance counts while the heights overlap, as large as it is at the piece's end.

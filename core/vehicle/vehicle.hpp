@@ -32,6 +32,13 @@ struct VehicleLimits {
     Vec3 half_extents = Vec3::Ones();  ///< safety box, world-aligned [m], > 0: body, position and tracking uncertainty
 };
 
+/// The same limits with a safety box that is larger by `extra` [m] to every side.
+[[nodiscard]] inline VehicleLimits widened(VehicleLimits limits, float extra) noexcept
+{
+    limits.half_extents += Vec3::Constant(extra);
+    return limits;
+}
+
 /// What costs depend on beyond the limits (Pinheiro tab. 1.1 and 4.5).
 struct Airframe {
     float mass = 3.0F;              ///< [kg]

@@ -35,15 +35,16 @@ Vec3 way_position(const Way& way, Seconds t) noexcept
     return way.origin + way.direction * std::min(way.speed * std::max(t, 0.0F), way.length);
 }
 
-bool sphere_like_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, const Vec3& half,
-                          float radius, Seconds lookahead, WorkBudget& budget, Conflict& out) noexcept
+bool meets_sphere(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                  WorkBudget& budget, Conflict& out) noexcept
 {
     if (!budget.spend(units::kConflictBall)) {
         return met_now({}, out);
     }
+    const Vec3 half = threat.box_against(situation.limits.half_extents);
+    const float grown = threat.growth.radius;
     const Phase phase = phases_of(way, lookahead)[0];
-    const Motion still{shape.centre, Vec3::Zero()};
-    const float grown = radius + situation.k_sigma * situation.own.sigma_position;
+    const Motion still{threat.position, Vec3::Zero()};
     if (phase.end <= 0.0F) {
         return false;
     }
@@ -61,14 +62,15 @@ bool sphere_like_conflict(const Situation& situation, const Way& way, const geom
     return true;
 }
 
-bool general_conflict(const Situation& situation, const Way& way, const geometry::Shape& shape, Seconds lookahead,
-                      WorkBudget& budget, Conflict& out) noexcept
+bool meets_solid(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                 WorkBudget& budget, Conflict& out) noexcept
 {
     if (!budget.spend(units::kConflictSolid)) {
         return met_now({}, out);
     }
+    const geometry::Shape& shape = *threat.solid;
     const Vec3& half = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const float extra = threat.growth.radius;
     const Vec3 end = way_position(way, lookahead);
     if (geometry::swept_box_contact(half, way.origin, end, shape, extra, budget) == geometry::Contact::clear) {
         return false;
@@ -88,51 +90,27 @@ bool general_conflict(const Situation& situation, const Way& way, const geometry
     return true;
 }
 
-/// Closed areas in the way, by its phases, which nobody else needs: apart from the rest, so that they cost nothing
-/// where nothing is closed. False when the budget ran out.
-template <class Consider>
-[[gnu::noinline]] bool consider_barrels(const Situation& situation, const Way& way, Seconds lookahead,
-                                        WorkBudget& budget, const Consider& consider, Conflict& conflict) noexcept
-{
-    const Phases phases = phases_of(way, lookahead);
-    const auto position_at = [&way](Seconds t) { return way_position(way, t); };
-    for (std::size_t i = 0; i < situation.airspace.barrels.size(); ++i) {
-        if (detail::meets_barrel(situation, phases, position_at, i, budget, conflict)) {
-            consider(conflict);
-        }
-        if (budget.exhausted()) {
-            return false;
-        }
-    }
-    return true;
-}
-
 }  // namespace
 
-bool detail::obstacle_conflict(const Situation& situation, const Way& way, std::size_t index, Seconds lookahead,
-                               WorkBudget& budget, Conflict& out) noexcept
+bool detail::meets_at_rest(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                           WorkBudget& budget, Conflict& out) noexcept
 {
-    const geometry::Shape& shape = situation.obstacles[index].shape;
-    Vec3 half;
-    float radius = 0.0F;
-    const bool found = as_sphere(shape, situation.limits.half_extents, half, radius)
-                           ? sphere_like_conflict(situation, way, shape, half, radius, lookahead, budget, out)
-                           : general_conflict(situation, way, shape, lookahead, budget, out);
+    const bool found = threat.form == ThreatForm::point ? meets_sphere(situation, way, threat, lookahead, budget, out)
+                                                        : meets_solid(situation, way, threat, lookahead, budget, out);
     if (!found) {
         return false;
     }
-    const float along = std::clamp((shape.centre - way.origin).dot(way.direction), 0.0F, way.length);
-    out.threat = {ThreatKind::obstacle, static_cast<std::uint16_t>(index)};
+    const float along = std::clamp((threat.position - way.origin).dot(way.direction), 0.0F, way.length);
+    out.threat = threat.ref;
     out.time_to_closest = way.speed > 0.0F ? std::max(along / way.speed, out.time_to_loss) : 0.0F;
     out.own_at_closest = way_position(way, out.time_to_closest);
-    out.threat_at_closest = shape.centre;
-    out.miss_distance = (shape.centre - out.own_at_closest).norm();
+    out.threat_at_closest = threat.position;
+    out.miss_distance = (threat.position - out.own_at_closest).norm();
     if (out.time_to_loss > 0.0F) {
         return true;
     }
     const auto points = path_of(phases_of(way, lookahead), false);
-    return !draws_apart(situation, {}, situation.obstacles.subspan(index, 1), {}, {points.data(), points.size()},
-                        budget);
+    return !draws_apart(situation, threat, {points.data(), points.size()}, budget);
 }
 
 float rejoin_lookahead(const vehicle::VehicleLimits& limits, float speed, float height) noexcept
@@ -171,46 +149,42 @@ Way way_of(const Situation& situation) noexcept
     return way;
 }
 
-bool predict_conflict(const Situation& situation, const Way& way, std::size_t track_index, Seconds lookahead,
-                      WorkBudget& budget, Conflict& out) noexcept
+bool conflict_with(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                   WorkBudget& budget, Conflict& out) noexcept
 {
     if (way.ahead.route != nullptr) {
-        return detail::predict_conflict_along(situation, way, track_index, lookahead, budget, out);
+        return detail::conflict_along(situation, way, threat, lookahead, budget, out);
     }
     const auto position_at = [&way](Seconds t) { return way_position(way, t); };
-    return detail::predict(situation, phases_of(way, lookahead), position_at, track_index, budget, out);
+    switch (threat.ref.kind) {
+    case ThreatKind::track:
+        return detail::meets_point(situation, phases_of(way, lookahead), position_at, threat, budget, out);
+    case ThreatKind::barrel:
+        return detail::meets_cylinder(situation, phases_of(way, lookahead), position_at, threat, budget, out);
+    case ThreatKind::obstacle: return detail::meets_at_rest(situation, way, threat, lookahead, budget, out);
+    default: return false;
+    }
 }
 
 bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                    Conflict& out) noexcept
 {
+    if (situation.threats.data() == nullptr) {
+        return met_now({}, out);
+    }
     if (way.ahead.route != nullptr) {
         return detail::main_conflict_along(situation, way, lookahead, budget, out);
     }
     bool found = false;
-    const auto consider = [&](const Conflict& conflict) {
-        if (!found || comes_first(conflict, out)) {
+    Conflict conflict;
+    for (const Threat& threat : situation.threats) {
+        if (threat.is_bound()) {
+            continue;
+        }
+        if (conflict_with(situation, way, threat, lookahead, budget, conflict) &&
+            (!found || comes_first(conflict, out))) {
             out = conflict;
             found = true;
-        }
-    };
-    Conflict conflict;
-    for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
-        if (predict_conflict(situation, way, i, lookahead, budget, conflict)) {
-            consider(conflict);
-        }
-        if (budget.exhausted()) {
-            return met_now(conflict, out);
-        }
-    }
-    if (!situation.airspace.barrels.empty()) [[unlikely]] {
-        if (!consider_barrels(situation, way, lookahead, budget, consider, conflict)) {
-            return met_now(conflict, out);
-        }
-    }
-    for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
-        if (detail::obstacle_conflict(situation, way, i, lookahead, budget, conflict)) {
-            consider(conflict);
         }
         if (budget.exhausted()) {
             return met_now(conflict, out);

@@ -51,22 +51,22 @@ inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 /// The same from another position, with a reference that has a route.
 [[nodiscard]] Way way_along(const Situation& situation, const Vec3& position) noexcept;
 
-/// Conflict of one track with the way within `lookahead` seconds: exact closest approach and loss times with the radius
-/// the threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the true one).
-/// A budget that runs out means a conflict now. O(lookahead).
+/// Conflict of one threat with the way within `lookahead` seconds. Of a track: exact closest approach and loss times
+/// with the radius the threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the
+/// true one). A budget that runs out means a conflict now. O(lookahead).
 ///
 /// A way with a route is taken in straight pieces, each at the speed that the climb limits leave it: legs as they are,
 /// corners and all, arcs in chords, and the own box larger to every side by as much as they lie off the arc: 2 % of the
 /// radius at most while the way turns by less than 4 rad in the time looked ahead (kWayPieces).
-[[nodiscard]] bool predict_conflict(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
-                                    WorkBudget& budget, Conflict& out) noexcept;
+[[nodiscard]] bool conflict_with(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                                 WorkBudget& budget, Conflict& out) noexcept;
 
-/// The main threat: of all tracks, barrels and obstacles in conflict with the way within `lookahead`, the one whose
-/// loss of separation comes first (ties: the smaller margin, then the order just said and the smaller index). False
-/// when there is none. A barrel is met when the own box enters its body, at the way's end too; its margin does not
-/// count. Floor, ceiling and keep-in are no threats: candidates obey them, but a leg outside them is the mission's
-/// business. When the budget runs out, the threat that it ran out at is the main one, its loss of separation now.
-/// O(tracks + barrels + obstacles).
+/// The main threat: of Situation::threats in conflict with the way within `lookahead`, the one whose loss of separation
+/// comes first (ties: the smaller margin, then the order of the threats). False when there is none; threats that were
+/// never collected are a conflict now. A barrel is met when the own box enters its body, at the way's end too; its
+/// margin does not count. Floor, ceiling and keep-in are no threats: candidates obey them, but a leg outside them is
+/// the mission's business. When the budget runs out, the threat that it ran out at is the main one, its loss of
+/// separation now. O(tracks + barrels + obstacles).
 [[nodiscard]] bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                                  Conflict& out) noexcept;
 

@@ -13,45 +13,40 @@ namespace {
 class Course {
 public:
     Course(const Situation& s, const Way& way, Seconds lookahead) noexcept
-        : way_(way), pieces_(s, way, lookahead),
-          limits_(widened(s.limits, pieces_.off())), situation_{s.now,       s.own,     limits_,     s.airframe,
-                                                                s.reference, s.tracks,  s.obstacles, s.airspace,
-                                                                s.flying,    s.k_sigma, s.own_id,    s.commanded}
+        : way_(way), pieces_(s, way, lookahead), limits_(vehicle::widened(s.limits, pieces_.off())),
+          situation_(with_limits(s, limits_))
     {
     }
     Course(const Course&) = delete;
     Course& operator=(const Course&) = delete;
 
-    [[nodiscard]] bool meets_track(std::size_t index, WorkBudget& budget, Conflict& out) const noexcept
+    [[nodiscard]] bool meets(const Threat& threat, WorkBudget& budget, Conflict& out) const noexcept
     {
         const auto position_at = [this](Seconds t) { return this->position_at(pieces_.way_at(t)); };
-        if (!predict(situation_, pieces_, position_at, index, budget, out)) {
-            return false;
-        }
-        out.way_at_closest = pieces_.way_at(out.time_to_closest);
-        return true;
-    }
-    [[nodiscard]] bool meets_obstacle(std::size_t index, WorkBudget& budget, Conflict& out) const noexcept;
-    [[nodiscard]] bool meets_barrel(std::size_t index, WorkBudget& budget, Conflict& out) const noexcept
-    {
-        const auto position_at = [this](Seconds t) { return this->position_at(pieces_.way_at(t)); };
-        if (!detail::meets_barrel(situation_, pieces_, position_at, index, budget, out)) {
-            return false;
+        switch (threat.ref.kind) {
+        case ThreatKind::track:
+            if (!meets_point(situation_, pieces_, position_at, threat, budget, out)) {
+                return false;
+            }
+            break;
+        case ThreatKind::barrel:
+            if (!meets_cylinder(situation_, pieces_, position_at, threat, budget, out)) {
+                return false;
+            }
+            break;
+        case ThreatKind::obstacle: return meets_at_rest(threat, budget, out);
+        default: return false;
         }
         out.way_at_closest = pieces_.way_at(out.time_to_closest);
         return true;
     }
 
 private:
-    [[nodiscard]] static vehicle::VehicleLimits widened(vehicle::VehicleLimits limits, float extra) noexcept
-    {
-        limits.half_extents += Vec3::Constant(extra);
-        return limits;
-    }
     [[nodiscard]] Vec3 position_at(float way) const noexcept
     {
         return path::point_of(way_.ahead, way_.origin, way_.direction, std::min(way, way_.length)).position;
     }
+    [[nodiscard]] bool meets_at_rest(const Threat& threat, WorkBudget& budget, Conflict& out) const noexcept;
     void approach(std::size_t first, const Vec3& centre, Conflict& out) const noexcept;
 
     const Way& way_;
@@ -60,7 +55,7 @@ private:
     Situation situation_;
 };
 
-bool Course::meets_obstacle(std::size_t index, WorkBudget& budget, Conflict& out) const noexcept
+bool Course::meets_at_rest(const Threat& threat, WorkBudget& budget, Conflict& out) const noexcept
 {
     for (std::size_t i = 0; i < pieces_.size() && !budget.exhausted(); ++i) {
         const WayPiece& piece = pieces_[i];
@@ -70,9 +65,9 @@ bool Course::meets_obstacle(std::size_t index, WorkBudget& budget, Conflict& out
             continue;
         }
         const Way straight{piece.own.position, piece.own.velocity / speed, speed, speed * span, {}};
-        if (obstacle_conflict(situation_, straight, index, span, budget, out)) {
+        if (detail::meets_at_rest(situation_, straight, threat, span, budget, out)) {
             out.time_to_loss += piece.start;
-            approach(i, situation_.obstacles[index].shape.centre, out);
+            approach(i, threat.position, out);
             return true;
         }
     }
@@ -105,10 +100,10 @@ void Course::approach(std::size_t first, const Vec3& centre, Conflict& out) cons
 
 }  // namespace
 
-bool predict_conflict_along(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
-                            WorkBudget& budget, Conflict& out) noexcept
+bool conflict_along(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                    WorkBudget& budget, Conflict& out) noexcept
 {
-    return Course(situation, way, lookahead).meets_track(track, budget, out);
+    return Course(situation, way, lookahead).meets(threat, budget, out);
 }
 
 bool main_conflict_along(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
@@ -118,13 +113,11 @@ bool main_conflict_along(const Situation& situation, const Way& way, Seconds loo
     const Course course(situation, way, lookahead);
     bool found = false;
     Conflict conflict;
-    const std::size_t tracks = situation.tracks.size();
-    const std::size_t moving = tracks + situation.airspace.barrels.size();
-    for (std::size_t i = 0; i < moving + situation.obstacles.size(); ++i) {
-        const bool meets = i < tracks   ? course.meets_track(i, budget, conflict)
-                           : i < moving ? course.meets_barrel(i - tracks, budget, conflict)
-                                        : course.meets_obstacle(i - moving, budget, conflict);
-        if (meets && (!found || comes_first(conflict, out))) {
+    for (const Threat& threat : situation.threats) {
+        if (threat.is_bound()) {
+            continue;
+        }
+        if (course.meets(threat, budget, conflict) && (!found || comes_first(conflict, out))) {
             out = conflict;
             found = true;
         }

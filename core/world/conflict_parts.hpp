@@ -9,7 +9,6 @@
 #include "core/geometry/sweep.hpp"
 #include "core/world/barrel.hpp"
 #include "core/world/conflict.hpp"
-#include "core/world/growing_radius.hpp"
 
 // What the search for conflicts does for a straight way and for one along a route. Private to this room.
 
@@ -34,13 +33,13 @@ struct Phases : std::array<Phase, 2> {
 
 /// Closest approach of the two centres over all phases.
 template <class Parts>
-Seconds closest_time(const Parts& phases, const Track& track) noexcept
+Seconds closest_time(const Parts& phases, const Threat& threat) noexcept
 {
     Seconds best_time = 0.0F;
-    float best = (track.position - phases[0].own.position).squaredNorm();
+    float best = (threat.position - phases[0].own.position).squaredNorm();
     for (const auto& phase : phases) {
-        const Vec3 gap = track.position + track.velocity * phase.start - phase.own.position;
-        const Vec3 closing = track.velocity - phase.own.velocity;
+        const Vec3 gap = threat.position + threat.velocity * phase.start - phase.own.position;
+        const Vec3 closing = threat.velocity - phase.own.velocity;
         const float speed2 = closing.squaredNorm();
         const Seconds t = speed2 > 1e-9F ? std::clamp(-gap.dot(closing) / speed2, 0.0F, phase.end - phase.start) : 0.0F;
         const float distance = (gap + closing * t).squaredNorm();
@@ -54,18 +53,15 @@ Seconds closest_time(const Parts& phases, const Track& track) noexcept
 
 /// First loss of separation within one phase; negative when there is none, 0 when the budget ran out.
 template <class Piece>
-Seconds loss_within(const Situation& situation, const Piece& phase, const Track& track, WorkBudget& budget) noexcept
+Seconds loss_within(const Vec3& half_extents, const Piece& phase, const Threat& threat, WorkBudget& budget) noexcept
 {
-    const Vec3 half = box_against(situation, track);
+    const Vec3 half = threat.box_against(half_extents);
     const Seconds span = phase.end - phase.start;
-    const geometry::Motion threat{track.position + track.velocity * phase.start, track.velocity};
-    if (span <= 0.0F ||
-        !geometry::contact_interval(half, phase.own, threat, threat_radius(situation, track, phase.end), span)) {
+    const geometry::Motion motion{threat.position_at(phase.start), threat.velocity};
+    if (span <= 0.0F || !geometry::contact_interval(half, phase.own, motion, threat.radius_at(phase.end), span)) {
         return -1.0F;
     }
-    const GrowingRadius radius_at(situation, track);
-    const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
-    const int pieces = grows ? static_cast<int>(std::ceil(span / kPiece)) : 1;
+    const int pieces = threat.grows ? static_cast<int>(std::ceil(span / kPiece)) : 1;
     const Seconds piece = span / static_cast<float>(pieces);
     for (int i = 0; i < pieces; ++i) {
         if (!budget.spend(units::kConflictPart)) {
@@ -73,8 +69,8 @@ Seconds loss_within(const Situation& situation, const Piece& phase, const Track&
         }
         const Seconds t = piece * static_cast<float>(i);
         const geometry::Motion own{phase.own.position + phase.own.velocity * t, phase.own.velocity};
-        const geometry::Motion other{threat.position + threat.velocity * t, threat.velocity};
-        const float radius = radius_at(phase.start + t + piece);
+        const geometry::Motion other{motion.position + motion.velocity * t, motion.velocity};
+        const float radius = threat.radius_at(phase.start + t + piece);
         if (const auto touch = geometry::contact_interval(half, own, other, radius, piece)) {
             return phase.start + t + touch->first;
         }
@@ -102,15 +98,11 @@ auto path_of(const Parts& phases, bool hovers) noexcept
 }
 
 /// A way that starts inside a margin and draws apart from this one threat for good. Nothing on it could mend the start.
-inline bool draws_apart(const Situation& situation, std::span<const Track> tracks, std::span<const Obstacle> obstacles,
-                        std::span<const Barrel> barrels, std::span<const path::PathPoint> points,
+inline bool draws_apart(const Situation& situation, const Threat& threat, std::span<const path::PathPoint> points,
                         WorkBudget& budget) noexcept
 {
-    Airspace open;
-    open.barrels = barrels;
-    const Situation alone{
-        situation.now, situation.own, situation.limits, situation.airframe, situation.reference, tracks,
-        obstacles,     open,          nullptr,          situation.k_sigma};
+    Situation alone = situation;
+    alone.threats = {&threat, 1};
     const Cutoff sign_alone{0.0F, 0.0F, {}};
     return least_separation(alone, points, points.back().time, budget, kDrawingApart, sign_alone).margin >= 0.0F;
 }
@@ -132,54 +124,51 @@ inline bool comes_first(const Conflict& a, const Conflict& b) noexcept
     return a.margin < b.margin;
 }
 
-/// Of one track with a way, flown as `phases` say, the own position on it at a time being `position_at`. Two phases are
-/// a unit of units::kConflict.
+/// Of one moving point with a way, flown as `phases` say, the own position on it at a time being `position_at`. Two
+/// phases are a unit of units::kConflict.
 template <class Parts, class PositionAt>
-bool predict(const Situation& situation, const Parts& phases, const PositionAt& position_at, std::size_t track_index,
-             WorkBudget& budget, Conflict& out) noexcept
+bool meets_point(const Situation& situation, const Parts& phases, const PositionAt& position_at, const Threat& threat,
+                 WorkBudget& budget, Conflict& out) noexcept
 {
-    const Track& track = situation.tracks[track_index];
+    const Vec3& half = situation.limits.half_extents;
     const std::uint32_t cost = units::kConflict * static_cast<std::uint32_t>((phases.size() + 1) / 2);
-    Seconds loss = budget.spend(cost) ? loss_within(situation, phases[0], track, budget) : 0.0F;
+    Seconds loss = budget.spend(cost) ? loss_within(half, phases[0], threat, budget) : 0.0F;
     for (std::size_t i = 1; i < phases.size() && loss < 0.0F; ++i) {
-        loss = loss_within(situation, phases[i], track, budget);
+        loss = loss_within(half, phases[i], threat, budget);
     }
     if (loss < 0.0F) {
         return false;
     }
-    const Seconds closest = closest_time(phases, track);
+    const Seconds closest = closest_time(phases, threat);
     if (loss <= 0.0F) {
         WorkBudget apart(std::min(kDrawingApartBudget, budget.left()));
         const auto points = path_of(phases, true);
-        const bool leaves = draws_apart(situation, situation.tracks.subspan(track_index, 1), {}, {},
-                                        {points.data(), points.size()}, apart);
+        const bool leaves = draws_apart(situation, threat, {points.data(), points.size()}, apart);
         static_cast<void>(budget.spend(apart.spent()));  // never more than was left
         if (leaves) {
             return false;
         }
     }
-    out.threat = {ThreatKind::track, static_cast<std::uint16_t>(track_index)};
+    out.threat = threat.ref;
     out.time_to_loss = loss;
     out.time_to_closest = std::max(closest, loss);
     out.own_at_closest = position_at(out.time_to_closest);
-    out.threat_at_closest =
-        nearest_in_height(track, track.position + track.velocity * out.time_to_closest, out.own_at_closest.z());
+    out.threat_at_closest = threat.nearest_in_height(out.time_to_closest, out.own_at_closest.z());
     out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
-    out.radius_at_closest = threat_radius(situation, track, out.time_to_closest);
-    out.margin = geometry::box_distance(situation.limits.half_extents, out.threat_at_closest - out.own_at_closest) -
-                 out.radius_at_closest;
+    out.radius_at_closest = threat_radius(situation, situation.tracks[threat.ref.index], out.time_to_closest);
+    out.margin = geometry::box_distance(half, out.threat_at_closest - out.own_at_closest) - out.radius_at_closest;
     return true;
 }
 
-/// Of one barrel with a way, likewise: its body alone. It moves, so that hovering at the way's end counts too.
+/// Of one cylinder with a way, likewise: its body alone. It moves, so that hovering at the way's end counts too.
 template <class Parts, class PositionAt>
-bool meets_barrel(const Situation& situation, const Parts& phases, const PositionAt& position_at, std::size_t index,
-                  WorkBudget& budget, Conflict& out) noexcept
+bool meets_cylinder(const Situation& situation, const Parts& phases, const PositionAt& position_at,
+                    const Threat& threat, WorkBudget& budget, Conflict& out) noexcept
 {
-    const Barrel& barrel = situation.airspace.barrels[index];
-    const float extra = situation.k_sigma * situation.own.sigma_position;
+    const Barrel& barrel = *threat.cylinder;
+    const float extra = threat.growth.radius;
     out = {};
-    out.threat = {ThreatKind::barrel, static_cast<std::uint16_t>(index)};
+    out.threat = threat.ref;
     bool met = false;
     Seconds loss = 0.0F;
     for (const auto& phase : phases) {
@@ -210,7 +199,7 @@ bool meets_barrel(const Situation& situation, const Parts& phases, const Positio
     out.time_to_loss = loss;
     out.time_to_closest = std::max(out.time_to_closest, loss);
     out.own_at_closest = position_at(out.time_to_closest);
-    const Vec2 centre = barrel.circle.centre + barrel.velocity * out.time_to_closest;
+    const Vec3 centre = threat.position_at(out.time_to_closest);
     out.threat_at_closest = {centre.x(), centre.y(), std::clamp(out.own_at_closest.z(), barrel.bottom, barrel.top)};
     out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
     out.radius_at_closest = barrel.circle.radius + extra;
@@ -218,17 +207,16 @@ bool meets_barrel(const Situation& situation, const Parts& phases, const Positio
         return true;
     }
     const auto points = path_of(phases, true);
-    return !draws_apart(situation, {}, {}, situation.airspace.barrels.subspan(index, 1), {points.data(), points.size()},
-                        budget);
+    return !draws_apart(situation, threat, {points.data(), points.size()}, budget);
 }
 
-/// Of one obstacle with a way, which is taken to be straight.
-[[nodiscard]] bool obstacle_conflict(const Situation& situation, const Way& way, std::size_t index, Seconds lookahead,
-                                     WorkBudget& budget, Conflict& out) noexcept;
+/// Of one threat at rest with a way, which is taken to be straight.
+[[nodiscard]] bool meets_at_rest(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                                 WorkBudget& budget, Conflict& out) noexcept;
 
-/// predict_conflict and main_conflict for ways with a route.
-[[nodiscard]] bool predict_conflict_along(const Situation& situation, const Way& way, std::size_t track,
-                                          Seconds lookahead, WorkBudget& budget, Conflict& out) noexcept;
+/// conflict_with and main_conflict for ways with a route.
+[[nodiscard]] bool conflict_along(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
+                                  WorkBudget& budget, Conflict& out) noexcept;
 [[nodiscard]] bool main_conflict_along(const Situation& situation, const Way& way, Seconds lookahead,
                                        WorkBudget& budget, Conflict& out) noexcept;
 

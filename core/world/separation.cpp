@@ -11,7 +11,6 @@
 #include "core/geometry/glance.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/barrel.hpp"
-#include "core/world/growing_radius.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "core/world/separation_parts.hpp"
 
@@ -48,23 +47,24 @@ bool stays_beyond(float margin, const Vec3& half, const Vec3& from, const Vec3& 
     return reach < 0.0F || geometry::glance(half, from, to, reach) == geometry::Glance::apart;
 }
 
-/// A sphere in straight motion, as large as `radius_at` says at an instant.
-template <class RadiusAt>
+/// A sphere in straight motion, or an upright capsule.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): three nested loops, each of them paid for where it begins
-void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bool grows, const RadiusAt& radius_at,
-                  ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
+void against_sphere(const Vec3& half_extents, const Flight& flight, const Threat& threat, const EscapeRule& escape,
+                    WorkBudget& budget, Separation& best) noexcept
 {
+    const ThreatRef ref = threat.ref;
+    const Vec3 half = threat.box_against(half_extents);
     if (!paid(budget, units::kThreat + flight.chunks().size() * units::kThreatChunk, best, 0.0F, ref)) {
         return;
     }
-    const float start_margin = geometry::box_distance(half, ball.position - flight.begin()) - radius_at(0.0F);
+    const float start_margin = geometry::box_distance(half, threat.position - flight.begin()) - threat.radius_at(0.0F);
     const float shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
-    const Seconds growth_piece = grows ? kGrowthPiece : std::numeric_limits<Seconds>::infinity();
+    const Seconds growth_piece = threat.grows ? kGrowthPiece : std::numeric_limits<Seconds>::infinity();
     for (const Bounds& chunk : flight.chunks()) {
-        const Vec3 a = ball.position + ball.velocity * chunk.start;
-        const Vec3 b = ball.position + ball.velocity * chunk.end;
+        const Vec3 a = threat.position + threat.velocity * chunk.start;
+        const Vec3 b = threat.position + threat.velocity * chunk.end;
         const float bound = boxes_apart(chunk.low - half, chunk.high + half, a.cwiseMin(b), a.cwiseMax(b)) -
-                            radius_at(chunk.end) - chunk.sagitta;
+                            threat.radius_at(chunk.end) - chunk.sagitta;
         if (bound >= best.margin) {
             continue;
         }
@@ -74,11 +74,11 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
         for (std::size_t i = chunk.first; i < chunk.last; ++i) {
             const Piece p = flight.piece(i);
             const Seconds end = p.start + p.duration;
-            const Vec3 from = ball.position + ball.velocity * p.start - p.from;
-            const Vec3 along = ball.velocity - p.velocity;
+            const Vec3 from = threat.position + threat.velocity * p.start - p.from;
+            const Vec3 along = threat.velocity - p.velocity;
             // The surface is largest at the end of the piece: growth adds to it, and what was shrunk has grown back.
             if (stays_beyond(best.margin, half, from, from + along * p.duration,
-                             radius_at(end) + p.sagitta.any - shrink_at(shrunk, escape, end))) {
+                             threat.radius_at(end) + p.sagitta.any - shrink_at(shrunk, escape, end))) {
                 continue;
             }
             const bool escapes = shrink_at(shrunk, escape, p.start) > 0.0F;
@@ -92,9 +92,9 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
                     return;
                 }
                 const Motion own{p.from + p.velocity * offset, p.velocity};
-                const Motion other{ball.position + ball.velocity * start, ball.velocity};
+                const Motion other{threat.position + threat.velocity * start, threat.velocity};
                 const float radius =
-                    radius_at(start + length) + p.sagitta.any - shrink_at(shrunk, escape, start + length);
+                    threat.radius_at(start + length) + p.sagitta.any - shrink_at(shrunk, escape, start + length);
                 if (parts > 1 &&
                     stays_beyond(best.margin, half, from + along * offset, from + along * (offset + length), radius)) {
                     continue;
@@ -106,26 +106,18 @@ void against_ball(const Flight& flight, const Vec3& half, const Motion& ball, bo
     }
 }
 
-void against_track(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
-                   WorkBudget& budget, Separation& best) noexcept
-{
-    const Track& track = situation.tracks[index];
-    const bool grows = track.sigma_velocity > 0.0F || track.max_acceleration > 0.0F;
-    const GrowingRadius radius_at(situation, track);
-    against_ball(flight, box_against(situation, track), {track.position, track.velocity}, grows, radius_at,
-                 {ThreatKind::track, static_cast<std::uint16_t>(index)}, escape, budget, best);
-}
-
 /// Margins of solids are told apart no finer than kObstacleResolution, and one query costs hundreds of support calls:
 /// the shrunk surface clears the start by that much more, and grows back in coarser pieces.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): as above
-void against_solid(const Situation& situation, const Flight& flight, const geometry::Shape& shape, float extra,
-                   ThreatRef ref, const EscapeRule& escape, WorkBudget& budget, Separation& best) noexcept
+void against_solid(const Vec3& half, const Flight& flight, const Threat& threat, const EscapeRule& escape,
+                   WorkBudget& budget, Separation& best) noexcept
 {
+    const ThreatRef ref = threat.ref;
+    const geometry::Shape& shape = *threat.solid;
+    const float extra = threat.growth.radius;
     if (!paid(budget, units::kThreat + flight.chunks().size() * units::kThreatChunk, best, 0.0F, ref)) {
         return;
     }
-    const Vec3& half = situation.limits.half_extents;
     const float reach = geometry::bounding_radius(shape);
     float shrunk = -1.0F;  // found when the first piece near the obstacle is met
     const auto shrunk_at_start = [&] {
@@ -171,80 +163,77 @@ void against_solid(const Situation& situation, const Flight& flight, const geome
     }
 }
 
-void against_obstacle(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
-                      WorkBudget& budget, Separation& best) noexcept
+/// Margin of a position from a bound of the airspace. Bounds are kept like obstacles: the own position is known no
+/// better towards them.
+float bound_margin(const Threat& bound, const Vec3& half, const Vec3& p) noexcept
 {
-    const geometry::Shape& shape = situation.obstacles[index].shape;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
-    const ThreatRef ref{ThreatKind::obstacle, static_cast<std::uint16_t>(index)};
-    Vec3 half;
-    float radius = 0.0F;
-    if (as_sphere(shape, situation.limits.half_extents, half, radius)) {
-        against_ball(
-            flight, half, {shape.centre, Vec3::Zero()}, false, [&](Seconds) { return radius + extra; }, ref, escape,
-            budget, best);
-    } else {
-        against_solid(situation, flight, shape, extra, ref, escape, budget, best);
-    }
-}
-
-/// Calls `judge(margin of a position, kind)` for each bound that is set. Bounds are kept like obstacles: the own
-/// position is known no better towards them.
-template <class Judge>
-void for_each_bound(const Situation& situation, const Judge& judge) noexcept
-{
-    const Airspace& air = situation.airspace;
-    const Vec3& half = situation.limits.half_extents;
-    const float extra = situation.k_sigma * situation.own.sigma_position;
-    const float height = half.z() + extra;
-    if (air.has_floor) {
-        judge([&](const Vec3& p) { return p.z() - height - air.floor; }, ThreatKind::floor);
-    }
-    if (air.has_ceiling) {
-        judge([&](const Vec3& p) { return air.ceiling - p.z() - height; }, ThreatKind::ceiling);
-    }
-    if (air.has_keep_in) {
-        const float corner = half.head<2>().norm() + extra;
-        judge([&](const Vec3& p) { return air.keep_in_radius - (p - air.home).head<2>().norm() - corner; },
-              ThreatKind::keep_in);
+    const float extra = bound.growth.radius;
+    switch (bound.form) {
+    case ThreatForm::floor: return p.z() - (half.z() + extra) - bound.position.z();
+    case ThreatForm::ceiling: return bound.position.z() - p.z() - (half.z() + extra);
+    default: return bound.level_radius - (p - bound.position).head<2>().norm() - (half.head<2>().norm() + extra);
     }
 }
 
 /// Airspace bounds are convex sets: the least margin of a straight piece lies at one of its ends, or where a surface
 /// that the escape rule has shrunk is back at its size.
-void against_airspace(const Situation& situation, const Flight& flight, const EscapeRule& escape,
-                      Separation& best) noexcept
+void against_bound(const Vec3& half, const Flight& flight, const Threat& bound, const EscapeRule& escape,
+                   Separation& best) noexcept
 {
-    for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {
-        const float start = margin_of(flight.begin());
-        const float shrunk = start < 0.0F ? escape.slack - start : 0.0F;
-        const Seconds whole = escape.speed > 0.0F ? shrunk / escape.speed : 0.0F;
-        for (std::size_t i = 0; i < flight.size(); ++i) {
-            const Piece p = flight.piece(i);
-            const float sagitta = kind == ThreatKind::keep_in ? p.sagitta.any : p.sagitta.vertical;
-            const auto judge = [&](Seconds t) {
-                const float margin = margin_of(p.from + p.velocity * (t - p.start)) - sagitta;
-                consider(best, margin + shrink_at(shrunk, escape, t), t, {kind, 0});
-            };
-            judge(p.start);
-            judge(p.start + p.duration);
-            if (whole > p.start && whole < p.start + p.duration) {
-                judge(whole);
-            }
+    const float start = bound_margin(bound, half, flight.begin());
+    const float shrunk = start < 0.0F ? escape.slack - start : 0.0F;
+    const Seconds whole = escape.speed > 0.0F ? shrunk / escape.speed : 0.0F;
+    for (std::size_t i = 0; i < flight.size(); ++i) {
+        const Piece p = flight.piece(i);
+        const float sagitta = bound.form == ThreatForm::keep_in ? p.sagitta.any : p.sagitta.vertical;
+        const auto judge = [&](Seconds t) {
+            const float margin = bound_margin(bound, half, p.from + p.velocity * (t - p.start)) - sagitta;
+            consider(best, margin + shrink_at(shrunk, escape, t), t, bound.ref);
+        };
+        judge(p.start);
+        judge(p.start + p.duration);
+        if (whole > p.start && whole < p.start + p.duration) {
+            judge(whole);
         }
-    });
+    }
+}
+
+void against(const Vec3& half, const Flight& flight, const Threat& threat, const EscapeRule& escape, WorkBudget& budget,
+             Separation& best) noexcept
+{
+    switch (threat.form) {
+    case ThreatForm::point: against_sphere(half, flight, threat, escape, budget, best); break;
+    case ThreatForm::solid: against_solid(half, flight, threat, escape, budget, best); break;
+    case ThreatForm::cylinder: against_cylinder(half, flight, threat, escape, budget, best); break;
+    default: against_bound(half, flight, threat, escape, best); break;
+    }
+}
+
+/// Place of what is looked at before all others, or `threats`.size().
+std::size_t place_of_first(std::span<const Threat> threats, std::size_t bounds, ThreatRef first) noexcept
+{
+    const std::size_t place = bounds + first.index;
+    return first.kind == ThreatKind::track && place < threats.size() && threats[place].ref == first ? place
+                                                                                                    : threats.size();
 }
 
 Separation separation_of(const Situation& situation, std::span<const path::PathPoint> points,
                          std::span<const path::Sagitta> sagittas, Seconds horizon, WorkBudget& budget,
                          const EscapeRule& escape, const Cutoff& cutoff) noexcept
 {
+    const std::span<const Threat> threats = situation.threats;
+    if (threats.data() == nullptr) {
+        return {-kSeparationCap, 0.0F, {}};
+    }
     Separation best{cutoff.above, 0.0F, {}};
     if (points.empty()) {
         return best;
     }
-    const Airspace& air = situation.airspace;
-    const std::size_t bounds = (air.has_floor ? 1U : 0U) + (air.has_ceiling ? 1U : 0U) + (air.has_keep_in ? 1U : 0U);
+    const Vec3& half = situation.limits.half_extents;
+    std::size_t bounds = 0;
+    while (bounds < threats.size() && threats[bounds].is_bound()) {
+        ++bounds;
+    }
     constexpr std::size_t kLook = 1;
     if (!paid(budget, kLook + points.size() * (units::kPathPiece + bounds * units::kBoundPiece), best, 0.0F, {})) {
         return best;
@@ -255,24 +244,20 @@ Separation separation_of(const Situation& situation, std::span<const path::PathP
     if (situation.shared_horizon < horizon) {
         shared.emplace(points, sagittas, situation.shared_horizon);
     }
-    const auto flight_for = [&](std::size_t index) noexcept -> const Flight& {
-        return shared && situation.tracks[index].cooperative ? *shared : flight;
+    const auto check = [&](const Threat& threat) noexcept {
+        against(half, shared && threat.reciprocal ? *shared : flight, threat, escape, budget, best);
     };
-    against_airspace(situation, flight, escape, best);
-    const bool track_first = cutoff.first.kind == ThreatKind::track && cutoff.first.index < situation.tracks.size();
-    if (track_first) {
-        against_track(situation, flight_for(cutoff.first.index), cutoff.first.index, escape, budget, best);
+    for (const Threat& bound : threats.first(bounds)) {
+        check(bound);
     }
-    for (std::size_t i = 0; i < situation.tracks.size() && best.margin >= cutoff.below; ++i) {
-        if (!track_first || i != cutoff.first.index) {
-            against_track(situation, flight_for(i), i, escape, budget, best);
+    const std::size_t first = place_of_first(threats, bounds, cutoff.first);
+    if (first < threats.size()) {
+        check(threats[first]);
+    }
+    for (std::size_t i = bounds; i < threats.size() && best.margin >= cutoff.below; ++i) {
+        if (i != first) {
+            check(threats[i]);
         }
-    }
-    for (std::size_t i = 0; i < air.barrels.size() && best.margin >= cutoff.below; ++i) {
-        against_barrel(situation, flight, i, escape, budget, best);
-    }
-    for (std::size_t i = 0; i < situation.obstacles.size() && best.margin >= cutoff.below; ++i) {
-        against_obstacle(situation, flight, i, escape, budget, best);
     }
     return best;
 }
@@ -294,43 +279,34 @@ Separation least_separation(const Situation& situation, const path::Prediction& 
 
 Separation separation_at(const Situation& situation, const Vec3& position, Seconds t, WorkBudget& budget) noexcept
 {
+    if (situation.threats.data() == nullptr) {
+        return {-kSeparationCap, t, {}};
+    }
     Separation best;
     const Vec3& half = situation.limits.half_extents;
-    for (std::size_t i = 0; i < situation.tracks.size(); ++i) {
-        const Track& track = situation.tracks[i];
-        const ThreatRef ref{ThreatKind::track, static_cast<std::uint16_t>(i)};
-        if (!paid(budget, units::kThreat, best, t, ref)) {
+    for (const Threat& threat : situation.threats) {
+        if (threat.is_bound()) {
+            consider(best, bound_margin(threat, half, position), t, threat.ref);
+            continue;
+        }
+        if (!paid(budget, units::kThreat, best, t, threat.ref)) {
             return best;
         }
-        const Vec3 centre = track.position + track.velocity * t;
-        consider(best,
-                 geometry::box_distance(box_against(situation, track), centre - position) -
-                     threat_radius(situation, track, t),
-                 t, ref);
-    }
-    for (std::size_t i = 0; i < situation.obstacles.size(); ++i) {
-        const geometry::Shape& shape = situation.obstacles[i].shape;
-        const ThreatRef ref{ThreatKind::obstacle, static_cast<std::uint16_t>(i)};
-        if (!paid(budget, units::kThreat, best, t, ref)) {
-            return best;
-        }
-        const float extra = situation.k_sigma * situation.own.sigma_position;
-        const float near = (position - shape.centre).norm() - geometry::bounding_radius(shape) - half.norm() - extra;
-        if (!(near >= best.margin)) {  // also where a number is not finite
-            consider(best, obstacle_margin(half, position, position, shape, budget, extra), t, ref);
+        const float grown = threat.radius_at(t);
+        if (threat.form == ThreatForm::point) {
+            const Vec3 apart = threat.position_at(t) - position;
+            consider(best, geometry::box_distance(threat.box_against(half), apart) - grown, t, threat.ref);
+        } else if (threat.form == ThreatForm::cylinder) {
+            consider(best, barrel_distance(half, position, *threat.cylinder, t) - grown, t, threat.ref);
+        } else {
+            const geometry::Shape& shape = *threat.solid;
+            const float near =
+                (position - shape.centre).norm() - geometry::bounding_radius(shape) - half.norm() - grown;
+            if (!(near >= best.margin)) {  // also where a number is not finite
+                consider(best, obstacle_margin(half, position, position, shape, budget, grown), t, threat.ref);
+            }
         }
     }
-    for (std::size_t i = 0; i < situation.airspace.barrels.size(); ++i) {
-        const ThreatRef ref{ThreatKind::barrel, static_cast<std::uint16_t>(i)};
-        if (!paid(budget, units::kThreat, best, t, ref)) {
-            return best;
-        }
-        const float extra = situation.k_sigma * situation.own.sigma_position;
-        consider(best, barrel_distance(half, position, situation.airspace.barrels[i], t) - extra, t, ref);
-    }
-    for_each_bound(situation, [&](const auto& margin_of, ThreatKind kind) {
-        consider(best, margin_of(position), t, {kind, 0});
-    });
     return best;
 }
 

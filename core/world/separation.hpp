@@ -7,15 +7,6 @@
 
 namespace jink::world {
 
-enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in, barrel };
-
-/// What a separation is measured against: the kind and, for tracks, obstacles and barrels, the index in the Situation.
-struct ThreatRef {
-    ThreatKind kind = ThreatKind::none;
-    std::uint16_t index = 0;
-    friend constexpr bool operator==(const ThreatRef&, const ThreatRef&) noexcept = default;
-};
-
 /// Separations beyond this, either way, are not told apart [m].
 inline constexpr float kSeparationCap = 50.0F;
 
@@ -49,6 +40,8 @@ struct Cutoff {
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface, which
 /// is looked at in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
 /// m more (kObstacleResolution, and pieces of 0.2 s). A margin that is no number is contact.
+///
+/// Situation::threats is what is kept clear of; where it was never collected, the answer is contact.
 ///
 /// Tracks that share the reaction are looked at until Situation::shared_horizon at most.
 ///

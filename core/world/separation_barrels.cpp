@@ -22,10 +22,8 @@ struct BarrelCheck {
     /// Until then the surface grows evenly, so that the margin stays a convex function of time; afterwards it stands.
     Seconds whole = 0.0F;
 
-    BarrelCheck(const Situation& situation, const Vec3& begin, std::size_t index, const EscapeRule& rule) noexcept
-        : barrel(situation.airspace.barrels[index]), half(situation.limits.half_extents),
-          escape(rule), ref{ThreatKind::barrel, static_cast<std::uint16_t>(index)},
-          extra(situation.k_sigma * situation.own.sigma_position)
+    BarrelCheck(const Vec3& half_extents, const Vec3& begin, const Threat& threat, const EscapeRule& rule) noexcept
+        : barrel(*threat.cylinder), half(half_extents), escape(rule), ref(threat.ref), extra(threat.growth.radius)
     {
         start_margin = barrel_distance(half, begin, barrel, 0.0F) - extra;
         shrunk = start_margin < 0.0F ? escape.slack - start_margin : 0.0F;
@@ -71,14 +69,14 @@ struct BarrelCheck {
 
 }  // namespace
 
-void against_barrel(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
-                    WorkBudget& budget, Separation& best) noexcept
+void against_cylinder(const Vec3& half, const Flight& flight, const Threat& threat, const EscapeRule& escape,
+                      WorkBudget& budget, Separation& best) noexcept
 {
-    const ThreatRef ref{ThreatKind::barrel, static_cast<std::uint16_t>(index)};
+    const ThreatRef ref = threat.ref;
     if (!paid(budget, units::kThreat + flight.chunks().size() * units::kThreatChunk, best, 0.0F, ref)) {
         return;
     }
-    const BarrelCheck check(situation, flight.begin(), index, escape);
+    const BarrelCheck check(half, flight.begin(), threat, escape);
     if (std::isnan(check.start_margin)) {
         consider(best, check.start_margin, 0.0F, ref);
         return;

@@ -117,8 +117,8 @@ inline bool paid(WorkBudget& budget, std::size_t units, Separation& best, Second
     return false;
 }
 
-/// Of one barrel with a flight: see least_separation. O(pieces).
-void against_barrel(const Situation& situation, const Flight& flight, std::size_t index, const EscapeRule& escape,
-                    WorkBudget& budget, Separation& best) noexcept;
+/// Of one cylinder with a flight of a box of half extents `half`: see least_separation. O(pieces).
+void against_cylinder(const Vec3& half, const Flight& flight, const Threat& threat, const EscapeRule& escape,
+                      WorkBudget& budget, Separation& best) noexcept;
 
 }  // namespace jink::world::detail

@@ -12,6 +12,7 @@
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
 #include "core/world/barrel.hpp"
+#include "core/world/threat.hpp"
 
 // What is known at one instant. Plain values; tables that fill them are in track_table.hpp and obstacle_table.hpp.
 
@@ -110,6 +111,9 @@ struct Situation {
     std::span<const Track> tracks;
     std::span<const Obstacle> obstacles;
     const Airspace& airspace;
+    /// All that must be kept clear of, a ThreatSet's or some of them. Without data (null): never collected; then
+    /// everything counts as contact.
+    std::span<const Threat> threats{};
     const Manoeuvre* flying = nullptr;  ///< what is being flown or was last chosen, for hysteresis
     float k_sigma = 3.0F;               ///< standard deviations that count as possible
     /// By which the others of the same link know us (TrackSource::datalink); 0: not known. Says nothing beside the id
@@ -121,6 +125,25 @@ struct Situation {
     Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
 };
 
+/// A situation is copied with something else in one of its places by this function alone. It does not compile when a
+/// field is added that it does not know.
+[[nodiscard]] inline Situation copy_with(const Situation& s, const vehicle::VehicleLimits& limits,
+                                         const Reference& reference) noexcept
+{
+    const auto& [now, own, other_limits, airframe, other_reference, tracks, obstacles, airspace, threats, flying,
+                 k_sigma, own_id, commanded, shared_horizon] = s;
+    return {now,      own,     limits, airframe, reference, tracks,    obstacles,
+            airspace, threats, flying, k_sigma,  own_id,    commanded, shared_horizon};
+}
+[[nodiscard]] inline Situation with_limits(const Situation& s, const vehicle::VehicleLimits& limits) noexcept
+{
+    return copy_with(s, limits, s.reference);
+}
+[[nodiscard]] inline Situation with_reference(const Situation& s, const Reference& reference) noexcept
+{
+    return copy_with(s, s.limits, reference);
+}
+
 enum class PlanStatus : std::uint8_t {
     found,           ///< `out` holds a checked manoeuvre
     no_conflict,     ///< nothing to avoid
@@ -129,6 +152,12 @@ enum class PlanStatus : std::uint8_t {
     budget_spent,    ///< the work budget ran out before an answer that may be trusted
     bad_input,       ///< no leg, or settings out of range
 };
+
+/// How much earlier everything is met because the own position is not known better: k_sigma standard deviations [m].
+[[nodiscard]] inline float own_uncertainty(const Situation& situation) noexcept
+{
+    return situation.k_sigma * situation.own.sigma_position;
+}
 
 /// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma standard deviations of the distance
 /// between the two, and half its acceleration bound times its age squared. The errors of the own position and of the
@@ -149,14 +178,6 @@ enum class PlanStatus : std::uint8_t {
     return {centre.x(), centre.y(), std::clamp(height, centre.z() - track.half_height, centre.z() + track.half_height)};
 }
 
-/// A radius as a polynomial of time.
-struct Growth {
-    float radius = 0.0F;        ///< at time 0 [m]
-    float rate = 0.0F;          ///< [m/s]
-    float acceleration = 0.0F;  ///< [m/s2]
-
-    [[nodiscard]] float at(Seconds t) const noexcept { return radius + t * (rate + 0.5F * acceleration * t); }
-};
 /// `threat_radius` from `lead` seconds after Situation::now on; never below it where the track's stamp lies ahead of
 /// now. O(1).
 [[nodiscard]] Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept;

@@ -320,17 +320,9 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
         const vehicle::VehicleLimits limits = vehicle::limits_in_flight(c.limits, own.velocity);
         nominal_.update(own_, own, flown_leg(), limits, takeover_.in_control());
         const world::Airspace air = airspace(now);
-        const world::Situation situation{now,
-                                         own,
-                                         limits,
-                                         c.airframe,
-                                         nominal_.primary(),
-                                         tracks_.snapshot(now),
-                                         obstacles_.obstacles(),
-                                         air,
-                                         nullptr,
-                                         c.k_sigma,
-                                         link_.own_track()};
+        const world::Situation situation{
+            now, own, limits,  c.airframe, nominal_.primary(), tracks_.snapshot(now), obstacles_.obstacles(),
+            air, {},  nullptr, c.k_sigma,  link_.own_track()};
         report.tracks = static_cast<std::uint16_t>(situation.tracks.size());
         report.uncertain_heights = static_cast<std::uint16_t>(std::count_if(
             situation.tracks.begin(), situation.tracks.end(), [](const auto& t) { return t.half_height > 0.0F; }));

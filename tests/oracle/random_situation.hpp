@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/world/world.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::oracle {
 
@@ -64,8 +64,13 @@ struct RandomSituation {
 
     [[nodiscard]] world::Situation view() const
     {
-        return {now, own, limits, airframe, reference, tracks, obstacles, airspace, nullptr, 3.0F};
+        world::Situation s{now, own, limits, airframe, reference, tracks, obstacles, airspace, {}, nullptr, 3.0F};
+        static_cast<void>(threats.collect(s));
+        s.threats = threats.all();
+        return s;
     }
+
+    mutable world::ThreatSet threats;  ///< of the newest view
 };
 
 }  // namespace jink::oracle

@@ -10,6 +10,7 @@
 #include "core/geometric/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "core/world/barrel.hpp"
+#include "core/world/threat_set.hpp"
 #include "tests/oracle/random_situation.hpp"
 #include "tests/reach/unit_sets.hpp"
 
@@ -114,8 +115,12 @@ struct LegScene {
     }
     [[nodiscard]] world::Situation view() const
     {
-        return {now, own, limits, airframe, reference, {}, {}, airspace, nullptr, 3.0F};
+        world::Situation s{now, own, limits, airframe, reference, {}, {}, airspace, {}, nullptr, 3.0F};
+        static_cast<void>(threats.collect(s));
+        s.threats = threats.all();
+        return s;
     }
+    mutable world::ThreatSet threats;  ///< of the newest view
     TimePoint now{1'000'000};
     vehicle::VehicleState own;
     vehicle::VehicleLimits limits;

@@ -14,6 +14,7 @@
 
 #include "core/world/conflict.hpp"
 #include "core/world/track_table.hpp"
+#include "tests/oracle/collected.hpp"
 #include "toolchain/sim/recorded_encounter.hpp"
 
 namespace jink::test {
@@ -116,14 +117,23 @@ std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, floa
         limits.cruise_speed = reference.leg.speed = state.velocity.norm();
         reference.leg.start = state.position;
         reference.leg.end = state.position + state.velocity * 300.0F;
-        const world::Situation situation{
-            at(mine.time), state,   limits, airframe, reference, table.snapshot(at(mine.time)), {},
-            airspace,      nullptr, k_sigma};
+        const oracle::Collected collected(world::Situation{at(mine.time),
+                                                           state,
+                                                           limits,
+                                                           airframe,
+                                                           reference,
+                                                           table.snapshot(at(mine.time)),
+                                                           {},
+                                                           airspace,
+                                                           {},
+                                                           nullptr,
+                                                           k_sigma});
+        const world::Situation& situation = *collected;
         Prediction prediction;
         prediction.time = mine.time;
         WorkBudget budget(100'000);
-        prediction.conflict =
-            world::predict_conflict(situation, world::way_of(situation), 0, kLookahead, budget, prediction.what);
+        prediction.conflict = world::conflict_with(situation, world::way_of(situation), situation.threats.front(),
+                                                   kLookahead, budget, prediction.what);
         all.push_back(prediction);
     }
     return all;

@@ -147,16 +147,19 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     }
     static World world;  // not on the stack, which is to hold what the co-processor needs
     world.take(record);
-    const world::Situation situation{{},
-                                     world.own,
-                                     world.configuration.limits,
-                                     world.configuration.airframe,
-                                     world.reference,
-                                     {world.tracks.data(), world.tracks.size()},
-                                     {world.obstacles.data(), world.obstacles.size()},
-                                     world.airspace,
-                                     nullptr,
-                                     world.configuration.k_sigma};
+    world::Situation situation{{},
+                               world.own,
+                               world.configuration.limits,
+                               world.configuration.airframe,
+                               world.reference,
+                               {world.tracks.data(), world.tracks.size()},
+                               {world.obstacles.data(), world.obstacles.size()},
+                               world.airspace,
+                               {},
+                               nullptr,
+                               world.configuration.k_sigma};
+    static_cast<void>(threats_.collect(situation));
+    situation.threats = threats_.all();
     if (!planner_.configure(world.configuration.planner) || !reach_.configure(world.configuration.reach) ||
         !orca_.configure(world.configuration.orca) || !supervisor_.configure(world.configuration.supervisor)) {
         return;

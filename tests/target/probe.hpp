@@ -5,6 +5,7 @@
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
+#include "core/world/threat_set.hpp"
 #include "tests/target/probe_record.hpp"
 
 namespace jink::target {
@@ -31,6 +32,7 @@ private:
     reach::Planner reach_;
     orca::Planner orca_;
     avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner> supervisor_;
+    world::ThreatSet threats_;
     world::Manoeuvre manoeuvre_;
 };
 

@@ -16,6 +16,7 @@
 #include "core/geometry/convex.hpp"
 #include "core/orca/planner.hpp"
 #include "core/world/obstacle_distance.hpp"
+#include "core/world/threat_set.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
 
@@ -115,6 +116,7 @@ private:
                 {tracks_.data(), tracks_.size()},
                 {obstacles_.data(), obstacles_.size()},
                 airspace_,
+                {},
                 nullptr,
                 3.0F};
     }
@@ -129,6 +131,7 @@ private:
     vehicle::Airframe airframe_;
     world::Reference reference_;
     world::Airspace airspace_;
+    world::ThreatSet threats_;
     StaticVector<world::Track, kMaxTracks> tracks_;
     StaticVector<world::Obstacle, kMaxObstacles> obstacles_;
     world::Manoeuvre manoeuvre_;
@@ -332,7 +335,9 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
         return budget.spent();
     }
     scene(work);
-    const world::Situation s = situation();
+    world::Situation s = situation();
+    static_cast<void>(threats_.collect(s));
+    s.threats = threats_.all();
     const avoid::Settings settings;
     const world::Way way = world::way_of(s);
     const Vec3 command = within(3.0F);

@@ -25,6 +25,7 @@
 #include "core/avoid/guidance.hpp"
 #include "core/base/random.hpp"
 #include "core/geometric/planner.hpp"
+#include "tests/oracle/collected.hpp"
 
 namespace {
 
@@ -85,8 +86,17 @@ public:
     std::int64_t operator()(const Scene& scene)
     {
         static_cast<void>(planner_->configure(scene.settings));
-        const world::Situation situation{{},           scene.own, scene.limits,   scene.airframe, scene.reference,
-                                         scene.tracks, {},        scene.airspace, nullptr,        3.0F};
+        const oracle::Collected situation(world::Situation{{},
+                                                           scene.own,
+                                                           scene.limits,
+                                                           scene.airframe,
+                                                           scene.reference,
+                                                           scene.tracks,
+                                                           {},
+                                                           scene.airspace,
+                                                           {},
+                                                           nullptr,
+                                                           3.0F});
         WorkBudget budget(avoid::Settings{}.plan_budget);
         const Clock::time_point begin = Clock::now();
         status = planner_->plan(situation, budget, out_);

@@ -14,6 +14,7 @@
 #include "core/reach/planner.hpp"
 #include "core/reach/scan_picture.hpp"
 #include "core/reach/sets_default.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace {
 
@@ -90,8 +91,12 @@ struct Scene {
 
     [[nodiscard]] world::Situation view() const
     {
-        return {now, own, limits, airframe, reference, tracks, {}, airspace, nullptr, 3.0F};
+        world::Situation s{now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
+        static_cast<void>(threats.collect(s));
+        s.threats = threats.all();
+        return s;
     }
+    mutable world::ThreatSet threats;  ///< of the newest view
 };
 
 /// As many scenes in turn as keep the caches honest.

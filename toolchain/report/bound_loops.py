@@ -33,7 +33,7 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
             # segments as any curve is taken to have.
             "escape parts": math.ceil(longest / 0.05 / (points - 1)) + 1,
             # Conflict search asks for the separation of one track from a way of two pieces, in 480 parts at most.
-            "checked tracks": 1, "pieces of a path": 2, "chunks": 1, "paid parts": 480,
+            "threats": 3 + tracks + obstacles, "checked tracks": 1, "pieces of a path": 2, "chunks": 1, "paid parts": 480,
             "pieces": math.ceil(lookahead / 0.5)}
 
 
@@ -49,9 +49,9 @@ RULES = [
     (r"in_a_row\.cpp:.*obstacle", "each", lambda p: p["obstacles"]),
     (r"in_a_row\.cpp:.*[pP]oint", "each", lambda p: p["points"]),
     (r"nearest\.cpp", "each", lambda p: p["tracks"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*if \(obstacle_conflict", "each", lambda p: p["obstacles"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*if \(predict_conflict", "each", lambda p: p["tracks"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*obstacle_conflict.*touching", "each", lambda p: 8),
+    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*situation\.threats|conflict_with", "each", lambda p: p["threats"]),
+    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*touching", "each", lambda p: 8),
+    (r"threat_set\.cpp|of_kind|world::Threat const\*", "each", lambda p: p["threats"]),
     (r"separation(_parts\.hpp|\.cpp):.*part < parts", "in all", lambda p: p["paid parts"]),
     (r"shape\.vertices|Matrix<float, 3, 1, 0, 3, 1> const\*, std::span", "each", lambda p: 0),  # no hulls
     (r"next \+ 1 < curve\.points", "in all", lambda p: p["points"]),
@@ -63,8 +63,8 @@ RULES = [
     (r"touches_in_parts|Clearance::leaves", "each", lambda p: p["escape parts"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*pieces", "each", lambda p: p["pieces"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*i < 8", "each", lambda p: 8),
-    (r"separation(_parts\.hpp|\.cpp):.*situation\.tracks", "each", lambda p: p["checked tracks"]),
-    (r"separation(_parts\.hpp|\.cpp):.*situation\.obstacles", "each", lambda p: p["obstacles"]),
+    (r"separation(_parts\.hpp|\.cpp):.*situation\.threats", "each", lambda p: p["threats"]),
+    (r"separation(_parts\.hpp|\.cpp):.*(threats\.size|threats\.first)", "each", lambda p: p["checked tracks"]),
     (r"separation(_parts\.hpp|\.cpp):.*(chunks\(\)|first < count_|first \+= kChunk)", "each", lambda p: p["chunks"]),
     (r"separation(_parts\.hpp|\.cpp):.*(chunk\.last|i < last)", "each", lambda p: min(8, p["pieces of a path"])),
     (r"separation(_parts\.hpp|\.cpp)", "each", lambda p: p["pieces of a path"]),
@@ -92,7 +92,7 @@ NEVER = [r"touches_swept", r"is_flyable", r"Clearance6leaves", r"Clearance7touch
          r"Clearance7touchesERKNS1_4View", r"4cost7passing", r"11time_beyond", r"make_base", r"make_curve_along", r"bend_along", r"seen_at_collision",
          r"reach_along", r"ReferenceAhead", r"follow_route", r"move_start_along", r"build_along", r"is_flyable_along", r"collision_point_along",
          r"4path5Route", r"RoutePieces", r"way_along",
-         r"swept_box_(contact|distance)", r"obstacle_margin", r"general_conflict", r"13local_support", r"__kernel_rem_pio2f", r"__assert", r"abort"]
+         r"swept_box_(contact|distance)", r"obstacle_margin", r"meets_solid", r"13local_support", r"__kernel_rem_pio2f", r"__assert", r"abort"]
 
 # libgcc's doubles in software, which shares code between functions: an allowance for each call, far above what they take.
 LIBRARY = [(r"^__aeabi_", 1000)]

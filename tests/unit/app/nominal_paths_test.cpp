@@ -266,8 +266,7 @@ TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
         own.position += Vec3(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(-5, 5));
         for (Seconds t = 0.0F; t < 30.0F; t += 0.02F) {
             update(true);
-            const world::Way way =
-                world::way_of({now, own, limits, airframe, paths.primary(), {}, {}, open, nullptr, 3.0F, 0, nullptr});
+            const world::Way way = world::way_of({now, own, limits, airframe, paths.primary(), {}, {}, open});
             own.velocity += 0.05F * (way.speed * way.direction - own.velocity);
             own.position += 0.02F * own.velocity;
             now = now + 0.02F;

@@ -48,7 +48,7 @@ Flown fly(const TwinRoute& twin, std::vector<world::Track> tracks, Seconds durat
             track.stamp = now;
         }
         reference.segment = twin.route.abeam_of(own.position, reference.segment).segment;
-        const world::Situation situation{now, own, limits, {}, reference, tracks, {}, airspace, nullptr, 3.0F};
+        const world::Situation situation{now, own, limits, {}, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
         const Guidance guidance = supervisor->update(situation, in_control);
         in_control = guidance.wants_control;
         const world::Way way = world::way_of(situation);

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/avoid/guard.hpp"
+#include "tests/oracle/collected.hpp"
 #include "tests/oracle/route_oracle.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
@@ -267,11 +268,11 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
         own.velocity = vehicle::clamped_velocity(from.along, reference.leg.speed, limits);
         std::vector<world::Track> tracks(1 + random.below(3));
         const world::Airspace airspace;
-        const world::Situation situation{
-            TimePoint{50'000'000}, own, limits, {}, reference, tracks, {}, airspace, nullptr, 3.0F};
-        const world::Way way = world::way_of(situation);
+        const world::Situation empty{
+            TimePoint{50'000'000}, own, limits, {}, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
+        const world::Way way = world::way_of(empty);
         for (world::Track& track : tracks) {
-            track.stamp = situation.now;
+            track.stamp = empty.now;
             track.velocity = random.below(3) == 0 ? Vec3(Vec3::Zero()) : RandomProblem::vector(random, 5.0F);
             const float t = random.uniform(2.0F, 8.0F);
             const float there = std::min(way.speed * t, way.length);
@@ -280,6 +281,7 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
             track.radius = random.uniform(0.2F, 1.5F);
             track.sigma_velocity = random.uniform(0.0F, 0.1F);
         }
+        const oracle::Collected situation(empty);
         WorkBudget budget(1'000'000);
         world::Manoeuvre manoeuvre;
         const world::PlanStatus status = planner.plan(situation, budget, manoeuvre);

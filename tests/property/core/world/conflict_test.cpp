@@ -80,7 +80,8 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
         }
         Conflict conflict;
         WorkBudget budget(100'000);
-        const bool found = predict_conflict(scene.situation(), way, 0, static_cast<float>(lookahead), budget, conflict);
+        const bool found =
+            test::predict_conflict(scene.situation(), way, 0, static_cast<float>(lookahead), budget, conflict);
         conflicts += found ? 1U : 0U;
         const bool inside = margin_at(scene, way, track, 0.0) <= 0;
         if (loss >= 0 && !inside) {
@@ -132,7 +133,7 @@ TEST(PredictConflict, InsideAMarginOnlyLeavingIsNoConflict)
         }
         Conflict conflict;
         WorkBudget budget(100'000);
-        if (predict_conflict(scene.situation(), way, 0, 8.0F, budget, conflict)) {
+        if (test::predict_conflict(scene.situation(), way, 0, 8.0F, budget, conflict)) {
             ASSERT_EQ(conflict.time_to_loss, 0.0F) << "case " << i;
             continue;
         }
@@ -209,7 +210,7 @@ TEST(MainConflict, IsTheFirstOfAll)
         Conflict first;
         for (std::size_t k = 0; k < scene.tracks.size(); ++k) {
             Conflict c;
-            if (predict_conflict(scene.situation(), way, k, 8.0F, budget, c) &&
+            if (test::predict_conflict(scene.situation(), way, k, 8.0F, budget, c) &&
                 (!any || c.time_to_loss < first.time_to_loss ||
                  (c.time_to_loss == first.time_to_loss && c.margin < first.margin))) {
                 first = c;

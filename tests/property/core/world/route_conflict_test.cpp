@@ -118,7 +118,7 @@ TEST(RouteConflict, FindsEachLossAndNeverTooLate)
         }
         Conflict conflict;
         WorkBudget budget(100'000);
-        const bool found = predict_conflict(c.scene.situation(), c.way, 0, kAhead, budget, conflict);
+        const bool found = test::predict_conflict(c.scene.situation(), c.way, 0, kAhead, budget, conflict);
         Conflict main;
         ASSERT_EQ(main_conflict(c.scene.situation(), c.way, kAhead, budget, main), found);
         if (loss >= 0 && c.margin(track, 0.0) > c.slack()) {

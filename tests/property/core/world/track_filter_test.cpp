@@ -220,7 +220,7 @@ TEST(TrackFilter, TheGrownSphereHoldsAStraightFlyer)
         world::Reference reference;
         Airspace airspace;
         const auto tracks = flown.table.snapshot(flown.now);
-        const Situation situation{flown.now, own, limits, airframe, reference, tracks, {}, airspace, nullptr, 1.0F};
+        const Situation situation{flown.now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 1.0F};
         for (std::size_t a = 0; a < 4; ++a) {
             const float sigma = threat_radius(situation, tracks[0], kAhead[a]);  // no body, one sigma
             const Vec3 error = tracks[0].position + tracks[0].velocity * kAhead[a] - flown.truth.position -
@@ -274,7 +274,8 @@ TEST(TrackFilter, NothingButNumbersComesOut)
             const vehicle::Airframe airframe;
             const world::Reference reference;
             const Airspace airspace;
-            const Situation situation{now, own, limits, airframe, reference, {&track, 1}, {}, airspace, nullptr, 6.0F};
+            const Situation situation{now, own,      limits, airframe, reference, {&track, 1},
+                                      {},  airspace, {},     nullptr,  6.0F};
             ASSERT_TRUE(std::isfinite(threat_radius(situation, track, 60.0F))) << "case " << i;
             ASSERT_GE(threat_radius(situation, track, 60.0F), 0.0F) << "case " << i;
         }

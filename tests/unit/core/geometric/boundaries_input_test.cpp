@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "tests/oracle/collected.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {
@@ -85,7 +86,9 @@ PlanStatus plan(const std::vector<world::Track>& tracks, WorkBudget& budget, Pla
     const vehicle::Airframe airframe;
     const world::Airspace airspace;
     world::Manoeuvre out;
-    return planner.plan({now, own, limits, airframe, reference, tracks, {}, airspace, nullptr, 3.0F}, budget, out);
+    const oracle::Collected situation(
+        world::Situation{now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 3.0F});
+    return planner.plan(situation, budget, out);
 }
 
 world::Track standing(const Vec3& position, float radius)

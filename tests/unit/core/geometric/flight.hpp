@@ -5,6 +5,7 @@
 
 #include "core/geometric/planner.hpp"
 #include "core/world/conflict.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::geometric {
 
@@ -45,8 +46,12 @@ struct Flight {
 
     [[nodiscard]] world::Situation situation() const
     {
-        return {now, own, limits, airframe, reference, tracks, obstacles, airspace, flying, 3.0F};
+        world::Situation s{now, own, limits, airframe, reference, tracks, obstacles, airspace, {}, flying, 3.0F};
+        static_cast<void>(threats.collect(s));
+        s.threats = threats.all();
+        return s;
     }
+    mutable world::ThreatSet threats;  ///< of the newest situation
 
     world::PlanStatus plan() { return planner.plan(situation(), budget, out); }
 };

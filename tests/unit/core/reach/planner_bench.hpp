@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/reach/planner.hpp"
+#include "core/world/threat_set.hpp"
 #include "tests/unit/core/reach/small_tree.hpp"
 
 namespace jink::reach::test {
@@ -76,8 +77,11 @@ struct PlannerBench {
                            .tracks = tracks,
                            .obstacles = obstacles,
                            .airspace = airspace};
+        static_cast<void>(threats.collect(s));
+        s.threats = threats.all();
         return s;
     }
+    mutable world::ThreatSet threats;  ///< of the newest view
     world::PlanStatus plan(std::uint32_t units = kAllTheWork)
     {
         static_cast<void>(planner.configure(settings));

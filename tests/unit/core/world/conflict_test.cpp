@@ -128,7 +128,7 @@ struct Conflicts : testing::Test {
     bool predict(Seconds lookahead = kAhead, std::uint32_t units = kPlenty)
     {
         WorkBudget budget(units);
-        return predict_conflict(scene.situation(), way_of(scene.situation()), 0, lookahead, budget, conflict);
+        return test::predict_conflict(scene.situation(), way_of(scene.situation()), 0, lookahead, budget, conflict);
     }
     bool find(std::uint32_t units = kPlenty)
     {
@@ -342,7 +342,7 @@ TEST_F(Conflicts, ALaterConflictThatWasFoundHidesNothing)
     ASSERT_GT(conflict.time_to_loss, 3.0F);
     scene.track(Vec3(200, 0, 0), Vec3::Zero(), 1.0F);
     WorkBudget first(kPlenty);
-    ASSERT_TRUE(predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, first, conflict));
+    ASSERT_TRUE(test::predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, first, conflict));
     ASSERT_TRUE(find(first.spent() + units::kConflict - 1));
     EXPECT_EQ(conflict.time_to_loss, 0.0F);
     EXPECT_EQ(conflict.threat.index, 1);
@@ -355,7 +355,7 @@ TEST_F(Conflicts, DrawingApartIsPaidForAndNotBelievedWithout)
     scene.track(Vec3(-1.5F, 0, 0), Vec3(-5, 0, 0), 1.0F);
     ASSERT_FALSE(predict());
     WorkBudget ample(kPlenty);
-    static_cast<void>(predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, ample, conflict));
+    static_cast<void>(test::predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, ample, conflict));
     ASSERT_GE(ample.spent(), units::kConflict + units::kConflictPart + units::kBallPart);
     for (std::uint32_t n = 0; n < ample.spent(); ++n) {
         ASSERT_TRUE(predict(kAhead, n)) << n;

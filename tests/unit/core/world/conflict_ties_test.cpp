@@ -169,7 +169,7 @@ TEST_P(ConflictTies, ABudgetThatRunsOutWhileATrackDrawsApartIsAConflictNow)
     const auto predict = [&](std::uint32_t units) {
         WorkBudget budget(units);
         const Situation s = scene.situation();
-        const bool met = predict_conflict(s, way_of(s), 0, 10.0F, budget, found);
+        const bool met = test::predict_conflict(s, way_of(s), 0, 10.0F, budget, found);
         spent = budget.spent();
         return met;
     };
@@ -294,7 +294,7 @@ TEST(ConflictBehindCorners, AnObstacleBeyondACornerIsNearestAtTheCorner)
     // The same of a track, also for that one alone: behind the first corner.
     scene.obstacles.clear();
     scene.track(Vec3(20, 10, 0), Vec3::Zero(), 1.0F);
-    ASSERT_TRUE(predict_conflict(scene.situation(), way_of(s), 0, 12.0F, budget, found));
+    ASSERT_TRUE(test::predict_conflict(scene.situation(), way_of(s), 0, 12.0F, budget, found));
     EXPECT_NEAR(found.time_to_loss, 28.0F / 5.0F, 1e-3F);
     EXPECT_NEAR(found.way_at_closest, 30.0F, 1e-2F);
 }
@@ -318,9 +318,10 @@ TEST(PlaceAsAWay, HasNoConflictWithWhatItIsInside)
     Conflict found;
     WorkBudget ample(kPlenty);
     EXPECT_FALSE(main_conflict(scene.situation(), place, 10.0F, ample, found));
+    const Situation s = scene.situation();
     for (std::uint32_t n = 0; n < ample.spent(); ++n) {
         WorkBudget budget(n);
-        ASSERT_TRUE(detail::obstacle_conflict(scene.situation(), place, 0, 10.0F, budget, found)) << n;
+        ASSERT_TRUE(conflict_with(s, place, s.threats.front(), 10.0F, budget, found)) << n;
         ASSERT_EQ(found.time_to_loss, 0.0F) << n;
         ASSERT_EQ(found.time_to_closest, 0.0F) << n;
         ASSERT_EQ(found.own_at_closest, Vec3(1, 2, 3)) << n;

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "core/world/growing_radius.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -85,9 +84,11 @@ TEST_F(Growing, AtManyInstantsItIsTheSameRadius)
 {
     for (const float age : {-3.0F, -0.5F, 0.0F, 1.5F}) {
         track->stamp = scene.now - age;
-        const GrowingRadius radius_at(scene.situation(), *track);
+        const Situation s = scene.situation();
+        ASSERT_EQ(s.threats.size(), 1U);
         for (const float t : {0.0F, 0.4F, 0.6F, 2.0F, 5.0F}) {
-            EXPECT_NEAR(radius_at(t), threat_radius(scene.situation(), *track, t), 1e-4F) << age << ' ' << t;
+            EXPECT_NEAR(s.threats[0].radius_at(t), threat_radius(scene.situation(), *track, t), 1e-4F)
+                << age << ' ' << t;
         }
     }
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/world/conflict.hpp"
+#include "core/world/threat_set.hpp"
 #include "core/world/track_table.hpp"
 
 namespace jink::world::test {
@@ -25,11 +26,15 @@ struct Scene {
     TrackId own_id = 0;
     const Commanded* commanded = nullptr;
     Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
+    mutable ThreatSet threats;  ///< of the newest situation
 
     [[nodiscard]] Situation situation() const
     {
-        return {now,      own,    limits,  airframe, reference, tracks,        obstacles,
-                airspace, flying, k_sigma, own_id,   commanded, shared_horizon};
+        Situation s{now,      own, limits, airframe, reference, tracks,    obstacles,
+                    airspace, {},  flying, k_sigma,  own_id,    commanded, shared_horizon};
+        static_cast<void>(threats.collect(s));
+        s.threats = threats.all();
+        return s;
     }
 
     void leg(const Vec3& start, const Vec3& end, float speed = 5.0F)
@@ -60,6 +65,13 @@ struct Scene {
         obstacles.push_back({static_cast<ObstacleId>(obstacles.size() + 1), shape});
     }
 };
+
+/// Conflict of one of the situation's tracks.
+inline bool predict_conflict(const Situation& situation, const Way& way, std::size_t track, Seconds lookahead,
+                             WorkBudget& budget, Conflict& out)
+{
+    return conflict_with(situation, way, of_kind(situation.threats, ThreatKind::track)[track], lookahead, budget, out);
+}
 
 /// Straight flight through `positions`, `step` seconds apart.
 inline path::TimedPath flight(const std::vector<Vec3>& positions, Seconds step)

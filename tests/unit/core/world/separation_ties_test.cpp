@@ -89,7 +89,7 @@ TEST_F(TiedCosts, ASphereOfExactlyTheDepthSoFarIsLookedAt)
 TEST(SeparationAtTies, AnObstacleThatIsNoNearerCostsNoQuery)
 {
     Scene scene;
-    scene.obstacle(geometry::make_sphere(Vec3(0, 9, 0), 1.0F));
+    scene.obstacle(geometry::make_box(Vec3(0, 9, 0), Vec3::Constant(0.5F)));
     const float near = 9.0F - geometry::bounding_radius(scene.obstacles[0].shape) - Vec3::Ones().norm();
     scene.track(Vec3(11, 0, 0), Vec3::Zero(), 10.0F - near);
     WorkBudget budget(kPlenty);
@@ -99,7 +99,17 @@ TEST(SeparationAtTies, AnObstacleThatIsNoNearerCostsNoQuery)
     scene.tracks[0].radius -= 1e-3F;
     WorkBudget more(kPlenty);
     EXPECT_EQ(separation_at(scene.situation(), Vec3::Zero(), 0.0F, more).against.kind, ThreatKind::track);
-    EXPECT_EQ(more.spent(), 2 * units::kThreat + units::kSphereQuery);
+    EXPECT_GT(more.spent(), 2 * units::kThreat + units::kSolidQuery);
+}
+
+/// Spheres are met in closed form, at the price of a look.
+TEST(SeparationAtTies, ASphereCostsNoQueryHoweverNear)
+{
+    Scene scene;
+    scene.obstacle(geometry::make_sphere(Vec3(0, 9, 0), 1.0F));
+    WorkBudget budget(kPlenty);
+    EXPECT_NEAR(separation_at(scene.situation(), Vec3::Zero(), 0.0F, budget).margin, 7.0F, 1e-6F);
+    EXPECT_EQ(budget.spent(), units::kThreat);
 }
 
 /// Touching exactly at the start a flight is outside: no credit to go in.

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/world/threat_set.hpp"
+
+#include <algorithm>
+
+#include "core/world/obstacle_distance.hpp"
+
+namespace jink::world {
+namespace {
+
+Threat at_rest(ThreatKind kind, std::size_t index, ThreatForm form, const Vec3& position, float grown) noexcept
+{
+    Threat threat;
+    threat.ref = {kind, static_cast<std::uint16_t>(index)};
+    threat.form = form;
+    threat.position = position;
+    threat.growth.radius = grown;
+    return threat;
+}
+
+Threat threat_of(const Situation& situation, std::size_t index) noexcept
+{
+    const Track& track = situation.tracks[index];
+    Threat threat = at_rest(ThreatKind::track, index, ThreatForm::point, track.position, 0.0F);
+    threat.velocity = track.velocity;
+    threat.half_height = track.half_height;
+    threat.growth = growth_of(situation, track, 0.0F);
+    threat.growth_begins = std::max(track.stamp - situation.now, 0.0F);
+    threat.grows = !(track.sigma_velocity <= 0.0F && track.max_acceleration <= 0.0F);  // non-finite ones too
+    threat.reciprocal = track.cooperative;
+    return threat;
+}
+
+Threat threat_of(const geometry::Shape& shape, std::size_t index, float uncertainty) noexcept
+{
+    Threat threat = at_rest(ThreatKind::obstacle, index, ThreatForm::point, shape.centre, uncertainty);
+    Vec3 half = Vec3::Zero();
+    float radius = 0.0F;
+    threat.solid = &shape;
+    if (as_sphere(shape, Vec3::Zero(), half, radius)) {
+        threat.half_height = half.z();
+        threat.growth.radius = radius + uncertainty;
+    } else {
+        threat.form = ThreatForm::solid;
+    }
+    return threat;
+}
+
+Threat threat_of(const Barrel& barrel, std::size_t index, float uncertainty) noexcept
+{
+    const Vec3 centre(barrel.circle.centre.x(), barrel.circle.centre.y(), 0.0F);
+    Threat threat = at_rest(ThreatKind::barrel, index, ThreatForm::cylinder, centre, uncertainty);
+    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
+    threat.cylinder = &barrel;
+    return threat;
+}
+
+}  // namespace
+
+std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind) noexcept
+{
+    const auto is_of_kind = [kind](const Threat& threat) { return threat.ref.kind == kind; };
+    const auto first = std::find_if(threats.begin(), threats.end(), is_of_kind);
+    const auto last = std::find_if_not(first, threats.end(), is_of_kind);
+    return {first, last};
+}
+
+bool ThreatSet::collect(const Situation& s) noexcept
+{
+    const Airspace& air = s.airspace;
+    threats_.clear();
+    collected_ =
+        s.tracks.size() <= kMaxTracks && s.obstacles.size() <= kMaxObstacles && air.barrels.size() <= kMaxBarrels;
+    if (!collected_) {
+        return false;
+    }
+    const float uncertainty = own_uncertainty(s);
+    if (air.has_floor) {
+        threats_.unchecked_push_back(
+            at_rest(ThreatKind::floor, 0, ThreatForm::floor, air.floor * Vec3::UnitZ(), uncertainty));
+    }
+    if (air.has_ceiling) {
+        threats_.unchecked_push_back(
+            at_rest(ThreatKind::ceiling, 0, ThreatForm::ceiling, air.ceiling * Vec3::UnitZ(), uncertainty));
+    }
+    if (air.has_keep_in) {
+        Threat threat = at_rest(ThreatKind::keep_in, 0, ThreatForm::keep_in, air.home, uncertainty);
+        threat.level_radius = air.keep_in_radius;
+        threats_.unchecked_push_back(threat);
+    }
+    for (std::size_t i = 0; i < s.tracks.size(); ++i) {
+        threats_.unchecked_push_back(threat_of(s, i));
+    }
+    for (std::size_t i = 0; i < air.barrels.size(); ++i) {
+        threats_.unchecked_push_back(threat_of(air.barrels[i], i, uncertainty));
+    }
+    for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
+        threats_.unchecked_push_back(threat_of(s.obstacles[i].shape, i, uncertainty));
+    }
+    return true;
+}
+
+}  // namespace jink::world

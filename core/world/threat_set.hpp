@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/base/static_vector.hpp"
+#include "core/capacity.hpp"
+#include "core/world/world.hpp"
+
+namespace jink::world {
+
+/// Everything that must be kept clear of, collected once per update. Conflict prediction, separation, methods and
+/// fallback iterate over it; a new kind of threat enters here.
+///
+/// Order: floor, ceiling, keep-in; tracks; barrels; obstacles; each in the order of the Situation.
+/// Memory: kMaxThreats times sizeof(Threat).
+class ThreatSet {
+public:
+    /// Floor, ceiling, keep-in, and whatever the tables hold.
+    static constexpr std::size_t kMaxThreats = 3 + kMaxTracks + kMaxBarrels + kMaxObstacles;
+
+    /// Takes in the tracks, obstacles and airspace of a situation, whose spans outlive this. False when there is more
+    /// than the capacities allow: then there is no set (all() says so). O(tracks + barrels + obstacles).
+    [[nodiscard]] bool collect(const Situation& situation) noexcept;
+
+    /// A span without data (null) before `collect` and after one that failed: Situation::threats counts that as contact
+    /// everywhere.
+    [[nodiscard]] std::span<const Threat> all() const noexcept
+    {
+        return collected_ ? std::span<const Threat>(threats_.data(), threats_.size()) : std::span<const Threat>();
+    }
+
+private:
+    StaticVector<Threat, kMaxThreats> threats_;
+    bool collected_ = false;
+};
+
+/// Those of one kind, in a set's order. O(threats).
+[[nodiscard]] std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind) noexcept;
+
+}  // namespace jink::world
