@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// What work costs, in the units of WorkBudget: about 100 instructions of a Cortex-M7 each, and never more than 150.
+// What work costs, in the units of WorkBudget: about 100 instructions of a Cortex-M7 each, and never more than 160.
 // A weight is what the costliest way through its code takes, not the usual one. toolchain/report/units counts them
 // anew.
 

@@ -47,6 +47,7 @@ enum class ThreatForm : std::uint8_t {
 /// Something that must be kept clear of, in the form in which everybody meets it: a shape in straight motion that grows
 /// with what is not known of it. World frame, times from Situation::now on. Contact is contact of the own box with the
 /// grown shape; the own box is no part of it. 60 bytes on a 32-bit target.
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): one of the two pointers is set, which stands for both
 struct Threat {
     ThreatRef ref;
     ThreatForm form = ThreatForm::point;
@@ -58,7 +59,7 @@ struct Threat {
     Growth growth;                 ///< own uncertainty of position included
     Seconds growth_begins = 0.0F;  ///< a stamp ahead of now: the threat grows from there on
     float level_radius = 0.0F;     ///< of keep_in [m]
-    union {
+    union {                        ///< by `form`; a point that is an obstacle has its shape
         const geometry::Shape* solid = nullptr;
         const Barrel* cylinder;  ///< where it is at time 0
     };
