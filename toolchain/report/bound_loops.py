@@ -39,7 +39,7 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
 
 RULES = [
     # The images fly by one leg: no routes; nothing is closed. Weights as they are by default, without that of passing. No solids.
-    (r"[bB]arrel", "each", lambda p: 0),  # no closed areas
+    (r"[bB]arrel|_cylinder", "each", lambda p: 0),  # no closed areas
     (r"core/path/route|route_way\.cpp|along_reference|plan_along|RoutePieces|WayPiece", "each", lambda p: 0),
     (r"Run::passing|moving_solids|solid\.shape|clearance_solids\.cpp|geometric/extent\.hpp", "each", lambda p: 0),
     (r"solve_with_retries", "each", lambda p: p["attempts"]),
