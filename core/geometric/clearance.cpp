@@ -18,27 +18,25 @@ constexpr std::size_t kFew = 4;
 
 }  // namespace
 
-bool is_moving(const Threat& threat) noexcept
+bool is_moving(const world::Threat& threat) noexcept
 {
-    return threat.motion.velocity.x() != 0.0F || threat.motion.velocity.y() != 0.0F ||
-           threat.motion.velocity.z() != 0.0F;
+    return threat.velocity.x() != 0.0F || threat.velocity.y() != 0.0F || threat.velocity.z() != 0.0F;
 }
 
-Threat threat_at_start(const Problem& problem, std::size_t index) noexcept
+AtStart at_start(const Problem& problem, const world::Threat& threat) noexcept
 {
-    Threat threat = problem.threats[index];
-    const Seconds t = problem.begins;
-    if (t <= 0.0F) {
-        return threat;
+    AtStart start{{threat.position_at(problem.lead), threat.velocity}, threat.growth_from(problem.lead)};
+    if (problem.begins > 0.0F) {
+        start.motion.position += problem.begins * threat.velocity;
+        start.growth = start.growth.from(problem.begins);
     }
-    threat.motion.position += t * threat.motion.velocity;
-    threat.radius += t * (threat.radius_rate + 0.5F * threat.radius_acceleration * t);
-    threat.radius_rate += threat.radius_acceleration * t;
-    return threat;
+    return start;
 }
 
 Clearance::Clearance(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
-    : problem_(problem), settings_(settings), half_(limits.half_extents), bounds_(bounds_of(problem, half_))
+    : problem_(problem), settings_(settings), half_(limits.half_extents), bounds_(bounds_of(problem, half_)),
+      tracks_(world::of_kind(problem.threats, ThreatKind::track)),
+      obstacles_(world::of_kind(problem.threats, ThreatKind::obstacle))
 {
 }
 
@@ -46,34 +44,27 @@ void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget
 {
     items_.clear();
     needs_extent_ = settings_.security == SecurityMode::swept;
-    static_cast<void>(budget.spend(units::kCollected *
-                                   static_cast<std::uint32_t>(problem_.threats.size() + problem_.obstacles.size() +
-                                                              problem_.moving_solids.size())));
-    add_threats(reach, longest, Which::at_rest);
-    for (std::size_t i = 0; i < problem_.obstacles.size(); ++i) {
-        add_obstacle(i, reach, budget);
-    }
-    add_threats(reach, longest, Which::moving);
-    for (std::size_t i = 0; i < problem_.moving_solids.size(); ++i) {
-        add_moving_solid(i, reach, longest, budget);
-    }
+    static_cast<void>(budget.spend(units::kCollected * static_cast<std::uint32_t>(tracks_.size() + obstacles_.size())));
+    add_tracks(reach, longest, Which::at_rest);
+    add_obstacles(reach, longest, false, budget);
+    add_tracks(reach, longest, Which::moving);
+    add_obstacles(reach, longest, true, budget);
     near_items_ = items_.size();
-    add_threats(reach, longest, Which::deferred);
+    add_tracks(reach, longest, Which::deferred);
 }
 
 std::uint32_t Clearance::solids() const noexcept
 {
-    return static_cast<std::uint32_t>(std::count_if(items_.begin(), items_.end(), [](const Item& item) {
-        return item.kind == Kind::solid || item.kind == Kind::moving_solid;
-    }));
+    return static_cast<std::uint32_t>(
+        std::count_if(items_.begin(), items_.end(), [this](const Item& item) { return is_solid(item); }));
 }
 
-Seconds Clearance::sweep_end(std::size_t index) const noexcept
+Seconds Clearance::sweep_end(const world::Threat& track) const noexcept
 {
-    if (!settings_.main_swept_to_collision_point || index != problem_.main) {
+    if (!settings_.main_swept_to_collision_point || problem_.main == kNoThreat || &track != &tracks_[problem_.main]) {
         return t_max_;
     }
-    const geometry::Motion motion = threat_at_start(problem_, index).motion;
+    const geometry::Motion motion = at_start(problem_, track).motion;
     const Vec3 goal = collision_point(problem_) + problem_.main_centre_offset;
     const float speed_squared = motion.velocity.squaredNorm();
     if (!(speed_squared > 0.0F)) {
@@ -96,38 +87,25 @@ int Clearance::escape_parts(Seconds duration) const noexcept
     return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
 }
 
-Clearance::Ball Clearance::ball_of(std::size_t threat) const noexcept
+Clearance::Ball Clearance::ball_of(const world::Threat& threat) const noexcept
 {
-    const Threat t = threat_at_start(problem_, threat);
-    return {t.motion.position - problem_.frame.origin,
-            t.motion.velocity,
-            half_ + t.half_height * Vec3::UnitZ(),
-            t.radius,
-            t.radius_rate,
-            t.radius_acceleration};
+    const AtStart start = at_start(problem_, threat);
+    return {start.motion.position - problem_.frame.origin, threat.velocity, threat.box_against(half_), start.growth};
 }
 
-Clearance::Ball Clearance::ball_of(const geometry::Shape& shape) const noexcept
+void Clearance::add_ball(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept
 {
-    Ball ball;
-    static_cast<void>(world::as_sphere(shape, half_, ball.half, ball.radius));
-    ball.position = shape.centre - problem_.frame.origin;
-    ball.velocity = Vec3::Zero();
-    ball.radius += problem_.obstacle_clearance;
-    return ball;
-}
-
-void Clearance::add_ball(Kind kind, std::size_t index, const Ball& ball, const Extent& reach, Seconds longest) noexcept
-{
+    const Ball ball = ball_of(threat);
     if (!out_of(reach, ball, longest)) {
-        items_.unchecked_push_back(as_item(kind, index, ball));
+        const float margin = geometry::box_distance(ball.half, ball.position) - ball.growth.radius;
+        items_.unchecked_push_back({index_of(threat), shrink_to_clear(margin)});
     }
 }
 
 bool Clearance::out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept
 {
     const Extent path = about(ball.position, ball.position + ball.velocity * longest);
-    return apart(path.low, path.high, reach.low, reach.high, ball.half, ball.radius_at(longest));
+    return apart(path.low, path.high, reach.low, reach.high, ball.half, ball.growth.at(longest));
 }
 
 bool Clearance::is_out_of(const Extent& reach, const geometry::Shape& solid, float clearance) const noexcept
@@ -137,51 +115,41 @@ bool Clearance::is_out_of(const Extent& reach, const geometry::Shape& solid, flo
     return apart(centre, centre, reach.low, reach.high, half_, bound);
 }
 
-Clearance::Item Clearance::as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept
+void Clearance::add_tracks(const Extent& reach, Seconds longest, Which which) noexcept
 {
-    const float start = geometry::box_distance(ball.half, ball.position);
-    return {kind, static_cast<std::uint16_t>(index), shrink_to_clear(start - ball.radius)};
-}
-
-void Clearance::add_threats(const Extent& reach, Seconds longest, Which which) noexcept
-{
-    for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
-        const bool moving = is_moving(problem_.threats[i]);
-        const Which its = !moving ? Which::at_rest : deferred_[i] ? Which::deferred : Which::moving;
+    for (const world::Threat& track : tracks_) {
+        const Which its = !is_moving(track)            ? Which::at_rest
+                          : deferred_[index_of(track)] ? Which::deferred
+                                                       : Which::moving;
         if (its == which) {
-            add_ball(moving ? Kind::moving_ball : Kind::static_ball, i, ball_of(i), reach, longest);
+            add_ball(track, reach, longest);
         }
     }
 }
 
-void Clearance::add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept
+void Clearance::add_obstacles(const Extent& reach, Seconds longest, bool moving, WorkBudget& budget) noexcept
 {
-    const geometry::Shape& shape = problem_.obstacles[index].shape;
-    Ball ball;
-    if (world::as_sphere(shape, half_, ball.half, ball.radius)) {
-        add_ball(Kind::obstacle_ball, index, ball_of(shape), reach, 0.0F);
-        return;
-    }
-    if (is_out_of(reach, shape, problem_.obstacle_clearance)) {
-        return;
-    }
-    add_solid(Kind::solid, index, {shape, 0.0F, problem_.obstacle_clearance}, budget);
-}
-
-void Clearance::add_moving_solid(std::size_t index, const Extent& reach, Seconds longest, WorkBudget& budget) noexcept
-{
-    if (!out_of(reach, ball_about(index), longest)) {
-        add_solid(Kind::moving_solid, index, solid_of(problem_.moving_solids[index], 0.0F), budget);
+    for (const world::Threat& obstacle : obstacles_) {
+        if (is_moving(obstacle) != moving) {
+            continue;
+        }
+        if (obstacle.form != world::ThreatForm::solid) {
+            add_ball(obstacle, reach, longest);
+        } else if (moving ? !out_of(reach, ball_about(obstacle), longest)
+                          : !is_out_of(reach, *obstacle.solid, obstacle.growth.radius)) {
+            add_solid(obstacle, budget);
+        }
     }
 }
 
-void Clearance::add_solid(Kind kind, std::size_t index, const Solid& solid, WorkBudget& budget) noexcept
+void Clearance::add_solid(const world::Threat& threat, WorkBudget& budget) noexcept
 {
-    Item item{kind, static_cast<std::uint16_t>(index), 0.0F};
-    if (settings_.escape_from_margin && !is_out_of({}, solid.shape, solid.clearance)) {
+    Item item{index_of(threat), 0.0F};
+    const Solid solid = solid_of(threat, 0.0F);
+    if (settings_.escape_from_margin && !is_out_of({}, solid.shape, solid.growth.radius)) {
         const Vec3& start = problem_.frame.origin;
         item.shrunk =
-            shrink_to_clear(world::obstacle_margin(half_, start, start, solid.shape, budget, solid.clearance));
+            shrink_to_clear(world::obstacle_margin(half_, start, start, solid.shape, budget, solid.growth.radius));
         // Distances from solids are told apart no finer than this.
         item.shrunk += item.shrunk > 0.0F ? world::kObstacleResolution : 0.0F;
     }
@@ -189,54 +157,44 @@ void Clearance::add_solid(Kind kind, std::size_t index, const Solid& solid, Work
     needs_extent_ = true;
 }
 
-Clearance::Solid Clearance::solid_of(const MovingSolid& solid, float shrunk) const noexcept
+Clearance::Solid Clearance::solid_of(const world::Threat& threat, float shrunk) const noexcept
 {
-    const Seconds t = problem_.begins;
-    return {solid.shape, shrunk, solid.uncertainty + t * (solid.radius_rate + 0.5F * solid.radius_acceleration * t),
-            solid.radius_rate + solid.radius_acceleration * t, solid.radius_acceleration};
+    return {*threat.solid, shrunk, at_start(problem_, threat).growth};
 }
 
-/// Of a moving solid, the ball about it.
-Clearance::Ball Clearance::ball_about(std::size_t index) const noexcept
+/// The bounding sphere of a moving solid.
+Clearance::Ball Clearance::ball_about(const world::Threat& solid) const noexcept
 {
-    const MovingSolid& solid = problem_.moving_solids[index];
-    const Solid grown = solid_of(solid, 0.0F);
-    return {solid.shape.centre + problem_.begins * solid.velocity - problem_.frame.origin,
-            solid.velocity,
-            half_,
-            geometry::bounding_radius(solid.shape) + grown.clearance,
-            grown.rate,
-            grown.acceleration};
+    const AtStart start = at_start(problem_, solid);
+    world::Growth growth = start.growth;
+    growth.radius += geometry::bounding_radius(*solid.solid);
+    return {start.motion.position - problem_.frame.origin, solid.velocity, half_, growth};
 }
 
 bool Clearance::touches_moving_solid(const View& view, const Item& item, WorkBudget& budget) const noexcept
 {
+    const world::Threat& solid = problem_.threats[item.index];
     if (settings_.security == SecurityMode::swept) {
-        return touches_swept(view.curve, view.extent, ball_about(item.index), t_max_, budget);
+        return touches_swept(view.curve, view.extent, ball_about(solid), t_max_, budget);
     }
     if (!budget.spend(units::kSolidSegment * static_cast<std::uint32_t>(view.last()))) {
         return true;
     }
-    const MovingSolid& solid = problem_.moving_solids[item.index];
-    const View seen = view_of(view.curve, solid.velocity, problem_.begins);
+    const View seen = view_of(view.curve, solid.velocity, problem_.lead + problem_.begins);
     return touches(seen, solid_of(solid, item.shrunk), budget);
 }
 
 bool Clearance::touches(const View& view, const Item& item, WorkBudget& budget) const noexcept
 {
-    const Curve& curve = view.curve;
-    switch (item.kind) {
-    case Kind::static_ball: return touches(curve, ball_of(item.index), item.shrunk, budget);
-    case Kind::obstacle_ball: return touches(curve, ball_of(problem_.obstacles[item.index].shape), item.shrunk, budget);
-    case Kind::solid:
-        return touches(view, {problem_.obstacles[item.index].shape, item.shrunk, problem_.obstacle_clearance}, budget);
-    case Kind::moving_solid: return touches_moving_solid(view, item, budget);
-    case Kind::moving_ball: break;
+    const world::Threat& threat = problem_.threats[item.index];
+    const bool moving = is_moving(threat);
+    if (is_solid(item)) {
+        return moving ? touches_moving_solid(view, item, budget) : touches(view, solid_of(threat, item.shrunk), budget);
     }
-    const Ball ball = ball_of(item.index);
-    return settings_.security == SecurityMode::swept
-               ? touches_swept(curve, view.extent, ball, sweep_end(item.index), budget)
-               : touches(curve, ball, item.shrunk, budget);
+    const Ball ball = ball_of(threat);
+    return moving && settings_.security == SecurityMode::swept
+               ? touches_swept(view.curve, view.extent, ball, sweep_end(threat), budget)
+               : touches(view.curve, ball, item.shrunk, budget);
 }
 
 Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) const noexcept
@@ -273,21 +231,17 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) cons
 
 bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept
 {
-    if (item.kind == Kind::moving_ball && settings_.security == SecurityMode::swept) {
+    const world::Threat& threat = problem_.threats[item.index];
+    if (settings_.security == SecurityMode::swept && is_moving(threat)) {
         return false;  // its volume ends when others say
     }
-    const Ball ball =
-        item.kind == Kind::obstacle_ball ? ball_of(problem_.obstacles[item.index].shape) : ball_of(item.index);
-    return out_of(extent, ball, duration);
+    return out_of(extent, ball_of(threat), duration);
 }
 
 Verdict Clearance::verdict_of(const Item& item) const noexcept
 {
-    const bool of_threat = item.kind == Kind::static_ball || item.kind == Kind::moving_ball;
-    const std::size_t behind = item.kind == Kind::moving_solid ? problem_.obstacles.size() : 0;
-    const bool moves = item.kind == Kind::moving_solid || item.kind == Kind::moving_ball;
-    return {moves ? CandidateStatus::hits_moving : CandidateStatus::hits_static,
-            {of_threat ? ThreatKind::track : ThreatKind::obstacle, static_cast<std::uint16_t>(item.index + behind)}};
+    const world::Threat& threat = problem_.threats[item.index];
+    return {is_moving(threat) ? CandidateStatus::hits_moving : CandidateStatus::hits_static, threat.ref};
 }
 
 }  // namespace jink::geometric::detail

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <span>
 
 #include "core/geometric/extent.hpp"
 #include "core/geometric/planner.hpp"
@@ -11,9 +13,14 @@
 
 namespace jink::geometric::detail {
 
-[[nodiscard]] bool is_moving(const Threat& threat) noexcept;
-/// Where a threat is, and how large, when the manoeuvre begins.
-[[nodiscard]] Threat threat_at_start(const Problem& problem, std::size_t index) noexcept;
+[[nodiscard]] bool is_moving(const world::Threat& threat) noexcept;
+
+/// Where a threat is, and by how much it has grown, when the manoeuvre begins.
+struct AtStart {
+    geometry::Motion motion;
+    world::Growth growth;
+};
+[[nodiscard]] AtStart at_start(const Problem& problem, const world::Threat& threat) noexcept;
 
 /// How far a curve and a ball are from meeting, by bounds on their speeds: segments are passed over while nothing can
 /// happen. Never hides what the exact test would find: the bounds leave more room than that test's rounding takes.
@@ -47,8 +54,8 @@ private:
     float room_ = -1.0F;
 };
 
-/// Threats of a problem, by index.
-using ThreatSet = std::array<bool, kMaxTracks>;
+/// Some of the threats of a problem, by index.
+using Selection = std::array<bool, kMaxProblemThreats>;
 
 class Planes;
 
@@ -59,7 +66,7 @@ struct Verdict {
 
 /// Threats, obstacles and bounds of a problem as the curves of one call of `collect` meet them.
 ///
-/// Memory: 8 bytes per track and obstacle.
+/// Memory: 9 bytes per threat.
 class Clearance {
 public:
     /// All three outlive this.
@@ -71,13 +78,12 @@ public:
     void collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
 
     /// Moving threats, by index, that are looked at apart from the others: see `check`. None until this is called.
-    void defer(const ThreatSet& threats) noexcept { deferred_ = threats; }
+    void defer(const Selection& threats) noexcept { deferred_ = threats; }
 
     /// Volumes that moving threats sweep end at this time: the longest candidate's duration (swept mode).
     void sweep_until(Seconds t_max) noexcept { t_max_ = t_max; }
-    /// When the volume of threat `index` ends: then, or at the collision point for the main threat where the settings
-    /// say so.
-    [[nodiscard]] Seconds sweep_end(std::size_t index) const noexcept;
+    /// When the volume of a track ends: then, or at the collision point for the main threat where the settings say so.
+    [[nodiscard]] Seconds sweep_end(const world::Threat& track) const noexcept;
 
     /// Solids that no closed form knows, of what was collected.
     [[nodiscard]] std::uint32_t solids() const noexcept;
@@ -93,25 +99,17 @@ private:
         Vec3 position;  ///< relative to the start
         Vec3 velocity;
         Vec3 half;  ///< own box as this one meets it
-        float radius = 0.0F;
-        float rate = 0.0F;
-        float acceleration = 0.0F;
+        world::Growth growth;
 
-        [[nodiscard]] float radius_at(Seconds t) const noexcept
-        {
-            return radius + t * (rate + 0.5F * acceleration * t);
-        }
         /// From point `i` of a curve.
         [[nodiscard]] Vec3 apart(const Curve& curve, std::size_t i) const noexcept
         {
             return curve.position(i) - (position + velocity * curve.t[i]);
         }
     };
-    enum class Kind : std::uint8_t { static_ball, obstacle_ball, solid, moving_solid, moving_ball };
     /// What is within reach, in the order of checking.
     struct Item {
-        Kind kind = Kind::solid;
-        std::uint16_t index = 0;  ///< of the threat or obstacle
+        std::uint16_t index = 0;  ///< of the threat
         float shrunk = 0.0F;      ///< by the escape rule, at t = 0
     };
 
@@ -119,38 +117,34 @@ private:
     struct Solid {
         const geometry::Shape& shape;
         float shrunk = 0.0F;  ///< by the escape rule, at t = 0
-        float clearance = 0.0F;
-        float rate = 0.0F;
-        float acceleration = 0.0F;
+        world::Growth growth;
 
-        [[nodiscard]] bool grows() const noexcept { return rate > 0.0F || acceleration > 0.0F; }
-        [[nodiscard]] float clearance_at(Seconds t) const noexcept
-        {
-            return clearance + t * (rate + 0.5F * acceleration * t);
-        }
+        [[nodiscard]] bool grows() const noexcept { return growth.rate > 0.0F || growth.acceleration > 0.0F; }
     };
 
     /// Of the airspace, about the start, for the box's centre.
     struct Bounds {
-        Vec3 home;
-        float floor = 0.0F;
-        float ceiling = 0.0F;
-        float radius = 0.0F;
+        Vec3 home = Vec3::Zero();
+        float floor = -std::numeric_limits<float>::infinity();
+        float ceiling = std::numeric_limits<float>::infinity();
+        float radius = std::numeric_limits<float>::infinity();
     };
 
-    [[nodiscard]] Ball ball_of(std::size_t threat) const noexcept;
-    [[nodiscard]] Ball ball_of(const geometry::Shape& shape) const noexcept;
-    void add_ball(Kind kind, std::size_t index, const Ball& ball, const Extent& reach, Seconds longest) noexcept;
-    enum class Which : std::uint8_t { at_rest, moving, deferred };
-    void add_threats(const Extent& reach, Seconds longest, Which which) noexcept;
-    void add_obstacle(std::size_t index, const Extent& reach, WorkBudget& budget) noexcept;
-    void add_moving_solid(std::size_t index, const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
-    void add_solid(Kind kind, std::size_t index, const Solid& solid, WorkBudget& budget) noexcept;
-    [[nodiscard]] Solid solid_of(const MovingSolid& solid, float shrunk) const noexcept;
-    [[nodiscard]] Ball ball_about(std::size_t index) const noexcept;
-    [[nodiscard]] static bool is_solid(const Item& item) noexcept
+    [[nodiscard]] std::uint16_t index_of(const world::Threat& threat) const noexcept
     {
-        return item.kind == Kind::solid || item.kind == Kind::moving_solid;
+        return static_cast<std::uint16_t>(&threat - problem_.threats.data());
+    }
+    [[nodiscard]] Ball ball_of(const world::Threat& threat) const noexcept;
+    void add_ball(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept;
+    enum class Which : std::uint8_t { at_rest, moving, deferred };
+    void add_tracks(const Extent& reach, Seconds longest, Which which) noexcept;
+    void add_obstacles(const Extent& reach, Seconds longest, bool moving, WorkBudget& budget) noexcept;
+    void add_solid(const world::Threat& threat, WorkBudget& budget) noexcept;
+    [[nodiscard]] Solid solid_of(const world::Threat& threat, float shrunk) const noexcept;
+    [[nodiscard]] Ball ball_about(const world::Threat& solid) const noexcept;
+    [[nodiscard]] bool is_solid(const Item& item) const noexcept
+    {
+        return problem_.threats[item.index].form == world::ThreatForm::solid;
     }
     [[nodiscard]] float shrink_to_clear(float start_margin) const noexcept;
     [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept
@@ -164,7 +158,6 @@ private:
                              WorkBudget& budget) const noexcept;
     [[nodiscard]] world::ThreatKind left_airspace(const Curve& curve) const noexcept;
     [[nodiscard]] static bool out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept;
-    [[nodiscard]] Item as_item(Kind kind, std::size_t index, const Ball& ball) const noexcept;
     [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid, float clearance) const noexcept;
     [[nodiscard]] static Bounds bounds_of(const Problem& problem, const Vec3& half) noexcept;
     [[nodiscard]] Verdict verdict_of(const Item& item) const noexcept;
@@ -186,7 +179,9 @@ private:
     const Vec3 half_;
     const Bounds bounds_;
     Seconds t_max_ = 0.0F;
-    ThreatSet deferred_{};
+    const std::span<const world::Threat> tracks_;
+    const std::span<const world::Threat> obstacles_;
+    Selection deferred_{};
     StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids> items_;
     std::size_t near_items_ = 0;  ///< the deferred ones come after these
     bool needs_extent_ = false;   ///< some item is tested against a curve's extent

@@ -15,7 +15,7 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Ball& ball, flo
                         const Vec3& after, WorkBudget& budget) const noexcept
 {
     // At its end and not shrunk the ball is at its largest.
-    const geometry::Glance whole = geometry::glance(ball.half, before, after, ball.radius_at(curve.t[i + 1]));
+    const geometry::Glance whole = geometry::glance(ball.half, before, after, ball.growth.at(curve.t[i + 1]));
     if (whole == geometry::Glance::apart) {
         return false;
     }
@@ -34,7 +34,7 @@ bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& 
         const float share = static_cast<float>(part) / static_cast<float>(parts);
         const Vec3 to = before + share * (after - before);
         const Seconds end = curve.t[i] + share * (curve.t[i + 1] - curve.t[i]);
-        const float radius = ball.radius_at(end) - shrink_at(shrunk, end);
+        const float radius = ball.growth.at(end) - shrink_at(shrunk, end);
         if (!budget.spend(units::kBallLookPart)) {
             return true;
         }
@@ -50,7 +50,7 @@ bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Ball& 
 
 bool Clearance::touches(const Curve& curve, const Ball& ball, float shrunk, WorkBudget& budget) const noexcept
 {
-    Room room(curve.fastest, ball.velocity.cwiseAbs().maxCoeff(), ball.radius_at(curve.duration()), curve.duration());
+    Room room(curve.fastest, ball.velocity.cwiseAbs().maxCoeff(), ball.growth.at(curve.duration()), curve.duration());
     std::size_t i = 0;
     Vec3 before = ball.apart(curve, 0);
     bool near = false;
@@ -86,7 +86,7 @@ bool Clearance::touches_swept(const Curve& curve, const Extent& extent, const Ba
                               WorkBudget& budget) const noexcept
 {
     const Vec3 to = ball.position + ball.velocity * end;
-    const float radius = ball.radius_at(end);
+    const float radius = ball.growth.at(end);
     const Extent path = about(ball.position, to);
     if (apart(path.low, path.high, extent.low, extent.high, ball.half, radius)) {
         return false;

@@ -53,9 +53,9 @@ bool Clearance::leaves(const View& view, std::size_t i, const Solid& solid, Work
         const float from = static_cast<float>(part) / static_cast<float>(parts);
         const float to = static_cast<float>(part + 1) / static_cast<float>(parts);
         const Seconds end = curve.t[i] + to * duration;
-        const float margin = world::obstacle_margin(half_, a + from * step, a + to * step, solid.shape, budget,
-                                                    solid.clearance_at(end)) +
-                             shrink_at(solid.shrunk, end);
+        const float margin =
+            world::obstacle_margin(half_, a + from * step, a + to * step, solid.shape, budget, solid.growth.at(end)) +
+            shrink_at(solid.shrunk, end);
         if (budget.exhausted() || margin < 0.0F) {
             return false;
         }
@@ -70,7 +70,7 @@ bool Clearance::meets(const View& view, std::size_t i, std::size_t end, const So
     const Vec3& origin = problem_.frame.origin;
     const float off = end > i + 1 ? kStraight : 0.0F;
     return geometry::swept_box_contact(half_, origin + view.position(i), origin + view.position(end), solid.shape,
-                                       solid.clearance_at(view.curve.t[end]) + off, budget) != geometry::Contact::clear;
+                                       solid.growth.at(view.curve.t[end]) + off, budget) != geometry::Contact::clear;
 }
 
 /// Where candidates are farthest from the leg: whoever flies into a wall is in it there.
@@ -78,7 +78,7 @@ bool Clearance::touches_at_its_top(const View& view, const Planes& planes, const
 {
     const auto is_in_it = [&](std::size_t top) {
         const Seconds t = view.curve.t[top];
-        return shrink_at(solid.shrunk, t) <= 0.0F && planes.touch(view.position(top), half_, solid.clearance_at(t));
+        return shrink_at(solid.shrunk, t) <= 0.0F && planes.touch(view.position(top), half_, solid.growth.at(t));
     };
     return is_in_it(view.last() / 2) || is_in_it(2 * view.last() / 3);
 }
@@ -86,7 +86,7 @@ bool Clearance::touches_at_its_top(const View& view, const Planes& planes, const
 bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget) const noexcept
 {
     const Vec3 centre = solid.shape.centre - problem_.frame.origin;
-    const float largest = solid.clearance_at(view.curve.duration());
+    const float largest = solid.growth.at(view.curve.duration());
     const float bound = geometry::bounding_radius(solid.shape) + largest;
     const std::size_t last = view.last();
     if (apart(centre, centre, view.extent.low, view.extent.high, half_, bound)) {
@@ -124,7 +124,7 @@ bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget
         if (!budget.spend(units::kSolidPlanes)) {
             return true;
         }
-        if (planes.part(a, b, half_, solid.clearance_at(view.curve.t[i + 1]))) {
+        if (planes.part(a, b, half_, solid.growth.at(view.curve.t[i + 1]))) {
             ++i;
             continue;
         }
@@ -135,7 +135,7 @@ bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget
             ++i;
             continue;
         }
-        if (planes.touch(b, half_, solid.clearance_at(view.curve.t[i]))) {
+        if (planes.touch(b, half_, solid.growth.at(view.curve.t[i]))) {
             return true;
         }
         const std::size_t end = solid.grows() ? i + 1 : straight_until(view, i, (b - a).stableNormalized());

@@ -27,7 +27,7 @@ public:
     Flown(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept;
 
     /// Moving threats, by index, that `judge` leaves out and `judge_deferred` takes in.
-    void defer(const ThreatSet& threats) noexcept { clearance_.defer(threats); }
+    void defer(const Selection& threats) noexcept { clearance_.defer(threats); }
 
     /// What the flight along `path`, about the start, touches; volumes that threats sweep end at `swept_until` or with
     /// the flight. not_evaluated, with the budget spent, where it does not allow for flying it to its end.

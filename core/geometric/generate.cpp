@@ -148,19 +148,23 @@ void Run::prepare() noexcept
 void Run::list_moving() noexcept
 {
     std::array<float, kMaxMoving> distance{};
+    const auto list = [&](const AtStart& threat, float radius, Seconds duration) {
+        const Vec3 position = threat.motion.position - problem_.frame.origin;
+        distance[moving_.size()] = position.norm() - radius;
+        moving_.unchecked_push_back({{position, threat.motion.velocity}, radius, duration});
+    };
     for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
-        const Threat threat = threat_at_start(problem_, i);
-        if (threat.motion.velocity.squaredNorm() > 0.0F && !far_[i]) {
-            const Vec3 position = threat.motion.position - problem_.frame.origin;
-            distance[moving_.size()] = position.norm() - threat.radius;
-            moving_.unchecked_push_back({{position, threat.motion.velocity}, threat.radius, clearance_.sweep_end(i)});
+        const world::Threat& threat = problem_.threats[i];
+        const bool is_track = threat.ref.kind == world::ThreatKind::track;
+        if (is_track && threat.velocity.squaredNorm() > 0.0F && !far_[i]) {
+            const AtStart start = at_start(problem_, threat);
+            list(start, start.growth.radius, clearance_.sweep_end(threat));
         }
     }
-    for (const MovingSolid& solid : problem_.moving_solids) {
-        const Vec3 position = solid.shape.centre + problem_.begins * solid.velocity - problem_.frame.origin;
-        const float radius = geometry::bounding_radius(solid.shape) + solid.uncertainty;
-        distance[moving_.size()] = position.norm() - radius;
-        moving_.unchecked_push_back({{position, solid.velocity}, radius, longest_});
+    for (const world::Threat& solid : world::of_kind(problem_.threats, world::ThreatKind::obstacle)) {
+        if (is_moving(solid)) {
+            list(at_start(problem_, solid), geometry::bounding_radius(*solid.solid) + solid.growth.radius, longest_);
+        }
     }
     while (settings_.closeness_nearest > 0 && moving_.size() > settings_.closeness_nearest) {
         const auto count = static_cast<std::ptrdiff_t>(moving_.size());

@@ -59,20 +59,22 @@ bool first_met(const Problem& problem, const geometry::Motion& own, const Vec3& 
             out = {index, motion, radius, rate, touch->first};
         }
     };
-    const auto all = static_cast<std::uint32_t>(problem.threats.size() + problem.obstacles.size());
-    if (!budget.spend(units::kBallContact * all)) {
+    const std::span tracks = world::of_kind(problem.threats, world::ThreatKind::track);
+    const std::span obstacles = world::of_kind(problem.threats, world::ThreatKind::obstacle);
+    const auto moving = std::count_if(obstacles.begin(), obstacles.end(), is_moving);
+    const std::size_t all = tracks.size() + obstacles.size() - static_cast<std::size_t>(moving);
+    if (!budget.spend(units::kBallContact * static_cast<std::uint32_t>(all))) {
         return false;
     }
-    for (std::size_t i = 0; i < problem.threats.size(); ++i) {
-        const Threat threat = threat_at_start(problem, i);
-        look(i, threat.motion, half + threat.half_height * Vec3::UnitZ(), threat.radius,
-             threat.radius_rate + 0.5F * threat.radius_acceleration * horizon);
+    for (const world::Threat& threat : tracks) {
+        const AtStart start = at_start(problem, threat);
+        look(static_cast<std::size_t>(&threat - tracks.data()), start.motion, threat.box_against(half),
+             start.growth.radius, start.growth.rate + 0.5F * start.growth.acceleration * horizon);
     }
-    for (const world::Obstacle& obstacle : problem.obstacles) {
-        Vec3 box;
-        float radius = 0.0F;
-        if (world::as_sphere(obstacle.shape, half, box, radius)) {
-            look(kNoThreat, {obstacle.shape.centre, Vec3::Zero()}, box, radius + problem.obstacle_clearance, 0.0F);
+    for (const world::Threat& obstacle : obstacles) {
+        if (obstacle.form == world::ThreatForm::point) {
+            look(kNoThreat, {obstacle.position, Vec3::Zero()}, obstacle.box_against(half), obstacle.growth.radius,
+                 0.0F);
         }
     }
     return met;

@@ -11,46 +11,47 @@ namespace {
 
 /// Gap between a threat's surface and a point that flies from the world's origin at `velocity`, at the closest approach
 /// of the centres within `horizon` [m].
-float closest_gap(const Vec3& velocity, const Vec3& start, const Threat& threat, Seconds horizon) noexcept
+float closest_gap(const Vec3& velocity, const Vec3& start, const AtStart& threat, Seconds horizon) noexcept
 {
     const Vec3 apart = threat.motion.position - start;
     const Vec3 closing = threat.motion.velocity - velocity;
     const float squared = closing.squaredNorm();
     const Seconds t = squared > 0.0F ? std::clamp(-apart.dot(closing) / squared, 0.0F, horizon) : 0.0F;
-    const float radius = threat.radius + t * (threat.radius_rate + 0.5F * threat.radius_acceleration * t);
-    return (apart + t * closing).norm() - radius;
+    return (apart + t * closing).norm() - threat.growth.at(t);
 }
 
 }  // namespace
 
 /// The moving threats but for the nearest ones; of equally near ones the first is nearer. None where all count.
 /// O(threats * threats).
-ThreatSet Run::far_threats(Seconds longest) noexcept
+Selection Run::far_threats(Seconds longest) noexcept
 {
-    ThreatSet far{};
+    Selection far{};
     if (settings_.moving_nearest == 0) {
         return far;
     }
     constexpr float kNotThere = -std::numeric_limits<float>::infinity();
     std::array<float, kMaxTracks> gap{};
     std::size_t moving = 0;
-    for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
-        const Threat threat = threat_at_start(problem_, i);
+    const std::span tracks = world::of_kind(problem_.threats, world::ThreatKind::track);
+    const auto first = static_cast<std::size_t>(tracks.data() - problem_.threats.data());
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
         gap[i] = kNotThere;
-        if (is_moving(threat)) {
+        if (is_moving(tracks[i])) {
             ++moving;
             gap[i] = i == problem_.main ? std::numeric_limits<float>::lowest()
-                                        : closest_gap(problem_.speed * along_, problem_.frame.origin, threat, longest);
+                                        : closest_gap(problem_.speed * along_, problem_.frame.origin,
+                                                      at_start(problem_, tracks[i]), longest);
         }
     }
-    static_cast<void>(budget_.spend(units::kFarItem * static_cast<std::uint32_t>(problem_.threats.size())));
+    static_cast<void>(budget_.spend(units::kFarItem * static_cast<std::uint32_t>(tracks.size())));
     for (; moving > settings_.moving_nearest; --moving) {
         // The last of the farthest.
         std::size_t farthest = 0;
-        for (std::size_t i = 1; i < problem_.threats.size(); ++i) {
+        for (std::size_t i = 1; i < tracks.size(); ++i) {
             farthest = gap[i] >= gap[farthest] ? i : farthest;
         }
-        far[farthest] = true;
+        far[first + farthest] = true;
         gap[farthest] = kNotThere;
     }
     return far;

@@ -45,7 +45,7 @@ float main_extent(const Problem& problem, const Vec3& direction) noexcept
     if (problem.main_shape != nullptr) {
         const Vec3 collision_point = problem.frame.origin + problem.distance * problem.frame.axes.col(0);
         return (geometry::support(*problem.main_shape, direction) - collision_point).dot(direction) +
-               problem.obstacle_clearance;
+               problem.main_clearance;
     }
     return problem.main_centre_offset.dot(direction) + problem.main_radius;
 }

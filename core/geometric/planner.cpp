@@ -17,19 +17,6 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// A track among the threats, `lead` from now.
-Threat threat_of(const world::Threat& track, Seconds lead) noexcept
-{
-    const world::Growth growth = track.growth_from(lead);
-    Threat threat;
-    threat.motion = {track.position_at(lead), track.velocity};
-    threat.radius = growth.radius;
-    threat.radius_rate = growth.rate;
-    threat.radius_acceleration = growth.acceleration;
-    threat.half_height = track.half_height;
-    return threat;
-}
-
 Problem problem_of(const Situation& situation, const world::Way& way, const world::Conflict& conflict) noexcept
 {
     Problem problem;
@@ -39,18 +26,17 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.body_radius = std::max(situation.tracks[conflict.threat.index].radius, Planner::kLeastMainRadius);
     }
-    problem.obstacles = situation.obstacles;
-    problem.obstacle_clearance = world::own_uncertainty(situation);
-    problem.airspace = &situation.airspace;
+    problem.threats = situation.threats;
     problem.start_velocity = situation.own.velocity;
     problem.speed = way.speed;
     problem.preferred_side = situation.flying != nullptr ? situation.flying->side : Vec3(Vec3::Zero());
     problem.main_centre_offset = conflict.threat_at_closest - conflict.own_at_closest;
+    const world::Threat& main = world::of_kind(situation.threats, conflict.threat.kind)[conflict.threat.index];
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.main = conflict.threat.index;
     } else {
-        const geometry::Shape& shape = situation.obstacles[conflict.threat.index].shape;
-        problem.main_shape = shape.kind == geometry::ShapeKind::sphere ? nullptr : &shape;
+        problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
+        problem.main_clearance = world::own_uncertainty(situation);
     }
     if (way.ahead.route != nullptr) {
         detail::follow_route(situation, way, conflict, problem);
@@ -194,12 +180,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
-    const Seconds lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);
-    threats_.clear();
-    for (const world::Threat& track : world::of_kind(situation.threats, world::ThreatKind::track)) {
-        threats_.unchecked_push_back(threat_of(track, lead));
-    }
-    problem.threats = {threats_.data(), threats_.size()};
+    problem.lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);
     std::size_t attempts = 0;
     const PlanStatus status = solve_with_retries(problem, settings_, situation.limits, situation.airframe, budget,
                                                  workspace_, result_, attempts);
@@ -212,7 +193,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     out.command = Vec3::Zero();
     out.side = result_.side;
     out.cost = result_.candidates[result_.chosen].total;
-    join(situation.own.position, situation.own.velocity, lead, result_.path, out.path);
+    join(situation.own.position, situation.own.velocity, problem.lead, result_.path, out.path);
     out.valid_until = situation.now + out.path.duration();
     return status;
 }

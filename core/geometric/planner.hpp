@@ -11,7 +11,7 @@
 #include "core/geometric/candidate.hpp"
 #include "core/path/follower.hpp"
 #include "core/path/route.hpp"
-#include "core/world/world.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::geometric {
 
@@ -136,25 +136,10 @@ struct Settings {
 /// Everything in range and finite, and 1 to kMaxCandidates candidates.
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;
 
-/// A threat of the planning problem. Static when its velocity is zero.
-struct Threat {
-    geometry::Motion motion;
-    float radius = 0.0F;               ///< at t = 0 [m], uncertainty included
-    float radius_rate = 0.0F;          ///< growth by velocity uncertainty [m/s]
-    float radius_acceleration = 0.0F;  ///< growth by unknown acceleration [m/s2], as radius += a t^2 / 2
-    float half_height = 0.0F;          ///< of the upright capsule that the sphere is swept to [m]
-};
-
 /// Moving solids of one problem. They come from problem files and callers of `solve`; a Situation's tracks are spheres.
 inline constexpr std::size_t kMaxMovingSolids = 4;
-/// A convex solid that moves without turning and without end.
-struct MovingSolid {
-    geometry::Shape shape;             ///< where it is at t = 0
-    Vec3 velocity = Vec3::Zero();      ///< [m/s]
-    float uncertainty = 0.0F;          ///< kept from its surface at t = 0, own uncertainty included [m]
-    float radius_rate = 0.0F;          ///< its growth, as a Threat's [m/s]
-    float radius_acceleration = 0.0F;  ///< [m/s2]
-};
+/// Threats of one problem: those of a Situation, and moving solids.
+inline constexpr std::size_t kMaxProblemThreats = world::ThreatSet::kMaxThreats + kMaxMovingSolids;
 
 /// Problem::main when the main threat is none of the moving or static spheres.
 inline constexpr std::size_t kNoThreat = static_cast<std::size_t>(-1);
@@ -171,28 +156,27 @@ struct Problem {
     float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets [m]
     float body_radius = 0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan and the 2.5 R
                                ///< rule [m]; 0: main_radius
-    std::size_t main = kNoThreat;                ///< index of the main threat in `threats`, or kNoThreat
-    std::span<const Threat> threats;             ///< at most kMaxTracks
-    std::span<const world::Obstacle> obstacles;  ///< at most kMaxObstacles
-    /// At most kMaxMovingSolids. Time-aware: met exactly, as seen from them; swept: as the ball about them. A candidate
-    /// that touches one says hits_moving and ThreatKind::obstacle, with the obstacles counted before it.
-    std::span<const MovingSolid> moving_solids;
-    float obstacle_clearance = 0.0F;  ///< own position uncertainty, kept from obstacles and bounds [m]
-    const world::Airspace* airspace = nullptr;
+    std::size_t main = kNoThreat;  ///< index of the main threat among the tracks of `threats`, or kNoThreat
+    /// In the order of a world::ThreatSet, obstacles that move behind those at rest: at most kMaxTracks tracks,
+    /// kMaxObstacles obstacles, kMaxMovingSolids of which move. Moving solids, time-aware: checked exactly, in their
+    /// own frame; swept: as their bounding spheres. Cylinders are left to the final check.
+    std::span<const world::Threat> threats;
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
     Vec3 preferred_side = Vec3::Zero();      ///< of what is being flown; zero for none
     Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
                                              ///< [m]; clearing offsets account for it
     const geometry::Shape* main_shape =
-        nullptr;               ///< of a main threat that is an obstacle; null: a sphere of main_radius
-    float span_from = 0.0F;    ///< clearing offsets: where they begin and end in the span from smallest to largest,
-    float span_to = 1.0F;      ///< beyond 1 further out; with span_from > 0 the first one lies past it
-    float apex_share = 1.0F;   ///< the apex of a curve lies so many D from the start; 1: at the collision point
-    bool ends_at_top = false;  ///< curves end there, beside the main threat and along the leg
+        nullptr;                  ///< of a main threat that is an obstacle; null: a sphere of main_radius
+    float main_clearance = 0.0F;  ///< own position uncertainty, kept from main_shape [m]
+    float span_from = 0.0F;       ///< clearing offsets: where they begin and end in the span from smallest to largest,
+    float span_to = 1.0F;         ///< beyond 1 further out; with span_from > 0 the first one lies past it
+    float apex_share = 1.0F;      ///< the apex of a curve lies so many D from the start; 1: at the collision point
+    bool ends_at_top = false;     ///< curves end there, beside the main threat and along the leg
     /// Without a route: so far along x the leg goes on, >= 0; manoeuvres of two parts end before it does [m].
     float straight = std::numeric_limits<float>::infinity();
-    Seconds begins = 0.0F;  ///< the manoeuvre begins so long after the instant that threats are told for, >= 0
+    Seconds lead = 0.0F;    ///< the start of `frame` is reached so long after time 0 of the threats, >= 0 [s]
+    Seconds begins = 0.0F;  ///< second part of a two-stage manoeuvre: duration of the first part, >= 0 [s]
 };
 
 /// Along what `ahead` says.
@@ -227,7 +211,8 @@ struct Result {
 class Workspace {
 public:
     static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) + 16 * (kMaxTracks + kMaxObstacles) +
-                                          48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1280;
+                                          3 * kMaxProblemThreats + 48 * kMaxTracks + 2 * kMaxCandidates +
+                                          12 * kMaxPlanes + 1280;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }
@@ -300,7 +285,6 @@ public:
 private:
     Settings settings_;
     Result result_;
-    StaticVector<Threat, kMaxTracks> threats_;  ///< of the plan under way
     Workspace workspace_;
 };
 

@@ -79,7 +79,7 @@ private:
     [[nodiscard]] float closeness() const noexcept;
     [[nodiscard]] float passing() const noexcept;
     void list_moving() noexcept;
-    [[nodiscard]] ThreatSet far_threats(Seconds longest) noexcept;
+    [[nodiscard]] Selection far_threats(Seconds longest) noexcept;
     void build(const CandidateShape& shape) noexcept;
     void build_along(const CandidateShape& shape) noexcept;
     [[nodiscard]] bool can_be_flown(const CandidateShape& shape) const noexcept;
@@ -118,7 +118,7 @@ private:
     std::array<Vec3, kMaxPlanes> sides_;
     Clearance clearance_;
     Flown flown_;
-    ThreatSet far_{};  ///< moving threats beyond Settings::moving_nearest
+    Selection far_{};  ///< moving threats beyond Settings::moving_nearest
     Order order_;
     BaseCurve base_;        ///< with a route
     Curve curve_;           ///< of the candidate at hand

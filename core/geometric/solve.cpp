@@ -16,16 +16,22 @@ using detail::Curve;
 using detail::Run;
 using world::PlanStatus;
 
-bool is_valid(const Threat& t) noexcept
+bool is_valid(const world::Threat& t) noexcept
 {
-    return is_finite(t.motion.position) && is_finite(t.motion.velocity) && is_not_negative(t.radius) &&
-           is_not_negative(t.radius_rate) && is_not_negative(t.radius_acceleration);
+    const bool has_shape = t.ref.kind == world::ThreatKind::obstacle;
+    return is_finite(t.position) && is_finite(t.velocity) && is_not_negative(t.growth.radius) &&
+           is_not_negative(t.growth.rate) && is_not_negative(t.growth.acceleration) && is_not_negative(t.half_height) &&
+           (!has_shape || (t.solid != nullptr && geometry::is_valid(*t.solid)));
 }
 
-bool is_valid(const MovingSolid& s) noexcept
+/// Counts within the capacities, and a main threat that is there.
+bool has_valid_counts(const Problem& p) noexcept
 {
-    return geometry::is_valid(s.shape) && is_finite(s.velocity) && is_not_negative(s.uncertainty) &&
-           is_not_negative(s.radius_rate) && is_not_negative(s.radius_acceleration);
+    const std::span obstacles = world::of_kind(p.threats, world::ThreatKind::obstacle);
+    const auto moving = static_cast<std::size_t>(std::count_if(obstacles.begin(), obstacles.end(), detail::is_moving));
+    const std::size_t tracks = world::of_kind(p.threats, world::ThreatKind::track).size();
+    return p.threats.size() <= kMaxProblemThreats && tracks <= kMaxTracks && moving <= kMaxMovingSolids &&
+           obstacles.size() - moving <= kMaxObstacles && (p.main == kNoThreat || p.main < tracks);
 }
 
 bool is_valid(const PathFrame& frame) noexcept
@@ -42,22 +48,16 @@ bool is_valid(const path::RouteAhead& ahead) noexcept
 bool has_valid_scales(const Problem& p) noexcept
 {
     return is_valid(p.frame) && is_valid(p.ahead) && is_positive(p.distance) && is_positive(p.main_radius) &&
-           is_positive(p.speed) && is_not_negative(p.obstacle_clearance) && is_not_negative(p.body_radius) &&
+           is_positive(p.speed) && is_not_negative(p.main_clearance) && is_not_negative(p.body_radius) &&
            is_not_negative(p.span_from) && is_not_negative(p.span_to) && is_positive(p.apex_share) &&
-           is_not_negative(p.begins) && p.straight >= 0.0F && is_finite(p.start_velocity) &&
+           is_not_negative(p.lead) && is_not_negative(p.begins) && p.straight >= 0.0F && is_finite(p.start_velocity) &&
            is_finite(p.preferred_side) && is_finite(p.main_centre_offset);
 }
 
 bool is_valid(const Problem& p) noexcept
 {
-    return has_valid_scales(p) && p.threats.size() <= kMaxTracks && p.obstacles.size() <= kMaxObstacles &&
-           p.moving_solids.size() <= kMaxMovingSolids &&
-           std::all_of(p.moving_solids.begin(), p.moving_solids.end(),
-                       [](const MovingSolid& s) { return is_valid(s); }) &&
-           (p.main == kNoThreat || p.main < p.threats.size()) &&
-           std::all_of(p.threats.begin(), p.threats.end(), [](const Threat& t) { return is_valid(t); }) &&
-           std::all_of(p.obstacles.begin(), p.obstacles.end(),
-                       [](const world::Obstacle& o) { return geometry::is_valid(o.shape); }) &&
+    return has_valid_scales(p) && has_valid_counts(p) &&
+           std::all_of(p.threats.begin(), p.threats.end(), [](const world::Threat& t) { return is_valid(t); }) &&
            (p.main_shape == nullptr || geometry::is_valid(*p.main_shape));
 }
 

@@ -21,17 +21,36 @@ Threat at_rest(ThreatKind kind, std::size_t index, ThreatForm form, const Vec3& 
 Threat threat_of(const Situation& situation, std::size_t index) noexcept
 {
     const Track& track = situation.tracks[index];
-    Threat threat = at_rest(ThreatKind::track, index, ThreatForm::point, track.position, 0.0F);
-    threat.velocity = track.velocity;
-    threat.half_height = track.half_height;
-    threat.growth = growth_of(situation, track, 0.0F);
+    Threat threat =
+        track_threat(index, {track.position, track.velocity}, growth_of(situation, track, 0.0F), track.half_height);
     threat.growth_begins = std::max(track.stamp - situation.now, 0.0F);
     threat.grows = !(track.sigma_velocity <= 0.0F && track.max_acceleration <= 0.0F);  // non-finite ones too
     threat.reciprocal = track.cooperative;
     return threat;
 }
 
-Threat threat_of(const geometry::Shape& shape, std::size_t index, float uncertainty) noexcept
+Threat threat_of(const Barrel& barrel, std::size_t index, float uncertainty) noexcept
+{
+    const Vec3 centre(barrel.circle.centre.x(), barrel.circle.centre.y(), 0.0F);
+    Threat threat = at_rest(ThreatKind::barrel, index, ThreatForm::cylinder, centre, uncertainty);
+    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
+    threat.cylinder = &barrel;
+    return threat;
+}
+
+}  // namespace
+
+Threat track_threat(std::size_t index, const geometry::Motion& motion, const Growth& growth, float half_height) noexcept
+{
+    Threat threat = at_rest(ThreatKind::track, index, ThreatForm::point, motion.position, 0.0F);
+    threat.velocity = motion.velocity;
+    threat.half_height = half_height;
+    threat.growth = growth;
+    threat.grows = !(growth.rate <= 0.0F && growth.acceleration <= 0.0F);
+    return threat;
+}
+
+Threat obstacle_threat(std::size_t index, const geometry::Shape& shape, float uncertainty) noexcept
 {
     Threat threat = at_rest(ThreatKind::obstacle, index, ThreatForm::point, shape.centre, uncertainty);
     Vec3 half = Vec3::Zero();
@@ -46,16 +65,34 @@ Threat threat_of(const geometry::Shape& shape, std::size_t index, float uncertai
     return threat;
 }
 
-Threat threat_of(const Barrel& barrel, std::size_t index, float uncertainty) noexcept
+Threat solid_threat(std::size_t index, const geometry::Shape& shape, const Vec3& velocity,
+                    const Growth& growth) noexcept
 {
-    const Vec3 centre(barrel.circle.centre.x(), barrel.circle.centre.y(), 0.0F);
-    Threat threat = at_rest(ThreatKind::barrel, index, ThreatForm::cylinder, centre, uncertainty);
-    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
-    threat.cylinder = &barrel;
+    Threat threat = track_threat(index, {shape.centre, velocity}, growth);
+    threat.ref.kind = ThreatKind::obstacle;
+    threat.form = ThreatForm::solid;
+    threat.solid = &shape;
     return threat;
 }
 
-}  // namespace
+StaticVector<Threat, 3> bounds_of(const Airspace& air, float uncertainty) noexcept
+{
+    StaticVector<Threat, 3> bounds;
+    if (air.has_floor) {
+        bounds.unchecked_push_back(
+            at_rest(ThreatKind::floor, 0, ThreatForm::floor, air.floor * Vec3::UnitZ(), uncertainty));
+    }
+    if (air.has_ceiling) {
+        bounds.unchecked_push_back(
+            at_rest(ThreatKind::ceiling, 0, ThreatForm::ceiling, air.ceiling * Vec3::UnitZ(), uncertainty));
+    }
+    if (air.has_keep_in) {
+        Threat threat = at_rest(ThreatKind::keep_in, 0, ThreatForm::keep_in, air.home, uncertainty);
+        threat.level_radius = air.keep_in_radius;
+        bounds.unchecked_push_back(threat);
+    }
+    return bounds;
+}
 
 std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind) noexcept
 {
@@ -75,18 +112,8 @@ bool ThreatSet::collect(const Situation& s) noexcept
         return false;
     }
     const float uncertainty = own_uncertainty(s);
-    if (air.has_floor) {
-        threats_.unchecked_push_back(
-            at_rest(ThreatKind::floor, 0, ThreatForm::floor, air.floor * Vec3::UnitZ(), uncertainty));
-    }
-    if (air.has_ceiling) {
-        threats_.unchecked_push_back(
-            at_rest(ThreatKind::ceiling, 0, ThreatForm::ceiling, air.ceiling * Vec3::UnitZ(), uncertainty));
-    }
-    if (air.has_keep_in) {
-        Threat threat = at_rest(ThreatKind::keep_in, 0, ThreatForm::keep_in, air.home, uncertainty);
-        threat.level_radius = air.keep_in_radius;
-        threats_.unchecked_push_back(threat);
+    for (const Threat& bound : bounds_of(air, uncertainty)) {
+        threats_.unchecked_push_back(bound);
     }
     for (std::size_t i = 0; i < s.tracks.size(); ++i) {
         threats_.unchecked_push_back(threat_of(s, i));
@@ -95,7 +122,7 @@ bool ThreatSet::collect(const Situation& s) noexcept
         threats_.unchecked_push_back(threat_of(air.barrels[i], i, uncertainty));
     }
     for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
-        threats_.unchecked_push_back(threat_of(s.obstacles[i].shape, i, uncertainty));
+        threats_.unchecked_push_back(obstacle_threat(i, s.obstacles[i].shape, uncertainty));
     }
     return true;
 }

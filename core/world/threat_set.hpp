@@ -3,6 +3,7 @@
 
 #include "core/base/static_vector.hpp"
 #include "core/capacity.hpp"
+#include "core/geometry/sweep.hpp"
 #include "core/world/world.hpp"
 
 namespace jink::world {
@@ -32,6 +33,17 @@ private:
     StaticVector<Threat, kMaxThreats> threats_;
     bool collected_ = false;
 };
+
+/// A sphere or an upright capsule that moves; a track's place in its table is `index`.
+[[nodiscard]] Threat track_threat(std::size_t index, const geometry::Motion& motion, const Growth& growth,
+                                  float half_height = 0.0F) noexcept;
+/// An obstacle at rest that grows by `uncertainty` [m]. The shape outlives the threat.
+[[nodiscard]] Threat obstacle_threat(std::size_t index, const geometry::Shape& shape, float uncertainty) noexcept;
+/// A convex solid, where it is at time 0, that moves without turning. The shape outlives the threat.
+[[nodiscard]] Threat solid_threat(std::size_t index, const geometry::Shape& shape, const Vec3& velocity,
+                                  const Growth& growth) noexcept;
+/// Floor, ceiling and keep-in cylinder of an airspace, those that it has.
+[[nodiscard]] StaticVector<Threat, 3> bounds_of(const Airspace& airspace, float uncertainty) noexcept;
 
 /// Those of one kind, in a set's order. O(threats).
 [[nodiscard]] std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind) noexcept;

@@ -36,11 +36,11 @@ double least_margin(const ProblemFile& file, const path::TimedPath& path)
     for (float t = 0.0F; t <= path.duration(); t += 0.005F) {
         const Vec3 own = path::sample(path, t).position;
         for (const NamedThreat& named : file.threats) {
-            const geometric::Threat& threat = named.threat;
-            const Vec3 apart = threat.motion.position + t * threat.motion.velocity - own;
+            const world::Threat& threat = named.threat;
+            const Vec3 apart = threat.position + t * threat.velocity - own;
             least =
                 std::min(least, static_cast<double>(geometry::box_distance(file.vehicle.limits.half_extents, apart) -
-                                                    threat.radius));
+                                                    threat.growth.radius));
         }
     }
     return least;
@@ -81,7 +81,7 @@ TEST_P(NamedProblem, IsSolvedAsItSays)
     ASSERT_TRUE(file.main_is_obstacle);
     EXPECT_EQ(file.main_is_moving_solid, named.moves);
     const geometry::Shape& main =
-        named.moves ? file.moving_solids[file.main].solid.shape : file.obstacles[file.main].obstacle.shape;
+        named.moves ? file.moving_solids[file.main].shape : file.obstacles[file.main].obstacle.shape;
     EXPECT_EQ(main.kind, *named.main_shape);
     // Either solid is met: the main one on the leg itself, the other one by some candidate.
     const auto is_hit = [&](const PlanOutcome& of, std::size_t index) {

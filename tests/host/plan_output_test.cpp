@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "tests/host/scratch.hpp"
+#include "tests/oracle/problem_threats.hpp"
 
 namespace {
 
@@ -34,27 +35,19 @@ const std::string kCrossing =
     "airspace: {floor: 18}\n";
 
 /// The same built by hand, for the planner itself.
-struct ByHand {
-    std::array<geometric::Threat, 2> threats;
-    std::array<world::Obstacle, 1> obstacles;
-    world::Airspace airspace;
+struct ByHand : geometric::ProblemThreats {
     geometric::Problem problem_of;
 
     ByHand()
     {
-        threats[0].motion = {{20, 6, 20}, {0, -2, 0}};
-        threats[0].radius = 1.0F;
-        threats[1].motion = {{12, -8, 21}, {0, 2.5F, 0}};
-        threats[1].radius = 0.8F;
-        obstacles[0].shape = geometry::make_cylinder({14, 5, 0}, {14, 5, 40}, 0.4F);
+        threats = {{{{20, 6, 20}, {0, -2, 0}}, 1.0F}, {{{12, -8, 21}, {0, 2.5F, 0}}, 0.8F}};
+        obstacles = {{0, geometry::make_cylinder({14, 5, 0}, {14, 5, 40}, 0.4F)}};
         airspace.has_floor = true;
         airspace.floor = 18.0F;
         problem_of.frame = geometric::make_path_frame({0, 0, 20}, {1, 0, 0});
         problem_of.main = 0;
         problem_of.main_radius = 1.0F;
-        problem_of.threats = threats;
-        problem_of.obstacles = obstacles;
-        problem_of.airspace = &airspace;
+        put_into(problem_of);
         problem_of.start_velocity = {5, 0, 0};
     }
 };

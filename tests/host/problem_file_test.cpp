@@ -164,9 +164,9 @@ TEST(ProblemFile, ThreatsGrowByTheirUncertainty)
                           "sigma_velocity: 0.5, max_acceleration: 0.75}]\n");
     ASSERT_EQ(p.threats.size(), 1U);
     EXPECT_EQ(p.threats[0].name, "a");
-    EXPECT_FLOAT_EQ(p.threats[0].threat.radius, 1.5F);
-    EXPECT_FLOAT_EQ(p.threats[0].threat.radius_rate, 1.0F);
-    EXPECT_FLOAT_EQ(p.threats[0].threat.radius_acceleration, 0.75F);
+    EXPECT_FLOAT_EQ(p.threats[0].threat.growth.radius, 1.5F);
+    EXPECT_FLOAT_EQ(p.threats[0].threat.growth.rate, 1.0F);
+    EXPECT_FLOAT_EQ(p.threats[0].threat.growth.acceleration, 0.75F);
     EXPECT_FLOAT_EQ(p.main_radius, 1.5F + 1.0F * 4.0F + 0.375F * 16.0F);
     EXPECT_EQ(read_good(kHead + kThreat + "main_radius: 2.5\n").main_radius, 2.5F);
 }

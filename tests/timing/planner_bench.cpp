@@ -20,24 +20,25 @@ constexpr float kNear = 10.0F;
 constexpr float kFirst = 25.0F;
 
 /// Main threat standing on the leg 10 m ahead, the others flying past it where they leave some candidates free.
-std::vector<Threat> threats(std::size_t count)
+std::vector<world::Threat> threats(std::size_t count)
 {
-    std::vector<Threat> all{{{Vec3(kNear, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
+    std::vector<world::Threat> all{world::track_threat(0, {Vec3(kNear, 0.0F, 0.0F), Vec3::Zero()}, {1.0F})};
     for (std::size_t i = 1; i < count; ++i) {
         const float side = i % 2 == 0 ? 1.0F : -1.0F;
         const auto n = static_cast<float>(i);
-        all.push_back({{Vec3(12.0F + 2.0F * n, side * (4.0F + n), 3.0F), Vec3(-3.0F, 0.5F * side, 0.0F)}, 1.0F, 0.1F});
+        const Vec3 position(12.0F + 2.0F * n, side * (4.0F + n), 3.0F);
+        all.push_back(world::track_threat(i, {position, Vec3(-3.0F, 0.5F * side, 0.0F)}, {1.0F, 0.1F}));
     }
     return all;
 }
 
 /// Main threat standing on the leg `ahead` metres ahead; two more about the leg, 0.5 to `largest` m large and growing,
 /// three in ten of them standing.
-std::vector<Threat> random_threats(std::uint64_t seed, float ahead = kNear, float largest = 8.0F)
+std::vector<world::Threat> random_threats(std::uint64_t seed, float ahead = kNear, float largest = 8.0F)
 {
     Random random(seed);
     const auto in = [&](float low, float high) { return random.uniform(low, high); };
-    std::vector<Threat> all{{{Vec3(ahead, 0.0F, 0.0F), Vec3::Zero()}, 1.0F}};
+    std::vector<world::Threat> all{world::track_threat(0, {Vec3(ahead, 0.0F, 0.0F), Vec3::Zero()}, {1.0F})};
     for (int i = 0; i < 2; ++i) {
         const float vx = in(-4.0F, 4.0F);
         const float vy = in(-4.0F, 4.0F);
@@ -48,16 +49,17 @@ std::vector<Threat> random_threats(std::uint64_t seed, float ahead = kNear, floa
         const float y = in(-4.0F, 4.0F);
         const float z = in(-4.0F, 4.0F);
         const float radius = in(0.5F, largest);
-        all.push_back({{Vec3(x, y, z) - t * velocity, velocity}, radius, in(0.0F, 0.5F)});
+        all.push_back(
+            world::track_threat(all.size(), {Vec3(x, y, z) - t * velocity, velocity}, {radius, in(0.0F, 0.5F)}));
     }
     return all;
 }
 
-Problem problem_with(const std::vector<Threat>& threats)
+Problem problem_with(const std::vector<world::Threat>& threats)
 {
     Problem problem;
     problem.frame = make_path_frame(Vec3::Zero(), Vec3::UnitX());
-    problem.distance = threats[0].motion.position.x();
+    problem.distance = threats[0].position.x();
     problem.main_radius = 1.0F;
     problem.main = 0;
     problem.threats = threats;
@@ -67,7 +69,7 @@ Problem problem_with(const std::vector<Threat>& threats)
 
 void plan(benchmark::State& state, Settings settings, std::size_t threat_count)
 {
-    const std::vector<Threat> all = threats(threat_count);
+    const std::vector<world::Threat> all = threats(threat_count);
     const Problem problem = problem_with(all);
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
@@ -125,15 +127,15 @@ void refused(benchmark::State& state, std::uint64_t seed, std::size_t count)
     const auto result = std::make_unique<Result>();
     const auto workspace = std::make_unique<Workspace>();
     std::size_t attempts = 0;
-    const auto fails = [&](const std::vector<Threat>& all) {
+    const auto fails = [&](const std::vector<world::Threat>& all) {
         WorkBudget budget(1'000'000);
         return solve_with_retries(problem_with(all), settings, limits, airframe, budget, *workspace, *result,
                                   attempts) == world::PlanStatus::none_available &&
                attempts == kAttempts.size();
     };
-    std::vector<std::vector<Threat>> scenes;
+    std::vector<std::vector<world::Threat>> scenes;
     for (; scenes.size() < count; ++seed) {
-        if (std::vector<Threat> all = random_threats(seed); fails(all)) {
+        if (std::vector<world::Threat> all = random_threats(seed); fails(all)) {
             scenes.push_back(std::move(all));
         }
     }
@@ -156,7 +158,7 @@ void random_scenes(benchmark::State& state, Settings settings, std::size_t count
     const vehicle::Airframe airframe;
     const auto result = std::make_unique<Result>();
     const auto workspace = std::make_unique<Workspace>();
-    std::vector<std::vector<Threat>> scenes;
+    std::vector<std::vector<world::Threat>> scenes;
     for (std::size_t i = 0; i < count; ++i) {
         scenes.push_back(random_threats(i + 1, ahead, largest));
     }
@@ -184,7 +186,7 @@ void all_checks(benchmark::State& state)
 {
     Settings settings = many(Settings{});
     settings.evaluate_all = true;
-    const std::vector<Threat> all = threats(9);
+    const std::vector<world::Threat> all = threats(9);
     const Problem problem = problem_with(all);
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;

@@ -38,7 +38,7 @@ constexpr float kCruise = 5.0F;
 
 struct Environment {
     geometric::Problem problem;
-    geometric::Threat moving;
+    cost::MovingThreat moving;
 };
 
 Environment make_environment(float distance, float elevation, float radius, const Vec3& moving, float moving_radius)
@@ -72,7 +72,8 @@ void fly(const Environment& e, const vehicle::VehicleLimits& limits, const vehic
                 if (!geometric::make_candidate_path(e.problem, shape, kWaypoints, limits, path)) {
                     continue;
                 }
-                const cost::MovingThreat threat{e.moving.motion, e.moving.radius, path.duration()};
+                cost::MovingThreat threat = e.moving;
+                threat.duration = path.duration();
                 block.times.push_back(cost::flight_time(path));
                 block.energies.push_back(cost::energy(path, airframe));
                 block.closeness.push_back(cost::closeness(path, threat, cost::ClosenessMethod::swept));

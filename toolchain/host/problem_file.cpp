@@ -135,13 +135,15 @@ void read_threats(Reader& reader)
         }
         NamedThreat named;
         named.name = map.text("name").value_or("threat " + std::to_string(i));
-        geometric::Threat& threat = named.threat;
-        threat.motion.position = map.vector("position", detail::kCoordinate, kNeed).value_or(Vec3::Zero());
-        threat.motion.velocity = map.vector("velocity", detail::kVelocity).value_or(Vec3::Zero());
-        threat.radius = map.number("radius", detail::kSize, kNeed).value_or(1.0F) +
+        geometry::Motion motion;
+        world::Growth growth;
+        motion.position = map.vector("position", detail::kCoordinate, kNeed).value_or(Vec3::Zero());
+        motion.velocity = map.vector("velocity", detail::kVelocity).value_or(Vec3::Zero());
+        growth.radius = map.number("radius", detail::kSize, kNeed).value_or(1.0F) +
                         k_sigma * map.number("sigma_position", {0.0F, 500.0F}).value_or(0.0F);
-        threat.radius_rate = k_sigma * map.number("sigma_velocity", {0.0F, 100.0F}).value_or(0.0F);
-        threat.radius_acceleration = map.number("max_acceleration", {0.0F, 50.0F}).value_or(0.0F);
+        growth.rate = k_sigma * map.number("sigma_velocity", {0.0F, 100.0F}).value_or(0.0F);
+        growth.acceleration = map.number("max_acceleration", {0.0F, 50.0F}).value_or(0.0F);
+        named.threat = world::track_threat(i, motion, growth);
         if (map.boolean("main").value_or(false)) {
             reader.main_threats.push_back(i);
         }
@@ -211,11 +213,11 @@ void meet_main(Reader& reader)
     ProblemFile& out = reader.out;
     geometry::Motion motion;
     if (out.main_is_moving_solid) {
-        motion = {out.moving_solids[out.main].solid.shape.centre, out.moving_solids[out.main].solid.velocity};
+        motion = {out.moving_solids[out.main].shape.centre, out.moving_solids[out.main].velocity};
     } else if (out.main_is_obstacle) {
         motion.position = out.obstacles[out.main].obstacle.shape.centre;
     } else {
-        motion = out.threats[out.main].threat.motion;
+        motion = {out.threats[out.main].threat.position, out.threats[out.main].threat.velocity};
     }
     const Vec3 own = vehicle::clamped_velocity(out.direction, out.speed, out.vehicle.limits);
     Seconds when = out.distance / own.norm();
@@ -246,12 +248,12 @@ void meet_main(Reader& reader)
         return;
     }
     if (out.main_is_moving_solid) {
-        out.main_radius = geometry::bounding_radius(out.moving_solids[out.main].solid.shape);
+        out.main_radius = geometry::bounding_radius(out.moving_solids[out.main].shape);
     } else if (out.main_is_obstacle) {
         out.main_radius = geometry::bounding_radius(out.obstacles[out.main].obstacle.shape);
     } else {
-        const geometric::Threat& threat = out.threats[out.main].threat;
-        out.main_radius = threat.radius + threat.radius_rate * when + 0.5F * threat.radius_acceleration * when * when;
+        const world::Growth& growth = out.threats[out.main].threat.growth;
+        out.main_radius = growth.radius + growth.rate * when + 0.5F * growth.acceleration * when * when;
     }
 }
 
@@ -306,19 +308,23 @@ std::variant<ProblemFile, Complaints> read_problem(const std::filesystem::path& 
 geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
 {
     storage.threats.clear();
-    storage.obstacles.clear();
-    storage.moving_solids.clear();
+    if (file.has_airspace) {
+        const auto bounds = world::bounds_of(file.airspace, 0.0F);
+        storage.threats.assign(bounds.begin(), bounds.end());
+    }
+    const std::size_t bounds = storage.threats.size();
     for (const NamedThreat& threat : file.threats) {
         storage.threats.push_back(threat.threat);
     }
     for (const NamedObstacle& obstacle : file.obstacles) {
-        storage.obstacles.push_back(obstacle.obstacle);
+        storage.threats.push_back(world::obstacle_threat(storage.threats.size() - bounds - file.threats.size(),
+                                                         obstacle.obstacle.shape, 0.0F));
     }
     for (const NamedMovingSolid& solid : file.moving_solids) {
-        storage.moving_solids.push_back(solid.solid);
+        storage.threats.push_back(world::solid_threat(storage.threats.size() - bounds - file.threats.size(),
+                                                      solid.shape, solid.velocity, {}));
     }
     geometric::Problem problem;
-    problem.moving_solids = storage.moving_solids;
     problem.frame = geometric::make_path_frame(file.start, file.direction);
     if (file.frame_y != Vec3::Zero()) {
         problem.frame = geometric::make_path_frame(file.start, file.direction, file.frame_y);
@@ -327,8 +333,6 @@ geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
     problem.distance = file.distance;
     problem.main_radius = file.main_radius;
     problem.threats = storage.threats;
-    problem.obstacles = storage.obstacles;
-    problem.airspace = file.has_airspace ? &file.airspace : nullptr;
     problem.start_velocity = file.velocity;
     problem.speed = file.speed;
     problem.preferred_side = file.flown_side;
@@ -336,11 +340,11 @@ geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
     if (!file.main_is_obstacle) {
         problem.main = file.main;
     } else if (file.main_is_moving_solid) {
-        storage.main_shape = file.moving_solids[file.main].solid.shape;
-        storage.main_shape.centre += file.meets_main * file.moving_solids[file.main].solid.velocity;
+        storage.main_shape = file.moving_solids[file.main].shape;
+        storage.main_shape.centre += file.meets_main * file.moving_solids[file.main].velocity;
         problem.main_shape = &storage.main_shape;
-    } else if (storage.obstacles[file.main].shape.kind != geometry::ShapeKind::sphere) {
-        problem.main_shape = &storage.obstacles[file.main].shape;
+    } else if (file.obstacles[file.main].obstacle.shape.kind != geometry::ShapeKind::sphere) {
+        problem.main_shape = &file.obstacles[file.main].obstacle.shape;
     }
     return problem;
 }

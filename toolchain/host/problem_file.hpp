@@ -15,10 +15,10 @@
 
 namespace jink::host {
 
-/// One sphere of the file with its uncertainty as given.
+/// One sphere of the file, grown by its uncertainty.
 struct NamedThreat {
     std::string name;
-    geometric::Threat threat;
+    world::Threat threat;
 };
 
 struct NamedObstacle {
@@ -29,7 +29,8 @@ struct NamedObstacle {
 /// An obstacle of the file that has a velocity.
 struct NamedMovingSolid {
     std::string name;
-    geometric::MovingSolid solid;
+    geometry::Shape shape;  ///< where it is at the start
+    Vec3 velocity = Vec3::Zero();
 };
 
 /// What a file says, checked: `problem_of` turns it into what the planner solves. Copies share the vertices of hulls.
@@ -68,9 +69,7 @@ struct ProblemFile {
 
 /// What the spans of a problem refer to. Not to be moved while the problem is in use.
 struct ProblemStorage {
-    std::vector<geometric::Threat> threats;
-    std::vector<world::Obstacle> obstacles;
-    std::vector<geometric::MovingSolid> moving_solids;
+    std::vector<world::Threat> threats;
     geometry::Shape main_shape;  ///< of a moving solid, where it is met
 };
 /// The problem as the planner wants it, its route included. It refers to `file` and `storage`, which outlive it.

@@ -126,7 +126,7 @@ void read_obstacles(YamlMap& root, ProblemFile& out, MainObstacles& mains, files
             complaints.push_back(files::complaint_at((*list)[i].Mark(), file, where + ": is no solid"));
         }
         if (moves) {
-            out.moving_solids.push_back({std::move(obstacle.name), {obstacle.obstacle.shape, velocity}});
+            out.moving_solids.push_back({std::move(obstacle.name), obstacle.obstacle.shape, velocity});
         } else {
             out.obstacles.push_back(std::move(obstacle));
         }

@@ -15,7 +15,7 @@ constexpr std::size_t kRepetitions = 9;
 
 /// Main threat on the leg ahead, a tenth of the way large; two more move about the leg and grow.
 struct DrawnScene {
-    std::vector<geometric::Threat> threats;
+    std::vector<world::Threat> threats;
     geometric::Problem problem;
 };
 
@@ -34,7 +34,7 @@ DrawnScene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
     problem.speed = speed;
     const Vec3 along = problem.frame.axes.col(0);
     problem.start_velocity = vehicle::clamped_velocity(along, speed, limits);
-    scene.threats.push_back({{distance * along, Vec3::Zero()}, problem.main_radius});
+    scene.threats.push_back(world::track_threat(0, {distance * along, Vec3::Zero()}, {problem.main_radius}));
     for (int i = 0; i < 2; ++i) {
         const float x = random.uniform(0.4F, 2.4F);
         const float y = random.uniform(-0.8F, 0.8F);
@@ -43,7 +43,8 @@ DrawnScene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
         const float vy = random.uniform(-0.8F, 0.8F);
         const Vec3 velocity = speed * Vec3(vx, vy, random.uniform(-0.3F, 0.3F));
         const float met = random.uniform(0.0F, 2.0F) * distance / speed;
-        scene.threats.push_back({{at - met * velocity, velocity}, distance * random.uniform(0.05F, 0.25F), 0.1F});
+        scene.threats.push_back(world::track_threat(scene.threats.size(), {at - met * velocity, velocity},
+                                                    {distance * random.uniform(0.05F, 0.25F), 0.1F}));
     }
     return scene;
 }

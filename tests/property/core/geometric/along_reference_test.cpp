@@ -179,7 +179,7 @@ TEST(AlongReference, SharpCornersAreNotFlyable)
     TwinRoute twin;
     ASSERT_TRUE(twin.leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(29.0F, 0.0F, 50.0F)));
     ASSERT_TRUE(twin.leg(Vec3(29.0F, 0.0F, 50.0F), Vec3(29.0F, 80.0F, 50.0F)));
-    const Threat main{{Vec3(20.0F, 0.0F, 50.0F), Vec3::Zero()}, 1.0F};
+    const world::Threat main = world::track_threat(0, {Vec3(20.0F, 0.0F, 50.0F), Vec3::Zero()}, {1.0F});
     Problem problem;
     problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
     problem.ahead = {&twin.route, 0.0F, 0.0F};

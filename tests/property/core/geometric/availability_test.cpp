@@ -84,10 +84,11 @@ TEST(Availability, GrowingThreatsAreNeverTouched)
     for (std::uint64_t seed = 1; seed <= cases; ++seed) {
         RandomProblem p(seed);
         Random random(seed * 104729);
-        for (Threat& threat : p.threats) {
+        for (Sphere& threat : p.threats) {
             threat.radius_rate = random.uniform(0.0F, 0.6F);
             threat.radius_acceleration = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.3F);
         }
+        p.put_into(p.problem);
         const Settings settings = bare(random);
         WorkBudget budget(10'000'000);
         static_cast<void>(solve(p.problem, settings, p.limits, p.airframe, budget, result));
@@ -204,13 +205,13 @@ TEST(Availability, ObstaclesAreNeverTouched)
     for (std::uint64_t seed = 1; seed <= cases; ++seed) {
         RandomProblem p(seed);
         Random random(seed * 65537);
-        p.problem.obstacle_clearance = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 1.0F);
+        p.uncertainty = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 1.0F);
         for (std::uint64_t i = 0, n = 1 + random.below(4); i < n; ++i) {
             const Vec3 on_leg =
                 p.problem.frame.origin + random.uniform(0.2F, 2.0F) * p.problem.distance * p.problem.frame.axes.col(0);
             p.obstacles.push_back({static_cast<world::ObstacleId>(i), random_solid(random, on_leg)});
         }
-        p.problem.obstacles = p.obstacles;
+        p.put_into(p.problem);
         const Settings settings = bare(random);
         WorkBudget budget(10'000'000);
         static_cast<void>(solve(p.problem, settings, p.limits, p.airframe, budget, result));
@@ -231,9 +232,9 @@ TEST(Availability, ObstaclesAreNeverTouched)
                             const oracle::P3 at{own[0] + (n % 3 - 1) * box.half[0],
                                                 own[1] + (n / 3 % 3 - 1) * box.half[1],
                                                 own[2] + (n / 9 - 1) * box.half[2]};
-                            ASSERT_GT(solid_distance(obstacle.shape, at),
-                                      static_cast<double>(p.problem.obstacle_clearance) - kGrazing -
-                                          (p.problem.obstacle_clearance > 0.0F ? 0.0 : kGrazing))
+                            ASSERT_GT(solid_distance(obstacle.shape, at), static_cast<double>(p.uncertainty) -
+                                                                              kGrazing -
+                                                                              (p.uncertainty > 0.0F ? 0.0 : kGrazing))
                                 << "seed " << seed;
                         }
                     }
@@ -275,10 +276,11 @@ TEST(Availability, LibccdAndTheClosedFormBracketEachOther)
         const float radius = random.uniform(0.5F, 3.0F);
         const std::vector<Vec3> inner = ball_vertices(radius);
         const std::vector<Vec3> outer = ball_vertices(1.3F * radius);
-        const auto solve_with = [&](std::vector<Threat> threats, std::vector<world::Obstacle> obstacles,
+        const auto solve_with = [&](std::vector<Sphere> threats, std::vector<world::Obstacle> obstacles,
                                     Result& result) {
-            p.problem.threats = threats;
-            p.problem.obstacles = obstacles;
+            p.threats = std::move(threats);
+            p.obstacles = std::move(obstacles);
+            p.put_into(p.problem);
             p.problem.main = kNoThreat;
             WorkBudget budget(10'000'000);
             static_cast<void>(solve(p.problem, settings, p.limits, p.airframe, budget, result));

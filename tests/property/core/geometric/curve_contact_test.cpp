@@ -46,7 +46,7 @@ struct Encounter {
         }
         const std::size_t met = random.below(curve.points);
         const Vec3 place = curve.position(met) + RandomProblem::vector(random, random.below(4) == 0 ? 200.0F : 8.0F);
-        Threat threat;
+        Sphere threat;
         threat.motion.position = place;
         if (random.below(3) == 0 && met > 0) {
             // From beside the origin to beside that point.

@@ -46,7 +46,7 @@ void expect_clear(const InARow& scene, std::size_t i)
 {
     const path::TimedPath& path = scene.result.path;
     const Vec3d half = scene.limits.half_extents.cast<double>();
-    for (const Threat& threat : scene.threats) {
+    for (const Sphere& threat : scene.threats) {
         const auto margin = [&](const Vec3& own, double t) {
             const Vec3d apart =
                 own.cast<double>() - threat.motion.position.cast<double>() - t * threat.motion.velocity.cast<double>();

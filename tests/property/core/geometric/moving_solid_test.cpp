@@ -68,9 +68,9 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
     for (std::uint64_t seed = 1; seed <= cases; ++seed) {
         RandomProblem p(seed);
         Random random(seed * 92821);
-        p.problem.threats = {};
+        p.threats.clear();
         p.problem.main = kNoThreat;
-        std::vector<MovingSolid> solids;
+        std::vector<MovingSolid>& solids = p.moving;
         for (std::uint64_t i = 0, n = 1 + random.below(kMaxMovingSolids); i < n; ++i) {
             const Vec3 velocity = RandomProblem::vector(random, 6.0F);
             const float t = random.uniform(0.0F, 2.0F) * p.problem.distance / p.problem.speed;
@@ -82,7 +82,7 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
                               random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.5F),
                               grows ? random.uniform(0.0F, 0.3F) : 0.0F, grows ? random.uniform(0.0F, 0.1F) : 0.0F});
         }
-        p.problem.moving_solids = solids;
+        p.put_into(p.problem);
         p.problem.begins = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 2.0F);
         Settings settings;
         settings.check_acceleration = settings.verify_flight = settings.escape_from_margin = false;

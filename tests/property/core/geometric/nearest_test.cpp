@@ -24,7 +24,7 @@ void crowd(RandomProblem& p, Random& random)
                              random.uniform(0.2F, 2.0F),
                              random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.2F)});
     }
-    p.problem.threats = p.threats;
+    p.put_into(p.problem);
 }
 
 world::PlanStatus solve_with(const RandomProblem& p, std::uint16_t nearest, Result& result, std::uint32_t& work,
@@ -110,7 +110,7 @@ TEST(MovingNearest, WhatIsFoundWithFewIsClearOfAllAndTakesLessWork)
             hidden += c.status == CandidateStatus::hits_moving ? 1U : 0U;
         }
         const oracle::Box box = p.box();
-        for (const Threat& threat : p.threats) {
+        for (const Sphere& threat : p.threats) {
             const double start =
                 oracle::box_distance(box, oracle::to_double(Vec3(threat.motion.position - p.problem.frame.origin)));
             if (start < static_cast<double>(threat.radius)) {

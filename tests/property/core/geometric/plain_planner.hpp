@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "tests/oracle/problem_threats.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -18,8 +20,9 @@ namespace jink::geometric {
 
 class PlainPlanner {
 public:
-    PlainPlanner(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits)
-        : problem_(problem), settings_(settings), limits_(limits)
+    PlainPlanner(const ProblemThreats& threats, const Problem& problem, const Settings& settings,
+                 const vehicle::VehicleLimits& limits)
+        : world_(threats), problem_(problem), settings_(settings), limits_(limits)
     {
     }
 
@@ -81,7 +84,7 @@ private:
             y.push_back(std::abs(c.shape.offset) * unit_offset(c.shape.family, step * static_cast<float>(i)));
         }
         std::vector<float> closeness;
-        for (const Threat& t : problem_.threats) {
+        for (const Sphere& t : world_.threats) {
             if (t.motion.velocity.squaredNorm() > 0.0F) {
                 closeness.push_back(cost::closeness(path, {t.motion, t.radius, 0.0F}, settings_.closeness));
             }
@@ -167,8 +170,8 @@ private:
             return CandidateStatus::hits_airspace;
         }
         for (const bool moving : {false, true}) {
-            for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
-                const Threat& t = problem_.threats[i];
+            for (std::size_t i = 0; i < world_.threats.size(); ++i) {
+                const Sphere& t = world_.threats[i];
                 if ((t.motion.velocity.squaredNorm() > 0.0F) == moving && touches(points, t)) {
                     hit = {world::ThreatKind::track, static_cast<std::uint16_t>(i)};
                     return moving ? CandidateStatus::hits_moving : CandidateStatus::hits_static;
@@ -184,7 +187,7 @@ private:
     }
     float shrunk_at(float shrunk, float t) const { return std::max(0.0F, shrunk - settings_.escape.speed * t); }
 
-    bool touches(const std::vector<path::PathPoint>& points, const Threat& t) const
+    bool touches(const std::vector<path::PathPoint>& points, const Sphere& t) const
     {
         const Vec3& half = limits_.half_extents;
         const float shrunk = shrunk_to_clear(
@@ -219,7 +222,7 @@ private:
 
     world::ThreatKind left_airspace(const std::vector<path::PathPoint>& points) const
     {
-        const world::Airspace& air = *problem_.airspace;
+        const world::Airspace& air = world_.airspace;
         const Vec3& half = limits_.half_extents;
         const float floor = air.floor + half.z();
         const float ceiling = air.ceiling - half.z();
@@ -241,6 +244,7 @@ private:
         return world::ThreatKind::none;
     }
 
+    const ProblemThreats& world_;
     const Problem& problem_;
     const Settings& settings_;
     const vehicle::VehicleLimits& limits_;

@@ -35,7 +35,7 @@ void make_harder(RandomProblem& p, Random& random)
     Problem& problem = p.problem;
     const Vec3 origin = problem.frame.origin;
     problem.frame.origin = Vec3::Zero();
-    for (Threat& t : p.threats) {
+    for (Sphere& t : p.threats) {
         t.motion.position -= origin;
         t.radius_rate = random.uniform() < 0.5F ? 0.0F : random.uniform(0.0F, 0.5F);
         t.radius_acceleration = random.uniform() < 0.8F ? 0.0F : random.uniform(0.0F, 0.4F);
@@ -44,11 +44,9 @@ void make_harder(RandomProblem& p, Random& random)
     std::rotate(p.threats.begin(), p.threats.begin() + static_cast<std::ptrdiff_t>(random.below(p.threats.size())),
                 p.threats.end());
     problem.main = kNoThreat;
-    problem.threats = p.threats;
     problem.start_velocity = random.uniform() < 0.5F ? problem.start_velocity : RandomProblem::vector(random, 6.0F);
     p.limits.velocity_lag = random.uniform() < 0.1F ? 0.0F : random.uniform(0.05F, 0.6F);
     p.limits.kind = random.uniform() < 0.1F ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
-    problem.airspace = &p.airspace;
     if (random.uniform() < 0.4F) {
         p.airspace.has_floor = random.uniform() < 0.5F;
         p.airspace.floor = -random.uniform(0.5F, 8.0F);
@@ -57,6 +55,7 @@ void make_harder(RandomProblem& p, Random& random)
         p.airspace.has_keep_in = random.uniform() < 0.5F;
         p.airspace.keep_in_radius = random.uniform(5.0F, 40.0F);
     }
+    p.put_into(problem);
 }
 
 TEST(PlainPlanner, EveryAnswerIsTheSameToTheBit)
@@ -76,7 +75,7 @@ TEST(PlainPlanner, EveryAnswerIsTheSameToTheBit)
         if (status == world::PlanStatus::too_close) {
             continue;
         }
-        PlainPlanner plain(p.problem, settings, p.limits);
+        PlainPlanner plain(p, p.problem, settings, p.limits);
         const PlainPlanner::Answer answer = plain.solve({result.candidates.begin(), result.candidates.end()});
         ASSERT_EQ(status, answer.status) << "seed " << seed;
         for (std::size_t i = 0; i < result.candidates.size(); ++i) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/geometric/planner.hpp"
 #include "tests/oracle/planner_oracle.hpp"
+#include "tests/oracle/problem_threats.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
 namespace jink::geometric {
@@ -17,10 +17,7 @@ using oracle::operator-;
 using oracle::operator*;
 
 /// A leg in any direction with a main threat on it, and up to four others that cross near the candidates.
-struct RandomProblem {
-    std::vector<Threat> threats;
-    std::vector<world::Obstacle> obstacles;
-    world::Airspace airspace;
+struct RandomProblem : ProblemThreats {
     Problem problem;
     vehicle::VehicleLimits limits;
     vehicle::Airframe airframe;
@@ -58,7 +55,7 @@ struct RandomProblem {
             threats.push_back(
                 {{near - random.uniform(0.0F, 2.0F) * arrival * velocity, velocity}, random.uniform(0.0F, 3.0F)});
         }
-        problem.threats = threats;
+        put_into(problem);
     }
     RandomProblem(const RandomProblem&) = delete;
     RandomProblem& operator=(const RandomProblem&) = delete;

@@ -25,8 +25,9 @@ Settings settings_for(Random& random)
     return settings;
 }
 
-world::PlanStatus run_symmetric(const RandomProblem& p, const Settings& settings, Result& result)
+world::PlanStatus run_symmetric(RandomProblem& p, const Settings& settings, Result& result)
 {
+    p.put_into(p.problem);
     WorkBudget budget(10'000'000);
     return solve(p.problem, settings, p.limits, p.airframe, budget, result);
 }
@@ -85,8 +86,8 @@ TEST(PlanLaws, SameInputSameOutput)
     static Result second;
     static Result other;
     for (std::uint64_t seed = 1; seed <= 500; ++seed) {
-        const RandomProblem p(seed);
-        const RandomProblem q(seed + 1);
+        RandomProblem p(seed);
+        RandomProblem q(seed + 1);
         Random random(seed);
         const Settings settings = settings_for(random);
         const world::PlanStatus status = run_symmetric(p, settings, first);
@@ -113,7 +114,7 @@ TEST(PlanLaws, PlaceDoesNotMatter)
         const Vec3 shift(random.uniform(-500.0F, 500.0F), random.uniform(-500.0F, 500.0F),
                          random.uniform(-100.0F, 100.0F));
         p.problem.frame.origin += shift;
-        for (Threat& threat : p.threats) {
+        for (Sphere& threat : p.threats) {
             threat.motion.position += shift;
         }
         static_cast<void>(run_symmetric(p, settings, second));
@@ -141,7 +142,7 @@ TEST(PlanLaws, QuarterTurnsDoNotMatter)
         p.problem.frame = make_path_frame(turn * p.problem.frame.origin, turn * p.problem.frame.axes.col(0));
         p.problem.start_velocity = turn * p.problem.start_velocity;
         std::swap(p.limits.half_extents.x(), p.limits.half_extents.y());
-        for (Threat& threat : p.threats) {
+        for (Sphere& threat : p.threats) {
             threat.motion.position = turn * threat.motion.position;
             threat.motion.velocity = turn * threat.motion.velocity;
         }
@@ -168,7 +169,7 @@ TEST(PlanLaws, LeftAndRightAreMirrorImages)
         const world::PlanStatus status = run_symmetric(p, settings, first);
         p.problem.frame = make_path_frame(mirror(p.problem.frame.origin), mirror(p.problem.frame.axes.col(0)));
         p.problem.start_velocity = mirror(p.problem.start_velocity);
-        for (Threat& threat : p.threats) {
+        for (Sphere& threat : p.threats) {
             threat.motion.position = mirror(threat.motion.position);
             threat.motion.velocity = mirror(threat.motion.velocity);
         }

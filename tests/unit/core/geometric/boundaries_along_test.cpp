@@ -148,7 +148,7 @@ TEST(AlongBorder, WhatTheWorkspaceHeldIsNotRead)
             scene->problem.ahead.route = route;
             scene->problem.speed = 2.0F;
             scene->problem.start_velocity = Vec3(2.0F, 0.0F, 0.0F);
-            scene->problem.threats = scene->threats;
+            scene->put_into(scene->problem);
             auto workspace = std::make_unique<Workspace>();
             std::memset(workspace->bytes(), held, Workspace::kBytes);
             results.push_back(std::make_unique<Result>());

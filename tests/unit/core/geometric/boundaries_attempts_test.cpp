@@ -27,7 +27,7 @@ struct Hopeless : Scene {
     }
     PlanStatus run_all()
     {
-        problem.threats = threats;
+        put_into(problem);
         return solve_with_retries(problem, settings, limits, airframe, budget, workspace, result, attempts);
     }
     std::size_t count_of(Family family) const

@@ -29,7 +29,10 @@ std::vector<CurvePoint> straight_way()
 }
 
 /// A ball that stays about `place` and counts as moving.
-Threat hovering(const Vec3& place) { return {{place, Vec3(0.0F, 0.0F, 1e-4F)}, 0.5F}; }
+/// So slow that a solid stays where it is, and counts as moving.
+const Vec3 kHardly(0.0F, 0.0F, 1e-4F);
+
+Sphere hovering(const Vec3& place) { return {{place, kHardly}, 0.5F}; }
 
 const Vec3 kOnTheWay(5.0F, 0.0F, 0.0F);
 const Vec3 kBeside(5.0F, 0.0F, 4.0F);
@@ -104,7 +107,7 @@ TEST(ClearanceBorder, AMovingSolidIsToldOfBehindTheObstacles)
     CurveBench bench(straight_way());
     const geometry::Shape box = geometry::make_box(kOnTheWay, Vec3::Constant(0.5F));
     bench.obstacles.assign(3, {1, geometry::make_box(kBeside, Vec3::Constant(0.5F))});
-    bench.moving = {{geometry::make_box(kBeside, Vec3::Constant(0.5F)), Vec3::Zero()}, {box, Vec3::Zero()}};
+    bench.moving = {{geometry::make_box(kBeside, Vec3::Constant(0.5F)), kHardly}, {box, kHardly}};
     const detail::Verdict verdict = bench.check(Part::all, {kBeside});
     EXPECT_EQ(verdict.status, CandidateStatus::hits_moving);
     EXPECT_EQ(verdict.hit.kind, ThreatKind::obstacle);
@@ -116,7 +119,7 @@ TEST(ClearanceBorder, AMovingSolidIsInTheWayHoweverManyBallsAreNot)
     for (std::size_t balls = 0; balls <= 8; ++balls) {
         CurveBench bench(straight_way());
         bench.threats.assign(balls, Scene::still(kBeside, 0.5F));
-        bench.moving = {{geometry::make_box(kOnTheWay, Vec3::Constant(0.5F)), Vec3::Zero()}};
+        bench.moving = {{geometry::make_box(kOnTheWay, Vec3::Constant(0.5F)), kHardly}};
         EXPECT_EQ(bench.check(Part::all, {kBeside}).status, CandidateStatus::hits_moving) << balls;
     }
 }
@@ -126,7 +129,7 @@ TEST(ClearanceBorder, AMovingSolidReachesAsFarAsItsUncertainty)
     for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
         CurveBench bench(straight_way());
         bench.settings.security = security;
-        bench.moving = {{geometry::make_sphere(Vec3(5.0F, 4.0F, 0.0F), 0.5F), Vec3::Zero(), 3.0625F}};
+        bench.moving = {{geometry::make_sphere(Vec3(5.0F, 4.0F, 0.0F), 0.5F), kHardly, 3.0625F}};
         EXPECT_EQ(bench.status(), CandidateStatus::hits_moving);
         bench.moving[0].uncertainty = 2.9375F;
         EXPECT_EQ(bench.status(), CandidateStatus::available);
@@ -149,7 +152,7 @@ TEST(ClearanceBorder, AMovingSolidThatGrowsIsPassedWhileItIsSmall)
     for (const auto& [rate, acceleration] : {std::array{0.4F, 0.0F}, std::array{0.0F, 0.12F}}) {
         CurveBench bench(straight_way());
         bench.moving = {
-            {geometry::make_box(Vec3(2.0F, 3.0F, 0.0F), Vec3::Constant(0.5F)), Vec3::Zero(), 0.0F, rate, acceleration}};
+            {geometry::make_box(Vec3(2.0F, 3.0F, 0.0F), Vec3::Constant(0.5F)), kHardly, 0.0F, rate, acceleration}};
         EXPECT_EQ(bench.status(), CandidateStatus::available) << rate;
         bench.moving[0].radius_rate *= 6.0F;
         bench.moving[0].radius_acceleration *= 6.0F;

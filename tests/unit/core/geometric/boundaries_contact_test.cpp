@@ -119,7 +119,7 @@ TEST(ContactBorder, AClearanceOfObstaclesIsKeptInFullOfEveryKind)
     StraightScene scene(Vec3::UnitX());
     static_cast<void>(scene.end());
     for (const float clearance : {0.25F, 4.0F}) {
-        scene.problem.obstacle_clearance = clearance;
+        scene.uncertainty = clearance;
         const Vec3 place(15.0F, 1.5F + clearance, 0.0F);
         for (const geometry::Shape& shape :
              {geometry::make_sphere(place, 0.5F), geometry::make_box(place, Vec3::Constant(0.5F)),

@@ -32,8 +32,7 @@ struct FlightBench : Scene {
     }
     detail::Verdict judge(Seconds swept_until, WorkBudget& units)
     {
-        problem.threats = threats;
-        problem.obstacles = obstacles;
+        put_into(problem);
         detail::Flown flown(problem, settings, limits);
         return flown.judge(path, swept_until, units);
     }
@@ -67,7 +66,7 @@ TEST(FlownBorder, WhatAFlightNeedsIsWhatItSpends)
 /// Units that the threats of a bench add to its flight.
 std::uint32_t added_units(FlightBench& bench)
 {
-    const std::vector<Threat> threats = bench.threats;
+    const std::vector<Sphere> threats = bench.threats;
     bench.threats.clear();
     WorkBudget without(1'000'000);
     EXPECT_EQ(bench.judge(0.0F, without).status, CandidateStatus::available);

@@ -212,19 +212,18 @@ TEST(LookBorder, WhatAThreatIsAtTheStartIsItMovedOnAndGrown)
 {
     Scene scene;
     scene.threats = {{{Vec3(1.0F, -2.0F, 3.0F), Vec3(-4.0F, 0.5F, 2.0F)}, 1.5F, 0.25F, 0.5F}};
-    scene.problem.threats = scene.threats;
+    scene.put_into(scene.problem);
     for (const Seconds begins : {0.0F, 0.5F, 2.0F}) {
         scene.problem.begins = begins;
-        const Threat then = detail::threat_at_start(scene.problem, 0);
+        const detail::AtStart then = detail::at_start(scene.problem, scene.problem.threats[0]);
         EXPECT_EQ(then.motion.position, Vec3(1.0F - 4.0F * begins, -2.0F + 0.5F * begins, 3.0F + 2.0F * begins));
         EXPECT_EQ(then.motion.velocity, scene.threats[0].motion.velocity);
-        EXPECT_EQ(then.radius_rate, 0.25F + 0.5F * begins);
-        EXPECT_EQ(then.radius_acceleration, 0.5F);
+        EXPECT_EQ(then.growth.rate, 0.25F + 0.5F * begins);
+        EXPECT_EQ(then.growth.acceleration, 0.5F);
         // As large later on as it grows from the first instant.
         for (const Seconds t : {0.0F, 1.0F, 4.0F}) {
             const float since = begins + t;
-            EXPECT_EQ(then.radius + t * (then.radius_rate + 0.5F * then.radius_acceleration * t),
-                      1.5F + since * (0.25F + 0.25F * since));
+            EXPECT_EQ(then.growth.at(t), 1.5F + since * (0.25F + 0.25F * since));
         }
     }
 }

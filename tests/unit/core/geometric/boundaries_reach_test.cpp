@@ -164,10 +164,10 @@ TEST(ReachBorder, OfMovingThreatsTheNearestSurfaceCountsFirst)
     // A small one near, a large one whose surface is nearer.
     Scene scene;
     scene.settings.verify_flight = false;
-    const Threat small{{Vec3(0.0F, 30.0F, 50.0F), Vec3(0.01F, 0.0F, 0.0F)}, 0.5F};
-    const Threat large{{Vec3(0.0F, -40.0F, 50.0F), Vec3(0.01F, 0.0F, 0.0F)}, 20.0F};
+    const Sphere small{{Vec3(0.0F, 30.0F, 50.0F), Vec3(0.01F, 0.0F, 0.0F)}, 0.5F};
+    const Sphere large{{Vec3(0.0F, -40.0F, 50.0F), Vec3(0.01F, 0.0F, 0.0F)}, 20.0F};
     scene.settings.closeness_nearest = 1;
-    const auto closeness = [&](std::initializer_list<Threat> threats) {
+    const auto closeness = [&](std::initializer_list<Sphere> threats) {
         scene.threats = {Scene::still(Vec3(20.0F, 0.0F, 50.0F), 1.0F)};
         scene.threats.insert(scene.threats.end(), threats);
         EXPECT_EQ(scene.run(), PlanStatus::found);

@@ -133,7 +133,7 @@ TEST(SolidBorder, WhateverOneStartsInsideOfOneMayLeave)
         const geometry::Shape box =
             geometry::make_box(random.uniform(-3.0F, -1.0F) * out, Vec3(1.0F, 0.7F, 1.5F), turned);
         bench.obstacles = {{1, i % 2 == 0 ? drum : box}};
-        bench.problem.obstacle_clearance = i % 4 < 2 ? 0.0F : random.uniform(0.0F, 2.0F);
+        bench.uncertainty = i % 4 < 2 ? 0.0F : random.uniform(0.0F, 2.0F);
         ASSERT_EQ(bench.status(), CandidateStatus::available) << i;
     }
 }

@@ -41,7 +41,7 @@ TEST(CandidateStatuses, HitsObstacle)
     EXPECT_GT(hits, 0U);
     // A clearance from obstacles takes more of them.
     const std::size_t before = scene.count(CandidateStatus::hits_static);
-    scene.problem.obstacle_clearance = 2.0F;
+    scene.uncertainty = 2.0F;
     static_cast<void>(scene.run());
     EXPECT_GT(scene.count(CandidateStatus::hits_static), before);
 }
@@ -63,8 +63,8 @@ TEST(CandidateStatuses, HitsMoving)
 TEST(CandidateStatuses, StaticCauseComesBeforeMovingOne)
 {
     Scene scene;
-    const Threat moving{{Vec3(20.0F, -11.0F, 50.0F), Vec3(0.0F, 2.0F, 0.0F)}, 1.5F};
-    const Threat still = Scene::still(Vec3(20.0F, -4.0F, 50.0F), 3.0F);
+    const Sphere moving{{Vec3(20.0F, -11.0F, 50.0F), Vec3(0.0F, 2.0F, 0.0F)}, 1.5F};
+    const Sphere still = Scene::still(Vec3(20.0F, -4.0F, 50.0F), 3.0F);
     scene.threats.push_back(moving);
     scene.threats.push_back(still);
     ASSERT_EQ(scene.run(), PlanStatus::found);

@@ -47,8 +47,7 @@ Scene crossed_tunnel(float yaw)
 PlanStatus run_with_retries(Scene& scene, std::size_t& attempts)
 {
     static Workspace workspace;
-    scene.problem.threats = scene.threats;
-    scene.problem.obstacles = scene.obstacles;
+    scene.put_into(scene.problem);
     return solve_with_retries(scene.problem, scene.settings, scene.limits, scene.airframe, scene.budget, workspace,
                               scene.result, attempts);
 }
@@ -60,7 +59,7 @@ TEST(Culling, ATunnelOfLongBoxesIsWaitedInWithinOneAttemptsWork)
         scene.settings.simple = scene.settings.symmetric = false;
         scene.settings.wait = true;
         scene.settings.check_units /= 5;  // one share, not the five of four solids
-        scene.problem.threats = scene.threats;
+        scene.put_into(scene.problem);
         ASSERT_EQ(scene.run(), PlanStatus::found) << yaw;
         EXPECT_EQ(scene.result.candidates[scene.result.chosen].shape.family, Family::wait);
         EXPECT_FALSE(scene.result.cut_short);
@@ -179,7 +178,7 @@ TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
             scene.settings.verify_flight = false;
             scene.settings.extra_planes = 0;
             scene.settings.closeness_nearest = 1;
-            const std::vector<Threat> above(kMore, {{Vec3(20.0F, 0.0F, 53.2F), velocity}, 0.1F});
+            const std::vector<Sphere> above(kMore, {{Vec3(20.0F, 0.0F, 53.2F), velocity}, 0.1F});
             const auto add = [&] { scene.threats.insert(scene.threats.end(), above.begin(), above.end()); };
             add();
             const std::uint32_t before = units_of(scene);

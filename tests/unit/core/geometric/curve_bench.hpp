@@ -39,8 +39,7 @@ inline detail::Curve curve_through(const std::vector<CurvePoint>& points, const 
 /// half a metre to each side.
 struct CurveBench : Scene {
     detail::Curve curve{};
-    std::vector<MovingSolid> moving;
-    detail::ThreatSet deferred{};
+    detail::Selection deferred{};
     std::uint32_t spent = 0;  ///< by the last check, what it takes to collect apart
     std::uint32_t solids = 0;
 
@@ -57,9 +56,7 @@ struct CurveBench : Scene {
     detail::Verdict check(detail::Clearance::Part part = detail::Clearance::Part::all,
                           std::initializer_list<Vec3> collected = {}, std::uint32_t units = 1'000'000)
     {
-        problem.threats = threats;
-        problem.obstacles = obstacles;
-        problem.moving_solids = moving;
+        put_into(problem);
         detail::Clearance clearance(problem, settings, limits);
         detail::Extent reach = detail::extent_of(curve);
         for (const Vec3& point : collected) {

@@ -34,8 +34,7 @@ struct InARow : Scene {
     }
     world::PlanStatus run_in_a_row()
     {
-        problem.threats = threats;
-        problem.obstacles = obstacles;
+        put_into(problem);
         return detail::solve_in_a_row(problem, settings, limits, airframe, budget, workspace, result);
     }
     [[nodiscard]] std::uint16_t first_points() const
@@ -45,8 +44,7 @@ struct InARow : Scene {
     /// The cheapest curve that ends beside the main threat; on another side where `not_on` is one.
     world::PlanStatus first_part(Result& first, const Vec3& not_on = Vec3::Zero())
     {
-        problem.threats = threats;
-        problem.obstacles = obstacles;
+        put_into(problem);
         Problem part = problem;
         part.ends_at_top = true;
         Settings with = settings;
@@ -112,24 +110,18 @@ inline Met first_met(const Problem& problem, const Vec3& half, const Vec3d& from
                      double duration)
 {
     Met met;
-    for (const Threat& threat : problem.threats) {
-        const auto radius = [&](double t) {
-            return double(threat.radius) +
-                   t * (double(threat.radius_rate) + 0.5 * double(threat.radius_acceleration) * t);
-        };
-        const Vec3d v = threat.motion.velocity.cast<double>();
-        look(half.cast<double>(), from, velocity, duration,
-             {false, 0.0, threat.motion.position.cast<double>() + begins * v, v, radius(begins),
-              radius(begins + duration)},
-             met);
-    }
-    for (const world::Obstacle& obstacle : problem.obstacles) {
-        if (obstacle.shape.kind != geometry::ShapeKind::sphere) {
+    for (const world::Threat& threat : problem.threats) {
+        if (threat.form != world::ThreatForm::point) {
             continue;
         }
-        const double radius = double(obstacle.shape.radius) + double(problem.obstacle_clearance);
+        const auto radius = [&](double t) {
+            return double(threat.growth.radius) +
+                   t * (double(threat.growth.rate) + 0.5 * double(threat.growth.acceleration) * t);
+        };
+        const Vec3d v = threat.velocity.cast<double>();
         look(half.cast<double>(), from, velocity, duration,
-             {false, 0.0, obstacle.shape.centre.cast<double>(), Vec3d::Zero(), radius, radius}, met);
+             {false, 0.0, threat.position.cast<double>() + begins * v, v, radius(begins), radius(begins + duration)},
+             met);
     }
     return met;
 }

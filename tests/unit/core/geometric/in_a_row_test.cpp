@@ -83,9 +83,9 @@ TEST(InARowSecond, EndsHalfAsFarOnAsTheMainThreatAtLeast)
 TEST(InARowSecond, WhatIsMetFirstCountsInWhateverOrderItIsTold)
 {
     InARow probe;
-    const Threat near = Scene::still(on_way_back(probe, 0.5F), 0.5F);
-    const Threat far = Scene::still(on_way_back(probe, 0.85F) + Vec3(0.0F, 0.0F, 1.2F), 0.4F);
-    const Threat aside = Scene::still(on_way_back(probe, 0.3F) + Vec3(0.0F, 0.0F, 9.0F), 1.0F);
+    const Sphere near = Scene::still(on_way_back(probe, 0.5F), 0.5F);
+    const Sphere far = Scene::still(on_way_back(probe, 0.85F) + Vec3(0.0F, 0.0F, 1.2F), 0.4F);
+    const Sphere aside = Scene::still(on_way_back(probe, 0.3F) + Vec3(0.0F, 0.0F, 9.0F), 1.0F);
     for (const auto& order :
          {std::array{near, far, aside}, std::array{far, near, aside}, std::array{aside, far, near}}) {
         InARow scene;
@@ -110,7 +110,7 @@ TEST(InARowSecond, WhatGrowsIsAsLargeAsItIsThen)
 {
     for (const bool evenly : {true, false}) {
         InARow scene;
-        Threat threat = Scene::still(on_way_back(scene, 0.6F) + Vec3(0.0F, 0.0F, 2.0F), 0.2F);
+        Sphere threat = Scene::still(on_way_back(scene, 0.6F) + Vec3(0.0F, 0.0F, 2.0F), 0.2F);
         // Small enough to be passed below, were it not for its growth.
         threat.radius_rate = evenly ? 0.06F : 0.0F;
         threat.radius_acceleration = evenly ? 0.0F : 0.008F;
@@ -134,7 +134,7 @@ TEST(InARowSecond, ObstaclesAreMetAsThreatsAreAndKeptClearOf)
     for (const float clearance : {0.0F, 0.4F}) {
         InARow scene;
         const Vec3 there = on_way_back(scene, 0.6F);
-        scene.problem.obstacle_clearance = clearance;
+        scene.uncertainty = clearance;
         // Beside the way: with the clearance it is met.
         scene.obstacles = {{1, geometry::make_sphere(there + Vec3(0.0F, 0.0F, 1.9F), 0.6F)}};
         expect_second_part(scene, std::to_string(clearance));

@@ -87,8 +87,8 @@ TEST(InARowWhole, ItsCostIsThatOfTheDearerPart)
     // Somebody who flies away from beside the first part, or comes to beside the second one.
     for (const bool comes : {false, true}) {
         InARow scene;
-        scene.threats.push_back(comes ? Threat{{Vec3(30.0F, 53.0F, 50.0F), Vec3(0.0F, -3.0F, 0.0F)}, 0.5F}
-                                      : Threat{{Vec3(2.0F, 6.0F, 50.0F), Vec3(0.0F, 1.0F, 0.0F)}, 0.5F});
+        scene.threats.push_back(comes ? Sphere{{Vec3(30.0F, 53.0F, 50.0F), Vec3(0.0F, -3.0F, 0.0F)}, 0.5F}
+                                      : Sphere{{Vec3(2.0F, 6.0F, 50.0F), Vec3(0.0F, 1.0F, 0.0F)}, 0.5F});
         auto first = std::make_unique<Result>();
         ASSERT_EQ(scene.first_part(*first), PlanStatus::found);
         ASSERT_EQ(scene.run_in_a_row(), PlanStatus::found);

@@ -143,8 +143,7 @@ TEST(ProblemLimits, MovingSolidsAreAsManyAsFitAndSolids)
 {
     const auto status_with = [](std::size_t count, const MovingSolid& solid) {
         Scene scene;
-        const std::vector<MovingSolid> solids(count, solid);
-        scene.problem.moving_solids = solids;
+        scene.moving.assign(count, solid);
         return scene.run();
     };
     MovingSolid far{geometry::make_box(Vec3(0.0F, 90.0F, 50.0F), Vec3::Ones()), Vec3::UnitX()};
@@ -169,7 +168,7 @@ TEST(ProblemLimits, AmountsAreZeroOrMoreAndFinite)
         expect_problem<float>(true, change, {0.0F, 1.0F});
         expect_problem<float>(false, change, {-kLeast, -1.0F, kInfinity, kNan});
     };
-    each([](Scene& s, float x) { s.problem.obstacle_clearance = x; });
+    each([](Scene& s, float x) { s.uncertainty = x; });
     each([](Scene& s, float x) { s.problem.body_radius = x; });
     each([](Scene& s, float x) { s.problem.span_from = x; });
     each([](Scene& s, float x) { s.problem.span_to = x; });
@@ -333,12 +332,12 @@ TEST(StatusLimits, AnAirspaceSmallerThanTheVehicleIsLeftEverywhere)
     // A margin so wide that nothing is left within it, and less than nothing squared would hold every candidate.
     Scene scene;
     scene.settings.escape_from_margin = false;
-    scene.problem.obstacle_clearance = 200.0F;
+    scene.uncertainty = 200.0F;
     scene.airspace.has_keep_in = true;
     scene.airspace.home = Vec3(0.0F, 0.0F, 0.0F);
     scene.airspace.keep_in_radius = 100.0F;
     expect_level_candidates(scene, true, ThreatKind::keep_in);
-    scene.problem.obstacle_clearance = 0.0F;
+    scene.uncertainty = 0.0F;
     expect_level_candidates(scene, false, ThreatKind::keep_in);
 }
 
@@ -349,9 +348,6 @@ TEST(StatusLimits, BoundsThatAreNotSetBindNothing)
     scene.airspace.floor = 100.0F;
     scene.airspace.ceiling = 10.0F;
     scene.airspace.keep_in_radius = 1.0F;
-    static_cast<void>(scene.run());
-    EXPECT_EQ(scene.count(CandidateStatus::hits_airspace), 0U);
-    scene.problem.airspace = nullptr;
     static_cast<void>(scene.run());
     EXPECT_EQ(scene.count(CandidateStatus::hits_airspace), 0U);
 }

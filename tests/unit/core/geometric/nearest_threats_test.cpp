@@ -38,7 +38,7 @@ struct Assessed : Scene {
     }
 };
 
-std::vector<float> closeness_of(const std::vector<Threat>& threats)
+std::vector<float> closeness_of(const std::vector<Sphere>& threats)
 {
     Assessed alone;
     alone.threats = threats;
@@ -46,7 +46,7 @@ std::vector<float> closeness_of(const std::vector<Threat>& threats)
 }
 
 /// `threats`, with the `nearest` first one of them to count, and the other way round.
-void expect_nearest(const Threat& nearest, const Threat& other, const std::string& what)
+void expect_nearest(const Sphere& nearest, const Sphere& other, const std::string& what)
 {
     const std::vector<float> expected = closeness_of({nearest});
     ASSERT_FALSE(expected.empty());
@@ -61,7 +61,7 @@ void expect_nearest(const Threat& nearest, const Threat& other, const std::strin
 
 TEST(NearestThreats, WhatComesNearerIsNearer)
 {
-    const Threat alongside{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere alongside{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
     expect_nearest({{Vec3(0.0F, 30.0F, 50.0F), Vec3(5.0F, -5.0F, 0.0F)}, 1.0F}, alongside, "after 6 s");
     expect_nearest(alongside, {{Vec3(0.0F, 30.0F, 80.0F), Vec3(5.0F, -5.0F, 0.0F)}, 1.0F}, "30 m above");
     expect_nearest(alongside, {{Vec3(0.0F, 22.0F, 50.0F), kAlongside}, 1.0F}, "by 2 m");
@@ -69,7 +69,7 @@ TEST(NearestThreats, WhatComesNearerIsNearer)
 
 TEST(NearestThreats, NeitherWhatWasNearNorWhatWillBeCounts)
 {
-    const Threat alongside{{Vec3(0.0F, 35.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere alongside{{Vec3(0.0F, 35.0F, 50.0F), kAlongside}, 1.0F};
     // It was on the leg 8 s ago.
     expect_nearest(alongside, {{Vec3(0.0F, 40.0F, 50.0F), Vec3(5.0F, 5.0F, 0.0F)}, 1.0F}, "goes away");
     // It is on the line of the leg in 200 s, when any candidate has long ended.
@@ -78,7 +78,7 @@ TEST(NearestThreats, NeitherWhatWasNearNorWhatWillBeCounts)
 
 TEST(NearestThreats, SurfacesAreComparedAsLargeAsTheyAreThen)
 {
-    const Threat alongside{{Vec3(0.0F, 16.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere alongside{{Vec3(0.0F, 16.0F, 50.0F), kAlongside}, 1.0F};
     // All of these have their centre 20 m above the vehicle after 6 s.
     const geometry::Motion above{Vec3(0.0F, 30.0F, 70.0F), Vec3(5.0F, -5.0F, 0.0F)};
     expect_nearest(alongside, {above, 1.0F}, "19 m");
@@ -89,12 +89,12 @@ TEST(NearestThreats, SurfacesAreComparedAsLargeAsTheyAreThen)
 
 TEST(NearestThreats, WhatStandsTakesNoPlace)
 {
-    const Threat beside{{Vec3(10.0F, 12.0F, 50.0F), Vec3::Zero()}, 1.0F};
-    const Threat near{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
-    const Threat far{{Vec3(0.0F, -30.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere beside{{Vec3(10.0F, 12.0F, 50.0F), Vec3::Zero()}, 1.0F};
+    const Sphere near{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere far{{Vec3(0.0F, -30.0F, 50.0F), kAlongside}, 1.0F};
     Assessed scene;
     scene.settings.moving_nearest = 1;
-    for (const std::vector<Threat>& threats : {std::vector<Threat>{beside, near, far}, {far, near, beside}}) {
+    for (const std::vector<Sphere>& threats : {std::vector<Sphere>{beside, near, far}, {far, near, beside}}) {
         scene.threats = threats;
         EXPECT_EQ(scene.closeness(), closeness_of({near}));
     }
@@ -102,9 +102,9 @@ TEST(NearestThreats, WhatStandsTakesNoPlace)
 
 TEST(NearestThreats, TheMainThreatIsAmongThemWhereverItIs)
 {
-    const Threat near{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
-    const Threat nearer{{Vec3(0.0F, -15.0F, 50.0F), kAlongside}, 1.0F};
-    const Threat main{{Vec3(0.0F, 60.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere near{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere nearer{{Vec3(0.0F, -15.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere main{{Vec3(0.0F, 60.0F, 50.0F), kAlongside}, 1.0F};
     Assessed scene;
     scene.threats = {near, main, nearer};
     scene.problem.main = 1;
@@ -118,8 +118,8 @@ TEST(NearestThreats, TheMainThreatIsAmongThemWhereverItIs)
 
 TEST(NearestThreats, OfEquallyNearOnesTheFirstIsNearer)
 {
-    const Threat left{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
-    const Threat right{{Vec3(0.0F, -20.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere left{{Vec3(0.0F, 20.0F, 50.0F), kAlongside}, 1.0F};
+    const Sphere right{{Vec3(0.0F, -20.0F, 50.0F), kAlongside}, 1.0F};
     ASSERT_NE(closeness_of({left}), closeness_of({right}));
     Assessed scene;
     scene.settings.moving_nearest = 1;

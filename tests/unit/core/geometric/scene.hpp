@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/geometric/planner.hpp"
+#include "tests/oracle/problem_threats.hpp"
 
 namespace jink::geometric {
 
@@ -18,10 +18,7 @@ inline Settings every_candidate()
 }
 
 /// Level leg along x at 50 m height, a main threat of radius 1 on it 20 m ahead.
-struct Scene {
-    std::vector<Threat> threats{still(Vec3(20.0F, 0.0F, 50.0F), 1.0F)};
-    std::vector<world::Obstacle> obstacles;
-    world::Airspace airspace;
+struct Scene : ProblemThreats {
     Problem problem;
     Settings settings = every_candidate();
     vehicle::VehicleLimits limits;
@@ -29,22 +26,21 @@ struct Scene {
     Result result;
     WorkBudget budget{1'000'000};
 
-    static Threat still(const Vec3& position, float radius) { return {{position, Vec3::Zero()}, radius}; }
+    static Sphere still(const Vec3& position, float radius) { return {{position, Vec3::Zero()}, radius}; }
 
     Scene()
     {
+        threats = {still(Vec3(20.0F, 0.0F, 50.0F), 1.0F)};
         problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
         problem.distance = 20.0F;
         problem.main_radius = 1.0F;
         problem.main = 0;
-        problem.airspace = &airspace;
         problem.start_velocity = Vec3(5.0F, 0.0F, 0.0F);
     }
 
     world::PlanStatus run()
     {
-        problem.threats = threats;
-        problem.obstacles = obstacles;
+        put_into(problem);
         return solve(problem, settings, limits, airframe, budget, result);
     }
 

@@ -248,7 +248,7 @@ TEST(SolveStatus, BadInput)
     EXPECT_TRUE(refused([](Scene& s) { s.problem.speed = -1.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.body_radius = -1.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.main = 1; }));
-    EXPECT_TRUE(refused([](Scene& s) { s.problem.obstacle_clearance = -1.0F; }));
+    EXPECT_TRUE(refused([](Scene& s) { s.uncertainty = -1.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.span_from = kNan; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.span_to = -1.0F; }));
     EXPECT_TRUE(refused([](Scene& s) { s.problem.start_velocity.x() = kNan; }));
