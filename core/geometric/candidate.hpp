@@ -31,7 +31,7 @@ enum class CandidateStatus : std::uint8_t {
     chosen,
     hits_static,    ///< touches a static threat or an obstacle, on its curve or as it would be flown
     hits_moving,    ///< touches a moving threat, likewise
-    hits_airspace,  ///< leaves floor, ceiling or keep-in
+    hits_airspace,  ///< leaves floor, ceiling or keep-in, or enters a cylinder
     not_flyable,    ///< asks for more acceleration than the vehicle has, or comes back to the leg too steeply
     not_evaluated,  ///< the work budget ran out before its turn
 };
@@ -68,8 +68,8 @@ inline constexpr float kPlateauRise = 0.4F;
 /// 1.5 D or 2 D; of wait 1.5 D.
 [[nodiscard]] float curve_length_x(Family family, float distance) noexcept;
 
-/// What became of one candidate. Checked in the order of the causes: not_flyable, airspace, static threats, obstacles,
-/// moving threats; so the status does not depend on the order of the threats.
+/// What became of one candidate. Checked in the order of the causes: not_flyable, bounds, static threats, obstacles,
+/// moving threats, cylinders; so the status does not depend on the order of the threats.
 struct Candidate {
     CandidateShape shape;
     CandidateStatus status = CandidateStatus::not_evaluated;

@@ -36,7 +36,8 @@ AtStart at_start(const Problem& problem, const world::Threat& threat) noexcept
 Clearance::Clearance(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
     : problem_(problem), settings_(settings), half_(limits.half_extents), bounds_(bounds_of(problem, half_)),
       tracks_(world::of_kind(problem.threats, ThreatKind::track)),
-      obstacles_(world::of_kind(problem.threats, ThreatKind::obstacle))
+      obstacles_(world::of_kind(problem.threats, ThreatKind::obstacle)),
+      cylinders_(world::of_kind(problem.threats, ThreatKind::barrel))
 {
 }
 
@@ -44,11 +45,13 @@ void Clearance::collect(const Extent& reach, Seconds longest, WorkBudget& budget
 {
     items_.clear();
     needs_extent_ = settings_.security == SecurityMode::swept;
-    static_cast<void>(budget.spend(units::kCollected * static_cast<std::uint32_t>(tracks_.size() + obstacles_.size())));
+    const std::size_t all = tracks_.size() + obstacles_.size() + cylinders_.size();
+    static_cast<void>(budget.spend(units::kCollected * static_cast<std::uint32_t>(all)));
     add_tracks(reach, longest, Which::at_rest);
     add_obstacles(reach, longest, false, budget);
     add_tracks(reach, longest, Which::moving);
     add_obstacles(reach, longest, true, budget);
+    add_cylinders(reach, longest);
     near_items_ = items_.size();
     add_tracks(reach, longest, Which::deferred);
 }
@@ -191,6 +194,9 @@ bool Clearance::touches(const View& view, const Item& item, WorkBudget& budget) 
     if (is_solid(item)) {
         return moving ? touches_moving_solid(view, item, budget) : touches(view, solid_of(threat, item.shrunk), budget);
     }
+    if (threat.form == world::ThreatForm::cylinder) {
+        return touches_cylinder(view.curve, threat, item.shrunk, budget);
+    }
     const Ball ball = ball_of(threat);
     return moving && settings_.security == SecurityMode::swept
                ? touches_swept(view.curve, view.extent, ball, sweep_end(threat), budget)
@@ -232,6 +238,9 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) cons
 bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept
 {
     const world::Threat& threat = problem_.threats[item.index];
+    if (threat.form == world::ThreatForm::cylinder) {
+        return is_cylinder_out_of(extent, threat, 0.0F, duration);
+    }
     if (settings_.security == SecurityMode::swept && is_moving(threat)) {
         return false;  // its volume ends when others say
     }
@@ -241,6 +250,9 @@ bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds d
 Verdict Clearance::verdict_of(const Item& item) const noexcept
 {
     const world::Threat& threat = problem_.threats[item.index];
+    if (threat.form == world::ThreatForm::cylinder) {
+        return {CandidateStatus::hits_airspace, threat.ref};
+    }
     return {is_moving(threat) ? CandidateStatus::hits_moving : CandidateStatus::hits_static, threat.ref};
 }
 

@@ -89,8 +89,9 @@ public:
     [[nodiscard]] std::uint32_t solids() const noexcept;
     /// near: all but deferred threats.
     enum class Part : std::uint8_t { all, near, deferred };
-    /// First cause in the order airspace, static threats, obstacles, moving threats, moving solids, deferred threats,
-    /// each by index. When the budget runs out the verdict is not_evaluated. O(points * (threats + obstacles)).
+    /// First cause in the order bounds, static threats, obstacles, moving threats, moving solids, cylinders, deferred
+    /// threats, each by index. When the budget runs out the verdict is not_evaluated. O(points * (threats +
+    /// obstacles)).
     [[nodiscard]] Verdict check(const Curve& curve, WorkBudget& budget, Part part = Part::all) const noexcept;
 
 private:
@@ -139,6 +140,7 @@ private:
     enum class Which : std::uint8_t { at_rest, moving, deferred };
     void add_tracks(const Extent& reach, Seconds longest, Which which) noexcept;
     void add_obstacles(const Extent& reach, Seconds longest, bool moving, WorkBudget& budget) noexcept;
+    void add_cylinders(const Extent& reach, Seconds longest) noexcept;
     void add_solid(const world::Threat& threat, WorkBudget& budget) noexcept;
     [[nodiscard]] Solid solid_of(const world::Threat& threat, float shrunk) const noexcept;
     [[nodiscard]] Ball ball_about(const world::Threat& solid) const noexcept;
@@ -172,6 +174,12 @@ private:
                                      WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches(const View& view, const Solid& solid, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_moving_solid(const View& view, const Item& item, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool is_cylinder_out_of(const Extent& extent, const world::Threat& threat, Seconds from,
+                                          Seconds until) const noexcept;
+    [[nodiscard]] bool touches_cylinder(const Curve& curve, const world::Threat& threat, float shrunk,
+                                        WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches_cylinder(const Curve& curve, std::size_t i, const world::Threat& threat, float shrunk,
+                                        WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches(const View& view, const Item& item, WorkBudget& budget) const noexcept;
 
     const Problem& problem_;
@@ -181,8 +189,9 @@ private:
     Seconds t_max_ = 0.0F;
     const std::span<const world::Threat> tracks_;
     const std::span<const world::Threat> obstacles_;
+    const std::span<const world::Threat> cylinders_;
     Selection deferred_{};
-    StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids> items_;
+    StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids + kMaxBarrels> items_;
     std::size_t near_items_ = 0;  ///< the deferred ones come after these
     bool needs_extent_ = false;   ///< some item is tested against a curve's extent
 };

@@ -159,7 +159,7 @@ struct Problem {
     std::size_t main = kNoThreat;  ///< index of the main threat among the tracks of `threats`, or kNoThreat
     /// In the order of a world::ThreatSet, obstacles that move behind those at rest: at most kMaxTracks tracks,
     /// kMaxObstacles obstacles, kMaxMovingSolids of which move. Moving solids, time-aware: checked exactly, in their
-    /// own frame; swept: as their bounding spheres. Cylinders are left to the final check.
+    /// own frame; swept: as their bounding spheres. Cylinders are checked where they are, when, in either mode.
     std::span<const world::Threat> threats;
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
@@ -210,9 +210,9 @@ struct Result {
 /// Holds nothing from one call to the next. kBytes, about 18 KiB with the default capacities.
 class Workspace {
 public:
-    static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) + 16 * (kMaxTracks + kMaxObstacles) +
-                                          3 * kMaxProblemThreats + 48 * kMaxTracks + 2 * kMaxCandidates +
-                                          12 * kMaxPlanes + 1280;
+    static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) +
+                                          16 * (kMaxTracks + kMaxObstacles + kMaxBarrels) + 3 * kMaxProblemThreats +
+                                          48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1280;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }

@@ -29,15 +29,6 @@ Threat threat_of(const Situation& situation, std::size_t index) noexcept
     return threat;
 }
 
-Threat threat_of(const Barrel& barrel, std::size_t index, float uncertainty) noexcept
-{
-    const Vec3 centre(barrel.circle.centre.x(), barrel.circle.centre.y(), 0.0F);
-    Threat threat = at_rest(ThreatKind::barrel, index, ThreatForm::cylinder, centre, uncertainty);
-    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
-    threat.cylinder = &barrel;
-    return threat;
-}
-
 }  // namespace
 
 Threat track_threat(std::size_t index, const geometry::Motion& motion, const Growth& growth, float half_height) noexcept
@@ -72,6 +63,15 @@ Threat solid_threat(std::size_t index, const geometry::Shape& shape, const Vec3&
     threat.ref.kind = ThreatKind::obstacle;
     threat.form = ThreatForm::solid;
     threat.solid = &shape;
+    return threat;
+}
+
+Threat cylinder_threat(std::size_t index, const Barrel& barrel, float uncertainty) noexcept
+{
+    const Vec3 centre(barrel.circle.centre.x(), barrel.circle.centre.y(), 0.0F);
+    Threat threat = at_rest(ThreatKind::barrel, index, ThreatForm::cylinder, centre, uncertainty);
+    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
+    threat.cylinder = &barrel;
     return threat;
 }
 
@@ -119,7 +119,7 @@ bool ThreatSet::collect(const Situation& s) noexcept
         threats_.unchecked_push_back(threat_of(s, i));
     }
     for (std::size_t i = 0; i < air.barrels.size(); ++i) {
-        threats_.unchecked_push_back(threat_of(air.barrels[i], i, uncertainty));
+        threats_.unchecked_push_back(cylinder_threat(i, air.barrels[i], uncertainty));
     }
     for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
         threats_.unchecked_push_back(obstacle_threat(i, s.obstacles[i].shape, uncertainty));

@@ -42,6 +42,8 @@ private:
 /// A convex solid, where it is at time 0, that moves without turning. The shape outlives the threat.
 [[nodiscard]] Threat solid_threat(std::size_t index, const geometry::Shape& shape, const Vec3& velocity,
                                   const Growth& growth) noexcept;
+/// An upright cylinder that grows by `uncertainty` [m]. `barrel` outlives the threat.
+[[nodiscard]] Threat cylinder_threat(std::size_t index, const Barrel& barrel, float uncertainty) noexcept;
 /// Floor, ceiling and keep-in cylinder of an airspace, those that it has.
 [[nodiscard]] StaticVector<Threat, 3> bounds_of(const Airspace& airspace, float uncertainty) noexcept;
 

@@ -30,11 +30,11 @@ struct MovingSolid {
     float radius_acceleration = 0.0F;
 };
 
-/// Threats of a problem: bounds, spheres, obstacles at rest, moving solids.
+/// Threats of a problem: bounds, spheres, closed areas, obstacles at rest, moving solids.
 struct ProblemThreats {
     std::vector<Sphere> threats;
     std::vector<world::Obstacle> obstacles;
-    std::vector<MovingSolid> moving;
+    std::vector<MovingSolid> solids;
     world::Airspace airspace;
     float uncertainty = 0.0F;  ///< kept from bounds and obstacles [m]
 
@@ -46,11 +46,14 @@ struct ProblemThreats {
         for (const Sphere& sphere : threats) {
             all_.push_back(sphere.threat(all_.size() - bounds.size()));
         }
+        for (const world::Barrel& barrel : airspace.barrels) {
+            all_.push_back(world::cylinder_threat(all_.size() - bounds.size() - threats.size(), barrel, uncertainty));
+        }
         std::size_t index = 0;
         for (const world::Obstacle& obstacle : obstacles) {
             all_.push_back(world::obstacle_threat(index++, obstacle.shape, uncertainty));
         }
-        for (const MovingSolid& solid : moving) {
+        for (const MovingSolid& solid : solids) {
             all_.push_back(world::solid_threat(index++, solid.shape, solid.velocity,
                                                {solid.uncertainty, solid.radius_rate, solid.radius_acceleration}));
         }

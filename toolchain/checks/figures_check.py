@@ -106,14 +106,15 @@ class Book:
             return "dated" if self.lock.commands[command.name].get("commit") == command.commit else "stale"
         if kept == self.digest(command):
             return "fresh"
-        return "as before" if command.witnessed and self.lock.commands[command.name].get("witness") == self.witness_printed() is not None else "stale"
+        return "as before" if command.witnessed and self.lock.commands[command.name].get("witness") == self.witness_of(command) is not None else "stale"
 
-    def witness_printed(self):
-        """What the witness printed, as a digest, where it was run on these sources; else None."""
+    def witness_of(self, command):
+        """What the witness printed that says something about a command, as a digest, where it was run on these sources; else None."""
         of = self.registry.witness
         if of is None or self.lock.witness.get("digest") != self.digest(of):
             return None
-        return hashlib.sha256("\n".join(self.lock.witness["printed"]).encode()).hexdigest()[:24]
+        told = [line for line in self.lock.witness["printed"] if line.rpartition(": ")[0] not in command.witnessed_but]
+        return hashlib.sha256("\n".join(told).encode()).hexdigest()[:24]
 
     def evidence(self, any_age=False):
         """any_age: accepts figures that were recorded on other code, or never"""

@@ -70,7 +70,7 @@ class Witness:
 class Command:
     def __init__(self, name, entry, groups):
         refuse_unknown(entry, name, ("name", "kind", "pages", "as_written", "run", "seconds", "figures", "sources", "reason", "record", "render", "stamp",
-                                     "dated", "commit", "minutes", "in_tree", "status", "witnessed"))
+                                     "dated", "commit", "minutes", "in_tree", "status", "witnessed", "witnessed_but"))
         self.name, self.kind = name, entry.get("kind")
         if self.kind not in KINDS:
             raise Wrong(f"{name}: kind is one of {', '.join(KINDS)}")
@@ -84,6 +84,7 @@ class Command:
         self.dated, self.commit, self.minutes = entry.get("dated", False), entry.get("commit"), entry.get("minutes", 0)
         self.sources = expanded(entry.get("sources", []), groups)
         self.witnessed = entry.get("witnessed", False)  # stays as it is where the sources have changed and the witness has not
+        self.witnessed_but = entry.get("witnessed_but", [])  # names of digests that say nothing about this command
         self.figures = [Figure(name, self.pages[0] if self.pages else None, f) for f in entry.get("figures", [])]
         if self.kind == "not_run" and not self.reason:
             raise Wrong(f"{name}: says not why it is not run")

@@ -3,6 +3,7 @@
 // looks that pass over what is far passes over these, from however far the ball comes and however long it is under way.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -88,7 +89,7 @@ TEST(CurveContact, ABallIsMetWhereItTouchesByAHair)
     unsigned touching = 0;
     for (std::size_t i = 0; i < case_count(3'000); ++i) {
         Encounter encounter(random);
-        const bool moves = detail::is_moving(encounter.bench.threats[0]);
+        const bool moves = detail::is_moving(encounter.bench.threats[0].threat(0));
         const double distance = oracle::margin(encounter.flight, encounter.ball(), box);
         const double hair = 1e-6 * (encounter.lengths + 2.0 * distance);  // twice what the exact test may be wrong by
         if (distance > 4.0 * hair) {
@@ -110,7 +111,7 @@ TEST(CurveContact, AVolumeIsMetWhereItTouches)
     for (std::size_t i = 0; i < case_count(1'500); ++i) {
         Encounter encounter(random);
         encounter.bench.settings.security = SecurityMode::swept;
-        const bool moves = detail::is_moving(encounter.bench.threats[0]);
+        const bool moves = detail::is_moving(encounter.bench.threats[0].threat(0));
         const double end = double(encounter.bench.curve.duration());
         const double distance = oracle::swept_margin(encounter.flight, encounter.ball(), end, box);
         // Touching is enough, to the last bit of the radius.
@@ -125,6 +126,83 @@ TEST(CurveContact, AVolumeIsMetWhereItTouches)
         }
     }
     EXPECT_GT(touching, case_count(1'500) / 4);
+}
+
+/// Distance of a box about `own` from an upright cylinder, in double precision: below 0 by the least way out.
+double cylinder_distance(const world::Barrel& body, double t, const Eigen::Vector3d& own, double half)
+{
+    const Eigen::Vector2d centre = body.circle.centre.cast<double>() + t * body.velocity.cast<double>();
+    const Eigen::Vector2d to = centre - own.head<2>();
+    const Eigen::Vector2d off = to - to.cwiseMax(-half).cwiseMin(half);
+    const double level = off.norm() - double(body.circle.radius);
+    const double height = std::max(double(body.bottom) - half - own.z(), own.z() - half - double(body.top));
+    return level > 0.0 && height > 0.0 ? std::hypot(level, height) : std::max(level, height);
+}
+
+TEST(CurveContact, ACylinderIsTouchedWhereItIsWhenTheCurveIsThere)
+{
+    Random random(833);
+    std::size_t hits = 0;
+    std::size_t clear = 0;
+    for (std::size_t i = 0; i < case_count(3'000); ++i) {
+        Encounter encounter(random);
+        CurveBench& bench = encounter.bench;
+        const detail::Curve& curve = bench.curve;
+        bench.threats.clear();
+        bench.problem.lead = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 1.0F);
+        bench.problem.begins = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 3.0F);
+        bench.uncertainty = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 1.0F);
+        const float before = bench.problem.lead + bench.problem.begins;
+        const std::size_t met = random.below(curve.points);
+        const Vec3 place = curve.position(met) + RandomProblem::vector(random, 8.0F);
+        world::Barrel body;
+        body.circle.radius = random.uniform(0.5F, 6.0F);
+        body.velocity = random.below(3) == 0 ? world::Vec2(world::Vec2::Zero())
+                                             : world::Vec2(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F));
+        body.circle.centre = place.head<2>() - (curve.t[met] + before) * body.velocity;
+        body.bottom = place.z() - random.uniform(0.0F, 6.0F);
+        body.top = place.z() + random.uniform(0.0F, 6.0F);
+        const std::array barrels{body};
+        bench.airspace.barrels = barrels;
+        double least = 1e9;
+        for (std::size_t k = 0; k + 1 < curve.points; ++k) {
+            for (int part = 0; part <= 400; ++part) {
+                const double share = part / 400.0;
+                const double t = double(curve.t[k]) + share * (double(curve.t[k + 1]) - double(curve.t[k]));
+                const Eigen::Vector3d own = curve.position(k).cast<double>() +
+                                            share * (curve.position(k + 1) - curve.position(k)).cast<double>();
+                least = std::min(least, cylinder_distance(body, double(before) + t, own, 0.5));
+            }
+        }
+        least -= double(bench.uncertainty);
+        // Sampling sees contact up to half a step too late; rounding takes a share of all coordinates.
+        const double rounding = 1e-5 * (encounter.lengths + 100.0);
+        if (least < -1e-9) {
+            ASSERT_EQ(bench.status(), CandidateStatus::hits_airspace) << i << " at " << least;
+            ++hits;
+        } else if (least > 0.1 + rounding) {
+            ASSERT_EQ(bench.status(), CandidateStatus::available) << i << " at " << least;
+            ++clear;
+        }
+    }
+    EXPECT_GT(hits, case_count(3'000) / 5);
+    EXPECT_GT(clear, case_count(3'000) / 5);
+}
+
+TEST(CurveContact, OutOfACylinderTheWayOutIsClearAndTheWayThroughIsNot)
+{
+    world::Barrel body;
+    body.circle = {world::Vec2(-1.9F, 0.0F), 2.0F};
+    body.bottom = -10.0F;
+    body.top = 10.0F;
+    const std::array barrels{body};
+    for (const float way : {-4.0F, 4.0F}) {
+        CurveBench bench({{Vec3::Zero(), 0.0F}, {Vec3(way, 0.0F, 0.0F), 2.0F}});
+        bench.airspace.barrels = barrels;
+        EXPECT_EQ(bench.status(), CandidateStatus::hits_airspace) << "inside of it, without the escape rule";
+        bench.settings.escape_from_margin = true;
+        EXPECT_EQ(bench.status(), way > 0.0F ? CandidateStatus::available : CandidateStatus::hits_airspace) << way;
+    }
 }
 
 }  // namespace

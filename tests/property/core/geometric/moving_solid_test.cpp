@@ -70,7 +70,7 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
         Random random(seed * 92821);
         p.threats.clear();
         p.problem.main = kNoThreat;
-        std::vector<MovingSolid>& solids = p.moving;
+        std::vector<MovingSolid>& solids = p.solids;
         for (std::uint64_t i = 0, n = 1 + random.below(kMaxMovingSolids); i < n; ++i) {
             const Vec3 velocity = RandomProblem::vector(random, 6.0F);
             const float t = random.uniform(0.0F, 2.0F) * p.problem.distance / p.problem.speed;

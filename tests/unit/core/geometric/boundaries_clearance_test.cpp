@@ -71,9 +71,9 @@ TEST(ClearanceBorder, SolidsAreWhatNoClosedFormKnowsAtRestOrMoving)
         for (const geometry::Shape& shape : still) {
             bench.obstacles.push_back({1, shape});
         }
-        bench.moving.assign(moving, {geometry::make_sphere(kOnTheWay, 0.5F), Vec3::Zero()});
+        bench.solids.assign(moving, {geometry::make_sphere(kOnTheWay, 0.5F), Vec3::Zero()});
         static_cast<void>(bench.check());
-        return bench.solids;
+        return bench.counted_solids;
     };
     const Vec3 up(0.0F, 0.0F, 1.0F);
     const geometry::Shape ball = geometry::make_sphere(kOnTheWay, 0.5F);
@@ -107,7 +107,7 @@ TEST(ClearanceBorder, AMovingSolidIsToldOfBehindTheObstacles)
     CurveBench bench(straight_way());
     const geometry::Shape box = geometry::make_box(kOnTheWay, Vec3::Constant(0.5F));
     bench.obstacles.assign(3, {1, geometry::make_box(kBeside, Vec3::Constant(0.5F))});
-    bench.moving = {{geometry::make_box(kBeside, Vec3::Constant(0.5F)), kHardly}, {box, kHardly}};
+    bench.solids = {{geometry::make_box(kBeside, Vec3::Constant(0.5F)), kHardly}, {box, kHardly}};
     const detail::Verdict verdict = bench.check(Part::all, {kBeside});
     EXPECT_EQ(verdict.status, CandidateStatus::hits_moving);
     EXPECT_EQ(verdict.hit.kind, ThreatKind::obstacle);
@@ -119,7 +119,7 @@ TEST(ClearanceBorder, AMovingSolidIsInTheWayHoweverManyBallsAreNot)
     for (std::size_t balls = 0; balls <= 8; ++balls) {
         CurveBench bench(straight_way());
         bench.threats.assign(balls, Scene::still(kBeside, 0.5F));
-        bench.moving = {{geometry::make_box(kOnTheWay, Vec3::Constant(0.5F)), kHardly}};
+        bench.solids = {{geometry::make_box(kOnTheWay, Vec3::Constant(0.5F)), kHardly}};
         EXPECT_EQ(bench.check(Part::all, {kBeside}).status, CandidateStatus::hits_moving) << balls;
     }
 }
@@ -129,9 +129,9 @@ TEST(ClearanceBorder, AMovingSolidReachesAsFarAsItsUncertainty)
     for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
         CurveBench bench(straight_way());
         bench.settings.security = security;
-        bench.moving = {{geometry::make_sphere(Vec3(5.0F, 4.0F, 0.0F), 0.5F), kHardly, 3.0625F}};
+        bench.solids = {{geometry::make_sphere(Vec3(5.0F, 4.0F, 0.0F), 0.5F), kHardly, 3.0625F}};
         EXPECT_EQ(bench.status(), CandidateStatus::hits_moving);
-        bench.moving[0].uncertainty = 2.9375F;
+        bench.solids[0].uncertainty = 2.9375F;
         EXPECT_EQ(bench.status(), CandidateStatus::available);
     }
 }
@@ -140,7 +140,7 @@ TEST(ClearanceBorder, SweptAMovingSolidIsInTheWayOfWhatPassesBeforeAndAfterIt)
 {
     // It comes across the way a second before its end; whoever flies is by then far from there.
     CurveBench bench(straight_way());
-    bench.moving = {{geometry::make_box(Vec3(2.0F, 9.0F, 0.0F), Vec3::Constant(0.5F)), Vec3(0.0F, -1.0F, 0.0F)}};
+    bench.solids = {{geometry::make_box(Vec3(2.0F, 9.0F, 0.0F), Vec3::Constant(0.5F)), Vec3(0.0F, -1.0F, 0.0F)}};
     EXPECT_EQ(bench.status(), CandidateStatus::available);
     bench.settings.security = SecurityMode::swept;
     EXPECT_EQ(bench.status(), CandidateStatus::hits_moving);
@@ -151,11 +151,11 @@ TEST(ClearanceBorder, AMovingSolidThatGrowsIsPassedWhileItIsSmall)
     // Passed at 2 m after two seconds; when it reaches as far as that, the way is far from it.
     for (const auto& [rate, acceleration] : {std::array{0.4F, 0.0F}, std::array{0.0F, 0.12F}}) {
         CurveBench bench(straight_way());
-        bench.moving = {
+        bench.solids = {
             {geometry::make_box(Vec3(2.0F, 3.0F, 0.0F), Vec3::Constant(0.5F)), kHardly, 0.0F, rate, acceleration}};
         EXPECT_EQ(bench.status(), CandidateStatus::available) << rate;
-        bench.moving[0].radius_rate *= 6.0F;
-        bench.moving[0].radius_acceleration *= 6.0F;
+        bench.solids[0].radius_rate *= 6.0F;
+        bench.solids[0].radius_acceleration *= 6.0F;
         EXPECT_EQ(bench.status(), CandidateStatus::hits_moving) << rate;
     }
 }

@@ -109,7 +109,7 @@ TEST(OffsetBorder, AWallIsClearedOnEitherSide)
             scene.set_main(geometry::make_box(wall.centre, wall.half), wall.half.x());
             scene.problem.main_centre_offset = wall.centre - Vec3(40.0F, 0.0F, 50.0F);
             expect_tight(scene, family, 0.0F, 0.0F, 0.80F);
-            scene.problem.main_clearance = 1.5F;
+            scene.uncertainty = scene.problem.main_clearance = 1.5F;
             expect_tight(scene, family, 0.0F, 1.5F, 0.80F);
         }
     }

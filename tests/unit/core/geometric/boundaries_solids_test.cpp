@@ -153,7 +153,7 @@ TEST(SolidBorder, WhatIsFarFromACurveCostsALook)
     const auto spent_on = [&](const geometry::Shape& shape) {
         bench.obstacles = {{1, shape}};
         EXPECT_EQ(bench.check(Part::all, {Vec3(0.0F, 6.0F, 0.0F)}).status, CandidateStatus::available);
-        EXPECT_EQ(bench.solids, 1U);
+        EXPECT_EQ(bench.counted_solids, 1U);
         return bench.spent;
     };
     // The ball about it is, though no face of it lies between; a face does, though the ball about it reaches farther.

@@ -142,7 +142,7 @@ TEST(InSight, OfMovingSolidsTheNearestSurfaceCountsFirst)
         const auto closeness = [](const std::vector<MovingSolid>& solids) {
             Unhindered scene;
             scene.settings.closeness_nearest = 1;
-            scene.moving = solids;
+            scene.solids = solids;
             EXPECT_EQ(scene.run(), PlanStatus::found);
             std::vector<float> all;
             for (const Candidate& c : scene.result.candidates) {

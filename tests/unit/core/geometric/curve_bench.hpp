@@ -41,7 +41,7 @@ struct CurveBench : Scene {
     detail::Curve curve{};
     detail::Selection deferred{};
     std::uint32_t spent = 0;  ///< by the last check, what it takes to collect apart
-    std::uint32_t solids = 0;
+    std::uint32_t counted_solids = 0;
 
     explicit CurveBench(const std::vector<CurvePoint>& points) : curve(curve_through(points))
     {
@@ -66,7 +66,7 @@ struct CurveBench : Scene {
         WorkBudget plenty(1'000'000);
         clearance.collect(reach, curve.duration(), plenty);
         clearance.sweep_until(curve.duration());
-        solids = clearance.solids();
+        counted_solids = clearance.solids();
         WorkBudget left(units);
         const detail::Verdict verdict = clearance.check(curve, left, part);
         spent = left.spent();

@@ -143,7 +143,7 @@ TEST(ProblemLimits, MovingSolidsAreAsManyAsFitAndSolids)
 {
     const auto status_with = [](std::size_t count, const MovingSolid& solid) {
         Scene scene;
-        scene.moving.assign(count, solid);
+        scene.solids.assign(count, solid);
         return scene.run();
     };
     MovingSolid far{geometry::make_box(Vec3(0.0F, 90.0F, 50.0F), Vec3::Ones()), Vec3::UnitX()};
