@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Every capacity of the core in one place. Each may be set on the compiler's command line; sizeof figures per target
-// are in the memory report. A full container gives way as its owner's header says, and counts it.
+// Every capacity in one place. Each may be set on the compiler's command line, to a plain number within the range that
+// is asserted below; sizeof figures per target are in the memory report. A full container gives way as its owner's
+// header says, and counts it.
+//
+// Capacities are part of the package: units that were compiled with different ones do not link. The linker then misses
+// a symbol whose name lists the capacities of the unit that asks for it, in the order below.
 
 #include <cstddef>
 
@@ -48,6 +52,24 @@
 #ifndef JINK_MAX_ORCA_NEIGHBOURS
 #define JINK_MAX_ORCA_NEIGHBOURS 16
 #endif
+#ifndef JINK_MAX_MISSION_ITEMS
+#define JINK_MAX_MISSION_ITEMS 64
+#endif
+
+#define JINK_TEXT_OF(x) #x
+#define JINK_CAPACITY(name) "_" JINK_TEXT_OF(name)
+/// Name of the symbol that core defines, and every unit that includes this header asks for.
+#define JINK_CAPACITIES_SYMBOL                                                                                         \
+    "jink_capacities" JINK_CAPACITY(JINK_MAX_TRACKS) JINK_CAPACITY(JINK_MAX_OBSTACLES) JINK_CAPACITY(JINK_MAX_BARRELS) \
+        JINK_CAPACITY(JINK_MAX_PATH_POINTS) JINK_CAPACITY(JINK_MAX_ROUTE_SEGMENTS) JINK_CAPACITY(JINK_MAX_CANDIDATES)  \
+            JINK_CAPACITY(JINK_MAX_HULL_VERTICES) JINK_CAPACITY(JINK_MAX_REACH_NODES)                                  \
+                JINK_CAPACITY(JINK_MAX_REACH_CELLS) JINK_CAPACITY(JINK_MAX_COMMANDS)                                   \
+                    JINK_CAPACITY(JINK_MAX_DENSE_POINTS) JINK_CAPACITY(JINK_MAX_OBSTACLE_PLANES)                       \
+                        JINK_CAPACITY(JINK_MAX_ORCA_PLANES) JINK_CAPACITY(JINK_MAX_ORCA_NEIGHBOURS)                    \
+                            JINK_CAPACITY(JINK_MAX_MISSION_ITEMS)
+// 4 bytes of flash in all: equal references are one group. Kept by the linker (R) whatever else it leaves out.
+asm(".pushsection .jink_capacities, \"aGR\", %progbits, " JINK_CAPACITIES_SYMBOL "_asked, comdat\n\t.balign 4\n"
+    "\t.4byte " JINK_CAPACITIES_SYMBOL " - .\n\t.popsection");
 
 namespace jink {
 
@@ -73,7 +95,7 @@ static_assert(kMaxBarrels >= 2 && kMaxBarrels <= 256);
 
 /// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
-static_assert(kMaxPathPoints >= 8 && kMaxPathPoints <= 1024);
+static_assert(kMaxPathPoints >= 34 && kMaxPathPoints <= 1024);
 
 /// Legs and arcs of a route: the one being flown and those that a manoeuvre may reach past its end. One more is
 /// refused.
@@ -122,5 +144,10 @@ static_assert(kMaxOrcaPlanes >= 8 && kMaxOrcaPlanes <= 1024);
 /// own speed is capped for their sake: nothing is lost.
 inline constexpr std::size_t kMaxOrcaNeighbours = JINK_MAX_ORCA_NEIGHBOURS;
 static_assert(kMaxOrcaNeighbours >= 1 && kMaxOrcaNeighbours <= 256);
+
+/// Mission items kept at once, 20 bytes each. A longer mission is kept around its current item, a quarter of the items
+/// before it; when the current item leaves what is kept, the mission is read again.
+inline constexpr std::size_t kMaxMissionItems = JINK_MAX_MISSION_ITEMS;
+static_assert(kMaxMissionItems >= 4 && kMaxMissionItems <= 4096);
 
 }  // namespace jink

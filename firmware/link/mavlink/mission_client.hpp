@@ -6,17 +6,9 @@
 #include <cstdint>
 
 #include "core/base/time.hpp"
-
-#ifndef JINK_MAX_MISSION_ITEMS
-#define JINK_MAX_MISSION_ITEMS 64
-#endif
+#include "core/capacity.hpp"
 
 namespace jink::link::mavlink {
-
-/// Mission items kept at once, 20 bytes each. A longer mission is kept around its current item, a quarter of the items
-/// before it; when the current item leaves what is kept, the mission is read again.
-inline constexpr std::size_t kMaxMissionItems = JINK_MAX_MISSION_ITEMS;
-static_assert(kMaxMissionItems >= 4 && kMaxMissionItems <= 4096);
 
 /// A mission item as far as a leg needs it.
 struct MissionItem {
