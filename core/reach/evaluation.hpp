@@ -13,6 +13,9 @@
 
 namespace jink::reach {
 
+/// Of a threat: a rating above it is one, the order of the failure rate of manned aviation (Gomola table 6.5).
+inline constexpr float kThreshold = 1e-7F;
+
 /// Runs of the source, each with one sort of threat more. A run is made with the strictest one that leaves a way.
 enum class AvoidanceRun : std::uint8_t { obstacles, intruders, hard_constraints, soft_constraints };
 inline constexpr std::size_t kRuns = 4;

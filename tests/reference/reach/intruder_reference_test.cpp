@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The closed forms of the intruder models against the source's clouds of points, in double: no cell and no time of
 // arrival is missed (avoidance specification, sections 2.5 to 2.7).
-#include "tests/unit/core/reach/reference_models.hpp"
+#include "tests/reference/reach/reference_models.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/reach/intruder.hpp"
+#include "tests/reference/reach/intruder.hpp"
 
 namespace jink::reach {
 namespace {

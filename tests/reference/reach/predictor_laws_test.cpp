@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories against the equations of motion, stepped in double; and the automaton against what was predicted.
+// Trajectories against the equations of motion, stepped in double.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/reach/automaton.hpp"
+#include "tests/reference/reach/predictor.hpp"
 
 namespace jink::reach {
 namespace {
@@ -141,63 +141,6 @@ TEST(PredictorLaws, TrajectoriesAreContinuous)
         ASSERT_EQ(reference.samples.size(), 4 * plan.orders.size() + 1);
         ASSERT_EQ(reference.samples.front().position, plan.start.pose.position);
         ASSERT_EQ(reference.samples.back().time, t.end());
-    }
-}
-
-/// Stepped at odd times, the automaton is where the plan said that it would be.
-TEST(PredictorLaws, TheAutomatonFliesWhatWasPredicted)
-{
-    constexpr std::uint64_t kSeed = 7;
-    Random random(kSeed);
-    const Segments segments;
-    for (int i = 0; i < 500; ++i) {
-        const Plan plan = random_plan(random);
-        Trajectory t;
-        const Exit before{Movement::straight, plan.start.speed};
-        ASSERT_EQ(predict(plan.settings, segments, plan.start, before, 0.0F, plan.orders, t), PredictStatus::complete);
-        MovementAutomaton automaton(plan.settings, segments);
-        const TimePoint begin{static_cast<std::int64_t>(random.below(1000000000000ULL))};
-        automaton.begin(plan.start, begin);
-        ASSERT_EQ(automaton.replan(plan.orders), PushStatus::taken);
-        for (float at = 0.0F; at < t.end(); at += random.uniform(0.01F, 0.8F)) {
-            const TimePoint now = begin + at;
-            ASSERT_EQ(automaton.step(now), StepStatus::running);
-            FlightState flown;
-            FlightState predicted;
-            ASSERT_TRUE(automaton.project(now, flown));
-            ASSERT_TRUE(project(t, at, predicted));
-            ASSERT_NEAR((flown.pose.position - predicted.pose.position).norm(), 0.0F, 3e-3F)
-                << "seed " << kSeed << ", case " << i << ", at " << at;
-        }
-        ASSERT_EQ(automaton.step(begin + (t.end() + 0.01F)), StepStatus::ran_dry);
-        ASSERT_EQ(automaton.executed(), plan.orders.size());
-    }
-}
-
-/// A movement and its chord, at the same share of both.
-TEST(PredictorLaws, NoMovementIsFartherFromItsChordThanSaid)
-{
-    constexpr std::uint64_t kSeed = 8;
-    Random random(kSeed);
-    for (int i = 0; i < 5000; ++i) {
-        const MovementStep<float> step{random.uniform(0.1F, 20.0F), random.uniform(0.0F, 0.8F),
-                                       random.uniform(0.0F, 0.8F)};
-        const auto movement = static_cast<Movement>(random.below(kMovements));
-        Pose<float> from;
-        from.pitch = random.uniform(-1.0F, 1.0F);
-        from.yaw = random.uniform(-3.0F, 3.0F);
-        const Vec3 end = apply(from, movement, step).position;
-        float most = 0.0F;
-        for (int k = 1; k < 40; ++k) {
-            const float share = static_cast<float>(k) / 40.0F;
-            most = std::max(most, (at_share(from, movement, share, step).position - share * end).norm());
-        }
-        const float said = chord_deviation(step, movement);
-        ASSERT_LE(most, said + 1e-5F * step.length) << "seed " << kSeed << ", case " << i;
-        // And no looser than the turn about a level axis makes it.
-        if (turn_of(movement).pitch == 0 && from.pitch == 0.0F) {
-            ASSERT_GE(most, 0.9F * said - 1e-5F * step.length);
-        }
     }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Obstacles out of a map, by the reach-set specification, section 13.2, and the three cases of the source's figure
 // 6.13.
-#include "core/reach/map_obstacle.hpp"
+#include "tests/reference/reach/map_obstacle.hpp"
 
 #include <limits>
 #include <vector>

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/base/static_vector.hpp"
-#include "core/reach/segments.hpp"
+#include "tests/reference/reach/segments.hpp"
 
 // Where orders lead: trajectories of the movement automaton, in exact form and as samples for a tracking controller
 // (Gomola 6.2.1, 6.2.3, 6.2.7).
@@ -136,9 +136,5 @@ struct Reference {
 /// source's eq. 6.49 leaves out the start). Truncated by whole legs, with what is missing counted, when there are more
 /// than there is room for. O(n M).
 PredictStatus sample(const Trajectory& trajectory, std::size_t per_order, Reference& out) noexcept;
-
-/// How far a movement is from the straight line between its ends, at most, at the same time: length times turn over 8,
-/// as no second derivative is greater. Exact for small turns, above the truth else. O(1).
-[[nodiscard]] float chord_deviation(const MovementStep<float>& step, Movement movement) noexcept;
 
 }  // namespace jink::reach

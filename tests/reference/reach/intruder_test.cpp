@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Intruder models: the check values of the avoidance specification, sections 2.2 to 2.7.
-#include "core/reach/intruder.hpp"
+#include "tests/reference/reach/intruder.hpp"
 
 #include <vector>
 

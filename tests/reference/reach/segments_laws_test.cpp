@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/reach/segments.hpp"
+#include "tests/reference/reach/segments.hpp"
 
 namespace jink::reach {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The reference models themselves, by the check values of the avoidance specification, section 2.7.
-#include "tests/unit/core/reach/reference_models.hpp"
+#include "tests/reference/reach/reference_models.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reach/segments.hpp"
+#include "tests/reference/reach/segments.hpp"
 
 #include <algorithm>
 #include <cmath>

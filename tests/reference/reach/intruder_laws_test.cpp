@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/random.hpp"
-#include "core/reach/intruder.hpp"
+#include "tests/reference/reach/intruder.hpp"
 
 namespace jink::reach {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meetings of the vehicle and intruders in time: padding, combined models, and checks node by node, by the avoidance
-// specification, sections 2.1 to 2.9.
-#include "core/reach/meeting.hpp"
+// Meetings of the vehicle and intruders in time: padding, combined models and times of cells, by the avoidance
+// specification, sections 2.1 to 2.8.
+#include "tests/reference/reach/meeting.hpp"
 
 #include <array>
 #include <cmath>
@@ -222,161 +222,13 @@ TEST(CellTimes, AreTheHullOfAllTrajectories)
     EXPECT_FALSE(meet(kNever, {0.0F, kForAlways}));
 }
 
-/// Section 2.9, item 1: the hull blocks the second movement for an intruder that is there only before.
-TEST(MeetsInCells, NodeByNodeIsFinerThanTheHull)
-{
-    const SmallSet small;
-    const std::size_t cells = small.set.grid.cells();
-    std::vector<Stay> table(2 * cells, kNever);
-    const CellIndex first = small.set.grid.index({0, 3, 2});
-    EXPECT_FALSE(meets_in_cells(small.set, 1, 1.0F, table));
-    EXPECT_FALSE(meets_in_cells(small.set, 1, 1.0F, {})) << "no intruder";
-    table[cells + first] = {0.5F, 0.6F};
-    EXPECT_TRUE(meets_in_cells(small.set, 1, 1.0F, table)) << "the second intruder";
-    EXPECT_FALSE(meets_in_cells(small.set, 2, 1.0F, table)) << "this movement is in another cell";
-    EXPECT_FALSE(meets_in_cells(small.set, 0, 1.0F, table)) << "the root has no movement";
-    table[cells + first] = {1.2F, 3.0F};
-    EXPECT_FALSE(meets_in_cells(small.set, 1, 1.0F, table)) << "it comes after";
-    EXPECT_TRUE(meets_in_cells(small.set, 1, 1.1F, table)) << "and meets a slower vehicle";
-}
-
-TEST(MeetsInCells, TheTableIsFilledByTheModels)
-{
-    const Example e;
-    std::vector<CellBall> balls;
-    for (CellIndex cell = 0; cell < e.grid.cells(); ++cell) {
-        balls.push_back(ball_of(e.grid, e.grid.place(cell)));
-    }
-    std::vector<Stay> column(e.grid.cells());
-    fill_meetings(CombinedModel(e.grid, e.intruder, {false, true, false, true}, 0.5F), balls, column);
-    EXPECT_NEAR(column[e.cell].from, 0.7556F, 1e-3F);
-    EXPECT_NEAR(column[e.cell].to, 3.9698F, 1e-3F);
-    EXPECT_TRUE(is_never(column[e.grid.index({9, 0, 0})]));
-}
-
-/// Section 2.9, item 2, by cases that can be told by hand.
-TEST(Meets, ClosestApproachOfALineAndAMovingBall)
-{
-    Intruder head_on;
-    head_on.position = Vec3(10, 0, 0);
-    head_on.velocity = Vec3(-1, 0, 0);
-    head_on.radius = 1.0F;
-    head_on.speed_share = 0.0F;
-    // Towards each other at 2 in all, 10 apart: 1 apart at 4.5 s.
-    EXPECT_FALSE(meets(Vec3(0, 0, 0), Vec3(4.4F, 0, 0), 0.0F, 4.4F, head_on, 0.0F));
-    EXPECT_TRUE(meets(Vec3(0, 0, 0), Vec3(4.6F, 0, 0), 0.0F, 4.6F, head_on, 0.0F));
-    EXPECT_TRUE(meets(Vec3(0, 0, 0), Vec3(4.4F, 0, 0), 0.0F, 4.4F, head_on, 0.3F)) << "the margin";
-    EXPECT_TRUE(meets(Vec3(0, 1, 0), Vec3(9, 1, 0), 0.0F, 9.0F, head_on, 0.0F)) << "touching is contact";
-    EXPECT_FALSE(meets(Vec3(0, 1.001F, 0), Vec3(9, 1.001F, 0), 0.0F, 9.0F, head_on, 0.0F));
-    EXPECT_FALSE(meets(Vec3(0, 0, 0), Vec3(1, 0, 0), 20.0F, 21.0F, head_on, 0.0F)) << "it is past";
-    head_on.horizontal = std::atan(0.5F);
-    EXPECT_FLOAT_EQ(growth_of(head_on, 4.0F), 2.0F);
-    EXPECT_TRUE(meets(Vec3(0, 3, 0), Vec3(5, 3, 0), 0.0F, 5.0F, head_on, 0.0F)) << "it may have turned";
-    head_on.horizontal = 0.0F;
-    head_on.speed_share = 0.1F;
-    EXPECT_FLOAT_EQ(growth_of(head_on, 4.0F), 0.4F);
-    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_TRUE(meets(Vec3(0, kNaN, 0), Vec3(4, 0, 0), 0.0F, 4.0F, head_on, 0.0F)) << "what is unknown is not clear";
-}
-
-/// A node's own movement: its place, its time, the margin, and how far an arc is from its chord.
-TEST(Meets, ANodeIsMetAlongItsMovementWhileItIsFlown)
-{
-    test::SmallTree tree;
-    const NodeIndex first = tree.add(0, Movement::straight, 0);
-    const NodeIndex second = tree.add(first, Movement::straight, 0);
-    const NodeIndex turning = tree.add(first, Movement::left, 0);
-    const ReachSet set = tree.view();
-    Intruder stands;
-    stands.radius = 0.1F;
-    const auto met = [&](NodeIndex node, const Vec3& at, float margin) {
-        stands.position = at;
-        return meets(set, node, 1.0F, stands, margin);
-    };
-    EXPECT_TRUE(met(second, Vec3(1.5F, 0.3F, 0), 0.2F)) << "touching";
-    EXPECT_TRUE(met(second, Vec3(1.5F, 0.3F + 0.9F * kPositionUnit, 0), 0.2F)) << "what the tables round";
-    EXPECT_FALSE(met(second, Vec3(1.5F, 0.3F + 1.2F * kPositionUnit, 0), 0.2F));
-    EXPECT_FALSE(met(second, Vec3(1.5F, 0.3F, 0), 0.1F)) << "the margin";
-    EXPECT_FALSE(met(second, Vec3(0.5F, 0, 0), 0.2F)) << "its parent's movement";
-    EXPECT_TRUE(met(first, Vec3(0.5F, 0, 0), 0.2F));
-    EXPECT_FALSE(met(first, Vec3(1.5F, 0, 0), 0.2F)) << "its child's";
-    EXPECT_FALSE(met(0, Vec3(0, 0, 0), 0.2F)) << "the root meets nobody";
-    // A turn of 15 degrees bulges by less than 0.0328 of the way.
-    const Vec3 chord = tree.position(turning) - tree.position(first);
-    const Vec3 aside = Vec3(-chord.y(), chord.x(), 0).normalized();
-    const Vec3 middle = 0.5F * (tree.position(turning) + tree.position(first));
-    EXPECT_TRUE(met(turning, middle + 0.331F * aside, 0.2F));
-    EXPECT_FALSE(met(turning, middle + 0.336F * aside, 0.2F));
-    // One that crosses the second movement while the first is flown, then, and after it.
-    Intruder crosses;
-    crosses.radius = 0.1F;
-    crosses.speed_share = 0.0F;
-    crosses.velocity = Vec3(0, 10, 0);
-    for (const float when : {0.5F, 1.5F, 2.5F}) {
-        crosses.position = Vec3(1.5F, -10.0F * when, 0);
-        EXPECT_EQ(meets(set, second, 1.0F, crosses, 0.2F), when == 1.5F) << when;
-        crosses.position = Vec3(1.5F, -20.0F * when, 0);
-        EXPECT_EQ(meets(set, second, 2.0F, crosses, 0.2F), when == 1.5F) << "movements of 2 s, " << when;
-    }
-}
-
-/// Rounding of far coordinates never makes a meeting clear: 2e-6 of all distances is kept.
-TEST(Meets, WhatSinglePrecisionLosesIsKept)
-{
-    Intruder far;
-    far.radius = 1.0F;
-    far.speed_share = 0.0F;
-    const Vec3 at(1000, 0, 0);
-    for (const float apart : {1.0055F, 1.0065F}) {
-        far.position = Vec3(1000, apart, 0);
-        EXPECT_EQ(meets(at, at, 0.0F, 0.0F, far, 0.0F), apart < 1.006F) << "own way and place, " << apart;
-    }
-    far.velocity = Vec3(1000, 0, 0);
-    for (const float apart : {1.0055F, 1.0065F}) {
-        far.position = Vec3(0, apart, 0);
-        EXPECT_EQ(meets(at, at, 1.0F, 1.0F, far, 0.0F), apart < 1.006F) << "its way, " << apart;
-    }
-}
-
-TEST(Meets, InFormationTheDistanceStays)
-{
-    Intruder beside;
-    beside.velocity = Vec3(1, 0, 0);
-    beside.radius = 1.0F;
-    beside.speed_share = 0.0F;
-    beside.position = Vec3(0, 3, 0);
-    EXPECT_FALSE(meets(Vec3(0, 0, 0), Vec3(1, 0, 0), 0.0F, 1.0F, beside, 0.0F));
-    beside.position = Vec3(0, 0.5F, 0);
-    EXPECT_TRUE(meets(Vec3(0, 0, 0), Vec3(1, 0, 0), 0.0F, 1.0F, beside, 0.0F));
-    Intruder point;
-    EXPECT_TRUE(meets(Vec3(0, 0, 0), Vec3(0, 0, 0), 0.0F, 0.0F, point, 0.0F)) << "touching to the bit";
-}
-
-/// The greater of both spreads counts, and no spread is taken for more than the greatest.
-TEST(Meets, TheSpreadGrowsByItsGreaterAngle)
-{
-    Intruder wide;
-    wide.velocity = Vec3(0, 2, 0);
-    wide.speed_share = 0.25F;
-    wide.vertical = std::atan(1.0F);
-    EXPECT_FLOAT_EQ(growth_of(wide, 3.0F), (1.0F + 0.25F) * 2.0F * 3.0F);
-    wide.horizontal = std::atan(2.0F);
-    EXPECT_FLOAT_EQ(growth_of(wide, 3.0F), (2.0F + 0.25F) * 2.0F * 3.0F);
-    wide.horizontal = 1.5F;
-    EXPECT_FLOAT_EQ(growth_of(wide, 3.0F), (std::tan(kMostSpread) + 0.25F) * 2.0F * 3.0F);
-}
-
-TEST(MeetsInCells, BeyondTheGridThereIsNoCell)
+TEST(CellTimes, BeyondTheGridThereIsNoCell)
 {
     test::SmallTree tree;
     const NodeIndex last = tree.chain(Movement::straight, 11, 0);
     const ReachSet set = tree.view();
     EXPECT_TRUE(stay_of(set, last - 1U, 8, 1.0F));
     EXPECT_FALSE(stay_of(set, last, 8, 1.0F));
-    std::vector<Stay> always(set.grid.cells(), Stay{0.0F, kForAlways});
-    EXPECT_FALSE(meets_in_cells(set, last, 1.0F, always)) << "what is outside is not looked at";
-    EXPECT_TRUE(meets_in_cells(set, last - 1U, 1.0F, always));
-    EXPECT_FALSE(meets_in_cells(set, 0, 1.0F, always)) << "nor is the root";
 }
 
 /// One sample before to one after, in times of the node's own movement.

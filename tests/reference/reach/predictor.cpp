@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reach/predictor.hpp"
+#include "tests/reference/reach/predictor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -169,14 +169,6 @@ PredictStatus sample(const Trajectory& trajectory, std::size_t per_order, Refere
         --out.not_emitted;
     }
     return out.not_emitted == 0 ? PredictStatus::complete : PredictStatus::truncated;
-}
-
-float chord_deviation(const MovementStep<float>& step, Movement movement) noexcept
-{
-    const Turn turn = turn_of(movement);
-    const float pitch = static_cast<float>(turn.pitch) * step.pitch;
-    const float yaw = static_cast<float>(turn.yaw) * step.yaw;
-    return step.length * std::sqrt(pitch * pitch + yaw * yaw) / 8.0F;
 }
 
 }  // namespace jink::reach

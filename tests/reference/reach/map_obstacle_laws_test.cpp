@@ -10,7 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "core/base/random.hpp"
-#include "core/reach/map_obstacle.hpp"
+#include "tests/reference/reach/map_obstacle.hpp"
 
 namespace jink::reach {
 namespace {

@@ -5,11 +5,11 @@
 #include <span>
 
 #include "core/reach/cell_source.hpp"
-#include "core/reach/map_obstacle.hpp"
-#include "core/reach/meeting.hpp"
+#include "tests/reference/reach/map_obstacle.hpp"
+#include "tests/reference/reach/meeting.hpp"
 
-// The source's way to rate a placed set: by cells, each of them by all that may be in it while any trajectory is there
-// (Gomola 6.6, 6.7). The planner's own way is by nodes; this one is for comparison, and for who wants it.
+// Gomola's way to rate a placed set: by cells, each of them by all that may be in it while any trajectory is there
+// (6.6, 6.7). The planner rates nodes; this class is for comparison (Planner::rate_cells_by).
 
 namespace jink::reach {
 
@@ -35,7 +35,7 @@ public:
     ///
     /// Never less than the truth but for what `meeting.hpp` says of stays. Says more than by nodes: the hull of all
     /// trajectories' times, cells as balls and boxes. When the set is not the one that was rated last its times are
-    /// found anew, samples of each node in turn (units::kReachStay), which is no matter for a microcontroller's tick.
+    /// found anew, samples of each node in turn, which is no matter for a microcontroller's tick.
     /// O(cells * (tracks + obstacles)), and nodes * samples for another set.
     [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
                                   Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;

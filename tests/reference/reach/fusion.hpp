@@ -12,9 +12,6 @@
 
 namespace jink::reach {
 
-/// Of a threat: a rating above it is one, the order of the failure rate of manned aviation (Gomola table 6.5).
-inline constexpr float kThreshold = 1e-7F;
-
 /// One cell's ratings, each 0 to 1, as sources report them one after the other. Complements are kept, because near 1
 /// single precision cannot tell apart what the threshold asks for.
 class CellRating {

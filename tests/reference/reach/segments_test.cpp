@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Segments of the automaton: the tests that the reach-set specification, section 6, asks for, and every refusal.
-#include "core/reach/segments.hpp"
+#include "tests/reference/reach/segments.hpp"
 
 #include <limits>
 #include <vector>

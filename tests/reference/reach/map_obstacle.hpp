@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "core/reach/barrel.hpp"
-#include "core/reach/fusion.hpp"
 #include "core/reach/grid.hpp"
+#include "tests/reference/reach/barrel_closure.hpp"
+#include "tests/reference/reach/fusion.hpp"
 
 // Obstacles out of a map: what was surveyed before, in few numbers each, and the cells that it takes (Gomola 6.5.2).
 // No cloud of points is kept: a cell is looked at in closed form, or the points are made one after the other.

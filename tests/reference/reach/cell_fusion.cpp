@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reach/cell_fusion.hpp"
+#include "tests/reference/reach/cell_fusion.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/base/work_units.hpp"
-
 namespace jink::reach {
 namespace {
+
+// Work units.
+constexpr std::uint32_t kUnitsStay = 6;        // sample of a node, when times of cells are found
+constexpr std::uint32_t kUnitsCellBounds = 8;  // cell against the bounds of the airspace
+constexpr std::uint32_t kUnitsCellTrack = 6;   // and a track
+constexpr std::uint32_t kUnitsCellSolid = 30;  // or an obstacle
 
 void lower(Level& level, AvoidanceRun run) noexcept { level = std::min(level, static_cast<Level>(run)); }
 
@@ -61,7 +65,7 @@ bool CellFusion::find_times(const Placed& placed, WorkBudget& budget) noexcept
     if (times_of_ == &set && period_ == placed.period) {
         return true;
     }
-    if (!budget.spend(static_cast<std::uint32_t>(set.nodes() * set.samples) * units::kReachStay)) {
+    if (!budget.spend(static_cast<std::uint32_t>(set.nodes() * set.samples) * kUnitsStay)) {
         return false;
     }
     cell_times(set, placed.period, {times_.data(), set.grid.cells()});
@@ -147,8 +151,7 @@ RateStatus CellFusion::rate(const world::Situation& situation, const Placed& pla
     const auto tracks = static_cast<std::uint32_t>(situation.tracks.size());
     const auto obstacles = static_cast<std::uint32_t>(situation.obstacles.size());
     if (!find_times(placed, budget) ||
-        !budget.spend(
-            cells * (units::kReachCellBounds + tracks * units::kReachCellTrack + obstacles * units::kReachCellSolid))) {
+        !budget.spend(cells * (kUnitsCellBounds + tracks * kUnitsCellTrack + obstacles * kUnitsCellSolid))) {
         return RateStatus::budget_spent;
     }
     for (const world::Track& track : situation.tracks) {

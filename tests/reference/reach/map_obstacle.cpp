@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reach/map_obstacle.hpp"
+#include "tests/reference/reach/map_obstacle.hpp"
 
 #include <algorithm>
 #include <array>

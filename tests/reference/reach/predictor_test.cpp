@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Trajectories of orders: the reference result of the reach-set specification, section 4.3 (the source's 6.2.2), and
 // what sections 4 to 7 ask for.
-#include "core/reach/predictor.hpp"
+#include "tests/reference/reach/predictor.hpp"
 
 #include <limits>
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reach/intruder.hpp"
+#include "tests/reference/reach/intruder.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include "core/reach/fusion.hpp"
+#include "tests/reference/reach/fusion.hpp"
 
 namespace jink::reach {
 namespace {
