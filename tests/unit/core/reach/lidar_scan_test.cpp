@@ -58,9 +58,6 @@ TEST(LidarScans, VisibilityFallsBehindWhatStopsRays)
     expect({1.0F, 0.75F, 0.60F}, {3, 5, 10});
     hit(scan, grid, {6, 3, 2}, 4);
     expect({1.0F, 0.75F, 0.60F, 0.40F}, {3, 5, 7, 10});
-    scan.begin();
-    scan.add_invalid(3, 2);
-    expect({0.95F}, {10});
 }
 
 /// The same plate at 5 m and at 10 m: a quarter of the hits, the same rating but for whole rays.

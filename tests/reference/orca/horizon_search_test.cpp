@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The source's way out of a contradiction, a shorter horizon, beside half-spaces that give way.
-#include "core/orca/horizon_search.hpp"
+#include "tests/reference/orca/horizon_search.hpp"
 
 #include <array>
 
