@@ -13,8 +13,8 @@
 #include "core/geometric/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "core/reach/scan_picture.hpp"
-#include "core/reach/sets_default.hpp"
 #include "core/world/threat_set.hpp"
+#include "firmware/vehicles/default/reach_sets.hpp"
 
 namespace {
 
