@@ -40,9 +40,6 @@
 #ifndef JINK_MAX_COMMANDS
 #define JINK_MAX_COMMANDS 64
 #endif
-#ifndef JINK_MAX_DENSE_POINTS
-#define JINK_MAX_DENSE_POINTS 1024
-#endif
 #ifndef JINK_MAX_OBSTACLE_PLANES
 #define JINK_MAX_OBSTACLE_PLANES 16
 #endif
@@ -123,11 +120,6 @@ static_assert(kMaxReachCells >= 16 && kMaxReachCells <= 4096);
 /// would need it says so. 24 bytes each.
 inline constexpr std::size_t kMaxCommands = JINK_MAX_COMMANDS;
 static_assert(kMaxCommands >= 8 && kMaxCommands <= 1024);
-
-/// Points of one chunk of a dense path after decimation, of which there are two (G-ORCA 13.3). A chunk that would need
-/// more is refused as a whole. 20 bytes each.
-inline constexpr std::size_t kMaxDensePoints = JINK_MAX_DENSE_POINTS;
-static_assert(kMaxDensePoints >= 16 && kMaxDensePoints <= 65535);
 
 /// Half-spaces of static obstacles that one velocity has to keep to. When more pieces are within
 /// reach, the nearest ones count and a bound of the speed stands in for all others (ObstaclePlanes::speed_cap). 32

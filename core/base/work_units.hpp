@@ -94,11 +94,6 @@ inline constexpr std::uint32_t kReachSolid = 6;      ///< or any other solid
 inline constexpr std::uint32_t kReachEntries = 2;    ///< eight entries of footprints, when ways are chosen
 inline constexpr std::uint32_t kReachPath = 30;      ///< way that is made a path, with a stop at its end
 inline constexpr std::uint32_t kReachScanCell = 20;  ///< cell of a set or of a scan, when one is laid over the other
-// Cells rated as the source does it.
-inline constexpr std::uint32_t kReachStay = 6;        ///< sample of a node, when times of cells are found
-inline constexpr std::uint32_t kReachCellBounds = 8;  ///< cell against the bounds of the airspace
-inline constexpr std::uint32_t kReachCellTrack = 6;   ///< and a track
-inline constexpr std::uint32_t kReachCellSolid = 30;  ///< or an obstacle
 
 // --- maps of convex pieces (core/geometry/mesh_map) ---
 inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is looked at: both its children's boxes

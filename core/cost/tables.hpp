@@ -21,7 +21,7 @@
 //   turn    what the turns take off the drag term: sum of chord length (1 - cos of the turn) 2 / (D r^2)
 // Between its columns, which are at equal steps, a table is read by cubic interpolation (Catmull-Rom).
 //
-// `jink tables` writes a vehicle's tables as a header (core/cost/tables_default.hpp, tables_uav2.hpp), and proves their
+// `jink tables` writes a vehicle's tables as a header (firmware/vehicles/<name>/cost_tables.hpp), and proves their
 // bounds. Memory: the header says; less than 6 KiB a vehicle, constant. What the tables do not hold is refused, and the
 // caller evaluates the curve: nothing is clamped.
 

@@ -52,7 +52,7 @@ public:
     /// Stalled time counts up while `velocity` is slower than settings.stalled_below of `preferred`, down otherwise; it
     /// ends at twice settings.blocked, so that being blocked for an hour is over as soon as for ten seconds.
     /// @param own        id
-    /// @param preferred  as the trajectory generator wants it [m/s]
+    /// @param preferred  without avoidance [m/s]
     /// @param velocity   own one [m/s]
     /// @param period     since the last call [s], > 0
     /// O(neighbours).

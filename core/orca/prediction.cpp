@@ -2,7 +2,7 @@
 #include "core/orca/prediction.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstdint>
 
 #include "core/base/exponential.hpp"
 
@@ -23,9 +23,10 @@ void fly_command(Predicted& state, const Vec3& command, Seconds dt, Seconds lag)
     state.velocity -= error * faded;
 }
 
-template <class Commands>
-Predicted predict_by(const vehicle::VehicleState& measured, const Commands& issued, const VelocityLoop& loop,
-                     TimePoint at) noexcept
+}  // namespace
+
+Predicted predict(const vehicle::VehicleState& measured, const CommandRing& issued, const VelocityLoop& loop,
+                  TimePoint at) noexcept
 {
     Predicted state{measured.position, measured.velocity, false};
     TimePoint t = measured.stamp;
@@ -54,47 +55,6 @@ Predicted predict_by(const vehicle::VehicleState& measured, const Commands& issu
         t = end;
     }
     return state;
-}
-
-}  // namespace
-
-Predicted predict(const vehicle::VehicleState& measured, const CommandRing& issued, const VelocityLoop& loop,
-                  TimePoint at) noexcept
-{
-    return predict_by(measured, issued, loop, at);
-}
-
-Predicted predict(const vehicle::VehicleState& measured, std::span<const IssuedCommand> issued,
-                  const VelocityLoop& loop, TimePoint at) noexcept
-{
-    return predict_by(measured, issued, loop, at);
-}
-
-float inflation_of(Seconds age, float max_speed, float max_acceleration, const AgeRules& rules) noexcept
-{
-    const Seconds known = std::clamp(age, 0.0F, rules.lost);
-    const float grown = std::min(rules.most, rules.velocity_error * known + 0.5F * max_acceleration * known * known);
-    return grown + max_speed * std::max(0.0F, age - rules.lost);
-}
-
-PredictedNeighbour predict_neighbour(const Broadcast& heard, TimePoint at, const AgeRules& rules, float reach) noexcept
-{
-    const Seconds age = at - heard.state.stamp;
-    const bool is_lost = age > rules.lost;
-    const TimePoint until = is_lost ? heard.state.stamp + rules.lost : at;
-    const std::span<const IssuedCommand> commands{heard.commands.data(), heard.commands.size()};
-    const Predicted there = predict_by(heard.state, commands, heard.loop, until);
-
-    PredictedNeighbour neighbour;
-    neighbour.position = there.position;
-    neighbour.velocity = is_lost ? Vec3(Vec3::Zero()) : there.velocity;
-    neighbour.inflation = inflation_of(age, heard.max_speed, heard.max_acceleration, rules);
-    if (is_lost) {
-        neighbour.freshness = neighbour.inflation > reach ? Freshness::gone : Freshness::lost;
-    } else {
-        neighbour.freshness = age > rules.stale ? Freshness::stale : Freshness::fresh;
-    }
-    return neighbour;
 }
 
 }  // namespace jink::orca

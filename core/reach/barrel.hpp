@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <span>
 
-#include "core/reach/grid.hpp"
 #include "core/world/barrel.hpp"
 
 // Airspace that is closed, and weather: a circle about a polygon, between two heights, that may move (Gomola 6.5.3,
@@ -22,31 +21,5 @@ inline constexpr std::size_t kMaxCorners = 32;
 /// The smallest circle around all points, grown by what rounding may take, 1e-5 of their extent. For no points: radius
 /// 0 about the origin. O(n^3) for n <= kMaxCorners points, n^2 on average; nothing is random.
 [[nodiscard]] Circle smallest_circle(std::span<const Vec2> points) noexcept;
-
-enum class Closure : std::uint8_t { none, soft, hard };
-
-/// How a level grid lies in the world.
-struct GridPose {
-    Vec3 position = Vec3::Zero();  ///< of the vehicle [m]
-    float yaw = 0.0F;              ///< of the grid's x axis, counter-clockwise from east [rad]
-    float unit = 1.0F;             ///< length of the grid's unit [m]
-};
-
-/// Heights of a cell of a level grid, relative to the vehicle [grid's unit]: exact. O(1).
-struct Heights {
-    float bottom = 0.0F;
-    float top = 0.0F;
-};
-[[nodiscard]] Heights heights_of(const Grid<float>& grid, const CellPlace& place) noexcept;
-
-/// Level distance of a point from what a cell of a level grid covers, seen from above, an annular sector: exact. O(1).
-/// @param point  relative to the vehicle, in the grid's axes [grid's unit]
-[[nodiscard]] float level_distance(const Grid<float>& grid, const CellPlace& place, const Vec2& point) noexcept;
-
-/// Body, margin or nothing, for a cell that the vehicle is in from `from` until `to` [s]; heights that touch overlap,
-/// distances that are equal count. Never less than the truth: while the barrel moves the cell is taken as the circle
-/// about it; at one instant, `from` equal to `to`, or when the barrel stands, the distance is exact. O(1).
-[[nodiscard]] Closure closure_of(const Grid<float>& grid, const CellPlace& place, const GridPose& pose,
-                                 const Barrel& barrel, float from, float to) noexcept;
 
 }  // namespace jink::reach

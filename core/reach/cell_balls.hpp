@@ -7,7 +7,7 @@
 
 namespace jink::reach {
 
-/// The balls about all cells of a grid (as `ball_of` has them), with few sines: directions of the centres, and radii,
+/// The spheres about all cells of a grid, made with few sines: directions of the centres, and radii,
 /// which are the same for all columns. Made in O(columns + rows * layers).
 ///
 /// Memory: 12 bytes a direction, 4 for each layer of each row: about 0.7 KiB for 10 layers of 7 by 5.

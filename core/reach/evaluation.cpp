@@ -75,19 +75,6 @@ NodeIndex cheapest_in(const ReachSet& set, std::span<const Level> nodes, CellInd
 
 }  // namespace
 
-void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<const Level> intruder,
-              std::span<Level> nodes, std::span<Level> cells) noexcept
-{
-    evaluate_with(
-        set, blocks, [&](NodeIndex node) { return intruder.empty() ? kFree : intruder[node]; }, nodes, cells);
-}
-
-Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells, const Vec3& goal,
-                      AvoidanceRun run, const ChoiceRule& rule) noexcept
-{
-    return find_best_path(set, CellBalls(set.grid), nodes, cells, goal, run, rule);
-}
-
 Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
                       std::span<const Level> cells, const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
@@ -119,12 +106,6 @@ Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<con
     choice.node = cheapest_in(set, nodes, choice.cell, run);
     choice.status = choice.node == kNoNode ? PathStatus::no_path : choice.status;
     return choice;
-}
-
-Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
-                             const Vec3& goal, AvoidanceRun loosest, const ChoiceRule& rule) noexcept
-{
-    return find_best_path_of_all(set, CellBalls(set.grid), nodes, cells, goal, loosest, rule);
 }
 
 Choice find_best_path_of_all(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,

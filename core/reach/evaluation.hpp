@@ -13,6 +13,9 @@
 
 namespace jink::reach {
 
+/// Of a threat: a rating above it is one, the order of the failure rate of manned aviation (Gomola table 6.5).
+inline constexpr float kThreshold = 1e-7F;
+
 /// Runs of the source, each with one sort of threat more. A run is made with the strictest one that leaves a way.
 enum class AvoidanceRun : std::uint8_t { obstacles, intruders, hard_constraints, soft_constraints };
 inline constexpr std::size_t kRuns = 4;
@@ -53,11 +56,6 @@ void evaluate_with(const ReachSet& set, std::span<const Level> blocks, const Own
     }
 }
 
-/// The same with the own levels in a table.
-/// @param intruder  of each node, or empty: all free
-void evaluate(const ReachSet& set, std::span<const Level> blocks, std::span<const Level> intruder,
-              std::span<Level> nodes, std::span<Level> cells) noexcept;
-
 enum class PathStatus : std::uint8_t {
     found,
     goal_unreachable,  ///< the goal's own cell is not free: the best way towards it instead
@@ -82,17 +80,11 @@ struct ChoiceRule {
 /// The cheapest trajectory that is free in `run` and ends in the goal's cell; of a goal outside the grid, in the free
 /// outer cell nearest to it. Ties go to the lower index. `goal`: in the grid's frame [movements' lengths].
 /// O(nodes + cells).
-[[nodiscard]] Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
-                                    const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule = {}) noexcept;
-/// The same with the cells' centres at hand, which depend on the grid alone.
 [[nodiscard]] Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
                                     std::span<const Level> cells, const Vec3& goal, AvoidanceRun run,
                                     const ChoiceRule& rule) noexcept;
 
 /// The same in the strictest run that leaves a way, from soft constraints down to `loosest`.
-[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes,
-                                           std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
-                                           const ChoiceRule& rule = {}) noexcept;
 [[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
                                            std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
                                            const ChoiceRule& rule) noexcept;

@@ -50,7 +50,6 @@ bool LidarScan::configure(const Grid<float>& grid, float horizontal_pitch, float
 
 void LidarScan::begin() noexcept
 {
-    invalid_.fill(0);
     hits_.fill(0);
     distances_.fill(0.0F);
     points_ = 0;
@@ -82,12 +81,6 @@ void LidarScan::add(const CellPlace& place, float distance) noexcept
     ++points_;
 }
 
-void LidarScan::add_invalid(std::size_t column, std::size_t row) noexcept
-{
-    std::uint16_t& count = invalid_[direction(column, row)];
-    count = one_more(count);
-}
-
 float LidarScan::hindrance(const CellPlace& place) const noexcept
 {
     const float share =
@@ -108,8 +101,7 @@ float LidarScan::obstacle(const CellPlace& place, float threshold_area) const no
 
 void LidarScan::visibility(std::size_t column, std::size_t row, std::span<float> out) const noexcept
 {
-    const float missing = static_cast<float>(invalid_[direction(column, row)]) / static_cast<float>(rays(column, row));
-    float left = std::max(1.0F - missing, 0.0F);
+    float left = 1.0F;
     for (std::size_t layer = 0; layer < grid_->layers(); ++layer) {
         out[layer] = left;
         left = std::max(left - hindrance({static_cast<std::uint8_t>(layer), static_cast<std::uint8_t>(column),

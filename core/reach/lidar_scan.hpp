@@ -36,9 +36,6 @@ public:
     /// The same of a point that is known to lie in a cell of the grid.
     /// @param distance  from the sensor [grid's unit]
     void add(const CellPlace& place, float distance) noexcept;
-    /// A ray in a direction of the grid that was fired and came back from nowhere, or was not fired or is known to be
-    /// wrong: such a direction is seen that much less. O(1).
-    void add_invalid(std::size_t column, std::size_t row) noexcept;
 
     /// Share of the rays through the cell that end in it (as 6.98 and the figures have it; 6.92 prints the opposite).
     [[nodiscard]] float hindrance(const CellPlace& place) const noexcept;
@@ -64,7 +61,6 @@ private:
 
     const Grid<float>* grid_ = nullptr;
     std::array<std::uint16_t, kDirections> rays_{};
-    std::array<std::uint16_t, kDirections> invalid_{};
     std::array<std::uint16_t, kCells> hits_{};
     std::array<float, kCells> distances_{};  ///< sum over the hits
     std::uint32_t points_ = 0;

@@ -67,8 +67,8 @@ public:
     /// What a scanning sensor sees (ScanPicture) rates the cells from now on, before nodes are looked at; null: nothing
     /// is known of such a sensor. It outlives this.
     void look_at(CellSource* picture) noexcept { picture_ = picture; }
-    /// All that is known rates cells as the source does (CellFusion) from now on, instead of nodes; null: nodes. It
-    /// outlives this.
+    /// All that is known rates cells, as Gomola does, from now on, instead of nodes; null: nodes. For comparison
+    /// (tests/reference/reach/cell_fusion.hpp). It outlives this.
     void rate_cells_by(CellSource* fusion) noexcept { fusion_ = fusion; }
 
 private:

@@ -3,7 +3,6 @@
 
 #include "core/reach/cell_finder.hpp"
 #include "core/reach/cell_source.hpp"
-#include "core/reach/fusion.hpp"
 #include "core/reach/lidar_scan.hpp"
 
 // The newest scan of a range sensor, counted by cells of a grid of its own, and what it says of a set that is placed

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/cost/tables_default.hpp"
 #include "firmware/app/reach_sets.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
 
 namespace jink::app {
 namespace {

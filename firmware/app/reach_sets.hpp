@@ -9,10 +9,10 @@
 #if defined(JINK_REACH_SETS)
 #include JINK_REACH_SETS
 #elif JINK_MAX_REACH_NODES >= 2560
-#include "core/reach/sets_default.hpp"
+#include "firmware/vehicles/default/reach_sets.hpp"
 #define JINK_REACH_SETS_OF jink::reach::kDefaultSets
 #else
-#include "core/reach/sets_default_reduced.hpp"
+#include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #define JINK_REACH_SETS_OF jink::reach::kDefaultReducedSets
 #endif
 

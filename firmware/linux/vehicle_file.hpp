@@ -25,8 +25,8 @@ struct Vehicle {
     cost::Caps caps;  ///< of the file, or else those that cost::caps_for computes
 };
 
-/// Keys, units and ranges: docs in firmware/vehicles/default.yaml; ranges are those of the parameters of the same
-/// meaning.
+/// Keys, units and ranges: docs in firmware/vehicles/default/vehicle.yaml; ranges are those of the parameters of the
+/// same meaning.
 [[nodiscard]] std::optional<Vehicle> read_vehicle_file(const std::filesystem::path& path, Complaints& complaints);
 
 /// The same for a mapping within another file, `where` in complaints.

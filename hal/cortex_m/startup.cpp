@@ -120,11 +120,6 @@ void forget_faults() noexcept { kept = {}; }
 
 void let_faults_speak() noexcept { stage = kReady; }
 
-std::size_t stack_size() noexcept
-{
-    return static_cast<std::size_t>(&_stack_top - &_stack_bottom) * sizeof(std::uint32_t);
-}
-
 std::size_t stack_used() noexcept
 {
     const std::uint32_t* word = &_stack_bottom;

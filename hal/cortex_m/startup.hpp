@@ -42,7 +42,6 @@ void let_faults_speak() noexcept;
 
 /// Bytes of stack that were ever used, by the paint that start-up left on it. O(stack).
 [[nodiscard]] std::size_t stack_used() noexcept;
-[[nodiscard]] std::size_t stack_size() noexcept;
 
 /// Sleeps until an interrupt comes.
 void wait_for_interrupt() noexcept;

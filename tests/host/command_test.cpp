@@ -114,10 +114,11 @@ TEST(Command, CheckKnowsEveryKindOfFile)
         scratch.write("scenario.yaml", "mission: [[0, 0, 30], [10, 0, 30]]\nexpect: {outcome: clear}\nseeed: 3\n"));
     static_cast<void>(scratch.write("riddle.yaml", "what: is it\n"));
     static_cast<void>(scratch.write("broken.yaml", "a: [1\n"));
-    const Ran good = jink(scratch, "check problem.yaml p.parm '" JINK_SOURCES "/firmware/vehicles/default.yaml'");
+    const Ran good =
+        jink(scratch, "check problem.yaml p.parm '" JINK_SOURCES "/firmware/vehicles/default/vehicle.yaml'");
     EXPECT_EQ(good.status, 0) << good.err;
     EXPECT_EQ(good.out, "problem.yaml: good (problem)\np.parm: good (params)\n" JINK_SOURCES
-                        "/firmware/vehicles/default.yaml: good (vehicle)\n");
+                        "/firmware/vehicles/default/vehicle.yaml: good (vehicle)\n");
     EXPECT_EQ(good.err, "");
 
     const Ran bad = jink(scratch, "check bad.parm problem.yaml odd.parm");
@@ -142,7 +143,7 @@ TEST(Command, CheckKnowsEveryKindOfFile)
 TEST(Command, EveryFileThatIsShippedIsGood)
 {
     const Scratch scratch;
-    const Ran ran = jink(scratch, "check '" JINK_SOURCES "'/firmware/vehicles/*.yaml '" JINK_SOURCES
+    const Ran ran = jink(scratch, "check '" JINK_SOURCES "'/firmware/vehicles/*/vehicle.yaml '" JINK_SOURCES
                                   "'/tests/scenario/*.yaml '" JINK_SOURCES "'/tests/scenario/problems/*.yaml");
     EXPECT_EQ(ran.status, 0) << ran.err;
 }
@@ -269,12 +270,12 @@ TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
 {
     const Scratch scratch;
     const std::string vehicles = JINK_SOURCES "/firmware/vehicles/";
-    const Ran made = jink(scratch, "tables " + vehicles + "uav2.yaml --out made.hpp");
+    const Ran made = jink(scratch, "tables " + vehicles + "uav2/vehicle.yaml --out made.hpp");
     EXPECT_EQ(made.status, 0) << made.err;
     EXPECT_NE(made.out.find("uav2: 25 waypoints, 4892 bytes in 3 families"), std::string::npos) << made.out;
-    EXPECT_EQ(slurp(scratch.path() / "made.hpp"), slurp(JINK_SOURCES "/core/cost/tables_uav2.hpp"));
+    EXPECT_EQ(slurp(scratch.path() / "made.hpp"), slurp(vehicles + "uav2/cost_tables.hpp"));
 
-    const std::string good = slurp(vehicles + "uav2.yaml");
+    const std::string good = slurp(vehicles + "uav2/vehicle.yaml");
     const auto refused = [&](const std::string& file, const std::string& options, const std::string& why) {
         const Ran ran = jink(scratch, "tables " + file + options + " --out none.hpp");
         EXPECT_EQ(ran.status, 1) << file << options;
@@ -291,9 +292,9 @@ TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
     static_cast<void>(scratch.write("name.yaml", named.replace(named.find("name: uav2"), 10, "name: '4\"'")));
     refused("name.yaml", "", "no C++ name");
     refused("nowhere.yaml", "", "no such file");
-    refused(vehicles + "uav2.yaml", " --waypoints 7", "waypoints");
-    refused(vehicles + "uav2.yaml", " --waypoints 65", "waypoints");
-    const Ran unwritten = jink(scratch, "tables " + vehicles + "uav2.yaml --out no_folder/a.hpp");
+    refused(vehicles + "uav2/vehicle.yaml", " --waypoints 7", "waypoints");
+    refused(vehicles + "uav2/vehicle.yaml", " --waypoints 65", "waypoints");
+    const Ran unwritten = jink(scratch, "tables " + vehicles + "uav2/vehicle.yaml --out no_folder/a.hpp");
     EXPECT_EQ(unwritten.status, 1);
     EXPECT_NE(unwritten.err.find("cannot be written"), std::string::npos);
 }

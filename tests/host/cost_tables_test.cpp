@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "core/cost/tables_default.hpp"
-#include "core/cost/tables_uav2.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
+#include "firmware/vehicles/uav2/cost_tables.hpp"
 #include "tests/host/scratch.hpp"
 #include "toolchain/host/header_text.hpp"
 #include "toolchain/host/waypoints_study.hpp"
@@ -20,7 +20,8 @@ using cost::tables::Tables;
 files::Vehicle shipped(const std::string& name)
 {
     files::Complaints complaints;
-    const auto vehicle = files::read_vehicle_file(JINK_SOURCES "/firmware/vehicles/" + name + ".yaml", complaints);
+    const auto vehicle =
+        files::read_vehicle_file(JINK_SOURCES "/firmware/vehicles/" + name + "/vehicle.yaml", complaints);
     EXPECT_TRUE(vehicle) << test::all_of(complaints);
     return vehicle.value_or(*files::built_in_vehicle("default"));
 }
@@ -32,8 +33,9 @@ TEST(CostTables, WhatIsShippedIsWhatTheVehicleFilesGive)
 {
     for (const std::string name : {"default", "uav2"}) {
         MadeTables made = make_tables(shipped(name), 25);
-        EXPECT_EQ(tables_header(made, name + ".yaml"), test::slurp(JINK_SOURCES "/core/cost/tables_" + name + ".hpp"))
-            << "run: jink tables firmware/vehicles/" << name << ".yaml --out core/cost/tables_" << name << ".hpp";
+        const std::string folder = "firmware/vehicles/" + name;
+        EXPECT_EQ(tables_header(made), test::slurp(JINK_SOURCES "/" + folder + "/cost_tables.hpp"))
+            << "run: jink tables " << folder << "/vehicle.yaml --out " << folder << "/cost_tables.hpp";
     }
 }
 

@@ -114,7 +114,7 @@ TEST(Mutation, ProblemFilesAreSolvedOrRefusedWithReason)
 
 TEST(Mutation, VehicleFilesGiveAVehicleOrComplaints)
 {
-    const std::string good = test::slurp(JINK_SOURCES "/firmware/vehicles/default.yaml");
+    const std::string good = test::slurp(JINK_SOURCES "/firmware/vehicles/default/vehicle.yaml");
     int taken = 0;
     for (int i = 0; i < cases(3000); ++i) {
         const std::uint64_t seed = first_seed() + static_cast<std::uint64_t>(i);

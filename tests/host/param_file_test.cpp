@@ -154,7 +154,7 @@ TEST(LoadParameters, LaysTheParameterFileOverTheVehicleFile)
 {
     const Scratch scratch;
     Complaints complaints;
-    const auto both = load_parameters(JINK_SOURCES "/firmware/vehicles/uav2.yaml",
+    const auto both = load_parameters(JINK_SOURCES "/firmware/vehicles/uav2/vehicle.yaml",
                                       scratch.write("p", "VEH_CRUISE,12\nJNK_MODE,1"), complaints);
     ASSERT_TRUE(both) << test::all_of(complaints);
     EXPECT_EQ(both->get(Param::cruise), 12.0F);

@@ -281,7 +281,7 @@ TEST(ProblemFile, ReadsAirspace)
 TEST(ProblemFile, VehicleFromAFileBesideItOrInline)
 {
     const test::Scratch scratch;
-    static_cast<void>(scratch.write("v.yaml", test::slurp(JINK_SOURCES "/firmware/vehicles/uav2.yaml")));
+    static_cast<void>(scratch.write("v.yaml", test::slurp(JINK_SOURCES "/firmware/vehicles/uav2/vehicle.yaml")));
     const auto beside =
         read_problem(scratch.write("p.yaml", "vehicle: v.yaml\nleg: {start: [0, 0, 0], end: [99, 0, 0]}\n"
                                              "threats: [{position: [50, 0, 0], radius: 1}]\n"));

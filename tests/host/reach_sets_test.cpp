@@ -2,10 +2,10 @@
 // Reach sets: what is shipped is what the vehicle files give, and passes the check that images make.
 #include <gtest/gtest.h>
 
-#include "core/reach/sets_default.hpp"
-#include "core/reach/sets_default_reduced.hpp"
-#include "core/reach/sets_uav2.hpp"
 #include "firmware/linux/vehicle_file.hpp"
+#include "firmware/vehicles/default/reach_sets.hpp"
+#include "firmware/vehicles/default/reach_sets_reduced.hpp"
+#include "firmware/vehicles/uav2/reach_sets.hpp"
 #include "tests/host/scratch.hpp"
 #include "toolchain/host/reach_sets_text.hpp"
 
@@ -21,27 +21,26 @@ struct Shipped {
     const reach::VehicleSets* sets;
 };
 constexpr Shipped kShipped[] = {
-    {"default", rb::Profile::full, "sets_default.hpp", &reach::kDefaultSets},
-    {"default", rb::Profile::reduced, "sets_default_reduced.hpp", &reach::kDefaultReducedSets},
-    {"uav2", rb::Profile::full, "sets_uav2.hpp", &reach::kUav2Sets},
+    {"default", rb::Profile::full, "reach_sets.hpp", &reach::kDefaultSets},
+    {"default", rb::Profile::reduced, "reach_sets_reduced.hpp", &reach::kDefaultReducedSets},
+    {"uav2", rb::Profile::full, "reach_sets.hpp", &reach::kUav2Sets},
 };
 
 TEST(ReachSets, WhatIsShippedIsWhatTheVehicleFilesGive)
 {
     for (const Shipped& shipped : kShipped) {
         files::Complaints complaints;
-        const std::string source = std::string(shipped.vehicle) + ".yaml";
-        const auto vehicle = files::read_vehicle_file(JINK_SOURCES "/firmware/vehicles/" + source, complaints);
+        const std::string folder = std::string("firmware/vehicles/") + shipped.vehicle + "/";
+        const auto vehicle = files::read_vehicle_file(JINK_SOURCES "/" + folder + "vehicle.yaml", complaints);
         ASSERT_TRUE(vehicle) << test::all_of(complaints);
         rb::Recipe recipe;
         recipe.profile = shipped.profile;
         const rb::BuiltVehicle built = rb::build_vehicle(vehicle->name, vehicle->limits, recipe);
         // Compared first, not shown: a megabyte of text helps nobody.
-        const bool same =
-            reach_sets_header(built, source) == test::slurp(std::string(JINK_SOURCES "/core/reach/") + shipped.header);
-        EXPECT_TRUE(same) << "run: jink reach build firmware/vehicles/" << source
-                          << (shipped.profile == rb::Profile::reduced ? " --profile reduced" : "")
-                          << " --out core/reach/" << shipped.header;
+        const bool same = reach_sets_header(built) == test::slurp(JINK_SOURCES "/" + folder + shipped.header);
+        EXPECT_TRUE(same) << "run: jink reach build " << folder << "vehicle.yaml"
+                          << (shipped.profile == rb::Profile::reduced ? " --profile reduced" : "") << " --out "
+                          << folder << shipped.header;
         EXPECT_EQ(shipped.sets->checksum, rb::VehicleView(built).sets().checksum);
         EXPECT_EQ(shipped.sets->cruise_speed, vehicle->limits.cruise_speed);
         EXPECT_EQ(shipped.sets->max_acceleration, vehicle->limits.max_acceleration);

@@ -55,7 +55,7 @@ TEST(VehicleFile, ShippedFilesAreTheVehiclesOfTheSource)
     for (const char* name : {"default", "uav2"}) {
         Complaints complaints;
         const auto file =
-            read_vehicle_file(std::string(JINK_SOURCES "/firmware/vehicles/") + name + ".yaml", complaints);
+            read_vehicle_file(std::string(JINK_SOURCES "/firmware/vehicles/") + name + "/vehicle.yaml", complaints);
         ASSERT_TRUE(file) << test::all_of(complaints);
         EXPECT_EQ(file->name, name);
         const auto built_in = built_in_vehicle(name);
@@ -77,7 +77,7 @@ TEST(VehicleFile, TheDefaultVehicleLeavesTheParametersAsTheyAre)
 {
     Complaints complaints;
     const ParamValues values = app::Parameters().values();
-    const auto applied = apply_vehicle_file(JINK_SOURCES "/firmware/vehicles/default.yaml", values, complaints);
+    const auto applied = apply_vehicle_file(JINK_SOURCES "/firmware/vehicles/default/vehicle.yaml", values, complaints);
     ASSERT_TRUE(applied) << test::all_of(complaints);
     for (std::size_t i = 0; i < values.size(); ++i) {
         EXPECT_EQ((*applied)[i], values[i]) << app::param_table()[i].name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/reach/cell_fusion.hpp"
+#include "tests/reference/reach/cell_fusion.hpp"
 
 #include <gtest/gtest.h>
 

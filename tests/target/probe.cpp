@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "core/reach/sets_default_reduced.hpp"
 #include "firmware/app/parameters.hpp"
+#include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
 

@@ -11,12 +11,12 @@
 #include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/cost/tables.hpp"
-#include "core/cost/tables_default.hpp"
 #include "core/geometric/curve.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/orca/planner.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "core/world/threat_set.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
 

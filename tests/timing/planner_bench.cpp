@@ -7,8 +7,8 @@
 #include <benchmark/benchmark.h>
 
 #include "core/base/random.hpp"
-#include "core/cost/tables_default.hpp"
 #include "core/geometric/planner.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
 
 namespace {
 

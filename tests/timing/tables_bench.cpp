@@ -6,8 +6,8 @@
 #include <benchmark/benchmark.h>
 
 #include "core/base/random.hpp"
-#include "core/cost/tables_default.hpp"
 #include "core/geometric/curve.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
 
 namespace {
 

@@ -47,7 +47,7 @@ IMAGES_SHARED = ("firmware/cortex_m",)
 STANDARD = set("""algorithm array atomic bit cassert cerrno cfloat charconv climits cmath compare concepts cstddef
     cstdint cstring functional initializer_list iterator limits new numbers numeric optional ranges ratio span string_view
     tuple type_traits utility variant version""".split())
-EMBEDDED = ("core", "hal", "firmware/link", "firmware/app")
+EMBEDDED = ("core", "hal", "firmware/link", "firmware/vehicles", "firmware/app")
 THIRD_PARTY = {"core": ("Eigen/", "ccd/"), "firmware": ("Eigen/",), "hal": ()}
 
 WANTED_LINES = 400
@@ -73,7 +73,8 @@ def rules():
     for shared in HAL_SHARED:
         known[shared] = {"hal", shared}
     known["firmware/link"] = {"core", "core/base", "core/world", "firmware/link"}
-    known["firmware/app"] = set(CORE) | {"firmware/link", "firmware/app"} | set(HAL_INTERFACES)
+    known["firmware/vehicles"] = known["core/cost"] | known["core/reach"] | {"firmware/vehicles"}
+    known["firmware/app"] = set(CORE) | {"firmware/link", "firmware/vehicles", "firmware/app"} | set(HAL_INTERFACES)
     return known
 
 
@@ -202,6 +203,8 @@ PLANTS = [
     ("includes", "core/world/a.hpp", '#include "core/world/../base/b.hpp"\n', "does not name its room"),
     ("includes", "core/world/a.cpp", "#include <vector>\n", "headers of flashed code"),
     ("includes", "core/world/a.cpp", "#include <iostream>\n", "headers of flashed code"),
+    ("includes", "core/cost/a.hpp", '#include "firmware/vehicles/a/b.hpp"\n', "may not know firmware/vehicles"),
+    ("includes", "firmware/vehicles/a/b.hpp", '#include "core/avoid/b.hpp"\n', "may not know core/avoid"),
     ("includes", "hal/a.hpp", '#include "core/base/time.hpp"\n', "may not know core/base"),
     ("includes", "hal/a.hpp", "#include <termios.h>\n", "headers of flashed code"),
     ("includes", "hal/linux/a.hpp", '#include "hal/memory/b.hpp"\n', "may not know hal/memory"),
@@ -227,6 +230,7 @@ CLEAN = [
     ("core/avoid/a.hpp", LICENCE + '#include "core/reach/b.hpp"\n#include "core/capacity.hpp"\n#include <cmath>\n'),
     ("core/reach/a.cpp", LICENCE + '#include "core/cost/b.hpp"\n#include <Eigen/Core>\n// #include "hal/c.hpp"\n'),
     ("hal/linux/a.cpp", LICENCE + '#include "hal/linux/a.hpp"\n#include "hal/clock.hpp"\n#include <termios.h>\n'),
+    ("firmware/vehicles/a/b.hpp", LICENCE + '#include "core/reach/c.hpp"\n#include <array>\n'),
     ("firmware/app/a.hpp", LICENCE + '#include "hal/clock.hpp"\n#include "core/avoid/b.hpp"\n'),
     ("firmware/linux/a.cpp", LICENCE + '#include "hal/linux/a.hpp"\n#include "firmware/app/b.hpp"\n#include <vector>\n'),
     ("tests/unit/a.cpp", LICENCE + '#include "tests/unit/b.hpp"\n#include "core/base/c.hpp"\n#include <vector>\n'),

@@ -73,6 +73,6 @@ struct TableErrors {
 
 /// The tables as a header: `inline constexpr Tables k<Identifier>` in jink::cost::tables. `source` names the vehicle
 /// file.
-[[nodiscard]] std::string tables_header(MadeTables& made, const std::string& source);
+[[nodiscard]] std::string tables_header(MadeTables& made);
 
 }  // namespace jink::host

@@ -55,7 +55,7 @@ void build_reach(const ReachOptions& options)
                     rb::bytes_of(view), static_cast<unsigned>(view.checksum));
     }
     if (!options.out.empty()) {
-        write_whole(kBuildReach, options.out, reach_sets_header(built, fs::path(options.file).filename().string()));
+        write_whole(kBuildReach, options.out, reach_sets_header(built));
     }
 }
 

@@ -10,7 +10,7 @@
 namespace jink::host {
 
 /// `inline constexpr VehicleSets k<Vehicle>Sets`, or k<Vehicle>ReducedSets, in jink::reach, with its tables before it.
-/// `source` names the vehicle file, whose vehicle has a name that identifier_of takes.
-[[nodiscard]] std::string reach_sets_header(const reach::build::BuiltVehicle& built, const std::string& source);
+/// The vehicle has a name that identifier_of takes.
+[[nodiscard]] std::string reach_sets_header(const reach::build::BuiltVehicle& built);
 
 }  // namespace jink::host

@@ -71,8 +71,7 @@ void run_tables(const TablesOptions& options)
         throw CLI::RuntimeError(kExitStop);
     }
     if (!options.out.empty()) {
-        write_whole("tables", options.out,
-                    tables_header(made, std::filesystem::path(options.file).filename().string()));
+        write_whole("tables", options.out, tables_header(made));
     }
 }
 

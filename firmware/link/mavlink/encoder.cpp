@@ -56,27 +56,4 @@ std::size_t encode_v2(const std::byte* object, const Layout& layout, Header head
     return size;
 }
 
-std::size_t encode_v1(const std::byte* object, const Layout& layout, Header header, std::span<std::byte> out) noexcept
-{
-    const std::size_t length = layout.info.min_length;
-    const std::size_t size = kHeaderV1 + length + kChecksumSize;
-    if (layout.info.id > 0xFFU || size > out.size()) {
-        return 0;
-    }
-    std::array<std::byte, kMaxPayload> payload;
-    pack(object, layout.fields, payload);
-    const std::array<std::byte, kHeaderV1> head{
-        kStartV1,
-        static_cast<std::byte>(length),
-        std::byte{header.sequence},
-        std::byte{header.system_id},
-        std::byte{header.component_id},
-        static_cast<std::byte>(layout.info.id),
-    };
-    std::copy(head.begin(), head.end(), out.begin());
-    std::copy_n(payload.begin(), length, out.subspan(kHeaderV1).begin());
-    close(out.first(size), layout.info.crc_extra);
-    return size;
-}
-
 }  // namespace jink::link::mavlink

@@ -18,10 +18,6 @@ struct Layout {
 /// Writes a v2 frame of the structure at `object`; signed when `signing` is given. See `encode`.
 [[nodiscard]] std::size_t encode_v2(const std::byte* object, const Layout& layout, Header header, Signing* signing,
                                     std::span<std::byte> out) noexcept;
-/// Writes a v1 frame of the structure at `object`. See `encode_legacy`.
-[[nodiscard]] std::size_t encode_v1(const std::byte* object, const Layout& layout, Header header,
-                                    std::span<std::byte> out) noexcept;
-
 /// Writes `message` as a v2 frame: trailing zeros of the payload cut, its first byte never.
 ///
 /// @param out  kMaxFrame bytes hold any frame
@@ -39,15 +35,6 @@ template <Message M>
                                         std::span<std::byte> out) noexcept
 {
     return encode_v2(reinterpret_cast<const std::byte*>(&message), {M::kInfo, M::kFields}, header, &signing, out);
-}
-
-/// Writes `message` as a v1 frame for a peer that speaks no v2: base fields only, nothing cut.
-///
-/// @return bytes written; 0, with `out` untouched, when it is too small or the id does not fit into v1's one byte
-template <Message M>
-[[nodiscard]] std::size_t encode_legacy(const M& message, Header header, std::span<std::byte> out) noexcept
-{
-    return encode_v1(reinterpret_cast<const std::byte*>(&message), {M::kInfo, M::kFields}, header, out);
 }
 
 }  // namespace jink::link::mavlink

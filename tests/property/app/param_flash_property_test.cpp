@@ -8,7 +8,7 @@
 
 #include "core/base/random.hpp"
 #include "firmware/app/param_flash.hpp"
-#include "hal/memory/memory_flash.hpp"
+#include "tests/memory_flash.hpp"
 
 namespace jink::app {
 namespace {

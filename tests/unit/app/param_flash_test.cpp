@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/param_flash.hpp"
-#include "hal/memory/memory_flash.hpp"
+#include "tests/memory_flash.hpp"
 
 namespace jink::app {
 namespace {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/param_keeper.hpp"
-#include "hal/memory/memory_flash.hpp"
+#include "tests/memory_flash.hpp"
 #include "tests/unit/app/flight.hpp"
 #include "tests/unit/app/step_bench.hpp"
 

@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/cost/tables_default.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/reach_sets.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
 #include "tests/numbers.hpp"
 
 namespace jink::app {

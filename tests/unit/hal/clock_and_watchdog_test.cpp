@@ -6,34 +6,9 @@
 #include "hal/linux/system_clock.hpp"
 #include "hal/memory/counting_watchdog.hpp"
 #include "hal/memory/manual_clock.hpp"
-#include "hal/software_watchdog.hpp"
 
 namespace jink::hal {
 namespace {
-
-TEST(SoftwareWatchdog, ReportsGapsThatAreTooLong)
-{
-    ManualClock clock(1'000);
-    SoftwareWatchdog watchdog(clock, 100);
-    clock.advance(1'000'000);
-    EXPECT_FALSE(watchdog.starving());  // not armed before the first feed
-    watchdog.feed();
-    clock.advance(100);
-    EXPECT_FALSE(watchdog.starving());
-    watchdog.feed();
-    EXPECT_EQ(watchdog.misses(), 0U);
-    clock.advance(101);
-    EXPECT_TRUE(watchdog.starving());
-    EXPECT_EQ(watchdog.misses(), 0U);
-    watchdog.feed();
-    EXPECT_FALSE(watchdog.starving());
-    EXPECT_EQ(watchdog.misses(), 1U);
-    EXPECT_EQ(watchdog.longest_gap_us(), 101);
-    clock.advance(5);
-    watchdog.feed();
-    EXPECT_EQ(watchdog.longest_gap_us(), 101);
-    EXPECT_EQ(watchdog.feeds(), 4U);
-}
 
 TEST(CountingWatchdog, CountsFeeds)
 {

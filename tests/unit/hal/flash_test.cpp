@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/random.hpp"
-#include "hal/memory/memory_flash.hpp"
+#include "tests/memory_flash.hpp"
 
 namespace jink::hal {
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstddef>
@@ -12,6 +13,7 @@
 
 #include "core/base/random.hpp"
 #include "firmware/link/mavlink/catalogue.hpp"
+#include "firmware/link/mavlink/checksum.hpp"
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/link/mavlink/parser.hpp"
@@ -91,6 +93,35 @@ Bytes frame_of(const M& message, Header header = {1, 196, 0})
     Bytes bytes(kMaxFrame);
     bytes.resize(encode(message, header, bytes));
     return bytes;
+}
+
+/// Writes `message` as a v1 frame, which only peers send: base fields alone, nothing cut.
+///
+/// @return bytes written; 0, with `out` untouched, when it is too small or the id does not fit into v1's one byte
+template <Message M>
+std::size_t encode_legacy(const M& message, Header header, std::span<std::byte> out)
+{
+    const std::size_t length = M::kInfo.min_length;
+    const std::size_t size = kHeaderV1 + length + kChecksumSize;
+    if (M::kInfo.id > 0xFFU || size > out.size()) {
+        return 0;
+    }
+    std::array<std::byte, kMaxPayload> payload;
+    pack(reinterpret_cast<const std::byte*>(&message), M::kFields, payload);
+    const std::array<std::byte, kHeaderV1> head{kStartV1,
+                                                static_cast<std::byte>(length),
+                                                std::byte{header.sequence},
+                                                std::byte{header.system_id},
+                                                std::byte{header.component_id},
+                                                static_cast<std::byte>(M::kInfo.id)};
+    std::copy(head.begin(), head.end(), out.begin());
+    std::copy_n(payload.begin(), length, out.subspan(kHeaderV1).begin());
+    Checksum checksum;
+    checksum.add(out.subspan(1, size - 1 - kChecksumSize));
+    checksum.add(std::byte{M::kInfo.crc_extra});
+    out[size - 2] = static_cast<std::byte>(checksum.value() & 0xFFU);
+    out[size - 1] = static_cast<std::byte>(checksum.value() >> 8U);
+    return size;
 }
 
 template <Message M>

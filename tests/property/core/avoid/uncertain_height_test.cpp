@@ -8,7 +8,7 @@
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
-#include "core/reach/sets_default.hpp"
+#include "firmware/vehicles/default/reach_sets.hpp"
 #include "tests/property/core/avoid/drawn_manoeuvre.hpp"
 
 namespace jink::avoid {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/cost/tables_default.hpp"
-#include "core/cost/tables_uav2.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
+#include "firmware/vehicles/uav2/cost_tables.hpp"
 #include "tests/oracle/cost_oracle.hpp"
 
 namespace jink::cost::tables {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/cost/tables_default.hpp"
-#include "core/cost/tables_uav2.hpp"
 #include "core/geometric/planner.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
+#include "firmware/vehicles/uav2/cost_tables.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"
 
 namespace jink::geometric {

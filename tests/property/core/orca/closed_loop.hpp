@@ -9,6 +9,7 @@
 
 #include "core/base/random.hpp"
 #include "tests/property/core/orca/closed_loop_scene.hpp"
+#include "tests/reference/orca/broadcast.hpp"
 
 // Vehicles that each fly by a VelocityFilter of their own, closed over a plant in double precision with delays, and a
 // judge that shares nothing with the filter: distances of centres across and in height, and of obstacles by Wolfe's

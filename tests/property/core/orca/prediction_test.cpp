@@ -116,28 +116,5 @@ TEST(PredictionLaws, TwoPartsAreOneWhole)
     }
 }
 
-/// A lost neighbour's ball only grows, and holds it wherever it went while the limit of 3 m is not reached.
-TEST(PredictionLaws, TheInflatedBallHoldsANeighbourThatManoeuvres)
-{
-    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
-        Random random(seed);
-        Broadcast heard;
-        heard.state.velocity = random_vector(random, 0.8F);
-        const AgeRules rules{1.0F, 3.0F, random.uniform(0.0F, 0.2F), 100.0F};
-        Eigen::Vector3d position = Eigen::Vector3d::Zero();
-        Eigen::Vector3d velocity =
-            heard.state.velocity.cast<double>() +
-            random_vector(random, 1.0F).normalized().cast<double>() * static_cast<double>(rules.velocity_error);
-        const Eigen::Vector3d acceleration = random_vector(random, 1.0F).normalized().cast<double>() * 2.0;
-        for (int ms = 0; ms < 3000; ms += 10) {
-            const PredictedNeighbour n = predict_neighbour(heard, TimePoint{1000 * std::int64_t{ms}}, rules, 1000.0F);
-            ASSERT_LE((position - n.position.cast<double>()).norm(), static_cast<double>(n.inflation) + 1e-4)
-                << "seed " << seed << ", " << ms << " ms";
-            position += velocity * 0.01 + 0.5 * acceleration * 1e-4;
-            velocity += acceleration * 0.01;
-        }
-    }
-}
-
 }  // namespace
 }  // namespace jink::orca

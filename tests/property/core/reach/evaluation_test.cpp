@@ -8,6 +8,7 @@
 
 #include "core/base/random.hpp"
 #include "core/reach/evaluation.hpp"
+#include "tests/unit/core/reach/choose.hpp"
 
 namespace jink::reach {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "core/base/random.hpp"
 #include "core/reach/cell_balls.hpp"
-#include "core/reach/intruder.hpp"
+#include "tests/reference/reach/intruder.hpp"
 
 namespace jink::reach {
 namespace {

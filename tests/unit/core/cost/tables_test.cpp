@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "core/cost/tables_default.hpp"
-#include "core/cost/tables_uav2.hpp"
 #include "core/geometric/offsets.hpp"
 #include "core/geometric/planner.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
+#include "firmware/vehicles/uav2/cost_tables.hpp"
 #include "tests/numbers.hpp"
 
 namespace jink::cost::tables {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/cost/tables_default.hpp"
+#include "firmware/vehicles/default/cost_tables.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
 namespace jink::geometric {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Half-spaces of pairs within their regions, which vehicles are chosen, and the monitor's counts, at their edges.
+// Half-spaces of pairs within their regions, and which vehicles are chosen, at their edges.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/orca/agent_plane.hpp"
-#include "core/orca/monitor.hpp"
 #include "core/orca/neighbours.hpp"
 
 namespace jink::orca {
@@ -205,105 +204,6 @@ TEST(NeighbourEdges, TheCapKeepsClearOfWhoIsLeftOut)
     flat.half_width = 4.0F;
     flat.half_height = 1.0F;
     EXPECT_FLOAT_EQ(cap(flat), 1.0F) << "90 m in 10 s, by a third, less 2 m/s";
-}
-
-/// Stop distances of 1 m, so that shares are metres.
-class MonitorEdges : public ::testing::Test {
-protected:
-    static MonitorSettings metres(std::uint8_t samples = 1)
-    {
-        MonitorSettings s;
-        s.stop_horizontal = s.stop_vertical = s.obstacle_horizontal = s.obstacle_vertical = 1.0F;
-        s.samples = samples;
-        return s;
-    }
-    static bool vehicle_trips(const Vec3& at)
-    {
-        Monitor monitor(metres());
-        const MonitoredVehicle vehicle{3, at};
-        return monitor.update({1}, Vec3::Zero(), {&vehicle, 1}, {}).tripped;
-    }
-    static bool piece_trips(const Vec3& at)
-    {
-        Monitor monitor(metres());
-        const MonitoredPiece piece{3, at};
-        return monitor.update({1}, Vec3::Zero(), {}, {&piece, 1}).tripped;
-    }
-};
-
-TEST_F(MonitorEdges, TheRimOfTheCylinderIsNotInIt)
-{
-    EXPECT_TRUE(vehicle_trips({0.999F, 0, 0.999F}));
-    EXPECT_FALSE(vehicle_trips({1.0F, 0, 0}));
-    EXPECT_FALSE(vehicle_trips({0, 0, 1.0F}));
-    EXPECT_FALSE(vehicle_trips({1.1F, 0, 0.3F})) << "only of obstacles more than the point may be in it";
-    EXPECT_TRUE(piece_trips({1.1F, 0, 0.3F}));
-    EXPECT_FALSE(piece_trips({1.0F, 0, 0}));
-    EXPECT_FALSE(piece_trips({0, 0, 1.0F}));
-    EXPECT_FALSE(piece_trips({1.0F, 0, 1.0F}));
-    EXPECT_TRUE(piece_trips(Vec3::Zero()));
-}
-
-TEST_F(MonitorEdges, AnOwnPlaceThatIsNoNumberIsOneBadInput)
-{
-    Monitor monitor(metres());
-    const Vec3 nowhere(0, std::numeric_limits<float>::quiet_NaN(), 0);
-    const std::vector<MonitoredVehicle> vehicles(3, {1, Vec3::Zero()});
-    EXPECT_FALSE(monitor.update({1}, nowhere, vehicles, {}).tripped);
-    EXPECT_EQ(monitor.bad_inputs(), 1U);
-    EXPECT_FALSE(monitor.update({2}, nowhere, {}, {}).tripped);
-    EXPECT_EQ(monitor.bad_inputs(), 2U);
-    EXPECT_EQ(monitor.records(), 2U);
-}
-
-TEST_F(MonitorEdges, ATripIsOneUntilItIsAcknowledged)
-{
-    Monitor monitor(metres());
-    const std::vector<MonitoredVehicle> two{{7, {0.5F, 0, 0}}, {8, {0.4F, 0, 0}}};
-    EXPECT_TRUE(monitor.update({10}, Vec3::Zero(), two, {}).just_now);
-    const MonitorReport later = monitor.update({20}, Vec3::Zero(), two, {});
-    EXPECT_TRUE(later.tripped);
-    EXPECT_FALSE(later.just_now);
-    EXPECT_EQ(monitor.trips(), 1U);
-    EXPECT_EQ(monitor.trip().stamp.us, 10);
-    EXPECT_EQ(monitor.trip().id, 7U) << "the first that was lost";
-    EXPECT_EQ(later.id, 8U) << "the tightest";
-    monitor.acknowledge();
-    EXPECT_FALSE(monitor.tripped());
-    EXPECT_TRUE(monitor.update({30}, Vec3::Zero(), two, {}).just_now);
-    EXPECT_EQ(monitor.trips(), 2U);
-}
-
-TEST_F(MonitorEdges, AVehicleAndAPieceOfOneIdAreCountedApart)
-{
-    Monitor monitor(metres(2));
-    const MonitoredVehicle vehicle{3, {0.5F, 0, 0}};
-    const MonitoredPiece piece{3, {0, 0.5F, 0}};
-    EXPECT_FALSE(monitor.update({1}, Vec3::Zero(), {&vehicle, 1}, {}).tripped);
-    EXPECT_FALSE(monitor.update({2}, Vec3::Zero(), {}, {&piece, 1}).tripped);
-    EXPECT_TRUE(monitor.update({3}, Vec3::Zero(), {}, {&piece, 1}).tripped);
-    EXPECT_EQ(monitor.trip().subject, Subject::obstacle);
-}
-
-TEST_F(MonitorEdges, SamplesAreCountedToTheirNumber)
-{
-    Monitor monitor(metres(200));
-    const MonitoredVehicle vehicle{3, {0.5F, 0, 0}};
-    for (int i = 1; i < 200; ++i) {
-        ASSERT_FALSE(monitor.update({i}, Vec3::Zero(), {&vehicle, 1}, {}).tripped) << i;
-    }
-    EXPECT_TRUE(monitor.update({200}, Vec3::Zero(), {&vehicle, 1}, {}).tripped);
-}
-
-TEST_F(MonitorEdges, TheNearestPieceIsRecordedWhateverTheOrder)
-{
-    Monitor monitor(metres());
-    const std::vector<MonitoredPiece> pieces{{1, {3, 0, 0}}, {2, {0, 0, 2}}, {3, {5, 0, 0}}};
-    monitor.update({1}, Vec3::Zero(), {}, pieces);
-    EXPECT_EQ(monitor.record(0).nearest_obstacle, 2.0F);
-    EXPECT_EQ(monitor.record(0).id, 2U);
-    const std::vector<MonitoredVehicle> same{{4, {3, 0, 0}}, {5, {0, 3, 0}}};
-    EXPECT_EQ(monitor.update({2}, Vec3::Zero(), same, {}).id, 4U) << "of two as near the first";
 }
 
 }  // namespace

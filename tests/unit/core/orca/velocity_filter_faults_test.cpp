@@ -195,41 +195,6 @@ TEST(VelocityFilterFaults, OfAStaleNeighbourNothingIsExpected)
     EXPECT_GT(commanded(1.01F), 1.5F * commanded(0.0F));
 }
 
-/// Its ball grows where it was last until it is beyond all reach, and then it is gone (G-ORCA 11.4).
-TEST(VelocityFilterFaults, ALostNeighbourIsKeptClearOfUntilItIsGone)
-{
-    Broadcast heard;
-    heard.state.stamp = {0};
-    heard.state.position = {6, 0, 0};
-    heard.state.velocity = {-0.5F, 0, 0};
-    const AgeRules rules;
-    const float reach = 1.2F + 10.0F * 3.0F;
-    Freshness freshness = Freshness::fresh;
-    float slowest = 1e9F;
-    for (int second = 0; freshness != Freshness::gone; ++second) {
-        ASSERT_LT(second, 60);
-        const PredictedNeighbour there = predict_neighbour(heard, {1'000'000LL * second}, rules, reach);
-        freshness = there.freshness;
-        Flown flown({}, {1, 0, 0});
-        if (freshness != Freshness::gone) {
-            Neighbour n = other(there.position, there.velocity);
-            n.half_width += there.inflation;
-            n.half_height += there.inflation;
-            n.cooperative = freshness == Freshness::fresh;
-            flown.neighbours = {n};
-        }
-        const Decision decision = flown.ticks(40);
-        if (freshness == Freshness::lost) {
-            EXPECT_EQ(there.velocity, Vec3::Zero());
-            EXPECT_LT(decision.command.x(), 0.5F) << second;
-            slowest = std::min(slowest, decision.command.x());
-        } else if (freshness == Freshness::gone) {
-            expect_near(decision.command, {1, 0, 0}, 1e-5F);
-        }
-    }
-    EXPECT_LT(slowest, 0.0F);  // it backs away from what may be there
-}
-
 TEST(VelocityFilterFaults, CoincidentVehiclesPartUpAndDown)
 {
     for (const std::uint32_t own : {1U, 9U}) {

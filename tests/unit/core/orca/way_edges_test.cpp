@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways along obstacles, neighbours that are lost, and levels that give way one after the other, at their edges.
+// Ways along obstacles, and levels that give way one after the other, at their edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "core/orca/obstacle_way.hpp"
-#include "core/orca/prediction.hpp"
 #include "core/orca/program.hpp"
 
 namespace jink::orca {
@@ -69,30 +68,6 @@ TEST_F(WayEdges, WhatWasNotLookedAtIsNotClear)
     EXPECT_FALSE(way.clear);
     EXPECT_TRUE(way.bounded);
     EXPECT_LE(way.clear_until, whole.clear_until);
-}
-
-TEST(LostNeighbours, TheBoundHoldsUntilItIsLostAndItsSpeedFromThenOn)
-{
-    AgeRules rules;
-    rules.lost = 3.0F;
-    EXPECT_FLOAT_EQ(inflation_of(2.0F, 1.5F, 0.0F, rules), 0.2F);
-    EXPECT_FLOAT_EQ(inflation_of(3.0F, 1.5F, 0.0F, rules), 0.3F);
-    EXPECT_FLOAT_EQ(inflation_of(10.0F, 1.5F, 0.0F, rules), 0.3F + 7.0F * 1.5F);
-    EXPECT_FLOAT_EQ(inflation_of(10.0F, 1.5F, 2.0F, rules), 3.0F + 7.0F * 1.5F);
-    EXPECT_EQ(inflation_of(-1.0F, 1.5F, 2.0F, rules), 0.0F);
-}
-
-TEST(LostNeighbours, OneIsGoneWhenItsBallIsLargerThanAllThatIsLookedAt)
-{
-    Broadcast heard;
-    heard.state.stamp = {0};
-    const AgeRules rules;
-    const TimePoint at{10'000'000};
-    const float ball = inflation_of(10.0F, heard.max_speed, heard.max_acceleration, rules);
-    EXPECT_EQ(predict_neighbour(heard, at, rules, ball).freshness, Freshness::lost);
-    EXPECT_EQ(predict_neighbour(heard, at, rules, std::nextafter(ball, 0.0F)).freshness, Freshness::gone);
-    EXPECT_EQ(predict_neighbour(heard, {3'000'000}, rules, 0.0F).freshness, Freshness::stale) << "lost is older";
-    EXPECT_EQ(predict_neighbour(heard, {1'000'000}, rules, 0.0F).freshness, Freshness::fresh) << "stale is older";
 }
 
 /// Two half-spaces along an axis: at least `low`, at most `high`.

@@ -6,6 +6,7 @@
 
 #include <limits>
 
+#include "tests/unit/core/reach/choose.hpp"
 #include "tests/unit/core/reach/small_tree.hpp"
 
 namespace jink::reach {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ratings from scans and their fusion: figures of the reach-set specification, section 13.1, and of the avoidance
-// specification, section 4.
+// Ratings from scans: figures of the reach-set specification, section 13.1.
 #include "core/reach/lidar_scan.hpp"
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
-
-#include "core/reach/fusion.hpp"
 
 namespace jink::reach {
 namespace {
@@ -60,9 +58,6 @@ TEST(LidarScans, VisibilityFallsBehindWhatStopsRays)
     expect({1.0F, 0.75F, 0.60F}, {3, 5, 10});
     hit(scan, grid, {6, 3, 2}, 4);
     expect({1.0F, 0.75F, 0.60F, 0.40F}, {3, 5, 7, 10});
-    scan.begin();
-    scan.add_invalid(3, 2);
-    expect({0.95F}, {10});
 }
 
 /// The same plate at 5 m and at 10 m: a quarter of the hits, the same rating but for whole rays.
@@ -112,88 +107,6 @@ TEST(LidarScans, EveryPointIsAnsweredFor)
     }
     EXPECT_EQ(scan.hindrance({4, 3, 2}), 1.0F);
     EXPECT_EQ(scan.obstacle({4, 3, 2}, 0.1F), 1.0F);
-}
-
-TEST(Fusion, CheckValues)
-{
-    CellRating intruders;
-    intruders.add_intruder(0.2F);
-    intruders.add_intruder(0.5F);
-    EXPECT_NEAR(intruders.intruder(), 0.6F, 1e-6F);
-
-    CellRating cell;
-    cell.add_sensor(0.1F, 0.3F);
-    cell.add_sensor(0.5F, 0.8F);
-    EXPECT_NEAR(cell.visibility(), 0.5F, 1e-6F);
-    EXPECT_NEAR(cell.obstacle(), 0.4F, 1e-6F);
-    cell.add_map(0.6F);
-    EXPECT_NEAR(cell.map(), 0.3F, 1e-6F);
-    cell.add_intruder(0.2F);
-    cell.add_intruder(0.5F);
-    EXPECT_NEAR(cell.threat(), 0.6F, 1e-6F);
-}
-
-/// Figure 6.13: what the chart says counts where sensors do not see.
-TEST(Fusion, ChartsCountWhereNobodySees)
-{
-    CellRating seen;
-    seen.add_sensor(0.0F, 0.0F);
-    seen.add_map(1.0F);
-    EXPECT_EQ(seen.map(), 0.0F) << "charted and visible, but not there";
-    EXPECT_EQ(seen.level(), kFree);
-    CellRating hidden;
-    hidden.add_sensor(0.6F, 0.0F);
-    hidden.add_map(0.9F);
-    EXPECT_NEAR(hidden.map(), 0.54F, 1e-6F);
-    CellRating found;
-    found.add_sensor(0.0F, 1.0F);
-    found.add_map(1.0F);
-    EXPECT_EQ(found.threat(), 1.0F);
-}
-
-/// Table 6.5, at the threshold itself: the threat's side wins.
-TEST(Fusion, ThresholdsAreThoseOfTheTable)
-{
-    const auto seen = [] {
-        CellRating cell;
-        cell.add_sensor(0.0F, 0.0F);
-        return cell;
-    };
-    const float above = std::nextafter(kThreshold, 1.0F);
-    const float below = std::nextafter(kThreshold, 0.0F);
-    EXPECT_TRUE(seen().is_visible());
-    CellRating cell;
-    cell.add_sensor(kThreshold, 0.0F);
-    EXPECT_TRUE(cell.is_visible());
-    cell.add_sensor(above, 0.0F);
-    EXPECT_FALSE(cell.is_visible());
-    EXPECT_FALSE(CellRating().is_visible()) << "no sensor looks there";
-    const auto level = [&](auto&& add) {
-        CellRating c = seen();
-        add(c);
-        return c.level();
-    };
-    EXPECT_EQ(level([](CellRating&) {}), kFree);
-    EXPECT_EQ(level([](CellRating& c) { c.add_sensor(0.0F, kThreshold); }), 0);
-    EXPECT_EQ(level([&](CellRating& c) { c.add_sensor(0.0F, below); }), kFree);
-    EXPECT_EQ(level([](CellRating& c) { c.add_intruder(1.0F); }), 1);
-    EXPECT_EQ(level([](CellRating& c) { c.add_hard(kThreshold); }), 2);
-    EXPECT_EQ(level([&](CellRating& c) { c.add_hard(below); }), kFree);
-    EXPECT_EQ(level([](CellRating& c) { c.add_soft(kThreshold); }), 3);
-    EXPECT_EQ(level([&](CellRating& c) { c.add_soft(below); }), kFree);
-    EXPECT_EQ(level([](CellRating& c) {
-                  c.add_soft(1.0F);
-                  c.add_hard(1.0F);
-                  c.add_intruder(1.0F);
-              }),
-              1)
-        << "the first run in which it is not free";
-    EXPECT_EQ(CellRating().level(), 0);
-    EXPECT_EQ(CellRating().level(true), kFree) << "the last resort";
-    CellRating charted;
-    charted.add_sensor(1.0F, 0.5F);
-    EXPECT_EQ(charted.obstacle(), 0.0F) << "damped";
-    EXPECT_EQ(charted.level(true), 0) << "but in the way all the same";
 }
 
 }  // namespace

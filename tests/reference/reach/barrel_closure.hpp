@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "core/reach/barrel.hpp"
+#include "core/reach/grid.hpp"
+
+// Cells rated by closed airspace, as the author does (Gomola 6.5.3, 6.6.5). The planner checks movements instead.
+
+namespace jink::reach {
+
+enum class Closure : std::uint8_t { none, soft, hard };
+
+/// How a level grid lies in the world.
+struct GridPose {
+    Vec3 position = Vec3::Zero();  ///< of the vehicle [m]
+    float yaw = 0.0F;              ///< of the grid's x axis, counter-clockwise from east [rad]
+    float unit = 1.0F;             ///< length of the grid's unit [m]
+};
+
+/// Heights of a cell of a level grid, relative to the vehicle [grid's unit]: exact. O(1).
+struct Heights {
+    float bottom = 0.0F;
+    float top = 0.0F;
+};
+[[nodiscard]] Heights heights_of(const Grid<float>& grid, const CellPlace& place) noexcept;
+
+/// Level distance of a point from what a cell of a level grid covers, seen from above, an annular sector: exact. O(1).
+/// @param point  relative to the vehicle, in the grid's axes [grid's unit]
+[[nodiscard]] float level_distance(const Grid<float>& grid, const CellPlace& place, const Vec2& point) noexcept;
+
+/// Body, margin or nothing, for a cell that the vehicle is in from `from` until `to` [s]; heights that touch overlap,
+/// distances that are equal count. Never less than the truth: while the barrel moves the cell is taken as the circle
+/// about it; at one instant, `from` equal to `to`, or when the barrel stands, the distance is exact. O(1).
+[[nodiscard]] Closure closure_of(const Grid<float>& grid, const CellPlace& place, const GridPose& pose,
+                                 const Barrel& barrel, float from, float to) noexcept;
+
+}  // namespace jink::reach

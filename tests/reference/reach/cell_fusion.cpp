@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/reference/reach/cell_fusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jink::reach {
+namespace {
+
+// Work units.
+constexpr std::uint32_t kUnitsStay = 6;        // sample of a node, when times of cells are found
+constexpr std::uint32_t kUnitsCellBounds = 8;  // cell against the bounds of the airspace
+constexpr std::uint32_t kUnitsCellTrack = 6;   // and a track
+constexpr std::uint32_t kUnitsCellSolid = 30;  // or an obstacle
+
+void lower(Level& level, AvoidanceRun run) noexcept { level = std::min(level, static_cast<Level>(run)); }
+
+/// A direction of the world in the set's frame.
+Vec3 turned(const Placed& placed, const Vec3& world) noexcept
+{
+    return placed.to_set(placed.origin + placed.unit * world);
+}
+
+}  // namespace
+
+MapBody body_of(const geometry::Shape& shape, const Placed& placed, float about, float margin) noexcept
+{
+    MapBody body;
+    Vec3 centre = shape.centre;
+    Vec3 half = Vec3::Zero();
+    float rounding = about;
+    switch (shape.kind) {
+    case geometry::ShapeKind::sphere: rounding += shape.radius; break;
+    case geometry::ShapeKind::box: half = shape.half; break;
+    case geometry::ShapeKind::capsule:
+        half = Vec3(0.0F, 0.0F, shape.half.z());
+        rounding += shape.radius;
+        break;
+    case geometry::ShapeKind::cylinder: half = Vec3(shape.radius, shape.radius, shape.half.z()); break;
+    case geometry::ShapeKind::hull: {
+        Vec3 low = Vec3::Zero();
+        Vec3 high = Vec3::Zero();
+        for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
+            low = i == 0 ? shape.vertices[0] : Vec3(low.cwiseMin(shape.vertices[i]));
+            high = i == 0 ? shape.vertices[0] : Vec3(high.cwiseMax(shape.vertices[i]));
+        }
+        centre += shape.axes * (0.5F * (low + high));
+        half = 0.5F * (high - low);
+        break;
+    }
+    }
+    body.centre = placed.to_set(centre);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+        body.axes.col(i) = turned(placed, shape.axes.col(i));
+    }
+    body.half = half / placed.unit;
+    body.rounding = rounding / placed.unit;
+    body.margin = margin / placed.unit;
+    return body;
+}
+
+bool CellFusion::find_times(const Placed& placed, WorkBudget& budget) noexcept
+{
+    const ReachSet& set = *placed.set;
+    if (times_of_ == &set && period_ == placed.period) {
+        return true;
+    }
+    if (!budget.spend(static_cast<std::uint32_t>(set.nodes() * set.samples) * kUnitsStay)) {
+        return false;
+    }
+    cell_times(set, placed.period, {times_.data(), set.grid.cells()});
+    times_of_ = &set;
+    period_ = placed.period;
+    return true;
+}
+
+void CellFusion::rate_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
+                            const CellBalls& balls, Seconds lead, std::span<Level> blocks) const noexcept
+{
+    const ReachSet& set = *placed.set;
+    const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
+    Intruder intruder;
+    intruder.position =
+        placed.to_set(world::nearest_in_height(track, track.position + track.velocity * lead, placed.origin.z()));
+    intruder.velocity = turned(placed, track.velocity) / placed.unit;
+    intruder.radius =
+        (world::growth_of(situation, track, lead).at(longest) + situation.limits.half_extents.norm()) / placed.unit;
+    intruder.horizontal = rule_.horizontal;
+    intruder.vertical = rule_.vertical;
+    intruder.speed_share = 0.0F;  // its growth has the error of its speed
+    const CombinedModel model(set.grid, intruder, rule_.models, rule_.clock);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const auto cell = static_cast<CellIndex>(i);
+        const CellPlace place = set.grid.place(cell);
+        const CellBall ball{balls.centre(place), balls.radius(place.layer, place.row)};
+        const std::optional<Stay> vehicle = is_never(times_[i]) ? std::nullopt : std::optional(times_[i]);
+        if (vehicle && model.in(cell, ball, vehicle).rate >= kThreshold) {
+            lower(blocks[i], AvoidanceRun::intruders);
+        }
+    }
+}
+
+void CellFusion::rate_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+                               std::span<Level> blocks) const noexcept
+{
+    const Grid<float>& grid = placed.set->grid;
+    const float about = situation.limits.half_extents.norm() + world::own_uncertainty(situation);
+    const MapBody body = body_of(shape, placed, about, rule_.room);
+    if (body.centre.norm() - body.half.norm() - body.rounding - body.margin > grid.distance()) {
+        return;
+    }
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const CellPlace place = grid.place(static_cast<CellIndex>(i));
+        const Closure closure = closure_of(grid, place, box_of(grid, place), body);
+        if (closure == Closure::hard) {
+            lower(blocks[i], AvoidanceRun::obstacles);
+        } else if (closure == Closure::soft) {
+            lower(blocks[i], AvoidanceRun::soft_constraints);
+        }
+    }
+}
+
+void CellFusion::rate_airspace(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                               std::span<Level> blocks) noexcept
+{
+    const world::Airspace& air = situation.airspace;
+    const Vec3& half = situation.limits.half_extents;
+    const float extra = world::own_uncertainty(situation);
+    const Grid<float>& grid = placed.set->grid;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const CellPlace place = grid.place(static_cast<CellIndex>(i));
+        const Heights heights = heights_of(grid, place);
+        const float bottom = placed.unit * (placed.upside_down ? -heights.top : heights.bottom) + placed.origin.z();
+        const float top = placed.unit * (placed.upside_down ? -heights.bottom : heights.top) + placed.origin.z();
+        const Vec3 centre = placed.to_world(balls.centre(place));
+        const float reach = placed.unit * balls.radius(place.layer, place.row);
+        const bool passes = (air.has_floor && bottom < air.floor + half.z() + extra) ||
+                            (air.has_ceiling && top > air.ceiling - half.z() - extra) ||
+                            (air.has_keep_in && (centre - air.home).head<2>().norm() + reach >
+                                                    air.keep_in_radius - std::hypot(half.x(), half.y()) - extra);
+        if (passes) {
+            lower(blocks[i], AvoidanceRun::hard_constraints);
+        }
+    }
+}
+
+RateStatus CellFusion::rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+                            Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept
+{
+    const auto cells = static_cast<std::uint32_t>(blocks.size());
+    const auto tracks = static_cast<std::uint32_t>(situation.tracks.size());
+    const auto obstacles = static_cast<std::uint32_t>(situation.obstacles.size());
+    if (!find_times(placed, budget) ||
+        !budget.spend(cells * (kUnitsCellBounds + tracks * kUnitsCellTrack + obstacles * kUnitsCellSolid))) {
+        return RateStatus::budget_spent;
+    }
+    for (const world::Track& track : situation.tracks) {
+        rate_track(situation, track, placed, balls, lead, blocks);
+    }
+    for (const world::Obstacle& obstacle : situation.obstacles) {
+        rate_obstacle(situation, obstacle.shape, placed, blocks);
+    }
+    rate_airspace(situation, placed, balls, blocks);
+    return RateStatus::rated;
+}
+
+}  // namespace jink::reach
