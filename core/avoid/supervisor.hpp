@@ -5,7 +5,7 @@
 #include <tuple>
 #include <type_traits>
 
-#include "core/avoid/rungs.hpp"
+#include "core/avoid/method_order.hpp"
 
 namespace jink::avoid {
 
@@ -22,7 +22,8 @@ namespace jink::avoid {
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:
-    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept : pilot_(settings), methods_(methods...)
+    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept
+        : machine_(settings), methods_(methods...)
     {
     }
 
@@ -33,16 +34,16 @@ public:
     Guidance update(const world::Situation& situation, bool in_control,
                     const world::Reference* other = nullptr) noexcept
     {
-        return pilot_.update(situation, other, in_control, {this, &Supervisor::ladder});
+        return machine_.update(situation, other, in_control, {this, &Supervisor::ask_in_order});
     }
 
-    void reset() noexcept { pilot_.reset(); }
+    void reset() noexcept { machine_.reset(); }
     /// Refused (false, nothing changed) when out of range.
-    [[nodiscard]] bool configure(const Settings& settings) noexcept { return pilot_.configure(settings); }
-    [[nodiscard]] const Settings& settings() const noexcept { return pilot_.settings(); }
-    [[nodiscard]] State state() const noexcept { return pilot_.state(); }
-    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return pilot_.diagnostics(); }
-    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return pilot_.flying(); }
+    [[nodiscard]] bool configure(const Settings& settings) noexcept { return machine_.configure(settings); }
+    [[nodiscard]] const Settings& settings() const noexcept { return machine_.settings(); }
+    [[nodiscard]] State state() const noexcept { return machine_.state(); }
+    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return machine_.diagnostics(); }
+    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return machine_.flying(); }
 
 private:
     template <class Method>
@@ -56,18 +57,18 @@ private:
     /// One rung: with room to spare, then without. A method that keeps room itself, as far as there is any, is asked
     /// once.
     template <class Method>
-    static bool ask(Method& method, const Rounds& rounds, const Settings& settings, WorkBudget& budget,
+    static bool ask(Method& method, const Situations& situations, const Settings& settings, WorkBudget& budget,
                     Diagnostics& diagnostics, world::Manoeuvre& out, float& margin, world::PlanStatus& status) noexcept
     {
         if constexpr (!requires { Method::kKeepsRoom; }) {
-            if (ask_in(method, rounds.wide, settings, budget, diagnostics, out, margin, status)) {
+            if (ask_in(method, situations.inflated, settings, budget, diagnostics, out, margin, status)) {
                 return true;
             }
             if (budget.exhausted()) {
                 return false;
             }
         }
-        return ask_in(method, rounds.plain, settings, budget, diagnostics, out, margin, status);
+        return ask_in(method, situations.plain, settings, budget, diagnostics, out, margin, status);
     }
 
     template <class Method>
@@ -91,25 +92,26 @@ private:
         return true;
     }
 
-    static world::PlanStatus ladder(void* self, const Rounds& rounds, const Settings& settings, WorkBudget& budget,
-                                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin) noexcept
+    static world::PlanStatus ask_in_order(void* self, const Situations& situations, const Settings& settings,
+                                          WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
+                                          float& margin) noexcept
     {
         world::PlanStatus status = world::PlanStatus::none_available;
-        const Rungs rungs = rungs_of(kMethods, rounds.plain, settings);
+        const MethodOrder order = method_order_of(kMethods, situations.plain, settings);
         const std::size_t first = settings.reactive == Reactive::never ? 1 : 0;  // 0: the reactive ones
-        const std::size_t last = settings.reactive == Reactive::alone ? 0 : rungs.count;
+        const std::size_t last = settings.reactive == Reactive::alone ? 0 : order.count;
         for (std::size_t i = first; i <= last; ++i) {
             const std::size_t after = last - i;
             const auto kept = static_cast<std::uint32_t>(after * settings.kept_for_next);
             WorkBudget share(budget.left() > kept ? budget.left() - kept : 0);
             std::size_t n = 0;
             const auto is_asked = [&](bool reactive) {
-                return reactive ? i == 0 : i > 0 && n++ == rungs.method(i - 1);
+                return reactive ? i == 0 : i > 0 && n++ == order.method(i - 1);
             };
             const bool found = std::apply(
                 [&](auto&... method) {
                     return ((is_asked(kIsReactive<std::remove_reference_t<decltype(method)>>) &&
-                             ask(method, rounds, settings, share, diagnostics, out, margin, status)) ||
+                             ask(method, situations, settings, share, diagnostics, out, margin, status)) ||
                             ...);
                 },
                 static_cast<Supervisor*>(self)->methods_);
@@ -123,7 +125,7 @@ private:
         return status;
     }
 
-    Pilot pilot_;
+    StateMachine machine_;
     std::tuple<Methods&...> methods_;
 };
 

@@ -113,8 +113,8 @@ struct Settings {
         0;  ///< only the k moving threats nearest to the start count for closeness; 0: all
     /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
     /// candidates are looked at against those first: the others are looked at once, for the candidate that would be
-    /// taken, so that what is found is clear of all (as avoid/guard.hpp sees to once more). The main threat is among
-    /// them. 0: all.
+    /// taken, so that what is found is clear of all (as avoid/final_check.hpp sees to once more). The main threat is
+    /// among them. 0: all.
     std::uint16_t moving_nearest = 0;
     float max_cost = 1.0F;  ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
     /// Time-aware mode: a start inside a margin is judged by this rule, so that there is a way out. Off in source mode.

@@ -167,7 +167,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.supervisor.order = kOrders[whole(Param::methods)];
     c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
     c.reach.sets = &reach_sets();
-    c.reach.room = c.supervisor.room;
+    c.reach.room = c.supervisor.clearance_buffer;
     c.reach.latency = at(Param::latency);
     c.reach.escape = c.supervisor.escape;
     c.blocks_unseen = whole(Param::unseen) == 1;

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/reach/planner.hpp"

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/reach/scan_picture.hpp"
 #include "tests/oracle/planner_oracle.hpp"
 #include "tests/oracle/random_situation.hpp"

@@ -51,7 +51,7 @@ TEST(ParamMethods, AllSeeAsFarAndAnswerAsLate)
     EXPECT_EQ(c.planner.latency, 0.3F);
     EXPECT_EQ(c.reach.latency, 0.3F);
     EXPECT_EQ(c.orca.latency, 0.3F);
-    EXPECT_EQ(c.reach.room, c.supervisor.room);
+    EXPECT_EQ(c.reach.room, c.supervisor.clearance_buffer);
     EXPECT_EQ(c.reach.escape.slack, c.supervisor.escape.slack);
     EXPECT_EQ(c.reach.escape.speed, c.supervisor.escape.speed);
     EXPECT_EQ(c.reach.sets, &reach_sets());

@@ -235,7 +235,7 @@ TEST(Answers, ThatAreExactlyClearAreTaken)
         return PlanStatus::found;
     }};
     Settings settings = quick();
-    settings.room = 0.0F;
+    settings.clearance_buffer = 0.0F;
     const Guidance g = once(f, settings, method, true);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(g.margin, 0.0F);
@@ -252,7 +252,7 @@ TEST(Answers, AreToldWithTheirMargin)
     const Situation s = f.scene.situation();
     const float margin = check_manoeuvre(s, detour(s, kLeft, 6.0F, 60.0F), quick(), budget).margin;
     EXPECT_GT(margin, 1.0F);
-    EXPECT_NEAR(g.margin, margin - quick().room, 0.1F) << "for the wider vehicle that was asked for first";
+    EXPECT_NEAR(g.margin, margin - quick().clearance_buffer, 0.1F) << "for the wider vehicle that was asked for first";
 }
 
 TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
@@ -316,24 +316,24 @@ TEST(CountNear, SurfacesWithinTheRadius)
     EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 3U) << "tracks and obstacles together";
 }
 
-TEST(RungsOf, AreTurnedRoundInClutterAlone)
+TEST(MethodOrderOf, AreTurnedRoundInClutterAlone)
 {
     Flight f;
     f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
     Settings settings;
     settings.clutter = 1;
-    const auto rungs = [&](std::size_t methods) { return rungs_of(methods, f.scene.situation(), settings); };
-    EXPECT_TRUE(rungs(3).backwards);
-    EXPECT_EQ(rungs(3).method(0), 2U);
-    EXPECT_EQ(rungs(3).method(2), 0U);
-    EXPECT_FALSE(rungs(1).backwards) << "one alone has no order";
-    EXPECT_EQ(rungs(1).count, 1U);
+    const auto order = [&](std::size_t methods) { return method_order_of(methods, f.scene.situation(), settings); };
+    EXPECT_TRUE(order(3).backwards);
+    EXPECT_EQ(order(3).method(0), 2U);
+    EXPECT_EQ(order(3).method(2), 0U);
+    EXPECT_FALSE(order(1).backwards) << "one alone has no order";
+    EXPECT_EQ(order(1).count, 1U);
     settings.clutter = 2;
-    EXPECT_FALSE(rungs(3).backwards) << "one is not two";
-    EXPECT_EQ(rungs(3).method(2), 2U);
+    EXPECT_FALSE(order(3).backwards) << "one is not two";
+    EXPECT_EQ(order(3).method(2), 2U);
     settings.clutter = 0;
     f.scene.tracks.clear();
-    EXPECT_FALSE(rungs(3).backwards) << "never, though none is as many as none";
+    EXPECT_FALSE(order(3).backwards) << "never, though none is as many as none";
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ using world::ManoeuvreKind;
 Settings giving_up(Seconds patience = 20.0F)
 {
     Settings settings = quick();
-    settings.give_ground_speed = 0.0F;
+    settings.back_off_speed = 0.0F;
     settings.patience = patience;
     return settings;
 }

@@ -123,7 +123,7 @@ TEST(ReactiveMethods, TracksThatShareTheReactionAreLookedAtAsFarAsTheStop)
     EXPECT_EQ(supervisor.diagnostics().answers_rejected, 1U);
 }
 
-/// Others' plans and the last rung count everybody as flying straight on.
+/// Others' plans and the fallback count everybody as flying straight on.
 TEST(ReactiveMethods, PlansOfOthersDoNotCountOnAnybody)
 {
     Flight f;

@@ -25,7 +25,7 @@ const Range kRanges[] = {
     {"clutter_radius", [](Settings& s) -> float& { return s.clutter_radius; }, 1.0F, 200.0F},
     {"lookahead", [](Settings& s) -> float& { return s.lookahead; }, 1.0F, 60.0F},
     {"commit", [](Settings& s) -> float& { return s.commit; }, 0.5F, 60.0F},
-    {"room", [](Settings& s) -> float& { return s.room; }, 0.0F, 10.0F},
+    {"clearance_buffer", [](Settings& s) -> float& { return s.clearance_buffer; }, 0.0F, 10.0F},
     {"prediction_step", [](Settings& s) -> float& { return s.prediction_step; }, 0.02F, 0.5F},
     {"fallback_horizon", [](Settings& s) -> float& { return s.fallback_horizon; }, 1.0F, 20.0F},
     {"reserve", [](Settings& s) -> float& { return s.reserve; }, 0.0F, 5.0F},
@@ -33,8 +33,8 @@ const Range kRanges[] = {
     {"clear_extra", [](Settings& s) -> float& { return s.clear_extra; }, 0.0F, 10.0F},
     {"on_leg", [](Settings& s) -> float& { return s.on_leg; }, 0.05F, 50.0F},
     {"blocked_patience", [](Settings& s) -> float& { return s.blocked_patience; }, 0.0F, 600.0F},
-    {"give_ground_speed", [](Settings& s) -> float& { return s.give_ground_speed; }, 0.0F, 5.0F},
-    {"give_ground_limit", [](Settings& s) -> float& { return s.give_ground_limit; }, 0.0F, 600.0F},
+    {"back_off_speed", [](Settings& s) -> float& { return s.back_off_speed; }, 0.0F, 5.0F},
+    {"back_off_limit", [](Settings& s) -> float& { return s.back_off_limit; }, 0.0F, 600.0F},
     {"least_control", [](Settings& s) -> float& { return s.least_control; }, 0.0F, 60.0F},
     {"patience", [](Settings& s) -> float& { return s.patience; }, 0.0F, 600.0F},
     {"position_gain", [](Settings& s) -> float& { return s.gains.position_gain; }, 0.0F, 10.0F},
@@ -104,14 +104,14 @@ TEST(Settings, ThatAreRefusedChangeNothing)
     Supervisor supervisor(first, method);
     Settings bad;
     bad.lookahead = 12.0F;
-    bad.room = -1.0F;
+    bad.clearance_buffer = -1.0F;
     EXPECT_FALSE(supervisor.configure(bad));
     EXPECT_EQ(supervisor.settings().lookahead, 11.0F);
-    EXPECT_EQ(supervisor.settings().room, first.room);
-    bad.room = 1.0F;
+    EXPECT_EQ(supervisor.settings().clearance_buffer, first.clearance_buffer);
+    bad.clearance_buffer = 1.0F;
     EXPECT_TRUE(supervisor.configure(bad));
     EXPECT_EQ(supervisor.settings().lookahead, 12.0F);
-    EXPECT_EQ(supervisor.settings().room, 1.0F);
+    EXPECT_EQ(supervisor.settings().clearance_buffer, 1.0F);
 }
 
 }  // namespace

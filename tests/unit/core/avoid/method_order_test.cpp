@@ -76,7 +76,7 @@ TEST_P(BadAnswers, AreRejectedAndCounted)
     EXPECT_TRUE(is_finite(g.velocity));
 }
 
-TEST_P(BadAnswers, TheNextRungIsAsked)
+TEST_P(BadAnswers, TheNextMethodIsAsked)
 {
     Flight f;
     f.scene.airspace.has_floor = true;
@@ -97,7 +97,7 @@ TEST_P(BadAnswers, TheNextRungIsAsked)
 INSTANTIATE_TEST_SUITE_P(Of, BadAnswers, testing::ValuesIn(kBadAnswers),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(Ladder, TheFirstGoodAnswerWinsAndEachStatusIsTold)
+TEST(MethodOrders, TheFirstGoodAnswerWinsAndEachStatusIsTold)
 {
     for (const PlanStatus status : {PlanStatus::no_conflict, PlanStatus::too_close, PlanStatus::none_available,
                                     PlanStatus::budget_spent, PlanStatus::bad_input}) {
@@ -144,7 +144,7 @@ std::string asked_in_order(const Settings& settings, const std::function<void(Fl
     return order;
 }
 
-TEST(Ladder, AsksInTheOrderThatIsSet)
+TEST(MethodOrders, AsksInTheOrderThatIsSet)
 {
     Settings settings = quick();
     const std::pair<LadderOrder, const char*> orders[] = {{LadderOrder::as_given, "12"},
@@ -157,7 +157,7 @@ TEST(Ladder, AsksInTheOrderThatIsSet)
     }
 }
 
-TEST(Ladder, InClutterTheLastMethodIsAskedFirst)
+TEST(MethodOrders, InClutterTheLastMethodIsAskedFirst)
 {
     Settings settings = quick();
     settings.clutter = 3;
@@ -181,7 +181,7 @@ TEST(Ladder, InClutterTheLastMethodIsAskedFirst)
     EXPECT_EQ(asked_in_order(settings, pillars(8, 10.0F)), "12");
 }
 
-TEST(Ladder, WhatIsKeptForTheNextMethodIsLeftToIt)
+TEST(MethodOrders, WhatIsKeptForTheNextMethodIsLeftToIt)
 {
     Flight f;
     head_on(f);
@@ -216,7 +216,7 @@ struct RoomyMethod : FakeMethod {
     static constexpr bool kKeepsRoom = true;
 };
 
-TEST(Ladder, AMethodThatKeepsRoomIsAskedOnceAndForTheVehicleAsItIs)
+TEST(MethodOrders, AMethodThatKeepsRoomIsAskedOnceAndForTheVehicleAsItIs)
 {
     Flight f;
     head_on(f);
@@ -231,10 +231,10 @@ TEST(Ladder, AMethodThatKeepsRoomIsAskedOnceAndForTheVehicleAsItIs)
     Supervisor supervisor(settings, plain, roomy);
     static_cast<void>(f.update(supervisor, true));
     const float width = f.scene.limits.half_extents.x();
-    EXPECT_EQ(widths, (std::vector<float>{width + settings.room, width, width}));
+    EXPECT_EQ(widths, (std::vector<float>{width + settings.clearance_buffer, width, width}));
 }
 
-TEST(Ladder, AMethodThatSpendsTheBudgetLeavesNothingToTrust)
+TEST(MethodOrders, AMethodThatSpendsTheBudgetLeavesNothingToTrust)
 {
     Flight f;
     head_on(f);

@@ -28,7 +28,7 @@ struct Narrow : Waiting {
     int asked = 0;
 };
 
-TEST(NarrowWays, AreTriedAfterThreeTimesTheSettlingTime)
+TEST(NarrowPaths, AreTriedAfterThreeTimesTheSettlingTime)
 {
     Narrow w;
     EXPECT_EQ(w.wait(1.4F).state, State::braking);
@@ -36,7 +36,7 @@ TEST(NarrowWays, AreTriedAfterThreeTimesTheSettlingTime)
     EXPECT_EQ(w.after(0.1F).state, State::rejoining) << "1.5 s";
 }
 
-TEST(NarrowWays, AreWaitedAtAnewAfterEachConflict)
+TEST(NarrowPaths, AreWaitedAtAnewAfterEachConflict)
 {
     Narrow w;
     static_cast<void>(w.wait(1.0F));
@@ -49,7 +49,7 @@ TEST(NarrowWays, AreWaitedAtAnewAfterEachConflict)
 }
 
 /// Room to spare is asked for as far ahead as conflicts are looked for.
-TEST(NarrowWays, AreThoseFarAheadToo)
+TEST(NarrowPaths, AreThoseFarAheadToo)
 {
     Narrow w;
     w.f.scene.tracks[0].position = Vec3(92, 2.2F, 30);  // 7 s ahead
@@ -58,12 +58,12 @@ TEST(NarrowWays, AreThoseFarAheadToo)
 }
 
 /// Backing off is bounded while it waits there, too.
-TEST(NarrowWays, AreBackedOffFromUntilTheLimitAlone)
+TEST(NarrowPaths, AreBackedOffFromUntilTheLimitAlone)
 {
     Settings settings = quick();
     settings.settle = 2.0F;
     settings.blocked_patience = 0.0F;
-    settings.give_ground_limit = 0.45F;
+    settings.back_off_limit = 0.45F;
     Waiting w(settings);
     w.stand(Vec3(55, 0, 30));
     w.f.scene.track(Vec3(58, 0, 30), Vec3::Zero(), 1.0F);
@@ -79,7 +79,7 @@ TEST(NarrowWays, AreBackedOffFromUntilTheLimitAlone)
     EXPECT_EQ(backs, 5);
 }
 
-TEST(NarrowWays, WithMoreToSpareAreTrustedAfterTheSettlingTime)
+TEST(NarrowPaths, WithMoreToSpareAreTrustedAfterTheSettlingTime)
 {
     Narrow w;
     w.f.scene.tracks[0].position.y() = 2.6F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/avoid/rungs.hpp"
+#include "core/avoid/method_order.hpp"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ std::size_t count_near(const world::Situation& situation, float radius) noexcept
     return static_cast<std::size_t>(std::count_if(situation.threats.begin(), situation.threats.end(), is_near));
 }
 
-Rungs rungs_of(std::size_t methods, const world::Situation& situation, const Settings& settings) noexcept
+MethodOrder method_order_of(std::size_t methods, const world::Situation& situation, const Settings& settings) noexcept
 {
     const std::size_t last = methods - 1;
     switch (settings.order) {
@@ -31,7 +31,7 @@ Rungs rungs_of(std::size_t methods, const world::Situation& situation, const Set
     }
     const bool cluttered =
         methods > 1 && settings.clutter > 0 && count_near(situation, settings.clutter_radius) >= settings.clutter;
-    return cluttered ? Rungs{last, methods, true} : Rungs{0, methods, false};
+    return cluttered ? MethodOrder{last, methods, true} : MethodOrder{0, methods, false};
 }
 
 }  // namespace jink::avoid
