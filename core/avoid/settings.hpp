@@ -1,34 +1,66 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "core/path/follower.hpp"
 #include "core/world/separation.hpp"
 
 namespace jink::avoid {
 
-/// In which order the methods are asked, and which.
-enum class LadderOrder : std::uint8_t {
-    as_given,  ///< one after the other, until one answers
-    reversed,  ///< the last one first
-    first,     ///< the first alone
-    last,      ///< the last alone
-};
+/// Methods that one order names at most; a supervisor has no more.
+inline constexpr std::size_t kMaxMethods = 6;
 
-/// Whether the method that decides every tick anew (kReactive) is asked; the order is that of the others.
-enum class Reactive : std::uint8_t {
-    never,
-    first,  ///< before all others
-    alone,
+/// Methods by MethodTraits::id, in the order in which they are asked. 0 ends the order. 6 bytes.
+class MethodOrder {
+public:
+    constexpr MethodOrder() noexcept = default;
+    /// An id that comes again counts once.
+    template <std::same_as<std::uint8_t>... Ids>
+    constexpr explicit MethodOrder(Ids... ids) noexcept
+    {
+        static_assert(sizeof...(Ids) <= kMaxMethods);
+        (static_cast<void>(try_add(ids)), ...);
+    }
+
+    [[nodiscard]] constexpr std::size_t size() const noexcept
+    {
+        return static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), std::uint8_t{0}) - ids_.begin());
+    }
+    [[nodiscard]] constexpr bool empty() const noexcept { return ids_[0] == 0; }
+    [[nodiscard]] constexpr std::span<const std::uint8_t> ids() const noexcept { return {ids_.data(), size()}; }
+    [[nodiscard]] constexpr bool contains(std::uint8_t id) const noexcept
+    {
+        return id != 0 && std::find(ids_.begin(), ids_.end(), id) != ids_.end();
+    }
+    /// Adds a method at the end; false (and nothing changed) when full, for id 0, and for a method that is in it.
+    [[nodiscard]] constexpr bool try_add(std::uint8_t id) noexcept
+    {
+        const std::size_t n = size();
+        if (id == 0 || n == kMaxMethods || contains(id)) {
+            return false;
+        }
+        ids_[n] = id;
+        return true;
+    }
+    friend constexpr bool operator==(const MethodOrder&, const MethodOrder&) noexcept = default;
+
+private:
+    std::array<std::uint8_t, kMaxMethods> ids_{};
 };
 
 /// Of the supervisor.
 struct Settings {
-    Reactive reactive = Reactive::never;
-    LadderOrder order = LadderOrder::as_given;
-    /// With so many tracks and obstacles within `clutter_radius`, methods that are asked as given are asked in the
-    /// reverse order; 0: never.
+    /// The methods that are asked. Empty: all of the supervisor's, in its own order. Ids of methods that the supervisor
+    /// does not have are skipped.
+    MethodOrder order;
+    MethodOrder order_in_clutter;  ///< in place of `order` in clutter; empty: no change
+    /// Clutter: so many tracks and obstacles within `clutter_radius`; 0: never.
     std::uint16_t clutter = 0;
     float clutter_radius = 20.0F;  ///< 1..200 [m]
     Seconds lookahead = 8.0F;      ///< conflicts are predicted this far ahead, 1..60 [s]

@@ -11,7 +11,7 @@
 #include "core/geometric/candidate.hpp"
 #include "core/path/follower.hpp"
 #include "core/path/route.hpp"
-#include "core/world/world.hpp"
+#include "core/world/method.hpp"
 
 namespace jink::geometric {
 
@@ -281,6 +281,8 @@ private:
 /// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).
 class Planner {
 public:
+    static constexpr world::MethodTraits kTraits{
+        .id = 1, .reactive = false, .keeps_clearance = false, .needs_sets = false};
     /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with
     /// [m].
     static constexpr float kLeastMainRadius = 0.5F;

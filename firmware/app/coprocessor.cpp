@@ -7,6 +7,7 @@
 #include "core/base/work_units.hpp"
 #include "core/reach/lidar_scan.hpp"
 #include "firmware/app/hold_choice.hpp"
+#include "firmware/app/methods.hpp"
 #include "firmware/app/wing_course.hpp"
 
 namespace jink::app {
@@ -49,7 +50,10 @@ avoid::Settings Coprocessor::supervisor_settings() const noexcept
 {
     const Configuration& c = parameters_.configuration();
     avoid::Settings settings = c.supervisor;
-    settings.order = leaves_reach_out_ || c.reach_unsuited ? avoid::LadderOrder::first : settings.order;
+    if (leaves_reach_out_ || c.reach_unsuited) {
+        settings.order = without_sets(settings.order);
+        settings.order_in_clutter = {};
+    }
     if (reach_picture_ != nullptr) {
         // Laying a scan over a set would take most of what a plan may, and a way through clutter takes more than the
         // rest: each of two methods has nearly a whole plan's units, and the checks and fallbacks keep theirs.
@@ -278,8 +282,7 @@ bool Coprocessor::can_steer() const noexcept
 {
     const Configuration& c = parameters_.configuration();
     // A plane keeps its own speed: it cannot fly what reciprocal avoidance asks for.
-    const bool as_wing =
-        c.limits.kind == vehicle::VehicleKind::fixed_wing && c.supervisor.reactive == avoid::Reactive::never;
+    const bool as_wing = c.limits.kind == vehicle::VehicleKind::fixed_wing && !is_reactive(c.supervisor.order);
     return autopilot_.steerable && (!autopilot_.fixed_wing || as_wing);
 }
 

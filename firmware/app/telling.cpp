@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/methods.hpp"
 
 namespace jink::app {
 namespace {
@@ -145,7 +146,7 @@ void Coprocessor::tell_notices() noexcept
         told_flood_ = true;
     }
     const Configuration& c = parameters_.configuration();
-    const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::LadderOrder::first;
+    const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::MethodOrder(kGeometric);
     if (unsuited && !told_unsuited_ && has_autopilot_) {
         say(link::Severity::warning, "jink: reach sets do not suit this vehicle");
     }

@@ -137,7 +137,7 @@ TEST(BarrelPlans, TheGeometricPlannerSaysThatItHasNone)
     world::Manoeuvre manoeuvre;
     WorkBudget budget(kPlenty);
     EXPECT_EQ(planner.plan(leg.view(), budget, manoeuvre), PlanStatus::none_available);
-    EXPECT_EQ(manoeuvre.by, world::MethodId::none);
+    EXPECT_TRUE(manoeuvre.path.points.empty());
 }
 
 /// Flown for `seconds` under the supervisor's command: the least distance from the body.

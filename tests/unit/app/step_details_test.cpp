@@ -2,6 +2,7 @@
 // Coprocessor::step, sentence by sentence of its contract: lines, frames, closed areas, requests and bench settings.
 #include <gtest/gtest.h>
 
+#include "firmware/app/methods.hpp"
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "tests/unit/app/step_flight.hpp"
@@ -276,7 +277,7 @@ TEST(StepDetails, ReachSetsPlanByThePictureTheyAreGiven)
             }
             t->step();
             const world::Manoeuvre* flying = t->coprocessor.flying();
-            found = found || (flying != nullptr && flying->by == world::MethodId::reach);
+            found = found || (flying != nullptr && flying->by == kReach);
         }
         EXPECT_EQ(found, !blind);
     }

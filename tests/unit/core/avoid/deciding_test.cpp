@@ -172,7 +172,7 @@ TEST(PlanBudget, ExhaustedByTheFirstOfTwoPlansIsCounted)
         return PlanStatus::found;
     }}};
     Settings settings = quick();
-    settings.reactive = Reactive::alone;
+    settings.order = MethodOrder(kReacting);
     Supervisor supervisor(settings, method);
     ASSERT_EQ(f.update(supervisor, true).state, State::avoiding);
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 0U);
@@ -260,31 +260,11 @@ TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
     Flight f;
     head_on(f);
     FakeMethod first = always(kLeft);
-    FakeMethod second = always(-kLeft);
+    SecondFake second{always(-kLeft)};
     Supervisor supervisor(quick(), first, second);
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(supervisor.diagnostics().plans_found, 1U);
     EXPECT_EQ(supervisor.diagnostics().found_by_next, 0U);
-}
-
-/// The order of the others holds beside a reactive method too.
-TEST(Answers, OnlyThoseThatTheOrderNamesAreAskedBesideAReactiveMethod)
-{
-    for (const LadderOrder order : {LadderOrder::first, LadderOrder::last}) {
-        Flight f;
-        head_on(f);
-        FakeMethod first = never();
-        FakeMethod second = never();
-        ReactiveFake reacting{never()};
-        Settings settings = quick();
-        settings.reactive = Reactive::first;
-        settings.order = order;
-        Supervisor supervisor(settings, first, second, reacting);
-        static_cast<void>(f.update(supervisor, false));
-        EXPECT_GT(reacting.asked, 0);
-        EXPECT_EQ(first.asked > 0, order == LadderOrder::first);
-        EXPECT_EQ(second.asked > 0, order == LadderOrder::last);
-    }
 }
 
 // --- clutter ---
@@ -316,24 +296,25 @@ TEST(CountNear, SurfacesWithinTheRadius)
     EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 3U) << "tracks and obstacles together";
 }
 
-TEST(MethodOrderOf, AreTurnedRoundInClutterAlone)
+TEST(OrderFor, ChangesInClutterAlone)
 {
     Flight f;
     f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
     Settings settings;
+    settings.order = MethodOrder(kFirst, kSecond);
+    settings.order_in_clutter = MethodOrder(kSecond);
+    const auto order = [&] { return order_for(f.scene.situation(), settings); };
     settings.clutter = 1;
-    const auto order = [&](std::size_t methods) { return method_order_of(methods, f.scene.situation(), settings); };
-    EXPECT_TRUE(order(3).backwards);
-    EXPECT_EQ(order(3).method(0), 2U);
-    EXPECT_EQ(order(3).method(2), 0U);
-    EXPECT_FALSE(order(1).backwards) << "one alone has no order";
-    EXPECT_EQ(order(1).count, 1U);
+    EXPECT_EQ(order(), MethodOrder(kSecond));
     settings.clutter = 2;
-    EXPECT_FALSE(order(3).backwards) << "one is not two";
-    EXPECT_EQ(order(3).method(2), 2U);
+    EXPECT_EQ(order(), settings.order) << "one is not two";
     settings.clutter = 0;
     f.scene.tracks.clear();
-    EXPECT_FALSE(order(3).backwards) << "never, though none is as many as none";
+    EXPECT_EQ(order(), settings.order) << "never, though none is as many as none";
+    settings.clutter = 1;
+    f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
+    settings.order_in_clutter = {};
+    EXPECT_EQ(order(), settings.order) << "empty: no change";
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ struct Renewing {
     static Settings reacting_first()
     {
         Settings s = quick();
-        s.reactive = Reactive::first;
+        s.order = MethodOrder(kReacting, kFirst);
         return s;
     }
     Flight f;

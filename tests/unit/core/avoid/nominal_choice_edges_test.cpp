@@ -195,7 +195,7 @@ struct Looking {
     static Settings once_a_plan()
     {
         Settings s = quick();
-        s.reactive = Reactive::alone;
+        s.order = MethodOrder(kReacting);
         s.settle = s.least_control = 0.0F;
         return s;
     }

@@ -84,16 +84,26 @@ TEST(SettingsOfBudgets, HoldTheirEnds)
     EXPECT_FALSE(takes(1000, 500, 501));
 }
 
-TEST(SettingsOfOrder, TakeWhatIsNamedAlone)
+TEST(MethodOrder, HoldsEachIdOnceAndNeverZero)
 {
-    for (int i = 0; i < 6; ++i) {
-        Settings s;
-        s.order = static_cast<LadderOrder>(i);
-        EXPECT_EQ(is_valid(s), i <= 3) << i;
-        s = {};
-        s.reactive = static_cast<Reactive>(i);
-        EXPECT_EQ(is_valid(s), i <= 2) << i;
+    MethodOrder order;
+    EXPECT_TRUE(order.empty());
+    EXPECT_EQ(order.size(), 0U);
+    EXPECT_FALSE(order.contains(0)) << "0 is the end of it";
+    EXPECT_FALSE(order.try_add(0));
+    for (std::uint8_t id = 1; id <= kMaxMethods; ++id) {
+        EXPECT_TRUE(order.try_add(id));
+        EXPECT_FALSE(order.try_add(id)) << "again";
+        EXPECT_EQ(order.size(), id);
+        EXPECT_TRUE(order.contains(id));
     }
+    EXPECT_FALSE(order.try_add(kMaxMethods + 1)) << "full";
+    EXPECT_EQ(order.ids().size(), kMaxMethods);
+    EXPECT_EQ(order.ids().back(), kMaxMethods);
+    const std::uint8_t one = 1;
+    const std::uint8_t two = 2;
+    EXPECT_EQ(MethodOrder(two, one, two), MethodOrder(two, one)) << "an id that comes again counts once";
+    EXPECT_NE(MethodOrder(two, one), MethodOrder(one, two));
 }
 
 TEST(Settings, ThatAreRefusedChangeNothing)

@@ -130,7 +130,6 @@ TEST(Supervisors, SettingsOutOfRangeAreRefused)
     EXPECT_TRUE(refused([](Settings& s) { s.plan_budget = 99; }));
     EXPECT_TRUE(refused([](Settings& s) { s.plan_budget = s.budget + 1; }));
     EXPECT_TRUE(refused([](Settings& s) { s.kept_for_next = s.plan_budget + 1; }));
-    EXPECT_TRUE(refused([](Settings& s) { s.order = static_cast<LadderOrder>(4); }));
     EXPECT_FALSE(refused([](Settings& s) { s.lookahead = 12.0F; }));
     EXPECT_EQ(supervisor.settings().lookahead, 12.0F);
 }
