@@ -21,6 +21,9 @@ bool is_traffic(const world::Conflict& conflict) noexcept { return conflict.thre
 /// path comes first there. Threats that were never collected count as traffic.
 bool traffic_comes(const world::Situation& s, const Settings& settings, WorkBudget& budget) noexcept
 {
+    if (s.threats.data() == nullptr) {
+        return true;
+    }
     world::Situation alone = s;
     alone.threats = world::of_kind(s.threats, world::ThreatKind::track);
     return !alone.threats.empty() &&

@@ -80,6 +80,20 @@ TEST(GivingUp, ForgetsWhatWasFlown)
     EXPECT_EQ(w.supervisor.flying(), nullptr);
 }
 
+/// More traffic than there is capacity for: no threats are collected, and whether traffic comes is not known.
+TEST(GivingUp, NotWhereThreatsWereNeverCollected)
+{
+    AtAWall w(giving_up(1.0F));
+    for (std::size_t i = 0; i <= kMaxTracks; ++i) {
+        w.f.scene.track(Vec3(2000, 0, 30), Vec3::Zero(), 1.0F);
+    }
+    static_cast<void>(w.update(false));
+    const Guidance g = w.wait(5.0F, 0.5F);
+    EXPECT_EQ(g.state, State::braking);
+    EXPECT_FALSE(g.blocked);
+    EXPECT_EQ(w.supervisor.diagnostics().blocked, 0U);
+}
+
 /// The wall is gone; what comes from the side is avoided all the same.
 TEST(GivingUp, IsOverWhenTrafficComesThoughTheWayIsClear)
 {
