@@ -37,7 +37,7 @@ struct Transition {
     friend constexpr bool operator==(const Transition&, const Transition&) noexcept = default;
 };
 
-/// All that there are. One update may make several. docs/state_machine.md draws them; a test compares both.
+/// All that there are. One update may make several. docs/guides/state_machine.md draws them, and repeats the comments.
 inline constexpr std::array kTransitions = std::to_array<Transition>({
     {Phase::watching, Phase::rejoining},         // control taken
     {Phase::giving_back, Phase::watching},       // control released or reset
