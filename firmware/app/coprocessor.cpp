@@ -7,7 +7,7 @@
 #include "core/base/work_units.hpp"
 #include "core/reach/lidar_scan.hpp"
 #include "firmware/app/hold_choice.hpp"
-#include "firmware/app/methods.hpp"
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/wing_course.hpp"
 
 namespace jink::app {

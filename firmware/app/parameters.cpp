@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/cost/tables_default.hpp"
-#include "firmware/app/methods.hpp"
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/reach_sets.hpp"
 
 namespace jink::app {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "firmware/app/coprocessor.hpp"
-#include "firmware/app/methods.hpp"
+#include "firmware/app/method_orders.hpp"
 
 namespace jink::app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "firmware/app/methods.hpp"
+#include "firmware/app/method_orders.hpp"
 #include "tests/unit/app/flight.hpp"
 
 namespace jink::app::test {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/cost/tables_default.hpp"
-#include "firmware/app/methods.hpp"
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "tests/numbers.hpp"

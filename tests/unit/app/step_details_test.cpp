@@ -2,7 +2,7 @@
 // Coprocessor::step, sentence by sentence of its contract: lines, frames, closed areas, requests and bench settings.
 #include <gtest/gtest.h>
 
-#include "firmware/app/methods.hpp"
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "tests/unit/app/step_flight.hpp"
