@@ -80,7 +80,7 @@ bool StateMachine::renew(Tick& tick) noexcept
 /// A manoeuvre that was slow, because nothing faster was clear then, is not flown to its end when something faster is.
 bool StateMachine::find_faster(Tick& tick) noexcept
 {
-    if (!faster_sought_at_ || !tick.out.has_conflict || tick.s.now - *faster_sought_at_ < kSeekAgain) {
+    if (!faster_sought_at_ || !tick.out.conflict || tick.s.now - *faster_sought_at_ < kSeekAgain) {
         return false;
     }
     faster_sought_at_ = tick.s.now;

@@ -82,7 +82,7 @@ void StateMachine::brake(Tick& tick) noexcept
         rejoin(tick);
         return;
     }
-    if (tick.out.has_conflict && plan(tick)) {
+    if (tick.out.conflict && plan(tick)) {
         take(tick);
         return;
     }
@@ -111,7 +111,7 @@ bool StateMachine::stays_given_up(Tick& tick) noexcept
 /// Gives up where static threats on the nominal path have kept the vehicle from any progress for too long.
 void StateMachine::give_up_when_blocked(Tick& tick) noexcept
 {
-    const bool moves = tick.out.has_conflict && is_traffic(tick.out.conflict);
+    const bool moves = tick.out.conflict && is_traffic(*tick.out.conflict);
     const Vec3& at = tick.s.own.position;
     if (!tick.in_control || moves || (at - block_at_).squaredNorm() > kNoProgress * kNoProgress) {
         block_at_ = at;
@@ -120,7 +120,7 @@ void StateMachine::give_up_when_blocked(Tick& tick) noexcept
     }
     const bool stands =
         tick.s.own.velocity.norm() < kStanding && tick.s.limits.kind == vehicle::VehicleKind::multirotor;
-    const bool stuck = tick.out.has_conflict && stands && phase_ == Phase::braking;
+    const bool stuck = tick.out.conflict && stands && phase_ == Phase::braking;
     if (!stuck || settings_.patience <= 0.0F || tick.s.now - block_since_ < settings_.patience ||
         traffic_comes(tick.s, settings_, tick.budget)) {
         return;

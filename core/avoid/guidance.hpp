@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "core/world/conflict.hpp"
 
@@ -17,14 +18,13 @@ enum class State : std::uint8_t {
 /// What is to be done this tick.
 struct Guidance {
     State state = State::watching;
-    bool wants_control = false;    ///< the vehicle should follow `velocity`
-    Vec3 velocity = Vec3::Zero();  ///< command [m/s]; valid when wants_control
-    bool has_conflict = false;
-    world::Conflict conflict;              ///< of the nominal path that counts, when has_conflict
-    bool on_other = false;                 ///< that is the other nominal path, because its conflict comes first
-    bool other_conflict = false;           ///< control is kept because the other nominal path is not clear
-    bool blocked = false;                  ///< given up (Settings::patience): the autopilot has to hold
-    float margin = world::kSeparationCap;  ///< least predicted margin of what is flown or offered [m]
+    bool wants_control = false;               ///< the vehicle should follow `velocity`
+    Vec3 velocity = Vec3::Zero();             ///< command [m/s]; valid when wants_control
+    std::optional<world::Conflict> conflict;  ///< of the nominal path that counts
+    bool on_other = false;                    ///< that is the other nominal path, because its conflict comes first
+    bool other_conflict = false;              ///< control is kept because the other nominal path is not clear
+    bool blocked = false;                     ///< given up (Settings::patience): the autopilot has to hold
+    float margin = world::kSeparationCap;     ///< least predicted margin of what is flown or offered [m]
     world::ManoeuvreKind kind = world::ManoeuvreKind::follow_path;
     world::PlanStatus plan_status =
         world::PlanStatus::no_conflict;  ///< of this tick's plan, no_conflict when none was made

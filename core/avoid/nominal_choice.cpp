@@ -22,19 +22,22 @@ bool StateMachine::counts(const Tick& tick, const world::Conflict& conflict) con
 void StateMachine::choose_nominal(Tick& tick) noexcept
 {
     Guidance& out = tick.out;
-    out.has_conflict = world::main_conflict(tick.s, tick.nominal, settings_.lookahead, tick.budget, out.conflict);
+    world::Conflict conflict;
+    if (world::main_conflict(tick.s, tick.nominal, settings_.lookahead, tick.budget, conflict)) {
+        out.conflict = conflict;
+    }
     if (tick.in_control || tick.other == nullptr) {
         return;
     }
     const world::Way nominal = world::way_of(*tick.other);
-    world::Conflict conflict;
+    conflict = {};
     const bool found = world::main_conflict(*tick.other, nominal, settings_.lookahead, tick.budget, conflict) &&
                        counts(tick, conflict);
     const Seconds ahead = conflict_on_ == ConflictOn::other ? -kClearlyFirst : kClearlyFirst;
-    const bool first = found && (!out.has_conflict || conflict.time_to_loss + ahead < out.conflict.time_to_loss);
+    const bool first = found && (!out.conflict || conflict.time_to_loss + ahead < out.conflict->time_to_loss);
     diagnostics_.on_other += first && conflict_on_ == ConflictOn::none ? 1U : 0U;
     if (first) {
-        out.has_conflict = out.on_other = true;
+        out.on_other = true;
         out.conflict = conflict;
         tick.nominal = nominal;
     }

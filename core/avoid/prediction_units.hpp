@@ -11,8 +11,8 @@
 
 namespace jink::avoid::detail {
 
-/// Work units of a prediction over `span` in steps of `step`, each of `each`. Saturates: above any budget for a span of
-/// 1e9 units and more. O(1).
+/// Work units of a prediction over `span` in steps of `step`, each of `each`. Saturates above every budget, from 1e9
+/// units on. O(1).
 [[nodiscard]] inline std::uint32_t prediction_units(Seconds span, Seconds step, std::uint32_t each) noexcept
 {
     constexpr float kBeyondMeasure = 1e9F;

@@ -127,7 +127,7 @@ void StateMachine::follow_nominal(Tick& tick) const noexcept
 bool StateMachine::keep_parallel(Tick& tick) noexcept
 {
     const ParallelOffset parallel = parallel_offset(tick.s);
-    if (!tick.out.has_conflict || tick.s.limits.kind != vehicle::VehicleKind::multirotor ||
+    if (!tick.out.conflict || tick.s.limits.kind != vehicle::VehicleKind::multirotor ||
         parallel.off.norm() <= settings_.on_leg || parallel.left <= world::kRejoinLookahead) {
         return false;
     }
@@ -179,12 +179,12 @@ void StateMachine::rejoin(Tick& tick) noexcept
         return;
     }
     enter(Phase::rejoining);
-    if (tick.out.has_conflict) {
-        if (is_due(tick, tick.out.conflict.time_to_loss) && plan(tick)) {
+    if (tick.out.conflict) {
+        if (is_due(tick, tick.out.conflict->time_to_loss) && plan(tick)) {
             take(tick);
             return;
         }
-        if (is_urgent(tick, tick.out.conflict.time_to_loss)) {
+        if (is_urgent(tick, tick.out.conflict->time_to_loss)) {
             fall_back(tick);
             return;
         }

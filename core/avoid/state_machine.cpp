@@ -67,18 +67,18 @@ void StateMachine::update_control(TimePoint now, bool in_control) noexcept
 void StateMachine::update_conflict(const Tick& tick) noexcept
 {
     const bool was_in_conflict = conflict_on_ != ConflictOn::none;
-    diagnostics_.conflicts += tick.out.has_conflict && !was_in_conflict ? 1U : 0U;
-    if (!tick.out.has_conflict && was_in_conflict) {
+    diagnostics_.conflicts += tick.out.conflict && !was_in_conflict ? 1U : 0U;
+    if (!tick.out.conflict && was_in_conflict) {
         backed_off_ = 0.0F;
     }
     const ConflictOn path = tick.out.on_other ? ConflictOn::other : ConflictOn::first;
-    conflict_on_ = tick.out.has_conflict ? path : ConflictOn::none;
+    conflict_on_ = tick.out.conflict ? path : ConflictOn::none;
 }
 
 /// Since when the nominal path has been free of conflicts, and clear with something to spare.
 void StateMachine::update_clearness(Tick& tick) noexcept
 {
-    if (tick.out.has_conflict) {
+    if (tick.out.conflict) {
         free_since_.reset();
         clear_since_.reset();
         return;
@@ -109,7 +109,7 @@ bool StateMachine::is_due(const Tick& tick, Seconds time_to_loss) const noexcept
 Seconds StateMachine::latest_manoeuvre_time(const Tick& tick) const noexcept
 {
     const bool stays = tick.nominal.length <= settings_.on_leg || tick.nominal.speed < kCreeping;
-    const bool traffic = tick.out.has_conflict && tick.out.conflict.threat.kind == world::ThreatKind::track;
+    const bool traffic = tick.out.conflict && tick.out.conflict->threat.kind == world::ThreatKind::track;
     const Seconds stop = time_to_stop(tick.s, settings_);
     return stays && traffic ? std::max(stop, kGetGoing * settings_.fallback_horizon) : stop;
 }
@@ -148,7 +148,7 @@ void StateMachine::watch(Tick& tick) noexcept
         rejoin(tick);
         return;
     }
-    if (!tick.out.has_conflict) {
+    if (!tick.out.conflict) {
         if (tick.in_control) {
             // Being given back: keep to the leg meanwhile.
             follow_nominal(tick);
@@ -172,7 +172,7 @@ void StateMachine::watch(Tick& tick) noexcept
         rejoin(tick);
         return;
     }
-    const Seconds left = tick.out.conflict.time_to_loss;
+    const Seconds left = tick.out.conflict->time_to_loss;
     if (is_due(tick, left) && plan(tick)) {
         take(tick);
     } else if (is_urgent(tick, left)) {

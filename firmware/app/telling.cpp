@@ -69,10 +69,10 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
     tell_notices();
     tell_autopilot_state(report);
     const avoid::Guidance& g = report.guidance;
-    if (g.has_conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
+    if (g.conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
         warn_of_conflict(now, report);
     }
-    told_conflict_ = g.has_conflict;
+    told_conflict_ = g.conflict.has_value();
     tell_braking(now, g);
 }
 
@@ -99,7 +99,7 @@ void Coprocessor::tell_autopilot_state(const StepReport& report) noexcept
 /// that comes and goes is one.
 void Coprocessor::tell_braking(TimePoint now, const avoid::Guidance& g) noexcept
 {
-    last_conflict_ = g.has_conflict || g.state == avoid::State::braking ? now : last_conflict_;
+    last_conflict_ = g.conflict || g.state == avoid::State::braking ? now : last_conflict_;
     if (now - last_conflict_ > kConflictOver) {
         told_unsafe_ = told_braking_ = false;
     }

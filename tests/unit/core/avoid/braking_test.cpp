@@ -147,7 +147,7 @@ TEST(Rejoining, AFixedWingKeepsItsCourseWhileTheTurnBackIsNotClear)
         FakeMethod method = never();
         Supervisor supervisor(quick(), method);
         const Guidance g = f.update(supervisor, true);
-        EXPECT_FALSE(g.has_conflict);
+        EXPECT_FALSE(g.conflict.has_value());
         EXPECT_TRUE(g.wants_control);
         if (blocked) {
             EXPECT_NEAR(g.velocity.x(), 0.0F, 1e-3F);

@@ -18,7 +18,8 @@ Seconds loss_in(const Flight& f)
 {
     FakeMethod method = never();
     Supervisor supervisor(quick(), method);
-    return supervisor.update(f.scene.situation(), false).conflict.time_to_loss;
+    const Guidance g = supervisor.update(f.scene.situation(), false);
+    return g.conflict ? g.conflict->time_to_loss : 0.0F;
 }
 
 Guidance once(const Flight& f, const Settings& settings, FakeMethod& method, bool in_control = false)

@@ -123,7 +123,7 @@ TEST(GivingUp, CountsAnewAfterTraffic)
     AtAWall w(giving_up());
     static_cast<void>(w.wait(15.0F, 0.5F));
     w.f.scene.track(Vec3(58, 0, 30), Vec3::Zero(), 1.0F);  // nearer than the wall
-    ASSERT_EQ(w.after(0.5F).conflict.threat.kind, world::ThreatKind::track);
+    ASSERT_EQ(w.after(0.5F).conflict->threat.kind, world::ThreatKind::track);
     w.f.scene.tracks.clear();
     EXPECT_FALSE(w.wait(19.5F, 0.5F).blocked);
     EXPECT_TRUE(w.wait(0.5F, 0.5F).blocked);
@@ -194,7 +194,7 @@ TEST(GivingUp, NotWhileAManoeuvreIsFlown)
     w.stand(Vec3(20, 0, 30));
     for (int i = 0; i < 60; ++i) {
         const Guidance g = w.after(0.5F);
-        ASSERT_TRUE(g.has_conflict);
+        ASSERT_TRUE(g.conflict.has_value());
         ASSERT_NE(g.state, State::braking);
         ASSERT_FALSE(g.blocked) << i;
     }

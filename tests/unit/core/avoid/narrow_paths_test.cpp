@@ -23,7 +23,7 @@ struct Narrow : Waiting {
         EXPECT_EQ(update().state, State::braking);
         asked = method.asked;
         f.scene.tracks[0].position.y() = 2.2F;
-        EXPECT_FALSE(after(0.1F).has_conflict);
+        EXPECT_FALSE(after(0.1F).conflict.has_value());
     }
     int asked = 0;
 };
@@ -41,9 +41,9 @@ TEST(NarrowPaths, AreWaitedAtAnewAfterEachConflict)
     Narrow w;
     static_cast<void>(w.wait(1.0F));
     w.f.scene.tracks[0].position.y() = 1.0F;
-    EXPECT_TRUE(w.after(0.1F).has_conflict);
+    EXPECT_TRUE(w.after(0.1F).conflict.has_value());
     w.f.scene.tracks[0].position.y() = 2.2F;
-    EXPECT_FALSE(w.after(0.1F).has_conflict);
+    EXPECT_FALSE(w.after(0.1F).conflict.has_value());
     EXPECT_EQ(w.wait(1.4F).state, State::braking);
     EXPECT_EQ(w.after(0.1F).state, State::rejoining);
 }
@@ -72,7 +72,7 @@ TEST(NarrowPaths, AreBackedOffFromUntilTheLimitAlone)
     int backs = 0;
     for (int i = 0; i < 50; ++i) {
         const Guidance g = w.after(0.1F);
-        ASSERT_FALSE(g.has_conflict);
+        ASSERT_FALSE(g.conflict.has_value());
         ASSERT_EQ(g.state, State::braking);
         backs += g.kind == ManoeuvreKind::velocity ? 1 : 0;
     }

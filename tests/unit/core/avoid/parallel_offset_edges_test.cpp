@@ -32,7 +32,7 @@ TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsClearGoesOutAndIsN
 {
     Outside t(5.0F, 10.0F);
     const Guidance g = t.f.update(t.supervisor, true);
-    ASSERT_TRUE(g.has_conflict);
+    ASSERT_TRUE(g.conflict.has_value());
     EXPECT_GE(g.margin, 0.0F);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 0U);
@@ -61,7 +61,7 @@ TEST(ParallelOffsetWhileAvoiding, IsTakenWhereThePathLeadsBack)
 {
     Outside t(5.0F, -2.0F);
     const Guidance g = t.f.update(t.supervisor, true);
-    ASSERT_TRUE(g.has_conflict);
+    ASSERT_TRUE(g.conflict.has_value());
     EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
 }
@@ -85,7 +85,7 @@ TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
     t.f.scene.own.position = Vec3(0, 4, 30);
     t.f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);
     const Guidance g = t.f.update(supervisor, true);
-    ASSERT_TRUE(g.has_conflict);
+    ASSERT_TRUE(g.conflict.has_value());
     EXPECT_EQ(g.margin, 0.0F);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_FALSE(g.new_manoeuvre);
@@ -108,7 +108,7 @@ std::uint32_t holds_of(const Flight& f, const Settings& settings = quick())
     FakeMethod method = never();
     Supervisor supervisor(settings, method);
     const Guidance g = supervisor.update(f.scene.situation(), true);
-    EXPECT_TRUE(g.has_conflict);
+    EXPECT_TRUE(g.conflict.has_value());
     return supervisor.diagnostics().holds;
 }
 
