@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <tuple>
-#include <type_traits>
 
-#include "core/avoid/rungs.hpp"
+#include "core/avoid/method_order.hpp"
+#include "core/avoid/state_machine.hpp"
 
 namespace jink::avoid {
 
-/// Decides, once per tick, what is flown: predicts conflicts of the way ahead, asks the methods in their order, checks
+/// Decides, once per tick, what is flown: predicts conflicts of the nominal path, asks the methods in order, checks
 /// each answer once more as it will really be flown, holds on to a chosen manoeuvre while it stays safe, replans when
-/// it does not, returns to the leg, and brakes (or takes the way of least harm) when nothing is safe.
+/// it does not, returns to the leg, and brakes (or takes the max-clearance escape) when nothing is safe.
 ///
 /// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does
 /// not, nothing is held on to: the answer is made anew from the present state every tick, on the side chosen before
-/// where that is about as good. A method with a member kKeepsRoom keeps Settings::room by itself, as far as there is
-/// any, and is asked once a plan; others are asked for a wider vehicle first. A method with a member kReactive decides
-/// every tick anew, and is asked as Settings::reactive says. Methods are owned by the caller and outlive the
-/// supervisor. Same situations in the same order give the same guidance.
+/// where that is about as good. Settings::order says which methods are asked, and in which order. A method that keeps
+/// clearance by itself (MethodTraits) is asked once a plan; others are asked for an inflated vehicle first. Methods are
+/// owned by the caller and outlive the supervisor. Same situations in the same order give the same guidance.
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:
-    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept : pilot_(settings), methods_(methods...)
+    explicit Supervisor(const Settings& settings, Methods&... methods) noexcept
+        : machine_(settings), methods_(methods...)
     {
     }
 
@@ -33,41 +34,51 @@ public:
     Guidance update(const world::Situation& situation, bool in_control,
                     const world::Reference* other = nullptr) noexcept
     {
-        return pilot_.update(situation, other, in_control, {this, &Supervisor::ladder});
+        return machine_.update(situation, other, in_control, {this, &Supervisor::ask_in_order});
     }
 
-    void reset() noexcept { pilot_.reset(); }
+    void reset() noexcept { machine_.reset(); }
     /// Refused (false, nothing changed) when out of range.
-    [[nodiscard]] bool configure(const Settings& settings) noexcept { return pilot_.configure(settings); }
-    [[nodiscard]] const Settings& settings() const noexcept { return pilot_.settings(); }
-    [[nodiscard]] State state() const noexcept { return pilot_.state(); }
-    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return pilot_.diagnostics(); }
-    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return pilot_.flying(); }
+    [[nodiscard]] bool configure(const Settings& settings) noexcept { return machine_.configure(settings); }
+    [[nodiscard]] const Settings& settings() const noexcept { return machine_.settings(); }
+    [[nodiscard]] State state() const noexcept { return machine_.state(); }
+    [[nodiscard]] const Diagnostics& diagnostics() const noexcept { return machine_.diagnostics(); }
+    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return machine_.flying(); }
 
 private:
-    template <class Method>
-    static constexpr bool kIsReactive = requires
-    {
-        Method::kReactive;
-    };
-    /// Without the reactive ones.
-    static constexpr std::size_t kMethods = (std::size_t{0} + ... + (kIsReactive<Methods> ? 0U : 1U));
+    /// All of them, in the order in which they were given.
+    static constexpr MethodOrder kAll{Methods::kTraits.id...};
+    static_assert(sizeof...(Methods) >= 1 && sizeof...(Methods) <= kMaxMethods);
+    static_assert(kAll.size() == sizeof...(Methods), "ids of methods are unique and not 0");
 
-    /// One rung: with room to spare, then without. A method that keeps room itself, as far as there is any, is asked
-    /// once.
+    /// Those of an order that are here.
+    static MethodOrder present(const MethodOrder& order) noexcept
+    {
+        if (order.empty()) {
+            return kAll;
+        }
+        MethodOrder here;
+        for (const std::uint8_t id : order.ids()) {
+            static_cast<void>(kAll.contains(id) && here.try_add(id));
+        }
+        return here;
+    }
+
+    /// One method: for the inflated vehicle, then for the vehicle as it is. A method that keeps clearance by itself, as
+    /// far as it can, is asked once.
     template <class Method>
-    static bool ask(Method& method, const Rounds& rounds, const Settings& settings, WorkBudget& budget,
+    static bool ask(Method& method, const Situations& situations, const Settings& settings, WorkBudget& budget,
                     Diagnostics& diagnostics, world::Manoeuvre& out, float& margin, world::PlanStatus& status) noexcept
     {
-        if constexpr (!requires { Method::kKeepsRoom; }) {
-            if (ask_in(method, rounds.wide, settings, budget, diagnostics, out, margin, status)) {
+        if constexpr (!Method::kTraits.keeps_clearance) {
+            if (ask_in(method, situations.inflated, settings, budget, diagnostics, out, margin, status)) {
                 return true;
             }
             if (budget.exhausted()) {
                 return false;
             }
         }
-        return ask_in(method, rounds.plain, settings, budget, diagnostics, out, margin, status);
+        return ask_in(method, situations.plain, settings, budget, diagnostics, out, margin, status);
     }
 
     template <class Method>
@@ -80,6 +91,7 @@ private:
         if (status != world::PlanStatus::found) {
             return false;
         }
+        out.by = Method::kTraits.id;
         constexpr world::Cutoff kClearOrNot{0.0F, world::kSeparationCap, {}};
         constexpr Seconds kAllOfIt = std::numeric_limits<Seconds>::infinity();
         margin = check_manoeuvre(situation, out, settings, budget, kAllOfIt, kClearOrNot).margin;
@@ -91,39 +103,35 @@ private:
         return true;
     }
 
-    static world::PlanStatus ladder(void* self, const Rounds& rounds, const Settings& settings, WorkBudget& budget,
-                                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin) noexcept
+    static world::PlanStatus ask_in_order(void* self, const Situations& situations, const Settings& settings,
+                                          WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
+                                          float& margin) noexcept
     {
         world::PlanStatus status = world::PlanStatus::none_available;
-        const Rungs rungs = rungs_of(kMethods, rounds.plain, settings);
-        const std::size_t first = settings.reactive == Reactive::never ? 1 : 0;  // 0: the reactive ones
-        const std::size_t last = settings.reactive == Reactive::alone ? 0 : rungs.count;
-        for (std::size_t i = first; i <= last; ++i) {
-            const std::size_t after = last - i;
+        const MethodOrder order = present(order_for(situations.plain, settings));
+        std::size_t after = order.size();
+        for (const std::uint8_t id : order.ids()) {
+            --after;
             const auto kept = static_cast<std::uint32_t>(after * settings.kept_for_next);
             WorkBudget share(budget.left() > kept ? budget.left() - kept : 0);
-            std::size_t n = 0;
-            const auto is_asked = [&](bool reactive) {
-                return reactive ? i == 0 : i > 0 && n++ == rungs.method(i - 1);
-            };
             const bool found = std::apply(
-                [&](auto&... method) {
-                    return ((is_asked(kIsReactive<std::remove_reference_t<decltype(method)>>) &&
-                             ask(method, rounds, settings, share, diagnostics, out, margin, status)) ||
+                [&](Methods&... method) {
+                    return ((id == Methods::kTraits.id &&
+                             ask(method, situations, settings, share, diagnostics, out, margin, status)) ||
                             ...);
                 },
                 static_cast<Supervisor*>(self)->methods_);
-            // What ends the last one's work ends that of the plan, and is told.
+            // What ends the last method's work ends that of the plan, and is reported.
             static_cast<void>(budget.spend(after == 0 && share.exhausted() ? budget.left() + 1 : share.spent()));
             if (found) {
-                diagnostics.found_by_next += i > first ? 1U : 0U;
+                diagnostics.found_by_next += after + 1 < order.size() ? 1U : 0U;
                 return status;
             }
         }
         return status;
     }
 
-    Pilot pilot_;
+    StateMachine machine_;
     std::tuple<Methods&...> methods_;
 };
 

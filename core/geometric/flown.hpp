@@ -14,7 +14,7 @@ namespace jink::geometric::detail {
 ///
 /// Once the vehicle has had kSettled to find the path, the flight is predicted in parts of kSettledPart: on the path
 /// the command hardly changes from one part to the next. What is chosen is checked in the finer parts of predict_flight
-/// before it is flown (avoid/guard.hpp); how far both lie apart is measured in tests/property/core/geometric
+/// before it is flown (avoid/final_check.hpp); how far both lie apart is measured in tests/property/core/geometric
 /// (CoarseFlight).
 ///
 /// Memory: a curve and a Clearance, 2.1 KiB with the default capacities.

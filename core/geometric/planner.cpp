@@ -6,7 +6,6 @@
 #include "core/geometric/along_reference.hpp"
 #include "core/geometric/in_a_row.hpp"
 #include "core/world/conflict.hpp"
-#include "core/world/method.hpp"
 #include "core/world/threat_set.hpp"
 
 namespace jink::geometric {
@@ -188,7 +187,6 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
         return status;
     }
     out.kind = world::ManoeuvreKind::follow_path;
-    out.by = world::MethodId::geometric;
     out.start = situation.now;
     out.command = Vec3::Zero();
     out.side = result_.side;

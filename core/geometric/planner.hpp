@@ -11,6 +11,7 @@
 #include "core/geometric/candidate.hpp"
 #include "core/path/follower.hpp"
 #include "core/path/route.hpp"
+#include "core/world/method.hpp"
 #include "core/world/threat_set.hpp"
 
 namespace jink::geometric {
@@ -113,8 +114,8 @@ struct Settings {
         0;  ///< only the k moving threats nearest to the start count for closeness; 0: all
     /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
     /// candidates are looked at against those first: the others are looked at once, for the candidate that would be
-    /// taken, so that what is found is clear of all (as avoid/guard.hpp sees to once more). The main threat is among
-    /// them. 0: all.
+    /// taken, so that what is found is clear of all (as avoid/final_check.hpp sees to once more). The main threat is
+    /// among them. 0: all.
     std::uint16_t moving_nearest = 0;
     float max_cost = 1.0F;  ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
     /// Time-aware mode: a start inside a margin is judged by this rule, so that there is a way out. Off in source mode.
@@ -266,6 +267,8 @@ private:
 /// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).
 class Planner {
 public:
+    static constexpr world::MethodTraits kTraits{
+        .id = 1, .reactive = false, .keeps_clearance = false, .needs_sets = false};
     /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with
     /// [m].
     static constexpr float kLeastMainRadius = 0.5F;

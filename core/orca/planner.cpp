@@ -265,7 +265,6 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
         return world::PlanStatus::none_available;
     }
     out.kind = world::ManoeuvreKind::velocity;
-    out.by = world::MethodId::orca;
     out.start = s.now;
     out.valid_until = s.now + settings.pair.horizon;
     out.command = decision_.command;

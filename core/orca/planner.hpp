@@ -24,7 +24,7 @@ struct Settings {
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;
 
 /// The method: satisfies world's AvoidanceMethod. Each plan is one decision of a VelocityFilter, made anew every tick
-/// (kReactive): the velocity along the way to the reference, changed as little as keeps clear (Alejo 7).
+/// (MethodTraits::reactive): the velocity along the way to the reference, changed as little as keeps clear (Alejo 7).
 ///
 /// * Vehicle: its box as the cylinder about it, obstacles and the airspace's bounds as hard half-spaces. Around each
 ///   track the region that keeps the box from the track's sphere, grown to when they are nearest, lies within the
@@ -48,10 +48,8 @@ struct Settings {
 /// bounded by the budget.
 class Planner {
 public:
-    /// The supervisor need not ask for a wider vehicle first.
-    static constexpr bool kKeepsRoom = true;
-    /// It is asked at every update while what it found is flown.
-    static constexpr bool kReactive = true;
+    static constexpr world::MethodTraits kTraits{
+        .id = 3, .reactive = true, .keeps_clearance = true, .needs_sets = false};
     static constexpr float kWingShare = 0.9F;
 
     explicit Planner(const Settings& settings = {}) noexcept { static_cast<void>(configure(settings)); }

@@ -284,7 +284,6 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
             report_.free_nodes = static_cast<std::uint16_t>(
                 std::count_if(nodes.begin() + 1, nodes.end(), [&](Level level) { return is_free(level, choice.run); }));
             out.kind = world::ManoeuvreKind::follow_path;
-            out.by = world::MethodId::reach;
             out.start = situation.now;
             out.valid_until = situation.now + path.duration();
             out.path = path;

@@ -51,8 +51,9 @@ struct Report {
 class Planner {
 public:
     static constexpr std::size_t kHeadings = 3;
-    /// The supervisor need not ask for a wider vehicle first: Settings::room.
-    static constexpr bool kKeepsRoom = true;
+    /// Settings::room is its clearance buffer.
+    static constexpr world::MethodTraits kTraits{
+        .id = 2, .reactive = false, .keeps_clearance = true, .needs_sets = true};
 
     explicit Planner(const Settings& settings) noexcept { static_cast<void>(configure(settings)); }
 

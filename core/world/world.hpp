@@ -80,14 +80,13 @@ struct Reference {
     std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
 };
 
-enum class MethodId : std::uint8_t { none, supervisor, geometric, reach, orca };
 enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
 
 /// What to fly. For `brake` and `velocity` the path is the predicted flight under the constant command `command`.
 struct Manoeuvre {
     ManoeuvreKind kind = ManoeuvreKind::brake;
-    MethodId by = MethodId::none;
-    TimePoint start;  ///< path time 0
+    std::uint8_t by = 0;  ///< MethodTraits::id of the method that found it, set by the supervisor; 0: none
+    TimePoint start;      ///< path time 0
     TimePoint valid_until;
     Vec3 command = Vec3::Zero();  ///< `velocity`: [m/s]
     Vec3 side = Vec3::Zero();     ///< unit vector from the leg towards the farthest point of the path; zero for none

@@ -7,6 +7,7 @@
 #include "core/base/work_units.hpp"
 #include "core/reach/lidar_scan.hpp"
 #include "firmware/app/hold_choice.hpp"
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/wing_course.hpp"
 
 namespace jink::app {
@@ -49,7 +50,10 @@ avoid::Settings Coprocessor::supervisor_settings() const noexcept
 {
     const Configuration& c = parameters_.configuration();
     avoid::Settings settings = c.supervisor;
-    settings.order = leaves_reach_out_ || c.reach_unsuited ? avoid::LadderOrder::first : settings.order;
+    if (leaves_reach_out_ || c.reach_unsuited) {
+        settings.order = without_sets(settings.order);
+        settings.order_in_clutter = {};
+    }
     if (reach_picture_ != nullptr) {
         // Laying a scan over a set would take most of what a plan may, and a way through clutter takes more than the
         // rest: each of two methods has nearly a whole plan's units, and the checks and fallbacks keep theirs.
@@ -264,13 +268,13 @@ bool Coprocessor::is_hold_urgent(TimePoint now, const vehicle::VehicleState& own
 {
     const Configuration& c = parameters_.configuration();
     const Seconds stopping = vehicle::stopping_time(own.velocity.norm(), c.limits) + c.supervisor.reserve;
-    if (!guidance.has_conflict || guidance.conflict.time_to_loss > stopping) {
+    if (!guidance.conflict || guidance.conflict->time_to_loss > stopping) {
         return false;
     }
     const auto tracks = tracks_.snapshot(now);
-    const world::ThreatRef threat = guidance.conflict.threat;
+    const world::ThreatRef threat = guidance.conflict->threat;
     const bool is_track = threat.kind == world::ThreatKind::track && threat.index < tracks.size();
-    return is_stopping_safer(own, c.limits, guidance.conflict, is_track ? &tracks[threat.index] : nullptr);
+    return is_stopping_safer(own, c.limits, *guidance.conflict, is_track ? &tracks[threat.index] : nullptr);
 }
 
 /// A plane is steered as the plane that VEH_FIXED_WING describes, never as a vehicle that stops.
@@ -278,8 +282,7 @@ bool Coprocessor::can_steer() const noexcept
 {
     const Configuration& c = parameters_.configuration();
     // A plane keeps its own speed: it cannot fly what reciprocal avoidance asks for.
-    const bool as_wing =
-        c.limits.kind == vehicle::VehicleKind::fixed_wing && c.supervisor.reactive == avoid::Reactive::never;
+    const bool as_wing = c.limits.kind == vehicle::VehicleKind::fixed_wing && !is_reactive(c.supervisor.order);
     return autopilot_.steerable && (!autopilot_.fixed_wing || as_wing);
 }
 
@@ -289,7 +292,7 @@ TakeoverInput Coprocessor::takeover_input(TimePoint now, const vehicle::VehicleS
     const Configuration& c = parameters_.configuration();
     TakeoverInput input;
     input.wants_control = report.guidance.wants_control;
-    input.in_conflict = report.guidance.has_conflict;
+    input.in_conflict = report.guidance.conflict.has_value();
     input.may_act = report.faults == 0 && c.mode == ActMode::act;
     input.urgent_hold = !takeover_.in_control() && is_hold_urgent(now, own, report.guidance);
     input.has_report = new_autopilot_report_;
@@ -329,7 +332,7 @@ void Coprocessor::control(TimePoint now, StepReport& report) noexcept
         report.obstacles = static_cast<std::uint16_t>(situation.obstacles.size());
         report.barrels = static_cast<std::uint16_t>(air.barrels.size());
         report.guidance = supervisor_.update(situation, takeover_.in_control(), nominal_.other());
-        nominal_.note(report.guidance.has_conflict, report.guidance.on_other, report.guidance.other_conflict);
+        nominal_.note(report.guidance.conflict.has_value(), report.guidance.on_other, report.guidance.other_conflict);
         report.work = report.guidance.work;
     }
     if (!is_finite(own.velocity) || !is_finite(report.guidance.velocity)) {

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/vehicles/default/cost_tables.hpp"
 
@@ -158,22 +159,18 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.flip_penalty = at(Param::flip_penalty);
     g.moving_nearest = static_cast<std::uint16_t>(whole(Param::nearest));
     g.max_cost = at(Param::max_cost);
-    constexpr std::array kOrders{avoid::LadderOrder::first, avoid::LadderOrder::as_given, avoid::LadderOrder::reversed,
-                                 avoid::LadderOrder::last,  avoid::LadderOrder::as_given, avoid::LadderOrder::as_given};
-    constexpr std::array kReactive{avoid::Reactive::never, avoid::Reactive::never, avoid::Reactive::never,
-                                   avoid::Reactive::never, avoid::Reactive::alone, avoid::Reactive::first};
-    static_assert(kOrders.size() == kReactive.size());
-    c.supervisor.reactive = kReactive[whole(Param::methods)];
-    c.supervisor.order = kOrders[whole(Param::methods)];
+    const MethodOrders& methods = kMethodOrders[whole(Param::methods)];
+    c.supervisor.order = methods.order;
+    c.supervisor.order_in_clutter = methods.in_clutter;
     c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
     c.reach.sets = &reach_sets();
-    c.reach.room = c.supervisor.room;
+    c.reach.room = c.supervisor.clearance_buffer;
     c.reach.latency = at(Param::latency);
     c.reach.escape = c.supervisor.escape;
     c.blocks_unseen = whole(Param::unseen) == 1;
     c.orca.horizon = c.supervisor.lookahead;
     c.orca.latency = at(Param::latency);
-    c.orca.gives_up_blocked = c.supervisor.reactive != avoid::Reactive::alone;
+    c.orca.gives_up_blocked = methods.order.ids().back() != kOrca;
     c.reach_unsuited = !reach::suits(*c.reach.sets, c.limits);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);

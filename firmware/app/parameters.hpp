@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "core/avoid/guidance.hpp"
+#include "core/avoid/settings.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/method_orders.hpp"
 
 namespace jink::app {
 namespace {
@@ -68,10 +69,10 @@ void Coprocessor::tell(TimePoint now, const StepReport& report) noexcept
     tell_notices();
     tell_autopilot_state(report);
     const avoid::Guidance& g = report.guidance;
-    if (g.has_conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
+    if (g.conflict && (!told_conflict_ || now - last_collision_ >= kCollisionPeriod)) {
         warn_of_conflict(now, report);
     }
-    told_conflict_ = g.has_conflict;
+    told_conflict_ = g.conflict.has_value();
     tell_braking(now, g);
 }
 
@@ -98,7 +99,7 @@ void Coprocessor::tell_autopilot_state(const StepReport& report) noexcept
 /// that comes and goes is one.
 void Coprocessor::tell_braking(TimePoint now, const avoid::Guidance& g) noexcept
 {
-    last_conflict_ = g.has_conflict || g.state == avoid::State::braking ? now : last_conflict_;
+    last_conflict_ = g.conflict || g.state == avoid::State::braking ? now : last_conflict_;
     if (now - last_conflict_ > kConflictOver) {
         told_unsafe_ = told_braking_ = false;
     }
@@ -145,7 +146,7 @@ void Coprocessor::tell_notices() noexcept
         told_flood_ = true;
     }
     const Configuration& c = parameters_.configuration();
-    const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::LadderOrder::first;
+    const bool unsuited = c.reach_unsuited && c.supervisor.order != avoid::MethodOrder(kGeometric);
     if (unsuited && !told_unsuited_ && has_autopilot_) {
         say(link::Severity::warning, "jink: reach sets do not suit this vehicle");
     }

@@ -16,7 +16,7 @@ constexpr std::uint32_t kBarrelIds = 0x04000000;
 void Coprocessor::warn_of_conflict(TimePoint now, const StepReport& report) noexcept
 {
     const avoid::Guidance& g = report.guidance;
-    const world::Conflict& c = g.conflict;
+    const world::Conflict& c = *g.conflict;
     const Vec3 miss = c.threat_at_closest - c.own_at_closest;
     const bool is_track = c.threat.kind == world::ThreatKind::track;
     const bool is_barrel = c.threat.kind == world::ThreatKind::barrel;

@@ -164,8 +164,8 @@ std::string status_line(const app::StepReport& report, const Watched& watched, s
     if (report.barrels > 0) {
         add("areas %2u ", report.barrels);
     }
-    if (g.has_conflict) {
-        add("conflict in %.1f s ", static_cast<double>(g.conflict.time_to_loss));
+    if (g.conflict) {
+        add("conflict in %.1f s ", static_cast<double>(g.conflict->time_to_loss));
     }
     if (report.faults != 0) {
         add("faults 0x%x ", report.faults);

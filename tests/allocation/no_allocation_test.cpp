@@ -168,7 +168,7 @@ public:
         const bool ours = report.control == app::Control::ours;
         const avoid::State state = report.guidance.state;
         ++visited.steps;
-        visited.quiet += !report.guidance.has_conflict && report.control == app::Control::autopilot ? 1 : 0;
+        visited.quiet += !report.guidance.conflict.has_value() && report.control == app::Control::autopilot ? 1 : 0;
         visited.avoiding += ours && state == avoid::State::avoiding ? 1 : 0;
         visited.braking += ours && state == avoid::State::braking ? 1 : 0;
         visited.rejoining += ours && state == avoid::State::rejoining ? 1 : 0;

@@ -53,7 +53,7 @@ TEST(Tune, ParametersGiveThePlannerTheseWeights)
     for (const auto& [name, value] : variant.parameters) {
         ASSERT_EQ(parameters.set(name, static_cast<float>(value)), app::ParamStatus::ok);
     }
-    EXPECT_EQ(parameters.configuration().supervisor.order, avoid::LadderOrder::first);
+    EXPECT_EQ(parameters.configuration().supervisor.order, avoid::MethodOrder(geometric::Planner::kTraits.id));
     EXPECT_FLOAT_EQ(parameters.configuration().planner.weights.smoothness, 0.25F);
     EXPECT_FLOAT_EQ(parameters.configuration().planner.weights.time, 0.15F);
     EXPECT_FLOAT_EQ(parameters.configuration().planner.weights.closeness, 0.60F);

@@ -5,7 +5,7 @@
 
 #include <cstdio>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/reach/planner.hpp"
@@ -137,7 +137,7 @@ TEST(BarrelPlans, TheGeometricPlannerSaysThatItHasNone)
     world::Manoeuvre manoeuvre;
     WorkBudget budget(kPlenty);
     EXPECT_EQ(planner.plan(leg.view(), budget, manoeuvre), PlanStatus::none_available);
-    EXPECT_EQ(manoeuvre.by, world::MethodId::none);
+    EXPECT_TRUE(manoeuvre.path.points.empty());
 }
 
 /// Flown for `seconds` under the supervisor's command: the least distance from the body.

@@ -135,7 +135,7 @@ bool Probe::is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) co
         return answer.status == static_cast<std::uint32_t>(world::PlanStatus::found);
     }
     const world::Manoeuvre* flying = record.kind == ProbeKind::update ? supervisor_.flying() : nullptr;
-    return flying != nullptr && flying->by == world::MethodId::reach;
+    return flying != nullptr && flying->by == reach::Planner::kTraits.id;
 }
 
 void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept

@@ -29,7 +29,7 @@ SAME_VELOCITY = 1e-3  # [m/s], of a decision that is a velocity
 REDUCED_ONLY = ("stm32f405",)
 DISTURBED = 32
 ROUNDINGS = 4 * 2.0**-24
-SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/guidance.hpp"
+SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/settings.hpp"
 PLAN_BUDGET = int(re.search(r"\bplan_budget = (\d+);", SETTINGS.read_text(encoding="utf-8"))[1])
 
 

@@ -7,7 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/fallback.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/cost/tables.hpp"

@@ -22,7 +22,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 
-#include "core/avoid/guidance.hpp"
+#include "core/avoid/settings.hpp"
 #include "core/base/random.hpp"
 #include "core/geometric/planner.hpp"
 #include "tests/oracle/collected.hpp"

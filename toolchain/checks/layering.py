@@ -5,6 +5,7 @@
     layering.py includes     who may know whom (docs/architecture.md), over the include lines
     layering.py spdx         every source starts with its licence
     layering.py length       files longer than they should be; an error beyond MOST_LINES, tests excepted
+    layering.py states       the state diagram of docs/ against the table of transitions in core/avoid
     layering.py self-test    plants one violation of each kind and fails when it is not found
 
 Python 3 standard library only. `--root FOLDER` checks another tree.
@@ -188,7 +189,29 @@ def check_length(root):
     return errors
 
 
-CHECKS = {"includes": check_includes, "spdx": check_spdx, "length": check_length}
+TRANSITIONS = "core/avoid/phase.hpp"
+STATES_PAGE = "docs/guides/state_machine.md"
+
+
+def check_states(root):
+    if not (root / TRANSITIONS).exists():
+        return []
+    code = re.findall(r"\{Phase::(\w+), Phase::(\w+)\},\s*// (.+)", (root / TRANSITIONS).read_text(encoding="utf-8"))
+    page = (root / STATES_PAGE).read_text(encoding="utf-8") if (root / STATES_PAGE).exists() else ""
+    drawn = re.findall(r"^ *(\w+) --> (\w+)$", page, re.M)
+    table = page.partition("| from | to | when |\n")[2].split("\n\n")[0]
+    rows = [tuple(cell.strip() for cell in line.strip("|").split("|")) for line in table.splitlines()[1:]]
+    expected = [(a.replace("_", " "), b.replace("_", " "), when) for a, b, when in code]
+    errors = [] if code else [f"{TRANSITIONS}: no table of transitions"]
+    if drawn != [(a, b) for a, b, _ in code]:
+        errors.append(f"{STATES_PAGE}: its diagram does not draw the transitions of {TRANSITIONS}")
+    if rows != expected:
+        differing = sorted(set(rows) ^ set(expected)) or ["the order"]
+        errors.append(f"{STATES_PAGE}: its table differs from {TRANSITIONS}: {differing[0]}")
+    return errors
+
+
+CHECKS = {"includes": check_includes, "spdx": check_spdx, "length": check_length, "states": check_states}
 
 # Planted violations: check, file, text, what the error has to say.
 LICENCE = "// SPDX-License-Identifier: BSD-3-Clause\n"
@@ -224,6 +247,9 @@ PLANTS = [
     ("spdx", "toolchain/a", "#!/bin/sh\necho\n", "no SPDX"),
     ("spdx", "tests/CMakeLists.txt", "", "no SPDX"),
     ("length", "core/world/a.cpp", "\n" * (MOST_LINES + 1), "more than"),
+    ("states", TRANSITIONS, LICENCE + "{Phase::a, Phase::b},  // at last\n", "does not draw"),
+    ("states", TRANSITIONS, LICENCE + "{Phase::a, Phase::b},  // at last\n", "differs"),
+    ("states", TRANSITIONS, LICENCE, "no table"),
 ]
 # Nothing may be found in these.
 CLEAN = [

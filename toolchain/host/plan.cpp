@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "core/avoid/guidance.hpp"
+#include "core/avoid/settings.hpp"
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/plan_output.hpp"
 

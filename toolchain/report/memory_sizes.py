@@ -23,7 +23,7 @@ REACH_TABLES = re.compile(r"jink::reach::(setsOf\w+::|k\w+Sets)")
 ALLOCATOR = re.compile(r"\b(malloc|calloc|realloc|free|_sbrk|sbrk|_malloc_r|_free_r|operator new|operator delete)\b")
 # Entry points whose stack is of interest to somebody who links the core: (name, mangled name).
 ENTRIES = [("image: the program", r"^jink_main$"), ("image: deepest interrupt", r"^jink_(uart|usart|can|guard)"),
-           ("Coprocessor::step", r"N4jink3app11Coprocessor4stepE"), ("Pilot::update (of Supervisor)", r"N4jink5avoid5Pilot6updateE"),
+           ("Coprocessor::step", r"N4jink3app11Coprocessor4stepE"), ("StateMachine::update (of Supervisor)", r"N4jink5avoid12StateMachine6updateE"),
            ("geometric::Planner::plan", r"N4jink9geometric7Planner4planE"), ("reach::Planner::plan", r"N4jink5reach7Planner4planE"),
            ("orca::Planner::plan", r"N4jink4orca7Planner4planE")]
 # Capacities of the formula, another value for each, and a set to try the formula on.

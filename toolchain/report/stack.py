@@ -19,7 +19,7 @@ BYTES = re.compile(r"\\n(\d+) bytes \(([^)]+)\)")
 LIBRARY = 200
 # Who can be reached through a pointer, by the mangled name of the caller.
 INDIRECT = [
-    (r"5Pilot4plan", [r"10Supervisor.*6ladder"]),
+    (r"12StateMachine4plan", [r"10Supervisor.*10ask_in_order"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
     (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),

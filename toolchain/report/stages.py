@@ -9,7 +9,7 @@ STAGES = [
     ("link and messages", r"^(firmware/link|hal)/"),
     ("application", r"^firmware/app/"),
     ("tracks and obstacles", r"^core/world/(track|obstacle)_table"),
-    ("supervisor", r"^core/avoid/(pilot|supervisor)"),
+    ("supervisor", r"^core/avoid/(state_machine|phase|tick|avoiding|braking|rejoin|nominal_choice|method_order|supervisor)"),
     ("conflict search", r"^core/world/conflict"),
     ("set-up of a plan", r"^core/geometric/(planner\.cpp|solve\.cpp:(solve|is_valid|has_valid|jink::geometric::solve)|settings)"),
     ("candidates", r"^core/geometric/(solve\.cpp:generate|offsets)|make_unit_curve"),
@@ -21,8 +21,8 @@ STAGES = [
     ("contact tests of flights", r"^core/geometric/flown\.cpp:.*judge"),
     ("choice", r"^core/geometric/solve\.cpp:(choose|next_cheapest|take|operator\(\))"),
     ("reach sets", r"^core/reach/"),
-    ("final check", r"^core/avoid/guard\.cpp:.*check_manoeuvre"),
-    ("fallback", r"^core/avoid/guard\.cpp"),
+    ("final check", r"^core/avoid/final_check\.cpp"),
+    ("fallback", r"^core/avoid/fallback"),
 ]
 PLACE = re.compile(r"/((?:core|firmware|hal)/[^:]*)")
 NAMES = ["other"] + [name for name, _ in STAGES]

@@ -13,7 +13,7 @@ HOST = pathlib.Path(__file__).resolve().parents[2] / "tests/timing/host.json"
 # Cycles per instruction that turn counts into an estimate. Nobody has measured them on these chips.
 CYCLES = 1.5
 # Of avoid::Settings; margin for what the hunt has not found, on what no unit counts; what ends a step that hangs, and when [ms].
-SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/guidance.hpp"
+SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/settings.hpp"
 UNITS = int(re.search(r"\bbudget = (\d+);", SETTINGS.read_text(encoding="utf-8"))[1])
 MARGIN = 2
 ENDS = {"mps2_an500": ("watchdog", 250), "stm32f405": ("step guard", 150)}

@@ -29,7 +29,7 @@ struct EncounterResult {
     unsigned takeovers = 0;
     SideCounts sides;         ///< as flown
     SideCounts chosen_sides;  ///< as chosen
-    unsigned brakes = 0;      ///< the supervisor's last rungs: brake,
+    unsigned brakes = 0;      ///< the supervisor's fallbacks: brake,
     unsigned escapes = 0;     ///< and way of least harm
     unsigned faults = 0;      ///< rules of the protocol or of the airspace that were broken
     bool conflict = false;    ///< the mission, flown on, breaks the promise towards a threat that was told of

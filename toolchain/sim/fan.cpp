@@ -39,12 +39,14 @@ std::string describe(const geometric::Candidate& candidate)
 std::vector<FanCurve> fan_of(const app::Coprocessor& coprocessor, const app::StepReport& report, std::string& chosen)
 {
     const geometric::Result& plan = coprocessor.planner().last();
-    const world::Conflict& conflict = report.guidance.conflict;
-    const Vec3 origin = coprocessor.own().position;
-    const Vec3 to_point = conflict.own_at_closest - origin;
-    const float distance = to_point.norm();
     std::vector<FanCurve> fan;
-    if (!report.guidance.has_conflict || !(distance > 0.0F)) {
+    if (!report.guidance.conflict) {
+        return fan;
+    }
+    const Vec3 origin = coprocessor.own().position;
+    const Vec3 to_point = report.guidance.conflict->own_at_closest - origin;
+    const float distance = to_point.norm();
+    if (!(distance > 0.0F)) {
         return fan;
     }
     const geometric::PathFrame frame = geometric::make_path_frame(origin, to_point);

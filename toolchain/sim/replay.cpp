@@ -180,7 +180,7 @@ Belief Replay::belief() const
     belief.time = to_seconds(now_);
     belief.control = name_of(report_.control);
     belief.tracks = report_.tracks;
-    belief.conflict = report_.guidance.has_conflict;
+    belief.conflict = report_.guidance.conflict.has_value();
     if (const link::AutopilotReport* const autopilot = coprocessor_->autopilot()) {
         belief.stack = stack_of(autopilot->stack);
         belief.vehicle = vehicle_;

@@ -51,7 +51,7 @@ TEST(CoprocessorBus, OnCanAloneItAdvisesAndSteersNobody)
         ASSERT_EQ(report.control, Control::autopilot);
         ASSERT_FALSE(report.setpoint_sent);
         ASSERT_EQ(report.state, link::SystemState::boot);
-        conflict = conflict || report.guidance.has_conflict;
+        conflict = conflict || report.guidance.conflict.has_value();
     }
     EXPECT_TRUE(conflict);
     EXPECT_TRUE(b->heard.said("no autopilot heard, advising only"));
@@ -77,7 +77,7 @@ TEST(CoprocessorBus, WithoutAHomeThereAreNoBounds)
         }
         const StepReport report = b->tick();
         ASSERT_EQ(report.own_source, OwnSource::bus);
-        ASSERT_FALSE(report.guidance.has_conflict);
+        ASSERT_FALSE(report.guidance.conflict.has_value());
     }
 }
 
@@ -125,7 +125,7 @@ TEST(CoprocessorBus, TrafficFromTheBusAboveTheEllipsoidIsInConflictOnceTheLinkKn
                 b->give(m, 21);
             }
             const StepReport report = b->tick();
-            conflict = conflict || report.guidance.has_conflict;
+            conflict = conflict || report.guidance.conflict.has_value();
             ASSERT_EQ(report.uncertain_heights, known && report.tracks > 0 ? 1U : 0U);
         }
         EXPECT_EQ(conflict, known);
@@ -262,7 +262,7 @@ TEST(CoprocessorBus, AnotherOriginIsTakenOverWithinTheStep)
     b->give(BusBench::traffic(b->f.position + Vec3(0.0F, 30.0F, 0.0F)), 21);
     const StepReport report = b->tick();
     EXPECT_EQ(report.tracks, 1U);
-    EXPECT_FALSE(report.guidance.has_conflict) << "a kilometre behind, by the new one";
+    EXPECT_FALSE(report.guidance.conflict.has_value()) << "a kilometre behind, by the new one";
 }
 
 TEST(CoprocessorBus, ARestartOfTheAutopilotForgetsItsOrigin)

@@ -20,7 +20,7 @@ protected:
         ASSERT_TRUE(f.until([](const StepReport& r) { return r.faults == 0; }, 200));
         f.fly(300);
         f.obstacles = {f.position + Vec3(0.0F, 15.0F, 0.0F)};
-        ASSERT_TRUE(f.until([](const StepReport& r) { return r.guidance.has_conflict; }, 30))
+        ASSERT_TRUE(f.until([](const StepReport& r) { return r.guidance.conflict.has_value(); }, 30))
             << "the leg leads through it";
     }
     void next_item(std::uint8_t frame, std::uint16_t command = 16)
@@ -38,7 +38,7 @@ protected:
     void expect_dropped()
     {
         EXPECT_EQ(f.coprocessor.diagnostics().legs_dropped, 1U);
-        EXPECT_FALSE(f.last.guidance.has_conflict) << "it hovers, and may go anywhere";
+        EXPECT_FALSE(f.last.guidance.conflict.has_value()) << "it hovers, and may go anywhere";
     }
 
     Flight f;
@@ -63,7 +63,8 @@ TEST_F(CoprocessorLeg, AnItemAboveAHomeThatIsNotKnownEndsTheOldOneAndIsTakenUpWh
     home.q = {1.0F, 0.0F, 0.0F, 0.0F};
     f.feed(home);
     f.obstacles = {f.position + Vec3(15.0F, -f.position.y() * 0.02F, 0.0F)};
-    ASSERT_TRUE(f.until([](const StepReport& r) { return r.guidance.has_conflict; }, 60)) << "the new leg leads east";
+    ASSERT_TRUE(f.until([](const StepReport& r) { return r.guidance.conflict.has_value(); }, 60))
+        << "the new leg leads east";
     EXPECT_EQ(f.coprocessor.diagnostics().legs_dropped, 1U);
 }
 
@@ -89,7 +90,7 @@ TEST_F(CoprocessorLeg, LeavingTheMissionEndsTheLegAndReturningBeginsItAnew)
     f.fly(60);
     expect_dropped();
     f.mode = wire::kCopterAuto;
-    EXPECT_TRUE(f.until([](const StepReport& r) { return r.guidance.has_conflict; }, 60));
+    EXPECT_TRUE(f.until([](const StepReport& r) { return r.guidance.conflict.has_value(); }, 60));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/app/method_orders.hpp"
 #include "tests/unit/app/flight.hpp"
 
 namespace jink::app::test {
@@ -16,7 +17,7 @@ namespace {
 
 /// A flight past an obstacle on the leg: who planned it, and how near it came.
 struct Passed {
-    world::MethodId by = world::MethodId::none;
+    std::uint8_t by = 0;  ///< MethodTraits::id
     float nearest = 1e9F;
     bool warned = false;  ///< that the sets do not suit
     int told = 0;         ///< that they are damaged
@@ -48,7 +49,7 @@ Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_ou
         200));
     f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
     EXPECT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
-    passed.by = f->coprocessor.flying() != nullptr ? f->coprocessor.flying()->by : world::MethodId::none;
+    passed.by = f->coprocessor.flying() != nullptr ? f->coprocessor.flying()->by : std::uint8_t{0};
     f->until([&](const StepReport& r) {
         listen();
         passed.nearest = std::min(passed.nearest, (f->position - f->obstacles[0]).norm());
@@ -60,9 +61,8 @@ Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_ou
 
 TEST(CoprocessorMethods, PlanAsTheParameterSays)
 {
-    using world::MethodId;
-    const std::pair<float, MethodId> methods[] = {
-        {0.0F, MethodId::geometric}, {1.0F, MethodId::geometric}, {2.0F, MethodId::reach}, {3.0F, MethodId::reach}};
+    const std::pair<float, std::uint8_t> methods[] = {
+        {0.0F, kGeometric}, {1.0F, kGeometric}, {2.0F, kReach}, {3.0F, kReach}};
     for (const auto& [value, by] : methods) {
         const Passed passed = pass({{Param::methods, value}});
         EXPECT_EQ(passed.by, by) << value;
@@ -73,7 +73,7 @@ TEST(CoprocessorMethods, PlanAsTheParameterSays)
 
 TEST(CoprocessorMethods, InClutterReachSetsComeFirst)
 {
-    EXPECT_EQ(pass({{Param::clutter, 1.0F}}).by, world::MethodId::geometric) << "farther off than 20 m is no clutter";
+    EXPECT_EQ(pass({{Param::clutter, 1.0F}}).by, kGeometric) << "farther off than 20 m is no clutter";
     // One that stands beside the leg is within 20 m of the vehicle when it has to plan.
     const auto f = std::make_unique<Flight>([] {
         Parameters p;
@@ -85,7 +85,7 @@ TEST(CoprocessorMethods, InClutterReachSetsComeFirst)
                     f->position + Vec3(-9.0F, 18.0F, 0.0F)};
     ASSERT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
     ASSERT_NE(f->coprocessor.flying(), nullptr);
-    EXPECT_EQ(f->coprocessor.flying()->by, world::MethodId::reach);
+    EXPECT_EQ(f->coprocessor.flying()->by, kReach);
 }
 
 /// Made in memory that holds something from before.
@@ -120,14 +120,14 @@ TEST(CoprocessorMethods, DoNotDependOnWhatTheMemoryHeldBefore)
         f.obstacles = {f.position + Vec3(0.4F, 40.0F, 0.0F)};
         ASSERT_TRUE(f.until([](const StepReport& r) { return r.control == Control::ours; }));
         ASSERT_NE(f.coprocessor.flying(), nullptr);
-        EXPECT_EQ(f.coprocessor.flying()->by, world::MethodId::reach) << left;
+        EXPECT_EQ(f.coprocessor.flying()->by, kReach) << left;
     }
 }
 
 TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
 {
     const Passed passed = pass({{Param::methods, 3.0F}}, true);
-    EXPECT_EQ(passed.by, world::MethodId::geometric);
+    EXPECT_EQ(passed.by, kGeometric);
     EXPECT_EQ(passed.told, 1);
     EXPECT_GT(passed.nearest, 2.0F);
 }
@@ -135,7 +135,7 @@ TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
 TEST(CoprocessorMethods, SetsThatDoNotSuitTheVehicleAreLeftOutAndItIsTold)
 {
     const Passed passed = pass({{Param::methods, 3.0F}, {Param::acceleration, 4.0F}});
-    EXPECT_EQ(passed.by, world::MethodId::geometric);
+    EXPECT_EQ(passed.by, kGeometric);
     EXPECT_TRUE(passed.warned);
     EXPECT_FALSE(pass({{Param::methods, 0.0F}, {Param::acceleration, 4.0F}}).warned) << "nobody asked for them";
 }

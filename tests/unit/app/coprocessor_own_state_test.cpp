@@ -16,15 +16,15 @@ TEST(CoprocessorOwnState, IsCarriedForwardToTheStepByItsVelocity)
     const auto f = std::make_unique<Flight>();
     f->obeys = false;
     f->obstacles = {Vec3(0.0F, 60.0F, 50.0F)};
-    ASSERT_TRUE(f->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+    ASSERT_TRUE(f->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
     f->fly(5);
-    ASSERT_TRUE(f->last.guidance.has_conflict);
-    const float before = f->last.guidance.conflict.time_to_loss;
+    ASSERT_TRUE(f->last.guidance.conflict.has_value());
+    const float before = f->last.guidance.conflict->time_to_loss;
     f->own_state = false;
     constexpr int kTicks = 20;
     f->fly(kTicks);
-    ASSERT_TRUE(f->last.guidance.has_conflict);
-    EXPECT_NEAR(f->last.guidance.conflict.time_to_loss, before - 0.02F * static_cast<float>(kTicks), 0.03F);
+    ASSERT_TRUE(f->last.guidance.conflict.has_value());
+    EXPECT_NEAR(f->last.guidance.conflict->time_to_loss, before - 0.02F * static_cast<float>(kTicks), 0.03F);
 }
 
 /// A link whose clock runs ahead. 50 ms are taken for jitter, and not flown backwards.

@@ -69,7 +69,7 @@ protected:
         EXPECT_TRUE(std::isfinite(f.coprocessor.own().sigma_position));
         EXPECT_TRUE(std::isfinite(f.coprocessor.own().sigma_velocity));
         EXPECT_EQ(f.last.faults, 0U);
-        EXPECT_FALSE(f.last.guidance.has_conflict);
+        EXPECT_FALSE(f.last.guidance.conflict.has_value());
         EXPECT_FALSE(f.last.setpoint_sent);
     }
 

@@ -249,7 +249,7 @@ int quiet_steps(Teller& t, int most)
     int quiet = 0;
     for (int i = 0; i < 600 && quiet < most; ++i) {
         t.step();
-        const bool on = t.last.guidance.has_conflict || t.last.guidance.state == avoid::State::braking;
+        const bool on = t.last.guidance.conflict.has_value() || t.last.guidance.state == avoid::State::braking;
         quiet = on ? 0 : quiet + 1;
     }
     return quiet;
@@ -281,7 +281,7 @@ TEST(TellingBraking, ConflictThatGoesOnIsTheSameHoweverLong)
     int longest = 0, quiet = 0, braked = 0;
     for (int i = 0; i < 330; ++i) {
         t->step();
-        const bool on = t->last.guidance.has_conflict || t->last.guidance.state == avoid::State::braking;
+        const bool on = t->last.guidance.conflict.has_value() || t->last.guidance.state == avoid::State::braking;
         braked = t->last.guidance.state == avoid::State::braking ? i : braked;
         quiet = on ? 0 : quiet + 1;
         longest = std::max(longest, quiet);

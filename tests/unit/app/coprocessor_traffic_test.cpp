@@ -27,7 +27,7 @@ float seen_below(bool says_climb, float climb)
             f.feed(m, 156);
         }
         f.fly(1);
-        if (f.last.guidance.has_conflict) {
+        if (f.last.guidance.conflict.has_value()) {
             return f.position.z() - where.z();
         }
         where.z() += climb * 0.02F;
@@ -69,11 +69,11 @@ TEST(CoprocessorTraffic, MovesWithTheOriginWithoutAnotherReport)
     for (const float aside : {30.0F, -30.0F, 200.0F}) {
         MisplacedOrigin m(aside);
         ASSERT_EQ(m.f.last.tracks, 1U);
-        ASSERT_FALSE(m.f.last.guidance.has_conflict) << "as far as can be known";
+        ASSERT_FALSE(m.f.last.guidance.conflict.has_value()) << "as far as can be known";
         m.f.feed(wire::origin());
         m.f.fly(3);
         EXPECT_EQ(m.f.last.tracks, 1U);
-        EXPECT_TRUE(m.f.last.guidance.has_conflict) << aside;
+        EXPECT_TRUE(m.f.last.guidance.conflict.has_value()) << aside;
         EXPECT_EQ(m.f.coprocessor.diagnostics().origin_changes, 1U);
         EXPECT_EQ(m.f.coprocessor.diagnostics().tracks_not_moved, 0U);
         m.f.feed(wire::origin());
@@ -183,11 +183,11 @@ TEST(CoprocessorTraffic, AnotherSystemInTheWayIsAConflictToldByItsId)
 {
     Flight f;
     f.fly(60);
-    for (int i = 0; i < 100 && !f.last.guidance.has_conflict; ++i) {
+    for (int i = 0; i < 100 && !f.last.guidance.conflict.has_value(); ++i) {
         feed_from(f, kOther, said_by_system(Vec3(0.0F, 40.0F, 50.0F), f.boot_ms()));
         f.fly(1);
     }
-    ASSERT_TRUE(f.last.guidance.has_conflict);
+    ASSERT_TRUE(f.last.guidance.conflict.has_value());
     const auto told = f.said_of<Collision>();
     ASSERT_EQ(told.size(), 1U);
     EXPECT_EQ(told[0].src, 1);

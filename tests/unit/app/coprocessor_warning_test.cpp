@@ -27,7 +27,7 @@ std::unique_ptr<Teller> advising()
 /// The warning of this step against the conflict that the step reports.
 void expect_true_of(const CollisionWarning& w, const StepReport& report)
 {
-    ASSERT_TRUE(report.guidance.has_conflict);
+    ASSERT_TRUE(report.guidance.conflict.has_value());
     const world::Conflict& c = report.guidance.conflict;
     const Vec3 miss = c.own_at_closest - c.threat_at_closest;
     EXPECT_EQ(w.time_to_closest, c.time_to_closest);
@@ -40,12 +40,12 @@ TEST(Warnings, AreSentAtOnceAndTwiceASecondWhileTheConflictLasts)
     const auto t = advising();
     EXPECT_TRUE(t->link.warnings.empty());
     t->put_ahead(60.0F);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
     ASSERT_EQ(t->link.warnings.size(), 1U) << "at once";
     for (int i = 0; i < 3; ++i) {
         for (int k = 0; k < 24; ++k) {
             t->step();
-            ASSERT_TRUE(t->last.guidance.has_conflict);
+            ASSERT_TRUE(t->last.guidance.conflict.has_value());
             ASSERT_TRUE(t->link.warnings.empty()) << i << ' ' << k;
         }
         t->step(19'999);
@@ -56,13 +56,13 @@ TEST(Warnings, AreSentAtOnceAndTwiceASecondWhileTheConflictLasts)
     }
     EXPECT_EQ(t->said("jink: conflict"), 1);
     t->traffic.clear();
-    ASSERT_TRUE(t->until([](const StepReport& r) { return !r.guidance.has_conflict; }));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return !r.guidance.conflict.has_value(); }));
     for (int i = 0; i < 100; ++i) {
         t->step();
         ASSERT_TRUE(t->link.warnings.empty()) << "no conflict, no warning";
     }
     t->put_ahead(20.0F);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
     EXPECT_EQ(t->link.warnings.size(), 1U);
     EXPECT_EQ(t->said("jink: conflict"), 2) << "another conflict is said anew";
 }
@@ -72,7 +72,7 @@ TEST(Warnings, OfTrafficCarryItsIdAndItsMissByHeightAndSide)
     for (const Vec3& aside : {Vec3(0.0F, 1.2F, 0.0F), Vec3(0.0F, 0.0F, 1.4F), Vec3(0.0F, -0.6F, -0.9F)}) {
         const auto t = advising();
         t->put_ahead(35.0F, Vec3::Zero(), aside);
-        ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+        ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
         ASSERT_EQ(t->link.warnings.size(), 1U);
         const CollisionWarning& w = t->link.warnings[0];
         EXPECT_EQ(w.id, 100U);
@@ -88,9 +88,9 @@ TEST(Warnings, SayInHowManySecondsTheConflictComes)
 {
     const auto t = advising();
     t->put_ahead(30.0F);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
     Text text;
-    text << "jink: conflict, traffic in " << t->last.guidance.conflict.time_to_loss << " s";
+    text << "jink: conflict, traffic in " << t->last.guidance.conflict->time_to_loss << " s";
     EXPECT_TRUE(t->said_as(link::Severity::warning, text.view())) << text.view();
 }
 
@@ -98,7 +98,7 @@ TEST(Warnings, OfAnObstacleCarryItsId)
 {
     const auto t = advising();
     const float wall = t->own.position.x() + 30.0F;
-    for (int i = 0; i < 200 && !t->last.guidance.has_conflict; ++i) {
+    for (int i = 0; i < 200 && !t->last.guidance.conflict.has_value(); ++i) {
         link::RangeReading reading;
         reading.stamp = t->now;
         reading.range = wall - t->own.position.x();
@@ -125,11 +125,11 @@ TEST(Warnings, OfAClosedAreaCarryItsPlaceAmongThem)
         closed[i].barrel.top = 100.0F;
     }
     t->coprocessor.set_constraints(closed, t->now);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
-    ASSERT_EQ(t->last.guidance.conflict.threat.kind, world::ThreatKind::barrel);
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
+    ASSERT_EQ(t->last.guidance.conflict->threat.kind, world::ThreatKind::barrel);
     ASSERT_EQ(t->link.warnings.size(), 1U);
-    EXPECT_EQ(t->link.warnings[0].id, 0x04000000U + t->last.guidance.conflict.threat.index);
-    EXPECT_EQ(t->last.guidance.conflict.threat.index, 1U);
+    EXPECT_EQ(t->link.warnings[0].id, 0x04000000U + t->last.guidance.conflict->threat.index);
+    EXPECT_EQ(t->last.guidance.conflict->threat.index, 1U);
     expect_true_of(t->link.warnings[0], t->last);
     EXPECT_EQ(t->said("jink: conflict, closed area in "), 1);
 }
@@ -142,7 +142,7 @@ TEST(Warnings, AreHighWhenTheLossIsNearerThanTheStopAndASecond)
     for (int i = 0; i < 700; ++i) {
         t->step();
         for (const CollisionWarning& w : t->link.warnings) {
-            const float time = t->last.guidance.conflict.time_to_loss;
+            const float time = t->last.guidance.conflict->time_to_loss;
             if (std::abs(time - kNearTime) < 1e-3F) {
                 continue;
             }
@@ -242,12 +242,12 @@ TEST(Warnings, OfAConflictThatComesBackAreSentAtOnce)
 {
     const auto t = advising();
     t->put_ahead(40.0F);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
     t->fly(3);
     t->own.velocity = Vec3(0.0F, 5.0F, 0.0F);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return !r.guidance.has_conflict; }, 5));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return !r.guidance.conflict.has_value(); }, 5));
     t->own.velocity = Vec3(5.0F, 0.0F, 0.0F);
-    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.has_conflict; }, 5));
+    ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }, 5));
     EXPECT_EQ(t->link.warnings.size(), 1U) << "half a second after the last one is not waited for";
     EXPECT_EQ(t->said("jink: conflict"), 2);
 }

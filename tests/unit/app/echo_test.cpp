@@ -222,7 +222,7 @@ TEST_F(RangeSensors, ACeilingAboveDoesNotStandInTheWay)
     for (int i = 0; i < 50; ++i) {
         see(24, 3.0F);
         ASSERT_EQ(f.last.obstacles, 1U);
-        ASSERT_FALSE(f.last.guidance.has_conflict) << "flying level, 2 m below it";
+        ASSERT_FALSE(f.last.guidance.conflict.has_value()) << "flying level, 2 m below it";
     }
     EXPECT_EQ(f.setpoints, 0);
 }
@@ -231,14 +231,14 @@ TEST_F(RangeSensors, WhatIsAheadDoes)
 {
     see(0, 20.0F);
     EXPECT_GE(f.last.obstacles, 1U);
-    EXPECT_TRUE(f.last.guidance.has_conflict);
+    EXPECT_TRUE(f.last.guidance.conflict.has_value());
 }
 
 TEST_F(RangeSensors, AWideBeamAheadIsPlacedInPartsAndForgottenWhole)
 {
     see(0, 20.0F, 1.0F);
     EXPECT_EQ(f.last.obstacles, 6U);
-    EXPECT_TRUE(f.last.guidance.has_conflict);
+    EXPECT_TRUE(f.last.guidance.conflict.has_value());
     see(0, 60.0F, 1.0F);  // beyond max_distance: nothing there
     EXPECT_EQ(f.last.obstacles, 0U);
 }
@@ -265,8 +265,8 @@ TEST_F(RangeSensors, WideSectorsOfAScanAreCoveredToTheirEdges)
     f.feed(m);
     f.fly(1);
     EXPECT_EQ(f.last.obstacles, 5U);
-    EXPECT_TRUE(f.last.guidance.has_conflict);
-    EXPECT_GT(f.last.guidance.conflict.time_to_loss, 2.5F) << "20 m less 5 % and the own box, at 5 m/s";
+    EXPECT_TRUE(f.last.guidance.conflict.has_value());
+    EXPECT_GT(f.last.guidance.conflict->time_to_loss, 2.5F) << "20 m less 5 % and the own box, at 5 m/s";
     m.distances[0] = 4001;
     f.feed(m);
     f.fly(1);
@@ -285,8 +285,8 @@ TEST_F(RangeSensors, AScanAllAroundAtTheWidestSectorsLeavesTheVehicleOutside)
         m.frame = 12;
         f.feed(m);
         f.fly(1);
-        ASSERT_TRUE(f.last.guidance.has_conflict) << int(increment);
-        EXPECT_GT(f.last.guidance.conflict.time_to_loss, 6.5F) << int(increment);
+        ASSERT_TRUE(f.last.guidance.conflict.has_value()) << int(increment);
+        EXPECT_GT(f.last.guidance.conflict->time_to_loss, 6.5F) << int(increment);
         f.fly(60);  // forgotten
     }
 }

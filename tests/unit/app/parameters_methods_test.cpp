@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/param_service.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/vehicles/default/cost_tables.hpp"
@@ -13,29 +14,34 @@
 namespace jink::app {
 namespace {
 
-TEST(ParamMethods, EachNumberIsAnOrderAndWhetherReciprocalIsAsked)
+TEST(ParamMethods, EachNumberIsAnOrderAndOneForClutter)
 {
-    using Order = avoid::LadderOrder;
-    using Reactive = avoid::Reactive;
-    struct Case {
-        Order order;
-        Reactive reactive;
-    };
-    const std::array<Case, 6> cases{{{Order::first, Reactive::never},
-                                     {Order::as_given, Reactive::never},
-                                     {Order::reversed, Reactive::never},
-                                     {Order::last, Reactive::never},
-                                     {Order::as_given, Reactive::alone},
-                                     {Order::as_given, Reactive::first}}};
+    using Order = avoid::MethodOrder;
+    const std::array<MethodOrders, 6> cases{{{Order(kGeometric), {}},
+                                             {Order(kGeometric, kReach), Order(kReach, kGeometric)},
+                                             {Order(kReach, kGeometric), {}},
+                                             {Order(kReach), {}},
+                                             {Order(kOrca), {}},
+                                             {Order(kOrca, kGeometric, kReach), Order(kOrca, kReach, kGeometric)}}};
     for (std::size_t i = 0; i < cases.size(); ++i) {
         Parameters parameters;
         ASSERT_EQ(parameters.set(Param::methods, static_cast<float>(i)), ParamStatus::ok);
         const Configuration& c = parameters.configuration();
-        EXPECT_EQ(c.supervisor.reactive, cases[i].reactive) << i;
-        if (cases[i].reactive != Reactive::alone) {
-            EXPECT_EQ(c.supervisor.order, cases[i].order) << i;
-        }
-        EXPECT_EQ(c.orca.gives_up_blocked, cases[i].reactive != Reactive::alone) << "nobody is asked after it";
+        EXPECT_EQ(c.supervisor.order, cases[i].order) << i;
+        EXPECT_EQ(c.supervisor.order_in_clutter, cases[i].in_clutter) << i;
+        EXPECT_EQ(c.orca.gives_up_blocked, i != 4) << "alone: no method is asked after it";
+    }
+}
+
+TEST(ParamMethods, WithoutSetsTheOthersAreLeftOrTheGeometricMethod)
+{
+    const std::array<avoid::MethodOrder, 6> left{avoid::MethodOrder(kGeometric), avoid::MethodOrder(kGeometric),
+                                                 avoid::MethodOrder(kGeometric), avoid::MethodOrder(kGeometric),
+                                                 avoid::MethodOrder(kOrca),      avoid::MethodOrder(kOrca, kGeometric)};
+    static_assert(left.size() == kMethodOrders.size());
+    for (std::size_t i = 0; i < left.size(); ++i) {
+        EXPECT_EQ(without_sets(kMethodOrders[i].order), left[i]) << i;
+        EXPECT_EQ(is_reactive(kMethodOrders[i].order), i >= 4) << i;
     }
 }
 
@@ -51,7 +57,7 @@ TEST(ParamMethods, AllSeeAsFarAndAnswerAsLate)
     EXPECT_EQ(c.planner.latency, 0.3F);
     EXPECT_EQ(c.reach.latency, 0.3F);
     EXPECT_EQ(c.orca.latency, 0.3F);
-    EXPECT_EQ(c.reach.room, c.supervisor.room);
+    EXPECT_EQ(c.reach.room, c.supervisor.clearance_buffer);
     EXPECT_EQ(c.reach.escape.slack, c.supervisor.escape.slack);
     EXPECT_EQ(c.reach.escape.speed, c.supervisor.escape.speed);
     EXPECT_EQ(c.reach.sets, &reach_sets());

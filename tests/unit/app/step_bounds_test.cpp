@@ -31,7 +31,7 @@ Vec3 command(const Changes& changes, const Vec3& off, const Vec3& home = Vec3::Z
     b->fly(1);
     b->hear_mast(1, b->position + Vec3(0.0F, 15.0F, 0.0F) + off);
     b->fly(1);
-    EXPECT_TRUE(b->last.guidance.has_conflict);
+    EXPECT_TRUE(b->last.guidance.conflict.has_value());
     EXPECT_GT(b->last.work, 0U);
     EXPECT_EQ(b->last.work, b->last.guidance.work);
     return b->last.guidance.wants_control ? b->last.guidance.velocity : Vec3(Vec3::Zero());
@@ -89,10 +89,10 @@ TEST(StepChanges, TheSupervisorLooksAsFarAheadAsItIsToldFromTheSameStepOn)
     b.velocity = Vec3(0.0F, 5.0F, 0.0F);
     b.hear_mast(1, b.position + Vec3(0.0F, 60.0F, 0.0F));
     b.fly(1);
-    EXPECT_FALSE(b.last.guidance.has_conflict);
+    EXPECT_FALSE(b.last.guidance.conflict.has_value());
     set_by_wire(b, "JNK_LOOKAHEAD", 20.0F);
     b.fly(1);
-    EXPECT_TRUE(b.last.guidance.has_conflict);
+    EXPECT_TRUE(b.last.guidance.conflict.has_value());
 }
 
 TEST(StepChanges, EveryMethodKnowsTheNewLatencyAndTheLineTheWish)
@@ -146,7 +146,7 @@ TEST(StepLimits, APlaneIsPlannedForAtTheSpeedThatItFlies)
         b.velocity = Vec3(0.0F, speed, 0.0F);
         b.hear_mast(1, b.position + Vec3(0.0F, 60.0F, 0.0F), 5.0F);
         b.fly(1);
-        EXPECT_TRUE(b.last.guidance.has_conflict);
+        EXPECT_TRUE(b.last.guidance.conflict.has_value());
         return b.last.guidance.velocity.norm();
     };
     EXPECT_NEAR(nearest_turn(12.0F), 12.0F, 0.5F);

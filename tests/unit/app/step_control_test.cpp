@@ -84,7 +84,7 @@ TEST(StepControl, AdvisingItSteersNobody)
     f.mast = kMast;
     bool conflict = false;
     f.until([&](const StepReport& r) {
-        conflict = conflict || r.guidance.has_conflict;
+        conflict = conflict || r.guidance.conflict.has_value();
         return false;
     });
     EXPECT_TRUE(conflict);
@@ -162,7 +162,7 @@ TEST(StepControl, ARefusedModeAdvisesAndAsksToHoldInTime)
     EXPECT_EQ(f.asked_for("hold"), 0) << "it is early yet";
     float left = 0.0F;
     ASSERT_TRUE(f.until([&](const StepReport& r) {
-        left = r.guidance.conflict.time_to_loss;
+        left = r.guidance.conflict ? r.guidance.conflict->time_to_loss : 0.0F;
         return f.asked_for("hold") > 0;
     }));
     // From 5 m/s with 5 m/s2 after a lag of 0.25 s, and the reserve of 0.75 s.

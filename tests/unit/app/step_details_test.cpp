@@ -2,6 +2,7 @@
 // Coprocessor::step, sentence by sentence of its contract: lines, frames, closed areas, requests and bench settings.
 #include <gtest/gtest.h>
 
+#include "firmware/app/method_orders.hpp"
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "tests/unit/app/step_flight.hpp"
@@ -114,17 +115,17 @@ TEST(StepDetails, AnIncompleteSetOfClosedAreasOpensNothing)
     b.fly(1);
     b.wire.in.constraints.unchecked_push_back(closed_part(1, 0, 1, 45.0F));
     b.fly(1);
-    ASSERT_TRUE(b.last.guidance.has_conflict);
+    ASSERT_TRUE(b.last.guidance.conflict.has_value());
     b.wire.in.constraints.unchecked_push_back(closed_part(2, 0, 2, -500.0F));
     b.fly(1);
     EXPECT_EQ(b.wire.constraints.back(), link::ConstraintResult::kept);
     EXPECT_EQ(b.last.barrels, 1U);
-    EXPECT_TRUE(b.last.guidance.has_conflict) << "the area that is in force";
+    EXPECT_TRUE(b.last.guidance.conflict.has_value()) << "the area that is in force";
     const std::uint32_t told = b.coprocessor.constraint_diagnostics().told;
     b.wire.in.constraints.unchecked_push_back(closed_part(2, 1, 2, -600.0F));
     b.fly(1);
     EXPECT_EQ(b.last.barrels, 2U);
-    EXPECT_FALSE(b.last.guidance.has_conflict);
+    EXPECT_FALSE(b.last.guidance.conflict.has_value());
     EXPECT_EQ(b.coprocessor.constraint_diagnostics().told, told + 2);
     link::ConstraintPart wrong = closed_part(3, 0, 1, 0.0F);
     wrong.constraint.barrel.circle.radius = -1.0F;
@@ -146,7 +147,7 @@ TEST(StepDetails, WithoutAnAutopilotThereIsNoCeilingAndNoHomeToKeepNearTo)
         b.hear_own();
         b.hear_mast(1, b.position + Vec3(0.0F, 15.0F, -0.6F));
         b.step();
-        ASSERT_TRUE(b.last.guidance.has_conflict);
+        ASSERT_TRUE(b.last.guidance.conflict.has_value());
         EXPECT_TRUE(b.last.guidance.wants_control);
         EXPECT_GT(b.last.guidance.velocity.z(), 0.4F) << bounds;
     }
@@ -276,7 +277,7 @@ TEST(StepDetails, ReachSetsPlanByThePictureTheyAreGiven)
             }
             t->step();
             const world::Manoeuvre* flying = t->coprocessor.flying();
-            found = found || (flying != nullptr && flying->by == world::MethodId::reach);
+            found = found || (flying != nullptr && flying->by == kReach);
         }
         EXPECT_EQ(found, !blind);
     }

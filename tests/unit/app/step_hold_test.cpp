@@ -30,7 +30,7 @@ TEST(StepHold, ARefusedVehicleIsHeldWhenItIsTimeToStop)
     float then = 99.0F;
     ASSERT_TRUE(f.until([&](const StepReport& r) {
         before = then;
-        then = r.guidance.conflict.time_to_loss;
+        then = r.guidance.conflict ? r.guidance.conflict->time_to_loss : 0.0F;
         return f.asked_for("hold") > 0;
     }));
     const Configuration& c = f.coprocessor.parameters().configuration();
@@ -49,7 +49,7 @@ TEST(StepHold, TrafficThatStoppingHelpsAgainstIsStoppedForAndOtherIsNot)
         ASSERT_TRUE(refuse(f));
         bool near = false;
         f.until([&](const StepReport& r) {
-            near = near || (r.guidance.has_conflict && r.guidance.conflict.time_to_loss < 1.0F);
+            near = near || (r.guidance.conflict.has_value() && r.guidance.conflict->time_to_loss < 1.0F);
             return near || f.asked_for("hold") > 0;
         });
         EXPECT_EQ(f.asked_for("hold") > 0, crossing);
@@ -74,7 +74,8 @@ TEST(StepHold, InFrontOfAClosedAreaItStopsWhateverOtherTrafficDoes)
     for (int i = 0; i < 600 && !held; ++i) {
         f.tick();
         held = f.asked_for("hold") > 0;
-        ASSERT_FALSE(f.last.guidance.has_conflict && f.last.guidance.conflict.time_to_loss < 0.5F) << "too late";
+        ASSERT_FALSE(f.last.guidance.conflict.has_value() && f.last.guidance.conflict->time_to_loss < 0.5F)
+            << "too late";
     }
     EXPECT_TRUE(held);
 }
@@ -101,7 +102,7 @@ TEST(StepHold, WhatWasNeverHeardIsNotFreshAtTheStart)
         b.hear_mast(1, Vec3(0.0F, 0.5F, 0.0F));  // on the place that nobody has told
         b.step();
         EXPECT_EQ(b.last.own_source, OwnSource::none);
-        EXPECT_FALSE(b.last.guidance.has_conflict);
+        EXPECT_FALSE(b.last.guidance.conflict.has_value());
         EXPECT_TRUE(b.has(Fault::own_state_missing));
         b.hear_own().state.stamp = {-5};
         b.step();

@@ -22,7 +22,7 @@ TEST(StepNominal, AConflictOnTheMeasuredMotionCountsBesideALegThatIsClear)
     b.hear_track(1, b.position + Vec3(0.0F, 50.0F, 0.0F)).velocity = Vec3(0.0F, -5.0F, 0.0F);
     b.fly(1);
     ASSERT_TRUE(b.coprocessor.nominal_paths().believes_leg());
-    EXPECT_TRUE(b.last.guidance.has_conflict);
+    EXPECT_TRUE(b.last.guidance.conflict.has_value());
     EXPECT_TRUE(b.last.guidance.on_other);
 }
 
@@ -33,7 +33,7 @@ TEST(StepNominal, AConflictOnTheLegCountsBesideMotionThatIsClear)
     b.fly(1);
     b.hear_track(1, b.position + Vec3(50.0F, 0.0F, 0.0F)).velocity = Vec3(-5.0F, 0.0F, 0.0F);
     b.fly(1);
-    EXPECT_TRUE(b.last.guidance.has_conflict);
+    EXPECT_TRUE(b.last.guidance.conflict.has_value());
     EXPECT_FALSE(b.last.guidance.on_other);
 }
 

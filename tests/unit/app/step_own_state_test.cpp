@@ -72,8 +72,8 @@ TEST(StepOwnState, IsFlownOnFromItsStampToNow)
         b->hear_own(age);
         b->hear_mast(1, b->position + Vec3(0.0F, 40.0F, 0.0F));
         b->step();
-        ASSERT_TRUE(b->last.guidance.has_conflict);
-        EXPECT_NEAR(b->last.guidance.conflict.time_to_loss, (40.0F - 2.0F) / 5.0F - age, 0.01F);
+        ASSERT_TRUE(b->last.guidance.conflict.has_value());
+        EXPECT_NEAR(b->last.guidance.conflict->time_to_loss, (40.0F - 2.0F) / 5.0F - age, 0.01F);
     }
 }
 
@@ -84,8 +84,8 @@ TEST(StepOwnState, IsNotFlownBackwardsWhereItsStampLiesAhead)
     b->hear_own(-0.05F);
     b->hear_mast(1, b->position + Vec3(0.0F, 40.0F, 0.0F));
     b->step();
-    ASSERT_TRUE(b->last.guidance.has_conflict);
-    EXPECT_NEAR(b->last.guidance.conflict.time_to_loss, (40.0F - 2.0F) / 5.0F, 0.005F);
+    ASSERT_TRUE(b->last.guidance.conflict.has_value());
+    EXPECT_NEAR(b->last.guidance.conflict->time_to_loss, (40.0F - 2.0F) / 5.0F, 0.005F);
 }
 
 TEST(StepOwnState, IsAFaultWhenOlderThanItMayBe)
@@ -107,14 +107,14 @@ TEST(StepOwnState, WithoutOneNothingIsSeen)
     b->hear_autopilot();
     b->hear_mast(1, b->position + Vec3(0.0F, 40.0F, 0.0F));
     b->step();
-    EXPECT_FALSE(b->last.guidance.has_conflict);
+    EXPECT_FALSE(b->last.guidance.conflict.has_value());
     EXPECT_EQ(b->last.tracks, 0U);
     b->hear_own();
     b->step();
-    EXPECT_TRUE(b->last.guidance.has_conflict);
+    EXPECT_TRUE(b->last.guidance.conflict.has_value());
     EXPECT_EQ(b->last.tracks, 1U);
     b->step(600'000);  // too old now
-    EXPECT_FALSE(b->last.guidance.has_conflict);
+    EXPECT_FALSE(b->last.guidance.conflict.has_value());
 }
 
 TEST(StepOwnState, AResetOfTheEstimatorForgetsPlaces)
@@ -132,7 +132,7 @@ TEST(StepOwnState, AResetOfTheEstimatorForgetsPlaces)
     b->step();
     EXPECT_EQ(b->counted().estimator_resets, 1U);
     EXPECT_EQ(b->last.tracks, 0U);
-    EXPECT_FALSE(b->last.guidance.has_conflict);
+    EXPECT_FALSE(b->last.guidance.conflict.has_value());
     EXPECT_EQ(b->last.faults, 0U) << "the new one is known";
 }
 

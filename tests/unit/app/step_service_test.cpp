@@ -75,10 +75,10 @@ TEST(StepFault, PassiveItPlansNothing)
     StepBench b({{Param::mode, 1.0F}});
     b.hear_mast(1, b.position + Vec3(0.0F, 30.0F, 0.0F));
     b.fly(1);
-    ASSERT_TRUE(b.last.guidance.has_conflict);
+    ASSERT_TRUE(b.last.guidance.conflict.has_value());
     b.coprocessor.stay_passive();
     b.fly(1);
-    EXPECT_FALSE(b.last.guidance.has_conflict);
+    EXPECT_FALSE(b.last.guidance.conflict.has_value());
     EXPECT_EQ(b.last.work, 0U);
 }
 
@@ -252,9 +252,9 @@ TEST(StepConstraints, AClosedAreaCountsFromTheStepInWhichItIsTold)
     ASSERT_EQ(b.wire.constraints.size(), 1U);
     EXPECT_EQ(b.wire.constraints[0], link::ConstraintResult::in_force);
     EXPECT_EQ(b.last.barrels, 1U);
-    ASSERT_TRUE(b.last.guidance.has_conflict);
-    EXPECT_EQ(b.last.guidance.conflict.threat.kind, world::ThreatKind::barrel);
-    EXPECT_NEAR(b.last.guidance.conflict.time_to_loss, (40.0F - 5.0F - 1.0F) / 5.0F, 0.02F);
+    ASSERT_TRUE(b.last.guidance.conflict.has_value());
+    EXPECT_EQ(b.last.guidance.conflict->threat.kind, world::ThreatKind::barrel);
+    EXPECT_NEAR(b.last.guidance.conflict->time_to_loss, (40.0F - 5.0F - 1.0F) / 5.0F, 0.02F);
     b.wire.in.constraints.unchecked_push_back({{}, 2, 0, 0, 9, 9});
     b.fly(1);
     EXPECT_EQ(b.wire.constraints.back(), link::ConstraintResult::in_force) << "an empty set opens all";
@@ -288,10 +288,10 @@ TEST(StepConstraints, InABussOwnFrameThereAreNone)
     b.step();
     ASSERT_EQ(b.last.own_source, OwnSource::bus);
     EXPECT_EQ(b.last.barrels, 0U);
-    EXPECT_FALSE(b.last.guidance.has_conflict);
+    EXPECT_FALSE(b.last.guidance.conflict.has_value());
     b.fly(2);
     EXPECT_EQ(b.last.barrels, 1U);
-    EXPECT_TRUE(b.last.guidance.has_conflict);
+    EXPECT_TRUE(b.last.guidance.conflict.has_value());
 }
 
 TEST(StepNear, WhatIsNearIsToldFiveTimesASecond)

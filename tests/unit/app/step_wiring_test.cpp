@@ -75,7 +75,7 @@ TEST(StepWiring, HandsStayOffWhileAConflictIsPredicted)
     int waits = 0;
     for (int i = 0; i < 75; ++i) {
         f.tick();
-        ASSERT_TRUE(f.last.guidance.has_conflict) << i;
+        ASSERT_TRUE(f.last.guidance.conflict.has_value()) << i;
         EXPECT_EQ(f.last.control, Control::overruled) << i;
         waits += f.last.guidance.wants_control ? 0 : 1;
     }

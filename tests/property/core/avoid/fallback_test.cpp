@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The last rung against a search that is thirty times as fine.
+// The fallback against a search that is thirty times as fine.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include <gtest/gtest.h>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/fallback.hpp"
 #include "core/base/random.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 

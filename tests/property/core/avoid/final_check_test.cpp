@@ -22,7 +22,7 @@ using dense::kAmple;
 using geometry::oracle::case_count;
 using geometry::oracle::seed_of;
 
-/// As core/avoid/guard.hpp says [m]: a flight that leaves the 100 m about the origin has the rounding of each
+/// As core/avoid/final_check.hpp says [m]: a flight that leaves the 100 m about the origin has the rounding of each
 /// set-point's position on top.
 constexpr double kStatedAccuracy = 2e-3;
 constexpr double kStatedWithin = 100.0;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "tests/property/core/world/separation_oracle.hpp"
 
 // A manoeuvre as it is flown, in double precision: set-points one period apart, the vehicle model between them solved

@@ -19,7 +19,7 @@ using geometry::oracle::in_cube;
 using geometry::oracle::seed_of;
 
 constexpr int kCourses = 48;
-/// As core/avoid/guard.hpp says [m].
+/// As core/avoid/final_check.hpp says [m].
 constexpr double kAccuracy = 2e-3;
 
 /// Met level after 6 to 8 s, at a random course.

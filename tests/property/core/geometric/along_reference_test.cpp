@@ -4,7 +4,7 @@
 #include <cmath>
 #include <memory>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "tests/oracle/collected.hpp"
 #include "tests/oracle/route_oracle.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"

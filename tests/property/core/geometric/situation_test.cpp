@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/base/random.hpp"
 #include "core/geometric/planner.hpp"
 #include "tests/oracle/planner_oracle.hpp"

@@ -92,7 +92,7 @@ TEST(Braking, GivesGroundToWhatStandsInTheWayButNotForEver)
     Flight f;
     FakeMethod method = never();
     Settings settings = quick();
-    settings.give_ground_limit = 3.0F;
+    settings.back_off_limit = 3.0F;
     Supervisor supervisor(settings, method);
     f.scene.track(Vec3(10, 0, 30), Vec3::Zero(), 1.0F);
     Seconds backwards = 0.0F;
@@ -103,7 +103,7 @@ TEST(Braking, GivesGroundToWhatStandsInTheWayButNotForEver)
         if (g.velocity.x() < -0.5F) {
             backwards += 0.05F;
             first = first < 0.0F ? 0.05F * static_cast<float>(i) : first;
-            EXPECT_NEAR(g.velocity.norm(), settings.give_ground_speed, 1e-4F);
+            EXPECT_NEAR(g.velocity.norm(), settings.back_off_speed, 1e-4F);
             EXPECT_EQ(g.kind, ManoeuvreKind::velocity);
         }
         f.pass(g.velocity, 0.05F);
@@ -147,7 +147,7 @@ TEST(Rejoining, AFixedWingKeepsItsCourseWhileTheTurnBackIsNotClear)
         FakeMethod method = never();
         Supervisor supervisor(quick(), method);
         const Guidance g = f.update(supervisor, true);
-        EXPECT_FALSE(g.has_conflict);
+        EXPECT_FALSE(g.conflict.has_value());
         EXPECT_TRUE(g.wants_control);
         if (blocked) {
             EXPECT_NEAR(g.velocity.x(), 0.0F, 1e-3F);

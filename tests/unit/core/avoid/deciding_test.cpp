@@ -18,7 +18,8 @@ Seconds loss_in(const Flight& f)
 {
     FakeMethod method = never();
     Supervisor supervisor(quick(), method);
-    return supervisor.update(f.scene.situation(), false).conflict.time_to_loss;
+    const Guidance g = supervisor.update(f.scene.situation(), false);
+    return g.conflict ? g.conflict->time_to_loss : 0.0F;
 }
 
 Guidance once(const Flight& f, const Settings& settings, FakeMethod& method, bool in_control = false)
@@ -172,7 +173,7 @@ TEST(PlanBudget, ExhaustedByTheFirstOfTwoPlansIsCounted)
         return PlanStatus::found;
     }}};
     Settings settings = quick();
-    settings.reactive = Reactive::alone;
+    settings.order = MethodOrder(kReacting);
     Supervisor supervisor(settings, method);
     ASSERT_EQ(f.update(supervisor, true).state, State::avoiding);
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 0U);
@@ -235,7 +236,7 @@ TEST(Answers, ThatAreExactlyClearAreTaken)
         return PlanStatus::found;
     }};
     Settings settings = quick();
-    settings.room = 0.0F;
+    settings.clearance_buffer = 0.0F;
     const Guidance g = once(f, settings, method, true);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(g.margin, 0.0F);
@@ -252,7 +253,7 @@ TEST(Answers, AreToldWithTheirMargin)
     const Situation s = f.scene.situation();
     const float margin = check_manoeuvre(s, detour(s, kLeft, 6.0F, 60.0F), quick(), budget).margin;
     EXPECT_GT(margin, 1.0F);
-    EXPECT_NEAR(g.margin, margin - quick().room, 0.1F) << "for the wider vehicle that was asked for first";
+    EXPECT_NEAR(g.margin, margin - quick().clearance_buffer, 0.1F) << "for the wider vehicle that was asked for first";
 }
 
 TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
@@ -260,31 +261,11 @@ TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
     Flight f;
     head_on(f);
     FakeMethod first = always(kLeft);
-    FakeMethod second = always(-kLeft);
+    SecondFake second{always(-kLeft)};
     Supervisor supervisor(quick(), first, second);
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(supervisor.diagnostics().plans_found, 1U);
     EXPECT_EQ(supervisor.diagnostics().found_by_next, 0U);
-}
-
-/// The order of the others holds beside a reactive method too.
-TEST(Answers, OnlyThoseThatTheOrderNamesAreAskedBesideAReactiveMethod)
-{
-    for (const LadderOrder order : {LadderOrder::first, LadderOrder::last}) {
-        Flight f;
-        head_on(f);
-        FakeMethod first = never();
-        FakeMethod second = never();
-        ReactiveFake reacting{never()};
-        Settings settings = quick();
-        settings.reactive = Reactive::first;
-        settings.order = order;
-        Supervisor supervisor(settings, first, second, reacting);
-        static_cast<void>(f.update(supervisor, false));
-        EXPECT_GT(reacting.asked, 0);
-        EXPECT_EQ(first.asked > 0, order == LadderOrder::first);
-        EXPECT_EQ(second.asked > 0, order == LadderOrder::last);
-    }
 }
 
 // --- clutter ---
@@ -316,24 +297,25 @@ TEST(CountNear, SurfacesWithinTheRadius)
     EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 3U) << "tracks and obstacles together";
 }
 
-TEST(RungsOf, AreTurnedRoundInClutterAlone)
+TEST(OrderFor, ChangesInClutterAlone)
 {
     Flight f;
     f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
     Settings settings;
+    settings.order = MethodOrder(kFirst, kSecond);
+    settings.order_in_clutter = MethodOrder(kSecond);
+    const auto order = [&] { return order_for(f.scene.situation(), settings); };
     settings.clutter = 1;
-    const auto rungs = [&](std::size_t methods) { return rungs_of(methods, f.scene.situation(), settings); };
-    EXPECT_TRUE(rungs(3).backwards);
-    EXPECT_EQ(rungs(3).method(0), 2U);
-    EXPECT_EQ(rungs(3).method(2), 0U);
-    EXPECT_FALSE(rungs(1).backwards) << "one alone has no order";
-    EXPECT_EQ(rungs(1).count, 1U);
+    EXPECT_EQ(order(), MethodOrder(kSecond));
     settings.clutter = 2;
-    EXPECT_FALSE(rungs(3).backwards) << "one is not two";
-    EXPECT_EQ(rungs(3).method(2), 2U);
+    EXPECT_EQ(order(), settings.order) << "one is not two";
     settings.clutter = 0;
     f.scene.tracks.clear();
-    EXPECT_FALSE(rungs(3).backwards) << "never, though none is as many as none";
+    EXPECT_EQ(order(), settings.order) << "never, though none is as many as none";
+    settings.clutter = 1;
+    f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
+    settings.order_in_clutter = {};
+    EXPECT_EQ(order(), settings.order) << "empty: no change";
 }
 
 }  // namespace

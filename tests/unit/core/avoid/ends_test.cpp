@@ -89,7 +89,7 @@ TEST(Ends, OfAVelocityOverAClearWayGiveBackOnce)
         return PlanStatus::found;
     }}};
     Settings settings = quick();
-    settings.reactive = Reactive::alone;
+    settings.order = MethodOrder(kReacting);
     settings.settle = settings.least_control = 0.0F;
     Supervisor supervisor(settings, method);
     ASSERT_EQ(f.update(supervisor, true).state, State::avoiding);

@@ -15,6 +15,9 @@ using world::Situation;
 
 /// A method that does as the test says.
 struct FakeMethod {
+    static constexpr world::MethodTraits kTraits{
+        .id = 11, .reactive = false, .keeps_clearance = false, .needs_sets = false};
+
     std::function<PlanStatus(const Situation&, WorkBudget&, Manoeuvre&)> answer;
     int asked = 0;
 
@@ -25,17 +28,26 @@ struct FakeMethod {
     }
 };
 
+/// Another one, to be asked beside it.
+struct SecondFake : FakeMethod {
+    static constexpr world::MethodTraits kTraits{
+        .id = 12, .reactive = false, .keeps_clearance = false, .needs_sets = false};
+};
+
 /// One that decides every tick anew.
 struct ReactiveFake : FakeMethod {
-    static constexpr bool kReactive = true;
-    static constexpr bool kKeepsRoom = true;
+    static constexpr world::MethodTraits kTraits{
+        .id = 13, .reactive = true, .keeps_clearance = true, .needs_sets = false};
 };
+
+inline constexpr std::uint8_t kFirst = FakeMethod::kTraits.id;
+inline constexpr std::uint8_t kSecond = SecondFake::kTraits.id;
+inline constexpr std::uint8_t kReacting = ReactiveFake::kTraits.id;
 
 inline Manoeuvre along(const Situation& s, const std::vector<Vec3>& positions, const Vec3& side)
 {
     Manoeuvre m;
     m.kind = world::ManoeuvreKind::follow_path;
-    m.by = world::MethodId::geometric;
     m.start = s.now;
     m.side = side;
     static_cast<void>(path::make_timed_path(positions, s.limits.cruise_speed, s.limits, m.path));

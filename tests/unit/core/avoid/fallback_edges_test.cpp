@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/fallback.hpp"
 #include "tests/numbers.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/base/work_units.hpp"
 #include "tests/numbers.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"

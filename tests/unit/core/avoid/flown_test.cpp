@@ -127,7 +127,7 @@ struct Renewing {
     static Settings reacting_first()
     {
         Settings s = quick();
-        s.reactive = Reactive::first;
+        s.order = MethodOrder(kReacting, kFirst);
         return s;
     }
     Flight f;
@@ -158,7 +158,7 @@ TEST(Velocities, WithoutAnAnswerTheLastOneIsChecked)
     for (int i = 1; i <= 40; ++i) {
         t.f.pass(Vec3(4, -3, 0), 0.05F);
         const Guidance g = t.f.update(t.supervisor, true);
-        if (!g.has_conflict) {
+        if (!g.conflict.has_value()) {
             break;
         }
         ASSERT_EQ(g.state, State::avoiding) << i;

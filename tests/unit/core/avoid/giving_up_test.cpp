@@ -18,7 +18,7 @@ using world::ManoeuvreKind;
 Settings giving_up(Seconds patience = 20.0F)
 {
     Settings settings = quick();
-    settings.give_ground_speed = 0.0F;
+    settings.back_off_speed = 0.0F;
     settings.patience = patience;
     return settings;
 }
@@ -80,6 +80,20 @@ TEST(GivingUp, ForgetsWhatWasFlown)
     EXPECT_EQ(w.supervisor.flying(), nullptr);
 }
 
+/// More traffic than there is capacity for: no threats are collected, and whether traffic comes is not known.
+TEST(GivingUp, NotWhereThreatsWereNeverCollected)
+{
+    AtAWall w(giving_up(1.0F));
+    for (std::size_t i = 0; i <= kMaxTracks; ++i) {
+        w.f.scene.track(Vec3(2000, 0, 30), Vec3::Zero(), 1.0F);
+    }
+    static_cast<void>(w.update(false));
+    const Guidance g = w.wait(5.0F, 0.5F);
+    EXPECT_EQ(g.state, State::braking);
+    EXPECT_FALSE(g.blocked);
+    EXPECT_EQ(w.supervisor.diagnostics().blocked, 0U);
+}
+
 /// The wall is gone; what comes from the side is avoided all the same.
 TEST(GivingUp, IsOverWhenTrafficComesThoughTheWayIsClear)
 {
@@ -109,7 +123,7 @@ TEST(GivingUp, CountsAnewAfterTraffic)
     AtAWall w(giving_up());
     static_cast<void>(w.wait(15.0F, 0.5F));
     w.f.scene.track(Vec3(58, 0, 30), Vec3::Zero(), 1.0F);  // nearer than the wall
-    ASSERT_EQ(w.after(0.5F).conflict.threat.kind, world::ThreatKind::track);
+    ASSERT_EQ(w.after(0.5F).conflict->threat.kind, world::ThreatKind::track);
     w.f.scene.tracks.clear();
     EXPECT_FALSE(w.wait(19.5F, 0.5F).blocked);
     EXPECT_TRUE(w.wait(0.5F, 0.5F).blocked);
@@ -180,7 +194,7 @@ TEST(GivingUp, NotWhileAManoeuvreIsFlown)
     w.stand(Vec3(20, 0, 30));
     for (int i = 0; i < 60; ++i) {
         const Guidance g = w.after(0.5F);
-        ASSERT_TRUE(g.has_conflict);
+        ASSERT_TRUE(g.conflict.has_value());
         ASSERT_NE(g.state, State::braking);
         ASSERT_FALSE(g.blocked) << i;
     }

@@ -11,17 +11,11 @@ namespace {
 using namespace test;
 using world::ManoeuvreKind;
 
-struct FakeReactive : FakeMethod {
-    static constexpr bool kReactive = true;
-    static constexpr bool kKeepsRoom = true;
-};
-
 /// Always the same velocity.
-FakeReactive holding(const Vec3& velocity)
+ReactiveFake holding(const Vec3& velocity)
 {
     return {{[=](const Situation& s, WorkBudget&, Manoeuvre& out) {
         out.kind = ManoeuvreKind::velocity;
-        out.by = world::MethodId::orca;
         out.start = s.now;
         out.valid_until = s.now + 8.0F;
         out.command = velocity;
@@ -31,40 +25,60 @@ FakeReactive holding(const Vec3& velocity)
     }}};
 }
 
-Settings with(Reactive reactive)
+Settings asking(const MethodOrder& order)
 {
     Settings s = quick();
-    s.reactive = reactive;
+    s.order = order;
     return s;
 }
+const MethodOrder kAlone(kReacting);
 
-TEST(ReactiveMethods, AreAskedOnlyWhereTheSettingsSaySo)
+TEST(ReactiveMethods, AreAskedOnlyWhereTheOrderNamesThem)
 {
-    for (const Reactive reactive : {Reactive::never, Reactive::first, Reactive::alone}) {
+    for (const MethodOrder& order : {MethodOrder(kFirst), MethodOrder(kReacting, kFirst), kAlone}) {
         Flight f;
         head_on(f, 20.0F);
         FakeMethod planning = always(kLeft);
-        FakeReactive deciding = holding(Vec3(3, -4, 0));
-        Supervisor supervisor(with(reactive), planning, deciding);
+        ReactiveFake deciding = holding(Vec3(3, -4, 0));
+        Supervisor supervisor(asking(order), planning, deciding);
         static_cast<void>(f.update(supervisor, false));
-        EXPECT_EQ(deciding.asked > 0, reactive != Reactive::never);
-        EXPECT_EQ(planning.asked > 0, reactive == Reactive::never);
+        EXPECT_EQ(deciding.asked > 0, order.contains(kReacting));
+        EXPECT_EQ(planning.asked > 0, !order.contains(kReacting));
     }
 }
 
 TEST(ReactiveMethods, TheNextIsAskedWhereTheyHaveNoAnswer)
 {
-    for (const Reactive reactive : {Reactive::first, Reactive::alone}) {
+    for (const bool alone : {false, true}) {
         Flight f;
         head_on(f);
         FakeMethod planning = always(kLeft);
-        FakeReactive deciding{{[](const Situation&, WorkBudget&, Manoeuvre&) { return PlanStatus::none_available; }}};
-        Supervisor supervisor(with(reactive), planning, deciding);
+        ReactiveFake deciding{{[](const Situation&, WorkBudget&, Manoeuvre&) { return PlanStatus::none_available; }}};
+        Supervisor supervisor(asking(alone ? kAlone : MethodOrder(kReacting, kFirst)), planning, deciding);
         const Guidance g = f.update(supervisor, true);
-        EXPECT_EQ(planning.asked > 0, reactive == Reactive::first);
-        EXPECT_EQ(g.state, reactive == Reactive::first ? State::avoiding : State::rejoining);
-        EXPECT_EQ(supervisor.diagnostics().found_by_next, reactive == Reactive::first ? 1U : 0U);
+        EXPECT_EQ(planning.asked > 0, !alone);
+        EXPECT_EQ(g.state, alone ? State::rejoining : State::avoiding);
+        EXPECT_EQ(supervisor.diagnostics().found_by_next, alone ? 0U : 1U);
     }
+}
+
+/// After a method that plans: its velocity is flown, and given up for a path as soon as there is one.
+TEST(ReactiveMethods, MayBeAskedLast)
+{
+    Flight f;
+    head_on(f, 30.0F);
+    bool plans = false;
+    FakeMethod planning{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return plans ? PlanStatus::found : PlanStatus::none_available;
+    }};
+    ReactiveFake deciding = holding(Vec3(4, 3, 0));
+    Supervisor supervisor(asking(MethodOrder(kFirst, kReacting)), planning, deciding);
+    EXPECT_EQ(f.update(supervisor, true).kind, ManoeuvreKind::velocity);
+    EXPECT_EQ(supervisor.flying()->by, kReacting);
+    plans = true;
+    EXPECT_EQ(f.update(supervisor, true).kind, ManoeuvreKind::follow_path);
+    EXPECT_EQ(supervisor.flying()->by, kFirst);
 }
 
 TEST(ReactiveMethods, AreAskedAtEveryUpdateAndTheirCommandIsFlownAsItIs)
@@ -72,10 +86,10 @@ TEST(ReactiveMethods, AreAskedAtEveryUpdateAndTheirCommandIsFlownAsItIs)
     Flight f;
     head_on(f, 30.0F);
     Vec3 wanted(4, -3, 0);
-    FakeReactive deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+    ReactiveFake deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
         return holding(wanted).answer(s, budget, out);
     }}};
-    Supervisor supervisor(with(Reactive::alone), deciding);
+    Supervisor supervisor(asking(kAlone), deciding);
     Guidance g = f.update(supervisor, false);
     for (int i = 0; i < 10; ++i) {
         wanted.x() -= 0.05F;
@@ -95,8 +109,8 @@ TEST(ReactiveMethods, AnswersAreCheckedLikeAllOthers)
 {
     Flight f;
     head_on(f, 20.0F);
-    FakeReactive deciding = holding(Vec3(5, 0, 0));
-    Supervisor supervisor(with(Reactive::alone), deciding);
+    ReactiveFake deciding = holding(Vec3(5, 0, 0));
+    Supervisor supervisor(asking(kAlone), deciding);
     const Guidance g = f.update(supervisor, true);
     EXPECT_NE(g.velocity, Vec3(5, 0, 0));
     EXPECT_EQ(supervisor.diagnostics().answers_rejected, 1U);
@@ -109,21 +123,21 @@ TEST(ReactiveMethods, TracksThatShareTheReactionAreLookedAtAsFarAsTheStop)
         Flight f;
         head_on(f, 40.0F);  // 3.7 s off; the vehicle stops within 2
         f.scene.tracks.back().cooperative = cooperative;
-        FakeReactive deciding = holding(Vec3(5, 0, 0));
-        Supervisor supervisor(with(Reactive::alone), deciding);
+        ReactiveFake deciding = holding(Vec3(5, 0, 0));
+        Supervisor supervisor(asking(kAlone), deciding);
         static_cast<void>(f.update(supervisor, true));
         EXPECT_EQ(supervisor.diagnostics().answers_rejected, cooperative ? 0U : 1U);
     }
     Flight f;
     head_on(f, 12.0F);
     f.scene.tracks.back().cooperative = true;
-    FakeReactive deciding = holding(Vec3(5, 0, 0));
-    Supervisor supervisor(with(Reactive::alone), deciding);
+    ReactiveFake deciding = holding(Vec3(5, 0, 0));
+    Supervisor supervisor(asking(kAlone), deciding);
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(supervisor.diagnostics().answers_rejected, 1U);
 }
 
-/// Others' plans and the last rung count everybody as flying straight on.
+/// Others' plans and the fallback count everybody as flying straight on.
 TEST(ReactiveMethods, PlansOfOthersDoNotCountOnAnybody)
 {
     Flight f;
@@ -133,7 +147,7 @@ TEST(ReactiveMethods, PlansOfOthersDoNotCountOnAnybody)
         out = detour(s, kLeft, 0.1F, 80.0F);
         return PlanStatus::found;
     }};
-    Supervisor supervisor(with(Reactive::never), straight);
+    Supervisor supervisor(asking(MethodOrder(kFirst)), straight);
     static_cast<void>(f.update(supervisor, true));
     EXPECT_GE(supervisor.diagnostics().answers_rejected, 1U);
 }
@@ -145,12 +159,12 @@ TEST(ReactiveMethods, AreToldTheLastCommand)
     head_on(f, 30.0F);
     std::vector<const world::Commanded*> seen;
     std::vector<world::Commanded> values;
-    FakeReactive deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+    ReactiveFake deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
         seen.push_back(s.commanded);
         values.push_back(s.commanded != nullptr ? *s.commanded : world::Commanded{});
         return holding(Vec3(4, -3, 0)).answer(s, budget, out);
     }}};
-    Supervisor supervisor(with(Reactive::alone), deciding);
+    Supervisor supervisor(asking(kAlone), deciding);
     static_cast<void>(f.update(supervisor, false));
     const TimePoint first = f.scene.now;
     f.pass(Vec3(5, 0, 0), 0.02F);
@@ -172,7 +186,7 @@ TEST(ReactiveMethods, TwoVehiclesPassEachOther)
     struct Vehicle {
         Flight f;
         orca::Planner planner;
-        Supervisor<orca::Planner> supervisor{with(Reactive::alone), planner};
+        Supervisor<orca::Planner> supervisor{quick(), planner};
         bool controlled = false;
     };
     std::array<Vehicle, 2> vehicles;

@@ -36,7 +36,7 @@ TEST(Reset, BeginsTheSettlingTimeAnew)
     EXPECT_FALSE(w.after(0.1F).wants_control);
 }
 
-TEST(Reset, EndsFlightBesideTheLeg)
+TEST(Reset, EndsAParallelOffset)
 {
     Waiting w;
     w.f.scene.own.position = Vec3(20, 8, 30);
@@ -54,7 +54,7 @@ TEST(Reset, EndsFlightBesideTheLeg)
 TEST(Reset, EndsGivingUp)
 {
     Settings settings = quick();
-    settings.give_ground_speed = 0.0F;
+    settings.back_off_speed = 0.0F;
     AtAWall w(settings);
     static_cast<void>(w.update(false));
     ASSERT_TRUE(w.wait(20.0F, 0.5F).blocked);

@@ -13,7 +13,6 @@ inline Manoeuvre velocity_of(const Situation& s, const Vec3& command, Seconds sp
 {
     Manoeuvre m;
     m.kind = world::ManoeuvreKind::velocity;
-    m.by = world::MethodId::orca;
     m.start = s.now;
     m.command = command;
     path::predict_velocity_command(s.own, command, span, 0.2F, s.limits, m.path);

@@ -25,7 +25,7 @@ const Range kRanges[] = {
     {"clutter_radius", [](Settings& s) -> float& { return s.clutter_radius; }, 1.0F, 200.0F},
     {"lookahead", [](Settings& s) -> float& { return s.lookahead; }, 1.0F, 60.0F},
     {"commit", [](Settings& s) -> float& { return s.commit; }, 0.5F, 60.0F},
-    {"room", [](Settings& s) -> float& { return s.room; }, 0.0F, 10.0F},
+    {"clearance_buffer", [](Settings& s) -> float& { return s.clearance_buffer; }, 0.0F, 10.0F},
     {"prediction_step", [](Settings& s) -> float& { return s.prediction_step; }, 0.02F, 0.5F},
     {"fallback_horizon", [](Settings& s) -> float& { return s.fallback_horizon; }, 1.0F, 20.0F},
     {"reserve", [](Settings& s) -> float& { return s.reserve; }, 0.0F, 5.0F},
@@ -33,8 +33,8 @@ const Range kRanges[] = {
     {"clear_extra", [](Settings& s) -> float& { return s.clear_extra; }, 0.0F, 10.0F},
     {"on_leg", [](Settings& s) -> float& { return s.on_leg; }, 0.05F, 50.0F},
     {"blocked_patience", [](Settings& s) -> float& { return s.blocked_patience; }, 0.0F, 600.0F},
-    {"give_ground_speed", [](Settings& s) -> float& { return s.give_ground_speed; }, 0.0F, 5.0F},
-    {"give_ground_limit", [](Settings& s) -> float& { return s.give_ground_limit; }, 0.0F, 600.0F},
+    {"back_off_speed", [](Settings& s) -> float& { return s.back_off_speed; }, 0.0F, 5.0F},
+    {"back_off_limit", [](Settings& s) -> float& { return s.back_off_limit; }, 0.0F, 600.0F},
     {"least_control", [](Settings& s) -> float& { return s.least_control; }, 0.0F, 60.0F},
     {"patience", [](Settings& s) -> float& { return s.patience; }, 0.0F, 600.0F},
     {"position_gain", [](Settings& s) -> float& { return s.gains.position_gain; }, 0.0F, 10.0F},
@@ -84,16 +84,26 @@ TEST(SettingsOfBudgets, HoldTheirEnds)
     EXPECT_FALSE(takes(1000, 500, 501));
 }
 
-TEST(SettingsOfOrder, TakeWhatIsNamedAlone)
+TEST(MethodOrder, HoldsEachIdOnceAndNeverZero)
 {
-    for (int i = 0; i < 6; ++i) {
-        Settings s;
-        s.order = static_cast<LadderOrder>(i);
-        EXPECT_EQ(is_valid(s), i <= 3) << i;
-        s = {};
-        s.reactive = static_cast<Reactive>(i);
-        EXPECT_EQ(is_valid(s), i <= 2) << i;
+    MethodOrder order;
+    EXPECT_TRUE(order.empty());
+    EXPECT_EQ(order.size(), 0U);
+    EXPECT_FALSE(order.contains(0)) << "0 is the end of it";
+    EXPECT_FALSE(order.try_add(0));
+    for (std::uint8_t id = 1; id <= kMaxMethods; ++id) {
+        EXPECT_TRUE(order.try_add(id));
+        EXPECT_FALSE(order.try_add(id)) << "again";
+        EXPECT_EQ(order.size(), id);
+        EXPECT_TRUE(order.contains(id));
     }
+    EXPECT_FALSE(order.try_add(kMaxMethods + 1)) << "full";
+    EXPECT_EQ(order.ids().size(), kMaxMethods);
+    EXPECT_EQ(order.ids().back(), kMaxMethods);
+    const std::uint8_t one = 1;
+    const std::uint8_t two = 2;
+    EXPECT_EQ(MethodOrder(two, one, two), MethodOrder(two, one)) << "an id that comes again counts once";
+    EXPECT_NE(MethodOrder(two, one), MethodOrder(one, two));
 }
 
 TEST(Settings, ThatAreRefusedChangeNothing)
@@ -104,14 +114,14 @@ TEST(Settings, ThatAreRefusedChangeNothing)
     Supervisor supervisor(first, method);
     Settings bad;
     bad.lookahead = 12.0F;
-    bad.room = -1.0F;
+    bad.clearance_buffer = -1.0F;
     EXPECT_FALSE(supervisor.configure(bad));
     EXPECT_EQ(supervisor.settings().lookahead, 11.0F);
-    EXPECT_EQ(supervisor.settings().room, first.room);
-    bad.room = 1.0F;
+    EXPECT_EQ(supervisor.settings().clearance_buffer, first.clearance_buffer);
+    bad.clearance_buffer = 1.0F;
     EXPECT_TRUE(supervisor.configure(bad));
     EXPECT_EQ(supervisor.settings().lookahead, 12.0F);
-    EXPECT_EQ(supervisor.settings().room, 1.0F);
+    EXPECT_EQ(supervisor.settings().clearance_buffer, 1.0F);
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST(Supervisors, SettingsOutOfRangeAreRefused)
     for (const float bad : {kNan, -0.1F, 1e9F}) {
         EXPECT_TRUE(refused([&](Settings& s) { s.lookahead = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.commit = bad; }));
-        EXPECT_TRUE(refused([&](Settings& s) { s.room = bad; }));
+        EXPECT_TRUE(refused([&](Settings& s) { s.clearance_buffer = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.prediction_step = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.fallback_horizon = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.reserve = bad; }));
@@ -118,8 +118,8 @@ TEST(Supervisors, SettingsOutOfRangeAreRefused)
         EXPECT_TRUE(refused([&](Settings& s) { s.clear_extra = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.on_leg = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.blocked_patience = bad; }));
-        EXPECT_TRUE(refused([&](Settings& s) { s.give_ground_speed = bad; }));
-        EXPECT_TRUE(refused([&](Settings& s) { s.give_ground_limit = bad; }));
+        EXPECT_TRUE(refused([&](Settings& s) { s.back_off_speed = bad; }));
+        EXPECT_TRUE(refused([&](Settings& s) { s.back_off_limit = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.gains.position_gain = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.gains.max_correction = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.escape.slack = bad; }));
@@ -130,7 +130,6 @@ TEST(Supervisors, SettingsOutOfRangeAreRefused)
     EXPECT_TRUE(refused([](Settings& s) { s.plan_budget = 99; }));
     EXPECT_TRUE(refused([](Settings& s) { s.plan_budget = s.budget + 1; }));
     EXPECT_TRUE(refused([](Settings& s) { s.kept_for_next = s.plan_budget + 1; }));
-    EXPECT_TRUE(refused([](Settings& s) { s.order = static_cast<LadderOrder>(4); }));
     EXPECT_FALSE(refused([](Settings& s) { s.lookahead = 12.0F; }));
     EXPECT_EQ(supervisor.settings().lookahead, 12.0F);
 }

@@ -220,7 +220,7 @@ TEST(Reset, LeavesNothingOfFormerFlightsBehind)
 
 // --- backing off ---
 
-TEST(GivingGround, BeginsAfterThePatience)
+TEST(BackingOff, BeginsAfterThePatience)
 {
     AtAWall w;
     static_cast<void>(w.update());
@@ -234,7 +234,7 @@ TEST(GivingGround, BeginsAfterThePatience)
 }
 
 /// Another wait after each time that the way was clear.
-TEST(GivingGround, BeginsAnewAfterTheWayWasClear)
+TEST(BackingOff, BeginsAnewAfterTheWayWasClear)
 {
     Settings settings = quick();
     settings.settle = 0.0F;
@@ -250,7 +250,7 @@ TEST(GivingGround, BeginsAnewAfterTheWayWasClear)
 }
 
 /// Faster than it backs off and a little more, the vehicle does not stand, and the wait begins anew.
-TEST(GivingGround, ByAVehicleThatStandsAlone)
+TEST(BackingOff, ByAVehicleThatStandsAlone)
 {
     Settings settings = quick();
     settings.blocked_patience = 0.0F;
@@ -270,14 +270,14 @@ TEST(GivingGround, ByAVehicleThatStandsAlone)
     EXPECT_EQ(patient.wait(0.7F).kind, ManoeuvreKind::velocity);
 }
 
-TEST(GivingGround, NeverAtSpeedZeroNorBeyondTheLimit)
+TEST(BackingOff, NeverAtSpeedZeroNorBeyondTheLimit)
 {
     Settings settings = quick();
-    settings.give_ground_speed = 0.0F;
+    settings.back_off_speed = 0.0F;
     AtAWall none(settings);
     EXPECT_EQ(none.wait(10.0F).kind, ManoeuvreKind::brake);
     settings = quick();
-    settings.give_ground_limit = 0.0F;
+    settings.back_off_limit = 0.0F;
     AtAWall limited(settings);
     for (int i = 0; i < 60; ++i) {
         ASSERT_EQ(limited.after(0.1F).velocity, Vec3(0, 0, 0)) << i;
@@ -285,11 +285,11 @@ TEST(GivingGround, NeverAtSpeedZeroNorBeyondTheLimit)
 }
 
 /// Per conflict so much, a pause between updates counting as a second at most; a new conflict has its own.
-TEST(GivingGround, UntilTheLimitOfEachConflict)
+TEST(BackingOff, UntilTheLimitOfEachConflict)
 {
     Settings settings = quick();
     settings.blocked_patience = 0.0F;
-    settings.give_ground_limit = 2.5F;
+    settings.back_off_limit = 2.5F;
     settings.patience = 0.0F;
     AtAWall w(settings);
     const auto backs = [&](Seconds dt) { return w.after(dt).kind == ManoeuvreKind::velocity; };
@@ -306,7 +306,7 @@ TEST(GivingGround, UntilTheLimitOfEachConflict)
 }
 
 /// Out of the way of traffic is where the fallback says, not backwards.
-TEST(GivingGround, NotWhileEscaping)
+TEST(BackingOff, NotWhileEscaping)
 {
     Settings settings = quick();
     settings.blocked_patience = 0.0F;
@@ -323,7 +323,7 @@ TEST(GivingGround, NotWhileEscaping)
 }
 
 /// Exactly on the floor is clear.
-TEST(GivingGround, WhereBackwardsIsExactlyClear)
+TEST(BackingOff, WhereBackwardsIsExactlyClear)
 {
     Settings settings = quick();
     settings.blocked_patience = 0.0F;

@@ -19,7 +19,7 @@ TEST(Watching, NothingToDoWithoutAConflict)
     const Guidance g = f.update(supervisor, false);
     EXPECT_EQ(g.state, State::watching);
     EXPECT_FALSE(g.wants_control);
-    EXPECT_FALSE(g.has_conflict);
+    EXPECT_FALSE(g.conflict.has_value());
     EXPECT_EQ(g.plan_status, PlanStatus::no_conflict);
     EXPECT_EQ(method.asked, 0);
     EXPECT_EQ(supervisor.diagnostics().updates, 1U);
@@ -33,7 +33,7 @@ TEST(Watching, AConflictFarAheadIsToldButNotPlannedFor)
     FakeMethod method = always(kLeft);
     Supervisor supervisor(quick(), method);
     const Guidance g = f.update(supervisor, false);
-    EXPECT_TRUE(g.has_conflict);
+    EXPECT_TRUE(g.conflict.has_value());
     EXPECT_FALSE(g.wants_control);
     EXPECT_EQ(method.asked, 0);
     EXPECT_EQ(supervisor.diagnostics().conflicts, 1U);
@@ -102,7 +102,7 @@ TEST(Watching, WithoutAPlanItWaitsUntilTheLastMoment)
         f.pass(Vec3(5, 0, 0), 0.05F);
         waited += 0.05F;
     }
-    EXPECT_NEAR(g.conflict.time_to_loss, vehicle::stopping_time(5.0F, f.scene.limits) + 0.75F, 0.06F);
+    EXPECT_NEAR(g.conflict->time_to_loss, vehicle::stopping_time(5.0F, f.scene.limits) + 0.75F, 0.06F);
     EXPECT_NE(g.kind, ManoeuvreKind::follow_path);
 }
 

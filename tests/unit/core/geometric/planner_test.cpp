@@ -20,7 +20,6 @@ TEST(Planner, HeadOnTrafficIsPassed)
     ASSERT_EQ(flight.plan(), PlanStatus::found);
     const world::Manoeuvre& m = flight.out;
     EXPECT_EQ(m.kind, world::ManoeuvreKind::follow_path);
-    EXPECT_EQ(m.by, world::MethodId::geometric);
     EXPECT_EQ(m.start, flight.now);
     EXPECT_NEAR(m.valid_until - m.start, m.path.duration(), 1e-4F);
     EXPECT_NEAR(m.side.norm(), 1.0F, 1e-4F);
@@ -92,7 +91,7 @@ TEST(PlannerStatus, NoConflict)
     EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
     flight.add(Vec3(60.0F, 30.0F, 50.0F), Vec3(-5.0F, 0.0F, 0.0F), 1.0F);
     EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
-    EXPECT_EQ(flight.out.by, world::MethodId::none);  // untouched
+    EXPECT_TRUE(flight.out.path.points.empty());  // untouched
 }
 
 TEST(PlannerStatus, NoConflictWithinTheLookahead)
@@ -118,7 +117,7 @@ TEST(PlannerStatus, NoneAvailable)
     Flight flight;
     flight.obstacles = {{1, geometry::make_box(Vec3(40.0F, 0.0F, 50.0F), Vec3(0.5F, 500.0F, 500.0F))}};
     EXPECT_EQ(flight.plan(), PlanStatus::none_available);
-    EXPECT_EQ(flight.out.by, world::MethodId::none);
+    EXPECT_TRUE(flight.out.path.points.empty());
 }
 
 /// A closed area of 2 m radius on the leg, from the ground to 100 m.
@@ -137,7 +136,7 @@ TEST(PlannerStatus, ClosedAreaAheadIsLeftToOtherMethods)
     const world::Barrel area = closed_area_ahead();
     flight.airspace.barrels = {&area, 1};
     EXPECT_EQ(flight.plan(), PlanStatus::none_available);
-    EXPECT_EQ(flight.out.by, world::MethodId::none);
+    EXPECT_TRUE(flight.out.path.points.empty());
 }
 
 TEST(PlannerStatus, BudgetSpentAtAClosedAreaIsSaid)

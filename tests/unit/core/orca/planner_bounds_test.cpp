@@ -165,7 +165,6 @@ TEST_F(OrcaInput, TheAnswerReplacesWhatWasInItsPlace)
     EXPECT_EQ(kept.path.points.size(), 3U);
     ASSERT_EQ(planned(used, world::test::kPlenty), PlanStatus::found);
     EXPECT_EQ(used.kind, world::ManoeuvreKind::velocity);
-    EXPECT_EQ(used.by, world::MethodId::orca);
     EXPECT_EQ(used.side, Vec3::Zero());
     EXPECT_EQ(used.cost, 0.0F);
     EXPECT_EQ(used.command, clean.command);

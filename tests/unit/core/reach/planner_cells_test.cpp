@@ -63,7 +63,7 @@ TEST_F(PlannerChoice, ABlindOrTiredSourceEndsThePlan)
     planner.rate_cells_by(&fusion);
     fusion.status = RateStatus::blind;
     EXPECT_EQ(plan(), PlanStatus::none_available);
-    EXPECT_EQ(out.by, world::MethodId::none);
+    EXPECT_TRUE(out.path.points.empty());
 }
 
 TEST_F(PlannerChoice, BothSetsOfACourseShareTheRatingWhereTheirCellsAreTheSame)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include "core/avoid/guard.hpp"
+#include "core/avoid/fallback.hpp"
 
-// What is flown by a fixed wing that cannot stop. Private to this room.
+// Fallbacks of a fixed wing, which cannot stop. Private to this module.
 
 namespace jink::avoid::detail {
 

@@ -23,12 +23,12 @@ struct Narrow : Waiting {
         EXPECT_EQ(update().state, State::braking);
         asked = method.asked;
         f.scene.tracks[0].position.y() = 2.2F;
-        EXPECT_FALSE(after(0.1F).has_conflict);
+        EXPECT_FALSE(after(0.1F).conflict.has_value());
     }
     int asked = 0;
 };
 
-TEST(NarrowWays, AreTriedAfterThreeTimesTheSettlingTime)
+TEST(NarrowPaths, AreTriedAfterThreeTimesTheSettlingTime)
 {
     Narrow w;
     EXPECT_EQ(w.wait(1.4F).state, State::braking);
@@ -36,20 +36,20 @@ TEST(NarrowWays, AreTriedAfterThreeTimesTheSettlingTime)
     EXPECT_EQ(w.after(0.1F).state, State::rejoining) << "1.5 s";
 }
 
-TEST(NarrowWays, AreWaitedAtAnewAfterEachConflict)
+TEST(NarrowPaths, AreWaitedAtAnewAfterEachConflict)
 {
     Narrow w;
     static_cast<void>(w.wait(1.0F));
     w.f.scene.tracks[0].position.y() = 1.0F;
-    EXPECT_TRUE(w.after(0.1F).has_conflict);
+    EXPECT_TRUE(w.after(0.1F).conflict.has_value());
     w.f.scene.tracks[0].position.y() = 2.2F;
-    EXPECT_FALSE(w.after(0.1F).has_conflict);
+    EXPECT_FALSE(w.after(0.1F).conflict.has_value());
     EXPECT_EQ(w.wait(1.4F).state, State::braking);
     EXPECT_EQ(w.after(0.1F).state, State::rejoining);
 }
 
 /// Room to spare is asked for as far ahead as conflicts are looked for.
-TEST(NarrowWays, AreThoseFarAheadToo)
+TEST(NarrowPaths, AreThoseFarAheadToo)
 {
     Narrow w;
     w.f.scene.tracks[0].position = Vec3(92, 2.2F, 30);  // 7 s ahead
@@ -58,12 +58,12 @@ TEST(NarrowWays, AreThoseFarAheadToo)
 }
 
 /// Backing off is bounded while it waits there, too.
-TEST(NarrowWays, AreBackedOffFromUntilTheLimitAlone)
+TEST(NarrowPaths, AreBackedOffFromUntilTheLimitAlone)
 {
     Settings settings = quick();
     settings.settle = 2.0F;
     settings.blocked_patience = 0.0F;
-    settings.give_ground_limit = 0.45F;
+    settings.back_off_limit = 0.45F;
     Waiting w(settings);
     w.stand(Vec3(55, 0, 30));
     w.f.scene.track(Vec3(58, 0, 30), Vec3::Zero(), 1.0F);
@@ -72,14 +72,14 @@ TEST(NarrowWays, AreBackedOffFromUntilTheLimitAlone)
     int backs = 0;
     for (int i = 0; i < 50; ++i) {
         const Guidance g = w.after(0.1F);
-        ASSERT_FALSE(g.has_conflict);
+        ASSERT_FALSE(g.conflict.has_value());
         ASSERT_EQ(g.state, State::braking);
         backs += g.kind == ManoeuvreKind::velocity ? 1 : 0;
     }
     EXPECT_EQ(backs, 5);
 }
 
-TEST(NarrowWays, WithMoreToSpareAreTrustedAfterTheSettlingTime)
+TEST(NarrowPaths, WithMoreToSpareAreTrustedAfterTheSettlingTime)
 {
     Narrow w;
     w.f.scene.tracks[0].position.y() = 2.6F;

@@ -76,7 +76,7 @@ TEST_P(BadAnswers, AreRejectedAndCounted)
     EXPECT_TRUE(is_finite(g.velocity));
 }
 
-TEST_P(BadAnswers, TheNextRungIsAsked)
+TEST_P(BadAnswers, TheNextMethodIsAsked)
 {
     Flight f;
     f.scene.airspace.has_floor = true;
@@ -86,7 +86,7 @@ TEST_P(BadAnswers, TheNextRungIsAsked)
         GetParam().make(s, out);
         return PlanStatus::found;
     }};
-    FakeMethod good = always(kLeft);
+    SecondFake good{always(kLeft)};
     Supervisor supervisor(quick(), bad, good);
     const Guidance g = f.update(supervisor, true);
     EXPECT_EQ(g.state, State::avoiding);
@@ -97,14 +97,14 @@ TEST_P(BadAnswers, TheNextRungIsAsked)
 INSTANTIATE_TEST_SUITE_P(Of, BadAnswers, testing::ValuesIn(kBadAnswers),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(Ladder, TheFirstGoodAnswerWinsAndEachStatusIsTold)
+TEST(MethodOrders, TheFirstGoodAnswerWinsAndEachStatusIsTold)
 {
     for (const PlanStatus status : {PlanStatus::no_conflict, PlanStatus::too_close, PlanStatus::none_available,
                                     PlanStatus::budget_spent, PlanStatus::bad_input}) {
         Flight f;
         head_on(f);
         FakeMethod first = never(status);
-        FakeMethod second = never(status);
+        SecondFake second{never(status)};
         Supervisor supervisor(quick(), first, second);
         EXPECT_EQ(f.update(supervisor, false).plan_status, status);
         EXPECT_EQ(first.asked, second.asked);
@@ -113,14 +113,14 @@ TEST(Ladder, TheFirstGoodAnswerWinsAndEachStatusIsTold)
     Flight f;
     head_on(f);
     FakeMethod first = always(kLeft);
-    FakeMethod second = always(-kLeft);
+    SecondFake second{always(-kLeft)};
     Supervisor supervisor(quick(), first, second);
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(second.asked, 0);
     EXPECT_EQ(supervisor.flying()->side, kLeft);
 }
 
-/// Which of two methods are asked, "1" and "2" in their order, when neither has an answer.
+/// Which of three methods are asked, "1", "2" and the reactive "3", when none has an answer.
 std::string asked_in_order(const Settings& settings, const std::function<void(Flight&)>& more = {})
 {
     Flight f;
@@ -138,30 +138,63 @@ std::string asked_in_order(const Settings& settings, const std::function<void(Fl
         }};
     };
     FakeMethod first = note("1");
-    FakeMethod second = note("2");
-    Supervisor supervisor(settings, first, second);
+    SecondFake second{note("2")};
+    ReactiveFake third{note("3")};
+    Supervisor supervisor(settings, first, second, third);
     static_cast<void>(f.update(supervisor, true));
     return order;
 }
 
-TEST(Ladder, AsksInTheOrderThatIsSet)
+TEST(MethodOrders, AnySubsetIsAskedInAnyOrder)
 {
+    const std::pair<MethodOrder, const char*> orders[] = {
+        {MethodOrder(kFirst, kSecond), "12"},
+        {MethodOrder(kSecond, kFirst), "21"},
+        {MethodOrder(kFirst), "1"},
+        {MethodOrder(kSecond), "2"},
+        {MethodOrder(kReacting), "3"},
+        {MethodOrder(kReacting, kFirst, kSecond), "312"},
+        {MethodOrder(kSecond, kReacting, kFirst), "231"},
+        {MethodOrder(kFirst, kReacting), "13"},
+        {MethodOrder(), "123"},
+    };
     Settings settings = quick();
-    const std::pair<LadderOrder, const char*> orders[] = {{LadderOrder::as_given, "12"},
-                                                          {LadderOrder::reversed, "21"},
-                                                          {LadderOrder::first, "1"},
-                                                          {LadderOrder::last, "2"}};
     for (const auto& [order, expected] : orders) {
         settings.order = order;
         EXPECT_EQ(asked_in_order(settings), expected);
     }
 }
 
-TEST(Ladder, InClutterTheLastMethodIsAskedFirst)
+/// An order may name methods that an image was built without.
+TEST(MethodOrders, MethodsThatAreNotThereAreSkipped)
+{
+    constexpr std::uint8_t kAbsent = 99;
+    Settings settings = quick();
+    settings.order = MethodOrder(kAbsent, kSecond);
+    EXPECT_EQ(asked_in_order(settings), "2");
+    settings.order = MethodOrder(kAbsent);
+    EXPECT_EQ(asked_in_order(settings), "") << "and then no method is asked";
+}
+
+TEST(MethodOrders, TheSupervisorStampsTheMethodThatAnswered)
+{
+    Flight f;
+    head_on(f);
+    FakeMethod first = never();
+    SecondFake second{always(kLeft)};
+    Supervisor supervisor(quick(), first, second);
+    static_cast<void>(f.update(supervisor, true));
+    ASSERT_NE(supervisor.flying(), nullptr);
+    EXPECT_EQ(supervisor.flying()->by, kSecond);
+}
+
+TEST(MethodOrders, InClutterTheOtherOrderCounts)
 {
     Settings settings = quick();
     settings.clutter = 3;
     settings.clutter_radius = 15.0F;
+    settings.order = MethodOrder(kFirst, kSecond);
+    settings.order_in_clutter = MethodOrder(kSecond, kFirst);
     const auto pillars = [](int n, float distance) {
         return [=](Flight& f) {
             for (int i = 0; i < n; ++i) {
@@ -174,14 +207,11 @@ TEST(Ladder, InClutterTheLastMethodIsAskedFirst)
     EXPECT_EQ(asked_in_order(settings, pillars(2, 10.0F)), "12");
     EXPECT_EQ(asked_in_order(settings, pillars(3, 10.0F)), "21");
     EXPECT_EQ(asked_in_order(settings, pillars(3, 25.0F)), "12") << "farther off than that is no clutter";
-    settings.order = LadderOrder::first;
-    EXPECT_EQ(asked_in_order(settings, pillars(3, 10.0F)), "1") << "who is not asked at all is not asked first";
-    settings.order = LadderOrder::as_given;
     settings.clutter = 0;
     EXPECT_EQ(asked_in_order(settings, pillars(8, 10.0F)), "12");
 }
 
-TEST(Ladder, WhatIsKeptForTheNextMethodIsLeftToIt)
+TEST(MethodOrders, WhatIsKeptForTheNextMethodIsLeftToIt)
 {
     Flight f;
     head_on(f);
@@ -196,11 +226,11 @@ TEST(Ladder, WhatIsKeptForTheNextMethodIsLeftToIt)
         }
         return PlanStatus::budget_spent;
     }};
-    FakeMethod second{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+    SecondFake second{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
         second_had = std::max(second_had, budget.left());
         out = detour(s, kLeft, 6.0F, 60.0F);
         return PlanStatus::found;
-    }};
+    }}};
     Supervisor supervisor(settings, first, second);
     const Guidance g = f.update(supervisor, true);
     EXPECT_EQ(first_had, 3000U);
@@ -211,12 +241,13 @@ TEST(Ladder, WhatIsKeptForTheNextMethodIsLeftToIt)
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 0U) << "the plan was made";
 }
 
-/// Keeps room by itself.
-struct RoomyMethod : FakeMethod {
-    static constexpr bool kKeepsRoom = true;
+/// Keeps a clearance buffer by itself.
+struct ClearFake : FakeMethod {
+    static constexpr world::MethodTraits kTraits{
+        .id = 14, .reactive = false, .keeps_clearance = true, .needs_sets = false};
 };
 
-TEST(Ladder, AMethodThatKeepsRoomIsAskedOnceAndForTheVehicleAsItIs)
+TEST(MethodOrders, AMethodThatKeepsClearanceIsAskedOnceAndForTheVehicleAsItIs)
 {
     Flight f;
     head_on(f);
@@ -226,15 +257,15 @@ TEST(Ladder, AMethodThatKeepsRoomIsAskedOnceAndForTheVehicleAsItIs)
         return PlanStatus::none_available;
     };
     FakeMethod plain{note};
-    RoomyMethod roomy{{note}};
+    ClearFake clear{{note}};
     const Settings settings = quick();
-    Supervisor supervisor(settings, plain, roomy);
+    Supervisor supervisor(settings, plain, clear);
     static_cast<void>(f.update(supervisor, true));
     const float width = f.scene.limits.half_extents.x();
-    EXPECT_EQ(widths, (std::vector<float>{width + settings.room, width, width}));
+    EXPECT_EQ(widths, (std::vector<float>{width + settings.clearance_buffer, width, width}));
 }
 
-TEST(Ladder, AMethodThatSpendsTheBudgetLeavesNothingToTrust)
+TEST(MethodOrders, AMethodThatSpendsTheBudgetLeavesNothingToTrust)
 {
     Flight f;
     head_on(f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When flight beside the leg is begun, kept and left; and what is left for it.
+// When a parallel offset is begun, kept and left; and what is left for it.
 #include <gtest/gtest.h>
 
 #include "tests/unit/core/avoid/scripted.hpp"
@@ -28,17 +28,17 @@ struct Outside : Scripted {
     Supervisor<FakeMethod> supervisor;
 };
 
-TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsClearGoesOutAndIsNotSlow)
+TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsClearGoesOutAndIsNotSlow)
 {
     Outside t(5.0F, 10.0F);
     const Guidance g = t.f.update(t.supervisor, true);
-    ASSERT_TRUE(g.has_conflict);
+    ASSERT_TRUE(g.conflict.has_value());
     EXPECT_GE(g.margin, 0.0F);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 0U);
 }
 
-TEST(BesideWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
+TEST(ParallelOffsetWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
 {
     Outside t(5.0F, 10.0F);
     t.f.scene.track(Vec3(32, 0, 44), Vec3::Zero(), 4.0F);
@@ -46,10 +46,10 @@ TEST(BesideWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
     EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
     EXPECT_NEAR((g.velocity - Vec3(5, 0, 0)).norm(), 0.0F, 1e-4F);
-    EXPECT_GE(g.margin, quick().room);
+    EXPECT_GE(g.margin, quick().clearance_buffer);
 }
 
-TEST(BesideWhileAvoiding, IsTakenInsteadOfACrawl)
+TEST(ParallelOffsetWhileAvoiding, IsTakenInsteadOfACrawl)
 {
     Outside t(1.5F, 10.0F);
     const Guidance g = t.f.update(t.supervisor, true);
@@ -57,20 +57,20 @@ TEST(BesideWhileAvoiding, IsTakenInsteadOfACrawl)
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
 }
 
-TEST(BesideWhileAvoiding, IsTakenWhereThePathLeadsBack)
+TEST(ParallelOffsetWhileAvoiding, IsTakenWhereThePathLeadsBack)
 {
     Outside t(5.0F, -2.0F);
     const Guidance g = t.f.update(t.supervisor, true);
-    ASSERT_TRUE(g.has_conflict);
+    ASSERT_TRUE(g.conflict.has_value());
     EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
 }
 
 /// Outwards and level on the floor: exactly clear is clear, and nothing else is looked for.
-TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
+TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
 {
     Settings settings = quick();
-    settings.room = 0.0F;
+    settings.clearance_buffer = 0.0F;
     Scripted t;
     t.next = [](const Situation& s, Manoeuvre& out) {
         out = at_speed(s, {Vec3(0, 4, 30), Vec3(40, 8, 30)}, 5.0F, kLeft);
@@ -85,7 +85,7 @@ TEST(BesideWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
     t.f.scene.own.position = Vec3(0, 4, 30);
     t.f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);
     const Guidance g = t.f.update(supervisor, true);
-    ASSERT_TRUE(g.has_conflict);
+    ASSERT_TRUE(g.conflict.has_value());
     EXPECT_EQ(g.margin, 0.0F);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_FALSE(g.new_manoeuvre);
@@ -108,11 +108,11 @@ std::uint32_t holds_of(const Flight& f, const Settings& settings = quick())
     FakeMethod method = never();
     Supervisor supervisor(settings, method);
     const Guidance g = supervisor.update(f.scene.situation(), true);
-    EXPECT_TRUE(g.has_conflict);
+    EXPECT_TRUE(g.conflict.has_value());
     return supervisor.diagnostics().holds;
 }
 
-TEST(BesideTheLeg, IsBegunWithRoomToSpareAndKeptWhileClear)
+TEST(ParallelToTheLeg, IsBegunWithTheClearanceBufferAndKeptWhileClear)
 {
     EXPECT_EQ(holds_of(along_side(8.0F, 0.45F)), 1U);
     EXPECT_EQ(holds_of(along_side(8.0F, 0.35F)), 0U) << "0.4 m are asked for";
@@ -131,7 +131,7 @@ TEST(BesideTheLeg, IsBegunWithRoomToSpareAndKeptWhileClear)
     EXPECT_EQ(supervisor.diagnostics().holds, 1U) << "once left, it is begun with room again";
 }
 
-TEST(BesideTheLeg, IsBegunAnewAfterTheWayBackWasClear)
+TEST(ParallelToTheLeg, IsBegunAnewAfterThePathBackWasClear)
 {
     Flight f = along_side(8.0F, 0.6F);
     FakeMethod method = never();
@@ -147,7 +147,7 @@ TEST(BesideTheLeg, IsBegunAnewAfterTheWayBackWasClear)
     EXPECT_EQ(supervisor.diagnostics().holds, 1U);
 }
 
-TEST(BesideTheLeg, ExactlyClearIsClear)
+TEST(ParallelToTheLeg, ExactlyClearIsClear)
 {
     Flight f;
     f.scene.own.position = Vec3(20, 8, 30);
@@ -155,13 +155,13 @@ TEST(BesideTheLeg, ExactlyClearIsClear)
     f.scene.airspace.has_floor = true;
     f.scene.airspace.floor = 29.0F;
     Settings settings = quick();
-    settings.room = 0.0F;
+    settings.clearance_buffer = 0.0F;
     EXPECT_EQ(holds_of(f, settings), 1U);
     f.scene.airspace.floor = 29.01F;
     EXPECT_EQ(holds_of(f, settings), 0U);
 }
 
-TEST(BesideTheLeg, BeginsBeyondTheLegsWidthAndBeforeItsEnd)
+TEST(ParallelToTheLeg, BeginsBeyondTheLegsWidthAndBeforeItsEnd)
 {
     const auto holds = [](float off, float left) {
         Flight f;
@@ -180,7 +180,7 @@ TEST(BesideTheLeg, BeginsBeyondTheLegsWidthAndBeforeItsEnd)
 }
 
 /// What is checked is the whole look-ahead, not the fallback's horizon.
-TEST(BesideTheLeg, IsClearForAsLongAsConflictsAreLookedFor)
+TEST(ParallelToTheLeg, IsClearForAsLongAsConflictsAreLookedFor)
 {
     Flight f = along_side(8.0F, 3.0F);
     f.scene.track(Vec3(20.0F + 33.0F, 8, 30), Vec3::Zero(), 1.0F);  // met in 6.2 s

@@ -29,12 +29,12 @@ protected:
 TEST_F(TwoNominalPaths, AConflictOnTheOtherOneAloneCounts)
 {
     f.scene.track(f.scene.own.position + Vec3(0, 40, 0), Vec3(0, -5, 0));
-    EXPECT_FALSE(f.update(supervisor, false).has_conflict) << "the leg is clear";
+    EXPECT_FALSE(f.update(supervisor, false).conflict.has_value()) << "the leg is clear";
     const Guidance g = update(false);
-    EXPECT_TRUE(g.has_conflict);
+    EXPECT_TRUE(g.conflict.has_value());
     EXPECT_TRUE(g.on_other);
     EXPECT_TRUE(g.wants_control);
-    EXPECT_NEAR(g.conflict.time_to_loss, 3.8F, 0.1F);
+    EXPECT_NEAR(g.conflict->time_to_loss, 3.8F, 0.1F);
     EXPECT_EQ(supervisor.diagnostics().on_other, 1U);
 }
 
@@ -44,17 +44,17 @@ TEST_F(TwoNominalPaths, TheEarlierConflictCounts)
     f.scene.track(f.scene.own.position + Vec3(25, 0, 0), Vec3(-5, 0, 0));
     const Guidance g = update(false);
     EXPECT_FALSE(g.on_other);
-    EXPECT_EQ(g.conflict.threat.index, 1U);
+    EXPECT_EQ(g.conflict->threat.index, 1U);
     f.scene.tracks[1].position.x() += 40.0F;
     const Guidance later = update(false);
     EXPECT_TRUE(later.on_other);
-    EXPECT_EQ(later.conflict.threat.index, 0U);
+    EXPECT_EQ(later.conflict->threat.index, 0U);
 }
 
 TEST_F(TwoNominalPaths, AnObstacleOnTheOtherOneCountsWhenItIsTimeToStop)
 {
     f.scene.obstacle(geometry::make_sphere(f.scene.own.position + Vec3(0, 20, 0), 1.0F));
-    EXPECT_FALSE(update(false).has_conflict) << "it may turn where its leg ends";
+    EXPECT_FALSE(update(false).conflict.has_value()) << "it may turn where its leg ends";
     f.pass(Vec3(0, 5, 0), 2.0F);
     EXPECT_TRUE(update(false).on_other);
 }
@@ -63,7 +63,7 @@ TEST_F(TwoNominalPaths, InControlTheFirstAloneIsFlown)
 {
     f.scene.track(f.scene.own.position + Vec3(0, 40, 0), Vec3(0, -5, 0));
     const Guidance g = update(true);
-    EXPECT_FALSE(g.has_conflict);
+    EXPECT_FALSE(g.conflict.has_value());
     EXPECT_FALSE(g.on_other);
 }
 
@@ -99,7 +99,7 @@ TEST_F(TwoNominalPaths, StandingInTheWayItGetsGoingInTime)
     while (!(g = update(false)).wants_control && f.scene.tracks[0].position.x() > 0.0F) {
         f.pass(Vec3::Zero(), 0.05F);
     }
-    EXPECT_NEAR(g.conflict.time_to_loss, 3.0F, 0.1F) << "stopping mends nothing";
+    EXPECT_NEAR(g.conflict->time_to_loss, 3.0F, 0.1F) << "stopping mends nothing";
     EXPECT_EQ(g.kind, world::ManoeuvreKind::velocity);
     EXPECT_GE(g.margin, 0.0F);
 }

@@ -47,9 +47,9 @@ TEST(OtherPath, CountsWhenItsLossIsClearlyFirstAndThenUntilItIsClearlyLater)
     EXPECT_FALSE(t.update(6.0F, 5.6F).on_other) << "0.4 s are noise";
     EXPECT_TRUE(t.update(6.0F, 5.4F).on_other);
     EXPECT_TRUE(t.update(6.0F, 6.4F).on_other) << "it stays";
-    EXPECT_NEAR(t.update(6.0F, 6.4F).conflict.time_to_loss, 6.4F, 1e-3F);
+    EXPECT_NEAR(t.update(6.0F, 6.4F).conflict->time_to_loss, 6.4F, 1e-3F);
     EXPECT_FALSE(t.update(6.0F, 6.6F).on_other);
-    EXPECT_NEAR(t.update(6.0F, 6.6F).conflict.time_to_loss, 6.0F, 1e-3F);
+    EXPECT_NEAR(t.update(6.0F, 6.6F).conflict->time_to_loss, 6.0F, 1e-3F);
     EXPECT_FALSE(t.update(6.0F, 5.6F).on_other) << "and back again likewise";
     EXPECT_TRUE(t.update(TwoAhead::kNever, 7.5F).on_other) << "alone it counts at once";
     EXPECT_FALSE(t.update(7.5F, TwoAhead::kNever).on_other);
@@ -134,12 +134,12 @@ TEST(OtherPath, AnObstacleCountsFromTheLatestManoeuvreTimeOn)
     ASSERT_TRUE(t.supervisor.configure(settings));
     const Guidance seen = t.update(TwoAhead::kNever, TwoAhead::kNever);
     ASSERT_TRUE(seen.on_other);
-    settings.reserve = seen.conflict.time_to_loss;
+    settings.reserve = seen.conflict->time_to_loss;
     ASSERT_TRUE(t.supervisor.configure(settings));
     EXPECT_TRUE(t.update(TwoAhead::kNever, TwoAhead::kNever).on_other) << "exactly then";
-    settings.reserve = std::nextafter(seen.conflict.time_to_loss, 0.0F);
+    settings.reserve = std::nextafter(seen.conflict->time_to_loss, 0.0F);
     ASSERT_TRUE(t.supervisor.configure(settings));
-    EXPECT_FALSE(t.update(TwoAhead::kNever, TwoAhead::kNever).has_conflict);
+    EXPECT_FALSE(t.update(TwoAhead::kNever, TwoAhead::kNever).conflict.has_value());
 }
 
 TEST(OtherPath, AnObstacleFarAheadOnItKeepsNoControl)
@@ -195,7 +195,7 @@ struct Looking {
     static Settings once_a_plan()
     {
         Settings s = quick();
-        s.reactive = Reactive::alone;
+        s.order = MethodOrder(kReacting);
         s.settle = s.least_control = 0.0F;
         return s;
     }

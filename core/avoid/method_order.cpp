@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/avoid/rungs.hpp"
+#include "core/avoid/method_order.hpp"
 
 #include <algorithm>
 
@@ -20,18 +20,11 @@ std::size_t count_near(const world::Situation& situation, float radius) noexcept
     return static_cast<std::size_t>(std::count_if(situation.threats.begin(), situation.threats.end(), is_near));
 }
 
-Rungs rungs_of(std::size_t methods, const world::Situation& situation, const Settings& settings) noexcept
+const MethodOrder& order_for(const world::Situation& situation, const Settings& settings) noexcept
 {
-    const std::size_t last = methods - 1;
-    switch (settings.order) {
-    case LadderOrder::first: return {0, 1, false};
-    case LadderOrder::last: return {last, 1, false};
-    case LadderOrder::reversed: return {last, methods, true};
-    case LadderOrder::as_given: break;
-    }
-    const bool cluttered =
-        methods > 1 && settings.clutter > 0 && count_near(situation, settings.clutter_radius) >= settings.clutter;
-    return cluttered ? Rungs{last, methods, true} : Rungs{0, methods, false};
+    const bool may_change = settings.clutter > 0 && !settings.order_in_clutter.empty();
+    const bool cluttered = may_change && count_near(situation, settings.clutter_radius) >= settings.clutter;
+    return cluttered ? settings.order_in_clutter : settings.order;
 }
 
 }  // namespace jink::avoid

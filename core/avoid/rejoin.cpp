@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Back to the leg: when the way is clear, how it is flown, and what is flown while it is not.
+// Back to the leg: when the path is clear, how it is flown, and what is flown while it is not.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "core/avoid/pilot_tick.hpp"
+#include "core/avoid/tick.hpp"
 #include "core/geometry/sweep.hpp"
 
 namespace jink::avoid {
@@ -20,16 +20,16 @@ float cross_track(const world::Situation& s) noexcept
 namespace {
 
 /// Along the tangent where the vehicle is abeam of the route.
-Beside beside_route(const world::Situation& s) noexcept
+ParallelOffset parallel_to_route(const world::Situation& s) noexcept
 {
     const path::Route& route = *s.reference.route;
     const path::Abeam abeam = route.abeam_of(s.own.position, s.reference.segment);
     const Vec3 from_route = s.own.position - abeam.point.position;
-    Beside beside;
-    beside.left = route.length() - abeam.arc_length;
-    beside.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
-    beside.command = vehicle::clamped_velocity(abeam.point.along, s.reference.leg.speed, s.limits);
-    return beside;
+    ParallelOffset parallel;
+    parallel.left = route.length() - abeam.arc_length;
+    parallel.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
+    parallel.command = vehicle::clamped_velocity(abeam.point.along, s.reference.leg.speed, s.limits);
+    return parallel;
 }
 
 /// Time in which what is left to a bound of the airspace is used up at most.
@@ -69,91 +69,84 @@ Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
 
 }  // namespace
 
-Beside beside_leg(const world::Situation& s) noexcept
+ParallelOffset parallel_offset(const world::Situation& s) noexcept
 {
     if (s.reference.route != nullptr) {
-        return beside_route(s);
+        return parallel_to_route(s);
     }
     const world::Leg& leg = s.reference.leg;
     const Vec3 span = leg.end - leg.start;
     const float length = span.norm();
-    Beside beside;
+    ParallelOffset parallel;
     if (length > 0.0F) {
         const Vec3 forward = span / length;
         const Vec3 from_start = s.own.position - leg.start;
-        beside.left = length - from_start.dot(forward);
-        beside.off = from_start - from_start.dot(forward) * forward;
-        beside.command = vehicle::clamped_velocity(forward, leg.speed, s.limits);
+        parallel.left = length - from_start.dot(forward);
+        parallel.off = from_start - from_start.dot(forward) * forward;
+        parallel.command = vehicle::clamped_velocity(forward, leg.speed, s.limits);
     }
-    return beside;
+    return parallel;
 }
 
-bool is_held(const world::Situation& s, const Vec3& taken, const Vec3& left, float on_leg) noexcept
+bool is_held_by_bounds(const world::Situation& s, const Vec3& removed, const Vec3& left, float on_leg) noexcept
 {
     /// Slower than this nothing is gained by going on [m/s].
-    constexpr float kStanding = 0.2F;
-    const Vec3 off = beside_leg(s).off;
-    const bool beside = off.head<2>().norm() > on_leg;
-    return taken.head<2>().norm() > 0.0F || (taken.z() != 0.0F && (!beside || left.norm() < kStanding));
+    constexpr float kNoGain = 0.2F;
+    const Vec3 off = parallel_offset(s).off;
+    const bool off_the_leg = off.head<2>().norm() > on_leg;
+    return removed.head<2>().norm() > 0.0F || (removed.z() != 0.0F && (!off_the_leg || left.norm() < kNoGain));
 }
 
-void Pilot::enter_rejoining() noexcept
-{
-    state_ = State::rejoining;
-    has_fallback_ = false;
-    standing_ = false;
-}
-
-/// Near enough to the leg for control to be given back. Held at a bound, the vehicle is as near to it as we may bring
-/// it.
-bool Pilot::is_back(const Tick& tick) const noexcept
+/// Near enough to the leg for control to be given back. Held at a bound of the airspace, the vehicle is as
+/// near to the leg as we may bring it.
+bool StateMachine::is_back(const Tick& tick) const noexcept
 {
     const float on_leg = settings_.on_leg;
-    const bool held = is_held(tick.s, tick.taken, tick.out.velocity, on_leg);
-    if (cross_track(tick.s) <= on_leg || tick.way.length <= on_leg || held) {
+    const bool held = is_held_by_bounds(tick.s, tick.removed, tick.out.velocity, on_leg);
+    if (cross_track(tick.s) <= on_leg || tick.nominal.length <= on_leg || held) {
         return true;
     }
     // A fixed wing above or below its leg needs no turn to follow it; past its end nothing is left of it.
-    const Beside beside = beside_leg(tick.s);
+    const ParallelOffset parallel = parallel_offset(tick.s);
     return tick.s.limits.kind == vehicle::VehicleKind::fixed_wing &&
-           (beside.off.head<2>().norm() <= on_leg || beside.left <= 0.0F);
+           (parallel.off.head<2>().norm() <= on_leg || parallel.left <= 0.0F);
 }
 
-void Pilot::follow_way(Tick& tick) noexcept
+void StateMachine::follow_nominal(Tick& tick) const noexcept
 {
     tick.out.wants_control = true;
     tick.out.kind = world::ManoeuvreKind::velocity;
-    const Vec3 wanted = tick.way.length > 0.0F ? Vec3(tick.way.direction * tick.way.speed) : Vec3(Vec3::Zero());
+    const Vec3 wanted =
+        tick.nominal.length > 0.0F ? Vec3(tick.nominal.direction * tick.nominal.speed) : Vec3(Vec3::Zero());
     tick.out.velocity = kept_inside(tick.s, wanted);
-    tick.taken = wanted - tick.out.velocity;
+    tick.removed = wanted - tick.out.velocity;
 }
 
-/// The way back is not clear, but flying on beside the leg is: past what is slow, or until it has gone. Going back to
-/// the leg behind it would only mean to go around it again.
-bool Pilot::keep_beside(Tick& tick) noexcept
+/// The path back is not clear, but flying parallel to the leg is: past slow threats, or until they have gone. Going
+/// back to the leg behind such a threat would only mean to go around it again.
+bool StateMachine::keep_parallel(Tick& tick) noexcept
 {
-    const Beside beside = beside_leg(tick.s);
-    if (!tick.out.has_conflict || tick.s.limits.kind != vehicle::VehicleKind::multirotor ||
-        beside.off.norm() <= settings_.on_leg || beside.left <= world::kRejoinLookahead) {
-        beside_ = false;
+    const ParallelOffset parallel = parallel_offset(tick.s);
+    if (!tick.out.conflict || tick.s.limits.kind != vehicle::VehicleKind::multirotor ||
+        parallel.off.norm() <= settings_.on_leg || parallel.left <= world::kRejoinLookahead) {
         return false;
     }
-    const float margin = command_margin(tick.s, beside.command, settings_.lookahead, settings_, tick.budget);
-    const bool keeps = margin >= (beside_ ? 0.0F : settings_.room);
-    if (keeps) {
-        diagnostics_.holds += beside_ ? 0U : 1U;
-        tick.out.wants_control = true;
-        tick.out.kind = world::ManoeuvreKind::velocity;
-        tick.out.velocity = beside.command;
-        tick.out.margin = margin;
+    const float margin = command_margin(tick.s, parallel.command, settings_.lookahead, settings_, tick.budget);
+    const bool kept = phase_ == Phase::parallel_offset;
+    if (!(margin >= (kept ? 0.0F : settings_.clearance_buffer))) {
+        return false;
     }
-    beside_ = keeps;
-    return keeps;
+    diagnostics_.holds += kept ? 0U : 1U;
+    tick.out.wants_control = true;
+    tick.out.kind = world::ManoeuvreKind::velocity;
+    tick.out.velocity = parallel.command;
+    tick.out.margin = margin;
+    return true;
 }
 
-/// A fixed wing needs seconds to turn to its way, and flies a long arc meanwhile, which the way does not show. While
-/// that arc is not clear the wing keeps its course; where that is not clear either, it falls back.
-bool Pilot::keep_course(Tick& tick) noexcept
+/// A fixed wing needs seconds to turn to its nominal path, and flies a long arc meanwhile, which that path does not
+/// show. While the arc is not clear the wing keeps its course; where the course is not clear either, it falls back.
+bool StateMachine::keep_course(Tick& tick) noexcept
 {
     /// A half turn at 30 degrees of bank and 18 m/s takes 10 s, a quarter 5 s.
     constexpr Seconds kTurning = 8.0F;
@@ -162,7 +155,7 @@ bool Pilot::keep_course(Tick& tick) noexcept
         return false;
     }
     const Seconds ahead = std::min(settings_.lookahead, kTurning);
-    const Vec3 back = kept_inside(tick.s, tick.way.direction * tick.way.speed);
+    const Vec3 back = kept_inside(tick.s, tick.nominal.direction * tick.nominal.speed);
     if (command_margin(tick.s, back, ahead, settings_, tick.budget) >= 0.0F) {
         return false;
     }
@@ -179,39 +172,19 @@ bool Pilot::keep_course(Tick& tick) noexcept
     return true;
 }
 
-/// How long the way has been clear, with something to spare.
-void Pilot::note_clearness(Tick& tick) noexcept
+void StateMachine::rejoin(Tick& tick) noexcept
 {
-    if (!tick.out.has_conflict) {
-        const Wider wider(tick.s, settings_.clear_extra);
-        world::Conflict unused;
-        tick.wide_clear = !world::main_conflict(wider.situation, tick.way, settings_.lookahead, tick.budget, unused);
-    }
-    if (tick.wide_clear && !was_clear_) {
-        clear_since_ = tick.s.now;
-    }
-    was_clear_ = tick.wide_clear;
-    const bool free = !tick.out.has_conflict;
-    free_since_ = free && !was_free_ ? tick.s.now : free_since_;
-    was_free_ = free;
-}
-
-bool Pilot::way_clear_for(const Tick& tick, Seconds span) const noexcept
-{
-    return was_clear_ && tick.s.now - clear_since_ >= span;
-}
-
-void Pilot::rejoin(Tick& tick) noexcept
-{
-    if (keep_beside(tick)) {
+    if (keep_parallel(tick)) {
+        enter(Phase::parallel_offset);
         return;
     }
-    if (tick.out.has_conflict) {
-        if (due(tick, tick.out.conflict.time_to_loss) && plan(tick)) {
+    enter(Phase::rejoining);
+    if (tick.out.conflict) {
+        if (is_due(tick, tick.out.conflict->time_to_loss) && plan(tick)) {
             take(tick);
             return;
         }
-        if (urgent(tick, tick.out.conflict.time_to_loss)) {
+        if (is_urgent(tick, tick.out.conflict->time_to_loss)) {
             fall_back(tick);
             return;
         }
@@ -219,12 +192,11 @@ void Pilot::rejoin(Tick& tick) noexcept
     if (tick.in_control && keep_course(tick)) {
         return;
     }
-    follow_way(tick);
-    if (is_back(tick) && way_clear_for(tick, settings_.settle) && may_give_back(tick)) {
+    follow_nominal(tick);
+    if (is_back(tick) && is_clear_for(tick, settings_.settle) && may_give_back(tick)) {
         ++diagnostics_.rejoined;
-        state_ = State::watching;
-        gave_back_ = true;
-        has_flying_ = false;
+        flying_.reset();
+        enter(Phase::giving_back);
         // The velocity stays valid: it is flown until the autopilot has its mode back.
         tick.out.wants_control = false;
     }

@@ -27,7 +27,7 @@ Flight behind_slow_traffic()
     return f;
 }
 
-TEST(Beside, SlowTrafficIsPassedBeforeTheLegIsRejoined)
+TEST(ParallelOffset, SlowTrafficIsPassedBeforeTheLegIsRejoined)
 {
     Flight f = behind_slow_traffic();
     FakeMethod method = never();
@@ -51,7 +51,7 @@ TEST(Beside, SlowTrafficIsPassedBeforeTheLegIsRejoined)
     EXPECT_EQ(method.asked, 0);
 }
 
-TEST(Beside, AManoeuvreThatWouldReturnBehindSlowTrafficIsLeftForIt)
+TEST(ParallelOffset, AManoeuvreThatWouldReturnBehindSlowTrafficIsLeftForIt)
 {
     Flight f;
     f.scene.track(Vec3(13, 0, 30), Vec3(2.5F, 0, 0), 1.0F);
@@ -71,7 +71,7 @@ TEST(Beside, AManoeuvreThatWouldReturnBehindSlowTrafficIsLeftForIt)
     EXPECT_EQ(supervisor.diagnostics().flips, 0U);
 }
 
-TEST(Beside, IsNotFlownIntoSomethingElse)
+TEST(ParallelOffset, IsNotFlownIntoSomethingElse)
 {
     Flight f = behind_slow_traffic();
     f.scene.track(Vec3(50, 8, 30), Vec3::Zero(), 1.0F);  // met in 6 s
@@ -81,7 +81,7 @@ TEST(Beside, IsNotFlownIntoSomethingElse)
     EXPECT_EQ(supervisor.diagnostics().holds, 0U);
 }
 
-TEST(Beside, IsNotFlownPastABoundOrTheEndOfTheLeg)
+TEST(ParallelOffset, IsNotFlownPastABoundOrTheEndOfTheLeg)
 {
     const auto holds = [](auto change) {
         Flight f = behind_slow_traffic();
@@ -102,7 +102,7 @@ TEST(Beside, IsNotFlownPastABoundOrTheEndOfTheLeg)
 }
 
 /// The side told to methods is where the vehicle is, not where a manoeuvre once meant to go.
-TEST(Beside, MethodsAreToldTheSideThatIsFlown)
+TEST(ParallelOffset, MethodsAreToldTheSideThatIsFlown)
 {
     Flight f;
     Vec3 told = Vec3::Zero();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "core/avoid/wing.hpp"
+#include "core/avoid/fallback_wing.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command on the way back to the leg, at the bounds of the airspace; and where the vehicle is beside its leg.
+// The command on the path back to the leg, at the bounds of the airspace; and where the vehicle is beside its leg.
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "core/avoid/pilot_tick.hpp"
+#include "core/avoid/tick.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -43,7 +43,7 @@ Flight uncertain()
 }
 
 /// What is left to a bound is used up in a second at most: box and uncertainty of the position taken off.
-TEST(WayBack, SlowsDownBelowTheCeiling)
+TEST(PathBack, SlowsDownBelowTheCeiling)
 {
     const auto climb = [](float ceiling) {
         Flight f = uncertain();
@@ -57,7 +57,7 @@ TEST(WayBack, SlowsDownBelowTheCeiling)
     expect_near(climb(25.0F), Vec3(0, 0, 0), "beyond it");
 }
 
-TEST(WayBack, SlowsDownAboveTheFloor)
+TEST(PathBack, SlowsDownAboveTheFloor)
 {
     const auto descent = [](float floor) {
         Flight f = uncertain();
@@ -72,7 +72,7 @@ TEST(WayBack, SlowsDownAboveTheFloor)
 }
 
 /// Inwards everything is free: beyond a bound no velocity is made up.
-TEST(WayBack, IsFreeAwayFromABoundThatWasPassed)
+TEST(PathBack, IsFreeAwayFromABoundThatWasPassed)
 {
     Flight f = uncertain();
     f.scene.airspace.has_ceiling = f.scene.airspace.has_keep_in = true;
@@ -88,7 +88,7 @@ TEST(WayBack, IsFreeAwayFromABoundThatWasPassed)
     expect_near(command_back(f, Vec3(-4, 0, 3), 5.0F), Vec3(-4, 0, 3), "inwards with much left");
 }
 
-TEST(WayBack, SlowsDownTowardsTheKeepInRadius)
+TEST(PathBack, SlowsDownTowardsTheKeepInRadius)
 {
     const auto way = [](float radius, const Vec3& direction) {
         Flight f = uncertain();
@@ -109,7 +109,7 @@ TEST(WayBack, SlowsDownTowardsTheKeepInRadius)
     expect_near(way(10.0F, -0.8F * outward + 0.6F * across), -4.0F * outward + 3.0F * across, "back inside");
 }
 
-TEST(WayBack, AboveHomeItselfThereIsNoOutwards)
+TEST(PathBack, AboveHomeItselfThereIsNoOutwards)
 {
     Flight f = uncertain();
     f.scene.airspace.has_keep_in = true;
@@ -118,7 +118,7 @@ TEST(WayBack, AboveHomeItselfThereIsNoOutwards)
     expect_near(command_back(f, Vec3(1, 0, 0), 5.0F), Vec3(5, 0, 0), "above home");
 }
 
-TEST(WayBack, ABoundThatIsNotSetIsNone)
+TEST(PathBack, ABoundThatIsNotSetIsNone)
 {
     Flight f = uncertain();
     f.scene.airspace.floor = 100.0F;
@@ -130,7 +130,7 @@ TEST(WayBack, ABoundThatIsNotSetIsNone)
 }
 
 /// The command is the way's: its climb and descent within limits, the mission's speed and not cruise speed.
-TEST(WayBack, FliesAtTheSpeedOfTheLeg)
+TEST(PathBack, FliesAtTheSpeedOfTheLeg)
 {
     Flight f;
     expect_near(command_back(f, Vec3(0, 1, 0), 2.0F), Vec3(0, 2, 0), "slow leg");
@@ -138,7 +138,7 @@ TEST(WayBack, FliesAtTheSpeedOfTheLeg)
 }
 
 /// At the leg's end nothing is left to fly.
-TEST(WayBack, StandsAtTheEndOfTheLeg)
+TEST(PathBack, StandsAtTheEndOfTheLeg)
 {
     Flight f;
     f.scene.leg(f.scene.own.position - Vec3(50, 0, 0), f.scene.own.position, 5.0F);
@@ -147,26 +147,26 @@ TEST(WayBack, StandsAtTheEndOfTheLeg)
     EXPECT_EQ(f.update(supervisor, true).velocity, Vec3(0, 0, 0));
 }
 
-// --- is_held ---
+// --- is_held_by_bounds ---
 
 /// 8 m beside a leg to the east, or on it.
-TEST(IsHeld, AtTheKeepInRadiusWhereverItIs)
+TEST(IsHeldByBounds, AtTheKeepInRadiusWhereverItIs)
 {
     Flight f;
     for (const float beside : {0.0F, 8.0F}) {
         f.scene.own.position = Vec3(20, beside, 30);
-        EXPECT_TRUE(is_held(f.scene.situation(), Vec3(0.1F, 0, 0), Vec3(5, 0, 0), 1.0F));
-        EXPECT_TRUE(is_held(f.scene.situation(), Vec3(0, -0.1F, 0), Vec3(5, 0, 0), 1.0F));
-        EXPECT_FALSE(is_held(f.scene.situation(), Vec3(0, 0, 0), Vec3(0, 0, 0), 1.0F)) << "nothing is taken";
+        EXPECT_TRUE(is_held_by_bounds(f.scene.situation(), Vec3(0.1F, 0, 0), Vec3(5, 0, 0), 1.0F));
+        EXPECT_TRUE(is_held_by_bounds(f.scene.situation(), Vec3(0, -0.1F, 0), Vec3(5, 0, 0), 1.0F));
+        EXPECT_FALSE(is_held_by_bounds(f.scene.situation(), Vec3(0, 0, 0), Vec3(0, 0, 0), 1.0F)) << "nothing is taken";
     }
 }
 
-TEST(IsHeld, ByFloorOrCeilingAboveItsLegOrWhereNextToNothingIsLeft)
+TEST(IsHeldByBounds, ByFloorOrCeilingAboveItsLegOrWhereNextToNothingIsLeft)
 {
     Flight f;
     const auto held = [&](float beside, float left) {
         f.scene.own.position = Vec3(20, beside, 33);
-        return is_held(f.scene.situation(), Vec3(0, 0, -2), Vec3(0, -left, 0), 1.0F);
+        return is_held_by_bounds(f.scene.situation(), Vec3(0, 0, -2), Vec3(0, -left, 0), 1.0F);
     };
     EXPECT_TRUE(held(0.0F, 5.0F)) << "above its leg";
     EXPECT_TRUE(held(1.0F, 5.0F)) << "as good as above it";
@@ -174,36 +174,36 @@ TEST(IsHeld, ByFloorOrCeilingAboveItsLegOrWhereNextToNothingIsLeft)
     EXPECT_FALSE(held(8.0F, 0.2F));
     EXPECT_TRUE(held(8.0F, 0.199F)) << "beside it, and getting nowhere";
     f.scene.own.position = Vec3(20, 8, 27);
-    EXPECT_TRUE(is_held(f.scene.situation(), Vec3(0, 0, 2), Vec3(0, 0, 0), 1.0F)) << "a ceiling likewise";
+    EXPECT_TRUE(is_held_by_bounds(f.scene.situation(), Vec3(0, 0, 2), Vec3(0, 0, 0), 1.0F)) << "a ceiling likewise";
 }
 
-// --- cross_track and beside_leg ---
+// --- cross_track and parallel_offset ---
 
-TEST(BesideALeg, IsMeasuredAcrossIt)
+TEST(ParallelToALeg, IsMeasuredAcrossIt)
 {
     Flight f;
     f.scene.leg(Vec3(10, 10, 30), Vec3(10, 110, 30), 4.0F);
     f.scene.own.position = Vec3(14, 40, 33);
     EXPECT_NEAR(cross_track(f.scene.situation()), 5.0F, 1e-5F);
-    const Beside beside = beside_leg(f.scene.situation());
-    EXPECT_NEAR((beside.off - Vec3(4, 0, 3)).norm(), 0.0F, 1e-5F);
-    EXPECT_NEAR(beside.left, 70.0F, 1e-4F);
-    EXPECT_NEAR((beside.command - Vec3(0, 4, 0)).norm(), 0.0F, 1e-5F);
+    const ParallelOffset parallel = parallel_offset(f.scene.situation());
+    EXPECT_NEAR((parallel.off - Vec3(4, 0, 3)).norm(), 0.0F, 1e-5F);
+    EXPECT_NEAR(parallel.left, 70.0F, 1e-4F);
+    EXPECT_NEAR((parallel.command - Vec3(0, 4, 0)).norm(), 0.0F, 1e-5F);
     f.scene.own.position = Vec3(14, 123, 30);
     EXPECT_NEAR(cross_track(f.scene.situation()), std::sqrt(16.0F + 169.0F), 1e-4F) << "past its end: from the end";
-    EXPECT_NEAR(beside_leg(f.scene.situation()).left, -13.0F, 1e-4F);
-    EXPECT_NEAR((beside_leg(f.scene.situation()).off - Vec3(4, 0, 0)).norm(), 0.0F, 1e-4F);
+    EXPECT_NEAR(parallel_offset(f.scene.situation()).left, -13.0F, 1e-4F);
+    EXPECT_NEAR((parallel_offset(f.scene.situation()).off - Vec3(4, 0, 0)).norm(), 0.0F, 1e-4F);
 }
 
-TEST(BesideALeg, WithoutALengthIsNowhere)
+TEST(ParallelToALeg, WithoutALengthIsNowhere)
 {
     Flight f;
     f.scene.leg(Vec3(10, 10, 30), Vec3(10, 10, 30), 4.0F);
     f.scene.own.position = Vec3(14, 40, 33);
-    const Beside beside = beside_leg(f.scene.situation());
-    EXPECT_EQ(beside.off, Vec3(0, 0, 0));
-    EXPECT_EQ(beside.command, Vec3(0, 0, 0));
-    EXPECT_EQ(beside.left, 0.0F);
+    const ParallelOffset parallel = parallel_offset(f.scene.situation());
+    EXPECT_EQ(parallel.off, Vec3(0, 0, 0));
+    EXPECT_EQ(parallel.command, Vec3(0, 0, 0));
+    EXPECT_EQ(parallel.left, 0.0F);
 }
 
 /// 100 m east, then a quarter circle to the north about (100, 50), then 60 m north. The leg of the reference lies
@@ -222,10 +222,10 @@ struct OnARoute : testing::Test {
         f.scene.own.position = at;
         f.scene.reference.segment = segment;
         EXPECT_NEAR(cross_track(f.scene.situation()), off, 1e-3F);
-        const Beside beside = beside_leg(f.scene.situation());
-        EXPECT_NEAR(beside.off.norm(), off, 1e-3F);
-        EXPECT_NEAR(beside.left, left, 1e-2F);
-        EXPECT_NEAR((beside.command - 4.0F * along).norm(), 0.0F, 1e-3F);
+        const ParallelOffset parallel = parallel_offset(f.scene.situation());
+        EXPECT_NEAR(parallel.off.norm(), off, 1e-3F);
+        EXPECT_NEAR(parallel.left, left, 1e-2F);
+        EXPECT_NEAR((parallel.command - 4.0F * along).norm(), 0.0F, 1e-3F);
     }
     path::Route route;
     Flight f;
@@ -246,7 +246,7 @@ TEST_F(OnARoute, ASegmentThatIsPassedDoesNotCount)
     f.scene.own.position = Vec3(60, 2, 30);
     f.scene.reference.segment = 2;
     EXPECT_NEAR(cross_track(f.scene.situation()), (Vec3(60, 2, 0) - Vec3(150, 50, 0)).norm(), 1e-2F);
-    EXPECT_NEAR(beside_leg(f.scene.situation()).command.y(), 4.0F, 1e-3F);
+    EXPECT_NEAR(parallel_offset(f.scene.situation()).command.y(), 4.0F, 1e-3F);
 }
 
 }  // namespace

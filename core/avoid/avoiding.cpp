@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Flying a checked manoeuvre: how long it is kept, and what replaces it.
+#include "core/avoid/tick.hpp"
+
+namespace jink::avoid {
+namespace {
+
+/// Sides further apart than this (cosine) are opposite ones.
+constexpr float kOppositeSide = -0.1F;
+/// A manoeuvre whose mean speed is below this share of the nominal path's is slow: a better one is sought now and then.
+constexpr float kSlow = 0.8F;
+/// And taken when it is faster by this factor, and on the same side (cosine).
+constexpr float kFaster = 1.3F;
+constexpr float kSameSide = 0.5F;
+/// Time between two searches [s].
+constexpr Seconds kSeekAgain = 1.0F;
+
+float mean_speed(const world::Manoeuvre& manoeuvre) noexcept
+{
+    const Seconds duration = manoeuvre.path.duration();
+    return duration > 0.0F ? path::arc_length(manoeuvre.path) / duration : 0.0F;
+}
+
+}  // namespace
+
+/// Makes the answer the manoeuvre that is flown (or offered, while not in control).
+void StateMachine::take(Tick& tick) noexcept
+{
+    if (tick.in_control) {
+        if (phase_ == Phase::avoiding) {
+            ++diagnostics_.replans;
+            diagnostics_.flips += flying_->side.dot(answer_.side) < kOppositeSide ? 1U : 0U;
+        } else {
+            ++diagnostics_.manoeuvres;
+        }
+        enter(Phase::avoiding);
+        tick.out.new_manoeuvre = true;
+    }
+    flying_ = answer_;
+    chosen_side_ = answer_.side;
+    faster_sought_at_.reset();
+    if (answer_.kind != world::ManoeuvreKind::velocity && mean_speed(answer_) < kSlow * tick.nominal.speed) {
+        faster_sought_at_ = tick.s.now;
+    }
+    fallback_.reset();
+    fly(answer_, tick);
+}
+
+/// The command of what is flown.
+void StateMachine::fly(const world::Manoeuvre& manoeuvre, Tick& tick) const noexcept
+{
+    tick.out.wants_control = true;
+    tick.out.kind = manoeuvre.kind;
+    tick.out.velocity = manoeuvre.kind == world::ManoeuvreKind::velocity
+                            ? manoeuvre.command
+                            : path::follow(manoeuvre.path, tick.s.now - manoeuvre.start, tick.s.own.position,
+                                           tick.s.limits, settings_.gains);
+}
+
+/// A velocity is good for one update: the methods are asked again. False where they have no answer: then the flown
+/// velocity is checked.
+bool StateMachine::renew(Tick& tick) noexcept
+{
+    if (flying_->kind != world::ManoeuvreKind::velocity || !plan(tick)) {
+        return false;
+    }
+    if (answer_.kind != world::ManoeuvreKind::velocity) {
+        take(tick);
+        return true;
+    }
+    flying_ = answer_;
+    fly(answer_, tick);
+    if (is_clear_for(tick, settings_.settle)) {
+        enter(Phase::rejoining);
+        rejoin(tick);
+    }
+    return true;
+}
+
+/// A manoeuvre that was slow, because nothing faster was clear then, is not flown to its end when something faster is.
+bool StateMachine::find_faster(Tick& tick) noexcept
+{
+    if (!faster_sought_at_ || !tick.out.conflict || tick.s.now - *faster_sought_at_ < kSeekAgain) {
+        return false;
+    }
+    faster_sought_at_ = tick.s.now;
+    const float margin = tick.out.margin;
+    const Vec3& side = flying_->side;
+    if (plan(tick) && mean_speed(answer_) > kFaster * mean_speed(*flying_) &&
+        (side == Vec3::Zero() || side.dot(answer_.side) >= kSameSide)) {
+        take(tick);
+        return true;
+    }
+    tick.out.margin = margin;
+    return false;
+}
+
+/// The flown manoeuvre is not clear to its end. An answer on its side is taken at once. An answer on the other side, of
+/// what was chosen or of where the vehicle is, counts as noise as long as there is time. That answer, or else the
+/// fallback, is taken when the margin would be entered before the latest manoeuvre time; its worst instant may lie far
+/// behind that.
+void StateMachine::replace(Tick& tick) noexcept
+{
+    const float margin = tick.out.margin;
+    const bool found = plan(tick);
+    const bool turns_over =
+        found && (flying_->side.dot(answer_.side) < kOppositeSide || chosen_side_.dot(answer_.side) < kOppositeSide);
+    if (found && !turns_over) {
+        take(tick);
+        return;
+    }
+    const Seconds latest = latest_manoeuvre_time(tick);
+    if (check_manoeuvre(tick.s, *flying_, settings_, tick.budget, latest, kSignAlone).margin >= 0.0F) {
+        tick.out.margin = margin;
+        return;
+    }
+    if (found) {
+        take(tick);
+    } else {
+        fall_back(tick);
+    }
+}
+
+void StateMachine::avoid(Tick& tick) noexcept
+{
+    if (renew(tick)) {
+        return;
+    }
+    if (tick.s.now - flying_->start >= flying_->path.duration()) {
+        enter(Phase::rejoining);
+        rejoin(tick);
+        return;
+    }
+    const world::Separation ahead = check_manoeuvre(tick.s, *flying_, settings_, tick.budget);
+    tick.out.margin = ahead.margin;
+    fly(*flying_, tick);
+    const bool heads_back = tick.out.velocity.dot(parallel_offset(tick.s).off) < 0.0F;
+    if ((ahead.margin < 0.0F || heads_back || faster_sought_at_) && keep_parallel(tick)) {
+        enter(Phase::parallel_offset);
+        return;
+    }
+    if (ahead.margin < 0.0F) {
+        replace(tick);
+        return;
+    }
+    if (find_faster(tick)) {
+        return;
+    }
+    if (is_clear_for(tick, settings_.settle)) {
+        enter(Phase::rejoining);
+        rejoin(tick);
+    }
+}
+
+}  // namespace jink::avoid

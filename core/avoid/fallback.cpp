@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/fallback.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/avoid/fallback_wing.hpp"
+#include "core/avoid/prediction_units.hpp"
+#include "core/base/work_units.hpp"
+#include "core/path/prediction.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using path::Prediction;
+
+/// Level directions that are tried; and each of them climbing and descending.
+constexpr int kCourses = 8;
+/// Repetitions with finer steps about the best of them: to 6 degrees, and an eighth of the climb.
+constexpr int kRefinements = 3;
+
+/// A slanted command climbs as fast as the vehicle can, where that leaves at least as much for the level part.
+float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
+{
+    constexpr float kHalfAndHalf = 0.70710678F;
+    return std::min(limit, kHalfAndHalf * limits.cruise_speed);
+}
+
+/// Search for the command of greatest margin: the check of each ends once it is no better than the best so far.
+class MaxClearance {
+public:
+    MaxClearance(const world::Situation& s, const Settings& settings, Seconds horizon, WorkBudget& budget) noexcept
+        : s_(s), settings_(settings), budget_(budget), horizon_(horizon),
+          step_(std::max(settings.prediction_step, horizon / static_cast<float>(kMaxPathPoints - 2)))
+    {
+        // As many chords as steps of this length: the first two are short.
+        constexpr Seconds kFirstTwo = 3.0F * path::kSetpointPeriod;
+        const float chords = std::ceil(horizon / step_);
+        later_step_ = chords > 2.0F && horizon > kFirstTwo ? (horizon - kFirstTwo) / (chords - 2.0F) : step_;
+    }
+
+    /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
+    float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
+    {
+        if (!is_finite(command) || !budget_.spend(detail::prediction_units(horizon_, step_, units::kCommandStep))) {
+            return -world::kSeparationCap;
+        }
+        path::predict_velocity_command(s_.own, command, horizon_, later_step_, s_.limits, flight_);
+        const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, settings_.escape,
+                                                                {cut, world::kSeparationCap, nearest_});
+        nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
+        return least.margin;
+    }
+
+    /// True when it is the best now.
+    bool attempt(const Vec3& command, Fallback& best) noexcept
+    {
+        const float margin = margin_of(command, best.margin);
+        if (margin > best.margin) {
+            best = {world::ManoeuvreKind::velocity, command, margin};
+            return true;
+        }
+        return false;
+    }
+
+private:
+    const world::Situation& s_;
+    const Settings& settings_;
+    WorkBudget& budget_;
+    Seconds horizon_;
+    Seconds step_;
+    Seconds later_step_ = 0.0F;
+    world::ThreatRef nearest_;
+    Prediction flight_;
+};
+
+/// A command at cruise speed by its course from `ahead` [rad] and its climb [m/s].
+struct Course {
+    float angle = 0.0F;
+    float climb = 0.0F;
+};
+
+/// Eight level courses, each of them climbing and descending too, straight up and down; then steps to all sides of the
+/// best, each time half as far.
+void search_escapes(const world::Situation& s, const world::Way& way, MaxClearance& search, Fallback& best) noexcept
+{
+    Vec3 ahead(way.direction.x(), way.direction.y(), 0.0F);
+    const float length = ahead.norm();
+    ahead = length > 1e-3F ? Vec3(ahead / length) : Vec3::UnitX();
+    const float up = slant(s.limits.max_climb, s.limits);
+    const float down = slant(s.limits.max_descent, s.limits);
+    constexpr float kTurn = 2.0F * kPi / static_cast<float>(kCourses);
+    Course best_course;
+    bool on_course = false;
+    const auto attempt = [&](const Course& course) noexcept {
+        const bool better = search.attempt(detail::command_on(ahead, course.angle, course.climb, s.limits), best);
+        best_course = better ? course : best_course;
+        on_course = on_course || better;
+    };
+    for (const float climb : {0.0F, up, -down}) {
+        for (int i = 0; i < kCourses; ++i) {
+            attempt({kTurn * static_cast<float>(i), climb});
+        }
+    }
+    const float fastest = s.limits.cruise_speed;
+    for (const float climb : {std::min(s.limits.max_climb, fastest), -std::min(s.limits.max_descent, fastest)}) {
+        on_course = !search.attempt(Vec3(0.0F, 0.0F, climb), best) && on_course;
+    }
+    if (!on_course) {
+        return;
+    }
+    float turn = 0.5F * kTurn;
+    float rise = 0.5F;
+    for (int i = 0; i < kRefinements; ++i) {
+        const Course centre = best_course;
+        attempt({centre.angle - turn, centre.climb});
+        attempt({centre.angle + turn, centre.climb});
+        attempt({centre.angle, std::min(centre.climb + rise * up, up)});
+        attempt({centre.angle, std::max(centre.climb - rise * down, -down)});
+        turn *= 0.5F;
+        rise *= 0.5F;
+    }
+}
+
+}  // namespace
+
+float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,
+                     WorkBudget& budget) noexcept
+{
+    return s.limits.kind == vehicle::VehicleKind::fixed_wing
+               ? detail::wing_margin(s, command, horizon, settings, budget)
+               : MaxClearance(s, settings, horizon, budget).margin_of(command);
+}
+
+float command_margin(const world::Situation& s, const Vec3& command, const Settings& settings,
+                     WorkBudget& budget) noexcept
+{
+    return command_margin(s, command, settings.fallback_horizon, settings, budget);
+}
+
+Fallback choose_fallback(const world::Situation& s, const world::Way& way, const Fallback* previous,
+                         const Settings& settings, WorkBudget& budget) noexcept
+{
+    if (s.limits.kind == vehicle::VehicleKind::fixed_wing) {
+        return detail::wing_fallback(s, previous, settings, budget);
+    }
+    MaxClearance search(s, settings, settings.fallback_horizon, budget);
+    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
+    if (best.margin >= 0.0F) {
+        return best;
+    }
+    float kept_margin = -world::kSeparationCap;
+    if (previous != nullptr && previous->kind == world::ManoeuvreKind::velocity) {
+        kept_margin = search.margin_of(previous->command);
+        if (kept_margin >= 0.0F) {
+            return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
+        }
+    }
+    search_escapes(s, way, search, best);
+    const bool as_good = best.margin < 0.0F && kept_margin + detail::kFallbackHysteresis >= best.margin;
+    if (as_good && kept_margin > -world::kSeparationCap) {
+        return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
+    }
+    return best;
+}
+
+}  // namespace jink::avoid

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/final_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/avoid/prediction_units.hpp"
+#include "core/base/work_units.hpp"
+#include "core/path/prediction.hpp"
+
+namespace jink::avoid {
+namespace {
+
+using path::PathPoint;
+using path::Prediction;
+
+/// Points kept free for the braking tail; it takes those that the flight leaves too.
+constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4);
+constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
+
+/// Until the vehicle stands, level and vertically.
+Seconds time_to_stand(const Vec3& velocity, const vehicle::VehicleLimits& limits) noexcept
+{
+    vehicle::VehicleLimits vertical = limits;
+    vertical.max_acceleration = limits.max_vertical_acceleration;
+    return std::max(vehicle::stopping_time(velocity.norm(), limits),
+                    vehicle::stopping_time(std::abs(velocity.z()), vertical));
+}
+
+/// The flight after the manoeuvre's end: to a stand, or straight on for as long as a stop would take for a fixed wing.
+bool predict_tail(const world::Situation& s, const Settings& settings, WorkBudget& budget, Prediction& flight) noexcept
+{
+    const bool stops = s.limits.kind == vehicle::VehicleKind::multirotor;
+    const Seconds span = time_to_stand(flight.velocity, s.limits);
+    const std::size_t chords = kMaxPathPoints - flight.path.points.size();
+    const Seconds step = std::max(settings.prediction_step, span / static_cast<float>(chords - 1));
+    if (!budget.spend(detail::prediction_units(span + step, step, units::kCommandStep))) {
+        return false;
+    }
+    path::extend_by_velocity_command(stops ? Vec3(Vec3::Zero()) : flight.velocity, span, step, s.limits, flight);
+    return true;
+}
+
+/// No method is trusted with this either: numbers, times that rise, a start that is not ahead.
+bool is_well_formed(const world::Manoeuvre& manoeuvre, TimePoint now) noexcept
+{
+    if (!is_finite(manoeuvre.command)) {
+        return false;
+    }
+    Seconds before = -1.0F;
+    for (const PathPoint& p : manoeuvre.path.points) {
+        if (!is_finite(p.position) || !is_finite(p.velocity) || !std::isfinite(p.time) || p.time <= before) {
+            return false;
+        }
+        before = p.time;
+    }
+    return !manoeuvre.path.points.empty() && manoeuvre.path.points.front().time >= 0.0F && manoeuvre.start <= now;
+}
+
+}  // namespace
+
+Seconds time_to_stop(const world::Situation& s, const Settings& settings) noexcept
+{
+    return vehicle::stopping_time(s.own.velocity.norm(), s.limits) + settings.reserve;
+}
+
+world::Separation check_manoeuvre(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
+                                  const Settings& settings, WorkBudget& budget, Seconds horizon,
+                                  const world::Cutoff& cutoff) noexcept
+{
+    if (!is_well_formed(manoeuvre, situation.now)) {
+        return {-world::kSeparationCap, 0.0F, {}};
+    }
+    world::Situation s = situation;
+    const bool is_command = manoeuvre.kind == world::ManoeuvreKind::velocity;
+    if (is_command) {
+        s.shared_horizon = time_to_stop(s, settings);
+    }
+    const world::Separation contact{-world::kSeparationCap, 0.0F, {}};
+    const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
+    const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
+    Prediction flight;
+    if (is_command && rest > 0.0F) {
+        const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 4));
+        if (!budget.spend(kFlightPoints * units::kCommandStep)) {
+            return contact;
+        }
+        path::predict_velocity_command(s.own, manoeuvre.command, rest, step, s.limits, flight);
+    } else {
+        if (!budget.spend(detail::prediction_units(rest, path::kSetpointPeriod, units::kFlightPart))) {
+            return contact;
+        }
+        path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, settings.gains,
+                             kFlightPoints, flight);
+    }
+    if (!predict_tail(s, settings, budget, flight)) {
+        return contact;
+    }
+    return world::least_separation(s, flight, std::min(flight.path.duration(), horizon), budget, settings.escape,
+                                   cutoff);
+}
+
+}  // namespace jink::avoid

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "core/path/follower.hpp"
+#include "core/world/separation.hpp"
+
+namespace jink::avoid {
+
+/// Methods that one order names at most; a supervisor has no more.
+inline constexpr std::size_t kMaxMethods = 6;
+
+/// Methods by MethodTraits::id, in the order in which they are asked. 0 ends the order. 6 bytes.
+class MethodOrder {
+public:
+    constexpr MethodOrder() noexcept = default;
+    /// An id that comes again counts once.
+    template <std::same_as<std::uint8_t>... Ids>
+    constexpr explicit MethodOrder(Ids... ids) noexcept
+    {
+        static_assert(sizeof...(Ids) <= kMaxMethods);
+        (static_cast<void>(try_add(ids)), ...);
+    }
+
+    [[nodiscard]] constexpr std::size_t size() const noexcept
+    {
+        return static_cast<std::size_t>(std::find(ids_.begin(), ids_.end(), std::uint8_t{0}) - ids_.begin());
+    }
+    [[nodiscard]] constexpr bool empty() const noexcept { return ids_[0] == 0; }
+    [[nodiscard]] constexpr std::span<const std::uint8_t> ids() const noexcept { return {ids_.data(), size()}; }
+    [[nodiscard]] constexpr bool contains(std::uint8_t id) const noexcept
+    {
+        return id != 0 && std::find(ids_.begin(), ids_.end(), id) != ids_.end();
+    }
+    /// Adds a method at the end; false (and nothing changed) when full, for id 0, and for a method that is in it.
+    [[nodiscard]] constexpr bool try_add(std::uint8_t id) noexcept
+    {
+        const std::size_t n = size();
+        if (id == 0 || n == kMaxMethods || contains(id)) {
+            return false;
+        }
+        ids_[n] = id;
+        return true;
+    }
+    friend constexpr bool operator==(const MethodOrder&, const MethodOrder&) noexcept = default;
+
+private:
+    std::array<std::uint8_t, kMaxMethods> ids_{};
+};
+
+/// Of the supervisor.
+struct Settings {
+    /// The methods that are asked. Empty: all of the supervisor's, in its own order. Ids of methods that the supervisor
+    /// does not have are skipped.
+    MethodOrder order;
+    MethodOrder order_in_clutter;  ///< in place of `order` in clutter; empty: no change
+    /// Clutter: so many tracks and obstacles within `clutter_radius`; 0: never.
+    std::uint16_t clutter = 0;
+    float clutter_radius = 20.0F;  ///< 1..200 [m]
+    Seconds lookahead = 8.0F;      ///< conflicts are predicted this far ahead, 1..60 [s]
+    Seconds commit = 5.0F;         ///< a loss of separation nearer than this is planned around, 0.5..60 [s]
+    /// Plans keep this much more than the margin, so that noise does not undo them, 0..10 [m].
+    float clearance_buffer = 0.4F;
+    Seconds prediction_step = 0.2F;   ///< of the predicted flight, 0.02..0.5 [s]
+    Seconds fallback_horizon = 4.0F;  ///< over which fallbacks are compared, 1..20 [s]
+    Seconds reserve = 0.75F;          ///< on top of the stopping time, before which nothing is forced, 0..5 [s]
+    Seconds settle = 1.0F;            ///< the nominal path is trusted after it has been clear this long, 0..10 [s]
+    float clear_extra = 0.5F;         ///< and clear by this much more than the margin, 0..10 [m]
+    float on_leg = 1.0F;              ///< cross-track error at which the leg counts as rejoined, > 0 [m]
+    Seconds blocked_patience = 2.0F;  ///< after standing in front of something this long, the vehicle backs off [s]
+    float back_off_speed = 1.0F;      ///< backwards, 0: never [m/s]
+    Seconds back_off_limit = 10.0F;   ///< per conflict, at most [s]
+    /// Control is kept at least this long, on the nominal path once that is clear: a conflict that comes and goes makes
+    /// one take-over, not several, 0..60 [s].
+    Seconds least_control = 5.0F;
+    /// A vehicle that static threats block for this long, without getting anywhere, gives up control and asks for a
+    /// hold; 0: never [s].
+    Seconds patience = 20.0F;
+    /// Of `budget` at most for the plans of one update, so that checks and fallbacks have theirs [work units].
+    std::uint32_t plan_budget = 20000;
+    /// Of `plan_budget` kept back for each method that is asked after another one [work units].
+    std::uint32_t kept_for_next = 8000;
+    std::uint32_t budget = 60000;  ///< per update [work units]: what bounds a step's time on every target
+    path::FollowerGains gains;
+    world::EscapeRule escape;
+};
+/// Whether every setting lies within its range. O(1).
+[[nodiscard]] bool is_valid(const Settings& settings) noexcept;
+
+}  // namespace jink::avoid

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "core/avoid/tick.hpp"
+
+namespace jink::avoid {
+namespace {
+
+/// Slower than this, a conflict lies too near for a plan around it [m/s].
+constexpr float kCreeping = 1.5F;
+/// Share of the fallback horizon that is left for getting out of traffic's way: sooner, the fallback sees no need to.
+constexpr float kGetGoing = 0.75F;
+
+}  // namespace
+
+bool StateMachine::configure(const Settings& settings) noexcept
+{
+    if (!is_valid(settings)) {
+        return false;
+    }
+    settings_ = settings;
+    return true;
+}
+
+void StateMachine::reset() noexcept
+{
+    enter(Phase::watching);
+    control_since_.reset();
+    clear_since_.reset();
+    free_since_.reset();
+    commanded_.reset();
+    fallback_.reset();
+    flying_.reset();
+    conflict_on_ = conflict_on_ == ConflictOn::other ? ConflictOn::first : conflict_on_;
+    backed_off_ = 0.0F;
+}
+
+void StateMachine::enter(Phase next) noexcept
+{
+    if (next == phase_) {
+        return;
+    }
+    transitions_ |= transition_bit({phase_, next});
+    phase_ = next;
+    if (next != Phase::braking) {
+        fallback_.reset();
+        standing_since_.reset();
+    }
+}
+
+/// Control that ends while it is wanted resets the state machine.
+void StateMachine::update_control(TimePoint now, bool in_control) noexcept
+{
+    if (in_control) {
+        control_since_ = control_since_.value_or(now);
+        return;
+    }
+    if (control_since_ && state() != State::watching) {
+        ++diagnostics_.control_lost;
+        reset();
+    }
+    control_since_.reset();
+    enter(Phase::watching);
+}
+
+/// The beginning and the end of a conflict.
+void StateMachine::update_conflict(const Tick& tick) noexcept
+{
+    const bool was_in_conflict = conflict_on_ != ConflictOn::none;
+    diagnostics_.conflicts += tick.out.conflict && !was_in_conflict ? 1U : 0U;
+    if (!tick.out.conflict && was_in_conflict) {
+        backed_off_ = 0.0F;
+    }
+    const ConflictOn path = tick.out.on_other ? ConflictOn::other : ConflictOn::first;
+    conflict_on_ = tick.out.conflict ? path : ConflictOn::none;
+}
+
+/// Since when the nominal path has been free of conflicts, and clear with something to spare.
+void StateMachine::update_clearness(Tick& tick) noexcept
+{
+    if (tick.out.conflict) {
+        free_since_.reset();
+        clear_since_.reset();
+        return;
+    }
+    free_since_ = free_since_.value_or(tick.s.now);
+    const Inflated inflated(tick.s, settings_.clear_extra);
+    world::Conflict unused;
+    if (world::main_conflict(inflated.situation, tick.nominal, settings_.lookahead, tick.budget, unused)) {
+        clear_since_.reset();
+    } else {
+        clear_since_ = clear_since_.value_or(tick.s.now);
+    }
+}
+
+bool StateMachine::is_clear_for(const Tick& tick, Seconds span) const noexcept
+{
+    return clear_since_ && tick.s.now - *clear_since_ >= span;
+}
+
+/// Tracks get better and threats come nearer: what lies further ahead is planned for when it is known better.
+bool StateMachine::is_due(const Tick& tick, Seconds time_to_loss) const noexcept
+{
+    return time_to_loss <= settings_.commit || is_urgent(tick, time_to_loss);
+}
+
+/// The time before the loss of separation at which the vehicle has to stop; or to get going, where it as good as stands
+/// in the way of traffic: stopping mends nothing then.
+Seconds StateMachine::latest_manoeuvre_time(const Tick& tick) const noexcept
+{
+    const bool stays = tick.nominal.length <= settings_.on_leg || tick.nominal.speed < kCreeping;
+    const bool traffic = tick.out.conflict && tick.out.conflict->threat.kind == world::ThreatKind::track;
+    const Seconds stop = time_to_stop(tick.s, settings_);
+    return stays && traffic ? std::max(stop, kGetGoing * settings_.fallback_horizon) : stop;
+}
+
+bool StateMachine::is_urgent(const Tick& tick, Seconds time_to_loss) const noexcept
+{
+    return time_to_loss <= latest_manoeuvre_time(tick);
+}
+
+/// Asks the methods for an answer.
+bool StateMachine::plan(Tick& tick) noexcept
+{
+    const Inflated inflated(tick.s, settings_.clearance_buffer);
+    WorkBudget budget(std::min(settings_.plan_budget, tick.budget.left()));
+    float margin = 0.0F;
+    tick.out.plan_status = tick.planning.plan(tick.planning.self, {inflated.situation, tick.s}, settings_, budget,
+                                              diagnostics_, answer_, margin);
+    const bool found = tick.out.plan_status == world::PlanStatus::found;
+    if (found) {
+        ++diagnostics_.plans_found;
+        tick.out.margin = margin;
+    }
+    tick.ran_out = tick.ran_out || budget.exhausted();
+    static_cast<void>(tick.budget.spend(budget.spent()));  // never more than was left
+    return found;
+}
+
+void StateMachine::watch(Tick& tick) noexcept
+{
+    if (stays_given_up(tick)) {
+        return;
+    }
+    if (tick.in_control && phase_ != Phase::giving_back) {
+        // In control, whether the conflict is still there or not: rejoining alone gives control back.
+        enter(Phase::rejoining);
+        rejoin(tick);
+        return;
+    }
+    if (!tick.out.conflict) {
+        if (tick.in_control) {
+            // Being given back: keep to the leg meanwhile.
+            follow_nominal(tick);
+            tick.out.wants_control = cross_track(tick.s) > 2.0F * settings_.on_leg &&
+                                     !is_held_by_bounds(tick.s, tick.removed, tick.out.velocity, settings_.on_leg);
+            if (tick.out.wants_control) {
+                control_since_ = tick.s.now;
+                enter(Phase::rejoining);
+            }
+            return;
+        }
+        if (is_clear_for(tick, settings_.settle)) {
+            flying_.reset();
+        }
+        fallback_.reset();
+        return;
+    }
+    if (tick.in_control) {
+        control_since_ = tick.s.now;
+        enter(Phase::rejoining);
+        rejoin(tick);
+        return;
+    }
+    const Seconds left = tick.out.conflict->time_to_loss;
+    if (is_due(tick, left) && plan(tick)) {
+        take(tick);
+    } else if (is_urgent(tick, left)) {
+        fall_back(tick);
+    }
+}
+
+void StateMachine::run_phase(Tick& tick) noexcept
+{
+    switch (phase_) {
+    case Phase::watching:
+    case Phase::giving_back:
+    case Phase::given_up: watch(tick); break;
+    case Phase::avoiding: avoid(tick); break;
+    case Phase::rejoining:
+    case Phase::parallel_offset: rejoin(tick); break;
+    case Phase::braking: brake(tick); break;
+    }
+}
+
+Guidance StateMachine::update(const world::Situation& given, const world::Reference* other, bool in_control,
+                              const Planning& planning) noexcept
+{
+    ++diagnostics_.updates;
+    transitions_ = 0;
+    update_control(given.now, in_control);
+    world::Situation first = given;
+    static_cast<void>(threats_.collect(given));
+    first.threats = threats_.all();
+    first.flying = flying();
+    first.commanded = in_control && commanded_ ? &*commanded_ : nullptr;
+    const world::Situation second = world::with_reference(first, other != nullptr ? *other : given.reference);
+    const world::Situation* const with_other = other != nullptr ? &second : nullptr;
+    Tick both{first, with_other, in_control, planning, WorkBudget(settings_.budget), world::way_of(first), {}};
+    choose_nominal(both);
+    Tick tick{
+        both.out.on_other ? second : first, with_other, in_control, planning, both.budget, both.nominal, both.out};
+    if (flying_) {
+        const Vec3 off = parallel_offset(tick.s).off;
+        const float far = off.norm();
+        if (far > settings_.on_leg) {
+            flying_->side = off / far;
+        }
+    }
+    update_conflict(tick);
+    update_clearness(tick);
+    run_phase(tick);
+    give_up_when_blocked(tick);
+    tick.out.state = state();
+    tick.out.transitions = transitions_;
+    tick.out.work = tick.budget.spent();
+    last_update_ = given.now;
+    commanded_.reset();
+    if (in_control && tick.out.wants_control) {
+        commanded_ = {tick.out.velocity, given.now};
+    }
+    diagnostics_.budget_spent += tick.budget.exhausted() || tick.ran_out ? 1U : 0U;
+    diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());
+    return tick.out;
+}
+
+}  // namespace jink::avoid

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/avoid/state_machine.hpp"
+
+// Private to the sources of StateMachine.
+
+namespace jink::avoid {
+
+/// Distance from the leg [m], or from the route. O(1), O(segments).
+[[nodiscard]] float cross_track(const world::Situation& situation) noexcept;
+
+/// Flight parallel to the leg from where the vehicle is.
+struct ParallelOffset {
+    Vec3 off = Vec3::Zero();      ///< from the leg's line to the vehicle [m]
+    Vec3 command = Vec3::Zero();  ///< [m/s]
+    float left = 0.0F;            ///< until abeam of the leg's end [m]
+};
+
+/// A leg without a length gives zeros. With a route: along its tangent abeam of the vehicle, left until its end. O(1),
+/// O(segments).
+[[nodiscard]] ParallelOffset parallel_offset(const world::Situation& situation) noexcept;
+
+/// Whether the vehicle is as near to its leg as the bounds of the airspace let it be. Bounds take `removed` [m/s] off
+/// its velocity back and leave `left` [m/s]. True above or below the leg, at the keep-in radius, or where floor or
+/// ceiling leave next to nothing: above the continuation of a steep leg below the floor. O(1), O(segments).
+[[nodiscard]] bool is_held_by_bounds(const world::Situation& situation, const Vec3& removed, const Vec3& left,
+                                     float on_leg) noexcept;
+
+/// The same situation for a vehicle with `extra` [m] more to every side.
+struct Inflated {
+    vehicle::VehicleLimits limits;
+    world::Situation situation;
+
+    Inflated(const world::Situation& s, float extra) noexcept
+        : limits(vehicle::widened(s.limits, extra)), situation(world::with_limits(s, limits))
+    {
+    }
+    Inflated(const Inflated&) = delete;
+    Inflated& operator=(const Inflated&) = delete;
+};
+
+/// Only the sign of a margin is asked for.
+inline constexpr world::Cutoff kSignAlone{0.0F, 0.0F, {}};
+
+struct StateMachine::Tick {
+    const world::Situation& s;
+    const world::Situation* other = nullptr;  ///< with the other nominal path; null without one
+    bool in_control = false;
+    const Planning& planning;
+    WorkBudget budget;
+    world::Way nominal;
+    Guidance out;
+    Vec3 removed = Vec3::Zero();  ///< off the velocity back to the leg, by bounds of the airspace [m/s]
+    bool ran_out = false;         ///< of work units, planning or altogether
+};
+
+}  // namespace jink::avoid
