@@ -24,20 +24,26 @@ class Wrong(Exception):
     """The sources are not in the form that is read here."""
 
 
-def capacities(top):
-    """kMaxTracks and the like, with the default of the macro behind it."""
+def constants(top):
+    """What the table may name: capacities by the default of their macro, sizes of arrays of firmware/app as NAME.size(), and whole numbers of firmware/app;
+    of a choice by the methods of an image the first one, which an image with all of them has."""
     text = (top / CAPACITIES).read_text(encoding="utf-8")
     macros = dict(re.findall(r"#define (JINK_MAX_\w+) (\d+)", text))
-    return {name: int(macros[macro]) for name, macro in re.findall(r"constexpr std::size_t (kMax\w+) = (JINK_MAX_\w+);", text) if macro in macros}
+    out = {name: int(macros[macro]) for name, macro in re.findall(r"constexpr std::size_t (kMax\w+) = (JINK_MAX_\w+);", text) if macro in macros}
+    for header in sorted((top / "firmware/app").glob("*.hpp")):
+        text = header.read_text(encoding="utf-8")
+        out.update({f"{name}.size()": int(size) for size, name in re.findall(r"constexpr std::array<[\w:]+, (\d+)> (k\w+)", text)})
+        out.update({name: int(value) for name, value in re.findall(r"constexpr std::size_t (k\w+) = (?:[\w()]+ \? )?(\d+)\b", text)})
+    return out
 
 
 def number(text, known):
-    """A literal, or static_cast<float>(capacity - literal); (value, name of the capacity or nothing)."""
-    cast = re.fullmatch(r"static_cast<float>\((kMax\w+)(?:\s*-\s*(\d+))?\)", text.strip())
-    if cast:
-        if cast[1] not in known:
-            raise Wrong(f"{CAPACITIES} has no {cast[1]}")
-        return known[cast[1]] - int(cast[2] or 0), cast[1]
+    """A literal, or a constant less a literal, cast or not; (value, name of the capacity or nothing)."""
+    named = re.fullmatch(r"(?:static_cast<float>\()?(k\w+(?:\.size\(\))?)(?:\s*-\s*(\d+))?\)?", text.strip())
+    if named:
+        if named[1] not in known:
+            raise Wrong(f"{TABLE}: what is {named[1]}?")
+        return known[named[1]] - int(named[2] or 0), named[1] if named[1].startswith("kMax") else None
     if not re.fullmatch(r"-?\d+(\.\d+)?F?", text.strip()):
         raise Wrong(f"{TABLE}: not a number: {text}")
     return float(text.strip().rstrip("F")), None
@@ -52,7 +58,7 @@ def parameters(top):
     text = (top / TABLE).read_text(encoding="utf-8")
     begin = text.index("kTable{{")
     body = text[begin:text.index("}};", begin) + 1]
-    known = capacities(top)
+    known = constants(top)
     out = []
     for name, initial, low, high, whole, words in ENTRY.findall(body):
         limit, capacity = number(high, known)
