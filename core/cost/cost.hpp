@@ -162,7 +162,7 @@ private:
 
 /// Caps for another vehicle, off line: the published ones, each scaled by what `reference_flights` says of this vehicle
 /// against the default one. The default vehicle so keeps the published caps, which its own flights do not all meet
-/// (docs/reproduction.md).
+/// (docs/evidence/reproduction_pinheiro.md).
 [[nodiscard]] Caps caps_for(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
 
 }  // namespace jink::cost

@@ -10,7 +10,7 @@
 #include "firmware/linux/complaint.hpp"
 
 // Airspace files (YAML): closed volumes and storm cells, as circles or polygons between two heights. Keys and units:
-// docs/links.md, an example in firmware/airspace/example.yaml.
+// docs/guides/closed_areas.md, an example in firmware/airspace/example.yaml.
 
 namespace jink::files {
 

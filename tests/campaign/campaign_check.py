@@ -238,7 +238,7 @@ def mpi_study(programs, top):
 
 
 # Promises of the thousand that are broken although the judge, who answers without any delay, finds a way: a shortfall, with what
-# is known of it in docs/closed_loop.md. Any other one fails the test, and so does one of these that is kept again.
+# is known of it in docs/evidence/campaign.md. Any other one fails the test, and so does one of these that is kept again.
 KNOWN_SHORTFALLS = {519}
 
 

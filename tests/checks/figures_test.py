@@ -250,7 +250,7 @@ class OnACopy(unittest.TestCase):
             lock.write_bytes(kept)
 
     def test_a_command_that_no_page_gives_any_more_is_found(self):
-        page = figures_check.Book(self.top).pages["docs/closed_loop.md"]
+        page = figures_check.Book(self.top).pages["docs/evidence/closed_loop.md"]
         found = self.found_after(page.name, page.text.replace("--seed 2000 --quiet", "--seed 2001 --quiet"))
         self.assertTrue(any("does not give the command" in p.text for p in found))
         self.assertTrue(any("does not know the command" in p.text for p in found))

@@ -27,7 +27,7 @@ TEST(Modes, AreTheStacksOwnNumbers)
     EXPECT_EQ(custom_mode(Stack::px4, Mode::pilot), 0x00030000U);
 }
 
-// Rates of both: recorded from the real ones (docs/closed_loop.md).
+// Rates of both: recorded from the real ones (docs/evidence/recordings.md).
 TEST(SimAutopilot, ArdupilotStreamsWhatTheCoprocessorAsksFor)
 {
     Line line(kArdupilotFlight);

@@ -117,7 +117,7 @@ TEST(Phases, AWallSeenByAScanIsPassedInAllOfThem)
 }
 
 /// A co-processor that is held up for longer than its own state may be old loses control, and says so: the autopilot is
-/// asked to hold, and holds until somebody resumes the mission (docs/links.md).
+/// asked to hold, and holds until somebody resumes the mission (docs/guides/take_over.md).
 TEST(Phases, HeldUpBeyondTheAgeOfOwnStateItDropsControlAndHolds)
 {
     const Scenario wall = scenario("scan_wall");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The simulated ArduPlane's mission items and modes, as docs/closed_loop.md says.
+// The simulated ArduPlane's mission items and modes, as docs/evidence/recordings.md says.
 #include <algorithm>
 #include <cmath>
 

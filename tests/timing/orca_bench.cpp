@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The antipodal sphere of the public ORCA-3D library's example, flown with core/orca: time of a vehicle's step, and the
 // least distance of two centres in continuous time (3.00 m is asked for). Beside it what the library took and kept in
-// the same runs on the machine of docs/performance.md; it takes memory from the heap in every step.
+// the same runs on the machine of docs/evidence/performance.md; it takes memory from the heap in every step.
 //
 // Each run is flown three times and is the same each time: of the three the shortest time counts, of the run and of
 // each vehicle's step, so that what else the machine does is left out. Processor time, neighbours' search included.

@@ -8,8 +8,8 @@
 
 #include "toolchain/host/problem_file.hpp"
 
-// A plan for people (table), for spreadsheets (CSV) and for programs (JSON). docs/planning_problems.md explains the
-// columns.
+// A plan for people (table), for spreadsheets (CSV) and for programs (JSON). docs/guides/planning_problems.md explains
+// the columns.
 
 namespace jink::host {
 

@@ -11,7 +11,7 @@
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/vehicle_file.hpp"
 
-// A planning problem in YAML: what `jink plan` solves. docs/planning_problems.md describes every key.
+// A planning problem in YAML: what `jink plan` solves. docs/guides/planning_problems.md describes every key.
 
 namespace jink::host {
 

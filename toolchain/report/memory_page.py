@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""docs/memory, out of tests/timing/memory.json."""
+"""docs/evidence/memory, out of tests/timing/memory.json."""
 import pathlib
 
 import memory_sizes
@@ -36,7 +36,7 @@ def _stacks(m):
 
 
 def _rooms(m):
-    yield row("room", *(f"{t}: {k}" for t in memory_sizes.IMAGES for k in ("flash", "RAM")))
+    yield row("module", *(f"{t}: {k}" for t in memory_sizes.IMAGES for k in ("flash", "RAM")))
     yield row(*["---"] * 5)
     rooms = [m["targets"][t]["rooms"] for t in memory_sizes.IMAGES]
     for room in sorted(set(rooms[0]) | set(rooms[1])):
@@ -63,8 +63,8 @@ def _linux(m):
 def generated(m):
     capacities = ", ".join(f"{v} {SHORT[c]}{'s' if v > 1 else ''}" for c, v in memory_sizes.BASE.items()).replace("vertexs", "vertices")
     compilers = ", ".join(sorted({f"{t}: gcc {v}" for t, v in m["compilers"].items()}))
-    return "\n".join([BEGIN, "", "## The images", "", *_images(m), "", "## By room", "", "Out of the linkers' map files; padding between sections "
-                      "and the stack are in no room. Interrupt rings and the objects of the application belong to the image's own room.", "",
+    return "\n".join([BEGIN, "", "## The images", "", *_images(m), "", "## By module", "", "Out of the linkers' map files; padding between sections "
+                      "and the stack are in no module. Interrupt rings and the objects of the application belong to the image's own module.", "",
                       *_rooms(m), "", "## Stack", "", "Bytes by the compiler's call graph, own frame included.", "", *_stacks(m), "",
                       "## A formula of the capacities", "",
                       f"Bytes on the Cortex-M7. The images have {capacities}. `Coprocessor` holds one of each of the others but `Endpoint`. "
@@ -89,5 +89,5 @@ def write(docs, m):
 def differs(docs, m):
     _, there, text = _page(docs, m)
     if there != text:
-        print("docs/memory/README.md is not what the record gives: toolchain/report/memory --record writes it anew")
+        print("docs/evidence/memory/README.md is not what the record gives: toolchain/report/memory --record writes it anew")
     return there != text

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The figures of docs/timing, as SVG: the same bytes from the same counts and the same matplotlib."""
+"""The figures of docs/evidence/timing, as SVG: the same bytes from the same counts and the same matplotlib."""
 import io
 
 import matplotlib

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""docs/timing, out of tests/timing/records: the generated part of its page, and its figures."""
+"""docs/evidence/timing, out of tests/timing/records: the generated part of its page, and its figures."""
 import json
 import pathlib
 import re
@@ -210,7 +210,7 @@ def write(a, kept):
 
 
 def differs(a, kept):
-    """Whether docs/timing is not what the record gives; figures byte for byte where matplotlib is the one that drew them."""
+    """Whether docs/evidence/timing is not what the record gives; figures byte for byte where matplotlib is the one that drew them."""
     path, there, text = _page(a, kept)
     wrong = []
     if there != text:
@@ -225,5 +225,5 @@ def differs(a, kept):
     except ImportError:
         print("figures are not compared: no matplotlib here")
     for name in wrong:
-        print(f"docs/timing/{name} is not what the record gives: toolchain/report/timing --record writes it anew")
+        print(f"docs/evidence/timing/{name} is not what the record gives: toolchain/report/timing --record writes it anew")
     return bool(wrong)

@@ -13,8 +13,8 @@
 
 namespace jink::sim {
 
-/// The ground station's part of reporting closed areas (docs/links.md): one set at the start of the flight, each area
-/// repeated until it is answered.
+/// The ground station's part of reporting closed areas (docs/guides/closed_areas.md): one set at the start of the
+/// flight, each area repeated until it is answered.
 class AreaSender {
 public:
     /// @param areas  outlive the sender; kMaxReportedConstraints at most

@@ -59,10 +59,10 @@ struct Heard {
 
 /// The other end of the link: ArduPilot Copter or PX4 as far as a companion can tell, flying the vehicle of a World.
 ///
-/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/links.md): ArduPilot takes velocities in
-/// GUIDED only and stops 3 s after the last one; PX4 goes into OFFBOARD only after more than a second of set-points
-/// that came at 2 Hz or more, as it documents (releases up to v1.14 and v1.16 grant it earlier in fact), and leaves it
-/// for AUTO.LOITER 1 s after the last one. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
+/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/guides/take_over.md): ArduPilot takes
+/// velocities in GUIDED only and stops 3 s after the last one; PX4 goes into OFFBOARD only after more than a second of
+/// set-points that came at 2 Hz or more, as it documents (releases up to v1.14 and v1.16 grant it earlier in fact), and
+/// leaves it for AUTO.LOITER 1 s after the last one. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
 class Autopilot {
 public:
     /// @param world  outlives the autopilot

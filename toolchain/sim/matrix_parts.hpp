@@ -47,7 +47,7 @@ struct Times {
     double from, to;
 };
 
-/// Limits of ArduPlane in the simulator, and the co-processor's parameters for it (docs/setup.md).
+/// Limits of ArduPlane in the simulator, and the co-processor's parameters for it (docs/guides/setup.md).
 void set_plane(Scenario& scenario);
 /// A plane's flight of the behaviour: its items, its start and its mode.
 [[nodiscard]] Times lay_out_plane(Behaviour behaviour, const Field& field, Scenario& scenario, NominalFlight& flight);

@@ -25,7 +25,8 @@ constexpr double kFast = 12.0;
 
 void set_vehicle(Scenario& s, Flyer flyer)
 {
-    // ArduCopter as recorded, docs/setup.md; PX4 with its defaults (MPC_ACC_HOR, MPC_Z_V_AUTO_UP, MPC_Z_V_AUTO_DN).
+    // ArduCopter as recorded, docs/guides/setup.md; PX4 with its defaults (MPC_ACC_HOR, MPC_Z_V_AUTO_UP,
+    // MPC_Z_V_AUTO_DN).
     const bool px4 = flyer == Flyer::px4;
     s.stack = px4 ? Stack::px4 : Stack::ardupilot;
     s.vehicle.cruise = kCruiseSpeed;

@@ -7,7 +7,7 @@
 #include "firmware/link/mavlink/geodesy.hpp"
 
 // DroneCAN side of an inbox: what sensors and traffic receivers on the bus say, in the terms of messages.hpp (ENU, SI).
-// docs/dronecan.md is the reference for users; this is what it does with each message:
+// docs/guides/dronecan.md is the reference for users; this is what it does with each message:
 //
 // * gnss.Fix2 with a 3D fix: own position and velocity (Inbox::bus_state), sigmas from the covariance when there is
 // one.

@@ -4,7 +4,7 @@
 #include "firmware/link/constraint.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 
-// Closed areas over MAVLink: TUNNEL (385) with payloads of our own. docs/links.md, "Closed areas and storm cells", lays
+// Closed areas over MAVLink: TUNNEL (385) with payloads of our own. docs/guides/closed_areas.md lays
 // out both kinds byte by byte: 1, an area of a set, 48 bytes; 2, the answer to it, 5 bytes. Unknown versions and kinds
 // and other lengths are refused, so that no payload is half read.
 //

@@ -15,8 +15,8 @@
 #include "firmware/link/mavlink/transmit_buffer.hpp"
 #include "firmware/link/track_ids.hpp"
 
-// MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/links.md is the reference for
-// users; this is what it does with each message:
+// MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/guides/messages.md is the
+// reference for users; this is what it does with each message:
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its
 //   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing but HEARTBEAT is
@@ -84,7 +84,7 @@
 //   third is below 1000 us: that is how receivers say that the transmitter is lost (ArduPilot's FS_THR_VALUE). rssi is
 //   not read: many receivers do not give any. MANUAL_CONTROL: beyond +-1000 (INT16_MAX: no such axis) likewise.
 // * Rates: what comes too seldom is asked for by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
-// * Modes as in docs/links.md "Taking over and giving back"; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
+// * Modes as in docs/guides/take_over.md; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
 //   plus the armed bit (128) as heard. A HEARTBEAT is asked for by COMMAND_LONG REQUEST_MESSAGE (512) with param1 = 0:
 //   both stacks send it at once, and answer ACCEPTED. SET_MESSAGE_INTERVAL of HEARTBEAT is refused by PX4.
 // * Vehicles that follow set-points of a velocity: multirotors and helicopters of both stacks, and a VTOL of PX4 while

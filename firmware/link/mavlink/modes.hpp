@@ -7,7 +7,7 @@
 
 namespace jink::link::mavlink {
 
-/// Mode numbers of the autopilots (their own sources; docs/links.md "Taking over and giving back").
+/// Mode numbers of the autopilots (their own sources; docs/guides/take_over.md).
 enum class VehicleClass : std::uint8_t { copter, plane };
 
 /// Whose mode numbers and rules hold for a vehicle. ArduPilot's VTOLs are QuadPlanes: ArduPlane (Q_MAV_TYPE).

@@ -63,7 +63,7 @@ enum class LongerPayload : std::uint8_t {
 /// After noise, a cut frame or a false start byte the search goes on at the byte behind the rejected start byte, so a
 /// good frame that lies inside what a bad one claimed is still found; the frames found are those of a left-to-right
 /// scan of the whole stream. A frame of an unknown id cannot be checked and is searched in the same way
-/// (docs/links.md).
+/// (docs/guides/mavlink_frames.md).
 ///
 /// Work: each start byte is examined once; at most kMaxFrame - 1 bytes go through the checksum and one SHA-256 for each
 /// byte of input, and at most one byte is moved. One call on top of that may scan again what was pending: less than

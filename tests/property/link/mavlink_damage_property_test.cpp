@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Damage to frames of every message: single bits, bursts, cuts, and the other bad frames of docs/links.md by name.
+// Damage to frames of every message: single bits, bursts, cuts, and the other bad frames of
+// docs/guides/mavlink_frames.md by name.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

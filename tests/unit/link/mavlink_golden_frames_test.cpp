@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames made with the official C library, and one signed by node-mavlink (docs/links.md): byte-equal both ways.
+// Frames made with the official C library, and one signed by node-mavlink (docs/evidence/mavlink.md): byte-equal both
+// ways.
 #include <bit>
 #include <cstring>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mode numbers as the autopilots' sources have them (docs/links.md), and the transmit buffer.
+// Mode numbers as the autopilots' sources have them (docs/guides/take_over.md), and the transmit buffer.
 #include "firmware/link/mavlink/modes.hpp"
 
 #include <gtest/gtest.h>

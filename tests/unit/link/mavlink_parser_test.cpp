@@ -152,7 +152,7 @@ TEST(MavlinkParserDiagnostics, UnknownMessageDoesNotHideTheNextFrame)
 
 TEST(MavlinkParserDiagnostics, NoiseThatClaimsTheFrameBehindIt)
 {
-    // FD 01 02 FE swallowed the next frame of a well-known peer (docs/links.md).
+    // FD 01 02 FE swallowed the next frame of a well-known peer (docs/guides/mavlink_frames.md).
     for (const std::string_view noise : {"fd0102fe", "fdff00", "feff", "fd", "fe", "fdfdfdfd", "fefefefefe", "fd0901",
                                          "fd09000000010100000000", "fe09000101000000000000"}) {
         Parser parser;

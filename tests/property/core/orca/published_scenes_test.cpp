@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Simulations of Alejo 7.3 without a room around them (S1, S2, S6), and the prototype's results of the G-ORCA
-// specification's section 10, flown by VelocityFilter. What is not reproduced says so; docs/reproduction.md has it all.
+// specification's section 10, flown by VelocityFilter. What is not reproduced says so;
+// docs/evidence/reproduction_alejo.md has it all.
 #include <gtest/gtest.h>
 
 #include "tests/property/core/geometry/oracle.hpp"
