@@ -25,7 +25,8 @@ int main()
     avoid::Supervisor supervisor{avoid::Settings{}, planner};
     const world::Situation now{{}, own, limits, airframe, way, {&intruder, 1}, {}, airspace};
     const avoid::Guidance guidance = supervisor.update(now, true);  // once per tick, with the vehicle under our control
-    std::printf("conflict in %.1f s, fly (%.2f, %.2f, %.2f) m/s\n", double(guidance.conflict ? guidance.conflict->time_to_loss : 0.0F),
-                double(guidance.velocity.x()), double(guidance.velocity.y()), double(guidance.velocity.z()));
+    std::printf("conflict in %.1f s, fly (%.2f, %.2f, %.2f) m/s\n",
+                double(guidance.conflict ? guidance.conflict->time_to_loss : 0.0F), double(guidance.velocity.x()),
+                double(guidance.velocity.y()), double(guidance.velocity.z()));
     return guidance.wants_control ? 0 : 1;
 }

@@ -186,7 +186,7 @@ class OnACopy(unittest.TestCase):
             held = {c.name for c in self.evidence() if c.witnessed}
             self.assertTrue(held)
             for name in held:
-                book.lock.commands[name]["witness"] = book.witness_printed()
+                book.lock.commands[name]["witness"] = book.witness_of(book.registry.commands[name])
             book.lock.write()
             self.assertEqual(set(self.states().values()), {"fresh"})
 
