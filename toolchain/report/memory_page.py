@@ -73,7 +73,7 @@ def generated(m):
     capacities = ", ".join(f"{v} {SHORT[c]}{'s' if v > 1 else ''}" for c, v in memory_sizes.BASE.items()).replace("vertexs", "vertices")
     compilers = ", ".join(sorted({f"{t}: gcc {v}" for t, v in m["compilers"].items()}))
     return "\n".join([BEGIN, "", "## The images", "", *_images(m), "", "## With fewer methods", "",
-                      "The images built with fewer methods (`JINK_METHODS`); no symbol of a method that is left out is in them.", "", *_fewer(m), "", "## By room", "", "Out of the linkers' map files; padding between sections "
+                      "The images built with fewer methods (`JINK_METHODS`); of a method that is left out nothing is in them but the merging of closed areas, which the application uses.", "", *_fewer(m), "", "## By room", "", "Out of the linkers' map files; padding between sections "
                       "and the stack are in no room. Interrupt rings and the objects of the application belong to the image's own room.", "",
                       *_rooms(m), "", "## Stack", "", "Bytes by the compiler's call graph, own frame included.", "", *_stacks(m), "",
                       "## A formula of the capacities", "",
