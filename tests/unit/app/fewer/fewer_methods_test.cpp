@@ -24,21 +24,20 @@ void set_methods(StepBench& bench, float value)
     request.value_finite = true;
 }
 
-/// A mast ahead on the leg, until the co-processor has control.
+/// A mast ahead on the leg, until the co-processor asks for control.
 std::unique_ptr<StepBench> before_a_mast(bool without_reach_sets)
 {
     auto bench = std::make_unique<StepBench>();
     if (without_reach_sets) {
         bench->coprocessor.leave_out_reach_sets();
     }
-    for (int i = 0;
-         i < 250 && bench->last.guidance.state != avoid::State::braking && bench->coprocessor.flying() == nullptr;
-         ++i) {
+    for (int i = 0; i < 350 && !bench->last.guidance.wants_control; ++i) {
         if (i % 10 == 0) {
             bench->hear_mast(7, Vec3(0.4F, 40.0F, 50.0F));
         }
         bench->fly(1);
     }
+    EXPECT_TRUE(bench->last.guidance.wants_control);
     return bench;
 }
 
@@ -91,7 +90,7 @@ TEST(FewerMethods, ReachSetsPlanByThemselves)
 TEST(FewerMethods, WithoutItsOnlyMethodTheCoProcessorBrakes)
 {
     const auto bench = before_a_mast(true);
-    EXPECT_EQ(bench->last.guidance.state, avoid::State::braking);
+    EXPECT_EQ(bench->last.guidance.kind, world::ManoeuvreKind::brake);
     EXPECT_EQ(bench->coprocessor.supervisor_diagnostics().plans, 0U) << "damaged sets are never asked";
     EXPECT_EQ(bench->said("jink: reach sets damaged, left out"), 1);
 }
