@@ -7,6 +7,7 @@
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
+#include "firmware/app/built_methods.hpp"
 
 // The methods of the co-processor, and the orders that JNK_METHODS names.
 
@@ -33,26 +34,45 @@ inline constexpr std::array kMethodOrders{
     MethodOrders{avoid::MethodOrder(kOrca, kGeometric, kReach), avoid::MethodOrder(kOrca, kReach, kGeometric)},
 };
 
+/// Whether this image has a method. O(1).
+[[nodiscard]] constexpr bool is_built(std::uint8_t method) noexcept
+{
+    return method == kGeometric ? kHasGeometric : method == kReach ? kHasReach : method == kOrca && kHasReciprocal;
+}
+/// Whether this image has all methods that a value of JNK_METHODS names. O(methods).
+[[nodiscard]] constexpr bool is_built(const MethodOrders& orders) noexcept
+{
+    const auto ids = orders.order.ids();
+    return std::all_of(ids.begin(), ids.end(), [](std::uint8_t id) { return is_built(id); });
+}
+/// Initial JNK_METHODS: geometric then reach sets, or what is there of it, or the reciprocal method.
+inline constexpr std::size_t kInitialMethods = kHasGeometric ? (kHasReach ? 1 : 0) : kHasReach ? 3 : 4;
+
 /// Whether an order names a method that decides anew at every update. O(methods).
 [[nodiscard]] constexpr bool is_reactive(const avoid::MethodOrder& order) noexcept
 {
     return std::any_of(kMethods.begin(), kMethods.end(),
                        [&](const world::MethodTraits& method) { return method.reactive && order.contains(method.id); });
 }
+/// Whether an order names a method that needs reach sets. O(methods).
+[[nodiscard]] constexpr bool needs_sets(const avoid::MethodOrder& order) noexcept
+{
+    return std::any_of(kMethods.begin(), kMethods.end(), [&](const world::MethodTraits& method) {
+        return method.needs_sets && order.contains(method.id);
+    });
+}
 
-/// The order without the methods that need reach sets. Where none is left, the geometric method takes their place: an
-/// empty order would name all. O(methods).
+/// The order without the methods that need reach sets. Where none is left, the first other method of this image takes
+/// their place: an empty order would name all. O(methods).
 [[nodiscard]] constexpr avoid::MethodOrder without_sets(const avoid::MethodOrder& order) noexcept
 {
     avoid::MethodOrder left;
     for (const std::uint8_t id : order.ids()) {
-        const auto* const method = std::find_if(kMethods.begin(), kMethods.end(),
-                                                [&](const world::MethodTraits& traits) { return traits.id == id; });
-        if (method == kMethods.end() || !method->needs_sets) {
+        if (!needs_sets(avoid::MethodOrder(id))) {
             static_cast<void>(left.try_add(id));
         }
     }
-    return left.empty() ? avoid::MethodOrder(kGeometric) : left;
+    return left.empty() ? avoid::MethodOrder(kHasGeometric ? kGeometric : kOrca) : left;
 }
 
 }  // namespace jink::app

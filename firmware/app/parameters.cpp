@@ -67,7 +67,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
-    {"JNK_METHODS", 1, 0, 5, true,
+    {"JNK_METHODS", kInitialMethods, 0, kMethodOrders.size() - 1, true,
      "0 geometric, 1 geometric then reach sets, 2 reach sets then geometric, 3 reach sets, 4 reciprocal, 5 reciprocal "
      "then as 1"},
     {"JNK_CLUTTER", 0, 0, 128, true,
@@ -154,7 +154,9 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.weights.passing = at(Param::weight_passing);
     g.weights.beyond = at(Param::weight_beyond);
     g.weights.closeness = 1.0F - g.weights.smoothness - g.weights.time - g.weights.passing - g.weights.beyond;
-    g.tables = &cost::tables::kDefault;  // smoothness, which is read there, is the same for every vehicle
+    if constexpr (kHasGeometric) {
+        g.tables = &cost::tables::kDefault;  // smoothness, which is read there, is the same for every vehicle
+    }
     g.rotation_penalty = at(Param::rotation_penalty);
     g.flip_penalty = at(Param::flip_penalty);
     g.moving_nearest = static_cast<std::uint16_t>(whole(Param::nearest));
@@ -163,7 +165,10 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.supervisor.order = methods.order;
     c.supervisor.order_in_clutter = methods.in_clutter;
     c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
-    c.reach.sets = &reach_sets();
+    if constexpr (kHasReach) {
+        c.reach.sets = &reach_sets();
+        c.reach_unsuited = !reach::suits(reach_sets(), c.limits);
+    }
     c.reach.room = c.supervisor.clearance_buffer;
     c.reach.latency = at(Param::latency);
     c.reach.escape = c.supervisor.escape;
@@ -171,7 +176,6 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.orca.horizon = c.supervisor.lookahead;
     c.orca.latency = at(Param::latency);
     c.orca.gives_up_blocked = methods.order.ids().back() != kOrca;
-    c.reach_unsuited = !reach::suits(*c.reach.sets, c.limits);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);
     g.latency = at(Param::latency);
@@ -183,7 +187,7 @@ bool fits_together(const Configuration& c) noexcept
     const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
     return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && avoid::is_valid(c.supervisor) &&
            vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner) &&
-           reach::is_valid(c.reach);
+           (!kHasReach || reach::is_valid(c.reach));
 }
 
 ParamStatus check_one(std::size_t index, float value) noexcept
@@ -194,6 +198,10 @@ ParamStatus check_one(std::size_t index, float value) noexcept
     }
     if (!(value >= info.low && value <= info.high) || (info.integer && value != std::floor(value))) {
         return ParamStatus::out_of_range;
+    }
+    if (index == static_cast<std::size_t>(Param::methods) &&
+        !is_built(kMethodOrders[static_cast<std::size_t>(value)])) {
+        return ParamStatus::not_built;
     }
     return ParamStatus::ok;
 }

@@ -11,6 +11,7 @@
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "core/world/track_table.hpp"
+#include "firmware/app/method_orders.hpp"
 
 namespace jink::app {
 
@@ -101,6 +102,7 @@ enum class ParamStatus : std::uint8_t {
     unknown_name,
     not_finite,
     out_of_range,  ///< beyond its own limits, or not a whole number
+    not_built,     ///< JNK_METHODS names a method that this image is built without
     inconsistent,  ///< alone in range, but not together with the others
 };
 
@@ -135,6 +137,12 @@ struct Configuration {
     bool tell_near = false;
     float sticks = 0.3F;  ///< moved by so much they end a take-over [of half their travel]; 0: never
 };
+
+/// Whether reach sets are among the methods that these settings ask.
+[[nodiscard]] inline bool asks_reach_sets(const avoid::Settings& settings) noexcept
+{
+    return kHasReach && needs_sets(settings.order);
+}
 
 /// Values with their checks. A refused change changes nothing.
 class Parameters {

@@ -9,15 +9,15 @@ void Takeover::drop(bool by_fault) noexcept
 {
     diagnostics_.lost_by_fault += by_fault && in_control() ? 1U : 0U;
     if (!by_fault) {
-        claim_ = Claim::none;
-        tries_ = 0;
-        hold_due_ = false;
-        hold_tries_ = 0;
+        claim_.kind = Claim::none;
+        request_.tries = 0;
+        hold_.due = false;
+        hold_.tries = 0;
         unfollowed_ = false;
     }
     control_ = Control::autopilot;
-    back_due_ = false;
-    proving_ = false;
+    back_.due = false;
+    stream_.is_proving = false;
     mode_ = FlightMode::unknown;
 }
 
@@ -32,12 +32,12 @@ void Takeover::note_report(const TakeoverInput& input, TimePoint now) noexcept
         return;
     }
     mode_ = input.report.mode;
-    is_claim_seen_ = claim_ != Claim::none && (is_claim_seen_ || mode_ == FlightMode::external);
+    claim_.is_seen = claim_.kind != Claim::none && (claim_.is_seen || mode_ == FlightMode::external);
     unfollowed_ = unfollowed_ && input.report.armed;
-    if (evidence_.was_silent(kClaim, now) && !in_control() && claim_ != Claim::none) {
+    if (evidence_.was_silent(kClaim, now) && !in_control() && claim_.kind != Claim::none) {
         // Nobody knows who flew meanwhile.
-        claim_ = Claim::none;
-        hold_due_ = back_due_ = false;
+        claim_.kind = Claim::none;
+        hold_.due = back_.due = false;
         found_ = false;
     }
     if (input.report_is_late) {
@@ -59,8 +59,8 @@ bool Takeover::foreign(const TakeoverInput& input) const noexcept
 TakeoverOutput Takeover::overrule() noexcept
 {
     control_ = Control::overruled;
-    claim_ = Claim::none;
-    tries_ = 0;
+    claim_.kind = Claim::none;
+    request_.tries = 0;
     ++diagnostics_.overruled;
     return {TakeoverAction::none, TakeoverEvent::overruled};
 }
@@ -68,8 +68,8 @@ TakeoverOutput Takeover::overrule() noexcept
 /// Another mode seen after the time for a confirmation: an external mode from now on is not due to us.
 void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
 {
-    if (input.has_report && mode_ != FlightMode::external && (is_claim_seen_ || now - asked_ >= kConfirm)) {
-        claim_ = Claim::none;
+    if (input.has_report && mode_ != FlightMode::external && (claim_.is_seen || now - request_.asked >= kConfirm)) {
+        claim_.kind = Claim::none;
     }
 }
 
@@ -77,29 +77,29 @@ void Takeover::expire_claim(const TakeoverInput& input, TimePoint now) noexcept
 TakeoverOutput Takeover::take(TimePoint now) noexcept
 {
     // Taken up again after a fault, the former mode may have been asked for just before it.
-    asked_back_ = asked_back_ && claim_ == Claim::held && now - since_ < kConfirm;
-    diagnostics_.taken += claim_ == Claim::asked ? 1U : 0U;
-    claim_ = Claim::held;
+    asked_back_ = asked_back_ && claim_.kind == Claim::held && now - since_ < kConfirm;
+    diagnostics_.taken += claim_.kind == Claim::asked ? 1U : 0U;
+    claim_.kind = Claim::held;
     control_ = Control::ours;
-    tries_ = 0;
-    hold_due_ = false;
+    request_.tries = 0;
+    hold_.due = false;
     return {TakeoverAction::none, TakeoverEvent::took_over};
 }
 
 TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcept
 {
     if (!input.in_conflict && !input.wants_control) {
-        tries_ = 0;
+        request_.tries = 0;
     }
-    if (claim_ != Claim::none && foreign(input)) {
+    if (claim_.kind != Claim::none && foreign(input)) {
         // A loss of control has the application ask for the hold mode.
-        if (claim_ == Claim::asked || mode_ != FlightMode::hold) {
+        if (claim_.kind == Claim::asked || mode_ != FlightMode::hold) {
             return overrule();
         }
-        claim_ = Claim::none;
+        claim_.kind = Claim::none;
     }
     expire_claim(input, now);
-    if (claim_ != Claim::none && input.may_act && mode_ == FlightMode::external && !unfollowed_) {
+    if (claim_.kind != Claim::none && input.may_act && mode_ == FlightMode::external && !unfollowed_) {
         // A fault of ours is over, or the grant came late, and nobody else has changed the mode: ours to give back.
         evidence_.need_heartbeat();
         return evidence_.is_fresh(now) ? take(now) : TakeoverOutput{};
@@ -117,7 +117,7 @@ TakeoverOutput Takeover::idle(const TakeoverInput& input, TimePoint now) noexcep
         control_ = Control::announcing;
         former_mode_ = input.report.custom_mode;
         since_ = now;
-        hold_tries_ = 0;
+        hold_.tries = 0;
     }
     return {};
 }
@@ -128,7 +128,7 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         return overrule();
     }
     if (mode_ == FlightMode::external) {
-        return claim_ == Claim::none ? overrule() : take(now);
+        return claim_.kind == Claim::none ? overrule() : take(now);
     }
     if (control_ == Control::announcing) {
         expire_claim(input, now);
@@ -142,14 +142,14 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
     }
     const Seconds waited = now - since_;
     // Asked for just before a fault that is over: its answer may be on the way.
-    const bool is_open = claim_ == Claim::asked && now - asked_ < kConfirm;
-    if (control_ == Control::announcing && (now - streaming_since_ < kAnnounce || is_open)) {
+    const bool is_open = claim_.kind == Claim::asked && now - request_.asked < kConfirm;
+    if (control_ == Control::announcing && (now - stream_.since < kAnnounce || is_open)) {
         static_cast<void>(evidence_.is_clear_to_ask(now));
         return {};
     }
-    denied_ = control_ == Control::requesting && (denied_ || input.mode_denied);
-    const bool unproven = input.report.stack == link::AutopilotStack::px4 && now - streaming_since_ < kProof;
-    const bool again = denied_ && waited >= (unproven ? kAskAgain : kAnnounce);
+    request_.denied = control_ == Control::requesting && (request_.denied || input.mode_denied);
+    const bool unproven = input.report.stack == link::AutopilotStack::px4 && now - stream_.since < kProof;
+    const bool again = request_.denied && waited >= (unproven ? kAskAgain : kAnnounce);
     if (control_ == Control::requesting && waited < kConfirm && !again) {
         return {};
     }
@@ -158,25 +158,25 @@ TakeoverOutput Takeover::ask(const TakeoverInput& input, TimePoint now) noexcept
         expire_claim(input, now);
         return {};
     }
-    const bool may_try = unproven || tries_ < kTries;
+    const bool may_try = unproven || request_.tries < kTries;
     const bool clear = may_try && evidence_.is_clear_to_ask(now);
     if (may_try && !clear && waited < static_cast<float>(kTries) * kConfirm) {
         return {};
     }
     if (clear) {
-        tries_ += unproven ? 0 : 1;
+        request_.tries += unproven ? 0 : 1;
         ++diagnostics_.requests;
-        denied_ = false;
+        request_.denied = false;
         control_ = Control::requesting;
-        claim_ = Claim::asked;
-        is_claim_seen_ = false;
-        since_ = asked_ = now;
+        claim_.kind = Claim::asked;
+        claim_.is_seen = false;
+        since_ = request_.asked = now;
         return {TakeoverAction::request_external, TakeoverEvent::none};
     }
     control_ = Control::refused;
     expire_claim(input, now);
     ++diagnostics_.refused;
-    tries_ = 0;
+    request_.tries = 0;
     return {TakeoverAction::none, TakeoverEvent::refused};
 }
 
@@ -187,7 +187,7 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
             return overrule();
         }
         control_ = Control::autopilot;
-        claim_ = Claim::none;
+        claim_.kind = Claim::none;
         ++diagnostics_.held;
         return {TakeoverAction::none, TakeoverEvent::held};
     }
@@ -197,7 +197,7 @@ TakeoverOutput Takeover::fly(const TakeoverInput& input, TimePoint now) noexcept
             return overrule();
         }
         control_ = Control::autopilot;
-        claim_ = Claim::none;
+        claim_.kind = Claim::none;
         ++diagnostics_.given_back;
         return {TakeoverAction::none, TakeoverEvent::gave_back};
     }
@@ -240,7 +240,7 @@ TakeoverEvent Takeover::heed_earlier(const TakeoverInput& input, TimePoint now) 
 
 TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexcept
 {
-    const bool was_streaming = streaming() || proving_;
+    const bool was_streaming = streaming() || stream_.is_proving;
     const TakeoverEvent earlier = heed_earlier(input, now);
     note_report(input, now);
     TakeoverOutput output = decide(input, now);
@@ -251,14 +251,15 @@ TakeoverOutput Takeover::update(const TakeoverInput& input, TimePoint now) noexc
     }
     if (input.has_report && !found_) {
         found_ = true;
-        const bool lone = input.report.armed && mode_ == FlightMode::external && claim_ == Claim::none;
+        const bool lone = input.report.armed && mode_ == FlightMode::external && claim_.kind == Claim::none;
         output.event = lone && output.event == TakeoverEvent::none ? TakeoverEvent::found : output.event;
     }
-    proving_ = control_ == Control::autopilot && claim_ == Claim::none && input.keep_stream && input.may_act &&
-               input.report.stack == link::AutopilotStack::px4 && mode_ == FlightMode::mission && input.report.armed &&
-               !input.report.landed && input.report.steerable && !unfollowed_;
-    if (!was_streaming && (streaming() || proving_)) {
-        streaming_since_ = now;
+    stream_.is_proving = control_ == Control::autopilot && claim_.kind == Claim::none && input.keep_stream &&
+                         input.may_act && input.report.stack == link::AutopilotStack::px4 &&
+                         mode_ == FlightMode::mission && input.report.armed && !input.report.landed &&
+                         input.report.steerable && !unfollowed_;
+    if (!was_streaming && (streaming() || stream_.is_proving)) {
+        stream_.since = now;
     }
     const bool unconfirmed = control_ == Control::requesting || control_ == Control::returning;
     output.ask_heartbeat = evidence_.is_due(in_control(), unconfirmed, now);

@@ -124,7 +124,7 @@ public:
         return control_ == Control::announcing || control_ == Control::requesting || in_control();
     }
     /// A slow stream is due, so that a PX4 grants its external mode without delay.
-    [[nodiscard]] bool proving() const noexcept { return proving_; }
+    [[nodiscard]] bool proving() const noexcept { return stream_.is_proving; }
     /// The autopilot follows us.
     [[nodiscard]] bool in_control() const noexcept
     {
@@ -178,28 +178,47 @@ private:
         held,   ///< we asked for it and have seen it
     };
 
+    /// The external mode, as it is asked for.
+    struct Request {
+        TimePoint asked;
+        int tries = 0;  ///< in this conflict; once refused, of the hold mode
+        bool denied = false;
+    };
+    struct ClaimState {
+        Claim kind = Claim::none;
+        bool is_seen = false;  ///< a HEARTBEAT has shown the external mode since: any other mode ends the claim
+    };
+    struct Stream {
+        bool is_proving = false;
+        TimePoint since;
+    };
+    /// The hold mode after a loss of control: due until a HEARTBEAT shows that the external mode is over.
+    struct Hold {
+        bool due = false;
+        bool accepted = false;  ///< the last request
+        int tries = 0;          ///< since the loss
+        TimePoint asked;
+    };
+    /// The former mode after sticks that moved: asked for without a stream.
+    struct Back {
+        bool due = false;
+        int tries = 0;
+        TimePoint asked;
+    };
+
     Control control_ = Control::autopilot;
     std::uint32_t former_mode_ = 0;
     link::FlightMode mode_ = link::FlightMode::unknown;
     TimePoint since_;
-    TimePoint asked_;  ///< the last request of the external mode
-    int tries_ = 0;    ///< in this conflict: of the external mode, once refused of the hold mode
-    Claim claim_ = Claim::none;
-    bool is_claim_seen_ = false;  ///< a HEARTBEAT has shown the external mode since: any other mode ends the claim
-    bool asked_back_ = false;     ///< the former mode was asked for and its confirmation may still be on its way
-    bool proving_ = false;
-    TimePoint streaming_since_;
-    bool denied_ = false;      ///< the last request of the external mode
-    bool hold_due_ = false;    ///< control was lost, and no HEARTBEAT has shown that the external mode is over
-    bool hold_acked_ = false;  ///< the last request of the hold mode was accepted
-    int hold_tries_ = 0;       ///< since the loss
-    TimePoint hold_asked_;
-    bool back_due_ = false;  ///< sticks were moved: the former mode is asked for, without a stream
-    int back_tries_ = 0;
-    TimePoint back_asked_;
+    Request request_;
+    ClaimState claim_;
+    bool asked_back_ = false;  ///< the former mode was asked for and its confirmation may still be on its way
+    Stream stream_;
+    Hold hold_;
+    Back back_;
     bool unfollowed_ = false;                            ///< since the vehicle was armed
     TakeoverAction last_action_ = TakeoverAction::none;  ///< asked for last
-    bool found_ = false;                                 ///< the first HEARTBEAT was looked at
+    bool found_ = false;                                 ///< the first HEARTBEAT was seen
 
     ModeEvidence evidence_;
     TakeoverDiagnostics diagnostics_;

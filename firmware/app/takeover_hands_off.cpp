@@ -10,15 +10,16 @@ using link::FlightMode;
 /// a pilot chose is not fought: whatever it is, it ends this.
 TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint now) noexcept
 {
-    hold_due_ = hold_due_ && claim_ == Claim::held && !(input.has_report && input.report.mode != FlightMode::external);
-    hold_acked_ = hold_acked_ || input.mode_accepted;
-    if (!hold_due_ || !input.link_alive || hold_tries_ >= kHoldTries) {
+    hold_.due =
+        hold_.due && claim_.kind == Claim::held && !(input.has_report && input.report.mode != FlightMode::external);
+    hold_.accepted = hold_.accepted || input.mode_accepted;
+    if (!hold_.due || !input.link_alive || hold_.tries >= kHoldTries) {
         return TakeoverAction::none;
     }
-    const Seconds waited = now - hold_asked_;
-    const bool unanswered = !hold_acked_ && waited >= kHoldRepeat;
+    const Seconds waited = now - hold_.asked;
+    const bool unanswered = !hold_.accepted && waited >= kHoldRepeat;
     const bool unheeded = input.has_report && waited >= kConfirm;
-    if (hold_tries_ > 0 && !unanswered && !unheeded) {
+    if (hold_.tries > 0 && !unanswered && !unheeded) {
         return TakeoverAction::none;
     }
     // A hold must not wait for an answer, but it must not be asked for on old evidence either.
@@ -26,28 +27,28 @@ TakeoverAction Takeover::insist_on_hold(const TakeoverInput& input, TimePoint no
         evidence_.need_heartbeat();
         return TakeoverAction::none;
     }
-    ++hold_tries_;
+    ++hold_.tries;
     ++diagnostics_.hold_requests;
-    hold_acked_ = false;
-    hold_asked_ = now;
+    hold_.accepted = false;
+    hold_.asked = now;
     return TakeoverAction::request_hold;
 }
 
 /// A hold seen now answers what was asked for at a loss.
 bool Takeover::hold_is_ours(TimePoint now) const noexcept
 {
-    return mode_ == FlightMode::hold && hold_tries_ > 0 && now - hold_asked_ < kConfirm;
+    return mode_ == FlightMode::hold && hold_.tries > 0 && now - hold_.asked < kConfirm;
 }
 
 /// Refused: all that is left is to have the autopilot stop by itself before it is too late.
 TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noexcept
 {
     if (foreign(input)) {
-        if (tries_ == 0 || mode_ != FlightMode::hold || !input.report.armed) {
+        if (request_.tries == 0 || mode_ != FlightMode::hold || !input.report.armed) {
             return overrule();
         }
-        const bool news = unfollowed_ && claim_ != Claim::none;
-        claim_ = Claim::none;  // the hold that we asked for: what follows it is somebody else's choice
+        const bool news = unfollowed_ && claim_.kind != Claim::none;
+        claim_.kind = Claim::none;  // the hold that we asked for: what follows it is somebody else's choice
         if (news) {
             ++diagnostics_.held;
             return {TakeoverAction::none, TakeoverEvent::held};
@@ -57,7 +58,7 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
         return keep_off(input, now);
     }
     expire_claim(input, now);
-    if (mode_ == FlightMode::external && claim_ != Claim::none && input.may_act) {
+    if (mode_ == FlightMode::external && claim_.kind != Claim::none && input.may_act) {
         // Granted late, after we had given up waiting: without a stream the vehicle would stop there for good.
         return take(now);
     }
@@ -66,9 +67,9 @@ TakeoverOutput Takeover::stand_by(const TakeoverInput& input, TimePoint now) noe
         return idle(input, now);
     }
     const bool still_flying = mode_ == FlightMode::mission;
-    if (input.urgent_hold && input.may_act && still_flying && tries_ < kTries &&
-        (tries_ == 0 || now - since_ >= kConfirm) && evidence_.is_clear_to_ask(now)) {
-        ++tries_;
+    if (input.urgent_hold && input.may_act && still_flying && request_.tries < kTries &&
+        (request_.tries == 0 || now - since_ >= kConfirm) && evidence_.is_clear_to_ask(now)) {
+        ++request_.tries;
         ++diagnostics_.hold_requests;
         since_ = now;
         return {TakeoverAction::request_hold, TakeoverEvent::none};
@@ -81,25 +82,25 @@ TakeoverOutput Takeover::keep_off(const TakeoverInput& input, TimePoint now) noe
 {
     const bool over = input.has_report && (mode_ != FlightMode::external || !input.report.armed);
     // A HEARTBEAT may have been sent before a request of ours was granted.
-    if (over && (is_claim_seen_ || foreign(input) || now - asked_ >= kConfirm)) {
-        back_due_ = false;
-        claim_ = Claim::none;
+    if (over && (claim_.is_seen || foreign(input) || now - request_.asked >= kConfirm)) {
+        back_.due = false;
+        claim_.kind = Claim::none;
     }
-    if (!input.in_conflict && !input.wants_control && !back_due_) {
+    if (!input.in_conflict && !input.wants_control && !back_.due) {
         control_ = Control::autopilot;
         return idle(input, now);
     }
     if (unfollowed_) {
         return {insist_on_hold(input, now), TakeoverEvent::none};
     }
-    const bool due = back_due_ && input.link_alive && mode_ == FlightMode::external && back_tries_ < kTries &&
-                     (back_tries_ == 0 || now - back_asked_ >= kConfirm);
+    const bool due = back_.due && input.link_alive && mode_ == FlightMode::external && back_.tries < kTries &&
+                     (back_.tries == 0 || now - back_.asked >= kConfirm);
     if (due && evidence_.is_clear_to_ask(now)) {
-        ++back_tries_;
-        back_asked_ = now;
+        ++back_.tries;
+        back_.asked = now;
         return {TakeoverAction::request_former, TakeoverEvent::none};
     }
-    back_due_ = back_due_ && (back_tries_ < kTries || now - back_asked_ < kConfirm);
+    back_.due = back_.due && (back_.tries < kTries || now - back_.asked < kConfirm);
     return {};
 }
 
@@ -108,11 +109,11 @@ TakeoverOutput Takeover::keep_off(const TakeoverInput& input, TimePoint now) noe
 TakeoverOutput Takeover::yield_to_sticks(const TakeoverInput& input, TimePoint now) noexcept
 {
     control_ = Control::overruled;
-    tries_ = 0;
-    back_due_ = claim_ != Claim::none;
+    request_.tries = 0;
+    back_.due = claim_.kind != Claim::none;
     const bool on_its_way = asked_back_ && now - since_ < kConfirm;
-    back_tries_ = on_its_way ? 1 : 0;
-    back_asked_ = since_;
+    back_.tries = on_its_way ? 1 : 0;
+    back_.asked = since_;
     ++diagnostics_.sticks;
     return {keep_off(input, now).action, TakeoverEvent::sticks};
 }
@@ -121,10 +122,10 @@ TakeoverOutput Takeover::give_up(const TakeoverInput& input, TimePoint now) noex
 {
     control_ = Control::refused;
     unfollowed_ = true;
-    tries_ = kTries;
-    hold_due_ = true;
-    hold_acked_ = false;
-    hold_tries_ = 0;
+    request_.tries = kTries;
+    hold_.due = true;
+    hold_.accepted = false;
+    hold_.tries = 0;
     ++diagnostics_.unfollowed;
     return {insist_on_hold(input, now), TakeoverEvent::unfollowed};
 }
@@ -135,9 +136,9 @@ TakeoverOutput Takeover::lose(const TakeoverInput& input, TimePoint now) noexcep
     const bool flown = in_control();
     drop(true);
     if (flown) {
-        hold_due_ = true;
-        hold_acked_ = false;
-        hold_tries_ = 0;
+        hold_.due = true;
+        hold_.accepted = false;
+        hold_.tries = 0;
         return {insist_on_hold(input, now), TakeoverEvent::lost};
     }
     // Control was never given, nothing is lost: fall silent; this tick's report still counts.

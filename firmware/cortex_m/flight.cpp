@@ -46,8 +46,10 @@ FaultStory tell_story(const FaultRecord& record) noexcept
 
 void settle_reach_sets(app::Coprocessor& coprocessor) noexcept
 {
-    if (reach::check(app::reach_sets()) != reach::SetStatus::good) {
-        coprocessor.leave_out_reach_sets();
+    if constexpr (app::kHasReach) {
+        if (reach::check(app::reach_sets()) != reach::SetStatus::good) {
+            coprocessor.leave_out_reach_sets();
+        }
     }
 }
 

@@ -251,7 +251,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     if (cloud_line) {
         coprocessor->let_reach_sets_see(*picture);
     }
-    if (reach::check(app::reach_sets()) != reach::SetStatus::good) {
+    if (app::kHasReach && reach::check(app::reach_sets()) != reach::SetStatus::good) {
         complain_now("the reach sets are damaged and left out");
         coprocessor->leave_out_reach_sets();
     }

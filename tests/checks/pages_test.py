@@ -61,7 +61,8 @@ class Parameters(unittest.TestCase):
     def check(self, change):
         with tempfile.TemporaryDirectory() as folder:
             top = pathlib.Path(folder)
-            for name in (parameters_page.PAGE, parameters_page.TABLE, parameters_page.CAPACITIES):
+            headers = [h.relative_to(TOP) for h in (TOP / "firmware/app").glob("*.hpp")]
+            for name in (parameters_page.PAGE, parameters_page.TABLE, parameters_page.CAPACITIES, *headers):
                 (top / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copy(TOP / name, top / name)
             table = top / parameters_page.TABLE

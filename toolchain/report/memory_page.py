@@ -28,6 +28,15 @@ def _images(m):
                       number(limit) if limit else "none" if key == "allocators" else "")
 
 
+def _fewer(m):
+    columns = [(t, k) for t in memory_sizes.IMAGES for k in ("flash", "static RAM with its stack")]
+    yield row("image [bytes]", *(f"{t}: {k.split(' with')[0]}" for t, k in columns))
+    yield row(*["---"] * 5)
+    yield row("all three methods", *(number(m["targets"][t][k]) for t, k in columns))
+    for name, _ in memory_sizes.FEWER.values():
+        yield row(name, *(number(m["targets"][t]["fewer methods"][name][k]) for t, k in columns))
+
+
 def _stacks(m):
     yield row("entry point", *memory_sizes.IMAGES)
     yield row(*["---"] * 3)
@@ -63,7 +72,9 @@ def _linux(m):
 def generated(m):
     capacities = ", ".join(f"{v} {SHORT[c]}{'s' if v > 1 else ''}" for c, v in memory_sizes.BASE.items()).replace("vertexs", "vertices")
     compilers = ", ".join(sorted({f"{t}: gcc {v}" for t, v in m["compilers"].items()}))
-    return "\n".join([BEGIN, "", "## The images", "", *_images(m), "", "## By module", "", "Out of the linkers' map files; padding between sections "
+    return "\n".join([BEGIN, "", "## The images", "", *_images(m), "", "## With fewer methods", "",
+                      "The images built with fewer methods (`JINK_METHODS`). Of a method that is left out, an image holds only the merging of closed areas, "
+                      "which the application uses.", "", *_fewer(m), "", "## By module", "", "Out of the linkers' map files; padding between sections "
                       "and the stack are in no module. Interrupt rings and the objects of the application belong to the image's own module.", "",
                       *_rooms(m), "", "## Stack", "", "Bytes by the compiler's call graph, own frame included.", "", *_stacks(m), "",
                       "## A formula of the capacities", "",

@@ -33,6 +33,11 @@ TRIED = {"JINK_MAX_TRACKS": 64, "JINK_MAX_OBSTACLES": 192, "JINK_MAX_PATH_POINTS
          "JINK_MAX_HULL_VERTICES": 64, "JINK_MAX_REACH_NODES": 4096, "JINK_MAX_REACH_CELLS": 512, "JINK_MAX_BARRELS": 32, "JINK_MAX_MISSION_ITEMS": 64}
 PROOF = {"JINK_MAX_TRACKS": 16, "JINK_MAX_OBSTACLES": 40, "JINK_MAX_PATH_POINTS": 96, "JINK_MAX_CANDIDATES": 128,
          "JINK_MAX_HULL_VERTICES": 32, "JINK_MAX_REACH_NODES": 3072, "JINK_MAX_REACH_CELLS": 400, "JINK_MAX_BARRELS": 8, "JINK_MAX_MISSION_ITEMS": 32}
+# Images with fewer methods (toolchain/cmake/JinkImage.cmake): what they are called, and whose code must not be in them.
+FEWER = {"geometric_reach": ("without the reciprocal method", ["orca"]), "geometric_orca": ("without reach sets", ["reach"]),
+         "geometric": ("geometric alone", ["orca", "reach"])}
+# Of core/reach, and in every image: the closed areas are merged by them (firmware/app/constraints.cpp).
+SHARED = re.compile(r"jink::reach::(BarrelTable::|around\(|merged\()")
 TOP = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -85,13 +90,32 @@ def by_room(build, target):
     return dict(sorted(out.items()))
 
 
+def sections(elf):
+    """(text, data, bss, core-coupled) of an image [bytes]; the last is memory apart from the rest, which only the processor reaches."""
+    text, data, bss = map(int, run("arm-none-eabi-size", elf).splitlines()[1].split()[:3])
+    coupled = sum(int(line.split()[1]) for line in run("arm-none-eabi-size", "-A", elf).splitlines() if line.startswith(".ccm "))
+    return text, data, bss - coupled, coupled
+
+
+def with_fewer_methods(build, target, faults):
+    """{images with fewer methods: their sizes}. Builds them; a function or table of a method that is left out is a fault."""
+    folder = pathlib.Path(build) / target
+    run("cmake", "--build", str(folder), "--target", *(f"{target}_{variant}" for variant in FEWER))
+    out = {}
+    for variant, (name, absent) in FEWER.items():
+        elf = str(image_of(build, target).with_name(f"{target}_{variant}.elf"))
+        text, data, bss, _ = sections(elf)
+        out[name] = {"flash": text + data, "static RAM with its stack": data + bss}
+        left = [line for line in run("arm-none-eabi-nm", "-C", elf).splitlines()
+                if re.search(rf" [A-Za-z] jink::({'|'.join(absent)})::", line) and not SHARED.search(line)]
+        faults += [f"{target}, {name}: still there: {line}" for line in left]
+    return out
+
+
 def of_image(build, target, faults):
     folder = pathlib.Path(build) / target
     elf = str(image_of(build, target))
-    text, data, bss = map(int, run("arm-none-eabi-size", elf).splitlines()[1].split()[:3])
-    # Memory apart from the rest, where there is some: only the processor reaches it.
-    coupled = sum(int(line.split()[1]) for line in run("arm-none-eabi-size", "-A", elf).splitlines() if line.startswith(".ccm "))
-    bss -= coupled
+    text, data, bss, coupled = sections(elf)
     symbols = run("arm-none-eabi-nm", "-C", elf)
     sizes = {line.split()[2]: int(line.split()[0], 16) for line in symbols.splitlines() if len(line.split()) == 3}
     reserved = sizes["_stack_top"] - sizes["_stack_bottom"]
@@ -112,7 +136,7 @@ def of_image(build, target, faults):
               "static RAM with its stack": data + bss, "static RAM of the rest": data + bss - reach - orca, "reach planner": reach,
               "reciprocal planner": orca, "data": data, "bss": bss - reserved, "stack reserved": reserved, "core-coupled": coupled,
               "stack": deepest, "stack by call graph": stacks, "painted stack of the probe": painted(build, target),
-              "allocators": len(allocators), "rooms": rooms}
+              "allocators": len(allocators), "rooms": rooms, "fewer methods": with_fewer_methods(build, target, faults)}
     for name, most in LIMITS.items():
         if result[name] > most:
             faults.append(f"{target}: {name}: {result[name]} bytes of {most}: TOO MUCH")

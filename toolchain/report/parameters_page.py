@@ -24,6 +24,15 @@ class Wrong(Exception):
     """The sources are not in the form that is read here."""
 
 
+def items(body):
+    """How many items the initializer of an array has."""
+    depth, count = 0, 1 if body.strip() else 0
+    for at, c in enumerate(body):
+        depth += (c in "{(") - (c in "})")
+        count += c == "," and depth == 0 and bool(body[at + 1:].strip())
+    return count
+
+
 def constants(top):
     """What the table may name: capacities by the default of their macro, sizes of arrays of firmware/app as NAME.size(), and whole numbers of firmware/app;
     of a choice by the methods of an image the first one, which an image with all of them has."""
@@ -32,8 +41,8 @@ def constants(top):
     out = {name: int(macros[macro]) for name, macro in re.findall(r"constexpr std::size_t (kMax\w+) = (JINK_MAX_\w+);", text) if macro in macros}
     for header in sorted((top / "firmware/app").glob("*.hpp")):
         text = header.read_text(encoding="utf-8")
-        out.update({f"{name}.size()": int(size) for size, name in re.findall(r"constexpr std::array<[\w:]+, (\d+)> (k\w+)", text)})
-        out.update({name: int(value) for name, value in re.findall(r"constexpr std::size_t (k\w+) = (?:[\w()]+ \? )?(\d+)\b", text)})
+        out.update({f"{name}.size()": items(body) for name, body in re.findall(r"constexpr std::array (k\w+)\{(.*?)\};", text, re.S)})
+        out.update({name: int(value) for name, value in re.findall(r"constexpr std::size_t (k\w+) = (?:\(?\w+ \? )*(\d+)\b", text)})
     return out
 
 

@@ -21,7 +21,8 @@ LIBRARY = 200
 INDIRECT = [
     (r"12StateMachine4plan", [r"10Supervisor.*10ask_in_order"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
-    (r"3app11Coprocessor", [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
+    (r"3app(11Coprocessor|6Intake|6Outbox|7Picture|16AutopilotControl|13ParamExchange|9Telemetry)",
+     [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # who takes points: no image does
     (r"3app10ParamFlash", [r"7stm32f45FlashI"]),

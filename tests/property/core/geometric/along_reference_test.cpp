@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/avoid/final_check.hpp"
+#include "core/world/conflict.hpp"
 #include "tests/oracle/collected.hpp"
 #include "tests/oracle/route_oracle.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"

@@ -8,7 +8,7 @@
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
-#include "core/reach/sets_default_reduced.hpp"
+#include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {

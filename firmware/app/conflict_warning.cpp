@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/conflict_warning.hpp"
+
+#include <cmath>
+
+namespace jink::app {
+namespace {
+
+/// Ids of warnings of closed areas, beside those of scans (0x01000000) and readings (0x02000000), and of tracks
+/// (firmware/link/track_ids.hpp).
+constexpr std::uint32_t kBarrelIds = 0x04000000;
+
+}  // namespace
+
+link::CollisionWarning warning_of(const avoid::Guidance& guidance, const Picture& picture,
+                                  const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,
+                                  bool in_control, const world::Manoeuvre* flying) noexcept
+{
+    const world::Conflict& c = *guidance.conflict;
+    const Vec3 miss = c.threat_at_closest - c.own_at_closest;
+    const bool is_track = c.threat.kind == world::ThreatKind::track;
+    const bool is_barrel = c.threat.kind == world::ThreatKind::barrel;
+    link::CollisionWarning warning;
+    warning.id = is_track    ? picture.track_table().id_in_snapshot(c.threat.index)
+                 : is_barrel ? kBarrelIds + c.threat.index
+                             : picture.obstacles()[c.threat.index].id;
+    warning.time_to_closest = c.time_to_closest;
+    warning.horizontal_miss = miss.head<2>().norm();
+    warning.vertical_miss = std::abs(miss.z());
+    warning.action = link::CollisionAction::report;
+    if (in_control) {
+        const bool vertical = flying != nullptr && std::abs(flying->side.z()) > 0.7F;
+        warning.action = guidance.kind == world::ManoeuvreKind::brake ? link::CollisionAction::hover
+                         : vertical                                   ? link::CollisionAction::ascend_or_descend
+                                                                      : link::CollisionAction::move_horizontally;
+    }
+    const bool near = c.time_to_loss <= vehicle::stopping_time(own.velocity.norm(), limits) + 1.0F;
+    warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
+    return warning;
+}
+
+Text text_of(const world::Conflict& conflict) noexcept
+{
+    const bool is_track = conflict.threat.kind == world::ThreatKind::track;
+    const bool is_barrel = conflict.threat.kind == world::ThreatKind::barrel;
+    Text text;
+    text << (is_track    ? "jink: conflict, traffic in "
+             : is_barrel ? "jink: conflict, closed area in "
+                         : "jink: conflict, obstacle in ")
+         << conflict.time_to_loss << " s";
+    return text;
+}
+
+}  // namespace jink::app

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/decision.hpp"
+
+#include "core/base/work_units.hpp"
+#include "core/reach/lidar_scan.hpp"
+
+namespace jink::app {
+namespace {
+
+/// What a plan by reach sets takes more where they see by a scan, at most; that is for computers that have LiDARs.
+constexpr auto kScanUnits =
+    static_cast<std::uint32_t>(units::kReachScanCell * (kMaxReachCells + reach::LidarScan::kCells));
+
+}  // namespace
+
+avoid::Settings Decision::supervisor_settings(const Configuration& c) const noexcept
+{
+    avoid::Settings settings = c.supervisor;
+    if (leaves_reach_out_ || c.reach_unsuited) {
+        settings.order = without_sets(settings.order);
+        settings.order_in_clutter = {};
+    }
+    if (reach_sees_scans_) {
+        // Laying a scan over a set would take most of what a plan may, and a way through clutter takes more than the
+        // rest: each of two methods has nearly a whole plan's units, and the checks and fallbacks keep theirs.
+        const std::uint32_t more = kScanUnits + settings.plan_budget;
+        settings.plan_budget += more;
+        settings.kept_for_next = settings.plan_budget / 2;  // whichever of both is asked first
+        settings.budget += more;
+    }
+    return settings;
+}
+
+avoid::Guidance Decision::update(const DecisionInput& input, const Configuration& c) noexcept
+{
+    const vehicle::VehicleLimits limits = vehicle::limits_in_flight(c.limits, input.own.velocity);
+    nominal_.update(input.measured, input.own, input.leg, limits, input.in_control);
+    const world::Situation situation{input.now,    input.own,       limits,         c.airframe, nominal_.primary(),
+                                     input.tracks, input.obstacles, input.airspace, {},         nullptr,
+                                     c.k_sigma,    input.own_track};
+    const avoid::Guidance guidance = supervisor_.update(situation, input.in_control, nominal_.other());
+    nominal_.note(guidance.conflict.has_value(), guidance.on_other, guidance.other_conflict);
+    return guidance;
+}
+
+void Decision::reset() noexcept
+{
+    supervisor_.reset();
+    nominal_.reset();
+}
+
+void Decision::configure(const Configuration& c) noexcept
+{
+    methods_.configure(c);
+    static_cast<void>(supervisor_.configure(supervisor_settings(c)));
+}
+
+void Decision::leave_out_reach_sets(const Configuration& c) noexcept
+{
+    leaves_reach_out_ = true;
+    static_cast<void>(supervisor_.configure(supervisor_settings(c)));
+}
+
+void Decision::let_reach_sets_see(reach::CellSource& cells, const Configuration& c) noexcept
+{
+    methods_.with_planner<ReachMethod>([&](reach::Planner& planner) {
+        reach_sees_scans_ = true;
+        planner.look_at(&cells);
+        static_cast<void>(supervisor_.configure(supervisor_settings(c)));
+    });
+}
+
+}  // namespace jink::app

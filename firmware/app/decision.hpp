@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+
+#include "firmware/app/methods.hpp"
+#include "firmware/app/nominal_paths.hpp"
+#include "firmware/app/parameters.hpp"
+
+namespace jink::app {
+
+/// What one decision is made of.
+struct DecisionInput {
+    TimePoint now;
+    const vehicle::VehicleState& measured;  ///< newest own state
+    const vehicle::VehicleState& own;       ///< the same carried forward to now
+    const world::Leg* leg;                  ///< AutopilotState::flown_leg
+    bool in_control;                        ///< the autopilot follows our commands
+    std::span<const world::Track> tracks;   ///< at now
+    std::span<const world::Obstacle> obstacles;
+    const world::Airspace& airspace;
+    world::TrackId own_track;  ///< Link::own_track
+};
+
+/// What is flown, or advised: nominal paths, methods and the supervisor, set as the parameters say.
+class Decision {
+public:
+    explicit Decision(const Configuration& c) noexcept
+        : methods_(c), supervisor_(methods_.supervisor(supervisor_settings(c)))
+    {
+    }
+    Decision(const Decision&) = delete;
+    Decision& operator=(const Decision&) = delete;
+
+    [[nodiscard]] avoid::Guidance update(const DecisionInput& input, const Configuration& c) noexcept;
+
+    /// Another frame, or own state comes from elsewhere.
+    void reset() noexcept;
+    /// Somebody else flies: nothing is held on to.
+    void reset_supervisor() noexcept { supervisor_.reset(); }
+    void configure(const Configuration& c) noexcept;
+    /// From now on no plan is made by reach sets, whatever the parameters say.
+    void leave_out_reach_sets(const Configuration& c) noexcept;
+    /// From now on reach sets plan by these cells, and every plan may spend more work units. It outlives this.
+    void let_reach_sets_see(reach::CellSource& cells, const Configuration& c) noexcept;
+
+    [[nodiscard]] bool leaves_out_reach_sets() const noexcept { return leaves_reach_out_; }
+    [[nodiscard]] const NominalPaths& nominal_paths() const noexcept { return nominal_; }
+    [[nodiscard]] const avoid::Diagnostics& diagnostics() const noexcept { return supervisor_.diagnostics(); }
+    [[nodiscard]] const world::Manoeuvre* flying() const noexcept { return supervisor_.flying(); }
+    [[nodiscard]] const Methods& methods() const noexcept { return methods_; }
+    [[nodiscard]] Methods& methods() noexcept { return methods_; }
+
+private:
+    [[nodiscard]] avoid::Settings supervisor_settings(const Configuration& c) const noexcept;
+
+    // The supervisor's settings depend on these two: they come before it.
+    bool leaves_reach_out_ = false;
+    bool reach_sees_scans_ = false;
+    Methods methods_;
+    Methods::Supervisor supervisor_;
+    NominalPaths nominal_;
+};
+
+}  // namespace jink::app

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "firmware/app/range_obstacles.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "firmware/app/echo.hpp"
+
+namespace jink::app {
+namespace {
+
+/// Sine of the elevation: what is steeper downwards is the ground; what is steeper upwards, a ceiling; what is flatter,
+/// level.
+constexpr float kDownwards = -0.7F;
+constexpr float kUpwards = 0.98F;
+constexpr float kLevel = 0.02F;
+
+constexpr std::uint32_t kScanIds = 0x01000000;
+constexpr std::uint32_t kReadingIds = 0x02000000;
+
+/// A beam of a level sensor.
+struct LevelBeam {
+    std::uint32_t first_id;  ///< of its parts
+    float yaw;               ///< of its middle [rad]
+    float range;             ///< [m]
+    float half_angle;        ///< [rad]
+};
+
+/// In as many parts as the beam's width asks for.
+void place_level(const LevelBeam& beam, const Vec3& own, float half_height, TimePoint expires,
+                 world::ObstacleTable& table) noexcept
+{
+    const std::size_t parts = echo_parts(beam.half_angle);
+    const float part = beam.half_angle / static_cast<float>(parts);
+    for (std::size_t k = 0; k < parts; ++k) {
+        const float aside = static_cast<float>(2 * k + 1) * part - beam.half_angle;
+        const geometry::Shape echo = level_echo(own, beam.yaw + aside, beam.range, part, half_height);
+        static_cast<void>(table.update({beam.first_id + static_cast<std::uint32_t>(k), echo}, expires, own));
+    }
+}
+
+void remove(std::uint32_t first_id, std::size_t n, world::ObstacleTable& table) noexcept
+{
+    for (std::size_t k = 0; k < n; ++k) {
+        static_cast<void>(table.remove(first_id + static_cast<std::uint32_t>(k)));
+    }
+}
+
+/// A beam that is not quite vertical sees a ceiling as low as its lowest edge, and as far aside.
+geometry::Shape overhead_echo(const link::RangeReading& reading, const Vec3& own, float half_height) noexcept
+{
+    const float edge = std::acos(std::min(reading.direction.z(), 1.0F)) + reading.half_angle;
+    const float height = reading.range * std::cos(edge);
+    const float aside = std::max(half_height, reading.range * std::sin(edge));
+    return ceiling_echo(own, height, 0.0F, aside);
+}
+
+}  // namespace
+
+void place_scan(const link::RangeScan& scan, const Vec3& own, const Configuration& c,
+                world::ObstacleTable& table) noexcept
+{
+    const TimePoint expires = scan.stamp + c.scan_keep;
+    const float half_angle = std::min(0.5F * std::abs(scan.increment), 0.5F * kPi);
+    const std::size_t parts = echo_parts(half_angle);
+    for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+        // 72 narrow sectors, or fewer wide ones in parts: at most 72 ids either way.
+        const std::uint32_t first = kScanIds + scan.sensor * 256U + static_cast<std::uint32_t>(i * parts);
+        const float range = scan.ranges[i];
+        if (range == link::RangeScan::kNothing) {
+            remove(first, parts, table);
+        } else if (range >= 0.0F) {
+            const float yaw = scan.yaw_first + scan.increment * static_cast<float>(i);
+            place_level({first, yaw, range, half_angle}, own, c.scan_height, expires, table);
+        }
+    }
+}
+
+bool sees_ground(const link::RangeReading& reading) noexcept { return reading.direction.z() < kDownwards; }
+
+bool place_reading(const link::RangeReading& reading, const Vec3& own, const Configuration& c,
+                   world::ObstacleTable& table) noexcept
+{
+    const TimePoint expires = reading.stamp + c.scan_keep;
+    const std::uint32_t first = kReadingIds + reading.sensor * 32U;
+    static_assert(kMaxEchoParts <= 32);
+    const float steepness = reading.direction.z();
+    if (reading.range == link::RangeScan::kNothing) {
+        remove(first, kMaxEchoParts, table);
+    } else if (std::abs(steepness) <= kLevel) {
+        const float yaw = std::atan2(reading.direction.y(), reading.direction.x());
+        place_level({first, yaw, reading.range, std::min(reading.half_angle, 0.5F * kPi)}, own, c.scan_height, expires,
+                    table);
+    } else if (reading.half_angle > kWidestSteep) {
+        return false;
+    } else {
+        const geometry::Shape echo = steepness > kUpwards
+                                         ? overhead_echo(reading, own, c.scan_height)
+                                         : slanted_echo(own, reading.direction, reading.range, reading.half_angle);
+        static_cast<void>(table.update({first, echo}, expires, own));
+    }
+    return true;
+}
+
+}  // namespace jink::app
