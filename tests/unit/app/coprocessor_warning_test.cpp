@@ -28,7 +28,7 @@ std::unique_ptr<Teller> advising()
 void expect_true_of(const CollisionWarning& w, const StepReport& report)
 {
     ASSERT_TRUE(report.guidance.conflict.has_value());
-    const world::Conflict& c = report.guidance.conflict;
+    const world::Conflict& c = *report.guidance.conflict;
     const Vec3 miss = c.own_at_closest - c.threat_at_closest;
     EXPECT_EQ(w.time_to_closest, c.time_to_closest);
     EXPECT_NEAR(w.horizontal_miss, miss.head<2>().norm(), 1e-4F);
