@@ -113,7 +113,7 @@ std::size_t encode_legacy(const M& message, Header header, std::span<std::byte> 
                                                 std::byte{header.sequence},
                                                 std::byte{header.system_id},
                                                 std::byte{header.component_id},
-                                                static_cast<std::byte>(M::kInfo.id)};
+                                                static_cast<std::byte>(M::kInfo.id & 0xFFU)};
     std::copy(head.begin(), head.end(), out.begin());
     std::copy_n(payload.begin(), length, out.subspan(kHeaderV1).begin());
     Checksum checksum;

@@ -83,7 +83,7 @@ TEST(FewerMethods, ReachSetsPlanByThemselves)
 {
     const auto bench = before_a_mast(false);
     ASSERT_NE(bench->coprocessor.flying(), nullptr);
-    EXPECT_EQ(bench->coprocessor.flying()->by, world::MethodId::reach);
+    EXPECT_EQ(bench->coprocessor.flying()->by, kReach);
     EXPECT_GT(bench->coprocessor.supervisor_diagnostics().plans_found, 0U);
 }
 
