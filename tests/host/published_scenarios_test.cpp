@@ -74,7 +74,7 @@ TEST(PublishedScenario, OneAt160DegreesIsAvoidedInBothSizes)
     EXPECT_GT(std::abs(large.chosen().shape.offset), std::abs(small.chosen().shape.offset))
         << "published: the wider path for the larger threat";
     // The coordinates are those of a threat at this angle that arrives together with the vehicle.
-    const geometry::Motion& threat = small.file.threats[0].threat.motion;
+    const world::Threat& threat = small.file.threats[0].threat;
     const double angle = 160.0 * 3.14159265358979 / 180.0;
     EXPECT_NEAR(static_cast<double>(threat.velocity.x()), 5.0 * std::cos(angle), 1e-4);
     EXPECT_NEAR(static_cast<double>(threat.velocity.y()), 5.0 * std::sin(angle), 1e-4);
