@@ -24,14 +24,23 @@ bool is_valid(const world::Threat& t) noexcept
            (!has_shape || (t.solid != nullptr && geometry::is_valid(*t.solid)));
 }
 
-/// Counts within the capacities, and a main threat that is there.
-bool has_valid_counts(const Problem& p) noexcept
+/// Valid threats, within the capacities, and a main threat that is there.
+bool has_valid_threats(const Problem& p) noexcept
 {
-    const std::span obstacles = world::of_kind(p.threats, world::ThreatKind::obstacle);
-    const auto moving = static_cast<std::size_t>(std::count_if(obstacles.begin(), obstacles.end(), detail::is_moving));
-    const std::size_t tracks = world::of_kind(p.threats, world::ThreatKind::track).size();
+    std::size_t tracks = 0;
+    std::size_t at_rest = 0;
+    std::size_t moving = 0;
+    for (const world::Threat& threat : p.threats) {
+        if (!is_valid(threat)) {
+            return false;
+        }
+        tracks += threat.ref.kind == world::ThreatKind::track ? 1U : 0U;
+        if (threat.ref.kind == world::ThreatKind::obstacle) {
+            ++(detail::is_moving(threat) ? moving : at_rest);
+        }
+    }
     return p.threats.size() <= kMaxProblemThreats && tracks <= kMaxTracks && moving <= kMaxMovingSolids &&
-           obstacles.size() - moving <= kMaxObstacles && (p.main == kNoThreat || p.main < tracks);
+           at_rest <= kMaxObstacles && (p.main == kNoThreat || p.main < tracks);
 }
 
 bool is_valid(const PathFrame& frame) noexcept
@@ -56,8 +65,7 @@ bool has_valid_scales(const Problem& p) noexcept
 
 bool is_valid(const Problem& p) noexcept
 {
-    return has_valid_scales(p) && has_valid_counts(p) &&
-           std::all_of(p.threats.begin(), p.threats.end(), [](const world::Threat& t) { return is_valid(t); }) &&
+    return has_valid_scales(p) && has_valid_threats(p) &&
            (p.main_shape == nullptr || geometry::is_valid(*p.main_shape));
 }
 

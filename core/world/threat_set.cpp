@@ -29,6 +29,21 @@ Threat threat_of(const Situation& situation, std::size_t index) noexcept
     return threat;
 }
 
+/// Of a kind in the order of a set.
+int place_of(ThreatKind kind) noexcept
+{
+    switch (kind) {
+    case ThreatKind::floor: return 1;
+    case ThreatKind::ceiling: return 2;
+    case ThreatKind::keep_in: return 3;
+    case ThreatKind::track: return 4;
+    case ThreatKind::barrel: return 5;
+    case ThreatKind::obstacle: return 6;
+    case ThreatKind::none: break;
+    }
+    return 0;
+}
+
 }  // namespace
 
 Threat track_threat(std::size_t index, const geometry::Motion& motion, const Growth& growth, float half_height) noexcept
@@ -96,10 +111,14 @@ StaticVector<Threat, 3> bounds_of(const Airspace& air, float uncertainty) noexce
 
 std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind) noexcept
 {
-    const auto is_of_kind = [kind](const Threat& threat) { return threat.ref.kind == kind; };
-    const auto first = std::find_if(threats.begin(), threats.end(), is_of_kind);
-    const auto last = std::find_if_not(first, threats.end(), is_of_kind);
-    return {first, last};
+    const auto begin =
+        std::partition_point(threats.begin(), threats.end(), [place = place_of(kind)](const Threat& threat) {
+            return place_of(threat.ref.kind) < place;
+        });
+    const auto end = std::partition_point(begin, threats.end(), [place = place_of(kind)](const Threat& threat) {
+        return place_of(threat.ref.kind) <= place;
+    });
+    return {begin, end};
 }
 
 bool ThreatSet::collect(const Situation& s) noexcept

@@ -47,7 +47,7 @@ private:
 /// Floor, ceiling and keep-in cylinder of an airspace, those that it has.
 [[nodiscard]] StaticVector<Threat, 3> bounds_of(const Airspace& airspace, float uncertainty) noexcept;
 
-/// Those of one kind, in a set's order. O(threats).
+/// Those of one kind, of threats in a set's order. O(log threats).
 [[nodiscard]] std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind) noexcept;
 
 }  // namespace jink::world

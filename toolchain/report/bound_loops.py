@@ -51,7 +51,7 @@ RULES = [
     (r"nearest\.cpp", "each", lambda p: p["tracks"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*situation\.threats|conflict_with", "each", lambda p: p["threats"]),
     (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*touching", "each", lambda p: 8),
-    (r"threat_set\.cpp|of_kind|world::Threat const\*", "each", lambda p: p["threats"]),
+    (r"threat_set\.cpp|of_kind|world::Threat const\*|solve\.cpp:.*p\.threats", "each", lambda p: p["threats"]),
     (r"separation(_parts\.hpp|\.cpp):.*part < parts", "in all", lambda p: p["paid parts"]),
     (r"shape\.vertices|Matrix<float, 3, 1, 0, 3, 1> const\*, std::span", "each", lambda p: 0),  # no hulls
     (r"next \+ 1 < curve\.points", "in all", lambda p: p["points"]),
