@@ -92,8 +92,12 @@ int Clearance::escape_parts(Seconds duration) const noexcept
 
 Clearance::Ball Clearance::ball_of(const world::Threat& threat) const noexcept
 {
-    const AtStart start = at_start(problem_, threat);
-    return {start.motion.position - problem_.frame.origin, threat.velocity, threat.box_against(half_), start.growth};
+    const Vec3& origin = problem_.frame.origin;
+    if (threat.ref.kind == ThreatKind::track) {
+        const AtStart start = at_start(problem_, threat);
+        return {start.motion.position - origin, threat.velocity, threat.box_against(half_), start.growth};
+    }
+    return {threat.position - origin, threat.velocity, threat.box_against(half_), threat.growth};  // at rest
 }
 
 void Clearance::add_ball(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept
@@ -132,6 +136,10 @@ void Clearance::add_tracks(const Extent& reach, Seconds longest, Which which) no
 
 void Clearance::add_obstacles(const Extent& reach, Seconds longest, bool moving, WorkBudget& budget) noexcept
 {
+    // Those that move come last.
+    if (moving && (obstacles_.empty() || !is_moving(obstacles_.back()))) {
+        return;
+    }
     for (const world::Threat& obstacle : obstacles_) {
         if (is_moving(obstacle) != moving) {
             continue;
