@@ -171,8 +171,9 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!world::main_conflict(situation, way, settings_.lookahead, budget, conflict)) {
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
     }
-    if (conflict.threat.kind == world::ThreatKind::barrel) {
-        // Curves of a few main radii do not lead around something hundreds of metres wide.
+    if (conflict.threat.kind != world::ThreatKind::track && conflict.threat.kind != world::ThreatKind::obstacle) {
+        // Curves of a few main radii do not lead around a closed area of hundreds of metres; and where the search for
+        // conflicts ran out of budget, there may be no threat to lead around.
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
     }
     Problem problem = problem_of(situation, way, conflict);
