@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
+#include "tests/oracle/route_oracle.hpp"
 #include "tests/unit/core/geometric/flight.hpp"
 
 namespace jink::geometric {
@@ -331,6 +333,33 @@ TEST(Planner, SmallThreatsArePlannedForAsIfHalfAMetre)
     flight.add(Vec3(40.0F, 0.0F, 50.0F), Vec3::Zero(), 0.01F);
     ASSERT_EQ(flight.plan(), PlanStatus::found);
     EXPECT_GT(std::abs(flight.planner.last().candidates[flight.planner.last().chosen].shape.offset), 1.5F);
+}
+
+TEST(Planner, AnyBudgetIsAnsweredOrSpentAlongALegAndARoute)
+{
+    // Solids near the nominal path, none of which blocks it: the search for conflicts may run out of work units before
+    // it has met anything.
+    oracle::TwinRoute bent;
+    ASSERT_TRUE(bent.leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(25.0F, 0.0F, 50.0F)));
+    ASSERT_TRUE(bent.leg(Vec3(25.0F, 0.0F, 50.0F), Vec3(25.0F, 60.0F, 50.0F)));
+    for (const path::Route* route : {static_cast<const path::Route*>(nullptr), &std::as_const(bent.route)}) {
+        Flight flight;
+        flight.reference.route = route;
+        flight.airspace.has_floor = true;
+        for (int i = 0; i < 6; ++i) {
+            const Vec3 beside(4.0F + 4.0F * static_cast<float>(i), 2.6F, 50.0F);
+            flight.obstacles.push_back({static_cast<world::ObstacleId>(i), geometry::make_box(beside, Vec3::Ones())});
+        }
+        WorkBudget plenty(1'000'000);
+        const PlanStatus answer = flight.planner.plan(flight.situation(), plenty, flight.out);
+        for (std::uint32_t units = 0; units < plenty.spent(); ++units) {
+            WorkBudget budget(units);
+            const PlanStatus status = flight.planner.plan(flight.situation(), budget, flight.out);
+            // A solid at which the search ran out counts as met now.
+            ASSERT_TRUE(status == PlanStatus::budget_spent || status == PlanStatus::too_close || status == answer)
+                << units;
+        }
+    }
 }
 
 }  // namespace
