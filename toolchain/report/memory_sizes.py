@@ -15,7 +15,8 @@ import targets
 
 IMAGES = ["mps2_an500", "stm32f405"]
 PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf": "arm-linux-gnueabihf-", "aarch64": "aarch64-linux-gnu-"}
-# Reach sets and reciprocal avoidance have limits of their own, on top of what the image had without them. 8 KiB of the rest of the RAM are the threat set; 2 KiB of the rest of the flash are closed areas among the candidates of the geometric method.
+# Reach sets and reciprocal avoidance have limits of their own, on top of what the image had without them. Of the rest, 8 KiB of the RAM are
+# the threat set, and 2 KiB of the flash are closed areas among the candidates of the geometric method.
 LIMITS = {"flash": 664 * 1024, "flash of the rest": 330 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 80 * 1024,
           "static RAM with its stack": 112 * 1024, "static RAM of the rest": 80 * 1024, "reach planner": 32 * 1024, "reciprocal planner": 16 * 1024,
           "stack": 12 * 1024, "core-coupled": 64 * 1024}
