@@ -2,7 +2,11 @@
 #pragma once
 
 // Which methods an image is built with: JINK_METHODS of CMake, which defines JINK_WITHOUT_... for each that is left
-// out. Every unit of an image has to be compiled with the same ones.
+// out. Every unit of an image has to be compiled with the same ones; those that do not read this header are compiled
+// once for all.
+#ifdef JINK_OF_ANY_METHODS
+#error "firmware/CMakeLists.txt: this source belongs to jink_app_of_methods"
+#endif
 
 namespace jink::app {
 

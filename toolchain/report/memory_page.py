@@ -29,12 +29,12 @@ def _images(m):
 
 
 def _fewer(m):
-    columns = [(t, k) for t in memory_sizes.IMAGES for k in ("flash", "static RAM with its stack")]
-    yield row("image [bytes]", *(f"{t}: {k.split(' with')[0]}" for t, k in columns))
-    yield row(*["---"] * 5)
-    yield row("all three methods", *(number(m["targets"][t][k]) for t, k in columns))
+    board, columns = m["targets"][memory_sizes.FEWER_ON], ("flash", "static RAM with its stack")
+    yield row(f"image of {memory_sizes.FEWER_ON} [bytes]", *columns)
+    yield row(*["---"] * 3)
+    yield row("all three methods", *(number(board[k]) for k in columns))
     for name, _ in memory_sizes.FEWER.values():
-        yield row(name, *(number(m["targets"][t]["fewer methods"][name][k]) for t, k in columns))
+        yield row(name, *(number(board["fewer methods"][name][k]) for k in columns))
 
 
 def _stacks(m):
