@@ -79,22 +79,4 @@ bool is_valid(const Airframe& airframe) noexcept
            is_positive(airframe.rotor_radius) && is_positive(airframe.rotors) && is_positive(airframe.air_density);
 }
 
-VehicleLimits uav2_limits() noexcept
-{
-    VehicleLimits limits;
-    limits.cruise_speed = 15.0F;
-    limits.max_climb = 8.0F;
-    limits.max_descent = 8.0F;
-    return limits;
-}
-
-Airframe uav2_airframe() noexcept
-{
-    Airframe airframe;
-    airframe.mass = 10.0F;
-    airframe.drag_coefficient = 0.8F;
-    airframe.effective_area = 10.0F;
-    return airframe;
-}
-
 }  // namespace jink::vehicle

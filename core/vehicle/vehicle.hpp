@@ -84,8 +84,4 @@ void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limi
 [[nodiscard]] bool is_valid(const VehicleLimits& limits) noexcept;
 [[nodiscard]] bool is_valid(const Airframe& airframe) noexcept;
 
-/// The source's second vehicle (Pinheiro tab. 4.5); rotor data as the default where the source gives none.
-[[nodiscard]] VehicleLimits uav2_limits() noexcept;
-[[nodiscard]] Airframe uav2_airframe() noexcept;
-
 }  // namespace jink::vehicle

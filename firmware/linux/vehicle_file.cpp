@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "firmware/vehicles/uav2/vehicle.hpp"
+
 namespace jink::files {
 namespace {
 

@@ -12,6 +12,7 @@
 #include "core/base/random.hpp"
 #include "firmware/vehicles/default/cost_tables.hpp"
 #include "firmware/vehicles/uav2/cost_tables.hpp"
+#include "firmware/vehicles/uav2/vehicle.hpp"
 #include "tests/oracle/cost_oracle.hpp"
 
 namespace jink::cost::tables {

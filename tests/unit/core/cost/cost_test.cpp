@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/cost/cost.hpp"
+#include "firmware/vehicles/uav2/vehicle.hpp"
 
 #include <gtest/gtest.h>
 

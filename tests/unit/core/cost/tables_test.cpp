@@ -9,6 +9,7 @@
 #include "core/geometric/planner.hpp"
 #include "firmware/vehicles/default/cost_tables.hpp"
 #include "firmware/vehicles/uav2/cost_tables.hpp"
+#include "firmware/vehicles/uav2/vehicle.hpp"
 #include "tests/numbers.hpp"
 
 namespace jink::cost::tables {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/vehicle/vehicle.hpp"
+#include "firmware/vehicles/uav2/vehicle.hpp"
 #include "tests/numbers.hpp"
 
 #include <gtest/gtest.h>
