@@ -7,12 +7,12 @@
 #include "core/base/time.hpp"
 #include "core/base/vec3.hpp"
 
-// Shared by the closed forms of sweep.hpp; not meant for other rooms.
+// Private to core/geometry: shared by the closed forms of sweep.hpp.
 //
 // The squared distance of a straight-moving point from a box is convex and piecewise quadratic in time. Its pieces end
-// where a coordinate crosses a face plane: six instants at most. All eight instants of interest (those and both ends)
-// are evaluated at once, unsorted: the piece that holds what is sought lies between the latest one before it and the
-// earliest one after it.
+// where a coordinate crosses a face plane: six instants at most. All eight instants of interest (the six crossings and
+// both ends) are evaluated at once, unsorted. The piece that holds the wanted instant lies between the latest instant
+// before it and the earliest instant after it.
 
 namespace jink::geometry::detail {
 
