@@ -85,7 +85,7 @@ float LidarScan::hindrance(const CellPlace& place) const noexcept
 {
     const float share =
         static_cast<float>(hits_[grid_->index(place)]) / static_cast<float>(rays(place.column, place.row));
-    return std::min(share, 1.0F);  // more points than rays: several returns, or a finer sensor than was said
+    return std::min(share, 1.0F);  // more points than rays: several returns, or a finer sensor than configured
 }
 
 float LidarScan::obstacle(const CellPlace& place, float threshold_area) const noexcept

@@ -10,8 +10,8 @@ namespace jink::reach::detail {
 namespace {
 
 /// Whether the own box's level rectangle comes within `radius` of a barrel's axis while its middle is within `height`
-/// of it: the axis goes straight from `first` to `last` as seen from the own box. Exact but for rounding, which works
-/// to the safe side; what touches counts.
+/// of the barrel's. The axis moves straight from `first` to `last` relative to the own box. Exact but for rounding,
+/// which works to the safe side; touching counts as contact.
 bool touches_between(const NearThreat& barrel, const Vec3& first, const Vec3& last, float radius, float height) noexcept
 {
     constexpr float kSlack = 1e-5F;  // of the heights
