@@ -81,7 +81,7 @@ private:
 /// ring are sent: they complete the message on the wire, and nothing older follows the last words. Then `filler` zeros:
 /// if a message was cut nevertheless, its reader takes the zeros for the rest and is in step again.
 ///
-/// @param registers  of the UART, made anew: the driver's may be damaged
+/// @param registers  of the UART, constructed again: the driver's may be damaged
 /// @param waiting    the driver's ring; ignored if its indices are invalid
 /// @param filler     bytes of the longest message
 /// @param patience   polls per byte; a line that accepts nothing within them ends the sending

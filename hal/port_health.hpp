@@ -17,8 +17,7 @@ struct PortHealth {
     std::uint64_t bytes_in = 0;       ///< handed to the caller by read()
     std::uint64_t bytes_out = 0;      ///< accepted by write(), delivered or not
     std::uint64_t bytes_refused = 0;  ///< refused by write(); offered twice, counted twice
-    std::uint64_t overruns = 0;       ///< losses of received bytes because a buffer was full, as the receiver counts
-                                      ///< them
+    std::uint64_t overruns = 0;       ///< losses of received bytes because a buffer was full, by the receiver's count
     std::uint64_t line_errors = 0;    ///< framing and parity errors, breaks
     std::uint64_t read_errors = 0;    ///< failed reads, except when no data was there
     std::uint64_t write_errors = 0;   ///< failed writes, except when the buffer was full

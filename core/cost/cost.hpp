@@ -97,7 +97,7 @@ struct Waypoints {
 [[nodiscard]] float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept;
 
 /// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the distances between the waypoints and the
-/// threat's centre less its radius; infinity when the denominator is <= 0. swept: distance to the threat's whole path
+/// threat's centre less its radius. Infinity when the denominator is <= 0. swept: distance to the threat's whole path
 /// from 0 to `duration`. Path not empty. O(points).
 [[nodiscard]] float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
 /// The same result to the bit.
@@ -109,7 +109,7 @@ struct Waypoints {
 /// at the waypoint nearest to the threat at the same instant, relative to the threat. The share is (1 + cosine) / 2 of
 /// the angle between this position and the threat's velocity: 0 straight behind the threat, 1 straight in front. The
 /// offset at the closest approach is perpendicular to the relative velocity, so the angle between both courses limits
-/// the choice: head-on (180 degrees) and overtaking give one half on every side, crossing at 90 degrees with equal
+/// the choice. Head-on (180 degrees) and overtaking give one half on every side, crossing at 90 degrees with equal
 /// speeds 0.15 or 0.85.
 struct Passing {
     float share = 0.5F;

@@ -46,10 +46,10 @@ inline constexpr std::uint32_t kUnitsPerQuery =
 
 /// Lower bound of the distance between the swept box and `shape` [m], capped at `reach` [m] >= 0.
 ///
-/// Proven by a separating plane (own GJK distance search in float; libccd gives none), so never above the true
-/// distance, and at most `resolution` [m] >= 0 below it, plus 3e-5 * (sum of magnitudes of the offset, the swept
-/// segment and `half` + bounding radius). 0 when in contact or when the budget ran out. A coarse resolution saves
-/// turns. `budget` as above.
+/// A separating plane proves the bound (own GJK distance search in float; libccd gives none), so the bound is never
+/// above the true distance. It is at most `resolution` [m] >= 0 below the true distance, plus 3e-5 * (sum of magnitudes
+/// of the offset, the swept segment and `half` + bounding radius). 0 when in contact or when the budget ran out. A
+/// coarse resolution saves turns. `budget` as above.
 /// O(kSupportCallsPerQuery * vertices).
 [[nodiscard]] float swept_box_distance(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape,
                                        float reach, float resolution, WorkBudget& budget) noexcept;

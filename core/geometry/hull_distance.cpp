@@ -25,7 +25,7 @@ Vec3 stretched(const Vec3& v, float stretch) noexcept { return {v.x(), v.y(), st
 const Vec3& vector_of(const Vec3& v) noexcept { return v; }
 Vec3 vector_of(const Point3& v) noexcept { return v.vec(); }
 
-/// The vertices seen from `origin`, in the stretched space.
+/// The vertices relative to `origin`, in the stretched space.
 template <class Vertex>
 struct Seen {
     std::span<const Vertex> vertices;

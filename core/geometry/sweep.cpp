@@ -19,8 +19,8 @@ using detail::PastBox;
 constexpr float kSlackShare = 8.0F * 0x1p-24F;
 
 /// Part of [0, horizon] in which the point lies in the box grown by `reach` on every side; empty when first > last.
-/// Outside of it there is no contact; inside, no coordinate exceeds the box by more than `reach`, so that no squares of
-/// far coordinates have to cancel.
+/// Outside the interval there is no contact. Inside, no coordinate exceeds the box by more than `reach`, so that no
+/// squares of far coordinates cancel.
 TimeInterval grown_box_interval(const PastBox& past, float reach, Seconds horizon) noexcept
 {
     TimeInterval inside{0.0F, horizon};

@@ -42,9 +42,9 @@ struct Approach {
 ///
 /// Exact for straight motion but for float rounding, which works to the safe side. With
 /// e = 1e-6 * (sum of the relative position's magnitudes + sum of `half` + radius) [m]:
-/// no contact is missed; a reported contact comes within e of touching; `first` is never later and `last` never earlier
-/// than the true instant (by more than 2.4e-7 * horizon). At both instants the distance exceeds the radius by e at
-/// most, so that an instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s
+/// no contact is missed, and a reported contact comes within e of touching. `first` is never later and `last` never
+/// earlier than the true instant (by more than 2.4e-7 * horizon). At both instants the distance exceeds the radius by e
+/// at most, so that an instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s
 /// count as zero. O(1): six divisions, two roots. Source: Pinheiro 3.4, made time-aware (geometric planner, section 4).
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Vec3& half, const Motion& own, const Motion& threat,
                                                            float radius, Seconds horizon) noexcept;

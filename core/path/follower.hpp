@@ -22,10 +22,10 @@ inline constexpr Seconds kFollowerPeriod = 0.1F;
 /// the planned position at the planned time; so the follower tracks time, not only the line. Past the end: the end
 /// point is held (velocity 0 + correction). Path not empty. O(log points).
 ///
-/// Accuracy, measured with the vehicle model (tests/property/core/path), for a vehicle with a lag of up to 0.4 s on
-/// curves of 25 points: at 0.9 of cruise speed the vehicle stays within 0.25 m of the timed point on curves that use at
-/// most half of the acceleration limits, and within 0.4 m on curves that use all of them; at cruise speed within 0.4 m
-/// and 0.95 m.
+/// Accuracy, measured with the vehicle model (tests/property/core/path) on curves of 25 points, for a vehicle with a
+/// lag of up to 0.4 s. At 0.9 of cruise speed the vehicle stays within 0.25 m of the timed point on curves that use at
+/// most half of the acceleration limits, and within 0.4 m on curves that use all of them. At cruise speed the distances
+/// are 0.4 m and 0.95 m.
 [[nodiscard]] Vec3 follow(const TimedPath& path, Seconds t, const Vec3& position, const vehicle::VehicleLimits& limits,
                           const FollowerGains& gains) noexcept;
 

@@ -65,7 +65,7 @@ void NearThreats::add_cylinder(const world::Threat& threat, const Vec3& own, con
     near_.unchecked_push_back(near);
 }
 
-/// A flat-ended solid: the level distance counts while the heights overlap, as large as it is at the piece's end.
+/// A flat-ended solid: the level distance counts while the heights overlap, with its size at the piece's end.
 Level NearThreats::against_barrel(const NearThreat& barrel, const Piece& piece) const noexcept
 {
     const float shrunk = shrunk_at(barrel.shrunk, piece.end);

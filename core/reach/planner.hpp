@@ -42,7 +42,7 @@ struct Report {
 /// direction: along the nominal path, then to either side. A trajectory at whose end the vehicle could not stop (a
 /// fixed wing flies on) is discarded, and the next best is taken.
 ///
-/// Plans whether or not a threat is in the way. Unlike Gomola's planner, this one never accepts a conflict with an
+/// Plans even without a conflict ahead. Unlike Gomola's planner, this one never accepts a conflict with an
 /// intruder or with closed airspace (a barrel's body): such a trajectory would not pass the final check. A barrel's
 /// margin is entered only where no other trajectory is left.
 ///

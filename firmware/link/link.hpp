@@ -136,7 +136,7 @@ public:
     [[nodiscard]] virtual std::size_t compose_last_words(std::span<std::byte> out, bool hold,
                                                          std::string_view text) noexcept = 0;
 
-    /// The id by which others on this link know us (track_ids.hpp); 0 if unknown or nobody does.
+    /// Our own id to the other systems on this link (track_ids.hpp); 0 if there is none or it is unknown.
     [[nodiscard]] virtual world::TrackId own_track() const noexcept { return 0; }
 
     [[nodiscard]] virtual const LinkDiagnostics& diagnostics() const noexcept = 0;

@@ -68,8 +68,7 @@ struct TrackReport {
     float sigma_position = 0.0F;  ///< [m], 0: not given
     float sigma_velocity = 0.0F;
     world::TrackSource source = world::TrackSource::adsb;
-    bool at_rest =
-        false;  ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
+    bool at_rest = false;   ///< reported as a static obstacle (ADS-B emitter category point, cluster or line obstacle)
     bool unmanned = false;  ///< reports so, or is a vehicle like ours
     bool helpless = false;  ///< reports that it will not give way: disarmed, on the ground, in an emergency
     HeightSource height = HeightSource::geometric;

@@ -290,7 +290,7 @@ Background::Background(const BackgroundFiles& files) : shared_(std::make_shared<
 
 Background::~Background()
 {
-    // Streams first: once told to stop, the thread does one more round and ends.
+    // Streams first: after a stop request the thread does one more pass and ends.
     const auto wait_for = [&](const auto& condition) {
         const std::int64_t end = shared_->clock.now_us() + kFarewell / 2;
         while (!condition() && shared_->clock.now_us() < end) {

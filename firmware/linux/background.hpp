@@ -44,7 +44,7 @@ struct BackgroundCounts {
 /// a terminal. Lines that do not fit are dropped whole and counted: kLines lines of kLineBytes wait per stream, and
 /// kBacklog bytes in the thread. A stream that accepts nothing delays neither the other stream nor the files.
 ///
-/// Memory: 16 KiB per stream and the backlog; the areas of a file twice while they are handed over.
+/// Memory: 16 KiB per stream and the backlog; the areas of a file twice during the transfer.
 class Background {
 public:
     static constexpr std::size_t kLines = 32;
@@ -89,7 +89,7 @@ private:
 /// Prints to standard error, before there is a Background: waits at most 0.1 s for a stream that accepts nothing.
 void complain_now(std::string_view line);
 
-/// Writes a file without waiting for a reader: a FIFO that nobody reads, a full disk or a folder is a failure.
+/// Writes a file without waiting for a reader: a FIFO without a reader, a full disk or a folder is a failure.
 [[nodiscard]] bool write_file(const std::string& path, std::string_view text);
 
 }  // namespace jink::host

@@ -101,7 +101,7 @@ bool LinuxWatchdog::notify(std::string_view message) noexcept
         to.sun_path[0] = '\0';
     }
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + notify_address_size_);
-    // Addressed anew each time, so that a manager that has recreated its socket is found.
+    // Addressed again each time, so that a manager that has recreated its socket is found.
     const ssize_t sent =
         ::sendto(notify_socket_, message.data(), message.size(), MSG_NOSIGNAL, reinterpret_cast<sockaddr*>(&to), size);
     const bool ok = sent == static_cast<ssize_t>(message.size());

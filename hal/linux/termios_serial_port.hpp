@@ -28,7 +28,7 @@ enum class OpenStatus : std::uint8_t {
 
 /// Serial device or pty of Linux: raw, 8 data bits, no parity, 1 stop bit, no flow control, any baud rate.
 ///
-/// A device that vanishes (unplugged, other end of a pty closed) makes the port `lost`; `service()` then tries to open
+/// A device that vanishes (unplugged, other end of a pty closed) makes the port `lost`. `service()` then tries to open
 /// the same path again, first at once and then once per retry period, until it succeeds or `close()` is called. Bytes
 /// that the kernel still held at that instant, in either direction, are lost and not counted.
 ///

@@ -30,8 +30,7 @@ struct LineFaults {
     std::uint32_t corruption_per_million = 0;    ///< chance that one bit of a byte is flipped, 0 .. 1'000'000
     std::int64_t latency_us = 0;                 ///< time from write to readable [us], >= 0
     std::size_t capacity = kMemoryLineCapacity;  ///< bytes in transit at once, 0 .. kMemoryLineCapacity
-    bool back_pressure = true;  ///< when full: true, write accepts less (pty, USB); false, bytes are overrun as on a
-                                ///< bare UART
+    bool back_pressure = true;  ///< full: write accepts less (pty, USB); false: bytes are overrun as on a bare UART
 };
 
 /// Counters of the bytes of one direction. taken = delivered + lost + overrun + discarded + queued, always.

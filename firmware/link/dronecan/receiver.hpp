@@ -38,7 +38,7 @@ struct ReceiverDiagnostics {
     std::uint32_t standard_id = 0;  ///< 11 bits
     std::uint32_t remote = 0;
     std::uint32_t bad_length = 0;  ///< no byte, or more than eight
-    std::uint32_t bad_id = 0;      ///< over 29 bits, or a service from or to nobody
+    std::uint32_t bad_id = 0;      ///< over 29 bits, or a service without source or destination
     // Frames that do not fit into a transfer; except for the first cause, the transfer under way is dropped:
     std::uint32_t missed_start = 0;
     std::uint32_t wrong_toggle = 0;  ///< a frame is missing, or Cyphal's
@@ -57,7 +57,7 @@ struct ReceiverDiagnostics {
 };
 
 /// Assembles frames to transfers. A transfer is delivered once and exactly as sent, or not at all, with one limit of
-/// the protocol: two or more whole frames that are missing from (or exchanged within) one transfer are undetected if
+/// the protocol. Two or more whole frames that are missing from (or exchanged within) one transfer are undetected if
 /// toggle bits and the 16-bit CRC happen to match.
 ///
 /// Memory: 24 * kSessions + 400 * kAssemblies bytes and some, 4.1 KiB in all. Nothing is allocated.

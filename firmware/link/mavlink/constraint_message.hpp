@@ -8,7 +8,7 @@
 // by byte: 1, an area of a set, 48 bytes; 2, the answer to it, 5 bytes. Unknown versions and kinds and other lengths
 // are refused, so that no payload is partly read.
 //
-// Ages in place of times: no clocks have to agree. The line's delay is not subtracted.
+// Ages in place of times: no clock synchronisation is needed. The line's delay is not subtracted.
 
 namespace jink::link::mavlink {
 
