@@ -61,7 +61,7 @@ inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is mad
 inline constexpr std::uint32_t kRoutePoint = 4;      ///< more, where it follows a route
 inline constexpr std::uint32_t kRoute = 100;         ///< checks of an attempt along a route before its curves
 inline constexpr std::uint32_t kCostPoint = 1;       ///< of a curve that is costed
-/// Each waypoint and moving threat of one that is costed: a third of a unit.
+/// Each waypoint and moving threat of a curve that is costed: a third of a unit.
 constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) noexcept
 {
     return static_cast<std::uint32_t>(points * moving + 2) / 3;

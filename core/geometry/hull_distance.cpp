@@ -291,7 +291,7 @@ Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcep
         return offset + stretched(geometry::support(centred, stretched(direction, stretch)), stretch);
     };
     Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
-    // A normal of the unstretched space becomes one of the stretched space by S^-1.
+    // A normal of the unstretched space is mapped to the stretched space by S^-1.
     const Vec3 local = shape.axes.transpose() * (point - shape.centre);
     try_exit(support, stretched(-to_axis(point, shape), 1.0F / stretch), best);
     try_exit(support, stretched(shape.axes * Vec3(local.x(), local.y(), 0.0F), 1.0F / stretch), best);

@@ -93,7 +93,7 @@ struct Exit {
 /// O(vertices).
 [[nodiscard]] Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcept;
 
-/// Units of work of one turn of a search on a hull, or on a shape.
+/// Work units of one turn of a search on a hull, or on a shape.
 [[nodiscard]] constexpr std::uint32_t distance_turn_units(std::size_t vertices) noexcept
 {
     return units::kSearchTurn + units::hull_units(vertices);

@@ -30,7 +30,7 @@ inline constexpr std::size_t kMaxMeshDepth = 20;
 inline constexpr float kMaxMeshCoordinate = 1000.0F;
 /// Version of the stored format; any other version is refused.
 inline constexpr std::uint16_t kMeshVersion = 1;
-/// How far a vertex may lie beyond one of the faces of its piece [m]: normals are rounded, 6e-8 of a kilometre each.
+/// Largest distance of a vertex beyond a face of its piece [m]: normals are rounded, 6e-8 of a kilometre each.
 inline constexpr float kFaceTolerance = 1e-3F;
 
 /// One convex piece: the hull of its vertices.

@@ -19,7 +19,7 @@ namespace jink::geometry::detail {
 /// The two ends of an interval and the six instants at which a coordinate crosses a face plane, in no order.
 using Instants = Eigen::Array<float, 8, 1>;
 
-/// Speed below which a component counts as zero: its square would vanish, and it moves nothing within any horizon.
+/// Speed below which a component counts as zero: its square would underflow, and the motion within any horizon is nil.
 inline constexpr float kAtRest = 1e-18F;
 
 /// A point moving straight past the box |x_i| <= half_i.
@@ -68,7 +68,7 @@ public:
         return sum;
     }
 
-    /// Both ends of [0, length] and the crossings, those outside moved to an end.
+    /// Both ends of [0, length] and the crossings; crossings outside the interval are moved to an end.
     [[nodiscard]] Instants instants(Seconds length) const noexcept
     {
         Instants t;

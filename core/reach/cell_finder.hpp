@@ -51,7 +51,7 @@ public:
         return {LocateStatus::inside, place};
     }
 
-    /// Most points of one `locate_all`.
+    /// Capacity of one `locate_all`.
     static constexpr std::size_t kAtOnce = 2 * kMaxLayers;
     using Coordinates = std::array<float, kAtOnce>;
 

@@ -8,7 +8,7 @@
 namespace jink::reach {
 namespace {
 
-/// Rays of a scanner with `pitch` between neighbours whose direction lies in (from, to]: one of them is at 0.
+/// Rays of a scanner with `pitch` between neighbours whose direction lies in (from, to]; one ray points at 0.
 std::uint32_t rays_between(float from, float to, float pitch) noexcept
 {
     constexpr float kTolerance = 1e-4F;  // of a pitch: faces on which rays lie belong to the cell before

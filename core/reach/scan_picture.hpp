@@ -21,7 +21,7 @@ struct ScanStart {
     float vertical_pitch = 0.0F;
 };
 
-/// Memory: that of a LidarScan twice, about 7 KiB: one is filled while the other one is read.
+/// Memory: that of two LidarScans, about 7 KiB: one is filled while the other is read.
 class ScanPicture final : public CellSource {  // NOLINT(cppcoreguidelines-virtual-class-destructor): final
 public:
     /// Additional columns to either side of a set's, so that the course may change between scan and plan.

@@ -17,7 +17,7 @@ namespace jink::reach {
 /// The sets for one state segment: both share one grid and one step.
 struct SegmentSets {
     const ReachSet* navigation = nullptr;  ///< smooth trajectories, few nodes
-    const ReachSet* emergency = nullptr;   ///< many trajectories, those that leave the grid sideways among them
+    const ReachSet* emergency = nullptr;   ///< many trajectories, including trajectories that leave the grid sideways
     /// The tables are of the root with the opposite pitch: z, pitch and the grid's rows change their sign when they are
     /// read, and movements up and down change places (`upside_down` below).
     bool upside_down = false;

@@ -54,7 +54,7 @@ inline Decay decay(float squared_error, float lag, float limit, Seconds dt, Fadi
     const float knee = limit * lag;
     if (squared_error <= knee * knee) {
         if (lag <= 0.0F) {
-            return {};  // there is no error
+            return {};  // zero error
         }
         const float rest = fading(dt);  // in [-1, 0]
         return {1.0F + rest, -lag * rest};

@@ -11,7 +11,7 @@ namespace jink::link {
 /// Properties of a scan that are known before its first ray.
 struct CloudScan {
     TimePoint stamp;                  ///< of the scan, on our clock
-    std::uint8_t sensor = 0;          ///< as the sender numbers it
+    std::uint8_t sensor = 0;          ///< the sender's number
     float ray_pitch_level = 0.0F;     ///< between neighbouring rays of a row [rad]; 0: not given
     float ray_pitch_vertical = 0.0F;  ///< between rows [rad]; 0: not given
     float max_range = 0.0F;           ///< range up to which `Ray::nothing` is empty [m], > 0

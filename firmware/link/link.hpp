@@ -73,7 +73,7 @@ struct LinkDiagnostics {
     std::uint32_t keys_refused = 0;        ///< unsigned, armed, or without a place to store them
 };
 
-/// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
+/// A link to the autopilot, independent of the wire format. The application moves bytes between the link and a port.
 ///
 /// Nothing here blocks or allocates. Messages to send are queued in a bounded transmit buffer; a message that does not
 /// fit is dropped whole and counted.

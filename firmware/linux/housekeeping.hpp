@@ -25,7 +25,7 @@ struct SigningFiles {
 /// waits. All references outlive this.
 class Housekeeping {
 public:
-    /// @param given  hash of the key file's key, as the signing state holds it
+    /// @param given  hash of the key file's key, as in the signing state
     Housekeeping(Background& background, app::Coprocessor& coprocessor, const link::mavlink::Endpoint& endpoint,
                  const link::mavlink::Signing& signing, const files::SigningKey& given)
         : background_(background), coprocessor_(coprocessor), endpoint_(endpoint), signing_(signing), given_(given),

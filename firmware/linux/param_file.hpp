@@ -9,7 +9,7 @@
 #include "firmware/app/parameters.hpp"
 #include "firmware/linux/complaint.hpp"
 
-// Parameter files as ArduPilot's ground stations write them: one `NAME,VALUE` or `NAME VALUE` per line, `#` starts a
+// Parameter files in the format of ArduPilot's ground stations: one `NAME,VALUE` or `NAME VALUE` per line, `#` starts a
 // comment.
 
 namespace jink::files {

@@ -20,7 +20,7 @@ enum class WatchdogStatus : std::uint8_t {
     failed,           ///< any other error of the system
 };
 
-/// Outlets of one feed on Linux: the kernel's watchdog device, the service manager, both or neither.
+/// Watchdogs fed on Linux: the kernel's watchdog device, the service manager, both or neither.
 ///
 /// The device resets the machine. The service manager restarts the program: the protocol is one datagram "WATCHDOG=1"
 /// to the socket named in $NOTIFY_SOCKET (sd_notify(3)), in a unit with Type=notify and WatchdogSec.
@@ -37,7 +37,7 @@ public:
     LinuxWatchdog(const LinuxWatchdog&) = delete;
     LinuxWatchdog& operator=(const LinuxWatchdog&) = delete;
 
-    /// Opens and so arms a device such as /dev/watchdog0.
+    /// Opens and thereby arms a device such as /dev/watchdog0.
     /// @param timeout_s  time until it acts [s], > 0; the driver may round the time, see `device_timeout_s()`
     [[nodiscard]] WatchdogStatus open_device(std::string_view path, int timeout_s) noexcept;
 

@@ -36,9 +36,9 @@ enum class CanOpenStatus : std::uint8_t {
 };
 
 struct SocketCanOptions {
-    bool fd = false;                       ///< FD frames too; the interface must be set up for them (its MTU is 72)
+    bool fd = false;                       ///< FD frames too; the interface must be configured for them (its MTU is 72)
     std::span<const CanFilter> filters{};  ///< none: all frames pass
-    int receive_buffer = 0;                ///< bytes, as the kernel counts them; 0: the system's default
+    int receive_buffer = 0;                ///< bytes, in the kernel's count; 0: the system's default
 };
 
 /// CAN controller of Linux (SocketCAN, raw protocol). The system sets bit rate and restart time.

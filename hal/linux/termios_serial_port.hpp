@@ -54,7 +54,7 @@ public:
     void close() noexcept;
 
     /// Detects a lost device, reads the driver's error counters, tries to reopen. Call once per tick.
-    /// O(1) system calls; opening a device takes what its driver takes (microseconds to few milliseconds).
+    /// O(1) system calls; opening a device takes the driver's time (microseconds to few milliseconds).
     void service(std::int64_t now_us) noexcept;
 
     [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override;

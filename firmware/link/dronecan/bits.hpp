@@ -50,7 +50,7 @@ private:
     std::size_t position_ = 0;
 };
 
-/// Reads what BitWriter writes.
+/// Reads the format of BitWriter.
 class BitReader {
 public:
     explicit constexpr BitReader(std::span<const std::byte> in) noexcept : in_(in) {}

@@ -38,7 +38,7 @@ inline constexpr std::array kSent{
 }
 
 struct NodeOptions {
-    std::uint8_t node = kAnonymous;  ///< fixed node id 1 .. 127; kAnonymous: asks the bus's allocator for one
+    std::uint8_t node = kAnonymous;  ///< fixed node id 1 .. 127; kAnonymous: requests an id from the bus's allocator
     std::uint8_t preferred = 0;      ///< to request from the allocator; 0: any
     std::uint64_t seed = 1;          ///< of the allocation's random waits: differs between devices (from the unique id)
     std::string_view name = "org.jink.coprocessor";  ///< at most 80 characters; must outlive the node

@@ -19,7 +19,7 @@ static_assert(kSessions >= 1 && kSessions <= 128 && kAssemblies >= 1 && kAssembl
 /// A transfer must be complete this long after its first frame; for as long the same transfer id is a repetition.
 inline constexpr Seconds kTransferTimeout = 2.0F;
 
-/// A whole payload as it was sent.
+/// A complete payload.
 struct Transfer {
     TypeInfo type{};
     std::uint8_t source = kAnonymous;
@@ -84,10 +84,10 @@ private:
     struct Session {
         bool used = false;
         bool heard = false;             ///< a transfer was delivered
-        std::uint8_t transfer = 0;      ///< id of the last one delivered
+        std::uint8_t transfer = 0;      ///< id of the last transfer delivered
         std::uint8_t assembly = kNone;  ///< index of the transfer being assembled
         std::uint32_t key = 0;
-        TimePoint began;    ///< the last one delivered
+        TimePoint began;    ///< the last transfer delivered
         TimePoint touched;  ///< last frame
     };
     struct Assembly {

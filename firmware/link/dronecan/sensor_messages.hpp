@@ -62,7 +62,7 @@ struct TrafficReport {
     static constexpr std::uint8_t kGeometricAltitude = 2;  ///< ALT_TYPE_WGS84
     std::uint64_t stamp = 0;                               ///< [us], 56 bits; 0: not given
     std::uint32_t icao = 0;
-    std::uint16_t tslc = 0;                    ///< [s] since it was last heard
+    std::uint16_t tslc = 0;                    ///< time since the last reception [s]
     std::int32_t latitude = 0, longitude = 0;  ///< [deg 1e-7]
     float altitude = 0.0F;                     ///< [m]
     float heading = 0.0F;                      ///< [rad]

@@ -32,7 +32,7 @@ constexpr float kCorner = 15.0F;
 /// ArduPlane accepts a waypoint at WP_RADIUS (90 m by default) or its L1 distance, whichever is less: 4.1 s of flight
 /// with NAVL1_PERIOD 17 (AP_L1_Control::turn_distance), and MISSION_CURRENT follows up to 0.5 s later [m].
 constexpr float kPlaneCorner = 120.0F;
-/// MISSION_ITEM_REACHED and MISSION_CURRENT of one switch come this close to each other [s].
+/// MISSION_ITEM_REACHED and MISSION_CURRENT of one switch arrive within this time of each other [s].
 constexpr Seconds kSwitchTime = 3.0F;
 /// A loiter or landing item counts as flown to its place until this near [m].
 constexpr float kArrival = 3.0F;

@@ -220,7 +220,8 @@ void MissionClient::compare(const MissionItem& item, TimePoint now) noexcept
 
 void MissionClient::store(std::uint16_t sequence, MissionItem item, float param1, float param2) noexcept
 {
-    // Types 0 and 1 are airspeed and ground speed; a copter has one for both. -1: no change; -2: the vehicle's own.
+    // Types 0 and 1 are airspeed and ground speed; a copter has one speed for both. -1: no change; -2: the vehicle's
+    // own.
     if (item.command == kDoChangeSpeed && (param1 == 0.0F || param1 == 1.0F)) {
         const bool said = param2 > 0.0F && param2 < kLargestSpeed;
         speed_ = said ? param2 : param2 == -1.0F ? speed_ : 0.0F;

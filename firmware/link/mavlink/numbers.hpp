@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-// Numbers of MAVLink's enumerations that more than one part of Endpoint needs.
+// Numbers of MAVLink's enumerations that several parts of Endpoint use.
 
 namespace jink::link::mavlink {
 
