@@ -12,7 +12,7 @@ namespace jink::hal {
 [[nodiscard]] constexpr std::uint32_t baud_divider(std::uint32_t clock_hz, std::uint32_t baud, std::uint32_t least,
                                                    std::uint32_t largest) noexcept
 {
-    constexpr std::uint32_t kTolerance = 50;  // one part in 50
+    constexpr std::uint32_t kTolerance = 50;  // inverse of the permitted relative error
     const std::uint32_t divider = baud > 0 ? (clock_hz + baud / 2U) / baud : 0;
     if (divider < least || divider > largest) {
         return 0;

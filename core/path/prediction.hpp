@@ -25,8 +25,7 @@ struct Sagitta {
 struct Prediction {
     TimedPath path;
     StaticVector<Sagitta, kMaxPathPoints> sagittas;  ///< of the chord that begins at the point of the same index
-    Vec3 velocity = Vec3::Zero();                    ///< at the last point [m/s]; the path's last velocity is its
-                                                     ///< chord's
+    Vec3 velocity = Vec3::Zero();                    ///< at the last point [m/s]; the path holds the chord's
 };
 
 /// Writes a flight of the vehicle model into a Prediction, chord by chord.
