@@ -16,14 +16,14 @@ struct CanFrame {
 
     std::uint32_t id = 0;          ///< 11 or 29 bits
     bool extended = false;         ///< 29 bits
-    bool remote = false;           ///< a request for data: no data of its own
+    bool remote = false;           ///< a remote frame: no data of its own
     bool fd = false;               ///< CAN FD: up to 64 bytes
     bool bit_rate_switch = false;  ///< FD: the data at the higher rate
-    std::uint8_t length = 0;       ///< bytes; FD knows 0..8, 12, 16, 20, 24, 32, 48, 64 only
+    std::uint8_t length = 0;       ///< bytes; FD allows 0..8, 12, 16, 20, 24, 32, 48, 64 only
     std::array<std::byte, kFdBytes> data{};
 };
 
-/// Lengths that a frame can have on the wire.
+/// Lengths that a frame may have on the wire.
 [[nodiscard]] constexpr bool is_valid_length(bool fd, std::size_t length) noexcept
 {
     if (length <= CanFrame::kClassicBytes) {
@@ -33,7 +33,7 @@ struct CanFrame {
                   length == 64);
 }
 
-/// Everything in range.
+/// Whether id and length are in range.
 [[nodiscard]] constexpr bool is_valid(const CanFrame& frame) noexcept
 {
     return frame.id <= (frame.extended ? CanFrame::kExtendedMask : CanFrame::kStandardMask) &&
@@ -42,39 +42,38 @@ struct CanFrame {
 }
 
 enum class CanState : std::uint8_t {
-    closed,         ///< nobody wants it open
+    closed,         ///< not opened
     active,         ///< takes part in the bus
-    error_passive,  ///< does so, but has seen so many errors that it no longer says so
-    bus_off,        ///< the controller has left the bus; it comes back by itself where that is configured
-    down,           ///< the interface is not up, or not there
+    error_passive,  ///< takes part, but after too many errors it may no longer send active error flags
+    bus_off,        ///< the controller has left the bus; it returns by itself if so configured
+    down,           ///< the interface is down or absent
 };
 
-/// What has become of a CAN port so far. Counters only grow.
+/// Counters of a CAN port. They only grow.
 struct CanHealth {
     CanState state = CanState::closed;
     std::uint64_t frames_in = 0;
-    std::uint64_t frames_out = 0;      ///< taken by send(); whether they arrive is the bus's business
-    std::uint64_t frames_refused = 0;  ///< offered to send() and not taken: no room, not open, bus off
-    std::uint64_t frames_bad = 0;      ///< offered to send() with an id or length that no frame can have, or FD on a
-                                       ///< classic bus
-    std::uint64_t overruns = 0;        ///< received frames lost for want of room
-    std::uint64_t bus_errors = 0;      ///< errors that the controller reported: bits, stuffing, acknowledgement, ...
+    std::uint64_t frames_out = 0;      ///< accepted by send(), delivered or not
+    std::uint64_t frames_refused = 0;  ///< refused by send(): queue full, not open, bus off
+    std::uint64_t frames_bad = 0;      ///< refused by send(): invalid id or length, or FD on a classic bus
+    std::uint64_t overruns = 0;        ///< received frames lost because the queue was full
+    std::uint64_t bus_errors = 0;      ///< errors reported by the controller: bits, stuffing, acknowledgement, ...
     std::uint64_t bus_offs = 0;
-    std::uint64_t restarts = 0;  ///< back from bus off
+    std::uint64_t restarts = 0;  ///< returns from bus off
     std::uint64_t read_errors = 0;
     std::uint64_t write_errors = 0;
-    std::uint64_t downs = 0;  ///< times the interface went away
-    std::uint64_t ups = 0;    ///< times it came back
+    std::uint64_t downs = 0;  ///< times the interface was lost
+    std::uint64_t ups = 0;    ///< times the interface returned
 };
 
 /// A CAN controller.
 ///
-/// Nothing here blocks, throws or keeps a pointer to the caller's memory. What is lost is counted in `health()`.
+/// Nothing here blocks, throws or keeps a pointer to the caller's memory. `health()` counts all losses.
 class CanPort {
 public:
-    /// The oldest frame that has arrived; false when there is none. Own frames are not among them. O(1).
+    /// Reads the oldest received frame; false if there is none. Own frames are not received. O(1).
     [[nodiscard]] virtual bool receive(CanFrame& frame) noexcept = 0;
-    /// False, and the frame counted, when it cannot be taken now. O(1).
+    /// Queues a frame; false, and counted, if it cannot be accepted now. O(1).
     [[nodiscard]] virtual bool send(const CanFrame& frame) noexcept = 0;
     [[nodiscard]] virtual CanHealth health() const noexcept = 0;
 

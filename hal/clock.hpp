@@ -5,7 +5,7 @@
 
 namespace jink::hal {
 
-/// Monotonic time. Everything above the ports is given its time from one of these and asks nothing else.
+/// Monotonic time. All code above the ports gets its time from a Clock and uses no other source of time.
 class Clock {
 public:
     /// Microseconds since an arbitrary start; never runs backwards. O(1).

@@ -9,8 +9,8 @@ namespace jink::hal {
 
 /// Clock on a free-running 32-bit hardware counter.
 ///
-/// now_us() has to be called at least once per turn of the counter (172 s at 25 MHz): each call adds what has passed
-/// since the one before, without rounding away ticks. Not for interrupt handlers.
+/// now_us() must be called at least once per turn of the counter (172 s at 25 MHz): each call adds the ticks since the
+/// previous call, without rounding. Not for interrupt handlers.
 class CounterClock final : public Clock {
 public:
     enum class Direction : std::uint8_t { up, down };
@@ -32,7 +32,7 @@ public:
         return static_cast<std::int64_t>(ticks_ / ticks_per_us_ * us_per_tick_);
     }
 
-    /// Ticks since the start, as now_us() saw them last.
+    /// Ticks since the start, as of the last now_us().
     [[nodiscard]] std::uint64_t ticks() const noexcept { return ticks_; }
 
 private:

@@ -7,12 +7,12 @@
 
 namespace jink::hal {
 
-/// The divider that makes `baud` out of a UART's clock; 0 where none within [least, largest] does so within 2 %: the
-/// two ends of an asynchronous line may be 4 % apart, and the other end needs half of it. O(1).
+/// The divider for `baud` from a UART's clock; 0 if no divider within [least, largest] is within 2 %. The two ends of
+/// an asynchronous line may differ by 4 %, and the other end needs half of that. O(1).
 [[nodiscard]] constexpr std::uint32_t baud_divider(std::uint32_t clock_hz, std::uint32_t baud, std::uint32_t least,
                                                    std::uint32_t largest) noexcept
 {
-    constexpr std::uint32_t kTolerance = 50;  // one part in so many
+    constexpr std::uint32_t kTolerance = 50;  // inverse of the permitted relative error
     const std::uint32_t divider = baud > 0 ? (clock_hz + baud / 2U) / baud : 0;
     if (divider < least || divider > largest) {
         return 0;
@@ -22,8 +22,8 @@ namespace jink::hal {
     return error > baud / kTolerance ? 0 : divider;
 }
 
-/// Sends by looking for room, `patience` looks per byte at most: for a fault handler, when nothing else runs any more.
-/// False, and the rest is left, where the line takes nothing. O(from.size() * patience).
+/// Sends by polling for space, at most `patience` polls per byte: for a fault handler, when nothing else runs any more.
+/// False, with the rest unsent, if the line accepts nothing. O(from.size() * patience).
 template <class Uart, RegisterBlock Registers>
 [[nodiscard]] bool send_waiting(Registers registers, std::span<const std::byte> from, std::uint32_t patience) noexcept
 {
@@ -39,12 +39,12 @@ template <class Uart, RegisterBlock Registers>
     return true;
 }
 
-/// What the serial ports that are fed by interrupts share: a ring each way, and their counts. A driver derives from it,
-/// and adds the registers, `start`, its handlers, and for send_waiting() the static `has_room` and `put`.
+/// Common part of the serial ports that are fed by interrupts: a ring each way, and their counters. A driver derives
+/// from it, and adds the registers, `start`, its handlers, and for send_waiting() the static `has_room` and `put`.
 ///
-/// Only a driver's handlers touch its data register; read() and write() touch the rings alone, so neither needs
-/// interrupts to be off. The rings hold 4 KiB in and 1 KiB out: 44 ms and 11 ms of a full line at 921600 baud.
-/// Overruns of the hardware and bytes that find the ring full are counted in `overruns`. Memory: 5.2 KiB.
+/// Only a driver's handlers access its data register; read() and write() access the rings alone, so neither disables
+/// interrupts. The rings hold 4 KiB in and 1 KiB out: 44 ms and 11 ms of a full line at 921600 baud. Overruns of the
+/// hardware and bytes that find the ring full are counted in `overruns`. Memory: 5.2 KiB.
 template <InterruptWake Wake>
 class InterruptSerialPort : public SerialPort {
 public:
@@ -80,21 +80,21 @@ public:
         return health;
     }
 
-    /// What waits to be sent. For the driver's handlers, and for a fault handler with interrupts off.
+    /// Bytes waiting to be sent. For the driver's handlers, and for a fault handler with interrupts off.
     [[nodiscard]] ByteRing<kTransmitBytes>& to_send() noexcept { return to_send_; }
 
 protected:
     ~InterruptSerialPort() = default;
 
     void opened() noexcept { health_.state = PortState::open; }
-    /// From a handler: a byte that arrived.
+    /// Called by a handler: stores a received byte.
     void store(std::byte byte) noexcept
     {
         if (!received_.push(byte)) {
             count_overrun();
         }
     }
-    /// Several handlers may do so, of one priority.
+    /// Several handlers of one priority may call these.
     void count_overrun() noexcept { count(overruns_); }
     void count_line_error() noexcept { count(line_errors_); }
 
@@ -107,7 +107,7 @@ private:
     Wake wake_transmit_;
     ByteRing<kReceiveBytes> received_;
     ByteRing<kTransmitBytes> to_send_;
-    PortHealth health_;  ///< the main program's side of it
+    PortHealth health_;  ///< the main program's part
     std::atomic<std::uint32_t> overruns_{0};
     std::atomic<std::uint32_t> line_errors_{0};
 };

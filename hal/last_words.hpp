@@ -8,11 +8,11 @@
 
 namespace jink::hal {
 
-/// What is to be said when the processor faults: composed beforehand, while everything still works, and sent by a fault
-/// handler that trusts nothing but the check sum.
+/// The bytes to send if the processor faults: composed beforehand, while everything still works, and sent by a fault
+/// handler that relies on nothing but the checksum.
 ///
-/// Two places, written in turn: a fault amid the writing leaves the older words. Without a constructor, so that it can
-/// lie in memory that a reset leaves alone: clear() it before use. 500 bytes.
+/// Two places, written in turn: a fault during writing leaves the older words. No constructor, so that it can lie in
+/// memory that a reset does not clear: clear() it before use. 500 bytes.
 class LastWords {
 public:
     /// Four signed MAVLink frames take 226.
@@ -25,21 +25,21 @@ public:
         newest_ = 0;
     }
 
-    /// Where the next words go. They count from publish() on.
+    /// Buffer for the next words. They are valid from publish() on.
     [[nodiscard]] std::span<std::byte> draft() noexcept { return places_[1U - (newest_ & 1U)].bytes; }
 
-    /// @param size  of the words in draft(), at most kMost; 0: nothing to say
-    /// O(size): a check sum over the words of 4 bytes.
+    /// @param size  of the words in draft(), at most kMost; 0: nothing to send
+    /// O(size): a checksum over 4-byte words.
     void publish(std::size_t size) noexcept
     {
         Place& place = places_[1U - (newest_ & 1U)];
         place.size = size <= kMost ? static_cast<std::uint32_t>(size) : 0;
         place.check = check_of(place);
-        std::atomic_signal_fence(std::memory_order_release);  // whole before it counts
+        std::atomic_signal_fence(std::memory_order_release);  // complete before it is valid
         newest_ = 1U - (newest_ & 1U);
     }
 
-    /// The newest words whose check sum holds; empty where there are none. O(kMost).
+    /// The newest words with a correct checksum; empty if there are none. O(kMost).
     [[nodiscard]] std::span<const std::byte> valid() const noexcept
     {
         for (const std::uint32_t i : {newest_ & 1U, 1U - (newest_ & 1U)}) {
@@ -59,7 +59,7 @@ private:
     };
     static_assert(kMost % sizeof(std::uint32_t) == 0);
 
-    /// Each word is turned by its place and multiplied by an odd number: no change of one word goes unnoticed.
+    /// For each word the sum is rotated and multiplied by an odd number: any change of one word is detected.
     [[nodiscard]] static std::uint32_t check_of(const Place& place) noexcept
     {
         constexpr std::uint32_t kStart = 0x4A4C5731;
@@ -77,15 +77,15 @@ private:
     std::uint32_t newest_;
 };
 
-/// Says last words over a UART by looking for room, with interrupts off. First goes what waits in the driver's ring: it
-/// finishes what is begun on the wire, and nothing older than the last words comes behind them. Then `filler` zeros:
-/// where a message was cut all the same, its reader takes them for the rest and is in step again.
+/// Sends last words over a UART by polling for space, with interrupts off. First the bytes that wait in the driver's
+/// ring are sent: they complete the message on the wire, and nothing older follows the last words. Then `filler` zeros:
+/// if a message was cut nevertheless, its reader takes the zeros for the rest and is in step again.
 ///
-/// @param registers  of the UART, made anew: what the driver holds may be damaged
-/// @param waiting    the driver's ring; passed over where its indices cannot be right
+/// @param registers  of the UART, constructed again: the driver's may be damaged
+/// @param waiting    the driver's ring; ignored if its indices are invalid
 /// @param filler     bytes of the longest message
-/// @param patience   looks for room per byte; a line that takes nothing within them ends it
-/// False where the line took nothing. O((ring + filler + words) * patience) at worst.
+/// @param patience   polls per byte; a line that accepts nothing within them ends the sending
+/// False if the line accepted nothing. O((ring + filler + words) * patience) at worst.
 template <class Uart, RegisterBlock Registers, std::size_t N>
 bool say_last_words(Registers registers, ByteRing<N>& waiting, std::span<const std::byte> words, std::size_t filler,
                     std::uint32_t patience) noexcept

@@ -6,21 +6,21 @@
 namespace jink::hal {
 
 enum class PortState : std::uint8_t {
-    closed,  ///< nobody wants it open
+    closed,  ///< not opened
     open,    ///< carries bytes
-    lost,    ///< should be open and is not: absent, unplugged, refused
+    lost,    ///< should be open but is absent, unplugged or refused
 };
 
-/// What has become of a port so far. Counters only grow; 64 bits do not wrap within the life of the hardware.
+/// Counters of a port. They only grow; 64 bits do not wrap within the life of the hardware.
 struct PortHealth {
     PortState state = PortState::closed;
     std::uint64_t bytes_in = 0;       ///< handed to the caller by read()
-    std::uint64_t bytes_out = 0;      ///< taken by write(); whether they arrive is the line's business
-    std::uint64_t bytes_refused = 0;  ///< offered to write() and not taken; offered twice, counted twice
-    std::uint64_t overruns = 0;       ///< losses of received bytes for want of room, as the receiver counts them
+    std::uint64_t bytes_out = 0;      ///< accepted by write(), delivered or not
+    std::uint64_t bytes_refused = 0;  ///< refused by write(); offered twice, counted twice
+    std::uint64_t overruns = 0;       ///< losses of received bytes because a buffer was full, by the receiver's count
     std::uint64_t line_errors = 0;    ///< framing and parity errors, breaks
-    std::uint64_t read_errors = 0;    ///< reads that failed for another reason than "nothing there"
-    std::uint64_t write_errors = 0;   ///< writes that failed for another reason than "no room"
+    std::uint64_t read_errors = 0;    ///< failed reads, except when no data was there
+    std::uint64_t write_errors = 0;   ///< failed writes, except when the buffer was full
     std::uint64_t open_failures = 0;  ///< attempts to open that failed
     std::uint64_t disconnects = 0;    ///< changes from open to lost
     std::uint64_t reconnects = 0;     ///< changes from lost to open

@@ -7,7 +7,7 @@
 namespace jink::hal {
 
 /// The 32-bit registers of one peripheral, by their offset from its base [bytes]. Drivers are templates over it: on the
-/// target it is the memory itself and costs nothing, in tests a model of the hardware that acts on what it is told.
+/// target it is the memory itself and costs nothing; in tests it is a model of the hardware.
 template <class T>
 concept RegisterBlock = requires(T& block, std::uint32_t offset, std::uint32_t value)
 {
@@ -17,7 +17,7 @@ concept RegisterBlock = requires(T& block, std::uint32_t offset, std::uint32_t v
     block.write(offset, value);
 };
 
-/// Raises an interrupt of the driver by hand.
+/// Raises an interrupt of the driver in software.
 template <class T>
 concept InterruptWake = requires(T& wake)
 {

@@ -11,7 +11,7 @@
 
 namespace jink::hal {
 
-/// Items from one writer to one reader that may interrupt each other: an interrupt handler and the main program.
+/// Queue from one writer to one reader that may interrupt each other: an interrupt handler and the main program.
 ///
 /// Neither side waits. `head_` belongs to the writer and `tail_` to the reader; both only grow (and wrap with the
 /// word), so that full and empty differ. N is a power of two. N * sizeof(T) + 8 bytes.
@@ -21,7 +21,7 @@ class Ring {
     static_assert(std::is_trivially_copyable_v<T>);
 
 public:
-    /// Writer. False (and the item is lost) when full. O(1).
+    /// Writer. Adds an item; false (and the item is lost) when full. O(1).
     bool push(const T& item) noexcept
     {
         const std::uint32_t head = head_.load(std::memory_order_relaxed);
@@ -33,7 +33,7 @@ public:
         return true;
     }
 
-    /// Writer. As many from the start of `from` as there is room for; returns how many. O(from.size()).
+    /// Writer. Adds as many items from the start of `from` as fit; returns their number. O(from.size()).
     std::size_t push(std::span<const T> from) noexcept
     {
         std::uint32_t head = head_.load(std::memory_order_relaxed);
@@ -46,7 +46,7 @@ public:
         return n;
     }
 
-    /// Reader. False when empty. O(1).
+    /// Reader. Removes the oldest item; false when empty. O(1).
     bool pop(T& item) noexcept
     {
         const std::uint32_t tail = tail_.load(std::memory_order_relaxed);
@@ -58,7 +58,7 @@ public:
         return true;
     }
 
-    /// Reader. Fills `into` from its start; returns how many. O(into.size()).
+    /// Reader. Fills `into` from its start; returns the number of items. O(into.size()).
     std::size_t pop(std::span<T> into) noexcept
     {
         std::uint32_t tail = tail_.load(std::memory_order_relaxed);
@@ -70,7 +70,7 @@ public:
         return n;
     }
 
-    /// Either side; the other one may change it at once.
+    /// For either side; the other side may change it at once.
     [[nodiscard]] std::size_t size() const noexcept
     {
         return head_.load(std::memory_order_acquire) - tail_.load(std::memory_order_acquire);

@@ -11,15 +11,15 @@ namespace jink::hal {
 /// A stream of bytes in both directions.
 ///
 /// Nothing here blocks, throws or keeps a pointer to the caller's memory. A port that is not open reads nothing and
-/// takes nothing; what is lost is counted in `health()`.
+/// accepts nothing; `health()` counts all losses.
 class SerialPort {
 public:
     /// Fills `into` from its start with the bytes that have arrived, oldest first.
-    /// @return how many; 0 when there are none. O(into.size()).
+    /// @return number of bytes; 0 if there are none. O(into.size()).
     [[nodiscard]] virtual std::size_t read(std::span<std::byte> into) noexcept = 0;
 
-    /// Takes as many bytes from the start of `from` as there is room for now; the rest is the caller's to keep or drop.
-    /// @return how many were taken, 0 .. from.size(). O(from.size()).
+    /// Accepts as many bytes from the start of `from` as fit now; the caller keeps or drops the rest.
+    /// @return number of bytes accepted, 0 .. from.size(). O(from.size()).
     [[nodiscard]] virtual std::size_t write(std::span<const std::byte> from) noexcept = 0;
 
     [[nodiscard]] virtual PortHealth health() const noexcept = 0;

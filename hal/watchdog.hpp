@@ -3,10 +3,10 @@
 
 namespace jink::hal {
 
-/// Something that acts when it is not fed in time: resets the board, restarts the process, raises an alarm.
+/// Acts when it is not fed in time: resets the board, restarts the process, or raises an alarm.
 class Watchdog {
 public:
-    /// Says that one step was healthy from end to end. Never blocks; a failed feed shows by the watchdog acting. O(1).
+    /// Reports that one step was healthy from end to end. Never blocks; after a failed feed the watchdog acts. O(1).
     virtual void feed() noexcept = 0;
 
 protected:

@@ -3,8 +3,8 @@
 
 namespace jink {
 
-// Sine, cosine and arc tangent from +, -, *, / and comparisons alone: every C library rounds its own in another way,
-// and these give the same bits on every target. Coefficients: Cephes, single precision (Moshier), on [0, pi/4] and [0,
+// Sine, cosine and arc tangent from +, -, *, / and comparisons alone. C libraries differ in their rounding; these
+// functions give the same bits on every target. Coefficients: Cephes, single precision (Moshier), on [0, pi/4] and [0,
 // tan(pi/8)]. Checked against double precision (tests/property/core/base).
 
 struct SineCosine {
@@ -12,7 +12,7 @@ struct SineCosine {
     float cosine = 1.0F;
 };
 
-/// Largest angle that sine_cosine() takes, either way [rad].
+/// Largest magnitude of an angle that sine_cosine() accepts [rad].
 inline constexpr float kMaxAngle = 1000.0F;
 
 /// Sine and cosine of an angle [rad]; both NaN beyond kMaxAngle and for non-finite angles.

@@ -4,12 +4,12 @@
 #include <bit>
 #include <cstdint>
 
-// The checksum of stored tables.
+// Checksum of stored tables.
 
 namespace jink {
 
-/// CRC-32 (IEEE 802.3), bit by bit: tables are checked once, at an image's start, and a table of its own would cost 1
-/// KiB. Numbers go in low byte first on every machine.
+/// CRC-32 (IEEE 802.3), bit by bit. Tables are checked once, when an image starts; a CRC look-up table would cost 1
+/// KiB. Numbers are added low byte first on every machine.
 class Crc {
 public:
     void add(std::uint8_t byte) noexcept

@@ -51,7 +51,7 @@ float natural_log(float value) noexcept
     const auto bits = std::bit_cast<std::uint32_t>(is_subnormal ? value * power_of_two(kMantissaBits) : value);
     int exponent =
         static_cast<int>(bits >> kMantissaBits) - (kBias - 1) - (is_subnormal ? static_cast<int>(kMantissaBits) : 0);
-    // Within [0.5, 1): value is that times 2^exponent.
+    // Within [0.5, 1): value is `fraction` times 2^exponent.
     const auto fraction =
         std::bit_cast<float>((bits & kMantissa) | (static_cast<std::uint32_t>(kBias - 1) << kMantissaBits));
     const bool is_low = fraction < kSqrtHalf;

@@ -7,7 +7,7 @@ namespace jink {
 // core/base/angle.hpp. Coefficients: Cephes, single precision (Moshier). Checked against double precision
 // (tests/property/core/base).
 
-/// 1 - e^-x: what has faded of an error after x time constants, x >= 0 or infinite; NaN for NaN.
+/// 1 - e^-x: share of an error that has decayed after x time constants, x >= 0 or infinite; NaN for NaN.
 ///
 /// Relative error below 2e-7. O(1).
 [[nodiscard]] float faded_share(float x) noexcept;

@@ -5,10 +5,10 @@
 
 namespace jink {
 
-/// Finite and above zero: what a length, a speed or a limit has to be.
+/// Finite and above zero: the requirement on a length, a speed or a limit.
 [[nodiscard]] inline bool is_positive(float value) noexcept { return std::isfinite(value) && value > 0.0F; }
 
-/// Finite and not below zero: what a margin, a weight or a rate has to be.
+/// Finite and not below zero: the requirement on a margin, a weight or a rate.
 [[nodiscard]] inline bool is_not_negative(float value) noexcept { return std::isfinite(value) && value >= 0.0F; }
 
 }  // namespace jink

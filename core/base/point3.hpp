@@ -5,7 +5,7 @@
 
 namespace jink {
 
-/// Three numbers in a constant table: Eigen's vectors are set at run time and would lie in RAM.
+/// Three numbers in a constant table. Eigen's vectors are initialised at run time and would lie in RAM.
 struct Point3 {
     float x = 0.0F;
     float y = 0.0F;

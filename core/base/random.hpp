@@ -7,7 +7,7 @@ namespace jink {
 
 /// Deterministic random numbers, the same on every target (SplitMix64: Steele, Lea & Flood 2014).
 ///
-/// Not for secrets. State 8 bytes, period 2^64, O(1) per number.
+/// Not cryptographically secure. State 8 bytes, period 2^64, O(1) per number.
 class Random {
 public:
     explicit constexpr Random(std::uint64_t seed) noexcept : state_(seed) {}

@@ -12,7 +12,7 @@ namespace jink {
 /// Vector of at most N elements stored in place; named and shaped like C++26 `inplace_vector`, without exceptions.
 ///
 /// Elements are trivially destructible and default constructible: the storage is a plain array, N * sizeof(T) bytes
-/// plus one counter. Adding to a full one is refused by `try_push_back`, never silent.
+/// plus one counter. `try_push_back` refuses an element when the vector is full.
 template <class T, std::size_t N>
 class StaticVector {
     static_assert(N >= 1);
@@ -38,14 +38,14 @@ public:
         return true;
     }
 
-    /// Adds `value` where the caller has made sure that there is room (asserted in debug builds).
+    /// Adds `value`. Precondition: the vector is not full (asserted in debug builds).
     constexpr void unchecked_push_back(const T& value) noexcept
     {
         assert(!full());
         items_[size_++] = value;
     }
 
-    /// Removes element `i` by moving the last one into its place: O(1), order is lost.
+    /// Removes element `i` by moving the last element into its place. O(1); the order changes.
     constexpr void swap_erase(std::size_t i) noexcept
     {
         assert(i < size_);
@@ -60,7 +60,7 @@ public:
     }
     constexpr void clear() noexcept { size_ = 0; }
 
-    /// Sets the size; new elements keep whatever the storage held. n <= N.
+    /// Sets the size; new elements keep the previous content of the storage. n <= N.
     constexpr void resize(std::size_t n) noexcept
     {
         assert(n <= N);

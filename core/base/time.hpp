@@ -16,7 +16,8 @@ struct TimePoint {
     friend constexpr auto operator<=>(const TimePoint&, const TimePoint&) noexcept = default;
 };
 
-/// later - earlier [s]; negative when `later` lies before. Exact to 1 us up to 16 s, to 1e-7 relative beyond.
+/// later - earlier [s]; negative when `later` is the earlier instant. Exact to 1 us up to 16 s, to 1e-7 relative
+/// beyond.
 [[nodiscard]] constexpr Seconds operator-(TimePoint later, TimePoint earlier) noexcept
 {
     return static_cast<Seconds>(later.us - earlier.us) * 1e-6F;

@@ -13,7 +13,7 @@ using Vec3 = Eigen::Vector3f;
 using Mat3 = Eigen::Matrix3f;
 
 inline constexpr float kPi = 3.14159265358979323846F;
-/// Standard gravity [m/s2] as the geometric planner's source rounds it.
+/// Standard gravity [m/s2] as Pinheiro rounds it.
 inline constexpr float kGravity = 9.81F;
 
 /// True when no component is NaN or infinite.

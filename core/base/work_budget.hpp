@@ -5,17 +5,17 @@
 
 namespace jink {
 
-/// Units of work that a computation may still spend.
+/// Work units that a computation may still spend.
 ///
-/// One unit stands for about 100 instructions of a Cortex-M7. What each kind of work costs is said by weights
-/// (work_units.hpp, and core/geometric for its candidates), before it is done; no work takes more than 160 instructions
-/// a unit in any recorded case, on the Cortex-M7 and on the Cortex-M4F, which pays more for doubles in software. So a
-/// budget bounds the instructions of what it counts: `units` * 160. Never time, so results do not depend on the
-/// machine; with the same weights they are the same, and where doubles are in software they differ only where a budget
-/// runs out.
+/// One work unit stands for about 100 instructions of a Cortex-M7. Weights (work_units.hpp, and core/geometric for its
+/// candidates) say the cost of each kind of work before the work is done. No work takes more than 160 instructions a
+/// unit in any recorded case, on the Cortex-M7 and on the Cortex-M4F, whose weights are higher for doubles in software.
+/// So a budget bounds the instructions of the work that it counts: `units` * 160. The budget never measures time, so
+/// results do not depend on the machine. With the same weights results are the same. Where doubles are in software,
+/// results differ only where a budget runs out.
 ///
-/// A method that finds its budget spent stops and answers with what is safe to say, never with a guess: what was not
-/// looked at to the end counts as contact.
+/// A method whose budget is spent stops and gives a conservative answer: whatever it has not checked completely counts
+/// as contact.
 class WorkBudget {
 public:
     explicit constexpr WorkBudget(std::uint32_t units) noexcept : left_(units) {}

@@ -4,14 +4,15 @@
 #include <cstddef>
 #include <cstdint>
 
-// What work costs, in the units of WorkBudget: about 100 instructions of a Cortex-M7 each, and never more than 160.
-// A weight is what the costliest way through its code takes, not the usual one. toolchain/report/units counts them
-// anew.
+// Cost of each kind of work, in the units of WorkBudget: about 100 instructions of a Cortex-M7 each, and never more
+// than 160. A weight is the cost of the most expensive path through its code, not of the usual one.
+// toolchain/report/units measures the weights again.
 
 namespace jink::units {
 
-/// Doubles are computed in software: the Cortex-M4F's floating-point unit knows floats alone. Such a target pays more
-/// for what libccd does, so that a budget bounds its time too; all others pay the same and decide the same.
+/// Doubles are computed in software: the Cortex-M4F's floating-point unit supports floats alone. Such a target has a
+/// higher weight for libccd's work, so that a budget bounds its time too. All other targets have the same weights and
+/// decide the same.
 #if defined(__ARM_FP) && (__ARM_FP & 8) == 0
 inline constexpr bool kSoftDoubles = true;
 #else
@@ -22,10 +23,10 @@ inline constexpr bool kSoftDoubles = false;
 inline constexpr std::uint32_t kSphereQuery = 10;   ///< box along a segment against a sphere or an upright capsule
 inline constexpr std::uint32_t kCapsuleQuery = 28;  ///< against a capsule of any direction
 inline constexpr std::uint32_t kSolidQuery = 11;    ///< against any other solid, before the first support call
-/// One turn of libccd's loops: a support call of either solid, and what is made of them, in doubles.
+/// One turn of libccd's loops: a support call of either solid and libccd's work on both results, in doubles.
 inline constexpr std::uint32_t kExactTurn = kSoftDoubles ? 330 : 12;
 inline constexpr std::uint32_t kSearchTurn = 8;  ///< the same of the distance search, in floats
-/// What each turn of either costs more for a hull.
+/// Additional cost of each such turn for a hull.
 constexpr std::uint32_t hull_units(std::size_t vertices) noexcept
 {
     constexpr std::size_t kVerticesPerUnit = 4;
@@ -33,52 +34,52 @@ constexpr std::uint32_t hull_units(std::size_t vertices) noexcept
 }
 
 // --- separation along a path (core/world/separation) ---
-inline constexpr std::uint32_t kPathPiece = 2;    ///< of a path that is looked at
+inline constexpr std::uint32_t kPathPiece = 2;    ///< of a path that is checked
 inline constexpr std::uint32_t kBoundPiece = 1;   ///< and each bound of the airspace
 inline constexpr std::uint32_t kThreat = 3;       ///< track or obstacle
 inline constexpr std::uint32_t kThreatChunk = 2;  ///< and eight pieces at once
 inline constexpr std::uint32_t kThreatPiece = 3;  ///< and one piece of eight that may be near
 inline constexpr std::uint32_t kBallPart = 8;     ///< and part of a piece, where the threat is a sphere
 inline constexpr std::uint32_t kBarrelPart = 6;   ///< or a barrel: both ends of it
-inline constexpr std::uint32_t kBarrelTurn = 3;   ///< and each instant between them that is looked at
+inline constexpr std::uint32_t kBarrelTurn = 3;   ///< and each instant between them that is checked
 
 // --- conflicts (core/world/conflict) ---
-inline constexpr std::uint32_t kConflict = 16;       ///< of the way with a track
+inline constexpr std::uint32_t kConflict = 16;       ///< of the nominal path with a track
 inline constexpr std::uint32_t kConflictPart = 8;    ///< and each half second in which it grows
-inline constexpr std::uint32_t kConflictBall = 9;    ///< of the way with a sphere or an upright capsule
-inline constexpr std::uint32_t kConflictMet = 24;    ///< and what is told of it when it is met
+inline constexpr std::uint32_t kConflictBall = 9;    ///< of the nominal path with a sphere or an upright capsule
+inline constexpr std::uint32_t kConflictMet = 24;    ///< and the details of a conflict that is found
 inline constexpr std::uint32_t kConflictSolid = 10;  ///< with any other obstacle, but for its queries
-inline constexpr std::uint32_t kConflictBarrel = 8;  ///< with a barrel, but for the instants that are looked at
+inline constexpr std::uint32_t kConflictBarrel = 8;  ///< with a barrel, but for the instants that are checked
 
 // --- flights predicted by the supervisor (core/avoid) ---
 inline constexpr std::uint32_t kFlightPart = 4;   ///< a tenth of a second along a path
-inline constexpr std::uint32_t kCommandStep = 3;  ///< a step under a command that is held
+inline constexpr std::uint32_t kCommandStep = 3;  ///< a step under a constant command
 inline constexpr std::uint32_t kTurnStep = 8;     ///< a step of a turn
 
 // --- candidates (core/geometric) ---
 inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is made, each waypoint
 inline constexpr std::uint32_t kRoutePoint = 4;      ///< more, where it follows a route
-inline constexpr std::uint32_t kRoute = 100;         ///< what an attempt along a route looks at before its curves
+inline constexpr std::uint32_t kRoute = 100;         ///< checks of an attempt along a route before its curves
 inline constexpr std::uint32_t kCostPoint = 1;       ///< of a curve that is costed
-/// Each waypoint and moving threat of one that is costed: a third of a unit.
+/// Each waypoint and moving threat of a curve that is costed: a third of a unit.
 constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) noexcept
 {
     return static_cast<std::uint32_t>(points * moving + 2) / 3;
 }
 inline constexpr std::uint32_t kTableLookUp = 8;   ///< length, duration and smoothness of a curve out of the tables
-inline constexpr std::uint32_t kTableEnergy = 24;  ///< its energy, limits binding on all of it
-inline constexpr std::uint32_t kCollected = 1;     ///< threat or obstacle that is seen to be within reach or not
+inline constexpr std::uint32_t kTableEnergy = 24;  ///< its energy, with the limits binding on all of it
+inline constexpr std::uint32_t kCollected = 1;     ///< threat or obstacle whose distance from the reach is checked
 inline constexpr std::uint32_t kItem = 4;          ///< ball that a curve is checked against, all of it far
-inline constexpr std::uint32_t kFarItem = 2;       ///< and one that the whole curve is seen to be out of reach of
-inline constexpr std::uint32_t kBallLook = 2;      ///< a closer look at a segment and a ball
-inline constexpr std::uint32_t kBallLookPart = 1;  ///< and each part of a segment that is looked at by itself
+inline constexpr std::uint32_t kFarItem = 2;       ///< and one whose bounds are out of reach of the whole curve
+inline constexpr std::uint32_t kBallLook = 2;      ///< a closer check of a segment against a ball
+inline constexpr std::uint32_t kBallLookPart = 1;  ///< and each part of a segment that is checked by itself
 inline constexpr std::uint32_t kBallContact = 7;   ///< and an exact contact test
 inline constexpr std::uint32_t kSolidLook = 3;     ///< solid that a curve is checked against, all of it far
 inline constexpr std::uint32_t kSolidSegment = 1;  ///< and each segment of one that may be near
-inline constexpr std::uint32_t kSolidPlanes = 3;   ///< and a closer look at one of these, before any query
+inline constexpr std::uint32_t kSolidPlanes = 3;   ///< and a closer check of such a segment, before any query
 /// All points of a curve against a solid's planes.
 constexpr std::uint32_t points_units(std::size_t points) noexcept { return static_cast<std::uint32_t>(points / 3 + 1); }
-/// By how many shares a solid lengthens the checks of an attempt: as many turns everywhere.
+/// Factor by which a solid lengthens the checks of an attempt: the same number of turns on every target.
 inline constexpr std::uint32_t kSolidShares = kSoftDoubles ? 28 : 1;
 inline constexpr std::uint32_t kCandidatePart = 3;  ///< part of a candidate's flight
 inline constexpr std::uint32_t kCandidateStep = 1;  ///< and each of its points
@@ -87,16 +88,16 @@ inline constexpr std::uint32_t kCandidateStep = 1;  ///< and each of its points
 inline constexpr std::uint32_t kReachMark = 150;     ///< a set that is placed: its cells' balls
 inline constexpr std::uint32_t kReachDepths = 2;     ///< and sixteen of its nodes
 inline constexpr std::uint32_t kReachCells = 2;      ///< and four of its cells and a threat that may come near to them
-inline constexpr std::uint32_t kReachNode = 1;       ///< node that is looked at
-inline constexpr std::uint32_t kReachGlances = 1;    ///< and three threats that may come near, each a look from afar
+inline constexpr std::uint32_t kReachNode = 1;       ///< node that is checked
+inline constexpr std::uint32_t kReachGlances = 1;    ///< and three threats that may come near, each a quick reject
 inline constexpr std::uint32_t kReachLook = 2;       ///< and a ball near it
 inline constexpr std::uint32_t kReachSolid = 6;      ///< or any other solid
-inline constexpr std::uint32_t kReachEntries = 2;    ///< eight entries of footprints, when ways are chosen
-inline constexpr std::uint32_t kReachPath = 30;      ///< way that is made a path, with a stop at its end
+inline constexpr std::uint32_t kReachEntries = 2;    ///< eight entries of footprints, when trajectories are chosen
+inline constexpr std::uint32_t kReachPath = 30;      ///< trajectory that is made a path, with a stop at its end
 inline constexpr std::uint32_t kReachScanCell = 20;  ///< cell of a set or of a scan, when one is laid over the other
 
 // --- maps of convex pieces (core/geometry/mesh_map) ---
-inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is looked at: both its children's boxes
+inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is checked: both its children's boxes
 
 // --- orca ---
 inline constexpr std::uint32_t kOrcaPair = 4;      ///< another vehicle's half-spaces
@@ -105,8 +106,8 @@ inline constexpr std::uint32_t kOrcaPlane = 4;     ///< a plane that is searched
 inline constexpr std::uint32_t kOrcaLine = 4;      ///< and a line
 inline constexpr std::uint32_t kOrcaTurn = 2;      ///< a turn of the search, but for these
 inline constexpr std::uint32_t kOrcaExchange = 8;  ///< a turn of the search among four half-spaces
-inline constexpr std::uint32_t kOrcaWide = 16;     ///< each of these in numbers of twice single precision
-/// Half-spaces looked at.
+inline constexpr std::uint32_t kOrcaWide = 16;     ///< each of these in double-float numbers
+/// Half-spaces checked.
 constexpr std::uint32_t orca_rows(std::size_t rows) noexcept { return static_cast<std::uint32_t>(rows + 3) / 4; }
 
 }  // namespace jink::units

@@ -18,7 +18,7 @@ path::TimedPath fly(const Vec3& leg, const Vec3& side, float offset, const vehic
         positions[i] = u * leg + (offset * u * u * (3.0F - 2.0F * u)) * side;
     }
     path::TimedPath path;
-    // Never refused: the points lie centimetres apart.
+    // Always succeeds: the points lie centimetres apart.
     static_cast<void>(path::make_timed_path(positions, limits.cruise_speed, limits, path));
     return path;
 }

@@ -15,7 +15,7 @@ namespace jink::cost {
 
 /// Integral of squared curvature; or standard deviation of y; or mean |y''| (Pinheiro 4.1.2).
 enum class SmoothnessMethod : std::uint8_t { curvature, deviation, second_derivative };
-/// Distance to the threat's whole path, as the source does; or at the same instant.
+/// Distance to the threat's whole path, as Pinheiro computes it; or at the same instant.
 enum class ClosenessMethod : std::uint8_t { swept, time_aware };
 
 /// Raw terms of one path.
@@ -26,7 +26,7 @@ struct Terms {
     float closeness = 0.0F;             ///< M [1/m]; infinity on contact, 0 with nothing moving
     float energy = 0.0F;                ///< E [J]
     float hover_power = 0.0F;           ///< mean over the path's time [W]
-    float passing = 0.0F;               ///< where moving threats are passed: 0 behind them, 1 in front of them
+    float passing = 0.0F;               ///< side on which moving threats are passed: 0 behind them, 1 in front of them
     float beyond = 0.0F;                ///< time from abeam of the collision point until the end [s]
 };
 
@@ -36,8 +36,8 @@ struct NormalisedTerms {
     float passing = 0.0F, beyond = 0.0F;
 };
 
-/// Weights of S_rp, T and M (Pinheiro eq. 4.35), and of two terms that the source leaves for later: the sum of all is
-/// 1, closeness <= 0.7, time >= 0.1.
+/// Weights of S_rp, T and M (Pinheiro eq. 4.35), and of two terms that Pinheiro leaves for future work: the sum of all
+/// is 1, closeness <= 0.7, time >= 0.1.
 struct Weights {
     float smoothness = 0.30F;
     float time = 0.20F;
@@ -46,7 +46,7 @@ struct Weights {
     float beyond = 0.0F;
 };
 [[nodiscard]] bool is_valid(const Weights& weights) noexcept;
-/// The seven combinations that the source tried, in its order (Pinheiro tab. 4.8); the fifth is the default.
+/// The seven combinations that Pinheiro tried, in his order (tab. 4.8); the fifth is the default.
 inline constexpr std::array<Weights, 7> kTriedWeights{{{0.20F, 0.10F, 0.70F},
                                                        {0.30F, 0.10F, 0.60F},
                                                        {0.25F, 0.15F, 0.60F},
@@ -63,17 +63,17 @@ struct Caps {
 /// Finite, low < 1.15 high for the time and low < high for the energy, lows >= 0.
 [[nodiscard]] bool is_valid(const Caps& caps) noexcept;
 
-/// The source's upper bound of the normalised time is this much above its cap (Pinheiro 4.2.2.1).
+/// Pinheiro's upper bound of the normalised time is the cap times this factor (4.2.2.1).
 inline constexpr float kTimeHeadroom = 1.15F;
 
-/// A moving threat as the closeness term sees it.
+/// A moving threat in the closeness term.
 struct MovingThreat {
     geometry::Motion motion;
     float radius = 0.0F;
-    Seconds duration = 0.0F;  ///< swept: how long its path is followed [s]
+    Seconds duration = 0.0F;  ///< swept: time over which its path counts [s]
 };
 
-/// Waypoints of a path, coordinate by coordinate [m], and when they are reached [s]: equal lengths, not empty.
+/// Waypoints of a path, coordinate by coordinate [m], and their arrival times [s]: equal lengths, not empty.
 struct Waypoints {
     std::span<const float> x, y, z, t;
 };
@@ -84,38 +84,40 @@ struct Waypoints {
 /// Smoothness of a curve given in its own plane at abscissae `x` [m] with offsets `y` [m], equal lengths >= 3, x
 /// increasing (Pinheiro eq. 4.6 to 4.9).
 ///
-/// Numerical as the source's: derivatives by central differences over the index, one-sided at both ends, the second one
-/// as the derivative of the first; the integral by the trapezoid rule. Of the exact integral for a flat curve 57 points
-/// give 93 % for a simple candidate and 91 % for a symmetric one: the one-sided differences flatten the ends. O(n).
+/// Numerical, as in Pinheiro: derivatives by central differences over the index, one-sided at both ends; the second
+/// derivative is the derivative of the first; the integral by the trapezoid rule. For a flat curve, 57 points give 93 %
+/// of the exact integral for a simple candidate and 91 % for a symmetric one: the one-sided differences flatten the
+/// ends. O(n).
 [[nodiscard]] float smoothness(std::span<const float> x, std::span<const float> y, SmoothnessMethod method) noexcept;
 
-/// The same where the abscissae lie `step` > 0 [m] apart: a third of the work, equal but for rounding. O(n).
+/// The same for abscissae at equal steps of `step` > 0 [m]: a third of the work, equal but for rounding. O(n).
 [[nodiscard]] float smoothness(float step, std::span<const float> y, SmoothnessMethod method) noexcept;
 
 /// S (1 + k_p |sin alpha|), alpha between the candidate's plane and the ground (Pinheiro eq. 4.10).
 [[nodiscard]] float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noexcept;
 
 /// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the distances between the waypoints and the
-/// threat's centre less its radius; infinity when that bracket is <= 0. swept: distance to its whole path from 0 to
-/// `duration`. Path not empty. O(points).
+/// threat's centre less its radius. Infinity when the denominator is <= 0. swept: distance to the threat's whole path
+/// from 0 to `duration`. Path not empty. O(points).
 [[nodiscard]] float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
-/// The same to the bit.
+/// The same result to the bit.
 [[nodiscard]] float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
 /// M over threats (eq. 4.12): half the greatest plus half the mean; 0 for none.
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
 
-/// How one moving threat is passed (the source's collision angle as a cost, Pinheiro 6.2): where the vehicle is at the
-/// waypoint nearest to the threat at that instant, seen from the threat along its velocity, (1 + cosine) / 2: 0
-/// straight behind it, 1 straight in front. The offset at the closest approach is square to the relative velocity, so
-/// that the angle between both courses says how much there is to choose: head-on (180 degrees) and overtaking give one
-/// half on every side, crossing at 90 degrees with equal speeds 0.15 or 0.85.
+/// How one moving threat is passed (Pinheiro's collision angle as a cost, 6.2). Let the position be that of the vehicle
+/// at the waypoint nearest to the threat at the same instant, relative to the threat. The share is (1 + cosine) / 2 of
+/// the angle between this position and the threat's velocity: 0 straight behind the threat, 1 straight in front. The
+/// offset at the closest approach is perpendicular to the relative velocity, so the angle between both courses limits
+/// the choice. Head-on (180 degrees) and overtaking give one half on every side, crossing at 90 degrees with equal
+/// speeds 0.15 or 0.85.
 struct Passing {
     float share = 0.5F;
     float gap = 0.0F;  ///< from the threat's surface there [m]; not above 0 on contact
 };
-/// Path not empty. One half where threat and vehicle are at one point, or the threat stands. O(points).
+/// Path not empty. One half where threat and vehicle are at one point, or the threat is static. O(points).
 [[nodiscard]] Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept;
-/// Over threats, the nearer the more: mean weighted by 1 / gap, gaps of at least kLeastGap; 0 for none.
+/// Mean over threats, weighted by 1 / gap, gaps of at least kLeastGap; 0 for none.
 class PassingMean {
 public:
     static constexpr float kLeastGap = 0.1F;
@@ -132,37 +134,37 @@ private:
     float weights_ = 0.0F;
 };
 
-/// Time from where the path first is abeam of the collision point, `distance` [m] from the origin along `along` (unit
-/// vector), until its end [s]; 0 where it does not come there. Path not empty. O(points).
+/// Time from the first instant at which the path is abeam of the collision point, `distance` [m] from the origin along
+/// `along` (unit vector), until the path's end [s]; 0 where the path does not get there. Path not empty. O(points).
 [[nodiscard]] float time_beyond(const Waypoints& path, const Vec3& along, float distance) noexcept;
 
 /// E = E1 + E2 (Pinheiro eq. 4.1 to 4.3, the formula as printed) [J].
 [[nodiscard]] float energy(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
 
 /// Rotor power at vertical speed `climb_rate` [m/s], positive up (momentum theory; Pinheiro 4.1.6 with the bracket
-/// mended) [W].
+/// corrected) [W].
 [[nodiscard]] float rotor_power(float climb_rate, const vehicle::Airframe& airframe) noexcept;
-/// Mean of `rotor_power` over the time of the path, each segment at the climb rate of its beginning; path not empty
-/// [W].
+/// Mean of `rotor_power` over the time of the path, each segment at the climb rate of its beginning [W]. Path not
+/// empty.
 [[nodiscard]] float hover_power(const path::TimedPath& path, const vehicle::Airframe& airframe) noexcept;
 
 /// Section 6: natural logarithm, clipped to [0, 1]. Time beyond the collision point: over the upper cap of the time.
 [[nodiscard]] NormalisedTerms normalise(const Terms& terms, const Caps& caps) noexcept;
-/// k_S S_rp + k_T T + k_C M on normalised terms, and the weights' other two.
+/// k_S S_rp + k_T T + k_C M on normalised terms, plus both other weighted terms.
 [[nodiscard]] float total(const NormalisedTerms& terms, const Weights& weights) noexcept;
 
 /// Times and energies of the two stored reference paths flown by a vehicle.
 ///
 /// lower: main threat at D = 3 m on a level leg, R = 1 m; simple candidate, level plane, w = 2.1333 m. upper: D = 8.25
-/// m ahead and 1.75 m below, R = 3 m; simple candidate, vertical plane, w = -9.6 m: its time is the nearest to the
-/// published cap of all candidates in that environment, and the only one that fits the source's number for it (path 39
-/// when two planes of 13 symmetric and 13 simple candidates are counted through; 23 is the lower one in its first
-/// plane). 57 points, or kMaxPathPoints. O(points).
+/// m ahead and 1.75 m below, R = 3 m; simple candidate, vertical plane, w = -9.6 m. Of all candidates in that
+/// environment the upper path's time is the nearest to the published cap, and the only one that fits Pinheiro's number
+/// for the path (path 39 when two planes of 13 symmetric and 13 simple candidates are counted through; 23 is the lower
+/// path in its first plane). 57 points, or kMaxPathPoints. O(points).
 [[nodiscard]] Caps reference_flights(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
 
-/// Caps for another vehicle, off line: the published ones, each scaled by what `reference_flights` says of this vehicle
-/// against the default one. The default vehicle so keeps the published caps, which its own flights do not all meet
-/// (docs/evidence/reproduction_pinheiro.md).
+/// Caps for another vehicle, computed offline: the published caps, each scaled by the ratio of `reference_flights` of
+/// this vehicle to that of the default one. So the default vehicle keeps the published caps, not all of which its own
+/// flights reach (docs/evidence/reproduction_pinheiro.md).
 [[nodiscard]] Caps caps_for(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe) noexcept;
 
 }  // namespace jink::cost

@@ -8,7 +8,7 @@
 namespace jink::cost {
 namespace {
 
-/// (ln value - low) / (high - low), clipped; 0 for nothing at all, 1 for infinity (Pinheiro eq. 4.30 to 4.32).
+/// (ln value - low) / (high - low), clipped; 0 for value 0, 1 for infinity (Pinheiro eq. 4.30 to 4.32).
 float log_scale(float value, float low, float high) noexcept
 {
     if (!(value > 0.0F)) {

@@ -16,7 +16,7 @@ float empirical_descent(float q) noexcept
     return kInduced + q * (-1.125F + q * (-1.372F + q * (-1.718F + q * -0.655F)));
 }
 
-/// What does not depend on the climb rate.
+/// Values that do not depend on the climb rate.
 struct Rotor {
     float weight;   ///< [N]
     float hover;    ///< induced velocity in hover v_h [m/s]

@@ -12,10 +12,10 @@ namespace jink::cost::tables {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// A path frame may be that far from unitary.
+/// Upper bound of along_z^2 + side_z^2, with the rounding of a path frame.
 constexpr float kUnitTolerance = 1.01F;
 
-/// Where to read a row, and with which weights.
+/// Position in a row and interpolation weights.
 struct Reader {
     std::size_t first = 0;
     std::array<float, 4> weight{};
@@ -38,7 +38,7 @@ struct Reader {
     }
 };
 
-/// A curve of unit distance, and what is flown over it.
+/// A curve of unit distance, and the flight along it.
 struct UnitFlight {
     const FamilyTable& family;
     float ratio;    ///< |r|
@@ -86,8 +86,8 @@ struct Tangents {
     float high = -kInfinity;
 };
 
-/// Where `per_rate` (along_z + p side_z) > sqrt(1 + p^2), that is, where a vertical rate of speed / per_rate is
-/// exceeded: a line above a branch of a hyperbola. Nothing, an interval or a half-line.
+/// Tangents p for which per_rate (along_z + p side_z) > sqrt(1 + p^2), so that a vertical rate of speed / per_rate is
+/// exceeded: a line above a branch of a hyperbola. Empty, an interval or a half-line.
 Tangents binding_tangents(float per_rate, float along_z, float side_z) noexcept
 {
     const float a = per_rate * along_z;
@@ -99,7 +99,7 @@ Tangents binding_tangents(float per_rate, float along_z, float side_z) noexcept
     }
     const float linear = a * s;
     const float root = std::sqrt(discriminant);
-    // Each root in the form without a difference of like numbers.
+    // Each root in the form without a difference of similar numbers.
     const float low = linear >= 0.0F ? (1.0F - a * a) / (root + linear) : (root - linear) / squared;
     const float high = squared < 0.0F ? (root + linear) / -squared : kInfinity;
     return side_z < 0.0F ? Tangents{-high, -low} : Tangents{low, high};
@@ -113,7 +113,7 @@ struct BoundChords {
 };
 using AllBound = StaticVector<BoundChords, 2 * kMaxRuns>;
 
-/// Number of chords from `begin` on, of a run, for which `holds`, which they do before all others.
+/// Number of chords of a run, from `begin` on, for which `holds`. These chords come before all others of the run.
 template <class Predicate>
 std::size_t partition(std::size_t begin, std::size_t end, const Predicate& holds) noexcept
 {
@@ -144,7 +144,7 @@ void find_bound(const UnitFlight& flight, const Tangents& tangents, float rate, 
             begin = end;
             continue;
         }
-        // Most runs are bound from one of their ends on: only what is not known already is searched for.
+        // Most runs are bound from one of their ends on: the search starts from the end that is known.
         const auto past_near = [&](std::size_t i) {
             return grows ? flight.tangent_of(i) <= tangents.low : flight.tangent_of(i) >= tangents.high;
         };
@@ -157,7 +157,7 @@ void find_bound(const UnitFlight& flight, const Tangents& tangents, float rate, 
             if (out.size() > before && out.back().end == first) {
                 out.back().end = last;
             } else {
-                out.unchecked_push_back({first, last, rate});  // one a run and limit at most
+                out.unchecked_push_back({first, last, rate});  // at most one per run and limit
             }
         }
         begin = end;
@@ -172,7 +172,7 @@ void find_all_bound(const Tables& tables, const UnitFlight& flight, float speed,
                -tables.max_descent, out);
 }
 
-/// In place; there are a handful.
+/// In-place insertion sort; there are a handful.
 void sort_by_begin(AllBound& all) noexcept
 {
     for (std::size_t i = 1; i < all.size(); ++i) {
@@ -210,7 +210,7 @@ float total_rise(const UnitFlight& flight) noexcept
     return sum;
 }
 
-/// Of some chords, for D = 1: what they would be if nothing bound, and what they are, over mass and drag.
+/// Sums over some chords, for D = 1: values without any limit, and values as flown, over mass and drag.
 struct Shares {
     float length = 0.0F, turn = 0.0F, rise = 0.0F;
     float mechanical = 0.0F;  ///< [m2/s2]
@@ -231,7 +231,7 @@ struct Chord {
     }
 };
 
-/// Chords [begin, end), their velocities and those of the chord after them taken exactly.
+/// Adds the chords [begin, end), with their velocities and that of the chord after them computed exactly.
 void add_exactly(const Tables& tables, const UnitFlight& flight, const CurveQuery& query, std::size_t begin,
                  std::size_t end, Shares& sum) noexcept
 {
@@ -319,7 +319,7 @@ std::optional<float> energy(const Tables& tables, const CurveQuery& query) noexc
     Shares exact;
     std::size_t done = 0;
     for (const BoundChords& chords : bound) {
-        // The chord before them ends at their speed.
+        // The chord before the bound chords ends at their speed.
         add_exactly(tables, flight, query, std::max(done, std::max<std::size_t>(chords.begin, 1) - 1), chords.end,
                     exact);
         done = chords.end;

@@ -54,7 +54,7 @@ float integral_of_squared_curvature(std::span<const float> x, std::span<const fl
     return integral;
 }
 
-/// Calls `visit` with the first and second derivatives of each point in turn, each slope taken once.
+/// Calls `visit` with the first and second derivatives of each point in turn; each slope is computed once.
 template <class Visit>
 void derive_all(std::span<const float> values, const Visit& visit) noexcept
 {
@@ -71,7 +71,7 @@ void derive_all(std::span<const float> values, const Visit& visit) noexcept
     visit(here, here - before);
 }
 
-/// At equal steps the abscissa's first derivative is the step, its second one nothing.
+/// At equal steps the abscissa's first derivative is the step and its second derivative is zero.
 float integral_of_squared_curvature(float step, std::span<const float> y) noexcept
 {
     const float squared_step = step * step;
@@ -120,13 +120,13 @@ float mean_second_derivative(std::span<const float> x, std::span<const float> y)
     return sum / static_cast<float>(x.size());
 }
 
-/// What is summed up over points for `closeness`.
+/// Accumulates the terms of `closeness` over points.
 class Closeness {
 public:
     Closeness(const MovingThreat& threat, ClosenessMethod method) noexcept : threat_(threat), method_(method)
     {
-        // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is square to
-        // the velocity.
+        // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is
+        // perpendicular to the velocity.
         const float speed_squared = threat.motion.velocity.squaredNorm();
         per_speed_ = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
     }
@@ -208,7 +208,7 @@ float closeness(const path::TimedPath& path, const MovingThreat& threat, Closene
 
 float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept
 {
-    // Roots are taken several at a time where there are vector registers; the sum keeps its order.
+    // Roots are computed in groups, for targets with vector registers; the sum keeps its order.
     constexpr std::size_t kAtOnce = 8;
     Closeness closeness(threat, method);
     const std::size_t count = path.t.size();
@@ -292,7 +292,7 @@ float energy(const path::TimedPath& path, const vehicle::Airframe& airframe) noe
         const path::PathPoint& to = path.points[i + 1];
         const Vec3 step = to.position - from.position;
         const Vec3 sum = to.velocity + from.velocity;
-        // (v1^2 - v0^2) / 2 as a product of sum and difference: no small difference of large heights or squares.
+        // (v1^2 - v0^2) / 2 as a product of sum and difference: avoids the cancellation of large heights or squares.
         const float kinetic = 0.5F * sum.dot(to.velocity - from.velocity);
         mechanical += airframe.mass * std::abs(kinetic + kGravity * step.z());
         dragged += step.norm() * sum.squaredNorm();

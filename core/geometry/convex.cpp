@@ -16,13 +16,13 @@ namespace {
 
 using detail::kRounding;
 
-/// What the support functions learn on their way. Its own object: libccd hands the query itself over as const.
+/// State that the support functions update. A separate object, because libccd passes the query itself as const.
 struct Progress {
     WorkBudget& budget;
     std::uint32_t turn = 0;  ///< units of two calls, one of either solid
     std::uint32_t calls = 0;
-    bool ended = false;        ///< nothing more to be learnt, or no call left
-    bool parted = false;       ///< some direction has proven to separate the two
+    bool ended = false;        ///< no further information to be gained, or no call left
+    bool parted = false;       ///< some direction is proven to separate the two solids
     ccd_real_t own_along = 0;  ///< last own support value
 };
 
@@ -44,7 +44,7 @@ ccd_real_t dot(const ccd_vec3_t& a, const ccd_vec3_t& b) noexcept { return ccdVe
 
 const Query& query_of(const void* object) noexcept { return *static_cast<const Query*>(object); }
 
-/// A point on the wrong side: with it every loop of libccd ends at once.
+/// A point on the wrong side: such an answer ends every loop of libccd at once.
 void answer_wrongly(const ccd_vec3_t& direction, ccd_vec3_t& answer) noexcept
 {
     answer = direction;
@@ -53,7 +53,7 @@ void answer_wrongly(const ccd_vec3_t& direction, ccd_vec3_t& answer) noexcept
 
 ccd_real_t signed_like(ccd_real_t magnitude, ccd_real_t sign) noexcept { return sign < 0 ? -magnitude : magnitude; }
 
-/// libccd asks the own solid first, then the other one in the opposite direction: calls are counted in pairs.
+/// libccd calls the own solid first, then the other solid in the opposite direction: calls are counted in pairs.
 void own_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* answer)
 {
     const Query& query = query_of(object);
@@ -127,9 +127,9 @@ Query make_query(const detail::SweptBox& box, const Shape& shape, float clearanc
     return query;
 }
 
-/// libccd's GJK first. It answers "no" both with a separating plane in hand and when it cannot go on (a flat simplex, a
-/// vanished direction), and on rare slender simplices a false "yes"; so a plane makes the answer `clear`, and for any
-/// other answer the distance search gets the calls that are left to find one.
+/// libccd's GJK runs first. libccd answers "no" both with a separating plane and when it cannot continue (a flat
+/// simplex, a vanished direction), and gives a false "yes" on rare slender simplices. So only a separating plane makes
+/// the answer `clear`. For any other answer the distance search uses the remaining calls to find a plane.
 Contact search_plane(const detail::SweptBox& box, const Shape& shape, float clearance, WorkBudget& budget) noexcept
 {
     Query query = make_query(box, shape, clearance);

@@ -9,25 +9,25 @@
 #include "core/geometry/shape.hpp"
 
 // The own safety box, swept along a segment, against any convex shape. Spheres and capsules have closed forms
-// (sweep.hpp). Boxes, cylinders and hulls go through libccd's GJK intersection on support functions, and through a
-// distance search of our own, since libccd gives no distance. libccd's loops end in practice but have no proven bound:
-// past a number of calls the support functions answer on the wrong side, and every loop ends at once.
+// (sweep.hpp). Boxes, cylinders and hulls use libccd's GJK intersection on support functions, and a distance search of
+// our own, since libccd gives no distance. libccd's loops end in practice but have no proven bound: beyond a number of
+// calls the support functions answer on the wrong side, and every loop ends at once.
 //
-// libccd says "no" both with a separating plane in hand and when it cannot go on (a flat simplex, a vanished
-// direction), and in about one of a million grazing cases it says "yes" to solids that are a hundredth of their size
-// apart. So nothing is `clear` without a plane that parts the two, which the support functions watch for; where libccd
-// found none, the distance search may.
+// libccd says "no" both with a separating plane and when it cannot continue (a flat simplex, a vanished direction). In
+// about one of a million grazing cases libccd says "yes" to solids that are a hundredth of their size apart. So `clear`
+// always requires a plane that separates the two solids; the support functions watch for such a plane. Where libccd
+// finds no plane, the distance search may find one.
 
 namespace jink::geometry {
 
 enum class Contact : std::uint8_t { clear, contact, budget_spent };
 
-/// Support calls (of either solid) allowed for one query; libccd gets half of them, the distance search what is left.
-/// Over ten million random pairs, a third of them grazing, no query took more than 106; without an answer by then it is
-/// contact.
+/// Support calls (of either solid) allowed for one query; libccd gets half of them, the distance search the rest. Over
+/// ten million random pairs, a third of them grazing, no query took more than 106. If the calls are spent without an
+/// answer, the answer is contact.
 inline constexpr std::uint32_t kSupportCallsPerQuery = 128;
 
-/// Units of work that no query takes more than: libccd's share in its turns, all calls in those of the distance search.
+/// Upper bound of a query's work units: libccd's share in its turns, all calls in those of the distance search.
 inline constexpr std::uint32_t kUnitsPerQuery =
     units::kSolidQuery + kSupportCallsPerQuery / 4 * (units::kExactTurn + units::hull_units(kMaxHullVertices)) +
     kSupportCallsPerQuery / 2 * (units::kSearchTurn + units::hull_units(kMaxHullVertices));
@@ -36,19 +36,20 @@ inline constexpr std::uint32_t kUnitsPerQuery =
 /// `shape`?
 ///
 /// Touching counts as contact. `budget_spent`: `budget` was too small; must be treated as contact. A query takes from
-/// `budget` what core/base/work_units.hpp says of a closed form, or of a solid and of each turn of a search, and leaves
-/// it marked as exhausted when that was too small. Accuracy: `clear` is always true; `contact` means
-/// within 1e-5 * (sum of magnitudes of the offset, the way and `half` + bounding radius + clearance) of it.
+/// `budget` the units of core/base/work_units.hpp for a closed form, or for a solid and each turn of a search. If
+/// `budget` is too small, the query leaves it marked as exhausted. Accuracy: `clear` is always true; `contact` means
+/// that the shape is within `clearance` + 1e-5 * (sum of magnitudes of the offset, the swept segment and `half` +
+/// bounding radius + clearance).
 /// O(kSupportCallsPerQuery * vertices).
 [[nodiscard]] Contact swept_box_contact(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape,
                                         float clearance, WorkBudget& budget) noexcept;
 
 /// Lower bound of the distance between the swept box and `shape` [m], capped at `reach` [m] >= 0.
 ///
-/// Proven by a separating plane (own GJK distance search in float; libccd gives none), so never above the true
-/// distance, and at most `resolution` [m] >= 0 below it, plus 3e-5 * (sum of magnitudes of the offset, the way and
-/// `half` + bounding radius). 0 when in contact or when the budget ran out. A coarse resolution saves rounds.
-/// `budget` as above.
+/// A separating plane proves the bound (own GJK distance search in float; libccd gives none), so the bound is never
+/// above the true distance. It is at most `resolution` [m] >= 0 below the true distance, plus 3e-5 * (sum of magnitudes
+/// of the offset, the swept segment and `half` + bounding radius). 0 when in contact or when the budget ran out. A
+/// coarse resolution saves turns. `budget` as above.
 /// O(kSupportCallsPerQuery * vertices).
 [[nodiscard]] float swept_box_distance(const Vec3& half, const Vec3& from, const Vec3& to, const Shape& shape,
                                        float reach, float resolution, WorkBudget& budget) noexcept;

@@ -13,7 +13,8 @@ namespace {
 
 using detail::SweptBox;
 
-/// The difference of the swept box and a solid, seen from the middle of the way: numbers as small as the scene allows.
+/// The difference of the swept box and a solid, relative to the middle of the swept segment, so that numbers stay as
+/// small as the scene allows.
 class Difference {
 public:
     Difference(const SweptBox& box, const Shape& shape) noexcept

@@ -8,18 +8,18 @@
 
 namespace jink::geometry {
 
-/// What a cheap look at one plane says of a point moving straight past a box rounded by a radius (a box and a sphere,
-/// the point being the sphere's centre seen from the box).
+/// Result of a quick reject by one plane, for a point moving straight past a box rounded by a radius. Stands for a box
+/// and a sphere: the point is the sphere's centre relative to the box.
 enum class Glance : std::uint8_t { touches, apart, unclear };
 
 /// Point from `from` to `to`, box of half extents `half` about the origin, `radius` >= 0, all finite.
 ///
-/// `touches` and `apart` only where contact_interval (sweep.hpp) says the same of the motion, also when its points and
-/// its radius are rounded otherwise by a few last bits: both keep off the border by far more than that. Most near
-/// misses are told apart. The plane is square to the way from the box to the middle of the motion. O(1), one root.
+/// `touches` and `apart` are given only where contact_interval (sweep.hpp) says the same of the motion, also when its
+/// points and its radius differ by a few last bits: both keep off the border by far more than that. Most near misses
+/// are `apart`. The plane is perpendicular to the line from the box to the middle of the motion. O(1), one root.
 [[nodiscard]] inline Glance glance(const Vec3& half, const Vec3& from, const Vec3& to, float radius) noexcept
 {
-    constexpr float kSlack = 1e-5F;        // of all lengths; contact_interval's is a twentieth of that
+    constexpr float kSlack = 1e-5F;        // of all lengths; contact_interval's slack is a twentieth of that
     constexpr float kWellInside = 0.999F;  // of the squared radius
     const Vec3 middle = 0.5F * (from + to);
     const Vec3 off = middle - middle.cwiseMax(-half).cwiseMin(half);

@@ -16,8 +16,8 @@ namespace {
 
 /// Largest relative error of one float operation.
 constexpr float kUnitRoundoff = 0x1p-24F;
-/// Of a vertex's product with a unit vector, in roundings of the vertex's sum of magnitudes: the difference and its
-/// stretching, three products, two sums, the vector's own length, and as much again to spare.
+/// Rounding of a vertex's product with a unit vector, in roundings of the vertex's sum of magnitudes: the difference
+/// and its stretching, three products, two sums, the vector's own length, and as much again as a reserve.
 constexpr float kProductRoundings = 16.0F;
 
 Vec3 stretched(const Vec3& v, float stretch) noexcept { return {v.x(), v.y(), stretch * v.z()}; }
@@ -25,7 +25,7 @@ Vec3 stretched(const Vec3& v, float stretch) noexcept { return {v.x(), v.y(), st
 const Vec3& vector_of(const Vec3& v) noexcept { return v; }
 Vec3 vector_of(const Point3& v) noexcept { return v.vec(); }
 
-/// The vertices seen from `origin`, in the stretched space.
+/// The vertices relative to `origin`, in the stretched space.
 template <class Vertex>
 struct Seen {
     std::span<const Vertex> vertices;
@@ -64,7 +64,7 @@ struct Seen {
     }
 };
 
-/// Whether the direction is worth to begin with.
+/// Whether the direction is long enough to start the search.
 bool is_start(const Vec3& v) noexcept { return v.squaredNorm() > std::numeric_limits<float>::min(); }
 
 template <class Support>
@@ -84,7 +84,7 @@ Separation search(const Support& support, const detail::SearchBegin& begin, floa
     return out;
 }
 
-/// With the last answer, or with the nearest of a few points.
+/// Starts from the last answer if there is one, else from the nearest of a few points.
 detail::SearchBegin begin_with(const DistanceQuery& query, const Vec3& nearest) noexcept
 {
     return {is_start(query.start) ? query.start : nearest, nullptr, std::numeric_limits<float>::max()};
@@ -113,13 +113,13 @@ Vec3 to_axis(const Vec3& point, const Shape& shape) noexcept
     return offset + along * axis;
 }
 
-/// A ball about a point or a segment: the axes, which may be a little askew, decide nothing else.
+/// A sphere about a point or a segment: axes within their tolerance affect nothing else.
 bool is_rounded(const Shape& shape) noexcept
 {
     return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule;
 }
 
-/// The exit along `direction`, of any length, where it is shorter than the best one so far.
+/// Keeps the exit along `direction`, of any length, if it is shorter than the best exit so far.
 template <class Support>
 void try_exit(const Support& support, const Vec3& direction, Exit& best) noexcept
 {
@@ -134,8 +134,8 @@ void try_exit(const Support& support, const Vec3& direction, Exit& best) noexcep
     }
 }
 
-/// Of a triangle by its nearest point, where the plane across the way there proves it. False where it does not: thin
-/// triangles, and points on it.
+/// Distance of a triangle by its nearest point, where the plane through that point across the offset proves the
+/// distance. False where the plane does not prove it: thin triangles, and points on the triangle.
 template <class Vertex>
 bool distance_from_triangle(const Seen<Vertex>& seen, const DistanceQuery& query, Separation& out) noexcept
 {
@@ -149,7 +149,7 @@ bool distance_from_triangle(const Seen<Vertex>& seen, const DistanceQuery& query
     const float slack = kProductRoundings * kUnitRoundoff * size;
     const Vec3 towards = nearest / length;
     const float proven = std::min({towards.dot(a), towards.dot(b), towards.dot(c)}) - slack;
-    // A NaN of a point without a direction is not enough either.
+    // A point without a direction gives NaN, which fails too.
     if (!(proven > 0.0F && (proven >= query.reach || length - proven <= query.resolution + 2.0F * slack))) {
         return false;
     }
@@ -178,7 +178,7 @@ Separation distance_from_hull(const Vec3& point, std::span<const Vertex> vertice
     detail::SearchBegin begin = begin_with(query, nearest);
     detail::Simplex simplex;
     if (vertices.size() <= 3) {
-        // All of them at once: one turn proves what is found.
+        // All vertices at once: one turn proves the result.
         simplex.points.fill(Vec3::Zero());
         simplex.size = vertices.size();
         for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -291,7 +291,7 @@ Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcep
         return offset + stretched(geometry::support(centred, stretched(direction, stretch)), stretch);
     };
     Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
-    // A normal of the unstretched space becomes one of the stretched space by S^-1.
+    // A normal of the unstretched space is mapped to the stretched space by S^-1.
     const Vec3 local = shape.axes.transpose() * (point - shape.centre);
     try_exit(support, stretched(-to_axis(point, shape), 1.0F / stretch), best);
     try_exit(support, stretched(shape.axes * Vec3(local.x(), local.y(), 0.0F), 1.0F / stretch), best);

@@ -5,13 +5,13 @@
 #include "core/base/crc.hpp"
 #include "core/geometry/mesh_map.hpp"
 
-// What makes a map good, once, when it is taken.
+// Validation of a map, once, when it is loaded.
 
 namespace jink::geometry {
 
 namespace {
 
-/// Longest error of a stored normal's length.
+/// Largest error of a stored normal's length.
 constexpr float kUnitTolerance = 1e-4F;
 
 void add_point(Crc& crc, const Point3& v) noexcept
@@ -107,10 +107,10 @@ MapStatus check_pieces(const MeshMap& m) noexcept
     return MapStatus::good;
 }
 
-/// Pieces that have been met in the tree.
+/// Pieces that the tree has referred to so far.
 class Met {
 public:
-    /// False when it has been met before.
+    /// False when the piece has been added before.
     [[nodiscard]] bool add(std::size_t piece) noexcept
     {
         std::uint32_t& word = words_[piece / 32];
@@ -124,7 +124,7 @@ private:
     std::array<std::uint32_t, kMaxMeshPieces / 32> words_{};
 };
 
-/// A leaf that holds a piece of its own, within its box.
+/// A leaf holds a piece that no other leaf holds, within its box.
 MapStatus check_leaf(const MeshMap& m, const MeshNode& node, Met& met) noexcept
 {
     if (node.piece >= m.pieces.size() || node.right != 0 || !met.add(node.piece)) {
@@ -160,7 +160,7 @@ MapStatus check_parent(const MeshMap& m, std::size_t i, std::uint8_t depth) noex
 MapStatus check_tree(const MeshMap& m) noexcept
 {
     Met met;
-    std::array<std::uint16_t, kMaxMeshDepth + 1> right{};  // that wait for their turn
+    std::array<std::uint16_t, kMaxMeshDepth + 1> right{};  // right children that wait for their turn
     std::array<std::uint8_t, kMaxMeshDepth + 1> depths{};
     std::size_t waiting = 0;
     std::uint8_t depth = 0;

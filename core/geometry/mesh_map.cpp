@@ -8,7 +8,8 @@ namespace jink::geometry {
 
 namespace {
 
-/// Puts `piece` among the `found` first of `out`, nearest first; what falls out of a full list is returned.
+/// Puts `piece` among the first `found` of `out`, nearest first. Returns the distance of the piece that drops out of a
+/// full list.
 float insert(std::span<NearPiece> out, std::size_t& found, const NearPiece& piece) noexcept
 {
     float lost = std::numeric_limits<float>::infinity();

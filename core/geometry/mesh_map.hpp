@@ -13,24 +13,24 @@
 #include "core/base/work_units.hpp"
 #include "core/geometry/hull_distance.hpp"
 
-// Known surroundings: convex pieces, made of meshes on the host (`jink mesh build`) and kept as constant tables with a
-// tree of boxes over them (Alejo 7.2.2).
+// Known surroundings: convex pieces, made from meshes on the host (`jink mesh build`) and kept as constant tables with
+// a bounding-volume tree (Alejo 7.2.2).
 
 namespace jink::geometry {
 
-/// Limits of a map; one that exceeds any is refused as a whole. A piece is a few vertices and planes in flash: a full
-/// map of 32 vertices a piece is 5.5 MiB, one of triangles 416 KiB.
+/// Limits of a map. A map that exceeds any limit is refused as a whole. A piece is a few vertices and planes in flash:
+/// a full map of 32 vertices a piece is 5.5 MiB, one of triangles 416 KiB.
 inline constexpr std::size_t kMaxMeshPieces = 4096;
-/// Fewer where the build has room for less (kMaxHullVertices).
+/// Fewer where the build's capacity is smaller (kMaxHullVertices).
 inline constexpr std::size_t kMaxPieceVertices = kMaxHullVertices < 32 ? kMaxHullVertices : 32;
 /// 32 vertices have 60 triangles.
 inline constexpr std::size_t kMaxPieceFaces = 2 * kMaxPieceVertices - 4;
 inline constexpr std::size_t kMaxMeshDepth = 20;
-/// Coordinates [m]. Beyond it floats are coarser than 6e-5 m.
+/// Largest magnitude of a coordinate [m]. Beyond it floats are coarser than 6e-5 m.
 inline constexpr float kMaxMeshCoordinate = 1000.0F;
-/// Of how maps are stored; another one is refused.
+/// Version of the stored format; any other version is refused.
 inline constexpr std::uint16_t kMeshVersion = 1;
-/// How far a vertex may lie beyond one of the faces of its piece [m]: normals are rounded, 6e-8 of a kilometre each.
+/// Largest distance of a vertex beyond a face of its piece [m]: normals are rounded, 6e-8 of a kilometre each.
 inline constexpr float kFaceTolerance = 1e-3F;
 
 /// One convex piece: the hull of its vertices.
@@ -48,7 +48,7 @@ struct MeshNode {
     Point3 low;                      ///< [m]
     Point3 high;                     ///< [m]
     std::uint16_t right = 0;         ///< index of the right child; of a leaf: 0
-    std::uint16_t piece = kNoPiece;  ///< of a leaf: what it holds
+    std::uint16_t piece = kNoPiece;  ///< of a leaf: the piece that it holds
 
     [[nodiscard]] bool is_leaf() const noexcept { return piece != kNoPiece; }
 };
@@ -60,9 +60,9 @@ struct MeshNode {
 struct MeshMap {
     std::string_view name;
     std::uint16_t version = kMeshVersion;
-    float metres_per_unit = 1.0F;  ///< of all coordinates; maps in any other unit are refused
-    /// How far the mesh may stand out of the pieces [m], >= 0: what rounding to float may have taken off. Every query
-    /// answers as if the pieces were larger by it.
+    float metres_per_unit = 1.0F;  ///< of all coordinates; maps with any other value are refused
+    /// Largest distance of the mesh beyond the pieces [m], >= 0: the part that rounding to float may have removed.
+    /// Every query answers as if the pieces were larger by `slack`.
     float slack = 0.0F;
     Point3 low;  ///< bounds of all pieces [m]
     Point3 high;
@@ -82,31 +82,31 @@ struct MeshMap {
     }
 };
 
-/// What is wrong with a map. A map is taken as a whole or not at all.
+/// Result of `check`. A map is accepted as a whole or refused as a whole.
 enum class MapStatus : std::uint8_t {
     good,
     empty,           ///< no piece
-    wrong_version,   ///< stored otherwise than this code reads
+    wrong_version,   ///< stored in another format
     wrong_units,     ///< not metres
-    too_large,       ///< more pieces, vertices or faces than there is room for, or a deeper tree
+    too_large,       ///< more pieces, vertices or faces than the capacities, or a deeper tree
     sizes_differ,    ///< the tables do not belong together
     bad_coordinate,  ///< not finite, or beyond kMaxMeshCoordinate
-    bad_bounds,      ///< a box that does not hold what it should
-    bad_tree,        ///< a piece that is no leaf or several ones, or a child that does not follow its parent
+    bad_bounds,      ///< a box that does not contain its content
+    bad_tree,        ///< a piece in no leaf or in several leaves, or a left child that does not follow its parent
     bad_face,        ///< not a unit normal, or a vertex of the piece beyond the plane
     wrong_checksum,
 };
 
-/// CRC-32 (IEEE 802.3) of the tables and the numbers that go with them, in a byte order that is the same on every
-/// machine. O(bytes).
+/// CRC-32 (IEEE 802.3) of the tables and of the map's numbers, in a byte order that is the same on every machine.
+/// O(bytes).
 [[nodiscard]] std::uint32_t checksum_of(const MeshMap& map) noexcept;
-/// Everything that queries rely on; once, when a map is taken. O(pieces * vertices * faces + bytes).
+/// Checks everything that queries rely on; once, when a map is loaded. O(pieces * vertices * faces + bytes).
 [[nodiscard]] MapStatus check(const MeshMap& map) noexcept;
 
 /// A piece near a point, in the stretched space.
 struct NearPiece {
     std::uint16_t piece = kNoPiece;
-    /// From the point to the piece, the map's slack taken off `distance`.
+    /// From the point to the piece, with the map's slack subtracted from `distance`.
     Separation from;
 };
 
@@ -116,22 +116,21 @@ struct NearPiece {
     return std::max(1.0F, stretch) * map.slack;
 }
 
-/// Where a point stands to one piece: `point_hull_distance`, less the map's slack.
+/// Distance of a point from one piece: `point_hull_distance`, less the map's slack.
 [[nodiscard]] Separation piece_distance(const MeshMap& map, std::size_t piece, const Vec3& point,
                                         const DistanceQuery& query, WorkBudget& budget) noexcept;
-/// How a point gets out of one piece: by its faces, or of a flat piece by its sides. The map's slack is added to
-/// `depth`.
+/// Exit of a point from one piece: by its faces, or by the sides of a flat piece. The map's slack is added to `depth`.
 [[nodiscard]] Exit piece_exit(const MeshMap& map, std::size_t piece, const Vec3& point, float stretch) noexcept;
 
-/// Nodes that may wait while others are looked at: the right children on the way down, and one to spare.
+/// Nodes that may wait while others are checked: the right children on the way down, and one spare.
 inline constexpr std::size_t kMeshStack = 24;
 static_assert(kMeshStack > kMaxMeshDepth + 1);
 
-/// Distance of the point from a node's box in the stretched space, rounded down, the map's slack taken off [m].
+/// Distance of the point from a node's box in the stretched space, rounded down, less the map's slack [m].
 [[nodiscard]] inline float node_distance(const MeshMap& map, const MeshNode& node, const Vec3& point,
                                          float stretch) noexcept
 {
-    constexpr float kBoxRounding = 1e-6F;  // what rounding may add, as a share
+    constexpr float kBoxRounding = 1e-6F;  // share that rounding may add
     const auto off = [](float low, float high, float at) { return std::max(std::max(low - at, at - high), 0.0F); };
     const float x = off(node.low.x, node.high.x, point.x());
     const float y = off(node.low.y, node.high.y, point.y());
@@ -139,18 +138,18 @@ static_assert(kMeshStack > kMaxMeshDepth + 1);
     return std::max(std::sqrt(x * x + y * y + z * z) * (1.0F - kBoxRounding) - stretched_slack(map, stretch), 0.0F);
 }
 
-/// Looks at the pieces about `point`, roughly the nearest first.
+/// Visits the pieces about `point`, roughly the nearest first.
 ///
 /// @param map      good (`check`)
-/// @param stretch  z counts this many times as much
-/// @param reach    pieces farther than this are not looked at [m], in the stretched space
-/// @param budget   each node takes kMeshNode units; what `visit` does takes its own
+/// @param stretch  weight of z against x and y
+/// @param reach    pieces farther than this are not visited [m], in the stretched space
+/// @param budget   each node takes kMeshNode units; the work of `visit` takes its own units
 /// @param visit    visit(piece index, lower bound of its distance) -> the new reach: no more than before; called once
 ///                 for each piece that may be within it
 /// @return a lower bound of the distance of all pieces that were not visited although they may be within the first
-///         reach [m]; that reach itself when there are none, or they are not known to be
+///         reach [m]; the first reach itself when no such piece is known
 ///
-/// Nothing is lost: every piece within the returned distance has been visited, also when the budget ran out. O(nodes).
+/// Every piece within the returned distance has been visited, also when the budget runs out. O(nodes).
 template <class Visit>
 float visit_near(const MeshMap& map, const Vec3& point, float stretch, float reach, WorkBudget& budget, Visit&& visit)
 {
@@ -181,7 +180,7 @@ float visit_near(const MeshMap& map, const Vec3& point, float stretch, float rea
             reach = std::min(reach, visit(node.piece, next.distance));
             continue;
         }
-        // The nearer child last, to be taken first.
+        // The nearer child is put last and so is visited first.
         const std::size_t at = waiting;
         put(node.right);
         put(std::size_t{next.node} + 1);
@@ -194,14 +193,13 @@ float visit_near(const MeshMap& map, const Vec3& point, float stretch, float rea
 
 struct NearestPieces {
     std::size_t found = 0;  ///< pieces in the answer
-    /// No piece that is not in the answer is nearer than this [m]; query.reach where the answer has room to
-    /// spare.
+    /// No piece outside the answer is nearer than this [m]; query.reach where `out` is not full.
     float dropped = 0.0F;
 };
 /// The pieces nearest to `point` within `query.reach` of it, nearest first, into `out`.
 ///
-/// Distances as `query` asks for them; its `start` is not used. When `budget` runs out, `dropped` tells how much is
-/// known. O(pieces * kMostDistanceTurns * vertices) at worst; the tree leaves a few in practice.
+/// Distances as `query` specifies; its `start` is not used. When `budget` runs out, `dropped` is the distance within
+/// which the answer is complete. O(pieces * kMostDistanceTurns * vertices) at worst; the tree leaves a few in practice.
 [[nodiscard]] NearestPieces nearest_pieces(const MeshMap& map, const Vec3& point, const DistanceQuery& query,
                                            std::span<NearPiece> out, WorkBudget& budget) noexcept;
 

@@ -8,38 +8,38 @@
 #include "core/base/work_budget.hpp"
 #include "core/geometry/simplex.hpp"
 
-// The distance of the origin from a convex set that is known by its support function. Shared by the distance searches
-// of this room (convex_distance.cpp, hull_distance.cpp); not meant for other rooms.
+// The distance of the origin from a convex set that is known by its support function. Private to core/geometry: shared
+// by convex_distance.cpp and hull_distance.cpp.
 
 namespace jink::geometry::detail {
 
-/// What a distance search need not tell apart.
+/// Accuracy that a distance search may stop at.
 struct SearchLimits {
-    float near = 0.0F;        ///< distances up to this are all as good as contact [m]
-    float reach = 0.0F;       ///< distances from this on are all as good as clear [m]
+    float near = 0.0F;        ///< distances up to this count as contact [m]
+    float reach = 0.0F;       ///< distances from this on count as clear [m]
     float resolution = 0.0F;  ///< [m]
     std::uint32_t calls = 0;  ///< support calls allowed, two a turn
 };
 
 /// Where a search begins: with a guess of the nearest point, which need not be in the set, or with the nearest point of
-/// some of its points (`reduce_to_nearest`), which is `upper` away.
+/// some of the set's points (`reduce_to_nearest`), which is `upper` away.
 struct SearchBegin {
     Vec3 nearest = Vec3::Zero();
-    const Simplex* simplex = nullptr;  ///< those points, if any
+    const Simplex* simplex = nullptr;  ///< those points of the set, or none
     float upper = std::numeric_limits<float>::max();
 };
 
-/// What a search has found when it ended, for whatever reason.
+/// Result of a search, for whatever reason the search ended.
 struct SearchResult {
     float proven = 0.0F;          ///< no point of the set is nearer than this [m]; 0: nothing proven
     float upper = 0.0F;           ///< and some point is as near as this
-    Vec3 towards = Vec3::Zero();  ///< unit normal of the plane that has proven it: towards . y >= proven in the set
+    Vec3 towards = Vec3::Zero();  ///< unit normal of the separating plane: towards . y >= proven in the set
     Vec3 nearest = Vec3::Zero();  ///< the nearest point found
     bool enclosed = false;        ///< the origin lies in a tetrahedron of points of the set
     bool budget_spent = false;
 };
 
-/// Rounds without a nearer point before the search ends. The direction still improves when the distance no longer does:
+/// Turns without a nearer point before the search ends. The direction still improves when the distance no longer does:
 /// its error enters the distance squared.
 inline constexpr int kStallsAllowed = 2;
 
@@ -54,12 +54,12 @@ inline constexpr int kStallsAllowed = 2;
 }
 
 /// GJK (Gilbert, Johnson & Keerthi 1988): the nearest point of a growing simplex is an upper bound, the support plane
-/// across it a lower one. The lower one is what counts, so that an error of the simplex costs rounds, not safety.
+/// across it a lower bound. Results rest on the lower bound, so an error of the simplex costs turns, not safety.
 ///
 /// @param support  support(direction) -> point of the set that is farthest in `direction`, which is not zero
 /// @param begin    where the search begins; its `nearest` is not zero
 /// @param slack    bound of the rounding error of a point's product with a unit vector [m]
-/// @param turn     units of work that a turn takes from `budget`
+/// @param turn     work units that a turn takes from `budget`
 /// O(limits.calls) support calls.
 template <class Support>
 [[nodiscard]] SearchResult search_origin(const Support& support, const SearchBegin& begin, float slack,

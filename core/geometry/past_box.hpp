@@ -7,19 +7,19 @@
 #include "core/base/time.hpp"
 #include "core/base/vec3.hpp"
 
-// Shared by the closed forms of sweep.hpp; not meant for other rooms.
+// Private to core/geometry: shared by the closed forms of sweep.hpp.
 //
 // The squared distance of a straight-moving point from a box is convex and piecewise quadratic in time. Its pieces end
-// where a coordinate crosses a face plane: six instants at most. All eight instants of interest (those and both ends)
-// are evaluated at once, unsorted: the piece that holds what is sought lies between the latest one before it and the
-// earliest one after it.
+// where a coordinate crosses a face plane: six instants at most. All eight instants of interest (the six crossings and
+// both ends) are evaluated at once, unsorted. The piece that holds the wanted instant lies between the latest instant
+// before it and the earliest instant after it.
 
 namespace jink::geometry::detail {
 
 /// The two ends of an interval and the six instants at which a coordinate crosses a face plane, in no order.
 using Instants = Eigen::Array<float, 8, 1>;
 
-/// Speed below which a component counts as zero: its square would vanish, and it moves nothing within any horizon.
+/// Speed below which a component counts as zero: its square would underflow, and the motion within any horizon is nil.
 inline constexpr float kAtRest = 1e-18F;
 
 /// A point moving straight past the box |x_i| <= half_i.
@@ -68,7 +68,7 @@ public:
         return sum;
     }
 
-    /// Both ends of [0, length] and the crossings, those outside moved to an end.
+    /// Both ends of [0, length] and the crossings; crossings outside the interval are moved to an end.
     [[nodiscard]] Instants instants(Seconds length) const noexcept
     {
         Instants t;

@@ -13,7 +13,7 @@ namespace jink::geometry {
 
 namespace {
 
-/// Axes count as orthonormal up to this deviation of any element of axes^T * axes from the identity's.
+/// Axes count as orthonormal if no element of axes^T * axes differs from the identity's by more than this.
 constexpr float kAxesTolerance = 1e-3F;
 /// Such axes stretch a vector by sqrt(1 + 3 * kAxesTolerance) at most; a rounding margin is included.
 constexpr float kAxesStretch = 1.002F;

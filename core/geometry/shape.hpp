@@ -10,9 +10,9 @@ namespace jink::geometry {
 
 enum class ShapeKind : std::uint8_t { sphere, box, capsule, cylinder, hull };
 
-/// A convex solid at rest in the world frame. A value of 88 bytes at most; a hull refers to vertices that outlive it.
+/// A static convex solid in the world frame. A value of 88 bytes at most; a hull refers to vertices that outlive it.
 ///
-/// Made by the functions below, which refuse nothing: callers check `is_valid` where the numbers come from outside.
+/// Made by the functions below, which accept any values. Callers check `is_valid` where the numbers come from outside.
 struct Shape {
     ShapeKind kind = ShapeKind::sphere;
     Vec3 centre = Vec3::Zero();    ///< [m]

@@ -10,10 +10,10 @@ namespace jink::geometry::detail {
 
 namespace {
 
-/// Relative rounding error of a cross product and a dot product after it, with room to spare.
+/// Relative rounding error of a cross product and a dot product after it, with a reserve.
 constexpr float kSumRounding = 8.0F * 0x1p-24F;
 
-/// A triangle whose height is below this share of its sides has no inside worth the name in float.
+/// A triangle whose height is below this share of its sides counts as a line.
 constexpr float kFlat = 1e-6F;
 
 Vec3 keep_one(Simplex& s, const Vec3& a) noexcept
@@ -23,10 +23,10 @@ Vec3 keep_one(Simplex& s, const Vec3& a) noexcept
     return a;
 }
 
-/// Nearest point on the line through a and b, of which `share` is the place.
+/// Nearest point on the line through a and b, at a + share * (b - a).
 ///
-/// Where the line passes close to the origin, a + share * (b - a) cancels and its direction is lost; taking off what is
-/// left along the line restores it.
+/// Where the line passes close to the origin, a + share * (b - a) cancels and its direction is lost. Subtracting the
+/// remaining component along the line restores the direction.
 Vec3 keep_two(Simplex& s, const Vec3& a, const Vec3& b, float share) noexcept
 {
     s.points = {a, b, Vec3::Zero(), Vec3::Zero()};
@@ -47,7 +47,7 @@ Vec3 nearest_on_segment(Simplex& s, const Vec3& a, const Vec3& b) noexcept
     return along < length_squared ? keep_two(s, a, b, along / length_squared) : keep_one(s, b);
 }
 
-/// For a triangle that is a line up to rounding: the best of its sides, each of which is exact.
+/// For a triangle that is a line up to rounding: the nearest of its sides, each of which is exact.
 Vec3 nearest_on_sides(Simplex& s, const Vec3& a, const Vec3& b, const Vec3& c) noexcept
 {
     Vec3 nearest = nearest_on_segment(s, a, b);
@@ -106,8 +106,9 @@ Vec3 nearest_on_triangle(Simplex& s, const Vec3& a, const Vec3& b, const Vec3& c
     return (normal.dot(a) / normal.squaredNorm()) * normal;
 }
 
-/// Whether the origin may lie beyond the plane of a, b, c seen from `inner`. Within rounding of the plane, or of a
-/// tetrahedron without height, the answer is yes: what is not surely inside is searched face by face.
+/// Whether the origin may lie beyond the plane of a, b, c, on the other side than `inner`. Within rounding of the
+/// plane, or of a flat tetrahedron, the answer is yes: unless the origin is surely inside, the faces are searched one
+/// by one.
 bool may_be_beyond(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& inner) noexcept
 {
     const Vec3 normal = (b - a).cross(c - a);

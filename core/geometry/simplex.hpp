@@ -6,7 +6,7 @@
 
 #include "core/base/vec3.hpp"
 
-// Shared by the distance search of convex.hpp; not meant for other rooms.
+// Private to core/geometry: shared by the distance searches.
 
 namespace jink::geometry::detail {
 
@@ -19,8 +19,8 @@ struct Simplex {
 /// The point of the simplex nearest to the origin; the simplex keeps only the points that span its feature. 1 <= size
 /// <= 4.
 ///
-/// Zero exactly when the origin lies inside of a tetrahedron. Vertex, edge and face regions after Ericson 2004,
-/// section 5.1; a tetrahedron too flat to tell inside from outside is searched face by face. O(1).
+/// Zero exactly when the origin lies inside a tetrahedron. Vertex, edge and face regions after Ericson 2004, section
+/// 5.1. A tetrahedron too flat to separate inside from outside is searched face by face. O(1).
 [[nodiscard]] Vec3 reduce_to_nearest(Simplex& simplex) noexcept;
 
 }  // namespace jink::geometry::detail

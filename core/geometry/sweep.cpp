@@ -14,13 +14,13 @@ namespace {
 using detail::Instants;
 using detail::PastBox;
 
-/// What is added to the radius of a contact test, as a share of the relative coordinates and sizes: eight roundings
-/// (2^-24 each) cover the chain relative position, relative velocity, instant, position at the instant, distance.
+/// Added to the radius of a contact test, as a share of the relative coordinates and sizes: eight roundings (2^-24
+/// each) cover the chain relative position, relative velocity, instant, position at the instant, distance.
 constexpr float kSlackShare = 8.0F * 0x1p-24F;
 
 /// Part of [0, horizon] in which the point lies in the box grown by `reach` on every side; empty when first > last.
-/// Outside of it there is no contact; inside, no coordinate exceeds the box by more than `reach`, so that no squares of
-/// far coordinates have to cancel.
+/// Outside the interval there is no contact. Inside, no coordinate exceeds the box by more than `reach`, so that no
+/// squares of far coordinates cancel.
 TimeInterval grown_box_interval(const PastBox& past, float reach, Seconds horizon) noexcept
 {
     TimeInterval inside{0.0F, horizon};
@@ -38,7 +38,7 @@ TimeInterval grown_box_interval(const PastBox& past, float reach, Seconds horizo
     return inside;
 }
 
-/// Time from `at`, outside by `gap` (squares), to where the piece that holds `within` comes down to no gap.
+/// Time from the instant `at`, outside by `gap` (squares), until the gap of the piece that holds `within` is zero.
 Seconds time_to_contact(const PastBox& past, Seconds at, Seconds within, float gap) noexcept
 {
     if (!(gap > 0.0F)) {

@@ -42,10 +42,10 @@ struct Approach {
 ///
 /// Exact for straight motion but for float rounding, which works to the safe side. With
 /// e = 1e-6 * (sum of the relative position's magnitudes + sum of `half` + radius) [m]:
-/// a contact is never missed; what is reported comes within e of touching; `first` is never later and `last` never
-/// earlier than the true instant (by more than 2.4e-7 * horizon); and at both the distance exceeds the radius by e at
-/// most, so that an instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s
-/// count as none. O(1): six divisions, two roots. Source: geometric planner, section 4 (Pinheiro 3.4, made time-aware).
+/// no contact is missed, and a reported contact comes within e of touching. `first` is never later and `last` never
+/// earlier than the true instant (by more than 2.4e-7 * horizon). At both instants the distance exceeds the radius by e
+/// at most, so that an instant's error is e / closing speed, more only where the motion grazes. Speeds below 1e-18 m/s
+/// count as zero. O(1): six divisions, two roots. Source: Pinheiro 3.4, made time-aware (geometric planner, section 4).
 [[nodiscard]] std::optional<TimeInterval> contact_interval(const Vec3& half, const Motion& own, const Motion& threat,
                                                            float radius, Seconds horizon) noexcept;
 
@@ -54,7 +54,7 @@ struct Approach {
                                                            Seconds horizon) noexcept;
 
 /// Distance of a point from the box of half extents `half` about the origin; 0 inside. The same to the last bit as
-/// least_distance of things that stand still. O(1), one root.
+/// least_distance of static objects. O(1), one root.
 [[nodiscard]] inline float box_distance(const Vec3& half, const Vec3& point) noexcept
 {
     return (point - point.cwiseMax(-half).cwiseMin(half)).norm();
@@ -63,18 +63,18 @@ struct Approach {
 /// Least distance in [0, horizon] between the box and the (moving) centre point of a threat; subtract the threat's
 /// radius for the margin. horizon >= 0.
 ///
-/// Rounding error of the distance below 5e-7 * (sum of magnitudes of relative position, way travelled in `horizon` and
-/// `half`); `when` is an instant whose distance is the least one within that. O(1): a piecewise quadratic of at most
-/// six breakpoints.
+/// Rounding error of the distance below 5e-7 * (sum of magnitudes of relative position, displacement within `horizon`
+/// and `half`); `when` is an instant whose distance is the least one within that error. O(1): a piecewise quadratic of
+/// at most six breakpoints.
 [[nodiscard]] Approach least_distance(const Vec3& half, const Motion& own, const Motion& threat,
                                       Seconds horizon) noexcept;
 
 /// Distance between the box swept from `own_from` to `own_to` and the segment `threat_from`..`threat_to`, regardless of
-/// time [m]: 0 when they touch. Subtract the threat's radius for the margin of the source's "swept" dynamic security
-/// (Pinheiro 3.4.2). Zero-length, parallel and nearly parallel segments are no exception.
+/// time [m]: 0 when they touch. Subtract the threat's radius for the margin of Pinheiro's "swept" dynamic security
+/// (3.4.2). Holds for zero-length, parallel and nearly parallel segments too.
 ///
-/// Rounding error below 5e-7 * (sum of magnitudes of threat_from - own_from, of both ways and of `half`); touching may
-/// come out as such an error instead of 0. O(1): four closest approaches and one plane.
+/// Rounding error below 5e-7 * (sum of magnitudes of threat_from - own_from, of both displacements and of `half`).
+/// Touching solids may give such an error instead of 0. O(1): four closest approaches and one plane.
 [[nodiscard]] float swept_distance(const Vec3& half, const Vec3& own_from, const Vec3& own_to, const Vec3& threat_from,
                                    const Vec3& threat_to) noexcept;
 

@@ -9,14 +9,14 @@
 #include "core/geometry/shape.hpp"
 #include "core/geometry/sweep.hpp"
 
-// Shared by the contact and the distance queries of convex.hpp; not meant for other rooms.
+// Private to core/geometry: shared by the contact and the distance queries of convex.hpp.
 
 namespace jink::geometry::detail {
 
 /// Largest relative error of one float operation.
 inline constexpr float kRounding = 0x1p-24F;
 
-/// The own safety box, swept along its way.
+/// The own safety box, swept along a segment.
 struct SweptBox {
     const Vec3& half;
     const Vec3& from;
@@ -46,18 +46,18 @@ struct SweptBox {
     }
 };
 
-/// Distance between the swept box and the solid that a separating plane has proven [m], at most `limits.reach`, 0 if
-/// there is none or the budget ran out. GJK in float, accuracy as stated for `swept_box_distance`.
+/// Proven lower bound of the distance between the swept box and the solid [m], at most `limits.reach`. 0 if no
+/// separating plane is found or the budget ran out. GJK in float, accuracy as stated for `swept_box_distance`.
 [[nodiscard]] float proven_distance(const SweptBox& box, const Shape& shape, const SearchLimits& limits,
                                     WorkBudget& budget) noexcept;
 
-/// Whether `closed_form_distance` knows the shape.
+/// Whether `closed_form_distance` covers the shape.
 [[nodiscard]] inline bool has_closed_form(const Shape& shape) noexcept
 {
     return shape.kind == ShapeKind::sphere || shape.kind == ShapeKind::capsule;
 }
 
-/// Units of a query in closed form.
+/// Work units of a query in closed form.
 [[nodiscard]] inline std::uint32_t closed_form_units(const Shape& shape) noexcept
 {
     return shape.kind == ShapeKind::sphere ? units::kSphereQuery : units::kCapsuleQuery;

@@ -7,12 +7,12 @@
 #include "core/geometry/past_box.hpp"
 #include "core/geometry/sweep.hpp"
 
-// Seen from the box, the threat's point less the own one fills the parallelogram corner + s * threat - t * own, 0 <= s,
-// t <= 1. Its distance from the box is attained on one of its four edges (a point moving past the box: closed form), or
-// between its inside and a corner of the box, or it is pierced by the box. The last two need one point of the box only:
-// the one nearest to the parallelogram's plane. Where that point is not unique, the nearest points are an edge or a
-// face parallel to the plane, and those either cover the parallelogram's border, which the edges find, or lie inside of
-// it as a whole, or miss it.
+// Relative to the box, the threat's point less the own point fills the parallelogram corner + s * threat - t * own, 0
+// <= s, t <= 1. The box's distance from the parallelogram is attained on one of its four edges (a point moving past the
+// box: closed form), or between its inside and a corner of the box, or the box pierces the parallelogram. The last two
+// need one point of the box only: the point nearest to the parallelogram's plane. Where that point is not unique, the
+// nearest points are an edge or a face parallel to the plane. Such an edge or face covers the parallelogram's border,
+// which the edges find, or lies inside the parallelogram as a whole, or misses it.
 
 namespace jink::geometry {
 
@@ -29,14 +29,14 @@ float edge_distance_squared(const Vec3& half, const Vec3& from, const Vec3& alon
     return past.distance_squared(past.closest(past.instants(1.0F)));
 }
 
-/// High part of a number with at most 12 significant bits (Dekker 1971), so that products of such parts are exact.
+/// High part of a number, with at most 12 significant bits (Dekker 1971): products of such parts are exact.
 float high_part(float x) noexcept
 {
     const float spread = 4097.0F * x;
     return spread - (spread - x);
 }
 
-/// y - factor * x, rounded once: the product's rounding error is computed and taken off (Dekker 1971).
+/// y - factor * x, rounded once: the product's rounding error is computed and subtracted (Dekker 1971).
 float difference_exactly(float y, float factor, float x) noexcept
 {
     const float product = factor * x;
@@ -48,8 +48,8 @@ float difference_exactly(float y, float factor, float x) noexcept
     return (y - product) - error;
 }
 
-/// Squared distance between the box and a point of the parallelogram corner + s * u + t * v that is the closest one if
-/// the closest one lies inside; |u| >= |v|. Never below the true distance.
+/// Squared distance between the box and a candidate for the closest point of the parallelogram corner + s * u + t * v;
+/// |u| >= |v|. The candidate is the closest point if the closest point lies inside. Never below the true distance.
 ///
 /// v is replaced by its part across u, free of cancellation, so that slender parallelograms lose no accuracy.
 float inside_distance_squared(const Vec3& half, const Vec3& corner, const Vec3& u, const Vec3& v) noexcept

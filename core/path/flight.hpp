@@ -7,18 +7,18 @@
 #include "core/path/follower.hpp"
 #include "core/vehicle/motion.hpp"
 
-// A planner's candidate flight, part by part, coarser than the final check's (prediction.hpp). Several flights flown in
-// turn, a part each, take little longer than one, because none has to wait for another's roots and divisions. Private
-// to this room and core/geometric.
+// A planner's candidate flight, part by part, coarser than the final check's (prediction.hpp). Several flights advanced
+// in turn, one part each, take little longer than a single flight: their roots and divisions do not wait for each
+// other. Private to core/path and core/geometric.
 
 namespace jink::path::detail {
 
-/// A rest of the path shorter than this share of a step is flown with the step before it: no two points of a flight may
-/// be so near that the velocity between them is rounding.
+/// A remainder of the path shorter than this share of a step is merged with the step before it. Otherwise two points
+/// could be so near that the velocity between them is rounding.
 inline constexpr float kLeastStep = 1e-3F;
 
-/// The grid of times of a flight over `length` in steps of `dt` > 0, the last one shortened, `most` steps at most.
-/// Steps are counted, not summed up: 60 steps of 0.1 s end at 6 s.
+/// The grid of times of a flight over `length` in steps of `dt` > 0, the last step shortened, `most` steps at most.
+/// Times are multiples of dt, not sums: 60 steps of 0.1 s end at 6 s.
 struct Steps {
     Seconds length;
     Seconds dt;
@@ -39,11 +39,11 @@ struct Steps {
 private:
     [[nodiscard]] Seconds time(std::size_t step) const noexcept { return static_cast<float>(step) * dt; }
     [[nodiscard]] Seconds left_after(std::size_t steps) const noexcept { return length - time(steps); }
-    /// Not `length` where there was no room for all steps.
+    /// Less than `length` if `most` steps do not cover it.
     [[nodiscard]] Seconds end() const noexcept { return left_after(count) > kLeastStep * dt ? time(count) : length; }
 };
 
-/// The first point of `path`, from `next` on, that lies after `t`; its last one where none does.
+/// The first point of `path`, from `next` on, that lies after `t`; the last point if none does.
 [[nodiscard]] inline std::size_t next_after(const TimedPath& path, std::size_t next, Seconds t) noexcept
 {
     while (next + 1 < path.points.size() && path.points[next].time <= t) {
@@ -52,20 +52,20 @@ private:
     return next;
 }
 
-/// `follow`, but with the path's velocity of `ahead` instead of one loop lag after `t`; the points after `t` and after
-/// `ahead` being known (next_after, 1 at least).
+/// `follow`, but with the path's velocity at `ahead` instead of one loop lag after `t`. `next` and `next_ahead` are the
+/// points after `t` and `ahead` (next_after, 1 at least).
 [[nodiscard]] Vec3 command(const TimedPath& path, Seconds t, std::size_t next, Seconds ahead, std::size_t next_ahead,
                            const Vec3& position, const vehicle::VehicleLimits& limits,
                            const FollowerGains& gains) noexcept;
 
-/// A flight may be predicted in coarser parts once the vehicle has found the path.
+/// Step lengths of a predicted flight; they may be coarser once the vehicle has found the path.
 struct Fineness {
-    Seconds settled = std::numeric_limits<Seconds>::infinity();  ///< parts of kFollowerPeriod at most until then
-    Seconds afterwards = kFollowerPeriod;                        ///< and of this much from the step that begins then on
+    Seconds settled = std::numeric_limits<Seconds>::infinity();  ///< parts of at most kFollowerPeriod until then
+    Seconds afterwards = kFollowerPeriod;                        ///< longest part, for steps that begin later
 };
 
-/// The vehicle model follows `path` from `state`, taken as being at path time `start`, in steps of `dt` > 0, to the end
-/// of the path or until kMaxPathPoints; the last step is shortened to end with the path. Each step is flown in parts of
+/// The vehicle model follows `path` from `state`, assumed to be at path time `start`, in steps of `dt` > 0, to the end
+/// of the path or until kMaxPathPoints. The last step is shortened to end with the path. Each step is flown in parts of
 /// kFollowerPeriod at most. `path`, `limits` and `gains` outlive this. 160 bytes.
 class Flight {
 public:
@@ -94,14 +94,14 @@ public:
                (steps_.count - early) * static_cast<std::size_t>(later_parts_);
     }
     [[nodiscard]] const Vec3& position() const noexcept { return position_; }
-    /// Of `position`, since the start.
+    /// Time of `position` since the start.
     [[nodiscard]] Seconds time() const noexcept { return from_; }
 
-    /// Part `i` of the next step: all in turn, then `end_step`. Not after the end. O(1), amortised.
+    /// Flies part `i` of the next step: all parts in turn, then `end_step`. Not after the end. O(1), amortised.
     void fly(int i, vehicle::detail::Fading& fading) noexcept
     {
         const Seconds t = start_ + from_ + static_cast<float>(i) * part_;
-        // A command that is held for longer than the follower's period would come later on average.
+        // A command held for longer than the follower's period would lag on average.
         const Seconds lead = part_ > kFollowerPeriod ? 0.5F * (part_ - kFollowerPeriod) : 0.0F;
         const Seconds ahead = t + limits_.velocity_lag + lead;
         next_ = next_after(path_, next_, t);
@@ -122,7 +122,7 @@ private:
     {
         return std::max(1, static_cast<int>(std::ceil(step / longest - 1e-3F)));
     }
-    /// The same for all whole steps, to the bit: what fades in it is then remembered (vehicle::detail::Fading).
+    /// The same to the bit for all whole steps, so that the cache of vehicle::detail::Fading applies.
     [[nodiscard]] Seconds part() const noexcept
     {
         const Seconds step = flown_ + 1 < steps_.count ? steps_.dt : steps_.end_of(flown_ + 1) - from_;

@@ -9,11 +9,11 @@
 namespace jink::path {
 namespace {
 
-/// A corner of the path is flown as a turn over this long on either side of it, or half a segment where that is shorter
+/// A corner of the path is flown as a turn that lasts this long on either side of the corner, at most half a segment
 /// [s].
 constexpr Seconds kCornerTime = 0.25F;
 
-/// First point after `t`, but none before the second point and none past the last one. O(log points).
+/// First point after `t`, limited to the range from the second point to the last. O(log points).
 std::size_t search(const TimedPath& path, Seconds t) noexcept
 {
     const auto& points = path.points;
@@ -23,7 +23,7 @@ std::size_t search(const TimedPath& path, Seconds t) noexcept
     return std::max<std::size_t>(std::min(found, points.size() - 1), 1);
 }
 
-/// The path's position at `t`, `next` as search finds it.
+/// The path's position at `t`; `next` as returned by `search`.
 Vec3 position_at(const TimedPath& path, Seconds t, std::size_t next) noexcept
 {
     const auto& points = path.points;
@@ -39,8 +39,8 @@ Vec3 position_at(const TimedPath& path, Seconds t, std::size_t next) noexcept
     return from.position + share * (to.position - from.position);
 }
 
-/// The path's velocity at `t`, blended linearly across the corners, `next` as search finds it: with points close
-/// together it is the velocity of the smooth curve that the points were taken from, not that of its chords.
+/// The path's velocity at `t`, blended linearly across the corners; `next` as returned by `search`. With points close
+/// together the result is the velocity of the smooth curve through the points, not that of its chords.
 Vec3 smooth_velocity(const TimedPath& path, Seconds t, std::size_t next_index) noexcept
 {
     const auto& points = path.points;
@@ -63,7 +63,7 @@ Vec3 smooth_velocity(const TimedPath& path, Seconds t, std::size_t next_index) n
     return before.velocity + share * (corner->velocity - before.velocity);
 }
 
-/// Ends the segment that `out` ends with: its velocity is what led to `position`.
+/// Ends the last segment of `out`: its velocity is the one that leads to `position`.
 void append(TimedPath& out, const Vec3& position, Seconds time) noexcept
 {
     PathPoint& last = out.points.back();
@@ -79,7 +79,7 @@ Vec3 command(const TimedPath& path, Seconds t, std::size_t next, Seconds ahead, 
              const Vec3& position, const vehicle::VehicleLimits& limits, const FollowerGains& gains) noexcept
 {
     Vec3 correction = gains.position_gain * (position_at(path, t, next) - position);
-    // Squares are compared, so that most commands need no root: each would wait for the one before.
+    // Squares are compared, so that most commands avoid two dependent square roots.
     const float size = correction.squaredNorm();
     if (size > gains.max_correction * gains.max_correction) {
         correction *= gains.max_correction / std::sqrt(size);

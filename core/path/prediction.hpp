@@ -7,15 +7,15 @@
 #include "core/path/follower.hpp"
 #include "core/vehicle/motion.hpp"
 
-// A flight as the final check sees it: set-points as the application sends them, and chords that say how far the flight
-// leaves them.
+// The predicted flight of the final check: set-points as the application sends them, and chords with a bound of the
+// flight's distance from each.
 
 namespace jink::path {
 
-/// The application sends set-points this often at least, by default (parameter JNK_RATE) [s].
+/// Default period of the application's set-points [s], at most (parameter JNK_RATE).
 inline constexpr Seconds kSetpointPeriod = 0.05F;
 
-/// How far a flight leaves the straight motion between two of its points, at most [m].
+/// Largest distance of a flight from the straight motion between two of its points [m].
 struct Sagitta {
     float any = 0.0F;       ///< in any direction
     float vertical = 0.0F;  ///< up or down
@@ -25,7 +25,7 @@ struct Sagitta {
 struct Prediction {
     TimedPath path;
     StaticVector<Sagitta, kMaxPathPoints> sagittas;  ///< of the chord that begins at the point of the same index
-    Vec3 velocity = Vec3::Zero();                    ///< at the last point [m/s]; that of the path is its chord's
+    Vec3 velocity = Vec3::Zero();                    ///< at the last point [m/s]; the path holds the chord's
 };
 
 /// Writes a flight of the vehicle model into a Prediction, chord by chord.
@@ -37,7 +37,7 @@ public:
     /// Continues `out`, or begins it with begin(). All outlive this.
     ChordWriter(const vehicle::VehicleLimits& limits, Prediction& out) noexcept
         : limits_(limits), out_(out), fading_(limits.velocity_lag),
-          // Without a lag each velocity error is flown off at the limit.
+          // Without a lag each velocity error decays at the acceleration limit.
           per_squared_lag_(limits.velocity_lag > kLeastLag ? 1.0F / (limits.velocity_lag * limits.velocity_lag)
                                                            : 1.0F / (kLeastLag * kLeastLag))
     {
@@ -97,32 +97,32 @@ private:
     Vec3 velocity_ = Vec3::Zero();
 };
 
-/// What the vehicle will really fly: `follow` at every kSetpointPeriod from `start` on, and the vehicle model in
-/// between, from `state` (taken as being at path time `start`). The last command is held until the first set-point at
-/// or after the end of the path, so the flight is up to kSetpointPeriod longer than the rest of the path.
+/// The predicted flight: `follow` at every kSetpointPeriod from `start` on, and the vehicle model in between, from
+/// `state` (assumed to be at path time `start`). The last command is held until the first set-point at or after the end
+/// of the path, so the flight is up to kSetpointPeriod longer than the rest of the path.
 ///
-/// Chords are whole periods long: one, two, then `step` (at least one), longer where the flight would have more than
-/// `most` points (4..kMaxPathPoints). The first two are short because they count most where something is near already.
-/// out.path.points[0] is the present position at time 0. If nothing of the path is left, one point remains. Path not
-/// empty, with setpoints_of(rest) less than kMaxSetpoints.
+/// Chords are whole periods long: one, two, then `step` (at least one period), longer where the flight would have more
+/// than `most` points (4..kMaxPathPoints). The first two are short because accuracy matters most where a threat is
+/// already near. out.path.points[0] is the present position at time 0. If nothing of the path is left, one point
+/// remains. Path not empty, with setpoints_of(rest) less than kMaxSetpoints.
 ///
 /// Exact but for rounding: 1e-4 m within 100 m of the origin. O(rest / kSetpointPeriod).
 void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds step,
                     const vehicle::VehicleLimits& limits, const FollowerGains& gains, std::size_t most,
                     Prediction& out) noexcept;
 
-/// Set-points before the end of a path of which `rest` [s] is left; kMaxSetpoints where there are more.
+/// Set-points before the end of a path of which `rest` [s] is left; kMaxSetpoints at most.
 inline constexpr std::uint32_t kMaxSetpoints = 1'000'000;
 [[nodiscard]] std::uint32_t setpoints_of(Seconds rest) noexcept;
 
-/// The flight from `state` when `command` is held for `horizon` > 0 seconds: brake when it is zero. Chords of one and
-/// two periods, then of `step`, the last one shortened, or until `out` is full. O(horizon / step).
+/// The flight from `state` while `command` is held for `horizon` > 0 seconds; a zero command brakes. Chords of one and
+/// two periods, then of `step`, the last chord shortened, or until `out` is full. O(horizon / step).
 void predict_velocity_command(const vehicle::VehicleState& state, const Vec3& command, Seconds horizon, Seconds step,
                               const vehicle::VehicleLimits& limits, Prediction& out) noexcept;
 
-/// Adds to `out`, not empty, the flight from its end on when `command` is held for `horizon` seconds: chords of `step`,
-/// the last one shortened, or until `out` is full. The velocity of the point that it ended with becomes that of the
-/// first chord. O(horizon / step).
+/// Extends `out`, not empty, by the flight while `command` is held for `horizon` seconds: chords of `step`, the last
+/// chord shortened, or until `out` is full. The previous last point gets the velocity of the first new chord. O(horizon
+/// / step).
 void extend_by_velocity_command(const Vec3& command, Seconds horizon, Seconds step,
                                 const vehicle::VehicleLimits& limits, Prediction& out) noexcept;
 

@@ -38,7 +38,7 @@ RoutePoint point_of(const RouteSegment& segment, float arc_length) noexcept
     }
     const SineCosine half = sine_cosine(0.5F * (on / segment.radius));
     const float sine = 2.0F * half.sine * half.cosine;
-    const float rise = 2.0F * half.sine * half.sine;  // 1 - cosine, without its cancellation
+    const float rise = 2.0F * half.sine * half.sine;  // 1 - cosine, without cancellation
     const Vec3 along = (1.0F - rise) * segment.along + sine * segment.towards;
     const Vec3 position = segment.start + segment.radius * (sine * segment.along + rise * segment.towards);
     return {position + (arc_length - on) * along, along};
@@ -57,7 +57,7 @@ RouteStatus Route::add(const RouteSegment& segment) noexcept
     if (!(segment.length >= kShortest)) {
         return RouteStatus::too_short;
     }
-    segments_.unchecked_push_back(segment);  // its callers have looked for room
+    segments_.unchecked_push_back(segment);  // callers have checked the capacity
     return RouteStatus::ok;
 }
 

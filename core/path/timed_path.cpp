@@ -6,7 +6,7 @@
 namespace jink::path {
 namespace {
 
-/// Nearer than this, two points give no direction that float would carry [m].
+/// Two points nearer than this have no reliable direction in float [m].
 constexpr float kShortestSegment = 1e-6F;
 
 }  // namespace

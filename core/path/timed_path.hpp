@@ -30,18 +30,17 @@ struct PathSample {
     Vec3 velocity = Vec3::Zero();
 };
 
-/// Where the path is at time `t` after its start; before the start its first point, past the end its last point with
-/// its last velocity. Path not empty. O(log points).
+/// Position and velocity at time `t` after the path's start; before the start those of the first point, past the end
+/// those of the last point. Path not empty. O(log points).
 [[nodiscard]] PathSample sample(const TimedPath& path, Seconds t) noexcept;
 
 /// Sum of segment lengths [m]. O(points).
 [[nodiscard]] float arc_length(const TimedPath& path) noexcept;
 
-/// Fills `out` with the points `positions` (2..kMaxPathPoints, first at t = 0): velocities and times by the source's
-/// rule
-/// (`clamped_velocity` at `speed` > 0 along each segment; Pinheiro 3.3). A point nearer than 1e-6 m to the last one
-/// kept, or so near that its time would not differ in float, is dropped. False (out is then empty) when fewer than two
-/// points remain or there are too many. O(points).
+/// Fills `out` with the points `positions` (2..kMaxPathPoints, first at t = 0), with velocities and times by Pinheiro's
+/// rule (`clamped_velocity` at `speed` > 0 along each segment; 3.3). Drops a point nearer than 1e-6 m to the last kept
+/// one, or so near that its time would not differ in float. False, with `out` empty, when fewer than two points remain
+/// or there are too many. O(points).
 [[nodiscard]] bool make_timed_path(std::span<const Vec3> positions, float speed, const vehicle::VehicleLimits& limits,
                                    TimedPath& out) noexcept;
 

@@ -17,14 +17,14 @@ using world::Situation;
 
 static_assert(world::AvoidanceMethod<Planner>);
 
-/// Courses of a multirotor that hardly moves, from the way [rad].
+/// Courses of a multirotor that hardly moves, relative to the nominal path [rad].
 constexpr std::array<float, Planner::kHeadings> kTurns{0.0F, kPi / 3.0F, -kPi / 3.0F};
 /// The goal lies just beyond the grid [its range].
 constexpr float kGoalShare = 1.02F;
-/// Of the stop at the end of a way, in time.
+/// Time steps of the stop at the end of a trajectory.
 constexpr int kStopPieces = 4;
 static_assert(kMaxPathPoints >= 2 * kMaxDepth + 2, "the deepest way has to fit");
-/// Off the way by less a path has no side [m].
+/// A path nearer to the nominal path than this has no side [m].
 constexpr float kLeastSide = 0.1F;
 
 bool fits(const ReachSet* set) noexcept
@@ -49,7 +49,7 @@ Vec3 goal_of(const Situation& s, const world::Way& way, float ahead) noexcept
     return s.reference.leg.start + along * std::clamp(done + ahead, 0.0F, length);
 }
 
-/// Unit vector from the way towards the farthest point of the path.
+/// Unit vector from the nominal path towards the farthest point of the path.
 Vec3 side_of(const world::Way& way, const path::TimedPath& path) noexcept
 {
     Vec3 farthest = Vec3::Zero();
@@ -64,13 +64,13 @@ Vec3 side_of(const world::Way& way, const path::TimedPath& path) noexcept
 
 }  // namespace
 
-/// What all courses of a plan share.
+/// Values that all courses of a plan share.
 struct Planner::Start {
     const world::Way& way;
     const SegmentSets& sets;
     Seconds lead;
     float speed;  ///< along the movements [m/s]
-    float stop;   ///< way that a stop takes [m]; 0 for what does not stop
+    float stop;   ///< stopping distance [m]; 0 for a vehicle that does not stop
 };
 
 bool is_valid(const Settings& s) noexcept
@@ -121,7 +121,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     const float speed = std::max(own_speed, least_speed);
     const SegmentSets* of = segment_of(sets, speed / sets.cruise_speed, pitch);
     if (of == nullptr) {
-        return PlanStatus::none_available;  // faster or steeper than any set is for
+        return PlanStatus::none_available;  // faster or steeper than every set allows
     }
     const Seconds lead = hovers ? 0.0F : settings_.latency;
     const Start start{way, *of, lead, speed, stops ? vehicle::stopping_distance(speed, situation.limits) : 0.0F};
@@ -153,7 +153,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     return PlanStatus::none_available;
 }
 
-/// The way to a node as a path, its movements in halves.
+/// The trajectory to a node as a path, its movements in halves.
 void Planner::make_path(const Situation& situation, const Placed& placed, NodeIndex node, const Start& start,
                         path::TimedPath& path) noexcept
 {
@@ -187,7 +187,7 @@ void Planner::make_path(const Situation& situation, const Placed& placed, NodeIn
     path.points.back().velocity = path.points[path.points.size() - 2].velocity;
 }
 
-/// Whether the vehicle can stop at the end of a path, which is itself clear of what is near.
+/// Whether the vehicle can stop at the end of a path, with the stop itself clear of the near threats.
 bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, const Start& start,
                        WorkBudget& budget) const noexcept
 {
@@ -211,8 +211,8 @@ bool Planner::can_stop(const Situation& situation, const path::TimedPath& path, 
     return true;
 }
 
-/// Levels of the cells by what rates them, into `blocks_`; those of the course's other set, where its cells are the
-/// same. By times that a set's own trajectories make they are not.
+/// Rates the cells by the cell sources, into `blocks_`. Levels of the course's other set are used again where both sets
+/// have the same cells, but not with `fusion_`: its ratings depend on the times of the set's own trajectories.
 PlanStatus Planner::look(const Situation& situation, const Placed& placed, const Start& start,
                          WorkBudget& budget) noexcept
 {
@@ -253,10 +253,10 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     if (!near_.mark(placed, balls_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
         return PlanStatus::budget_spent;
     }
-    // What meets anything is of no use, nor what follows on it, whatever it meets.
+    // A node that conflicts with any threat is of no use, nor are its descendants, whatever the threat.
     const auto own_level = [&](NodeIndex node) {
         if (fusion_ != nullptr) {
-            return kFree;  // its cells have said it
+            return kFree;  // the ratings of the cells include all threats
         }
         const Level level = near_.level(placed, node, budget);
         return is_free(level, AvoidanceRun::hard_constraints) ? level : static_cast<Level>(AvoidanceRun::obstacles);
@@ -293,7 +293,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
                 std::clamp(set.cost_of(choice.node) / static_cast<float>(set.depth[choice.node]) - 1.0F, 0.0F, 1.0F);
             return PlanStatus::found;
         }
-        cells[choice.cell] = 0;  // struck out as an end; ways through it stay
+        cells[choice.cell] = 0;  // discarded as an end; trajectories through the cell stay
     }
     return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
 }

@@ -7,7 +7,7 @@
 namespace jink::reach {
 namespace {
 
-/// Of the extent of the points: what is inside by rounding alone.
+/// Tolerance for points inside by rounding alone, of the extent of the points.
 constexpr float kSlack = 1e-5F;
 
 Circle through(const Vec2& a, const Vec2& b) noexcept { return {0.5F * (a + b), 0.5F * (a - b).norm()}; }

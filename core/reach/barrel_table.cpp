@@ -15,7 +15,7 @@ Circle shifted(const Barrel& barrel, float t) noexcept
     return {barrel.circle.centre + t * barrel.velocity, barrel.circle.radius};
 }
 
-/// Around a barrel's body all the while.
+/// Circle around a barrel's body over the whole interval.
 Circle swept(const Barrel& barrel, float from, float to) noexcept
 {
     return around(shifted(barrel, from), shifted(barrel, to));
@@ -75,7 +75,7 @@ AddStatus BarrelTable::add(const Barrel& barrel) noexcept
     if (barrels_.try_push_back(barrel)) {
         return AddStatus::added;
     }
-    // The two farthest of what is here and what comes.
+    // The two farthest of the stored barrels and the new one are merged.
     Barrel spare = barrel;
     std::size_t farthest = 0;
     for (std::size_t i = 1; i < barrels_.size(); ++i) {
@@ -83,7 +83,7 @@ AddStatus BarrelTable::add(const Barrel& barrel) noexcept
     }
     if (distance_to(barrels_[farthest]) > distance_to(spare)) {
         std::swap(barrels_[farthest], spare);
-        // Now the farthest is spare; the next one is to take it in.
+        // Now `spare` is the farthest barrel; the next farthest takes it in.
         farthest = 0;
         for (std::size_t i = 1; i < barrels_.size(); ++i) {
             farthest = distance_to(barrels_[i]) > distance_to(barrels_[farthest]) ? i : farthest;

@@ -7,8 +7,8 @@
 
 namespace jink::reach {
 
-/// The spheres about all cells of a grid, made with few sines: directions of the centres, and radii,
-/// which are the same for all columns. Made in O(columns + rows * layers).
+/// The spheres about all cells of a grid, computed with few sines: directions of the centres, and radii, which are the
+/// same for all columns. Construction: O(columns + rows * layers).
 ///
 /// Memory: 12 bytes a direction, 4 for each layer of each row: about 0.7 KiB for 10 layers of 7 by 5.
 class CellBalls {
@@ -24,7 +24,7 @@ public:
                grid_.distance() == grid.distance() && grid_.horizontal() == grid.horizontal() &&
                grid_.vertical() == grid.vertical();
     }
-    /// Of the cells' middles; times the middle of a layer: their centres.
+    /// Direction of the cells' middles; times the middle of a layer: the cells' centres.
     [[nodiscard]] const Vec3& direction(std::size_t column, std::size_t row) const noexcept
     {
         return directions_[column * grid_.rows() + row];
@@ -38,7 +38,7 @@ public:
     {
         return radii_[layer * kMaxRows + row];
     }
-    /// Grids with more directions are not served.
+    /// False for grids with more directions than kMaxDirections.
     [[nodiscard]] static bool serves(const Grid<float>& grid) noexcept
     {
         return grid.columns() * grid.rows() <= kMaxDirections;

@@ -14,7 +14,8 @@ namespace jink::reach {
 /// Finds the cell of a point as Grid::locate does, without its angles: for many points of one grid, of less than 90
 /// degrees to either side, and up and down.
 ///
-/// The same cell but for points nearer to a face than 1e-5 of the grid's size, which may count to the other side of it.
+/// The same cell as Grid::locate, except for points nearer to a face than 1e-5 of the grid's size, which may count to
+/// the other side of the face.
 /// O(columns + rows), two roots.
 class CellFinder {
 public:
@@ -50,12 +51,12 @@ public:
         return {LocateStatus::inside, place};
     }
 
-    /// Most points of one `locate_all`.
+    /// Capacity of one `locate_all`.
     static constexpr std::size_t kAtOnce = 2 * kMaxLayers;
     using Coordinates = std::array<float, kAtOnce>;
 
-    /// The cells of the first out.size() <= kAtOnce points (x, y, z), kNoCell outside, as `locate` finds them: loops
-    /// over points, which go into vector registers where there are any. O(points * (columns + rows)).
+    /// Finds the cells of the first out.size() <= kAtOnce points (x, y, z) as `locate` does, kNoCell outside. The loops
+    /// run over points, so that the compiler can use vector registers. O(points * (columns + rows)).
     void locate_all(const Coordinates& x, const Coordinates& y, const Coordinates& z,
                     std::span<CellIndex> out) const noexcept
     {
@@ -84,7 +85,7 @@ public:
         const auto columns = static_cast<float>(columns_);
         const auto rows = static_cast<float>(rows_);
         for (std::size_t i = 0; i < n; ++i) {
-            // Rounded up, less one, without a call.
+            // Rounded up, minus one, without a library call.
             const float layers = std::min(most, distance[i] * per_layer_);
             const auto whole = static_cast<float>(static_cast<std::int32_t>(layers));
             const float layer = std::max(whole - (whole == layers ? 1.0F : 0.0F), 0.0F);
@@ -115,7 +116,7 @@ public:
         place = {0, static_cast<std::uint8_t>(columns_below), static_cast<std::uint8_t>(rows_below)};
         return true;
     }
-    /// Layer of what is not beyond the grid. O(1).
+    /// Layer of a point at `distance`; points beyond the grid count to the last layer. O(1).
     [[nodiscard]] std::uint8_t layer_of(float distance) const noexcept
     {
         const float layer = std::ceil(distance * per_layer_) - 1.0F;

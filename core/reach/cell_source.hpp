@@ -14,17 +14,17 @@ namespace jink::reach {
 
 enum class RateStatus : std::uint8_t {
     rated,
-    nothing_known,  ///< levels are as they were
-    blind,          ///< what should see does not: nothing may be flown into
+    nothing_known,  ///< levels are unchanged
+    blind,          ///< the sensor does not see: no cell may be flown into
     budget_spent,
 };
 
-/// What rates the cells of a placed set. Behind an interface, so that an image without any carries none of it.
+/// Rates the cells of a placed set. An interface, so that an image without any cell source carries none of their code.
 class CellSource {
 public:
-    /// Lowers levels of cells, never raises one.
-    /// @param lead    the path begins so long after Situation::now [s]
-    /// @param blocks  of each cell of the placed set
+    /// Lowers levels of cells, never raises a level.
+    /// @param lead    time from Situation::now until the path begins [s]
+    /// @param blocks  level of each cell of the placed set
     [[nodiscard]] virtual RateStatus rate(const world::Situation& situation, const Placed& placed,
                                           const CellBalls& balls, Seconds lead, std::span<Level> blocks,
                                           WorkBudget& budget) noexcept = 0;

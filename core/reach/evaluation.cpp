@@ -48,7 +48,7 @@ CellIndex farthest_free(const ReachSet& set, std::span<const Level> cells, Avoid
     return kNoCell;
 }
 
-/// The cheapest that ends in the cell; where none does, that passes through it.
+/// The cheapest node that ends in the cell; if there is none, the cheapest that passes through the cell.
 NodeIndex cheapest_in(const ReachSet& set, std::span<const Level> nodes, CellIndex cell, AvoidanceRun run) noexcept
 {
     NodeIndex ending = kNoNode;

@@ -13,7 +13,7 @@
 
 namespace jink::reach {
 
-/// Most layers, columns and rows of a grid; and cells.
+/// Capacities: layers, columns and rows of a grid.
 inline constexpr std::size_t kMaxLayers = 16;
 inline constexpr std::size_t kMaxColumns = 16;
 inline constexpr std::size_t kMaxRows = 16;
@@ -21,7 +21,7 @@ inline constexpr std::size_t kMaxRows = 16;
 using CellIndex = std::uint16_t;
 inline constexpr CellIndex kNoCell = 0xFFFF;
 
-/// Layer, column and row, counted from 0; the source counts from 1.
+/// Layer, column and row, counted from 0; Gomola counts from 1.
 struct CellPlace {
     std::uint8_t layer = 0;
     std::uint8_t column = 0;  ///< from the right to the left
@@ -54,14 +54,14 @@ template <class T>
     return {level * std::cos(p.horizontal), level * std::sin(p.horizontal), p.distance * std::sin(p.vertical)};
 }
 
-/// Ranges and numbers of cells. Cells are half-open, (start, end], but the first of each range has its start as well:
-/// with the source's rule the origin and the faces at the lower ends would lie in no cell. Points within 1e-6 (float;
-/// double: 1e-9) of a cell's size past a face count to the cell before it, so that what lies on a face by construction
-/// lies in the same cell on every machine.
+/// Ranges and numbers of cells. Cells are half-open, (start, end], but the first cell of each range includes its start:
+/// with Gomola's rule the origin and the faces at the lower ends would lie in no cell. Points within 1e-6 (float;
+/// double: 1e-9) of a cell's size past a face count to the cell before it. So a point that lies on a face by
+/// construction lies in the same cell on every machine.
 template <class T>
 class Grid {
 public:
-    /// The source's: 10 layers of one movement each, 90 by 60 degrees in 7 by 5.
+    /// Gomola's grid: 10 layers of one movement each, 90 by 60 degrees in 7 by 5.
     constexpr Grid() noexcept = default;
     constexpr Grid(std::size_t layers, std::size_t columns, std::size_t rows, T distance, T horizontal,
                    T vertical) noexcept
@@ -74,11 +74,11 @@ public:
     [[nodiscard]] constexpr std::size_t columns() const noexcept { return columns_; }
     [[nodiscard]] constexpr std::size_t rows() const noexcept { return rows_; }
     [[nodiscard]] constexpr std::size_t cells() const noexcept { return layers_ * columns_ * rows_; }
-    /// Of the outermost layer's end.
+    /// End of the outermost layer.
     [[nodiscard]] constexpr T distance() const noexcept { return distance_; }
-    /// To either side.
+    /// Half angle to either side [rad].
     [[nodiscard]] constexpr T horizontal() const noexcept { return horizontal_; }
-    /// Up and down.
+    /// Half angle up and down [rad].
     [[nodiscard]] constexpr T vertical() const noexcept { return vertical_; }
 
     [[nodiscard]] T layer_end(std::size_t layer) const noexcept
@@ -89,7 +89,7 @@ public:
     {
         return distance_ * static_cast<T>(layer) / static_cast<T>(layers_);
     }
-    /// Lower face of a column; of the one past the last: the grid's end.
+    /// Lower face of a column; for the column past the last: the grid's end.
     [[nodiscard]] T column_start(std::size_t column) const noexcept
     {
         return horizontal_ * (T(2) * static_cast<T>(column) / static_cast<T>(columns_) - T(1));
@@ -125,7 +125,7 @@ public:
                (std::sin(row_start(place.row + 1U)) - std::sin(row_start(place.row))) *
                (column_start(place.column + 1U) - column_start(place.column));
     }
-    /// A wall of it is one of the grid's, that at the vehicle apart.
+    /// Whether the cell has a wall on the grid's border, except the border at the vehicle.
     [[nodiscard]] bool is_outer(const CellPlace& place) const noexcept
     {
         return place.layer + 1U == layers_ || place.column == 0 || place.column + 1U == columns_ || place.row == 0 ||

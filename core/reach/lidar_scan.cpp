@@ -8,7 +8,7 @@
 namespace jink::reach {
 namespace {
 
-/// Rays of a scanner with `pitch` between neighbours whose direction lies in (from, to]: one of them is at 0.
+/// Rays of a scanner with `pitch` between neighbours whose direction lies in (from, to]; one ray points at 0.
 std::uint32_t rays_between(float from, float to, float pitch) noexcept
 {
     constexpr float kTolerance = 1e-4F;  // of a pitch: faces on which rays lie belong to the cell before
@@ -85,7 +85,7 @@ float LidarScan::hindrance(const CellPlace& place) const noexcept
 {
     const float share =
         static_cast<float>(hits_[grid_->index(place)]) / static_cast<float>(rays(place.column, place.row));
-    return std::min(share, 1.0F);  // more points than rays: several returns, or a finer sensor than was said
+    return std::min(share, 1.0F);  // more points than rays: several returns, or a finer sensor than configured
 }
 
 float LidarScan::obstacle(const CellPlace& place, float threshold_area) const noexcept

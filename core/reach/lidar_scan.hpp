@@ -7,43 +7,45 @@
 
 #include "core/reach/grid.hpp"
 
-// What a scanning range sensor says of the grid's cells (Gomola 6.5.1). Points are counted as they come, none is kept.
+// Ratings of the grid's cells by a scanning range sensor (Gomola 6.5.1). Points are counted as they arrive and are not
+// stored.
 
 namespace jink::reach {
 
-/// What happened to a point.
+/// Result of adding a point.
 enum class PointStatus : std::uint8_t { counted, beyond, outside, not_a_number };
 
-/// A scan by cells. Cells beyond those of the grid are not used.
+/// A scan counted by cells. Arrays beyond the grid's cells are unused.
 ///
 /// Memory: 6 bytes for each of kCells cells, 6 for each of kDirections.
 class LidarScan {
 public:
-    static constexpr std::size_t kCells = 512;      ///< most that a grid may have here
-    static constexpr std::size_t kDirections = 64;  ///< columns times rows, most
+    static constexpr std::size_t kCells = 512;      ///< capacity for the cells of a grid
+    static constexpr std::size_t kDirections = 64;  ///< capacity for columns times rows
 
     /// @param grid  its unit of length is that of the points; outlives this
     /// @param horizontal_pitch, vertical_pitch  between neighbouring rays [rad], > 0
-    /// False, and nothing is counted, when the grid is larger than there is room for or a direction has no ray.
+    /// @return false, with nothing counted, if the grid exceeds the capacity or a direction has no ray.
     [[nodiscard]] bool configure(const Grid<float>& grid, float horizontal_pitch, float vertical_pitch) noexcept;
 
-    /// Forgets the points of the scan before. O(cells).
+    /// Clears the points of the previous scan. O(cells).
     void begin() noexcept;
 
-    /// A first return, in the grid's frame. O(1).
+    /// Adds a first return, in the grid's frame. O(1).
     PointStatus add(const Point<float>& point) noexcept { return add(to_polar(point)); }
     PointStatus add(const Polar<float>& point) noexcept;
-    /// The same of a point that is known to lie in a cell of the grid.
+    /// Adds a first return that is known to lie in a cell of the grid.
     /// @param distance  from the sensor [grid's unit]
     void add(const CellPlace& place, float distance) noexcept;
 
-    /// Share of the rays through the cell that end in it (as 6.98 and the figures have it; 6.92 prints the opposite).
+    /// Share of the rays through the cell that end in the cell (as in eq. 6.98 and the figures; eq. 6.92 prints the
+    /// opposite).
     [[nodiscard]] float hindrance(const CellPlace& place) const noexcept;
-    /// Obstacle rating: the surface that was hit over the least one that is a threat, 1 at most. A plate has the same
-    /// rating far away as nearby.
+    /// Obstacle rating: the surface that was hit over the least surface that is a threat, 1 at most. A plate has the
+    /// same rating at any distance.
     [[nodiscard]] float obstacle(const CellPlace& place, float threshold_area) const noexcept;
-    /// Share of the rays that come to the cell at all: what is not stopped in the layers before. Of all cells of a
-    /// direction in turn.
+    /// Share of the rays that reach the cell: those that do not end in the layers before. For all cells of a direction
+    /// in turn.
     /// @param out  for each layer
     void visibility(std::size_t column, std::size_t row, std::span<float> out) const noexcept;
 

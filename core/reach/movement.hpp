@@ -10,22 +10,22 @@
 
 #include "core/base/vec3.hpp"
 
-// The movements of the automaton: short orders of equal length, each with a turn at constant rate (Gomola 6.2.5).
+// The movements of the automaton: short commands of equal length, each with a turn at constant rate (Gomola 6.2.5).
 //
-// Frame: x forward, y left, z up, origin where the vehicle is. Pitch > 0 is nose down, yaw > 0 nose left. Lengths are
-// in units of one movement's length where nothing else is said, so that one set of tables serves every speed.
+// Frame: x forward, y left, z up, origin at the vehicle. Pitch > 0 is nose down, yaw > 0 nose left. Unless stated
+// otherwise, lengths are in units of one movement's length, so that one set of tables serves every speed.
 
 namespace jink::reach {
 
-/// The alphabet, in the source's order (Gomola eq. 6.35), which is the order of everything that is built of it.
+/// The alphabet, in Gomola's order (eq. 6.35). Everything that is built from the alphabet has the same order.
 enum class Movement : std::uint8_t { straight, left, right, up, down, down_left, down_right, up_left, up_right };
 inline constexpr std::size_t kMovements = 9;
 inline constexpr std::array<Movement, kMovements> kAllMovements{
     Movement::straight,  Movement::left,       Movement::right,   Movement::up,      Movement::down,
     Movement::down_left, Movement::down_right, Movement::up_left, Movement::up_right};
 
-/// What a movement turns by, in steps of the automaton: -1, 0 or 1 each. The source's table 6.2 has the pitch of the
-/// four diagonals and the y of two of them with the wrong sign.
+/// Turn of a movement, in steps of the automaton: -1, 0 or 1 each. In Gomola's table 6.2 the pitch of the four
+/// diagonals and the y of two of them have the wrong sign.
 struct Turn {
     std::int8_t pitch = 0;
     std::int8_t yaw = 0;
@@ -45,14 +45,14 @@ struct Turn {
     }
     return {};
 }
-/// Straight flight is smooth, every other movement is not (Gomola eq. 6.79).
+/// Straight flight is smooth; every other movement is not (Gomola eq. 6.79).
 [[nodiscard]] constexpr bool is_smooth(Movement movement) noexcept { return movement == Movement::straight; }
 
-/// How a movement's displacement follows from its turn. arc: turning at a constant rate all the while, exact.
-/// end_heading: the heading of its end from its start on (Gomola eq. 6.31), which no vehicle flies; for comparison.
+/// Displacement of a movement that turns. arc: turns at a constant rate throughout, exact. end_heading: has its final
+/// heading from the start (Gomola eq. 6.31), which no vehicle can fly; for comparison.
 enum class DisplacementModel : std::uint8_t { arc, end_heading };
 
-/// What one movement is made of in a segment of the automaton.
+/// Sizes of one movement in a segment of the automaton.
 template <class T>
 struct MovementStep {
     T length = T(1);                   ///< along the arc
@@ -63,7 +63,7 @@ struct MovementStep {
 template <class T>
 using Point = Eigen::Matrix<T, 3, 1>;
 
-/// Where a vehicle is and heads.
+/// Position and heading of a vehicle.
 template <class T>
 struct Pose {
     Point<T> position = Point<T>::Zero();
@@ -118,7 +118,7 @@ template <class T>
     return to;
 }
 
-/// The pose at its end.
+/// The pose at the end of a movement.
 template <class T>
 [[nodiscard]] Pose<T> apply(const Pose<T>& from, Movement movement, const MovementStep<T>& step,
                             DisplacementModel model = DisplacementModel::arc) noexcept

@@ -15,10 +15,11 @@ namespace jink::reach::detail {
 namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
-/// A solid is looked at in this many pieces of a movement.
+/// A movement is checked against a solid in this many pieces.
 constexpr int kSolidPieces = 4;
 
-/// Of a box or a flat-ended cylinder, by how far a point lies beyond its faces; below 0 inside, by the nearest one.
+/// Distance from a box or a flat-ended cylinder, given the distances beyond its faces; below 0 inside, by the nearest
+/// face.
 template <class Beyond>
 float signed_distance(const Beyond& beyond) noexcept
 {
@@ -26,7 +27,7 @@ float signed_distance(const Beyond& beyond) noexcept
     return deepest > 0.0F ? beyond.cwiseMax(0.0F).norm() : deepest;
 }
 
-/// Half extents, in the solid's axes, of a box about it and the own box at once; of round ones x is the radius.
+/// Half extents, in the solid's axes, of a box about the solid grown by the own box; for round solids x is the radius.
 void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
 {
     const geometry::Shape& shape = *solid.shape;
@@ -180,7 +181,8 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
         return against_barrel(threat, piece);
     }
     if (threat.shape != nullptr) {
-        // Between two points no piece is nearer than half of what both are farther than its length.
+        // Triangle inequality: no point between two points is nearer than half of (sum of both distances less their
+        // separation).
         const float length = (to - from).norm() / static_cast<float>(kSolidPieces);
         float before = distance_to(threat, from);
         float least = kUnbounded;
@@ -190,7 +192,7 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
             least = std::min(least, 0.5F * (before + after - length));
             before = after;
         }
-        // The other way round what is not a number would be free.
+        // Written so that a NaN blocks.
         return !(least > radius) ? kObstacle : !(least > radius + rule_.room) ? kNoRoom : kFree;
     }
     if (radius + rule_.room < 0.0F) {
@@ -201,7 +203,7 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
     if (geometry::glance(threat.half, first, last, radius + rule_.room) == geometry::Glance::apart) {
         return kFree;
     }
-    if (!(radius >= 0.0F)) {  // what is not a number blocks
+    if (!(radius >= 0.0F)) {  // NaN blocks
         return radius < 0.0F ? kNoRoom : threat.is_track ? kIntruder : kObstacle;
     }
     const geometry::Glance glance = geometry::glance(threat.half, first, last, radius);
@@ -253,7 +255,7 @@ Level NearThreats::level(const Placed& placed, NodeIndex node, WorkBudget& budge
     const NodeIndex parent = set.parent[node];
     const Seconds end = placed.time(node);
     const Piece piece{placed.node(parent), placed.node(node), end - placed.period, end, bulge_};
-    // At the root everything may be near; it has nine children at most.
+    // At the root every threat may be near; the root has nine children at most.
     ThreatBits bits = parent == 0 ? all_ : of_cell_[set.end[parent]];
     for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
         bits.words[word] |= of_cell_[set.end[node]].words[word];
@@ -261,8 +263,8 @@ Level NearThreats::level(const Placed& placed, NodeIndex node, WorkBudget& budge
     return keep_near(piece, bits, budget) ? against(bits, piece, budget) : static_cast<Level>(AvoidanceRun::obstacles);
 }
 
-/// Takes off those that one look from the middle of the piece sees to be far. False when the budget does not allow for
-/// it.
+/// Removes the threats that a quick reject from the middle of the piece proves to be far. False when the budget is too
+/// small.
 bool NearThreats::keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& budget) const noexcept
 {
     const Vec3 middle = 0.5F * (piece.from + piece.to);

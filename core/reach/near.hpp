@@ -12,11 +12,11 @@
 #include "core/reach/placed.hpp"
 #include "core/world/separation.hpp"
 
-// What is near enough to a placed reach set to matter to it, and which of its nodes meet it. Private to this room.
+// Threats near enough to a placed reach set to matter, and the nodes that conflict with them. Private to core/reach.
 
 namespace jink::reach::detail {
 
-/// Threats by number, as bits: in the order of the ThreatSet.
+/// Set of threats by number, as bits: in the order of the ThreatSet.
 struct ThreatBits {
     static constexpr std::size_t kMost = kMaxTracks + kMaxObstacles + kMaxBarrels;
     static constexpr std::size_t kWords = (kMost + 31) / 32;
@@ -26,29 +26,29 @@ struct ThreatBits {
     std::array<std::uint32_t, kWords> words{};
 };
 
-/// One threat to the own box, as it is met from the start of the path on.
+/// One threat to the own box, from the start of the path on.
 struct NearThreat {
-    const geometry::Shape* shape = nullptr;  ///< of a solid that is no ball; null for balls, at rest or moving
+    const geometry::Shape* shape = nullptr;  ///< of a solid other than a ball; null for balls, static or moving
     Vec3 half = Vec3::Zero();  ///< ball: of the own box, taller for upright capsules. solid: its own, grown by the box
     Vec3 position = Vec3::Zero();  ///< centre [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     world::Growth growth;          ///< of the ball, or of what a solid is grown by
-    float shrunk = 0.0F;           ///< by the escape rule, at time 0 [m]
+    float shrunk = 0.0F;           ///< reduction by the escape rule, at time 0 [m]
     float body = 0.0F;     ///< ball: what the own box adds to its radius, at most; of a tall one in the level plane [m]
-    float far = 0.0F;      ///< ball: farther apart than this halfway through a movement is apart all through it [m]
+    float far = 0.0F;      ///< ball: farther apart than this halfway through a movement: apart all through it [m]
     float room = 0.0F;     ///< nearer than this is better avoided; of a barrel level, its margin if that is more [m]
-    bool is_tall = false;  ///< ball: an upright capsule or a barrel, whose heights are looked at by `half` alone
+    bool is_tall = false;  ///< ball: an upright capsule or a barrel, whose heights are checked by `half` alone
     bool is_track = false;
     bool is_barrel = false;  ///< flat-ended: the radius is level alone
 
     [[nodiscard]] Vec3 at(Seconds t) const noexcept { return position + velocity * t; }
 };
 
-/// Distance of a point from a solid that has been grown by the own box, below 0 inside. Exact for upright boxes, else
-/// no more than it is. O(1).
+/// Distance of a point from a solid that has been grown by the own box, below 0 inside. Exact for upright boxes; for
+/// other shapes not above the true distance. O(1).
 [[nodiscard]] float distance_to(const NearThreat& solid, const Vec3& point) noexcept;
 
-/// How node checks are made.
+/// Settings of the node checks.
 struct NearRule {
     world::EscapeRule escape;
     float room = 0.4F;  ///< nearer than this is better avoided: level soft_constraints [m]
@@ -60,32 +60,32 @@ struct Piece {
     Vec3 to = Vec3::Zero();
     Seconds start = 0.0F;
     Seconds end = 0.0F;
-    float bulge = 0.0F;  ///< how far off it the vehicle may be [m]
+    float bulge = 0.0F;  ///< largest distance of the vehicle from the piece [m]
 };
 
-/// Memory: 88 bytes a threat, a bit for each threat in a cell.
+/// The threats near a placed reach set. Memory: 88 bytes a threat, a bit for each threat in a cell.
 class NearThreats {
 public:
-    /// Takes in what the placed set may come near to.
-    /// @param lead    the path begins so long after Situation::now [s]
-    /// @param beyond  way past the grid's border that is looked at as well [m]
+    /// Collects the threats that the placed set may come near to.
+    /// @param lead    time from Situation::now until the path begins [s]
+    /// @param beyond  distance past the grid's border that is checked as well [m]
     /// O(tracks + obstacles + barrels).
     void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
                  const NearRule& rule) noexcept;
 
-    /// Finds, for each cell in which a node ends, what may come near to the way to or from there at the times at which
-    /// a node is there. False when the budget does not allow for it. O(nodes + cells * threats).
+    /// Finds, for each cell in which a node ends, the threats that may come near to the movements to and from that cell
+    /// at the times at which a node is there. False when the budget is too small. O(nodes + cells * threats).
     [[nodiscard]] bool mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept;
 
-    /// Level of the movement that leads to `node`, by what is near and by the bounds of the airspace:
-    /// obstacles, intruders, hard_constraints (a barrel's body), soft_constraints (less room than wanted, or a barrel's
-    /// margin) or kFree. What is told is safe: the movement is
-    /// taken as its chord with its bulge around it, threats as large as they are at its end; solids that are no balls
-    /// as up to an eighth of a movement nearer than they are. What meets an intruder is not looked at any further. A
-    /// budget that runs out: obstacles. O(near threats).
+    /// Level of the movement that leads to `node`, by the near threats and the bounds of the airspace:
+    /// obstacles, intruders, hard_constraints (a barrel's body), soft_constraints (within the clearance buffer, or a
+    /// barrel's margin) or kFree. Conservative: the movement counts as its chord with its bulge around it, threats as
+    /// large as at its end, and solids other than balls as up to an eighth of a movement nearer than they are. A
+    /// movement that conflicts with an intruder is checked no further. If the budget runs out: obstacles. O(near
+    /// threats).
     [[nodiscard]] Level level(const Placed& placed, NodeIndex node, WorkBudget& budget) const noexcept;
 
-    /// The same of any piece, against all that is near. O(threats).
+    /// The same for any piece, against all near threats. O(threats).
     [[nodiscard]] Level level(const Piece& piece, WorkBudget& budget) const noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept { return near_.size(); }
@@ -114,14 +114,14 @@ private:
     std::array<ThreatBits, kMaxReachCells> of_cell_{};
     ThreatBits all_;
     float bulge_ = 0.0F;  ///< of a movement [m]
-    /// Of the airspace, for the centre of the own box; without bounds nothing is out of it.
+    /// Bounds of the airspace, for the centre of the own box; without bounds every position is inside.
     struct Inside {
         static constexpr float kUnbounded = std::numeric_limits<float>::infinity();
         float floor = -kUnbounded;
         float ceiling = kUnbounded;
         float keep_in = kUnbounded;
         Vec3 home = Vec3::Zero();
-        float floor_shrunk = 0.0F;  ///< by the escape rule, at time 0
+        float floor_shrunk = 0.0F;  ///< reduction by the escape rule, at time 0
         float ceiling_shrunk = 0.0F;
         float keep_in_shrunk = 0.0F;
     };

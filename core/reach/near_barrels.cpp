@@ -10,8 +10,8 @@ namespace jink::reach::detail {
 namespace {
 
 /// Whether the own box's level rectangle comes within `radius` of a barrel's axis while its middle is within `height`
-/// of it: the axis goes straight from `first` to `last` as seen from the own box. Exact but for rounding, which works
-/// to the safe side; what touches counts.
+/// of the barrel's. The axis moves straight from `first` to `last` relative to the own box. Exact but for rounding,
+/// which works to the safe side; touching counts as contact.
 bool touches_between(const NearThreat& barrel, const Vec3& first, const Vec3& last, float radius, float height) noexcept
 {
     constexpr float kSlack = 1e-5F;  // of the heights
@@ -65,7 +65,7 @@ void NearThreats::add_cylinder(const world::Threat& threat, const Vec3& own, con
     near_.unchecked_push_back(near);
 }
 
-/// A flat-ended solid: the level distance counts while the heights overlap, as large as it is at the piece's end.
+/// A flat-ended solid: the level distance counts while the heights overlap, with its size at the piece's end.
 Level NearThreats::against_barrel(const NearThreat& barrel, const Piece& piece) const noexcept
 {
     const float shrunk = shrunk_at(barrel.shrunk, piece.end);

@@ -6,7 +6,7 @@
 #include "core/base/work_units.hpp"
 #include "core/reach/near.hpp"
 
-// Which threats may come near to which cells of a placed set.
+// Finds which threats may come near to which cells of a placed set.
 
 namespace jink::reach::detail {
 namespace {
@@ -16,7 +16,7 @@ constexpr float kHalfMovement = 0.5F;
 
 }  // namespace
 
-/// Of the nodes that end in each cell.
+/// Least and greatest depth of the nodes that end in each cell.
 struct NearThreats::Depths {
     std::array<std::uint8_t, kMaxReachCells> least{};
     std::array<std::uint8_t, kMaxReachCells> most{};  ///< 0: no node ends in it
@@ -32,7 +32,7 @@ struct NearThreats::Depths {
     }
 };
 
-/// Those of a layer in which a node ends, in the set's frame.
+/// The cells of a layer in which a node ends, in the set's frame.
 struct NearThreats::LayerCells {
     using Numbers = std::array<float, CellBalls::kMaxDirections>;
 
@@ -41,11 +41,11 @@ struct NearThreats::LayerCells {
     Numbers y;
     Numbers z;
     Numbers radius;
-    Numbers first;  ///< a node comes from the cell before, at the earliest [movements]
-    Numbers last;   ///< and has left it, at the latest
+    Numbers first;  ///< earliest time at which a node comes from the cell before [movements]
+    Numbers last;   ///< latest time at which a node has left the cell [movements]
     std::array<CellIndex, CellBalls::kMaxDirections> cell;
 
-    // Numbers are there up to `count`.
+    // Elements are set up to `count`.
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
     LayerCells(const Placed& placed, const CellBalls& balls, std::size_t layer, const Depths& depths) noexcept
     {
@@ -69,7 +69,7 @@ struct NearThreats::LayerCells {
         bound();
     }
 
-    /// Nothing that is far from the box between its times is near to any of them.
+    /// Bounds of all cells and their times: a threat far from the box between these times is near to no cell.
     void bound() noexcept
     {
         for (std::size_t i = 0; i < count; ++i) {
@@ -105,7 +105,7 @@ bool NearThreats::mark(const Placed& placed, const CellBalls& balls, WorkBudget&
     return true;
 }
 
-/// In the set's frame, where the cells are the same for every plan.
+/// Works in the set's frame, where the cells are the same for every plan.
 void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std::size_t threat) noexcept
 {
     const NearThreat& near = near_[threat];
@@ -123,8 +123,8 @@ void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std:
     }
     const Vec3 at_start = placed.to_set(near.position);
     Vec3 per_period = placed.to_set(near.position + placed.period * near.velocity) - at_start;
-    // What is tall climbs little of its height meanwhile: all of that counts as height, so that level times are
-    // nearest.
+    // A tall threat climbs little of its height meanwhile: its whole climb counts as height, so that the closest
+    // approach is found in the level plane.
     const float climb = near.is_tall ? std::abs(near.velocity.z()) * longest : 0.0F;
     per_period.z() = near.is_tall ? 0.0F : per_period.z();
     const float speed_squared = per_period.squaredNorm();
@@ -137,13 +137,13 @@ void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std:
         (cells.low - early.cwiseMax(late) - size).maxCoeff() > 0.0F) {
         return;
     }
-    // In numbers by themselves, so that the compiler takes several cells at a time.
+    // Plain arrays, so that the compiler vectorises over cells.
     std::array<float, CellBalls::kMaxDirections> spare{};
     for (std::size_t i = 0; i < cells.count; ++i) {
         const float x = cells.x[i] - at_start.x();
         const float y = cells.y[i] - at_start.y();
         const float z = cells.z[i] - at_start.z();
-        // Nearest while some node comes to the cell, or leaves it.
+        // Closest instant within the interval in which some node comes to the cell, or leaves it.
         const float wanted = (x * per_period.x() + y * per_period.y() + z * per_period.z()) * per_speed;
         const float when = std::min(std::max(wanted, cells.first[i]), cells.last[i]);
         const float apart_x = x - when * per_period.x();

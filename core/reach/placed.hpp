@@ -8,7 +8,7 @@
 
 namespace jink::reach {
 
-/// A reach set laid into the world: a level grid at the vehicle's place, its x axis along the vehicle's course.
+/// A reach set placed in the world: a level grid at the vehicle's position, its x axis along the vehicle's course.
 struct Placed {
     const ReachSet* set = nullptr;
     Vec3 origin = Vec3::Zero();  ///< [m]
@@ -29,12 +29,12 @@ struct Placed {
         return {cosine * d.x() + sine * d.y(), -sine * d.x() + cosine * d.y(), upside_down ? -d.z() : d.z()};
     }
     [[nodiscard]] Vec3 node(std::size_t node) const noexcept { return to_world(set->position_of(node)); }
-    /// When the vehicle is at a node.
+    /// Time at which the vehicle is at a node.
     [[nodiscard]] Seconds time(std::size_t node) const noexcept
     {
         return period * static_cast<float>(set->depth[node]);
     }
-    /// How far a movement bends away from its chord, at most [m].
+    /// Largest distance of a movement from its chord [m].
     [[nodiscard]] float bulge() const noexcept
     {
         // An arc of length 1 that turns by `a` bulges by (1 - cos(a / 2)) / a < a / 8; both turns add up.

@@ -13,41 +13,41 @@ namespace jink::reach {
 
 struct Settings {
     const VehicleSets* sets = nullptr;  ///< of the vehicle, checked by the caller; outlives the planner
-    float room = 0.4F;                  ///< ways that keep this much to spare come first [m], 0..10
-    Seconds latency = 0.1F;             ///< from planning until the vehicle answers, 0..1
+    float room = 0.4F;                  ///< trajectories that keep this clearance buffer come first [m], 0..10
+    Seconds latency = 0.1F;             ///< from planning until the vehicle responds, 0..1
     world::EscapeRule escape;
     /// Cells at the grid's sides nearer than this many layers are no exits.
     std::uint8_t least_outer_layer = 2;
-    /// Ways whose end is looked at before the planner gives up, 1..64.
+    /// Trajectories whose end is checked before the planner gives up, 1..64.
     std::uint8_t tries = 12;
 };
 
-/// Why a plan ended, and how.
+/// Result of a plan and its cause.
 struct Report {
     PathStatus path = PathStatus::no_path;
     AvoidanceRun run = AvoidanceRun::soft_constraints;
-    bool emergency = false;        ///< the navigation set had no way
+    bool emergency = false;        ///< the navigation set had no trajectory
     std::uint8_t headings = 0;     ///< courses that were tried
-    std::uint8_t tries = 0;        ///< ways whose end was looked at
+    std::uint8_t tries = 0;        ///< trajectories whose end was checked
     std::uint16_t near = 0;        ///< threats within reach
-    std::uint16_t free_nodes = 0;  ///< of the set that was looked at last, in the run of the answer
+    std::uint16_t free_nodes = 0;  ///< of the set that was evaluated last, in the run of the answer
     NodeIndex node = kNoNode;
 };
 
-/// The method: satisfies world's AvoidanceMethod. Lays the vehicle's reach set into the world along its course, finds
-/// which trajectories keep clear of everything, in time, and takes the cheapest that ends nearest to the goal (Gomola
-/// 6.7). The goal is the point of the reference as far ahead as the grid reaches.
+/// The method: satisfies world's AvoidanceMethod. Places the vehicle's reach set in the world along the vehicle's
+/// course and finds the trajectories that keep clear of every threat, in time. Of these the cheapest that ends nearest
+/// to the goal is chosen (Gomola 6.7). The goal is the point of the reference as far ahead as the grid reaches.
 ///
-/// The navigation set first; where it has no way, the emergency set. A multirotor that hardly moves may begin in any
-/// direction: along its way, then to either side. A way at whose end it could not stop (a fixed wing flies on) is
-/// struck out, and the next best taken.
+/// The navigation set is tried first, then the emergency set. A multirotor that hardly moves may begin in any
+/// direction: along the nominal path, then to either side. A trajectory at whose end the vehicle could not stop (a
+/// fixed wing flies on) is discarded, and the next best is taken.
 ///
-/// Plans whether or not something is in the way. Unlike the source it never accepts an intruder or a closed airspace
-/// (a barrel's body) for want of better: such a way would not pass the final check. A barrel's margin is entered only
-/// where no other way is left.
+/// Plans even without a conflict ahead. Unlike Gomola's planner, this one never accepts a conflict with an
+/// intruder or with closed airspace (a barrel's body): such a trajectory would not pass the final check. A barrel's
+/// margin is entered only where no other trajectory is left.
 ///
-/// Memory: sizeof(Planner), about 32 KiB with the default capacities: a byte a node, 22 a cell, 88 a threat.
-/// O(nodes * near threats + cells * threats) for each course and set.
+/// Memory: sizeof(Planner), about 32 KiB with the default capacities: a byte a node, 22 a cell, 88 a threat. O(nodes *
+/// near threats + cells * threats) for each course and set.
 class Planner {
 public:
     static constexpr std::size_t kHeadings = 3;
@@ -61,15 +61,15 @@ public:
                                          world::Manoeuvre& out) noexcept;
 
     [[nodiscard]] const Settings& settings() const noexcept { return settings_; }
-    /// Refused (false, nothing changed; without sets from the start every plan is bad_input) when out of range, or when
-    /// a set has more nodes or cells than there is room for.
+    /// Refused (false, nothing changed) when settings are out of range or a set exceeds the capacities of nodes or
+    /// cells. Without sets from the start every plan is bad_input.
     [[nodiscard]] bool configure(const Settings& settings) noexcept;
     [[nodiscard]] const Report& last() const noexcept { return report_; }
-    /// What a scanning sensor sees (ScanPicture) rates the cells from now on, before nodes are looked at; null: nothing
-    /// is known of such a sensor. It outlives this.
+    /// From now on `picture`, a scanning sensor's (ScanPicture), rates the cells before nodes are checked; null: no
+    /// such sensor. It outlives this.
     void look_at(CellSource* picture) noexcept { picture_ = picture; }
-    /// All that is known rates cells, as Gomola does, from now on, instead of nodes; null: nodes. For comparison
-    /// (tests/reference/reach/cell_fusion.hpp). It outlives this.
+    /// From now on `fusion` rates the cells by all known threats, as Gomola does, in place of the node checks; null:
+    /// node checks. For comparison (tests/reference/reach/cell_fusion.hpp). It outlives this.
     void rate_cells_by(CellSource* fusion) noexcept { fusion_ = fusion; }
 
 private:
@@ -88,7 +88,7 @@ private:
     Report report_;
     CellSource* picture_ = nullptr;
     CellSource* fusion_ = nullptr;
-    bool looked_ = false;  ///< `blocks_` are of the course that is tried, and of the cells that `balls_` are of
+    bool looked_ = false;  ///< `blocks_` are valid for the current course and for the cells of `balls_`
     CellBalls balls_;
     detail::NearThreats near_;
     std::array<Level, kMaxReachNodes> nodes_{};
@@ -97,7 +97,7 @@ private:
 };
 
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;
-/// Whether a vehicle of these limits can fly the sets, and cruises no faster than they are for. O(1).
+/// Whether a vehicle of these limits can fly the sets, and cruises no faster than their top speed. O(1).
 [[nodiscard]] bool suits(const VehicleSets& sets, const vehicle::VehicleLimits& limits) noexcept;
 
 }  // namespace jink::reach

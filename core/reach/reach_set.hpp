@@ -8,21 +8,21 @@
 #include "core/reach/grid.hpp"
 #include "core/reach/movement.hpp"
 
-// A reach set as it is flown: a tree of movements from the vehicle's place, made on the host (`jink reach build`) and
+// A reach set as stored: a tree of movements from the vehicle's position, made on the host (`jink reach build`) and
 // kept as constant tables (Gomola 6.4).
 
 namespace jink::reach {
 
-/// Nodes of one set: each is the end of a trajectory, the movements from the root to it. 16-bit indices; a set of 10
-/// layers, 7 columns and 5 rows has about 2300 (combined) or 1100 (planes).
+/// Capacity of one set. A node is the end of a trajectory, the movements from the root to the node. 16-bit indices; a
+/// set of 10 layers, 7 columns and 5 rows has about 2300 nodes (combined) or 1100 (planes).
 inline constexpr std::size_t kMaxNodes = 4096;
 inline constexpr std::size_t kMaxCells = 1024;
-/// Movements of a trajectory.
+/// Capacity for the movements of a trajectory.
 inline constexpr std::size_t kMaxDepth = 16;
 
-/// A cell that a movement enters, its path having been in it never before, and when: from sample `first` to sample
-/// `last` of ReachSet::samples equal parts of the movement, counted from 1. It is in the cell during the parts that end
-/// with them, and may be during the one after.
+/// A cell that a movement enters as the first of its trajectory, and when: from sample `first` to sample `last` of
+/// ReachSet::samples equal parts of the movement, counted from 1. The movement is in the cell during the parts that end
+/// with these samples, and may be during the part after them.
 struct FootprintEntry {
     CellIndex cell = kNoCell;
     std::uint8_t first = 0;
@@ -34,7 +34,7 @@ inline constexpr NodeIndex kNoNode = 0xFFFF;
 
 /// Positions are stored in this share of a movement's length.
 inline constexpr float kPositionUnit = 1.0F / 1024.0F;
-/// And costs.
+/// Unit of stored costs.
 inline constexpr float kCostUnit = 1.0F / 1024.0F;
 
 /// A view of constant tables, structure of arrays. Node 0 is the root; parents come before their children. Lengths are
@@ -70,13 +70,13 @@ struct ReachSet {
     [[nodiscard]] float cost_of(std::size_t node) const noexcept { return kCostUnit * static_cast<float>(cost[node]); }
 };
 
-/// What is wrong with a set. A set is taken as a whole or not at all.
+/// Result of `check`. A set is accepted as a whole or refused as a whole.
 enum class SetStatus : std::uint8_t {
     good,
     empty,         ///< no root
-    too_large,     ///< more nodes, cells or entries than there is room for
+    too_large,     ///< more nodes, cells or entries than the capacities
     sizes_differ,  ///< the tables do not belong together
-    not_a_tree,    ///< a parent that does not come before its child, or a depth that is not one more
+    not_a_tree,    ///< a parent after its child, or a child's depth other than its parent's plus one
     unknown_movement,
     unknown_cell,
     bad_entry,  ///< times out of order, or beyond the movement
@@ -84,10 +84,10 @@ enum class SetStatus : std::uint8_t {
     bad_segments,  ///< of a vehicle: numbers or sets that do not belong together (vehicle_sets.hpp)
 };
 
-/// CRC-32 (IEEE 802.3) of the tables and of the numbers that go with them, in a byte order that is the same on every
-/// machine. O(bytes).
+/// CRC-32 (IEEE 802.3) of the tables and of the set's numbers, in a byte order that is the same on every machine.
+/// O(bytes).
 [[nodiscard]] std::uint32_t checksum_of(const ReachSet& set) noexcept;
-/// Everything that evaluation relies on. O(nodes + entries).
+/// Checks everything that evaluation relies on. O(nodes + entries).
 [[nodiscard]] SetStatus check(const ReachSet& set) noexcept;
 
 }  // namespace jink::reach

@@ -10,13 +10,13 @@
 namespace jink::reach {
 namespace {
 
-/// Points of a cell at these shares of each of its ranges.
+/// Sample points of a cell lie at these shares of each of its ranges.
 constexpr std::array<float, 2> kInside{0.25F, 0.75F};
 
-/// Anything that is hit is an obstacle: how large it is, is no question of life.
+/// Any hit is an obstacle, whatever its size.
 constexpr float kAnyHit = 1e-3F;
 
-/// Those points of all cells of a grid, with few sines.
+/// The sample points of all cells of a grid, computed with few sines.
 class InnerPoints {
 public:
     explicit InnerPoints(const Grid<float>& grid) noexcept : grid_(grid)
@@ -62,7 +62,7 @@ void block_if(bool blocked, Level& level) noexcept
     level = blocked ? static_cast<Level>(AvoidanceRun::obstacles) : level;
 }
 
-/// Points of one frame in another one, both upright or upside down.
+/// Transforms points of one frame to another one, both upright or upside down.
 class Map {
 public:
     Map(const Placed& of, const Placed& in) noexcept
@@ -71,7 +71,7 @@ public:
           z_(in.to_set(of.to_world(Vec3::UnitZ())).z() - offset_.z())
     {
     }
-    /// Of a direction from the origin.
+    /// Transforms a direction from the origin.
     [[nodiscard]] Vec3 along(const Vec3& direction) const noexcept
     {
         return direction.x() * x_ + direction.y() * y_ + Vec3(0.0F, 0.0F, z_ * direction.z());
@@ -85,7 +85,7 @@ private:
     float z_;
 };
 
-/// Points whose cells are to be found at once.
+/// Points whose cells are found in one call.
 class Places {
 public:
     explicit Places(const CellFinder& finder) noexcept : finder_(finder) {}
@@ -147,7 +147,7 @@ Vec3 ScanPicture::in_grid(const Vec3& point) const noexcept
     return {cosine_ * point.x() - sine_ * point.y(), sine_ * point.x() + cosine_ * point.y(), point.z()};
 }
 
-/// False for a ray that does not look into the grid.
+/// False for a ray outside the grid's directions.
 bool ScanPicture::note_ray(const Vec3& in_grid, CellPlace& place) noexcept
 {
     if (!finder_.find_direction(in_grid, place)) {
@@ -243,7 +243,7 @@ RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& pl
     return RateStatus::rated;
 }
 
-/// What the picture says of the cells of the set.
+/// Rates the cells of the set by the picture.
 void ScanPicture::look_from(const Placed& placed, std::span<Level> blocks) const noexcept
 {
     constexpr std::size_t kPerAxis = InnerPoints::kPerAxis;
@@ -275,7 +275,7 @@ void ScanPicture::look_from(const Placed& placed, std::span<Level> blocks) const
     }
 }
 
-/// Where the cells that were hit lie in the set.
+/// Blocks the cells of the set in which the hit cells lie.
 void ScanPicture::lay_over(const Placed& placed, std::span<Level> blocks) const noexcept
 {
     constexpr std::size_t kPerAxis = InnerPoints::kPerAxis;

@@ -37,7 +37,7 @@ bool has_numbers(const VehicleSets& s) noexcept
     return true;
 }
 
-/// Tables that are referred to twice are looked at once.
+/// Tables that are referred to twice are checked once.
 bool is_new(const VehicleSets& s, std::size_t segment, const ReachSet* set) noexcept
 {
     for (std::size_t i = 0; i < segment; ++i) {

@@ -9,17 +9,17 @@
 
 #include "core/reach/reach_set.hpp"
 
-// The reach sets of one vehicle: one pair for each segment of its states, since how sharply it turns per movement
-// depends on its speed, and what lies before it on whether it climbs (Gomola 6.2.6). Made by `jink reach build`.
+// The reach sets of one vehicle: one pair for each segment of its states. How sharply the vehicle turns per movement
+// depends on its speed, and the space before it on whether it climbs (Gomola 6.2.6). Made by `jink reach build`.
 
 namespace jink::reach {
 
-/// What is flown from one state: both sets share one grid and one step.
+/// The sets for one state segment: both share one grid and one step.
 struct SegmentSets {
     const ReachSet* navigation = nullptr;  ///< smooth trajectories, few nodes
-    const ReachSet* emergency = nullptr;   ///< many trajectories, those that leave the grid sideways among them
-    /// The tables are of the root that pitches the other way: z, pitch and the grid's rows change their sign when they
-    /// are read, and movements up and down change places (`upside_down` below).
+    const ReachSet* emergency = nullptr;   ///< many trajectories, including trajectories that leave the grid sideways
+    /// The tables are of the root with the opposite pitch: z, pitch and the grid's rows change their sign when they are
+    /// read, and movements up and down change places (`upside_down` below).
     bool upside_down = false;
 };
 
@@ -34,15 +34,16 @@ struct VehicleSets {
     std::string_view vehicle;
     float period = 0.0F;  ///< duration of one movement [s]; its length is speed * period
 
-    // Limits that they were built for: what asks more of the vehicle is in no set, up to `most_speed`.
+    // Limits that the sets were built for: no movement in a set exceeds them, up to `most_speed`.
     float max_acceleration = 0.0F;           ///< level [m/s2]
     float max_vertical_acceleration = 0.0F;  ///< [m/s2]
     float max_climb = 0.0F;                  ///< [m/s]
     float max_descent = 0.0F;                ///< [m/s]
     float cruise_speed = 0.0F;               ///< [m/s]
 
-    /// Lower ends of the speed segments, shares of the cruise speed, ascending; what is slower than the first belongs
-    /// to the first. A speed on an end belongs to the segment above it; the last segment has its upper end as well.
+    /// Lower ends of the speed segments, shares of the cruise speed, ascending. Speeds below the first end belong to
+    /// the first segment. A speed on an end belongs to the segment above it; the last segment includes its upper end as
+    /// well.
     std::span<const float> speeds;
     float most_speed = 0.0F;  ///< upper end of the last speed segment, share of the cruise speed
 
@@ -57,7 +58,7 @@ struct VehicleSets {
 };
 
 /// The sets to fly from a state. Null outside the envelope: faster than `most_speed`, steeper than `most_pitch`, or
-/// no number.
+/// non-finite.
 ///
 /// @param speed_share speed over the vehicle's cruise speed
 /// @param pitch       flight-path angle [rad], > 0 nose down
@@ -67,11 +68,11 @@ struct VehicleSets {
 /// CRC-32 of the numbers and of the checksums of the sets. O(segments).
 [[nodiscard]] std::uint32_t checksum_of(const VehicleSets& sets) noexcept;
 
-/// Everything that `segment_of` and the flight rely on, of the vehicle and of each of its sets: an image calls it once,
-/// at its start. O(bytes of the tables).
+/// Checks everything that `segment_of` and the flight rely on, of the vehicle and of each of its sets; an image calls
+/// this once, when it starts. O(bytes of the tables).
 [[nodiscard]] SetStatus check(const VehicleSets& sets) noexcept;
 
-/// A movement, a turn's pitch and a cell as they are read from tables of the mirrored root. Its own inverse.
+/// A movement and a cell as they are read from tables of the mirrored root. Its own inverse.
 [[nodiscard]] constexpr Movement upside_down(Movement movement) noexcept
 {
     switch (movement) {

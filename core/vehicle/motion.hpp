@@ -10,13 +10,13 @@
 #include "core/base/exponential.hpp"
 #include "core/vehicle/vehicle.hpp"
 
-// The vehicle model of `advance`, inline for predictions that take it thousands of times. Private to rooms that
+// The vehicle model of `advance`, inline for predictions that call it thousands of times. Private to modules that
 // predict.
 
 namespace jink::vehicle::detail {
 
-/// What is left of a velocity error after dt, less 1: e^(-dt / lag) - 1, remembered for the few lengths of steps that a
-/// prediction takes. To the bit what it would be without memory. 64 bytes.
+/// Remaining share of a velocity error after dt, less 1: e^(-dt / lag) - 1. Values are cached for the few step lengths
+/// of a prediction; results are the same to the bit without the cache. 64 bytes.
 class Fading {
 public:
     explicit Fading(float lag) noexcept : lag_(lag) {}
@@ -41,20 +41,20 @@ private:
     float lag_;
 };
 
-/// What becomes of a velocity error over dt, as shares of it: its direction stays.
+/// Change of a velocity error over dt, as shares of the error: its direction stays.
 struct Decay {
     float left = 0.0F;      ///< after dt, of the error
     float integral = 0.0F;  ///< over dt, of the error [s]
 };
 
-/// Of an error of the given squared size, which shrinks at rate min(error / lag, limit): a straight ramp down to
-/// limit * lag, an exponential from there. No root below that.
+/// Decay of an error of the given squared size, which shrinks at rate min(error / lag, limit): a straight ramp down to
+/// limit * lag, an exponential from there. No root is needed below limit * lag.
 inline Decay decay(float squared_error, float lag, float limit, Seconds dt, Fading& fading) noexcept
 {
     const float knee = limit * lag;
     if (squared_error <= knee * knee) {
         if (lag <= 0.0F) {
-            return {};  // there is no error
+            return {};  // zero error
         }
         const float rest = fading(dt);  // in [-1, 0]
         return {1.0F + rest, -lag * rest};
@@ -77,8 +77,8 @@ inline Decay decay(float squared_error, float lag, float limit, Seconds dt, Fadi
 /// A level command slower than this has no course [m/s].
 inline constexpr float kNoCourse = 1.0F;
 
-/// The velocity that a command leads to: climb and descent bounded. A fixed wing keeps its speed: it flies the course
-/// of the command at cruise speed, and on along its own where the command has none.
+/// The velocity to which a command leads: climb and descent bounded. A fixed wing keeps its speed: it flies the course
+/// of the command at cruise speed. If the command has no course, the wing keeps its own course.
 [[nodiscard]] inline Vec3 goal_of(const Vec3& command, const Vec3& velocity, const VehicleLimits& limits) noexcept
 {
     Vec3 goal = command;

@@ -14,18 +14,19 @@ struct VehicleState {
     Vec3 position = Vec3::Zero();  ///< [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     float yaw = 0.0F;              ///< [rad], counter-clockwise from east
-    float sigma_position = 0.0F;   ///< one standard deviation per axis [m]; 0 where the autopilot does not say
+    float sigma_position = 0.0F;   ///< one standard deviation per axis [m]; 0 where the autopilot gives none
     float sigma_velocity = 0.0F;   ///< [m/s]
 };
 
 enum class VehicleKind : std::uint8_t { multirotor, fixed_wing };
 
-/// What the vehicle can do. Defaults: the source's default vehicle (Pinheiro tab. 1.1), ours where it says nothing.
+/// Limits of the vehicle. Defaults: Pinheiro's default vehicle (tab. 1.1); own values ("ours") where Pinheiro gives
+/// none.
 struct VehicleLimits {
     VehicleKind kind = VehicleKind::multirotor;
     float cruise_speed = 5.0F;               ///< [m/s], > 0
     float max_climb = 3.0F;                  ///< rate of climb [m/s], > 0
-    float max_descent = 3.0F;                ///< rate of descent [m/s], > 0; ours, the source has one limit for both
+    float max_descent = 3.0F;                ///< rate of descent [m/s], > 0; ours, Pinheiro has one limit for both
     float max_acceleration = 5.0F;           ///< horizontal, and the deceleration when braking [m/s2], > 0; ours
     float max_vertical_acceleration = 3.0F;  ///< [m/s2], > 0; ours
     float velocity_lag = 0.25F;              ///< time constant of the autopilot's velocity loop [s], >= 0; ours
@@ -39,7 +40,7 @@ struct VehicleLimits {
     return limits;
 }
 
-/// What costs depend on beyond the limits (Pinheiro tab. 1.1 and 4.5).
+/// Parameters of the costs beyond the limits (Pinheiro tab. 1.1 and 4.5).
 struct Airframe {
     float mass = 3.0F;              ///< [kg]
     float drag_coefficient = 0.5F;  ///< [-]
@@ -53,35 +54,43 @@ struct Airframe {
     float tip_speed = 100.0F;  ///< of a blade in hover [m/s]; ours. Pinheiro takes its bound, 0.8 of the speed of sound
 };
 
-/// The limits of a vehicle that flies at `velocity`: a fixed wing keeps its own airspeed, so its cruise speed is the
-/// level speed that it flies. Below half of its cruise speed, and for a multirotor, they are as given. O(1).
+/// The limits of a vehicle that flies at `velocity`. A fixed wing keeps its own airspeed, so its cruise speed becomes
+/// its present level speed. Below half of its cruise speed, and for a multirotor, the limits are unchanged. O(1).
 [[nodiscard]] VehicleLimits limits_in_flight(const VehicleLimits& limits, const Vec3& velocity) noexcept;
 
-/// Velocity along `direction` (any length > 0) at `speed`, the whole vector shrunk where its vertical part exceeds the
-/// climb or descent limit, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives zero. O(1).
+/// Velocity along `direction` (any length > 0) at `speed`. If the vertical component exceeds the climb or descent
+/// limit, the whole vector is scaled down, so that the direction stays (Pinheiro eq. 3.11, 3.12). Zero direction gives
+/// zero. O(1).
 [[nodiscard]] Vec3 clamped_velocity(const Vec3& direction, float speed, const VehicleLimits& limits) noexcept;
 
-/// Slower than this counts as standing [m/s]: a first-order loop never stops entirely.
+/// Speeds below this count as standstill [m/s]: a first-order loop never stops entirely.
 inline constexpr float kStandstillSpeed = 0.05F;
 
 /// Distance to stop from the horizontal speed `speed` [m/s] >= 0 on the command zero, as `advance` flies it: full
-/// deceleration, then the loop's lag. The whole way, to speed 0. O(1).
+/// deceleration, then the loop's lag. Includes the whole decay to speed 0. O(1).
 [[nodiscard]] float stopping_distance(float speed, const VehicleLimits& limits) noexcept;
 /// Time until the vehicle is slower than kStandstillSpeed on the command zero. O(1).
 [[nodiscard]] Seconds stopping_time(float speed, const VehicleLimits& limits) noexcept;
 
-/// One step of the vehicle model used for prediction: velocity follows `command` with the loop's lag (first order), its
-/// change bounded by the acceleration limits (horizontally as a vector, vertically by itself), the command's climb and
-/// descent bounded. A fixed wing flies the course of the command at cruise speed, however slow or fast the command is;
-/// a level command below 1 m/s has no course, and the wing keeps its own. In a turn the model cuts the corner between
-/// the two velocities: it is slower there than a wing (0.87 of the speed at most in 60 degrees).
+/// One step of the vehicle model used for prediction. Velocity follows `command` with the loop's lag (first order). Its
+/// change is bounded by the acceleration limits (horizontally as a vector, vertically by itself), and the command's
+/// climb and descent are bounded. A fixed wing flies the course of the command at cruise speed, whatever the command's
+/// speed. A level command below 1 m/s has no course: the wing keeps its own course. In a turn the model cuts the corner
+/// between the two velocities: it is slower there than a wing (0.87 of the speed at most in 60 degrees).
 ///
-/// Integrated in closed form, position too: a step of 2 dt equals two steps of dt, whatever dt > 0 (float rounding).
-/// The stamp moves on by dt. O(1), two exponentials.
+/// Integrated in closed form, position too: a step of 2 dt equals two steps of dt, for any dt > 0 (float rounding). The
+/// stamp advances by dt. O(1), two exponentials.
 void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limits, Seconds dt) noexcept;
 
-/// All fields finite and within the ranges said above.
+/// Whether all fields are finite and within the ranges stated above.
 [[nodiscard]] bool is_valid(const VehicleLimits& limits) noexcept;
 [[nodiscard]] bool is_valid(const Airframe& airframe) noexcept;
 
+<<<<<<< HEAD
+=======
+/// Pinheiro's second vehicle (tab. 4.5); rotor data as the default where Pinheiro gives none.
+[[nodiscard]] VehicleLimits uav2_limits() noexcept;
+[[nodiscard]] Airframe uav2_airframe() noexcept;
+
+>>>>>>> 557814aa44ef6e2848b4039d97b6a2525c9a747e
 }  // namespace jink::vehicle

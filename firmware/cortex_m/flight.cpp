@@ -10,7 +10,7 @@ namespace {
 
 using hal::cortex_m::FaultRecord;
 
-/// Nothing but hard faults is switched on by itself; the cause (CFSR) says what became one.
+/// Only hard faults are enabled; the cause (CFSR) gives the kind that became one.
 std::string_view name_of(const FaultRecord& record) noexcept
 {
     constexpr std::uint32_t kMemory = 0x000000FF;
@@ -60,7 +60,7 @@ bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept
         return false;
     }
     const bool passive = record.streak >= kFaultsInARow;
-    // The coprocessor is new and has room for three.
+    // The coprocessor is new and has space for three texts.
     if (record.streak <= kFaultsInARow || std::has_single_bit(record.count)) {
         const FaultStory story = tell_story(record);
         static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, story.what));

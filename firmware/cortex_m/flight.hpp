@@ -5,39 +5,39 @@
 #include "hal/cortex_m/periodic.hpp"
 #include "hal/cortex_m/startup.hpp"
 
-// What the flight images of all boards do alike: the step every 20 ms, and what a start has to say of the faults
-// before.
+// Common part of the flight images of all boards: the step every 20 ms, and the reports of earlier faults at a start.
 
 namespace jink::firmware {
 
 inline constexpr std::int64_t kTickMicroseconds = 20'000;
-/// So many faults, each within kProvenMicroseconds of its start, and the next start stays passive until power-on: a
-/// co-processor that keeps taking over and dropping the controls is worse than none.
+/// After so many faults, each within kProvenMicroseconds of its start, the next start stays passive until power-on: a
+/// co-processor that repeatedly takes over and drops the controls is worse than none.
 inline constexpr std::uint32_t kFaultsInARow = 3;
 inline constexpr std::int64_t kProvenMicroseconds = 60'000'000;
 /// A passive start waits this long before its first step, so that even faults in each step do not flood the line.
 inline constexpr std::int64_t kPassiveWait = 1'000'000;
 
-/// Looks for room in a UART per byte of the last words: above 0.5 ms on every board, 40 bytes' time at 921600 baud.
+/// Polls of a UART per byte of the last words: above 0.5 ms on every board, 40 bytes' time at 921600 baud.
 inline constexpr std::uint32_t kPatience = 20'000;
 
-/// What happened, in two lines of a STATUSTEXT.
+/// Report of a fault, in two lines of a STATUSTEXT.
 struct FaultStory {
     app::Text what;
     app::Text where;
 };
 [[nodiscard]] FaultStory tell_story(const hal::cortex_m::FaultRecord& record) noexcept;
 
-/// Checks the reach sets against their checksums; damaged ones are left out, and the autopilot is told. Reads all of
-/// their tables bit by bit: 11 million instructions on a Cortex-M7 for 256 KiB, so before the watchdog is started.
+/// Checks the reach sets against their checksums; damaged ones are left out, and the autopilot gets a message. Reads
+/// all tables bit by bit: 11 million instructions on a Cortex-M7 for 256 KiB, so call it before the watchdog is
+/// started.
 void settle_reach_sets(app::Coprocessor& coprocessor) noexcept;
 
-/// Reads the record of the fault before this start and has it told: each of the first kFaultsInARow, then those whose
-/// count is a power of two. True where this start is to be passive; then it returns after kPassiveWait only. For the
-/// time before the watchdog is started.
+/// Reads the record of the fault before this start and reports it: each of the first kFaultsInARow, then those whose
+/// count is a power of two. True if this start must be passive; in that case it returns only after kPassiveWait. Call
+/// it before the watchdog is started.
 [[nodiscard]] bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept;
 
-/// Steps for ever; `before_step` is what the ports want once per tick.
+/// Steps for ever; `before_step` services the ports once per tick.
 template <class Clock, class BeforeStep>
 [[noreturn]] void fly(app::Coprocessor& coprocessor, Clock& clock, bool passive, BeforeStep before_step) noexcept
 {

@@ -24,20 +24,20 @@ struct Constraint {
 /// Constraints that one set may have over a link. A board keeps fewer apart (kMaxBarrels) and merges the rest.
 inline constexpr std::size_t kMaxReportedConstraints = 8;
 
-/// One constraint of a set as a link received it, and who sent it.
+/// One constraint of a set as a link received it, and its sender.
 struct ConstraintPart {
-    Constraint constraint;   ///< empty where the set is (count 0)
+    Constraint constraint;   ///< empty if the set is empty (count 0)
     std::uint8_t set = 0;    ///< the sender's number of the set
-    std::uint8_t index = 0;  ///< 0 ... count - 1; 0 where the count is 0
+    std::uint8_t index = 0;  ///< 0 ... count - 1; 0 if the count is 0
     std::uint8_t count = 0;  ///< constraints of the set, 0 ... 255
     std::uint8_t from_system = 0;
     std::uint8_t from_component = 0;
 };
 
-/// What became of a part. The values are those on the wire.
+/// Result of receiving a part. The values are those on the wire.
 enum class ConstraintResult : std::uint8_t {
     kept = 0,          ///< the set lacks other parts
-    in_force = 1,      ///< the whole set counts from now on
+    in_force = 1,      ///< the whole set is valid from now on
     malformed = 2,     ///< length, version, kind or index
     out_of_range = 3,  ///< non-finite or beyond the limits of world::is_valid
     too_many = 4,      ///< count above kMaxReportedConstraints

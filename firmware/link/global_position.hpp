@@ -5,7 +5,7 @@
 
 namespace jink::link {
 
-/// Position on the globe as every link has it: degrees * 1e7, millimetres above mean sea level.
+/// Position on the globe in the unit of every link: degrees * 1e7, millimetres above mean sea level.
 struct GlobalPosition {
     std::int32_t lat = 0;
     std::int32_t lon = 0;

@@ -12,14 +12,14 @@
 
 namespace jink::link {
 
-/// Health as told to the autopilot and ground station (MAV_STATE of the HEARTBEAT).
+/// Health as sent to the autopilot and ground station (MAV_STATE of the HEARTBEAT).
 enum class SystemState : std::uint8_t { boot = 1, standby = 3, active = 4, critical = 5, emergency = 6 };
 
-/// How the application is, as it tells a bus.
+/// State of the application as sent to a bus.
 struct BusStatus {
     SystemState state = SystemState::boot;
-    bool advising_only = false;  ///< at work, but nobody is there whom it could steer
-    std::uint16_t faults = 0;    ///< the application's own bits, for whoever looks closer
+    bool advising_only = false;  ///< at work, but there is no autopilot to steer
+    std::uint16_t faults = 0;    ///< the application's own fault bits
 };
 
 enum class Severity : std::uint8_t { critical = 2, error = 3, warning = 4, notice = 5, info = 6 };
@@ -44,63 +44,63 @@ struct CollisionWarning {
     ThreatLevel level = ThreatLevel::none;
 };
 
-/// What happened on the link since start; every refusal has its own counter.
+/// Counters of the link since start; every cause of a refusal has its own.
 struct LinkDiagnostics {
     std::uint32_t frames_in = 0;
     std::uint32_t frames_out = 0;
     std::uint32_t frames_refused = 0;  ///< by the parser, all causes together
-    std::uint32_t frames_ignored = 0;  ///< understood, but not for us or not of interest
+    std::uint32_t frames_ignored = 0;  ///< decoded, but not for us or not of interest
     std::uint32_t not_finite = 0;      ///< reports with NaN or infinity
-    std::uint32_t out_of_range = 0;    ///< absurd values, zero increments, unknown frames
+    std::uint32_t out_of_range = 0;    ///< implausible values, zero increments, unknown frames
     std::uint32_t stale_stamp = 0;     ///< stamps too old or in the future
     std::uint32_t no_origin = 0;       ///< traffic that could not be placed yet
     std::uint32_t inbox_full = 0;      ///< reports dropped because the inbox was full
-    std::uint32_t clock_relocks = 0;   ///< jumps of the autopilot's clock followed
+    std::uint32_t clock_relocks = 0;   ///< jumps of the autopilot's clock that the mapping followed
     std::uint32_t outbox_full = 0;     ///< frames not sent because the transmit buffer was full
-    // Queued on a line that took nothing, and taken back whole: out of date, or a newer one took their place.
+    // Queued on a line that accepted nothing, and withdrawn whole: outdated, or replaced by newer ones.
     std::uint32_t setpoints_dropped = 0;
-    std::uint32_t requests_dropped = 0;    ///< of a mode
-    std::uint32_t heartbeats_dropped = 0;  ///< ours
-    std::uint32_t bytes_discarded = 0;     ///< that waited when the port was lost
-    std::uint32_t rate_requests = 0;       ///< messages asked for
-    std::uint32_t rates_refused = 0;       ///< answers that did not grant one
-    std::uint32_t own_heard = 0;           ///< what we say of ourselves, come back as if it were another's
+    std::uint32_t requests_dropped = 0;    ///< for a mode
+    std::uint32_t heartbeats_dropped = 0;  ///< our own
+    std::uint32_t bytes_discarded = 0;     ///< queued when the port was lost
+    std::uint32_t rate_requests = 0;       ///< messages requested
+    std::uint32_t rates_refused = 0;       ///< answers that did not grant a requested rate
+    std::uint32_t own_heard = 0;           ///< reports about ourselves that came back as another vehicle
     std::uint32_t pressure_heights = 0;    ///< traffic whose height is a pressure altitude
-    std::uint32_t heights_compared = 0;    ///< of that, beside the own pressure altitude
+    std::uint32_t heights_compared = 0;    ///< of these, heights compared with the own pressure altitude
     std::uint32_t traffic_relayed = 0;     ///< ADSB_VEHICLE of other systems, accepted
-    std::uint32_t systems_evicted = 0;     ///< others of the link whose clock was forgotten: there are too many
+    std::uint32_t systems_evicted = 0;     ///< other systems on the link whose clock was forgotten: there are too many
     std::uint32_t keys_set = 0;            ///< for signatures, over the link; taking the key away counts too
-    std::uint32_t keys_refused = 0;        ///< not signed, armed, or no place to store them
+    std::uint32_t keys_refused = 0;        ///< unsigned, armed, or without a place to store them
 };
 
-/// A link to the autopilot, whatever its wire format. Bytes are moved by the application between the link and a port.
+/// A link to the autopilot, independent of the wire format. The application moves bytes between the link and a port.
 ///
-/// Nothing here blocks or allocates. Sending is queued in a bounded transmit buffer; a message that finds no room is
-/// dropped whole and counted.
+/// Nothing here blocks or allocates. Messages to send are queued in a bounded transmit buffer; a message that does not
+/// fit is dropped whole and counted.
 ///
-/// Of set-points, mode requests and heartbeats at most one whole frame each waits: a newer one takes the place of one
-/// of which nothing has been consumed. One that is partly consumed stays, so that the other end's framing survives.
+/// Of set-points, mode requests and heartbeats at most one whole frame each waits: a newer frame replaces a frame of
+/// which nothing has been consumed. A partly consumed frame stays, so that the other end's framing survives.
 class Link {
 public:
-    /// Takes bytes that arrived, at time `now`; fills the inbox. O(bytes).
+    /// Processes bytes that arrived at time `now`; fills the inbox. O(bytes).
     virtual void receive(std::span<const std::byte> bytes, TimePoint now, Inbox& inbox) noexcept = 0;
     /// Periodic work of the link itself: time synchronisation requests, fetching the mission. Call every tick.
     virtual void service(TimePoint now) noexcept = 0;
 
-    /// Whether `service` may ask the autopilot for messages that come too seldom. Off at first.
+    /// Whether `service` may request messages that the autopilot sends too seldom. Off at first.
     virtual void ask_for_rates(bool on) noexcept = 0;
-    /// Where single points in space go as they come in `receive`; nobody takes them until this is called. The sink
-    /// outlives the link.
+    /// Sets the sink of single points in space, called within `receive`; without a sink points are ignored. The sink
+    /// must outlive the link.
     virtual void report_points_to(CloudSink& sink) noexcept = 0;
 
-    /// Bytes waiting to go out (contiguous part), and taking `n` of them off once the port has accepted them.
+    /// Bytes waiting to be sent (contiguous part). `consume` removes `n` of them once the port has accepted them.
     [[nodiscard]] virtual std::span<const std::byte> pending() const noexcept = 0;
     virtual void consume(std::size_t n) noexcept = 0;
-    /// Drops everything queued: on a lost port nothing stale may go out later.
+    /// Drops everything queued: on a lost port no outdated frame may be sent later.
     virtual void discard_pending() noexcept = 0;
-    /// Takes back the set-point that waits, if nothing of it has been consumed: it is out of date, or the stream ends.
+    /// Withdraws the waiting set-point if nothing of it has been consumed: it is outdated, or the stream ends.
     virtual void drop_setpoint() noexcept = 0;
-    /// The same for the request of a mode.
+    /// The same for a mode request.
     virtual void drop_mode_request() noexcept = 0;
 
     virtual void send_heartbeat(SystemState state) noexcept = 0;
@@ -111,32 +111,32 @@ public:
     virtual void send_text(Severity severity, std::string_view text) noexcept = 0;
     virtual void send_param(const ParamName& name, float value, std::uint16_t index, std::uint16_t count) noexcept = 0;
     virtual void acknowledge(const CommandRequest& request, CommandResult result) noexcept = 0;
-    /// Tells the sender of a part of a set of constraints what became of it.
+    /// Reports the result of a part of a set of constraints to its sender.
     virtual void acknowledge(const ConstraintPart& part, ConstraintResult result) noexcept = 0;
-    /// Asks the autopilot for its external mode (GUIDED, OFFBOARD).
+    /// Requests the autopilot's external mode (GUIDED, OFFBOARD).
     virtual void request_external_mode() noexcept = 0;
-    /// Asks for a mode by its wire number: giving the former mode back.
+    /// Requests a mode by its wire number, to restore the former mode.
     virtual void request_mode(std::uint32_t custom_mode) noexcept = 0;
-    /// Asks the autopilot to send its HEARTBEAT now: what mode it is in.
+    /// Requests the autopilot's HEARTBEAT now, for its present mode.
     virtual void request_heartbeat() noexcept = 0;
-    /// Asks for the stack's holding mode (BRAKE/LOITER, AUTO.LOITER).
+    /// Requests the stack's holding mode (BRAKE/LOITER, AUTO.LOITER).
     virtual void request_hold_mode() noexcept = 0;
 
-    /// Where the autopilot's local frame has its origin; nothing while that is not known.
+    /// Origin of the autopilot's local frame; nothing while unknown.
     [[nodiscard]] virtual std::optional<GlobalPosition> origin() const noexcept = 0;
-    /// How far sea level lies above the ellipsoid around the vehicle [mm]; nothing while that is not known.
+    /// Height of sea level above the ellipsoid around the vehicle [mm]; nothing while unknown.
     [[nodiscard]] virtual std::optional<std::int32_t> undulation() const noexcept { return std::nullopt; }
 
-    /// Writes what is to be said when the processor faults, as the wire carries it: HEARTBEAT (EMERGENCY with `hold`,
-    /// else CRITICAL), the request of the hold mode if `hold`, twice, and `text` unless it is empty. Nothing is queued.
+    /// Writes the frames to send if the processor faults, in wire format: HEARTBEAT (EMERGENCY with `hold`, else
+    /// CRITICAL), the request of the hold mode if `hold`, twice, and `text` unless it is empty. Nothing is queued.
     ///
-    /// To be called anew in every step before its frames go to the port: the numbers and signatures follow on those
-    /// that were sent so far, and a signature that is not newer than the last one sent is refused.
-    /// @return bytes written; 0 where `out` is too small
+    /// Call it again in every step before the step's frames go to the port: sequence numbers and signatures continue
+    /// those sent so far, and receivers refuse a signature that is not newer than the last.
+    /// @return bytes written; 0 if `out` is too small
     [[nodiscard]] virtual std::size_t compose_last_words(std::span<std::byte> out, bool hold,
                                                          std::string_view text) noexcept = 0;
 
-    /// By which the others of this link know us (track_ids.hpp); 0 while that is not known, or nobody does.
+    /// Our own id to the other systems on this link (track_ids.hpp); 0 if there is none or it is unknown.
     [[nodiscard]] virtual world::TrackId own_track() const noexcept { return 0; }
 
     [[nodiscard]] virtual const LinkDiagnostics& diagnostics() const noexcept = 0;

@@ -11,15 +11,15 @@
 #include "core/world/world.hpp"
 #include "firmware/link/constraint.hpp"
 
-// What a link tells the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's
-// clock. Every number in here is finite; reports with numbers that are not were refused and counted by the link.
+// Reports of a link to the application, free of any wire format: frames are ENU, units SI, stamps on the co-processor's
+// clock. Every number in here is finite; the link refuses and counts reports with non-finite values.
 
 namespace jink::link {
 
 /// Autopilot stack behind the link; decides how modes are requested.
 enum class AutopilotStack : std::uint8_t { unknown, ardupilot, px4 };
 
-/// What the autopilot is doing, as far as taking over is concerned.
+/// What the autopilot is doing, as far as a takeover is concerned.
 enum class FlightMode : std::uint8_t {
     unknown,
     mission,     ///< flies a mission by itself (AUTO): the mode that may be taken over
@@ -30,60 +30,59 @@ enum class FlightMode : std::uint8_t {
     other,
 };
 
-/// One sighting of the autopilot's HEARTBEAT, with the landed state as last heard.
+/// One HEARTBEAT of the autopilot, with the landed state last received.
 struct AutopilotReport {
     TimePoint stamp;
     AutopilotStack stack = AutopilotStack::unknown;
     FlightMode mode = FlightMode::unknown;
-    std::uint32_t custom_mode = 0;  ///< as on the wire, to be given back
+    std::uint32_t custom_mode = 0;  ///< as on the wire, to be restored later
     bool armed = false;
     bool landed = false;
     bool fixed_wing = false;
     bool steerable = true;  ///< a kind of vehicle that flies the velocities that Link sends in the external mode
-    bool rebooted = false;  ///< its boot clock or sequence started again since the last report
+    bool rebooted = false;  ///< its boot clock or sequence restarted since the last report
 };
 
 /// Own state. Fields not known keep their last value.
 struct OwnStateReport {
     vehicle::VehicleState state;
-    bool has_yaw = false;          ///< the heading was heard within the last second
+    bool has_yaw = false;          ///< the heading was received within the last second
     bool estimator_reset = false;  ///< position jumped by a reset of the estimator
 };
 
 /// How the height of another aircraft was measured.
 enum class HeightSource : std::uint8_t {
-    geometric,  ///< by satellites, or told as exact
-    pressure,   ///< pressure altitude, and our own is not known: the air pressure at sea level is unknown
-    compared,   ///< pressure altitude beside our own
+    geometric,  ///< by satellites, or reported as exact
+    pressure,   ///< pressure altitude without an own one: the air pressure at sea level is unknown
+    compared,   ///< pressure altitude, compared with the own one
 };
 
-/// A sighting of another aircraft.
+/// A report of another aircraft.
 struct TrackReport {
     world::TrackId id = 0;
     TimePoint stamp;  ///< of validity: arrival less the time since last communication
     Vec3 position = Vec3::Zero();
     Vec3 velocity = Vec3::Zero();
     bool has_velocity = false;
-    float radius = 0.0F;          ///< [m], 0: not said
-    float sigma_position = 0.0F;  ///< [m], 0: not said
+    float radius = 0.0F;          ///< [m], 0: not given
+    float sigma_position = 0.0F;  ///< [m], 0: not given
     float sigma_velocity = 0.0F;
     world::TrackSource source = world::TrackSource::adsb;
-    bool at_rest =
-        false;  ///< reported as an obstacle that stands (ADS-B emitter category point, cluster or line obstacle)
-    bool unmanned = false;  ///< says so, or is a vehicle like ours
-    bool helpless = false;  ///< says that it will not give way: disarmed, on the ground, in an emergency
+    bool at_rest = false;   ///< reported as a static obstacle (ADS-B emitter category point, cluster or line obstacle)
+    bool unmanned = false;  ///< reports so, or is a vehicle like ours
+    bool helpless = false;  ///< reports that it will not give way: disarmed, on the ground, in an emergency
     HeightSource height = HeightSource::geometric;
-    /// The possible readings of the height lie within this of `position` [m]. compared: as reported, and by the
-    /// difference of pressures. geometric: above sea level and above the ellipsoid; 0: they are the same or not known.
+    /// All possible heights lie within this of `position` [m]. compared: the height as reported, and the height by the
+    /// difference of pressures. geometric: above sea level and above the ellipsoid; 0: both are the same or unknown.
     float height_spread = 0.0F;
 };
 
-/// Sightings that one step may bring: more than a line of 921600 baud carries in 20 ms to a board (kMaxTracks 32).
+/// Track reports within one step: more than a line of 921600 baud carries in 20 ms to a board (kMaxTracks 32).
 inline constexpr std::size_t kMaxTrackReports = kMaxTracks + kMaxTracks / 2;
 
 inline constexpr std::size_t kMaxScanSectors = 72;
 
-/// Horizontal range scan. Sector i looks at yaw_first + i * increment (world frame, counter-clockwise), width
+/// Horizontal range scan. Sector i is centred on yaw_first + i * increment (world frame, counter-clockwise), width
 /// |increment|.
 struct RangeScan {
     TimePoint stamp;
@@ -92,7 +91,7 @@ struct RangeScan {
     float min_range = 0.0F;  ///< [m]
     float max_range = 0.0F;  ///< [m]
     std::uint8_t sensor = 0;
-    StaticVector<float, kMaxScanSectors> ranges;  ///< [m]; kNothing: seen to be clear; kUnknown: not known
+    StaticVector<float, kMaxScanSectors> ranges;  ///< [m]; kNothing: clear; kUnknown: unknown
     static constexpr float kNothing = 1e9F;
     static constexpr float kUnknown = -1.0F;
 };
@@ -107,9 +106,9 @@ struct RangeReading {
     std::uint8_t sensor = 0;
 };
 
-/// Straight line that the autopilot flies by itself, from where it began.
+/// Straight leg that the autopilot flies by itself, from its beginning.
 struct LegReport {
-    world::Leg leg;  ///< speed: ground speed that the mission asks for, which the autopilot may not reach; 0: not said
+    world::Leg leg;  ///< speed: ground speed of the mission, which the autopilot may not reach; 0: not given
 };
 
 inline constexpr std::size_t kParamNameLength = 16;
@@ -126,7 +125,7 @@ struct ParamRequest {
 
 struct CommandRequest {
     std::uint16_t command = 0;
-    std::array<float, 7> params{};  ///< NaN allowed: "not said"
+    std::array<float, 7> params{};  ///< NaN allowed: "not given"
     std::uint8_t from_system = 0;
     std::uint8_t from_component = 0;
 };
@@ -139,20 +138,20 @@ enum class CommandResult : std::uint8_t {
     failed = 4
 };
 
-/// The autopilot's answer to our request of a mode.
+/// The autopilot's answer to our mode request.
 struct ModeAnswer {
     bool accepted = false;
     std::uint8_t result = 0;  ///< as on the wire
 };
 
-/// Where the pilot's sticks are, as the autopilot hears them. Reports of a receiver that has lost its transmitter, or
-/// that does not say, do not become one.
+/// Positions of the pilot's sticks, as the autopilot receives them. Reports of a receiver that has lost its
+/// transmitter, or that gives no state, are dropped.
 struct SticksReport {
     bool from_radio = true;         ///< false: a joystick of a ground station
-    std::array<float, 4> sticks{};  ///< of half the travel, -1 to 1 and a little beyond; in the order of the source
+    std::array<float, 4> sticks{};  ///< share of half the travel, -1 to 1 and a little beyond; in the sender's order
 };
 
-/// Everything heard since the last tick. Filled by the link, emptied by the application. About 5 KiB.
+/// All reports since the last tick. Filled by the link, emptied by the application. About 5 KiB.
 struct Inbox {
     bool has_own_state = false;
     OwnStateReport own_state;  ///< as the autopilot estimates it
@@ -160,12 +159,12 @@ struct Inbox {
     OwnStateReport bus_state;  ///< as a receiver on the sensor bus measures it
     bool has_autopilot = false;
     AutopilotReport autopilot;  ///< the newest
-    /// Those before it in the same step that showed another mode, in their order. When full, the last gives way.
+    /// Earlier ones of the same step that reported another mode, in order. When full, the last one is replaced.
     StaticVector<AutopilotReport, 3> earlier_autopilot;
     bool has_leg = false;
     LegReport leg;
-    bool leg_lost = false;  ///< the autopilot flies to where we do not know: what was told before is over
-    bool has_home = false;  ///< not before both home and the origin are known; a later report replaces the one before
+    bool leg_lost = false;  ///< the autopilot flies to an unknown destination: earlier legs are no longer valid
+    bool has_home = false;  ///< only if both home and the origin are known; a later report replaces the earlier
     Vec3 home = Vec3::Zero();
     bool has_sticks = false;
     SticksReport sticks;  ///< the newest

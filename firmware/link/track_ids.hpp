@@ -6,12 +6,12 @@
 
 #include "core/world/world.hpp"
 
-// Ids of tracks. Whoever is known by several names has a track for each: two at one place are safe. The ranges:
+// Ids of tracks. A vehicle with several names has a track for each: two tracks at one place are safe. The ranges:
 //
 //   0x00000001..0x00FFFFFF  24-bit addresses of aircraft (ADS-B)
-//   0x05000001..0x050000FF  system ids of the link: those of whom we share it with, and our own
-//   0x40000000..0x7FFFFFFF  names by which traffic management knows them, 30 bits of a hash
-//   0x80000000..0xFFFFFFFF  what stands for an address and has more than 24 bits, of which the uppermost is lost
+//   0x05000001..0x050000FF  system ids of the link: those of the other systems, and our own
+//   0x40000000..0x7FFFFFFF  names in traffic management, 30 bits of a hash
+//   0x80000000..0xFFFFFFFF  values in place of an address with more than 24 bits; the uppermost bit is lost
 //
 // 0x01000000 to 0x04FFFFFF are ids of obstacles and closed areas in the warnings of the application.
 
@@ -27,15 +27,15 @@ inline constexpr world::TrackId kWideAddressIds = 0x80000000;
     return id > kSystemIds && id <= kSystemIds + 255;
 }
 
-/// Traffic is never refused for an address that is none.
+/// Traffic is never refused for an invalid address.
 [[nodiscard]] constexpr world::TrackId track_of_address(std::uint32_t address) noexcept
 {
     constexpr std::uint32_t kLargestAddress = 0xFFFFFF;
     return address <= kLargestAddress ? address : kWideAddressIds | address;
 }
 
-/// FNV-1a (Fowler, Noll, Vo), folded to 30 bits: of 64 names two are the same with a chance of 2 in a million, and then
-/// they share a track that jumps from one to the other. O(bytes).
+/// FNV-1a (Fowler, Noll, Vo), folded to 30 bits. Of 64 names two have the same hash with a chance of 2 in a million;
+/// they then share a track that jumps from one to the other. O(bytes).
 [[nodiscard]] constexpr world::TrackId track_of_name(std::span<const std::uint8_t> name) noexcept
 {
     constexpr std::uint32_t kBasis = 2166136261U;

@@ -20,9 +20,9 @@ constexpr Range kLatitude{-85.0F, 85.0F};
 constexpr Range kLongitude{-180.0F, 180.0F};
 constexpr Range kUnix{0.0F, 1e11F};  // [s]
 constexpr double kMicro = 1e6;
-/// Of a circle: what the map and rounding may take off it.
+/// Tolerance of a circle for the map projection and rounding.
 constexpr float kCircleSlack = 1e-4F;
-/// A clock that is off by less is no reason to refuse [s].
+/// A clock error below this is accepted [s].
 constexpr double kClockSlack = 0.25;
 
 struct Reader {
@@ -80,7 +80,8 @@ std::optional<std::vector<Place>> read_polygon(const Reader& reader, YamlMap& ma
     return places.size() == nodes->size() ? std::optional(places) : std::nullopt;
 }
 
-/// The smallest circle about all corners; on the globe about a centre of its own, in whose map all distances are taken.
+/// The smallest circle about all corners; on the globe about a centre of its own, in whose local map all distances are
+/// computed.
 bool enclose(const Reader& reader, const std::vector<Place>& corners, app::Constraint& out)
 {
     std::vector<world::Vec2> points;
@@ -133,7 +134,7 @@ void read_shape(const Reader& reader, YamlMap& map, app::Constraint& out)
     }
 }
 
-/// Of a key in seconds since 1970, on the own clock.
+/// Converts a key in seconds since 1970 to the own clock.
 std::optional<TimePoint> read_time(const Reader& reader, YamlMap& map, std::string_view key, YamlMap::Need need)
 {
     if (!map.number(key, kUnix, need)) {
@@ -155,7 +156,7 @@ void read_motion(const Reader& reader, YamlMap& map, app::Constraint& out)
             }
         }
     }
-    // Where something that moves was is worth nothing without the time: least of all after a new start.
+    // A moving area's position is useless without its time: least of all after a restart.
     const bool moves = out.barrel.velocity != world::Vec2::Zero();
     if (const auto known = read_time(reader, map, "known_at", moves ? kNeed : YamlMap::Need::optional)) {
         out.stamp = *known;

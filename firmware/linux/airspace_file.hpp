@@ -20,12 +20,12 @@ struct BothClocks {
     TimePoint own;
 };
 
-/// Nothing, and a complaint for each thing that is wrong, unless all of the file is good. A polygon becomes the
-/// smallest circle around it.
+/// Reads an airspace file. If any part of it is wrong, the result is empty, with a complaint for each error. A polygon
+/// becomes the smallest circle around it.
 [[nodiscard]] std::optional<std::vector<app::Constraint>>
 read_airspace_file(const std::filesystem::path& path, const BothClocks& now, Complaints& complaints);
 
-/// The same from text; `file` is what complaints call it.
+/// The same from text; `file` is the file's name in complaints.
 [[nodiscard]] std::optional<std::vector<app::Constraint>>
 parse_airspace(const std::string& text, const std::string& file, const BothClocks& now, Complaints& complaints);
 

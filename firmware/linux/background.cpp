@@ -30,9 +30,9 @@
 namespace jink::host {
 namespace {
 
-constexpr std::int64_t kPatience = 50'000;        ///< between looks at a stream that takes nothing [us]
+constexpr std::int64_t kPatience = 50'000;        ///< between checks of a stream that accepts nothing [us]
 constexpr std::int64_t kStoreRetry = 10'000'000;  ///< after a failure [us]
-constexpr std::int64_t kFarewell = 500'000;       ///< what the end may take [us]
+constexpr std::int64_t kFarewell = 500'000;       ///< time limit of the end [us]
 constexpr int kNiceness = 10;
 
 bool takes_bytes(int descriptor, int patience_ms)
@@ -63,13 +63,13 @@ struct Line {
     std::array<char, Background::kLineBytes> text;
 };
 
-/// One of the standard streams. `ring` is filled by the loop; all else belongs to the thread.
+/// One of the standard streams. The loop fills `ring`; the thread owns all other members.
 struct Channel {
     int descriptor = -1;
     hal::Ring<Line, Background::kLines> ring;
     std::string backlog;
 
-    /// Lines that were lost.
+    /// @return number of lost lines
     std::uint32_t add(const std::string& line)
     {
         if (backlog.size() + line.size() >= Background::kBacklog) {
@@ -80,7 +80,8 @@ struct Channel {
         return 0;
     }
 
-    /// Writes what the stream takes without blocking: a pipe that polls writable takes PIPE_BUF bytes whole.
+    /// Writes as much as the stream accepts without blocking: a pipe that polls writable takes PIPE_BUF bytes whole.
+    /// @return number of lost lines
     std::uint32_t flush()
     {
         constexpr std::size_t kPart = 4096;
@@ -109,7 +110,7 @@ struct Channel {
     [[nodiscard]] bool waits() const { return !backlog.empty() || ring.size() > 0; }
 };
 
-/// A file that is to be replaced as a whole. What could not be written is tried again.
+/// A file that is replaced as a whole. A failed write is tried again.
 class Store {
 public:
     Store(const char* failure, files::FileAccess access) : failure_(failure), access_(access) {}
@@ -121,7 +122,7 @@ public:
         retry_at_ = 0;
     }
     [[nodiscard]] bool is_due() const { return is_due_; }
-    /// Writes what is due. `last`: now or never. @return what to complain of, once per row of failures
+    /// Writes the text if it is due. `last`: no further try follows. @return complaint, once per series of failures
     std::string work(const std::string& path, std::int64_t now, bool last)
     {
         is_due_ = is_due_ && !path.empty();
@@ -152,7 +153,7 @@ private:
 
 struct Background::Shared {
     using Line = detail::Line;
-    using NewParams = std::pair<files::ParamValues, std::uint32_t>;  ///< and their generation
+    using NewParams = std::pair<files::ParamValues, std::uint32_t>;  ///< with their generation
 
     BackgroundFiles wanted;
     sem_t wake{};
@@ -169,9 +170,9 @@ struct Background::Shared {
     static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
     std::atomic<std::uint64_t> stored{kNothing};  ///< generation of the parameters in the state file
 
-    // The thread's own, but for their counters.
+    // Owned by the thread, except for their counters.
     hal::SystemClock clock;
-    std::uint32_t generation = 0;  ///< of what `params` has taken
+    std::uint32_t generation = 0;  ///< of the values in `params`
     detail::Store params{"parameters are not stored", files::FileAccess::everyone_reads};
     detail::Store signing{"the signing key and time are not stored", files::FileAccess::owner_only};
 
@@ -245,7 +246,7 @@ void Background::Shared::store_values()
     }
 }
 
-/// False: the end.
+/// False at the end.
 bool Background::Shared::work()
 {
     if (waits() || params.is_due() || signing.is_due()) {
@@ -278,7 +279,7 @@ void Background::run(const std::shared_ptr<Shared>& shared)
 
 Background::Background(const BackgroundFiles& files) : shared_(std::make_shared<Shared>(files))
 {
-    // Signals are the loop's: they end its sleep, and must not find this thread instead.
+    // Signals belong to the loop: they end its sleep, and must not be delivered to this thread.
     sigset_t all;
     sigset_t before;
     ::sigfillset(&all);
@@ -289,7 +290,7 @@ Background::Background(const BackgroundFiles& files) : shared_(std::make_shared<
 
 Background::~Background()
 {
-    // Streams first: once told to stop the thread looks once more and is gone.
+    // Streams first: after a stop request the thread does one more pass and ends.
     const auto wait_for = [&](const auto& condition) {
         const std::int64_t end = shared_->clock.now_us() + kFarewell / 2;
         while (!condition() && shared_->clock.now_us() < end) {
@@ -370,7 +371,7 @@ BackgroundCounts Background::counts() const noexcept
 void complain_now(std::string_view line)
 {
     const std::string text = "jinkd: " + std::string(line) + "\n";
-    static int patience_ms = 100;  // once for all lines: a file may give cause for a thousand
+    static int patience_ms = 100;  // one limit for all lines: a file may cause a thousand
     const bool taken = takes_bytes(STDERR_FILENO, patience_ms);
     patience_ms = taken ? patience_ms : 0;
     if (taken) {

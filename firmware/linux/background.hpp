@@ -14,21 +14,21 @@
 
 namespace jink::host {
 
-/// Closed areas as a file has them.
+/// Closed areas of a file.
 using Areas = std::vector<app::Constraint>;
 
 enum class Stream : std::uint8_t { out, error };
 
 struct BackgroundFiles {
-    std::string airspace;          ///< read anew by reload(); may be empty
-    std::string state;             ///< where store() writes; may be empty: nothing is stored
-    std::string signing;           ///< where store_signing() writes, for the owner's eyes alone; may be empty
+    std::string airspace;          ///< read again by reload(); may be empty
+    std::string state;             ///< target of store(); may be empty: nothing is stored
+    std::string signing;           ///< target of store_signing(), readable by the owner alone; may be empty
     files::ParamValues initial{};  ///< parameters without the state file: values that differ are stored
 };
 
-/// What has been lost or has failed so far.
+/// Counters of losses and failures.
 struct BackgroundCounts {
-    std::uint32_t dropped = 0;  ///< lines: the reader of a stream does not keep up, or the stream cannot be written
+    std::uint32_t dropped = 0;  ///< lines: the reader of a stream is too slow, or the stream cannot be written
     std::uint32_t reloads = 0;  ///< of the airspace file, good or bad
     std::uint32_t reload_failures = 0;
     std::uint32_t stores = 0;          ///< of parameters
@@ -37,14 +37,14 @@ struct BackgroundCounts {
     std::uint32_t signing_store_failures = 0;
 };
 
-/// A thread of lower priority that does all of jinkd that may block: it writes status lines and messages, reads and
-/// parses the airspace file, stores parameters and what signing needs.
+/// A thread of lower priority that does all blocking work of jinkd: it writes status lines and messages, reads and
+/// parses the airspace file, and stores parameters and the signing state.
 ///
 /// The methods below are for one thread, the control loop. They never wait for the background thread, a file, a pipe or
-/// a terminal. What does not fit is dropped whole and counted: kLines lines of kLineBytes wait per stream, and
-/// kBacklog bytes in the thread. A stream that takes nothing holds up neither the other stream nor the files.
+/// a terminal. Lines that do not fit are dropped whole and counted: kLines lines of kLineBytes wait per stream, and
+/// kBacklog bytes in the thread. A stream that accepts nothing delays neither the other stream nor the files.
 ///
-/// Memory: 16 KiB per stream and the backlog; the areas of a file twice while they are handed over.
+/// Memory: 16 KiB per stream and the backlog; the areas of a file twice during the transfer.
 class Background {
 public:
     static constexpr std::size_t kLines = 32;
@@ -52,25 +52,25 @@ public:
     static constexpr std::size_t kBacklog = 8U * 1024U;
 
     explicit Background(const BackgroundFiles& files);
-    /// Writes what the streams and the disk take within 0.5 s, and leaves the rest.
+    /// Writes as much as the streams and the disk accept within 0.5 s, and discards the rest.
     ~Background();
     Background(const Background&) = delete;
     Background& operator=(const Background&) = delete;
 
-    /// A line without its end. Longer than kLineBytes - 1: cut.
+    /// Prints a line, given without its end. A line longer than kLineBytes - 1 is cut.
     void print(Stream stream, std::string_view line) noexcept;
 
-    /// Asks for the airspace file to be read. Requests while one waits become one.
+    /// Requests a read of the airspace file. Requests while one waits become one.
     void reload() noexcept;
-    /// The areas that were read since the last call, whole; nullptr when there are none. Give them back with `done`.
+    /// The complete areas read since the last call; nullptr if there are none. Return them with `done`.
     [[nodiscard]] std::unique_ptr<Areas> take_areas() noexcept;
-    /// Leaves it to the thread to free the areas.
+    /// Passes the areas to the thread, which frees them.
     void done(std::unique_ptr<Areas> areas) noexcept;
 
-    /// Asks for these values to be stored, app::Parameters::values() of this generation. False: busy, ask again in the
-    /// next step.
+    /// Requests that these values are stored, app::Parameters::values() of this generation. False: busy, try again in
+    /// the next step.
     [[nodiscard]] bool store(const files::ParamValues& values, std::uint32_t generation) noexcept;
-    /// Generation of the values that the state file holds for certain; nothing before the first store.
+    /// Generation of the values that the state file certainly holds; nothing before the first store.
     [[nodiscard]] std::optional<std::uint32_t> stored_generation() const noexcept;
     [[nodiscard]] bool store_signing(const files::SigningState& state) noexcept;
 
@@ -86,10 +86,10 @@ private:
     std::shared_ptr<Shared> shared_;
 };
 
-/// To standard error, before there is a Background: waits at most 0.1 s for a stream that takes nothing.
+/// Prints to standard error, before there is a Background: waits at most 0.1 s for a stream that accepts nothing.
 void complain_now(std::string_view line);
 
-/// Writes a file without waiting for a reader: a FIFO that nobody reads, a full disk or a folder is a failure.
+/// Writes a file without waiting for a reader: a FIFO without a reader, a full disk or a folder is a failure.
 [[nodiscard]] bool write_file(const std::string& path, std::string_view text);
 
 }  // namespace jink::host

@@ -16,7 +16,7 @@ namespace {
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// Optimal string alignment distance, case aside. O(|a| |b|).
+/// Optimal string alignment distance, ignoring case. O(|a| |b|).
 std::size_t edit_distance(std::string_view a, std::string_view b)
 {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -107,7 +107,7 @@ NumberStatus parse_number(std::string_view text, float& out)
 
 std::optional<std::string> judge_number(std::string_view text, const Range& range, bool integer, float& out)
 {
-    // YAML's own spellings of what is refused in any case
+    // YAML's own spellings of non-finite numbers, which are always refused.
     std::string_view bare = text;
     if (!bare.empty() && (bare[0] == '+' || bare[0] == '-')) {
         bare.remove_prefix(1);
@@ -136,7 +136,7 @@ std::optional<std::string> judge_number(std::string_view text, const Range& rang
 
 std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string_view> names)
 {
-    constexpr std::size_t kLongest = 64;  // nobody mistypes more than that, and the search stays cheap
+    constexpr std::size_t kLongest = 64;  // longer names are not typing errors, and the search stays cheap
     if (name.empty() || name.size() > kLongest) {
         return std::nullopt;
     }
@@ -164,7 +164,7 @@ std::optional<std::string> read_text_file(const std::filesystem::path& path, Com
         complaints.push_back({0, 0, why, path.string()});
         return std::nullopt;
     };
-    // O_NONBLOCK: a FIFO that nobody writes would hold up whoever opens it.
+    // O_NONBLOCK: otherwise a FIFO without a writer would block.
     const int file = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (file < 0) {
         return refuse(errno == ENOENT || errno == ENOTDIR ? "no such file" : "cannot be opened");

@@ -13,19 +13,19 @@ namespace jink::host {
 
 struct SigningFiles {
     std::string key;                       ///< of --signing-key; may be empty
-    std::string store;                     ///< the signing state; empty: keys are not taken from the link
+    std::string store;                     ///< the signing state; empty: keys from the link are refused
     std::string unsigned_frames = "none";  ///< of --unsigned
 };
 
-/// Key, time and exceptions. False, and said why, where jinkd must not start.
+/// Sets up key, time and exceptions. False, with a message, if jinkd must not start.
 [[nodiscard]] bool set_up_signing(const SigningFiles& files, files::SigningState& state,
                                   link::mavlink::Signing& signing);
 
-/// The control loop's side of the background thread: hands over what is to be stored and takes what has been read.
-/// Never waits. All references outlive this.
+/// The control loop's side of the background thread: passes data to store to it and takes the data it has read. Never
+/// waits. All references outlive this.
 class Housekeeping {
 public:
-    /// @param given  hash of the key file's key, as the signing state holds it
+    /// @param given  hash of the key file's key, as in the signing state
     Housekeeping(Background& background, app::Coprocessor& coprocessor, const link::mavlink::Endpoint& endpoint,
                  const link::mavlink::Signing& signing, const files::SigningKey& given)
         : background_(background), coprocessor_(coprocessor), endpoint_(endpoint), signing_(signing), given_(given),
@@ -34,12 +34,12 @@ public:
     }
 
     void has_airspace(bool yes) { has_airspace_ = yes; }
-    /// A SIGHUP has come.
+    /// Handles a SIGHUP.
     void reload();
-    /// Once per step. Signing's time is stored at the start, whenever it has moved by Signing::kStoreStep,
-    /// and with every change of key.
+    /// Once per step. Signing's time is stored at the start, whenever it has moved by Signing::kStoreStep, and with
+    /// every change of key.
     void work(TimePoint now);
-    /// At the end: hands over what the last steps have changed.
+    /// At the end: passes the changes of the last steps to the thread.
     void store_all();
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jinkd: the co-processor on Linux. One 50 Hz loop; everything that decides is Coprocessor::step(). What may block
-// (status lines, messages, files) is done by one thread of lower priority: background.hpp.
+// jinkd: the co-processor on Linux. One 50 Hz loop; Coprocessor::step() makes all decisions. One thread of lower
+// priority does all blocking work (status lines, messages, files): background.hpp.
 #include <sched.h>
 #include <sys/mman.h>
 
@@ -86,12 +86,12 @@ void sleep_until(std::int64_t us)
     timespec t{};
     t.tv_sec = us / 1'000'000;
     t.tv_nsec = us % 1'000'000 * 1000;
-    // A signal ends the sleep. Only the one that ends the loop may: steps must not come early, however many signals do.
+    // A signal ends the sleep. Only the signal that ends the loop may do so: other signals must not make steps early.
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == EINTR && stop_requested == 0) {
     }
 }
 
-/// Sleeps until `us`; a cloud line is emptied a thousand times a second meanwhile: its driver holds little.
+/// Sleeps until `us`. Meanwhile a cloud line is read a thousand times a second: its driver's buffer is small.
 void wait_until(std::int64_t us, hal::SystemClock& clock, host::ReadAhead* cloud)
 {
     constexpr std::int64_t kPumpPeriod = 1'000;
@@ -106,10 +106,10 @@ void wait_until(std::int64_t us, hal::SystemClock& clock, host::ReadAhead* cloud
     sleep_until(us);
 }
 
-/// Closing throws away what the driver has not sent yet, and the last words are the ones that matter.
+/// Waits until the driver has sent its bytes: closing discards them, and the last words matter most.
 void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
 {
-    constexpr std::int64_t kLeast = 100'000;  // a pseudo-terminal does not tell, its reader needs a moment
+    constexpr std::int64_t kLeast = 100'000;  // a pseudo-terminal gives no count, and its reader needs a little time
     constexpr std::int64_t kMost = 1'000'000;
     const std::int64_t began = clock.now_us();
     for (std::int64_t now = began; now - began < kLeast || (port.unsent() > 0 && now - began < kMost);
@@ -125,7 +125,7 @@ void complain(const files::Complaints& complaints)
     }
 }
 
-/// Before the first step. False, and said why, where the file is not good.
+/// Call it before the first step. False, with a message, if the file is not good.
 bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor)
 {
     timespec t{};
@@ -142,7 +142,7 @@ bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coproc
     return constraints.has_value();
 }
 
-/// Parameters that were set over a link before the last stop. What is wrong there is left out, and said.
+/// Loads parameters that were set over a link before the last stop. Wrong lines are left out, with a message.
 void load_state(const std::string& file, app::Parameters& parameters)
 {
     if (file.empty()) {
@@ -157,7 +157,7 @@ void load_state(const std::string& file, app::Parameters& parameters)
     }
 }
 
-/// A closed pipe or a full quota is an error of a write, not a reason to die.
+/// A closed pipe or a full quota is an error of a write, not a reason to exit.
 void ignore_what_outputs_raise()
 {
     std::signal(SIGPIPE, SIG_IGN);
@@ -170,7 +170,7 @@ void catch_signals()
     action.sa_handler = request_stop;
     sigaction(SIGTERM, &action, nullptr);
     sigaction(SIGINT, &action, nullptr);
-    action.sa_handler = request_reload;  // a terminal that hangs up is no reason to stop either
+    action.sa_handler = request_reload;  // a terminal that hangs up does not stop the program either
     sigaction(SIGHUP, &action, nullptr);
 }
 
@@ -189,8 +189,8 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
-/// @param initial  parameters of the files that people write
-/// @param stored   values in force: these, and over them what was set over a link before
+/// @param initial  parameters of the hand-written files
+/// @param stored   values in force: `initial`, with the values set over a link before
 int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
         const std::string& device, std::uint32_t baud)
 {
@@ -229,7 +229,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         }
         cloud_line.emplace(cloud_port, host::ReadAhead::kCloudRoom);
     }
-    // Single points of the link count without a port too.
+    // Single points of the link are used without a cloud port too.
     const auto clouds = std::make_unique<app::CloudInput>(cloud_line ? &*cloud_line : nullptr);
 
     link::mavlink::EndpointOptions link_options;
@@ -242,7 +242,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     link::mavlink::Endpoint endpoint(link_options, &signing);
     const auto coprocessor =
         std::make_unique<app::Coprocessor>(endpoint, port, watchdog, initial, bus ? &*bus : nullptr);
-    static_cast<void>(coprocessor->restore_parameters(stored));  // checked together when they were read
+    static_cast<void>(coprocessor->restore_parameters(stored));  // validated together when they were read
     if (!options.state_file.empty()) {
         coprocessor->note_stored(coprocessor->parameters().generation());
     }
@@ -276,7 +276,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
             cloud_port.service(clock.now_us());
             line.pump();
             frames.pump();
-            const std::int64_t began = clock.now_us();  // after the bytes were read: nothing is newer
+            const std::int64_t began = clock.now_us();  // read after the bytes, so that no byte is newer
             if (reload_requested != 0) {
                 reload_requested = 0;
                 housekeeping.reload();
@@ -287,7 +287,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
                 background.print(host::Stream::out, *text);
             }
             next += kTickMicroseconds;
-            next = std::max(next, clock.now_us());  // late: do not try to catch up by a burst of steps
+            next = std::max(next, clock.now_us());  // after a late step: no burst of steps to catch up
             wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
         }
         coprocessor->shut_down({clock.now_us()});

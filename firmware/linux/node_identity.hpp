@@ -8,15 +8,15 @@
 
 namespace jink::host {
 
-/// Who a DroneCAN node is, whatever its node id.
+/// Identity of a DroneCAN node, independent of its node id.
 struct NodeIdentity {
     link::dronecan::UniqueId unique_id{};
-    std::uint64_t seed = 1;  ///< of random waits, another on each machine
+    std::uint64_t seed = 1;  ///< of random waits, different on each machine
     bool lasting = false;    ///< the same at the next start
 };
 
-/// Out of the machine's own id and the interface's name, by SHA-256: a machine id is not to be shown to others
-/// (machine-id(5)), and two interfaces of one machine are two nodes. Where the file is missing or empty: random.
+/// Computed from the machine's own id and the interface's name by SHA-256: a machine id must not be published
+/// (machine-id(5)), and two interfaces of one machine are two nodes. Random if the file is missing or empty.
 [[nodiscard]] NodeIdentity node_identity(const std::string& machine_id_file, const std::string& interface);
 
 }  // namespace jink::host

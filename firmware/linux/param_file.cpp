@@ -17,7 +17,7 @@ std::string_view trimmed(std::string_view text)
                                            : text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
-/// Splits at the first comma, or else at the first blank.
+/// A line, split at the first comma, or else at the first blank.
 struct Line {
     std::string_view name;
     std::string_view value;
@@ -39,7 +39,7 @@ std::vector<std::string_view> names()
     return out;
 }
 
-/// What is wrong with one line, or nothing, after its value has been put in place.
+/// Sets the value of one line. @return the line's error, or nothing
 std::optional<std::string> take(const Line& line, std::size_t number, ParamValues& values,
                                 std::array<std::size_t, app::kParamCount>& seen)
 {
@@ -65,7 +65,7 @@ std::optional<std::string> take(const Line& line, std::size_t number, ParamValue
 
 float value_of(const ParamValues& values, app::Param p) { return values[static_cast<std::size_t>(p)]; }
 
-/// Reasons that this file knows of for a set that does not fit together, with the names of those concerned.
+/// Known reasons why a set of values is inconsistent, with the names of the parameters concerned.
 std::vector<std::string> misfits(const ParamValues& values)
 {
     using app::Param;

@@ -47,7 +47,7 @@ bool write_all(int file, std::string_view text)
     return true;
 }
 
-/// So that the new name survives a power cut.
+/// Makes the new name survive a power cut.
 bool sync_folder(const std::string& path)
 {
     const std::size_t slash = path.rfind('/');
@@ -56,11 +56,11 @@ bool sync_folder(const std::string& path)
     if (descriptor < 0) {
         return false;
     }
-    const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;  // a file system that has no such thing
+    const bool synced = ::fsync(descriptor) == 0 || errno == EINVAL;  // a file system without support for it
     return ::close(descriptor) == 0 && synced;
 }
 
-/// As many of the values as fit together. @return how many were refused
+/// Applies as many of the values as are consistent. @return number of refused values
 std::size_t apply_each(const ParamValues& wanted, const std::string& file, app::Parameters& parameters,
                        Complaints& complaints)
 {
@@ -109,7 +109,8 @@ std::string replace_file(const std::string& path, std::string_view text, FileAcc
         return reason("cannot be opened");
     }
     std::string why;
-    if (access == FileAccess::owner_only && ::fchmod(file, mode) != 0) {  // it may be there already, with another mode
+    if (access == FileAccess::owner_only && ::fchmod(file, mode) != 0) {  // the file may exist already, with another
+                                                                          // mode
         why = reason("cannot be kept secret");
     } else if (!write_all(file, text)) {
         why = reason("cannot be written");

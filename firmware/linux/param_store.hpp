@@ -8,39 +8,39 @@
 
 #include "firmware/linux/param_file.hpp"
 
-// Parameters that were set over a link, kept over a restart of the daemon: a state file of its own, beside the files
-// that people write. It holds the values that differ from those files, one `NAME,VALUE` per line, and a checksum over
-// all of it in its last line.
+// Parameters that were set over a link, kept over a restart of the daemon in a state file of its own, beside the
+// hand-written files. The state file holds the values that differ from those files, one `NAME,VALUE` per line, and in
+// its last line a checksum over the lines before.
 
 namespace jink::files {
 
-/// Text of a state file: `values` as far as they differ from `initial`.
+/// Text of a state file: the values that differ from `initial`.
 [[nodiscard]] std::string state_text(const ParamValues& initial, const ParamValues& values);
 
-/// A text with a last line that holds the checksum of all before it, and the text before that line; nothing when it is
-/// not the right one.
+/// Adds a last line with the checksum of the text; the reverse gives the text before that line, or nothing if the
+/// checksum is wrong.
 [[nodiscard]] std::string with_checksum(const std::string& text);
 [[nodiscard]] std::optional<std::string_view> without_checksum(std::string_view text);
 
 enum class FileAccess : unsigned { everyone_reads = 0644, owner_only = 0600 };
 
 /// Replaces a file as a whole: a new file beside it (PATH.new), fsync, rename, fsync of the folder. A power cut or a
-/// kill at any point leaves the former content or the new one. @return why not; empty on success
+/// kill at any point leaves the former content or the new one. @return the error; empty on success
 [[nodiscard]] std::string replace_file(const std::string& path, std::string_view text,
                                        FileAccess access = FileAccess::everyone_reads);
 
 struct StateLoad {
     std::size_t taken = 0;
-    /// Lines left out: unknown name, not a number, out of range, or not together with the others.
+    /// Lines left out: unknown name, not a number, out of range, or inconsistent with the others.
     std::size_t refused = 0;
 };
 
-/// Puts what a state file's text says into `parameters`. A line that is wrong is left out with a complaint, the others
-/// count. Without its right checksum the text as a whole is left out: it was cut, and so might its last number be.
+/// Applies a state file's text to `parameters`. A wrong line is left out with a complaint; the others are applied. If
+/// the checksum is missing or wrong, the whole text is left out: it was cut, and so may be its last number.
 StateLoad apply_state(std::string_view text, const std::string& file, app::Parameters& parameters,
                       Complaints& complaints);
 
-/// The same from a file. One that is not there says nothing and is no complaint.
+/// The same from a file. A missing file is no error.
 StateLoad load_state(const std::string& path, app::Parameters& parameters, Complaints& complaints);
 
 }  // namespace jink::files

@@ -10,14 +10,14 @@
 
 namespace jink::host {
 
-/// DEV[:BAUD]; a colon that is not followed by digits alone belongs to the device's name.
+/// Splits DEV[:BAUD]; a colon that is not followed by digits alone belongs to the device's name.
 [[nodiscard]] bool split_device(const std::string& text, std::string& device, std::uint32_t& baud);
 
-/// False, and said why, where time cannot mend it.
+/// Opens a serial device. False, with a message, if retrying cannot help.
 [[nodiscard]] bool open_serial(hal::TermiosSerialPort& port, const std::string& device, std::uint32_t baud);
-/// The same for a CAN interface. One that is down is open, and waited for.
+/// The same for a CAN interface. An interface that is down counts as open, and is waited for.
 [[nodiscard]] bool open_can(hal::SocketCanPort& port, const std::string& interface);
-/// Opens what is to be fed, `device` and the service manager; false, and said why, where the device cannot be used.
+/// Opens the watchdogs, `device` and the service manager; false, with a message, if the device cannot be used.
 [[nodiscard]] bool open_watchdog(hal::LinuxWatchdog& watchdog, const std::string& device);
 
 }  // namespace jink::host

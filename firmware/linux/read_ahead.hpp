@@ -9,26 +9,26 @@
 
 namespace jink::host {
 
-/// Stands between a serial device and who reads it once per step: pump() reads the device, read() hands out what pump()
-/// has taken and nothing newer.
+/// Sits between a serial device and a reader that reads once per step: pump() reads the device, read() returns the
+/// bytes of the last pump() and nothing newer.
 ///
-/// For the autopilot's line: pump(), then the clock, then the step. Whatever holds the thread up between those, no byte
-/// of the step is newer than its clock: a stamp that seems to come from the future would mislead the map of clocks.
-/// For point clouds: a terminal of Linux holds 4096 bytes for its reader, and a cloud brings thirty times as many in
-/// 20 ms, so pump() is called more often than once per step.
+/// For the autopilot's line: pump(), then the clock, then the step. So no byte of the step is newer than its clock,
+/// whatever delays the thread in between: a stamp that seems to come from the future would mislead the clock mapping.
+/// For point clouds: a Linux terminal holds 4096 bytes for its reader, and a cloud brings thirty times as many in 20
+/// ms, so pump() is called more often than once per step.
 ///
-/// What finds no room stays with the driver, which throws it away when it must: the receiver misses those frames, and
-/// counts them. Memory: `room`, once.
+/// Bytes that do not fit stay with the driver, which discards them when its buffer is full: the receiver misses those
+/// frames, and counts them. Memory: `room`, once.
 class ReadAhead final : public hal::SerialPort {
 public:
-    /// A scan of 10^5 points, 630 024 bytes, and what four steps may read.
+    /// A scan of 10^5 points, 630 024 bytes, and the bytes that four steps may read.
     static constexpr std::size_t kCloudRoom = 640U * 1024U;
 
     /// @param device  outlives this
-    /// @param room    bytes that wait at most, > 0
+    /// @param room    capacity for waiting bytes, > 0
     ReadAhead(hal::SerialPort& device, std::size_t room) : device_(device), bytes_(room) {}
 
-    /// Takes what has come and has room. O(bytes), and at times O(room) to make room in one piece.
+    /// Reads as many bytes as fit. O(bytes), and at times O(room) to make space in one piece.
     void pump() noexcept;
 
     [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override;
@@ -47,7 +47,7 @@ class CanReadAhead final : public hal::CanPort {
 public:
     CanReadAhead(hal::CanPort& device, std::size_t room) : device_(device), frames_(room) {}
 
-    /// Takes what has come and has room. O(room).
+    /// Reads as many frames as fit. O(room).
     void pump() noexcept;
 
     [[nodiscard]] bool receive(hal::CanFrame& frame) noexcept override;

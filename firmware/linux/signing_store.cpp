@@ -63,7 +63,7 @@ std::string_view next_line(std::string_view& text)
     return line;
 }
 
-/// "name value" with exactly this name.
+/// The value of a "name value" line with exactly this name.
 std::optional<std::string_view> value_of(std::string_view line, std::string_view name)
 {
     return line.starts_with(name) ? std::optional(line.substr(name.size())) : std::nullopt;

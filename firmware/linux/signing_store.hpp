@@ -9,14 +9,14 @@
 #include "firmware/link/mavlink/signing.hpp"
 #include "firmware/linux/complaint.hpp"
 
-// Keys of MAVLink signing in files: the key file that people write, and the signing state that jinkd writes beside its
-// state file, readable by its owner alone. No message ever holds a key.
+// Keys of MAVLink signing in files: the hand-written key file, and the signing state that jinkd writes beside its state
+// file, readable by its owner alone. No message ever contains a key.
 
 namespace jink::files {
 
 using SigningKey = link::mavlink::Signing::Key;
 
-/// What outlives a restart.
+/// State kept over a restart.
 struct SigningState {
     bool has_key = false;
     SigningKey key{};
@@ -27,30 +27,30 @@ struct SigningState {
 };
 
 /// The key of a key file: 64 hexadecimal digits, or `passphrase TEXT`, whose key is the SHA-256 of TEXT as with
-/// MAVProxy's `signing setup TEXT`. Lines that are empty or begin with # do not count.
-/// Nothing, with a complaint, when there is no such line, more than one, or one that is neither.
+/// MAVProxy's `signing setup TEXT`. Empty lines and lines that begin with # are ignored. Nothing, with a complaint, if
+/// there is no such line, more than one, or an invalid one.
 [[nodiscard]] std::optional<SigningKey> parse_key_file(std::string_view text, const std::string& file,
                                                        Complaints& complaints);
-/// The same from a file; a complaint, and the key all the same, when others than its owner may read it.
+/// The same from a file; the key, with a complaint, if users other than its owner may read the file.
 [[nodiscard]] std::optional<SigningKey> read_key_file(const std::string& path, Complaints& complaints);
 
-/// Text of a signing state, and back. Nothing when the text was cut or changed: it ends with a checksum.
+/// Text of a signing state, and back. Nothing if the text was cut or changed: it ends with a checksum.
 [[nodiscard]] std::string signing_text(const SigningState& state);
 [[nodiscard]] std::optional<SigningState> parse_signing_text(std::string_view text);
 
-/// What jinkd starts with.
+/// State at the start of jinkd.
 ///
 /// @param key_file  of --signing-key; may be empty
 /// @param store     the signing state; may be empty, or not there yet
-/// @param clock     time of the system clock [10 us since 2015]; 0: not known
-/// @return nothing, with complaints, when the key file is not good or the store is damaged and no key file says what
-/// the key is. The key of the store counts when it was set over the link while this key file was in use, or when there
-/// is no key file; else that of the key file. `time` is the later of the clock's and the stored one plus
-/// Signing::kRestartMargin.
+/// @param clock     time of the system clock [10 us since 2015]; 0: unknown
+/// @return nothing, with complaints, if the key file is not good, or if the store is damaged and no key file gives the
+///         key. The key of the store is used if it was set over the link while this key file was in use, or if there is
+///         no key file; else that of the key file. `time` is the later of the clock's and the stored one plus
+///         Signing::kRestartMargin.
 [[nodiscard]] std::optional<SigningState> load_signing(const std::string& key_file, const std::string& store,
                                                        std::uint64_t clock, Complaints& complaints);
 
-/// "none", "all", or message ids separated by commas. False, and `frames` as it was, when it is none of these.
+/// "none", "all", or message ids separated by commas. False, with `frames` unchanged, for any other text.
 [[nodiscard]] bool parse_unsigned_frames(std::string_view text, link::mavlink::UnsignedFrames& frames);
 
 /// Time of the system clock in units of a signature; 0 before 2015.

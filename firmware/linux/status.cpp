@@ -212,7 +212,7 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
 {
     const app::Coprocessor& coprocessor = watched.coprocessor;
     const hal::PortHealth port = watched.port.health();
-    // Written in memory first: the file may be one that blocks or takes nothing.
+    // Composed in memory first: writing to the file may block or fail.
     char* text = nullptr;
     std::size_t size = 0;
     std::FILE* f = ::open_memstream(&text, &size);

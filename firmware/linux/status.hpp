@@ -15,31 +15,31 @@
 
 namespace jink::host {
 
-/// What is told of.
+/// The objects whose state is reported.
 struct Watched {
     const app::Coprocessor& coprocessor;
     const link::mavlink::Endpoint& endpoint;
     const hal::SerialPort& port;  ///< MAVLink's
-    const app::CanBus* bus;       ///< nullptr: there is none
+    const app::CanBus* bus;       ///< nullptr: no bus
     const app::CloudInput& clouds;
 };
 
-/// The daemon's status line and the summary that it leaves behind.
+/// The daemon's status line and its final summary.
 class StatusLog {
 public:
     /// @param period  seconds between status lines on standard output; 0: none
     explicit StatusLog(double period) : period_us_(static_cast<std::int64_t>(period * 1e6)) {}
 
-    /// Counts a step. @return the status line, where one is due
+    /// Counts a step. @return the status line, if one is due
     std::optional<std::string> note(const app::StepReport& report, const Watched& watched, std::int64_t now_us,
                                     std::int64_t took_us);
 
-    /// JSON; false when the file cannot be written.
+    /// Writes a JSON file; false if it cannot be written.
     [[nodiscard]] bool write_summary(const std::string& path, const Watched& watched,
                                      const BackgroundCounts& counts) const;
 
 private:
-    /// Step times in bins of 10 us; the last one takes all that is longer.
+    /// Step times in bins of 10 us; the last bin holds all longer times.
     static constexpr std::size_t kBins = 500;
     static constexpr std::int64_t kBinWidth = 10;
 

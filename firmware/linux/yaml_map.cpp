@@ -6,7 +6,7 @@
 namespace jink::files {
 namespace {
 
-/// No mapping that is read here has more; keeps the search for doubles cheap.
+/// No valid mapping has more keys; keeps the search for duplicates cheap.
 constexpr std::size_t kMaxKeys = 256;
 
 const char* kind_of(const YAML::Node& node)
@@ -21,7 +21,7 @@ const char* kind_of(const YAML::Node& node)
     return "nothing";
 }
 
-/// Scalars in quotes are text even when they look like a number: yaml-cpp marks them with the tag "!".
+/// Scalars in quotes are text even if they look like a number: yaml-cpp marks them with the tag "!".
 bool is_plain(const YAML::Node& node) { return node.IsScalar() && node.Tag() != "!"; }
 
 }  // namespace

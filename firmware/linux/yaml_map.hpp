@@ -14,29 +14,29 @@
 
 namespace jink::files {
 
-/// The one document of a YAML file; complaints and nothing when the file cannot be read, is not YAML, or holds none or
-/// several.
+/// The single document of a YAML file. If the file cannot be read, is not YAML, or holds none or several documents:
+/// complaints and nothing.
 [[nodiscard]] std::optional<YAML::Node> load_yaml(const std::filesystem::path& path, Complaints& complaints);
 
-/// The same for text already read; `file` is what complaints call it.
+/// The same for text already read; `file` is the file's name in complaints.
 [[nodiscard]] std::optional<YAML::Node> parse_yaml(const std::string& text, const std::string& file,
                                                    Complaints& complaints);
 
-/// A mapping of a YAML file, read key by key with a complaint for whatever is wrong: not a mapping at all, a key twice,
-/// a value of another type, not finite, out of range, missing, and, on `finish`, keys that nobody asked for.
+/// A mapping of a YAML file, read key by key with a complaint for each error: not a mapping at all, a key twice, a
+/// value of another type, not finite, out of range, missing, and, on `finish`, unknown keys.
 ///
-/// Each reader returns what is there and fits; otherwise nothing, after a complaint (a key that is absent is none, but
-/// for `required`).
+/// Each reader returns a valid value, or nothing after a complaint. An absent key gives nothing, with a complaint only
+/// if it is `required`.
 class YamlMap {
 public:
     enum class Need { optional, required };
 
-    /// `where` is what complaints call this mapping ("threats[2]"); empty for the file itself.
+    /// `where` is the mapping's name in complaints ("threats[2]"); empty for the file itself.
     YamlMap(const YAML::Node& node, std::string where, std::string file, Complaints& complaints);
 
     [[nodiscard]] bool is_map() const { return is_map_; }
     [[nodiscard]] const std::string& file() const { return file_; }
-    /// True when the key is there, whatever its value. Counts as asked for.
+    /// True if the key is there, whatever its value. Marks the key as known.
     bool has(std::string_view key);
 
     std::optional<float> number(std::string_view key, Range range, Need need = Need::optional);
@@ -48,19 +48,19 @@ public:
     /// Index of the word in `words`.
     std::optional<std::size_t> choice(std::string_view key, std::initializer_list<std::string_view> words,
                                       Need need = Need::optional);
-    /// Any value, for the caller to go into.
+    /// Any value, for the caller to read further.
     std::optional<YAML::Node> node(std::string_view key, Need need = Need::optional);
     /// Elements of a sequence.
     std::optional<std::vector<YAML::Node>> list(std::string_view key, Need need = Need::optional);
     /// A mapping below `key`.
     std::optional<YamlMap> map(std::string_view key, Need need = Need::optional);
 
-    /// Complains of keys that nobody asked for, with the name that may have been meant. Call it last.
+    /// Complains about unknown keys, with the name that may have been meant. Call it last.
     void finish();
 
-    /// A complaint about the value of `key`, or about the mapping when it is absent.
+    /// A complaint about the value of `key`, or about the mapping if the key is absent.
     void complain(std::string_view key, const std::string& what);
-    /// What complaints call the value of `key`.
+    /// Name of the value of `key` in complaints.
     [[nodiscard]] std::string name(std::string_view key) const;
 
 private:
@@ -82,12 +82,12 @@ private:
     bool is_map_ = false;
 };
 
-/// For a value that has to be there.
+/// For a required value.
 inline constexpr auto kNeed = YamlMap::Need::required;
 
-/// Complaint at the place of a node.
+/// Complaint at the position of a node.
 [[nodiscard]] Complaint complaint_at(const YAML::Mark& mark, const std::string& file, std::string text);
-/// A number of a sequence; a complaint named `where` and nothing when it is none, or out of range.
+/// A number of a sequence; nothing, with a complaint named `where`, if it is invalid or out of range.
 [[nodiscard]] std::optional<float> element(const YAML::Node& node, Range range, const std::string& where,
                                            const std::string& file, Complaints& complaints);
 /// A sequence of three numbers.

@@ -65,7 +65,7 @@ link::mavlink::Endpoint& endpoint() noexcept
 
 }  // namespace
 
-// A reset leaves it alone: nothing of it is used before it is cleared.
+// A reset does not clear it. Its content is not used before clear().
 __attribute__((section(".noinit"))) hal::LastWords last_words;
 
 extern "C" void hal::cortex_m::jink_on_fault(const FaultRecord& /*record*/)

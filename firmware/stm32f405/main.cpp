@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink on an STM32F405 (Cortex-M4F, a flight controller's chip): MAVLink on USART1, PA9 and PA10; a DroneCAN bus of
-// 1 Mbit/s on CAN1, PB8 and PB9: of the pins that CAN1 can have, the smallest package has these and those of USB.
+// jink on an STM32F405 (Cortex-M4F, a flight controller's chip): MAVLink on USART1, PA9 and PA10; a DroneCAN bus of 1
+// Mbit/s on CAN1, PB8 and PB9. Of the pins possible for CAN1, the smallest package has these and those of USB.
 #include <new>
 
 #include "firmware/app/can_bus.hpp"
@@ -46,10 +46,10 @@ constexpr std::uint32_t kBaud = 921600;
 constexpr std::uint32_t kCanBitRate = 1'000'000;
 /// A step that is this late has failed.
 constexpr std::uint32_t kWatchdogMilliseconds = 250;
-/// And one that is this late is stopped with last words, before the watchdog at its quickest (0.68 of the above) does
-/// it without. Ticks of SysTick.
+/// A step that is this late is stopped with last words, before the watchdog at its fastest (0.68 of the above) resets
+/// without them. Ticks of SysTick.
 constexpr std::uint32_t kGuardMilliseconds = 150;
-/// While a sector is erased, 2 s at most, the program stands still: the watchdog at its quickest acts after 2.8 s then.
+/// While a sector is erased, 2 s at most, the program stops: the watchdog at its fastest then acts after 2.8 s.
 constexpr std::uint32_t kEraseMilliseconds = 4095;
 
 using Usart = hal::stm32f4::Usart<MappedRegisters, hal::cortex_m::Pend>;
@@ -62,7 +62,7 @@ Usart& usart() noexcept
 
 using ChipWatchdog = hal::stm32f4::IndependentWatchdog<MappedRegisters>;
 
-/// Both watchdogs wait for a sector's erase, which only a running program begins.
+/// Extends both watchdogs during a sector's erase, which only a running program begins.
 struct Patience {
     ChipWatchdog* watchdog;
     hal::cortex_m::GuardedWatchdog<ChipWatchdog>* guarded;
@@ -76,11 +76,11 @@ struct Patience {
 
 using Can = hal::stm32f4::BxCan<MappedRegisters, hal::cortex_m::Pend>;
 
-/// Core-coupled memory: no bus master but the processor reaches it, and CAN needs none. Nothing clears it at the start,
-/// and nothing lies in it before start_can().
+/// Core-coupled memory: no bus master but the processor reaches it, and CAN needs none. Start-up does not clear it, and
+/// it is unused before start_can().
 alignas(Can) __attribute__((section(".ccm"))) std::byte can_memory[sizeof(Can)];
 alignas(app::CanBus) __attribute__((section(".ccm"))) std::byte bus_memory[sizeof(app::CanBus)];
-Can* can = nullptr;  ///< nullptr: there is none
+Can* can = nullptr;  ///< nullptr: no CAN
 
 /// Two neighbouring pins for a peripheral.
 struct PinPair {
@@ -90,10 +90,10 @@ struct PinPair {
     std::uint32_t peripheral_on;  ///< in that register
     std::uint32_t first;          ///< the lower pin, 8 .. 14; the other is the next
     std::uint32_t alternate;      ///< function of both
-    std::uint32_t pulled_up;      ///< the pin that is held high while nobody drives it
+    std::uint32_t pulled_up;      ///< the pin with a pull-up, high while it is not driven
 };
 
-/// The pins to the peripheral, and the clocks of both.
+/// Connects the pins to the peripheral, and starts the clocks of both.
 void start_pins(const PinPair& pins) noexcept
 {
     const MappedRegisters rcc{kRcc};
@@ -117,7 +117,7 @@ constexpr PinPair kCanPins{kGpioB, 1U << 1U, 0x40, 1U << 25U, 8, 9, 8};
 /// PA9 and PA10; an open line at PA10 reads as idle.
 constexpr PinPair kUsartPins{kGpioA, 1U << 0U, 0x44, 1U << 4U, 9, 7, 10};
 
-/// The chip's own number, and a node id from the bus's allocator.
+/// The chip's own unique id, and a node id from the bus's allocator.
 link::dronecan::NodeOptions node_options() noexcept
 {
     constexpr std::size_t kBytes = 12;
@@ -137,7 +137,7 @@ link::dronecan::NodeOptions node_options() noexcept
 }
 
 /// A controller that takes part in a bus, or nullptr. The internal oscillator is off by up to 1 %, and CAN at 1 Mbit/s
-/// bears a third of that: without the crystal it would only disturb the others.
+/// tolerates a third of that: without the crystal the controller would only disturb the bus.
 app::CanBus* start_can(const hal::stm32f4::Clocks& clocks) noexcept
 {
     if (clocks.source != hal::stm32f4::ClockSource::crystal) {
@@ -152,7 +152,8 @@ app::CanBus* start_can(const hal::stm32f4::Clocks& clocks) noexcept
     return new (bus_memory) app::CanBus(*can, node_options());
 }
 
-/// TIM2 counts microseconds, all 32 bits of them. Not SysTick: whose interrupt is held off for a millisecond loses one.
+/// TIM2 counts microseconds in 32 bits. SysTick would not do: it loses a tick if its interrupt is delayed for a
+/// millisecond.
 void start_timer(const hal::stm32f4::Clocks& clocks) noexcept
 {
     constexpr std::uint32_t kApb1Enable = 0x40;
@@ -166,14 +167,14 @@ void start_timer(const hal::stm32f4::Clocks& clocks) noexcept
     rcc.write(kApb1Enable, rcc.read(kApb1Enable) | kTimer2On);
     timer.write(kPrescaler, clocks.timer / 1'000'000U - 1U);
     timer.write(kReload, 0xFFFFFFFF);
-    timer.write(kEvent, 1);  // takes the prescaler over
+    timer.write(kEvent, 1);  // loads the prescaler
     timer.write(kControl, 1);
 }
 
 }  // namespace
 
 extern "C" void jink_usart1() { usart().on_interrupt(); }
-// Enabled once `can` is there.
+// Enabled once `can` exists.
 extern "C" void jink_can1_transmit() { can->on_transmit(); }
 extern "C" void jink_can1_receive() { can->on_receive(); }
 extern "C" void jink_can1_status() { can->on_status(); }
@@ -189,7 +190,7 @@ __attribute__((section(".vectors"), used)) constinit const auto vectors =
 
 }  // namespace
 
-// A reset leaves it alone: nothing of it is used before it is cleared, but after a reset without warning.
+// A reset does not clear it. Its content is used before clear() only after a reset without warning.
 __attribute__((section(".noinit"))) hal::LastWords last_words;
 
 namespace {
@@ -200,7 +201,7 @@ void say_words() noexcept
                                             link::mavlink::kMaxFrame, firmware::kPatience));
 }
 
-/// The watchdog gave no time for last words: they are said now, as they were prepared in the last step.
+/// The watchdog gave no time for last words: they are sent now, as prepared in the last step.
 void settle_reset(hal::stm32f4::ResetCause cause) noexcept
 {
     using hal::stm32f4::ResetCause;

@@ -8,8 +8,8 @@ namespace jink::hal {
 /// Serial port on the CMSDK APB UART (ARM DDI 0479), fed by interrupts in both directions
 /// (hal/interrupt_serial_port.hpp).
 ///
-/// The UART holds one byte each way: at 921600 baud its receive handler has to run within 10.8 us, or a byte is lost
-/// and counted.
+/// The UART holds one byte each way: at 921600 baud its receive handler must run within 10.8 us, or a byte is lost and
+/// counted.
 template <RegisterBlock Registers, InterruptWake Wake>
 class CmsdkUart final : public InterruptSerialPort<Wake> {
     using Base = InterruptSerialPort<Wake>;
@@ -18,7 +18,7 @@ public:
     /// @param wake_transmit  raises the transmit interrupt
     CmsdkUart(Registers registers, Wake wake_transmit) noexcept : Base(wake_transmit), registers_(registers) {}
 
-    /// Sets the baud rate and starts both directions. False, and the port stays closed, where the divider does not give
+    /// Sets the baud rate and starts both directions. False, with the port left closed, if the divider does not give
     /// the rate within 2 % or is below the hardware's least (16).
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t baud) noexcept
     {
@@ -32,16 +32,18 @@ public:
         return true;
     }
 
-    /// From the receive interrupt's handler. O(bytes there), kReceiveBytes at most: what is left raises it again.
+    /// Called by the receive interrupt's handler. O(bytes received), kReceiveBytes at most: further bytes raise the
+    /// interrupt again.
     void on_receive() noexcept
     {
-        registers_.write(kInterrupts, kReceiveInterrupt);  // before the byte: one that comes in between raises it again
+        registers_.write(kInterrupts, kReceiveInterrupt);  // before the byte: a byte that arrives in between raises it
+                                                           // again
         for (std::size_t i = 0; i < Base::kReceiveBytes && (registers_.read(kState) & kReceiveFull) != 0; ++i) {
             this->store(static_cast<std::byte>(registers_.read(kData) & 0xFFU));
         }
     }
 
-    /// From the transmit interrupt's handler. O(bytes that find room).
+    /// Called by the transmit interrupt's handler. O(bytes that fit).
     void on_transmit() noexcept
     {
         registers_.write(kInterrupts, kTransmitInterrupt);
@@ -51,7 +53,7 @@ public:
         }
     }
 
-    /// From the overrun interrupt's handler. O(1).
+    /// Called by the overrun interrupt's handler. O(1).
     void on_overrun() noexcept
     {
         if ((registers_.read(kState) & kReceiveOverrun) != 0) {
@@ -69,7 +71,7 @@ public:
         registers.write(kData, std::to_integer<std::uint32_t>(byte));
     }
 
-    /// send_waiting() on its own registers; what is in the ring is left out.
+    /// send_waiting() on its own registers; bytes in the ring are not sent.
     void write_waiting(std::span<const std::byte> from, std::uint32_t patience) noexcept
     {
         static_cast<void>(send_waiting<CmsdkUart>(registers_, from, patience));
@@ -87,7 +89,7 @@ private:
     static constexpr std::uint32_t kTransmitInterrupt = 1U << 0U;  // of kInterrupts
     static constexpr std::uint32_t kReceiveInterrupt = 1U << 1U;
     static constexpr std::uint32_t kOverrunInterrupts = 3U << 2U;
-    /// Both directions, their interrupts, and the one of a receive overrun.
+    /// Both directions, their interrupts, and the receive overrun interrupt.
     static constexpr std::uint32_t kAllOn = 0x2F;
     static constexpr std::uint32_t kLeastDivider = 16;
     static constexpr std::uint32_t kLargestDivider = 0xFFFFF;

@@ -6,14 +6,14 @@
 
 namespace jink::hal {
 
-/// The CMSDK APB watchdog (ARM DDI 0479): `timeout` ticks after the last feed its interrupt comes (the NMI on MPS2
-/// boards), and as many later the reset.
+/// The CMSDK APB watchdog (ARM DDI 0479): `timeout` ticks after the last feed it raises its interrupt (the NMI on MPS2
+/// boards), and after as many ticks again it resets.
 template <RegisterBlock Registers>
 class CmsdkWatchdog final : public Watchdog {
 public:
     explicit CmsdkWatchdog(Registers registers) noexcept : registers_(registers) {}
 
-    /// Armed from here on. @param timeout  ticks of the peripheral clock, > 0
+    /// Arms the watchdog. @param timeout  ticks of the peripheral clock, > 0
     void start(std::uint32_t timeout) noexcept
     {
         registers_.write(kLockRegister, kUnlock);
@@ -25,7 +25,7 @@ public:
     void feed() noexcept override
     {
         registers_.write(kLockRegister, kUnlock);
-        registers_.write(kClear, 1);  // and it counts from `timeout` again
+        registers_.write(kClear, 1);  // restarts the count from `timeout`
         registers_.write(kLockRegister, kLock);
     }
 

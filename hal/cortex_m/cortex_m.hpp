@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-// What all Cortex-M images need of the processor itself (ARMv7-M Architecture Reference Manual, B3).
+// Access to the processor's own registers for all Cortex-M images (ARMv7-M Architecture Reference Manual, B3).
 
 namespace jink::hal::cortex_m {
 
@@ -18,10 +18,10 @@ using Register = volatile std::uint32_t;
 inline constexpr std::uintptr_t kNvicEnable = 0xE000E100;   ///< ISER0
 inline constexpr std::uintptr_t kNvicPending = 0xE000E200;  ///< ISPR0
 
-/// Lets interrupt `irq` (0..239) through.
+/// Enables interrupt `irq` (0..239).
 inline void enable_interrupt(unsigned irq) noexcept { at(kNvicEnable + 4U * (irq / 32U)) = 1U << (irq % 32U); }
 
-/// Raises an interrupt by hand. A driver uses it to have all work on its registers done by its handler.
+/// Raises an interrupt in software, so that a driver's handler does all work on the driver's registers.
 class Pend {
 public:
     explicit constexpr Pend(unsigned irq) noexcept : irq_(irq) {}

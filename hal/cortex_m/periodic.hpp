@@ -6,8 +6,8 @@
 
 namespace jink::hal::cortex_m {
 
-/// Calls `step(now_us)` every `period_us` for ever, asleep in between: something has to wake it (start_systick). One
-/// that comes late is not made up for: the next is due a period after it began.
+/// Calls `step(now_us)` every `period_us` for ever, asleep in between; a periodic interrupt must wake it
+/// (start_systick). A late step is not made up for: the next is due a period after its beginning.
 template <class ClockType, class Step>
 [[noreturn]] void run_every(std::int64_t period_us, ClockType& clock, Step step) noexcept
 {

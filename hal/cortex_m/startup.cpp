@@ -42,7 +42,7 @@ constexpr std::uint32_t kMagic = 0x4A494E4B;
 
 __attribute__((section(".noinit"))) FaultRecord kept;
 
-/// How far this start has come. Kept out of what start-up clears: a fault may come before that.
+/// Progress of this start. Not cleared by start-up: a fault may come before that.
 enum Stage : std::uint32_t { kStarting = 0, kReady = 0x52454459, kFaulting = 0x46415554 };
 __attribute__((section(".noinit"))) volatile std::uint32_t stage;
 
@@ -53,7 +53,7 @@ std::uint32_t sum_of(const FaultRecord& r) noexcept
 
 bool holds_record() noexcept { return kept.magic == kMagic && kept.check == sum_of(kept); }
 
-/// A record of one more fault; the rest is to be filled in, and the check sum.
+/// Begins a record of one more fault; the caller fills in the rest and the checksum.
 void begin_record(std::uint32_t exception) noexcept
 {
     const bool known = holds_record();
@@ -66,13 +66,12 @@ void begin_record(std::uint32_t exception) noexcept
     kept.streak = streak + 1;
 }
 
-/// Nobody may touch the megabyte below the stack: what lies there may swallow an overflow instead of refusing it. Fault
-/// handlers may (HFNMIENA off). Only where the stack begins on a megabyte and there is a protection unit (ARMv7-M,
-/// B3.5).
+/// Denies access to the megabyte below the stack: memory there might take an overflow without a fault. Fault handlers
+/// have access (HFNMIENA off). Only if the stack begins on a megabyte and there is a protection unit (ARMv7-M, B3.5).
 void guard_stack() noexcept
 {
     constexpr std::uint32_t kBytes = 1U << 20U;
-    constexpr std::uint32_t kNoAccess = 1U << 28U | (20U - 1U) << 1U | 1U;  // never executed either; 2^20 bytes; on
+    constexpr std::uint32_t kNoAccess = 1U << 28U | (20U - 1U) << 1U | 1U;  // not executable either; 2^20 bytes; on
     constexpr std::uint32_t kOnWithDefaults = 5;
     const std::uintptr_t bottom = reinterpret_cast<std::uintptr_t>(&_stack_bottom);
     if (bottom % kBytes != 0 || (at(kProtectionType) & 0xFF00U) == 0) {
@@ -160,14 +159,14 @@ extern "C" [[noreturn]] void jink_note_fault(const std::uint32_t* frame)
     const std::uint32_t before = stage;
     stage = kFaulting;
     if (before == kFaulting) {
-        reset();  // what the handler was doing had better not be tried again
+        reset();  // the action of the handler must not be tried again
     }
-    at(kFloatContext) = at(kFloatContext) & ~kLazySavePending;  // nothing is to be saved where the stack overflowed
+    at(kFloatContext) = at(kFloatContext) & ~kLazySavePending;  // no lazy save where the stack overflowed
     const std::uint32_t cause = at(kFaultCause);
     at(kConfigurationControl) = at(kConfigurationControl) | kIgnoreBusFaults;
     std::uint32_t exception = 0;
     __asm volatile("mrs %0, ipsr" : "=r"(exception));
-    const bool in_stack = frame >= &_stack_bottom && frame + 8 <= &_stack_top;  // not where the stack itself overflowed
+    const bool in_stack = frame >= &_stack_bottom && frame + 8 <= &_stack_top;  // false if the stack itself overflowed
     begin_record(exception & 0x1FFU);
     kept.pc = in_stack ? frame[6] : 0;
     kept.lr = in_stack ? frame[5] : 0;
@@ -180,7 +179,7 @@ extern "C" [[noreturn]] void jink_note_fault(const std::uint32_t* frame)
     reset();
 }
 
-/// On a stack of its own start: what faulted may have been the stack.
+/// Uses a stack of its own: the fault may be an overflow of the normal stack.
 extern "C" __attribute__((naked)) void jink_fault_handler()
 {
     __asm volatile("cpsid i\n"
@@ -193,7 +192,7 @@ extern "C" __attribute__((naked)) void jink_fault_handler()
 extern "C" {
 volatile std::uint32_t jink_guard_left = 0;
 
-/// Nothing of its own on the stack: jink_fault_handler has to find the frame of what was interrupted.
+/// Pushes nothing: jink_fault_handler must find the frame of the interrupted program.
 __attribute__((naked)) void jink_guard_handler()
 {
     __asm volatile("ldr r0, =jink_guard_left\n"

@@ -6,18 +6,18 @@
 
 namespace jink::hal::cortex_m {
 
-/// SysTick's ticks until a step counts as stuck; 0: not watched. The handler of step_guard counts them down.
+/// SysTick ticks until a step counts as stuck; 0: not monitored. The handler below counts them down.
 extern "C" volatile std::uint32_t jink_guard_left;
-/// SysTick's handler for a board whose watchdog resets without warning: when the ticks are used up it goes on as
-/// jink_fault_handler, with the program that is stuck in the fault record (exception 15).
+/// SysTick's handler for a board whose watchdog resets without warning. When the ticks are used up it continues as
+/// jink_fault_handler, with the stuck program in the fault record (exception 15).
 extern "C" void jink_guard_handler();
 
-/// A watchdog, and in front of it one that acts earlier and leaves last words. An interrupt handler that hangs stops
-/// this one too; the watchdog behind it is for that.
+/// A watchdog with a second one in front that acts earlier and sends last words. An interrupt handler that hangs stops
+/// the one in front too; the watchdog behind covers that case.
 template <class Inner>
 class GuardedWatchdog final : public Watchdog {
 public:
-    /// @param ticks  of SysTick between two feeds, > 0; with them less time than `inner` has
+    /// @param ticks  of SysTick between two feeds, > 0; must be shorter than `inner`'s time-out
     GuardedWatchdog(Inner& inner, std::uint32_t ticks) noexcept : inner_(inner), ticks_(ticks) {}
 
     void feed() noexcept override
@@ -25,7 +25,7 @@ public:
         inner_.feed();
         jink_guard_left = ticks_;
     }
-    /// Not watched until the next feed; the watchdog behind goes on.
+    /// Stops monitoring until the next feed; the watchdog behind continues.
     void pause() noexcept { jink_guard_left = 0; }
 
 private:

@@ -8,7 +8,7 @@
 
 namespace jink::hal::cortex_m {
 
-/// The vectors of a processor with this many interrupts (ARMv7-M, B1.5.3). An image keeps one of them in the section
+/// The vectors of a processor with this many interrupts (ARMv7-M, B1.5.3). An image keeps one table in the section
 /// `.vectors`.
 template <std::size_t Interrupts>
 struct VectorTable {
@@ -25,7 +25,7 @@ struct InterruptVector {
     Handler handler;
 };
 
-/// Reset, SysTick, and the interrupts named. Whatever nobody expects is a fault, the NMI too.
+/// Reset, SysTick, and the listed interrupts. All others are faults, the NMI too.
 template <std::size_t Interrupts>
 [[nodiscard]] consteval VectorTable<Interrupts> make_vectors(std::initializer_list<InterruptVector> interrupts,
                                                              Handler systick = &jink_systick_handler) noexcept

@@ -79,7 +79,7 @@ void LinuxWatchdog::feed() noexcept
         ++counters_.device_errors;
     }
     if (notify_socket_ >= 0) {
-        (void)notify("WATCHDOG=1");  // a failure is counted in there
+        (void)notify("WATCHDOG=1");  // notify() counts a failure
     }
 }
 
@@ -101,7 +101,7 @@ bool LinuxWatchdog::notify(std::string_view message) noexcept
         to.sun_path[0] = '\0';
     }
     const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + notify_address_size_);
-    // Addressed anew each time: a manager that has made its socket again is found.
+    // Addressed again each time, so that a manager that has recreated its socket is found.
     const ssize_t sent =
         ::sendto(notify_socket_, message.data(), message.size(), MSG_NOSIGNAL, reinterpret_cast<sockaddr*>(&to), size);
     const bool ok = sent == static_cast<ssize_t>(message.size());
@@ -112,7 +112,7 @@ bool LinuxWatchdog::notify(std::string_view message) noexcept
 void LinuxWatchdog::close_device() noexcept
 {
     if (device_ >= 0) {
-        // 'V' before close disarms it (kernel: "magic close"), unless the driver was built with nowayout.
+        // 'V' before close disarms the device (kernel: "magic close"), unless the driver was built with nowayout.
         if (!write_byte(device_, 'V')) {
             ++counters_.device_errors;
         }

@@ -10,17 +10,17 @@
 
 namespace jink::hal {
 
-/// Why a watchdog could not be had; zero is success.
+/// Result of opening a watchdog; zero is success.
 enum class WatchdogStatus : std::uint8_t {
     ok,
     bad_path,         ///< empty, too long, or (notify) neither a path nor an abstract name
-    no_device,        ///< nothing there, or nothing behind the node
+    no_device,        ///< no such node, or no device behind the node
     busy,             ///< held by another program
-    timeout_refused,  ///< the driver does not take the timeout; it has been disarmed again
+    timeout_refused,  ///< the driver refuses the timeout; it has been disarmed again
     failed,           ///< any other error of the system
 };
 
-/// Outlets of one feed on Linux: the kernel's watchdog device, the service manager, both or neither.
+/// Watchdogs fed on Linux: the kernel's watchdog device, the service manager, both or neither.
 ///
 /// The device resets the machine. The service manager restarts the program: the protocol is one datagram "WATCHDOG=1"
 /// to the socket named in $NOTIFY_SOCKET (sd_notify(3)), in a unit with Type=notify and WatchdogSec.
@@ -28,7 +28,7 @@ class LinuxWatchdog final : public Watchdog {
 public:
     struct Counters {
         std::uint64_t feeds = 0;
-        std::uint64_t device_errors = 0;  ///< feeds that the device did not take
+        std::uint64_t device_errors = 0;  ///< feeds that the device refused
         std::uint64_t notify_errors = 0;  ///< datagrams that could not be sent
     };
 
@@ -37,19 +37,19 @@ public:
     LinuxWatchdog(const LinuxWatchdog&) = delete;
     LinuxWatchdog& operator=(const LinuxWatchdog&) = delete;
 
-    /// Opens and so arms a device such as /dev/watchdog0.
-    /// @param timeout_s  time until it acts [s], > 0; the driver may round it, see `device_timeout_s()`
+    /// Opens and thereby arms a device such as /dev/watchdog0.
+    /// @param timeout_s  time until it acts [s], > 0; the driver may round the time, see `device_timeout_s()`
     [[nodiscard]] WatchdogStatus open_device(std::string_view path, int timeout_s) noexcept;
 
     /// @param address  value of $NOTIFY_SOCKET: a path, or '@' and an abstract name
     [[nodiscard]] WatchdogStatus open_notify(std::string_view address) noexcept;
 
-    /// Tells the service manager that start-up is over. False when it was not told.
+    /// Reports the end of start-up to the service manager. False if that failed.
     [[nodiscard]] bool notify_ready() noexcept { return notify("READY=1"); }
 
     void feed() noexcept override;
 
-    /// Orderly end: disarms the device (where the kernel permits it) and closes both outlets.
+    /// Orderly end: disarms the device (if the kernel permits it) and closes both outlets.
     void close() noexcept;
 
     [[nodiscard]] Counters counters() const noexcept { return counters_; }

@@ -32,7 +32,7 @@ CanOpenStatus cause_of(int error) noexcept
     }
 }
 
-/// Nothing that time could mend; bad_name and too_many_filters do not get as far as this.
+/// Whether time cannot change the failure; bad_name and too_many_filters do not get this far.
 bool is_final(CanOpenStatus status) noexcept
 {
     return status == CanOpenStatus::no_can || status == CanOpenStatus::not_can || status == CanOpenStatus::no_fd;
@@ -78,7 +78,7 @@ CanOpenStatus SocketCanPort::open(std::string_view interface, const SocketCanOpt
     retry_period_us_ = retry_period_us;
     next_attempt_us_ = 0;
     open_status_ = try_open();
-    if (health_.state != CanState::active) {  // no interface, or one that is not up
+    if (health_.state != CanState::active) {  // no interface, or an interface that is down
         health_.state = is_final(open_status_) ? CanState::closed : CanState::down;
     }
     return open_status_;
@@ -166,7 +166,7 @@ void SocketCanPort::service(std::int64_t now_us) noexcept
     }
     ifreq request = request_for(name_);
     if (::ioctl(descriptor_, SIOCGIFFLAGS, &request) != 0) {
-        become(CanState::down);  // deleted: another of its name has another index
+        become(CanState::down);  // deleted: a new interface of that name has another index
         release();
         next_attempt_us_ = now_us;
         return;
@@ -245,7 +245,7 @@ SocketCanPort::Read SocketCanPort::read_one(CanFrame& frame) noexcept
         if (c->cmsg_level == SOL_SOCKET && c->cmsg_type == SO_RXQ_OVFL) {
             std::uint32_t dropped = 0;
             std::memcpy(&dropped, CMSG_DATA(c), sizeof dropped);
-            health_.overruns += dropped - dropped_;  // 32 bits: right across its wrap
+            health_.overruns += dropped - dropped_;  // 32-bit difference: right across the wrap
             dropped_ = dropped;
         }
     }

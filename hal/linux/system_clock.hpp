@@ -7,7 +7,7 @@
 
 namespace jink::hal {
 
-/// CLOCK_MONOTONIC: not set by anyone, slewed by NTP by at most 500 ppm, stands still while the machine sleeps.
+/// CLOCK_MONOTONIC: cannot be set, slewed by NTP by at most 500 ppm, stops while the machine sleeps.
 class SystemClock final : public Clock {
 public:
     [[nodiscard]] std::int64_t now_us() noexcept override;

@@ -9,7 +9,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-// The kernel's own termios2: the C library's <termios.h> knows fixed rates only and would clash with it.
+// The kernel's own termios2: the C library's <termios.h> has fixed rates only and would clash with it.
 #include <asm/termbits.h>
 #include <linux/serial.h>
 
@@ -17,8 +17,8 @@ namespace jink::hal {
 
 namespace {
 
-// A receiver samples its last bit 9.5 bit times after the start edge and must still hit it: 5 % between both ends,
-// half of it for each.
+// A receiver samples its last bit 9.5 bit times after the start edge: 5 % of tolerance between both ends, half of it
+// for each.
 constexpr std::uint64_t kBaudTolerancePerMille = 25;
 
 OpenStatus cause_of(int error) noexcept
@@ -105,7 +105,7 @@ std::size_t TermiosSerialPort::read(std::span<std::byte> into) noexcept
         if (got > 0) {
             count += static_cast<std::size_t>(got);
         } else if (got == 0) {
-            lose();  // with VMIN = 1 "nothing there" is EAGAIN; zero is the end of the line
+            lose();  // with VMIN = 1, no data is EAGAIN; zero is the end of the line
         } else if (errno == EAGAIN || errno == EINTR) {
             break;
         } else {
@@ -164,7 +164,7 @@ OpenStatus TermiosSerialPort::configure() noexcept
     settings.c_ospeed = baud_;
     settings.c_cc[VMIN] = 1;
     settings.c_cc[VTIME] = 0;
-    // The call succeeds if any one setting could be made, so what came of it is read back.
+    // The call succeeds if any one setting was made, so the result is read back.
     termios2 actual{};
     if (::ioctl(descriptor_, TCSETS2, &settings) != 0 || ::ioctl(descriptor_, TCGETS2, &actual) != 0) {
         return OpenStatus::settings_refused;
@@ -181,7 +181,7 @@ bool TermiosSerialPort::line_counts(LineCounts& counts) const noexcept
 {
     serial_icounter_struct driver{};
     if (::ioctl(descriptor_, TIOCGICOUNT, &driver) != 0) {
-        return false;  // ptys and some USB drivers keep no such counts
+        return false;  // ptys and some USB drivers have no such counters
     }
     counts.overruns = static_cast<std::uint32_t>(driver.overrun) + static_cast<std::uint32_t>(driver.buf_overrun);
     counts.errors = static_cast<std::uint32_t>(driver.frame) + static_cast<std::uint32_t>(driver.parity) +
@@ -210,7 +210,8 @@ std::size_t TermiosSerialPort::unsent() const noexcept
 void TermiosSerialPort::release() noexcept
 {
     if (descriptor_ >= 0) {
-        // Else close() waits until a real UART has sent its buffer, up to 30 s by the kernel's default.
+        // Without the flush, close() would wait until a real UART has sent its buffer, up to 30 s by the kernel's
+        // default.
         (void)::ioctl(descriptor_, TCFLSH, TCIOFLUSH);
         (void)::close(descriptor_);
         descriptor_ = -1;

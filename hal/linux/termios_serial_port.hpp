@@ -14,25 +14,25 @@ namespace jink::hal {
 /// Longest device path, terminator included. By-id links of USB adapters stay below 160.
 inline constexpr std::size_t kMaxDevicePath = 256;
 
-/// Why a device could not be opened; zero is success.
+/// Result of opening a device; zero is success.
 enum class OpenStatus : std::uint8_t {
     ok,
     bad_path,             ///< empty, or kMaxDevicePath or more characters
     bad_baud,             ///< zero
-    no_device,            ///< nothing there, or nothing behind the node
+    no_device,            ///< no such node, or no device behind the node
     access_denied,        ///< permissions, or held exclusively by another program
-    not_a_serial_device,  ///< there, but no terminal
-    settings_refused,     ///< the driver does not do 8N1 at this rate
+    not_a_serial_device,  ///< exists, but is not a terminal
+    settings_refused,     ///< the driver does not support 8N1 at this rate
     failed,               ///< any other error of the system
 };
 
 /// Serial device or pty of Linux: raw, 8 data bits, no parity, 1 stop bit, no flow control, any baud rate.
 ///
-/// A device that vanishes (unplugged, other end of a pty closed) makes the port `lost`; `service()` then tries to open
+/// A device that vanishes (unplugged, other end of a pty closed) makes the port `lost`. `service()` then tries to open
 /// the same path again, first at once and then once per retry period, until it succeeds or `close()` is called. Bytes
-/// that the kernel still held at that moment, in either direction, are gone and not counted by anyone.
+/// that the kernel still held at that instant, in either direction, are lost and not counted.
 ///
-/// Not for two threads. Allocation-free; about 400 bytes.
+/// Not thread-safe. Allocation-free; about 400 bytes.
 class TermiosSerialPort final : public SerialPort {
 public:
     TermiosSerialPort() noexcept = default;
@@ -40,34 +40,35 @@ public:
     TermiosSerialPort(const TermiosSerialPort&) = delete;
     TermiosSerialPort& operator=(const TermiosSerialPort&) = delete;
 
-    /// Opens a device; closes the one open before.
+    /// Opens a device; closes the previous one.
     ///
-    /// @param path             device or symbolic link to one, followed anew at each attempt
+    /// @param path             device or symbolic link to one, resolved again at each attempt
     /// @param baud             both directions [bit/s], > 0; refused when the driver is more than 2.5 % off
     /// @param retry_period_us  between attempts to open a lost device [us], > 0
-    /// @return why not, otherwise ok. After bad_path and bad_baud the port is closed; after any other failure it is
-    ///         `lost`, and `service()` goes on trying.
+    /// @return ok or the cause. After bad_path and bad_baud the port is closed; after any other failure it is `lost`,
+    ///         and
+    ///         `service()` keeps trying.
     [[nodiscard]] OpenStatus open(std::string_view path, std::uint32_t baud, std::int64_t retry_period_us) noexcept;
 
-    /// Closes for good. What was not sent yet is thrown away: waiting for it could block.
+    /// Closes for good. Unsent bytes are discarded: waiting for them could block.
     void close() noexcept;
 
-    /// Notices a lost device, reads the driver's error counters, tries to open again. Call once per tick.
-    /// O(1) system calls; opening a device takes what its driver takes (microseconds to few milliseconds).
+    /// Detects a lost device, reads the driver's error counters, tries to reopen. Call once per tick.
+    /// O(1) system calls; opening a device takes the driver's time (microseconds to few milliseconds).
     void service(std::int64_t now_us) noexcept;
 
     [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override;
     [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept override;
     [[nodiscard]] PortHealth health() const noexcept override { return health_; }
 
-    /// Bytes taken by write() that the driver still holds; 0 when not open, and always on a pseudo-terminal.
+    /// Bytes accepted by write() that the driver still holds; 0 when not open, and always on a pseudo-terminal.
     [[nodiscard]] std::size_t unsent() const noexcept;
 
-    /// For poll() and friends; -1 when not open. Changes with every reconnect.
+    /// For poll() and similar calls; -1 when not open. Changes with every reconnect.
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
     /// Outcome of the latest attempt to open, first or repeated.
     [[nodiscard]] OpenStatus open_status() const noexcept { return open_status_; }
-    /// What the driver made of the rate asked for [bit/s]; 0 before the first success.
+    /// The driver's actual rate [bit/s]; 0 before the first success.
     [[nodiscard]] std::uint32_t actual_baud() const noexcept { return actual_baud_; }
 
 private:

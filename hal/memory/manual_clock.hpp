@@ -8,14 +8,14 @@
 
 namespace jink::hal {
 
-/// Clock that stands still until it is told: whoever holds it owns the time.
+/// Clock that only advance() moves: its owner controls the time.
 class ManualClock final : public Clock {
 public:
     explicit ManualClock(std::int64_t start_us = 0) noexcept : now_us_(start_us) {}
 
     [[nodiscard]] std::int64_t now_us() noexcept override { return now_us_; }
 
-    /// @param step_us  [us], >= 0: time does not run backwards
+    /// @param step_us  [us], >= 0: time never runs backwards
     void advance(std::int64_t step_us) noexcept
     {
         assert(step_us >= 0);

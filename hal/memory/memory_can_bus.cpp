@@ -13,7 +13,7 @@ constexpr std::uint32_t kMillion = 1'000'000;
     return 80 + 10 * (frame.remote ? 0 : static_cast<std::int64_t>(frame.length));
 }
 
-/// As on the wire: an 11-bit identifier beats a 29-bit one that begins alike.
+/// As on the wire: an 11-bit identifier has precedence over a 29-bit one with the same beginning.
 [[nodiscard]] constexpr std::uint32_t rank_of(const CanFrame& frame) noexcept
 {
     return frame.extended ? frame.id << 1U | 1U : frame.id << 19U;
@@ -40,7 +40,7 @@ bool MemoryCanBus::chance(std::uint32_t per_million) noexcept
     return (z ^ (z >> 31U)) % kMillion < per_million;
 }
 
-/// The port whose frame goes next, and when it begins; nullptr: none waits.
+/// The port that sends next, and the time at which its frame begins; nullptr: no frame waits.
 MemoryCanBus::Port* MemoryCanBus::next(std::int64_t& begin) noexcept
 {
     begin = INT64_MAX;
@@ -66,7 +66,8 @@ void MemoryCanBus::deliver(Port& from, std::int64_t at) noexcept
 {
     const CanFrame& frame = from.to_send_.front().frame;
     for (Port& to : ports_) {
-        // Always two numbers per receiver: a fault switched on changes its own frames, not the luck of all later ones.
+        // Always two random numbers per receiver: switching a fault on changes its own frames, not the random sequence
+        // after them.
         const bool lost = chance(faults_.loss_per_million);
         const int copies = chance(faults_.duplicate_per_million) ? 2 : 1;
         if (&to == &from || !to.takes_part() || lost) {

@@ -10,25 +10,24 @@
 
 namespace jink::hal {
 
-/// Controllers on one bus at most, and frames that each holds in either direction, 88 bytes each: 352 KiB in all.
+/// Capacities: controllers on one bus, and frames that each holds in either direction, 88 bytes each: 352 KiB in all.
 inline constexpr std::size_t kMemoryCanPorts = 4;
 inline constexpr std::size_t kMemoryCanFrames = 512;
 
-/// What is wrong with a bus in memory.
+/// Faults of a bus in memory.
 struct CanFaults {
-    std::uint32_t loss_per_million = 0;              ///< chance that one receiver misses a frame that others may have
-    std::uint32_t duplicate_per_million = 0;         ///< chance that one receiver gets it twice
-    bool unacknowledged = false;                     ///< nobody answers: what is sent waits, as on a cut cable
-    std::size_t transmit_frames = kMemoryCanFrames;  ///< room of each port, 0 .. kMemoryCanFrames; Linux has 10
+    std::uint32_t loss_per_million = 0;              ///< chance that one receiver misses a frame
+    std::uint32_t duplicate_per_million = 0;         ///< chance that one receiver gets a frame twice
+    bool unacknowledged = false;                     ///< no receiver acknowledges: frames wait, as on a cut cable
+    std::size_t transmit_frames = kMemoryCanFrames;  ///< capacity of each port, 0 .. kMemoryCanFrames; Linux has 10
     std::size_t receive_frames = kMemoryCanFrames;
 };
 
-/// A classic CAN bus in memory, with faults on demand. It takes time: frames are worth (80 + 10 bytes) bits, the most
-/// that a 29-bit identifier and bit stuffing make of them (Davis, Burns, Bril & Lukkien 2007, eq. 2), and of those that
-/// wait at the heads of the ports' queues the lowest identifier goes first.
+/// A classic CAN bus in memory, with faults on demand. Frames take time: each counts (80 + 10 bytes) bits, the worst
+/// case of a 29-bit identifier with bit stuffing (Davis, Burns, Bril & Lukkien 2007, eq. 2). Of the frames at the heads
+/// of the ports' queues the lowest identifier is sent first.
 ///
-/// The same seed, faults and calls give the same frames. Allocation-free. Not for two threads; neither copied nor
-/// moved.
+/// The same seed, faults and calls give the same frames. Allocation-free. Not thread-safe; neither copied nor moved.
 class MemoryCanBus {
 public:
     class Port final : public CanPort {
@@ -37,8 +36,8 @@ public:
         [[nodiscard]] bool send(const CanFrame& frame) noexcept override;
         [[nodiscard]] CanHealth health() const noexcept override { return health_; }
 
-        /// What the controller does to itself or has done to it. Down, closed or bus off: what waits is gone, nothing
-        /// is heard. Counted as a driver would.
+        /// Changes of the controller's state. Down, closed or bus off: waiting frames are lost, and no frame is
+        /// received. Counted as in a driver.
         void become(CanState state) noexcept;
         /// Frames that wait to be sent.
         [[nodiscard]] std::size_t waiting() const noexcept { return to_send_.size; }
@@ -47,7 +46,7 @@ public:
         friend class MemoryCanBus;
         struct Item {
             CanFrame frame;
-            std::int64_t due_us = 0;  ///< when it was offered, or when it had arrived
+            std::int64_t due_us = 0;  ///< when the frame was queued, or when it arrived
         };
         struct Queue {
             std::array<Item, kMemoryCanFrames> items{};
@@ -77,7 +76,7 @@ public:
     MemoryCanBus(const MemoryCanBus&) = delete;
     MemoryCanBus& operator=(const MemoryCanBus&) = delete;
 
-    /// All start active.
+    /// All ports start active.
     [[nodiscard]] Port& port(std::size_t i) noexcept { return ports_[i]; }
     void set_faults(const CanFaults& faults) noexcept { faults_ = faults; }
 

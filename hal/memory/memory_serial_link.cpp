@@ -27,7 +27,7 @@ bool MemoryLine::try_add_stall(StallWindow stall) noexcept
     return true;
 }
 
-// SplitMix64 (Steele, Lea & Flood 2014); own copy, as this house knows nothing of core.
+// SplitMix64 (Steele, Lea & Flood 2014); own copy, because hal does not depend on core.
 std::uint64_t MemoryLine::random() noexcept
 {
     random_state_ += 0x9E3779B97F4A7C15ULL;
@@ -59,7 +59,8 @@ std::size_t MemoryLine::write(std::span<const std::byte> from) noexcept
             break;
         }
         ++taken;
-        // Always three numbers per byte: a fault switched on changes its own bytes, not the luck of all later ones.
+        // Always three random numbers per byte: switching a fault on changes its own bytes, not the random sequence
+        // after them.
         const bool lost = chance(faults_.loss_per_million);
         const bool corrupted = chance(faults_.corruption_per_million);
         const std::byte flip{static_cast<unsigned char>(1U << (random() % 8U))};

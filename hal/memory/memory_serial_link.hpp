@@ -11,11 +11,11 @@
 
 namespace jink::hal {
 
-/// Bytes on their way in one direction at most. 4096 is a Linux pty's buffer; each costs 16 bytes.
-/// What does not fit is refused or overrun, see `LineFaults::back_pressure`.
+/// Capacity for bytes in transit in one direction. 4096 is a Linux pty's buffer; each costs 16 bytes. Further bytes are
+/// refused or overrun, see `LineFaults::back_pressure`.
 inline constexpr std::size_t kMemoryLineCapacity = 4096;
 
-/// Stalls of one line at most; a further one is refused by `MemoryLine::try_add_stall`.
+/// Capacity for stalls of one line; `MemoryLine::try_add_stall` refuses further ones.
 inline constexpr std::size_t kMaxStalls = 8;
 
 /// Half-open interval [from_us, until_us) on the line's clock [us].
@@ -24,24 +24,24 @@ struct StallWindow {
     std::int64_t until_us = 0;
 };
 
-/// What is wrong with one direction of a line.
+/// Faults of one direction of a line.
 struct LineFaults {
     std::uint32_t loss_per_million = 0;          ///< chance that a byte vanishes, 0 .. 1'000'000
     std::uint32_t corruption_per_million = 0;    ///< chance that one bit of a byte is flipped, 0 .. 1'000'000
     std::int64_t latency_us = 0;                 ///< time from write to readable [us], >= 0
-    std::size_t capacity = kMemoryLineCapacity;  ///< bytes under way at once, 0 .. kMemoryLineCapacity
-    bool back_pressure = true;  ///< full: true, write takes less (pty, USB); false, bytes are overrun as on a bare UART
+    std::size_t capacity = kMemoryLineCapacity;  ///< bytes in transit at once, 0 .. kMemoryLineCapacity
+    bool back_pressure = true;  ///< full: write accepts less (pty, USB); false: bytes are overrun as on a bare UART
 };
 
-/// Where the bytes of one direction went. taken = delivered + lost + overrun + discarded + queued, always.
+/// Counters of the bytes of one direction. taken = delivered + lost + overrun + discarded + queued, always.
 struct LineCounters {
     std::uint64_t taken = 0;      ///< accepted from the writer
     std::uint64_t delivered = 0;  ///< handed to the reader
     std::uint64_t lost = 0;       ///< vanished by `loss_per_million`
-    std::uint64_t overrun = 0;    ///< came when the buffer was full and nothing held the writer back
-    std::uint64_t discarded = 0;  ///< were under way when the line was cut
-    std::uint64_t queued = 0;     ///< are under way
-    std::uint64_t corrupted = 0;  ///< of those queued or delivered, how many had a bit flipped on the way
+    std::uint64_t overrun = 0;    ///< arrived when the buffer was full, without back pressure
+    std::uint64_t discarded = 0;  ///< were in transit when the line was cut
+    std::uint64_t queued = 0;     ///< are in transit
+    std::uint64_t corrupted = 0;  ///< of those queued or delivered: bytes with a flipped bit
 };
 
 /// One direction: a ring of bytes, each with the time from which it may be read.
@@ -52,16 +52,16 @@ public:
     /// @param clock  outlives this line
     MemoryLine(Clock& clock, std::uint64_t seed) noexcept : clock_(clock), random_state_(seed) {}
 
-    /// Holds for bytes written from now on; those under way keep the delay they were given.
+    /// Applies to bytes written from now on; those in transit keep their delay.
     void set_faults(const LineFaults& faults) noexcept;
-    /// Nothing is delivered during [from_us, until_us); bytes wait. False when kMaxStalls are set.
+    /// Nothing is delivered during [from_us, until_us); bytes wait. False if kMaxStalls are set already.
     [[nodiscard]] bool try_add_stall(StallWindow stall) noexcept;
 
     /// O(from.size()).
     [[nodiscard]] std::size_t write(std::span<const std::byte> from) noexcept;
     /// O(into.size()).
     [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept;
-    /// Throws away what is under way.
+    /// Discards the bytes in transit.
     void cut() noexcept;
 
     [[nodiscard]] LineCounters counters() const noexcept;
@@ -89,7 +89,7 @@ private:
 
 /// A cable between two serial ports in memory, with faults on demand. Starts connected.
 ///
-/// Not for two threads. Ports and lines live in the link: it is neither copied nor moved.
+/// Not thread-safe. Ports and lines are part of the link: it is neither copied nor moved.
 class MemorySerialLink {
 public:
     class Port final : public SerialPort {
@@ -121,9 +121,10 @@ public:
     [[nodiscard]] MemoryLine& a_to_b() noexcept { return a_to_b_; }
     [[nodiscard]] MemoryLine& b_to_a() noexcept { return b_to_a_; }
 
-    /// Pulls the cable: both ports are lost, what is under way is discarded. Nothing when already out.
+    /// Disconnects the cable: both ports are lost, and bytes in transit are discarded. No effect if disconnected
+    /// already.
     void disconnect() noexcept;
-    /// Plugs it in again. Nothing when already in.
+    /// Reconnects the cable. No effect if connected already.
     void reconnect() noexcept;
 
 private:

@@ -11,10 +11,10 @@ namespace jink::hal::stm32f4 {
 
 /// CAN controller of the STM32F4 (bxCAN; ST RM0090, 32) behind the CAN port: classic frames, fed by interrupts.
 ///
-/// Received frames come through FIFO 0, three deep; its handler has to run within the time of three frames (201 us at
-/// 1 Mbit/s, shortest frames) or the newest is lost and counted, as is one that finds the ring full. Frames leave in
-/// the order of send(), as multi-frame transfers want it (TXFP). Bus off is left by itself after 128 quiet stretches
-/// (ABOM).
+/// Received frames come through FIFO 0, three deep. Its handler must run within the time of three frames (201 us at 1
+/// Mbit/s, shortest frames), or the newest frame is lost and counted; a frame that finds the ring full is lost and
+/// counted too. Frames are sent in the order of send(), as multi-frame transfers require (TXFP). The controller leaves
+/// bus off by itself after 128 occurrences of eleven recessive bits (ABOM).
 ///
 /// Memory: 32 frames in and 16 out, 16 bytes each: 0.9 KiB.
 template <RegisterBlock Registers, InterruptWake Wake>
@@ -26,9 +26,9 @@ public:
     /// @param wake_transmit  raises the transmit interrupt
     BxCan(Registers registers, Wake wake_transmit) noexcept : registers_(registers), wake_transmit_(wake_transmit) {}
 
-    /// Sets the bit rate and joins the bus, all frames let through. False, and the port stays closed, where the rate
-    /// cannot be made exactly out of the clock in 14 time quanta (sampled at 12, 86 %), or the controller does not
-    /// enter or leave its initialisation in time.
+    /// Sets the bit rate and joins the bus, with all frames accepted. False, with the port left closed, if the clock
+    /// does not give the rate exactly in 14 time quanta (sampled at 12, 86 %), or if the controller does not enter or
+    /// leave its initialisation in time.
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t bit_rate) noexcept
     {
         const std::uint32_t quantum_rate = bit_rate * kQuanta;
@@ -39,7 +39,7 @@ public:
         if (prescaler == 0 || prescaler > kLargestPrescaler) {
             return false;
         }
-        registers_.write(kMaster, kInitialise);  // and out of its sleep after the reset
+        registers_.write(kMaster, kInitialise);  // and leaves sleep mode after the reset
         if (!becomes(kMasterStatus, kInitialising | kSleeping, kInitialising)) {
             return false;
         }
@@ -49,7 +49,7 @@ public:
         registers_.write(kInterrupts, kInterruptsOn);
         registers_.write(kMaster, kAutomaticBusOff | kInOrder);
         if (!becomes(kMasterStatus, kInitialising, 0)) {
-            return false;  // the bus is stuck dominant: eleven recessive bits in a row are what it waits for
+            return false;  // the bus is stuck dominant: the controller waits for eleven consecutive recessive bits
         }
         look_.store(static_cast<std::uint32_t>(CanState::active), std::memory_order_relaxed);
         return true;
@@ -102,7 +102,7 @@ public:
         return health;
     }
 
-    /// From FIFO 0's interrupt. O(frames there), 3 and what comes meanwhile; kReceiveFrames at most.
+    /// Called by FIFO 0's interrupt. O(frames received), 3 and those that arrive meanwhile; kReceiveFrames at most.
     void on_receive() noexcept
     {
         for (std::size_t i = 0; i < kReceiveFrames; ++i) {
@@ -121,7 +121,7 @@ public:
         }
     }
 
-    /// From the transmit mailboxes' interrupt. O(mailboxes).
+    /// Called by the transmit mailboxes' interrupt. O(mailboxes).
     void on_transmit() noexcept
     {
         registers_.write(kTransmitStatus, kRequestsCompleted);
@@ -133,7 +133,7 @@ public:
         }
     }
 
-    /// From the status change interrupt: errors, bus off. O(1).
+    /// Called by the status change interrupt: errors, bus off. O(1).
     void on_status() noexcept
     {
         const std::uint32_t errors = registers_.read(kErrors);
@@ -158,11 +158,11 @@ public:
         registers_.write(kMasterStatus, kErrorInterrupt);
     }
 
-    /// Looks at the state when no interrupt tells: the return from bus off raises none, nor does that from error
-    /// passive. Once per tick. O(1).
+    /// Polls for state changes that raise no interrupt: the returns from bus off and from error passive. Call once per
+    /// tick. O(1).
     ///
-    /// The status interrupt may come between the look and what follows from it. Then its state stands: a controller
-    /// that has just left the bus is never said to be on it.
+    /// The status interrupt may come between the poll and its conclusion. In that case the interrupt's state is kept: a
+    /// controller that has just left the bus is never reported as active.
     void service() noexcept
     {
         std::uint32_t look = look_.load(std::memory_order_relaxed);
@@ -172,7 +172,7 @@ public:
         const bool better = before == CanState::error_passive && (errors & (kBusOff | kErrorPassive)) == 0;
         const std::uint32_t active = (look & ~kStateBits) | static_cast<std::uint32_t>(CanState::active);
         if ((!back && !better) || !look_.compare_exchange_strong(look, active, std::memory_order_relaxed)) {
-            return;  // nothing new, or the interrupt knows better
+            return;  // no change, or the interrupt has set a newer state
         }
         if (back) {
             restarts_seen_ += 1U;
@@ -222,7 +222,7 @@ private:
     static constexpr std::uint32_t kErrorPassive = 1U << 1U;  // of kErrors
     static constexpr std::uint32_t kBusOff = 1U << 2U;
     static constexpr std::uint32_t kLastError = 7U << 4U;
-    /// Written there so that the next error of the same kind is seen; as a code it is none of the hardware's.
+    /// Written to the register so that the next error of the same kind is detected; the hardware never sets this code.
     static constexpr std::uint32_t kErrorSetBySoftware = 7U << 4U;
     static constexpr std::uint32_t kRequest = 1U << 0U;  // of a mailbox's identifier
     static constexpr std::uint32_t kRemote = 1U << 1U;
@@ -233,7 +233,7 @@ private:
     static constexpr std::uint32_t kSegment2 = 2;
     static constexpr std::uint32_t kLargestPrescaler = 1024;
     static constexpr std::uint32_t kMailboxes = 3;
-    /// Looks: eleven recessive bits at 125 kbit/s take 88 us.
+    /// Polls: eleven recessive bits at 125 kbit/s take 88 us.
     static constexpr std::uint32_t kPatience = 100'000;
 
     static constexpr std::uint32_t kStateBits = 0xFF;
@@ -258,7 +258,7 @@ private:
         return false;
     }
 
-    /// Bank 0: one 32-bit mask that cares for nothing, into FIFO 0.
+    /// Bank 0: one 32-bit mask that accepts every frame, into FIFO 0.
     void let_all_through() noexcept
     {
         constexpr std::uint32_t kBank0 = 1;
@@ -306,9 +306,9 @@ private:
     Wake wake_transmit_;
     Ring<Compact, kReceiveFrames> received_;
     Ring<Compact, kTransmitFrames> to_send_;
-    CanHealth health_;  ///< the main program's side of it
-    /// The state, and above kStateBits the number of status interrupts: what service() concludes holds only if none
-    /// came.
+    CanHealth health_;  ///< the main program's part
+    /// The state, and above kStateBits the number of status interrupts: a conclusion of service() is valid only if no
+    /// interrupt came.
     std::atomic<std::uint32_t> look_{static_cast<std::uint32_t>(CanState::closed)};
     std::atomic<std::uint32_t> overruns_{0};
     std::atomic<std::uint32_t> bus_errors_{0};

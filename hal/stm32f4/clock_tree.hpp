@@ -6,26 +6,26 @@
 namespace jink::hal::stm32f4 {
 
 enum class ClockSource : std::uint8_t {
-    crystal,       ///< 168 MHz from the crystal, as meant
+    crystal,       ///< 168 MHz from the crystal, the normal case
     internal_pll,  ///< no crystal: 168 MHz from the internal 16 MHz oscillator, good to 1 % at room temperature
     internal,      ///< no PLL either: 16 MHz
-    emulator,      ///< no clock control at all: an emulator's own 168 MHz
+    emulator,      ///< no clock control: an emulator's own 168 MHz
 };
 
-/// The clocks that came about [Hz].
+/// The resulting clocks [Hz].
 struct Clocks {
     ClockSource source = ClockSource::internal;
     std::uint32_t processor = 0;
     std::uint32_t apb1 = 0;
     std::uint32_t apb2 = 0;
-    std::uint32_t timer = 0;  ///< of the timers on APB1: twice the bus where that is divided
+    std::uint32_t timer = 0;  ///< of the timers on APB1: twice the bus clock if that is divided
 };
 
-/// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as it goes: every wait is bounded, and what came
-/// of it is told. The flash gets its wait states before the clock rises (ST RM0090, 3.5 and 7).
+/// Brings the STM32F405 to 168 MHz from a crystal of 8 MHz, or as far as possible: every wait is bounded, and the
+/// result is returned. The flash gets its wait states before the clock rises (ST RM0090, 3.5 and 7).
 ///
-/// The control register never reads zero on the chip (the internal oscillator is on after a reset): one that does
-/// belongs to an emulator without it, where nothing is to be set.
+/// The control register never reads zero on the chip (the internal oscillator is on after a reset). If it reads zero,
+/// the code runs on an emulator without clock control, and nothing is set.
 template <RegisterBlock Rcc, RegisterBlock Flash>
 [[nodiscard]] Clocks start_clocks(Rcc rcc, Flash flash) noexcept
 {
@@ -42,7 +42,7 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     constexpr std::uint32_t kPllUsed = 2U << 2U;
     constexpr std::uint32_t kPllMask = 3U << 2U;
     constexpr std::uint32_t kApb1By4Apb2By2 = 5U << 10U | 4U << 13U;
-    constexpr std::uint32_t kPatience = 200'000;  // looks: over 20 ms at 16 MHz, a crystal takes 2
+    constexpr std::uint32_t kPatience = 200'000;  // polls: over 20 ms at 16 MHz, a crystal takes 2
     constexpr std::uint32_t kFull = 168'000'000;
     constexpr std::uint32_t kInternal = 16'000'000;
     constexpr std::uint32_t kEmulatedTimer = 1'000'000'000;  // qemu's
@@ -61,7 +61,7 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     }
     rcc.write(kControl, rcc.read(kControl) | kCrystalOn);
     const bool crystal = becomes(kControl, kCrystalReady, kCrystalReady);
-    // 336 MHz of 1 MHz steps (8 or 16 of them to the input), halved; 48 MHz for what needs it.
+    // 336 MHz from 1 MHz steps (the input divided by 8 or 16), halved; 48 MHz for peripherals that need it.
     const std::uint32_t divider = crystal ? 8U : 16U;
     rcc.write(kPll, divider | 336U << 6U | 7U << 24U | (crystal ? kUseCrystal : 0U));
     rcc.write(kControl, rcc.read(kControl) | kPllOn);
@@ -70,7 +70,8 @@ template <RegisterBlock Rcc, RegisterBlock Flash>
     }
     flash.write(0, kFiveWaitsAndCaches);
     if (!(flash.read(0) == kFiveWaitsAndCaches)) {
-        return {ClockSource::internal, kInternal, kInternal, kInternal, kInternal};  // too slow a flash for more
+        return {ClockSource::internal, kInternal, kInternal, kInternal, kInternal};  // the flash does not accept the
+                                                                                     // wait states for a faster clock
     }
     rcc.write(kConfiguration, kApb1By4Apb2By2);
     rcc.write(kConfiguration, kApb1By4Apb2By2 | kUsePll);

@@ -6,21 +6,21 @@
 
 namespace jink::hal::stm32f4 {
 
-/// Two neighbouring sectors of 128 KiB of the STM32F405's flash (ST RM0090, 3.5 to 3.9), programmed by words of 32
-/// bits: the supply has to be 2.7 V or more.
+/// Two neighbouring sectors of 128 KiB of the STM32F405's flash (ST RM0090, 3.5 to 3.9), programmed by 32-bit words:
+/// the supply must be 2.7 V or more.
 ///
-/// While an operation runs, the processor stops at its next fetch from flash, and interrupts wait: 16 us for a word
-/// (100 us at most), 1 s for a sector (2 s at most; ST DS8626, flash memory characteristics). The controller is locked
-/// but for the time of an operation. A controller that does not read as locked beforehand is none, or not in order: it
-/// is left alone. One that stays busy or locked is never touched again, because the chip would stop, or fault.
+/// During an operation the processor stops at its next fetch from flash, and interrupts wait: 16 us for a word (100 us
+/// at most), 1 s for a sector (2 s at most; ST DS8626, flash memory characteristics). The controller is locked except
+/// during an operation. A controller that does not read as locked beforehand is absent or faulty, and is not used. A
+/// controller that stays busy or locked is never accessed again, because the chip would stop, or fault.
 ///
-/// @tparam Erasing  called with true before a sector is erased and with false afterwards: who watches the program
-///                  has to be patient between
+/// @tparam Erasing  called with true before a sector is erased and with false afterwards: watchdogs must allow for
+///                  the time between
 template <RegisterBlock Registers, RegisterBlock Memory, class Erasing>
 class Flash final : public FlashRegion {
 public:
     static constexpr std::uint32_t kSectorBytes = 128U * 1024U;
-    /// Looks; a look takes 6 cycles of 168 MHz or more, so 3.5 s or more.
+    /// Polls; a poll takes 6 cycles of 168 MHz or more, so 3.5 s or more.
     static constexpr std::uint32_t kErasePatience = 100'000'000;
 
     /// @param registers  the controller's
@@ -93,7 +93,7 @@ private:
         }
         registers_.write(kKey, kKey1);
         registers_.write(kKey, kKey2);
-        broken_ = (registers_.read(kControl) & kLock) != 0;  // keys that come again are a bus fault
+        broken_ = (registers_.read(kControl) & kLock) != 0;  // repeating the keys is a bus fault
         if (broken_) {
             return false;
         }
@@ -101,7 +101,7 @@ private:
         return true;
     }
 
-    /// Waits for the end, and locks. False: an error, or no end.
+    /// Waits for the end, and locks. False: an error, or a time-out.
     [[nodiscard]] bool finish(std::uint32_t patience) noexcept
     {
         std::uint32_t status = registers_.read(kStatus);
@@ -117,8 +117,8 @@ private:
         return (status & kErrors) == 0;
     }
 
-    /// What the cache holds may be older than what was programmed or erased. It is reset only while off. No code lies
-    /// in the two sectors: instructions need not be forgotten.
+    /// The cache may hold older data than the programmed or erased flash. It can be reset only while off. No code lies
+    /// in the two sectors: cached instructions stay valid.
     void forget_cached_data() noexcept
     {
         const std::uint32_t access = registers_.read(kAccess);

@@ -7,20 +7,20 @@
 namespace jink::hal::stm32f4 {
 
 /// The independent watchdog (ST RM0090, 21): runs on an oscillator of its own, 17 to 47 kHz, so that its time-out is
-/// known to a factor of 1.5 only. Once started nothing but a reset stops it.
+/// known to a factor of 1.5 only. Once started only a reset stops it.
 template <RegisterBlock Registers>
 class IndependentWatchdog final : public Watchdog {
 public:
     explicit IndependentWatchdog(Registers registers) noexcept : registers_(registers) {}
 
-    /// @param milliseconds  1..4095, at the oscillator's nominal 32 kHz: between 0.68 and 1.9 of it in truth
+    /// @param milliseconds  1..4095, at the oscillator's nominal 32 kHz: the real time is between 0.68 and 1.9 of it
     void start(std::uint32_t milliseconds) noexcept
     {
         registers_.write(kKey, kStart);
         registers_.write(kKey, kUnlock);
         registers_.write(kPrescaler, kDivideBy32);
         registers_.write(kReload, milliseconds & kLargestReload);
-        // Both arrive in the slow clock's domain within five of its ticks; not waited for longer than that.
+        // Both values reach the slow clock's domain within five of its ticks; the wait is limited to that.
         for (std::uint32_t i = 0; i < kPatience && registers_.read(kStatus) != 0; ++i) {
         }
         registers_.write(kKey, kFeed);

@@ -6,16 +6,16 @@
 namespace jink::hal::stm32f4 {
 
 enum class ResetCause : std::uint8_t {
-    unknown,               ///< no flag at all: an emulator
-    power,                 ///< power-on or brown-out: what RAM holds means nothing
+    unknown,               ///< no flag: an emulator
+    power,                 ///< power-on or brown-out: RAM content is undefined
     pin,                   ///< the reset pin alone
-    software,              ///< asked for, as the fault handler does
+    software,              ///< requested by software, as by the fault handler
     independent_watchdog,  ///< without warning
     other,                 ///< window watchdog, low power
 };
 
-/// What the reset that led to this start came of (ST RM0090, 7.3.21), and clears the flags for the next one. Every
-/// reset pulls the pin as well, so that its flag counts only alone. O(1).
+/// Reads the cause of the last reset (ST RM0090, 7.3.21), and clears the flags for the next one. Every reset pulls the
+/// pin as well, so the pin's flag counts only alone. O(1).
 template <RegisterBlock Rcc>
 [[nodiscard]] ResetCause take_reset_cause(Rcc rcc) noexcept
 {

@@ -8,8 +8,8 @@ namespace jink::hal::stm32f4 {
 /// Serial port on a USART of the STM32F4 (ST RM0090, 30), fed by its interrupt in both directions
 /// (hal/interrupt_serial_port.hpp).
 ///
-/// The receiver holds one byte behind its shift register: at 921600 baud the handler has to run within 10.8 us, or a
-/// byte is lost and counted. Framing, noise and parity errors are counted in `line_errors`.
+/// The receiver holds one byte behind its shift register: at 921600 baud the handler must run within 10.8 us, or a byte
+/// is lost and counted. Framing, noise and parity errors are counted in `line_errors`.
 template <RegisterBlock Registers, InterruptWake Wake>
 class Usart final : public InterruptSerialPort<Wake> {
     using Base = InterruptSerialPort<Wake>;
@@ -18,15 +18,15 @@ public:
     /// @param wake  raises the USART's interrupt
     Usart(Registers registers, Wake wake) noexcept : Base(wake), registers_(registers) {}
 
-    /// 8N1 at `baud`, both directions. False, and the port stays closed, where the divider does not give the rate
-    /// within 2 % or is below the hardware's least (16, oversampling by 16).
+    /// 8N1 at `baud`, both directions. False, with the port left closed, if the divider does not give the rate within 2
+    /// % or is below the hardware's least (16, oversampling by 16).
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t baud) noexcept
     {
         const std::uint32_t divider = baud_divider(peripheral_clock_hz, baud, kLeastDivider, kLargestDivider);
         if (divider == 0) {
             return false;
         }
-        registers_.write(kBaudRate, divider);  // sixteenths, as the register counts them
+        registers_.write(kBaudRate, divider);  // in sixteenths, the register's unit
         registers_.write(kControl3, 0);
         registers_.write(kControl2, 0);
         registers_.write(kControl1, kOn);
@@ -34,8 +34,8 @@ public:
         return true;
     }
 
-    /// From the interrupt's handler. O(bytes that come and go), both rings' sizes at most: what is left raises it
-    /// again.
+    /// Called by the interrupt's handler. O(bytes received and sent), both rings' sizes at most: further bytes raise
+    /// the interrupt again.
     void on_interrupt() noexcept
     {
         receive();
@@ -51,7 +51,7 @@ public:
         registers.write(kData, std::to_integer<std::uint32_t>(byte));
     }
 
-    /// send_waiting() on its own registers; what is in the ring is left out.
+    /// send_waiting() on its own registers; bytes in the ring are not sent.
     void write_waiting(std::span<const std::byte> from, std::uint32_t patience) noexcept
     {
         static_cast<void>(send_waiting<Usart>(registers_, from, patience));
@@ -74,7 +74,7 @@ private:
     static constexpr std::uint32_t kLeastDivider = 16;
     static constexpr std::uint32_t kLargestDivider = 0xFFFF;
 
-    /// Reading the data after the status clears the flags of both byte and errors.
+    /// Reading the data after the status clears the flags of both the byte and its errors.
     void receive() noexcept
     {
         for (std::size_t i = 0; i < Base::kReceiveBytes; ++i) {
@@ -84,13 +84,13 @@ private:
             }
             const auto byte = static_cast<std::byte>(registers_.read(kData) & 0xFFU);
             if ((status & kOverrun) != 0) {
-                this->count_overrun();  // the byte that came too early is lost, the one before it is still good
+                this->count_overrun();  // the byte that came too early is lost, the one before it is still valid
             }
             if ((status & kReceived) == 0) {
                 continue;
             }
             if ((status & kLineError) != 0) {
-                this->count_line_error();  // its value is anybody's guess, and the checksum above will say so
+                this->count_line_error();  // its value is undefined, and the checksum of the layer above detects it
             }
             this->store(byte);
         }
@@ -102,7 +102,7 @@ private:
         for (std::size_t i = 0; i < Base::kTransmitBytes && has_room(registers_) && this->to_send().pop(byte); ++i) {
             put(registers_, byte);
         }
-        // The next byte asks for itself when the register is empty again.
+        // The interrupt comes again when the register is empty.
         registers_.write(kControl1, this->to_send().size() > 0 ? kOn | kTransmitInterrupt : kOn);
     }
 

@@ -38,7 +38,7 @@ void put_i16(std::span<std::byte> bytes, std::size_t at, std::int16_t value) noe
     put_u16(bytes, at, static_cast<std::uint16_t>(value));
 }
 
-/// Of bytes 2 .. end - 1; the start bytes are the same in every frame.
+/// Checksum of bytes 2 .. end - 1; the start bytes are the same in every frame.
 [[nodiscard]] std::uint16_t checksum_to(std::span<const std::byte> bytes, std::size_t end) noexcept
 {
     mavlink::Checksum checksum;

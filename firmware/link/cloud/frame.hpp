@@ -7,8 +7,8 @@
 #include <optional>
 #include <span>
 
-// The compact frame in which a LiDAR's driver sends its scans over a line of its own. A scan goes out in parts, one
-// part per frame; little-endian, offsets in bytes:
+// The compact frame in which a LiDAR's driver sends its scans over a dedicated line. A scan is sent in parts, one part
+// per frame; little-endian, offsets in bytes:
 //
 //    0  u8[2]  0x6A 0xC7
 //    2  u8     version, 1
@@ -18,22 +18,23 @@
 //    8  u16    part, 0 .. parts - 1
 //   10  u16    parts of the scan, 1 .. kMaxParts
 //   12  u16    points in this frame, 0 .. kMaxPoints
-//   14  u16    range up to which a ray that found nothing is empty [cm], > 0
+//   14  u16    range up to which a ray without a return is empty [cm], > 0
 //   16  u32    stamp of the scan on the sender's clock [ms]
 //   20  i16    roll of the sensor's platform at the stamp, right side down [1e-4 rad], within half a turn
 //   22  i16    pitch, nose up [1e-4 rad], within a quarter turn
-//   24  u16    pitch between rays of a row [1e-5 rad]; 0: not said
-//   26  u16    pitch between rows [1e-5 rad]; 0: not said
+//   24  u16    pitch between rays of a row [1e-5 rad]; 0: not given
+//   26  u16    pitch between rows [1e-5 rad]; 0: not given
 //   28  u32    points of the whole scan
 //   32  u16    checksum of bytes 2 .. 31
 //   34  points, 6 bytes each:
 //              i16 azimuth, from the nose to the left [1e-4 rad], within half a turn
 //              i16 elevation, upwards [1e-4 rad], within a quarter turn
-//              u16 range [cm]; 0: the ray is not valid; 65535: it came back from nowhere
+//              u16 range [cm]; 0: the ray is not valid; 65535: no return
 //    n  u16    checksum of all bytes from 2 on
 //
-// Azimuth and elevation are those of the platform, whose axes are the vehicle's; roll and pitch make them level. Both
-// checksums are CRC-16/MCRF4XX, as MAVLink's. The header has its own so that a length that is wrong claims nothing.
+// Azimuth and elevation are in the platform's frame, whose axes are the vehicle's; roll and pitch rotate them to level.
+// Both checksums are CRC-16/MCRF4XX, as in MAVLink. The header has its own checksum, so that a wrong length is detected
+// before the receiver waits for the bytes.
 
 namespace jink::link::cloud {
 
@@ -42,22 +43,22 @@ inline constexpr std::uint8_t kVersion = 1;
 inline constexpr std::size_t kHeaderSize = 34;
 inline constexpr std::size_t kPointSize = 6;
 inline constexpr std::size_t kChecksumSize = 2;
-/// Points in one frame: 5 % of the line go for headers, and what one wrong bit takes with it is 0.1 % of 10^5 points.
+/// Points in one frame: headers take 5 % of the line, and one wrong bit loses 0.1 % of 10^5 points.
 inline constexpr std::size_t kMaxPoints = 120;
 inline constexpr std::size_t kMaxFrame = kHeaderSize + kMaxPoints * kPointSize + kChecksumSize;
-/// Parts of one scan: 122 880 points. A receiver remembers a bit of each.
+/// Parts of one scan: 122 880 points. A receiver stores one bit for each part.
 inline constexpr std::size_t kMaxParts = 1024;
 
 inline constexpr std::uint16_t kInvalidRange = 0;
 inline constexpr std::uint16_t kNothingRange = 65535;
-/// Half and quarter turn in units of the wire.
+/// Half and quarter turn in wire units.
 inline constexpr std::int16_t kHalfTurn = 31416;
 inline constexpr std::int16_t kQuarterTurn = 15708;
 inline constexpr float kAngleUnit = 1e-4F;  // [rad]
 inline constexpr float kPitchUnit = 1e-5F;  // [rad]
 inline constexpr float kRangeUnit = 0.01F;  // [m]
 
-/// Header of a frame, in units of the wire.
+/// Header of a frame, in wire units.
 struct Part {
     std::uint8_t sensor = 0;
     std::uint16_t sequence = 0;
@@ -85,19 +86,19 @@ struct RawPoint {
     return kHeaderSize + points * kPointSize + kChecksumSize;
 }
 
-/// Whether the numbers of a header can be: parts, points and angles within their bounds.
+/// Whether parts, points and angles of a header are within their bounds.
 [[nodiscard]] bool is_plausible(const Part& part) noexcept;
 
 /// Writes one frame; part.points is set to points.size().
-/// @return bytes written; 0 where there are more than kMaxPoints points or `out` is too small. O(points).
+/// @return bytes written; 0 if there are more than kMaxPoints points or `out` is too small. O(points).
 [[nodiscard]] std::size_t write_frame(Part part, std::span<const RawPoint> points, std::span<std::byte> out) noexcept;
 
-/// Header of what seems to be a frame.
+/// Header of a possible frame.
 /// @param bytes  from the start bytes on, kHeaderSize or more
-/// Nothing when its checksum is wrong. O(1).
+/// @return nothing if the header's checksum is wrong. O(1).
 [[nodiscard]] std::optional<Part> read_header(std::span<const std::byte> bytes) noexcept;
 
-/// Whether the checksum at the end of a whole frame holds. O(frame).
+/// Whether the checksum at the end of a whole frame is correct. O(frame).
 [[nodiscard]] bool checksum_holds(std::span<const std::byte> frame) noexcept;
 
 /// Point `i` of a whole frame. O(1).

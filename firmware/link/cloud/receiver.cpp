@@ -6,14 +6,15 @@
 namespace jink::link::cloud {
 namespace {
 
-/// A line this long without a byte is not in the middle of a frame [s].
+/// A line without a byte for this long is not in the middle of a frame [s].
 constexpr Seconds kSilence = 0.1F;
-/// A stamp may lie this far ahead of our clock: resolution of the wire and of the mapping [s].
+/// A stamp may be this far ahead of our clock: resolution of the wire and of the clock mapping [s].
 constexpr Seconds kFutureSlack = 0.03F;
-/// Numbers that go back by no more than this were overtaken on their way; by more, the sender began anew.
+/// Numbers that step back by no more than this were overtaken in transfer; a larger step back is a restart of the
+/// sender.
 constexpr int kFramesOvertaken = 64;
 constexpr int kScansOvertaken = 8;
-/// Numbers that go on by more than this are those of a sender that began anew.
+/// Numbers that step forward by more than this are a restart of the sender.
 constexpr int kMostMissed = 1000;
 
 [[nodiscard]] int step_between(std::uint16_t from, std::uint16_t to) noexcept
@@ -46,7 +47,7 @@ void Receiver::receive(std::span<const std::byte> bytes, TimePoint now, CloudSin
     const bool silent = bytes.empty() && now - last_byte_ > kSilence;
     last_byte_ = bytes.empty() ? last_byte_ : now;
     search(now, sink);
-    while (!bytes.empty()) {  // `take` shortens them by at least one each time round
+    while (!bytes.empty()) {  // `take` removes at least one byte per turn
         take(bytes);
         search(now, sink);
     }
@@ -61,7 +62,8 @@ void Receiver::receive(std::span<const std::byte> bytes, TimePoint now, CloudSin
 void Receiver::take(std::span<const std::byte>& bytes) noexcept
 {
     if (end_ == buffer_.size()) {
-        // Less than a frame is pending, so more than half has gone since: at most one byte moves per byte taken.
+        // Less than a frame is pending, so more than half of the buffer is free: at most one byte moves per byte
+        // received.
         std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.end(), buffer_.begin());
         end_ -= begin_;
         begin_ = 0;
@@ -78,10 +80,10 @@ void Receiver::pass_over(std::size_t n) noexcept
     diagnostics_.noise_bytes += n;
 }
 
-/// Up to an incomplete frame or the end of what is there.
+/// Searches up to an incomplete frame or the end of the pending bytes.
 void Receiver::search(TimePoint now, CloudSink& sink) noexcept
 {
-    while (pending() > 0) {  // at least one byte goes each time round
+    while (pending() > 0) {  // at least one byte is removed per turn
         const bool may_start = buffer_[begin_] == kSync[0];
         const bool is_whole = pending() > kSync.size();  // start bytes and version
         if (!may_start || (is_whole && buffer_[begin_ + 1] != kSync[1])) {
@@ -92,7 +94,7 @@ void Receiver::search(TimePoint now, CloudSink& sink) noexcept
     }
 }
 
-/// What begins with the start bytes. False while it is incomplete.
+/// Checks the bytes after the start bytes. False while the frame is incomplete.
 bool Receiver::judge(TimePoint now, CloudSink& sink) noexcept
 {
     if (buffer_[begin_ + kSync.size()] != std::byte{kVersion}) {
@@ -132,10 +134,10 @@ bool Receiver::judge(TimePoint now, CloudSink& sink) noexcept
     return true;
 }
 
-/// What is incomplete will stay so.
+/// Discards an incomplete frame on a silent line.
 void Receiver::give_up(TimePoint now, CloudSink& sink) noexcept
 {
-    while (pending() > 0) {  // at least one byte goes each time round
+    while (pending() > 0) {  // at least one byte is removed per turn
         ++diagnostics_.cut;
         pass_over(1);
         search(now, sink);
@@ -184,7 +186,7 @@ void Receiver::on_frame(const Part& part, std::span<const std::byte> frame, Time
     }
 }
 
-/// Whether a frame of the scan at hand adds to it; if not, why is counted.
+/// Whether a frame of the current scan adds points to the scan; if not, the cause is counted.
 bool Receiver::is_ours(const Part& part) noexcept
 {
     std::uint32_t* cause = nullptr;
@@ -206,7 +208,7 @@ bool Receiver::is_ours(const Part& part) noexcept
 bool Receiver::stamp_of(const Part& part, TimePoint now, TimePoint& stamp) noexcept
 {
     const std::int64_t sent = clock_.extend(part.stamp_ms);
-    if (!has_stamped_ || !is_same_scan(part, stamped_)) {  // one sample per scan, however many frames it has
+    if (!has_stamped_ || !is_same_scan(part, stamped_)) {  // one sample per scan, whatever the number of its frames
         const mavlink::ClockEvent event = clock_.one_way(sent, now.us);
         diagnostics_.clock_relocks += event != mavlink::ClockEvent::none ? 1U : 0U;
         stamped_ = part;

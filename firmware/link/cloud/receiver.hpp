@@ -12,67 +12,67 @@
 
 namespace jink::link::cloud {
 
-/// What a receiver saw, lost and refused, one counter per cause. Those of 32 bits wrap.
+/// What a receiver received, lost and refused, one counter per cause. 32-bit counters wrap.
 ///
-/// Every byte taken ends in `frame_bytes`, in `noise_bytes` or among those still pending. Every point that a scan was
-/// begun with ends in `points` or in `points_lost`.
+/// Every received byte is counted in `frame_bytes` or `noise_bytes`, or is still pending. Every point of a scan that
+/// has begun is counted in `points` or `points_lost`.
 struct ReceiverDiagnostics {
-    std::uint64_t frame_bytes = 0;  ///< of whole frames whose checksums hold, refused or not
+    std::uint64_t frame_bytes = 0;  ///< of whole frames with correct checksums, refused or not
     std::uint64_t noise_bytes = 0;  ///< between them
-    std::uint64_t points = 0;       ///< handed on
+    std::uint64_t points = 0;       ///< passed to the sink
     std::uint64_t points_lost = 0;
-    std::uint32_t frames = 0;  ///< taken
+    std::uint32_t frames = 0;  ///< accepted
     std::uint32_t scans = 0;   ///< begun
     std::uint32_t scans_complete = 0;
-    std::uint32_t scans_missed = 0;   ///< numbers skipped: nothing came of them
+    std::uint32_t scans_missed = 0;   ///< numbers skipped: scans of which no frame was accepted
     std::uint32_t frames_missed = 0;  ///< numbers skipped
-    std::uint32_t reordered = 0;      ///< frames behind one that was sent after them
-    std::uint32_t restarts = 0;       ///< the sender's numbers began anew
-    std::uint32_t clock_relocks = 0;  ///< jumps of the sender's clock that were followed
+    std::uint32_t reordered = 0;      ///< frames that arrived after a frame sent later
+    std::uint32_t restarts = 0;       ///< restarts of the sender's numbers
+    std::uint32_t clock_relocks = 0;  ///< jumps of the sender's clock that the mapping followed
 
-    // What seemed to be a frame; the search goes on within it.
+    // Possible frames that fail; the search continues within their bytes.
     std::uint32_t unknown_version = 0;
     std::uint32_t bad_header = 0;    ///< checksum of the header
     std::uint32_t bad_checksum = 0;  ///< of the frame
-    std::uint32_t cut = 0;           ///< given up incomplete, the line being silent
+    std::uint32_t cut = 0;           ///< discarded incomplete on a silent line
 
-    // Frames that are what was sent, and refused.
-    std::uint32_t out_of_range = 0;  ///< numbers of a header or of a point that cannot be
+    // Frames with correct checksums that are refused.
+    std::uint32_t out_of_range = 0;  ///< values of a header or of a point outside their range
     std::uint32_t inconsistent = 0;  ///< with the other frames of the scan
     std::uint32_t duplicated = 0;
-    std::uint32_t late = 0;   ///< of a scan that is over
+    std::uint32_t late = 0;   ///< of a scan that has ended
     std::uint32_t stale = 0;  ///< stamped too long ago, or in the future
 };
 
-/// Finds the frames of one sender in a stream of bytes and hands their points on, level and in metres.
+/// Finds the frames of one sender in a stream of bytes and passes their points on, level and in metres.
 ///
-/// One scan is open at a time: a frame of another scan or sensor ends it, and so do its last missing part and a line
-/// silent for kScanPause. Parts may come in any order. Behind noise or a damaged frame the search goes on one byte
-/// behind a false start, and behind a header that holds right behind it, so that a good frame within what a bad one
-/// claimed is found.
+/// One scan is open at a time. A frame of another scan or sensor ends the scan, and so do its last missing part and a
+/// line silent for kScanPause. Parts may come in any order. After noise or a damaged frame the search continues one
+/// byte after a false start, or right after a header whose checksum is correct. So a good frame within the bytes that a
+/// damaged frame claimed is found.
 ///
-/// The sender's stamps are mapped to our clock by their arrival, the least delay seen being taken for none: what a scan
-/// takes at least from its stamp to the line cannot be seen here, and makes it look that much younger.
+/// The sender's stamps are mapped to our clock by their arrival; the least delay observed counts as zero. The least
+/// time from a scan's stamp to the line is not observable, and makes the scan appear that much younger.
 ///
 /// Work: at most kMaxWorkPerByte bytes through a checksum per byte, and a header more per call; per point a sine and a
-/// cosine of each angle. Nothing is allocated. Memory: 2 * kMaxFrame + kMaxParts / 8 bytes, 420 for the clock
-/// and the counters.
+/// cosine of each angle. Nothing is allocated. Memory: 2 * kMaxFrame + kMaxParts / 8 bytes, 420 for the clock and the
+/// counters.
 class Receiver {
 public:
-    /// A header's checksum per false start, of which every second byte may be one, and a frame's per header that holds.
+    /// A header's checksum per false start, at most one for every second byte, and a frame's per correct header.
     static constexpr std::size_t kMaxWorkPerByte = kHeaderSize / 2 + kMaxFrame / kHeaderSize + 1;
-    /// A scan of which nothing came for this long is over [s]: two turns of a sensor that turns 10 times a second.
+    /// A scan without a frame for this long has ended [s]: two turns of a sensor that turns 10 times a second.
     static constexpr Seconds kScanPause = 0.2F;
     /// A scan older than this is refused [s].
     static constexpr Seconds kMaxAge = 1.0F;
 
-    /// Takes bytes that arrived. Call it without any while the line is silent: it notices that. O(bytes).
+    /// Processes received bytes. Call it without any while the line is silent, so that silence is detected. O(bytes).
     void receive(std::span<const std::byte> bytes, TimePoint now, CloudSink& sink) noexcept;
 
     [[nodiscard]] std::size_t pending() const noexcept { return end_ - begin_; }
     [[nodiscard]] bool is_scan_open() const noexcept { return open_; }
     [[nodiscard]] const ReceiverDiagnostics& diagnostics() const noexcept { return diagnostics_; }
-    /// Bytes that went through a checksum.
+    /// Bytes that were included in a checksum.
     [[nodiscard]] std::uint64_t checksum_bytes() const noexcept { return checksum_bytes_; }
 
 private:
@@ -102,7 +102,7 @@ private:
     bool open_ = false;
     Part scan_;  ///< first frame of the newest scan
     bool has_stamped_ = false;
-    Part stamped_;  ///< newest scan whose stamp the clock was told
+    Part stamped_;  ///< newest scan whose stamp has been passed to the clock
     std::uint32_t scan_points_ = 0;
     std::uint16_t scan_parts_ = 0;
     Mat3 level_ = Mat3::Identity();  ///< platform, with y left and z up, to level

@@ -23,7 +23,7 @@ std::optional<Allocation> AllocationClient::poll(TimePoint now) noexcept
     for (std::size_t i = confirmed_; i < std::min(confirmed_ + kPart, unique_id_.size()); ++i) {
         request.unique_id.unchecked_push_back(unique_id_[i]);
     }
-    // Without an answer it begins again.
+    // Without an answer the exchange starts again.
     confirmed_ = 0;
     wait(now, kLeastPeriod);
     return request;

@@ -11,10 +11,10 @@ namespace jink::link::dronecan {
 
 /// Gets a node id from the bus's allocator (uavcan.protocol.dynamic_node_id.Allocation, the client's side).
 ///
-/// The unique id goes out in three anonymous messages of 6, 6 and 4 bytes, each after the allocator has repeated what
-/// it has so far; its answer to the third names the node id. Between requests 0.6 to 1.0 s, after a confirmation
-/// 0 to 0.4 s, at random, so that two clients do not stay in step; any allocation message heard starts the wait anew,
-/// and one that does not go on with our own id starts the exchange anew. O(1).
+/// The unique id is sent in three anonymous messages of 6, 6 and 4 bytes, each after the allocator has repeated the
+/// bytes received so far; its answer to the third gives the node id. Waits are random, so that two clients do not stay
+/// in step: between requests 0.6 to 1.0 s, after a confirmation 0 to 0.4 s. Any allocation message received restarts
+/// the wait. A message that does not continue our own id restarts the exchange. O(1).
 class AllocationClient {
 public:
     static constexpr Seconds kLeastPeriod = 0.6F;
@@ -27,12 +27,12 @@ public:
     {
     }
 
-    /// The next request, when it is due.
+    /// The next request, if due.
     [[nodiscard]] std::optional<Allocation> poll(TimePoint now) noexcept;
     /// An allocation message; source kAnonymous: another client's.
     void receive(const Allocation& message, std::uint8_t source, TimePoint now) noexcept;
 
-    /// kAnonymous until there is one.
+    /// kAnonymous until a node id is allocated.
     [[nodiscard]] std::uint8_t node() const noexcept { return node_; }
 
 private:

@@ -5,17 +5,17 @@
 #include <cstdint>
 #include <span>
 
-// DSDL's order of bits: a value goes out least significant byte first, its last byte with only the bits that are left,
-// and the bits of each of these bytes most significant first.
+// DSDL's order of bits: a value is sent least significant byte first, its last byte with only the remaining bits. The
+// bits of each of these bytes are sent most significant first.
 
 namespace jink::link::dronecan {
 
-/// Writes values of 1 to 64 bits one behind the other. The bytes are zero before; the owner sees to that.
+/// Writes values of 1 to 64 bits in sequence. The owner must zero the bytes before.
 class BitWriter {
 public:
     explicit constexpr BitWriter(std::span<std::byte> out) noexcept : out_(out) {}
 
-    /// The lowest `bits` of `value`; false, and nothing written, where there is no room. O(bits).
+    /// Writes the lowest `bits` of `value`; false, with nothing written, if the span is too short. O(bits).
     constexpr bool put(std::uint64_t value, unsigned bits) noexcept
     {
         if (position_ + bits > out_.size() * 8) {
@@ -30,7 +30,7 @@ public:
         return true;
     }
 
-    /// Bytes begun.
+    /// Bytes used, including a partly filled last byte.
     [[nodiscard]] constexpr std::size_t bytes() const noexcept { return (position_ + 7) / 8; }
 
 private:
@@ -38,7 +38,7 @@ private:
     {
         const std::size_t byte = position_ / 8;
         const unsigned used = static_cast<unsigned>(position_ % 8);
-        const unsigned two = chunk << (16U - used - n);  // where it lies in this byte and the next
+        const unsigned two = chunk << (16U - used - n);  // its position in this byte and the next
         out_[byte] |= static_cast<std::byte>(two >> 8U);
         if (used + n > 8) {
             out_[byte + 1] |= static_cast<std::byte>(two & 0xFFU);
@@ -50,12 +50,12 @@ private:
     std::size_t position_ = 0;
 };
 
-/// Reads what BitWriter writes.
+/// Reads the format of BitWriter.
 class BitReader {
 public:
     explicit constexpr BitReader(std::span<const std::byte> in) noexcept : in_(in) {}
 
-    /// False, and nothing read, where there are not as many left. O(bits).
+    /// False, with nothing read, if fewer bits are left. O(bits).
     constexpr bool get(std::uint64_t& value, unsigned bits) noexcept
     {
         if (bits > left()) {

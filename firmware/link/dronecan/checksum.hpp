@@ -7,12 +7,12 @@
 
 namespace jink::link::dronecan {
 
-/// CRC-16/CCITT-FALSE (polynomial 0x1021, initial value 0xFFFF, not reflected, no final xor), which DroneCAN starts
-/// with the eight bytes of a data type's signature. No table.
+/// CRC-16/CCITT-FALSE (polynomial 0x1021, initial value 0xFFFF, not reflected, no final xor). DroneCAN includes the
+/// eight bytes of a data type's signature first. No table.
 class Checksum {
 public:
     constexpr Checksum() noexcept = default;
-    /// Goes on from a state: that behind the signature, which is all that is stored of it.
+    /// Continues from a state: the state after the signature, which is stored in place of the signature.
     explicit constexpr Checksum(std::uint16_t seed) noexcept : value_(seed) {}
 
     constexpr void add(std::byte byte) noexcept

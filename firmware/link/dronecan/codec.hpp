@@ -20,8 +20,8 @@
 //     template <class Io, class Self>
 //     static constexpr void describe(Io& io, Self& m) { io(u<32>, m.uptime); io(u<2>, m.health); ... }
 //
-// and everything that walks over the fields is an Io: Encoder, Decoder, and what a test prints them with. Nested types
-// are described in place of their fields (`nested`), so nothing recurses at run time.
+// Each class that walks over the fields is an Io: Encoder, Decoder, and the printer of a test. Nested types are
+// described in place of their fields (`nested`), so nothing recurses at run time.
 
 namespace jink::link::dronecan {
 
@@ -45,12 +45,12 @@ struct Each {
 template <class How>
 struct List {
 };
-/// A dynamic array of elements of a byte or more as the last field of a transfer: the number is left out, the end of
-/// the transfer tells it (tail array optimisation).
+/// A dynamic array of elements of a byte or more as the last field of a transfer. The number of elements is omitted;
+/// the end of the transfer gives it (tail array optimisation).
 template <class How>
 struct Tailing {
 };
-/// What else there may be behind, not of interest: passed over when read, nothing when written.
+/// Further fields that are not of interest: skipped when reading, omitted when writing.
 struct Rest {};
 
 template <unsigned Bits>
@@ -79,7 +79,7 @@ template <class How>
 }
 inline constexpr Rest rest{};
 
-/// Bits that hold 0 .. capacity.
+/// Bits needed for 0 .. capacity.
 [[nodiscard]] constexpr unsigned length_bits(std::size_t capacity) noexcept
 {
     return static_cast<unsigned>(std::bit_width(capacity));
@@ -87,15 +87,15 @@ inline constexpr Rest rest{};
 
 enum class CodecStatus : std::uint8_t {
     ok,
-    no_room,       ///< to write: the buffer is too small
-    out_of_range,  ///< to write: a number does not fit its field
-    too_short,     ///< to read: the transfer ends within a field
-    too_long,      ///< to read: whole bytes are left over
-    bad_length,    ///< to read: a dynamic array claims more elements than it can have
-    bad_tag,       ///< to read: a union names an alternative that it does not have
+    no_room,       ///< writing: the buffer is too small
+    out_of_range,  ///< writing: a number does not fit its field
+    too_short,     ///< reading: the transfer ends within a field
+    too_long,      ///< reading: whole bytes are left over
+    bad_length,    ///< reading: a dynamic array claims more elements than its capacity
+    bad_tag,       ///< reading: a union names an alternative that does not exist
 };
 
-/// Writes. The first failure stays, and nothing is written from there on.
+/// Writes fields. The first failure is kept, and nothing is written from there on.
 class Encoder {
 public:
     explicit constexpr Encoder(std::span<std::byte> out) noexcept : writer_(out) {}
@@ -109,10 +109,10 @@ public:
     template <unsigned Bits, std::signed_integral T>
     constexpr void operator()(Signed<Bits>, const T& value) noexcept
     {
-        const std::int64_t above = static_cast<std::int64_t>(value) >> (Bits - 1U);  // nothing but copies of the sign
+        const std::int64_t above = static_cast<std::int64_t>(value) >> (Bits - 1U);  // only copies of the sign
         put(static_cast<std::uint64_t>(static_cast<std::int64_t>(value)), Bits, above == 0 || above == -1);
     }
-    /// A finite number that would become infinite is out of range; infinity and NaN are written as they are.
+    /// A finite number that would become infinite is out of range; infinity and NaN are written unchanged.
     void operator()(Float16, const float& value) noexcept
     {
         const std::uint16_t half = to_float16(value);
@@ -153,7 +153,7 @@ public:
         }
     }
     constexpr void operator()(Rest) noexcept {}
-    /// The number of a union's alternative; true where the alternative is to be described.
+    /// Writes the number of a union's alternative; true if the alternative is to be described.
     template <unsigned Bits, class Tag>
     constexpr bool tag(const Tag& value, Tag last) noexcept
     {
@@ -181,7 +181,7 @@ private:
     CodecStatus status_ = CodecStatus::ok;
 };
 
-/// Reads. The first failure stays; what is read from there on keeps its value.
+/// Reads fields. The first failure is kept; fields after it keep their values.
 class Decoder {
 public:
     explicit constexpr Decoder(std::span<const std::byte> in) noexcept : reader_(in) {}
@@ -245,7 +245,7 @@ public:
     template <class How, class T, std::size_t N>
     constexpr void operator()(Tailing<How>, StaticVector<T, N>& values) noexcept
     {
-        // Less than a byte is what is left of the last one.
+        // Less than a byte left is padding.
         values.clear();
         while (status_ == CodecStatus::ok && reader_.left() >= 8) {
             if (values.full()) {
@@ -269,7 +269,7 @@ public:
         return status_ == CodecStatus::ok;
     }
 
-    /// To be asked behind the last field.
+    /// Valid after the last field.
     [[nodiscard]] constexpr CodecStatus status() const noexcept
     {
         return status_ == CodecStatus::ok && !has_rest_ && reader_.left() >= 8 ? CodecStatus::too_long : status_;
@@ -299,11 +299,11 @@ private:
     bool has_rest_ = false;
 };
 
-/// What the transport must know of a data type. 8 bytes.
+/// Properties of a data type that the transport needs. 8 bytes.
 struct TypeInfo {
     TransferKind kind;
     std::uint16_t id;
-    std::uint16_t crc_seed;    ///< CRC-16 behind the eight bytes of the type's signature
+    std::uint16_t crc_seed;    ///< CRC-16 after the eight bytes of the type's signature
     std::uint16_t max_length;  ///< bytes of the longest payload
 };
 
@@ -321,7 +321,7 @@ inline constexpr std::size_t kMaxPayload = 377;
 
 /// Writes the payload of `message` to the beginning of `out`.
 ///
-/// @param out   M::kType.max_length bytes hold any
+/// @param out   M::kType.max_length bytes hold any message
 /// @param size  bytes written; 0 on failure
 /// @return ok, no_room, out_of_range
 template <Described M>
@@ -336,10 +336,10 @@ template <Described M>
     return encoder.status();
 }
 
-/// Reads a payload. Its length has to be the type's exactly, bits of filling aside.
+/// Reads a payload. Its length must be the type's exactly, except for padding bits.
 ///
 /// @param message  unchanged on failure
-/// @return ok, too_short, too_long, bad_length, bad_tag. Floats are passed as they are, NaN and infinity included.
+/// @return ok, too_short, too_long, bad_length, bad_tag. Floats are passed unchanged, NaN and infinity included.
 template <Described M>
 [[nodiscard]] CodecStatus decode(std::span<const std::byte> payload, M& message) noexcept
 {

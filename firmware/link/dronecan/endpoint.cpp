@@ -11,24 +11,24 @@
 namespace jink::link::dronecan {
 namespace {
 
-/// Own positions and speeds beyond these are no vehicle's of ours [m, m/s].
+/// Own positions and speeds beyond these are implausible [m, m/s].
 constexpr float kLargestPosition = 200000.0F;
 constexpr float kLargestSpeed = 400.0F;
-/// Heights that an int32 of millimetres holds, with room for the difference of two [m].
+/// Heights that an int32 of millimetres holds, even as a difference of two [m].
 constexpr float kLargestHeight = 1e6F;
-/// Ranges seen from the body are placed by an attitude no older than this [s].
+/// Ranges in the body frame need an attitude no older than this [s].
 constexpr Seconds kAttitudeFresh = 1.0F;
-/// A node that is followed for what several say gives way after this silence [s].
+/// Of several nodes with the same data one is followed; after this silence another one replaces it [s].
 constexpr Seconds kSourceSilence = 1.0F;
 /// Stamps this far ahead of arrival still count as now [s].
 constexpr Seconds kFutureSlack = 0.05F;
-/// Beam width taken for a sensor that does not say its own: half angle [rad].
+/// Assumed beam width of a sensor that does not give its own: half angle [rad].
 constexpr float kDefaultHalfAngle = 0.1F;
 constexpr float kLeastFieldOfView = 1e-3F;
 constexpr float kDegree = kPi / 180.0F;
-/// Noise of a velocity whose vertical part is not known, as the MAVLink side has it [m/s].
+/// Noise of a velocity with unknown vertical component, as on the MAVLink side [m/s].
 constexpr float kUnknownClimb = 5.0F;
-constexpr std::uint32_t kProximityBeams = 1U << 8U;  ///< apart from the range finders' ids
+constexpr std::uint32_t kProximityBeams = 1U << 8U;  ///< separates their keys from the range finders' ids
 
 template <class Range>
 [[nodiscard]] bool all_finite(const Range& values) noexcept
@@ -36,10 +36,10 @@ template <class Range>
     return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
 
-/// Standard deviation from the largest of three variances: 0 when one is not given or is none.
+/// Standard deviation from the largest of three variances: 0 if a variance is missing or invalid.
 [[nodiscard]] float sigma_of(const StaticVector<float, 36>& covariance, std::size_t first) noexcept
 {
-    // One number for all, six on the diagonal, the upper triangle, or all of it.
+    // One number for all, six on the diagonal, the upper triangle, or the full matrix.
     constexpr std::array<std::size_t, 6> kTriangle{0, 6, 11, 15, 18, 20};
     float largest = 0.0F;
     for (std::size_t i = first; i < first + 3; ++i) {
@@ -56,7 +56,7 @@ template <class Range>
     return std::sqrt(largest);
 }
 
-/// v turned by the unit quaternion q = (x, y, z, w).
+/// v rotated by the unit quaternion q = (x, y, z, w).
 [[nodiscard]] Vec3 turn(const std::array<float, 4>& q, const Vec3& v) noexcept
 {
     const Vec3 axis(q[0], q[1], q[2]);
@@ -64,7 +64,7 @@ template <class Range>
     return v + q[3] * t + axis.cross(t);
 }
 
-/// Along the nose, turned by pitch (up) and yaw (right) [rad]; body frame, FRD.
+/// Direction of a beam along the nose, rotated by pitch (up) and yaw (right) [rad]; body frame, FRD.
 [[nodiscard]] Vec3 beam_of_angles(float pitch, float yaw) noexcept
 {
     return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), -std::sin(pitch)};
@@ -158,7 +158,7 @@ void Endpoint::on_fix(const Context& c) noexcept
     if (!follow(fix_from_, c, changed)) {
         return;
     }
-    if (!options_.has_origin) {  // and it may be the first fix itself
+    if (!options_.has_origin) {  // this fix itself becomes the origin
         options_.origin = where;
         options_.has_origin = true;
     }

@@ -6,7 +6,7 @@
 
 namespace jink::link::dronecan {
 
-/// Greatest finite half.
+/// Greatest finite half-precision value.
 inline constexpr float kMaxFloat16 = 65504.0F;
 
 /// IEEE 754 binary16 nearest to `value`, ties to even; beyond 65520 infinity, NaN to NaN (the top of its payload kept).
@@ -18,10 +18,10 @@ inline constexpr float kMaxFloat16 = 65504.0F;
     if (magnitude > 0x7F800000U) {
         return static_cast<std::uint16_t>(sign | 0x7E00U | (magnitude >> 13U & 0x1FFU));
     }
-    if (magnitude >= 0x477FF000U) {  // 65520: halfway to the power that does not fit
+    if (magnitude >= 0x477FF000U) {  // 65520: halfway to the power of two that does not fit
         return static_cast<std::uint16_t>(sign | 0x7C00U);
     }
-    // `whole`: the result with all bits below the last one cut off; `rest` of `half` decides about one more.
+    // `whole`: the result without the bits below its last bit; `rest` against `half` decides the rounding.
     std::uint32_t whole = 0;
     std::uint32_t rest = 0;
     std::uint32_t half = 0;
@@ -41,7 +41,7 @@ inline constexpr float kMaxFloat16 = 65504.0F;
     return static_cast<std::uint16_t>(sign | whole);
 }
 
-/// Exact.
+/// The exact value.
 [[nodiscard]] constexpr float from_float16(std::uint16_t half) noexcept
 {
     const std::uint32_t sign = (half & 0x8000U) * 0x10000U;

@@ -7,9 +7,9 @@
 
 namespace jink::link::dronecan {
 
-/// One classic CAN frame as it passes between a port and this room; images copy it from and to their platform's.
+/// One classic CAN frame between a port and the DroneCAN codec; images copy it from and to their platform's type.
 ///
-/// A length above 8 (CAN FD) can be expressed so that the receiver can refuse and count it. 16 bytes.
+/// A length above 8 (CAN FD) can be represented, so that the receiver can refuse and count the frame. 16 bytes.
 struct Frame {
     static constexpr std::size_t kBytes = 8;
 
@@ -22,20 +22,21 @@ struct Frame {
     friend bool operator==(const Frame&, const Frame&) = default;
 };
 
-/// Node ids: 0 stands for "none yet" (anonymous) and, as destination in a tunnel, for everyone.
+/// Node ids: 0 is "none yet" (anonymous) and, as destination in a tunnel, everyone.
 inline constexpr std::uint8_t kAnonymous = 0;
 inline constexpr std::uint8_t kMaxNode = 127;
 
 enum class TransferKind : std::uint8_t { message, request, response };
 
-/// 5 bits; the lower goes first on the bus. Levels of the protocol: highest 0, high 8, medium 16, low 24, lowest 31.
+/// 5 bits; lower values have precedence on the bus. Levels of the protocol: highest 0, high 8, medium 16, low 24,
+/// lowest 31.
 enum class Priority : std::uint8_t { highest = 0, high = 8, medium = 16, low = 24, lowest = 31 };
 
-/// What the 29 bits of an identifier say.
+/// Fields of the 29-bit identifier.
 struct FrameId {
     TransferKind kind = TransferKind::message;
     std::uint8_t priority = 16;
-    std::uint16_t type = 0;  ///< 16 bits of a message's, 8 of a service's; of an anonymous message's the lowest 2
+    std::uint16_t type = 0;  ///< 16 bits for a message, 8 for a service; for an anonymous message the lowest 2
     std::uint8_t source = kAnonymous;
     std::uint8_t destination = 0;     ///< services only
     std::uint16_t discriminator = 0;  ///< anonymous messages only: 14 bits that keep two senders apart
@@ -82,7 +83,7 @@ inline constexpr unsigned kTransferIds = 32;
 struct Tail {
     bool start = true;
     bool end = true;
-    bool toggle = false;  ///< false in the first frame (Cyphal's is true), then changing with each
+    bool toggle = false;  ///< false in the first frame (Cyphal's is true), then alternating
     std::uint8_t transfer = 0;
 
     friend bool operator==(const Tail&, const Tail&) = default;

@@ -3,10 +3,10 @@
 
 #include "firmware/link/dronecan/codec.hpp"
 
-// Data types of the protocol itself and of the tunnel; those of sensors are in sensor_messages.hpp. Fields as the
-// public definitions name and order them, each described once (see codec.hpp). That names, widths and order are right
-// follows from the signatures: tests/unit/link/dronecan_types.py computes them from its own list of fields, and
-// dronecan_check.py compares what is written here with it. Units are those of the wire; floats may be NaN.
+// Data types of the protocol itself and of the tunnel; sensor types are in sensor_messages.hpp. Fields as the public
+// definitions name and order them, each described once (see codec.hpp). The signatures prove names, widths and order:
+// tests/unit/link/dronecan_types.py computes them from its own list of fields, and dronecan_check.py compares them with
+// this file. Units are those of the wire; floats may be NaN.
 
 namespace jink::link::dronecan {
 
@@ -107,7 +107,7 @@ struct GetNodeInfoResponse {
     }
 };
 
-/// Value of a parameter: exactly one of what is listed, that which `tag` names.
+/// Value of a parameter: exactly the alternative that `tag` names.
 struct ParamValue {
     enum class Tag : std::uint8_t { empty, integer, real, boolean, text };
     Tag tag = Tag::empty;
@@ -152,7 +152,7 @@ struct NumericValue {
     }
 };
 
-/// By name; by index where the name is empty. Sets where `value` is not empty.
+/// By name; by index if the name is empty. Sets the value if `value` is not empty.
 struct GetSetRequest {
     static constexpr TypeInfo kType{TransferKind::request, 11, 0xFB10, 224};
     std::uint16_t index = 0;  ///< 13 bits
@@ -168,7 +168,7 @@ struct GetSetRequest {
     }
 };
 
-/// The name is empty where there is no such parameter.
+/// The name is empty if there is no such parameter.
 struct GetSetResponse {
     static constexpr TypeInfo kType{TransferKind::response, 11, 0xFB10, 371};
     ParamValue value;
@@ -220,7 +220,7 @@ struct ExecuteOpcodeResponse {
     }
 };
 
-/// Tells the time at which the message before this one of the same master began on the bus; 0: there was none.
+/// Time at which this master's previous message began on the bus; 0: there was none.
 struct GlobalTimeSync {
     static constexpr TypeInfo kType{TransferKind::message, 4, 0x7908, 7};
     std::uint64_t previous_transmission = 0;  ///< [us], 56 bits
@@ -236,7 +236,7 @@ struct Allocation {
     static constexpr TypeInfo kType{TransferKind::message, 1, 0xF258, 18};
     std::uint8_t node = 0;  ///< 7 bits; 0: any
     bool first_part = false;
-    StaticVector<std::uint8_t, 16> unique_id;  ///< as much of it as is said
+    StaticVector<std::uint8_t, 16> unique_id;  ///< the part that is known
 
     template <class Io, class Self>
     static constexpr void describe(Io& io, Self& m) noexcept
@@ -264,10 +264,10 @@ struct LogMessage {
     }
 };
 
-/// What a tunnel carries.
+/// Protocol carried by a tunnel.
 enum class TunnelProtocol : std::uint8_t { mavlink = 0, mavlink2 = 1 };
 
-/// Bytes of a serial port of one node for one other.
+/// Bytes of one node's serial port for another node.
 struct TunnelTargetted {
     static constexpr TypeInfo kType{TransferKind::message, 3001, 0x7CA9, 127};
     static constexpr std::size_t kBytes = 120;
@@ -290,7 +290,7 @@ struct TunnelTargetted {
     }
 };
 
-/// Bytes for whoever listens to a channel.
+/// Bytes for all nodes that listen to a channel.
 struct TunnelBroadcast {
     static constexpr TypeInfo kType{TransferKind::message, 2010, 0x1C82, 63};
     std::uint8_t protocol = 0;

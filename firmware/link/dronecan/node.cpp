@@ -40,7 +40,7 @@ void assign(StaticVector<std::uint8_t, N>& to, std::string_view text) noexcept
     return LogLevel::info;
 }
 
-/// Value as a parameter's type wants it.
+/// Value in a parameter's type.
 template <class Value>
 [[nodiscard]] Value value_of(float value, bool integer) noexcept
 {
@@ -55,7 +55,7 @@ template <class Value>
     return out;
 }
 
-/// The number in `value`; false where there is none that a float holds exactly.
+/// The number in `value`; false unless a float holds the number exactly.
 [[nodiscard]] bool number_of(const ParamValue& value, float& number) noexcept
 {
     constexpr std::int64_t kExact = 1 << 24;
@@ -71,7 +71,7 @@ template <class Value>
     return false;
 }
 
-/// False: longer than any name of ours.
+/// False: longer than any of our names.
 [[nodiscard]] bool name_of(const Text92& text, ParamName& name) noexcept
 {
     name = {};

@@ -14,20 +14,20 @@
 
 namespace jink::link::dronecan {
 
-/// Types that are taken in; frames of others are ignored.
+/// Types that are received; frames of other types are ignored.
 inline constexpr std::array kTakenIn{
     GetNodeInfoRequest::kType, GetSetRequest::kType,   ExecuteOpcodeRequest::kType,
     GlobalTimeSync::kType,     Allocation::kType,      RangeMeasurement::kType,
     Proximity::kType,          TrafficReport::kType,   Fix2::kType,
     AhrsSolution::kType,       TunnelTargetted::kType, TunnelBroadcast::kType,
 };
-/// Messages that are sent of our own accord: each has its own transfer ids.
+/// Messages that the node sends unasked: each has its own transfer ids.
 inline constexpr std::array kSent{
     NodeStatus::kType, Allocation::kType,      LogMessage::kType,
     Proximity::kType,  TunnelTargetted::kType, TunnelBroadcast::kType,
 };
 
-/// Index of a type in kSent; its size: not there.
+/// Index of a type in kSent; kSent.size() if it is not there.
 [[nodiscard]] constexpr std::size_t sent_index(std::uint16_t id) noexcept
 {
     std::size_t i = 0;
@@ -38,10 +38,10 @@ inline constexpr std::array kSent{
 }
 
 struct NodeOptions {
-    std::uint8_t node = kAnonymous;  ///< fixed node id 1 .. 127; kAnonymous: asks the bus's allocator for one
-    std::uint8_t preferred = 0;      ///< to ask it for; 0: any
-    std::uint64_t seed = 1;          ///< of the allocation's random waits: another on each device (from the unique id)
-    std::string_view name = "org.jink.coprocessor";  ///< at most 80 characters; has to outlive the node
+    std::uint8_t node = kAnonymous;  ///< fixed node id 1 .. 127; kAnonymous: requests an id from the bus's allocator
+    std::uint8_t preferred = 0;      ///< to request from the allocator; 0: any
+    std::uint64_t seed = 1;          ///< of the allocation's random waits: differs between devices (from the unique id)
+    std::string_view name = "org.jink.coprocessor";  ///< at most 80 characters; must outlive the node
     SoftwareVersion software;
     std::uint8_t hardware_major = 0;
     std::uint8_t hardware_minor = 0;
@@ -51,22 +51,22 @@ struct NodeOptions {
 struct NodeDiagnostics {
     std::array<std::uint32_t, 7> undecodable{};  ///< payloads by CodecStatus
     std::uint32_t unsendable = 0;                ///< messages with a number out of range
-    std::uint32_t anonymous = 0;                 ///< messages not sent for want of a node id
-    std::uint32_t id_conflicts = 0;              ///< frames of another node with our id, not taken
+    std::uint32_t anonymous = 0;                 ///< messages not sent without a node id
+    std::uint32_t id_conflicts = 0;              ///< frames of another node with our id, refused
     std::uint32_t answers = 0;
-    std::uint32_t params_unknown = 0;  ///< requests of parameters that there are not
+    std::uint32_t params_unknown = 0;  ///< requests of parameters that do not exist
     std::uint32_t values_refused = 0;  ///< to set: text, not finite, or not exact in a float
     std::uint32_t texts_cut = 0;       ///< of more than 90 characters
 };
 
-/// A DroneCAN node: what every node owes the bus.
+/// A DroneCAN node: the services that every node provides.
 ///
-/// * NodeStatus once a second and at each change of health or mode, from `service` alone: an application that no longer
-///   steps falls silent, and others declare the node dead after 3 s.
+/// * NodeStatus once a second and at each change of health or mode, from `service` alone. If the application no longer
+///   steps, the node is silent, and others declare it dead after 3 s.
 /// * Answers GetNodeInfo, param.GetSet and param.ExecuteOpcode (save, erase) in the same call that receives them.
-/// * Gets a node id where none is fixed; until then it sends nothing but allocation requests, and answers nothing.
+/// * Requests a node id if none is fixed; until then it sends allocation requests only, and answers nothing.
 /// * Follows GlobalTimeSync.
-/// * Another node with our id makes health at least `warning` for 3 s after it was heard.
+/// * If another node uses our id, health is at least `warning` until 3 s after that node's last frame.
 ///
 /// Memory: 6.7 KiB, most of it the receiver's and the transmit queue's.
 class Node {
@@ -74,19 +74,20 @@ public:
     static constexpr Seconds kStatusPeriod = 1.0F;
     static constexpr Seconds kConflictShown = 3.0F;
 
-    /// @param params  nullptr: there are none, and each request is answered so
+    /// @param params  nullptr: there are no parameters, and each request is answered accordingly
     explicit Node(const NodeOptions& options, ParamServer* params = nullptr) noexcept;
 
-    /// Takes a frame. A transfer that is not the node's own business is returned, valid until the next call.
+    /// Processes a frame. A transfer that the node does not handle itself is returned, valid until the next call.
     [[nodiscard]] const Transfer* receive(const Frame& frame, TimePoint now) noexcept;
-    /// Periodic work. Call every step, with the state as it is. Faults go out as the status' vendor-specific code, a
-    /// change of them with the next status; advising only is health `warning` at least, and operational.
+    /// Periodic work. Call every step, with the current state. Faults are sent as the status' vendor-specific code; a
+    /// change of faults is sent with the next status. With `advising_only`, health is at least `warning` and the mode
+    /// operational.
     void service(TimePoint now, const BusStatus& status) noexcept;
     void service(TimePoint now, SystemState state) noexcept { service(now, BusStatus{state, false, 0}); }
-    /// Who answers for parameters from now on; has to outlive the node.
+    /// Sets the server of the parameters; it must outlive the node.
     void serve(ParamServer& params) noexcept { params_ = &params; }
 
-    /// Queues a message of a type in kSent. False, and counted, where there is no node id yet or a number does not fit.
+    /// Queues a message of a type in kSent. False, and counted, if there is no node id yet or a number does not fit.
     template <Described M>
     bool send(const M& message, Priority priority) noexcept
     {
@@ -102,10 +103,10 @@ public:
         transfer = static_cast<std::uint8_t>((transfer + 1U) % kTransferIds);
         return true;
     }
-    /// As LogMessage; at most 90 characters.
+    /// Sends a LogMessage; at most 90 characters.
     void send_text(Severity severity, std::string_view text) noexcept;
 
-    /// Payload of `transfer` as `message`; false, and counted by cause, where it does not fit.
+    /// Payload of `transfer` as `message`; false, and counted by cause, if the payload does not fit.
     template <Described M>
     [[nodiscard]] bool decode(const Transfer& transfer, M& message) noexcept
     {
@@ -116,7 +117,7 @@ public:
         return status == CodecStatus::ok;
     }
 
-    /// kAnonymous until there is one.
+    /// kAnonymous until a node id is known.
     [[nodiscard]] std::uint8_t id() const noexcept { return node_; }
     [[nodiscard]] TransmitQueue& outgoing() noexcept { return outgoing_; }
     [[nodiscard]] const TransmitQueue& outgoing() const noexcept { return outgoing_; }

@@ -14,7 +14,7 @@ constexpr std::uint32_t kHighestId = 0x1FFFFFFF;
     return static_cast<std::uint32_t>(id.kind) << 24U | static_cast<std::uint32_t>(id.type) << 8U | id.source;
 }
 
-/// Is `payload` what `bytes` end with?
+/// Whether `bytes` end with `payload`.
 [[nodiscard]] bool ends_with(std::span<const std::byte> bytes, std::span<const std::byte> payload) noexcept
 {
     return bytes.size() >= payload.size() &&
@@ -48,7 +48,7 @@ const TypeInfo* Receiver::find_type(const FrameId& id) const noexcept
     if (service && id.destination != node_) {
         return nullptr;
     }
-    // Of an anonymous message's type two bits are said: only types 0 .. 3 can be meant.
+    // An anonymous message carries two bits of its type: only types 0 .. 3 are possible.
     for (const TypeInfo& type : wanted_) {
         if (type.kind == id.kind && type.id == id.type) {
             return &type;
@@ -144,7 +144,7 @@ const Transfer* Receiver::accept(const Frame& frame, TimePoint now) noexcept
         return nullptr;
     }
     const Piece piece{frame, *type, id, unpack(frame.data[frame.length - 1U]), now};
-    if (piece.tail.start && piece.tail.toggle) {  // Cyphal's: that of DroneCAN starts at 0
+    if (piece.tail.start && piece.tail.toggle) {  // Cyphal's: DroneCAN's toggle starts at 0
         ++diagnostics_.wrong_toggle;
         return nullptr;
     }
@@ -177,7 +177,7 @@ bool Receiver::make_way(Session& session, const Piece& piece) noexcept
         }
         ++(expired ? diagnostics_.timed_out : diagnostics_.interrupted);
         drop(session);
-        if (same) {  // frames of two transfers with the same id could not be told apart
+        if (same) {  // frames of two transfers with the same id would be mixed up
             return false;
         }
     }
@@ -238,7 +238,7 @@ const Transfer* Receiver::go_on(const Piece& piece) noexcept
     } else if (piece.tail.transfer != assembly.transfer) {
         cause = &diagnostics_.wrong_transfer;
     } else if (piece.tail.toggle != assembly.toggle) {
-        // The controller may deliver a frame twice, when its acknowledgement was disturbed; the first has a start bit.
+        // The controller may deliver a frame twice if its acknowledgement was disturbed; the first has a start bit.
         constexpr std::size_t kFirst = Frame::kBytes - 1;
         if (!piece.tail.end && piece.frame.length == Frame::kBytes && so_far.size() > kFirst &&
             ends_with(so_far, piece.payload())) {

@@ -10,7 +10,7 @@ namespace jink::link::dronecan {
 struct RangeMeasurement {
     static constexpr TypeInfo kType{TransferKind::message, 1050, 0x049C, 15};
     enum class Reading : std::uint8_t { undefined = 0, valid = 1, too_close = 2, too_far = 3 };
-    std::uint64_t stamp = 0;  ///< [us] of the bus's common clock, 56 bits; 0: not said
+    std::uint64_t stamp = 0;  ///< [us] of the bus's common clock, 56 bits; 0: not given
     std::uint8_t sensor = 0;
     std::array<std::int8_t, 3> roll_pitch_yaw{};  ///< of the beam, body frame (FRD), fifteenths of half a turn
     bool orientation_defined = false;
@@ -60,9 +60,9 @@ struct TrafficReport {
     static constexpr std::uint8_t kUnmanned = 14;
     static constexpr std::uint8_t kPointObstacle = 19;
     static constexpr std::uint8_t kGeometricAltitude = 2;  ///< ALT_TYPE_WGS84
-    std::uint64_t stamp = 0;                               ///< [us], 56 bits; 0: not said
+    std::uint64_t stamp = 0;                               ///< [us], 56 bits; 0: not given
     std::uint32_t icao = 0;
-    std::uint16_t tslc = 0;                    ///< [s] since it was last heard
+    std::uint16_t tslc = 0;                    ///< time since the last reception [s]
     std::int32_t latitude = 0, longitude = 0;  ///< [deg 1e-7]
     float altitude = 0.0F;                     ///< [m]
     float heading = 0.0F;                      ///< [rad]
@@ -102,11 +102,11 @@ struct TrafficReport {
     }
 };
 
-/// Without the position in the earth's own axes that may follow.
+/// GNSS fix, without the ECEF position that may follow.
 struct Fix2 {
     static constexpr TypeInfo kType{TransferKind::message, 1063, 0xC798, 222};
     enum class Status : std::uint8_t { no_fix = 0, time_only = 1, fix_2d = 2, fix_3d = 3 };
-    std::uint64_t stamp = 0, gnss_stamp = 0;  ///< [us], 56 bits; 0: not said
+    std::uint64_t stamp = 0, gnss_stamp = 0;  ///< [us], 56 bits; 0: not given
     std::uint8_t time_standard = 0, leap_seconds = 0;
     std::int64_t longitude = 0, latitude = 0;           ///< [deg 1e-8]
     std::int32_t height_ellipsoid = 0, height_msl = 0;  ///< [mm], 27 bits
@@ -143,7 +143,7 @@ struct Fix2 {
 struct AhrsSolution {
     static constexpr TypeInfo kType{TransferKind::message, 1000, 0x2055, 84};
     using Covariance = StaticVector<float, 9>;
-    std::uint64_t stamp = 0;             ///< [us], 56 bits; 0: not said
+    std::uint64_t stamp = 0;             ///< [us], 56 bits; 0: not given
     std::array<float, 4> orientation{};  ///< quaternion x, y, z, w
     Covariance orientation_covariance;
     std::array<float, 3> angular_velocity{};  ///< [rad/s]

@@ -16,7 +16,7 @@ void TimeSlave::receive(std::uint8_t master, std::uint8_t transfer, std::uint64_
         return;
     }
     const bool known = master == current;
-    if (!known) {  // after a silence its clock may be another
+    if (!known) {  // after a silence the master's clock may have changed
         has_offset_ = false;
         diagnostics_.master_changes += master_ != 0 && master != master_ ? 1U : 0U;
     }

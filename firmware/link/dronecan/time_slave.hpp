@@ -10,29 +10,29 @@ namespace jink::link::dronecan {
 
 struct TimeSlaveDiagnostics {
     std::uint32_t updates = 0;        ///< of the offset
-    std::uint32_t not_a_pair = 0;     ///< no earlier message, a gap in the transfer ids, or told nothing
-    std::uint32_t other_masters = 0;  ///< messages of a master that is outranked
+    std::uint32_t not_a_pair = 0;     ///< no earlier message, a gap in the transfer ids, or no time given
+    std::uint32_t other_masters = 0;  ///< messages of a master with a higher node id than the followed one
     std::uint32_t master_changes = 0;
     std::uint32_t jumps = 0;  ///< of the common clock by more than kJump
 };
 
 /// Follows the bus's common clock (uavcan.protocol.GlobalTimeSync).
 ///
-/// Each message of the master tells at what time its former message began; together with when that one arrived here
-/// it makes the offset. As exact as the stamps of arrival: a step of the application, unless the port stamps frames.
-/// Of several masters that with the lowest node id is followed; one that is silent for kMasterTimeout has gone.
-/// 56 bits of microseconds wrap after 2284 years: not followed. O(1).
+/// Each message of the master gives the time at which its previous message began. That time and the arrival of the
+/// previous message here give the offset. The accuracy is that of the arrival stamps: a step of the application, unless
+/// the port stamps frames. Of several masters the one with the lowest node id is followed; a master that is silent for
+/// kMasterTimeout is dropped. The wrap of 56 bits of microseconds after 2284 years is not handled. O(1).
 class TimeSlave {
 public:
-    static constexpr Seconds kMasterTimeout = 2.2F;  ///< twice the longest period at which a master speaks
+    static constexpr Seconds kMasterTimeout = 2.2F;  ///< twice the longest period of a master's messages
     static constexpr std::int64_t kJump = 200'000;   ///< [us]
 
-    /// A message of `master` whose first frame arrived at `arrived`; `previous`: what it says [us].
+    /// Processes a message of `master` whose first frame arrived at `arrived`; `previous`: the time it gives [us].
     void receive(std::uint8_t master, std::uint8_t transfer, std::uint64_t previous, TimePoint arrived) noexcept;
 
-    /// Our time of a stamp of the common clock; nothing without a master.
+    /// Local time of a stamp of the common clock; nothing without a master.
     [[nodiscard]] std::optional<TimePoint> to_local(std::uint64_t stamp, TimePoint now) const noexcept;
-    /// 0: none.
+    /// Node id of the master; 0: none.
     [[nodiscard]] std::uint8_t master(TimePoint now) const noexcept;
     [[nodiscard]] const TimeSlaveDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 

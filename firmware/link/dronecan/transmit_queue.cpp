@@ -17,7 +17,7 @@ constexpr std::size_t kCrcBytes = 2;
     FrameId id{
         head.type.kind, static_cast<std::uint8_t>(head.priority), head.type.id, head.source, head.destination, 0};
     if (head.source == kAnonymous) {
-        // Two senders that pick the same identifier at once have to send the same data.
+        // Two senders that pick the same identifier at once must send the same data.
         Checksum checksum;
         checksum.add(payload);
         id.discriminator = checksum.value() & 0x3FFFU;

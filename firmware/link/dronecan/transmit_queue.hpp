@@ -5,14 +5,14 @@
 
 namespace jink::link::dronecan {
 
-/// Frames that wait for the port. 128 hold the longest transfer there is (GetNodeInfo's response at its limit, 55
-/// frames) twice over, or the tunnel's answer to a full serial buffer; 16 bytes each.
+/// Frames that wait for the port. 128 hold the longest transfer (GetNodeInfo's response at its limit, 55 frames) twice,
+/// or the tunnel's answer to a full serial buffer; 16 bytes each.
 inline constexpr std::size_t kTransmitFrames = 128;
-/// Frames of the longest transfer: two bytes of CRC go in front, seven bytes of payload into each.
+/// Frames of the longest transfer: two bytes of CRC come first, seven bytes of payload fit in each frame.
 inline constexpr std::size_t kMaxFramesOfTransfer = (kMaxPayload + 2 + 6) / 7;
 static_assert(kTransmitFrames >= kMaxFramesOfTransfer && kTransmitFrames <= 1024);
 
-/// Who sends what to whom.
+/// Type, sender and receiver of a transfer.
 struct TransferHead {
     TypeInfo type{};
     Priority priority = Priority::medium;
@@ -24,24 +24,24 @@ struct TransferHead {
 struct TransmitDiagnostics {
     std::uint32_t transfers = 0;          ///< queued
     std::uint32_t frames = 0;             ///< taken by the port
-    std::uint32_t transfers_dropped = 0;  ///< to make room for newer ones, or on a lost port
-    std::uint32_t transfers_refused = 0;  ///< too long, or an anonymous one of more than a frame
+    std::uint32_t transfers_dropped = 0;  ///< for lack of space for newer ones, or on a lost port
+    std::uint32_t transfers_refused = 0;  ///< too long, or an anonymous transfer of more than a frame
 };
 
 /// Frames of whole transfers, first in first out.
 ///
-/// Where there is no room, the oldest transfers go, each with all of its frames: one of which a part has gone leaves
-/// the receivers with an incomplete transfer, which they drop; the newest is never lost to what is out of date. Memory:
-/// 16 bytes * kTransmitFrames.
+/// When full, the oldest transfers are dropped, each with all of its frames. If part of a dropped transfer has been
+/// sent already, the receivers get an incomplete transfer, which they drop. The newest transfer is never dropped for
+/// older ones. Memory: 16 bytes * kTransmitFrames.
 class TransmitQueue {
 public:
-    /// Cuts `payload` into frames; false, and counted, where it cannot be sent at all. O(payload + kTransmitFrames).
+    /// Cuts `payload` into frames; false, and counted, if it cannot be sent at all. O(payload + kTransmitFrames).
     bool push(const TransferHead& head, std::span<const std::byte> payload) noexcept;
 
     /// The frame to send next; it stays until `pop`.
     [[nodiscard]] const Frame* front() const noexcept { return size_ > 0 ? &frames_[first_] : nullptr; }
     void pop() noexcept;
-    /// On a lost port nothing stale may go out later.
+    /// Drops everything queued: on a lost port no outdated frame may be sent later.
     void clear() noexcept;
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }

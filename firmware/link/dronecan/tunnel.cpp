@@ -34,7 +34,7 @@ void Tunnel::receive(Node& node, const Transfer& transfer) noexcept
     }
     if (is_silent) {
         ++diagnostics_.peers_changed;
-        size_ = 0;  // in the middle of a frame of the former peer
+        size_ = 0;  // drops the partial frame of the former peer
     }
     heard_ = transfer.stamp;
     if (!known) {

@@ -89,7 +89,8 @@ ClockEvent ClockSync::round_trip(std::int64_t sent, std::int64_t remote, std::in
     const std::int64_t sample = sent + took / 2 - remote;
     static_cast<void>(decide_round_trips(received));
     const std::optional<std::int64_t> known = offset();
-    // Half the duration of a round trip is what its midpoint may be off, of the known one as of this one.
+    // The midpoint's error is at most half the duration of the round trip, both of the known round trip and of this
+    // one.
     const std::int64_t doubt = kJump + took / 2 + (round_trip_.current.known ? round_trip_.best().quality / 2 : 0);
     const bool above = known && sample - *known > doubt;
     const bool below = known && *known - sample > doubt;
@@ -101,7 +102,7 @@ ClockEvent ClockSync::round_trip(std::int64_t sent, std::int64_t remote, std::in
         newest_ = remote;
         restart(round_trip_, sample, took, received);
         round_trip_at_ = received;
-        // A greater offset means that the remote clock shows less than before: it went back.
+        // A greater offset means that the remote clock shows less than before: it was set back.
         return above ? ClockEvent::relocked_backward : ClockEvent::relocked_forward;
     }
     disagreements_ = 0;

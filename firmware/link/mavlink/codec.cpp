@@ -8,7 +8,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little || std::endian::native == std::endian::big);
 
-/// Where byte `i` (0 = least significant) of an element lies within it in memory.
+/// Position of byte `i` (0 = least significant) of an element in memory.
 [[nodiscard]] constexpr std::size_t native_index(std::size_t i, std::size_t size) noexcept
 {
     return std::endian::native == std::endian::little ? i : size - 1 - i;

@@ -30,7 +30,7 @@ void pack(const std::byte* object, std::span<const Field> fields, std::span<std:
 /// The reverse of `pack`: fills the structure at `object` from a payload padded with zeros.
 void unpack(std::span<const std::byte, kMaxPayload> payload, std::span<const Field> fields, std::byte* object) noexcept;
 
-/// Reads `frame` into `message`; false, and `message` untouched, when the frame carries another message.
+/// Reads `frame` into `message`; false, with `message` unchanged, if the frame carries another message.
 template <Message M>
 [[nodiscard]] bool decode(const Frame& frame, M& message) noexcept
 {

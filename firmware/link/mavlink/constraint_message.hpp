@@ -4,28 +4,28 @@
 #include "firmware/link/constraint.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 
-// Closed areas over MAVLink: TUNNEL (385) with payloads of our own. docs/guides/closed_areas.md lays
-// out both kinds byte by byte: 1, an area of a set, 48 bytes; 2, the answer to it, 5 bytes. Unknown versions and kinds
-// and other lengths are refused, so that no payload is half read.
+// Closed areas over MAVLink: TUNNEL (385) with own payload types. docs/guides/closed_areas.md specifies both kinds byte
+// by byte: 1, an area of a set, 48 bytes; 2, the answer to it, 5 bytes. Unknown versions and kinds and other lengths
+// are refused, so that no payload is partly read.
 //
-// Ages instead of times: no clocks have to agree. The line's delay is not taken off.
+// Ages in place of times: no clock synchronisation is needed. The line's delay is not subtracted.
 
 namespace jink::link::mavlink {
 
-/// In the range that MAVLink leaves to local use (above 32767).
+/// In MAVLink's range for local use (above 32767).
 inline constexpr std::uint16_t kConstraintPayload = 35344;
 
 /// Frame of a constraint's position on the wire.
 enum class ConstraintFrame : std::uint8_t { local = 0, global = 1 };
 
-/// Whether the payload says to be an answer, of whatever version and length. Answers are never answered: two
-/// co-processors would go on for ever.
+/// Whether the payload claims to be an answer, of any version and length. Answers are never answered: two co-processors
+/// would go on for ever.
 [[nodiscard]] bool is_constraint_answer(const Tunnel& message) noexcept;
-/// Reads kind 1. `part.set` and `part.index` are filled as far as the payload has them, for the answer.
+/// Reads kind 1. `part.set` and `part.index` are set as far as the payload contains them, for the answer.
 /// @param now  arrival
-/// @return false: length, version, kind, frame or index (the numbers themselves are not checked). O(1).
+/// @return false: wrong length, version, kind, frame or index (the values themselves are not checked). O(1).
 [[nodiscard]] bool read_constraint(const Tunnel& message, TimePoint now, ConstraintPart& part) noexcept;
-/// The reverse, the target left open: for whoever reports areas. Positions in millimetres or degE7 are rounded.
+/// The reverse, without a target: for senders of areas. Positions in millimetres or degE7 are rounded.
 [[nodiscard]] Tunnel constraint_message(const ConstraintPart& part, TimePoint now) noexcept;
 
 struct ConstraintAnswer {
@@ -33,7 +33,7 @@ struct ConstraintAnswer {
     std::uint8_t index = 0;
     ConstraintResult result = ConstraintResult::kept;
 };
-/// The target left open. O(1).
+/// Without a target. O(1).
 [[nodiscard]] Tunnel constraint_answer(const ConstraintAnswer& answer) noexcept;
 /// @return false: not an answer of this version. O(1).
 [[nodiscard]] bool read_constraint_answer(const Tunnel& message, ConstraintAnswer& answer) noexcept;

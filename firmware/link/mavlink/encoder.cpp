@@ -9,7 +9,7 @@
 namespace jink::link::mavlink {
 namespace {
 
-/// Puts the checksum of `frame` (start byte excluded, `crc_extra` included) into its last two bytes.
+/// Writes the checksum of `frame` (start byte excluded, `crc_extra` included) to its last two bytes.
 void close(std::span<std::byte> frame, std::uint8_t crc_extra) noexcept
 {
     Checksum checksum;

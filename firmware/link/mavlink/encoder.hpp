@@ -9,7 +9,7 @@
 
 namespace jink::link::mavlink {
 
-/// What an encoder must know of a message beside its bytes.
+/// Properties of a message that an encoder needs beside its bytes.
 struct Layout {
     MessageInfo info;
     std::span<const Field> fields;
@@ -18,10 +18,10 @@ struct Layout {
 /// Writes a v2 frame of the structure at `object`; signed when `signing` is given. See `encode`.
 [[nodiscard]] std::size_t encode_v2(const std::byte* object, const Layout& layout, Header header, Signing* signing,
                                     std::span<std::byte> out) noexcept;
-/// Writes `message` as a v2 frame: trailing zeros of the payload cut, its first byte never.
+/// Writes `message` as a v2 frame: trailing zeros of the payload are cut, except its first byte.
 ///
 /// @param out  kMaxFrame bytes hold any frame
-/// @return bytes written; 0, with `out` untouched, when it is too small for this frame
+/// @return bytes written; 0, with `out` unchanged, if `out` is too small for this frame
 /// O(payload).
 template <Message M>
 [[nodiscard]] std::size_t encode(const M& message, Header header, std::span<std::byte> out) noexcept
@@ -29,7 +29,7 @@ template <Message M>
     return encode_v2(reinterpret_cast<const std::byte*>(&message), {M::kInfo, M::kFields}, header, nullptr, out);
 }
 
-/// As `encode`, with a signature of 13 bytes behind the frame.
+/// As `encode`, with a signature of 13 bytes after the frame.
 template <Message M>
 [[nodiscard]] std::size_t encode_signed(const M& message, Header header, Signing& signing,
                                         std::span<std::byte> out) noexcept

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reception: who speaks, in which mode, by which clock. Own state, origin and home: endpoint_state.cpp. Mission and
-// leg: endpoint_mission.cpp. Sensors and requests: endpoint_sensors.cpp. Traffic: endpoint_traffic.cpp. Points in
-// space: endpoint_points.cpp. Sending: endpoint_sending.cpp. Keys: endpoint_signing.cpp.
+// Reception: senders, modes and clocks. Own state, origin and home: endpoint_state.cpp. Mission and leg:
+// endpoint_mission.cpp. Sensors and requests: endpoint_sensors.cpp. Traffic: endpoint_traffic.cpp. Points in space:
+// endpoint_points.cpp. Sending: endpoint_sending.cpp. Keys: endpoint_signing.cpp.
 #include "firmware/link/mavlink/endpoint.hpp"
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 constexpr std::uint8_t kAutopilotArduPilot = 3;
 constexpr std::uint8_t kAutopilotPx4 = 12;
 constexpr std::uint8_t kTypeFixedWing = 1;
-/// A line this long without a byte is not in the middle of a frame any more: 20 bytes take less at 2400 baud [s].
+/// A line without a byte for this long is no longer in the middle of a frame: 20 bytes take less at 2400 baud [s].
 constexpr Seconds kSilence = 0.1F;
-/// A stamp may lie this far ahead of our clock: resolution of the wire and of the mapping [s].
+/// A stamp may be this far ahead of our clock: resolution of the wire and of the clock mapping [s].
 constexpr Seconds kFutureSlack = 0.03F;
 
 }  // namespace
@@ -133,7 +133,7 @@ void Endpoint::on_heartbeat(const Context& c) noexcept
     autopilot_.mode = classify(autopilot_.stack, vehicle_class_, m.custom_mode);
     mission_.set_lone(autopilot_.stack == AutopilotStack::ardupilot);
     note_mode(mode_before, was_armed);
-    // A reboot noticed earlier in the same batch must not be lost when a second heartbeat follows.
+    // A reboot detected earlier in the same batch must not be lost when a second heartbeat follows.
     const bool pending_reboot = c.inbox.has_autopilot && c.inbox.autopilot.rebooted;
     const AutopilotReport& last = c.inbox.autopilot;
     const bool differs = last.custom_mode != m.custom_mode || last.armed != autopilot_.armed;
@@ -163,7 +163,7 @@ void Endpoint::note(ClockEvent event) noexcept
     }
 }
 
-/// Maps a boot-clock stamp to ours; false, and counted, when it is too old or in the future.
+/// Maps a boot-clock stamp to ours; false, and counted, if the stamp is too old or in the future.
 bool Endpoint::stamp_of(std::int64_t boot_us, TimePoint now, TimePoint& stamp) noexcept
 {
     note(clock_.one_way(boot_us, now.us));

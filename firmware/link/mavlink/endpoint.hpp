@@ -16,107 +16,106 @@
 #include "firmware/link/track_ids.hpp"
 
 // MAVLink side of link::Link: NED/FRD and degE7 in, ENU and metres out, and back. docs/guides/messages.md is the
-// reference for users; this is what it does with each message:
+// reference for users. Handling of each message:
 //
 // * We are component 196 (OBSTACLE_AVOIDANCE), type 18, autopilot 8, of the autopilot's own system id (learned from its
-//   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that nothing but HEARTBEAT is
-//   sent, as system 1. Own state, modes and legs are taken from that autopilot alone; ranges from any component of our
-//   system; transponders' traffic from any component of any system but the autopilots (component 1) of other systems,
-//   whose receivers hear us too (traffic_relayed counts other systems' traffic).
+//   first HEARTBEAT, component 1, unless EndpointOptions::system_id fixes it). Before that only HEARTBEAT is sent, as
+//   system 1. Own state, modes and legs are accepted from that autopilot alone; ranges from any component of our
+//   system. Transponders' traffic is accepted from any component of any system but the autopilots (component 1) of
+//   other systems, whose receivers hear us too (traffic_relayed counts other systems' traffic).
 // * Own state: LOCAL_POSITION_NED (position, velocity), ATTITUDE_QUATERNION or ATTITUDE (yaw), ODOMETRY (all of it:
-//   velocity in its child frame turned by q, sigmas from the covariances when not NaN, reset_counter; frame_id other
+//   velocity in its child frame rotated by q, sigmas from the covariances unless NaN, reset_counter; frame_id other
 //   than LOCAL_NED is out_of_range). ODOMETRY wins while it is younger than 1 s. Stamps are mapped by ClockSync; older
-//   than max_stamp_age or from the future: stale_stamp. time_boot_ms wraps after 49.7 days: followed.
-// * ClockSync: TIMESYNC requests once a second, lowest-round-trip filter, fallback to the least one-way delay seen;
-//   re-locks are counted (clock_relocks), and one that goes back counts as the autopilot's restart: origin, mission and
-//   own state are forgotten. We answer the autopilot's TIMESYNC requests.
-// * Origin of the local frame: GPS_GLOBAL_ORIGIN; else GLOBAL_POSITION_INT less LOCAL_POSITION_NED, both carried to one
-//   time and 0.2 s apart at most. Until known, ADSB_VEHICLE counts no_origin. Local plane: north = dlat * R, east =
-//   dlon * R cos(lat0), R = 6378137 m, from int32 differences (the wrap at 180 degrees is handled). Above 85 degrees of
-//   latitude there is no origin. Another origin places home and the mission leg anew, and moves the traffic that waits
-//   in the inbox; what was taken out of it before is the application's.
+//   than max_stamp_age or from the future: stale_stamp. The wrap of time_boot_ms after 49.7 days is handled.
+// * ClockSync: TIMESYNC requests once a second, lowest-round-trip filter, fallback to the least one-way delay observed.
+//   Re-locks are counted (clock_relocks). A re-lock backwards counts as the autopilot's restart: origin, mission and
+//   own state are discarded. We answer the autopilot's TIMESYNC requests.
+// * Origin of the local frame: GPS_GLOBAL_ORIGIN; else GLOBAL_POSITION_INT less LOCAL_POSITION_NED, both extrapolated
+//   to one time and 0.2 s apart at most. Until known, ADSB_VEHICLE counts no_origin. Local plane: north = dlat * R,
+//   east = dlon * R cos(lat0), R = 6378137 m, from int32 differences (the wrap at 180 degrees is handled). Above 85
+//   degrees of latitude there is no origin. A new origin moves home, the mission leg and the traffic that waits in the
+//   inbox; reports that the application has read before are its own responsibility.
 // * Home: latitude, longitude and altitude of HOME_POSITION, placed by the origin; not reported before both are known.
-//   Its local x, y, z are not read: ArduPilot sends zeros, wherever home is. Origin and home that do not come are asked
-//   for by COMMAND_LONG REQUEST_MESSAGE (512), 2 s after the first HEARTBEAT and every 4 s.
+//   Its local x, y, z are ignored: ArduPilot sends zeros, wherever home is. If origin and home do not come, they are
+//   requested by COMMAND_LONG REQUEST_MESSAGE (512), 2 s after the first HEARTBEAT and every 4 s.
 // * ADSB_VEHICLE: flags say which fields are valid (coordinates 1, altitude 2, heading 4, velocity 8, vertical velocity
 //   128). Without coordinates and altitude: out_of_range; without vertical velocity: level, with a noise of 5 m/s.
 //   emitter_type 19 (point obstacle): at_rest, velocity zero; 14 (UAV): unmanned. Ids: track_ids.hpp.
-//   Stamp = now - tslc (the application takes the assumed latency off). altitude_type 1 is geometric: senders differ in
-//   whether it is above sea level or above the ellipsoid. Where the undulation is known (GPS_RAW_INT of the autopilot
-//   with a 3D fix, alt_ellipsoid not 0, at most 120 m apart; the last one counts, however old) the report holds both
-//   readings (geoid.hpp); until then the altitude as reported. 0 and all others are pressure altitudes. Senders differ
-//   in whether these refer to the standard 1013.25 hPa or to QNH: where our own pressure altitude is known
-//   (SCALED_PRESSURE not older than 10 s, beside own height), the report holds both readings, the altitude as told and
-//   our own height plus the difference of pressure altitudes (HeightSource::compared).
+//   Stamp = now - tslc (the application subtracts the assumed latency). altitude_type 1 is geometric: senders differ in
+//   whether it is above sea level or above the ellipsoid. If the undulation is known (GPS_RAW_INT of the autopilot with
+//   a 3D fix, alt_ellipsoid not 0, at most 120 m apart; the last one counts, however old) the report covers both
+//   possible heights (geoid.hpp); until then the altitude as reported. 0 and all others are pressure altitudes. Senders
+//   differ in whether these refer to the standard 1013.25 hPa or to QNH. If our own pressure altitude is known
+//   (SCALED_PRESSURE not older than 10 s, beside own height), the report covers both possible heights: the altitude as
+//   reported and our own height plus the difference of pressure altitudes (HeightSource::compared).
 // * GLOBAL_POSITION_INT of other systems' autopilots (component 1): a track by its system id. Stamped by that system's
 //   boot clock (Neighbours). Latitude and longitude 0: out_of_range. helpless while its last HEARTBEAT says disarmed.
-//   Their LOCAL_POSITION_NED is passed over: it is about an origin of their own.
-// * UTM_GLOBAL_POSITION of anybody but our autopilot, whose uas_id is our own name: a track by its uas_id, or by sender
-//   where it has none. Own name, from whomever: own_heard. Without position or altitude (flags 4, 8): out_of_range;
+//   Their LOCAL_POSITION_NED is ignored: it is relative to an origin of their own.
+// * UTM_GLOBAL_POSITION of any sender but our autopilot, whose uas_id is our own name: a track by its uas_id, or by
+//   sender without one. Own name, from any sender: own_heard. Without position or altitude (flags 4, 8): out_of_range;
 //   velocity as flags 32 and 64 say, h_acc, v_acc and vel_acc as standard deviations. flight_state 2, 16, 32: helpless.
-//   Its heights are above the ellipsoid: brought to sea level by what our GPS_RAW_INT says of both, and uncertain by
-//   36 m while it has not. Stamp = now.
-// * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, turned by a yaw not older than 1 s, else no_origin);
-//   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: nothing; below
-//   min_distance means "nearer than that" and is kept as min_distance. A second scan within a tick takes the place of
-//   the first (inbox_full). DISTANCE_SENSOR orientations 0-7 (by yaw, as above), 24, 25. From ArduPilot's proximity
-//   library (the autopilot, ids 10 to 19): a distance at max_distance means nothing seen, and a level field of view of
-//   0 is a sector of 45 degrees.
-// * OBSTACLE_DISTANCE_3D, where somebody takes points: frame 12 (body, levelled by a roll and pitch not older than
-//   0.3 s) and 1 (a place in the local frame, made relative by own place and yaw), else no_origin; other frames are
-//   out_of_range. Farther than max_distance: nothing in that direction; nearer than min_distance: at min_distance. A
-//   scan is what comes with one time stamp and sensor_type, and ends with the next or a pause of 0.05 s.
-// * Leg: where the mission's current item is flown to; endpoint_mission.cpp. Reported while armed and in the mission
-// mode
+//   Its heights are above the ellipsoid. They are converted to sea level by the two altitudes of our GPS_RAW_INT, and
+//   are uncertain by 36 m without it. Stamp = now.
+// * OBSTACLE_DISTANCE frame 0, 1 (north-up) and 12 (body, rotated by a yaw not older than 1 s, else no_origin);
+//   increment_f over increment; an increment below half a degree is out_of_range; 65535 unknown; > max: clear; below
+//   min_distance means "nearer than that" and is kept as min_distance. A second scan within a tick replaces the first
+//   (inbox_full). DISTANCE_SENSOR orientations 0-7 (by yaw, as above), 24, 25. From ArduPilot's proximity library (the
+//   autopilot, ids 10 to 19): a distance at max_distance means clear, and a level field of view of 0 is a sector of 45
+//   degrees.
+// * OBSTACLE_DISTANCE_3D, if there is a sink for points: frame 12 (body, levelled by a roll and pitch not older than
+//   0.3 s) and 1 (a position in the local frame, made relative by own position and yaw), else no_origin; other frames
+//   are out_of_range. Farther than max_distance: clear in that direction; nearer than min_distance: at min_distance. A
+//   scan is all points with one time stamp and sensor_type, and ends with the next scan or a pause of 0.05 s.
+// * Leg: the flight to the mission's current item; endpoint_mission.cpp. Reported while armed and in the mission mode
 //   and in an external mode that follows the mission mode directly (ours); lost in any other mode.
-//   Start: the own position when the item, its place or the mode changes, or on arming: ArduCopter flies from where it
-//   stands when an item starts or AUTO resumes. Or the end of the former leg, where MISSION_ITEM_REACHED says that it
+//   Start: the own position when the item, its place or the mode changes, or on arming: ArduCopter flies from its own
+//   position when an item starts or AUTO resumes. Or the end of the former leg, if MISSION_ITEM_REACHED reports that it
 //   was reached, within 15 m (PX4's acceptance radius is 10 m): both stacks then fly along the line between the items.
 //   End: WAYPOINT (16): its place. LOITER_UNLIM, LOITER_TIME (17, 19) of a copter: their place, until within 3 m. LAND
 //   (21) of a copter: level to above its place, until within 3 m. TAKEOFF (22) of a copter: straight up to its height;
-//   PX4 goes on to its place afterwards. An altitude of 0 means the present one to ArduPilot. Everything else is not
-//   known: LOITER_TURNS, LOITER_TO_ALT, SPLINE_WAYPOINT, RTL, circles of a plane, items without a place of their own,
-//   above terrain, or that cannot be placed yet. Frames: 0, 3, 5, 6 (global, or relative to home) and 1.
-//   POSITION_TARGET_LOCAL_NED is not read: PX4 sends its controller's set-point, ArduCopter (0, 0, 0) during a take-off
+//   PX4 goes on to its place afterwards. An altitude of 0 means the present one to ArduPilot. The leg to any other item
+//   is unknown: LOITER_TURNS, LOITER_TO_ALT, SPLINE_WAYPOINT, RTL, circles of a plane, items without a place of their
+//   own, above terrain, or that cannot be placed yet. Frames: 0, 3, 5, 6 (global, or relative to home) and 1.
+//   POSITION_TARGET_LOCAL_NED is ignored: PX4 sends its controller's set-point, ArduCopter (0, 0, 0) during a take-off
 //   in GUIDED.
-// * Sticks: channels 1 to 4 of RC_CHANNELS (1000 to 2000 us), and MANUAL_CONTROL. A report is passed over whole, not
+// * Sticks: channels 1 to 4 of RC_CHANNELS (1000 to 2000 us), and MANUAL_CONTROL. A report is ignored as a whole, not
 //   counted, when it has fewer than four channels, one of the four is 0, 65535 or outside of 800 to 2200 us, or the
-//   third is below 1000 us: that is how receivers say that the transmitter is lost (ArduPilot's FS_THR_VALUE). rssi is
-//   not read: many receivers do not give any. MANUAL_CONTROL: beyond +-1000 (INT16_MAX: no such axis) likewise.
-// * Rates: what comes too seldom is asked for by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
-// * Modes as in docs/guides/take_over.md; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1
-//   plus the armed bit (128) as heard. A HEARTBEAT is asked for by COMMAND_LONG REQUEST_MESSAGE (512) with param1 = 0:
-//   both stacks send it at once, and answer ACCEPTED. SET_MESSAGE_INTERVAL of HEARTBEAT is refused by PX4.
-// * Vehicles that follow set-points of a velocity: multirotors and helicopters of both stacks, and a VTOL of PX4 while
-//   EXTENDED_SYS_STATE says that it hovers. ArduPlane takes guided points (below) while EXTENDED_SYS_STATE says that it
-//   is no VTOL. Everything else is reported as not steerable: QuadPlanes, PX4's fixed wing, rovers, boats, submarines,
-//   trackers, airships and what does not say what it is.
+//   third is below 1000 us: receivers report a lost transmitter in this way (ArduPilot's FS_THR_VALUE). rssi is
+//   ignored: many receivers do not give any. MANUAL_CONTROL: beyond +-1000 (INT16_MAX: no such axis) likewise.
+// * Rates: messages that come too seldom are requested by COMMAND_LONG SET_MESSAGE_INTERVAL (511), see StreamRequests.
+// * Modes as in docs/guides/take_over.md; requests by COMMAND_LONG DO_SET_MODE (176), base mode 1 plus the armed bit
+//   (128) as received. A HEARTBEAT is requested by COMMAND_LONG REQUEST_MESSAGE (512) with param1 = 0: both stacks send
+//   it at once, and answer ACCEPTED. SET_MESSAGE_INTERVAL of HEARTBEAT is refused by PX4.
+// * Vehicles that follow velocity set-points: multirotors and helicopters of both stacks, and a VTOL of PX4 while
+//   EXTENDED_SYS_STATE reports hover. ArduPlane accepts guided points (below) while EXTENDED_SYS_STATE reports no VTOL.
+//   All others are reported as not steerable: QuadPlanes, PX4's fixed wing, rovers, boats, submarines, trackers,
+//   airships and vehicles of unknown type.
 // * COMMAND_LONG and PARAM_* addressed to us alone are passed on, PARAM_REQUEST_LIST to all components too. A PARAM_SET
 //   that is not a finite REAL32 has value_finite = false.
 // * TUNNEL addressed to us alone, of the type kConstraintPayload: one closed area of a set (constraint_message.hpp). A
-//   payload that cannot be read is answered at once, and counts out_of_range; every other part is passed on.
-// * SETUP_SIGNING (256) addressed to us alone: another key, or with a key of zeros and a time of 0 no key any more.
-//   Taken where the owner stores keys, while the autopilot is disarmed, and, where a key is set, only when signed with
-//   it. The answer is a text; the message has no other. Counted: keys_set, keys_refused.
+//   malformed payload is answered at once, and counts out_of_range; every other part is passed on.
+// * SETUP_SIGNING (256) addressed to us alone: sets another key, or removes the key if the key is zeros and the time 0.
+//   Accepted if the owner stores keys, while the autopilot is disarmed, and, if a key is set, only when signed with it.
+//   The answer is a text; the message has no other. Counted: keys_set, keys_refused.
 // * Set-points: SET_POSITION_TARGET_LOCAL_NED frame 1, mask 0x0DC7, to the autopilot. To ArduPlane: COMMAND_INT
 //   DO_REPOSITION (192), frame 5, param1 = -1, param2 to param4 = 0 (no change of mode, own loiter radius, clockwise),
-//   at most every 0.5 s, while its HEARTBEAT shows GUIDED and the origin is known (PlaneSteering). An answer DENIED
-//   brings the point nearer.
-// * A line that has been silent for 0.1 s in mid-frame: what is pending is searched once more (Parser::flush).
+//   at most every 0.5 s, while its HEARTBEAT shows GUIDED and the origin is known (PlaneSteering). After an answer
+//   DENIED the next point is nearer.
+// * A line that has been silent for 0.1 s in mid-frame: the pending bytes are searched once more (Parser::flush).
 
 namespace jink::link::mavlink {
 
 struct EndpointOptions {
-    std::uint8_t system_id = 0;  ///< 0: that of the first autopilot heard
+    std::uint8_t system_id = 0;  ///< 0: that of the first autopilot received
     std::uint8_t component_id = 196;
     float max_stamp_age = 1.0F;  ///< older own-state stamps are refused [s]
 };
 
-/// See the head of this file. Memory: about 6 KiB, most of it the transmit buffer, and 20 bytes per mission item.
-/// Frames that are refused are counted by the parser, reports that are refused by `diagnostics`.
+/// See the head of this file. Memory: about 6 KiB, most of it the transmit buffer, and 20 bytes per mission item. The
+/// parser counts refused frames, `diagnostics` refused reports.
 class Endpoint final : public Link {
 public:
-    /// Room for the longest burst of one step (a heartbeat, a set-point, texts, three parameters) many times over.
+    /// Several times the longest burst of one step (a heartbeat, a set-point, texts, three parameters).
     static constexpr std::size_t kTransmitBytes = 4096;
 
     explicit Endpoint(const EndpointOptions& options = {}, Signing* signing = nullptr) noexcept;
@@ -147,7 +146,7 @@ public:
     void request_mode(std::uint32_t custom_mode) noexcept override;
     void request_heartbeat() noexcept override;
     void request_hold_mode() noexcept override;
-    /// O(bytes), and a SHA-256 per frame where frames are signed.
+    /// O(bytes), and a SHA-256 per frame if frames are signed.
     [[nodiscard]] std::size_t compose_last_words(std::span<std::byte> out, bool hold,
                                                  std::string_view text) noexcept override;
 
@@ -162,7 +161,7 @@ public:
     }
     [[nodiscard]] const LinkDiagnostics& diagnostics() const noexcept override { return diagnostics_; }
     [[nodiscard]] const ParserDiagnostics& parser_diagnostics() const noexcept { return parser_.diagnostics(); }
-    /// 0 until an autopilot was heard.
+    /// 0 before the first autopilot.
     [[nodiscard]] std::uint8_t system_id() const noexcept { return system_; }
     [[nodiscard]] bool has_origin() const noexcept { return origin_rank_ > 0; }
     [[nodiscard]] bool has_home() const noexcept { return has_home_; }
@@ -276,7 +275,7 @@ private:
     vehicle::VehicleState own_;
     bool has_yaw_ = false;
     TimePoint yaw_heard_;
-    float roll_ = 0.0F;   ///< heard with the yaw [rad]
+    float roll_ = 0.0F;   ///< received with the yaw [rad]
     float pitch_ = 0.0F;  ///< [rad]
     bool has_odometry_ = false;
     TimePoint last_odometry_;
@@ -292,7 +291,7 @@ private:
     float height_over_pressure_ = 0.0F;  ///< own height less own pressure altitude [m]
     TimePoint pressure_heard_;
     std::optional<std::int32_t> undulation_;   ///< of the geoid over the ellipsoid, here [mm]
-    std::array<std::uint8_t, 18> own_name_{};  ///< to traffic management; zeros: not known
+    std::array<std::uint8_t, 18> own_name_{};  ///< in traffic management; zeros: unknown
     bool has_home_on_globe_ = false;
     GlobalPosition home_on_globe_;
     bool has_home_ = false;  ///< both home and origin are known
@@ -303,20 +302,20 @@ private:
     bool has_leg_ = false;           ///< as reported
     world::Leg leg_;
     bool has_anchor_ = false;
-    Vec3 anchor_ = Vec3::Zero();  ///< where the leg starts
+    Vec3 anchor_ = Vec3::Zero();  ///< start of the leg
     bool had_leg_ = false;        ///< leg_ started at this anchor
     TimePoint anchored_;
     std::uint32_t anchor_version_ = 0;
     std::uint16_t anchor_sequence_ = 0;
-    bool is_goal_reached_ = false;  ///< of the item anchored for: from there on it is flown otherwise than to its place
-    bool has_former_ = false;       ///< the leg that was flown before this one, in the same mission
+    bool is_goal_reached_ = false;  ///< of the anchored item: from there on it is not flown towards its place
+    bool has_former_ = false;       ///< the leg that was flown before the present one, in the same mission
     Vec3 former_end_ = Vec3::Zero();
     std::uint16_t former_sequence_ = 0;
     bool has_reached_ = false;
     std::uint16_t reached_sequence_ = 0;
     TimePoint reached_;
 
-    /// Of single points that came with one stamp.
+    /// State of a scan of single points with one stamp.
     bool is_scan_open_ = false;
     std::uint8_t scan_sensor_ = 0;
     std::uint32_t scan_boot_ms_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The autopilot's mission, and the leg that it flies of it.
+// The autopilot's mission, and its present leg.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint8_t kFrameGlobalRelative = 3;
 constexpr std::uint8_t kFrameGlobalInt = 5;
 constexpr std::uint8_t kFrameGlobalRelativeInt = 6;
-/// No MAV_FRAME: an item without a height can be placed nowhere.
+/// Not a MAV_FRAME: an item without a height cannot be placed.
 constexpr std::uint8_t kNoFrame = 255;
 
 // MAV_CMD
@@ -27,21 +27,21 @@ constexpr std::uint16_t kTakeoff = 22;
 
 constexpr std::uint8_t kStateComplete = 5;  // MISSION_STATE_COMPLETE
 
-/// PX4 takes a waypoint for reached 10 m before (NAV_ACC_RAD), and MISSION_CURRENT says so up to 0.5 s later [m].
+/// PX4 accepts a waypoint 10 m before it (NAV_ACC_RAD), and MISSION_CURRENT follows up to 0.5 s later [m].
 constexpr float kCorner = 15.0F;
-/// ArduPlane by WP_RADIUS (90 m by default) or its L1 distance, whichever is less: 4.1 s of flight with NAVL1_PERIOD 17
-/// (AP_L1_Control::turn_distance), and MISSION_CURRENT says so up to 0.5 s later [m].
+/// ArduPlane accepts a waypoint at WP_RADIUS (90 m by default) or its L1 distance, whichever is less: 4.1 s of flight
+/// with NAVL1_PERIOD 17 (AP_L1_Control::turn_distance), and MISSION_CURRENT follows up to 0.5 s later [m].
 constexpr float kPlaneCorner = 120.0F;
-/// MISSION_ITEM_REACHED and MISSION_CURRENT of one switch come this close to each other [s].
+/// MISSION_ITEM_REACHED and MISSION_CURRENT of one switch arrive within this time of each other [s].
 constexpr Seconds kSwitchTime = 3.0F;
-/// A loiter or landing item is flown to its place until this near [m].
+/// A loiter or landing item counts as flown to its place until this near [m].
 constexpr float kArrival = 3.0F;
-/// A take-off has reached its height this far below it (NAV_MC_ALT_RAD is 0.8 m) [m].
+/// A take-off counts as complete this far below its height (NAV_MC_ALT_RAD is 0.8 m) [m].
 constexpr float kClimbed = 1.5F;
 
 bool has_coordinates(const MissionItem& item) noexcept
 {
-    // Latitude and longitude 0 stand for "here" in ArduPilot's items; the greatest integer for "not said".
+    // Latitude and longitude 0 mean "here" in ArduPilot's items; the greatest integer means "not given".
     return is_on_earth({item.x, item.y, 0}) && (item.x != 0 || item.y != 0);
 }
 
@@ -66,7 +66,7 @@ void Endpoint::note_others_transfer(bool upload, bool ended, TimePoint now) noex
     mission_.others(upload, ended, now);
 }
 
-/// True when the frame was the mission protocol's. Transfers of somebody else are seen where both share our line.
+/// True if the frame belongs to the mission protocol. Transfers of other systems are visible if both share our line.
 bool Endpoint::dispatch_mission(const Context& c) noexcept
 {
     const bool own = from_autopilot(c.frame);
@@ -83,7 +83,7 @@ bool Endpoint::dispatch_mission(const Context& c) noexcept
         return download || upload;
     }
     if (id == MissionRequest::kInfo.id || id == MissionRequestInt::kInfo.id) {
-        note_others_transfer(true, false, c.now);  // from who uploads
+        note_others_transfer(true, false, c.now);  // from the uploading system
     } else if (id == MissionCurrent::kInfo.id) {
         streams_.heard(id);
         on_mission_current(c);
@@ -172,7 +172,7 @@ void Endpoint::on_status_text(const Context& c) noexcept
     dispatch_sensors(c);
 }
 
-/// After a HEARTBEAT.
+/// Updates the mission state after a HEARTBEAT.
 void Endpoint::note_mode(FlightMode before, bool was_armed) noexcept
 {
     const bool is_mission = autopilot_.mode == FlightMode::mission;
@@ -211,7 +211,7 @@ bool Endpoint::place_height(const MissionItem& item, float& height) const noexce
     return is_absolute(item.frame) && origin_rank_ > 0;
 }
 
-/// Straight up to the item's height; then, for PX4, to its place. ArduCopter reads the height alone.
+/// Straight up to the item's height; then, for PX4, to its place. ArduCopter uses the height alone.
 bool Endpoint::find_takeoff_goal(const MissionItem& item, Vec3& goal) noexcept
 {
     float height = 0.0F;
@@ -230,7 +230,7 @@ bool Endpoint::find_takeoff_goal(const MissionItem& item, Vec3& goal) noexcept
     return true;
 }
 
-/// Where the item is flown to, from `anchor_`; false while that is not known. See the head of endpoint.hpp.
+/// Destination of the item, from `anchor_`; false while unknown. See the head of endpoint.hpp.
 bool Endpoint::find_goal(const MissionItem& item, Vec3& goal) noexcept
 {
     const bool circles = vehicle_class_ == VehicleClass::plane && item.command != kWaypoint;
@@ -270,7 +270,7 @@ void Endpoint::anchor_leg(TimePoint now) noexcept
     is_goal_reached_ = false;
 }
 
-/// The former item was reached, so this one is flown along the line between the two. Either message may come first.
+/// If the former item was reached, this item is flown along the line between the two. Either message may come first.
 void Endpoint::settle_anchor() noexcept
 {
     const float corner = vehicle_class_ == VehicleClass::plane ? kPlaneCorner : kCorner;
@@ -290,7 +290,7 @@ std::optional<world::Leg> Endpoint::find_leg(TimePoint now) noexcept
     }
     if (!has_anchor_ || anchor_version_ != mission_.version()) {
         if (autopilot_.mode != FlightMode::mission) {
-            return std::nullopt;  // it will be flown from where the mission goes on
+            return std::nullopt;  // its start is the position at which the mission continues
         }
         anchor_leg(now);
     }

@@ -8,11 +8,11 @@
 namespace jink::link::mavlink {
 namespace {
 
-/// Points of one scan follow one another within this, as ArduPilot has it [s].
+/// Points of one scan follow one another within this time, as in ArduPilot [s].
 constexpr Seconds kPointPause = 0.05F;
-/// A roll of 90 degrees a second moves what is 20 m away by 9 m in this time: older ones place nothing [s].
+/// A roll of 90 degrees a second moves a point at 20 m by 9 m in this time: older attitudes are not used [s].
 constexpr Seconds kTiltFresh = 0.3F;
-/// Own place by which points of the local frame become relative; flown on from its stamp [s].
+/// Largest age of the own position that makes points of the local frame relative; extrapolated from its stamp [s].
 constexpr Seconds kPlaceFresh = 0.5F;
 
 }  // namespace
@@ -36,7 +36,7 @@ void Endpoint::on_point(const Context& c) noexcept
         return;
     }
     const float distance = point.norm();
-    if (!(distance > 0.0F) || !std::isfinite(distance)) {  // no direction that it could lie in
+    if (!(distance > 0.0F) || !std::isfinite(distance)) {  // no direction in which it could lie
         ++diagnostics_.out_of_range;
         return;
     }
@@ -49,7 +49,7 @@ void Endpoint::on_point(const Context& c) noexcept
 }
 
 /// @param point  relative to the vehicle, in CloudSink's level frame [m]
-/// False where attitude or own place are not known well enough.
+/// False if attitude or own position are too old.
 bool Endpoint::make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& point) noexcept
 {
     const Vec3 told(m.x, m.y, m.z);
@@ -57,7 +57,7 @@ bool Endpoint::make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& poin
         point = level_of_frd(roll_, pitch_) * told;
         return has_yaw_ && now - yaw_heard_ <= kTiltFresh;
     }
-    // Where it was told, not where it is: the vehicle has flown on.
+    // Extrapolates the own position: the vehicle has moved since the stamp.
     const Vec3 own = own_.position + own_.velocity * (now - own_.stamp);
     const Vec3 offset = swap_ned_enu(told) - own;
     const float c = std::cos(own_.yaw);
@@ -66,7 +66,7 @@ bool Endpoint::make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& poin
     return knows_yaw(now) && has_local_ && now - local_heard_ <= kPlaceFresh;
 }
 
-/// The scan that a point belongs to: the one that is open, or its own.
+/// Opens the scan to which a point belongs, unless that scan is open already.
 void Endpoint::follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept
 {
     if (is_scan_open_ && (m.time_boot_ms != scan_boot_ms_ || m.sensor_type != scan_sensor_)) {
@@ -75,7 +75,7 @@ void Endpoint::follow_scan(const ObstacleDistance3d& m, TimePoint now) noexcept
     }
     if (!is_scan_open_) {
         CloudScan scan;
-        scan.stamp = now;  // the stamp is on the sender's clock, and that is any component's
+        scan.stamp = now;  // the stamp is on the sender's clock, which may be that of any component
         scan.sensor = m.sensor_type;
         scan.max_range = m.max_distance;
         points_to_->begin_scan(scan);

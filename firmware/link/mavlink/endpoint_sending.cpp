@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that goes out: time, rates and the mission asked for, modes, set-points, answers, last words.
+// All sent messages: time, rate and mission requests, modes, set-points, answers, last words.
 #include "firmware/link/mavlink/constraint_message.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/link/mavlink/numbers.hpp"
@@ -14,7 +14,7 @@ constexpr std::uint16_t kVelocityOnly = 0x0DC7;
 constexpr Seconds kTimesyncPeriod = 1.0F;
 constexpr Seconds kFirstPlaces = 2.0F;
 constexpr Seconds kPlacesPeriod = 4.0F;
-constexpr float kNoSpeed = -1.0F;               // of DO_REPOSITION: as it is
+constexpr float kNoSpeed = -1.0F;               // of DO_REPOSITION: unchanged
 constexpr std::uint8_t kMissionAccepted = 0;    // MAV_MISSION_ACCEPTED
 constexpr std::uint8_t kMissionCancelled = 15;  // MAV_MISSION_OPERATION_CANCELLED
 
@@ -39,7 +39,7 @@ void Endpoint::take_back(Perishable kind) noexcept
 template <Message M>
 std::size_t Endpoint::encode_as(const M& message, std::uint8_t sequence, std::span<std::byte> out) noexcept
 {
-    // 0 is nobody's id: until the autopilot is known, its usual one.
+    // System id 0 is invalid: until the autopilot is known, its usual id is used.
     const Header header{system_ != 0 ? system_ : kUsualSystem, options_.component_id, sequence};
     return signing_ != nullptr && signing_->has_key() ? encode_signed(message, header, *signing_, out)
                                                       : encode(message, header, out);
@@ -48,7 +48,7 @@ std::size_t Endpoint::encode_as(const M& message, std::uint8_t sequence, std::sp
 template <Message M>
 void Endpoint::send(const M& message, Perishable kind) noexcept
 {
-    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // nobody known yet to speak to
+    if (system_ == 0 && M::kInfo.id != Heartbeat::kInfo.id) {  // no receiver is known yet
         return;
     }
     take_back(kind);
@@ -82,7 +82,7 @@ void Endpoint::on_timesync(const Context& c) noexcept
         send(answer);
         return;
     }
-    // Only the answer to our newest request: others carry times that we never sent.
+    // Accepts the answer to our newest request only: others carry times that we never sent.
     if (!timesync_asked_ || m.ts1 != last_timesync_.us * 1000) {
         ++diagnostics_.frames_ignored;
         return;
@@ -127,7 +127,7 @@ void Endpoint::service(TimePoint now) noexcept
     service_mission(now);
 }
 
-/// Origin and home: what places traffic and mission must not wait for the first period of a stream.
+/// Requests origin and home: placing traffic and the mission must not wait for the first period of a stream.
 void Endpoint::ask_for_places(TimePoint now) noexcept
 {
     if (!asks_for_rates_ || autopilot_.stack == AutopilotStack::unknown || (origin_rank_ > 1 && has_home_on_globe_)) {
@@ -193,7 +193,8 @@ bool Endpoint::takes_guided_points() const noexcept
     return autopilot_.stack == AutopilotStack::ardupilot && vehicle_class_ == VehicleClass::plane;
 }
 
-/// ArduPlane in GUIDED discards velocities. In any other mode it answers DO_REPOSITION with FAILED: nothing is sent.
+/// ArduPlane in GUIDED discards velocities. In any other mode ArduPlane answers DO_REPOSITION with FAILED: nothing is
+/// sent.
 void Endpoint::send_guided_point(const Vec3& velocity, TimePoint now) noexcept
 {
     if (autopilot_.mode != FlightMode::external || origin_rank_ == 0) {
@@ -244,7 +245,7 @@ void Endpoint::send_collision(const CollisionWarning& warning) noexcept
     m.time_to_minimum_delta = warning.time_to_closest;
     m.altitude_minimum_delta = warning.vertical_miss;
     m.horizontal_minimum_delta = warning.horizontal_miss;
-    // 1: a system of the link, by its id. 0: all else, since MAV_COLLISION_SRC knows ADS-B and no other that fits.
+    // 1: a system of the link, by its id. 0: all others, since MAV_COLLISION_SRC has ADS-B and no other that fits.
     m.src = of_system ? 1 : 0;
     m.action = static_cast<std::uint8_t>(warning.action);
     m.threat_level = static_cast<std::uint8_t>(warning.level);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Range sensors, and what others ask of us.
+// Range sensors, and requests of other systems.
 #include <algorithm>
 #include <cmath>
 
@@ -13,14 +13,14 @@ namespace {
 constexpr std::uint16_t kUnknownDistance = 65535;
 constexpr float kCentimetre = 0.01F;
 constexpr float kDegree = kPi / 180.0F;
-/// Beam width taken for a range finder that does not say its own: half angle [rad].
+/// Assumed beam width of a range finder that does not give its own: half angle [rad].
 constexpr float kDefaultHalfAngle = 0.1F;
 /// Ids of the readings of ArduPilot's proximity library: eight level sectors, and one upwards.
 constexpr std::uint8_t kFirstProximityId = 10;
 constexpr std::uint8_t kLastProximityId = 19;
 /// A sector of that library: half angle [rad].
 constexpr float kProximityHalfAngle = kPi / 8.0F;
-/// A field of view below this is taken for not said [rad].
+/// A field of view below this counts as not given [rad].
 constexpr float kLeastFieldOfView = 1e-3F;
 
 }  // namespace
@@ -30,7 +30,7 @@ void Endpoint::dispatch_sensors(const Context& c) noexcept
     const bool same_system = c.frame.header.system_id == system_;
     switch (c.frame.message_id) {
     case AdsbVehicle::kInfo.id:
-        // Other vehicles' autopilots pass on what they hear, and that is us as well.
+        // Other vehicles' autopilots relay the traffic that they receive, and that includes us.
         if (same_system || c.frame.header.component_id != kAutopilotComponent) {
             diagnostics_.traffic_relayed += same_system ? 0U : 1U;
             on_adsb(c);
@@ -82,7 +82,7 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
     }
     const float increment = m.increment_f != 0.0F ? m.increment_f : static_cast<float>(m.increment);
     const bool known_frame = m.frame == kFrameGlobal || m.frame == kFrameLocalNed || m.frame == kFrameBodyFrd;
-    // Sectors below a degree would leave most of the circle unseen, above 180 they say nothing.
+    // Sectors below a degree would leave most of the circle unseen; sectors above 180 degrees give no direction.
     if (!known_frame || std::abs(increment) < 0.5F || std::abs(increment) > 180.0F ||
         std::abs(m.angle_offset) > 360.0F || m.max_distance == 0 || m.min_distance > m.max_distance) {
         ++diagnostics_.out_of_range;
@@ -92,7 +92,7 @@ void Endpoint::on_obstacle_distance(const Context& c) noexcept
         ++diagnostics_.no_origin;
         return;
     }
-    if (c.inbox.has_scan) {  // there is room for one: the newer takes its place
+    if (c.inbox.has_scan) {  // the inbox holds one scan: the newer replaces it
         ++diagnostics_.inbox_full;
     }
     RangeScan& scan = c.inbox.scan;
@@ -124,7 +124,7 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     constexpr std::uint8_t kDown = 25;
     constexpr std::uint8_t kInvalidSignal = 1;
     const bool level = m.orientation <= 7;
-    // That library sends max_distance for a sector in which it sees nothing.
+    // That library sends max_distance for a clear sector.
     const bool proximity = from_autopilot(c.frame) && autopilot_.stack == AutopilotStack::ardupilot &&
                            m.id >= kFirstProximityId && m.id <= kLastProximityId;
     if (!std::isfinite(m.horizontal_fov) || !std::isfinite(m.vertical_fov)) {
@@ -147,7 +147,7 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     reading.range = m.current_distance > m.max_distance || (proximity && m.current_distance == m.max_distance)
                         ? RangeScan::kNothing
                         : static_cast<float>(std::max(m.current_distance, m.min_distance)) * kCentimetre;
-    // Level, what is above or below does not matter; straight up or down, the wider of the two.
+    // For level beams the vertical width is irrelevant; straight up or down, the wider of both counts.
     const float fov = level ? m.horizontal_fov : std::max(m.horizontal_fov, m.vertical_fov);
     const float unsaid = proximity && level ? kProximityHalfAngle : kDefaultHalfAngle;
     reading.half_angle = fov >= kLeastFieldOfView ? std::min(0.5F * fov, 0.5F * kPi) : unsaid;
@@ -175,7 +175,7 @@ void Endpoint::dispatch_requests(const Context& c) noexcept
     }
 }
 
-/// The pilot's sticks, where they are known.
+/// Reports the pilot's sticks if they are known.
 void Endpoint::on_sticks(const Context& c) noexcept
 {
     SticksReport report;
@@ -241,7 +241,7 @@ void Endpoint::on_tunnel(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         acknowledge(part, ConstraintResult::malformed);
     } else if (!c.inbox.constraints.try_push_back(part)) {
-        ++diagnostics_.inbox_full;  // not answered: the sender repeats what is not
+        ++diagnostics_.inbox_full;  // no answer: the sender repeats an unanswered request
     }
 }
 
@@ -253,7 +253,7 @@ void Endpoint::on_param(const Context& c) noexcept
     ParamRequestRead read;
     ParamSet set;
     if (decode(c.frame, list)) {
-        // A list may be asked of every component at once.
+        // A list may be requested from every component at once.
         ours = for_us(list.target_system, list.target_component) ||
                (list.target_system == system_ && list.target_component == 0);
         request.kind = ParamRequestKind::list;
@@ -266,7 +266,7 @@ void Endpoint::on_param(const Context& c) noexcept
         ours = for_us(set.target_system, set.target_component);
         request.kind = ParamRequestKind::set;
         request.name = set.param_id;
-        // Another type may mean that the bits are those of an integer: no number to go by.
+        // Another type may mean that the bits are those of an integer, so the value is unusable.
         request.value_finite = std::isfinite(set.param_value) && set.param_type == kReal32;
         request.value = request.value_finite ? set.param_value : 0.0F;
     }

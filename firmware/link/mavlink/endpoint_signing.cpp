@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keys that come over the link.
+// Keys set over the link.
 #include <algorithm>
 
 #include "firmware/link/mavlink/endpoint.hpp"
 
 namespace jink::link::mavlink {
 
-/// Armed vehicles keep their key, as in ArduPilot: with a key that only one side has, the autopilot hears nothing of
-/// us. Without a key anyone may set one (as in PX4 and ArduPilot); to change it takes the key.
+/// Armed vehicles keep their key, as in ArduPilot: with a key that only one side has, the autopilot refuses all our
+/// frames. Without a key any sender may set one (as in PX4 and ArduPilot); to change a key, the sender needs the key.
 void Endpoint::on_setup_signing(const Context& c) noexcept
 {
     SetupSigning m;
@@ -34,7 +34,7 @@ void Endpoint::on_setup_signing(const Context& c) noexcept
     Signing::Key key;
     std::transform(m.secret_key.begin(), m.secret_key.end(), key.begin(), [](std::uint8_t b) { return std::byte{b}; });
     if (key == Signing::Key{} && m.initial_timestamp == 0) {
-        // The last signed words: whoever asked for this still listens for them.
+        // The last signed text: the sender of the request still expects signatures.
         send_text(Severity::warning, "jink: signing is off");
         signing_->remove_key();
     } else {

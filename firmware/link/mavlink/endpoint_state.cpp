@@ -14,17 +14,17 @@ namespace jink::link::mavlink {
 namespace {
 
 constexpr std::uint8_t kFrameBodyNed = 8;
-/// Own speeds beyond this are no vehicle's of ours [m/s].
+/// Own speeds beyond this are implausible [m/s].
 constexpr float kLargestSpeed = 400.0F;
-/// LOCAL_POSITION_NED is passed over while ODOMETRY, which says more, is younger than this [s].
+/// LOCAL_POSITION_NED is ignored while ODOMETRY, which holds more, is younger than this [s].
 constexpr Seconds kOdometryFresh = 1.0F;
-/// Own global and local position this close in time make an origin [s].
+/// Own global and local position this close in time give an origin [s].
 constexpr Seconds kPairAge = 0.2F;
-/// Ranges seen from the body are placed by a heading no older than this [s].
+/// Ranges in the body frame need a heading no older than this [s].
 constexpr Seconds kYawFresh = 1.0F;
-/// Angles on the wire lie within a turn either way [rad].
+/// Angles on the wire lie within a full turn either way [rad].
 constexpr float kLargestAngle = 2.0F * kPi;
-/// An origin from own positions that is off by more is taken anew [m].
+/// An origin from own positions that differs by more replaces the known one [m].
 constexpr float kOriginMoved = 5.0F;
 
 bool plausible(const Vec3& position, const Vec3& velocity) noexcept
@@ -32,21 +32,21 @@ bool plausible(const Vec3& position, const Vec3& velocity) noexcept
     return position.norm() <= kLargestPosition && velocity.norm() <= kLargestSpeed;
 }
 
-/// Standard deviation from the first three variances of an upper triangle of 6 x 6; 0 when not given.
+/// Standard deviation from the first three variances of an upper triangle of 6 x 6; 0 if not given.
 float sigma_of(const std::array<float, 21>& covariance) noexcept
 {
     const float largest = std::max({covariance[0], covariance[6], covariance[11]});
     return std::isfinite(covariance[0]) && std::isfinite(largest) && largest > 0.0F ? std::sqrt(largest) : 0.0F;
 }
 
-/// q scaled to length 1: the wire rounds, and `turn` would stretch what it turns.
+/// q scaled to length 1: the wire rounds, and `turn` would stretch the vector.
 std::array<float, 4> normalised(const std::array<float, 4>& q) noexcept
 {
     const float scale = 1.0F / std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     return {scale * q[0], scale * q[1], scale * q[2], scale * q[3]};
 }
 
-/// v turned by the unit quaternion q = (w, x, y, z).
+/// v rotated by the unit quaternion q = (w, x, y, z).
 Vec3 turn(const std::array<float, 4>& q, const Vec3& v) noexcept
 {
     const Vec3 axis(q[1], q[2], q[3]);
@@ -54,7 +54,7 @@ Vec3 turn(const std::array<float, 4>& q, const Vec3& v) noexcept
     return v + q[0] * t + axis.cross(t);
 }
 
-// Of a unit quaternion from FRD to NED; z-y-x, as ATTITUDE has them [rad].
+// Euler angles of a unit quaternion from FRD to NED; z-y-x, as in ATTITUDE [rad].
 float heading_of(const std::array<float, 4>& q) noexcept
 {
     return direction_angle(2.0F * (q[0] * q[3] + q[1] * q[2]), 1.0F - 2.0F * (q[2] * q[2] + q[3] * q[3]));
@@ -178,7 +178,7 @@ void Endpoint::on_odometry(const Context& c) noexcept
         ++diagnostics_.out_of_range;
         return;
     }
-    // The stamp may be on the boot clock or since 1970; only the first can be mapped, the other counts as just arrived.
+    // The stamp may be on the boot clock or since 1970. Only the first can be mapped; the other counts as just arrived.
     constexpr std::uint64_t kSince1970 = 1'000'000'000'000'000ULL;
     TimePoint stamp = c.now;
     if (m.time_usec < kSince1970 && !stamp_of(static_cast<std::int64_t>(m.time_usec), c.now, stamp)) {
@@ -199,7 +199,7 @@ void Endpoint::on_odometry(const Context& c) noexcept
     has_local_boot_ = m.time_usec < kSince1970;
     local_boot_ms_ = static_cast<std::uint32_t>(m.time_usec / 1000);
     local_heard_ = c.now;
-    // The local frame has jumped: the leg starts where the vehicle is in the new one.
+    // The local frame has jumped: the leg starts at the vehicle's position in the new frame.
     has_anchor_ = has_anchor_ && !reset;
     has_former_ = has_former_ && !reset;
     c.inbox.own_state.estimator_reset = c.inbox.own_state.estimator_reset || reset;
@@ -242,7 +242,7 @@ void Endpoint::on_global_position(const Context& c) noexcept
     GlobalPositionInt m;
     static_cast<void>(decode(c.frame, m));
     const GlobalPosition own{m.lat, m.lon, m.alt};
-    // Both are stamped by one clock; the difference of two 32-bit stamps is right across their wrap.
+    // One clock stamps both; the difference of two 32-bit stamps is right across their wrap.
     const auto ahead_ms = static_cast<std::int32_t>(m.time_boot_ms - local_boot_ms_);
     const Seconds ahead = static_cast<float>(ahead_ms) * 1e-3F;
     const bool is_pair =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Traffic: what transponders are heard to say, and what other vehicles say of themselves.
+// Traffic: reports of transponders, and reports of other vehicles about themselves.
 #include <algorithm>
 #include <cmath>
 
@@ -20,8 +20,8 @@ constexpr unsigned kValidVelocity = 8;
 constexpr unsigned kValidVerticalVelocity = 128;
 constexpr std::uint8_t kUnmanned = 14;
 constexpr std::uint8_t kPointObstacle = 19;
-/// Noise of a velocity whose vertical part is not known, one standard deviation [m/s]: that of a track without any
-/// (world::TrackTableSettings). Three of them hold climbs of 15 m/s; the sightings that follow narrow it down.
+/// Noise of a velocity with unknown vertical component, one standard deviation [m/s]: equal to that of a track without
+/// any velocity (world::TrackTableSettings). Three of them hold climbs of 15 m/s; later reports narrow it down.
 constexpr float kUnknownClimb = 5.0F;
 
 // UTM_DATA_AVAIL_FLAGS and UTM_FLIGHT_STATE
@@ -35,19 +35,20 @@ constexpr std::uint8_t kUtmEmergency = 16;
 constexpr std::uint8_t kUtmNoControl = 32;
 
 constexpr std::uint8_t kFix3d = 3;  // GPS_FIX_TYPE
-/// The geoid lies within this of the ellipsoid everywhere (EGM96: 107 m below to 86 m above it) [mm].
+/// The geoid is within this of the ellipsoid everywhere (EGM96: 107 m below to 86 m above it) [mm].
 constexpr std::int32_t kLargestUndulation = 120'000;
-/// Height of what is known above the ellipsoid alone, one standard deviation: three of them hold the geoid [m].
+/// Uncertainty of a height that is known above the ellipsoid alone, one standard deviation: three of them hold the
+/// geoid [m].
 constexpr float kUnknownUndulation = 36.0F;
 
 constexpr std::uint8_t kGeometricAltitude = 1;  // ADSB_ALTITUDE_TYPE
-/// Own height and own pressure belong together when they are this close in time [s].
+/// Own height and own pressure form a pair when they are this close in time [s].
 constexpr Seconds kPressurePair = 1.0F;
-/// The difference of height and pressure altitude is kept this long: weather changes slower [s].
+/// The difference of height and pressure altitude is valid for this long: weather changes more slowly [s].
 constexpr Seconds kPressureFresh = 10.0F;
-/// The air pressure at sea level stays within 60 hPa of the standard; a larger difference is no weather [m].
+/// The air pressure at sea level stays within 60 hPa of the standard; a larger difference is implausible [m].
 constexpr float kLargestPressureError = 600.0F;
-/// Pressures that a barometer in the air may show [hPa].
+/// Plausible pressures of a barometer in the air [hPa].
 constexpr float kLeastPressure = 100.0F;
 constexpr float kMostPressure = 1200.0F;
 
@@ -55,7 +56,7 @@ constexpr float kMillimetre = 1e-3F;
 constexpr float kCentimetrePerSecond = 0.01F;
 constexpr float kCentidegree = 0.01F * kPi / 180.0F;
 
-/// Of NED in cm/s.
+/// Velocity [m/s, ENU] from NED in cm/s.
 Vec3 velocity_of(std::int16_t north, std::int16_t east, std::int16_t down) noexcept
 {
     return kCentimetrePerSecond *
@@ -71,7 +72,7 @@ float pressure_altitude(float pressure) noexcept
     return kScale * (1.0F - std::pow(pressure / kSeaLevel, kExponent));
 }
 
-/// Some send zeros where they do not know.
+/// Some senders report zeros for an unknown position.
 bool is_place(const GlobalPosition& p) noexcept { return is_on_earth(p) && (p.lat != 0 || p.lon != 0); }
 
 bool is_name(const std::array<std::uint8_t, 18>& name) noexcept
@@ -88,7 +89,7 @@ void Endpoint::deliver(const TrackReport& report, Inbox& inbox) noexcept
     }
 }
 
-/// Whether a place that is sound can be brought into the local frame; counts why not.
+/// Whether a valid place can be converted to the local frame; counts the cause if not.
 bool Endpoint::can_place(bool is_sound) noexcept
 {
     diagnostics_.out_of_range += is_sound ? 0U : 1U;
@@ -126,9 +127,9 @@ void Endpoint::on_adsb(const Context& c) noexcept
     deliver(report, c.inbox);
 }
 
-/// Two readings of a pressure altitude are in use: against the standard pressure (as transponders send it) and against
-/// QNH (as the message's name says). The report holds both where our own pressure altitude is known. A geometric one is
-/// above sea level by the message's definition, above the ellipsoid where a transponder's is passed on.
+/// A pressure altitude may refer to the standard pressure (as transponders send it) or to QNH (as the message's name
+/// says). The report covers both possible heights if our own pressure altitude is known. A geometric altitude is above
+/// sea level by the message's definition, and above the ellipsoid if a transponder's value is relayed.
 void Endpoint::judge_height(const AdsbVehicle& m, TimePoint now, TrackReport& report) noexcept
 {
     if (m.altitude_type == kGeometricAltitude) {
@@ -145,7 +146,7 @@ void Endpoint::judge_height(const AdsbVehicle& m, TimePoint now, TrackReport& re
     }
 }
 
-/// Our own pressure altitude beside our own height.
+/// Updates our own pressure altitude relative to our own height.
 void Endpoint::on_pressure(const Context& c) noexcept
 {
     ScaledPressure m;
@@ -159,7 +160,7 @@ void Endpoint::on_pressure(const Context& c) noexcept
         return;
     }
     if (origin_rank_ == 0 || !has_local_ || c.now - local_heard_ > kPressurePair) {
-        return;  // there will be another one
+        return;  // a later one follows
     }
     const float height = static_cast<float>(origin_.alt) * kMillimetre + own_.position.z();
     height_over_pressure_ = height - pressure_altitude(m.press_abs);
@@ -168,8 +169,8 @@ void Endpoint::on_pressure(const Context& c) noexcept
     pressure_heard_ = c.now;
 }
 
-/// Another system's word of where it is. Its local position is of no use: that is about an origin of its own, and says
-/// nothing that this does not.
+/// Position reported by another system. Its local position is not used: it is relative to an origin of its own and adds
+/// nothing.
 void Endpoint::on_neighbour(const Context& c) noexcept
 {
     GlobalPositionInt m;
@@ -191,8 +192,8 @@ void Endpoint::on_neighbour(const Context& c) noexcept
     deliver(report, c.inbox);
 }
 
-/// What lies between mean sea level, of which own heights are, and the ellipsoid, of which UTM_GLOBAL_POSITION's are:
-/// around here it is the same for everybody.
+/// Undulation between mean sea level, the reference of own heights, and the ellipsoid, the reference of
+/// UTM_GLOBAL_POSITION: in this region it is the same for all vehicles.
 void Endpoint::on_gps(const Context& c) noexcept
 {
     GpsRawInt m;
@@ -205,7 +206,7 @@ void Endpoint::on_gps(const Context& c) noexcept
     undulation_ = static_cast<std::int32_t>(undulation);
 }
 
-/// Our own autopilot's says by which name we are known.
+/// Our own autopilot's message gives our own name.
 bool Endpoint::is_own(const Frame& frame, const UtmGlobalPosition& m, bool named) noexcept
 {
     if (from_autopilot(frame)) {

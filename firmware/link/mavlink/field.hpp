@@ -6,7 +6,7 @@
 
 namespace jink::link::mavlink {
 
-/// Longest payload that the one-byte length of a frame can claim.
+/// Longest payload, by the one-byte length of a frame.
 inline constexpr std::size_t kMaxPayload = 255;
 
 /// Element type of a field. `character` is one byte of text.
@@ -24,7 +24,7 @@ enum class FieldType : std::uint8_t { u8, i8, character, u16, i16, u32, i32, f32
     return type <= FieldType::f32 ? 4 : 8;
 }
 
-/// Where one field lies in the C++ structure and in the payload. 6 bytes.
+/// Position of one field in the C++ structure and in the payload. 6 bytes.
 struct Field {
     std::uint16_t object_offset;  ///< first byte in the structure
     std::uint8_t wire_offset;     ///< first byte in the payload
@@ -32,12 +32,12 @@ struct Field {
     FieldType type;
 };
 
-/// What a parser must know of a message to check a frame of it. 8 bytes.
+/// Properties of a message that a parser needs to check a frame. 8 bytes.
 struct MessageInfo {
     std::uint32_t id;
-    std::uint8_t crc_extra;   ///< last byte that goes into the checksum; changes with the message's definition
+    std::uint8_t crc_extra;   ///< last byte of the checksum's input; changes with the message's definition
     std::uint8_t min_length;  ///< payload without extensions: the length of a v1 frame
-    std::uint8_t max_length;  ///< payload with all extensions that are known here
+    std::uint8_t max_length;  ///< payload with all known extensions
 };
 
 }  // namespace jink::link::mavlink

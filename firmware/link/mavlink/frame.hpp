@@ -23,21 +23,21 @@ inline constexpr std::size_t kMaxFrame = kHeaderV2 + kMaxPayload + kChecksumSize
 /// The only incompatibility flag that MAVLink defines; a frame with any other must be discarded.
 inline constexpr std::byte kFlagSigned{0x01};
 
-/// Who sends, and the sender's running number (it counts all its frames, modulo 256).
+/// Sender, and the sender's running number (it counts all its frames, modulo 256).
 struct Header {
     std::uint8_t system_id;
     std::uint8_t component_id;
     std::uint8_t sequence;
 };
 
-/// A frame whose checksum was right. `payload` belongs to the parser and holds until its next call.
+/// A frame with a correct checksum. `payload` belongs to the parser and is valid until its next call.
 struct Frame {
     std::uint32_t message_id;
     std::uint8_t version;  ///< 1 or 2
     Header header;
     bool is_signed;
     std::uint8_t length;                              ///< payload bytes that were on the wire
-    std::span<const std::byte, kMaxPayload> payload;  ///< those, then zeros
+    std::span<const std::byte, kMaxPayload> payload;  ///< these bytes, then zeros
 };
 
 }  // namespace jink::link::mavlink

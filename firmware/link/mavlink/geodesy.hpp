@@ -14,9 +14,10 @@ using link::GlobalPosition;
 
 inline constexpr float kEarthRadius = 6378137.0F;  ///< [m]
 
-/// North, east, down on the wire and our ENU: the same swap both ways.
+/// Converts between North, East, Down on the wire and our ENU: the same swap both ways.
 [[nodiscard]] inline Vec3 swap_ned_enu(const Vec3& v) noexcept { return {v.y(), v.x(), -v.z()}; }
-/// Compass angle (clockwise from north) and ENU yaw (counter-clockwise from east): the same both ways [rad].
+/// Converts between compass angle (clockwise from north) and ENU yaw (counter-clockwise from east): the same both ways
+/// [rad].
 [[nodiscard]] inline float swap_heading_yaw(float angle) noexcept { return 0.5F * kPi - angle; }
 
 /// Latitude and longitude within their range (a longitude of 180 degrees counts as both).
@@ -25,20 +26,20 @@ inline constexpr float kEarthRadius = 6378137.0F;  ///< [m]
     return p.lat >= -900000000 && p.lat <= 900000000 && p.lon >= -1800000000 && p.lon <= 1800000000;
 }
 
-/// Beyond this latitude there is no map: its east turns too fast [degE7].
+/// Beyond this latitude there is no local map: its east direction turns too fast [degE7].
 inline constexpr std::int32_t kHighestLatitude = 850000000;
 
-/// Distance of a local position from that by great circle and bearing (the azimuthal projection that PX4 uses;
+/// Largest error of a local position against great circle and bearing (the azimuthal projection that PX4 uses;
 /// ArduPilot differs from it by half the second-order term), on the same sphere, for places within 10 km of the origin
 /// [m].
 inline constexpr float kMapError = 0.05F;      ///< up to 60 degrees of latitude
 inline constexpr float kPolarMapError = 1.0F;  ///< up to kHighestLatitude
-/// And that is how far from the origin they hold [m].
+/// Distance from the origin up to which both bounds hold [m].
 inline constexpr float kMapReach = 10'000.0F;
 
 /// Position relative to `origin` [m, ENU], on a sphere, to second order in the distance: see kMapError. Differences are
-/// taken in integers, so nothing is lost to rounding. PX4 takes a radius that is 0.11 % smaller than ours and
-/// ArduPilot's: 1 m in 1 km.
+/// computed in integers, without rounding. PX4 uses a radius that is 0.11 % smaller than ours and ArduPilot's: 1 m in 1
+/// km.
 [[nodiscard]] inline Vec3 to_local(const GlobalPosition& p, const GlobalPosition& origin) noexcept
 {
     constexpr std::int64_t kTurn = 3600000000LL;
@@ -55,8 +56,8 @@ inline constexpr float kMapReach = 10'000.0F;
             static_cast<float>(static_cast<std::int64_t>(p.alt) - origin.alt) * 1e-3F};
 }
 
-/// The inverse of `to_local`: where a local position (components up to 1000 km) lies on the globe. Same accuracy.
-/// Nothing when the origin or the result lies beyond kHighestLatitude or the altitude does not fit.
+/// The inverse of `to_local`: position on the globe of a local position (components up to 1000 km). Same accuracy.
+/// Nothing if the origin or the result lies beyond kHighestLatitude or the altitude is out of range.
 [[nodiscard]] inline std::optional<GlobalPosition> to_global(const Vec3& local, const GlobalPosition& origin) noexcept
 {
     constexpr std::int64_t kTurn = 3600000000LL;

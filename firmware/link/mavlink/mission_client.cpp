@@ -9,18 +9,18 @@ namespace {
 
 constexpr Seconds kAnswerTime = 1.0F;
 constexpr int kTries = 3;
-/// With kAnswerTime shorter than the 5 s after which PX4 ends a transfer with a text to the pilot [s].
+/// Together with kAnswerTime shorter than the 5 s after which PX4 ends a transfer with a text to the pilot [s].
 constexpr Seconds kRest = 3.0F;
 constexpr Seconds kDeniedRest = 1.0F;
 /// A restart takes longer than this [s].
 constexpr Seconds kSilence = 2.0F;
-/// Answers that a stalled line held back have come by then: they must not count for the next transfer [s].
+/// Answers delayed by a stalled line have arrived by then: they must not count for the next transfer [s].
 constexpr Seconds kLateness = 2.0F;
 constexpr Seconds kCheckPeriod = 5.0F;
 constexpr Seconds kReadPeriod = 20.0F;
 constexpr int kEnds = 3;
 constexpr Seconds kEndPeriod = 0.5F;
-/// After somebody else's transfer, and after its end [s].
+/// Pause after another system's transfer, and after its end [s].
 constexpr Seconds kOthersTime = 9.0F;
 constexpr Seconds kOthersEnded = 1.0F;
 constexpr float kLargestSpeed = 400.0F;
@@ -85,13 +85,13 @@ void MissionClient::heard(TimePoint now) noexcept
     heard_ = now;
 }
 
-/// The mission is another one than the one kept.
+/// Discards the copy: the autopilot's mission differs from it.
 void MissionClient::invalidate(TimePoint now) noexcept
 {
     if (state_ == State::ask_item || state_ == State::await_item) {
         end(MissionStep::cancel, now);
     } else if (state_ == State::await_count) {
-        // The count that comes after this announcement is of the announced mission.
+        // The count that follows this announcement is of the announced mission.
         read_total_ = progress_.total;
         read_id_ = progress_.id;
         checks_ = false;
@@ -112,7 +112,7 @@ void MissionClient::current(const MissionProgress& progress, TimePoint now) noex
     if (!has_current_) {
         has_current_ = true;
     } else if (another && stale_) {
-        drop();  // while somebody else's transfer keeps us from reading
+        drop();  // while another system's transfer prevents reading
     } else if (another) {
         invalidate(now);
     } else if (!stale_ && state_ == State::idle && !lone_ && id_ != 0 && progress.id == id_) {
@@ -128,7 +128,7 @@ void MissionClient::count(std::uint16_t count, std::uint32_t id, TimePoint now) 
     }
     is_partner_ = true;
     if (state_ != State::await_count) {
-        // The answer to a repetition: PX4 has begun anew, perhaps with another mission.
+        // The answer to a repetition: PX4 has restarted the transfer, perhaps with another mission.
         if (count != count_ || id != id_) {
             invalidate(now);
         }
@@ -214,13 +214,14 @@ void MissionClient::compare(const MissionItem& item, TimePoint now) noexcept
         drop();
         return;
     }
-    is_verified_ = is_verified_ || wanted_ == progress_.sequence;  // another one may be current by now
+    is_verified_ = is_verified_ || wanted_ == progress_.sequence;  // the current item may have changed since
     find_goal();
 }
 
 void MissionClient::store(std::uint16_t sequence, MissionItem item, float param1, float param2) noexcept
 {
-    // Types 0 and 1 are airspeed and ground speed; a copter has one for both. -1: no change; -2: the vehicle's own.
+    // Types 0 and 1 are airspeed and ground speed; a copter has one speed for both. -1: no change; -2: the vehicle's
+    // own.
     if (item.command == kDoChangeSpeed && (param1 == 0.0F || param1 == 1.0F)) {
         const bool said = param2 > 0.0F && param2 < kLargestSpeed;
         speed_ = said ? param2 : param2 == -1.0F ? speed_ : 0.0F;
@@ -255,7 +256,7 @@ void MissionClient::refused(std::uint8_t result, TimePoint now) noexcept
     if (result == 0 || state_ == State::idle) {
         return;
     }
-    // A refusal of the comparison is a mission in change, or shorter than it was.
+    // A refusal of the comparison means that the mission is changing, or is shorter than before.
     stale_ = true;
     drop();
     give_up(result == kDenied ? kDeniedRest : kRest, now);

@@ -7,21 +7,21 @@
 
 namespace jink::link::mavlink {
 
-/// Mode numbers of the autopilots (their own sources; docs/guides/take_over.md).
+/// Mode numbers of the autopilots (their own source code; docs/guides/take_over.md).
 enum class VehicleClass : std::uint8_t { copter, plane };
 
-/// Whose mode numbers and rules hold for a vehicle. ArduPilot's VTOLs are QuadPlanes: ArduPlane (Q_MAV_TYPE).
+/// Vehicle class whose mode numbers and rules apply. ArduPilot's VTOLs are QuadPlanes: ArduPlane (Q_MAV_TYPE).
 [[nodiscard]] VehicleClass vehicle_class(AutopilotStack stack, std::uint8_t mav_type) noexcept;
-/// No EXTENDED_SYS_STATE was heard. MAV_VTOL_STATE 0 says that the vehicle is no VTOL, or that nobody knows.
+/// No EXTENDED_SYS_STATE received. MAV_VTOL_STATE 0 means that the vehicle is no VTOL, or that its state is unknown.
 inline constexpr std::uint8_t kVtolUnheard = 255;
 
 /// Whether jink can steer the vehicle in the external mode: by velocities, or a plane of ArduPlane by guided points.
-/// ArduPlane reports a QuadPlane as a fixed wing too (Q_MAV_TYPE 0); its vtol_state tells them apart.
+/// ArduPlane reports a QuadPlane as a fixed wing too (Q_MAV_TYPE 0); its vtol_state distinguishes both.
 /// @param vtol_state  MAV_VTOL_STATE of EXTENDED_SYS_STATE, or kVtolUnheard
 [[nodiscard]] bool is_steerable(AutopilotStack stack, std::uint8_t mav_type, std::uint8_t vtol_state) noexcept;
-/// What a custom_mode means.
+/// Meaning of a custom_mode.
 [[nodiscard]] FlightMode classify(AutopilotStack stack, VehicleClass vehicle, std::uint32_t custom_mode) noexcept;
-/// custom_mode of the mode that follows a companion's set-points, and of the one that holds.
+/// custom_mode of the mode that follows a companion's set-points, and of the holding mode.
 [[nodiscard]] std::uint32_t external_mode(AutopilotStack stack, VehicleClass vehicle) noexcept;
 [[nodiscard]] std::uint32_t hold_mode(AutopilotStack stack, VehicleClass vehicle) noexcept;
 

@@ -6,7 +6,7 @@
 namespace jink::link::mavlink {
 namespace {
 
-// As ClockSync has them [ms].
+// As in ClockSync [ms].
 constexpr std::int32_t kJump = 200;
 constexpr std::int8_t kJumpsToBelieve = 3;
 constexpr std::int32_t kBucket = 5000;

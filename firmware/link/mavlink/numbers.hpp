@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-// Numbers of MAVLink's enumerations that more than one part of Endpoint needs.
+// Numbers of MAVLink's enumerations that several parts of Endpoint use.
 
 namespace jink::link::mavlink {
 
@@ -24,7 +24,7 @@ inline constexpr std::uint8_t kFrameLocalNed = 1;
 inline constexpr std::uint8_t kFrameGlobalInt = 5;
 inline constexpr std::uint8_t kFrameBodyFrd = 12;
 
-/// Places farther from the origin are no vehicle's of ours [m].
+/// Places farther from the origin are implausible [m].
 inline constexpr float kLargestPosition = 200000.0F;
 
 }  // namespace jink::link::mavlink

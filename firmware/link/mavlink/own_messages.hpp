@@ -24,7 +24,7 @@ namespace jink::link::mavlink {
 {
     Statustext m;
     m.severity = static_cast<std::uint8_t>(severity);
-    static_cast<void>(set_text(m.text, text));  // cutting is what the contract says
+    static_cast<void>(set_text(m.text, text));  // the contract permits cutting
     return m;
 }
 

@@ -10,7 +10,7 @@ namespace jink::link::mavlink {
 
 std::optional<Frame> Parser::next(std::span<const std::byte>& input) noexcept
 {
-    for (;;) {  // `take` shortens the input by at least one byte each time round
+    for (;;) {  // `take` removes at least one byte of the input per turn
         if (const std::optional<Frame> frame = scan()) {
             return frame;
         }
@@ -23,7 +23,7 @@ std::optional<Frame> Parser::next(std::span<const std::byte>& input) noexcept
 
 std::optional<Frame> Parser::flush() noexcept
 {
-    while (pending() > 0) {  // at least one byte goes each time round
+    while (pending() > 0) {  // at least one byte is removed per turn
         if (const std::optional<Frame> frame = scan()) {
             return frame;
         }
@@ -39,8 +39,8 @@ std::optional<Frame> Parser::flush() noexcept
 void Parser::take(std::span<const std::byte>& input) noexcept
 {
     if (end_ == buffer_.size()) {
-        // Less than half is pending, so more than half has gone since the last move: at most one byte moved per byte
-        // taken.
+        // Less than half of the buffer is pending, so more than half was removed since the last move: at most one byte
+        // moves per byte received.
         std::copy(buffer_.begin() + static_cast<std::ptrdiff_t>(begin_), buffer_.end(), buffer_.begin());
         end_ -= begin_;
         begin_ = 0;
@@ -51,7 +51,7 @@ void Parser::take(std::span<const std::byte>& input) noexcept
     input = input.subspan(n);
 }
 
-/// Drops what is certainly noise and the candidates that are wrong, up to a whole frame or an incomplete candidate.
+/// Drops definite noise and rejected candidates, up to a whole frame or an incomplete candidate.
 std::optional<Frame> Parser::scan() noexcept
 {
     for (;;) {
@@ -82,7 +82,7 @@ void Parser::skip_noise() noexcept
     diagnostics_.noise_bytes += static_cast<std::uint32_t>(begin_ - first);
 }
 
-/// Judges the candidate at the front as early as its bytes allow.
+/// Checks the candidate at the front as early as its bytes allow.
 Parser::Verdict Parser::examine(Candidate& candidate) noexcept
 {
     if (const Verdict header = read_header(candidate); header != Verdict::accepted) {

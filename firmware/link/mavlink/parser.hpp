@@ -13,81 +13,82 @@
 
 namespace jink::link::mavlink {
 
-/// What a parser saw and refused, one counter per cause. Each wraps at 2^32.
+/// Counters of received and refused frames, one per cause. Each wraps at 2^32.
 ///
-/// Every input byte ends in exactly one place: an accepted frame, a frame that was refused whole (the four signing
-/// causes), `noise_bytes`, or the bytes still pending.
+/// Every input byte is counted exactly once: in an accepted frame, in a frame refused whole (the four signing causes),
+/// in `noise_bytes`, or among the bytes still pending.
 struct ParserDiagnostics {
     std::uint32_t accepted = 0;
     std::uint32_t noise_bytes = 0;  ///< bytes between frames, those of rejected candidates included
 
-    // A candidate is a start byte and what seems to follow it. These reject it, and the search goes on one byte behind.
+    // A candidate is a start byte and its following bytes. These causes reject it, and the search continues one byte
+    // later.
     std::uint32_t incompatible_flags = 0;  ///< v2 with a flag other than kFlagSigned
-    std::uint32_t unknown_message = 0;     ///< id not in the catalogue: the checksum cannot be known
+    std::uint32_t unknown_message = 0;     ///< id not in the catalogue: the checksum is unknown
     std::uint32_t too_short = 0;           ///< v1 with fewer bytes than the message has
     std::uint32_t too_long = 0;            ///< more bytes than the message has (v2: extensions included)
     std::uint32_t bad_checksum = 0;
-    std::uint32_t cut = 0;  ///< given up incomplete by `flush`
+    std::uint32_t cut = 0;  ///< discarded incomplete by `flush`
 
-    // Frames with the right checksum that are refused, and stepped over whole.
+    // Frames with a correct checksum that are refused, and skipped whole.
     std::uint32_t unsigned_refused = 0;  ///< not signed, and a key is set
     std::uint32_t wrong_signature = 0;
     std::uint32_t stale_signature = 0;    ///< replayed, or more than a minute behind
-    std::uint32_t signature_streams = 0;  ///< no room to remember a further signing sender
+    std::uint32_t signature_streams = 0;  ///< no capacity for a further signing sender
 
     // Accepted frames whose sender is not proven.
     std::uint32_t signed_unchecked = 0;  ///< signed, and no key is set
-    std::uint32_t unsigned_taken = 0;    ///< not signed, and a key is set: as Signing::take_unsigned says
+    std::uint32_t unsigned_taken = 0;    ///< not signed, and a key is set: accepted by Signing::take_unsigned
 
     // Running numbers of accepted frames, per (system, component).
     std::uint32_t lost = 0;               ///< numbers skipped; a sender that restarts adds up to 255
-    std::uint32_t repeated = 0;           ///< same number twice running
-    std::uint32_t untracked_senders = 0;  ///< frames of senders beyond kMaxSenders, whose numbers are not followed
+    std::uint32_t repeated = 0;           ///< same number twice in succession
+    std::uint32_t untracked_senders = 0;  ///< frames of senders beyond kMaxSenders, whose numbers are not tracked
 
-    std::uint32_t checksum_bytes = 0;  ///< work: bytes that went through the checksum
+    std::uint32_t checksum_bytes = 0;  ///< work: bytes included in the checksum
 };
 
-/// Senders whose running number is followed. 16 covers an autopilot's components, ground stations and neighbours on one
-/// link; each costs 3 bytes. Frames of further ones are accepted all the same and counted in `untracked_senders`.
+/// Senders whose running number is tracked. 16 covers an autopilot's components, ground stations and neighbours on one
+/// link; each costs 3 bytes. Frames of further senders are accepted too and counted in `untracked_senders`.
 inline constexpr std::size_t kMaxSenders = 16;
 
-/// What to do with a v2 frame that is longer than the message is known here, its checksum being right.
+/// Handling of a v2 frame with a correct checksum that is longer than the known message.
 enum class LongerPayload : std::uint8_t {
     reject,  ///< count it as `too_long`
-    /// Take the known fields and drop the rest: a later revision of the message may have gained extension fields.
+    /// Use the known fields and drop the rest: a later revision of the message may have gained extension fields.
     accept,
 };
 
 /// Finds MAVLink frames (v1 and v2) in a stream of bytes.
 ///
-/// After noise, a cut frame or a false start byte the search goes on at the byte behind the rejected start byte, so a
-/// good frame that lies inside what a bad one claimed is still found; the frames found are those of a left-to-right
+/// After noise, a cut frame or a false start byte the search continues at the byte after the rejected start byte. So a
+/// good frame inside the bytes that a bad one claimed is still found; the frames found are those of a left-to-right
 /// scan of the whole stream. A frame of an unknown id cannot be checked and is searched in the same way
 /// (docs/guides/mavlink_frames.md).
 ///
-/// Work: each start byte is examined once; at most kMaxFrame - 1 bytes go through the checksum and one SHA-256 for each
-/// byte of input, and at most one byte is moved. One call on top of that may scan again what was pending: less than
-/// kMaxFrame bytes, so at most kMaxFrame^2 / 2 checksum bytes. Nothing is allocated.
-/// Memory: 2 * kMaxFrame + kMaxPayload + 3 * kMaxSenders bytes and the counters.
+/// Work: each start byte is examined once. At most kMaxFrame - 1 bytes go through the checksum and one SHA-256 for each
+/// byte of input, and at most one byte is moved. One call may in addition scan the pending bytes again: less than
+/// kMaxFrame bytes, so at most kMaxFrame^2 / 2 checksum bytes. Nothing is allocated. Memory: 2 * kMaxFrame +
+/// kMaxPayload + 3 * kMaxSenders bytes and the counters.
 class Parser {
 public:
     /// @param signing  key and times to check signatures with; must outlive the parser. nullptr, or without a key:
-    /// frames are taken as if they were not signed, as the official C library does.
+    ///                 frames are accepted as if they were not signed, as in the official C library.
     explicit Parser(Signing* signing = nullptr, LongerPayload longer = LongerPayload::reject) noexcept
         : signing_(signing), longer_(longer)
     {
     }
 
-    /// The next frame, or nothing once `input` is used up. What was taken is removed from the front of `input`.
+    /// The next frame, or nothing once `input` is used up. Consumed bytes are removed from the front of `input`.
     ///
     ///     while (const auto frame = parser.next(input)) { handle(*frame); }
     [[nodiscard]] std::optional<Frame> next(std::span<const std::byte>& input) noexcept;
 
-    /// For a line that has fallen silent in mid-frame: gives up the incomplete candidate in front and searches what it
-    /// has swallowed. Repeat until nothing comes back; then nothing is pending.
+    /// For a line that has fallen silent in mid-frame: discards the incomplete candidate in front and searches its
+    /// bytes. Repeat until nothing is returned; then nothing is pending.
     [[nodiscard]] std::optional<Frame> flush() noexcept;
 
-    /// Bytes taken that are not yet part of a verdict; below kMaxFrame between calls that return nothing.
+    /// Received bytes that are not yet classified; below kMaxFrame between calls that return nothing.
     [[nodiscard]] std::size_t pending() const noexcept { return end_ - begin_; }
     [[nodiscard]] const ParserDiagnostics& diagnostics() const noexcept { return diagnostics_; }
 

@@ -9,33 +9,33 @@
 
 namespace jink::link::mavlink {
 
-/// Velocity commands as the guided points that ArduPlane flies to: DO_REPOSITION in GUIDED.
+/// Converts velocity commands to the guided points that ArduPlane flies to: DO_REPOSITION in GUIDED.
 ///
 /// Course: ArduPlane heads straight for a guided point while the point is well outside of the loiter circle about it
 /// (AP_L1_Control::update_loiter, capture). The point lies kAhead seconds of flight ahead on the commanded course,
 /// kLeastAhead at least, and is renewed long before it is reached.
-/// Height: own height plus kClimbTime of the commanded climb, kMostClimb at most. ArduPlane goes to a height that near
-/// as fast as its energy control does, in both directions; a larger descent would be stretched over the whole distance
-/// (ALT_SLOPE_MIN, 15 m). When jink falls silent the plane levels off there.
-/// Speed is left to the autopilot, which keeps its own airspeed limits.
+/// Height: own height plus kClimbTime of the commanded climb, kMostClimb at most. ArduPlane flies to a height that near
+/// as fast as its energy control allows, in both directions. A larger descent would be stretched over the whole
+/// distance (ALT_SLOPE_MIN, 15 m). If jink falls silent the plane levels off there. Speed is left to the autopilot,
+/// which keeps its own airspeed limits.
 ///
-/// A point is due when the command changed by kTurned or kClimbChanged, kPeriod after the last one; without a change
-/// kRefresh after the last one, since a frame may be lost. A point that is refused (geofence) is followed by one at
-/// half the distance, kNearest at least.
+/// A point is due when the command has changed by kTurned or kClimbChanged, kPeriod after the last point; without a
+/// change kRefresh after the last point, since a frame may be lost. A refused point (geofence) is followed by a point
+/// at half the distance, kNearest at least.
 ///
 /// Pure, O(1).
 class PlaneSteering {
 public:
-    /// @param command   velocity [m/s, ENU], finite; without a course (slower than kNoCourse) nothing is due
+    /// @param command   velocity [m/s, ENU], finite; without a course (slower than kNoCourse) no point is due
     /// @param position  own position [m, ENU]
     /// @return the point to send now, or nothing; a returned point counts as sent
     [[nodiscard]] std::optional<Vec3> next(const Vec3& command, const Vec3& position, TimePoint now) noexcept;
 
-    /// The last point did not leave: the next one is due at once.
+    /// The last point was not sent: the next one is due at once.
     void forget_last() noexcept { has_sent_ = false; }
     /// The autopilot refused the last point.
     void note_refusal() noexcept;
-    /// Control is over.
+    /// Control has ended.
     void reset() noexcept { *this = {}; }
 
     static constexpr Seconds kPeriod = 0.5F;

@@ -15,7 +15,7 @@ public:
 
     /// O(bytes / 64) blocks of 64 rounds.
     void add(std::span<const std::byte> data) noexcept;
-    /// Closes the message; the object is not to be used afterwards.
+    /// Closes the message; the object must not be used afterwards.
     [[nodiscard]] Digest finish() noexcept;
 
 private:

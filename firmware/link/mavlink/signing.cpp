@@ -69,7 +69,7 @@ void Signing::follow_clock(std::int64_t now_us) noexcept
     }
 }
 
-/// A new sender: in a free place, or in that of one whose frames are stale whatever their time.
+/// Stores a new sender: in a free place, or in place of a sender whose frames are stale at any time.
 bool Signing::remember(const Stream& stream) noexcept
 {
     if (streams_.try_push_back(stream)) {
@@ -88,7 +88,8 @@ SignatureStatus Signing::check(std::span<const std::byte> frame) noexcept
 {
     const Hash expected = hash(frame);
     std::byte difference{0};
-    for (std::size_t i = 0; i < kHashSize; ++i) {  // no early exit: its time would tell a forger how far it got
+    for (std::size_t i = 0; i < kHashSize; ++i) {  // no early exit: its duration would show a forger how many bytes
+                                                   // match
         difference |= expected[i] ^ frame[frame.size() - kHashSize + i];
     }
     if (difference != std::byte{0}) {

@@ -11,44 +11,44 @@
 
 namespace jink::link::mavlink {
 
-/// Verdict on the signature of a frame whose checksum is right.
+/// Result of checking the signature of a frame with a correct checksum.
 enum class SignatureStatus : std::uint8_t {
     valid,
     wrong,         ///< hash does not match: other key or a forgery
-    stale,         ///< not newer than the last one of its stream, or more than a minute behind: a replay
-    streams_full,  ///< a new (system, component, link) and no room to remember its time
+    stale,         ///< not newer than the last one of its stream, or more than a minute late: a replay
+    streams_full,  ///< a new (system, component, link) and no capacity for its time
 };
 
-/// Senders whose last signature time is remembered. 16 covers an autopilot's components and two ground stations; each
-/// costs 16 bytes. When full, a sender more than a minute behind our time gives way: its frames are stale anyway. If
-/// there is none, a new sender is refused, since a forgotten time would open the door to replays.
+/// Senders whose last signature time is kept. 16 covers an autopilot's components and two ground stations; each costs
+/// 16 bytes. When full, a sender more than a minute behind our time is dropped: its frames are stale anyway. If there
+/// is none, a new sender is refused, since dropping a valid time would allow replays.
 inline constexpr std::size_t kMaxSignedStreams = 16;
 
-/// Messages whose unsigned frames are taken although a key is set. 8 are more than any stack takes (PX4: 3).
+/// Messages whose unsigned frames are accepted although a key is set. 8 exceeds the number of any stack (PX4: 3).
 inline constexpr std::size_t kMaxUnsignedMessages = 8;
 
-/// Which unsigned frames are taken although a key is set. By default: no frame.
+/// The unsigned frames that are accepted although a key is set. By default: none.
 struct UnsignedFrames {
     bool all = false;  ///< the link as a whole
     StaticVector<std::uint32_t, kMaxUnsignedMessages> messages;
 };
 
-/// MAVLink 2 signing with one key: checks what comes in, signs what goes out. Without a key it does neither.
+/// MAVLink 2 signing with one key: checks incoming and signs outgoing frames. Without a key it does neither.
 ///
-/// Times count 10 us since 2015-01-01 UTC in 48 bits. The owner gives at the start the later of its clock's time and
-/// the time that it has stored plus kRestartMargin, and stores `time()` whenever it has moved by kStoreStep: the time
-/// must never go back over a restart, or peers take our frames for replays. `time()` rises with the clock, with every
-/// frame signed and with every valid frame of a peer that is ahead; the value of 48 ones is never passed.
+/// Times count 10 us since 2015-01-01 UTC in 48 bits. At the start the owner gives the later of its clock's time and
+/// the stored time plus kRestartMargin. The owner stores `time()` whenever it has moved by kStoreStep: the time must
+/// never go back over a restart, or peers treat our frames as replays. `time()` increases with the clock, with every
+/// frame signed and with every valid frame of a peer that is ahead; the value of 48 ones is never exceeded.
 ///
-/// The margin is kStoreStep, and a minute in which the first frame of a sender may be behind, and half a minute more:
-/// nothing that was heard before a restart is taken after it. Peers that are behind then follow our first frame.
+/// The margin is kStoreStep, plus a minute by which the first frame of a sender may be late, plus half a minute: no
+/// frame received before a restart is accepted after it. Peers that are behind then follow our first frame.
 ///
 /// Source: mavlink.io, guide/message_signing. ArduPilot's GCS_Signing.cpp stores every 30 s and adds one minute.
 class Signing {
 public:
     using Key = std::array<std::byte, 32>;
     static constexpr std::uint64_t kLatestTime = (std::uint64_t{1} << 48U) - 1U;  ///< in 2104
-    /// Latest time to begin with, in 2098: from the very end of the scale no further frame could be signed.
+    /// Latest initial time, in 2098: at the very end of the scale no further frame could be signed.
     static constexpr std::uint64_t kLatestStart = kLatestTime - (std::uint64_t{1} << 44U);
     static constexpr std::uint64_t kStoreStep = 3'000'000;       ///< 30 s
     static constexpr std::uint64_t kRestartMargin = 12'000'000;  ///< two minutes
@@ -62,9 +62,9 @@ public:
 
     [[nodiscard]] bool has_key() const noexcept { return has_key_; }
     [[nodiscard]] const Key& key() const noexcept { return key_; }
-    /// Grows with each change of the key: what has been stored is out of date.
+    /// Increases with each change of the key: the stored key is then outdated.
     [[nodiscard]] std::uint32_t generation() const noexcept { return generation_; }
-    /// The senders' times stay: what is a replay stays one.
+    /// Sets the key. The senders' times stay, so that replays stay replays.
     void set_key(const Key& key, std::uint64_t time) noexcept;
     void remove_key() noexcept;
 
@@ -85,11 +85,11 @@ public:
     void follow_clock(std::int64_t now_us) noexcept;
     [[nodiscard]] std::uint64_t time() const noexcept { return time_; }
 
-    /// Judges a whole signed v2 frame, signature at its end. Remembers its time when valid.
+    /// Checks a whole signed v2 frame, signature at its end. Stores its time if valid.
     /// O(frame): one SHA-256 over 32 bytes of key and all but 6 bytes of the frame.
     [[nodiscard]] SignatureStatus check(std::span<const std::byte> frame) noexcept;
 
-    /// Fills the last 13 bytes of a v2 frame whose other bytes, kFlagSigned and checksum included, are complete.
+    /// Fills the last 13 bytes of a v2 frame. All other bytes, kFlagSigned and checksum included, are complete.
     void sign(std::span<std::byte> frame) noexcept;
 
 private:

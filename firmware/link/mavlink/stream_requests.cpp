@@ -8,7 +8,7 @@
 namespace jink::link::mavlink {
 namespace {
 
-/// One kind of news, the message asked for first and others that bring it as well (0: none).
+/// One kind of data: the message that is requested and others with the same data (0: none).
 struct Need {
     std::array<std::uint32_t, 3> messages;
     std::int32_t interval_us;
@@ -18,9 +18,9 @@ struct Need {
 };
 
 constexpr std::array<Need, StreamRequests::kMessages> kNeeds{{
-    // OWN_AGE is 0.5 s, and half a second at 5 m/s is more than the own box: 10 Hz at least, 50 Hz wanted.
+    // OWN_AGE is 0.5 s, and half a second at 5 m/s exceeds the own box: 10 Hz at least, 50 Hz wanted.
     {{LocalPositionNed::kInfo.id, Odometry::kInfo.id, 0}, 20'000, 1.0F, 10},
-    // A heading places ranges for a second.
+    // A heading can place ranges for a second.
     {{AttitudeQuaternion::kInfo.id, Attitude::kInfo.id, Odometry::kInfo.id}, 100'000, 1.0F, 4},
     {{MissionCurrent::kInfo.id, 0, 0}, 500'000, 3.0F, 1},
     {{ExtendedSysState::kInfo.id, 0, 0}, 1'000'000, 4.0F, 1},
@@ -28,7 +28,7 @@ constexpr std::array<Need, StreamRequests::kMessages> kNeeds{{
     {{HomePosition::kInfo.id, 0, 0}, 5'000'000, 12.0F, 1},
     // ArduPilot sends one aircraft at a time, and each at most once a second.
     {{AdsbVehicle::kInfo.id, 0, 0}, 50'000, 6.0F, 1, true},
-    // For the height of traffic that has a barometer alone.
+    // For the height of traffic with a barometer alone.
     {{ScaledPressure::kInfo.id, 0, 0}, 1'000'000, 6.0F, 1, true},
 }};
 

@@ -8,8 +8,7 @@
 
 namespace jink::link::mavlink {
 
-/// The text of a character field: up to the first NUL, or all of it when there is none (a full field has none).
-/// Views into `field`.
+/// The text of a character field: up to the first NUL, or the full field without one. Views into `field`.
 template <std::size_t N>
 [[nodiscard]] constexpr std::string_view text_of(const std::array<char, N>& field) noexcept
 {
@@ -17,7 +16,7 @@ template <std::size_t N>
     return {field.data(), static_cast<std::size_t>(end - field.begin())};
 }
 
-/// Writes `text` and fills up with NULs; false when it had to be cut to the N characters that fit.
+/// Writes `text` and pads with NULs; false if the text was cut to the N characters that fit.
 template <std::size_t N>
 [[nodiscard]] constexpr bool set_text(std::array<char, N>& field, std::string_view text) noexcept
 {

@@ -9,20 +9,20 @@
 
 namespace jink::link::mavlink {
 
-/// Frames that are only worth sending while they are true. At most one whole frame of each kind waits.
+/// Frames that are only worth sending while they are valid. At most one whole frame of each kind waits.
 enum class Perishable : std::uint8_t { no, setpoint, mode_request, heartbeat };
 inline constexpr std::size_t kPerishables = 4;
 
-/// Bytes waiting to be written: whole frames go in, any number of bytes comes off. What waits is always contiguous.
+/// Bytes waiting to be written: whole frames are added, any number of bytes is removed. Waiting bytes are always
+/// contiguous.
 ///
-/// A perishable frame can be taken back as long as none of its bytes has come off; one that is partly written is never
-/// touched, so that what the other end reads stays framed.
+/// A perishable frame can be withdrawn as long as none of its bytes has been removed. A partly written frame is never
+/// changed, so that the other end's framing survives.
 template <std::size_t N>
 class TransmitBuffer {
 public:
-    /// All of `frame`, or nothing (false) when there is no room for all of it. A perishable frame should be preceded by
-    /// `take_back` of its kind; otherwise the older one can no longer be taken back. O(N) at worst, when it has to
-    /// close ranks.
+    /// Adds all of `frame`, or nothing (false) if it does not fit. Before adding a perishable frame call `take_back` of
+    /// its kind; otherwise the older frame can no longer be withdrawn. O(N) at worst, when the waiting bytes are moved.
     [[nodiscard]] bool push(std::span<const std::byte> frame, Perishable kind = Perishable::no) noexcept
     {
         if (frame.size() > N - (end_ - begin_)) {
@@ -39,7 +39,7 @@ public:
         return true;
     }
 
-    /// Removes the whole frame of this kind that waits; false when there is none. O(N).
+    /// Removes the waiting whole frame of this kind; false if there is none. O(N).
     bool take_back(Perishable kind) noexcept
     {
         Place& place = waiting_[static_cast<std::size_t>(kind)];
@@ -70,7 +70,7 @@ public:
     {
         begin_ += std::min(n, end_ - begin_);
         for (Place& place : waiting_) {
-            place = place.begin < begin_ ? Place{} : place;  // its first byte has gone
+            place = place.begin < begin_ ? Place{} : place;  // its first byte has been removed
         }
         if (begin_ == end_) {
             clear();
