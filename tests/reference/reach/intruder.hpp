@@ -7,26 +7,28 @@
 #include "core/base/static_vector.hpp"
 #include "core/reach/grid.hpp"
 
-// Which cells an intruder meets, and when (Gomola 6.6.1 to 6.6.4). All in the grid's frame and unit of length; times
-// count from when the grid is entered. The grid stands while the vehicle flies through it, so velocities are absolute.
+// The cells that an intruder enters, and when (Gomola 6.6.1 to 6.6.4). All in the grid's frame and unit of length;
+// times count from the entry into the grid. The grid is static while the vehicle flies through it, so velocities are
+// absolute.
 
 namespace jink::reach {
 
-/// An intruder as the models see it.
+/// An intruder in the form of the models.
 struct Intruder {
     Vec3 position = Vec3::Zero();  ///< at time 0
     Vec3 velocity = Vec3::Zero();
-    float radius = 0.0F;       ///< of its body, and what is kept from it
-    float horizontal = 0.0F;   ///< by this angle it may turn to a side [rad], 0 to kMostSpread
-    float vertical = 0.0F;     ///< and up or down [rad]
-    float speed_share = 0.1F;  ///< its speed may be wrong by this share, below 1
+    float radius = 0.0F;       ///< of its body, plus the required clearance
+    float horizontal = 0.0F;   ///< largest turn to either side [rad], 0 to kMostSpread
+    float vertical = 0.0F;     ///< largest turn up or down [rad]
+    float speed_share = 0.1F;  ///< relative error of its speed, below 1
 };
-/// Greatest spread: 75 degrees, beyond which the tangent tells nothing.
+/// Greatest spread: 75 degrees; beyond, the tangent is of no use.
 inline constexpr float kMostSpread = 1.3089969F;
-/// Slower ones [grid's unit/s] may stand: what they touch now they touch for ever. So may they go on.
+/// Intruders below this speed [grid's unit/s] may be static or may continue: cells that they overlap now stay occupied
+/// for ever.
 inline constexpr float kStandsBelow = 0.1F;
 
-/// When something is in a cell [s], first to last.
+/// Time interval in a cell [s], first to last.
 struct Stay {
     float from = 0.0F;
     float to = 0.0F;
@@ -36,7 +38,7 @@ struct CellStay {
     Stay stay;
 };
 
-/// A cell as a ball: about the middle of its ranges, through its farthest corner or edge.
+/// Bounding ball of a cell: about the middle of its ranges, through its farthest corner or edge.
 struct CellBall {
     Vec3 centre = Vec3::Zero();
     float radius = 0.0F;
@@ -47,9 +49,9 @@ struct CellBall {
 /// Cells on a straight line, in the order of flight: for small intruders.
 inline constexpr std::size_t kMostCrossings = 2 * (kMaxLayers + 1) + (kMaxColumns + 1) + 2 * (kMaxRows + 1) + 1;
 using CrossedCells = StaticVector<CellStay, kMostCrossings>;
-/// Exact: where the line meets the spheres, planes and cones between cells. A velocity of zero meets nothing here.
-/// What is said of a cell's corner, where the line is in it for less than rounding tells, may be another cell's.
-/// O(n log n) for n = 2 (layers + rows + 2) + columns + 2.
+/// Exact: intersections of the line with the spheres, planes and cones between cells. A velocity of zero gives none.
+/// What is said of a cell's corner, where the line is in it for less than rounding tells, may be another cell's. O(n
+/// log n) for n = 2 (layers + rows + 2) + columns + 2.
 void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, CrossedCells& out) noexcept;
 
 /// When the body, flying straight, may touch the cell. Never misses what it does; says more than it does by the cell's
