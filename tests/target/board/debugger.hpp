@@ -7,7 +7,7 @@
 
 namespace jink::target {
 
-/// qemu's debugger stub over a UNIX socket (gdb's Remote Serial Protocol): as much of it as faults are made with.
+/// qemu's debugger stub over a UNIX socket (gdb's Remote Serial Protocol): the subset needed to cause faults.
 class Debugger {
 public:
     /// @throws std::runtime_error if the socket does not accept within 10 s. Halts the processor.
