@@ -14,8 +14,8 @@ ABOVE = "above: "
 
 
 class Lists:
-    """survivors.txt: mutants known to survive, and those that only tests of other rooms kill. equivalent.txt: mutants that no test can tell apart, each line or group
-    of lines followed by the reason, indented."""
+    """survivors.txt: mutants known to survive, and those that only tests of other modules kill. equivalent.txt: mutants
+    that no test can detect, each line or group of lines followed by the reason, indented."""
 
     def __init__(self, folder):
         self.folder = folder
