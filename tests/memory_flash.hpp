@@ -45,8 +45,8 @@ public:
         return done;
     }
 
-    /// The power goes within the step of this number, counted from now on: of the bits that it changes, only those in
-    /// `mask` do. All later steps do nothing and fail, until restore().
+    /// Cuts the power within the step of this number, counted from now on: of the bits changed by this step, only those
+    /// in `mask` change. All later steps fail without effect, until restore().
     void cut_at(std::uint64_t step, std::uint32_t mask) noexcept
     {
         cut_ = steps_ + step;

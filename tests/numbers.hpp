@@ -5,7 +5,7 @@
 
 namespace jink {
 
-/// What no interface may take for a number.
+/// A value that no interface may accept as a number.
 inline constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 inline constexpr float kInfinity = std::numeric_limits<float>::infinity();
 

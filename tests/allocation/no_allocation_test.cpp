@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flies every state of the supervisor through Coprocessor::step and counts what is allocated meanwhile: must be none.
-//
-// malloc and its kin are replaced for the whole process, shared libraries included, and handed on to glibc's own
-// entries; operator new is replaced too, so that an allocation shows by which door it came.
+// Flies every state of the supervisor through Coprocessor::step and counts allocations: must be zero. malloc and
+// related functions are replaced for the whole process, shared libraries included, and forwarded to glibc's own
+// entries; operator new is replaced too, so that the origin of an allocation is visible.
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -102,7 +101,7 @@ void expect(bool holds, const char* what)
     }
 }
 
-/// The hooks are worth something only if they see each way to allocate.
+/// The hooks are valid only if they detect every kind of allocation.
 void check_the_hooks()
 {
     const auto counted = [](auto allocation) {
@@ -229,7 +228,7 @@ void fly_everything(Watched& w)
     w.until(own_way, 1500, "gives back once free");
     w.fly(100);
 
-    // Other systems of the link, and what they say to traffic management.
+    // Other systems of the link, and their reports to traffic management.
     for (int i = 0; i < 200; ++i) {
         GlobalPositionInt m;
         m.time_boot_ms = f.boot_ms();

@@ -109,7 +109,7 @@ TEST_F(BlockFolders, OneAtATime)
     EXPECT_NE(refusal(place, "kind 1\n").find("used by another run"), std::string::npos);
 }
 
-/// A program that was killed while it wrote the manifest leaves its draft behind, and nothing else.
+/// A program killed while writing the manifest leaves only its draft behind.
 TEST_F(BlockFolders, AnUnfinishedManifestIsNoObstacle)
 {
     fs::create_directories(place);

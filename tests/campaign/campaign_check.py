@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Campaigns as their user meets them: the programs, broken off, shared out, refused and replayed.
+"""Campaigns from the user's view: the programs, interrupted, distributed, refused and replayed.
 
     campaign_check.py --sim jink-sim --jink jink [--mpi jink-sim-mpi] CASE
 
@@ -26,7 +26,7 @@ MPIRUN = ["mpirun", "--allow-run-as-root", "--oversubscribe"]
 
 
 class Failure(Exception):
-    """What was expected and is not so."""
+    """An unmet expectation."""
 
 
 def check(good, what):
@@ -35,7 +35,7 @@ def check(good, what):
 
 
 def run(command, status=0):
-    """Runs a command that is expected to end with a status; what it printed."""
+    """Runs a command and expects its exit status. Returns its output."""
     done = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
     check(done.returncode == status,
           f"{' '.join(str(part) for part in command)}: exit status {done.returncode}, not {status}\n{done.stdout}{done.stderr}")
@@ -61,7 +61,7 @@ def blocks(folder):
 
 
 def kill_in_the_middle(command, folder, victim):
-    """Starts a command, and kills whom `victim` names as soon as a block is finished."""
+    """Starts a command, and kills the process named by `victim` as soon as a block is finished."""
     with subprocess.Popen([str(part) for part in command], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         until = time.monotonic() + 300
         while not blocks(folder) and process.poll() is None and time.monotonic() < until:
@@ -149,7 +149,7 @@ def replay(programs, top):
     """The ten worst end again as they did: outcome, separation, time, to what run.json prints."""
     for planner in ("product", "source"):
         folder = top / planner
-        # Whatever ended how: this is about replays.
+        # Any ending is accepted: this tests replays.
         subprocess.run([programs.sim, "encounters", *SMALL, "--planner", planner, "--out", folder], check=False,
                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         files = sorted((folder / "worst").glob("*.yaml"))
@@ -165,7 +165,7 @@ def replay(programs, top):
                                (flight["least"]["alone"], "alone"), (flight["duration"], "duration")):
                 check(abs(value - float(kept[key])) <= 0.000501, f"{file}: {key} is {value}, not {kept[key]}")
             check(flight["takeovers"] == int(kept["takeovers"]), f"{file}: takeovers differ")
-    # What flies in process only is refused where it cannot be flown.
+    # Scenarios for in-process flights only are refused elsewhere.
     if programs.jinkd:
         text = run([programs.sim, "fly", files[0], "--daemon", programs.jinkd], status=1)
         check("flown in process only" in text, text)
@@ -237,8 +237,9 @@ def mpi_study(programs, top):
         check(digest(top / "mpi.csv") == digest(top / "one.csv"), f"{processes} processes: rows differ")
 
 
-# Promises of the thousand that are broken although the judge, who answers without any delay, finds a way: a shortfall, with what
-# is known of it in docs/evidence/campaign.md. Any other one fails the test, and so does one of these that is kept again.
+# Broken promises of the thousand for which the judge, who reacts without delay, has a manoeuvre: known shortfalls,
+# described in docs/evidence/campaign.md. The test fails for any other broken promise, and if one of these is kept
+# again.
 KNOWN_SHORTFALLS = {519}
 
 

@@ -52,7 +52,7 @@ TEST(EncounterResult, RepeatsAndReadsBackBitByBit)
     }
 }
 
-/// Trials that end where they break the promise count the same ways as those that are flown to the end.
+/// Trials that end when they break the promise give the same counts as trials flown to the end.
 TEST(EncounterResult, TheShortTrialsCountAsTheLongOnes)
 {
     for (const std::uint64_t seed : {5U, 21U, 2047U}) {
@@ -69,7 +69,7 @@ TEST(EncounterResult, TheShortTrialsCountAsTheLongOnes)
     }
 }
 
-/// A flight straight along x at 2 m off, then on: what is measured of it can be done by hand.
+/// A flight straight along x, 2 m off, then on: its measures are computed by hand.
 TEST(EncounterResult, MeasuresDeviationAndEffort)
 {
     const Scenario s = encounter_scenario(3, {});

@@ -8,7 +8,7 @@ namespace {
 
 const std::vector<Vec> kLeg{Vec(0, 0, 30), Vec(100, 0, 30)};
 
-/// Notes commands that stand for a side: where the vehicle will be in a second, level and off the leg along east.
+/// Records commands that represent a side: the vehicle's position in a second, level and off the leg along east.
 struct Flight {
     SideLog log{kLeg};
     void side(double time, double left, unsigned takeover = 1)
@@ -38,7 +38,7 @@ TEST(SideLog, APictureChangesWhenSomebodyNewIsToldOfSinceTheSideBefore)
     flight.side(5.0, -2.0);
     flight.side(7.0, 2.0);
     flight.side(9.0, -2.0);
-    // Known before the first side, or after the change: the same picture. Never told of does not count.
+    // Known before the first side, or after the change: the same picture. A threat never reported does not count.
     EXPECT_EQ(flight.log.counts({1.0, 2.0, 9.1, -1.0}).same_picture, 3U);
     EXPECT_EQ(flight.log.counts({1.0, 2.0, 9.1, -1.0}).broken, 1U);
     // One at 4 s explains the change at 5 s alone.

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether toolchain/checks/figures finds what is wrong: on copies of the tree in which one thing is changed at a time."""
+"""Whether toolchain/checks/figures finds errors: on copies of the tree with one change at a time."""
 import pathlib
 import re
 import shutil
@@ -36,7 +36,7 @@ def texts(problems):
 
 
 class CampaignOfOtherSources(unittest.TestCase):
-    """What a former run of other sources has left is begun anew; every other failure stays one."""
+    """Results of an earlier run of other sources are restarted; every other failure stays a failure."""
 
     def run_with(self, script):
         with tempfile.TemporaryDirectory() as name:
@@ -76,7 +76,7 @@ class OnACopy(unittest.TestCase):
         cls.folder.cleanup()
 
     def found_after(self, name, text):
-        """What is found with this file changed, and was not found before."""
+        """Findings with this file changed that were not found before."""
         path = self.top / name
         kept = path.read_bytes()
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Candidates of a plan as the report draws them: one that was never checked must not look like one that would collide."""
+"""Candidates of a plan as drawn in the report: an unchecked one must differ from a colliding one."""
 import base64
 import pathlib
 import sys

@@ -31,7 +31,7 @@
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/link/mavlink/parser.hpp"
 
-// What tests of the daemon share: a folder, a cable, the running program.
+// Common parts of the daemon's tests: a folder, a cable, the running program.
 
 namespace jink::test {
 
@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A folder that goes when the test ends.
+/// A folder that is removed at the end of the test.
 class Scratch {
 public:
     Scratch()
@@ -66,7 +66,7 @@ public:
         int slave = -1;
         EXPECT_EQ(openpty(&master_, &slave, name.data(), nullptr, nullptr), 0);
         fcntl(master_, F_SETFL, fcntl(master_, F_GETFL) | O_NONBLOCK);
-        // Kept open, so that the line does not hang up before the daemon has opened it.
+        // Kept open, so that the line does not hang up before the daemon opens it.
         slave_ = slave;
         path_ = name.data();
     }
@@ -94,14 +94,15 @@ public:
             signing_ ? encode_signed(message, header, *signing_, frame) : encode(message, header, frame);
         send_bytes({frame.data(), n});
     }
-    /// From now on the autopilot signs and takes signed frames alone. Its clock stands at `time` and follows its peers.
+    /// From now on the autopilot signs its frames and accepts only signed frames. Its clock starts at `time` and
+    /// follows its peers.
     void sign_with(const Signing::Key& key, std::uint64_t time)
     {
         signing_ = std::make_unique<Signing>(key, std::uint8_t{0}, time);
         parser_ = std::make_unique<Parser>(signing_.get());
     }
     [[nodiscard]] const ParserDiagnostics& heard() const { return parser_->diagnostics(); }
-    /// Throws away what a former daemon has left on the line.
+    /// Discards output of an earlier daemon on the line.
     void drain() const
     {
         std::array<std::byte, 4096> bytes{};
@@ -116,7 +117,7 @@ public:
     /// Waits for a HEARTBEAT of component 196.
     std::optional<Heartbeat> heartbeat(milliseconds patience) { return wait_for<Heartbeat>(patience); }
 
-    /// Waits for a message of component 196; the newest of those that came together.
+    /// Waits for a message of component 196; returns the newest of simultaneous messages.
     template <class M>
     std::optional<M> wait_for(milliseconds patience)
     {
@@ -163,7 +164,7 @@ inline double waited_in(const std::string& path)
     return waited * 1e-9;
 }
 
-/// A running jinkd; its output goes to a file, or where the test wants it.
+/// A running jinkd; its output goes to a file, or to a given descriptor.
 class Daemon {
 public:
     Daemon(const std::vector<std::string>& arguments, const fs::path& output)
@@ -178,7 +179,7 @@ public:
             ::signal(SIGPIPE, SIG_DFL);
             dup2(fd, STDOUT_FILENO);
             dup2(fd, STDERR_FILENO);
-            // Else it would hold the cable's other end itself and never see it pulled.
+            // Otherwise the daemon would hold the cable's other end itself and never detect a disconnection.
             close_range(STDERR_FILENO + 1, ~0U, 0);
             std::vector<char*> argv{const_cast<char*>("jinkd")};
             for (const std::string& a : arguments) {
@@ -201,7 +202,7 @@ public:
     Daemon& operator=(const Daemon&) = delete;
 
     void signal(int number) const { kill(pid_, number); }
-    /// For how long its loop was ready to run and got no processor, so far [s].
+    /// Total time that its loop was ready to run without a processor [s].
     [[nodiscard]] double waited() const { return waited_in("/proc/" + std::to_string(pid_) + "/schedstat"); }
 
     /// Exit status; -1 while it still runs after `patience`, 1000 + signal when it was killed.

@@ -123,7 +123,7 @@ TEST(Jinkd, ComesBackWhenTheCableDoes)
     Daemon daemon({"--serial", device.string()}, scratch / "out");
     ASSERT_TRUE(cable->heartbeat(kPatience));
     for (int i = 0; i < 3; ++i) {
-        // The name goes first: the kernel gives a pulled pseudo-terminal's number to the next one, whoever's it is.
+        // Removes the name first: the kernel gives a closed pseudo-terminal's number to the next one of any process.
         fs::remove(device);
         cable->pull();
         EXPECT_EQ(daemon.wait(milliseconds(200)), -1) << "it must outlive the cable";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The daemon never dies of or waits for its outputs and files. A step that is late is excused by what the machine did
-// alone: the time for which the loop was ready to run and got no processor, as the kernel counts it.
+// The daemon never fails or blocks because of its outputs and files. A late step is excused only by the host: by the
+// kernel's count of the time that the loop was ready to run without a processor.
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -100,7 +100,7 @@ protected:
         }
     }
 
-    /// Stops it. Each late step (over two ticks after the one before) must have been held up by the machine for a tick.
+    /// Stops it. Each late step (over two ticks after the one before) must have been delayed by the host for a tick.
     std::string stop(Daemon& daemon)
     {
         const double held_up = daemon.waited();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What jinkd answers to "save" of a DroneCAN tool: the truth about its state file. The control loop's side of it is
-// called here, the thread that writes is the daemon's own.
+// jinkd's answer to "save" of a DroneCAN tool: the true state of its state file. The test calls the control loop's
+// side; the writing thread is the daemon's own.
 #include <memory>
 
 #include "firmware/linux/housekeeping.hpp"

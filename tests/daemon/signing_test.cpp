@@ -43,7 +43,7 @@ protected:
         m.secret_key.fill(fill);
         return m;
     }
-    /// HEARTBEATs and own state both ways until jinkd is in standby: it hears the autopilot, and is heard by it.
+    /// HEARTBEATs and own state both ways until jinkd is in standby: reception works in both directions.
     bool work_together()
     {
         LocalPositionNed state;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The package as installed for the Cortex-M7 is all that an image of somebody else's needs: installs it, builds the image outside of the tree, starts it
-under qemu and listens for HEARTBEATs.
+"""The installed package for the Cortex-M7 suffices for a third-party image: installs the package, builds the image
+outside of the tree, starts it under qemu and waits for HEARTBEATs.
 
     image_test.py TOP BUILD WORK      BUILD: build folder of the preset mps2_an500
 """

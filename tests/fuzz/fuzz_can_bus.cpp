@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Coprocessor with a CanBus: frames, the controller's state and time come from the input, MAVLink goes through the
-// tunnel or over a serial line. First byte: 1 MAVLink through the tunnel, 2 what is near is told. Then records, the
-// first byte modulo 6 saying which:
+// tunnel or over a serial line. First byte: 1 MAVLink through the tunnel, 2 near objects are reported. Then records,
+// the first byte modulo 6 saying which:
 //   0 raw frame [flags][id 4][length][data 8]   1 transfer [type][source][id][length][payload]   2 ticks [n]
 //   3 controller [state][room]   4 no step for [n] * 10 ms   5 an autopilot speaks [bits]
-// Checked after each step: nothing is steered in a fault or without an autopilot, own state is finite, what goes out is
-// sound and, where it is a set-point, young; the work of a step is bounded and counters only grow.
+// Checked after each step: nothing is steered in a fault or without an autopilot, own state is finite, output is valid,
+// and set-points are recent; the work of a step is bounded and counters only grow.
 #include <array>
 #include <cmath>
 #include <memory>

@@ -18,7 +18,7 @@ using namespace jink::link;
 
 namespace {
 
-/// Looks at what passes through it.
+/// Checks the data that pass through it.
 struct Gauge final : CloudSink {
     explicit Gauge(CloudSink& sink) : to(sink) {}
     void begin_scan(const CloudScan& scan) noexcept override
@@ -49,7 +49,7 @@ struct Gauge final : CloudSink {
     std::uint64_t points = 0;
 };
 
-/// Makes both checksums of whatever starts like a frame right, as far as it is there.
+/// Corrects both checksums of everything that starts like a frame, as far as present.
 void repair(std::vector<std::byte>& bytes)
 {
     const auto put = [&](std::size_t from, std::size_t at) {

@@ -2,7 +2,7 @@
 // The whole receiving side of the MAVLink link on arbitrary bytes. First input byte: 1 repair checksums, 2 all frames
 // claim to be the autopilot's, 4 inbox emptied only now and then. Then records: time step in units of 10 ms, length,
 // bytes. Checked after each record: every number in the inbox and every point is finite and within the ranges that the
-// application relies on, and what is sent is whole frames without a gap.
+// application relies on, and the output consists of whole frames without a gap.
 #include <cmath>
 #include <cstdint>
 #include <cstring>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // MAVLink parser, decoder and encoder on arbitrary bytes. First input byte: 1 repair checksums, 2 a signing key is set,
 // 4 longer payloads accepted, 8 feed byte by byte. Checked: every byte is accounted for, work is bounded, chunks do not
-// matter, and whatever is decoded encodes to a frame that decodes to the same bytes.
+// matter, and every decoded message encodes to a frame that decodes to the same bytes.
 #include <cstdint>
 #include <cstring>
 #include <vector>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The whole Coprocessor::step: time, bytes and the state of the line come from the input; an autopilot of a few lines
-// stands behind the wire, so that conflicts, take-overs and faults are within reach. First byte: 1 repair checksums,
-// 2 raw frames claim to be the autopilot's, 4 a PX4, 8 requests are acknowledged. Then records, the first byte's low
-// three bits saying which, the other five an argument:
+// The whole Coprocessor::step: time, bytes and the state of the line come from the input; a minimal autopilot is behind
+// the wire, so that conflicts, take-overs and faults are reachable. First byte: 1 repair checksums, 2 raw frames claim
+// to be the autopilot's, 4 a PX4, 8 requests are acknowledged. Then records, the first byte's low three bits saying
+// which, the other five an argument:
 //   0 raw [length][bytes]   1 ticks (argument + 1)   2 autopilot [bits]   3 line [room]   4 traffic
 //   [x][y][z][vx][vy][bits] 5 parameter [index][float]   6 no step for argument * 0.1 s   7 range [range][bits]
-// Checked after each step: set-points are finite, within the vehicle's limits, young, and never sent in a fault; what
-// is said is whole frames; bytes are bounded; counters only grow.
+// Checked after each step: set-points are finite, within the vehicle's limits, young, and never sent in a fault; output
+// is whole frames; bytes are bounded; counters only grow.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -195,7 +195,7 @@ private:
     void listen(const StepReport& report)
     {
         if (f_.port.state != hal::PortState::open) {
-            ears_ = Parser();  // what was cut is cut
+            ears_ = Parser();  // a cut frame is lost
             return;
         }
         bool begun = ears_.pending() > 0;

@@ -12,8 +12,8 @@
 
 namespace jink::fuzz {
 
-/// Puts the right checksum into everything in `bytes` that looks like a whole frame of a known message, left to right,
-/// so that a fuzzer gets past the checksum.
+/// Sets the correct checksum in everything in `bytes` that looks like a whole frame of a known message, left to right,
+/// so that a fuzzer passes the checksum.
 inline void repair_checksums(std::vector<std::byte>& bytes)
 {
     using namespace link::mavlink;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in for libFuzzer where that is not to be had: runs every file given, then mutations of them.
+// Replaces libFuzzer where unavailable: runs every given file, then mutations of them.
 //   fuzz_<name> <file or folder> [<mutations> <seed>]
 // An input that fails is left in ./failed_input for replay.
 #include <algorithm>

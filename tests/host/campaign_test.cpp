@@ -49,8 +49,8 @@ TEST(Campaign, DistributionStudyAgreesWithTheSourceWhereItsTextIsComplete)
     EXPECT_NEAR(ours("time, greatest"), 8.14, 0.02);
     EXPECT_NEAR(ours("energy, 99.5 %"), 1435.0, 0.01 * 1435.0);
     EXPECT_NEAR(ours("energy, greatest"), 1631.0, 2.0);
-    // Published 0.9120 and T = 1.0013 E + 0.0060. They hang on energies that are not those of the text's set-up, and
-    // are not met: held here so that docs/evidence/reproduction_pinheiro.md stays true.
+    // Published 0.9120 and T = 1.0013 E + 0.0060. They depend on energies that differ from the text's set-up, and are
+    // not reproduced: checked here so that docs/evidence/reproduction_pinheiro.md stays true.
     EXPECT_NEAR(ours("correlation of time and energy"), 0.8575, 0.001);
     EXPECT_NEAR(ours("slope of time over energy"), 0.8856, 0.001);
     EXPECT_NEAR(ours("intercept"), 0.0496, 0.001);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The jink command as its user meets it: arguments, exit statuses, what goes to which stream, the report.
+// The jink command from the user's view: arguments, exit statuses, output streams, the report.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cost tables: what is shipped is what the vehicle files give, its bounds hold, and damage is seen.
+// Cost tables: shipped tables equal those of the vehicle files, bounds hold, and damage is detected.
 #include "toolchain/host/cost_tables.hpp"
 
 #include <gtest/gtest.h>

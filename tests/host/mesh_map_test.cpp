@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Maps of convex pieces: they hold all of their mesh, stand out of it by no more than they say, and keep to the limits.
+// Maps of convex pieces: they contain their whole mesh, exceed it by at most the stated excess, and stay within the
+// limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -175,7 +176,7 @@ TEST(MeshPieces, ASoupIsExact)
     EXPECT_EQ(most_excess(pieces), 0.0);
 }
 
-/// 182 vertices are more than a piece may have: it grows outwards, never inwards, and says by how much.
+/// 182 vertices exceed a piece's limit: the piece grows outwards, never inwards, and states its excess.
 TEST(MeshPieces, ARoundHullIsSimplifiedOutwards)
 {
     const TriangleMesh mesh = ball(9);
@@ -362,7 +363,7 @@ TEST(MeshPieces, MoreThanAMapHoldsIsRefused)
     EXPECT_NE(refusal([] { StoredMap("none", {}); }), "");
 }
 
-/// Lines, points and needles of triangles are kept: what is there may be met.
+/// Degenerate triangles (lines, points and needles) are kept as obstacles.
 TEST(MeshPieces, TrianglesWithoutAreaAreKept)
 {
     TriangleMesh mesh = box(1, 1, 1);

@@ -50,7 +50,7 @@ inline TriangleMesh corner()
     return prism({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}, 0, 1);
 }
 
-/// Three bars about a gap that is 2 m wide and 3 m deep.
+/// Three bars about a gap 2 m wide and 3 m deep.
 inline TriangleMesh gate()
 {
     return prism({{0, 0}, {4, 0}, {4, 4}, {3, 4}, {3, 1}, {1, 1}, {1, 4}, {0, 4}},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files with bytes changed, lost, doubled and swapped: whatever comes, the readers answer with a usable value or with
-// complaints, and what they take the planner takes too.
+// Files with bytes changed, lost, doubled and swapped: for any input the readers return a usable value or complaints,
+// and the planner accepts every accepted value.
 #include <algorithm>
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -131,7 +131,7 @@ TEST(Mutation, VehicleFilesGiveAVehicleOrComplaints)
                         cost::is_valid(vehicle->caps))
                 << "JINK_SEED=" << seed << "\n"
                 << text;
-            // Each value is one that its parameter takes: whatever is refused then is refused as a set.
+            // Each value is valid for its parameter: a refusal is then of the set.
             app::Parameters parameters;
             const app::ParamStatus status = parameters.set_all(files::apply_vehicle(*vehicle, parameters.values()));
             ASSERT_TRUE(status == app::ParamStatus::ok || status == app::ParamStatus::inconsistent)

@@ -29,7 +29,7 @@ ProblemFile problem(const std::string& name)
     return std::get<ProblemFile>(read);
 }
 
-/// Least distance between the surfaces along the path, sampled every 5 ms, of what is a sphere.
+/// Least distance to the surfaces of the spheres along the path, sampled every 5 ms.
 double least_margin(const ProblemFile& file, const path::TimedPath& path)
 {
     double least = 1e9;
@@ -83,7 +83,7 @@ TEST_P(NamedProblem, IsSolvedAsItSays)
     const geometry::Shape& main =
         named.moves ? file.moving_solids[file.main].shape : file.obstacles[file.main].obstacle.shape;
     EXPECT_EQ(main.kind, *named.main_shape);
-    // Either solid is met: the main one on the leg itself, the other one by some candidate.
+    // Either solid is in contact: the main one on the leg itself, the other one by some candidate.
     const auto is_hit = [&](const PlanOutcome& of, std::size_t index) {
         const auto& all = of.result.candidates;
         return std::any_of(all.begin(), all.end(), [&](const geometric::Candidate& c) {
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, NamedProblem,
 
 TEST(NamedProblems, EveryAttemptAndFamilyHasOne)
 {
-    // The first attempt is what families and shapes are solved by.
+    // Families and shapes are solved in the first attempt.
     EXPECT_EQ(geometric::kAttempts.size(), 10U) << "one file for each further attempt, above";
     EXPECT_EQ(geometric::kFamilies.size(), 5U);
     EXPECT_EQ(geometric::kAttempts[7].kind, Attempt::Kind::wait);
@@ -141,7 +141,7 @@ TEST(NamedProblems, WhatCrossesIsPassedInFrontForClosenessAndBehindForPassing)
     const auto behind = solve_problem(problem("cost_passing"), 20'000);
     ASSERT_EQ(near->status, PlanStatus::found);
     ASSERT_EQ(behind->status, PlanStatus::found);
-    // What crosses comes from the right, y < 0: behind it is there.
+    // The crossing threat comes from the right, y < 0: passing behind it means there.
     EXPECT_GT(chosen_of(*near).shape.offset, 0.0F);
     EXPECT_LT(chosen_of(*behind).shape.offset, 0.0F);
     EXPECT_GT(chosen_of(*near).terms.passing, 0.5F);

@@ -167,7 +167,7 @@ TEST(ParamStore, AFileThatIsNotThereIsNoComplaintAndAFifoIsOne)
 
 TEST(ParamStore, AFullDiskLeavesTheFormerContent)
 {
-    // A limit on the size of files stands for the disk: a write then ends short, and the next one fails.
+    // A limit on the size of files simulates a full disk: a write then ends short, and the next one fails.
     const Scratch scratch;
     const std::string path = scratch.write("state", "the former content").string();
     for (const rlim_t room : {rlim_t{0}, rlim_t{1}, rlim_t{100}}) {

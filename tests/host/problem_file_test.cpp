@@ -44,7 +44,7 @@ TEST(ProblemFile, FindsTheCollisionPointOnALeg)
 
 TEST(ProblemFile, FindsTheCollisionPointOnAReference)
 {
-    // Half way round the arc, 2 m outside of it.
+    // Half-way round the arc, 2 m outside.
     const float half = 10.0F + 20.0F * 0.25F * kPi;
     const Vec3 point = Vec3(10, 20, 20) + 20.0F * Vec3(std::sqrt(0.5F), -std::sqrt(0.5F), 0);
     const Vec3 outside = 2.0F * Vec3(std::sqrt(0.5F), -std::sqrt(0.5F), 0);
@@ -75,8 +75,8 @@ TEST(ProblemFile, FrameIsAnInput)
     EXPECT_LE((axes.col(2) - Vec3(0, -1, 0)).norm(), 1e-6F);
 }
 
-/// tests/scenario/problems: the manoeuvre begins at the start, ends on the reference past its bend, and clears what it
-/// is planned around.
+/// tests/scenario/problems: the manoeuvre begins at the start, ends on the reference past its bend, and clears its main
+/// threat.
 TEST(ProblemFile, NamedReferencesAreFollowed)
 {
     for (const char* name : {"bend", "corner"}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a problem file is refused for, and in which words.
+// Refusals of a problem file, and their texts.
 #include <gtest/gtest.h>
 
 #include "tests/host/problem_text.hpp"

@@ -15,7 +15,7 @@ inline const std::string kBend =
     "vehicle: default\nreference:\n  start: [0, 0, 20]\n  speed: 5\n  segments: [{to: [10, 0, 20]}, "
     "{centre: [10, 20, 20], turn: 90}, {to: [30, 60, 20]}]\n";
 
-/// What is said of a problem file with this text; nothing where it is a good one.
+/// Complaints about a problem file with this text; none for a valid file.
 inline files::Complaints complaints_of(const std::string& text)
 {
     auto read = host::read_problem_text(text, "p.yaml");

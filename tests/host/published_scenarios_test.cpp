@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pinheiro 5.2, what the source's scenarios end with. It gives no coordinates: the files in tests/scenario/problems fit
-// its words.
+// Pinheiro 5.2, endings of Pinheiro's scenarios. Coordinates are not published: the files in tests/scenario/problems
+// fit the description.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -123,7 +123,7 @@ TEST(PublishedScenario, ThreeDescendsUnderAStaticMainThreatAndGoesLeftOfAMovingO
     EXPECT_EQ(moving.outcome->result.candidates[still.outcome->result.chosen].status, CandidateStatus::hits_moving);
 }
 
-/// What each of the source's seven weight combinations chooses (Pinheiro tab. 4.8: k_C, k_S, k_T).
+/// The choice of each of Pinheiro's seven weight combinations (Pinheiro tab. 4.8: k_C, k_S, k_T).
 struct Tuning {
     std::vector<Solved> solved;
 
@@ -166,7 +166,7 @@ TEST(PublishedTuning, Environment1CombinationsOneToThreeChooseTheWiderPath)
     const Tuning t("tuning1");
     EXPECT_TRUE(t.same(1, 3));
     EXPECT_TRUE(t.same(4, 7));
-    // Published: beside it there is a shorter one, less curved, and nearer to what moves.
+    // Published: beside it there is a shorter one, less curved, and nearer to the moving threat.
     EXPECT_EQ(t.of(1).shape.plane, t.of(4).shape.plane);
     EXPECT_GT(t.of(1).shape.offset, t.of(4).shape.offset);
     EXPECT_GT(t.of(4).shape.offset, 0.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink reach as its user meets it: what it prints and writes, and one clear line for what is wrong.
+// jink reach from the user's view: its output and files, and one clear line per error.
 #include <sys/wait.h>
 
 #include <gtest/gtest.h>

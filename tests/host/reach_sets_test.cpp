@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reach sets: what is shipped is what the vehicle files give, and passes the check that images make.
+// Reach sets: shipped sets equal those of the vehicle files, and pass the images' check.
 #include <gtest/gtest.h>
 
 #include "firmware/linux/vehicle_file.hpp"
@@ -36,7 +36,7 @@ TEST(ReachSets, WhatIsShippedIsWhatTheVehicleFilesGive)
         rb::Recipe recipe;
         recipe.profile = shipped.profile;
         const rb::BuiltVehicle built = rb::build_vehicle(vehicle->name, vehicle->limits, recipe);
-        // Compared first, not shown: a megabyte of text helps nobody.
+        // Compared as a bool, so that a failure does not print a megabyte of text.
         const bool same = reach_sets_header(built) == test::slurp(JINK_SOURCES "/" + folder + shipped.header);
         EXPECT_TRUE(same) << "run: jink reach build " << folder << "vehicle.yaml"
                           << (shipped.profile == rb::Profile::reduced ? " --profile reduced" : "") << " --out "

@@ -12,7 +12,7 @@
 
 namespace jink::test {
 
-/// A folder that goes when the test ends.
+/// A folder that is removed at the end of the test.
 class Scratch {
 public:
     Scratch()

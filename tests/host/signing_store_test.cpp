@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Key files and the signing state: what is read, refused, kept over a restart, and who may read it.
+// Key files and the signing state: reading, refusal, persistence over a restart, and read permissions.
 #include <sys/stat.h>
 
 #include <gtest/gtest.h>

@@ -101,7 +101,8 @@ TEST(Tune, FrontIsWhatNothingElseDominates)
 
 TEST(Tune, FitIsNeverLessSafeThanTheDefault)
 {
-    // In order: the default; cheaper, but brakes more; breaks more; breaks a rule; somewhat cheaper; dearer and safer.
+    // In order: the default; cheaper, but brakes more; breaks more; breaks a rule; somewhat cheaper; more expensive and
+    // safer.
     std::vector<Tried> all{tried(outcomes(1, 5, 3.0, 1.0)), tried(outcomes(1, 6, 3.0, 0.1)),
                            tried(outcomes(2, 5, 3.0, 0.1)), tried(outcomes(1, 5, 3.0, 0.2)),
                            tried(outcomes(1, 5, 3.0, 0.8)), tried(outcomes(0, 0, 3.0, 1.2))};

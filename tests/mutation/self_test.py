@@ -50,8 +50,8 @@ GAPS = """
 is_within | x > limits.high | > -> >=
 limited | std::max(limits.high, 0.0F) | min max clamp -> first alone
 """
-# What no test could notice: kIsNear is always true, so that the operand it makes may go; what is below the lower limit is
-# far by its magnitude as well.
+# Mutants that no test can detect: kIsNear is always true, so that its operand may be dropped; values below the lower
+# limit are far by their magnitude as well.
 NO_DIFFERENCE = """
 is_far | is_low | condition -> false
 is_below | x < limits.low | < -> <=
@@ -80,7 +80,7 @@ class SelfTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         for part in ("core", "tests"):
-            # With new times: what the run before changed is built anew.
+            # With new time stamps: files changed by the previous run are rebuilt.
             shutil.copytree(HERE / "fixture" / part, FOLDER / part, dirs_exist_ok=True, copy_function=shutil.copy)
         cls.lists = FOLDER / "tests/mutation"
         cls.lists.mkdir(parents=True, exist_ok=True)
@@ -122,7 +122,7 @@ class SelfTest(unittest.TestCase):
         self.assertEqual(done.returncode, 1)
         self.assertIn(f"is listed and killed: {killed}", done.stderr)
         self.assertIn("is listed and does not exist: core/bound/bound.cpp | gone", done.stderr)
-        # A sample tells of the latter too, whatever it draws.
+        # Any sample reports the latter too.
         done = mutate("--check", "--sample", "1")
         self.assertEqual(done.returncode, 1)
         self.assertIn("is listed and does not exist: core/bound/bound.cpp | gone", done.stderr)

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-// The geometric planner's costs once more, in double and straight from the formulas (geometric planner, sections 2 to
-// 6), for tests to hold the product against. Shares no code with it.
+// The geometric planner's costs, recomputed in double directly from the formulas (geometric planner, sections 2 to 6),
+// as the reference for tests. Shares no code with the product.
 
 namespace jink::oracle {
 
@@ -39,7 +39,7 @@ struct Vehicle {
 
 struct Flight {
     std::vector<P3> p;
-    std::vector<P3> v;      ///< per point, the last one repeated
+    std::vector<P3> v;      ///< per point, the last velocity repeated
     std::vector<double> t;  ///< per point
 };
 

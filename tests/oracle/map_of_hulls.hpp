@@ -9,12 +9,13 @@
 
 #include "core/geometry/mesh_map.hpp"
 
-// Maps made of hulls for tests of the core: faces from all triples of vertices, the tree by halves. It shares nothing
-// with what makes the maps that are flown.
+// Maps made of hulls for tests of the core: faces from all triples of vertices, the tree by halves. Shares no code with
+// the builder of flown maps.
 
 namespace jink::oracle {
 
-/// Faces of the hull of `vertices`: the planes through three of them with all others on one side. None for a flat one.
+/// Faces of the hull of `vertices`: the planes through three vertices with all others on one side. None for a flat
+/// hull.
 inline std::vector<geometry::FacePlane> faces_of_hull(const std::vector<Vec3>& vertices)
 {
     using Vec3d = Eigen::Vector3d;

@@ -8,8 +8,8 @@
 #include <limits>
 #include <vector>
 
-// Velocity programs by an interior-point method in doubles: a barrier, Newton's method, and nothing of the incremental
-// programs that it is an oracle for. Unknowns are a velocity and a common violation, (x, y, z, d).
+// Velocity programs by an interior-point method in doubles: a barrier and Newton's method, independent of the tested
+// incremental programs. Unknowns are a velocity and a common violation, (x, y, z, d).
 
 namespace jink::orca::oracle {
 
@@ -27,7 +27,7 @@ struct BallConstraint {
     double slack = 0.0;
 };
 
-/// What is minimised: d, or |x - goal|^2 / 2 with d fixed.
+/// The objective: d, or |x - goal|^2 / 2 with d fixed.
 struct Barrier {
     std::vector<Constraint> planes;
     std::vector<BallConstraint> balls;
@@ -72,7 +72,7 @@ struct Barrier {
         return sum;
     }
 
-    /// Newton's step; `decrement` is its half of the expected descent.
+    /// Newton's step; `decrement` is half of the expected descent.
     [[nodiscard]] Vec4 step(const Vec4& z, double t, double& decrement) const
     {
         std::array<Vec4, 4> h{};
@@ -139,8 +139,8 @@ struct Barrier {
         return y;
     }
 
-    /// Follows the path from a point inside until the objective is within `gap` of its least; `enough` stops earlier,
-    /// where d has fallen below it.
+    /// Follows the path from an interior point until the objective is within `gap` of its minimum. Stops earlier when d
+    /// falls below `enough`.
     [[nodiscard]] Vec4 minimum(Vec4 z, double gap, double enough = -std::numeric_limits<double>::infinity()) const
     {
         const double count = static_cast<double>(planes.size() + balls.size());
@@ -175,7 +175,7 @@ struct Barrier {
     }
 };
 
-/// Half-space n . x >= b, by how much it gives way beside the others.
+/// Half-space n . x >= b, with its yield relative to the others.
 struct Plane {
     std::array<double, 3> n{};
     double b = 0.0;
@@ -189,17 +189,18 @@ struct Question {
 };
 
 struct Least {
-    bool hard_hold = false;  ///< the first `hard` planes and the balls leave room
-    double d = 0.0;          ///< least common violation of the others, over the yield; negative where all have room
+    bool hard_hold = false;  ///< the first `hard` planes and the balls have a common interior
+    double d = 0.0;          ///< least common violation of the others, over the yield; negative if all have a common
+                             ///< interior
     std::array<double, 3> x{};
 };
 
-/// The least d for planes from `hard` on, within the balls and the planes before.
+/// The least d for planes from `hard` on, within the balls and the first `hard` planes.
 inline Least least_violation(const Question& q, std::size_t hard, double gap = 1e-9)
 {
     Least out;
     Barrier first;
-    // First everything gives way, balls too: any point is inside for a large d.
+    // First all constraints yield, balls too: any point is inside for a large d.
     for (std::size_t i = 0; i < hard; ++i) {
         first.planes.push_back({{q.planes[i].n[0], q.planes[i].n[1], q.planes[i].n[2], 1.0}, q.planes[i].b});
     }
@@ -240,7 +241,7 @@ inline Least least_violation(const Question& q, std::size_t hard, double gap = 1
     return out;
 }
 
-/// The point nearest to the goal, from one that is inside of everything.
+/// The point nearest to the goal, starting from a point inside all constraints.
 inline std::array<double, 3> nearest(const Question& q, const std::array<double, 3>& inside, double gap = 1e-13)
 {
     Barrier barrier;

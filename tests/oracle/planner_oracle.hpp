@@ -7,7 +7,7 @@
 
 #include "tests/oracle/cost_oracle.hpp"
 
-// Distances in double by other means than the product's: minimisation of convex functions of time, dense sampling.
+// Distances in double by methods other than the product's: minimisation of convex functions of time, dense sampling.
 
 namespace jink::oracle {
 
@@ -26,7 +26,7 @@ inline double box_distance(const Box& box, const P3& p)
     return std::sqrt(sum);
 }
 
-/// Least of a convex function on [0, 1] by golden section.
+/// Minimum of a convex function on [0, 1] by golden section.
 template <class F>
 double least(const F& f)
 {
@@ -55,7 +55,7 @@ double least(const F& f)
     return std::min({fc, fd, f(0.0), f(1.0)});
 }
 
-/// Least distance between the box flown along segment `i` and a sphere's centre that moves meanwhile.
+/// Least distance between the box flown along segment `i` and a moving sphere's centre.
 inline double approach(const Flight& flight, std::size_t i, const Moving& threat, const Box& box)
 {
     return least([&](double s) {
@@ -85,7 +85,7 @@ inline double margin(const Flight& flight, const Moving& threat, const Box& box)
     return worst;
 }
 
-/// The same against the whole volume that it sweeps from 0 to `end`.
+/// The same against the whole volume that the threat sweeps from 0 to `end`.
 inline double swept_margin(const Flight& flight, const Moving& threat, double end, const Box& box)
 {
     double worst = 1e9;

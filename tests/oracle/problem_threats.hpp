@@ -7,7 +7,7 @@
 
 namespace jink::geometric {
 
-/// A moving sphere, swept up and down by `half_height`, as tests write it down.
+/// A moving sphere, extended up and down by `half_height`, in the form used by tests.
 struct Sphere {
     geometry::Motion motion;
     float radius = 0.0F;               ///< at time 0 [m]
@@ -21,7 +21,7 @@ struct Sphere {
     }
 };
 
-/// A convex solid that moves, likewise.
+/// A moving convex solid, in the form used by tests.
 struct MovingSolid {
     geometry::Shape shape;
     Vec3 velocity = Vec3::Zero();
@@ -30,13 +30,13 @@ struct MovingSolid {
     float radius_acceleration = 0.0F;
 };
 
-/// Threats of a problem: bounds, spheres, closed areas, obstacles at rest, moving solids.
+/// Threats of a problem: bounds, spheres, closed areas, static obstacles, moving solids.
 struct ProblemThreats {
     std::vector<Sphere> threats;
     std::vector<world::Obstacle> obstacles;
     std::vector<MovingSolid> solids;
     world::Airspace airspace;
-    float uncertainty = 0.0F;  ///< kept from bounds and obstacles [m]
+    float uncertainty = 0.0F;  ///< margin to bounds and obstacles [m]
 
     /// Valid until the next call; of a copy, its own.
     void put_into(Problem& problem)

@@ -10,8 +10,7 @@
 
 namespace jink::oracle {
 
-/// A vehicle on its leg with one to five tracks that come near to it, and up to three pillars and houses beside its
-/// way.
+/// A vehicle on its leg with one to five tracks that come near, and up to three pillars and houses beside the leg.
 struct RandomSituation {
     TimePoint now{50'000'000};
     vehicle::VehicleState own;
@@ -70,7 +69,7 @@ struct RandomSituation {
         return s;
     }
 
-    mutable world::ThreatSet threats;  ///< of the newest view
+    mutable world::ThreatSet threats;  ///< of the latest view
 };
 
 }  // namespace jink::oracle

@@ -9,7 +9,7 @@
 #include "core/base/random.hpp"
 #include "core/path/route.hpp"
 
-// Routes in double precision, told by what they are made of: ends of legs; centre, axis and angle of arcs.
+// Routes in double precision, defined by their parts: ends of legs; centre, axis and angle of arcs.
 
 namespace jink::oracle {
 
@@ -33,7 +33,7 @@ struct RoutePiece {
     }
 };
 
-/// The same route twice: what the core makes of it, and its pieces.
+/// The same route twice: as built by core, and as pieces.
 struct TwinRoute {
     path::Route route;
     std::vector<RoutePiece> pieces;
@@ -74,7 +74,7 @@ struct TwinRoute {
         return sum;
     }
     [[nodiscard]] Vec3d end() const { return pieces.back().at(pieces.back().length); }
-    /// Past the end straight on.
+    /// Continues straight past the end.
     [[nodiscard]] Vec3d at(double s) const
     {
         return told(s, [](const RoutePiece& p, double on) { return p.at(on); });
@@ -111,7 +111,7 @@ private:
     }
 };
 
-/// Legs and arcs that go on in the direction in which the one before ends, up to `corner` [rad] aside.
+/// Legs and arcs that continue in the end direction of the previous one, up to `corner` [rad] off.
 inline TwinRoute random_route(Random& random, const Vec3& start, bool level, float corner)
 {
     const auto any = [&random] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames exchanged with node-mavlink (npm), an implementation that shares nothing with ours: every field of every frame
-// must come out as it went in. JINK_PEER_FRAMES sets the number per direction (20000). Exit code 77: the peer is not
+// Frames exchanged with node-mavlink (npm), an independent implementation: every field of every frame must be
+// transferred unchanged. JINK_PEER_FRAMES sets the number per direction (20000). Exit code 77: the peer is not
 // installed.
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ Signing::Key key()
     return k;
 }
 
-/// What the codec knows of one message, without its type.
+/// The codec's data on one message, without its type.
 struct Kind {
     MessageInfo info;
     std::span<const Field> fields;
@@ -207,7 +207,7 @@ TEST(MavlinkPeer, CataloguesAgree)
     }
     // newer than the peer: COMMAND_CANCEL, PROTOCOL_VERSION, ONBOARD_COMPUTER_STATUS, COMPONENT_METADATA, EVENT
     EXPECT_EQ(only_ours, (std::set<std::uint32_t>{80, 300, 390, 397, 410}));
-    // what point clouds come in by must not be among those: it is exchanged below
+    // the message of point clouds must be shared: it is exchanged below
     EXPECT_TRUE(theirs.contains(ObstacleDistance3d::kInfo.id));
     for (const auto& [id, their] : theirs) {
         const MessageInfo* const ours = find_message(id);
@@ -268,7 +268,7 @@ void peer_sends(const std::string& mode, std::size_t count)
     std::map<std::uint32_t, Kind> kinds;
     std::string ids;
     for (const Kind& kind : shared_messages()) {
-        // the peer's v1 frames carry extensions, which v1 does not have: those are left out
+        // the peer's v1 frames carry extensions, which v1 does not have: excluded
         if (mode != "v1" || (kind.info.id < 256 && kind.info.min_length == kind.info.max_length)) {
             kinds[kind.info.id] = kind;
             ids += ids.empty() ? "" : ",";

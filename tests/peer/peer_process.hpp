@@ -21,13 +21,13 @@ public:
 
     /// Writes all of `bytes` to the socket; false when the peer has gone.
     bool send(std::span<const std::byte> bytes) const;
-    /// Tells the peer that nothing more will come.
+    /// Signals the end of the data to the peer.
     void finish_sending() const;
-    /// What has arrived on the socket, waiting for something; empty at its end.
+    /// Bytes received on the socket, blocks until some arrive; empty at its end.
     [[nodiscard]] std::vector<std::byte> receive() const;
-    /// Everything the peer prints, up to the end.
+    /// The peer's whole output, up to the end.
     [[nodiscard]] std::string read_output() const;
-    /// Waits for the end of the process and says its exit code, -1 when a signal ended it.
+    /// Waits for the end of the process. @return its exit code, -1 when a signal ended it
     int wait();
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed airspace and storm cells before the planners: what is found keeps out of bodies by the supervisor's measure,
-// and who has no way around stops before them.
+// Closed airspace and storm cells ahead of the planners: found manoeuvres keep out of bodies by the supervisor's
+// measure, and a vehicle without an avoidance manoeuvre stops before them.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -36,7 +36,7 @@ Planner& barrel_planner()
     return one;
 }
 
-/// Barrels in place of everything else, some of them on the way.
+/// Barrels in place of everything else, some of them on the path.
 struct Stormy : RandomSituation {
     explicit Stormy(std::uint64_t seed) : RandomSituation(seed)
     {
@@ -82,7 +82,7 @@ TEST(BarrelPlans, WhatIsFoundKeepsOutOfBodies)
         if (barrel_planner().last().run != AvoidanceRun::soft_constraints || inside) {
             continue;
         }
-        // In the strictest run margins are kept as well: not on the way to where the vehicle answers.
+        // In the strictest run margins are kept as well, except before the vehicle responds.
         ++kept_margins;
         const float extra = s.view().k_sigma * s.own.sigma_position;
         for (float t = barrel_planner().settings().latency; t < manoeuvre.path.duration(); t += 0.05F) {

@@ -87,7 +87,7 @@ void expect_fewest(const Settings& s)
     }
 }
 
-/// Specification 11.2: nobody reaches a column with fewer turns.
+/// Specification 11.2: no trajectory reaches a column with fewer turns.
 TEST(BestPaths, NoTrajectoryOfUpToThreeTurnsHasFewer)
 {
     expect_fewest(with_root(0));

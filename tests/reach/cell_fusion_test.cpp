@@ -10,7 +10,7 @@
 #include "tests/oracle/random_situation.hpp"
 #include "tests/reach/unit_sets.hpp"
 
-// Cells rated as the source does it: what is found that way is clear too, and less is found.
+// Cells rated by Gomola's method: its answers are clear too, and fewer are found.
 
 namespace jink::reach {
 namespace {
@@ -76,7 +76,7 @@ TEST(CellFusionLaws, WhatIsFoundByCellsIsClear)
     by_cells(nullptr);
 }
 
-/// A placed set whose grid holds solids of every kind: no point of one lies in a cell that is told free of it.
+/// A placed set whose grid holds solids of every kind: no point of a solid is in a cell reported free of it.
 TEST(CellFusionLaws, NoCellThatIsToldFreeHoldsAnythingOfASolid)
 {
     std::size_t points = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cells and footprints of all there is, against the full trees of the specification, and what the sets have of them.
+// Cells and footprints of all trajectories, against the full trees of the specification, and the sets' coverage of
+// them.
 #include "toolchain/reach/coverage.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ Settings with_layers(std::size_t layers, DisplacementModel model)
     return s;
 }
 
-/// Specification 16.4: cells that the full tree touches.
+/// Specification 16.4: cells that the full tree enters.
 TEST(Coverage, ReachableCellsAreThoseOfTheFullTree)
 {
     EXPECT_EQ(count_reachable_cells(with_layers(4, DisplacementModel::arc)), 68U);

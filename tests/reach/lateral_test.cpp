@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways out at the sides, roots that climb or sink, and candidates counted by plane.
+// Exits at the sides, climbing or sinking roots, and candidates counted by plane.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -38,7 +38,8 @@ TEST(Lateral, NoneUnlessAskedFor)
     EXPECT_TRUE(grow(Settings{}, chaotic(Settings{}, 8, 3)).lateral.empty());
 }
 
-/// Every leaf of a set ends in the last layer or at a side, and the ways to the front are the same with and without.
+/// Every leaf of a set ends in the last layer or at a side, and the trajectories to the front are the same with and
+/// without lateral ends.
 TEST(Lateral, LeavesEndAtASideAndFrontsStay)
 {
     const Settings s = lateral();
@@ -103,8 +104,8 @@ TEST(Lateral, MergingKeepsThem)
     }
 }
 
-/// Mirrored movements of a sinking root's trajectories are flown from the climbing root, to mirrored places: what
-/// stored tables that are read upside down rely on.
+/// Mirrored movements of a sinking root's trajectories are flown from the climbing root, to mirrored places: required
+/// by stored tables that are read upside down.
 TEST(Roots, SinkingAndClimbingMirrorEachOther)
 {
     Settings sinking;
@@ -167,7 +168,8 @@ TEST(Planes, CountedByPlaneNoneIsDisplaced)
             return std::count_if(grown.front.begin(), grown.front.end(),
                                  [&](NodeId id) { return (grown.nodes[id].separations & plane) != 0; });
         };
-        // Alone, a plane has exactly what it has among the others when each is counted for itself.
+        // A plane alone has exactly the trajectories that it has among the others when each plane is counted
+        // separately.
         const WaveFront alone = grow(s, acas(s, plane, 2));
         EXPECT_EQ(in_plane(each), static_cast<std::ptrdiff_t>(alone.front.size())) << int{plane};
         EXPECT_LE(in_plane(together), in_plane(each)) << int{plane};
@@ -177,7 +179,7 @@ TEST(Planes, CountedByPlaneNoneIsDisplaced)
 }
 
 /// Specification 11.4: UL^2 DR^4 UL^2 S^2 stays within 0.048 of its tilted plane, and within 0.1 by its tolerance;
-/// level and upright planes are kept exactly. Turning the same way all the while leaves a tilted plane by up to 0.79.
+/// level and upright planes are kept exactly. Constant turning deviates from a tilted plane by up to 0.79.
 TEST(Planes, TrajectoriesStayNearTheirPlane)
 {
     const Settings s;

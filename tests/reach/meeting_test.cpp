@@ -77,7 +77,7 @@ void every_sample_is_in_its_cells_times(const Flown& flown)
     EXPECT_GT(samples, 100000U);
     EXPECT_LE(clipped, samples / 2000) << samples << " samples";
     ::testing::Test::RecordProperty("clipped_per_million", static_cast<int>(1000000 * clipped / samples));
-    // And nothing is named that nobody passes.
+    // Cells that no trajectory passes have no time.
     for (std::size_t cell = 0; cell < times.size(); ++cell) {
         EXPECT_TRUE(is_never(times[cell]) || passed[cell]) << cell;
     }

@@ -12,7 +12,7 @@
 #include "tests/oracle/random_situation.hpp"
 #include "tests/reach/unit_sets.hpp"
 
-// Which nodes meet which threats: by cells and one by one, against everything, and against dense samples of the arcs.
+// Conflicts between nodes and threats: by cells and singly, against everything, and against dense samples of the arcs.
 
 namespace jink::reach::detail {
 namespace {
@@ -117,8 +117,8 @@ TEST(NearThreatsLaw, CellsLoseNothing)
     EXPECT_LT(met * 10, nodes * 9);
 }
 
-/// Barrels alone, so that a movement's level is theirs: along its arc none that is free comes into a margin, none that
-/// is short of room into a body; and bodies do close movements.
+/// Barrels alone, so that they set a movement's level: along its arc a free movement enters no margin, a movement short
+/// of clearance enters no body; and bodies do close movements.
 TEST(NearThreatsLaw, BarrelsCloseBodiesAndTellMargins)
 {
     constexpr int kSamples = 16;
@@ -165,7 +165,7 @@ TEST(NearThreatsLaw, BarrelsCloseBodiesAndTellMargins)
     EXPECT_GT(seen[kFree], 3000U);
 }
 
-/// Along the arc itself, at the true times: what is told free or short of room alone touches nothing.
+/// Along the arc itself, at the true times: movements reported free or short of clearance have no contact.
 TEST(NearThreatsLaw, NoNodeThatIsToldFreeTouchesAnything)
 {
     constexpr int kSamples = 24;
@@ -179,7 +179,7 @@ TEST(NearThreatsLaw, NoNodeThatIsToldFreeTouchesAnything)
         for (int draw = 0; draw < 40; ++draw) {
             const auto node = static_cast<NodeIndex>(1 + crowd.random.below(set.nodes() - 1));
             const NodeIndex parent = set.parent[node];
-            // Bounds are looked at where movements end: the way to the parent has to be free as well.
+            // Bounds are checked at the ends of movements: the parent must be free as well.
             if (!is_free(near.level(placed, node, budget), AvoidanceRun::hard_constraints) ||
                 (parent != 0 && !is_free(near.level(placed, parent, budget), AvoidanceRun::hard_constraints))) {
                 continue;

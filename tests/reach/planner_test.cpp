@@ -11,8 +11,8 @@
 #include "tests/oracle/random_situation.hpp"
 #include "tests/reach/unit_sets.hpp"
 
-// The reach planner on random situations: what it returns must pass the check of the supervisor, which measures by
-// other means, and must never touch a track that grows as world::threat_radius says.
+// The reach planner on random situations: its result must pass the supervisor's check, which measures by other means,
+// and must never contact a track that grows by world::threat_radius.
 
 namespace jink::reach {
 namespace {
@@ -35,7 +35,7 @@ Planner& planner()
     return one;
 }
 
-/// Plans, and says what of it may be said of every plan.
+/// Plans, and checks the general properties of every plan.
 PlanStatus plan(const world::Situation& situation, world::Manoeuvre& out, std::uint32_t units = kPlannerPlenty)
 {
     WorkBudget budget(units);
@@ -71,7 +71,8 @@ TEST(ReachPlannerLaws, WhatIsFoundPassesTheFinalCheck)
         emergencies += report.emergency ? 1U : 0U;
         with_room += report.run == AvoidanceRun::soft_constraints ? 1U : 0U;
         more_tries += report.tries > 1 ? 1U : 0U;
-        ASSERT_GE(planned_margin(s, manoeuvre), -0.06F) << "seed " << seed;  // solids are told apart to 0.05 m
+        ASSERT_GE(planned_margin(s, manoeuvre), -0.06F) << "seed " << seed;  // distances of solids have a resolution of
+                                                                             // 0.05 m
         WorkBudget budget(kPlannerPlenty);
         rejected += avoid::check_manoeuvre(s.view(), manoeuvre, avoid::Settings{}, budget).margin < 0.0F ? 1U : 0U;
     }
@@ -113,8 +114,8 @@ TEST(ReachPlannerLaws, TracksAreNeverTouchedAsTheyGrow)
     EXPECT_GT(samples, 100000U);
 }
 
-/// The path is joined where the vehicle is when it answers, along its course, and no point of it is faster than what
-/// the vehicle flies.
+/// The path begins at the vehicle's position when it responds, along its course, and no point exceeds the vehicle's
+/// speed.
 TEST(ReachPlannerLaws, BeginsWhereTheVehicleAnswersAndKeepsItsSpeed)
 {
     std::size_t found = 0;
@@ -146,7 +147,7 @@ TEST(ReachPlannerLaws, BeginsWhereTheVehicleAnswersAndKeepsItsSpeed)
     EXPECT_GT(found, 500U);
 }
 
-/// Whatever work is allowed: an answer is clear, and with more work it is the same one.
+/// For any work budget: an answer is clear, and with more work it is the same.
 TEST(ReachPlannerLaws, LessWorkNeverGivesAnAnswerThatIsNotClear)
 {
     std::size_t cut = 0;
@@ -191,7 +192,7 @@ TEST(ReachPlannerLaws, TheSameInputGivesTheSameAnswerWhateverRanBefore)
     }
 }
 
-// Named cases. The vehicle flies east at 5 m/s, 30 m above the ground, on a leg that goes on for long.
+// Named cases. The vehicle flies east at 5 m/s, 30 m above the ground, on a long leg.
 struct Case : RandomSituation {
     Case() : RandomSituation(1)
     {

@@ -11,8 +11,8 @@
 
 namespace jink::reach::test {
 
-/// The sets of the source, by 15 degrees a movement, for a vehicle of 5 m/s: combined 8/3/1 and harmonic 1. The level
-/// root stands for all of them.
+/// Gomola's sets, with 15 degrees per movement, for a vehicle of 5 m/s: combined 8/3/1 and harmonic 1. The level root
+/// represents all of them.
 class UnitSets {
 public:
     UnitSets()

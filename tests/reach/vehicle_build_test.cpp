@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All sets of a vehicle: what they ask of it, how they fit, and what is refused.
+// All sets of a vehicle: their demands on the vehicle, their sizes, and refusals.
 #include "toolchain/reach/vehicle_build.hpp"
 
 #include <gtest/gtest.h>
@@ -63,7 +63,7 @@ TEST(VehicleBuild, StepsFollowFromTheLimits)
     EXPECT_EQ(flat.most_down, 3);
 }
 
-/// Whatever a set has in it, the vehicle can fly at every speed of its segment.
+/// The vehicle can fly every movement of a set at every speed of its segment.
 void expect_flyable(const BuiltVehicle& built)
 {
     for (std::size_t i = 0; i < built.segments.size(); ++i) {

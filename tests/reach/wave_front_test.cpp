@@ -105,7 +105,7 @@ TEST(ReachSetAnchors, ChaoticWithinTheirTies)
     }
 }
 
-/// With the source's key, the footprint alone, trees collapse.
+/// With Gomola's key, the footprint alone, trees collapse.
 TEST(ReachSetAnchors, FootprintAlone)
 {
     const Settings arc = settings_for(DisplacementModel::arc, false);
@@ -147,7 +147,7 @@ Settings front_with_layers(std::size_t layers, DisplacementModel model)
     return s;
 }
 
-/// Everything there is on four layers, and what the chaotic sets have of its footprints.
+/// All trajectories on four layers, and the chaotic sets' share of the footprints.
 TEST(ReachSetAnchors, FullTreeAndCoverage)
 {
     const auto counts = [](const Metrics& m, std::size_t nodes, std::size_t trajectories, std::size_t footprints,
@@ -165,7 +165,7 @@ TEST(ReachSetAnchors, FullTreeAndCoverage)
     };
     EXPECT_NEAR(share(9), 0.54, 0.005);
     EXPECT_NEAR(share(36), 0.96, 0.005);
-    // Cells of the whole grid: the full tree touches 278 of 350.
+    // Cells of the whole grid: the full tree enters 278 of 350.
     const Settings whole = settings_for(DisplacementModel::arc);
     const auto cells = [&](const Constraint& c) { return static_cast<double>(measure(kept(grow(whole, c), 0)).cells); };
     EXPECT_GE(cells(chaotic(whole, 9, 3)) / 278.0, 0.85);

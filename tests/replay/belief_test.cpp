@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the co-processor believes in every second of recorded streams of real autopilots, against what their ground
-// stations and simulators noted beside them: true positions, modes, homes.
+// The co-processor's belief in every second of recorded streams of real autopilots, against the records of their ground
+// stations and simulators: true positions, modes, homes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +56,7 @@ TEST_P(Beliefs, OwnPositionIsTheTrueOne)
 TEST_P(Beliefs, OwnPositionIsKnownWhileItIsStreamed)
 {
     for (const sim::Belief& belief : beliefs_of(*recording_)) {
-        // Streamed for a second already, without a pause: what comes after a pause may be old.
+        // Streamed for a second without a pause: data after a pause may be old.
         bool streamed = true;
         for (double back = 0.0; back < 1.0; back += 0.2) {
             streamed = streamed && fresh(kLocalPositionId, belief.time - back, 0.2) &&
@@ -73,7 +73,8 @@ TEST_P(Beliefs, OwnPositionIsKnownWhileItIsStreamed)
 
 TEST_P(Beliefs, OwnVelocityIsTheTrueOne)
 {
-    // Between true points, a second apart, the truth is known to half of what 5 m/s2 make of it; on them exactly.
+    // Between true points, a second apart, the truth is known within the interpolation error of 5 m/s2; at them
+    // exactly.
     for (const sim::Belief& belief : beliefs_of(*recording_)) {
         const auto truth = recording_->truth_at(belief.time);
         if (truth && belief.velocity) {
@@ -91,7 +92,7 @@ TEST_P(Beliefs, ModeAndArmingAreTheGroundStations)
             EXPECT_FALSE(fresh(kHeartbeatId, belief.time, kHeartbeatPeriod)) << belief.time << " s";
             continue;
         }
-        // What this HEARTBEAT says; the ground station's own HEARTBEAT may show it a second later.
+        // This HEARTBEAT's mode; the ground station's own HEARTBEAT may show it a second later.
         std::set<std::string> names;
         std::set<bool> armed;
         for (const SeenMode& mode : recording_->modes) {

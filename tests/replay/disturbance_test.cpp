@@ -15,10 +15,10 @@ namespace {
 
 /// Beliefs are right again this long after a disturbance has ended [s].
 constexpr double kRecovery = 3.0;
-/// From the start of a disturbance to the next [s]: recovery, the longest disturbance, one second to look at.
+/// From the start of a disturbance to the next [s]: recovery, the longest disturbance, one second of observation.
 constexpr double kBetween = 5.0;
 constexpr double kLongest = 0.5;
-/// Frames are repeated as a block of at most this length [s]. Longer ones look like a boot clock that starts again
+/// Frames are repeated as a block of at most this length [s]. Longer ones appear as a restarted boot clock
 /// (ClockSync::kJump).
 constexpr double kLongestRepeat = 0.15;
 /// ArduPilot sends home every 5 s (as jink asks): one that was lost is missed for so long [s].
@@ -110,7 +110,7 @@ bool same_home(const std::optional<sim::Globe>& a, const std::optional<sim::Glob
                    std::abs(a->alt - b->alt) < 0.05));
 }
 
-/// Home now, or as it stood while its message may have been lost.
+/// Home now, or before a possibly lost message.
 bool home_is_right(const sim::Belief& belief, const std::vector<sim::Belief>& undisturbed, std::size_t i)
 {
     for (std::size_t k = i; undisturbed[i].time - undisturbed[k].time <= kHomePeriod; --k) {
@@ -124,8 +124,7 @@ bool home_is_right(const sim::Belief& belief, const std::vector<sim::Belief>& un
     return false;
 }
 
-/// What is wrong; empty: nothing. Nominal paths are not compared: mission items that were lost are not sent again by a
-/// recording.
+/// The fault; empty: none. Nominal paths are not compared: a recording does not repeat lost mission items.
 std::string fault_of(const sim::Belief& belief, const std::vector<sim::Belief>& undisturbed, std::size_t i)
 {
     const sim::Belief& right = undisturbed[i];

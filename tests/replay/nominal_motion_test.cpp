@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the co-processor believes that the vehicle goes, in every second of recorded streams, against where it went.
+// The co-processor's nominal motion in every second of recorded streams, against the actual motion.
 #include <gtest/gtest.h>
 
 #include "tests/replay/nominal_oracle.hpp"
@@ -20,7 +20,7 @@ TEST_P(NominalPath, IsNotContradictedByTheTrueMotionOfTheNextSeconds)
     for (const sim::Belief& belief : beliefs_of(*recording)) {
         const bool leads = belief.control == "ours" || belief.control == "returning";
         const std::string fault = contradiction(*recording, belief);
-        // In control, the nominal path is where the flight goes back to, not what is flown.
+        // In control, the nominal path is the path to return to, not the flown path.
         if (!fault.empty() && !leads) {
             ++wrong;
             ADD_FAILURE() << belief.time << " s, " << belief.mode.value_or("none") << ": " << fault << ", end "

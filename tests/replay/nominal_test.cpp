@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the co-processor believes that a recorded vehicle goes, against the mission items in the recording and against
-// where the vehicle truly went.
+// The co-processor's nominal path of a recorded vehicle, against the mission items in the recording and the vehicle's
+// true motion.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -35,7 +35,7 @@ protected:
             GTEST_SKIP() << GetParam() << " is not part of this repository; say with JINK_RECORDINGS where it is";
         }
     }
-    /// Items of these numbers, wherever they stand in the recording: its missions do not change in flight.
+    /// Items of these numbers, anywhere in the recording: its missions do not change in flight.
     [[nodiscard]] std::map<std::uint16_t, const RawFrame*> waypoints() const
     {
         std::map<std::uint16_t, const RawFrame*> found;

@@ -14,7 +14,7 @@ namespace jink::replay_test {
 
 using sim::Vec;
 
-/// A MAVLink 2 frame as it stands in a recording. Read by this test's own few lines, not by the product's parser.
+/// A MAVLink 2 frame of a recording. Read by this test's own reader, not by the product's parser.
 struct RawFrame {
     double time = 0.0;  ///< of the record that completes it [s]
     std::uint8_t system = 0;
@@ -27,14 +27,14 @@ struct RawFrame {
 /// Frames of the autopilot's direction in their order. Bytes between frames are left out.
 [[nodiscard]] std::vector<RawFrame> frames_of(const std::vector<sim::WireRecord>& records);
 
-/// Where and how fast the vehicle truly was.
+/// The vehicle's true position and velocity.
 struct TruePoint {
     double time = 0.0;
     Vec position = Vec::Zero();  ///< about the origin of the autopilot's local frame, ENU [m]
     Vec velocity = Vec::Zero();  ///< [m/s]
 };
 
-/// A mode as the ground station of the recording saw it.
+/// A mode as reported by the recording's ground station.
 struct SeenMode {
     double time = 0.0;
     std::string name;  ///< as mode_names.hpp has it
@@ -47,7 +47,7 @@ struct Recording {
     std::vector<RawFrame> frames;
     std::vector<TruePoint> truth;
     std::vector<SeenMode> modes;
-    std::vector<double> changes;  ///< times at which the vehicle began something else: modes, mission items, take-off
+    std::vector<double> changes;  ///< times of changes: modes, mission items, take-off
 
     /// Cubic between the two true points about `time`; nothing before the first and where a second is missing.
     [[nodiscard]] std::optional<TruePoint> truth_at(double time) const;
@@ -58,11 +58,11 @@ struct Recording {
 /// Names of all recordings.
 [[nodiscard]] const std::vector<std::string>& recording_names();
 
-/// A recording with what its ground station and simulator noted; read once. nullptr where the folder does not have it:
+/// A recording with the records of its ground station and simulator; read once. nullptr if the folder lacks it:
 /// JINK_RECORDINGS names the folder, else JINK_RECORDINGS_DEFAULT of the build.
 [[nodiscard]] const Recording* find_recording(const std::string& name);
 
-/// What today's code believes in each second of a recording; replayed once.
+/// The present code's belief in each second of a recording; replayed once.
 [[nodiscard]] const std::vector<sim::Belief>& beliefs_of(const Recording& recording);
 
 /// East, north and up of a place about an origin [m], both as on the wire (degE7, mm); in double, on PX4's sphere.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Planes: the ArduPlane that the simulator plays obeys what ArduPlane's sources say and nothing else, and jink steers
-// it clear of traffic. JINK_CASES and JINK_SEED.
+// Planes: the simulated ArduPlane behaves as ArduPlane's sources specify, and jink keeps it clear of traffic.
+// JINK_CASES and JINK_SEED.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -195,8 +195,8 @@ TEST(SimPlane, DiscardsVelocitiesAndCountsThemAndFliesGuidedPoints)
 }
 
 struct Tally {
-    int hits = 0;      ///< bodies touched
-    int breaches = 0;  ///< nearer than the promise
+    int hits = 0;      ///< bodies in contact
+    int breaches = 0;  ///< separation below the promise
     int not_back = 0;  ///< control was taken and the mission not given back
     int takeovers = 0;
     double least = 1e9;  ///< [m]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Missions, heartbeats, home and set-points, as the recordings and PX4's sources have them.
+// Missions, heartbeats, home and set-points, as in the recordings and PX4's sources.
 #include "tests/scenario/autopilot_line.hpp"
 
 #include <cmath>

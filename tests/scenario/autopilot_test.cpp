@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The autopilot that the simulator plays, seen from the co-processor's end of the cable: it must be as strict as the
-// real ones.
+// The simulated autopilot, tested from the co-processor's end of the cable: as strict as the real autopilots.
 #include <gtest/gtest.h>
 
 #include "tests/scenario/autopilot_line.hpp"

@@ -35,7 +35,7 @@ class BesideTheLeg : public ::testing::TestWithParam<std::tuple<Scene, Methods>>
 TEST_P(BesideTheLeg, AClosedAreaIsKeptOutOf)
 {
     const auto& [scene, methods] = GetParam();
-    // The cylinder's surface is 3 m from the leg, where the traffic is met.
+    // The cylinder's surface is 3 m from the leg, at the encounter with the traffic.
     const std::string text =
         "seed: 5\nduration: 90\nto_goal: true\nmission: [[0, 0, 30], [150, 0, 30]]\nclosed_areas: [{name: area, " +
         std::string(scene.area) + ", radius: 5, bottom: 0, top: 120}]\n" +
@@ -55,7 +55,7 @@ TEST_P(BesideTheLeg, AClosedAreaIsKeptOutOf)
     EXPECT_GT(record.closest.surface, 5.0);
     EXPECT_GT(record.closest_area, 0.7);
     EXPECT_EQ(record.outcome, Outcome::avoided);
-    // What the reciprocal method answers is good for a tick; once in a while the final check refuses it.
+    // The reciprocal method's answer is valid for a tick; occasionally the final check refuses it.
     EXPECT_LE(record.inside->brakes, methods.value == kReciprocal.value ? 1U : 0U);
     EXPECT_TRUE(unmet(scenario, record).empty());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed areas of the simulator: distances, files, and what flying into one is called.
+// Closed areas of the simulator: distances, files, and the outcome of flying into one.
 #include <gtest/gtest.h>
 
 #include "toolchain/sim/closed_area.hpp"
@@ -145,7 +145,7 @@ TEST(AreaSender, ARefusalOrSilenceIsAFaultOfTheFlight)
     EXPECT_EQ(AreaSender({}).fault(), "");
 }
 
-/// A vehicle that hears of a closed area only near it has had less time than the scenario says.
+/// If the vehicle learns of a closed area only nearby, it has less time than the scenario specifies.
 TEST(AreaSender, ALateAcknowledgementIsAFault)
 {
     const std::vector<ClosedArea> areas{ClosedArea{.name = "storm", .top = 9.0}};
@@ -159,7 +159,7 @@ TEST(AreaSender, ALateAcknowledgementIsAFault)
     EXPECT_EQ(sender.fault(), "closed areas were in force after 4 s only");
 }
 
-/// One scenario without an input keeps the others from nothing: it is left out by name.
+/// One scenario without an input does not prevent the others: it is excluded by name.
 TEST(NamedScenarios, OnlyThoseWithALidarHaveNoInputOnDaemonAndImages)
 {
     std::size_t with_areas = 0;

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Two rounds: 27 programs at once keep two cores so busy that ticks come late.
+/// Two batches: 27 programs at once load two cores so much that ticks are late.
 constexpr unsigned kAtOnce = 14;
 
 std::vector<Scenario>& scenarios()
@@ -68,8 +68,8 @@ public:
     }
 };
 
-/// Whatever the phase in which ticks, line and sightings meet: the real program ends as the same code does in process
-/// in one of many phases.
+/// For every phase of ticks, line and sightings, the real program ends as the same code in process does in one of many
+/// phases.
 class WithinPhases : public Flight {
 public:
     using Flight::Flight;

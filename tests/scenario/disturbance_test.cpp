@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Errors of the estimator, gusts and the steps of ADS-B: against the figures of their sources.
+// Errors of the estimator, gusts and the steps of ADS-B: against the published figures.
 #include "toolchain/sim/disturbance.hpp"
 
 #include <cmath>

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Conflict prediction on recorded encounters of manned aircraft: what is predicted on the way against what the
-// recording then shows.
+// Conflict prediction on recorded encounters of manned aircraft: predictions against the later recording.
 //
-// Size: a sphere of 0.66 nmi about the intruder, the horizontal well-clear distance of DO-365; its 450 ft in height
-// cannot be said by a sphere, and the aircraft here fly at one height. The own box is 1 m, so that it counts for
-// nothing.
+// Size: a sphere of 0.66 nmi about the intruder, the horizontal well-clear distance of DO-365; a sphere cannot express
+// its 450 ft in height, and the aircraft here fly at one height. The own box of 1 m is negligible.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -52,11 +50,11 @@ std::vector<fs::path> files()
     return all;
 }
 
-/// What the recording shows, by looking at it every 10 ms.
+/// The truth of the recording, sampled every 10 ms.
 struct Truth {
     double closest_at = 0.0;
     double miss = 1e12;
-    double loss_at = -1.0;  ///< first instant nearer than well clear; negative: never
+    double loss_at = -1.0;  ///< first instant of lost well-clear; negative: never
 };
 
 Truth truth_of(const Aircraft& own, const Aircraft& other)
@@ -76,7 +74,7 @@ Truth truth_of(const Aircraft& own, const Aircraft& other)
     return truth;
 }
 
-/// What is predicted at one time.
+/// A prediction at one time.
 struct Prediction {
     double time = 0.0;
     bool conflict = false;

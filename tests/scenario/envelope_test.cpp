@@ -91,7 +91,7 @@ TEST(Phases, OfOneSeedAreTheSameAndOfTwoAreNot)
     EXPECT_NE(once[0].closest.surface, once[1].closest.surface);
 }
 
-/// A vehicle that answers its own threat otherwise lies outside: nothing is within an envelope by chance.
+/// A vehicle that reacts differently to its threat lies outside: no flight is within an envelope by chance.
 TEST(Phases, AnotherBehaviourLiesOutside)
 {
     const Scenario wall = scenario("scan_wall");
@@ -105,7 +105,7 @@ TEST(Phases, AnotherBehaviourLiesOutside)
     EXPECT_TRUE(outside_phases(wall, fly_in_process(wall)).empty());
 }
 
-/// In whatever phase a sensor's clock, the ticks and the line meet: each flight as its file expects, none left hanging.
+/// In every phase of sensor clock, ticks and line: each flight ends as its file expects, none hangs.
 TEST(Phases, AWallSeenByAScanIsPassedInAllOfThem)
 {
     const Scenario wall = scenario("scan_wall");
@@ -116,8 +116,8 @@ TEST(Phases, AWallSeenByAScanIsPassedInAllOfThem)
     }
 }
 
-/// A co-processor that is held up for longer than its own state may be old loses control, and says so: the autopilot is
-/// asked to hold, and holds until somebody resumes the mission (docs/guides/take_over.md).
+/// A co-processor delayed beyond the age limit of the own state gives up control and reports this: the autopilot is
+/// requested to hold, and holds until the mission is resumed (docs/guides/take_over.md).
 TEST(Phases, HeldUpBeyondTheAgeOfOwnStateItDropsControlAndHolds)
 {
     const Scenario wall = scenario("scan_wall");
@@ -161,7 +161,7 @@ TEST(Ticks, ComeAsLateAsAllowedAndNeverCatchUpByABurst)
         const Micros gap = ticks.next() - before;
         if (before >= 0) {
             EXPECT_GE(gap, 0);
-            EXPECT_GE(gap + last_gap, 20'000 - timing.tick_jitter);  // one at once after a late one, no more
+            EXPECT_GE(gap + last_gap, 20'000 - timing.tick_jitter);  // at most one immediate tick after a late tick
             last_gap = gap;
             EXPECT_LE(gap, 20'000 + timing.tick_jitter + 60'000);
             late += gap > 38'000 ? 1U : 0U;

@@ -92,7 +92,7 @@ TEST(HoldUp, AProgramThatSleepsWaitsForNoProcessor)
     }
 }
 
-/// A program that is busy with itself is not taken for one that the machine starves: its time runs.
+/// A busy program does not count as delayed by the host: its processor time increases.
 TEST(HoldUp, AProgramThatNeverEndsItsLoopIsNotExcused)
 {
     const Child child({"sh", "-c", "while :; do :; done"}, "/dev/null");
@@ -127,7 +127,7 @@ TEST(HoldUp, AProgramThatSharesItsProcessorIsHeldUp)
     for (int i = 0; i < 500 && hold_up.longest() <= 0.001; ++i) {
         pause();
         HoldUp::Sample now = HoldUp::sample(first, wall());
-        now.wall = 0.02 * i;  // what this test itself waits for is not meant, nor is what other machines take
+        now.wall = 0.02 * i;  // neither this test's own waiting nor stolen time is meant
         now.stolen = 0.0;
         static_cast<void>(hold_up.look(now));
     }

@@ -46,7 +46,8 @@ TEST(Judge, FindsAWayWhenThereIsRoomAndNoneWhenThereIsNot)
     EXPECT_LT(close.best, 0.7);
 }
 
-/// What is worst before the threat is told of is nobody's mistake: however good the manoeuvres from then on.
+/// If the least separation precedes the report of the threat, the failure is unavoidable, independent of later
+/// manoeuvres.
 TEST(Report, AThreatToldOfTooLateIsNoFailureToAvoid)
 {
     Scenario s = with_standing_threat(30.0);
@@ -90,7 +91,7 @@ TEST(Judge, ThreatsNotYetToldOfAreNoConflictButCountAgainstEveryManoeuvre)
     cage.appears_when_own_within.reset();
     cage.appears_at = 1e9;
     cage.radius = 1.0;
-    cage.position = Vec(10.0, 0, 30);  // where the vehicle is when it sees the other one
+    cage.position = Vec(10.0, 0, 30);  // the vehicle's position when the other threat is detected
     s.threats.push_back(cage);
     EXPECT_EQ(judge(s).keep, 0U);
 }
@@ -105,7 +106,7 @@ TEST(Judge, TheFloorShutsTheWayBelow)
     EXPECT_GT(low, 0U);
 }
 
-/// The outcome, from notes made by hand.
+/// The outcome, from hand-made records.
 class Conclusion : public ::testing::Test {
 protected:
     Scenario scenario = with_standing_threat(30.0);
@@ -183,7 +184,7 @@ TEST_F(Conclusion, ExpectationsAreComparedOneByOne)
     EXPECT_EQ(unmet(scenario, record).size(), 4U);
 }
 
-/// A leg that leads below the floor is the mission's affair; leaving one above it downwards is a fault.
+/// A leg that leads below the floor is permitted; leaving a leg above the floor downwards is a fault.
 TEST(InProcess, TheFloorIsBrokenWhereTheLegIsNot)
 {
     Scenario s = with_standing_threat(30.0);
@@ -196,7 +197,7 @@ TEST(InProcess, TheFloorIsBrokenWhereTheLegIsNot)
     EXPECT_LT(down.lowest, 10.0);
     EXPECT_FALSE(down.below_floor);
     EXPECT_EQ(down.outcome, Outcome::clear);
-    // The same flight, started so low that the leg, which is above the floor at first, is met from below.
+    // The same flight, started so low that the leg, at first above the floor, is reached from below.
     s.start_position.z() = 19.0;
     const Record low = fly_in_process(s);
     EXPECT_TRUE(low.below_floor);

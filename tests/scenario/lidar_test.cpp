@@ -38,7 +38,7 @@ Threat draw_body(Random& random)
     return body;
 }
 
-/// In tiny steps until the distance to the surface is none; negative: never within `most`.
+/// Small steps until the distance to the surface is zero; negative: never within `most`.
 double walk(const Threat& body, const Vec& centre, const Vec& from, const Vec& direction, double most)
 {
     for (double range = 0.0; range <= most; range += kStepAlong) {
@@ -129,7 +129,7 @@ expect: {outcome: [clear, avoided, braked, collision]}
                           "seen.yaml");
 }
 
-/// First thing that is there in a direction of the world, by walking; negative: nothing within the range.
+/// Range to the first body in a world direction, by stepping; negative: nothing within range.
 double walk_world(const World& world, const Vec& direction, double most)
 {
     for (double range = 0.0; range <= most; range += kStepAlong) {
@@ -147,8 +147,8 @@ double walk_world(const World& world, const Vec& direction, double most)
     return -1.0;
 }
 
-/// Every point that the product's receiver hands on lies where something is, and what is there is seen: tilted, turning
-/// vehicle, another walk along each ray.
+/// Every point that the product's receiver delivers is on a surface, and every surface is detected: tilted, turning
+/// vehicle, separate stepping along each ray.
 TEST(Lidar, TheProductsReceiverFindsTheWorldInItsFrames)
 {
     const Scenario scenario = seen_scenario();
@@ -192,7 +192,7 @@ TEST(Lidar, TheProductsReceiverFindsTheWorldInItsFrames)
         const Vec level = point.cast<double>();
         const Vec direction = Vec(c * level.x() - s * level.y(), s * level.x() + c * level.y(), level.z()).normalized();
         const double walked = walk_world(then, direction, 40.0);
-        // Angles of the wire are 1e-4 rad: at a glancing hit that is much of range, so the place itself is looked at.
+        // Angles of the wire are 1e-4 rad: at a grazing hit the range error is large, so the place is compared.
         if (ray == link::Ray::hit) {
             ++hits;
             const Vec at = own.position + level.norm() * direction;

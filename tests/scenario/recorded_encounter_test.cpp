@@ -16,7 +16,7 @@ RecordedEncounter read_text(const std::string& text)
     return read_encounter(in, "some.daa");
 }
 
-/// What is thrown about it.
+/// The text of the exception.
 std::string refusal_of_encounter(const std::string& text)
 {
     try {
@@ -33,7 +33,7 @@ const std::string kTwoRows = "Own 0 0 100 10 0 0 0\nOther 500 20 110 -10 0 1 0\n
 
 TEST(RecordedEncounterFile, ReadsWhatDaidalusWrites)
 {
-    // Columns beyond those that are read: strings, units that nobody knows, values that are no numbers.
+    // Columns that are not read: strings, unknown units, non-numeric values.
     const RecordedEncounter e =
         read_text("## DAAGenerator -lat 40\n"
                   "Conflict_Time = 100 [s]\n"

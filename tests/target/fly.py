@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""All scenarios against an image in an emulated board: each ends as its file expects, and within the envelope of the
-same flights in process in many phases of ticks and line (toolchain/sim/envelope.hpp).
+"""All scenarios against an image on an emulated board: each ends as its file expects, and within the envelope of the
+same flights in process with many phases of ticks and line (toolchain/sim/envelope.hpp).
 
 Usage: fly.py JINK_SIM BUILD_FOLDER IMAGE
 
-Exit status 77 (skipped) where the image or the emulator is not there.
+Exit status 77 (skipped) if the image or the emulator is missing.
 """
 import json
 import pathlib
@@ -15,7 +15,7 @@ import sys
 import tempfile
 
 MACHINES = {"mps2_an500": "mps2-an500", "stm32f405": "netduinoplus2"}
-# What no image has an input for.
+# Scenarios that need an input which images lack.
 NO_INPUT = re.compile(r"^lidar:", re.M)
 AT_ONCE = 6  # each board takes a quarter of a processor
 

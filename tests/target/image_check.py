@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What an image must be: small enough, without an allocator, with a stack that its call graph cannot overflow.
+"""Checks of an image: size, absence of an allocator, and a stack that its call graph cannot overflow.
 
 Usage: image_check.py BUILD_FOLDER IMAGE
 
@@ -13,7 +13,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
 import stack  # noqa: E402
 
-# With reach sets and reciprocal avoidance; what they may take of it, and the rest, is in the memory report
+# With reach sets and reciprocal avoidance; the memory report has their limits and the limit of the rest
 # (toolchain/report/memory_sizes.py).
 MOST_FLASH = 664 * 1024
 MOST_STATIC_RAM = 112 * 1024
@@ -43,7 +43,7 @@ def main(build, image):
         print(f"{elf} was not built: skipped")
         return 77
     text, data, bss = map(int, tool("size", str(elf)).splitlines()[1].split()[:3])
-    # Memory apart from the rest, where there is some: only the processor reaches it.
+    # Core-coupled memory, if any: accessible to the processor only.
     coupled = sum(int(line.split()[1]) for line in tool("size", "-A", str(elf)).splitlines() if line.startswith(".ccm "))
     bss -= coupled
     symbols = tool("nm", "-C", str(elf))

@@ -87,7 +87,7 @@ struct Probe::World {
     StaticVector<world::Track, kProbeTracks> tracks;
     StaticVector<world::Obstacle, kProbeObstacles> obstacles;
 
-    /// In place: there is no room for two on a small stack.
+    /// In place: a small stack cannot hold two.
     void take(const ProbeRecord& r) noexcept
     {
         configuration = configuration_of(r);
@@ -145,7 +145,7 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     if (!fits(record)) {
         return;
     }
-    static World world;  // not on the stack, which is to hold what the co-processor needs
+    static World world;  // not on the stack, which is measured for the co-processor
     world.take(record);
     world::Situation situation{{},
                                world.own,

@@ -10,14 +10,14 @@
 
 namespace jink::target {
 
-/// Computes cases one after the other, each from a clean start, with the settings that the co-processor has by default.
+/// Computes cases in sequence, each from a clean start, with the co-processor's default settings.
 ///
-/// Between jink_window_begin() and jink_window_end() lies exactly what is to be counted: the plan, or the update.
+/// Between jink_window_begin() and jink_window_end() is exactly the counted code: the plan, or the update.
 class Probe {
 public:
     Probe() noexcept;
 
-    /// A record that is none (magic, counts, capacities) gives an answer with magic 0.
+    /// An invalid record (magic, counts, capacities) gives an answer with magic 0.
     void answer(const ProbeRecord& record, ProbeAnswer& out) noexcept;
 
 private:
@@ -25,7 +25,7 @@ private:
 
     [[nodiscard]] world::PlanStatus plan(ProbeKind kind, const world::Situation& situation,
                                          WorkBudget& budget) noexcept;
-    /// Whether it was the reach sets that chose.
+    /// Whether the reach sets made the choice.
     [[nodiscard]] bool is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept;
 
     geometric::Planner planner_;

@@ -4,17 +4,17 @@
 #include <cstddef>
 #include <cstdint>
 
-// What a probe program needs of the platform that it runs on: posix_io.cpp, semihosting_io.cpp.
+// Platform interface of a probe program: posix_io.cpp, semihosting_io.cpp.
 
 namespace jink::target {
 
 /// Reads all of `bytes`; false at the end of the input.
 [[nodiscard]] bool read_all(void* bytes, std::size_t count) noexcept;
 void write_all(const void* bytes, std::size_t count) noexcept;
-/// [bytes] since start; 0 where it cannot be told.
+/// [bytes] since start; 0 where unknown.
 [[nodiscard]] std::uint32_t stack_used() noexcept;
 
-/// By the program: answers record after record until the input ends. Called by the platform.
+/// Defined by the program: answers records until the input ends. Called by the platform.
 void serve() noexcept;
 
 }  // namespace jink::target

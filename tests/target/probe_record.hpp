@@ -7,8 +7,8 @@
 
 #include "core/capacity.hpp"
 
-// What the host asks a target to compute, and what comes back: plain memory, little-endian, the same on every target,
-// so that one record replays exactly one case.
+// Requests of the host to a target, and the answers: plain memory, little-endian, the same on every target. One record
+// replays exactly one case.
 
 namespace jink::target {
 
@@ -56,7 +56,7 @@ struct ProbeRecord {
     std::uint32_t retries;
     std::uint32_t bounds;        ///< 1 floor, 2 ceiling, 4 keep-in
     std::uint32_t reduced_sets;  ///< 0 the build's own reach sets, 1 the default vehicle's reduced ones
-    std::uint32_t shared;        ///< bit i: track i shares the reaction
+    std::uint32_t shared;        ///< bit i: track i is cooperative
     float own_position[3];
     float own_velocity[3];
     float own_sigma;
@@ -92,13 +92,13 @@ struct ProbeAnswer {
     std::uint32_t status;      ///< world::PlanStatus; of `update` the one of its plan
     std::uint32_t candidates;  ///< of the last attempt
     std::uint32_t chosen;      ///< index of the candidate; kReachChose and the node where reach sets chose
-    std::uint32_t work;        ///< units spent
+    std::uint32_t work;        ///< work units spent
     std::uint32_t state;       ///< avoid::State, of `update`
-    std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told
+    std::uint32_t stack_used;  ///< [bytes] since start; 0 where unknown
     float cost;
     float velocity[3];        ///< command, of `update` and `reciprocal`; else first velocity of the path
     float margin;             ///< of `update`
-    std::uint32_t cut_short;  ///< 1: work has ended before all candidates of the last plan were looked at
+    std::uint32_t cut_short;  ///< 1: the work units ran out before all candidates of the last plan were checked
 };
 static_assert(std::is_trivially_copyable_v<ProbeAnswer> && sizeof(ProbeAnswer) == 14 * 4);
 

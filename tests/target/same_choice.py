@@ -34,7 +34,7 @@ PLAN_BUDGET = int(re.search(r"\bplan_budget = (\d+);", SETTINGS.read_text(encodi
 
 
 def ran_out(probe, case, *answers):
-    """Whether work has ended a plan on the target or on the reference, which weigh libccd's doubles differently."""
+    """Whether the budget ended a plan on the target or the reference, which weight libccd's doubles differently."""
     return (probe.name in SOFT_DOUBLES and any(a.cut_short or a.work >= PLAN_BUDGET for a in answers) and
             any(obstacle[0] in THROUGH_LIBCCD for obstacle in case.obstacles))
 
@@ -49,7 +49,7 @@ def case_of(seed):
 
 
 def is_comparable(probe, case):
-    """An image without room for the large reach sets flies the reduced ones, whatever is asked for."""
+    """An image without memory for the large sets always flies the reduced sets."""
     return case.kind in ("plan", "reciprocal") or case.reduced_sets or probe.name not in REDUCED_ONLY
 
 

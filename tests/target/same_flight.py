@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every scenario's flight, run again on every target from what went over its line: the same decisions step by step.
+"""Repeats every scenario's flight on every target from its recorded line: the same decisions step by step.
 
 Usage: same_flight.py JINK_SIM BUILD_FOLDER TARGET ...
 
-The flights are flown in process and recorded; the first target (the program of this machine) has to write the very same
-bytes again, and so have armhf and aarch64 (SAME_BYTES). On images, whose C library is another one, every state, fault,
-plan, chosen candidate and count of work has to be the same in every step; commands and margins may differ by rounding
-(TOLERANCE), and the largest difference is printed.
+The flights are flown in process and recorded. The first target (the host program), armhf and aarch64 (SAME_BYTES) must
+write identical bytes. On images, which have another C library, every state, fault, plan, chosen candidate and work
+count must be equal in every step; commands and margins may differ by rounding (TOLERANCE), and the largest difference
+is printed.
 
-A board without room for the large reach sets flies without any here, and is compared with this machine's program that
-does so too; same_choice.py compares plans by the reduced sets. Flights for which images have no input (fly.py) are left
-out.
+A board without memory for the large reach sets flies without reach sets here, and is compared with the host program
+without reach sets; same_choice.py compares plans by the reduced sets. Flights without an input on images (fly.py) are
+excluded.
 
-Where two candidates cost the same within TIE, as left and right of a wall straight ahead, rounding may choose between
-them. Such a choice is counted, and that flight is not followed further on that target: what comes after it belongs to the
-other way.
+If two candidates' costs are equal within TIE, as left and right of a wall straight ahead, rounding may decide. Such a
+choice is counted, and the flight is not compared further on that target, since later steps follow the other choice.
 """
 import dataclasses
 import pathlib

@@ -3,7 +3,7 @@
 
 Usage: stack_check.py JINK_BOARD_STACK BUILD_FOLDER IMAGE
 
-Exit status 77 (skipped) where the image or the emulator is not there.
+Exit status 77 (skipped) if the image or the emulator is missing.
 """
 import concurrent.futures
 import pathlib

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Recorded flights run again on a target, step by step: what each step read goes in, what it decided and wrote comes
-// out. The time is the record's, so nothing depends on how fast the target is.
+// Recorded flights repeated on a target, step by step: input is each step's bytes, output its decisions and bytes. The
+// time is the record's, independent of the target's speed.
 //
 // Between jink_window_begin() and jink_window_end() lies exactly Coprocessor::step().
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 using sim::StepAnswer;
 using sim::StepRecord;
 
-/// A line that has just brought the record's bytes, and takes whatever is written.
+/// A line that delivers the record's bytes, and accepts all output.
 class RecordedLine final : public hal::SerialPort {
 public:
     [[nodiscard]] bool bring(std::uint32_t count) noexcept
@@ -66,7 +66,7 @@ public:
 
 constexpr std::uint32_t kWithoutReachSets = 2;
 
-/// Everything that a start makes new.
+/// Everything that a start creates.
 struct Device {
     explicit Device(hal::SerialPort& port) noexcept : coprocessor(endpoint, port, watchdog, app::Parameters()) {}
 

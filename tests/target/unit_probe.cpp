@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a unit of work stands for: one kind of counted work at a time, on random input, and the units that it took.
-// Requests on the way in, answers on the way out; toolchain/report/units counts the instructions of each.
+// Cost of a work unit: one kind of counted work at a time, on random input, and its work units. Requests on the way in,
+// answers on the way out; toolchain/report/units counts the instructions of each.
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/target/window.hpp"
 
-// Apart, and doing something: each has an address of its own.
+// Separate and non-empty: each has its own address.
 extern "C" __attribute__((noinline)) void jink_window_begin() { __asm volatile("" ::: "memory"); }
 extern "C" __attribute__((noinline)) void jink_window_end() { __asm volatile("nop" ::: "memory"); }

@@ -37,7 +37,7 @@ public:
     std::span<const std::byte> waiting;
 };
 
-/// Rays over all directions of a sensor that looks 45 degrees up and down, at what stands 5 to 100 m away.
+/// Rays over all directions of a sensor with 45 degrees up and down, returns at 5 to 100 m.
 std::vector<std::byte> scan_bytes(std::uint16_t number)
 {
     Random random(number);
@@ -71,7 +71,7 @@ std::vector<std::byte> scan_bytes(std::uint16_t number)
 
 void points_per_second(benchmark::State& state)
 {
-    constexpr std::uint16_t kScans = 50;  // the same again and again would be refused as doubled
+    constexpr std::uint16_t kScans = 50;  // repeated scans would be refused as duplicates
     std::vector<std::vector<std::byte>> scans;
     for (std::uint16_t i = 0; i < kScans; ++i) {
         scans.push_back(scan_bytes(i));
@@ -112,8 +112,7 @@ void points_per_second(benchmark::State& state)
 }
 BENCHMARK(points_per_second)->Name("cloud")->Unit(benchmark::kMicrosecond);
 
-/// What a line full of false starts, and of headers that claim the longest frame, costs in a step that reads all it
-/// may.
+/// Cost of a line full of false starts, and of headers that claim the longest frame, in a step that reads its limit.
 void worst_step(benchmark::State& state)
 {
     cloud::Part part;

@@ -8,7 +8,7 @@
 
 namespace jink::timing {
 
-/// One case of the crossing scene: own box or sphere and threat, each moving along its way in one second.
+/// One case of the crossing scene: own box or sphere and threat, each moving along its path in one second.
 struct CrossingCase {
     geometry::Motion own, threat;
 };

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time of one vehicle's tick of orca::VelocityFilter (Alejo 7.3.2: 0.3 to 0.5 ms with 3 vehicles, 0.4 to 0.6 ms with 8,
-// below 1 ms in 97 of 100, never above 8 ms): vehicles that change places in a room with two pipes, and 16 others with
-// 16 hulls of 32 vertices about.
+// below 1 ms in 97 of 100, never above 8 ms): vehicles that exchange places in an indoor space with two pipes, and 16
+// others with 16 hulls of 32 vertices.
 //
-// Each flight is flown three times and is the same each time; of each tick the shortest time counts, so that what else
-// the machine does is left out.
+// Each flight is flown three times with identical results; the shortest time of each tick counts, to exclude other
+// load.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 constexpr int kRuns = 3;
 constexpr std::uint32_t kPlenty = 1'000'000;
 
-/// Times of calls that are the same in every run [s], and the work of the costliest.
+/// Times of calls that are the same in every run [s], and the work units of the most expensive.
 class Times {
 public:
     void start() { at_ = 0; }
@@ -69,7 +69,7 @@ private:
     std::uint32_t work_ = 0;
 };
 
-/// Pair separations and obstacle distances of the source's simulations (7.3).
+/// Pair separations and obstacle distances of Alejo's simulations (7.3).
 FilterSettings room_settings(std::uint32_t id)
 {
     FilterSettings s;
@@ -148,7 +148,7 @@ void fly_room(std::size_t vehicles, Times& times)
     }
 }
 
-/// As many others and obstacles as get half-spaces, all near and in each other's way.
+/// The largest number of neighbours and obstacles with half-spaces, all near and in conflict.
 void crowd(std::size_t ticks, Times& times)
 {
     Random random(1);

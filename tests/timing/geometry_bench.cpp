@@ -139,7 +139,7 @@ void swept_distance(benchmark::State& state)
     });
 }
 
-/// The own box swept along its way against a box of 1 m half extents where the threat is half-way.
+/// The own box swept along its path against a box of 1 m half extents at the threat's half-way position.
 geometry::Shape obstacle(const CrossingCase& c)
 {
     return geometry::make_box(c.threat.position + 0.5F * c.threat.velocity, Vec3::Ones());

@@ -98,8 +98,8 @@ const mesh::StoredMap& map_of(mesh::Method method)
     return decomposed;
 }
 
-/// All agents in each turn; `work(agent, budget)` of each alone is timed for the worst of them, the least time of all
-/// turns standing for an agent.
+/// All agents in each iteration. `work(agent, budget)` is timed per agent for the worst agent; an agent's time is its
+/// least over all iterations.
 template <class Work>
 void run(benchmark::State& state, mesh::Method method, const Work& work)
 {
@@ -153,7 +153,7 @@ void way(benchmark::State& state, mesh::Method method)
     });
 }
 
-/// Where a vehicle fits in: outside of all buildings, and away from those before.
+/// Free places for vehicles: outside all buildings, and away from earlier vehicles.
 std::vector<Vec3> free_places()
 {
     const jink::geometry::MeshMap map = map_of(mesh::Method::decompose).view();
@@ -172,8 +172,7 @@ std::vector<Vec3> free_places()
     return out;
 }
 
-/// Every vehicle on its way to the place of another one, at 50 Hz for 10 s; the least time that a step of all took in
-/// any flight stands for it.
+/// Every vehicle flies to another vehicle's place, at 50 Hz for 10 s; a step's time is its least over all flights.
 void step(benchmark::State& state, mesh::Method method)
 {
     constexpr std::size_t kSteps = 500;

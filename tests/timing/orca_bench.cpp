@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The antipodal sphere of the public ORCA-3D library's example, flown with core/orca: time of a vehicle's step, and the
-// least distance of two centres in continuous time (3.00 m is asked for). Beside it what the library took and kept in
-// the same runs on the machine of docs/evidence/performance.md; it takes memory from the heap in every step.
+// least distance of two centres in continuous time (3.00 m required). For comparison the library's time and distance in
+// the same runs on the machine of docs/evidence/performance.md; the library allocates heap memory in every step.
 //
-// Each run is flown three times and is the same each time: of the three the shortest time counts, of the run and of
-// each vehicle's step, so that what else the machine does is left out. Processor time, neighbours' search included.
+// Each run is flown three times with identical results. The shortest time of the three counts, for the run and for each
+// vehicle's step, to exclude other load. Processor time, neighbour search included.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace jink::orca;
 
-/// What the public library did: mean time of a vehicle's step [us], least distance [m].
+/// Figures of the public library: mean time of a vehicle's step [us], least distance [m].
 struct Rival {
     std::size_t count;
     double mean;
@@ -135,7 +135,7 @@ int main(int argc, char** argv)
         report("sphere", rival.count, sphere, rival);
     }
     report("dense", kDense.count, dense, kDense);
-    // As the public library has it: what the two regions are for.
+    // As in the public library: shows the effect of the two regions.
     report("sphere_one_region", 812, one_region, kSphere.back());
     benchmark::Initialize(&argc, argv);
     benchmark::RunSpecifiedBenchmarks();

@@ -115,7 +115,7 @@ void NearestPoints::look_up(std::size_t self, float wide, Near& near)
                 next = left_first ? left : right;
                 continue;
             }
-            // A whole leaf at once, whatever follows it: a fixed number of turns is done four by four.
+            // A whole leaf at once: a loop of fixed length is vectorised by four.
             std::array<float, kLeaf> away2{};
             for (std::size_t k = 0; k < kLeaf; ++k) {
                 const float x = along_[0][node.begin + k] - centre.x();
@@ -148,7 +148,7 @@ std::size_t NearestPoints::query(std::size_t self, std::array<Found, kMost>& fou
     const Vec3 centre = (*points_)[self];
     const std::size_t keep = most_ + 1;
     for (int look = 0;; ++look) {
-        // What was outside, and both may have moved towards each other.
+        // Points that were outside; both may have moved towards each other.
         const float sure = near.outside - 2.0F * (moved_ - near.moved) - 1e-3F;
         float bound = range_ * range_;
         std::size_t count = 0;

@@ -10,9 +10,8 @@
 
 namespace jink::orca {
 
-/// The nearest of many moving points, exactly. A k-d tree finds for each point those within a wider circle than asked
-/// for; until they may have come as near as what is outside of it, they are all that is looked at. All memory is taken
-/// by the constructor.
+/// The nearest of many moving points, exactly. A k-d tree finds for each point the points within a wider circle than
+/// requested. Only those are checked until outside points may have come nearer. The constructor allocates all memory.
 class NearestPoints {
 public:
     /// Points kept at most of one query.
@@ -23,7 +22,7 @@ public:
     };
 
     /// @param most   asked for by each query, < kMost
-    /// @param range  [m] beyond which nothing is looked for
+    /// @param range  [m] search range
     NearestPoints(std::size_t points, std::size_t most, float range);
 
     /// The points have moved, each by `moved` [m] at most.
@@ -38,7 +37,7 @@ private:
         std::uint32_t begin, end;
         std::uint32_t left;  ///< its right twin follows; 0 for a leaf
     };
-    /// Those near a point when they were looked up last.
+    /// Neighbours of a point at the last tree query.
     struct Near {
         std::array<std::uint32_t, kMost> index{};
         std::size_t count = 0;

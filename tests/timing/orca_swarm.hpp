@@ -13,27 +13,27 @@
 #include "tests/timing/orca_nearest.hpp"
 
 // Many vehicles in one process, each avoiding all others by core/orca: the antipodal sphere of the public ORCA-3D
-// library's example. All memory is taken by the constructor; a step takes none.
+// library's example. The constructor allocates all memory; a step allocates none.
 
 namespace jink::orca {
 
 /// Rules of a swarm; defaults are the public example's, and two regions around each vehicle.
 ///
-/// The public library loses distance in two ways: where half-spaces contradict each other all give way, and of more
-/// than `most` neighbours the farther ones are not seen. Here the half-spaces of a region a little wider than needed
-/// give way, and that leaves the distance itself: the conflict region's half-spaces depend on positions alone
-/// (Conflict::at_rest), all hold at once, and whoever is not seen is kept off by a cap of the speed. A brake time of
-/// two periods caps nobody who is a metre away, and slows nobody who is half of that.
+/// The public library loses distance in two ways: contradicting half-spaces all yield, and of more than `most`
+/// neighbours the farther ones are ignored. Here only the half-spaces of a slightly wider region yield, which keeps the
+/// distance itself: the conflict region's half-spaces depend on positions alone (Conflict::at_rest) and are jointly
+/// feasible, and a speed cap keeps ignored neighbours off. With a brake time of two periods a neighbour a metre away
+/// causes no cap, and half a metre causes no slowing.
 struct SwarmSettings {
     float radius = 1.5F;     ///< of a vehicle [m]
     float max_speed = 2.0F;  ///< [m/s]
     float cruise = 1.0F;     ///< preferred speed [m/s]
-    float range = 15.0F;     ///< [m] in which others are seen
-    std::size_t most = 10;   ///< others at once
+    float range = 15.0F;     ///< [m] within which others are considered
+    std::size_t most = 10;   ///< largest number of considered neighbours
     float step = 0.125F;     ///< [s]
     float sphere = 100.0F;   ///< radius [m]
     float warning = 3.1F;    ///< radius of the warning region [m]; the conflict region's is 2 radius
-    bool regions = true;     ///< false: one region of 2 radius that gives way, as the public library has it
+    bool regions = true;     ///< false: one yielding region of 2 radius, as in the public library
     PairSettings pair = swarm_pair();
 
     static PairSettings swarm_pair()
@@ -52,13 +52,13 @@ class Swarm {
 public:
     /// On a sphere, each to the opposite point.
     Swarm(std::size_t count, const SwarmSettings& settings);
-    /// From anywhere to anywhere, as many goals as positions.
+    /// From given positions to given goals, equal in number.
     Swarm(std::vector<Vec3> positions, std::vector<Vec3> goals, const SwarmSettings& settings);
 
-    /// Keeps clear of what outlives this, too.
+    /// Also avoids these obstacles; the scene must outlive the swarm.
     void set_obstacles(const ObstacleScene& scene, const ObstacleSettings& settings);
 
-    /// One period of all vehicles.
+    /// Advances all vehicles by one period.
     void step();
     /// One vehicle's part of it; `build` first, `move` after all.
     void build();
@@ -71,11 +71,11 @@ public:
     [[nodiscard]] float least_distance() const;
     [[nodiscard]] std::size_t size() const { return positions_.size(); }
 
-    /// What happened so far.
+    /// Counts so far.
     struct Counts {
         std::uint64_t solved = 0, warning = 0, conflict = 0, other = 0, truncated = 0;
         std::uint64_t planes = 0, beside_obstacles = 0;  ///< half-spaces; of these of obstacles
-        std::uint64_t penetrating = 0;                   ///< vehicles whose envelope met an obstacle
+        std::uint64_t penetrating = 0;                   ///< vehicles whose envelope overlapped an obstacle
     };
     [[nodiscard]] const Counts& counts() const { return counts_; }
 

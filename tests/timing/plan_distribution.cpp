@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long plans take on this machine: a distribution over random problems, the longest, and the input that caused it.
-// Wall time, so nothing is asserted: whatever else runs is in it. To tell noise from cost the longest ones are run
-// again.
+// Wall times of plans on this host: a distribution over random problems, the longest, and its input. Nothing is
+// asserted, since wall time includes other load. To separate noise from cost, the longest plans are run again.
 //
 //   plan_distribution [--count N] [--seed S] [--json FILE]
 //   plan_distribution --input S          one problem, again and again
@@ -36,7 +35,7 @@ constexpr std::size_t kPerDecade = 20;
 constexpr std::size_t kBins = 5 * kPerDecade;  // from 1 us to 100 ms
 constexpr std::size_t kAgain = 500;
 
-/// 16 candidates, up to nine attempts, and three threats by the leg, the first of them in the way.
+/// 16 candidates, up to nine attempts, and three threats near the leg, the first on it.
 struct Scene {
     geometric::Settings settings;
     vehicle::VehicleLimits limits;
@@ -130,8 +129,7 @@ Again again(Stopwatch& stopwatch, std::uint64_t seed)
     return {times.front(), times[times.size() / 2], times.back()};
 }
 
-/// The plan that takes longest when noise is taken out: whatever takes longer than it is run again three times, and its
-/// least time counts.
+/// The longest plan without noise: a plan that takes longer is run again three times, and its least time counts.
 void confirm(Stopwatch& stopwatch, const Scene& scene, Taken one, Taken& costliest)
 {
     for (int i = 0; i < 3 && one.time > costliest.time; ++i) {
@@ -140,7 +138,7 @@ void confirm(Stopwatch& stopwatch, const Scene& scene, Taken one, Taken& costlie
     costliest = one.time > costliest.time ? one : costliest;
 }
 
-/// Real time by the scheduler's leave; memory that stays.
+/// Requests real-time scheduling and locked memory.
 std::string privileges()
 {
     const bool locked = mlockall(MCL_CURRENT | MCL_FUTURE) == 0;
@@ -216,7 +214,7 @@ int main(int argc, char** argv)
             std::sort(longest.begin(), longest.end(), [](const Taken& a, const Taken& b) { return a.time > b.time; });
             longest.resize(20);
         }
-        // The kernel stops a real-time process that never rests, for 50 ms: rather a little, between plans.
+        // The kernel stops a real-time process without pauses for 50 ms: short pauses between plans avoid this.
         if (Clock::now() - rested > std::chrono::milliseconds(100)) {
             std::this_thread::sleep_for(std::chrono::milliseconds(8));
             rested = Clock::now();

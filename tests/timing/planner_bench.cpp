@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One plan: the source's planner and the product's, 16 candidates and 3 threats as in the source's run-time study
-// (Pinheiro tab. 5.1), and many. Then plans of which every attempt fails.
+// One plan: Pinheiro's planner and the product's, with 16 candidates and 3 threats as in Pinheiro's run-time study
+// (Pinheiro tab. 5.1), and with many. Then plans in which every attempt fails.
 #include <memory>
 #include <vector>
 
@@ -15,11 +15,11 @@ namespace {
 using namespace jink;
 using namespace jink::geometric;
 
-/// Two seconds ahead at 5 m/s: as near as the supervisor's last moment. And five: when it asks first.
+/// Two seconds ahead at 5 m/s: as near as the supervisor's latest manoeuvre time. Five seconds: the first request.
 constexpr float kNear = 10.0F;
 constexpr float kFirst = 25.0F;
 
-/// Main threat standing on the leg 10 m ahead, the others flying past it where they leave some candidates free.
+/// Static main threat on the leg 10 m ahead; the others pass such that some candidates stay free.
 std::vector<world::Threat> threats(std::size_t count)
 {
     std::vector<world::Threat> all{world::track_threat(0, {Vec3(kNear, 0.0F, 0.0F), Vec3::Zero()}, {1.0F})};
@@ -84,7 +84,7 @@ void plan(benchmark::State& state, Settings settings, std::size_t threat_count)
     state.counters["found"] = status == world::PlanStatus::found ? 1.0 : 0.0;
 }
 
-/// As the co-processor has it: flyable is what passes the predicted flight, smoothness is read.
+/// As in the co-processor: flyable means passing the predicted flight; smoothness is read from the tables.
 Settings as_flown(Settings settings)
 {
     settings.check_acceleration = false;
@@ -181,7 +181,7 @@ void random_scenes(benchmark::State& state, Settings settings, std::size_t count
     state.counters["attempts"] = mean(attempts_of_all);
 }
 
-/// Every candidate against every threat, none passed over because a cheaper one is available.
+/// Every candidate against every threat, none skipped because of a cheaper available one.
 void all_checks(benchmark::State& state)
 {
     Settings settings = many(Settings{});
@@ -202,7 +202,7 @@ void all_checks(benchmark::State& state)
     const auto candidates = static_cast<double>(result->candidates.size());
     state.counters["candidates"] = candidates;
     state.counters["clear"] = static_cast<double>(clear);
-    // Of those that are clear every threat was looked at; of the others, those before the one that is met.
+    // Clear candidates are checked against every threat; the others up to the threat in contact.
     state.counters["checks"] = benchmark::Counter(static_cast<double>(clear) * static_cast<double>(all.size()),
                                                   benchmark::Counter::kIsIterationInvariantRate);
 }
@@ -232,7 +232,7 @@ BENCHMARK_CAPTURE(random_scenes, source_16_candidates_3_threats_25_m, one_family
 BENCHMARK(all_checks)->Unit(benchmark::kMicrosecond);
 
 BENCHMARK_CAPTURE(refused, all_attempts_200_random_scenes, 1, 200)->Unit(benchmark::kMicrosecond);
-/// The costliest of the first 20 000 scenes.
+/// The most expensive of the first 20 000 scenes.
 BENCHMARK_CAPTURE(refused, all_attempts_costliest_scene, 10013, 1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace

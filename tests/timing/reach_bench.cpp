@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One decision with reach sets: 2000 points of a scan fused with 32 intruders over 350 cells, the combined set
-// evaluated, a way chosen. Beside it the source's four passes over the same cells, and the geometric planner in the
-// same scene.
+// evaluated, a trajectory chosen. For comparison Gomola's four passes over the same cells, and the geometric planner in
+// the same scene.
 #include <array>
 #include <cmath>
 #include <memory>
@@ -26,7 +26,7 @@ constexpr int kUp = 40;
 constexpr std::size_t kPoints = kAcross * kUp;
 constexpr float kSpeed = 5.0F;
 
-/// The sets of the default vehicle, but the emergency sets alone: the ones with most nodes.
+/// The default vehicle's emergency sets alone: the sets with most nodes.
 struct Emergencies {
     std::array<reach::SegmentSets, 6> segments{};
     reach::VehicleSets sets = reach::kDefaultSets;
@@ -41,7 +41,7 @@ struct Emergencies {
     }
 };
 
-/// 32 intruders that cross the way ahead, trunks that are scanned, and a vehicle on its leg.
+/// 32 intruders that cross ahead, scanned trunks, and a vehicle on its leg.
 struct Scene {
     TimePoint now{10'000'000};
     vehicle::VehicleState own;
@@ -82,7 +82,7 @@ struct Scene {
         for (std::size_t i = 0; i < kPoints; ++i) {
             const float azimuth = scan.horizontal_pitch * (static_cast<float>(i % kAcross) - 0.5F * kAcross);
             const float elevation = scan.vertical_pitch * (static_cast<float>(i / kAcross) - 0.5F * kUp);
-            // Most of what is hit stands behind the grid, and trunks in it.
+            // Most returns are behind the grid; trunks are inside.
             const float distance = std::abs(azimuth - 0.3F) < 0.05F ? 14.0F : 40.0F;
             points.push_back(distance * Vec3(std::cos(elevation) * std::cos(azimuth),
                                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation)));
@@ -99,7 +99,7 @@ struct Scene {
     mutable world::ThreatSet threats;  ///< of the newest view
 };
 
-/// As many scenes in turn as keep the caches honest.
+/// Enough scenes in rotation to avoid unrealistic cache hits.
 const std::vector<Scene>& scenes()
 {
     static const std::vector<Scene> all = [] {
@@ -190,7 +190,7 @@ void scan_alone(benchmark::State& state)
 }
 BENCHMARK(scan_alone)->Name("part/2000 points counted")->Unit(benchmark::kMicrosecond);
 
-/// Levels of cells as one pass, and as the source's four.
+/// Levels of cells as one pass, and as Gomola's four.
 struct Cells {
     const reach::ReachSet& set = *reach::kDefaultSets.segments[4].emergency;
     std::vector<reach::Level> blocks;

@@ -99,7 +99,7 @@ private:
         m.type = 2;
         m.autopilot = 3;
         m.base_mode = 129;
-        m.custom_mode = 5;  // LOITER: the co-processor plans and advises, tick after tick, without taking over
+        m.custom_mode = 5;  // LOITER: the co-processor plans and advises in every tick, without taking over
         port_.feed(m);
     }
 

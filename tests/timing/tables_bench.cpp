@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Costs of a candidate by its waypoints, as the planner evaluates them, and out of the tables: the same random curves.
+// Costs of a candidate by its waypoints, as evaluated by the planner, and by the tables: the same random curves.
 #include <cmath>
 #include <vector>
 

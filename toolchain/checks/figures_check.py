@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares pages, registry and lock: what is wrong, by page and line."""
+"""Compares pages, registry and lock; reports errors by page and line."""
 import dataclasses
 import difflib
 import hashlib
@@ -28,13 +28,13 @@ class Problem:
 
 
 class Lock:
-    """What was printed when, and the sealed numbers of each page."""
+    """The recorded outputs with their dates, and the sealed numbers of each page."""
 
     def __init__(self, top):
         self.path = top / LOCK
         kept = json.loads(self.path.read_text(encoding="utf-8")) if self.path.exists() else {}
         self.commands, self.seals = kept.get("commands", {}), kept.get("seals", {})
-        self.witness = kept.get("witness", {})  # digest of its sources, commit, and what it printed
+        self.witness = kept.get("witness", {})  # digest of its sources, commit, and its output
 
     def write(self):
         def block(mapping):
@@ -109,7 +109,7 @@ class Book:
         return "as before" if command.witnessed and self.lock.commands[command.name].get("witness") == self.witness_of(command) is not None else "stale"
 
     def witness_of(self, command):
-        """What the witness printed that says something about a command, as a digest, where it was run on these sources; else None."""
+        """Digest of the witness's outputs relevant to a command, if it was run on these sources; else None."""
         of = self.registry.witness
         if of is None or self.lock.witness.get("digest") != self.digest(of):
             return None
@@ -145,7 +145,7 @@ class Book:
         return self.lock.commands[command.name]["values"]
 
     def rendered(self, command):
-        """The generated part of a page beside what its record gives."""
+        """The generated part of a page, and the text from its record."""
         sys.path.insert(0, str(self.top / "toolchain/report"))
         module = __import__(command.render)
         record = json.loads((self.top / command.record).read_text(encoding="utf-8"))
@@ -187,7 +187,7 @@ class Book:
                 yield Problem(f"stands {token}, printed is {value}: \"{figure.text}\" ({command.name})", page.name, page.line(begin))
 
     def put(self, command, values):
-        """Writes the printed figures into the pages; yields what was changed."""
+        """Writes the printed figures into the pages; yields the changes."""
         for name in sorted({f.page for f in command.figures}):
             changes, page = [], self.pages[name]
             for figure in (f for f in command.figures if f.page == name and values.get(f.key) is not None):

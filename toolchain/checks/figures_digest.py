@@ -7,7 +7,7 @@ import re
 
 CPP = {".cpp", ".hpp", ".c", ".h"}
 HASHED = {".py", ".cmake", ".toml", ".yaml", ".sh", ".txt", ""}  # whole lines that begin with # are comments
-# A comment, or what must not be taken for one; a number, a word, or a sign.
+# A comment, or a literal that may resemble a comment; a number, a word, or a sign.
 CPP_TOKEN = re.compile(r"""(?P<comment>//[^\n]*|/\*.*?\*/)
   |(?P<kept>R"(?P<mark>[^\s()\\]{0,16})\(.*?\)(?P=mark)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\\n])*'|\d[\w.']*(?:(?<=[eEpP])[+-]\w+)?|\w+|[^\s\w])
   |(?P<line>\n)|[^\S\n]+""", re.S | re.X)
@@ -55,11 +55,11 @@ def _of_file(path, *_):
 
 
 def files(top, globs):
-    """Files below `top` that the globs name, in order; those of a glob that begins with ! are left out."""
+    """Files below `top` that match the globs, in order; globs that begin with ! exclude files."""
     found, refused = set(), set()
     for glob in globs:
         pattern = glob.lstrip("!")
-        # A folder's ** stands for what is below it.
+        # A folder's ** matches everything below it.
         matches = {p for p in top.glob(pattern + "/*" if pattern.endswith("**") else pattern) if p.is_file() and "__pycache__" not in p.parts}
         if not matches and not glob.startswith("!"):
             raise ValueError(f"no source is named {glob}")
@@ -76,7 +76,7 @@ def of_sources(top, globs):
 
 
 def of_evidence(top, name):
-    """Of what docs/figures.toml names as sources of `name`."""
+    """Digest of the sources that docs/figures.toml names for `name`."""
     import figures_registry
     registry = figures_registry.Registry(pathlib.Path(top))
     return of_sources(top, registry.commands[name].sources)

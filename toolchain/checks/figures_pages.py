@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stands on a page: figures, number tokens, commands."""
+"""The contents of a page: figures, number tokens, commands."""
 import bisect
 import fractions
 import re
@@ -20,7 +20,7 @@ class Page:
         return bisect.bisect_right(self.starts, place)
 
     def section(self, heading):
-        """(begin, end) of what stands below the heading, up to the next of its level or above; None where there is none."""
+        """(begin, end) of the text below a heading, up to the next of its level or above; None if there is none."""
         found = re.search(rf"^{re.escape(heading)}$", self.text, re.M)
         if not found:
             return None

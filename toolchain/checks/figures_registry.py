@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""docs/figures.toml: which command prints which figure of which page."""
+"""docs/figures.toml: the command that prints each figure of each page."""
 import fractions
 import re
 import tomllib
 
 FILE = "docs/figures.toml"
 KINDS = ("quick", "long", "record", "not_run")
-LEAST_DATED = 3  # minutes: what takes less is run again instead
+LEAST_DATED = 3  # minutes: shorter commands are run again instead
 
 
 class Wrong(Exception):
@@ -20,13 +20,13 @@ def refuse_unknown(what, where, known):
 
 
 class Figure:
-    """Where figures stand on a page, and where in the output they are printed."""
+    """The place of figures on a page, and in the output."""
 
     def __init__(self, of, page, entry):
         refuse_unknown(entry, f"{of}, a figure", ("page", "text", "printed", "json", "scale", "under", "each", "block", "nth"))
         self.of, self.page = of, entry.get("page", page)
-        self.text = entry.get("text")  # {} stands for a figure, {*} for anything on the line
-        self.block = entry.get("block")  # an output in a fenced block, which begins so: compared line by line
+        self.text = entry.get("text")  # {} matches a figure, {*} anything on the line
+        self.block = entry.get("block")  # an output in a fenced block that begins with this text: compared line by line
         self.printed = entry.get("printed")
         self.json = [entry["json"]] if isinstance(entry.get("json"), str) else entry.get("json")
         self.under = entry.get("under")
@@ -59,7 +59,7 @@ def expanded(globs, groups):
 
 
 class Witness:
-    """A quick command whose whole output is compared: where it is the same, two states of the sources decide alike."""
+    """A quick command whose whole output is compared: equal outputs mean equal decisions of two source states."""
     kind, name, status, in_tree = "witness", "witness", [0], False
 
     def __init__(self, entry, groups):
@@ -80,10 +80,11 @@ class Command:
         self.run = entry.get("run") or "\n".join(self.as_written)
         self.reason, self.record, self.render, self.stamp = (entry.get(k) for k in ("reason", "record", "render", "stamp"))
         self.in_tree = entry.get("in_tree", False)  # the command writes into the tree: not run in a folder of its own
-        self.status = entry.get("status", [0])  # exit statuses that are answers
+        self.status = entry.get("status", [0])  # exit statuses that count as success
         self.dated, self.commit, self.minutes = entry.get("dated", False), entry.get("commit"), entry.get("minutes", 0)
         self.sources = expanded(entry.get("sources", []), groups)
-        self.witnessed = entry.get("witnessed", False)  # stays as it is where the sources have changed and the witness has not
+        self.witnessed = entry.get("witnessed", False)  # stays valid if the sources have changed but the witness has
+                                                        # not
         self.witnessed_but = entry.get("witnessed_but", [])  # names of digests that say nothing about this command
         self.figures = [Figure(name, self.pages[0] if self.pages else None, f) for f in entry.get("figures", [])]
         if self.kind == "not_run" and not self.reason:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs the commands of the registry, as they are written on the page, and finds the figures in what they print."""
+"""Runs the commands of the registry, as written on the page, and extracts the figures from their output."""
 import json
 import os
 import pathlib
@@ -22,7 +22,7 @@ def environment(build):
 
 
 def prepare(folder, top, build):
-    """A folder in which the paths of a page's command are those of the tree, and what it writes stays out of the tree."""
+    """A folder in which a page's command finds the tree's paths; its output stays outside the tree."""
     (folder / "build").mkdir(parents=True, exist_ok=True)
     for name in LINKED:
         link = folder / name
@@ -36,7 +36,7 @@ def prepare(folder, top, build):
 
 
 def unfit(build, top):
-    """Why a build's programs are not those of this tree's sources, or nothing."""
+    """Why a build's programs do not match this tree's sources; nothing if they do."""
     cache = build / "CMakeCache.txt"
     if not cache.exists():
         return "is no build folder"
@@ -54,7 +54,7 @@ def run(command, top, build, folder):
         prepare(folder, top, build)
         where = folder
     began = time.monotonic()
-    # Each line has to end well; several lines are one command after the other.
+    # Each line must succeed; lines are run in sequence.
     done = subprocess.run(["bash", "-c", "set -eo pipefail\n" + command.run], cwd=where, env=environment(build), stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
     if done.returncode not in command.status:
@@ -80,7 +80,7 @@ def at(value, way):
 
 
 def values_of(figure, output, lines_on_page):
-    """What the output says of a figure: printed numbers as text, or the lines of a block."""
+    """The values of a figure in the output: printed numbers as text, or the lines of a block."""
     if figure.block is not None:
         lines = output.splitlines()
         begin = next((i for i, line in enumerate(lines) if (line + "\n").startswith(figure.block.split("\n")[0])), None)
@@ -91,7 +91,7 @@ def values_of(figure, output, lines_on_page):
     if not found:
         raise Failed(f"{figure.of}: nothing printed is like {figure.printed} (for \"{figure.text}\")")
     groups = sum(found, ()) if figure.each else found[0]
-    return [value or "0" for value in groups]  # what is not printed at all did not happen
+    return [value or "0" for value in groups]  # a missing count is zero
 
 
 def values_of_record(figure, top, command):

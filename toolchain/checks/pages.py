@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Whether README.md, CONTRIBUTING.md and docs/ can be read: links, length, line width, words.
+"""Checks the readability of README.md, CONTRIBUTING.md and docs/: links, length, line width, words.
 
     pages.py            every complaint by page and line; exit status 1 when there is one
     pages.py --words    words of each page as they are counted here
@@ -19,7 +19,7 @@ MOST_WORDS = 1500
 COLUMNS = 120
 PAGES = ("README.md", "CONTRIBUTING.md", "docs/**/*.md", "tests/scenario/README.md")
 INDEX = "docs/README.md"
-# Words that the glossary replaces, with the word to use. Commands, options and names in `code` are not looked at.
+# Words that the glossary replaces, with the word to use. Commands, options and names in `code` are not checked.
 REFUSED = {
     r"ball(s)?": "sphere", r"barrels?": "cylinder, closed area", r"glances?": "quick reject", r"rungs?": "method, fallback", r"ladders?": "method order",
     r"rooms?": "module, clearance", r"guard": "final check, fallback", r"told": "reported, received, said", r"echo(es)?": "return",

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """clang-tidy over many sources at the price of a few.
 
-clang-tidy spends most of its time on the headers of a source (Eigen, the standard library), again for each source. Here
-the sources of core are joined to a few texts that are checked as one each: every include once, each line of a source in
-its place, so that findings are told by the source's own name and line. What one source says in its unnamed namespaces
-another must not say again in the same namespace; the joined text would not compile, and that is told.
+clang-tidy spends most of its time on the headers of a source (Eigen, the standard library), again for each source. This
+script joins the sources of core to a few texts and checks each text once: every include once, each line mapped to its
+source, so that findings name the source and its line. Names in unnamed namespaces must be unique per namespace;
+otherwise the joined text does not compile, which is reported.
 
 Usage: tidy_joined.py CLANG_TIDY BUILD TEXTS SOURCE ...
 """
@@ -24,7 +24,7 @@ FINDING = re.compile(r'^(?P<file>[^:\s]+):(?P<line>\d+):(?P<rest>\d+: .*)$')
 
 
 def without_precompiled(flags):
-    """clang reads no header that GCC has precompiled."""
+    """clang cannot read headers that GCC has precompiled."""
     kept, skip = [], False
     for flag, following in zip(flags, [*flags[1:], ""]):
         if skip:
@@ -37,8 +37,8 @@ def without_precompiled(flags):
 
 
 def flags_of(build, sources):
-    """The compiler's arguments; joined sources have to have the same. Where the build joins sources itself, the joined
-    text's (jink_joined)."""
+    """The compiler's arguments; joined sources must have equal arguments. Where the build joins sources itself, those
+    of the joined text (jink_joined)."""
     commands = {}
     for command in json.loads((build / "compile_commands.json").read_text()):
         words = shlex.split(command["command"])
@@ -60,13 +60,13 @@ def flags_of(build, sources):
 
 
 def join(sources):
-    """The text, and for each of its lines where it comes from."""
+    """The text, and the origin of each of its lines."""
     lines, places, seen = [], [], set()
     for source in sources:
         own = set()
         for number, line in enumerate(source.read_text().splitlines(), start=1):
             include = INCLUDE.match(line)
-            # A header that comes twice within one source stays, to be found.
+            # A header included twice within one source stays, so that the check reports it.
             if include and include[1] in seen and include[1] not in own:
                 line = ""
             if include:
@@ -78,7 +78,7 @@ def join(sources):
 
 
 def groups(sources, texts):
-    """As many runs of neighbours as there are texts, of about equal length."""
+    """Sequences of neighbouring sources, one per text, of about equal length."""
     sizes = [len(source.read_text()) for source in sources]
     whole, so_far, out = sum(sizes), 0, [[] for _ in range(texts)]
     for source, size in zip(sources, sizes):
@@ -110,7 +110,7 @@ def main(tidy, build, texts, *names):
                        *flags_of(pathlib.Path(build), group)]
             running.append((text, places, subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                                                            text=True)))
-        # Little is printed, and that at the end: no pipe fills up meanwhile.
+        # Output is small and comes at the end: no pipe fills up.
         for text, places, process in running:
             out, err = process.communicate()
             for line in told(out, text, places):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# libccd in its double build as the target `ccd`: Debian's library on the host; for other machines built from Debian's
-# source package, nothing patched, with the compiler of the build.
+# libccd in its double build as the target `ccd`: Debian's library on the host; for other targets built from Debian's
+# unpatched source package with the build's compiler.
 if(NOT CMAKE_CROSSCOMPILING)
   find_package(ccd 2.0 REQUIRED)  # Debian ships 2.1 with a config file that still says 2.0
   return()

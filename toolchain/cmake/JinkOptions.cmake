@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# One place for what every target is compiled with.
+# Compile options of every target.
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -14,7 +14,7 @@ endif()
 find_program(JINK_CCACHE ccache)
 # Not for images: it does not keep the call graphs that their stack is computed from (-fcallgraph-info).
 if(JINK_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER AND NOT CMAKE_SYSTEM_NAME STREQUAL "Generic")
-  # Precompiled headers are kept only where their macros and times are let pass.
+  # ccache caches precompiled headers only if it ignores their macros and times.
   set(CMAKE_CXX_COMPILER_LAUNCHER "${CMAKE_COMMAND}" -E env CCACHE_SLOPPINESS=pch_defines,time_macros "${JINK_CCACHE}")
   set(CMAKE_C_COMPILER_LAUNCHER "${JINK_CCACHE}")
 endif()
@@ -24,25 +24,25 @@ add_compile_options(-ffp-contract=off)
 if(CMAKE_CROSSCOMPILING)
   add_compile_options(-g1)  # lines of code, for toolchain/report/timing; changes no instruction, and none of it is flashed
 endif()
-# Everything that sees a capacity has to see the same one.
+# All code must use the same capacities.
 add_compile_definitions(${JINK_CAPACITIES})
 if(JINK_SANITIZE)
   add_compile_options(-fsanitize=${JINK_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   # The vptr check compares type information, which code built without RTTI does not have.
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize=vptr>)
-  # These three are costly to build; sources that are flashed keep them (jink_embedded, below).
+  # These three are expensive to build; flashed sources keep them (jink_embedded, below).
   set(JINK_COSTLY_CHECKS null,alignment,object-size)
   add_compile_options(-fno-sanitize=${JINK_COSTLY_CHECKS})
   add_link_options(-fsanitize=${JINK_SANITIZE})
 endif()
 
-# jink_warnings: for everything of ours, never exported.
+# jink_warnings: for all code of the project, never exported.
 add_library(jink_warnings INTERFACE)
 target_compile_options(jink_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wdouble-promotion -Wshadow
   $<$<BOOL:${JINK_WERROR}>:-Werror>)
 
-# jink_embedded: rules of code that is flashed (no exceptions, no RTTI, nothing thread-safe behind statics).
+# jink_embedded: rules of flashed code (no exceptions, no RTTI, no thread-safe statics).
 add_library(jink_embedded INTERFACE)
 target_compile_options(jink_embedded INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-exceptions -fno-rtti -fno-threadsafe-statics>)
@@ -50,8 +50,9 @@ if(JINK_SANITIZE MATCHES "undefined")
   target_compile_options(jink_embedded INTERFACE -O1 -fsanitize=${JINK_COSTLY_CHECKS})
 endif()
 
-# What nearly every source of core, link and app reads, half of its time: precompiled once per library. Changes no
-# instruction. Each source includes what it needs all the same: CMAKE_DISABLE_PRECOMPILE_HEADERS shows it (preset clang).
+# Headers that nearly every source of core, link and app includes, half of its compile time: precompiled once per
+# library. Changes no instruction. Each source still includes all that it needs: CMAKE_DISABLE_PRECOMPILE_HEADERS shows
+# it (preset clang).
 set(JINK_FLASHED_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <optional> <span> <Eigen/Core> <Eigen/Geometry>)
 set(JINK_HOST_HEADERS ${JINK_FLASHED_HEADERS} <filesystem> <map> <memory> <string> <vector>)
 
@@ -67,8 +68,8 @@ function(jink_joined target)
   endif()
 endfunction()
 
-# jink_command_lines(target): what reads a command line. CLI11 is headers alone: optimizing them takes longer than all of
-# our own code.
+# jink_command_lines(target): for command-line parsing. CLI11 is header-only: optimizing it takes longer than all code
+# of the project.
 function(jink_command_lines target)
   set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
   target_compile_options(${target} PRIVATE -O1)

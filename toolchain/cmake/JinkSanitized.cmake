@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What is flashed, built a second time in the same build: AddressSanitizer, UndefinedBehaviorSanitizer, assertions and
+# Flashed code, built a second time in the same build with AddressSanitizer, UndefinedBehaviorSanitizer, assertions and
 # the standard library's bounds checks. Tests are compiled once and linked twice: `NAME` with the release libraries,
 # `sanitized_NAME` with these. Tests and tools themselves are not instrumented; preset asan instruments everything.
 #
-# The sanitized objects come first on the link line: of a function of a header that both have, the checked one is taken.
+# The sanitized objects come first on the link line: if both have a header's function, the linker takes the checked one.
 option(JINK_SANITIZED_TESTS "Build the tests of flashed code against sanitized libraries too; toolchain/test sets it" OFF)
 
 set(JINK_SANITIZERS -fsanitize=address,undefined)
@@ -35,8 +35,8 @@ function(jink_sanitized_library lib)
   target_compile_options(${lib}_sanitized PRIVATE ${JINK_SANITIZERS} -fno-sanitize=vptr -fno-sanitize-recover=all
     -fno-omit-frame-pointer -g1 -O1 -UNDEBUG)
   target_compile_definitions(${lib}_sanitized PRIVATE _GLIBCXX_ASSERTIONS)
-  # Half of the time that core takes to build, and it has no bytes to misread: AddressSanitizer sees a null pointer or a
-  # place beyond an object as well.
+  # These checks take half of core's build time, and core parses no bytes: AddressSanitizer also detects null pointers
+  # and accesses beyond an object.
   if(lib STREQUAL jink_core)
     target_compile_options(${lib}_sanitized PRIVATE -fno-sanitize=null,alignment,object-size)
   endif()

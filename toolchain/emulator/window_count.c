@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A plugin for qemu's translator (system and user mode, plugin interface 1): counts the instructions between two places
-// of a program, each time it passes from one to the other. Exact and repeatable: what is counted is what the program
-// executes, not how long it takes.
+// of a program, each time it passes from one to the other. Exact and repeatable: counts executed instructions, not
+// time.
 //
 //   -plugin libwindow_count.so,begin=0xADDRESS,end=0xADDRESS,out=FILE[,stages=FILE]
 //
@@ -9,12 +9,11 @@
 // goes to `out` at its end: the number of instructions executed after the one at `begin` and before the one at `end`.
 // Windows do not nest; one virtual processor.
 //
-// `stages` says what the code is there for: lines "FIRST LAST STAGE" (addresses in hexadecimal, LAST is one past the
-// end; stages 1..63; in ascending order). Code outside of all ranges counts for the stage that called it. The line of a
-// window then ends with the counts of stages 0 (before any), 1, ... as far as there are any.
+// `stages` assigns code to stages: lines "FIRST LAST STAGE" (addresses in hexadecimal, LAST is one past the end; stages
+// 1..63; in ascending order). Code outside of all ranges counts for the stage that called it. The line of a window then
+// ends with the counts of stages 0 (before any), 1, ... as far as there are any.
 //
-// Debian ships no header for plugins: the declarations below are those that this needs, as qemu's documentation gives
-// them (docs/devel/tcg-plugins.rst).
+// Debian ships no header for plugins: the declarations below follow qemu's documentation (docs/devel/tcg-plugins.rst).
 #include <inttypes.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -55,7 +54,7 @@ struct range {
     unsigned stage;
 };
 
-/// Instructions in a row that count for the same stage.
+/// Consecutive instructions that count for the same stage.
 struct run {
     unsigned stage;
     unsigned instructions;
@@ -110,7 +109,7 @@ static void on_run(unsigned int vcpu, void* data)
     }
 }
 
-/// 0: whoever called it.
+/// Stage of an address; 0: the calling stage.
 static unsigned stage_at(uint64_t address)
 {
     size_t low = 0;

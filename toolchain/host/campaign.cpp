@@ -20,8 +20,8 @@
 namespace jink::host {
 namespace {
 
-// Pinheiro tab. 4.1. The moving threat's elevations go by 3.33 from -10: eight of them, which is what makes 16 200
-// environments.
+// Pinheiro tab. 4.1. The moving threat's elevations go in steps of 3.33 degrees from -10: eight elevations, which give
+// 16 200 environments.
 constexpr std::array<float, 5> kMainDistances{3.0F, 4.75F, 6.5F, 8.25F, 10.0F};
 constexpr int kMainElevations = 9;
 constexpr std::array<float, 5> kMainRadii{1.0F, 1.5F, 2.0F, 2.5F, 3.0F};
@@ -49,8 +49,8 @@ Environment make_environment(float distance, float elevation, float radius, cons
     e.problem.distance = main.norm();
     e.problem.main_radius = radius;
     e.problem.speed = kCruise;
-    // The source does not say how the moving threat moves; ours flies at the main threat at cruise speed. Only
-    // closeness depends on it.
+    // Pinheiro does not give the moving threat's motion; here it flies at the main threat at cruise speed. Only
+    // closeness depends on this motion.
     const Vec3 towards = main - moving;
     e.moving.motion = {moving, towards.norm() > 0.0F ? Vec3(towards.normalized() * kCruise) : Vec3(Vec3::Zero())};
     e.moving.radius = moving_radius;
@@ -138,7 +138,7 @@ std::vector<CampaignFigure> figures_of(std::vector<float> times, std::vector<flo
     };
 }
 
-/// The main threat of a block: distance, elevation and radius in the order in which they vary, the last one fastest.
+/// The main threat of a block: distance, elevation and radius in the order of variation, the last fastest.
 struct Main {
     float distance, elevation, radius;
 };
@@ -160,7 +160,7 @@ void append_bytes(std::string& bytes, const Value* values, std::size_t count)
     }
 }
 
-/// Takes values off the front of `bytes`.
+/// Removes values from the front of `bytes`.
 template <class Value>
 void take_bytes(std::string_view& bytes, Value* values, std::size_t count)
 {
@@ -173,7 +173,7 @@ void take_bytes(std::string_view& bytes, Value* values, std::size_t count)
     bytes.remove_prefix(count * sizeof(Value));
 }
 
-/// What a packed block begins with.
+/// Header of a packed block.
 struct Head {
     std::uint64_t index, skipped, candidates, row_bytes;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink campaign: the distribution study of the planner's source, published beside ours.
+// jink campaign: Pinheiro's distribution study, published figures beside ours.
 #include <unistd.h>
 
 #include <chrono>
@@ -47,7 +47,7 @@ void print_json(const CampaignResult& result, double seconds)
 
 void run_campaign(const CampaignOptions& options)
 {
-    // Better now than after the flights.
+    // Fails before the flights instead of after them.
     if (!options.csv.empty() && !std::ofstream(options.csv)) {
         std::fprintf(stderr, "campaign: %s cannot be written\n", options.csv.c_str());
         throw CLI::RuntimeError(kExitBadInput);
@@ -56,7 +56,7 @@ void run_campaign(const CampaignOptions& options)
     const auto began = std::chrono::steady_clock::now();
     std::size_t told = 0;
     const auto progress = [&](std::size_t done, std::size_t all) {
-        // On a terminal one line that grows, elsewhere a line at each tenth.
+        // On a terminal one line that is rewritten, elsewhere one line per tenth.
         if (watched) {
             std::fprintf(stderr, "\r%zu of %zu environments", done, all);
             std::fputs(done == all ? "\n" : "", stderr);

@@ -18,9 +18,9 @@ struct CampaignOptions {
 
 CLI::App& add_campaign_options(CLI::App& cli, CampaignOptions& options);
 
-/// Prints the merged study and writes its rows; exit status: kExitStop when a figure that must agree does not,
-/// kExitBadInput when the rows cannot be written.
-/// @param seconds  that it took, told but not compared
+/// Prints the merged study and writes its rows. @return exit status: kExitStop when a figure that must agree does not,
+/// kExitBadInput when the rows cannot be written
+/// @param seconds  duration of the study, printed but not compared
 int conclude_campaign(const CampaignOptions& options, const std::vector<StudyBlock>& blocks, double seconds);
 
 }  // namespace jink::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink check: says what is wrong with files, all of it, by line.
+// jink check: reports all errors in files, by line.
 #include <cstdio>
 #include <memory>
 #include <string>

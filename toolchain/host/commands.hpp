@@ -3,15 +3,15 @@
 
 #include <CLI/CLI.hpp>
 
-// One function per subcommand of `jink`, each in a file of its own. It adds the subcommand with a callback that does
-// the work; the callback ends the program with another exit status than 0 by `throw CLI::RuntimeError(status)`.
+// One function per subcommand of `jink`, each in a file of its own. The function adds the subcommand with a callback
+// that does the work. For an exit status other than 0 the callback throws CLI::RuntimeError(status).
 
 namespace jink::host {
 
 /// Exit statuses of every subcommand.
 inline constexpr int kExitGood = 0;
-inline constexpr int kExitBadInput = 1;  ///< a file or a command line that is wrong
-inline constexpr int kExitStop = 2;      ///< the answer is "no": the plan says stop
+inline constexpr int kExitBadInput = 1;  ///< invalid file or command line
+inline constexpr int kExitStop = 2;      ///< negative answer: the plan is "stop"
 
 void add_campaign(CLI::App& jink);
 void add_check(CLI::App& jink);

@@ -13,14 +13,14 @@ using cost::tables::kLargestRatio;
 
 float single(double value) { return static_cast<float>(value); }
 
-/// |r| of a column; even in r, so that the one before the first is the one after it.
+/// |r| of a column. The costs are even in r: the column before the first equals the column after it.
 double ratio_of(std::size_t column, std::size_t steps)
 {
     return std::abs(static_cast<double>(column) - 1.0) * static_cast<double>(kLargestRatio) /
            static_cast<double>(steps);
 }
 
-/// In the limit of r = 0, where both vanish as r^2.
+/// Replaces r = 0 by a small value: limit of a quotient whose terms vanish as r^2.
 double not_zero(double ratio) { return std::max(ratio, 1e-5); }
 
 bool is_mirrored(const ExactCurve& curve)
@@ -89,7 +89,7 @@ MadeTables::Family make_family(const CurveFamily& family, std::size_t waypoints)
     return out;
 }
 
-/// Two digits, upwards.
+/// Rounds up to two digits.
 float rounded_up(double value)
 {
     const double scale = std::pow(10.0, std::floor(std::log10(value)) - 1.0);

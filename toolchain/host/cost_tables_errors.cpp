@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Look-ups held against the exact evaluation.
+// Comparison of look-ups with the exact evaluation.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -17,7 +17,7 @@ using cost::tables::Tables;
 
 double wide(float value) { return static_cast<double>(value); }
 
-/// Catmull-Rom's spline once more, in double.
+/// Independent Catmull-Rom spline in double precision.
 double interpolated(std::span<const float> row, double ratio)
 {
     const double at = ratio / wide(cost::tables::kLargestRatio) * static_cast<double>(kArcSteps);
@@ -30,7 +30,7 @@ double interpolated(std::span<const float> row, double ratio)
     return 0.5 * (2.0 * b + t * (c - a + t * (2.0 * a - 5.0 * b + 4.0 * c - d + t * (3.0 * (b - c) + d - a))));
 }
 
-/// Sum over the chords of what their tabulated lengths are off, over the length of all.
+/// Sum of the errors of the tabulated chord lengths, over the total length.
 double error_of_chords(const FamilyTable& table, const ExactCurve& curve, double ratio)
 {
     const std::size_t rows = table.arc.size() / kArcColumns;

@@ -136,11 +136,12 @@ double ExactCurve::energy(const ExactQuery& query) const
 
 double exact_bend(const CurveFamily& family, double ratio)
 {
-    // Differences inside of each half alone: at the top the second derivative of some families jumps.
+    // Differences within each half only: at the apex the second derivative of some families jumps.
     constexpr std::size_t kParts = 4000;
     constexpr double kDelta = 1e-4;
     double sum = 0.0;
-    for (std::size_t i = 0; i < kParts; ++i) {  // mid-points: no half is left, as both lie a whole number of parts long
+    for (std::size_t i = 0; i < kParts; ++i) {  // mid-points stay within their half: both halves are a whole number of
+                                                // parts long
         const double u = family.length * (static_cast<double>(i) + 0.5) / static_cast<double>(kParts);
         const double low = family.offset(u - kDelta);
         const double high = family.offset(u + kDelta);

@@ -8,8 +8,8 @@
 
 #include "core/vehicle/vehicle.hpp"
 
-// A candidate's costs in double precision, straight from the formulas (geometric planner, sections 2, 3 and 5): what
-// look-up tables are made from and held against, and what the number of waypoints is judged by.
+// A candidate's costs in double precision, directly from the formulas (geometric planner, sections 2, 3 and 5).
+// Reference for building and checking look-up tables and for choosing the number of waypoints.
 
 namespace jink::host {
 
@@ -19,10 +19,10 @@ struct CurveFamily {
     double length;             ///< of the abscissa
     double (*offset)(double);  ///< at u in [0, length]
 };
-/// The families that are tabulated; which of them a planner uses is its own affair.
+/// The tabulated families; a planner may use any subset.
 [[nodiscard]] std::span<const CurveFamily> curve_families();
 
-/// What is flown: unit vectors along the leg and towards positive offsets by their vertical components.
+/// A curve to fly. Unit vectors along the leg and towards positive offsets are given by their vertical components.
 struct ExactQuery {
     double offset = 0.0;    ///< [m]
     double distance = 0.0;  ///< [m]
@@ -35,7 +35,8 @@ struct ExactQuery {
     double drag = 0.0;         ///< C_D rho A_e / 4 [kg/m]
 };
 
-/// A family's curve for D = 1 at `waypoints` equal steps of the abscissa, and what depends on nothing else.
+/// A family's curve for D = 1 at `waypoints` equal steps of the abscissa, and the quantities that depend on the curve
+/// alone.
 class ExactCurve {
 public:
     ExactCurve(const CurveFamily& family, std::size_t waypoints);
@@ -66,13 +67,13 @@ private:
     std::vector<double> slope_;
 };
 
-/// Integral of squared curvature over the abscissa for D = 1, to 1e-6: by differences of a curve far finer than any
-/// that is flown.
+/// Integral of squared curvature over the abscissa for D = 1, accurate to 1e-6: by differences of a curve far finer
+/// than any flown curve.
 [[nodiscard]] double exact_bend(const CurveFamily& family, double ratio);
 
 /// C_D rho A_e / 4 [kg/m].
 [[nodiscard]] double drag_of(const vehicle::Airframe& airframe);
-/// The vehicle's part of a query.
+/// A query with the vehicle's limits and airframe set.
 [[nodiscard]] ExactQuery query_for(const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe);
 
 }  // namespace jink::host

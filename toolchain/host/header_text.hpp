@@ -9,7 +9,7 @@
 
 #include "firmware/linux/vehicle_file.hpp"
 
-// Generated C++ headers: numbers, arrays and names as text, and the vehicle and the file that they come from and go to.
+// Generated C++ headers: numbers, arrays and names as text; reading the vehicle and writing the file.
 
 namespace jink::host {
 
@@ -21,8 +21,8 @@ template <std::integral T>
     return std::to_string(static_cast<int>(value));
 }
 
-/// `inline constexpr std::array<type, n> name{...};` in lines of up to 118 characters. `items`: as they are written,
-/// numbers or lists in braces.
+/// `inline constexpr std::array<type, n> name{...};` in lines of up to 118 characters. `items`: as written, numbers or
+/// lists in braces.
 void append_array_of(std::string& out, const std::string& type, const std::string& name,
                      const std::vector<std::string>& items);
 template <class Range>
@@ -36,13 +36,14 @@ void append_array(std::string& out, const std::string& type, const std::string& 
     append_array_of(out, type, name, items);
 }
 
-/// What is left of a name in a C++ name: `my quad-3` gives MyQuad3. Empty where nothing is, or a digit comes first.
+/// Converts a name to a C++ identifier: `my quad-3` gives MyQuad3. Empty if no character remains, or if a digit comes
+/// first.
 [[nodiscard]] std::string identifier_of(const std::string& name);
 
-/// The vehicle of a file, with a name that C++ names can be made of. Complaints go to standard error.
+/// The vehicle of a file; its name must convert to a C++ identifier. Complaints go to standard error.
 /// @throws CLI::RuntimeError with kExitBadInput
 [[nodiscard]] files::Vehicle read_named_vehicle(const std::string& command, const std::string& file);
-/// @throws CLI::RuntimeError with kExitBadInput where the file cannot be written
+/// @throws CLI::RuntimeError with kExitBadInput when the file cannot be written
 void write_whole(const std::string& command, const std::string& file, const std::string& text);
 /// One line on standard error, `jink COMMAND: why`.
 /// @throws CLI::RuntimeError with kExitBadInput

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink mesh: maps of convex pieces made of meshes, compared, drawn and looked at.
+// jink mesh: maps of convex pieces built from meshes, compared, drawn and inspected.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -35,7 +35,7 @@ constexpr const char* kBuildMesh = "mesh build";
 constexpr const char* kMeasureMesh = "mesh measure";
 constexpr const char* kShowMesh = "mesh show";
 
-/// What `work` gives, or the end of the program with what it complains about.
+/// The result of `work`; ends the program with the message of an error.
 template <class Work>
 auto refusing(const char* command, const std::string& file, const Work& work)
 {
@@ -76,7 +76,7 @@ mesh::Method method_of(const std::string& name)
     return name == "hull" ? mesh::Method::hull : name == "soup" ? mesh::Method::soup : mesh::Method::decompose;
 }
 
-/// Points of the surface no more than a hundredth of the mesh apart, or a tenth of a metre where that is more.
+/// Spacing of sample points on the surface: a hundredth of the mesh's size, at least a tenth of a metre.
 double spacing_of(const mesh::TriangleMesh& mesh)
 {
     mesh::Vec3d low = mesh.vertices[0];

@@ -14,15 +14,15 @@ namespace jink::host {
 /// A header with the map as constant tables, `k<Name>Map` in jink::geometry; `source`: the mesh's file.
 [[nodiscard]] std::string map_header(const geometry::MeshMap& map, const std::string& source);
 
-/// What a map holds, in lines.
+/// The contents of a map, one item per line.
 [[nodiscard]] std::string summary_of(const geometry::MeshMap& map);
 
-/// A map made by one recipe, to be compared with others.
+/// A map built with one recipe, for comparison.
 struct MeasuredMap {
     std::string name;
     mesh::StoredMap map;
-    double excess = 0.0;  ///< greatest distance of a piece's surface from the mesh [m]
-    double gap = 0.0;     ///< and of the mesh's surface from the pieces
+    double excess = 0.0;  ///< greatest distance from a piece's surface to the mesh [m]
+    double gap = 0.0;     ///< greatest distance from the mesh's surface to the pieces [m]
 };
 /// Name, pieces, vertices, bytes, excess, gap, one line each.
 [[nodiscard]] std::string table_of(const std::vector<MeasuredMap>& maps);

@@ -20,7 +20,7 @@ struct PlanOptions {
     std::uint32_t budget = avoid::Settings{}.budget;
 };
 
-/// The source's choices in place of the file's; counts, weights and methods of smoothness stay.
+/// Replaces the file's settings by Pinheiro's; counts, weights and smoothness methods stay.
 void use_source(geometric::Settings& settings)
 {
     const geometric::Settings source = geometric::source_settings();

@@ -82,7 +82,7 @@ std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
     return "The planner refuses the problem.";
 }
 
-/// A float as the shortest decimal that reads back as it; null where it is infinite.
+/// A float as the shortest decimal that reads back to the same value; null where infinite.
 ordered_json json_of(float value)
 {
     return std::isfinite(value) ? ordered_json(std::stod(files::to_text(value))) : ordered_json(nullptr);
@@ -178,7 +178,7 @@ std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit)
     case world::ThreatKind::track: return hit.index < file.threats.size() ? file.threats[hit.index].name : "?";
     case world::ThreatKind::obstacle: {
         const std::size_t at_rest = file.obstacles.size();
-        const std::size_t moving = hit.index - at_rest;  // counted behind those at rest
+        const std::size_t moving = hit.index - at_rest;  // counted after the static obstacles
         return hit.index < at_rest                  ? file.obstacles[hit.index].name
                : moving < file.moving_solids.size() ? file.moving_solids[moving].name
                                                     : "?";

@@ -15,7 +15,7 @@ namespace jink::host {
 
 [[nodiscard]] std::string_view name_of(world::PlanStatus status);
 [[nodiscard]] std::string_view name_of(geometric::CandidateStatus status);
-/// Name of what a candidate touches, as the file has it; empty for none.
+/// Name, as in the file, of the threat or obstacle that a candidate is in contact with; empty for none.
 [[nodiscard]] std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit);
 
 [[nodiscard]] std::string plan_table(const ProblemFile& file, const PlanOutcome& outcome);

@@ -17,7 +17,7 @@ using files::YamlMap;
 constexpr std::array<std::string_view, 2> kBuiltInVehicles{"default", "uav2"};
 constexpr float kShortest = 1e-3F;  // of a leg or a direction
 
-/// What the reader has in hand besides the file it fills.
+/// State of the reader besides the file that it fills.
 struct Reader {
     YamlMap& root;
     Complaints& complaints;
@@ -178,7 +178,7 @@ void read_airspace(Reader& reader)
     reader.out.has_airspace = true;
 }
 
-/// One threat or obstacle is the main one: the flagged one, or the only one there is.
+/// Finds the main threat or obstacle: the flagged one, or the only one in the file.
 bool find_main(Reader& reader)
 {
     ProblemFile& out = reader.out;
@@ -206,8 +206,8 @@ bool find_main(Reader& reader)
     return true;
 }
 
-/// Collision point and what depends on it: closest approach of the centres while the vehicle flies along the leg or the
-/// reference, or the distance given.
+/// Sets the collision point and dependent values: closest approach of the centres while the vehicle flies along the leg
+/// or the reference, or the given distance.
 void meet_main(Reader& reader)
 {
     ProblemFile& out = reader.out;
@@ -357,7 +357,7 @@ std::unique_ptr<PlanOutcome> solve_problem(const ProblemFile& file, std::uint32_
     WorkBudget work(budget);
     geometric::Workspace workspace;
     geometric::Settings settings = file.settings;
-    settings.all_terms = settings.evaluate_all = true;  // to be printed
+    settings.all_terms = settings.evaluate_all = true;  // for printing
     outcome->status = geometric::solve_with_retries(problem, settings, file.vehicle.limits, file.vehicle.airframe, work,
                                                     workspace, outcome->result, outcome->tries);
     outcome->work = work.spent();

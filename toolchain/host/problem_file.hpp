@@ -11,7 +11,7 @@
 #include "firmware/linux/complaint.hpp"
 #include "firmware/linux/vehicle_file.hpp"
 
-// A planning problem in YAML: what `jink plan` solves. docs/guides/planning_problems.md describes every key.
+// A planning problem in YAML, the input of `jink plan`. docs/guides/planning_problems.md describes every key.
 
 namespace jink::host {
 
@@ -29,17 +29,18 @@ struct NamedObstacle {
 /// An obstacle of the file that has a velocity.
 struct NamedMovingSolid {
     std::string name;
-    geometry::Shape shape;  ///< where it is at the start
+    geometry::Shape shape;  ///< at its start position
     Vec3 velocity = Vec3::Zero();
 };
 
-/// What a file says, checked: `problem_of` turns it into what the planner solves. Copies share the vertices of hulls.
+/// The checked contents of a file; `problem_of` converts it to the planner's problem. Copies share the vertices of
+/// hulls.
 struct ProblemFile {
     std::string title;
     files::Vehicle vehicle;
     geometric::Settings settings;
     std::vector<NamedThreat> threats;
-    std::vector<NamedObstacle> obstacles;  ///< at rest
+    std::vector<NamedObstacle> obstacles;  ///< static
     std::vector<NamedMovingSolid> moving_solids;
     std::vector<std::shared_ptr<const std::vector<Vec3>>> hulls;  ///< vertices that obstacles refer to
     bool has_airspace = false;
@@ -47,7 +48,7 @@ struct ProblemFile {
 
     Vec3 start = Vec3::Zero();
     Vec3 direction = Vec3::UnitX();  ///< unit vector
-    path::Route route;               ///< the reference, where it is told by segments; empty: straight
+    path::Route route;               ///< the nominal path, if given by segments; empty: straight
     Vec3 frame_y = Vec3::Zero();     ///< of the path frame, unit vector across `direction`; zero: horizontal
     float speed = 5.0F;              ///< cruise speed along the candidates [m/s]
     Vec3 velocity = Vec3::Zero();    ///< own, at the start [m/s]
@@ -61,29 +62,29 @@ struct ProblemFile {
     Vec3 flown_side = Vec3::Zero();
 };
 
-/// Reads a problem file and the vehicle file that it may name. All that is wrong, not only the first thing.
+/// Reads a problem file and the vehicle file that it may name. Reports all errors.
 [[nodiscard]] std::variant<ProblemFile, files::Complaints> read_problem(const std::filesystem::path& path);
-/// The same for text already read; `file` names it in complaints, and vehicle files are looked for beside it.
+/// The same for text already read; `file` is its name in complaints; vehicle files are searched beside it.
 [[nodiscard]] std::variant<ProblemFile, files::Complaints> read_problem_text(const std::string& text,
                                                                              const std::string& file);
 
-/// What the spans of a problem refer to. Not to be moved while the problem is in use.
+/// Storage for the spans of a problem. Do not move while the problem is in use.
 struct ProblemStorage {
     std::vector<world::Threat> threats;
-    geometry::Shape main_shape;  ///< of a moving solid, where it is met
+    geometry::Shape main_shape;  ///< of a moving solid, at the encounter
 };
-/// The problem as the planner wants it, its route included. It refers to `file` and `storage`, which outlive it.
+/// The planner's problem, its route included. Refers to `file` and `storage`, which must outlive the problem.
 [[nodiscard]] geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage);
 
-/// What became of a problem.
+/// Outcome of a planning problem.
 struct PlanOutcome {
     world::PlanStatus status = world::PlanStatus::bad_input;
-    geometric::Result result;  ///< of the last try
+    geometric::Result result;  ///< of the last attempt
     std::size_t tries = 0;
-    std::uint32_t work = 0;  ///< units spent
+    std::uint32_t work = 0;  ///< work units spent
 };
-/// Solves it as geometric::Planner does: the span of offsets widened for every try that finds nothing, up to
-/// Settings::retries.
+/// Solves a problem as geometric::Planner does: after each attempt without a solution the span of offsets is widened,
+/// up to Settings::retries.
 [[nodiscard]] std::unique_ptr<PlanOutcome> solve_problem(const ProblemFile& file, std::uint32_t budget);
 
 }  // namespace jink::host

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of a problem file that tell a reference of legs and arcs, and a path frame.
+// Readers of a problem file's reference (legs and arcs) and path frame.
 #include <cmath>
 
 #include "toolchain/host/problem_parts.hpp"
@@ -50,7 +50,7 @@ void read_segment(YamlMap& map, const Vec3& from, path::Route& route, YamlMap& r
     map.finish();
 }
 
-/// Distance of the centres while the vehicle flies along the reference at one speed.
+/// Distance of the centres at arc length `way` [m] while the vehicle flies along the reference at constant speed.
 double apart_at(const ProblemFile& file, const geometry::Motion& motion, double way)
 {
     const auto at = static_cast<float>(way);

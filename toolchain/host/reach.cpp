@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink reach: a vehicle's reach sets, as tables to be flashed, measured and drawn.
+// jink reach: a vehicle's reach sets, as tables for flash, measured and drawn.
 #include <cstdio>
 #include <filesystem>
 #include <memory>

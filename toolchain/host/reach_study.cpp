@@ -25,7 +25,7 @@ bool have_the_same_whole(const rb::Settings& a, const rb::Settings& b)
            a.grid.horizontal() == b.grid.horizontal() && a.grid.vertical() == b.grid.vertical();
 }
 
-/// Best smoothness of the trajectories that go through each member.
+/// Best smoothness of the trajectories through each member.
 std::vector<double> smoothness_through(const rb::Set& set)
 {
     std::vector<double> best(set.members.size(), 0.0);

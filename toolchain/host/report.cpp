@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink report: a page about a demo run. The work is done by toolchain/report/report.py under Debian's own python3,
-// which has matplotlib; whatever other python3 comes first on the PATH may not.
+// jink report: a page about a demo run. toolchain/report/report.py does the work under Debian's own python3, which has
+// matplotlib; another python3 earlier in PATH may lack it.
 #include <unistd.h>
 
 #include <cerrno>

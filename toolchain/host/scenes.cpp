@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink scenes: scenario files flown with each order of the avoidance methods, as a table and as pictures from above.
+// jink scenes: scenario files flown with each order of the avoidance methods, as a table and as plan-view pictures.
 #include <cstdio>
 #include <filesystem>
 #include <memory>

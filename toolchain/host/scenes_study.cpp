@@ -16,13 +16,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 using sim::Vec;
 
-/// A command slower than this is one to stand still [m/s].
+/// A command slower than this is a command to stop [m/s].
 constexpr double kStill = 0.1;
 /// Every fifth sample is drawn: 10 Hz.
 constexpr std::size_t kStride = 5;
 constexpr std::size_t kLine = 160;
 
-/// Samples are evenly apart.
+/// Samples are equidistant in time.
 double held(const sim::Record& record)
 {
     const auto still = std::count_if(record.samples.begin(), record.samples.end(), [](const sim::Sample& sample) {
@@ -63,10 +63,10 @@ Json body_of(const sim::ClosedArea& area, double end)
             {"to", json(area.centre_at(end))}};
 }
 
-/// Of bodies and closed areas alike [m].
+/// Least distance to bodies and closed areas [m].
 double least_of(const sim::Record& record) { return std::min(record.closest.surface, record.closest_area); }
 
-/// Where the vehicle was then.
+/// The vehicle's position at the least distance.
 sim::Vec place_of_least(const sim::Scenario& scenario, const sim::Record& record)
 {
     if (record.closest.surface <= record.closest_area) {
@@ -86,7 +86,7 @@ sim::Vec place_of_least(const sim::Scenario& scenario, const sim::Record& record
     return at;
 }
 
-/// How long a scene is worth looking at: until the last of those that reached the goal was there.
+/// End of the drawn time: the last arrival at the goal.
 double last_of(const Scene& scene)
 {
     double last = 0.0;

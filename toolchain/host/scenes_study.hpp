@@ -8,24 +8,25 @@
 #include "toolchain/sim/record.hpp"
 #include "toolchain/sim/scenario.hpp"
 
-// One scene, flown in several ways.
+// One scene, flown with several configurations.
 
 namespace jink::host {
 
-/// A way of flying a scene: parameters of the co-processor on top of the scene's own.
+/// A configuration to fly a scene: co-processor parameters in addition to the scene's own.
 struct FlownBy {
     std::string name;
-    bool alone = false;  ///< without a co-processor, through whatever is in the way
+    bool alone = false;  ///< without a co-processor, no avoidance
     std::map<std::string, double> parameters;
 };
 
-/// Straight, and the four orders of methods that JNK_METHODS knows; then, of the order it is for, each JNK_CLUTTER.
+/// Straight flight, and the four method orders of JNK_METHODS; then, for the order that uses JNK_CLUTTER, each of its
+/// values.
 [[nodiscard]] std::vector<FlownBy> ways_to_fly(const std::vector<unsigned>& clutters);
 
 struct SceneFlight {
     FlownBy by;
     sim::Record record;
-    double held = 0.0;  ///< standing still by command, all together [s]
+    double held = 0.0;  ///< total time of commanded stops [s]
 };
 
 struct Scene {
@@ -33,13 +34,13 @@ struct Scene {
     std::vector<SceneFlight> flights;
 };
 
-/// In process. O(ways) flights.
+/// Flies in process. O(ways) flights.
 [[nodiscard]] Scene fly_scene(const sim::Scenario& scenario, const std::vector<FlownBy>& ways);
 
-/// A line for each way, with a head.
+/// One line per configuration, with a header line.
 [[nodiscard]] std::string table_of(const Scene& scene);
 
-/// What the flights of scenes that differ by their seed alone have in common: a line for each way.
+/// Summary of scenes that differ by their seed alone: one line per configuration.
 [[nodiscard]] std::string summary_of(const std::vector<Scene>& scenes);
 
 /// Bodies and paths as JSON, for toolchain/report/reach_flights.py.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink tune: the planner's weights against what comes of them in the closed loop.
+// jink tune: the planner's weights and their outcomes in the closed loop.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -40,7 +40,7 @@ void print_difference(const char* what, const Difference& d)
                 std::abs(d.mean) > 2.0 * d.error ? "" : "   (none that can be told)");
 }
 
-/// Fresh encounters: those that the fit was chosen by flatter it.
+/// Checks the fit on new encounters: the encounters that chose the fit are biased in its favour.
 void check_fit(const TuneOptions& options, const TuneSetup& setup, const Tried& fit, const Tried& standard)
 {
     TuneSetup fresh = setup;

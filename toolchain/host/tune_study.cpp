@@ -11,7 +11,7 @@
 namespace jink::host {
 namespace {
 
-/// Weights this close are the same ones.
+/// Weights within this difference are equal.
 constexpr float kSame = 1e-4F;
 
 bool same(const cost::Weights& a, const cost::Weights& b)
@@ -94,10 +94,10 @@ std::vector<Tried> combinations(double step)
 
 sim::Variant variant_of(const cost::Weights& weights)
 {
-    // As decimals of three places, which is how they are written: a float's own digits say 0.30000001.
+    // Rounded to three decimals, as written: a float's own digits would read 0.30000001.
     const auto rounded = [](float value) { return std::round(1000.0 * static_cast<double>(value)) / 1000.0; };
     sim::Variant variant;
-    // The geometric planner alone: another method's answers say nothing of its weights.
+    // The geometric planner alone: results of other methods do not depend on the weights.
     variant.parameters = {
         {"JNK_METHODS", 0.0}, {"GEO_K_S", rounded(weights.smoothness)}, {"GEO_K_T", rounded(weights.time)}};
     return variant;

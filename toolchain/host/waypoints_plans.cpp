@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What plans of different numbers of waypoints find and cost.
+// Outcome and cost of plans with different numbers of waypoints.
 #include <algorithm>
 #include <ctime>
 #include <memory>
@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kRepetitions = 9;
 
-/// Main threat on the leg ahead, a tenth of the way large; two more move about the leg and grow.
+/// Main threat on the leg ahead, with a radius of a tenth of the distance; two more threats move about the leg and
+/// grow.
 struct DrawnScene {
     std::vector<world::Threat> threats;
     geometric::Problem problem;
@@ -49,7 +50,7 @@ DrawnScene draw(const vehicle::VehicleLimits& limits, std::uint64_t seed)
     return scene;
 }
 
-/// Which curve is chosen: family, plane and the offset's place in its plane; 0 for none.
+/// Key of the chosen curve: family, plane and the offset's index in its plane; 0 for none.
 std::size_t choice_of(const geometric::Result& result, world::PlanStatus status)
 {
     return status == world::PlanStatus::found ? result.chosen + 1 : 0;

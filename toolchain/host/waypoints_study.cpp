@@ -23,7 +23,7 @@ struct Point {
 double sine(double degrees) { return std::sin(degrees * std::numbers::pi / 180.0); }
 double cosine(double degrees) { return std::cos(degrees * std::numbers::pi / 180.0); }
 
-/// A curve as flown, by one number of waypoints.
+/// Costs of a curve as flown with one number of waypoints.
 struct Costs {
     double time = 0.0, smoothness = 0.0, energy = 0.0, closeness = 0.0, total = 0.0;
 };
@@ -42,7 +42,8 @@ Point point_of(const ExactCurve& curve, std::size_t i, const Shape& shape, doubl
             along * sine(shape.elevation) + up * cosine(shape.elevation)};
 }
 
-/// Eq. 4.11 for a threat that crosses the leg's far end, a fifth of the distance large, at half the cruise speed.
+/// Eq. 4.11 for a threat that crosses the leg's far end at half the cruise speed, with a radius of a fifth of the
+/// distance.
 double closeness(const ExactCurve& curve, const ExactQuery& query, const Shape& shape)
 {
     const double distance = query.distance;

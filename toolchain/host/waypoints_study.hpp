@@ -7,18 +7,18 @@
 
 #include "firmware/linux/vehicle_file.hpp"
 
-// How many waypoints a candidate needs: what its costs and its shape are off, against one of 1000 waypoints in double
-// precision, and what a plan costs and finds.
+// Number of waypoints that a candidate needs: errors of its costs and shape against a candidate of 1000 waypoints in
+// double precision, and cost and outcome of plans.
 
 namespace jink::host {
 
 inline constexpr std::size_t kReferenceWaypoints = 1000;
 
-/// Of the main threat [m]: two seconds of flight, or where that leaves no time to turn, twice v^2 / a.
+/// Distance of the main threat [m]: two seconds of flight, but at least 2 v^2 / a so that turning is possible.
 [[nodiscard]] float study_distance(const vehicle::VehicleLimits& limits);
 
-/// Of all curves of the study: three families, |r| from 0.16 to 1.28, legs of -30, 0 and 30 degrees, planes every 45,
-/// and a threat that flies past.
+/// Errors over all curves of the study: three families, |r| from 0.16 to 1.28, legs of -30, 0 and 30 degrees, planes
+/// every 45 degrees, and a crossing threat.
 struct WaypointErrors {
     std::size_t waypoints = 0;
     double time = 0.0;        ///< largest, relative
@@ -26,19 +26,20 @@ struct WaypointErrors {
     double energy = 0.0;      ///< largest, relative
     double closeness = 0.0;   ///< largest, relative
     double cost = 0.0;        ///< largest error of the total cost (default weights)
-    /// Largest difference between the cost errors of two curves about the same threat: what can change their order.
+    /// Largest difference between the cost errors of two curves about the same threat: bounds changes of their order.
     double order = 0.0;
     double inside = 0.0;   ///< largest distance between chords and curve over D, at the widest offset
     double typical = 0.0;  ///< the same at an offset of 0.4 D
 };
-/// By the planner itself, over random problems with two moving threats.
+/// Plans of the planner itself, over random problems with two moving threats.
 struct WaypointPlans {
     std::size_t problems = 0;
     std::size_t found = 0;
     std::size_t same_choice =
-        0;                      ///< family, plane and offset number as with kMaxPathPoints waypoints (or both nothing)
+        0;                      ///< family, plane and offset number equal those with kMaxPathPoints waypoints (or
+                                ///< neither finds a plan)
     double units = 0.0;         ///< mean work of a plan
-    double microseconds = 0.0;  ///< CPU time on this machine: least of nine means over the problems
+    double microseconds = 0.0;  ///< CPU time on this host: least of nine means over the problems
 };
 
 [[nodiscard]] WaypointErrors waypoint_errors(const files::Vehicle& vehicle, std::size_t waypoints);

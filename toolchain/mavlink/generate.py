@@ -184,7 +184,7 @@ def messages_text(messages):
 
 def catalogue_text(messages, passed_over):
     rows = [(m.id, m.crc_extra, m.min, m.max, m.name) for m in messages]
-    # What is not decoded may be as long as a frame allows: extensions added to it later are none of our business.
+    # A message that is not decoded may be as long as a frame allows, including later extensions.
     rows += [(i, crc, base, MAX_PAYLOAD, f"{name}, passed over") for i, crc, base, name in passed_over]
     rows.sort()
     if len({row[0] for row in rows}) != len(rows):

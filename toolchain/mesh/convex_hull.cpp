@@ -17,7 +17,7 @@ extern "C" {
 namespace jink::mesh {
 namespace {
 
-/// A point this much inside of the circle of its neighbours is no corner of a flat set, as a share of its size.
+/// Tolerance, as a share of a flat set's size, below which a point is not a corner.
 constexpr double kCorner = 1e-12;
 
 /// Centre, axes (columns, longest extent first) and size of a set of points.
@@ -56,7 +56,7 @@ bool is_flat(const std::vector<Vec3d>& points, const Spread& spread)
     return points.size() < 4 || spread.high.z() - spread.low.z() <= kFlat * spread.size;
 }
 
-/// qhull's memory, released whatever happens.
+/// qhull's memory, released in all cases.
 class Qhull {
 public:
     Qhull() { qh_zero(&qh_, nullptr); }
@@ -70,7 +70,7 @@ public:
     Qhull(const Qhull&) = delete;
     Qhull& operator=(const Qhull&) = delete;
 
-    /// Qt: triangles; Pp: no word of narrow hulls.
+    /// Qt: triangles; Pp: no warnings about narrow hulls.
     bool run(std::vector<double>& coordinates)
     {
         std::string command = "qhull Qt Pp";
@@ -151,7 +151,7 @@ std::optional<Piece> flat_piece(const std::vector<Vec3d>& points, const Spread& 
 
 using Planes = std::vector<std::pair<Vec3d, double>>;
 
-/// Corners of the polytope that the planes bound: all points of three planes that no other one cuts off.
+/// Corners of the polytope bounded by the planes: all intersections of three planes that no other plane cuts off.
 std::vector<Vec3d> corners_of(const Planes& planes, double size)
 {
     std::vector<Vec3d> out;
@@ -189,7 +189,7 @@ std::pair<Vec3d, double> plane_around(const Hull& hull, const Vec3d& normal)
     return {normal, offset};
 }
 
-/// From the hull to a corner outside of it: how far, and which way.
+/// Distance and direction from the hull to a corner outside the hull.
 std::pair<double, Vec3d> outside_of(const std::vector<Vec3>& hull, const Vec3d& centre, const Vec3d& corner)
 {
     WorkBudget budget(1'000'000);
@@ -211,7 +211,7 @@ std::vector<Vec3d> simplified(const Hull& hull, const Spread& spread)
         planes.push_back(plane_around(hull, -spread.axes.col(axis)));
     }
     std::vector<Vec3d> best = corners_of(planes, spread.size);
-    // A corner is cut off by three new ones at least.
+    // Cutting off a corner adds at least three new corners.
     for (std::size_t turn = 0; turn < geometry::kMaxPieceVertices; ++turn) {
         double farthest = 0.0;
         Vec3d normal = Vec3d::UnitZ();
@@ -298,7 +298,7 @@ std::optional<Piece> piece_around(const std::vector<Vec3d>& points)
     if (hull && hull->vertices.size() > geometry::kMaxPieceVertices) {
         hull = hull_of(simplified(*hull, spread));
     }
-    // What is too thin for a hull and too thick for a plane has to be divided.
+    // Sets too thin for a hull and too thick for a plane must be divided.
     const bool fits = hull && hull->vertices.size() <= geometry::kMaxPieceVertices && hull->planes.size() >= 4 &&
                       hull->planes.size() <= geometry::kMaxPieceFaces;
     return fits ? std::optional<Piece>(Piece{hull->vertices, hull->planes, hull->triangles, 0.0}) : std::nullopt;

@@ -54,7 +54,7 @@ double size_of(const std::vector<Vec3d>& points)
     return (high - low).norm();
 }
 
-/// Clusters of one object's triangles, as HACD has them; all in one where it finds none.
+/// HACD's clusters of one object's triangles; a single cluster where HACD finds none.
 std::vector<Cluster> clusters_of(const TriangleMesh& mesh, const Cluster& object, double concavity)
 {
     std::map<std::size_t, long> places;
@@ -100,7 +100,7 @@ std::vector<Cluster> clusters_of(const TriangleMesh& mesh, const Cluster& object
     return out;
 }
 
-/// Two halves, across the longest side of its box.
+/// Two halves, divided across the longest side of the cluster's box.
 std::array<Cluster, 2> halves_of(const TriangleMesh& mesh, Cluster cluster)
 {
     const auto centre = [&](std::size_t t) -> Vec3d {
@@ -133,7 +133,7 @@ void add(std::vector<Piece>& pieces, Piece piece)
     }
 }
 
-/// The cluster's hull, or the hulls of its halves and theirs: none stands out by more than `most`, except triangles.
+/// Adds the cluster's hull, or the hulls of its repeated halves: no excess above `most`, except for single triangles.
 void add_divided(const TriangleMesh& mesh, const Solid& solid, const Cluster& whole, double most,
                  std::vector<Piece>& pieces)
 {
@@ -187,7 +187,7 @@ std::vector<Piece> pieces_of(const TriangleMesh& mesh, const Recipe& recipe)
                               " edges without exactly one neighbour, passed the other way; mend the mesh, take --open, "
                               "or --method soup");
         }
-        // Measured from its own object: not less than from all of the mesh.
+        // Excess beyond the piece's own object: an upper bound on the excess beyond the whole mesh.
         const TriangleMesh alone = part_of(mesh, object);
         const Solid solid(alone);
         if (recipe.method == Method::hull) {

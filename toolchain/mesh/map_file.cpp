@@ -4,7 +4,7 @@
 
 #include "toolchain/mesh/stored_map.hpp"
 
-// The file of a map: written and read number by number, low byte first, whatever the machine.
+// The file of a map: written and read number by number, little-endian on every host.
 
 namespace jink::mesh {
 namespace {
@@ -37,7 +37,7 @@ private:
     std::string out_;
 };
 
-/// Reads past the end as an error, once and for all.
+/// A read past the end sets a permanent error.
 class Reader {
 public:
     explicit Reader(std::string_view text) : text_(text) {}
@@ -69,7 +69,7 @@ public:
         text_.remove_prefix(length);
         return out;
     }
-    /// A count of things of `bytes` each, which the rest of the file has room for.
+    /// Reads a count of items of `bytes` each; an error if the rest of the file is shorter.
     std::size_t count(std::size_t bytes)
     {
         const std::size_t out = u32();

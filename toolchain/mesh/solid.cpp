@@ -15,8 +15,8 @@ namespace {
 
 using Corners = std::array<Vec3d, 3>;
 
-constexpr std::size_t kLeaf = 4;  ///< triangles of a box that is not divided further
-/// Parts of a piece's surface that are looked at; what is not known better by then stays an upper bound.
+constexpr std::size_t kLeaf = 4;  ///< largest number of triangles in a leaf box
+/// Largest number of parts of a piece's surface that are checked; the result then stays an upper bound.
 constexpr std::size_t kMostParts = 10'000;
 
 double distance_from_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b)
@@ -27,7 +27,7 @@ double distance_from_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b)
     return (p - (a + share * ab)).norm();
 }
 
-/// Over the triangle's inside along its normal, else from one of its sides.
+/// Distance along the normal over the triangle's interior, else distance from one of its sides.
 double distance_from_triangle(const Vec3d& p, const Corners& t)
 {
     const Vec3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
@@ -45,7 +45,7 @@ double distance_from_triangle(const Vec3d& p, const Corners& t)
                      distance_from_segment(p, t[2], t[0])});
 }
 
-/// Solid angle under which the triangle is seen (Van Oosterom & Strackee 1983).
+/// Solid angle of the triangle as seen from `p` (Van Oosterom & Strackee 1983).
 double solid_angle(const Vec3d& p, const Corners& t)
 {
     const Vec3d a = t[0] - p;
@@ -57,7 +57,7 @@ double solid_angle(const Vec3d& p, const Corners& t)
     return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
 }
 
-/// A part of a piece's surface and the most that a point of it may stand out.
+/// A part of a piece's surface and an upper bound on its points' excess.
 struct Part {
     Corners corners;
     double bound = 0.0;
@@ -71,7 +71,7 @@ Solid::Solid(const TriangleMesh& mesh) : mesh_(mesh), order_(mesh.triangles.size
 {
     std::iota(order_.begin(), order_.end(), std::size_t{0});
     closed_ = open_edges(mesh, order_) == 0;
-    double volume = 0.0;  // six times that
+    double volume = 0.0;  // six times the volume
     for (const std::size_t triangle : order_) {
         const Corners c = mesh.corners(triangle);
         const Vec3d& from = mesh.vertices[0];
@@ -184,8 +184,9 @@ bool Solid::holds(const Vec3d& point) const
 double excess_of(const Piece& piece, const Solid& solid, double tolerance)
 {
     std::priority_queue<Part> parts;
-    double known = 0.0;                                                              // some point stands out so far
-    const double touching = 1e-9 * piece.vertices[0].cwiseAbs().maxCoeff() + 1e-12;  // on the surface, but for rounding
+    double known = 0.0;                                                              // largest excess of a checked
+                                                                                     // point
+    const double touching = 1e-9 * piece.vertices[0].cwiseAbs().maxCoeff() + 1e-12;  // on the surface, up to rounding
     const auto put = [&](const Corners& corners) {
         const Vec3d centre = (corners[0] + corners[1] + corners[2]) / 3.0;
         double radius = 0.0;
@@ -202,7 +203,7 @@ double excess_of(const Piece& piece, const Solid& solid, double tolerance)
         if (bound <= known + (known > 0.0 ? tolerance : touching)) {
             return;
         }
-        // Inside, all within `off` is inside too.
+        // If the centre is inside, all points within `off` are inside too.
         const bool inside = solid.is_behind(triangle, centre) || solid.holds(centre);
         known = std::max(known, inside || off <= touching ? 0.0 : off);
         parts.push({corners, inside ? std::min(radius - off, bound) : bound});
@@ -228,7 +229,7 @@ double excess_of(const Piece& piece, const Solid& solid, double tolerance)
             put(quarter);
         }
     }
-    // No part is farther than what is known by more than the tolerance.
+    // No part exceeds the known excess by more than the tolerance.
     return known > 0.0 ? known + tolerance : (parts.empty() ? 0.0 : std::max(0.0, parts.top().bound));
 }
 

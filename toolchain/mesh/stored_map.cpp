@@ -52,7 +52,8 @@ void StoredMap::round(const Piece& piece)
     for (const Vec3d& v : piece.vertices) {
         const Vec3 rounded = v.cast<float>();
         vertices_.push_back(Point3::of(rounded));
-        // The hull of points that have moved by less than this holds the hull of the points, but for this much.
+        // If points move by less than `moved`, the hull of the moved points contains the original hull up to this
+        // distance.
         const double moved = (rounded.cast<double>() - v).norm() + kFlat * v.cwiseAbs().maxCoeff();
         const auto up = std::nextafter(static_cast<float>(moved), std::numeric_limits<float>::max());
         slack_ = std::max(slack_, up);

@@ -8,29 +8,30 @@
 #include "core/geometry/mesh_map.hpp"
 #include "toolchain/mesh/convex_hull.hpp"
 
-// A map as the tables that are flown, and as a file.
+// A map as flight tables, and as a file.
 
 namespace jink::mesh {
 
-/// Of the tables of a map, as they lie in flash.
+/// Size of a map's tables in flash.
 [[nodiscard]] std::size_t bytes_of(const geometry::MeshMap& map);
 
 /// The tables, owned.
 class StoredMap {
 public:
-    /// Rounds the pieces' numbers and lays the tree over them: boxes are halved at the median along their longest side.
-    /// The map's slack is what rounding may have taken off, and kFlat of the largest coordinate.
-    /// @throws CannotBuild when there are none or more than geometry::kMaxMeshPieces, or one exceeds a map's limits
+    /// Rounds the pieces' numbers and builds the tree: boxes are halved at the median along their longest side. The
+    /// map's slack covers the rounding, and kFlat of the largest coordinate.
+    /// @throws CannotBuild when there are no pieces or more than geometry::kMaxMeshPieces, or a piece exceeds a map's
+    /// limits
     StoredMap(std::string name, const std::vector<Piece>& pieces);
 
-    /// A view of this, which outlives it.
+    /// A view of this map, which must outlive the view.
     [[nodiscard]] geometry::MeshMap view() const;
 
     /// The file: "JINKMAP" and a zero byte; version (2 bytes); length of the name (2) and the name; metres per unit,
     /// slack, bounds (8 floats); counts of pieces, vertices, faces and nodes (4 each); the tables in that order, each
-    /// number as it is in the structures of core/geometry/mesh_map.hpp; the checksum (4). Low byte first.
+    /// number as in the structures of core/geometry/mesh_map.hpp; the checksum (4). Little-endian.
     [[nodiscard]] std::string file() const;
-    /// @throws CannotBuild when the text is no such file or not a good map
+    /// @throws CannotBuild when the text is not a map file or the map is invalid
     [[nodiscard]] static StoredMap from_file(const std::string& text);
 
 private:

@@ -15,7 +15,7 @@
 namespace jink::mesh {
 namespace {
 
-/// Puts each place in once.
+/// Adds each place once.
 class Weld {
 public:
     explicit Weld(TriangleMesh& mesh) : mesh_(mesh) {}
@@ -86,7 +86,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const ReadOptions& opt
         throw CannotBuild("no such file");
     }
     Assimp::Importer importer;
-    // Node transformations are applied; nothing else is touched, least of all triangles without area.
+    // Applies node transformations; keeps everything else unchanged, including triangles without area.
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
     if (scene == nullptr) {
         throw CannotBuild(std::string("cannot be read: ") + importer.GetErrorString());
@@ -104,7 +104,7 @@ TriangleMesh read_mesh(const std::filesystem::path& file, const ReadOptions& opt
 
 std::vector<std::vector<std::size_t>> objects_of(const TriangleMesh& mesh)
 {
-    // Union of what shares a vertex: parts that meet in a point alone would else lose each other's corner.
+    // Union of triangles that share a vertex: parts joined in a single point would otherwise lose the common corner.
     std::vector<std::size_t> leader(mesh.vertices.size());
     std::iota(leader.begin(), leader.end(), std::size_t{0});
     const auto find = [&](std::size_t v) {
@@ -132,7 +132,7 @@ std::vector<std::vector<std::size_t>> objects_of(const TriangleMesh& mesh)
 
 std::size_t open_edges(const TriangleMesh& mesh, const std::vector<std::size_t>& triangles)
 {
-    std::map<Edge, std::pair<int, int>> uses;  // times passed upwards and downwards
+    std::map<Edge, std::pair<int, int>> uses;  // number of traversals in either direction
     for (const std::size_t triangle : triangles) {
         const auto& t = mesh.triangles[triangle];
         for (std::size_t i = 0; i < 3; ++i) {

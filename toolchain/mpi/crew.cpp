@@ -11,7 +11,7 @@
 namespace jink::mpi {
 namespace {
 
-/// What one message carries at most [bytes].
+/// Largest size of a message [bytes].
 constexpr std::size_t kMost = std::numeric_limits<int>::max();
 
 int length_of(const std::string& piece)
@@ -24,7 +24,7 @@ int length_of(const std::string& piece)
 
 }  // namespace
 
-/// A number in the leader's memory that everybody may reach.
+/// A counter in the leader's memory, accessible to every process.
 struct Crew::Counter {
     explicit Counter(bool leads)
     {

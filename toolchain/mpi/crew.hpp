@@ -9,8 +9,8 @@
 
 namespace jink::mpi {
 
-/// The processes of an MPI run that share work out among themselves. One object per process, made first and gone last;
-/// one thread uses it. Calls marked "together" are made by every process, in the same order.
+/// Work sharing between the processes of an MPI run. One object per process, created first and destroyed last, used by
+/// one thread. Calls marked "together" (collective) are made by every process, in the same order.
 class Crew {
 public:
     Crew(int& argc, char**& argv);
@@ -21,21 +21,21 @@ public:
     [[nodiscard]] bool leads() const noexcept { return rank_ == 0; }
     [[nodiscard]] int size() const noexcept { return size_; }
 
-    /// Together: everybody gets the leader's.
+    /// Together: every process gets the leader's values.
     void share(std::vector<std::uint64_t>& values) const;
     void share(std::string& text) const;
 
-    /// Together: numbers given out by next() begin at 0 again.
+    /// Together: restarts the numbers of next() at 0.
     void begin_count();
-    /// The next number that nobody got before. The counter lies with the leader, who need not attend to it: the asker
-    /// raises it himself (MPI_Fetch_and_op).
+    /// The next unused number. The counter is in the leader's memory; the calling process increments it without the
+    /// leader's participation (MPI_Fetch_and_op).
     [[nodiscard]] std::uint64_t next();
-    /// Lets messages of others through, where the network needs the processor for that. Call it now and then.
+    /// Progresses other processes' messages, where the network needs the processor. Call regularly.
     void attend() const;
 
-    /// Together: everybody has come here.
+    /// Together: barrier.
     void meet() const;
-    /// Together: the leader gets everybody's pieces, process by process in order; the others get nothing.
+    /// Together: the leader gets all pieces in the order of the processes; other processes get an empty list.
     [[nodiscard]] std::vector<std::string> gather(const std::vector<std::string>& pieces) const;
 
     /// Ends all processes.

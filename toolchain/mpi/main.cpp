@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink-sim-mpi: the campaigns of jink-sim and jink, shared by the processes of an MPI run. Blocks go to whoever asks
-// next; what comes out is that of one process alone, byte by byte.
+// jink-sim-mpi: the campaigns of jink-sim and jink, shared by the processes of an MPI run. Blocks go to the next free
+// process; the results are byte-identical to those of a single process.
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -20,7 +20,8 @@ namespace sim = jink::sim;
 
 constexpr int kRefused = 2;
 
-/// What the leader does before the others begin. What goes wrong there ends the run for all, said once.
+/// Work that the leader does before the other processes begin. An error ends the run of all processes and is reported
+/// once.
 template <class Work>
 bool lead(const Crew& crew, Work&& work)
 {

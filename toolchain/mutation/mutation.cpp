@@ -17,7 +17,7 @@ int number_from(const char* name)
     return given == nullptr ? 0 : std::atoi(given);
 }
 
-/// Writes what differed when the program ends: one byte per mutant, the first for none.
+/// Writes the differing mutants at the end of the program: one byte per mutant, the first byte for none.
 struct Record {
     ~Record()
     {

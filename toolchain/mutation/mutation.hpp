@@ -7,19 +7,19 @@
 #include <initializer_list>
 #include <type_traits>
 
-// What mutated sources call in place of an operator (toolchain/mutation/mutate). Never part of a product.
+// Functions that mutated sources call in place of operators (toolchain/mutation/mutate). Never part of a product.
 //
-// Every function computes the operator as written, and the one wrong answer that JINK_MUTANT asks for. While recording,
-// it notes of each of its mutants whether its answer has ever differed from the right one: a test in which it never has
-// cannot tell the mutant apart, whatever it checks, and need not be run against it.
+// Every function computes the operator as written, or the wrong answer selected by JINK_MUTANT. While recording, it
+// notes for each of its mutants whether the wrong answer ever differed from the right one. A test without a difference
+// cannot detect the mutant and need not be run against it.
 
 namespace jink_mutation {
 
-extern const int active;         ///< number of the mutant at work; 0: none
-extern const bool recording;     ///< JINK_MUTATION_RECORD names a file for what differed
+extern const int active;         ///< number of the active mutant; 0: none
+extern const bool recording;     ///< JINK_MUTATION_RECORD names a file for the differences
 extern unsigned char differs[];  ///< by mutant
 
-/// As a value: an Eigen expression is evaluated, so that two of different types can take each other's place.
+/// As a value: evaluates an Eigen expression, so that two expressions of different types are interchangeable.
 template <class T>
 [[nodiscard]] constexpr auto value(const T& x)
 {
@@ -101,8 +101,8 @@ template <int kMutant, class A, class B>
 }
 
 /// a && b (kSettles: false) or a || b (true), which `a` settles when it is kSettles. Mutants: a alone, b alone. `b`
-/// alone may be asked what `a` guards it from; only the mutant does that. kActs: an operand does something (spends a
-/// budget), so that leaving it out may be noticed whatever it answers.
+/// alone may be evaluated outside its precondition `a`; only the mutant does that. kActs: an operand has a side effect
+/// (spends a budget), so that omitting it may be noticed for any result.
 template <int kMutant, bool kSettles, bool kActs, class A, class B>
 [[nodiscard]] bool connected(const A& a, const B& b)
 {
@@ -160,7 +160,7 @@ template <int kMutant, class A>
     const bool is = static_cast<bool>(a);
     return one<kMutant>(!is, is);
 }
-/// A condition that is not an operator: taken, not taken. Of anything that says yes or no where a condition stands.
+/// A condition that is not an operator: taken, not taken. For any type that converts to bool.
 template <int kMutant, class A>
 [[nodiscard]] bool condition(const A& a)
 {
@@ -193,7 +193,7 @@ template <int kMutant, class A, class B>
 {
     return one<kMutant>(value(a.cwiseMax(b)), value(a));
 }
-/// Arrays' names of the same.
+/// The same under the names of the array functions.
 template <int kMutant, class A, class B>
 [[nodiscard]] auto array_min(const A& a, const B& b)
 {

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Figures of a mutation run, and the two lists it is held to."""
+"""Figures of a mutation run, and its two reference lists."""
 import sys
 
 RELATIONS = ("<", "<=", ">", ">=", "==", "!=")
@@ -14,8 +14,8 @@ ABOVE = "above: "
 
 
 class Lists:
-    """survivors.txt: mutants known to survive, and those that only tests of other rooms kill. equivalent.txt: mutants that no test can tell apart, each line or group
-    of lines followed by the reason, indented."""
+    """survivors.txt: mutants known to survive, and those that only tests of other modules kill. equivalent.txt: mutants
+    that no test can detect, each line or group of lines followed by the reason, indented."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -42,7 +42,7 @@ class Lists:
 
 
 class Outcome:
-    """What became of `mutants`, which are some of `all_mutants` of the sources in `folders`; the tests of `above` ran too."""
+    """Outcome of `mutants`, a subset of `all_mutants` of the sources in `folders`; the tests of `above` ran too."""
 
     def __init__(self, mutants, all_mutants, by_key, lists, folders, above):
         self.mutants, self.by_key, self.lists, self.folders = mutants, by_key, lists, set(folders)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the sources anew with every site a call of mutation.hpp, so that one build holds all mutants."""
+"""Rewrites the sources with every site as a call of mutation.hpp, so that one build holds all mutants."""
 
 
 class Mutant:
-    """key: names the mutant as long as the expression stands, whatever line it is on."""
+    """key: names the mutant as long as the expression exists, on any line."""
 
     def __init__(self, number, site, change, line, expression, nth):
         self.number, self.site, self.change, self.line = number, site, change, line
@@ -57,7 +57,7 @@ def rewritten(text, sites):
 
 
 def write_if_new(path, data):
-    """Leaves the file's time alone where nothing changes, so that only what changed is built."""
+    """Keeps the time stamp of an unchanged file, so that only changes are built."""
     if not path.exists() or path.read_bytes() != data:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Builds the mutated tests, learns which test could tell which mutant apart, and runs those against it."""
+"""Builds the mutated tests, determines the tests that can detect each mutant, and runs those against the mutant."""
 import concurrent.futures
 import hashlib
 import json
@@ -10,7 +10,7 @@ import subprocess
 import threading
 
 nice = ["nice", "-n", "19"]  # --nice
-BYTES = 4 << 30  # of address space: a mutant that grows without end is a crash
+BYTES = 4 << 30  # of address space: a mutant that grows without bound counts as a crash
 
 
 class Failed(Exception):

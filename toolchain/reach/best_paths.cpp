@@ -18,7 +18,7 @@
 namespace jink::reach::build {
 namespace {
 
-/// Distances are told apart no finer than this, so that every machine builds the same set.
+/// Distances within this tolerance are equal, so that every host builds the same set.
 constexpr double kFinest = 1e-9;
 
 /// Distance of a node's place from the line from the vehicle through the centre of its column [movements' lengths].
@@ -97,7 +97,7 @@ private:
         }
     }
 
-    /// Ends came in the order of their ranks but for the distance, which counts before the number of movements here.
+    /// Ends are in rank order except for the distance, which here counts before the number of movements.
     void choose_columns()
     {
         std::map<CellIndex, NodeId> best;
@@ -117,7 +117,7 @@ private:
         }
     }
 
-    /// Whole trajectories once more, the one that adds least before the others: fewest new movements, fewest turns.
+    /// Chooses whole trajectories again, in order of increasing cost: fewest new movements, fewest turns.
     void choose_cells()
     {
         std::vector<bool> kept(out_.nodes.size(), false);
@@ -149,7 +149,7 @@ private:
             return movements;
         };
         const std::map<CellIndex, NodeId> sides = best_at_sides();
-        // From the far cells to the near ones: what leads to a far cell ends in near ones on its way.
+        // From far to near cells: a trajectory to a far cell also ends movements in nearer cells.
         for (std::size_t at = settings_.grid.cells(); at-- > 0;) {
             const auto cell = static_cast<CellIndex>(at);
             if (ended.count(cell) != 0) {
@@ -171,8 +171,8 @@ private:
         }
     }
 
-    /// Of each cell at a side the trajectory with the fewest turns that ends there: going on from the near ones among
-    /// them takes turning back.
+    /// Per cell at a side the trajectory with the fewest turns that ends there: continuing from the near ones requires
+    /// turning back.
     [[nodiscard]] std::map<CellIndex, NodeId> best_at_sides() const
     {
         std::map<CellIndex, NodeId> best;
@@ -192,7 +192,8 @@ private:
     const Settings& settings_;
     const BestRule& rule_;
     WaveFront out_;
-    std::vector<int> extra_;  ///< of each node: movements up to it that ended in the layer they began in, in a row
+    std::vector<int> extra_;  ///< per node: number of consecutive movements up to the node that ended in the layer
+                              ///< where they began
     std::vector<NodeId> ends_;
     std::map<State, std::size_t> known_;
     std::priority_queue<Rank, std::vector<Rank>, std::greater<>> waiting_;

@@ -7,30 +7,29 @@
 
 // The trajectories with the fewest turns, by dynamic programming.
 //
-// A state is an attitude in steps and a part of a cell; of each, the few trajectories with the fewest turns are gone on
-// from. Positions within a part are not told apart, so what is found is a real trajectory but not for certain the best
-// one: tests compare it with all trajectories of up to three turns. Whole cells as states, four trajectories each, miss
-// the best one in 10 of 35 columns.
+// A state is an attitude in steps and a part of a cell; from each state, the few trajectories with the fewest turns are
+// continued. Positions within a part count as equal, so a result is a real trajectory but not guaranteed to be the
+// best: tests compare it with all trajectories of up to three turns. Whole cells as states, four trajectories each,
+// miss the best trajectory in 10 of 35 columns.
 
 namespace jink::reach::build {
 
-/// What smooth trajectories are looked for.
+/// Ends for which smooth trajectories are searched.
 enum class BestFor : std::uint8_t {
-    columns,  ///< one to each column of the last layer
-    cells,    ///< and one more through each cell that no one chosen so far ends a movement in; where that takes more
-              ///< turns, to a cell at a side alone
+    columns,  ///< one trajectory to each column of the last layer
+    cells,    ///< in addition one through each cell in which no chosen trajectory ends a movement; if that needs more
+              ///< turns, only for cells at a side
 };
 struct BestRule {
     BestFor wanted = BestFor::columns;
-    int parts = 3;              ///< of each range of a cell, that are states of their own,
-    int fine_turns = 3;         ///< for trajectories with up to so many turns
-    std::size_t positions = 2;  ///< trajectories that are gone on from, of each state
+    int parts = 3;              ///< of each range of a cell, as separate states,
+    int fine_turns = 3;         ///< for trajectories with up to this many turns
+    std::size_t positions = 2;  ///< continued trajectories per state
 };
 
-/// To each end the trajectory with the fewest movements that are not smooth; of equals the one that ends nearest to
-/// the line from the vehicle through its column's centre. Unlike Gomola's algorithm 6.3, which weighs distance against
-/// smoothness at every step, it never gives a turn away that costs smoothness later.
-/// O(cells * attitudes * positions * movements).
+/// To each end the trajectory with the fewest non-smooth movements; among equals the one that ends nearest to the line
+/// from the vehicle through its column's centre. Gomola's algorithm 6.3 weighs distance against smoothness at every
+/// step and may trade smoothness of later steps; this search does not. O(cells * attitudes * positions * movements).
 [[nodiscard]] Set best_paths(const Settings& settings, const BestRule& rule = {});
 
 }  // namespace jink::reach::build

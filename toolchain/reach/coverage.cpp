@@ -34,7 +34,7 @@ public:
     }
 
 private:
-    /// Near the vehicle, where trajectories still have most of their ways before them, cells are divided finer.
+    /// Near the vehicle, where most of each trajectory is still ahead, cells are divided finer.
     static constexpr std::size_t kNear = 4;
     static constexpr int kNearParts = 4;
     static constexpr int kParts = 2;
@@ -72,13 +72,13 @@ private:
             const auto [place, is_new] = known_.try_emplace(key_of_place(*node, extra), next);
             edges_.push_back({id, place->second, node->entered});
             if (is_new) {
-                node->footprint.clear();  // a cell counts whether the path was there before or not
+                node->footprint.clear();  // a cell counts even if the path entered it before
                 places_.push_back({*std::move(node), extra});
             }
         }
     }
 
-    /// From which an end is reached.
+    /// States from which an end is reached.
     [[nodiscard]] std::vector<bool> leading() const
     {
         std::vector<bool> leads(places_.size());
@@ -104,7 +104,7 @@ private:
     std::map<Key, NodeId> known_;
 };
 
-/// The grid cut off, and the sides shut: what ends there has no part in the footprints.
+/// The grid cut to few layers, without lateral ends: those do not count in the footprints.
 Settings on_few_layers(Settings settings)
 {
     const Grid<double>& g = settings.grid;

@@ -50,7 +50,7 @@ std::uint8_t separations_of(Movement movement)
     return 0;
 }
 
-/// What is known before it is flown.
+/// Fields that are known before the movement is sampled.
 Node turned(const Node& from, std::uint32_t id, Movement movement)
 {
     Node node;

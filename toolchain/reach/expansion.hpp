@@ -8,25 +8,26 @@
 
 #include "toolchain/reach/tree.hpp"
 
-// One movement more: what every way to build a set is made of.
+// Expansion by one movement, the common step of all generators.
 
 namespace jink::reach::build {
 
-/// The vehicle at its place, pitched as the settings say.
+/// The vehicle at the origin, with the settings' pitch.
 [[nodiscard]] Node root_of(const Settings& settings);
 
-/// The end of `movement` after `from`, which has the number `id`; nothing where one of its samples is outside the grid,
-/// or it pitches more than the settings allow.
+/// The end of `movement` after `from`, whose number is `id`; nothing if a sample is outside the grid, or the pitch
+/// exceeds the settings' limit.
 [[nodiscard]] std::optional<Node> child_of(const Settings& settings, const Node& from, std::uint32_t id,
                                            Movement movement);
 
-/// The end of a whole trajectory from the root, flown anew; nothing where it leaves the grid.
+/// The end of a whole trajectory from the root, recomputed; nothing if the trajectory leaves the grid.
 [[nodiscard]] std::optional<Node> replay(const Settings& settings, std::span<const Movement> movements);
 
-/// Ends in a cell at one of the grid's sides: where a trajectory may leave it.
+/// True for an end in a cell at one of the grid's sides, where a trajectory may leave the grid.
 [[nodiscard]] bool ends_at_side(const Settings& settings, const Node& node);
 
-/// In which part of its cell a node ends, of `parts` equal ones in distance, azimuth and elevation, counted from 1.
+/// The part of its cell in which a node ends, of `parts` equal parts in distance, azimuth and elevation, counted from
+/// 1.
 [[nodiscard]] std::array<int, 3> part_of_cell(const Grid<double>& grid, const Node& node, int parts);
 
 }  // namespace jink::reach::build

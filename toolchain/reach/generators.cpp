@@ -9,13 +9,13 @@
 namespace jink::reach::build {
 namespace {
 
-/// Where a trajectory without a smooth movement stands among the others.
+/// Rank offset of trajectories without a smooth movement.
 constexpr double kNotSmooth = 1e6;
-/// Mirrored trajectories are equally near to mirrored walls, whatever rounding says: distances are told apart no finer
-/// than this, in movements' lengths, so that every machine builds the same set.
+/// Mirrored trajectories are equally near to mirrored walls up to rounding. Distances within this tolerance, in
+/// movements' lengths, are equal, so that every host builds the same set.
 constexpr double kTie = 1e-9;
 
-/// The best of each key, the best `spread` of these.
+/// The best of each key, then the best `spread` of these.
 std::vector<NodeId> best_of(const std::vector<Node>& all, std::span<const NodeId> passing, std::size_t spread,
                             std::size_t tail, bool attitude, const std::function<double(const Node&)>& measure)
 {

@@ -81,7 +81,7 @@ Set merged(const Set& a, const Set& b)
             const Set::Member& other = b.members[*pair[1]];
             member.origins = static_cast<std::uint8_t>(member.origins | other.origins);
             member.in_front = member.in_front || other.in_front;
-            // What one set ends with, the other one may go on from; it is an exit all the same.
+            // A trajectory that ends in one set may continue in the other; it is still an exit.
             member.is_lateral = member.is_lateral || other.is_lateral;
         }
         member.node.parent = parent;

@@ -8,35 +8,35 @@
 #include "core/reach/reach_set.hpp"
 #include "toolchain/reach/set.hpp"
 
-// A set as the tables that are flown.
+// A set as flight tables.
 
 namespace jink::reach::build {
 
-/// What a trajectory costs: its length first, steering second.
+/// Cost of a trajectory: its length first, steering second.
 struct CostRule {
-    double turn = 0.1;       ///< of a turn or a climb, on top of its length
-    double diagonal = 0.15;  ///< of both at once
-    double change = 0.05;    ///< of a movement that is not the one before
-    /// Trajectories that are not smooth cost up to twice as much (Gomola eq. 6.84). Not additive: for ranking alone.
+    double turn = 0.1;       ///< of a turn or a climb, in addition to its length
+    double diagonal = 0.15;  ///< of turn and climb at once
+    double change = 0.05;    ///< of a movement that differs from the previous movement
+    /// Non-smooth trajectories cost up to twice as much (Gomola eq. 6.84). Not additive: for ranking only.
     bool by_smoothness = false;
 };
-/// Of each member [movements' lengths].
+/// Cost of each member [movements' lengths].
 [[nodiscard]] std::vector<double> costs_of(const Set& set, const CostRule& rule);
 
-/// Of the tables of a set, as they lie in flash.
+/// Size of a set's tables in flash.
 [[nodiscard]] std::size_t bytes_of(const ReachSet& set);
-/// And as they would, of one that may be too large for them.
+/// Size that the tables would have; the set may be too large for them.
 [[nodiscard]] std::size_t bytes_of(const Set& set);
 
 /// The tables, owned.
 class StoredSet {
 public:
-    /// @throws std::length_error when the set is larger than the tables may be.
+    /// @throws std::length_error when the set exceeds the tables' limits.
     StoredSet(std::string name, const Settings& settings, const Set& set, const CostRule& rule);
 
-    /// A view of this, which outlives it.
+    /// A view of this set, which must outlive the view.
     [[nodiscard]] ReachSet view() const;
-    /// The same but for the name.
+    /// True if all is equal except the name.
     [[nodiscard]] bool has_tables_of(const StoredSet& other) const;
 
 private:

@@ -48,7 +48,7 @@ void check_recipe(const Recipe& recipe)
                 in_digits(recipe.most_speed));
 }
 
-/// Steps of `step` that climb or sink at `speed` no faster than `rate`.
+/// Number of steps of `step` whose climb or sink rate at `speed` stays within `rate`.
 std::int8_t steps_within(double step, double speed, double rate)
 {
     const double steepest = std::asin(std::min(1.0, rate / speed));
@@ -76,8 +76,8 @@ Make emergency_of(Profile profile, const Rung& rung)
     };
 }
 
-/// The rungs of a profile, richest first. Spreads go down before exits at the sides do: a side escape is what the
-/// emergency set is for, and one of each cell is the least that can be kept.
+/// The size variants of a profile, largest first. Spreads are reduced before exits at the sides: the emergency set
+/// exists for side escapes, and one per cell is the minimum.
 std::vector<Rung> ladder_of(Profile profile)
 {
     std::vector<Rung> rungs;
@@ -97,7 +97,7 @@ std::vector<Rung> ladder_of(Profile profile)
 constexpr std::array<std::string_view, kPitchSegments> kPitchNames{"descending", "level", "climbing"};
 constexpr std::array<std::int8_t, kPitchSegments> kRootPitch{1, 0, -1};
 
-/// Navigation sets are the same on every rung: kept by their names.
+/// Navigation sets are the same in every size variant: cached by their names.
 enum class Lasts : std::uint8_t { on_this_rung, on_every_rung };
 using Known = std::map<std::string, Set>;
 
@@ -142,7 +142,7 @@ private:
             return;
         }
         settings.root_pitch = kRootPitch[pitch];
-        // The smooth set of the full profile ends some trajectories at the sides; the one by columns none.
+        // The smooth set of the full profile has trajectories that end at the sides; the set by columns has none.
         settings.keep_lateral = built_.recipe.profile == Profile::full;
         const std::string name = built_.vehicle + " " + speed + " " + std::string(kPitchNames[pitch]);
         BuiltVehicle::Segment segment;

@@ -15,26 +15,27 @@
 
 namespace jink::reach::build {
 
-/// How much room there is: a co-processor with megabytes of flash, or one with a few hundred kilobytes.
+/// Memory profile: a co-processor with megabytes of flash, or with a few hundred kilobytes.
 enum class Profile : std::uint8_t { full, reduced };
 
 struct Recipe {
     Profile profile = Profile::full;
     double period = 0.5;                    ///< of one movement [s]
     std::vector<double> speeds{0.25, 0.7};  ///< lower ends of the speed segments, shares of the cruise speed
-    double most_speed = 1.2;                ///< upper end of the last one
-    std::size_t most_bytes = 0;             ///< of tables in all; 0: what the profile has
+    double most_speed = 1.2;                ///< upper end of the last segment
+    std::size_t most_bytes = 0;             ///< limit of all tables together; 0: the profile's limit
 };
-/// Bytes of tables and nodes of one set that a profile may have: flash of the images, and the RAM that they keep for
-/// each node of the largest set.
+/// A profile's limits on bytes of tables and on nodes of one set: flash of the images, and RAM per node of the largest
+/// set.
 [[nodiscard]] std::size_t most_bytes_of(Profile profile);
 [[nodiscard]] std::size_t most_nodes_of(Profile profile);
 
-/// Share of the acceleration limits that turns may ask for: the rest is for the path's tracking and for wind.
+/// Share of the acceleration limits that turns may use; the rest is for path tracking and wind.
 inline constexpr double kTurnShare = 0.7;
-/// Largest step of a turn [rad], the source's 15 degrees: with larger ones a movement leaves its cell's neighbours out.
+/// Largest step of a turn [rad], Gomola's 15 degrees: with larger steps a movement skips its cell's neighbours.
 inline constexpr double kLargestStep = 0.26179938779914943;
-/// Smallest one [rad], a quarter of a degree: below, tables in 1/1024 of a movement tell too few trajectories apart.
+/// Smallest step of a turn [rad], a quarter of a degree: below, tables in 1/1024 of a movement distinguish too few
+/// trajectories.
 inline constexpr double kSmallestStep = 0.0043633231299858;
 
 /// The vehicle cannot have sets by this recipe; the text says why.
@@ -43,19 +44,19 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// Steps, grid and pitch limits at up to `speed` [m/s]. Steps turn at no more than kTurnShare of the accelerations, and
-/// one of pitch does not climb or sink faster than the vehicle may. The grid reaches three yaw and two pitch steps to
-/// either side, 45 and 30 degrees for steps of 15: what turning for most of the grid's depth reaches (Gomola 6.3).
-/// @throws CannotBuild when a step comes out below kSmallestStep.
+/// Steps, grid and pitch limits at up to `speed` [m/s]. Steps use at most kTurnShare of the accelerations; one pitch
+/// step stays within the vehicle's climb and sink rates. The grid extends three yaw and two pitch steps to either side,
+/// 45 and 30 degrees for steps of 15: the range of turns over most of the grid's depth (Gomola 6.3).
+/// @throws CannotBuild when a step is below kSmallestStep.
 [[nodiscard]] Settings settings_at(const vehicle::VehicleLimits& limits, double speed, double period);
 
-/// How much is kept, from most to least: the first that fits is taken.
+/// Size parameters of a build. Variants are tried from largest to smallest; the first that fits is used.
 struct Rung {
-    std::size_t spread = 8;        ///< of the chaotic set, or of the planes'
-    std::size_t most_lateral = 1;  ///< for each cell at a side
+    std::size_t spread = 8;        ///< spread of the chaotic set, or of the plane sets
+    std::size_t most_lateral = 1;  ///< per cell at a side
 };
 
-/// One set, with what it was made of.
+/// One set, with its settings.
 struct BuiltSet {
     Settings settings;
     std::function<Set(const Settings&)> make;
@@ -79,14 +80,14 @@ struct BuiltVehicle {
     std::vector<std::array<float, 2>> pitch_separators;
     std::vector<float> most_pitch;
 
-    [[nodiscard]] std::size_t bytes() const;  ///< of all tables
+    [[nodiscard]] std::size_t bytes() const;  ///< size of all tables
 };
 
-/// @throws CannotBuild when the recipe makes no sense or nothing fits.
+/// @throws CannotBuild when the recipe is invalid or no variant fits.
 [[nodiscard]] BuiltVehicle build_vehicle(const std::string& name, const vehicle::VehicleLimits& limits,
                                          const Recipe& recipe);
 
-/// Views of a built vehicle, which outlives them.
+/// Views of a built vehicle, which must outlive them.
 class VehicleView {
 public:
     explicit VehicleView(const BuiltVehicle& built);

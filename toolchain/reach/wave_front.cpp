@@ -81,7 +81,8 @@ private:
         }
     }
 
-    /// Of what was expanded and led nowhere: what ends at a side, the smoothest and shortest of each cell.
+    /// Of expanded nodes without kept successors: keeps those that end at a side, the smoothest and shortest of each
+    /// cell.
     void keep_lateral()
     {
         std::vector<bool> leads(out_.nodes.size(), false);
@@ -93,7 +94,7 @@ private:
         for (const NodeId id : out_.front) {
             mark(id);
         }
-        // Children have greater ids than their parents: from behind, the last of a way comes first.
+        // Children have greater ids than their parents: in descending order, the last node of a trajectory comes first.
         std::sort(expanded_.begin(), expanded_.end(), std::greater<>());
         std::map<CellIndex, std::vector<NodeId>> ends;
         for (const NodeId id : expanded_) {
@@ -114,7 +115,7 @@ private:
         std::sort(out_.lateral.begin(), out_.lateral.end());
     }
 
-    /// Of each key the best stays, in the order of their ids.
+    /// Keeps the best of each key, in the order of their ids.
     void purge(std::vector<NodeId>& ids) const
     {
         std::sort(ids.begin(), ids.end());

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A bound on the instructions of a function, from its code: no instruction is executed more often than its loops turn.
+"""A bound on a function's instructions, from its code: no instruction executes more often than its loops iterate.
 
-For each function of the program: the costliest way through its code, the code of a loop as often as it turns, a call with
-the bound of what is called. Turns come from bound_loops.py, by the source line of the loop; a loop that is not named
-there, a recursion, a call or a jump nobody knows where makes the bound refuse. No measurement goes into it.
+For each function of the program: the most expensive path through its code, loop code multiplied by its iterations, each
+call with the bound of the called function. Iteration counts come from bound_loops.py, by the source line of the loop. A
+loop without an entry there, a recursion, or a call or jump with an unknown target makes the bound fail. The bound
+contains no measurement.
 """
 import re
 import subprocess
@@ -27,7 +28,7 @@ class Function:
     def __init__(self, name, code, data):
         self.name, self.code, self.data = name, code, data  # code: {address: (mnemonic, operands)} in order; data: {address: byte}
         self.addresses = list(code)
-        self.calls = []  # (address, name of what is called, or None through a pointer)
+        self.calls = []  # (address, name of the called function, or None through a pointer)
         self.after = {}
         for i, address in enumerate(self.addresses):
             following = self.addresses[i + 1:i + 2]
@@ -71,7 +72,7 @@ class Function:
             entry = sum(self.data.get(at + i, 0) << (8 * i) for i in range(size))
             targets.add(address + 4 + 2 * entry)
             at += size
-        known = sorted(t for t in targets if t in self.code)  # a byte that fills up leads nowhere
+        known = sorted(t for t in targets if t in self.code)  # padding bytes are no targets
         if not known:
             raise Refused(f"{self.name}: a table of jumps that cannot be read")
         return known
@@ -117,7 +118,7 @@ def components(nodes, after):
 
 
 class Costs:
-    """The costliest way through a function.
+    """The most expensive path through a function.
 
     Branches: the costlier side. A loop is a component of the graph, entered at one place or at several (where the compiler
     has threaded jumps). A turn passes each entry once at most; between two passages the way leads through what is left
@@ -145,7 +146,7 @@ class Costs:
         return self.way(reached, frozenset(), {entry}) + self.in_all
 
     def way(self, nodes, cut, starts):
-        """From any of `starts` on, inside `nodes`, without ways into `cut`."""
+        """From any of `starts` on, inside `nodes`, without edges into `cut`."""
         def after(node):
             return [n for n in self.function.after[node] if n not in cut and n in nodes]
         best = {}
@@ -231,7 +232,7 @@ class Bound:
             total = Costs(function, lambda address: 1 + calls.get(address, 0), self.turns).whole()
         except Refused as refusal:
             self.problems.append(str(refusal))
-            total = 0  # said among the problems: there is no bound then
+            total = 0  # reported among the problems: there is no bound then
         self.on_way.pop()
         self.done[name] = total
         return total

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""How often the loops of a plan turn, by capacities and settings; and what is never called in a scene.
+"""Iteration counts of a plan's loops, by capacities and settings; and functions that are never called in a scene.
 
 Each rule: a pattern for the place of a loop (file, function and text of the line that jumps back, innermost function
 first, as many callers as the compiler has inlined), whether its turns are counted each time the loop is entered or in all
@@ -19,7 +19,7 @@ TOP = pathlib.Path(__file__).resolve().parents[2]
 
 
 def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64, lookahead=8.0, cruise=5.0, climb=3.0, slowest=1.0):
-    """What the rules count with. The longest candidate: at most 2 D along the leg and twice 1.2801 D across, D being at
+    """Parameters of the rules. The longest candidate: at most 2 D along the leg and twice 1.2801 D across, D being at
     most what is flown within the lookahead, at the speed of the leg (1.6 of cruise speed at most) or of climb where that is less."""
     speed = 1.6 * cruise
     longest = (2.0 + 2.0 * 1.2801) * lookahead * max(1.0, speed / climb) / slowest
@@ -32,7 +32,7 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
             # Where the escape rule shrinks a ball: pieces of 0.05 s (half of 0.05 m at 0.5 m/s), spread over as many
             # segments as any curve is taken to have.
             "escape parts": math.ceil(longest / 0.05 / (points - 1)) + 1,
-            # Conflict search asks for the separation of one track from a way of two pieces, in 480 parts at most.
+            # Conflict search computes the separation of one track from a path of two pieces, in 480 parts at most.
             "threats": 3 + tracks + obstacles, "checked tracks": 1, "pieces of a path": 2, "chunks": 1, "paid parts": 480,
             "pieces": math.ceil(lookahead / 0.5)}
 
@@ -94,12 +94,12 @@ NEVER = [r"touches_swept", r"is_flyable", r"Clearance6leaves", r"Clearance7touch
          r"4path5Route", r"RoutePieces", r"way_along",
          r"swept_box_(contact|distance)", r"obstacle_margin", r"meets_solid", r"13local_support", r"__kernel_rem_pio2f", r"__assert", r"abort"]
 
-# libgcc's doubles in software, which shares code between functions: an allowance for each call, far above what they take.
+# libgcc's software doubles, which share code between functions: an allowance per call, far above their cost.
 LIBRARY = [(r"^__aeabi_", 1000)]
 
 
 class Turns:
-    """The turns of a loop, as bound.weights asks for them."""
+    """The iterations of a loop, for bound.weights."""
 
     def __init__(self, program, prefix, values):
         self.program, self.prefix, self.values, self.lines, self.used = program, prefix, values, {}, []
@@ -131,12 +131,12 @@ ROOT = "_ZN4jink9geometric7Planner4planERKNS_5world9SituationERNS_10WorkBudgetER
 IMAGES = ("mps2_an500", "stm32f405")
 SCENES = {"plan_16_3": dict(candidates=16, tracks=3, obstacles=0, attempts=1),
           "plan_16_3_retries": dict(candidates=16, tracks=3, obstacles=0, attempts=9, slowest=0.3)}
-# The last attempt, which makes several plans of its own and is made once: apart from the others.
+# The last attempt makes several plans of its own and is made once: counted separately.
 IN_A_ROW = "solve_in_a_row"
 
 
 def of_plan(program, scene):
-    """(bound, what is not bounded, the turns that were used) of a plan in a Cortex-M image's probe."""
+    """(bound, unbounded items, iteration counts used) of a plan in a Cortex-M image's probe."""
     turns = Turns(str(program), "arm-none-eabi-", parameters(**SCENES[scene]))
     plain = bound.Bound(str(program), "arm-none-eabi-", turns, NEVER + [IN_A_ROW], LIBRARY)
     instructions, problems = plain.of(ROOT), plain.problems
@@ -149,7 +149,7 @@ def of_plan(program, scene):
 
 
 def all_plans(program_of):
-    """{scene: {image: instructions}}, and what is not bounded."""
+    """{scene: {image: instructions}}, and unbounded items."""
     out, problems = {}, []
     for scene in SCENES:
         out[scene] = {}

@@ -20,7 +20,7 @@ def _scale(vector, factor):
 
 
 def _track(r, case, miss, time):
-    """A track that comes by the leg, `miss` metres off at most, after `time` seconds."""
+    """A track that passes the leg within `miss` metres, after `time` seconds."""
     along = _scale(_add(case.leg_end, _scale(case.leg_start, -1.0)), case.leg_speed * time / leg_length(case))
     velocity = _vector(r, r.choice([0.0, 1.0, 4.0, 10.0]))
     meeting = _add(case.own_position, along, _vector(r, miss))
@@ -66,7 +66,7 @@ def random_case(seed, kind="plan", tracks=3, obstacles=0, offsets=2, retries=8):
 
 
 def neighbour(case, r):
-    """The case with a few of its numbers changed, a little or a lot; what it is made of stays."""
+    """The case with a few of its numbers changed, slightly or strongly; its composition stays."""
     new = copy.deepcopy(case)
     size = 10.0 ** r.uniform(-2.0, 0.7)
     for _ in range(r.randint(1, 3)):

@@ -15,9 +15,9 @@ from matplotlib.patheffects import withStroke  # noqa: E402
 
 OWN, THREAT, INK, GRID, LEG = "#1d5fa8", "#e07b1a", "#2b2f36", "#d9dde3", "#8a93a0"
 PROMISE, CONTROL, CONFLICT, OTHER = "#c62828", "#d7ecd9", "#fdf0cf", "#e6e3f3"
-# As the method's source draws them: purple unavailable, light blue available, green chosen (Pinheiro 4.5.1).
+# Colours as in Pinheiro 4.5.1: purple unavailable, light blue available, green chosen.
 UNAVAILABLE, NOT_FLYABLE, AVAILABLE, CHOSEN = "#8e3fa8", "#c9a5d6", "#5bb8e8", "#1e9e3e"
-WIDTH = 9.4  # of pictures that are as wide as the page [in]
+WIDTH = 9.4  # of full-width pictures [in]
 LATE_MS = 20.0  # a co-processor step is due every 20 ms
 
 plt.rcParams.update({
@@ -40,7 +40,7 @@ def _svg(figure):
 
 
 def _png(figure):
-    """A picture in space, with the white around it cut off: 3D axes leave a lot of it."""
+    """A 3D picture with its wide white margin removed."""
     figure.set_dpi(130)
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())[:, :, :3]
@@ -53,7 +53,7 @@ def _png(figure):
 
 
 class Frame:
-    """Coordinates as the vehicle's leg has them: along it, to its left, and height."""
+    """Coordinates relative to the vehicle's leg: along, to the left, and height."""
 
     def __init__(self, mission):
         ends = (mission[0], mission[-1]) if len(mission) >= 2 else ((0, 0, 0), (1, 0, 0))
@@ -70,7 +70,7 @@ class Frame:
 
 
 def separation(flight):
-    """Distance to the nearest threat over time, with what was going on."""
+    """Distance to the nearest threat over time, with events."""
     figure, axes = plt.subplots(figsize=(WIDTH, 2.9))
     figure.subplots_adjust(left=0.07, right=0.985, bottom=0.17, top=0.87)
     t = np.array(flight.t)
@@ -121,7 +121,7 @@ def separation(flight):
 
 
 def _window(flight, frame):
-    """What a view shows: where the vehicle manoeuvred, and the closest moment, with a margin."""
+    """Extent of a view: the manoeuvre and the closest approach, with a margin."""
     own = frame.array(flight.own)
     moving = [i for i, m in enumerate(flight.mode) if m != "mission"]
     index = flight.closest_index()
@@ -137,7 +137,7 @@ def _window(flight, frame):
 
 
 def _flown(axes, own, flight, i, j):
-    """The track, thick and blue where jink flies, grey where the mission does."""
+    """The track, thick and blue under jink's control, grey under the mission's."""
     axes.plot(own[:, i], own[:, j], color=LEG, lw=1.6, zorder=3)
     for start, end in flight.spans(lambda m: m == "external"):
         part = [k for k, t in enumerate(flight.t) if start <= t <= end]
@@ -187,7 +187,7 @@ NAMES = ("along the planned leg [m]", "to the left of it [m]", "height [m]")
 
 
 def views(flight):
-    """From above and from the side, at the closest moment."""
+    """Plan and side view at the closest approach."""
     frame = Frame(flight.mission)
     low, high = _window(flight, frame)
     spans = np.maximum(high - low, 1.0)
@@ -218,7 +218,7 @@ def _sphere(axes, centre, radius, colour):
 
 
 def _deep(low, high):
-    """The window made no flatter than 0.3 of its longest side, so that a box in space has room for its labels."""
+    """The window, no flatter than 0.3 of its longest side, so that a 3D box has space for its labels."""
     span = high - low
     short = np.maximum(0.3 * span.max() - span, 0.0)
     return low - short / 2, high + short / 2
@@ -242,7 +242,7 @@ def _label(axes):
 
 
 def _inside(points, low, high):
-    """The points with those outside blanked: 3D axes do not clip."""
+    """The points, with points outside blanked: 3D axes do not clip."""
     out = np.array(points, dtype=float)
     out[np.any((out < low) | (out > high), axis=1)] = math.nan
     return out
@@ -289,12 +289,12 @@ def _fan_style(status):
 
 
 def _dashes(status):
-    """What was never checked is drawn dashed: nothing is known of it."""
+    """Unchecked candidates are dashed: their state is unknown."""
     return (0, (4, 3)) if status == "not_evaluated" else "solid"
 
 
 def fan_counts(flight):
-    """How many candidates of each group: (chosen, available, touching something, not flyable, not evaluated)."""
+    """Number of candidates per group: (chosen, available, in contact, not flyable, not evaluated)."""
     status = [s for s, _ in flight.fan]
     known = {name: status.count(name) for name in ("chosen", "available", "not_flyable", "not_evaluated")}
     return (known["chosen"], known["available"], len(status) - sum(known.values()), known["not_flyable"],
@@ -308,7 +308,7 @@ def _candidates(flight):
 
 
 def fan(flight):
-    """Candidates of the first plan in space."""
+    """Candidates of the first plan in 3D."""
     curves = _candidates(flight)
     figure = plt.figure(figsize=(5.4, 4.4))
     axes = figure.add_axes([0, 0, 1, 1], projection="3d")
@@ -325,7 +325,7 @@ def fan(flight):
 
 
 def fan_behind(flight):
-    """The same as the pilot sees them: from behind, along the leg, each with a dot where it is farthest out."""
+    """The same seen from behind, along the leg, each with a dot at its largest offset."""
     curves = _candidates(flight)
     figure, axes = plt.subplots(figsize=(5.4, 3.6))
     figure.subplots_adjust(left=0.11, right=0.98, bottom=0.14, top=0.97)

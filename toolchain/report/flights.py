@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recorded flights (jink-sim fly --record-steps) and the program that runs them again on a target (jink_step_probe)."""
+"""Recorded flights (jink-sim fly --record-steps) and the program that repeats them on a target (jink_step_probe)."""
 import dataclasses
 import struct
 
@@ -58,7 +58,7 @@ def read(path):
 
 
 class StepProbe(targets.Probe):
-    """jink_step_probe running on a target; steps have to be asked in the order of their flight."""
+    """jink_step_probe running on a target; steps must be requested in the order of their flight."""
 
     PROGRAM = "jink_step_probe"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The search for the costliest case: hill climbing from random starts and from crossings of the best so far.
+"""The search for the most expensive case: hill climbing from random starts and from crossings of the best so far.
 
 Deterministic for a seed, a number of evaluations and a number of workers. Each worker keeps its own best ones.
 """
@@ -12,9 +12,9 @@ import time
 import scenes
 import targets
 
-STARTS = 40  # random cases of which the costliest is climbed from
+STARTS = 40  # random cases; the climb starts from the most expensive
 PATIENCE = 500  # evaluations without a gain before a new start
-MEMORY = 15  # a step is taken when it is no cheaper than the case this many steps ago: over small dips, not over large ones
+MEMORY = 15  # a step is accepted if it is no cheaper than the case this many steps ago: crosses small dips only
 ELITES = 12
 
 
@@ -102,7 +102,7 @@ def search(scene, count, seed, worker, most, seconds, start=(), report=None):
 
 
 def at_random(scene, count, seed, worker, most, seconds, start=(), report=None):
-    """What chance alone finds with as many evaluations."""
+    """The result of random search with the same number of evaluations."""
     r = random.Random(f"{seed}.{worker}")
     until = time.monotonic() + seconds if seconds else None
     best = (0, None)
@@ -127,7 +127,7 @@ def _worker(arguments):
 
 
 def hunt(scene, target, build, plugin, seed, evaluations, seconds, workers, start=(), how="hunt"):
-    """The costliest case found (Found), and how many were tried."""
+    """The most expensive case found (Found), and the number of tried cases."""
     jobs = [(how, scene, target, build, plugin, seed, w, -(-evaluations // workers), seconds, start[w::workers])
             for w in range(workers)]
     with multiprocessing.Pool(workers) as pool:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the memory report measures."""
+"""Measurements of the memory report."""
 import pathlib
 import re
 import shlex
@@ -15,8 +15,8 @@ import targets
 
 IMAGES = ["mps2_an500", "stm32f405"]
 PREFIX = {"mps2_an500": "arm-none-eabi-", "stm32f405": "arm-none-eabi-", "armhf": "arm-linux-gnueabihf-", "aarch64": "aarch64-linux-gnu-"}
-# Reach sets and reciprocal avoidance have limits of their own, on top of what the image had without them. Of the rest, 8 KiB of the RAM are
-# the threat set, and 2 KiB of the flash are closed areas among the candidates of the geometric method.
+# Reach sets and reciprocal avoidance have their own limits, in addition to the rest of the image. Of the rest, 8 KiB of
+# the RAM are the threat set, and 2 KiB of the flash are closed areas among the candidates of the geometric method.
 LIMITS = {"flash": 664 * 1024, "flash of the rest": 330 * 1024, "tables of the reach sets": 256 * 1024, "code of reciprocal avoidance": 80 * 1024,
           "static RAM with its stack": 112 * 1024, "static RAM of the rest": 80 * 1024, "reach planner": 32 * 1024, "reciprocal planner": 16 * 1024,
           "stack": 12 * 1024, "core-coupled": 64 * 1024}
@@ -34,8 +34,8 @@ TRIED = {"JINK_MAX_TRACKS": 64, "JINK_MAX_OBSTACLES": 192, "JINK_MAX_PATH_POINTS
          "JINK_MAX_HULL_VERTICES": 64, "JINK_MAX_REACH_NODES": 4096, "JINK_MAX_REACH_CELLS": 512, "JINK_MAX_BARRELS": 32, "JINK_MAX_MISSION_ITEMS": 64}
 PROOF = {"JINK_MAX_TRACKS": 16, "JINK_MAX_OBSTACLES": 40, "JINK_MAX_PATH_POINTS": 96, "JINK_MAX_CANDIDATES": 128,
          "JINK_MAX_HULL_VERTICES": 32, "JINK_MAX_REACH_NODES": 3072, "JINK_MAX_REACH_CELLS": 400, "JINK_MAX_BARRELS": 8, "JINK_MAX_MISSION_ITEMS": 32}
-# Images with fewer methods (toolchain/cmake/JinkImage.cmake), of the board with the least room: what they are called, and
-# whose code must not be in them.
+# Images with fewer methods (toolchain/cmake/JinkImage.cmake), of the board with the least memory: their names, and the
+# modules whose code they must not contain.
 FEWER_ON = "stm32f405"
 FEWER = {"geometric_reach": ("without the reciprocal method", ["orca"]), "geometric_orca": ("without reach sets", ["reach"]),
          "geometric": ("geometric alone", ["orca", "reach"])}
@@ -56,7 +56,7 @@ KEPT = (".text", ".rodata", ".vectors", ".init_array", ".ARM.exidx", ".data", ".
 
 
 def by_room(build, target):
-    """{room: {flash, ram}} out of the linker's map. Objects are found by their names in the archives of the build."""
+    """{module: {flash, ram}} from the linker's map. Objects are found by their names in the archives of the build."""
     folder = pathlib.Path(build) / target
     rooms = {}
     for place, prefix in (("core", "core"), ("firmware", "firmware"), ("hal", "hal")):
@@ -66,11 +66,11 @@ def by_room(build, target):
     text = (folder / "firmware" / target / f"{target}.map").read_text(encoding="utf-8").split("Linker script and memory map")[1]
     out = {}
     pattern = re.compile(r"^ (\.?[\w.$*-]+)?\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) (\S.*)$")
-    joined = re.sub(r"^( [\w.$*-]+)\n +(0x)", r"\1 \2", text, flags=re.M)  # long names stand on a line of their own
+    joined = re.sub(r"^( [\w.$*-]+)\n +(0x)", r"\1 \2", text, flags=re.M)  # long names are on a separate line
     placed = sorted((int(m[2], 16), int(m[3], 16), m[1], m[4]) for m in map(pattern.match, joined.splitlines()) if m and m[1] and int(m[3], 16) and
                     m[1].startswith(KEPT))
     for (address, size, name, file), (following, *_) in zip(placed, placed[1:] + [(1 << 64,)]):
-        size = min(size, following - address) if following > address else size  # constants that were merged are told twice
+        size = min(size, following - address) if following > address else size  # merged constants are listed twice
         kind = next((k for k, p in (("flash", (".text", ".rodata", ".vectors", ".init_array", ".ARM.exidx")), ("data", (".data",)),
                                     ("ram", (".bss", ".noinit", "COMMON", ".ccm"))) if name.startswith(p)), None)
         if kind is None:
@@ -160,7 +160,7 @@ def capacities_of(folder):
 
 
 def painted(build, target):
-    """Deepest stack that the probe saw, over random problems of every kind and all records [bytes]."""
+    """Deepest stack that the probe measured, over random problems of every kind and all records [bytes]."""
     probe = targets.open_probe(target, build)
     deepest = 0
     for sample in scenes.SAMPLES.values():
@@ -217,7 +217,7 @@ def sizeof(capacities):
 
 
 def bits_of_cells(name, capacities):
-    """What no straight line of the capacities has: a bit for each threat in each cell of the reach planner, in words of 32 [bytes]."""
+    """The part not linear in the capacities: a bit per threat and reach planner cell, in 32-bit words [bytes]."""
     if name not in ("ReachPlanner", "Coprocessor"):
         return 0
     threats = sum(capacities[f"JINK_MAX_{what}"] for what in ("TRACKS", "OBSTACLES", "BARRELS"))

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws maps of convex pieces, as `jink mesh measure --figures` hands them over on standard input, all in one PNG."""
+"""Draws maps of convex pieces from the standard input, as written by `jink mesh measure --figures`, all in one PNG."""
 import pathlib
 import sys
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The page around the pictures: words and tables for somebody who has never seen the project."""
+"""The page around the pictures: text and tables for readers new to the project."""
 import html
 
 import figures
@@ -124,7 +124,7 @@ HEAD = ('<tr><th>encounter</th><th>autopilot</th><th>outcome</th><th class="n">l
 
 
 def story(flight):
-    """What happened, one line per event, in order of time."""
+    """The events in order of time, one line each."""
     events = []
     for threat in flight.threats:
         if threat.appeared is not None and threat.appeared > 0:

@@ -21,7 +21,7 @@ ENTRY = re.compile(r'\{\s*"(\w+)"\s*,\s*([^,{}]+?)\s*,\s*([^,{}]+?)\s*,\s*([^{}"
 
 
 class Wrong(Exception):
-    """The sources are not in the form that is read here."""
+    """The sources are not in the expected form."""
 
 
 def items(body):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of what a command of jink hands over on standard input: how they look, and how they are written."""
+"""Common style and output of the pictures of jink's commands, whose data come on standard input."""
 import json
 import pathlib
 import sys
@@ -19,7 +19,7 @@ plt.rcParams.update({"font.family": "sans-serif", "font.size": 9, "text.color": 
 
 
 def save(figure, path):
-    """128 colours make a third of the size. No date or version in the file, so that drawing anew changes nothing."""
+    """128 colours give a third of the size. Without date and version, so that drawing again gives the same bytes."""
     figure.set_dpi(90)
     figure.canvas.draw()
     pixels = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())[:, :, :3])
@@ -28,7 +28,7 @@ def save(figure, path):
 
 
 def main(command, figures_of):
-    """Writes the figures_of(what was handed over), pairs of a figure and its name, into the folder; the exit status."""
+    """Writes the figures of figures_of(input), (figure, name), into the folder. Returns the exit status."""
     if len(sys.argv) != 2:
         print(f"usage: {pathlib.Path(sys.argv[0]).name} FOLDER < JSON", file=sys.stderr)
         return 2

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws flown scenes from above, as `jink scenes --out` hands them over on standard input, one PNG each."""
+"""Draws plan views of flown scenes from the standard input, as written by `jink scenes --out`, one PNG each."""
 import pathlib
 import sys
 
@@ -16,7 +16,7 @@ from pictures import INK, WIDTH  # noqa: E402
 BODY, EDGE, MOVES = "#c9ced6", "#8b939f", "#b3462f"
 COLOURS = {"straight": "#9aa1ab", "geometric": "#d17a22", "geometric, reach sets": "#1f6fb2", "reach sets, geometric": "#2e8b57",
            "reach sets": "#8e5bb5"}
-ROOM = 8.0  # about what is drawn [m]
+ROOM = 8.0  # margin about the drawn objects [m]
 
 
 def draw_body(axes, body):

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws reach sets, as `jink reach measure --figures` hands them over on standard input, one PNG each."""
+"""Draws reach sets from the standard input, as written by `jink reach measure --figures`, one PNG each."""
 import math
 import pathlib
 import sys
@@ -15,7 +15,7 @@ import pictures  # noqa: E402 (found beside this script)
 from pictures import INK, WIDTH  # noqa: E402
 
 GRID = "#c9ced6"
-FLATTEST = 0.34  # of a view's width: what is flatter is stretched, and says so
+FLATTEST = 0.34  # of a view's width: flatter views are stretched, with a note
 
 
 def grid_lines(half, parts, layers, distance):

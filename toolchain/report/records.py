@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Recorded cases and their counts: kept in files that a person can read, replayed exactly."""
+"""Recorded cases and their counts: kept in human-readable files, replayed exactly."""
 import concurrent.futures
 import dataclasses
 import json
@@ -17,8 +17,8 @@ import targets
 TARGETS = ["mps2_an500", "stm32f405", "armhf", "aarch64"]
 COMPILERS = {"mps2_an500": "arm-none-eabi-g++", "stm32f405": "arm-none-eabi-g++", "armhf": "arm-linux-gnueabihf-g++",
              "aarch64": "aarch64-linux-gnu-g++"}
-STAGED = "mps2_an500"  # counted stage by stage; the other targets in all, which takes half the time
-# core/base/work_budget.hpp: instructions that one unit of work may stand for.
+STAGED = "mps2_an500"  # counted per stage; the other targets in total, which takes half the time
+# core/base/work_budget.hpp: largest number of instructions per work unit.
 MOST_PER_UNIT = 160
 PER_DECADE = 20  # bins of a histogram; from 10^4 instructions on
 DECADES = 4
@@ -46,7 +46,7 @@ def write_case(path, scene, found, how):
 
 
 def compact_json(kept):
-    """Indented, with what is innermost on one line."""
+    """Indented, with the innermost lists on one line."""
     def lines(value, depth):
         if isinstance(value, dict) and any(isinstance(v, (dict, list)) for v in value.values()):
             inner = ",\n".join(f"{' ' * (depth + 1)}{json.dumps(k)}: {lines(v, depth + 1)}" for k, v in value.items())
@@ -83,7 +83,7 @@ def read_case(path):
 
 
 def compiler(target):
-    """Version of the compiler that is here for a target."""
+    """Version of the installed compiler for a target."""
     try:
         return subprocess.run([COMPILERS[target], "-dumpfullversion"], check=True, capture_output=True, text=True).stdout.strip()
     except (OSError, subprocess.CalledProcessError):
@@ -110,7 +110,7 @@ class Bench:
         self.files = sorted(p for p in self.folder.glob("*.json") if p.name != "counts.json")
 
     def one(self, target, case, stage_file=None):
-        """Always in a fresh probe: no count may depend on what was counted before."""
+        """Always in a fresh probe: counts must not depend on earlier counts."""
         probe = targets.open_probe(target, self.build, self.plugin, stage_file)
         answer = probe.ask(case)
         probe.close()
@@ -125,12 +125,12 @@ class Bench:
         return answer
 
     def fly(self, folder, crowds=()):
-        """Flies what steps are counted of, in process, and leaves what went over the line in `folder`."""
+        """Flies the flights whose steps are counted, in process, and writes the line's traffic to `folder`."""
         scenario = pathlib.Path(__file__).resolve().parents[2] / "tests/scenario"
         files = [str(scenario / f"{name}.yaml") for name in scenes.FLIGHTS]
         subprocess.run([self.sim, "fly", *files, "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
         for seed in crowds:
-            # Whether a crowd ends well is not asked here.
+            # The ending of a crowd is irrelevant here.
             subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", "--record-steps", folder, "--quiet"], check=False,
                            stdout=subprocess.DEVNULL)
 
@@ -154,7 +154,8 @@ class Bench:
     def _sample(self, name, answers, result):
         counts = len(answers)
         result["typical"][name] = distribution([a.instructions for a in answers])
-        # What the work budget does not count, or counts too low: beyond the most that a unit may stand for.
+        # Instructions that the work budget does not count, or counts too low: excess over the largest number per work
+        # unit.
         result["typical"][name]["uncounted"] = max(0, *(a.instructions - MOST_PER_UNIT * a.work for a in answers))
         if not answers[0].by_stage:
             return
@@ -190,7 +191,7 @@ class Bench:
             return dict(zip(names, pool.map(lambda t: self.of_target(t, flown), names)))
 
     def hunt_steps(self, target, seed, count, report):
-        """The costliest step of `count` crowds: (instructions, crowd, step)."""
+        """The most expensive step of `count` crowds: (instructions, crowd, step)."""
         worst = (0, 0, 0)
         for crowd in range(seed, seed + count):
             with tempfile.TemporaryDirectory() as folder:

@@ -9,7 +9,7 @@ import math
 
 
 class BadRun(Exception):
-    """The file is no run that can be reported on; the text says why."""
+    """The file is not a valid run; the text says why."""
 
 
 def _number(value):
@@ -116,7 +116,7 @@ class Flight:
         self.separation = [self.separation[i] for i in keep]
 
     def kept(self):
-        """True when the promise was kept, None when nobody can tell."""
+        """True when the promise was kept, None when unknown."""
         return None if self.least is None or self.promise is None else self.least >= self.promise
 
     def spans(self, wanted):
@@ -140,7 +140,7 @@ class Flight:
         return None
 
     def closest_index(self):
-        """Sample nearest to the closest moment, or None."""
+        """Sample nearest to the closest approach, or None."""
         if self.least_time is None or not self.t:
             return None
         return min(range(len(self.t)), key=lambda i: abs(self.t[i] - self.least_time))

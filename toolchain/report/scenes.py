@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is counted, and what may vary in it: random members, small changes, crossings. Everything by one random source."""
+"""Counted scenes and their variation: random members, small changes, crossings. All from one random generator."""
 import copy
 import dataclasses
 import math
@@ -24,9 +24,11 @@ class Scene:
     choices: list  # of candidates
     retries: int
     free: bool  # parameters other than those of the candidates as well
-    solids: bool = False  # obstacles of any shape; otherwise what the co-processor makes of echoes (firmware/app/echo.cpp)
+    solids: bool = False  # obstacles of any shape; otherwise the co-processor's obstacles of scan returns
+                          # (firmware/app/echo.cpp)
     mixed: bool = False  # `threats` counts tracks and obstacles together
-    study: bool = False  # the source's run-time study: 5 m/s along a level leg, a threat of 1 m standing on it 10 m ahead
+    study: bool = False  # Pinheiro's run-time study: 5 m/s along a level leg, a static threat of 1 m on the leg 10 m
+                         # ahead
 
     def random(self, r):
         tracks = r.randint(*self.threats)
@@ -39,7 +41,7 @@ class Scene:
         if r.random() < 0.5:
             case.half = tuple(round(10 ** r.uniform(-0.7, 0.3), 3) for _ in range(3))
         for i in range(len(case.tracks)):
-            if r.random() < 0.3:  # at rest
+            if r.random() < 0.3:  # static
                 p, v, *rest = case.tracks[i]
                 t = r.uniform(1.0, 7.0)
                 case.tracks[i] = (tuple(a + t * b for a, b in zip(p, v)), (0.0, 0.0, 0.0), *rest)
@@ -250,7 +252,7 @@ def tidy(case, scene):
 
 
 def _as_studied(case):
-    """Pinheiro tab. 5.1: what is free is the two other threats, and the shape of the candidates."""
+    """Pinheiro tab. 5.1: free are the two other threats, and the shape of the candidates."""
     case.own_position = case.leg_start = (0.0, 0.0, 50.0)
     case.leg_end, case.own_velocity, case.leg_speed, case.own_sigma = (100.0, 0.0, 50.0), (5.0, 0.0, 0.0), 5.0, 0.0
     case.half, case.bounds = (1.0, 1.0, 1.0), 0
@@ -260,7 +262,7 @@ def _as_studied(case):
 
 
 def _echo(kind, a, b, radius, yaw):
-    """A sphere, or an upright capsule: what a scan's echo becomes."""
+    """A sphere, or an upright capsule: the obstacle of a scan's return."""
     return (0, a, (0.0, 0.0, 0.0), radius, 0.0) if kind == 0 else (2, a, (a[0], a[1], a[2] + 20.0), max(radius, 0.3), 0.0)
 
 
@@ -302,7 +304,7 @@ SAMPLES = {
     "update_full": ("update, the same", 80, lambda seed: _sample("update_full", seed, 32, 96, 4, 8)),
 }
 
-# Scenarios whose steps are counted as they were flown.
+# Scenarios whose flown steps are counted.
 FLIGHTS = ["clear_pass", "crossing", "head_on", "pillar", "px4_documented_short", "scan_wall", "tuning_3", "tuning_4"]
 STEPS = {"step_flights": "step, 8 of the named scenarios", "step_crowd": "step, a crowd of 32 intruders in a ring of pillars"}
 TITLES = {**{name: scene.title for name, scene in SCENES.items()}, "step_full": "step, 32 tracks at once in a ring of pillars"}

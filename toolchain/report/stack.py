@@ -12,21 +12,21 @@ import sys
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
 EDGE = re.compile(r'edge: \{ sourcename: "([^"]+)" targetname: "([^"]+)"')
-# A constructor under its two names is shown as calling itself.
+# A constructor with two names appears to call itself.
 CONSTRUCTOR = re.compile(r"C[12]E")
 BYTES = re.compile(r"\\n(\d+) bytes \(([^)]+)\)")
-# sinf, cosf, memcpy and the like, measured by painting the stack: none needs more.
+# sinf, cosf, memcpy and the like, measured by painting the stack: an upper bound.
 LIBRARY = 200
-# Who can be reached through a pointer, by the mangled name of the caller.
+# Functions that a pointer can reach, by the mangled name of the caller.
 INDIRECT = [
     (r"12StateMachine4plan", [r"10Supervisor.*10ask_in_order"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
     (r"3app(11Coprocessor|6Intake|6Outbox|7Picture|16AutopilotControl|13ParamExchange|9Telemetry)",
      [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),
-    (r"link7mavlink8Endpoint", []),  # who takes points: no image does
+    (r"link7mavlink8Endpoint", []),  # consumers of points: none on an image
     (r"3app10ParamFlash", [r"7stm32f45FlashI"]),
-    (r"5reach7Planner(4look|7try_set)", []),  # who rates cells: nobody does on an image
+    (r"5reach7Planner(4look|7try_set)", []),  # raters of cells: none on an image
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
     (r"MemorySerialLink|MemoryLine|memory", []),

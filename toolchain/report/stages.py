@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What each instruction of a program is there for, from its line tables (-g1): stages of a plan, an update and a step."""
+"""Assigns each instruction of a program to a stage of a plan, an update and a step, from its line tables (-g1)."""
 import re
 import subprocess
 
-# The innermost of an instruction's inlined functions that is named here says its stage. What matches none, and none of
-# its callers in the same function does, counts for the stage that called it: geometry, vehicle model, mathematics.
+# The innermost listed function among an instruction's inlined functions sets its stage. Instructions without a listed
+# function, inlined callers included, count for the calling stage: geometry, vehicle model, mathematics.
 STAGES = [
     ("link and messages", r"^(firmware/link|hal)/"),
     ("application", r"^firmware/app/"),
@@ -36,7 +36,7 @@ def _tools(target):
 
 
 def _code(program, prefix):
-    """(first, last) of each function that may be ours, by address."""
+    """(first, last) of each candidate function of the project, by address."""
     text = subprocess.run([prefix + "nm", "-C", "-S", program], check=True, capture_output=True, text=True).stdout
     found = set()
     for line in text.splitlines():

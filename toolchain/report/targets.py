@@ -30,7 +30,7 @@ class Case:
     retries: int = 8
     bounds: int = 0
     reduced_sets: int = 0
-    shared: int = 0  # bit i: track i shares the reaction
+    shared: int = 0  # bit i: track i is cooperative
     own_position: tuple = (0.0, 0.0, 30.0)
     own_velocity: tuple = (5.0, 0.0, 0.0)
     own_sigma: float = 0.1
@@ -76,11 +76,11 @@ class Answer:
     margin: float
     cut_short: int
     instructions: int = 0
-    by_stage: list = dataclasses.field(default_factory=list)  # in the order of the plugin's stages, where it was given any
+    by_stage: list = dataclasses.field(default_factory=list)  # in the order of the plugin's stages, if any
 
 
 class Probe:
-    """The probe running on a target, for as many cases as one likes. Counts instructions where `plugin` is given."""
+    """The probe running on a target, for any number of cases. Counts instructions if `plugin` is given."""
 
     PROGRAM = "jink_probe"
 

@@ -35,7 +35,7 @@ def _edges():
 
 
 def histogram(counts, sample, worst, goal=None):
-    """Random problems of one kind on every target, and the worst that the hunt found."""
+    """Random problems of one kind on every target, and the worst case of the hunt."""
     figure, axes = plt.subplots(4, 1, figsize=(8.4, 6.8), sharex=True, layout="constrained")
     edges = _edges()
     for axis, target in zip(axes, records.TARGETS):

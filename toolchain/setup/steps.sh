@@ -41,7 +41,7 @@ try_step() {
     printf '  %8d s  %s\n' $((SECONDS - begin)) "$what" >>"$logs/steps.txt"
 }
 
-# The same, and the end of everything when it fails.
+# The same; exits when the step fails.
 step() { try_step "$@" || exit 1; }
 
 cores() { nproc 2>/dev/null || echo 2; }

@@ -36,7 +36,7 @@ Level turned(const Level& v, double angle) noexcept
     return {std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y()};
 }
 
-/// Course whose L1 law asks for this lateral acceleration to the right [m/s2].
+/// Course for which the L1 law commands the lateral acceleration `demand` to the right [m/s2].
 Vec course_of(const Level& velocity, double demand) noexcept
 {
     const double speed = std::max(velocity.norm(), 1.0);
@@ -61,7 +61,7 @@ PlaneCircle circle_course(const Truth& own, const Vec& centre, double radius) no
     const double speed = std::max(velocity.norm(), 1.0);
     const double distance = from_centre.norm();
     const Level out = distance > 0.1 ? Level(from_centre / distance) : Level(velocity / speed);
-    // ArduPilot's cross product is of north and east: its sign is the other one here.
+    // ArduPilot's cross product is of north and east: the sign is reversed here.
     const double across = -cross(out, velocity);
     const double inbound = -velocity.dot(out);
     const double nu = std::clamp(std::atan2(across, inbound), -0.5 * std::numbers::pi, 0.5 * std::numbers::pi);

@@ -12,7 +12,7 @@ namespace {
 constexpr std::uint8_t kSet = 1;
 constexpr std::uint8_t kObstacleAvoidance = 196;  // MAV_COMP_ID_OBSTACLE_AVOIDANCE
 constexpr Micros kRepeat = kSecond / 5;
-/// A set that comes into force later is no part of the picture at the start of the flight.
+/// A set that comes into force later does not count as known at the start of the flight.
 constexpr Micros kAtTheStart = 2 * kSecond;
 
 }  // namespace

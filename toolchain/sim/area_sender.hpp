@@ -13,18 +13,18 @@
 
 namespace jink::sim {
 
-/// The ground station's part of reporting closed areas (docs/guides/closed_areas.md): one set at the start of the
-/// flight, each area repeated until it is answered.
+/// The ground station's side of reporting closed areas (docs/guides/closed_areas.md). One set at the start of the
+/// flight; each area is repeated until the co-processor answers.
 class AreaSender {
 public:
     /// @param areas  outlive the sender; kMaxReportedConstraints at most
     explicit AreaSender(const std::vector<ClosedArea>& areas) : areas_(areas), results_(areas.size()) {}
 
-    /// Frames to be relayed at `now` [us since the start of the flight].
+    /// Frames to relay at `now` [us since the start of the flight].
     [[nodiscard]] std::vector<std::byte> send(Micros now);
     /// Bytes from the co-processor.
     void receive(std::span<const std::byte> bytes, Micros now);
-    /// What went wrong; empty: all areas are in force, or there are none.
+    /// The error in words; empty: all areas are in force, or the set is empty.
     [[nodiscard]] std::string fault() const;
 
 private:

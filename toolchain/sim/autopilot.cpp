@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The autopilot's modes and what flies in them.
+// The autopilot's modes and their velocity commands.
 #include "toolchain/sim/autopilot.hpp"
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 namespace jink::sim {
 namespace {
 
-/// Boot clock at the start of the flight: it has been on for a while [us].
+/// Boot clock at the start of the flight: the autopilot booted before [us].
 constexpr Micros kUpBefore = 60 * kSecond;
 /// GUID_TIMEOUT and COM_OF_LOSS_T [us].
 constexpr Micros kArdupilotTimeout = 3 * kSecond;
 constexpr Micros kPx4Timeout = 1 * kSecond;
-/// Position hold: pull towards the place where it stopped [1/s].
+/// Position hold: gain towards the stopping place [1/s].
 constexpr double kHoldGain = 0.8;
 constexpr double kStopped = 0.3;     // [m/s]
 constexpr std::uint8_t kNotice = 5;  // MAV_SEVERITY_NOTICE
@@ -88,7 +88,7 @@ void Autopilot::enter(Mode mode, bool asked)
     if (mode == Mode::external) {
         ++takeovers_;
         last_followed_ = world_.now();
-        // GUIDED starts by holding its place; OFFBOARD goes on with the stream that it has seen.
+        // GUIDED starts by holding its place; OFFBOARD continues with the received set-points.
         has_external_setpoint_ = scenario_.stack == Stack::px4;
     }
     if (mode == Mode::mission && items_) {
@@ -97,11 +97,11 @@ void Autopilot::enter(Mode mode, bool asked)
         mission_.resume(world_.own().position);
     }
     if (scenario_.stack == Stack::ardupilot) {
-        send_heartbeat();  // PX4 does not: once a second, whatever happens
+        send_heartbeat();  // PX4 does not: once a second in all cases
     }
 }
 
-/// What a plane circles about in the mode that was entered.
+/// Sets the centre that a plane circles about in the entered mode.
 void Autopilot::aim_plane()
 {
     const Vec& here = world_.own().position;
@@ -114,7 +114,7 @@ void Autopilot::aim_plane()
     }
 }
 
-/// What a ground station on another line does.
+/// Actions of a ground station on another line.
 void Autopilot::follow_others()
 {
     if (!scenario_.flight) {
@@ -128,7 +128,7 @@ void Autopilot::follow_others()
     if (items_ && flight.upload_at >= 0.0 && !uploaded_ && world_.now() >= to_micros(flight.upload_at)) {
         uploaded_ = true;
         items_->replace(flight.uploaded, world_.own());
-        // ArduCopter alone says so.
+        // ArduCopter alone reports this.
         if (scenario_.stack == Stack::ardupilot && !is_plane()) {
             link::mavlink::Statustext text;
             text.severity = kNotice;
@@ -172,7 +172,7 @@ void Autopilot::watch_setpoints()
     }
 }
 
-/// By its own estimate of where it is.
+/// Uses the autopilot's own position estimate.
 Vec Autopilot::mission_velocity()
 {
     Truth own = world_.own();
@@ -185,7 +185,7 @@ Vec Autopilot::mission_velocity()
     return command;
 }
 
-/// By the sticks; position hold where they are not moved.
+/// Velocity by the sticks; position hold with centred sticks.
 Vec Autopilot::pilot_velocity(const Truth& own)
 {
     if (!scenario_.flight) {

@@ -24,30 +24,30 @@ namespace jink::sim {
 inline constexpr std::uint8_t kJink = 196;
 /// MAV_FRAME_LOCAL_NED.
 inline constexpr std::uint8_t kLocalNed = 1;
-/// SET_POSITION_TARGET_LOCAL_NED with everything ignored but the velocity: links.md, B.1.
+/// SET_POSITION_TARGET_LOCAL_NED type mask that uses the velocity alone: links.md, B.1.
 inline constexpr std::uint16_t kVelocityMask = 0x0DC7;
 
 /// PX4's checksum of the mission, in MISSION_COUNT and MISSION_CURRENT.
 inline constexpr std::uint32_t kMissionId = 2089934376;
 
-/// A STATUSTEXT as heard.
+/// A received STATUSTEXT.
 struct Text {
     double time = 0.0;
     int severity = 0;
     std::string text;
 };
 
-/// What the co-processor was seen to do on the link.
+/// The co-processor's behaviour as observed on the link.
 struct Heard {
     unsigned frames = 0;
     unsigned frames_refused = 0;  ///< noise, wrong checksums
     unsigned heartbeats = 0;
-    int state = 0;  ///< MAV_STATE of the newest one, 0: never heard
+    int state = 0;  ///< MAV_STATE of the newest heartbeat, 0: none received
     Micros last_heartbeat = -1;
     Micros longest_heartbeat_gap = 0;
     unsigned setpoints = 0;
-    unsigned bad_setpoints = 0;        ///< mask, frame, target or numbers that an autopilot refuses
-    unsigned setpoints_overruled = 0;  ///< sent more than 0.2 s after somebody else had chosen a mode
+    unsigned bad_setpoints = 0;        ///< mask, frame, target or values that an autopilot refuses
+    unsigned setpoints_overruled = 0;  ///< sent more than 0.2 s after another sender chose a mode
     Micros longest_setpoint_gap = 0;   ///< while in external mode
     unsigned warnings = 0;             ///< COLLISION
     Micros first_warning = -1;         ///< of them [us]
@@ -57,12 +57,13 @@ struct Heard {
     std::vector<Text> texts;
 };
 
-/// The other end of the link: ArduPilot Copter or PX4 as far as a companion can tell, flying the vehicle of a World.
+/// The autopilot's end of the link: models ArduPilot Copter or PX4 as seen by a companion, flying the vehicle of a
+/// World.
 ///
-/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/guides/take_over.md): ArduPilot takes
-/// velocities in GUIDED only and stops 3 s after the last one; PX4 goes into OFFBOARD only after more than a second of
-/// set-points that came at 2 Hz or more, as it documents (releases up to v1.14 and v1.16 grant it earlier in fact), and
-/// leaves it for AUTO.LOITER 1 s after the last one. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
+/// Modes, set-point time-outs and refusals follow the stacks' own rules (docs/guides/take_over.md). ArduPilot takes
+/// velocities in GUIDED only and stops 3 s after the last set-point. PX4 enters OFFBOARD only after more than a second
+/// of set-points at 2 Hz or more, as documented (releases up to v1.14 and v1.16 grant OFFBOARD earlier), and changes to
+/// AUTO.LOITER 1 s after the last set-point. A vehicle with a min_speed is ArduPlane (arduplane.hpp).
 class Autopilot {
 public:
     /// @param world  outlives the autopilot
@@ -70,34 +71,34 @@ public:
 
     /// Bytes from the co-processor, as they arrive.
     void receive(std::span<const std::byte> bytes);
-    /// One kStep: telemetry that is due, the world moved on under the present mode's command.
+    /// One kStep: sends the telemetry that is due and advances the world under the present mode's command.
     void step();
-    /// Frames of others that come in over the radio: routed on to the co-processor as they are.
+    /// Frames of other systems from the radio: routed to the co-processor unchanged.
     void relay(std::span<const std::byte> frames);
-    /// Where it is, as it tells everybody.
+    /// The position that the autopilot reports.
     [[nodiscard]] link::mavlink::GlobalPositionInt global_position() const;
     [[nodiscard]] link::mavlink::Heartbeat heartbeat() const;
     /// Everything to be sent since the last call.
     [[nodiscard]] std::vector<std::byte> take_output();
 
-    /// Where its own estimate puts it, before latency [m].
+    /// Position of the autopilot's own estimate, before latency [m].
     [[nodiscard]] Vec believed_position() const { return world_.own().position + estimate_.bias(); }
     [[nodiscard]] Mode mode() const noexcept { return mode_; }
     [[nodiscard]] const Heard& heard() const noexcept { return heard_; }
     [[nodiscard]] const MissionPilot& mission() const noexcept { return mission_; }
-    /// CRITICAL texts that the co-processor made it say to the pilot.
+    /// CRITICAL texts to the pilot that the co-processor caused.
     [[nodiscard]] const std::vector<std::string>& critical_texts() const noexcept { return server_.critical(); }
     /// The set-point in force [m/s], external mode.
     [[nodiscard]] const Vec& setpoint() const noexcept { return setpoint_; }
     [[nodiscard]] const Vec& command() const noexcept { return command_; }
     [[nodiscard]] unsigned takeovers() const noexcept { return takeovers_; }
-    /// True when the last change of mode was the co-processor's wish.
+    /// True when the co-processor requested the last change of mode.
     [[nodiscard]] bool last_change_was_asked() const noexcept { return last_change_was_asked_; }
     [[nodiscard]] Micros mode_since() const noexcept { return mode_since_; }
     /// When the last parameter was verified [us]; -1: not yet.
     [[nodiscard]] Micros parameters_verified() const noexcept { return parameters_verified_; }
     [[nodiscard]] std::vector<std::string> parameters_missing() const;
-    /// When the first message that tells of a threat was sent [us]; -1: not yet. A scan's do not count.
+    /// Time at which the first message that reports a threat was sent [us]; -1: not yet. Scan messages do not count.
     [[nodiscard]] Micros told(std::size_t threat) const { return told_[threat]; }
 
 private:
@@ -145,7 +146,7 @@ private:
     void send_scan();
     [[nodiscard]] Micros boot_us() const noexcept;
     [[nodiscard]] std::uint32_t boot_ms() const noexcept { return static_cast<std::uint32_t>(boot_us() / 1000); }
-    /// `rate` times a second, from the start on; intervals differ by kStep where it is no divisor.
+    /// True `rate` times a second from the start on. If kStep does not divide the interval, intervals differ by kStep.
     [[nodiscard]] bool often(Micros rate) const noexcept
     {
         return world_.now() == 0 || world_.now() * rate / kSecond != (world_.now() - kStep) * rate / kSecond;
@@ -179,8 +180,8 @@ private:
     unsigned takeovers_ = 0;
     Vec setpoint_ = Vec::Zero();
     Micros last_setpoint_ = -1;  ///< newest acceptable one
-    Micros stream_since_ = -1;   ///< first of those that came without a gap
-    Micros last_followed_ = -1;  ///< in external mode: newest one, or the entry
+    Micros stream_since_ = -1;   ///< first set-point of the present gap-free sequence
+    Micros last_followed_ = -1;  ///< in external mode: newest set-point, or the mode's entry
     bool has_external_setpoint_ = false;
     Vec command_ = Vec::Zero();
     Vec hold_at_ = Vec::Zero();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mission as the autopilot hands it out and tells of its progress.
+// The autopilot's mission download and progress reports.
 #include "firmware/link/mavlink/text.hpp"
 #include "toolchain/sim/autopilot.hpp"
 #include "toolchain/sim/geodesy.hpp"
@@ -20,7 +20,7 @@ constexpr std::uint8_t kMissionActive = 3;
 constexpr std::uint8_t kMissionPaused = 4;
 constexpr std::uint8_t kInMission = 1;
 constexpr std::uint8_t kMissionSuspended = 2;
-// DO_CHANGE_SPEED: SPEED_TYPE. ArduPlane takes a ground speed for the least one alone.
+// DO_CHANGE_SPEED: SPEED_TYPE. ArduPlane uses a ground speed only as the minimum ground speed.
 constexpr float kAirspeed = 0.0F;
 constexpr float kGroundSpeed = 1.0F;
 constexpr float kNoChange = -1.0F;
@@ -55,7 +55,7 @@ std::uint16_t Autopilot::sequence() const noexcept
     return static_cast<std::uint16_t>((items_ ? items_->index() : mission_.target()) + home_items());
 }
 
-/// PX4's checksum of the mission; ArduPilot tells none.
+/// PX4's checksum of the mission; ArduPilot reports none.
 std::uint32_t Autopilot::mission_id() const noexcept
 {
     return scenario_.stack == Stack::px4 ? kMissionId + (uploaded_ ? 1U : 0U) : 0U;
@@ -132,11 +132,11 @@ void Autopilot::send_mission_state()
     if (moved_on && told_sequence_ > 0) {
         writer_.write(MissionItemReached{told_sequence_});
     }
-    // PX4 tells a new current item at once.
+    // PX4 reports a new current item at once.
     if (often(px4 ? 1 : 2) || (px4 && moved_on)) {
         MissionCurrent current;
         current.seq = sequence();
-        // ArduPilot's total leaves out home.
+        // ArduPilot's total excludes home.
         current.total = static_cast<std::uint16_t>(items_ ? items_->items().size() : scenario_.mission.size());
         current.mission_state = mode_ == Mode::mission ? kMissionActive : kMissionPaused;
         current.mission_mode = mode_ == Mode::mission ? kInMission : kMissionSuspended;

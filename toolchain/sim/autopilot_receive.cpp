@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the autopilot understands of what the co-processor sends.
+// The autopilot's handling of the co-processor's messages.
 #include <algorithm>
 #include <cmath>
 
@@ -23,11 +23,10 @@ constexpr std::uint16_t kSetMessageInterval = 511;
 constexpr std::uint16_t kRequestMessage = 512;
 constexpr float kCustomModeEnabled = 1.0F;
 constexpr float kArmed = 128.0F;
-/// PX4 goes into OFFBOARD when it has set-points, the last not older than this [us] (offboardCheck.cpp since v1.14);
-/// its documentation wants them to have come for a second, none later than this after the one before (Offboard Mode,
-/// v1.16): Faults::offboard_proof.
+/// PX4 enters OFFBOARD if the last set-point is not older than this [us] (offboardCheck.cpp since v1.14). PX4's
+/// documentation (Offboard Mode, v1.16) requires a second of set-points with gaps up to this: Faults::offboard_proof.
 constexpr Micros kStreamGap = kSecond / 2;
-/// Set-points that were under way when somebody chose a mode are forgiven [us].
+/// Set-points in transit when another sender chooses a mode are tolerated for this time [us].
 constexpr Micros kGrace = kSecond / 5;
 
 }  // namespace
@@ -154,7 +153,7 @@ void Autopilot::hear_command(const CommandLong& command, Header from)
         ack.result = set_mode(command);
         heard_.refused_requests += ack.result == kAccepted ? 0U : 1U;
     } else if (command.command == kSetMessageInterval) {
-        // Every rate is fixed here. PX4 refuses one for HEARTBEAT.
+        // Message rates are fixed in this model. PX4 refuses a rate for HEARTBEAT.
         const bool refused = scenario_.stack == Stack::px4 && command.param1 == static_cast<float>(Heartbeat::kInfo.id);
         ack.result = refused ? kFailed : kAccepted;
     } else if (command.command == kRequestMessage) {
@@ -168,7 +167,7 @@ void Autopilot::hear_command(const CommandLong& command, Header from)
     }
 }
 
-/// ArduPlane alone is sent these.
+/// Sent to ArduPlane only.
 void Autopilot::hear_command_int(const CommandInt& command, Header from)
 {
     if (!for_us(command.target_system, command.target_component)) {

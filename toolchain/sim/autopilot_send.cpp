@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the autopilot tells, and how often.
+// The autopilot's telemetry and its rates.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -37,14 +37,14 @@ constexpr std::uint16_t kPositionMask = 0x0DF8;
 constexpr std::uint16_t kArdupilotVelocityTarget = 0x0C07;
 /// PX4's mask for a velocity set-point: x, y and z are NaN.
 constexpr std::uint16_t kPositionIgnored = 0x0007;
-/// PX4's height of home, as recorded: changes every few seconds by up to this, either way [us], [m].
+/// PX4's height of home, as recorded: changes every few seconds by up to this, up or down [us], [m].
 constexpr Micros kHomeSteady = 8 * kSecond;
 constexpr double kHomeWander = 1.0;
 /// Variances of PX4's ODOMETRY, as recorded in flight [m2, m2/s2].
 constexpr float kOdometryPosition = 0.042F;
 constexpr float kOdometryVelocity = 0.0105F;
 constexpr std::uint8_t kEstimatorAutopilot = 8;
-/// The controller's place is so far ahead of the vehicle [s].
+/// Time by which the controller's place leads the vehicle [s].
 constexpr double kPlaceAhead = 0.1;
 
 float as_float(double value) noexcept { return static_cast<float>(value); }
@@ -207,7 +207,7 @@ void Autopilot::send_slow()
     if (px4 ? often(10) : due(10 * kSecond)) {
         writer_.write(Timesync{0, boot_us() * 1000, 0, 0});
     }
-    // PX4 tells the origin once; ArduPilot as often as home, where the co-processor has asked for both.
+    // PX4 reports the origin once; ArduPilot as often as home, because the co-processor requested both.
     if (px4 ? !told_origin_ : due(5 * kSecond)) {
         static_cast<void>(send_message(static_cast<int>(GpsGlobalOrigin::kInfo.id)));
         told_origin_ = true;
@@ -218,8 +218,8 @@ void Autopilot::send_slow()
     send_mission_state();
 }
 
-/// ArduPilot tells the set-point of GUIDED alone; PX4 its controller's, always: a place right ahead of the vehicle, and
-/// none in OFFBOARD by velocities.
+/// ArduPilot reports the set-point of GUIDED only. PX4 always reports its controller's set-point: a place right ahead
+/// of the vehicle, without a place in OFFBOARD by velocities.
 void Autopilot::send_target()
 {
     const bool px4 = scenario_.stack == Stack::px4;
@@ -293,7 +293,7 @@ void Autopilot::send_traffic()
         vehicle.heading = centidegrees(compass(std::atan2(seen.velocity.y(), seen.velocity.x())));
         vehicle.hor_velocity = static_cast<std::uint16_t>(std::lround(speed * 100.0));
         vehicle.ver_velocity = centi(seen.velocity.z());
-        // PX4 passes on, as its own, what its ground station told it.
+        // PX4 forwards the ground station's reports under its own id.
         writer_.write(vehicle, scenario_.stack == Stack::px4 ? kAutopilot : kAdsbReceiver);
         told_[seen.threat] = told_[seen.threat] < 0 ? world_.now() : told_[seen.threat];
     }

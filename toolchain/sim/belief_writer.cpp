@@ -12,7 +12,7 @@ namespace {
 
 using BeliefJson = nlohmann::ordered_json;
 
-/// Rounded to what the wire carries, so that lines stay short.
+/// Rounded to the wire's resolution, so that lines stay short.
 double rounded(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
 BeliefJson numbers_of(const Vec& v)

@@ -10,7 +10,7 @@
 namespace jink::sim {
 namespace {
 
-/// Of this thread: a step that is interrupted by other work of the machine is not thereby a long one.
+/// Processor time of this thread: interruptions by other work of the host do not count.
 double cpu_microseconds()
 {
     timespec t{};
@@ -107,7 +107,7 @@ void Bench::hand_over_settings()
     generation_ = coprocessor_->parameters().generation();
     if (planner_ == PlannerKind::source) {
         geometric::Settings settings = geometric::source_settings();
-        // What the supervisor sees as a conflict the planner has to see too.
+        // The planner must detect every conflict that the supervisor detects.
         settings.lookahead = coprocessor_->parameters().configuration().planner.lookahead;
         if (!coprocessor_->planner().configure(settings)) {
             throw std::logic_error("the planner refuses the source's settings");

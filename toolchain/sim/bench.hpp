@@ -16,7 +16,7 @@
 
 namespace jink::sim {
 
-/// How long something takes, time after time.
+/// Measures repeated durations.
 class Stopwatch {
 public:
     void note(double us)
@@ -34,16 +34,16 @@ private:
     double sum_ = 0.0;
 };
 
-/// What a co-processor is given at its start, beside its line.
+/// Start-up configuration of a co-processor, beside its line.
 struct BenchSetup {
     PlannerKind planner = PlannerKind::product;
     app::Parameters parameters;
-    std::uint8_t system = 0;           ///< whom it serves; 0: the first autopilot heard
+    std::uint8_t system = 0;           ///< system id of its autopilot; 0: the first autopilot received
     link::SensorBus* bus = nullptr;    ///< outlives the bench
     hal::SerialPort* cloud = nullptr;  ///< a LiDAR's line; outlives the bench
 };
 
-/// The co-processor in this process, with its own watch on it.
+/// The co-processor in this process, with a stopwatch.
 class Bench {
 public:
     /// @param port, watchdog  outlive the bench
@@ -51,21 +51,21 @@ public:
 
     void step(TimePoint now);
 
-    /// Plans that went by the parameters' settings although others were handed over: those of a step that took a
-    /// parameter. A flight as it is meant has none.
+    /// Plans made with the parameters' settings although other settings were handed over: plans of a step that accepted
+    /// a parameter. 0 in a valid flight.
     [[nodiscard]] unsigned foreign_plans() const noexcept
     {
         return planner_ == PlannerKind::product ? 0U : foreign_plans_;
     }
 
-    /// Side of the manoeuvre that the last step took.
+    /// Side of the manoeuvre chosen in the last step.
     [[nodiscard]] const std::optional<Vec>& chosen() const noexcept { return chosen_; }
 
     [[nodiscard]] Inside inside() const;
     [[nodiscard]] app::Coprocessor& coprocessor() noexcept { return *coprocessor_; }
 
 private:
-    /// A change of a parameter gives the planner the product's settings again.
+    /// Hands the settings over again: a changed parameter resets the planner to the product's settings.
     void hand_over_settings();
 
     link::mavlink::Endpoint endpoint_;

@@ -16,14 +16,14 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-/// A folder of results that come in blocks, so that work can be shared out and taken up again:
+/// A folder of results in blocks, so that work can be distributed and resumed:
 ///
-/// * manifest.txt says what set-up the folder belongs to, line by line.
-/// * block_000000.txt and so on: one file per finished block. It is written under another name (`.part`) and then
-///   renamed, so that a block is there as a whole or not at all, whenever the program is killed; its last line seals
-///   it with the number of lines and a checksum (FNV-1a, 64 bits).
+/// * manifest.txt describes the folder's set-up, line by line.
+/// * block_000000.txt and so on: one file per finished block. Each file is written under another name (`.part`) and
+///   then renamed: a killed program leaves a whole block or none. The last line holds the number of lines and a
+///   checksum (FNV-1a, 64 bits).
 ///
-/// Only finished blocks count: what else lies there (`.part`, damaged files) is written anew.
+/// Only finished blocks count. Other block files (`.part`, damaged) are rewritten.
 class BlockFolder {
 public:
     explicit BlockFolder(std::filesystem::path folder);
@@ -31,22 +31,21 @@ public:
     BlockFolder& operator=(const BlockFolder&) = delete;
     ~BlockFolder();
 
-    /// Makes the folder when it is not there, and takes it for this set-up until this object goes or the program ends,
-    /// however it ends.
-    /// @throws BadFolder when it belongs to another set-up, holds something else, is being used, or cannot be written
+    /// Creates the folder if missing and locks it for this set-up. The lock ends with this object or with the program.
+    /// @throws BadFolder when the folder belongs to another set-up, holds other files, is locked, or cannot be written
     void claim(const std::string& manifest);
 
     /// The text of manifest.txt. @throws BadFolder
     [[nodiscard]] std::string manifest() const;
 
-    /// Those of 0..count-1 that are not finished, in order.
+    /// Indices of unfinished blocks in 0..count-1, ascending.
     [[nodiscard]] std::vector<std::size_t> missing(std::size_t count) const;
-    /// What write() was given; nothing when the block is not finished.
+    /// The text passed to write(); nothing when the block is unfinished.
     [[nodiscard]] std::optional<std::string> read(std::size_t index) const;
     /// @param text  lines, each with its end. @throws BadFolder
     void write(std::size_t index, const std::string& text) const;
 
-    /// Any other file of the folder, as a whole or not at all. @throws BadFolder
+    /// Writes any other file of the folder atomically. @throws BadFolder
     void write_file(const std::string& name, const std::string& text) const;
 
     [[nodiscard]] const std::filesystem::path& path() const noexcept { return folder_; }

@@ -15,9 +15,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Between two looks at the line.
+/// Polling interval of the line.
 constexpr auto kNap = std::chrono::microseconds(500);
-/// An emulator that starts says something long before that, on any machine that runs it at all.
+/// Start-up time-out: a working emulator sends its first bytes much earlier on any host.
 constexpr auto kStartTime = std::chrono::seconds(60);
 
 bool wait_for_life(Child& child, BoardLine& line, Plant& plant)

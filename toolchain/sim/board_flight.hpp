@@ -5,8 +5,8 @@
 
 namespace jink::sim {
 
-/// One flight against an image in an emulated board, by the board's own clock (board_line.hpp). Record::latest_step is
-/// how far that clock once ran ahead of the flight: the machine held one of the two up.
+/// One flight against an image on an emulated board, paced by the board's own clock (board_line.hpp).
+/// Record::latest_step is the largest lead of the board's clock over the flight, caused by delays of the host.
 [[nodiscard]] Record fly_board_once(const Scenario& scenario, const Computer& computer,
                                     const std::filesystem::path& folder);
 

@@ -8,11 +8,11 @@
 namespace jink::sim {
 namespace {
 
-/// Between two questions for the time [s].
+/// Interval between time requests [s].
 constexpr double kAskEvery = 0.01;
-/// Marks our questions, so that the simulator's autopilot's are told from them.
+/// Marks our requests, to distinguish them from the requests of the simulator's autopilot.
 constexpr std::int64_t kMark = std::int64_t{1} << 62;
-/// One datagram at most; the line brings 460 bytes in 5 ms.
+/// Largest datagram [bytes]; the line carries 460 bytes in 5 ms.
 constexpr std::size_t kPiece = 200;
 
 }  // namespace

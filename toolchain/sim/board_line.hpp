@@ -11,66 +11,66 @@
 
 namespace jink::sim {
 
-/// What a board's own clock says, in the time of the plant that flies with it. An emulator keeps no pace with the
-/// wall's clock where the machine has other work; flown by the board's clock, such a flight takes longer and is the
-/// same.
+/// Maps an emulated board's clock to the plant's time. On a loaded host an emulator falls behind wall time. Paced by
+/// the board's clock, such a flight takes longer and has the same result.
 ///
-/// Pure: the wall's time comes in [s].
+/// Pure: wall time is an argument [s].
 class BoardClock {
 public:
-    /// The board's clock stood at `board` [us] when a step of it began; heard at `wall`, the plant standing at `plant`.
+    /// Sets the board's clock: `board` [us] at the start of a board step, received at wall time `wall` and plant time
+    /// `plant`.
     void tell(Micros board, Micros plant, double wall);
-    /// The board is about to start anew, or to fall silent: by the wall's clock, until its new life tells one.
+    /// The board is about to restart or to fall silent: follows wall time until the restarted board reports its clock.
     void let_go(Micros plant, double wall);
-    /// Where the plant is to be now [us]. Beyond what was told it goes on by the wall for one step of the board, then
-    /// waits; after kDeaf it goes on by the wall: a board that is dead holds up nobody.
+    /// Plant time that is due now [us]. Follows wall time for one board step past the last report, then waits. After
+    /// kDeaf without a report it follows wall time again: a dead board does not block the flight.
     [[nodiscard]] Micros due(Micros plant, double wall);
 
-    /// By the wall's clock at present.
+    /// True while wall time is followed.
     [[nodiscard]] bool is_free() const noexcept { return !bound_; }
-    /// How often it had to be gone on without the board.
+    /// Number of times kDeaf elapsed without a report.
     [[nodiscard]] unsigned times_deaf() const noexcept { return times_deaf_; }
 
-    /// Silence that no machine explains that runs at all [s].
+    /// Silence longer than any host delay [s].
     static constexpr double kDeaf = 2.0;
     static constexpr Micros kStepOfBoard = 20'000;
-    /// Answers of the life before may still be under way: no further on than this [us].
+    /// Answers from before a restart may still be in transit: their clock exceeds the last one by at most this [us].
     static constexpr Micros kAfterlife = 3 * kStepOfBoard;
 
 private:
     bool begun_ = false;
     bool bound_ = false;
-    bool restarts_ = false;  ///< let go, and no answer of the new life yet
-    Micros last_ = -1;       ///< what the board told last
+    bool restarts_ = false;  ///< let go, and no answer since the restart
+    Micros last_ = -1;       ///< last clock value that the board reported
     Micros offset_ = 0;      ///< plant's time less the board's
     Micros from_ = 0;        ///< free: the plant's time at `wall_`
-    double wall_ = 0.0;      ///< when it was told, or let go
+    double wall_ = 0.0;      ///< wall time of the last report, or of let_go()
     unsigned times_deaf_ = 0;
 };
 
-/// The UART of an emulated board: datagrams, as qemu takes them whole, and the plant's time kept with the board's by
-/// asking for it with TIMESYNC, in the autopilot's name.
+/// The UART of an emulated board, carried in datagrams. Synchronises the plant with the board's clock by TIMESYNC
+/// requests in the autopilot's name.
 class BoardLine {
 public:
-    /// qemu's options for the line, and for a clock that counts instructions: 8 ns each; while the board waits, its
-    /// time goes on as the wall's.
+    /// qemu's options for the line, and for a clock that counts instructions: 8 ns each. While the board waits, its
+    /// clock follows wall time.
     [[nodiscard]] std::vector<std::string> options() const;
 
-    /// What the board said since the last call. `plant`: the plant's time.
+    /// Bytes from the board since the last call. `plant`: the plant's time.
     [[nodiscard]] std::vector<std::byte> listen(Micros plant);
     /// Queues telemetry.
     void say(std::span<const std::byte> bytes);
-    /// Sends what is queued, as far as the emulator takes it, and asks for the time.
+    /// Sends queued bytes as far as the emulator takes them, and requests the time.
     void flush();
 
-    /// Where the plant is to be now.
+    /// Plant time that is due now.
     [[nodiscard]] Micros due(Micros plant) { return clock_.due(plant, wall()); }
     void let_go(Micros plant) { clock_.let_go(plant, wall()); }
     [[nodiscard]] const BoardClock& clock() const noexcept { return clock_; }
-    /// Datagrams lost by this machine, not by the board.
+    /// Datagrams lost by the host, not by the board.
     [[nodiscard]] std::uint64_t dropped() const { return line_.dropped(); }
 
-    /// Since the line began [s].
+    /// Wall time since the line began [s].
     [[nodiscard]] double wall() const;
 
 private:

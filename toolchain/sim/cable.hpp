@@ -9,7 +9,7 @@
 
 namespace jink::sim {
 
-/// A serial cable in memory between the autopilot's end, which this is, and the co-processor's.
+/// A serial cable in memory. This object is the autopilot's end; Port is the co-processor's end.
 class Cable final : public LineEnd {
 public:
     Cable(hal::Clock& clock, std::uint64_t seed, const Timing& timing)

@@ -14,7 +14,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-extern "C" char** environ;  // POSIX names it and declares it nowhere
+extern "C" char** environ;  // POSIX defines it without a declaration in any header
 
 namespace jink::sim {
 
@@ -26,7 +26,7 @@ PseudoTerminal::PseudoTerminal() : master_(::posix_openpt(O_RDWR | O_NOCTTY | O_
         throw std::runtime_error(std::string("no pseudo-terminal: ") + std::strerror(errno));
     }
     path_ = name.data();
-    // Held open, so that what is written before the program opens it is neither lost nor echoed.
+    // Held open, so that bytes written before the program opens the terminal are neither lost nor echoed.
     slave_ = ::open(path_.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
     termios settings{};
     if (slave_ < 0 || ::tcgetattr(slave_, &settings) != 0) {
@@ -106,7 +106,7 @@ Child::Threads Child::threads() const
         std::string stat;
         if (!(std::ifstream(i->path() / "schedstat") >> ran >> waited) ||
             !std::getline(std::ifstream(i->path() / "stat"), stat)) {
-            continue;  // over meanwhile
+            continue;  // ended meanwhile
         }
         // ID (NAME) STATE ...
         const std::size_t name_ends = stat.rfind(')');

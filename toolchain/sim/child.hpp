@@ -13,10 +13,10 @@
 
 namespace jink::sim {
 
-/// A pseudo-terminal in raw mode; the simulator holds its master end and keeps the other one alive.
+/// A pseudo-terminal in raw mode. The simulator holds its master end and keeps the slave end open.
 class PseudoTerminal {
 public:
-    /// @throws std::runtime_error when none is to be had
+    /// @throws std::runtime_error when no pseudo-terminal is available
     PseudoTerminal();
     ~PseudoTerminal();
     PseudoTerminal(const PseudoTerminal&) = delete;
@@ -24,9 +24,9 @@ public:
 
     /// Device for the other side.
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
-    /// What has arrived, without waiting.
+    /// Bytes received so far. Does not block.
     [[nodiscard]] std::span<const std::byte> read();
-    /// Bytes taken, without waiting; less than all when the other side does not read.
+    /// Does not block. @return bytes accepted; fewer than given when the other side does not read
     [[nodiscard]] std::size_t write(std::span<const std::byte> bytes);
 
 private:
@@ -36,11 +36,11 @@ private:
     std::array<std::byte, 8192> buffer_{};
 };
 
-/// A program that was started, and is killed when nobody stopped it before.
+/// A started program. The destructor kills a program that still runs.
 class Child {
 public:
-    /// Starts `arguments[0]`, from the PATH where it names no folder, with its output in `log`. @throws
-    /// std::runtime_error when it cannot be started
+    /// Starts `arguments[0]` with its output in `log`. A name without a folder is searched in PATH. @throws
+    /// std::runtime_error when the program cannot be started
     Child(const std::vector<std::string>& arguments, const std::filesystem::path& log);
     ~Child();
     Child(const Child&) = delete;
@@ -52,12 +52,12 @@ public:
     struct Thread {
         double ran = 0.0;     ///< [s]
         double waited = 0.0;  ///< ready to run, until it last got a processor [s]
-        bool ready = false;   ///< it runs, or waits for a processor
+        bool ready = false;   ///< running, or waiting for a processor
     };
     using Threads = std::map<pid_t, Thread>;
-    /// Its threads (/proc/PID/task/*/schedstat); none where the system does not tell.
+    /// The program's threads (/proc/PID/task/*/schedstat); empty where the system does not report them.
     [[nodiscard]] Threads threads() const;
-    /// How it ended, in words; empty: it exited with 0. Only when it no longer runs.
+    /// How the program ended, in words; empty: exit status 0. Call only after the program ended.
     [[nodiscard]] std::string ending() const;
 
 private:

@@ -10,24 +10,24 @@
 
 namespace jink::sim {
 
-/// A closed volume or a storm cell: an upright cylinder that goes straight on. A ground station reports it at the start
-/// of the flight (AreaSender).
+/// A closed volume or a storm cell: an upright cylinder in straight level motion. A ground station reports it at the
+/// start of the flight (AreaSender).
 struct ClosedArea {
     std::string name;
     double radius = 1.0;         ///< [m]
     double bottom = 0.0;         ///< [m]
     double top = 0.0;            ///< [m]
     double margin = 0.0;         ///< soft, about the circle [m]
-    Vec centre = Vec::Zero();    ///< at time 0, z counts for nothing [m]
+    Vec centre = Vec::Zero();    ///< at time 0, z is ignored [m]
     Vec velocity = Vec::Zero();  ///< level [m/s]
 
     [[nodiscard]] Vec centre_at(double t) const { return centre + velocity * t; }
 };
 
-/// Distance of a point from the body at time `t` [m]; inside it below 0, by the least way out.
+/// Signed distance of a point from the body at time `t` [m]; inside negative, to the nearest surface.
 [[nodiscard]] double surface_distance(const ClosedArea& area, double t, const Vec& point);
 
-/// As reported by a sender whose clock shows `start` when the flight begins.
+/// The areas as reported by a sender whose clock reads `start` when the flight begins.
 [[nodiscard]] std::vector<app::Constraint> constraints_of(const std::vector<ClosedArea>& areas, TimePoint start);
 
 }  // namespace jink::sim

@@ -21,13 +21,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::microseconds;
 
-/// A step that begins this much too late is counted: the co-processor has then seen a gap and a burst.
+/// A step that begins this late is counted: the co-processor then receives a gap and a burst.
 constexpr auto kLate = microseconds(20'000);
-/// Beyond this a flight in which each tenth of a second counts may end otherwise than on a machine that runs evenly.
+/// Beyond this delay, a flight that depends on each tenth of a second may end differently than on an unloaded host.
 constexpr double kHeldUp = 0.015;  // [s]
 constexpr unsigned kAttempts = 4;
 
-/// Flies in step with the wall clock.
+/// Flies in real time.
 void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes)
 {
     auto next = Clock::now();
@@ -55,7 +55,7 @@ void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes
     }
 }
 
-/// What the program says of itself, as far as a record has a place for it.
+/// The program's own summary, as far as a record has fields for it.
 std::optional<Inside> read_summary(const std::filesystem::path& file)
 {
     std::ifstream in(file);
@@ -148,7 +148,7 @@ Record fly_once(const Scenario& scenario, const Computer& computer, const std::f
     return record;
 }
 
-/// The machine's doing, as far as can be told: it stood still, or held something up in a flight that went wrong.
+/// True for an inconclusive flight: the host stalled, or delayed something in a flight that ended unexpectedly.
 bool says_nothing(const Scenario& scenario, const Record& record)
 {
     return record.latest_step > HoldUp::kStall ||

@@ -52,7 +52,8 @@ DatagramLine::DatagramLine() : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEX
     if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0 || table_ < 0) {
         throw std::runtime_error("no line of datagrams");
     }
-    // The board says every byte in a datagram of its own. With the right to, room for seconds of them; else for 5 ms.
+    // The board sends every byte in a separate datagram. The buffer holds seconds of datagrams if the system permits
+    // the size, else 5 ms.
     const int room = 32 << 20;
     if (::setsockopt(socket_, SOL_SOCKET, SO_RCVBUFFORCE, &room, sizeof room) != 0) {
         static_cast<void>(::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &room, sizeof room));
@@ -75,7 +76,7 @@ std::vector<std::string> DatagramLine::options() const
     std::ostringstream device;
     device << "udp,id=line,mux=on,host=127.0.0.1,port=" << own_port_
            << ",localaddr=127.0.0.1,localport=" << other_port_;
-    // The multiplexer's escape character is no byte: all of them belong to the board.
+    // The multiplexer's escape character is outside the byte range: all bytes belong to the board.
     return {"-echr", "0x100", "-chardev", device.str(), "-serial", "chardev:line"};
 }
 

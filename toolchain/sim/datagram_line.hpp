@@ -11,12 +11,12 @@
 
 namespace jink::sim {
 
-/// An emulated UART's line through datagrams on this machine. qemu takes bytes from a pseudo-terminal or a socket one
-/// at a time, a system call and a turn of its main loop each: too slow for a full line at 921600 baud. Datagrams it
-/// takes whole, and its multiplexer hands their bytes on as the UART reads them.
+/// An emulated UART's line through local datagrams. qemu takes bytes from a pseudo-terminal or a socket singly, with a
+/// system call and a main-loop iteration each: too slow for a full line at 921600 baud. qemu takes datagrams whole, and
+/// its multiplexer hands on their bytes as the UART reads.
 ///
-/// Datagrams have no back pressure: `may_send` looks at what waits at the emulator, and what the system dropped is
-/// told, so that a loss of the host's is not taken for one of the board's.
+/// Datagrams have no back pressure: `may_send` checks the emulator's receive queue, and `dropped` reports the system's
+/// losses, so that host losses are not attributed to the board.
 class DatagramLine {
 public:
     /// @throws std::runtime_error
@@ -25,14 +25,14 @@ public:
     DatagramLine(const DatagramLine&) = delete;
     DatagramLine& operator=(const DatagramLine&) = delete;
 
-    /// qemu's options for it: a character device of the name `line`.
+    /// qemu's options for the line: a character device named `line`.
     [[nodiscard]] std::vector<std::string> options() const;
 
-    /// False while the emulator is behind by more than a few datagrams: a burst that it would hand on at once is what
-    /// no line does, and the board's ring need not hold.
+    /// False while more than a few datagrams wait at the emulator. The emulator would hand them on as a burst that a
+    /// real line cannot produce and that the board's ring need not hold.
     [[nodiscard]] bool may_send() const;
     void send(std::span<const std::byte> bytes);
-    /// What has arrived since the last call.
+    /// Bytes received since the last call.
     [[nodiscard]] std::vector<std::byte> take();
 
     /// Datagrams that the system dropped, both ways.

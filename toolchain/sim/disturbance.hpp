@@ -10,9 +10,9 @@
 
 namespace jink::sim {
 
-/// The estimator's errors. All 0: own state is told as it is.
+/// The estimator's errors. All 0: the own state is exact.
 struct OwnSensor {
-    double latency = 0.0;        ///< what is told is this old [s]
+    double latency = 0.0;        ///< age of the reported state [s]
     double bias = 0.0;           ///< of the position, level, per axis: standard deviation [m]
     double bias_vertical = 0.0;  ///< the same of the height: the barometer's drift [m]
     double bias_time = 60.0;     ///< correlation time of both (Gauss-Markov) [s]
@@ -20,15 +20,15 @@ struct OwnSensor {
 
 /// Gusts by the Dryden model of MIL-F-8785C for low altitudes (below 1000 ft).
 struct Wind {
-    double at_20_ft = 0.0;  ///< wind speed 6.1 m above the ground, which says how strong gusts are [m/s]; 0: calm
+    double at_20_ft = 0.0;  ///< wind speed 6.1 m above the ground, sets the gust intensity [m/s]; 0: calm
 };
 
-/// What the autopilot believes of its own motion. The same seed gives the same errors, whatever is asked of it.
+/// The autopilot's estimate of its own motion. The same seed gives the same errors, independent of the calls.
 class OwnEstimate {
 public:
     OwnEstimate(const OwnSensor& sensor, std::uint64_t seed);
 
-    /// One kStep on. O(1).
+    /// Advances by one kStep. O(1).
     void step(const Truth& truth);
     [[nodiscard]] const Truth& told() const noexcept { return told_; }
     [[nodiscard]] const Vec& bias() const noexcept { return bias_; }
@@ -46,9 +46,9 @@ class Gusts {
 public:
     Gusts(const Wind& wind, std::uint64_t seed);
 
-    /// One kStep on, at a height above the ground [m] and a speed through the air [m/s]. O(1).
+    /// Advances by one kStep, at a height above the ground [m] and an airspeed [m/s]. O(1).
     void step(double height, double airspeed);
-    /// In the axes of a vehicle with this course [m/s].
+    /// Gust velocity in the axes of a vehicle with this course [m/s].
     [[nodiscard]] Vec velocity(double course) const;
     [[nodiscard]] bool is_calm() const noexcept { return wind_.at_20_ft <= 0.0; }
 

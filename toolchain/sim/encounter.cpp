@@ -19,7 +19,7 @@ constexpr std::array kStacks{Stack::ardupilot, Stack::px4};
 constexpr std::array kOutcomes{Outcome::clear,  Outcome::avoided,   Outcome::braked,
                                Outcome::breach, Outcome::collision, Outcome::failed};
 
-/// The columns in their order, for writer and reader alike.
+/// The columns in their order, for both writer and reader.
 template <class Result, class Visit>
 void each_column(Result& r, Visit&& visit)
 {
@@ -98,7 +98,7 @@ bool read(std::string_view text, Number& value)
     return bad == std::errc{} && end == text.data() + text.size();
 }
 
-/// What the manoeuvre cost: deviation from the leg, and effort.
+/// The manoeuvre's costs: deviation from the leg, and effort.
 void measure(const Scenario& scenario, const std::vector<Sample>& samples, EncounterResult& result)
 {
     const Vec& start = scenario.mission[0];
@@ -127,7 +127,7 @@ void measure(const Scenario& scenario, const std::vector<Sample>& samples, Encou
 std::string refusal_of(const Variant& variant)
 {
     app::Parameters parameters;
-    // What is refused now may fit once another one is set: the autopilot asks again and again.
+    // A parameter that is refused now may be accepted once another is set: the autopilot repeats its requests.
     std::string refused;
     for (std::size_t round = 0; round <= variant.parameters.size(); ++round) {
         refused.clear();

@@ -81,7 +81,7 @@ std::string fly_block(const EncounterSetup& setup, std::size_t index, const std:
     return text;
 }
 
-/// A file that replays one of the worst encounters: it is expected to end as it did.
+/// A file that repeats one of the worst encounters and expects the same ending.
 void write_replay(const BlockFolder& folder, const Variant& variant, const EncounterResult& result)
 {
     Scenario scenario = encounter_scenario(result.seed, variant);

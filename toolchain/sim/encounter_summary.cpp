@@ -83,7 +83,7 @@ void put_promises(std::string& text, const Results& results)
               all);
     put_share(text, "... avoidable also 0.05 s later",
               count_if(results, [](const EncounterResult& r) { return r.failed_avoidable && r.late_keep > 0; }), all);
-    // Of the scenarios' promise (Scenario::promise).
+    // Compared with the default Scenario::promise, which all encounters use.
     put_share(text, "... avoidable, and broken without the sensors' noise too",
               count_if(results,
                        [](const EncounterResult& r) { return r.failed_avoidable && r.noiseless < Scenario{}.promise; }),

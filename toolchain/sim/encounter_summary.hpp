@@ -12,9 +12,9 @@ namespace jink::sim {
 /// broken, then the others; within each the least separation first, then the smaller seed.
 [[nodiscard]] std::vector<EncounterResult> worst_of(std::vector<EncounterResult> results);
 
-/// What all encounters come to, as text: counts with shares and their 95 % intervals (statistics.hpp), quantiles,
-/// changes of side, effort, the same per number of intruders, every broken promise, and the ten worst. Equal for equal
-/// results, byte by byte.
+/// Summary of all encounters as text: counts with shares and their 95 % intervals (statistics.hpp), quantiles, side
+/// changes, effort, the same per number of intruders, every broken promise, and the ten worst. Byte-identical for equal
+/// results.
 [[nodiscard]] std::string summary_text(const FolderSetup& setup, const std::vector<EncounterResult>& results);
 
 }  // namespace jink::sim

@@ -23,19 +23,19 @@ struct EncountersOptions {
     std::string planner = "product";
     std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;
-    std::string summary;   ///< a folder to be summarised; nothing is flown
-    unsigned threads = 0;  ///< 0: as many as the machine has cores
+    std::string summary;   ///< folder to summarise; nothing is flown
+    unsigned threads = 0;  ///< 0: number of cores
     bool quiet = false;
 };
 
-/// Adds the command's options. @param with_threads  not where processes share the work
+/// Adds the command's options. @param with_threads  false where processes share the work
 CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads);
 
-/// @throws std::runtime_error when options contradict each other or the seed file is of no use
+/// @throws std::runtime_error when options contradict each other or the seed file is invalid
 [[nodiscard]] EncounterSetup setup_of(const EncountersOptions& options);
 
-/// Reads the folder, writes its summary, prints it, and says how it ended: 0; 1 when a promise was broken that could
-/// have been kept, or a rule. @throws BadFolder
+/// Reads the folder, writes and prints its summary. @return exit status: 1 when an avoidable broken promise or a broken
+/// rule occurred, else 0. @throws BadFolder
 int conclude_encounters(const BlockFolder& folder, bool quiet);
 
 /// The whole command in one process; exit status as above. @throws BadFolder, std::runtime_error

@@ -6,8 +6,7 @@
 
 namespace jink::sim {
 
-/// The candidates of the plan that the co-processor has just made, for a picture; `chosen` says which one it took, in
-/// words.
+/// The candidates of the co-processor's latest plan, for plotting; `chosen` names the chosen candidate in words.
 [[nodiscard]] std::vector<FanCurve> fan_of(const app::Coprocessor& coprocessor, const app::StepReport& report,
                                            std::string& chosen);
 

@@ -11,7 +11,7 @@
 
 namespace jink::sim {
 
-/// Who sends on the autopilot's side of the cable.
+/// A sender on the autopilot's side of the cable.
 struct Sender {
     std::uint8_t system = 1;
     std::uint8_t component = 1;
@@ -21,8 +21,8 @@ inline constexpr Sender kAdsbReceiver{1, 156};
 inline constexpr Sender kRangefinder{1, 158};
 inline constexpr Sender kGroundStation{255, 190};
 
-/// Encodes messages one behind the other, each sender with its own running number. Those of the vehicle, which stand
-/// above as system 1, go out as the system that it is.
+/// Encodes messages in sequence, with a sequence number per sender. The vehicle's own senders, system 1 above, are sent
+/// with the vehicle's actual system id.
 class FrameWriter {
 public:
     explicit FrameWriter(std::uint8_t system = kAutopilot.system) : system_(system) {}
@@ -37,7 +37,7 @@ public:
         bytes_.insert(bytes_.end(), frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n));
     }
 
-    /// Running numbers start again, as after a reboot.
+    /// Restarts the sequence numbers, as after a reboot.
     void restart() { sequences_.clear(); }
     [[nodiscard]] std::vector<std::byte>& bytes() noexcept { return bytes_; }
 

@@ -49,7 +49,7 @@ double HoldUp::look(const Sample& now)
         }
         held = std::max(held, thread.waited - before->second.waited);
         if (thread.ready && thread.ran == before->second.ran) {
-            // The first look that finds it so may have come just before its turn.
+            // The first sample that finds the thread runnable may come just before its turn.
             held = std::max(held, now.wall - ready_since_.try_emplace(id, now.wall).first->second);
         } else {
             ready_since_.erase(id);

@@ -7,42 +7,43 @@
 
 namespace jink::sim {
 
-/// What this machine did to a program, not what the program did itself: the program's own account of its lateness would
-/// excuse the program too.
+/// Delays that the host imposed on a program, measured from outside. The program's own report of its lateness would
+/// also excuse the program's faults.
 class HoldUp {
 public:
     struct Sample {
         double wall = 0.0;    ///< now [s]
-        double stolen = 0.0;  ///< processor time that went to other machines, of all processors, since the start [s]
+        double stolen = 0.0;  ///< processor time taken by other virtual machines, sum over all processors, since the
+                              ///< start [s]
         Child::Threads threads;
     };
 
-    /// The longest of: a thread of the program left without a processor, ready to run; time stolen from this machine's
-    /// processors; no look at all. Since the look before, or still going on [s]; 0 at the first.
+    /// Takes one sample. @return the longest delay since the previous sample, or still in progress [s]; 0 at the first
+    /// sample. Counted are: a runnable thread of the program waiting for a processor, time stolen from the host's
+    /// processors, and a missing sample.
     double look(const Sample& now);
-    /// Looks where the last look lies kLookEvery back; for loops that turn faster.
+    /// Takes a sample if the last sample is kLookEvery old; for loops with a shorter period.
     void watch(const Child& child, double wall);
-    /// The longest of all looks [s].
+    /// The longest delay of all samples [s].
     [[nodiscard]] double longest() const noexcept { return longest_; }
 
-    /// At present; `wall` [s]. What the system does not tell is 0.
+    /// The present values; `wall` [s]. Values that the system does not report are 0.
     [[nodiscard]] static Sample sample(const Child& child, double wall);
 
-    /// Between two looks [s].
+    /// Interval between samples [s].
     static constexpr double kLookEvery = 0.02;
-    /// Beyond this the machine stood still, and a clock of an emulator leapt by it: nothing can be said of such a
-    /// flight [s].
+    /// A longer delay is a stall of the host: an emulator's clock jumps, and the flight is inconclusive [s].
     static constexpr double kStall = 0.1;
 
 private:
     Sample last_;
-    std::map<pid_t, double> ready_since_;  ///< found ready and not to have run since the look before
+    std::map<pid_t, double> ready_since_;  ///< threads found runnable that did not run since the previous sample
     double longest_ = 0.0;
     bool first_ = true;
 };
 
-/// `run(attempt, held_up)` returns its failures and tells how long this machine held it up; one that fails where the
-/// machine stood still says nothing and is run again, at most four times in all. The failures of the last.
+/// Calls `run(attempt, held_up)`, which returns its failures and sets the host's longest delay. A run that fails during
+/// a stall is inconclusive and is repeated, four runs at most. Returns the failures of the last run.
 template <class Run>
 int run_unheld(Run run)
 {

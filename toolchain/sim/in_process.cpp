@@ -16,10 +16,10 @@
 namespace jink::sim {
 namespace {
 
-/// The co-processor's clock has nothing to do with the autopilot's.
+/// The co-processor's clock is independent of the autopilot's.
 constexpr std::int64_t kClockStart = 1'234'567'890;
 
-/// Listens in on a line: what each step reads and writes.
+/// Records the bytes that each step reads and writes on a line.
 class Tap final : public hal::SerialPort {
 public:
     Tap(hal::SerialPort& line, std::ostream* steps) : line_(line), steps_(steps) {}

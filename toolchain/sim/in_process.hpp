@@ -8,20 +8,20 @@
 
 namespace jink::sim {
 
-/// Flies a scenario with the co-processor in this process: Coprocessor and MAVLink endpoint at one end of a line in
-/// memory, the plant at the other, both on one clock that stands still until it is told. As fast as the machine allows;
-/// the same scenario gives the same record, times of steps aside (processor time of the thread).
+/// Flies a scenario with the co-processor in this process. Coprocessor and MAVLink endpoint are at one end of a line in
+/// memory, the plant at the other, both on one simulated clock. Runs as fast as the host allows. The same scenario
+/// gives the same record, except for step times (processor time of the thread).
 ///
-/// @param steps  where given, takes what went over the line in each step (step_record.hpp)
+/// @param steps  where given, receives the line's traffic of each step (step_record.hpp)
 [[nodiscard]] Record fly_in_process(const Scenario& scenario, std::ostream* steps = nullptr);
 
-/// The same where time goes otherwise.
+/// The same with another timing.
 [[nodiscard]] Record fly_in_process(const Scenario& scenario, const Timing& timing, std::ostream* steps = nullptr);
 
 /// The same with MAVLink through the tunnel of a DroneCAN bus of 1 Mbit/s in memory (tunnel_line.hpp).
 [[nodiscard]] Record fly_through_tunnel(const Scenario& scenario);
 
-/// The same flight with nobody at the other end of the cable: what would have happened.
+/// The same flight without a co-processor.
 [[nodiscard]] Record fly_alone(const Scenario& scenario);
 
 }  // namespace jink::sim

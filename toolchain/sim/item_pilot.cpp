@@ -8,17 +8,17 @@
 namespace jink::sim {
 namespace {
 
-/// A leg is flown towards the point this far ahead [m].
+/// Look-ahead distance along a leg [m].
 constexpr double kCarrot = 6.0;
 /// Approach of a place where the vehicle stops [1/s].
 constexpr double kApproach = 0.8;
-/// LAND and RETURN_TO_LAUNCH: rate of descent [m/s], begun this near to the place [m].
+/// LAND and RETURN_TO_LAUNCH: rate of descent [m/s], and distance to the place at which the descent begins [m].
 constexpr double kDescent = 1.5;
 constexpr double kAbove = 1.0;
-/// Circles: pull towards the circle [1/m], and how near to it counts as on it [m].
+/// Circles: gain towards the circle [1/m], and tolerance of being on the circle [m].
 constexpr double kPull = 0.3;
 constexpr double kOnCircle = 3.0;
-/// A take-off is done this far below its height [m].
+/// A take-off is done within this distance below its height [m].
 constexpr double kClimbed = 0.8;
 
 }  // namespace
@@ -51,7 +51,7 @@ void ItemPilot::replace(const std::vector<Item>& items, const Truth& own)
     resume(own);
 }
 
-/// Commands between the items that are flown take no time.
+/// Commands between flown items take no time.
 void ItemPilot::skip_commands()
 {
     for (std::size_t i = 0; i < 4 * items_.size(); ++i) {
@@ -103,7 +103,7 @@ const Item* ItemPilot::next_place() const
     return nullptr;
 }
 
-/// Along the line from where the item began.
+/// Along the line from the item's start.
 Vec ItemPilot::towards(const Vec& goal, const Truth& own, bool stops) const
 {
     const Vec span = goal - from_;
@@ -117,7 +117,7 @@ Vec ItemPilot::towards(const Vec& goal, const Truth& own, bool stops) const
     return along(from_ + span * (s / length) - own.position, speed, scenario_.vehicle);
 }
 
-/// A cubic that leaves in the present direction and comes in along the direction to the next place.
+/// A cubic that starts in the present direction and ends in the direction to the next place.
 Vec ItemPilot::on_curve(const Item& item, const Truth& own)
 {
     const double length = (item.place - from_).norm();
@@ -132,7 +132,7 @@ Vec ItemPilot::on_curve(const Item& item, const Truth& own)
                       (3.0 * u * u - 2.0 * u * u * u) * item.place + (u * u * u - u * u) * m1;
     const double rate = slope.norm();
     const Vec behind = place - own.position;
-    // The point on the curve waits for a vehicle that is far off it.
+    // The point on the curve waits for a vehicle far off the curve.
     if (behind.norm() < 2.0 * kCarrot) {
         share_ += speed_ * to_seconds(kStep) / std::max(rate, 1.0);
     }
@@ -151,7 +151,7 @@ Vec ItemPilot::on_circle(const Item& item, const Truth& own)
     if (std::abs(off) < kOnCircle) {
         turned_ += std::abs(own.velocity.dot(clockwise)) * to_seconds(kStep) / std::max(distance, 1.0);
     }
-    // On the circle the command leads the vehicle inwards by what its velocity loop lags.
+    // On the circle the command points inwards to compensate the lag of the velocity loop.
     const double lead = 2.0 * scenario_.vehicle.damping / scenario_.vehicle.omega * speed_ / item.value;
     Vec course = clockwise - radial * (std::clamp(kPull * off, -3.0, 3.0) + lead);
     course = course.normalized() * speed_;

@@ -14,19 +14,19 @@ namespace {
 
 constexpr int kDirections = 240;
 constexpr double kSpeeds[] = {1.0, 0.6, 0.3};
-/// The truth is looked ahead this far for a conflict [s].
+/// Look-ahead of the true motion for a conflict [s].
 constexpr double kLookahead = 12.0;
-/// And asked this often [us].
+/// Interval between conflict checks [us].
 constexpr Micros kAskEvery = 50'000;
-/// Step of the manoeuvres that are tried [s].
+/// Step of the tried manoeuvres [s].
 constexpr double kTrialStep = 0.01;
-/// A separation that no flight falls below [m].
+/// A separation below that of any flight [m].
 constexpr double kNeverEnough = -1e8;
 
-/// What rounding may add to distances of kilometres [m].
+/// Bound on rounding errors of distances of kilometres [m].
 constexpr double kRounding = 1e-6;
 
-/// The greatest speed that a threat ever has [m/s].
+/// The greatest speed of a threat over all turns [m/s].
 double most_speed(const Threat& threat)
 {
     double most = threat.velocity.norm();
@@ -39,13 +39,13 @@ double most_speed(const Threat& threat)
 /// A threat that counts in a trial.
 struct Counted {
     const Threat* threat = nullptr;
-    double in_step = 0.0;  ///< how far it goes in one step at most [m]
-    double slack = 0.0;    ///< so far can both still go before it could be nearer than anything was [m]
+    double in_step = 0.0;  ///< largest distance travelled in one step [m]
+    double slack = 0.0;    ///< distance that both can travel before this threat could set a new minimum [m]
 };
 
-/// Least separation of the rest of the flight under `command(position)`, from `start` on, towards the threats that
-/// `counts`; ends early once it is below `enough`. A threat is looked at again only when it could be nearer than
-/// anything was before, which leaves the result as it is.
+/// Least separation of the rest of the flight under `command(position)`, from `start` on, towards the threats selected
+/// by `counts`. Ends early once the separation is below `enough`. A threat is checked again only when it could set a
+/// new minimum; the result is unaffected.
 template <class Command, class Counts>
 double least_separation(const Scenario& scenario, Truth truth, double start, double horizon, double enough,
                         Command&& command, Counts&& counts)

@@ -5,27 +5,28 @@
 
 namespace jink::sim {
 
-/// Whether an encounter could have been avoided, found out by trying.
+/// Whether an encounter was avoidable, determined by trial.
 struct Verdict {
-    bool conflict = false;   ///< the mission, flown on, breaks the promise towards a threat that was told of
-    double detected = 0.0;   ///< first instant at which the truth says so; of `judge_from` the instant given [s]
-    bool avoidable = false;  ///< some manoeuvre keeps the promise towards all threats, seen or not
-    unsigned keep = 0;       ///< how many of those tried
+    bool conflict = false;   ///< the mission, if continued, breaks the promise towards a reported threat
+    double detected = 0.0;   ///< first instant at which the true motion leads to `conflict`; the given instant for
+                             ///< `judge_from` [s]
+    bool avoidable = false;  ///< at least one manoeuvre keeps the promise towards all threats, detected or not
+    unsigned keep = 0;       ///< number of tried manoeuvres that do
     unsigned tried = 0;
-    double best = 0.0;  ///< greatest least separation of all that were tried [m]
+    double best = 0.0;  ///< greatest least separation of the tried manoeuvres [m]
     Vec best_command = Vec::Zero();
 };
 
-/// How far the manoeuvres are flown. What keeps the promise, and how many do, is the same.
+/// How far the manoeuvres are flown. `avoidable` and `keep` are the same for both.
 enum class Trials : std::uint8_t {
-    to_the_end,    ///< all of them: `best` is known whatever it is
-    until_broken,  ///< as far as each keeps the promise, a third of the work: `best` is of those that keep it
+    to_the_end,    ///< all to the horizon: `best` is always exact
+    until_broken,  ///< each until it breaks the promise, a third of the work: `best` covers only manoeuvres that keep
+                   ///< the promise
 };
 
-/// Judges a scenario with perfect knowledge and without core's code: flies the mission alone to the instant of
-/// detection, then from there each of 240 directions at three speeds, and braking, as constant velocity commands
-/// through the true vehicle model against the true motion of all threats for `horizon` seconds. O(commands * steps *
-/// threats).
+/// Judges a scenario with perfect knowledge and without core's code. Flies the mission alone to the instant of
+/// detection. From there flies 240 directions at three speeds, and braking, as constant velocity commands through the
+/// true vehicle model against the true motion of all threats for `horizon` seconds. O(commands * steps * threats).
 [[nodiscard]] Verdict judge(const Scenario& scenario, double horizon = 12.0, Trials trials = Trials::to_the_end);
 
 /// The same manoeuvres from a given true state at a given time.

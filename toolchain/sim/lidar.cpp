@@ -16,12 +16,12 @@ namespace cloud = link::cloud;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kGravity = 9.80665;
 constexpr double kNever = std::numeric_limits<double>::infinity();
-/// Of the sensor's clock before the flight's.
+/// Lead of the sensor's clock over the flight's [ms].
 constexpr std::int64_t kClockAheadMs = 7000;
-/// What is nearer the sensor cannot measure [m].
+/// Least measurable range [m].
 constexpr double kBlind = 0.1;
 
-/// Part of a ray, by range [m]; empty when it ends before it begins.
+/// Part of a ray, by range [m]; empty when its end is below its begin.
 struct Stretch {
     double begin = -kNever;
     double end = kNever;
@@ -31,7 +31,7 @@ struct Stretch {
         begin = std::max(begin, from);
         end = std::min(end, to);
     }
-    /// First range that lies in it and ahead; negative: none.
+    /// First range >= 0 in the part; negative: none.
     [[nodiscard]] double first() const noexcept { return begin > end || end < 0.0 ? -1.0 : std::max(0.0, begin); }
 };
 
@@ -48,7 +48,7 @@ Stretch between_planes(double gap, double along, double half) noexcept
     return {std::min(a, b), std::max(a, b)};
 }
 
-/// Within `radius` of a point, in as many dimensions as are given. `along` may be shorter than 1.
+/// Within `radius` of a point, in N dimensions. `along` may be shorter than 1.
 template <int N>
 Stretch within(const Eigen::Matrix<double, N, 1>& gap, const Eigen::Matrix<double, N, 1>& along, double radius) noexcept
 {
@@ -121,7 +121,7 @@ Eigen::Matrix3d platform_to_world(const Tilt& tilt, double yaw)
 
 std::vector<LidarRay> rays_of(const LidarSensor& sensor)
 {
-    // A little more than the quotient, so that a field of a whole number of pitches has all of them.
+    // Slightly more than the quotient, so that a field of a whole number of pitches has all of them.
     constexpr double kRounding = 1e-9;
     const bool closes = sensor.level >= 360.0;
     const int columns = std::max(1, static_cast<int>(sensor.level / sensor.pitch + kRounding) + (closes ? 0 : 1));

@@ -28,7 +28,7 @@ namespace {
 using namespace jink::sim;
 namespace fs = std::filesystem;
 
-/// Exit status for a command line that is wrong, and of `encounters` for a folder or a list that is of no use.
+/// Exit status for a wrong command line, and of `encounters` for an invalid folder or list.
 constexpr int kRefused = 2;
 
 struct Options {
@@ -48,7 +48,7 @@ struct Options {
     bool within_phases = false;
 };
 
-/// jinkd beside this program, or where a build folder has it.
+/// jinkd beside this program, or at its place in a build folder.
 fs::path find_daemon()
 {
     const fs::path here = fs::read_symlink("/proc/self/exe").parent_path();
@@ -76,7 +76,7 @@ std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_
     return scenarios;
 }
 
-/// In process; with a folder given, NAME.steps is left there.
+/// Flies in process; with a folder, writes NAME.steps there.
 Record fly_recorded(const Scenario& scenario, const std::string& folder)
 {
     if (folder.empty()) {
@@ -116,7 +116,8 @@ std::vector<ReportedFlight> fly_random(std::uint64_t first, unsigned count, unsi
     return flights;
 }
 
-/// Judged flights count as bad only where the judge knew a way out; the others by their expectation.
+/// Judged flights count as bad only if the judge has a manoeuvre that keeps the promise; other flights by their
+/// expectation.
 bool is_bad(const ReportedFlight& flight)
 {
     return flight.judged ? flight.failed_avoidable || flight.record.outcome == Outcome::failed : !flight.unmet.empty();
@@ -224,7 +225,7 @@ int demo(const Options& options)
     std::vector<ReportedFlight> flights;
     for (std::size_t i = 0; i < scenarios.size(); ++i) {
         ReportedFlight flight = report_on(scenarios[i], std::move(records[i]), false);
-        // The picture of the candidates is only to be had from inside.
+        // The candidates are only available in process.
         Record inside = fly_in_process(scenarios[i]);
         if (flight.record.inside && inside.inside) {
             flight.record.inside->fan = inside.inside->fan;

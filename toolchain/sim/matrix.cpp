@@ -10,10 +10,10 @@ namespace jink::sim {
 namespace {
 
 constexpr int kCriticalSeverity = 2;  // MAV_SEVERITY_CRITICAL
-/// The judge's manoeuvres go on for this long after the closest approach [s].
+/// The judge's manoeuvres continue for this long after the closest approach [s].
 constexpr double kBeyond = 3.0;
 
-/// Whether a manoeuvre of the judge keeps the promise from where the vehicle was at the first sighting.
+/// Whether a judge's manoeuvre keeps the promise from the vehicle's state at the first sighting.
 bool is_avoidable(const Scenario& scenario, const Record& record)
 {
     const double told = record.told.front();

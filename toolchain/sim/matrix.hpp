@@ -11,16 +11,16 @@
 
 namespace jink::sim {
 
-/// What the vehicle does when the intruder meets it. Distances and speeds are a multirotor's; a plane's are in
-/// matrix_plane.cpp.
+/// The vehicle's behaviour when the intruder arrives. Distances and speeds are for a multirotor; matrix_plane.cpp has a
+/// plane's.
 enum class Behaviour : std::uint8_t {
     leg,           ///< a later leg of a mission at 5 m/s
     first_leg,     ///< the first leg, after a take-off in a guided mode
-    off_leg,       ///< the mission goes on 18 m beside its leg
-    fast,          ///< a mission at 12 m/s, which the co-processor's parameters do not say
+    off_leg,       ///< the mission continues at a parallel offset of 18 m from its leg
+    fast,          ///< a mission at 12 m/s, unknown to the co-processor's parameters
     speed_change,  ///< DO_CHANGE_SPEED to 10 m/s
     turns,         ///< LOITER_TURNS
-    wait,          ///< LOITER_TIME: stands in the mission mode; a plane circles
+    wait,          ///< LOITER_TIME: hovers in the mission mode; a plane circles
     take_off,      ///< TAKEOFF item
     land_item,     ///< LAND item
     home_item,     ///< RETURN_TO_LAUNCH item
@@ -30,8 +30,8 @@ enum class Behaviour : std::uint8_t {
     hold,          ///< LOITER, AUTO.LOITER
     home,          ///< RTL, AUTO.RTL
     land,          ///< LAND, AUTO.LAND
-    pilot,         ///< POSHOLD, POSCTL, FLY_BY_WIRE_B: left to itself, then moved
-    guided,        ///< somebody else's target
+    pilot,         ///< POSHOLD, POSCTL, FLY_BY_WIRE_B: holds position, then moves
+    guided,        ///< target of another sender
 };
 inline constexpr std::array kBehaviours{
     Behaviour::leg,    Behaviour::first_leg, Behaviour::off_leg,  Behaviour::fast,      Behaviour::speed_change,
@@ -44,7 +44,7 @@ inline constexpr std::array kMeetings{Meeting::head_on,    Meeting::from_left,  
                                       Meeting::overtaking, Meeting::from_above, Meeting::from_below,
                                       Meeting::at_turn};
 
-/// A column of the matrix: another one takes its vehicle and its parameters in matrix_scenario.cpp.
+/// A column of the matrix. matrix_scenario.cpp sets each column's vehicle and parameters.
 enum class Flyer : std::uint8_t { arducopter, px4, arduplane };
 inline constexpr std::array kFlyers{Flyer::arducopter, Flyer::px4, Flyer::arduplane};
 
@@ -52,13 +52,13 @@ inline constexpr std::array kFlyers{Flyer::arducopter, Flyer::px4, Flyer::ardupl
 [[nodiscard]] std::string_view to_string(Meeting meeting) noexcept;
 [[nodiscard]] std::string_view to_string(Flyer flyer) noexcept;
 
-/// False where the autopilot does not know such an item or mode. ArduPlane has no splines and no LAND mode, and leaves
-/// the mission mode for RTL at a RETURN_TO_LAUNCH item.
+/// False where the autopilot lacks the item or mode. ArduPlane has no splines and no LAND mode, and leaves the mission
+/// mode for RTL at a RETURN_TO_LAUNCH item.
 [[nodiscard]] bool can_fly(Flyer flyer, Behaviour behaviour) noexcept;
-/// The mission mode: the co-processor takes over there alone, and advises in all others.
+/// True for behaviours in the mission mode. The co-processor takes over only there, and advises in all other modes.
 [[nodiscard]] bool is_mission(Behaviour behaviour) noexcept;
 
-/// The flight without an intruder; `meets_at` is when one would meet it [s].
+/// The flight without an intruder; `meets_at`: time at which an intruder would arrive [s].
 struct Nominal {
     Scenario scenario;
     double meets_at = 0.0;
@@ -66,11 +66,12 @@ struct Nominal {
 [[nodiscard]] Nominal nominal_flight(Flyer flyer, Behaviour behaviour, std::uint64_t seed);
 
 enum class Conditions : std::uint8_t {
-    calm,   ///< sightings at 5 Hz with 0.3 m of noise
-    rough,  ///< ADS-B at 1 Hz in its steps, an estimator with bias, drift and latency, gusts of a wind of 15 kt
+    calm,   ///< traffic reports at 5 Hz with 0.3 m of noise
+    rough,  ///< ADS-B at 1 Hz with its quantisation, an estimator with bias, drift and latency, gusts of a wind of 15
+            ///< kt
 };
 
-/// One flight of a cell: one intruder, aimed at where the vehicle is without a co-processor.
+/// One flight of a cell: one intruder, aimed at the vehicle's position in the flight without a co-processor.
 [[nodiscard]] Scenario matrix_scenario(Flyer flyer, Behaviour behaviour, Meeting meeting, std::uint64_t seed,
                                        Conditions conditions = Conditions::calm);
 
@@ -79,11 +80,12 @@ struct Cell {
     Behaviour behaviour = Behaviour::leg;
     Meeting meeting = Meeting::head_on;
     unsigned flights = 0;
-    unsigned hits = 0;            ///< nearer than the promise
-    unsigned avoidable = 0;       ///< of them in the mission mode where the judge has a manoeuvre at the first sighting
-    unsigned unwarned = 0;        ///< hits that no COLLISION came before
+    unsigned hits = 0;            ///< flights with a separation below the promise
+    unsigned avoidable = 0;       ///< hits in the mission mode for which the judge has a manoeuvre at the first
+                                  ///< sighting
+    unsigned unwarned = 0;        ///< hits without a preceding COLLISION
     unsigned taken_over = 0;      ///< flights with a take-over
-    unsigned given_back = 0;      ///< of them
+    unsigned given_back = 0;      ///< take-overs with control given back
     unsigned finished = 0;        ///< missions
     unsigned critical_texts = 0;  ///< of the autopilot, caused by the co-processor
     unsigned own_critical = 0;    ///< flights with a text of severity CRITICAL or worse of the co-processor

@@ -132,7 +132,7 @@ void print_cells(std::ostream& out, const MatrixOptions& options, const std::vec
 
 void print(std::ostream& out, const Vec& v) { out << " " << v.x() << " " << v.y() << " " << v.z(); }
 
-/// Each change of mode, and where the vehicle is every 5 s, about home.
+/// Each change of mode, and the vehicle's position about home every 5 s.
 void print_samples(std::ostream& out, const Scenario& scenario, const Record& record)
 {
     constexpr std::size_t kEvery = 250;
@@ -152,7 +152,7 @@ void print_samples(std::ostream& out, const Scenario& scenario, const Record& re
     }
 }
 
-/// The flights of the cells once more, with what was said and broken in each.
+/// Repeats the flights of the cells and prints the texts and broken rules of each.
 void print_flights(std::ostream& out, const MatrixOptions& options, const std::vector<Cell>& cells)
 {
     for (const Cell& cell : cells) {

@@ -27,7 +27,8 @@ struct MatrixOptions {
 
 CLI::App& add_matrix(CLI::App& cli, MatrixOptions& options);
 
-/// Prints the cells. @return 1 when a hit was avoidable, a rule was broken or a text of the autopilot caused; else 0
+/// Prints the cells. @return 1 when a hit was avoidable, a rule was broken or the co-processor caused a text of the
+/// autopilot; else 0
 int run_matrix(const MatrixOptions& options, std::ostream& out);
 
 }  // namespace jink::sim

@@ -7,7 +7,7 @@
 #include "core/base/random.hpp"
 #include "toolchain/sim/matrix.hpp"
 
-// What the flights of multirotors and planes in the matrix share. Private to them.
+// Common parts of the matrix's multirotor and plane flights. Private to the matrix.
 
 namespace jink::sim::detail {
 
@@ -16,10 +16,10 @@ inline double between(Random& random, double low, double high)
     return low + (high - low) * static_cast<double>(random.uniform());
 }
 
-/// Places about home, with x along a course that is drawn.
+/// Places about home, with x along a random course.
 class Field {
 public:
-    /// @param height  of places that say no other, above home [m]
+    /// @param height  default height of places above home [m]
     Field(const Vec& home, double course, double height)
         : home_(home), x_(std::cos(course), std::sin(course), 0.0), height_(height)
     {
@@ -42,7 +42,7 @@ using Items = std::vector<Item>;
 
 [[nodiscard]] inline Item waypoint(const Vec& place) { return {ItemKind::waypoint, place, 0.0, 0}; }
 
-/// When the intruder meets the vehicle [s].
+/// Time at which the intruder reaches the vehicle [s].
 struct Times {
     double from, to;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What planes fly in the cells of the matrix.
+// Plane flights in the cells of the matrix.
 #include "toolchain/sim/arduplane.hpp"
 #include "toolchain/sim/matrix_parts.hpp"
 
@@ -8,9 +8,9 @@ namespace {
 
 constexpr double kPlaneCruise = 18.0;
 constexpr double kPlaneFast = 22.0;
-/// The mission ends on a circle: its radius and what the circle is flown beside [m].
+/// The mission ends on a circle: distance from its centre that counts as on the circle, radius plus tracking error [m].
 constexpr double kOnLastCircle = 75.0;
-/// LAND ends this near to its place [m].
+/// LAND ends within this distance of its place [m].
 constexpr double kTouchdown = 10.0;
 
 Item circle_at(const Vec& place) { return {ItemKind::circle, place, 0.0, 0}; }

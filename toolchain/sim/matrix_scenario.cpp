@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is flown in the cells of the matrix.
+// Flights in the cells of the matrix.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,7 +48,7 @@ using detail::Items;
 using detail::Times;
 using detail::waypoint;
 
-/// Missions that begin in the mission mode. Returns when the intruder meets the vehicle.
+/// Missions that begin in the mission mode. Returns the times at which the intruder reaches the vehicle.
 Times lay_out_mission(Behaviour behaviour, const Field& f, Scenario& s, NominalFlight& flight)
 {
     Items& items = flight.items;
@@ -153,12 +153,12 @@ Vec turned(const Vec& v, double angle)
             v.z()};
 }
 
-/// Intruders as fast as suits the vehicle that they meet.
+/// Intruder speeds that suit the vehicle.
 struct Intruders {
     double radius = 0.5;                            ///< [m]
     double slowest = 6.0, fastest = 12.0;           ///< [m/s]
-    double overtakes_by = 3.0, overtakes_at = 6.0;  ///< faster than the vehicle, from .. to [m/s]
-    double seen_late = 8.0, seen_early = 14.0;      ///< before they meet it, from .. to [s]
+    double overtakes_by = 3.0, overtakes_at = 6.0;  ///< excess speed over the vehicle, from .. to [m/s]
+    double seen_late = 8.0, seen_early = 14.0;      ///< before they reach the vehicle, from .. to [s]
 };
 
 Intruders intruders_of(Flyer flyer)
@@ -166,7 +166,7 @@ Intruders intruders_of(Flyer flyer)
     return flyer == Flyer::arduplane ? Intruders{3.0, 10.0, 20.0, 4.0, 8.0, 12.0, 18.0} : Intruders{};
 }
 
-/// The intruder's velocity when it meets a vehicle that flies at `own`, `height` above home.
+/// The intruder's velocity when it reaches a vehicle that flies at `own`, `height` above home.
 Vec velocity_of(Meeting meeting, const Intruders& kind, const Vec& own, double height, double seen_before,
                 Random& random)
 {

@@ -8,19 +8,19 @@
 
 namespace jink::sim {
 
-/// What the autopilot is doing, whatever its stack calls it.
+/// The autopilot's mode, independent of the stack's name for it.
 enum class Mode : std::uint8_t {
     mission,
-    external,  ///< GUIDED or OFFBOARD, asked for by the co-processor
+    external,  ///< GUIDED or OFFBOARD, requested by the co-processor
     hold,
     brake,
     home,
     pilot,
     land,
-    guided,  ///< flies to a place that somebody else chose: ArduPilot's GUIDED, PX4's AUTO.LOITER after DO_REPOSITION
+    guided,  ///< flies to a place set by another sender: ArduPilot's GUIDED, PX4's AUTO.LOITER after DO_REPOSITION
 };
 
-/// What a mission item asks for.
+/// Kind of a mission item.
 enum class ItemKind : std::uint8_t {
     waypoint,
     spline,  ///< curve to the place; ArduPilot only
@@ -31,7 +31,7 @@ enum class ItemKind : std::uint8_t {
     home,    ///< RETURN_TO_LAUNCH
     speed,   ///< DO_CHANGE_SPEED
     jump,    ///< DO_JUMP
-    circle,  ///< circles about the place for good, LOITER_UNLIM; planes only
+    circle,  ///< circles about the place without end, LOITER_UNLIM; planes only
 };
 
 struct Item {
@@ -40,19 +40,19 @@ struct Item {
     /// turns: radius [m]; wait: [s]; speed: [m/s]; jump: index of the item that follows, counted without ArduPilot's
     /// home
     double value = 0.0;
-    int count = 0;  ///< turns: how many; jump: how often
+    int count = 0;  ///< turns: number of turns; jump: number of jumps
 };
 
-/// A flight that is more than the legs between a scenario's waypoints.
+/// A flight with more than the legs between a scenario's waypoints.
 struct NominalFlight {
     std::vector<Item> items;     ///< the mission
-    std::vector<Item> uploaded;  ///< by a ground station on another line, as many as `items`
-    double upload_at = -1.0;     ///< when [s]; negative: never
+    std::vector<Item> uploaded;  ///< set by a ground station on another line, as many as `items`
+    double upload_at = -1.0;     ///< time of the upload [s]; negative: never
     Mode mode = Mode::mission;   ///< at the start
     Vec target = Vec::Zero();    ///< flown to in Mode::guided
-    double mission_at = -1.0;    ///< somebody else chooses Mode::mission then [s]; negative: never
-    double moved_at = -1.0;      ///< Mode::pilot: the place is held until then [s], and
-    Vec stick = Vec::Zero();     ///< this velocity flown from then on [m/s]
+    double mission_at = -1.0;    ///< time at which another sender chooses Mode::mission [s]; negative: never
+    double moved_at = -1.0;      ///< Mode::pilot: the place is held until this time [s]
+    Vec stick = Vec::Zero();     ///< velocity flown after `moved_at` [m/s]
 };
 
 }  // namespace jink::sim

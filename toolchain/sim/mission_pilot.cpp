@@ -6,9 +6,9 @@
 namespace jink::sim {
 namespace {
 
-/// The leg is flown towards the point this far ahead [m].
+/// Look-ahead distance along the leg [m].
 constexpr double kLegCarrot = 6.0;
-/// And that of a plane: NAVL1_PERIOD 17, NAVL1_DAMPING 0.75 [s].
+/// Look-ahead time of a plane: NAVL1_PERIOD 17, NAVL1_DAMPING 0.75 [s].
 constexpr double kPlaneCarrot = 4.06;
 /// Approach of the last waypoint [1/s].
 constexpr double kHoverGain = 0.8;

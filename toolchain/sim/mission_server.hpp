@@ -12,12 +12,12 @@
 
 namespace jink::sim {
 
-/// How each stack hands out its mission.
+/// Mission download server of each stack.
 ///
-/// ArduPilot answers each request by its item, in any order. PX4 (MavlinkMissionManager) serves a transfer: opened by
-/// MISSION_REQUEST_LIST, items in order from 0, the last one once more where it is repeated, ended by MISSION_ACK.
-/// Every other request ends the transfer with a CRITICAL text to the pilot; so does a transfer that rests for 5 s, and
-/// a request or MISSION_ACK of whom it does not take for its partner.
+/// ArduPilot answers each request with its item, in any order. PX4 (MavlinkMissionManager) serves a transfer:
+/// MISSION_REQUEST_LIST opens it, items follow in order from 0, a repeated request repeats the last item, MISSION_ACK
+/// ends it. The following end the transfer with a CRITICAL text to the pilot: every other request, a pause of 5 s, and
+/// a request or MISSION_ACK of a system that is not the transfer's partner.
 class MissionServer {
 public:
     /// @param writer  outlives the server
@@ -27,9 +27,9 @@ public:
     /// A frame of the mission protocol.
     void receive(const link::mavlink::Frame& frame, const std::vector<link::mavlink::MissionItemInt>& items,
                  std::uint32_t id, Micros now);
-    /// Ends a transfer that rests.
+    /// Ends a transfer that pauses too long.
     void step(Micros now);
-    /// After a restart nobody is its partner.
+    /// After a restart the server has no partner.
     void restart();
 
     /// CRITICAL texts to the pilot that the co-processor caused.

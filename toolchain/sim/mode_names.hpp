@@ -8,7 +8,7 @@
 
 namespace jink::sim {
 
-/// The autopilot's own name of HEARTBEAT.custom_mode.
+/// The autopilot's own name for HEARTBEAT.custom_mode.
 ///
 /// ArduPilot: Mode::Number of ArduCopter and of ArduPlane (fixed wing) in its `mode.h`. PX4: main mode of
 /// `px4_custom_mode.h`; in AUTO the sub mode by the name that its documentation gives the flight mode (HOLD for

@@ -39,7 +39,7 @@ namespace jink::sim {
     return ardupilot ? 16 : px4(3, 0);  // POSHOLD; POSCTL
 }
 
-/// The mode that param2 and param3 of DO_SET_MODE ask for; nothing for numbers that are none of ours.
+/// The mode that param2 and param3 of DO_SET_MODE request; nothing for unknown mode numbers.
 [[nodiscard]] constexpr std::optional<Mode> requested_mode(Stack stack, float param2, float param3,
                                                            bool plane = false) noexcept
 {

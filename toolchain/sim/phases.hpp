@@ -8,7 +8,7 @@
 
 namespace jink::sim {
 
-/// The same scenario `count` times in process, in timings of the seeds from `first` on (timing.hpp).
+/// Flies the same scenario `count` times in process, with timings of the seeds from `first` on (timing.hpp).
 [[nodiscard]] std::vector<Record> fly_phases(const Scenario& scenario, std::uint64_t first, unsigned count,
                                              const Spread& spread);
 

@@ -24,9 +24,9 @@ struct PhasesOptions {
 
 CLI::App& add_phases(CLI::App& cli, PhasesOptions& options);
 
-/// Flies every scenario in many timings and prints how often each end comes, and how near it went.
+/// Flies every scenario with many timings and prints the frequency of each ending and the least separations.
 /// @return EXIT_SUCCESS when every flight ended as its file expects
-/// @throws std::runtime_error when a file is no scenario
+/// @throws std::runtime_error when a file is not a scenario
 int run_phases(const PhasesOptions& options, std::ostream& out);
 
 }  // namespace jink::sim

@@ -11,16 +11,16 @@ namespace jink::sim {
 namespace {
 
 constexpr double kPi2 = 2.0 * std::numbers::pi;
-/// Circles are left within this of the course to the next place [rad].
+/// Circles are left within this angle of the course to the next place [rad].
 constexpr double kLinedUp = 10.0 / 180.0 * std::numbers::pi;
-/// A circle is flown to along the leg while its centre is farther than so many radii.
+/// The plane approaches a circle along the leg while the centre is farther than this many radii.
 constexpr double kFarAway = 3.0;
-/// Heights below this above home are left at once [m].
+/// Climbs from below this height above home are flown at once [m].
 constexpr double kLow = 20.0;
 
 double angle_of(const Vec& v) { return std::atan2(v.y(), v.x()); }
 
-/// Past the line through `to` across the way from `from`.
+/// Past the line through `to` perpendicular to the leg from `from`.
 bool is_past(const Vec& here, const Vec& from, const Vec& to)
 {
     const Eigen::Vector2d span = (to - from).head<2>();
@@ -117,7 +117,7 @@ void PlaneItemPilot::advance(const Truth& own)
     const bool climbed = item().kind == ItemKind::take_off;
     const Vec before = item().place;
     go_on(before);
-    // "Resetting previous waypoint": the next one lies behind before its leg begins.
+    // "Resetting previous waypoint": the next waypoint is already behind at the start of its leg.
     const bool from_here = climbed || is_past(own.position, before, item().place);
     begin_item(from_here ? own.position : before, climbed);
 }

@@ -8,17 +8,16 @@ namespace jink::sim {
 /// Flies the items of a NominalFlight as ArduPlane does (ArduPlane/commands_logic.cpp, navigation.cpp, altitude.cpp,
 /// mode_auto.cpp, mode_loiter.cpp, mode.cpp; AP_L1_Control; AP_Landing::restart_landing_sequence):
 ///
-/// * A leg is followed from the waypoint before; straight from where the mission mode was entered, and after a
-///   take-off. A waypoint is reached turn_distance() before it, or abeam of it.
+/// * A leg starts at the waypoint before. After entering the mission mode and after a take-off the plane flies direct
+///   to the waypoint. A waypoint is reached turn_distance() before it, or abeam of it.
 /// * LOITER_TIME and LOITER_UNLIM circle with WP_LOITER_RAD, LOITER_TURNS with the radius of the item, all clockwise.
 ///   Turns and time count on the circle. The circle is left where the course leads to the next place within 10 degrees,
 ///   10 more for each further circle.
 /// * TAKEOFF keeps the course and climbs to its height. LAND descends along the line to its place; there is no flare,
 ///   and the plane does not stop. Leaving the mission mode during LAND goes back to the item before it.
 /// * DO_CHANGE_SPEED (airspeed) holds until the mode changes.
-/// * Another mission that comes in is flown once the ground station sets its current item, as it does at once here:
-/// along
-///   the line from the place that was flown to before.
+/// * A new mission is flown once the ground station sets its current item, here at once: along the line from the
+///   previous target place.
 class PlaneItemPilot final : public ItemPilot {
 public:
     /// @param scenario  outlives the pilot; it has a flight with items, of the kinds that can_fly() allows a plane
@@ -40,12 +39,12 @@ private:
     [[nodiscard]] Vec on_circle(const Truth& own);
     [[nodiscard]] double radius() const;
 
-    bool direct_ = false;       ///< no line is followed to the present place
-    bool reached_ = false;      ///< the circle
-    double angle_ = 0.0;        ///< about the place, when last seen [rad]
+    bool direct_ = false;       ///< flies direct to the present place, without a line
+    bool reached_ = false;      ///< the circle is reached
+    double angle_ = 0.0;        ///< bearing about the place at the last step [rad]
     double turned_ = 0.0;       ///< on the circle [rad]
     double waited_ = 0.0;       ///< on the circle [s]
-    double lined_up_ = -1.0;    ///< turned when the item's own goal was met [rad]; negative: not yet
+    double lined_up_ = -1.0;    ///< value of `turned_` when the item's own goal was reached [rad]; negative: not yet
     Vec course_ = Vec::Zero();  ///< of a take-off
 };
 

@@ -8,20 +8,20 @@ namespace jink::sim {
 namespace {
 
 constexpr Micros kSamplePeriod = 20'000;
-/// A set-point slower than this is a command to stand still [m/s].
+/// A set-point slower than this is a command to stop [m/s].
 constexpr double kStill = 0.1;
-/// Standing still by command for this long counts as having braked [s].
+/// A commanded stop of this duration counts as braking [s].
 constexpr double kHeldLong = 0.5;
-/// After the last event the flight goes on for this long [us].
+/// The flight continues for this long after the last event [us].
 constexpr Micros kSettled = 2 * kSecond;
-/// Back on the leg within this [m].
+/// Back on the leg within this distance [m].
 constexpr double kOnLeg = 1.5;
-/// Longest gap between set-points in external mode that is no fault: half of PX4's time-out [s].
+/// Longest permitted gap between set-points in external mode: half of PX4's time-out [s].
 constexpr double kLongestGap = 0.5;
 /// Longest gap between the co-processor's heartbeats [s].
 constexpr double kHeartbeatGap = 1.5;
 
-/// A flight may end in external mode while a conflict was warned of this recently [s].
+/// A flight may end in external mode if a conflict warning is at most this old [s].
 constexpr double kStillWarned = 5.0;
 
 }  // namespace
@@ -71,7 +71,7 @@ void Plant::take_notes()
     samples_.push_back(sample);
 }
 
-/// Below the floor, and not because the leg leads there, or the autopilot by itself, which follows it more or less.
+/// Below the floor, unless the leg leads there, or the autopilot by its own tracking of the leg.
 bool Plant::is_below_floor() const
 {
     constexpr double kFollowing = 0.5;

@@ -9,10 +9,10 @@
 
 namespace jink::sim {
 
-/// Everything at the autopilot's end of the cable for one flight: world, autopilot, and the one who takes notes.
+/// Everything at the autopilot's end of the cable for one flight: world, autopilot, and recording.
 ///
-/// Whoever owns it moves the bytes: `deliver` what came from the co-processor, `step`, send on what `collect` gives.
-/// The same plant is flown in process and against the real program.
+/// The owner moves the bytes: `deliver` bytes of the co-processor, `step`, then send the bytes of `collect`. The same
+/// plant flies in process and against the real program.
 class Plant {
 public:
     /// @param scenario  outlives the plant
@@ -21,21 +21,21 @@ public:
     Plant& operator=(const Plant&) = delete;
 
     void deliver(std::span<const std::byte> bytes);
-    /// One kStep of time.
+    /// Advances by one kStep.
     void step();
-    /// Frames of other systems, as the radio brings them.
+    /// Frames of other systems, from the radio.
     void relay(std::span<const std::byte> frames) { autopilot_.relay(frames); }
-    /// The co-processor has taken a manoeuvre of this side just now.
+    /// The co-processor chose a manoeuvre of this side in this step.
     void note_choice(const Vec& side);
     [[nodiscard]] std::vector<std::byte> collect();
 
-    /// The time is up, or everything is over and settled.
+    /// The duration has elapsed, or all threats are past and the vehicle is settled.
     [[nodiscard]] bool finished() const;
     [[nodiscard]] Micros now() const noexcept { return world_.now(); }
     [[nodiscard]] const Autopilot& autopilot() const noexcept { return autopilot_; }
     [[nodiscard]] const World& world() const noexcept { return world_; }
 
-    /// Closes the notes; `inside` and further faults are the caller's to add before `conclude`.
+    /// Finishes the recording. The caller adds `inside` and further faults before `conclude`.
     [[nodiscard]] Record record() const;
 
 private:
@@ -57,7 +57,7 @@ private:
     Micros goal_at_ = -1;
 };
 
-/// Decides the outcome and lists the rules that were broken.
+/// Decides the outcome and lists the broken rules.
 void conclude(const Scenario& scenario, Record& record);
 
 }  // namespace jink::sim

@@ -11,11 +11,11 @@
 
 namespace jink::sim {
 
-/// What everybody sends, everybody else hears: each message and receiver by itself, some never, all of them late by the
-/// same time. The same seed and calls give the same losses.
+/// Broadcast radio. Losses are independent per message and receiver; the delay is the same for all. The same seed and
+/// calls give the same losses.
 class Radio {
 public:
-    /// @param loss   share of messages that a receiver does not hear, [0, 1]
+    /// @param loss  share of messages lost at a receiver, [0, 1]
     /// @param delay  from sending to arrival [us], >= 0
     Radio(std::size_t stations, double loss, Micros delay, std::uint64_t seed)
         : loss_(loss), delay_(delay), random_(seed), waiting_(stations)
@@ -24,7 +24,7 @@ public:
 
     /// O(stations + bytes).
     void send(std::size_t from, std::span<const std::byte> message, Micros now);
-    /// What has arrived at a station, in the order of sending.
+    /// Messages that have arrived at a station, in the order of sending.
     [[nodiscard]] std::vector<std::byte> take(std::size_t at, Micros now);
 
 private:

@@ -35,9 +35,9 @@ Threat intruder(Random& random, const Scenario& scenario, std::size_t index, dou
     const Vec at = scenario.start_position + scenario.start_velocity * meets_at +
                    any_direction(random) * uniform(random, 0.0, index == 0 ? 0.5 : 1.5);
     Vec direction = any_direction(random);
-    direction.z() *= 0.5;  // aircraft climb less steeply than they turn
+    direction.z() *= 0.5;  // aircraft climb at shallow angles
     const double speed = uniform(random, 0.0, fastest);
-    // Slower than this is a thing that hovers: it stands.
+    // Slower intruders hover: they are static.
     constexpr double kHovers = 0.5;
     threat.velocity = speed < kHovers ? Vec(Vec::Zero()) : Vec(direction.normalized() * speed);
     threat.position = at - threat.velocity * meets_at;
@@ -46,7 +46,7 @@ Threat intruder(Random& random, const Scenario& scenario, std::size_t index, dou
     return threat;
 }
 
-/// Pillars shoulder to shoulder around `centre`.
+/// A gap-free ring of pillars around `centre`.
 void add_ring(Scenario& s, const Vec& centre, double ring_radius)
 {
     constexpr double kPillar = 1.0;
@@ -63,7 +63,7 @@ void add_ring(Scenario& s, const Vec& centre, double ring_radius)
     }
 }
 
-/// How many intruders there are at most, and how fast.
+/// Largest number and speed of intruders.
 struct Traffic {
     std::size_t most = 1;
     double fastest = 0.0;  ///< [m/s]

@@ -8,7 +8,7 @@ namespace {
 
 /// Offsets from the leg smaller than this have no side [m].
 constexpr double kDeadBand = 0.5;
-/// How far ahead the commanded track is looked at [s].
+/// Look-ahead of the commanded track [s].
 constexpr double kAhead = 1.0;
 
 }  // namespace

@@ -18,12 +18,12 @@ struct Sample {
     Vec acceleration = Vec::Zero();
     Vec setpoint = Vec::Zero();  ///< in force; meaningful in external mode
     Mode mode = Mode::mission;
-    double separation = 0.0;  ///< centre to the nearest surface [m]
-    std::size_t nearest = 0;  ///< whose
-    int jink_state = 0;       ///< MAV_STATE as last heard
+    double separation = 0.0;  ///< vehicle's centre to the nearest surface [m]
+    std::size_t nearest = 0;  ///< index of the threat at `separation`
+    int jink_state = 0;       ///< last received MAV_STATE
 };
 
-/// One candidate of a plan, for a picture of the fan.
+/// One candidate of a plan, for plotting the fan.
 struct FanCurve {
     std::vector<Vec> points;
     std::string status;
@@ -35,13 +35,13 @@ struct Durations {
     unsigned count = 0;
     double mean = 0.0;
     double worst = 0.0;
-    std::vector<double> times;  ///< each of them, where they are few; from the daemon to 10 us
+    std::vector<double> times;  ///< each duration, where they are few; from the daemon with a resolution of 10 us
 };
 
-/// What only shows from inside the co-processor.
+/// Internals of the co-processor.
 struct Inside {
     Durations steps;       ///< Coprocessor::step
-    Durations plan_steps;  ///< of these, the ones that asked the planner
+    Durations plan_steps;  ///< steps that called the planner
     unsigned conflicts = 0, plans = 0, plans_found = 0, answers_rejected = 0, manoeuvres = 0, replans = 0, flips = 0,
              brakes = 0, escapes = 0, holds = 0, rejoined = 0, control_lost = 0, budget_spent = 0, most_work = 0;
     unsigned deadlines_missed = 0, setpoints_withheld = 0, own_state_refused = 0, autopilot_reboots = 0,
@@ -49,10 +49,10 @@ struct Inside {
     unsigned tracks_refused = 0, track_jumps = 0, frames_refused = 0, not_finite = 0, stale_stamp = 0, inbox_full = 0,
              outbox_full = 0;
     std::string first_candidate;  ///< of the first plan found; empty: none was
-    std::vector<FanCurve> fan;    ///< of the first plan found, else of the first one tried
+    std::vector<FanCurve> fan;    ///< of the first plan found, else of the first plan tried
 };
 
-/// Everything that is kept of a flight.
+/// The record of a flight.
 struct Record {
     std::string name;
     std::string title;
@@ -65,7 +65,7 @@ struct Record {
     double duration = 0.0;
     Closest closest;
     std::string closest_threat;
-    double closest_area = 1e9;  ///< centre to the body of a closed area, below 0: into it [m]
+    double closest_area = 1e9;  ///< least signed distance, centre to the body of a closed area, negative inside [m]
     unsigned takeovers = 0;
     int flips = 0;              ///< side changes of the commanded track about the leg
     double longest_hold = 0.0;  ///< standing still by command [s]
@@ -74,25 +74,27 @@ struct Record {
     double cross_track = 0.0;  ///< at the end [m]
     double goal_at = -1.0;     ///< when the last waypoint was reached; negative: never [s]
     double lowest = 0.0;       ///< least height of the centre [m]
-    bool below_floor = false;  ///< was below it where the leg is not: a mission may lead there by itself
+    bool below_floor = false;  ///< was below the floor while the leg was not: a mission may lead below the floor by
+                               ///< itself
     Heard heard;
     unsigned critical_texts = 0;  ///< of the autopilot, caused by the co-processor
     unsigned late_steps = 0;      ///< real time: steps begun more than a tick late
-    double latest_step = 0.0;     ///< real time: the latest of them [s]
-    double held_up = 0.0;         ///< emulated: the machine kept the emulator from running, the longest [s]
-    unsigned repeats = 0;         ///< real time: flights thrown away before because the machine stood still
+    double latest_step = 0.0;     ///< real time: largest lateness of a step [s]
+    double held_up = 0.0;         ///< emulated: longest delay of the emulator by the host [s]
+    unsigned repeats = 0;         ///< real time: flights discarded before because the host stalled
     std::vector<Vec> mission;
     std::vector<Threat> threats;
-    std::vector<double> appeared;  ///< when each threat appeared; negative: never [s]
-    std::vector<double> told;      ///< when the first message of each left the autopilot's end; negative: never [s]
+    std::vector<double> appeared;  ///< time at which each threat appeared; negative: never [s]
+    std::vector<double> told;      ///< time at which the first message of each threat left the autopilot's end;
+                                   ///< negative: never [s]
     SideCounts sides;              ///< as flown, conflict by conflict
     SideCounts chosen_sides;       ///< as chosen; in process alone
     std::vector<Sample> samples;
     std::optional<Inside> inside;
 };
 
-/// Counts how often the commanded track changes its side of the leg: where the vehicle will be one second on under its
-/// command, seen along the leg, lies more than a dead band off on the side opposite to the last one.
+/// Counts side changes of the commanded track. A change: the vehicle's position one second ahead under the command,
+/// seen along the leg, lies beyond a dead band on the side opposite to the last side.
 class FlipCounter {
 public:
     explicit FlipCounter(const std::vector<Vec>& mission);
@@ -106,7 +108,7 @@ private:
     int flips_ = 0;
 };
 
-/// What was expected and did not come true; empty when all is well.
+/// Unmet expectations; empty when all are met.
 [[nodiscard]] std::vector<std::string> unmet(const Scenario& scenario, const Record& record);
 
 }  // namespace jink::sim

@@ -20,7 +20,7 @@ constexpr double kKnot = kNauticalMile / kHour;
 constexpr double kFootPerMinute = kFoot / 60.0;
 constexpr double kRadian = 180.0 / std::numbers::pi;
 
-/// A unit by the names that DAIDALUS gives it (nasa/daidalus, C++/src/Units.cpp); angles in degrees.
+/// A unit by its names in DAIDALUS (nasa/daidalus, C++/src/Units.cpp); angles in degrees.
 struct Unit {
     const char* names;  ///< each with a blank before and behind
     char quantity;
@@ -93,7 +93,7 @@ std::optional<double> clock_of(const std::string& word)
     return word.empty() ? std::nullopt : std::optional(seconds);
 }
 
-/// The first of these that is there.
+/// Column of the first alternative that is present.
 std::optional<std::size_t> find(const std::vector<std::string>& names, std::initializer_list<const char*> alternatives)
 {
     for (const char* wanted : alternatives) {

@@ -15,7 +15,7 @@ namespace jink::sim {
 /// Separated by blanks or commas.
 [[nodiscard]] std::vector<std::string> words_of(std::string line);
 
-/// What a row says, in SI but for the angles of a global place.
+/// Contents of a row, in SI units except for the angles of a global place.
 struct RecordedRow {
     std::string name;
     double time = 0.0;           ///< [s]
@@ -23,13 +23,13 @@ struct RecordedRow {
     Vec velocity = Vec::Zero();  ///< east, north, up [m/s]
 };
 
-/// Where the columns that are read stand, and by how much their values are multiplied.
+/// Positions and unit factors of the columns that are read.
 class RecordedColumns {
 public:
-    /// @throws std::runtime_error when one is missing
+    /// @throws std::runtime_error when a column is missing
     explicit RecordedColumns(const std::vector<std::string>& names);
 
-    /// False where these are no units but the first row. @throws std::runtime_error
+    /// False where the words are the first row instead of units. @throws std::runtime_error
     [[nodiscard]] bool take_units(const std::vector<std::string>& words);
     /// @throws std::runtime_error
     [[nodiscard]] RecordedRow row(const std::vector<std::string>& words) const;

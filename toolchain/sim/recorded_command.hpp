@@ -18,8 +18,8 @@ struct RecordedOptions {
 
 CLI::App& add_recorded(CLI::App& cli, RecordedOptions& options);
 
-/// Reads each file and prints, for each aircraft beside the own ship, how its fixes pair with the own ship's and where
-/// both are closest. @throws std::runtime_error, with file and line (recorded_encounter.hpp)
+/// Reads each file. For each other aircraft, prints the pairing of its fixes with the own ship's and the closest
+/// approach. @throws std::runtime_error, with file and line (recorded_encounter.hpp)
 void run_recorded(const RecordedOptions& options, std::ostream& out);
 
 }  // namespace jink::sim

@@ -14,7 +14,7 @@ namespace jink::sim {
 namespace {
 
 /// A map about a place: metres along its meridian, and along the parallel of each fix, on the WGS84 ellipsoid.
-/// Distances between places near to each other are true wherever they are.
+/// Distances between nearby places are true everywhere.
 class LocalMap {
 public:
     LocalMap(double lat, double lon) : lat_(lat), lon_(lon) {}
@@ -81,7 +81,7 @@ private:
 
     void add(const RecordedRow& row)
     {
-        // As DAIDALUS has it: the aircraft of the row before.
+        // As in DAIDALUS: the aircraft of the row before.
         const bool again = row.name == "\"";
         if (again && last_name_.empty()) {
             throw std::runtime_error("no aircraft is named before");

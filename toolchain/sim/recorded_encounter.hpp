@@ -8,21 +8,20 @@
 
 #include "toolchain/sim/vec.hpp"
 
-// Recorded encounters of several aircraft as DAIDALUS reads them (*.daa): a line of column names, a line of units,
-// which may be missing, and a row per aircraft and time. Columns are separated by blanks or commas; the rest of a line
-// after
-// `#` is a remark; lines NAME = VALUE before the column names are parameters, which do not count here.
+// Recorded encounters of several aircraft in the format of DAIDALUS (*.daa): a line of column names, an optional line
+// of units, and a row per aircraft and time. Columns are separated by blanks or commas; the rest of a line after `#` is
+// a remark; lines NAME = VALUE before the column names are parameters, ignored here.
 //
 // Columns that are read, in any case and order (nasa/daidalus, C++/src/SequenceReader.cpp):
 //   name | aircraft | id;  time | tm | st, or clock as h:m:s
 //   lat | latitude, lon | long | longitude, alt | altitude;  or sx, sy, sz (also x, y, z)
 //   trk | track, gs | groundspeed | groundspd, vs | verticalspeed | hdot;  or vx, vy, vz
-// Others are passed over, whatever their unit and their values. A unit stands in brackets or bare. A missing unit (`-`,
-// unspecified, or no line of units) is DAIDALUS's: deg, ft, nmi for sx and sy, knot, fpm, s.
+// Other columns are ignored, with any unit and values. A unit may be in brackets or bare. A missing unit (`-`,
+// unspecified, or no line of units) is DAIDALUS's default: deg, ft, nmi for sx and sy, knot, fpm, s.
 
 namespace jink::sim {
 
-/// An aircraft at one time, in a local plane (x east, y north, z up) about where the own ship was first; metres, m/s.
+/// An aircraft at one time, in a local plane (x east, y north, z up) about the own ship's first position; metres, m/s.
 /// In files with sx, sy, sz: in their frame.
 struct Fix {
     double time = 0.0;
@@ -32,22 +31,22 @@ struct Fix {
 
 struct Aircraft {
     std::string name;
-    std::vector<Fix> fixes;  ///< in order of time, no two at the same
+    std::vector<Fix> fixes;  ///< in strictly increasing time
 
     /// Linear between fixes, position and velocity. Within the time of the fixes.
     [[nodiscard]] Fix at(double t) const;
 };
 
 struct RecordedEncounter {
-    std::vector<Aircraft> aircraft;  ///< own ship first, the others as they first appear
-    std::size_t reordered = 0;       ///< rows that came after a later one of the same aircraft, and were put in order
+    std::vector<Aircraft> aircraft;  ///< own ship first, the others in order of first appearance
+    std::size_t reordered = 0;       ///< rows after a later row of the same aircraft; sorted by time
 };
 
-/// @throws std::runtime_error, with file and line, on missing columns, units that are unknown or of another quantity in
-/// a column that is read, rows of another number of columns, numbers that are none or not finite, latitudes beyond the
-/// poles, and two fixes of an aircraft at one time; without a line on fewer than two aircraft
+/// @throws std::runtime_error, with file and line, on: missing columns; unknown units, or units of another quantity, in
+/// a column that is read; rows with another number of columns; malformed or non-finite numbers; latitudes beyond the
+/// poles; two fixes of an aircraft at one time. Without a line on: fewer than two aircraft
 [[nodiscard]] RecordedEncounter read_encounter(const std::filesystem::path& file);
-/// `name`: in what is thrown
+/// `name`: used in exceptions
 [[nodiscard]] RecordedEncounter read_encounter(std::istream& in, const std::string& name);
 
 /// Own ship and another aircraft at the same times.
@@ -56,12 +55,12 @@ struct Paired {
         Fix own;
         Fix other;
     };
-    std::vector<Both> fixes;       ///< at each time of an own fix
-    std::size_t unmatched = 0;     ///< own fixes at whose time the other is not known
-    std::size_t interpolated = 0;  ///< of `fixes`: the other has no fix of its own at that time
+    std::vector<Both> fixes;       ///< one per time of an own fix
+    std::size_t unmatched = 0;     ///< own fixes without a known position of the other aircraft
+    std::size_t interpolated = 0;  ///< of `fixes`: the other aircraft's position is interpolated
 };
 
-/// The other aircraft is known at the times of its fixes, and between two of them that are at most this far apart [s].
+/// The other aircraft's position is known at its fixes, and between two fixes at most this far apart [s].
 inline constexpr double kLongestFixGap = 5.0;
 
 /// Paired by time, never by row.

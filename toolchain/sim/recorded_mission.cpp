@@ -8,10 +8,10 @@ namespace {
 
 constexpr std::uint8_t kFlightController = 1;
 constexpr std::uint8_t kMissionType = 0;   ///< MAV_MISSION_TYPE_MISSION; others are fences and rally points
-constexpr std::uint16_t kNoTotal = 65535;  ///< MISSION_CURRENT.total without a mission; 0: not said
+constexpr std::uint16_t kNoTotal = 65535;  ///< MISSION_CURRENT.total without a mission; 0: unknown
 constexpr std::uint8_t kMissionFrame = 2;  ///< MAV_FRAME_MISSION: an item without a place
 
-/// Newest answer up to `now` that `fits`, else the first one after it.
+/// Newest answer up to `now` that `fits`, else the first such answer after `now`.
 template <class Answer, class Fits>
 const Answer* nearest(const std::vector<Answer>& answers, Micros now, Fits fits)
 {

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint8_t kAutopilotComponentId = 1;
 constexpr std::uint8_t kOwnComponentId = 196;
 constexpr std::uint8_t kFixedWingType = 1;
-/// The co-processor's clock at the start of a recording that does not say it [us].
+/// The co-processor's clock at the start of a recording that does not contain it [us].
 constexpr std::int64_t kUnknownStart = kSecond;
 
 std::optional<Stack> stack_of(link::AutopilotStack stack)
@@ -41,7 +41,7 @@ std::optional<Globe> globe_of(const std::optional<link::GlobalPosition>& place)
 
 }  // namespace
 
-/// The end of a line that brings what it is given, and takes everything. Reads the requests that are answered.
+/// The end of a line that delivers fed bytes and accepts all output. Decodes the requests that need an answer.
 class Replay::Port final : public hal::SerialPort {
 public:
     void bring(std::span<const std::byte> bytes) { waiting_.insert(waiting_.end(), bytes.begin(), bytes.end()); }
@@ -123,7 +123,7 @@ void Replay::hear(Micros time, const link::mavlink::Frame& frame)
     }
 }
 
-/// Not within a frame: the line carries whole ones.
+/// Called between frames: the line carries whole frames.
 void Replay::answer_timesync(Micros now)
 {
     if (!told_clock_ || port_->asked() == 0 || parser_.pending() != 0) {
@@ -135,7 +135,7 @@ void Replay::answer_timesync(Micros now)
     told_clock_.reset();
 }
 
-/// As the autopilot of the recording.
+/// Feeds a message in the name of the recorded autopilot.
 template <class M>
 void Replay::bring(const M& message)
 {
@@ -144,7 +144,7 @@ void Replay::bring(const M& message)
     port_->bring({frame.data(), n});
 }
 
-/// Not within a frame either.
+/// Called between frames.
 void Replay::answer_mission(Micros now)
 {
     if (!mission_ || parser_.pending() != 0) {

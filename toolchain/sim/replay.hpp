@@ -22,10 +22,10 @@ class Endpoint;
 
 namespace jink::sim {
 
-/// Where jink believes that the vehicle will go.
+/// The nominal motion that jink expects of the vehicle.
 struct NominalBelief {
-    bool is_route = false;  ///< a believed leg; otherwise the measured motion
-    Vec end = Vec::Zero();  ///< of the leg, or where the measured motion leads within its prediction [m]
+    bool is_route = false;  ///< a known leg; otherwise the measured motion
+    Vec end = Vec::Zero();  ///< end of the leg, or of the measured motion's prediction [m]
     double speed = 0.0;     ///< [m/s]
     bool turns = false;     ///< the measured motion begins with an arc
 };
@@ -37,15 +37,15 @@ struct Globe {
     double alt = 0.0;  ///< above mean sea level [m]
 };
 
-/// What jink believes at one instant. A part that is not known, or too old to be used, is left out.
+/// jink's belief at one instant. Unknown and outdated parts are empty.
 struct Belief {
     double time = 0.0;                ///< of the recording [s]
-    std::optional<Stack> stack;       ///< whose HEARTBEATs are heard
+    std::optional<Stack> stack;       ///< stack whose HEARTBEATs are received
     std::optional<unsigned> vehicle;  ///< MAV_TYPE of the newest
     std::optional<std::string> mode;  ///< the autopilot's own name (mode_names.hpp)
     std::optional<bool> armed;
     std::string control;          ///< app::Control
-    std::optional<Vec> position;  ///< about the origin of the autopilot's local frame, now [m]
+    std::optional<Vec> position;  ///< present position, in the autopilot's local frame [m]
     std::optional<Vec> velocity;  ///< [m/s]
     std::optional<Globe> home;
     std::optional<NominalBelief> nominal;
@@ -53,27 +53,26 @@ struct Belief {
     bool conflict = false;
 };
 
-/// The co-processor at the receiving end of a recorded stream: Endpoint and Coprocessor of the product, on the clock of
-/// the recording. The recorded autopilot answered the jinkd of the recording; everything that it sent is fed byte by
-/// byte. What the endpoint sends has no effect, but for two kinds of requests:
-/// * TIMESYNC: a recorded answer repeats the request of the recorded jinkd, and the endpoint takes none but the answer
-/// to
-///   its own. Behind each recorded answer follows one to the endpoint's newest request, with the autopilot's clock in
-///   the middle of that round trip.
+/// The co-processor at the receiving end of a recorded stream: Endpoint and Coprocessor of the product, on the
+/// recording's clock. The recorded autopilot answered the recorded jinkd; all its bytes are fed. The endpoint's output
+/// has no effect, except for two kinds of requests:
+/// * TIMESYNC: a recorded answer repeats the request of the recorded jinkd, but the endpoint accepts only answers to
+///   its own requests. Each recorded answer is followed by an answer to the endpoint's newest request, with the
+///   autopilot's clock in the middle of that round trip.
 /// * The mission: requests are answered by RecordedMission, in the next step.
 class Replay {
 public:
     static constexpr Micros kStep = 20'000;
 
     /// @param clock_start  time of the co-processor's clock when the recording begins [us] (clock_start_of)
-    /// @param mission      that the endpoint reads; without one its requests are not answered
+    /// @param mission  that the endpoint reads; without a mission its requests are not answered
     Replay(const app::Parameters& parameters, std::int64_t clock_start, std::optional<RecordedMission> mission = {});
     ~Replay();
     Replay(const Replay&) = delete;
     Replay& operator=(const Replay&) = delete;
 
-    /// Bytes of the autopilot, for the next step.
-    /// @param time  when they came [us]
+    /// Feeds bytes of the autopilot for the next step.
+    /// @param time  time of arrival [us]
     void feed(Micros time, std::span<const std::byte> bytes);
     /// One step of the co-processor.
     /// @param now  time of the recording [us], kStep after the step before
@@ -86,7 +85,7 @@ public:
 private:
     class Port;
 
-    /// The autopilot's clock as a recorded answer tells it.
+    /// The autopilot's clock from a recorded answer.
     struct ToldClock {
         link::mavlink::Header from;
         std::int64_t remote = 0;  ///< [us]
@@ -106,14 +105,14 @@ private:
     std::unique_ptr<link::mavlink::Endpoint> endpoint_;
     std::unique_ptr<app::Coprocessor> coprocessor_;
     app::StepReport report_;
-    link::mavlink::Parser parser_;  ///< for what the endpoint does not tell
+    link::mavlink::Parser parser_;  ///< decodes messages that the endpoint does not report
     std::optional<unsigned> vehicle_;
     std::optional<ToldClock> told_clock_;
 };
 
-/// Time on the clock of the recorded jinkd when the recording begins [us], from its first TIMESYNC request: the
-/// autopilot's answers repeat that clock, and only on it do they tell a true round trip. One second where the recording
-/// has no such request.
+/// Time on the recorded jinkd's clock at the start of the recording [us], from its first TIMESYNC request. The
+/// autopilot's answers repeat that clock, and round-trip times are true only on it. One second where the recording has
+/// no such request.
 [[nodiscard]] std::int64_t clock_start_of(std::span<const WireRecord> records);
 
 /// Replays records from 0 s to the last of them, in steps of 20 ms. Calls `each_second` after the step of every whole

@@ -20,9 +20,9 @@ struct ReplayOptions {
 
 CLI::App& add_replay(CLI::App& cli, ReplayOptions& options);
 
-/// Prints a line for every second of the recording; as text also what the recorded jinkd said to the pilot.
-/// @return 0; 1, with the reason on `errors`, when the file is damaged (what was read before is replayed) or a vehicle
-/// or parameter file is wrong
+/// Prints a line for every second of the recording; text output includes the recorded jinkd's messages to the pilot.
+/// @return 0; 1, with the reason on `errors`, when the file is damaged (records before the damage are replayed) or a
+/// vehicle or parameter file is wrong
 /// @throws std::runtime_error when the file cannot be read
 int run_replay(const ReplayOptions& options, std::ostream& out, std::ostream& errors);
 

@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 
 /// Every fifth sample: 10 Hz.
 constexpr std::size_t kStride = 5;
-/// Separations beyond this are not worth a number [m].
+/// Separations beyond this are not reported [m].
 constexpr double kNobody = 1e8;
-/// The judge's manoeuvres last this long [s].
+/// Duration of the judge's manoeuvres [s].
 constexpr double kJudged = 12.0;
 
 /// Millimetres, so that files stay small and readable.
@@ -239,7 +239,7 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
     flight.verdict = judge(scenario, kJudged, trials);
     const Record& r = flight.record;
     if (r.closest.surface < scenario.promise) {
-        const double told = r.told[r.closest.threat];  // jitter and dropouts included: nobody knows before
+        const double told = r.told[r.closest.threat];  // jitter and dropouts included: the threat is unknown before
         flight.told_too_late = told < 0.0 || r.closest.time <= told;
         if (flight.told_too_late) {
             return flight;

@@ -11,34 +11,35 @@
 
 namespace jink::sim {
 
-/// What passes from a sighting's leaving the autopilot until the command that it leads to takes effect there: a tick of
-/// the co-processor, the line twice and a tick of the autopilot [s].
+/// Time from a traffic report leaving the autopilot until the resulting command takes effect there [s]: a tick of the
+/// co-processor, the line twice and a tick of the autopilot.
 inline constexpr double kReaction = 0.05;
 
-/// A flight with what belongs to it in a report.
+/// A flight with its report data.
 struct ReportedFlight {
     Scenario scenario;
     Record record;
-    std::vector<std::string> unmet;  ///< of the scenario's expectations; empty: as expected
+    std::vector<std::string> unmet;  ///< unmet expectations of the scenario; empty: as expected
     double alone = 0.0;              ///< least separation of the same mission without a co-processor [m]
     bool judged = false;
     Verdict verdict;  ///< when judged
-    /// The promise was broken, and from where the vehicle was when the first sighting of the threat arrived (or the
-    /// first conflict came into sight, if that was later) one of the judge's manoeuvres would have kept it.
+    /// The promise was broken, and one of the judge's manoeuvres would have kept it from the vehicle's state when the
+    /// first sighting of the threat arrived (or when the first conflict became detectable, if later).
     bool failed_avoidable = false;
-    bool told_too_late = false;  ///< the promise was broken before anybody was told of the threat, and worst then
-    Verdict last_chance;         ///< of that instant, where the promise was broken afterwards,
-    Verdict late_chance;         ///< and kReaction later: what is avoidable there was missed by the choice alone
+    bool told_too_late = false;  ///< detected too late: the promise was broken, and worst, before the threat was
+                                 ///< reported
+    Verdict last_chance;         ///< verdict at that instant, if the promise was broken afterwards
+    Verdict late_chance;         ///< verdict kReaction later: an avoidable break is then a fault of the choice alone
 };
 
-/// Adds what can be found out after a flight: the expectation, the flight alone and, when `with_judge`, the verdict.
+/// Adds the results that follow a flight: unmet expectations, the flight alone and, if `with_judge`, the verdict.
 [[nodiscard]] ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judge,
                                        Trials trials = Trials::to_the_end);
 
 /// Table for people: name, outcome, least separation with time and threat, longest step with a plan.
 void print_table(std::ostream& out, const std::vector<ReportedFlight>& flights);
 
-/// Writes run.json, the input of `jink report`; its layout stands in tests/scenario/README.md. False when the file
+/// Writes run.json, the input of `jink report`; tests/scenario/README.md describes its layout. False when the file
 /// cannot be written.
 [[nodiscard]] bool write_run(const std::filesystem::path& file, const std::vector<ReportedFlight>& flights);
 

@@ -12,7 +12,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Generous: what starts and stops at all does so long before, on any machine.
+/// Time-out: a working program starts and stops much faster on any host.
 constexpr auto kStartTime = std::chrono::seconds(60);
 constexpr auto kStopTime = std::chrono::seconds(30);
 constexpr auto kNap = std::chrono::milliseconds(2);

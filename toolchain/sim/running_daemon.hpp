@@ -7,24 +7,24 @@
 #include "toolchain/sim/child.hpp"
 #include "toolchain/sim/plant.hpp"
 
-// What flights of jinkd in real time have in common, one or many.
+// Common parts of jinkd's real-time flights, single and several.
 
 namespace jink::sim {
 
-/// SCHED_FIFO priorities of the simulator's threads and, above them, of the program: its turn comes first, as on its
-/// own machine.
+/// SCHED_FIFO priorities of the simulator's threads and of the program. The program has the higher priority, as on its
+/// own computer.
 inline constexpr int kOwnPriority = 10;
 inline constexpr int kDaemonPriority = 20;
 
-/// Real-time priority for this thread, so that other work on the machine does not delay it; false where that is not
-/// permitted.
+/// Sets real-time priority for this thread, so that other load does not delay it; false where not permitted.
 bool go_first();
 
-/// Until its first bytes: it runs and has opened the line. False when it ends, or says nothing for a minute.
+/// Waits for the program's first bytes: it runs and has opened the line. False when the program ends, or is silent for
+/// a minute.
 [[nodiscard]] bool wait_for_life(Child& child, PseudoTerminal& line, Plant& plant);
 
-/// SIGTERM; it has to end with exit status 0 within half a minute, and to say so on the line before. What it does
-/// otherwise is added to `faults`.
+/// Sends SIGTERM. The program must announce its end on the line and exit with status 0 within half a minute; deviations
+/// are added to `faults`.
 void stop_daemon(Child& child, PseudoTerminal& line, Plant& plant, std::vector<std::string>& faults);
 
 }  // namespace jink::sim

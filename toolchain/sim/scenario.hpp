@@ -18,18 +18,18 @@ namespace jink::sim {
 
 enum class Stack : std::uint8_t { ardupilot, px4 };
 
-/// Whose settings the co-processor's planner goes by.
+/// Settings of the co-processor's planner.
 enum class PlannerKind : std::uint8_t {
-    product,  ///< as flashed: what its parameters say
+    product,  ///< as flashed: set by the parameters
     source,   ///< geometric::source_settings(), with the co-processor's look-ahead; in process only
 };
 
 enum class Outcome : std::uint8_t {
     clear,      ///< no manoeuvre needed, none flown
     avoided,    ///< control was taken and the promise kept
-    braked,     ///< the same, and it held still for a while
-    breach,     ///< nearer than the promise
-    collision,  ///< the bodies touched
+    braked,     ///< as `avoided`, and the vehicle stopped for a time
+    breach,     ///< separation below the promise
+    collision,  ///< the bodies were in contact
     failed,     ///< a rule of the protocol or of the airspace was broken
 };
 
@@ -38,17 +38,18 @@ enum class Outcome : std::uint8_t {
 [[nodiscard]] std::string_view to_string(Stack stack) noexcept;
 [[nodiscard]] std::string_view to_string(PlannerKind planner) noexcept;
 
-/// What traffic looks like when it arrives.
+/// Model of the traffic sensor.
 struct TrafficSensor {
     double rate = 5.0;            ///< [Hz]
     double sigma_position = 0.0;  ///< per axis [m]
     double sigma_velocity = 0.0;  ///< per axis [m/s]
     double latency = 0.1;         ///< from measurement to arrival [s]
-    double jitter = 0.0;          ///< on top, uniform [s]
-    double dropout = 0.0;         ///< share of sightings that never arrive
-    /// As an ADS-B transponder: cells of 5.1 m, heights in steps of 25 ft, speeds of 1 kt and 64 ft/min.
+    double jitter = 0.0;          ///< additional, uniform [s]
+    double dropout = 0.0;         ///< share of lost reports
+    /// Quantised as ADS-B: positions in cells of 5.1 m, heights in steps of 25 ft, speeds in steps of 1 kt and 64
+    /// ft/min.
     bool quantised = false;
-    Micros phase = 0;  ///< first sighting after a threat appears; not in files: timing.hpp
+    Micros phase = 0;  ///< delay of the first report after a threat appears; not in files: timing.hpp
 };
 
 /// Level range scan.
@@ -58,7 +59,7 @@ struct ScanSensor {
     Micros phase = 0;     ///< of its clock, below its period; not in files: timing.hpp
 };
 
-/// A LiDAR that turns with the vehicle: rays in rows and columns about its axes. All of a scan is measured at once.
+/// A body-fixed LiDAR: rays in rows and columns about its axes. A whole scan is measured at one instant.
 struct LidarSensor {
     double rate = 10.0;     ///< scans [Hz]
     double range = 60.0;    ///< [m]
@@ -70,18 +71,18 @@ struct LidarSensor {
     double latency = 0.02;  ///< from measurement to arrival [s]
 };
 
-/// What goes wrong on purpose. Times in [s]; those left out do not happen.
+/// Injected faults. Times in [s]; an empty time disables the fault.
 struct Faults {
     std::optional<double> pilot_takes_over;  ///< mode of `pilot_mode` chosen by the pilot
     Mode pilot_mode = Mode::hold;            ///< hold, home or pilot
     Vec pilot_velocity = Vec::Zero();        ///< flown in pilot mode [m/s]
     bool refuse_external = false;            ///< every request of the external mode is denied
-    double offboard_proof = 0.0;             ///< a PX4 that wants to have seen set-points for longer than this [s]
-    std::optional<double> reboot_at;         ///< the autopilot falls silent, then its boot clock starts again
+    double offboard_proof = 0.0;             ///< a PX4 that requires set-points for longer than this [s]
+    std::optional<double> reboot_at;         ///< the autopilot falls silent, then restarts its boot clock
     double reboot_lasts = 1.0;
     std::optional<double> clock_jump_at;  ///< the boot clock jumps
     double clock_jump_by = 0.0;
-    std::optional<double> cable_pulled_at;  ///< no byte passes either way
+    std::optional<double> cable_pulled_at;  ///< no bytes in either direction
     double cable_pulled_for = 0.0;
 };
 
@@ -93,7 +94,7 @@ struct Expectation {
     std::optional<bool> goal_reached;  ///< the last waypoint
 };
 
-/// One flight: the world, the vehicle, its mission, the autopilot and what is expected.
+/// One flight: the world, the vehicle, its mission, the autopilot and the expectations.
 struct Scenario {
     std::string name;
     std::string title;
@@ -104,16 +105,16 @@ struct Scenario {
     double duration = 20.0;        ///< at most [s]
     double promise = 0.7;          ///< least distance from the vehicle's centre to a true surface [m]
     double body_radius = 0.5;      ///< of the vehicle [m]
-    std::optional<double> floor;   ///< the centre stays this high above the origin of the local frame [m]
-    std::optional<double> ground;  ///< height of the plane that the LiDAR sees [m]
-    bool to_goal = false;          ///< ends at the last waypoint, and not when all threats are past
+    std::optional<double> floor;   ///< least height of the centre above the origin of the local frame [m]
+    std::optional<double> ground;  ///< height of the ground plane for the LiDAR [m]
+    bool to_goal = false;          ///< ends at the last waypoint instead of when all threats are past
     TruthLimits vehicle;
     Vec start_position = Vec::Zero();
     Vec start_velocity = Vec::Zero();
     std::vector<Vec> mission;  ///< at least two waypoints; the first is the start of the first leg
-    double reached = 2.0;      ///< a waypoint is, within this; not in files [m]
-    double at_goal = 3.0;      ///< the last waypoint is reached within this; not in files [m]
-    /// What is flown in place of `mission`, whose last waypoint stays the goal; not in files.
+    double reached = 2.0;      ///< a waypoint is reached within this distance; not in files [m]
+    double at_goal = 3.0;      ///< the last waypoint is reached within this distance; not in files [m]
+    /// Flown in place of `mission`; the goal stays the last waypoint of `mission`. Not in files.
     std::optional<NominalFlight> flight;
     Vec home = Vec::Zero();  ///< in the local frame, whose origin is the estimator's; not in files
     std::vector<Threat> threats;

@@ -9,7 +9,7 @@
 #include "firmware/linux/yaml_map.hpp"
 #include "toolchain/sim/scenario.hpp"
 
-// What the readers of a scenario file's parts share. Private to them.
+// Common parts of the scenario file readers. Private to the readers.
 
 namespace jink::sim::detail {
 
@@ -22,7 +22,7 @@ inline constexpr Range kAnyTime{0.0F, 1e4F};        // [s]
 inline constexpr Range kPlace{-1e5F, 1e5F};         // [m]
 inline constexpr Range kVelocity{-500.0F, 500.0F};  // [m/s]
 
-// YamlMap judges numbers; the simulator wants them in double, so they are read once more where they are good.
+// YamlMap checks numbers in float; the simulator reads valid numbers a second time in double.
 
 inline void number(YamlMap& map, std::string_view key, double& value, Range range,
                    YamlMap::Need need = YamlMap::Need::optional)
@@ -59,7 +59,7 @@ inline void vector(YamlMap& map, std::string_view key, Vec& value, Range range,
     return list + "[" + std::to_string(i) + "]";
 }
 
-/// The value whose name `text` is; complains with all names, and gives nothing, where it is none's.
+/// The value named `text`. Unknown names give nothing and a complaint that lists all names.
 template <class T, std::size_t N>
 std::optional<T> one_of(YamlMap& map, std::string_view key, const std::string& text, const std::array<T, N>& values)
 {
@@ -82,8 +82,8 @@ std::optional<T> one_of(YamlMap& map, std::string_view key, const std::array<T, 
     return text ? one_of(map, key, *text, values) : std::nullopt;
 }
 
-/// All threats of a file, in order, grids and scatters spread out.
-/// @param seed  of scatters that have none
+/// All threats of a file, in order, with grids and scatters expanded.
+/// @param seed  default seed of scatters
 void read_threats(YamlMap& root, std::uint64_t seed, std::vector<Threat>& out, Complaints& complaints);
 void read_areas(YamlMap& root, std::vector<ClosedArea>& out, Complaints& complaints);
 

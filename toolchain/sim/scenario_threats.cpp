@@ -11,7 +11,7 @@ constexpr int kMostInGrid = 64;
 constexpr int kMostScattered = 256;
 constexpr int kScatterTries = 100'000;
 
-/// Reads threats one by one; what all of them share.
+/// Reads threats; holds their common data.
 struct Threats {
     std::string file;
     std::uint64_t seed;
@@ -43,7 +43,7 @@ void read_turns(Threats& reader, YamlMap& map, Threat& threat)
     }
 }
 
-/// `position` at time 0, or the point that is passed at a time.
+/// `position` at time 0, or the point passed at a time.
 void read_place(YamlMap& map, Threat& threat)
 {
     if (map.has("position") == map.has("passes")) {

@@ -32,7 +32,7 @@ Vec noise(Random& random, double sigma)
     return Vec(x, y, z) * sigma;
 }
 
-/// Range at which a level ray at the own height meets a threat; negative when it does not.
+/// Range at which a level ray at the own height enters a threat; negative without an intersection.
 double ray_range(const Threat& threat, const Vec& centre, const Vec& from, const Vec& direction)
 {
     const double above = std::max(0.0, std::abs(centre.z() - from.z()) - threat.half_height);
@@ -96,7 +96,7 @@ std::vector<Sighting> TrafficReceiver::poll()
             sight(i, channel);
             channel.next += period;
         }
-        // Jitter may let a later sighting overtake an earlier one: they arrive in the order of arrival.
+        // Jitter may reverse the order of sightings: the queue is in order of arrival.
         auto& queue = channel.under_way;
         for (auto it = queue.begin(); it != queue.end();) {
             if (it->arrives <= world_.now()) {

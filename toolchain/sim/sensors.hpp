@@ -10,7 +10,7 @@
 
 namespace jink::sim {
 
-/// One traffic report as it arrives: true place with noise, already as old as the sensor's latency.
+/// One arriving traffic report: the true position with noise, delayed by the sensor's latency.
 struct Sighting {
     std::size_t threat = 0;
     Micros arrives = 0;
@@ -18,10 +18,10 @@ struct Sighting {
     Vec velocity = Vec::Zero();
 };
 
-/// Sees the threats of the world that are sensed as traffic or point obstacles.
+/// Detects the world's threats that are sensed as traffic or point obstacles.
 ///
-/// Each threat has its own random numbers, drawn for each sighting in the order of simulated time whether it arrives or
-/// not: what the co-processor does, and when anybody looks, changes none of them.
+/// Each threat has its own random stream. Numbers are drawn for each sighting in the order of simulated time, whether
+/// or not the sighting arrives. The numbers are independent of the co-processor and of the times of poll().
 class TrafficReceiver {
 public:
     explicit TrafficReceiver(const World& world);
@@ -45,8 +45,8 @@ private:
 inline constexpr std::size_t kScanSectors = 72;
 inline constexpr double kScanIncrement = 5.0;  // [deg]
 
-/// Level scan from the vehicle: sector i looks clockwise from the nose by i * kScanIncrement degrees. Distance to the
-/// nearest visible threat that is sensed by scan [m], or a negative number where there is none within the range.
+/// Level scan from the vehicle: sector i points i * kScanIncrement degrees clockwise from the nose. Distance to the
+/// nearest visible threat that is sensed by scan [m], or a negative number if none is within range.
 [[nodiscard]] std::array<double, kScanSectors> scan(const World& world);
 
 }  // namespace jink::sim

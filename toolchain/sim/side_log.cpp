@@ -8,9 +8,9 @@ namespace {
 
 /// Offsets from the leg smaller than this have no side [m].
 constexpr double kDeadBand = 0.5;
-/// How far ahead the commanded track is looked at [s].
+/// Look-ahead of the commanded track [s].
 constexpr double kAhead = 1.0;
-/// Product of two unit vectors from which on they are opposite sides.
+/// Unit vectors with a product below this are opposite sides.
 constexpr double kOpposite = -0.1;
 
 }  // namespace

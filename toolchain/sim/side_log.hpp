@@ -7,31 +7,31 @@
 
 namespace jink::sim {
 
-/// Changes of side of a flight, conflict by conflict. The terms are defined here, and counted as they are:
+/// Side changes of a flight, per conflict. Definitions:
 ///
-/// * A conflict is one stretch of control: from where the autopilot gives the velocity to the co-processor until it
-///   takes it back. Each begins without a side. (FlipCounter, in record.hpp, carries the side from one to the next.)
-/// * The side that is chosen is that of a manoeuvre when it is taken, as the planner names it: across the leg. It
-///   changes with a manoeuvre whose side points away from the one before, whatever was flown in between: product of the
-///   unit vectors below -0.1, so that planes at right angles are no change. Manoeuvres along the leg have none. Known
-///   of flights in process alone.
-/// * The side that is flown is where the vehicle will be one second on under the command in force, seen along the first
-///   leg: taken once that lies more than 0.5 m off the leg, changed once it lies more than 0.5 m off on the opposite
-///   side (negative component along the side taken last).
-/// * The picture has changed when a threat became known for the first time: the first message that tells of it left the
-///   autopilot's end of the line (dropped sightings tell nobody). A change of side counts as with a changed picture
-///   when that happened after the side before was taken, up to the change itself, and otherwise as with the same
-///   picture. A threat that was known but only then came into the way is the same picture.
+/// * A conflict is one interval of control, from the take-over of the velocity by the co-processor to the return. Each
+///   conflict begins without a side. (FlipCounter, in record.hpp, keeps the side between conflicts.)
+/// * The chosen side is the planner's side of a manoeuvre when it is chosen: across the leg. The chosen side changes
+///   with a manoeuvre whose side opposes the side before, independent of the flight in between: product of the unit
+///   vectors below -0.1, so that planes at right angles do not count. Manoeuvres along the leg have no side. Known for
+///   flights in process only.
+/// * The flown side is the side of the vehicle's position one second ahead under the present command, seen along the
+///   first leg. The side is taken once this position is more than 0.5 m off the leg. The side changes once the position
+///   is more than 0.5 m off on the opposite side (negative component along the last side).
+/// * The picture (the set of known threats) changes when a threat becomes known: the first message that reports the
+///   threat left the autopilot's end of the line (dropped sightings do not count). A side change counts as "changed
+///   picture" if a threat became known after the last side was taken, up to the change itself; otherwise as "same
+///   picture". A known threat that only later comes into conflict does not change the picture.
 ///
-/// The promise: the side that is chosen changes at most once per conflict unless the picture changed. It is broken by
-/// each conflict with two or more changes with the same picture. The side that is flown is counted in the same way and
-/// says more than the promise: it changes also where the leg is rejoined steeply, and where the vehicle brakes and
-/// turns away because nothing is left to choose.
+/// The promise: the chosen side changes at most once per conflict unless the picture changes. Each conflict with two or
+/// more changes with the same picture breaks the promise. The flown side is counted in the same way but is stricter
+/// than the promise: it also changes when the vehicle rejoins the leg steeply, and when the vehicle brakes and turns
+/// away without a candidate.
 struct SideCounts {
-    unsigned conflicts = 0;        ///< stretches of control
-    unsigned same_picture = 0;     ///< changes of side, all conflicts
-    unsigned changed_picture = 0;  ///< the same
-    unsigned most_same = 0;        ///< changes with the same picture in one conflict, the most
+    unsigned conflicts = 0;        ///< intervals of control
+    unsigned same_picture = 0;     ///< side changes with the same picture, all conflicts
+    unsigned changed_picture = 0;  ///< side changes with a changed picture, all conflicts
+    unsigned most_same = 0;        ///< largest number of changes with the same picture in one conflict
     unsigned broken = 0;           ///< conflicts that break the promise
 };
 
@@ -39,20 +39,20 @@ class SideLog {
 public:
     explicit SideLog(const std::vector<Vec>& mission);
 
-    /// A step under control. @param takeover  number of the stretch, counted from 1
+    /// A step under control. @param takeover  number of the interval, counted from 1
     void note(double time, unsigned takeover, const Vec& position, const Vec& command);
 
-    /// A manoeuvre is taken, in control. @param side  of it, 0: none
+    /// A manoeuvre is chosen under control. @param side  of the manoeuvre, 0: none
     void choose(double time, unsigned takeover, const Vec& side);
 
-    /// Of the side that is flown. @param told  when each threat became known [s]; negative: never. O(changes *
+    /// Counts of the flown side. @param told  time at which each threat became known [s]; negative: never. O(changes *
     /// threats).
     [[nodiscard]] SideCounts counts(const std::vector<double>& told) const;
-    /// Of the side that is chosen; `conflicts` are the stretches in which one was.
+    /// Counts of the chosen side; `conflicts`: intervals with a chosen side.
     [[nodiscard]] SideCounts chosen(const std::vector<double>& told) const;
 
 private:
-    /// A side was taken, the first one of its stretch or another one.
+    /// A side that was taken, the first of its interval or a change.
     struct Taken {
         double time = 0.0;
         unsigned takeover = 0;

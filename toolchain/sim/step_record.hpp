@@ -5,26 +5,26 @@
 #include <cstdint>
 #include <type_traits>
 
-// What went through a co-processor's line in each step of a flight, so that the flight can be run again on any target
-// (tests/target/step_probe.cpp): plain memory, little-endian. A file is one StepRecord after the other, each followed
-// by its bytes in, then its bytes out.
+// Traffic of a co-processor's line in each step of a flight, to repeat the flight on any target
+// (tests/target/step_probe.cpp). Plain memory, little-endian. A file is a sequence of StepRecords, each followed by its
+// bytes in, then its bytes out.
 
 namespace jink::sim {
 
 inline constexpr std::uint32_t kStepMagic = 0x4A535201;  // "JSR", layout 1
-/// As many bytes at most in either direction: those that one step reads, and the transmit buffer's.
+/// Largest number of bytes per step and direction: the read limit of one step, and the size of the transmit buffer.
 inline constexpr std::uint32_t kStepBytes = 4096;
 
 struct StepRecord {
     std::uint32_t magic;
-    std::uint32_t start;      ///< 1: the co-processor starts anew before this step; 2: and without reach sets
+    std::uint32_t start;      ///< 1: the co-processor restarts before this step; 2: restarts without reach sets
     std::int64_t now_us;      ///< the step's time
-    std::uint32_t bytes_in;   ///< read by the step
-    std::uint32_t bytes_out;  ///< written by it in the recorded flight
+    std::uint32_t bytes_in;   ///< bytes that the step reads
+    std::uint32_t bytes_out;  ///< bytes that the step wrote in the recorded flight
 };
 static_assert(std::is_trivially_copyable_v<StepRecord> && sizeof(StepRecord) == 24);
 
-/// What a target answers; followed by its own bytes out.
+/// A target's answer; followed by its own bytes out.
 struct StepAnswer {
     std::uint32_t magic;
     std::uint32_t state;        ///< link::SystemState
@@ -33,14 +33,14 @@ struct StepAnswer {
     std::uint32_t guidance;     ///< avoid::State
     std::uint32_t kind;         ///< world::ManoeuvreKind
     std::uint32_t plan_status;  ///< world::PlanStatus of this step's plan
-    std::uint32_t plans;        ///< asked for since start
+    std::uint32_t plans;        ///< requested since start
     std::uint32_t chosen;       ///< index of the chosen candidate in the last plan
     std::uint32_t candidates;   ///< of the last plan's last attempt
     std::uint32_t manoeuvres;   ///< begun since start
-    std::uint32_t work;         ///< units of the supervisor's budget
+    std::uint32_t work;         ///< work units of the supervisor's budget
     std::uint32_t tracks;
     std::uint32_t obstacles;
-    std::uint32_t stack_used;  ///< [bytes] since start; 0 where it cannot be told
+    std::uint32_t stack_used;  ///< [bytes] since start; 0 where unknown
     std::uint32_t bytes_out;
     float velocity[3];  ///< command [m/s, ENU]
     float margin;       ///< [m]

@@ -18,9 +18,9 @@ namespace {
 
 constexpr Micros kNotePeriod = kSecond / 10;
 constexpr Micros kSettled = 2 * kSecond;
-/// At the goal within this, and on the way beyond it [m].
+/// At the goal within this distance, en route beyond it [m].
 constexpr double kAtGoal = 0.5;
-/// Slower than this share of the cruise speed it stands.
+/// Below this share of the cruise speed a vehicle counts as stopped.
 constexpr double kStands = 0.1;
 
 /// FNV-1a, 64 bits.
@@ -30,7 +30,7 @@ void mix(std::uint64_t& digest, double value)
     digest = (digest ^ std::bit_cast<std::uint64_t>(value)) * kPrime;
 }
 
-/// One vehicle's co-processor and the cable to it. Each has a clock of its own that began at another time.
+/// One vehicle's co-processor and its cable. Each co-processor has its own clock with its own start time.
 struct Station {
     Station(const SwarmSetup& setup, std::uint64_t seed, std::size_t index, const app::Parameters& parameters)
         : start(static_cast<std::int64_t>(1'234'567'890 + 1'000'003 * index)), clock(start),
@@ -54,7 +54,7 @@ struct Station {
         return timing;
     }
     void go_to(Micros flown) { clock.advance(start + flown - clock.now_us()); }
-    /// Carries the plant's bytes and lets the co-processor have its turns until now.
+    /// Carries the plant's bytes and runs the co-processor's steps up to now.
     bool serve(Plant& plant)
     {
         const bool carried = cable.write(plant.collect());

@@ -40,11 +40,11 @@ SwarmSetup setup_of(const SwarmOptions& options)
         const auto [name, value] = parse_parameter(text);
         setup.parameters[name] = value;
     }
-    static_cast<void>(swarm_parameters(setup));  // what is refused is refused before anything flies
+    static_cast<void>(swarm_parameters(setup));  // refuses invalid parameters before the first flight
     return setup;
 }
 
-/// On several threads; the order of the results is that of the seeds.
+/// Flies on several threads; results are in the order of the seeds.
 std::vector<SwarmResult> fly_all(const SwarmSetup& setup, const SwarmOptions& options, unsigned threads)
 {
     std::vector<SwarmResult> results(options.count);

@@ -19,7 +19,7 @@ struct SwarmOptions {
     SwarmSetup setup;
     std::uint64_t seed = 1;
     unsigned count = 1;
-    unsigned threads = 0;  ///< 0: as many as the machine has cores
+    unsigned threads = 0;  ///< 0: number of cores
     std::string stack = "ardupilot";
     std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;
@@ -31,11 +31,12 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options);
 
 /// One line of text, without its end.
 [[nodiscard]] std::string to_line(const SwarmResult& result);
-/// Of all results, in their order, each worst with its seed.
+/// Summary of all results, each worst value with its seed.
 [[nodiscard]] std::string summarise(const std::vector<SwarmResult>& results);
 
-/// Flies, prints, and says how it ended: 0; 1 when bodies touched, a goal was missed or a rule of the protocol broken.
-/// @throws std::runtime_error when options are of no use
+/// Flies and prints. @return exit status: 1 when bodies were in contact, a goal was missed or a rule of the protocol
+/// was broken, else 0
+/// @throws std::runtime_error when options are invalid
 int run_swarm(const SwarmOptions& options);
 
 }  // namespace jink::sim

@@ -10,7 +10,7 @@
 namespace jink::sim {
 namespace {
 
-/// A jinkd, its line and what waits to be written on it.
+/// A jinkd, its line and the line's pending output.
 struct Runner {
     explicit Runner(const std::vector<std::string>& before, const std::filesystem::path& folder,
                     const std::string& name)
@@ -47,7 +47,7 @@ void write_parameters(const app::Parameters& parameters, const std::filesystem::
     }
 }
 
-/// In step with the wall clock, until it is over or a program has ended.
+/// Flies in real time until the swarm is finished or a program has ended.
 void fly_on_time(Swarm& swarm, std::vector<std::unique_ptr<Runner>>& runners)
 {
     auto next = std::chrono::steady_clock::now();

@@ -9,9 +9,9 @@
 namespace jink::sim {
 namespace {
 
-/// An obstacle starts at least this far from every vehicle [m].
+/// Least distance of an obstacle's start from every vehicle [m].
 constexpr double kClearStart = 3.0;
-/// Its speed, in shares of the vehicles' own.
+/// An obstacle's speed, as a share of the vehicles' cruise speed.
 constexpr double kSlowest = 0.2;
 constexpr double kFastest = 0.6;
 
@@ -26,7 +26,7 @@ Vec on_circle(const SwarmSetup& setup, unsigned index)
     return {setup.circle * std::cos(angle), setup.circle * std::sin(angle), setup.height};
 }
 
-/// From outside, across the inner part of the circle.
+/// An obstacle that flies from outside across the inner part of the circle.
 Threat obstacle(const SwarmSetup& setup, Random& random, unsigned number)
 {
     Threat ball;
@@ -75,7 +75,7 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     small_and_slow(s, setup.cruise);
     Vec off = off_place();
     for (unsigned i = 0; i < index; ++i) {
-        off = off_place();  // those before it have had theirs
+        off = off_place();  // draws of the vehicles before this one
     }
     s.start_position = on_circle(setup, index) + off;
     const Vec opposite(-on_circle(setup, index).x(), -on_circle(setup, index).y(), setup.height);
@@ -101,14 +101,14 @@ app::Parameters swarm_parameters(const SwarmSetup& setup)
         {"VEH_DESCENT", setup.cruise},
         {"VEH_ACC", 2.0},
         {"VEH_ACC_Z", 2.0},
-        // The sphere of the other one and the box of the own one together are the separations.
+        // The other vehicle's sphere and the own box add up to the separations.
         {"TRK_RADIUS", half},
         {"JNK_HALF_XY", setup.level - half},
         {"JNK_HALF_Z", half},
-        // What the wire rounds, and the autopilots' maps differ by.
+        // Covers the rounding of the wire and the differences between the autopilots' maps.
         {"TRK_SIGMA_P", 0.03},
         {"TRK_SIGMA_V", 0.03},
-        // And half a tick, until it is looked at.
+        // Plus half a tick until the report is processed.
         {"TRK_LATENCY", setup.delay + 0.01},
     };
     for (const auto& [name, value] : setup.parameters) {

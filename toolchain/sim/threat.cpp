@@ -7,7 +7,7 @@
 namespace jink::sim {
 namespace {
 
-/// From the nearest point of the threat's axis to `point`.
+/// Vector from the nearest point of the threat's axis to `point`.
 Vec from_axis(const Threat& threat, const Vec& centre, const Vec& point) noexcept
 {
     Vec gap = point - centre;
@@ -15,7 +15,7 @@ Vec from_axis(const Threat& threat, const Vec& centre, const Vec& point) noexcep
     return gap;
 }
 
-/// Distance to what reaches so far beyond its faces in independent directions; inside, to the nearest face.
+/// Distance to a body from the excess beyond its faces in independent directions; inside, to the nearest face.
 template <int N>
 double beyond_faces(const Eigen::Matrix<double, N, 1>& beyond) noexcept
 {

@@ -10,7 +10,7 @@
 
 namespace jink::sim {
 
-/// How the co-processor gets to know of a threat.
+/// The sensor that reports a threat to the co-processor.
 enum class SensedBy : std::uint8_t {
     traffic,  ///< ADSB_VEHICLE of an aircraft
     point,    ///< ADSB_VEHICLE of a point obstacle, velocity 0
@@ -18,9 +18,9 @@ enum class SensedBy : std::uint8_t {
     lidar,    ///< point clouds in compact frames, in process only (lidar.hpp)
 };
 
-/// Bodies. All but the ball stand still.
+/// Bodies. All but the ball are static.
 enum class Form : std::uint8_t {
-    ball,      ///< `radius`; with `half_height` an upright capsule, whose axis is that long
+    ball,      ///< `radius`; with `half_height` an upright capsule with an axis of this half length
     cylinder,  ///< upright: `radius`, `half_height`
     box,       ///< `half_extents`, along the axes of the world
 };
@@ -34,7 +34,7 @@ struct Turn {
     Vec velocity = Vec::Zero();
 };
 
-/// A body that flies straight between turns, or stands still.
+/// A body that flies straight between turns, or is static.
 struct Threat {
     std::string name;
     Form form = Form::ball;
@@ -45,8 +45,9 @@ struct Threat {
     Vec velocity = Vec::Zero();      ///< from time 0 [m/s]
     std::vector<Turn> turns;         ///< in order of time
     SensedBy sensed_by = SensedBy::traffic;
-    double appears_at = 0.0;                        ///< not seen before [s]
-    std::optional<double> appears_when_own_within;  ///< of `collision_point`; seen from then on [m]
+    double appears_at = 0.0;                        ///< not detectable before [s]
+    std::optional<double> appears_when_own_within;  ///< distance of the own vehicle to `collision_point` at which the
+                                                    ///< threat becomes detectable [m]
     Vec collision_point = Vec::Zero();
 
     [[nodiscard]] Vec position_at(double t) const noexcept;
@@ -56,12 +57,12 @@ struct Threat {
 
 /// Distance from a point to the surface of a threat whose centre is at `centre` [m]; negative inside. O(1).
 [[nodiscard]] double surface_distance(const Threat& threat, const Vec& centre, const Vec& point) noexcept;
-/// The same for a world-aligned box with the given half extents around `point`; 0 when it touches or overlaps. O(1).
+/// The same for a world-aligned box with the given half extents around `point`; 0 on contact or overlap. O(1).
 [[nodiscard]] double box_distance(const Threat& threat, const Vec& centre, const Vec& point, const Vec& half) noexcept;
 
 /// Least distance to the surface while the point goes from `from` to `to` and the centre from `centre_from` to
-/// `centre_to`, both at constant velocity, and the share of the step at which it occurs. Exact for spheres; for what
-/// stands and is none, the nearer end.
+/// `centre_to`, both at constant velocity, and the share of the step at which it occurs. Exact for spheres; for other,
+/// static bodies the nearer end of the step.
 struct Nearest {
     double distance = 0.0;
     double share = 0.0;

@@ -34,7 +34,7 @@ Timing timing_of(std::uint64_t seed, const Spread& spread, Micros scan_period, M
     timing.held_up_most = spread.held_up_most;
     timing.latency_least = 400;
     timing.latency_most = 6'000;
-    // On the plant's grid of time: a phase between two of its steps would be missed.
+    // On the plant's time grid: a phase between two plant steps would be missed.
     const Micros scan = between(random, 0, scan_period / kStep - 1) * kStep;
     const Micros traffic = between(random, 0, traffic_period / kStep - 1) * kStep;
     if (spread.sensors) {

@@ -8,39 +8,40 @@
 
 namespace jink::sim {
 
-/// How time goes in a flight in process. As it stands here: everything on time, the same in every flight.
+/// Timing of a flight in process. Defaults: everything on time, the same in every flight.
 struct Timing {
-    std::uint64_t seed = 0;       ///< of what is drawn in flight
+    std::uint64_t seed = 0;       ///< of the random numbers drawn in flight
     Micros first_tick = 20'000;   ///< of the co-processor, after the flight's start, 0..
-    Micros tick_jitter = 0;       ///< each tick is late by up to this, uniform
-    double held_up_share = 0.0;   ///< share of ticks that the machine holds up, and of what is written on the line
-    Micros held_up_least = 0;     ///< by this much,
-    Micros held_up_most = 0;      ///< up to that, uniform
+    Micros tick_jitter = 0;       ///< lateness of each tick, uniform from 0 to this
+    double held_up_share = 0.0;   ///< share of ticks, and of writes to the line, that the host delays
+    Micros held_up_least = 0;     ///< least delay
+    Micros held_up_most = 0;      ///< largest delay; uniform between the two
     Micros latency_least = 1000;  ///< of the line: 921600 baud carry a report of 40 bytes in 0.4 ms, USB adapters add
     Micros latency_most = 1000;   ///< a few; uniform, in order
     Micros scan_phase = 0;        ///< the range scanner's clock against the autopilot's
     Micros traffic_phase = 0;     ///< first sighting after a threat appears
 };
 
-/// What differs from flight to flight.
+/// Variation between flights.
 struct Spread {
-    bool sensors = true;           ///< their clocks too: what another day brings; a real-time flight has them fixed
+    bool sensors = true;           ///< vary the sensors' clocks; a real-time flight has fixed ones
     double held_up_share = 0.004;  ///< of ticks, and of pieces of telemetry, [0, 1]
     Micros held_up_most = 60'000;  ///< 20 ms or more
 };
 
-/// One of many: ticks in any phase, 0..2 ms late, some held up by 20 ms to `held_up_most`; a line of 0.4..6 ms; sensors
-/// in any phase of `scan_period` and `traffic_period` [us] where they are varied. The same seed gives the same timing.
+/// A random timing: ticks in any phase, 0..2 ms late, some delayed by 20 ms to `held_up_most`; a line of 0.4..6 ms;
+/// sensors in any phase of `scan_period` and `traffic_period` [us] if they are varied. The same seed gives the same
+/// timing.
 [[nodiscard]] Timing timing_of(std::uint64_t seed, const Spread& spread, Micros scan_period, Micros traffic_period);
 
-/// When the co-processor's steps begin, as jinkd paces them: 20 ms apart, one that comes late is not made up for.
+/// Start times of the co-processor's steps, as paced by jinkd: 20 ms apart; a late step is not caught up.
 class Ticks {
 public:
     explicit Ticks(const Timing& timing) : timing_(timing), random_(timing.seed), next_(timing.first_tick) { draw(); }
 
     /// Start of the next step [us since the start of the flight].
     [[nodiscard]] Micros next() const noexcept { return begins_; }
-    /// It has begun.
+    /// The step has begun.
     void begin();
 
 private:
@@ -52,7 +53,7 @@ private:
     Micros begins_ = 0;
 };
 
-/// How long what is written next is under way [us].
+/// Transit time of the next write [us].
 class Delays {
 public:
     Delays(const Timing& timing, std::uint64_t line) : timing_(timing), random_(timing.seed ^ line) {}

@@ -10,7 +10,7 @@
 namespace jink::sim {
 namespace {
 
-/// Below this speed a course means nothing [m/s].
+/// Below this speed the course is undefined [m/s].
 constexpr double kCourseSpeed = 0.5;
 
 using Plane = Eigen::Vector2d;
@@ -64,7 +64,7 @@ void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt
     truth.velocity += dt * truth.acceleration;
     const double vertical = std::clamp(truth.velocity.z(), -limits.max_descent, limits.max_climb);
     if (vertical != truth.velocity.z()) {
-        // A gust may push against the limit for long: what pulls away from the limit goes on building up.
+        // A gust may push against the limit for long: the acceleration away from the limit keeps building up.
         if (truth.acceleration.z() * truth.velocity.z() > 0.0) {
             truth.acceleration.z() = 0.0;
         }

@@ -5,7 +5,7 @@
 
 namespace jink::sim {
 
-/// What the simulated vehicle can do. On purpose not core's vehicle model: that one is of first order.
+/// Limits of the simulated vehicle. Differs on purpose from core's vehicle model, which is of first order.
 struct TruthLimits {
     double cruise = 5.0;                     ///< [m/s]
     double omega = 5.0;                      ///< natural frequency of the velocity loop [rad/s]
@@ -14,8 +14,8 @@ struct TruthLimits {
     double max_vertical_acceleration = 3.0;  ///< [m/s2]
     double max_climb = 3.0;                  ///< [m/s]
     double max_descent = 3.0;                ///< [m/s]
-    double max_yaw_rate = 1.5;               ///< the nose follows the course this fast at most [rad/s]
-    double min_speed = 0.0;                  ///< of a fixed wing, flown as arduplane.hpp says [m/s]; 0: a multirotor
+    double max_yaw_rate = 1.5;               ///< largest rate at which the nose follows the course [rad/s]
+    double min_speed = 0.0;                  ///< of a fixed wing (arduplane.hpp) [m/s]; 0: a multirotor
     double max_course_rate =
         0.0;  ///< turn rate of the velocity above 0.5 m/s [rad/s]; 0: only the acceleration bounds it
 };
@@ -31,12 +31,12 @@ struct Truth {
 /// turn rates. Accurate for dt well below 1 / omega; the simulator uses kStep. O(1).
 void fly(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept;
 
-/// The same but for the nose, which stays: where the vehicle goes does not depend on it. For those who fly many ways
-/// and ask for places alone; half the work.
+/// The same with a fixed nose; the positions do not depend on the nose. For callers that fly many commands and use
+/// positions alone; half the work.
 void move(Truth& truth, const Vec& command, const TruthLimits& limits, double dt) noexcept;
 
-/// Velocity along `direction` at `speed`, slowed where the climb or descent limit asks for it, so that the direction
-/// stays.
+/// Velocity along `direction` at `speed`, slowed where needed to stay within the climb and descent limits in the same
+/// direction.
 [[nodiscard]] Vec along(const Vec& direction, double speed, const TruthLimits& limits) noexcept;
 
 }  // namespace jink::sim

@@ -12,9 +12,9 @@ namespace jink::sim {
 class LineEnd {
 public:
     virtual ~LineEnd() = default;
-    /// What has arrived. @return bytes
+    /// Reads received bytes. @return number of bytes
     virtual std::size_t read(std::span<std::byte> into) = 0;
-    /// False when it is more than the line carries.
+    /// False when the bytes exceed the line's capacity.
     virtual bool write(std::span<const std::byte> bytes) = 0;
 };
 
@@ -24,7 +24,7 @@ class TunnelLine final : public LineEnd {
 public:
     static constexpr std::uint8_t kAutopilotNode = 10;
     static constexpr std::uint8_t kOurNode = 42;
-    /// Of telemetry that waits: a serial driver's buffer.
+    /// Largest queue of telemetry [bytes]: a serial driver's buffer.
     static constexpr std::size_t kWaitingBytes = 4096;
 
     TunnelLine(hal::Clock& clock, std::uint64_t seed);

@@ -5,14 +5,14 @@
 
 #include <Eigen/Core>
 
-// The simulator's truth is in double precision, SI units, local ENU with home as its origin: nothing of core's
-// arithmetic is in it.
+// The simulator's truth is in double precision, SI units, local ENU with home as its origin, and independent of core's
+// arithmetic.
 
 namespace jink::sim {
 
 using Vec = Eigen::Vector3d;
 
-/// Simulated time since the start of the flight [us]; whole steps, so that nothing drifts.
+/// Simulated time since the start of the flight [us]; whole steps, without drift.
 using Micros = std::int64_t;
 
 inline constexpr Micros kSecond = 1'000'000;

@@ -35,7 +35,7 @@ bool is_packed(std::span<const std::byte> bytes)
     return bytes.size() >= kXzMagic.size() && std::memcmp(bytes.data(), kXzMagic.data(), kXzMagic.size()) == 0;
 }
 
-/// Unpacks all streams of an xz file; what came out before damage is kept.
+/// Unpacks all streams of an xz file; keeps the output before any damage.
 struct Unpacked {
     std::vector<std::byte> bytes;
     std::string fault;
@@ -80,7 +80,7 @@ Unpacked unpack(std::span<const std::byte> packed)
     return out;
 }
 
-/// What is wrong with the head of a record; empty: nothing.
+/// The fault in a record's head; empty: none.
 std::string fault_of(double time, std::uint8_t direction, std::uint32_t length, double before)
 {
     if (!std::isfinite(time) || time < before || time - before > kLongestWirePause) {

@@ -10,7 +10,7 @@
 
 namespace jink::sim {
 
-/// Who sent the bytes of a record.
+/// Sender of a record's bytes.
 enum class WireDirection : std::uint8_t { from_autopilot = 0, from_jink = 1 };
 
 /// One piece of a recorded stream.
@@ -23,18 +23,18 @@ struct WireRecord {
 /// A recorded stream between an autopilot and jinkd, both directions.
 struct WireFile {
     std::vector<WireRecord> records;  ///< in the order of the file; times do not decrease
-    std::string fault;                ///< what is wrong behind the last record; empty: the file is complete
+    std::string fault;                ///< damage after the last record; empty: the file is complete
 };
 
-/// Longest pause between two records [s]. A longer one is a damaged time stamp.
+/// Longest pause between two records [s]. A longer pause is a damaged time stamp.
 inline constexpr double kLongestWirePause = 600.0;
 /// Largest record [bytes]; a datagram has 65535 at most.
 inline constexpr std::uint32_t kLargestWireRecord = 1U << 17U;
 /// Largest file once unpacked [bytes]: 9 hours of PX4's streams in the simulator.
 inline constexpr std::size_t kLargestWireFile = std::size_t{1} << 30U;
 
-/// Reads `<dBI` records, little-endian: seconds, direction, length; then that many bytes. Plain or packed by xz; the
-/// first bytes of the file decide, not its name.
+/// Reads `<dBI` records, little-endian: seconds, direction, length; then that many bytes. Plain or packed by xz,
+/// recognised by the first bytes, not by the name.
 ///
 /// A truncated or damaged file gives the records before the damage and `fault`: a record cut off, a direction other
 /// than 0 and 1, a time that is not finite, negative, earlier than the one before or more than kLongestWirePause later,
@@ -42,7 +42,7 @@ inline constexpr std::size_t kLargestWireFile = std::size_t{1} << 30U;
 /// @throws std::runtime_error when the file cannot be opened or read
 [[nodiscard]] WireFile read_wire_file(const std::filesystem::path& path);
 
-/// The same of bytes in memory, packed or not.
+/// The same for bytes in memory, packed or plain.
 [[nodiscard]] WireFile read_wire(std::span<const std::byte> bytes);
 
 }  // namespace jink::sim

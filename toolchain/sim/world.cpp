@@ -7,7 +7,7 @@
 namespace jink::sim {
 namespace {
 
-/// A gust accelerates a multirotor by this much of its speed before the velocity loop answers [1/s].
+/// A gust accelerates a multirotor by this share of the gust speed before the velocity loop responds [1/s].
 constexpr double kDragRate = 0.3;
 
 }  // namespace

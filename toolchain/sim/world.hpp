@@ -7,25 +7,25 @@
 
 namespace jink::sim {
 
-/// The closest that the vehicle came to any threat.
+/// The vehicle's closest approach to any threat.
 struct Closest {
     double surface = 1e9;  ///< vehicle's centre to the threat's surface [m]
-    double box = 1e9;      ///< 1 m box around the centre to the surface, its own minimum [m]
+    double box = 1e9;      ///< 1 m box around the centre to the surface, separate minimum [m]
     double time = 0.0;     ///< of `surface` [s]
     Vec own = Vec::Zero();
     Vec threat_centre = Vec::Zero();
     std::size_t threat = 0;
 };
 
-/// What is true: where everything is, and how close it came. Threats fly their plan, the vehicle what it is told.
+/// The true state: positions and closest approaches. Threats follow their plan, the vehicle follows its commands.
 class World {
 public:
     /// @param scenario  outlives the world
     explicit World(const Scenario& scenario);
 
-    /// One kStep of time under a velocity command. O(threats).
+    /// Advances by one kStep under a velocity command. O(threats).
     void step(const Vec& command);
-    /// A plane holds this speed from now on; the scenario's cruise speed at first [m/s].
+    /// Sets a plane's airspeed; the initial value is the scenario's cruise speed [m/s].
     void set_airspeed(double speed) noexcept { limits_.cruise = speed; }
 
     [[nodiscard]] Micros now() const noexcept { return now_; }
@@ -34,16 +34,16 @@ public:
     [[nodiscard]] const Scenario& scenario() const noexcept { return scenario_; }
     [[nodiscard]] const Vec& threat_position(std::size_t i) const { return positions_[i]; }
     [[nodiscard]] bool visible(std::size_t i) const { return appeared_[i] >= 0; }
-    /// Since when it is seen [us]; -1: not yet.
+    /// Time since which the threat is detectable [us]; -1: not yet.
     [[nodiscard]] Micros appeared(std::size_t i) const { return appeared_[i]; }
     [[nodiscard]] const Closest& closest() const noexcept { return closest_; }
-    /// The closest that the centre came to a closed area's body [m], below 0: into it; 1e9 without any.
+    /// Least signed distance of the centre to a closed area's body [m], negative inside; 1e9 without areas.
     [[nodiscard]] double closest_area() const noexcept { return closest_area_; }
-    /// Least distance now from the centre to a surface [m], and whose; 1e9 without threats.
+    /// Present least distance from the centre to a surface [m]; sets `nearest` to that threat. 1e9 without threats.
     [[nodiscard]] double separation(std::size_t& nearest) const;
     /// Lowest height of the centre so far [m].
     [[nodiscard]] double lowest() const noexcept { return lowest_; }
-    /// True when the vehicle draws away from every threat and closed area, and none is yet to appear.
+    /// True when the vehicle recedes from every threat and closed area, and all threats have appeared.
     [[nodiscard]] bool all_past() const;
 
 private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The co-processor on a board of one's own: a port, a clock, a watchdog, and one call a tick. The board is the MPS2
-// with the AN500 image, because qemu has it.
+// The co-processor on a custom board: a port, a clock, a watchdog, and one call per tick. The board is the MPS2 with
+// the AN500 image, because qemu supports it.
 #include "firmware/app/coprocessor.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cmsdk/cmsdk_uart.hpp"

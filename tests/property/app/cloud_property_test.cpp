@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The polar image against double precision: what it gives covers what was hit, and every hit is counted once.
+// The range image against double precision: its obstacles cover all hits, and every hit is counted once.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -43,7 +43,7 @@ Hit hit_at(const Vec3& point)
 
 double depth_at(double range) { return std::max(1.0, 0.3 * range); }
 
-/// Scenes that are hard in their own way: scattered points, a plane at a slant, wires, shells.
+/// Difficult scenes: scattered points, an oblique plane, wires, shells.
 std::vector<Hit> random_scene(Random& random)
 {
     std::vector<Hit> hits;
@@ -60,7 +60,7 @@ std::vector<Hit> random_scene(Random& random)
         Vec3 point;
         if (kind == 0) {
             point = direction() * random.uniform(3.0F, 599.0F);
-        } else if (kind == 1) {  // what rays see of a plane
+        } else if (kind == 1) {  // a plane as seen by the rays
             const Vec3 ray = direction();
             const float steep = ray.dot(normal);
             point = steep > 0.01F ? Vec3(ray * (away / steep)) : Vec3(ray * 3.0F);
@@ -247,7 +247,7 @@ TEST(CloudLoad, HundredThousandPointsTenTimesASecond)
     EXPECT_EQ(c.obstacles, kScans * kMaxCloudObstacles);
 }
 
-/// Twice as much as a step may read: what the line loses meanwhile is told, and every point is in one place.
+/// Twice the read limit of a step: the line's losses are reported, and every point is accounted for once.
 TEST(CloudLoad, WhatALineLosesIsCounted)
 {
     using namespace test;
@@ -262,7 +262,7 @@ TEST(CloudLoad, WhatALineLosesIsCounted)
     for (int scan = 0; scan < 20; ++scan) {
         std::vector<cloud::test::Bytes> frames = f->driver.scan(points, f->driver_ms());
         announced += kPoints;
-        // A buffer of 200 KiB before the port: what comes on top of it is lost, in the middle of a frame.
+        // A buffer of 200 KiB before the port: excess bytes are lost, in the middle of a frame.
         auto bytes = cloud::test::joined(frames);
         const std::size_t room = 200U * 1024U > f->line.waiting() ? 200U * 1024U - f->line.waiting() : 0;
         bytes.resize(std::min(bytes.size(), room));

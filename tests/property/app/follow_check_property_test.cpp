@@ -50,7 +50,7 @@ struct Craft {
         for (std::size_t i = 0; i < 3; ++i) {
             const double change = std::clamp(limit * want[i] - a[i], -jerk * 0.02, jerk * 0.02);
             a[i] += change;
-            // A gust of a second's memory; the autopilot's loop takes out what it pushed, with its lag.
+            // A gust with a correlation time of one second; the autopilot's loop compensates its push with a lag.
             push[i] += -push[i] * 0.02 + gust * std::sqrt(2.0 * 0.02) * static_cast<double>(random.normal());
             v[i] += (a[i] + 0.5 * push[i]) * 0.02;
         }

@@ -35,7 +35,7 @@ struct Stop {
     }
     [[nodiscard]] double time() const { return static_cast<double>(steps) * kFine; }
 
-    /// Least distance of a straight flight from the vehicle until it has stood for `ahead`.
+    /// Least distance of a straight flight from the vehicle until it has stopped for `ahead`.
     [[nodiscard]] double closest(const std::array<double, 3>& p, const std::array<double, 3>& v, double ahead) const
     {
         double least = 1e9;
@@ -71,7 +71,7 @@ TEST(HoldChoiceLaw, StopsExactlyWhereItKeepsTheVehicleFartherAway)
         own.velocity = Vec3(speed * std::cos(course), speed * std::sin(course), 0.0F);
         const Stop stop(static_cast<double>(own.velocity.x()), static_cast<double>(own.velocity.y()), limits);
 
-        // Past, while braking, soon after, late, about the end of what is looked at.
+        // Past, while braking, soon after, late, about the end of the look-ahead.
         const double standing = static_cast<double>(kHoldAhead);
         const double due[] = {-1.0, stop.time() * static_cast<double>(random.uniform()),
                               stop.time() + static_cast<double>(random.uniform(0.0F, 3.0F)),
@@ -93,7 +93,7 @@ TEST(HoldChoiceLaw, StopsExactlyWhereItKeepsTheVehicleFartherAway)
         world::Conflict conflict;
         conflict.miss_distance = random.uniform(0.0F, 6.0F);
 
-        // Unclear within 0.1 m of the chords, 10 ms of the standstill's time, and what a creep of 0.05 m/s adds.
+        // Tolerance: 0.1 m of the chords, 10 ms of the standstill's time, and the contribution of a creep of 0.05 m/s.
         const double wanted = static_cast<double>(conflict.miss_distance + kHoldBetter);
         const double longer = stop.closest(p, v, standing + 0.01), shorter = stop.closest(p, v, standing - 0.01);
         const bool safe = longer > wanted + 0.13, unsafe = shorter < wanted - 0.13;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Who is in control, over random schedules: an autopilot with its own rules, a line that delays and loses, a pilot, and
-// a witness that knows only what went over the line. JINK_CASES sets the number of schedules (20 000), JINK_SEED the
+// Who is in control, over random schedules: an autopilot with its own rules, a line with delays and losses, a pilot,
+// and a witness that knows only the line's traffic. JINK_CASES sets the number of schedules (20 000), JINK_SEED the
 // first one's seed.
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ World random_world(Random& random)
     return w;
 }
 
-/// What the schedules reached: a law over schedules in which nothing happens proves nothing.
+/// Coverage of the schedules: a law over schedules without events proves nothing.
 struct Tally {
     long taken = 0, given_back = 0, overruled = 0, refused = 0, lost = 0, sticks = 0, unfollowed = 0, held = 0;
     long pilots = 0, overridden = 0, unknowable = 0;
@@ -61,7 +61,7 @@ class Schedule {
 public:
     explicit Schedule(std::uint64_t seed) : random_(seed), world_(random_world(random_)) {}
 
-    /// nullptr, or what is broken, and when.
+    /// nullptr, or the broken rule and its time.
     [[nodiscard]] const char* run(int ticks, Tally& tally)
     {
         rest_ = random_.below(3) == 0 ? 25 : 120;

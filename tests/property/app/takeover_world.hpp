@@ -8,7 +8,7 @@
 #include "core/base/random.hpp"
 #include "firmware/app/takeover.hpp"
 
-// An autopilot with its own rules, a line that delays and loses, and a witness that knows only what went over the line.
+// An autopilot with its own rules, a line with delays and losses, and a witness that knows only the line's traffic.
 
 namespace jink::app::test {
 
@@ -18,7 +18,7 @@ inline constexpr int kNever = -1'000'000;
 inline constexpr int kSecond = 50;  // ticks
 inline constexpr float kTickTime = 0.02F;
 
-/// Modes by their number on this wire. Two missions: what is given back must be the one that was left.
+/// Modes by their number on this wire. Two missions: control must return to the mission that was left.
 enum Number : std::uint32_t { kMissionA = 3, kExternal = 4, kHold = 5, kManual = 16, kMissionB = 33 };
 
 inline FlightMode meaning(std::uint32_t number)
@@ -34,7 +34,7 @@ inline FlightMode meaning(std::uint32_t number)
 
 inline bool is_mission(std::uint32_t number) { return meaning(number) == FlightMode::mission; }
 
-/// What goes over the line, in its order.
+/// The line's traffic, in order.
 template <class T>
 class Line {
 public:
@@ -88,11 +88,11 @@ struct World {
     int latency = 1;       ///< least [ticks]
     int jitter = 0;        ///< on top [ticks]
     float loss = 0.0F;     ///< of a frame, either way
-    int proof = 0;         ///< a PX4 grants the external mode to a stream that old [ticks]
+    int proof = 0;         ///< least age of the set-point stream for which a PX4 grants the external mode [ticks]
     int phase = 0;
 
-    /// A pilot's mode older than this when a request leaves was to be known [ticks]: what a HEARTBEAT takes and may be
-    /// old, ModeEvidence::kFresh where every request of one is answered in time, 1.5 periods otherwise.
+    /// A pilot's mode older than this when a request leaves counts as known [ticks]: transit time and age of a
+    /// HEARTBEAT, ModeEvidence::kFresh if every request is answered in time, 1.5 periods otherwise.
     [[nodiscard]] int knowable() const
     {
         const bool answers = serves && loss <= 0.0F && jitter == 0;
@@ -192,7 +192,7 @@ struct Machine {
     }
 };
 
-/// Knows what went over the line and nothing else. Returns what is broken, or nullptr.
+/// Knows only the line's traffic. Returns the broken rule, or nullptr.
 struct Witness {
     const World& world;
     Beat newest{};
@@ -205,7 +205,7 @@ struct Witness {
     TakeoverAction last_action = TakeoverAction::none;
     bool effect_seen = false;       ///< another mode since the last request
     std::uint32_t number_then = 0;  ///< shown when it was made
-    std::uint32_t left = 0;         ///< mission shown when the external mode was last asked for
+    std::uint32_t left = 0;         ///< mission shown at the last request of the external mode
     bool claim = false;             ///< an external mode seen may be due to us
     bool seen_external = false;
     bool hands_off = false;

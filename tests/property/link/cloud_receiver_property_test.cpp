@@ -55,7 +55,7 @@ TEST(CloudReceiverLaws, EveryPointOfEveryScanIsInOnePlace)
                 at += n;
             }
         }
-        for (int idle = 0; idle < 2; ++idle) {  // the first may find a frame within a cut one, and a scan goes on
+        for (int idle = 0; idle < 2; ++idle) {  // the first may find a frame within a cut one, and a scan continues
             now = now + 1.0F;
             receiver->receive({}, now, sink);
         }

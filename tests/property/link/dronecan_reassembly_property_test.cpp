@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames lost, doubled, out of order, with wrong toggle bits and transfer ids, too late, cut short, and of senders that
-// interleave: what the receiver delivers was sent, whole, by that sender; anything else is dropped.
+// Frames lost, doubled, out of order, with wrong toggle bits and transfer ids, too late, cut short, and of interleaved
+// senders: every delivered transfer was sent, whole, by that sender; all else is dropped.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ constexpr std::array kWanted{LogMessage::kType, TunnelTargetted::kType, NodeStat
 constexpr std::uint8_t kOwn = 99;
 constexpr int kSchedules = 1'000'000;
 
-/// What goes over the bus, and when.
+/// A frame on the bus, and its time.
 struct Event {
     Frame frame;
     std::uint64_t sender = 0;
@@ -67,7 +67,7 @@ public:
         interleave(streams);
     }
 
-    /// After anything at all, a transfer of each sender gets through once what was begun has timed out.
+    /// After any traffic, a transfer of each sender is received once begun transfers have timed out.
     void expect_alive(std::uint64_t seed)
     {
         now_ = now_ + (kTransferTimeout + 0.001F);
@@ -296,8 +296,8 @@ TEST(DronecanReassembly, AMillionRandomSchedulesOfAllFaultsGiveExactTransfersOrN
     // Every frame is accounted for: part of something delivered, or counted.
     EXPECT_GT(bus.exact, bus.transfers / 4);
     EXPECT_EQ(bus.mixed, 0) << "JINK_SEED=" << seed;
-    // Whole frames missing in pairs, or in another order, leave 16 bits of CRC to tell: the protocol's own limit, one
-    // in 65536 of those that get as far. Eight times as many would be something else.
+    // Pairs of missing frames, or another order, are detected only by the 16-bit CRC: the protocol's limit, one in
+    // 65536 of these. The test allows eight times as many.
     EXPECT_LE(bus.altered, 8 * (1 + static_cast<int>(d.bad_crc / 65536))) << "JINK_SEED=" << seed;
 }
 

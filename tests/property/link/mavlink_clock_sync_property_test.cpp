@@ -42,7 +42,7 @@ public:
     {
         return t > std::max({in_blocked_, out_blocked_, reader_blocked_}) + 2 * kSecond;
     }
-    /// When what is sent at `t` has been read by us; never before what was sent earlier.
+    /// Time at which bytes sent at `t` are read; non-decreasing in `t`.
     [[nodiscard]] std::int64_t arrival(std::int64_t t)
     {
         last_in_ = std::max({last_in_, t + jitter(), in_blocked_, reader_blocked_});
@@ -74,7 +74,7 @@ struct Outcome {
     std::int64_t worst_error = 0;  ///< of the map in quiet stretches [us]
 };
 
-/// 90 s; with `restart_at` > 0 the autopilot restarts then, and says nothing for `away`.
+/// 90 s; with `restart_at` > 0 the autopilot restarts then, and is silent for `away`.
 Outcome run(StallingLine& line, bool answers, bool stalls, std::int64_t restart_at, std::int64_t away)
 {
     ClockSync clock;
@@ -124,7 +124,7 @@ TEST(MavlinkClockSyncLaws, AStallIsNeverARestart)
         StallingLine line(kSeed + i);
         const Outcome out = run(line, i % 4 != 0, true, 0, 0);
         ASSERT_EQ(out.restarts_seen, 0) << "seed " << kSeed + i;
-        // Half a round trip of 0.1 s, or the least one-way delay; slow round trips are outdone within 2 s of quiet.
+        // Half a round trip of 0.1 s, or the least one-way delay; slow round trips are replaced within 2 s of quiet.
         ASSERT_LT(out.worst_error, 100 * kMilli) << "seed " << kSeed + i;
     }
 }

@@ -65,7 +65,7 @@ std::size_t strangers(const Bytes& damaged, LongerPayload longer = LongerPayload
     return found.empty() ? 0 : found.size() - 1;
 }
 
-/// Frames found in `damaged`; what a raised length claims is filled up with zeros.
+/// Frames found in `damaged`; bytes claimed by a raised length are filled with zeros.
 std::size_t frames_in(const Bytes& damaged)
 {
     Parser parser;
@@ -97,8 +97,8 @@ TEST(MavlinkDamage, NoSingleFlippedBitIsAccepted)
     std::printf("single flipped bits: %zu tried, 0 accepted\n", flips);
 }
 
-// A length that changed makes the parser look for the checksum in another place, where any two bytes may stand: no
-// checksum of 16 bits can promise more than one in 2^16 here. Four times that is allowed for chance.
+// A changed length makes the parser read the checksum at another place, from arbitrary bytes: a 16-bit checksum then
+// accepts one in 2^16. The test allows four times that for chance.
 TEST(MavlinkDamage, FlippedLengthsAreAcceptedNoMoreOftenThanTheChecksumAllows)
 {
     std::size_t tries = 0;
@@ -146,7 +146,7 @@ TEST(MavlinkDamage, BurstsAreAcceptedNoMoreOftenThanTheChecksumAllows)
             ++found;
         }
         accepted += found;
-        // CRC_EXTRA stands between payload and checksum, so a burst across both is longer than it looks
+        // CRC_EXTRA is between payload and checksum, so a burst across both is longer than its bits on the wire
         const std::size_t checksum = end_of_frame - 16;
         const bool on_one_side = begin + length <= checksum || begin >= checksum;
         accepted_short += on_one_side && length <= 16 ? found : 0;
@@ -156,8 +156,7 @@ TEST(MavlinkDamage, BurstsAreAcceptedNoMoreOftenThanTheChecksumAllows)
     EXPECT_EQ(accepted_short, 0U) << "a 16-bit CRC catches every burst up to 16 bits";
 }
 
-/// Whether the good frame happens to bring the rest of what is cut off, checksum and all: then nobody can tell, and one
-/// in 65 536 does.
+/// Whether the good frame by chance completes the cut frame, checksum included: undetectable, one in 65 536.
 bool is_made_whole(const Bytes& cut, const MessageInfo& info, std::size_t header)
 {
     Bytes stream = cut;
@@ -235,7 +234,7 @@ TEST(MavlinkDamage, EveryLength)
 
 TEST(MavlinkDamage, LegacyFrameOfAnIdThatOnlyTheNewVersionHas)
 {
-    // v1 has one byte for the id: what arrives is the frame of another message, and its checksum says so
+    // v1 has one byte for the id: the received frame is that of another message, and its checksum fails
     for (const Sample& sample : samples(base_seed(), false)) {
         if (sample.info.id > 255) {
             ASSERT_EQ(strangers(frame_of_length(sample.info, sample.info.min_length, 1)), 0U) << sample.info.id;

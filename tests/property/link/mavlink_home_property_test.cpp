@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Home, in whatever order the messages come that place it: known and right, or not known.
+// Home, for any order of the messages that define it: known and correct, or unknown.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whatever a line loses, doubles and delays: no request that PX4 answers with a text to the pilot, and no leg but the
-// one that is flown.
+// For any losses, duplicates and delays of the line: no request that PX4 answers with a text to the pilot, and no leg
+// other than the flown leg.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -103,7 +103,7 @@ struct Talk {
         raw.crc_extra = find_message(frame.message_id)->crc_extra;
         return raw.bytes();
     }
-    /// What the endpoint could have learned of the partner and the mission.
+    /// The information on partner and mission that the endpoint could have received.
     void note(const Bytes& bytes)
     {
         for (const Received& frame : parse(note_ears, bytes)) {
@@ -135,7 +135,7 @@ struct Talk {
         known_ += truths.back().second && believed.known ? 1 : 0;
     }
     [[nodiscard]] double known_share() const { return static_cast<double>(known_) / std::max(1, there_); }
-    /// Whether what is believed was so at some time in the last `age` seconds.
+    /// Whether the belief was true at some time in the last `age` seconds.
     [[nodiscard]] bool was_true(double age) const
     {
         for (auto i = truths.rbegin(); i != truths.rend() && now - i->first <= age; ++i) {
@@ -145,8 +145,8 @@ struct Talk {
         }
         return !believed.known;
     }
-    /// Whether what is believed is an item of a true mission, under the number that was announced last: when another
-    /// number's announcement is lost, the one before it holds on.
+    /// Whether the belief is an item of a true mission, under the last announced number: if an announcement is lost,
+    /// the previous one stays valid.
     [[nodiscard]] bool is_as_announced(int first_item) const
     {
         return server.goal_of(believed.item.first, announced_sequence, first_item) == believed.item;

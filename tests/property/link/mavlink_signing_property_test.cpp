@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Signed frames of every message: single bits flipped with the checksum made right again, and random orders of genuine,
-// replayed and late frames against an independent book of who has said what when.
+// Signed frames of every message: single bits flipped with a corrected checksum, and random orders of genuine, replayed
+// and late frames against an independent record of senders and time stamps.
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <map>
@@ -38,7 +38,7 @@ Bytes signed_by(Signing& signing, const M& message, Header header = {1, 1, 0})
     return frame;
 }
 
-/// As an attacker does: the checksum fits what he has changed.
+/// As an attacker does: corrects the checksum after a change.
 void repair_checksum(Bytes& frame)
 {
     const std::uint32_t id = std::to_integer<std::uint32_t>(frame[7]) | std::to_integer<std::uint32_t>(frame[8]) << 8U |

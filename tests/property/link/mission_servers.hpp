@@ -10,8 +10,8 @@
 
 #include "tests/unit/link/mavlink_tools.hpp"
 
-// Small models of who answers mission requests, written from PX4's mavlink_mission.cpp and ArduPilot's
-// MissionItemProtocol.cpp, and of the line to them.
+// Small models of mission servers, from PX4's mavlink_mission.cpp and ArduPilot's MissionItemProtocol.cpp, and of the
+// line to them.
 
 namespace jink::link::mavlink::test {
 
@@ -64,7 +64,7 @@ public:
     virtual void hear(const Received& frame, double sent, double now) = 0;
     virtual void tick(double now) = 0;
 
-    /// What is flown: the current item, or the navigation item behind DO_ items. None where it has no place.
+    /// The flown item: the current item, or the navigation item behind DO_ items. None if it has no place.
     [[nodiscard]] std::optional<ItemName> truth(int first_item) const { return goal_of(version, current, first_item); }
     [[nodiscard]] std::optional<ItemName> goal_of(int of_version, std::size_t i, int first_item) const
     {
@@ -128,7 +128,7 @@ protected:
     int told_current_ = -1;
 };
 
-/// What PX4 would have told its pilot.
+/// PX4's messages to its pilot.
 struct Px4Texts {
     int out_of_order = 0;
     int timeout = 0;
@@ -265,7 +265,7 @@ private:
     double last_ = 0.0;
 };
 
-/// Of a version without ids: another mission of the same length comes without notice.
+/// A version without mission ids: a replaced mission of the same length is not announced.
 class ArduPilotServer final : public MissionServer {
 public:
     using MissionServer::MissionServer;

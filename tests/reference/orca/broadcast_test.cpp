@@ -38,7 +38,7 @@ TEST(NeighbourPrediction, WithoutCommandsAtConstantVelocity)
     EXPECT_EQ(n.freshness, Freshness::fresh);
     EXPECT_NEAR(n.inflation, 0.1F * 0.5F + 0.5F * 2.0F * 0.25F, 1e-6F);
 }
-/// 11.4 BROADCAST: it turns, and says so.
+/// 11.4 BROADCAST: the neighbour turns, and broadcasts its commands.
 TEST(NeighbourPrediction, ByItsLastCommands)
 {
     Broadcast heard = moving_east();
@@ -49,7 +49,7 @@ TEST(NeighbourPrediction, ByItsLastCommands)
     EXPECT_LT((n.position - Vec3(10.1F, 0.4F, 2)).norm(), 1e-6F);
     EXPECT_LT((n.velocity - Vec3(0, 1, 0)).norm(), 1e-6F);
 }
-/// Both sides see the same: a vehicle that predicts itself by its ring lands where its neighbours put it.
+/// A vehicle's prediction of itself by its ring equals its neighbours' prediction.
 TEST(NeighbourPrediction, IsWhatTheNeighbourPredictsOfItself)
 {
     CommandRing ring;
@@ -127,7 +127,7 @@ TEST(LostNeighbours, OneIsGoneWhenItsBallIsLargerThanAllThatIsLookedAt)
     EXPECT_EQ(predict_neighbour(heard, {1'000'000}, rules, 0.0F).freshness, Freshness::fresh) << "stale is older";
 }
 
-/// Its ball grows where it was last until it is beyond all reach, and then it is gone (G-ORCA 11.4).
+/// The ball grows about the last position until it exceeds the reach; then the neighbour is gone (G-ORCA 11.4).
 TEST(LostNeighbours, ALostNeighbourIsKeptClearOfUntilItIsGone)
 {
     Broadcast heard;
@@ -159,10 +159,10 @@ TEST(LostNeighbours, ALostNeighbourIsKeptClearOfUntilItIsGone)
             expect_near(decision.command, {1, 0, 0}, 1e-5F);
         }
     }
-    EXPECT_LT(slowest, 0.0F);  // it backs away from what may be there
+    EXPECT_LT(slowest, 0.0F);  // backs away from the growing ball
 }
 
-/// A lost neighbour's ball only grows, and holds it wherever it went while the limit of 3 m is not reached.
+/// A lost neighbour's ball only grows, and contains every position it can reach until the limit of 3 m.
 TEST(LostNeighbours, TheInflatedBallHoldsANeighbourThatManoeuvres)
 {
     for (std::uint64_t seed = 1; seed <= 2000; ++seed) {

@@ -5,18 +5,18 @@
 
 #include "core/orca/program.hpp"
 
-// The source's other way out of a contradiction, for comparison: a shorter horizon instead of half-spaces that give way
-// (Alejo 7.1). Shorter horizons let nearer collisions pass, and may all contradict: solve() is what is flown.
+// Alejo's alternative for contradicting half-spaces, for comparison: a shorter horizon instead of yielding half-spaces
+// (Alejo 7.1). Shorter horizons permit nearer collisions, and may all be infeasible. The product uses solve().
 
 namespace jink::orca {
 
-/// What a search came to.
+/// Result of a search.
 struct HorizonFound {
-    float horizon = 0.0F;  ///< [s] the longest that was found to leave a velocity; 0 where none does
-    Solution solution;     ///< with it; where none does, with the shortest
+    float horizon = 0.0F;  ///< [s] the longest feasible horizon found; 0: none
+    Solution solution;     ///< for `horizon`; if none is feasible, for the shortest
 };
 
-/// Looks for the longest horizon in [least, longest] that leaves a velocity, to a 256th of the difference.
+/// Searches the longest feasible horizon in [least, longest], to a 256th of the difference.
 ///
 /// @param build  (float horizon) -> std::span<const HalfSpace>: all half-spaces with this horizon, by level, valid
 /// until

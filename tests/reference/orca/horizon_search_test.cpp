@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The source's way out of a contradiction, a shorter horizon, beside half-spaces that give way.
+// Alejo's shorter horizon for contradicting half-spaces, compared with yielding half-spaces.
 #include "tests/reference/orca/horizon_search.hpp"
 
 #include <array>
@@ -11,7 +11,7 @@
 namespace jink::orca {
 namespace {
 
-/// Two that come from either side and do not give way: at 2 m, 1 m/s each, 1 m apart.
+/// Two non-cooperative neighbours from either side: at 2 m, 1 m/s each, required distance 1 m.
 struct Between {
     std::array<HalfSpace, 2> planes{};
 
@@ -44,7 +44,7 @@ TEST(HorizonSearch, FindsTheLongestThatLeavesAVelocity)
     EXPECT_LE(found.horizon, 4.0F + 1e-3F);
     EXPECT_EQ(found.solution.status, 0U);
     EXPECT_NEAR(found.solution.velocity.x(), 0.5F * (1.0F / found.horizon - 0.25F), 1e-5F);
-    // Half-spaces that give way say by how much instead: x >= 0.05 and x <= -0.05 with 5 s, nobody else giving way.
+    // Yielding half-spaces report the violation instead: x >= 0.05 and x <= -0.05 with 5 s, without cooperation.
     const Solution relaxed = solve({build(5.0F), ball, {0.5F, 0, 0}, Vec3::Zero()}, scratch.view(), budget);
     EXPECT_EQ(relaxed.status, kRelaxedWarning);
     EXPECT_NEAR(relaxed.broken[3], 0.05F, 1e-5F);

@@ -12,7 +12,7 @@ namespace jink::reach {
 
 enum class Closure : std::uint8_t { none, soft, hard };
 
-/// How a level grid lies in the world.
+/// Pose of a level grid in the world.
 struct GridPose {
     Vec3 position = Vec3::Zero();  ///< of the vehicle [m]
     float yaw = 0.0F;              ///< of the grid's x axis, counter-clockwise from east [rad]
@@ -26,13 +26,13 @@ struct Heights {
 };
 [[nodiscard]] Heights heights_of(const Grid<float>& grid, const CellPlace& place) noexcept;
 
-/// Level distance of a point from what a cell of a level grid covers, seen from above, an annular sector: exact. O(1).
+/// Level distance of a point from a cell's plan view, an annular sector, for a level grid: exact. O(1).
 /// @param point  relative to the vehicle, in the grid's axes [grid's unit]
 [[nodiscard]] float level_distance(const Grid<float>& grid, const CellPlace& place, const Vec2& point) noexcept;
 
-/// Body, margin or nothing, for a cell that the vehicle is in from `from` until `to` [s]; heights that touch overlap,
-/// distances that are equal count. Never less than the truth: while the barrel moves the cell is taken as the circle
-/// about it; at one instant, `from` equal to `to`, or when the barrel stands, the distance is exact. O(1).
+/// Body, margin or nothing, for a cell that the vehicle is in from `from` until `to` [s]; heights in contact overlap,
+/// equal distances count. Conservative: for a moving barrel the cell is replaced by its bounding circle. At one
+/// instant, `from` equal to `to`, or for a static barrel, the distance is exact. O(1).
 [[nodiscard]] Closure closure_of(const Grid<float>& grid, const CellPlace& place, const GridPose& pose,
                                  const Barrel& barrel, float from, float to) noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Constraints that stand and that move: the tests of the reach-set specification, section 13.3, and the check values
-// of the avoidance specification, section 3.
+// Static and moving constraints: the tests of the reach-set specification, section 13.3, and the check values of the
+// avoidance specification, section 3.
 #include "tests/reference/reach/barrel_closure.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ protected:
         barrel.bottom = 0.0F;
         barrel.top = 100.0F;
     }
-    /// With the cell's border this far from where the centre is then.
+    /// With the cell's border at this distance from the centre's position at that time.
     Closure at_distance(float distance) const
     {
         GridPose pose;
@@ -56,7 +56,7 @@ TEST_F(MovingConstraint, CheckValuesOfTheDistances)
     EXPECT_EQ(at_distance(30.001F), Closure::none);
 }
 
-/// Over a stay nothing is less than at its instants.
+/// A stay's rating is never below the rating at any of its instants.
 TEST_F(MovingConstraint, AStayIsNoLessThanItsInstants)
 {
     GridPose pose;
@@ -102,7 +102,7 @@ TEST(StandingConstraint, FromInsideAllIsHard)
         hard += closure_of(grid, grid.place(cell), pose, barrel, 0.0F, 1.0F) == Closure::hard ? 1 : 0;
     }
     EXPECT_EQ(hard, 350);
-    // Heights that touch overlap; a band above leaves the lower cells alone.
+    // Heights in contact overlap; a band above does not affect the lower cells.
     barrel.bottom = 50.0F;
     EXPECT_EQ(closure_of(grid, {5, 3, 0}, pose, barrel, 0.0F, 1.0F), Closure::none);
     EXPECT_EQ(closure_of(grid, {5, 3, 4}, pose, barrel, 0.0F, 1.0F), Closure::hard);

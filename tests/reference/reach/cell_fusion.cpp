@@ -8,7 +8,7 @@ namespace jink::reach {
 namespace {
 
 // Work units.
-constexpr std::uint32_t kUnitsStay = 6;        // sample of a node, when times of cells are found
+constexpr std::uint32_t kUnitsStay = 6;        // sample of a node, when cell times are computed
 constexpr std::uint32_t kUnitsCellBounds = 8;  // cell against the bounds of the airspace
 constexpr std::uint32_t kUnitsCellTrack = 6;   // and a track
 constexpr std::uint32_t kUnitsCellSolid = 30;  // or an obstacle

@@ -8,17 +8,17 @@
 #include "tests/reference/reach/map_obstacle.hpp"
 #include "tests/reference/reach/meeting.hpp"
 
-// Gomola's way to rate a placed set: by cells, each of them by all that may be in it while any trajectory is there
+// Gomola's rating of a placed set: by cells, each by everything that may be in the cell while any trajectory is there
 // (6.6, 6.7). The planner rates nodes; this class is for comparison (Planner::rate_cells_by).
 
 namespace jink::reach {
 
 struct FusionRule {
     Models models{false, true, false, true};  ///< of every intruder: body, in time
-    float horizontal = 0.0F;                  ///< spread of every intruder, where the models ask for it [rad]
+    float horizontal = 0.0F;                  ///< spread of every intruder, if the models use it [rad]
     float vertical = 0.0F;
-    Seconds clock = 0.0F;  ///< one decision frame of the intruders, by which their times may be off
-    float room = 0.4F;     ///< about obstacles: soft [m]
+    Seconds clock = 0.0F;  ///< one decision frame of the intruders: possible error of their times
+    float room = 0.4F;     ///< soft clearance buffer about obstacles [m]
 };
 
 /// Memory: 8 bytes a cell, for the times of the set that was rated last.
@@ -29,14 +29,14 @@ public:
     [[nodiscard]] const FusionRule& rule() const noexcept { return rule_; }
 
     /// Lowers the levels of cells: obstacles where an obstacle may be, intruders where a track may be at a time at
-    /// which some trajectory is in the cell, hard constraints where a bound of the airspace is passed, soft ones within
-    /// the room about obstacles. Tracks are as large as they get by the time of the longest trajectory; all that is
-    /// near is enlarged by a ball about the own box.
+    /// which some trajectory is in the cell, hard constraints where a bound of the airspace is passed, soft constraints
+    /// within the buffer about obstacles. Tracks have their size at the time of the longest trajectory; all bodies are
+    /// enlarged by a ball about the own box.
     ///
-    /// Never less than the truth but for what `meeting.hpp` says of stays. Says more than by nodes: the hull of all
-    /// trajectories' times, cells as balls and boxes. When the set is not the one that was rated last its times are
-    /// found anew, samples of each node in turn, which is no matter for a microcontroller's tick.
-    /// O(cells * (tracks + obstacles)), and nodes * samples for another set.
+    /// Conservative, except for the stays as described in `meeting.hpp`. Rates more cells than the rating of nodes:
+    /// uses the hull of all trajectories' times, and cells as balls and boxes. If the set differs from the set rated
+    /// last, its times are recomputed from samples of each node, too expensive for a microcontroller's tick. O(cells *
+    /// (tracks + obstacles)), and nodes * samples for another set.
     [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
                                   Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
 
@@ -55,8 +55,8 @@ private:
     std::array<Stay, kMaxReachCells> times_{};
 };
 
-/// A solid at rest as a placed set sees it: the box or the ball about it, enlarged by `about` [m]. O(1), O(vertices)
-/// for a hull.
+/// A static solid in a placed set's frame: its bounding box or ball, enlarged by `about` [m]. O(1), O(vertices) for a
+/// hull.
 [[nodiscard]] MapBody body_of(const geometry::Shape& shape, const Placed& placed, float about, float margin) noexcept;
 
 }  // namespace jink::reach

@@ -8,12 +8,12 @@
 
 #include "core/reach/evaluation.hpp"
 
-// What is said of a cell by sensors, maps, intruders and constraints, put together (Gomola 6.7.1).
+// Fusion of a cell's ratings by sensors, maps, intruders and constraints (Gomola 6.7.1).
 
 namespace jink::reach {
 
-/// One cell's ratings, each 0 to 1, as sources report them one after the other. Complements are kept, because near 1
-/// single precision cannot tell apart what the threshold asks for.
+/// One cell's ratings, each 0 to 1, added in sequence. Stores complements, because near 1 single precision cannot
+/// resolve the threshold.
 class CellRating {
 public:
     /// A sensor in whose field the cell lies (Gomola eq. 6.156).
@@ -26,19 +26,19 @@ public:
         obstacle_ = std::max(obstacle_, obstacle);
     }
     void add_map(float rating) noexcept { map_ = std::max(map_, rating); }
-    /// About a charted body: a soft constraint where sensors do not see, as the body itself (Gomola eq. 6.103).
+    /// Margin of a charted body: a soft constraint where sensors do not cover, as the body itself (Gomola eq. 6.103).
     void add_map_margin(float rating) noexcept { map_margin_ = std::max(map_margin_, rating); }
     /// Of one intruder (Gomola eq. 6.159).
     void add_intruder(float rating) noexcept { spared_by_intruders_ *= 1.0F - rating; }
     void add_hard(float rating) noexcept { hard_ = std::max(hard_, rating); }
     void add_soft(float rating) noexcept { soft_ = std::max(soft_, rating); }
 
-    /// 1 - visibility; 1 where no sensor looks.
+    /// 1 - visibility; 1 where no sensor covers the cell.
     [[nodiscard]] float hidden() const noexcept { return seen_ ? hidden_ : 1.0F; }
     [[nodiscard]] float visibility() const noexcept { return 1.0F - hidden(); }
-    /// Damped by what is hidden (Gomola eq. 6.157).
+    /// Scaled by the visibility (Gomola eq. 6.157).
     [[nodiscard]] float obstacle() const noexcept { return obstacle_ * visibility(); }
-    /// Of the map where sensors do not see (Gomola eq. 6.158).
+    /// Rating of the map where sensors do not cover (Gomola eq. 6.158).
     [[nodiscard]] float map() const noexcept { return map_ * hidden(); }
     [[nodiscard]] float intruder() const noexcept { return 1.0F - spared_by_intruders_; }
     [[nodiscard]] float soft() const noexcept { return std::max(soft_, map_margin_ * hidden()); }
@@ -56,8 +56,8 @@ public:
     [[nodiscard]] bool is_hard() const noexcept { return hard_ >= kThreshold; }
     [[nodiscard]] bool is_soft() const noexcept { return soft() >= kThreshold; }
 
-    /// The run in which it is not free first. `allow_hidden`: what nobody sees is not in the way, but obstacles and
-    /// charted ones are, however little is seen of them.
+    /// The first run in which the cell is not free. `allow_hidden`: hidden cells are free, except for obstacles and
+    /// charted obstacles, which count at any visibility.
     [[nodiscard]] Level level(bool allow_hidden = false) const noexcept
     {
         const bool blocked = allow_hidden ? obstacle_ >= kThreshold || map_ >= kThreshold
@@ -85,8 +85,8 @@ private:
     bool seen_ = false;
 };
 
-/// Which sets of cells one belongs to (Gomola eq. 6.164 to 6.167). The first three may overlap: that nobody sees a cell
-/// does not undo what is known to be there. Free are those of none of them, and not charted.
+/// The space sets that a cell belongs to (Gomola eq. 6.164 to 6.167). The first three may overlap: a hidden cell keeps
+/// its known contents. Free cells are in none of them, and not charted.
 struct SpaceSets {
     bool uncertain = false;
     bool occupied = false;
@@ -104,12 +104,11 @@ struct SpaceSets {
     return sets;
 }
 
-/// A trajectory by the threats of the cells it passes (Gomola eq. 6.162), for telemetry: what is flown is decided by
-/// levels.
+/// A trajectory by the threats of the cells it passes (Gomola eq. 6.162), for telemetry: levels decide the flown
+/// trajectory.
 class TrajectoryRating {
 public:
-    /// Of a cell; one that the trajectory has passed already does not count again. One that no grid has makes it
-    /// unreachable.
+    /// Adds a cell; a cell passed before does not count again. An invalid cell makes the trajectory unreachable.
     void add(CellIndex cell, float threat) noexcept
     {
         if (cell >= kMaxCells) {
@@ -126,8 +125,8 @@ public:
     }
     /// Product of 1 - threat.
     [[nodiscard]] float reachability() const noexcept { return std::exp(-loss_); }
-    /// At least 1 - threshold, told by complements, and no threat at all on the way: at the threshold itself table 6.5
-    /// says both, and the threat wins.
+    /// At least 1 - threshold, computed with complements, and no threat on the path. At the threshold itself table 6.5
+    /// is ambiguous; the threat wins.
     [[nodiscard]] bool is_reachable() const noexcept { return !blocked_ && loss_ <= -std::log1p(-kThreshold); }
 
 private:

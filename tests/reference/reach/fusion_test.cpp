@@ -145,7 +145,7 @@ TEST(Fusion, CheckValues)
     EXPECT_NEAR(cell.threat(), 0.6F, 1e-6F);
 }
 
-/// Figure 6.13: what the chart says counts where sensors do not see.
+/// Figure 6.13: the chart counts where the sensors do not cover.
 TEST(Fusion, ChartsCountWhereNobodySees)
 {
     CellRating seen;

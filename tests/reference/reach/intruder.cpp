@@ -14,7 +14,7 @@ namespace jink::reach {
 namespace {
 
 constexpr float kForEver = std::numeric_limits<float>::infinity();
-/// Of its distance, by which an intruder's line may be off by rounding.
+/// Rounding error of an intruder's line, relative to its distance.
 constexpr float kFarSlack = 1e-6F;
 
 using Times = StaticVector<float, kMostCrossings>;
@@ -40,7 +40,7 @@ void add_roots(Times& times, float a, float b, float c) noexcept
 
 float square(float x) noexcept { return x * x; }
 
-/// Where a line may go from one cell to another.
+/// Times at which a line may change cells.
 void find_crossings(const Grid<float>& grid, const Vec3& x, const Vec3& v, Times& times) noexcept
 {
     for (std::size_t layer = 0; layer <= grid.layers(); ++layer) {
@@ -132,7 +132,7 @@ std::optional<Stay> body_in(const CellBall& cell, const Intruder& intruder) noex
     if (a < square(kStandsBelow) && from.norm() <= reach) {
         return Stay{0.0F, kForEver};
     }
-    // The distance from the line out of the cross product: the difference of squares loses a body that comes from afar.
+    // The distance from the line by the cross product: a difference of squares loses a body that comes from afar.
     const float apart = from.cross(intruder.velocity).squaredNorm();
     const float discriminant = a * square(reach + kFarSlack * from.norm()) - apart;
     if (!(discriminant >= 0.0F) || !(a > 0.0F)) {
@@ -148,7 +148,7 @@ std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) no
 {
     const float speed = intruder.velocity.norm();
     if (speed < kStandsBelow) {
-        // What a slow one touches now it may touch for ever; where it may go is a cone all the same.
+        // A slow intruder may stay in contact for ever; its possible motion is still a cone.
         const std::optional<Stay> stands = body_in(cell, intruder);
         if (stands || !(speed > 0.0F)) {
             return stands;
@@ -226,7 +226,7 @@ CombinedModel::CombinedModel(const Grid<float>& grid, const Intruder& intruder, 
     cross(grid, intruder.position, intruder.velocity, crossed_);
     const Located at = grid.locate(intruder.position);
     if (intruder.velocity.norm() < kStandsBelow && at.status == LocateStatus::inside) {
-        // There is room: between kMostCrossings times there is one stay less.
+        // The capacity suffices: between kMostCrossings times there is one stay less.
         crossed_.unchecked_push_back({grid.index(at.place), {0.0F, kForEver}});
     }
 }

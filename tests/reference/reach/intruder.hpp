@@ -7,26 +7,28 @@
 #include "core/base/static_vector.hpp"
 #include "core/reach/grid.hpp"
 
-// Which cells an intruder meets, and when (Gomola 6.6.1 to 6.6.4). All in the grid's frame and unit of length; times
-// count from when the grid is entered. The grid stands while the vehicle flies through it, so velocities are absolute.
+// The cells that an intruder enters, and when (Gomola 6.6.1 to 6.6.4). All in the grid's frame and unit of length;
+// times count from the entry into the grid. The grid is static while the vehicle flies through it, so velocities are
+// absolute.
 
 namespace jink::reach {
 
-/// An intruder as the models see it.
+/// An intruder in the form of the models.
 struct Intruder {
     Vec3 position = Vec3::Zero();  ///< at time 0
     Vec3 velocity = Vec3::Zero();
-    float radius = 0.0F;       ///< of its body, and what is kept from it
-    float horizontal = 0.0F;   ///< by this angle it may turn to a side [rad], 0 to kMostSpread
-    float vertical = 0.0F;     ///< and up or down [rad]
-    float speed_share = 0.1F;  ///< its speed may be wrong by this share, below 1
+    float radius = 0.0F;       ///< of its body, plus the required clearance
+    float horizontal = 0.0F;   ///< largest turn to either side [rad], 0 to kMostSpread
+    float vertical = 0.0F;     ///< largest turn up or down [rad]
+    float speed_share = 0.1F;  ///< relative error of its speed, below 1
 };
-/// Greatest spread: 75 degrees, beyond which the tangent tells nothing.
+/// Greatest spread: 75 degrees; beyond, the tangent is of no use.
 inline constexpr float kMostSpread = 1.3089969F;
-/// Slower ones [grid's unit/s] may stand: what they touch now they touch for ever. So may they go on.
+/// Intruders below this speed [grid's unit/s] may be static or may continue: cells that they overlap now stay occupied
+/// for ever.
 inline constexpr float kStandsBelow = 0.1F;
 
-/// When something is in a cell [s], first to last.
+/// Time interval in a cell [s], first to last.
 struct Stay {
     float from = 0.0F;
     float to = 0.0F;
@@ -36,7 +38,7 @@ struct CellStay {
     Stay stay;
 };
 
-/// A cell as a ball: about the middle of its ranges, through its farthest corner or edge.
+/// Bounding ball of a cell: about the middle of its ranges, through its farthest corner or edge.
 struct CellBall {
     Vec3 centre = Vec3::Zero();
     float radius = 0.0F;
@@ -47,43 +49,41 @@ struct CellBall {
 /// Cells on a straight line, in the order of flight: for small intruders.
 inline constexpr std::size_t kMostCrossings = 2 * (kMaxLayers + 1) + (kMaxColumns + 1) + 2 * (kMaxRows + 1) + 1;
 using CrossedCells = StaticVector<CellStay, kMostCrossings>;
-/// Exact: where the line meets the spheres, planes and cones between cells. A velocity of zero meets nothing here.
-/// What is said of a cell's corner, where the line is in it for less than rounding tells, may be another cell's.
+/// Exact: intersections of the line with the spheres, planes and cones between cells. A velocity of zero gives none.
+/// Near a cell's corner, where the line is in the cell for less than rounding resolves, the result may be a neighbour.
 /// O(n log n) for n = 2 (layers + rows + 2) + columns + 2.
 void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, CrossedCells& out) noexcept;
 
-/// When the body, flying straight, may touch the cell. Never misses what it does; says more than it does by the cell's
-/// ball. O(1).
+/// When the body, flying straight, may overlap the cell. Conservative: uses the cell's ball. O(1).
 [[nodiscard]] std::optional<Stay> body_in(const CellBall& cell, const Intruder& intruder) noexcept;
 
-/// When the body may touch the cell if the intruder deviates from its line within its spread: an elliptic cone. Never
-/// misses; says more by the cell's ball. O(1).
+/// When the body may overlap the cell if the intruder deviates from its line within its spread: an elliptic cone.
+/// Conservative: uses the cell's ball. O(1).
 [[nodiscard]] std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) noexcept;
 
-/// Share of the vehicle's stay in a cell during which the intruder is there too (Gomola eq. 6.119): 0 to 1. Stays that
-/// only touch count as 2e-7, above the threshold of a threat, so that an intruder that is seen for an instant is not
-/// lost. O(1).
+/// Share of the vehicle's stay in a cell during which the intruder is there too (Gomola eq. 6.119): 0 to 1. Stays with
+/// a single common instant count as 2e-7, above the threshold of a threat, so that an intruder present for an instant
+/// is not lost. O(1).
 [[nodiscard]] float time_rate(const Stay& vehicle, const Stay& intruder) noexcept;
 
-/// How long before and after an intruder counts as in a cell beyond what a model says (avoids the loss of one that is
-/// seen there for an instant): half the step it was looked at by and its radius, at its speed, and what its clock may
-/// be off by. Infinite at speed 0.
-/// @param step    between samples of its way [grid's unit]; 0 for exact ways
+/// Padding of a model's stay before and after [s], so that an intruder present for an instant is not lost: half the
+/// sampling step plus its radius, over its speed, plus its clock error. Infinite at speed 0.
+/// @param step  between samples of its path [grid's unit]; 0 for exact paths
 /// @param radius  that the model leaves out of its times [grid's unit]
 /// @param clock   [s]: one decision frame of the intruder
 /// O(1).
 [[nodiscard]] float padding(float step, float radius, float speed, float clock) noexcept;
 [[nodiscard]] Stay padded(const Stay& stay, float by) noexcept;
 
-/// When an intruder may be between two distances from where it is now, its speed being wrong by up to `share` (Gomola
-/// eq. 6.121, 6.148, 6.149). One that stands, or whose speed is not known at all, is there for ever. O(1).
+/// When an intruder may be between two distances from its present position, with a relative speed error up to `share`
+/// (Gomola eq. 6.121, 6.148, 6.149). A static intruder, or an unknown speed, gives all times. O(1).
 [[nodiscard]] Stay reach_times(float nearest, float farthest, float speed, float share) noexcept;
 
-/// Where an intruder is `later` seconds on. O(1).
+/// The intruder `later` seconds ahead. O(1).
 [[nodiscard]] Intruder moved(const Intruder& intruder, float later) noexcept;
 
-/// Which models an intruder is looked at by (Gomola eq. 6.150, 6.151). Claimed separation: body, with the separation
-/// as its radius; one that may deviate: spread; small ones that are known to fly straight: line.
+/// Models applied to an intruder (Gomola eq. 6.150, 6.151). Claimed separation: body, with the separation as its
+/// radius; possible deviation: spread; small intruders in known straight flight: line.
 struct Models {
     bool line = false;
     bool body = false;
@@ -92,13 +92,13 @@ struct Models {
 };
 enum class ModelStatus : std::uint8_t { good, bad_intruder_model };
 
-/// What an intruder does to a cell.
+/// Effect of an intruder on a cell.
 struct Meeting {
     float rate = 0.0F;         ///< 0 to 1
-    std::optional<Stay> stay;  ///< hull of the models' times, padded; none: it is not touched
+    std::optional<Stay> stay;  ///< hull of the models' times, padded; none: no overlap
 };
 
-/// One intruder by the models asked for; all of them, and not timed, when none is (`bad_intruder_model`).
+/// One intruder by the selected models. If none is selected, by all models, untimed (`bad_intruder_model`).
 ///
 /// Memory: the cells of its line, about 1 KiB.
 class CombinedModel {
@@ -109,10 +109,9 @@ public:
     CombinedModel(const Grid<float>& grid, const Intruder& intruder, const Models& models, float clock) noexcept;
 
     [[nodiscard]] ModelStatus status() const noexcept { return status_; }
-    /// The greatest of the models' rates: 1 where one touches the cell, and when timed, 1 times the share of `vehicle`
-    /// in that model's own times. Timed without a vehicle in the cell: 0.
-    /// @param vehicle  its stay in the cell; none: it never is
-    /// O(kMostCrossings).
+    /// The greatest of the models' rates: 1 where a model overlaps the cell, and when timed, 1 times the share of
+    /// `vehicle` in that model's own times. Timed without a vehicle in the cell: 0.
+    /// @param vehicle  its stay in the cell; none: never in the cell O(kMostCrossings).
     [[nodiscard]] Meeting in(CellIndex cell, const CellBall& ball, const std::optional<Stay>& vehicle) const noexcept;
 
 private:

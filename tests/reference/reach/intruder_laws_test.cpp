@@ -102,7 +102,7 @@ TEST(IntruderLaws, ConesMissNothing)
             ++inside;
             const std::optional<Stay> stay = spread_in(balls[grid.index(at.place)], intruder);
             ASSERT_TRUE(stay) << "seed " << kSeed << ", case " << i << ", sample " << k;
-            // The way to the centre, straight, at any speed it may have.
+            // The straight path to the centre, at any possible speed.
             const float way = (centre - intruder.position).norm();
             const float slow = intruder.velocity.norm() * (1.0F - intruder.speed_share);
             const float fast = intruder.velocity.norm() * (1.0F + intruder.speed_share);
@@ -143,7 +143,7 @@ TEST(IntruderLaws, BodiesMissNothing)
     }
 }
 
-/// The ball of a cell holds all of it.
+/// The ball of a cell contains the whole cell.
 TEST(IntruderLaws, BallsHoldTheirCells)
 {
     Random random(8);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The closed forms of the intruder models against the source's clouds of points, in double: no cell and no time of
-// arrival is missed (avoidance specification, sections 2.5 to 2.7).
+// The closed forms of the intruder models against Gomola's clouds of points, in double: no cell and no time of arrival
+// is missed (avoidance specification, sections 2.5 to 2.7).
 #include "tests/reference/reach/reference_models.hpp"
 
 #include <gtest/gtest.h>

@@ -19,7 +19,7 @@ void expect_crossings(const Vec3& position, const Vec3& velocity, float from, co
     const Grid<float> grid;
     CrossedCells crossed;
     cross(grid, position, velocity, crossed);
-    // The first line goes through the vehicle's own place, where all cells meet: rounding may name one more there.
+    // The first line goes through the vehicle's own place, where all cells join: rounding may add a cell there.
     std::vector<CellStay> cells;
     for (const CellStay& c : crossed) {
         if (c.stay.to - c.stay.from > 1e-5F) {

@@ -12,7 +12,7 @@
 namespace jink::reach {
 namespace {
 
-/// Of what is compared: rounding does not make it clear.
+/// Relative tolerance of comparisons, so that rounding never makes a cell clear.
 constexpr float kTouchSlack = 1e-5F;
 
 Vec3 half_of(const MapObstacle& obstacle) noexcept
@@ -59,13 +59,13 @@ Between sine_bounds(float amplitude, float shift, float from, float to) noexcept
     return bounds;
 }
 
-/// How far a box reaches from its centre along a direction of length 1.
+/// Extent of a box from its centre along a unit vector.
 float half_extent(const Mat3& axes, const Vec3& half, const Vec3& direction) noexcept
 {
     return (axes.transpose() * direction).cwiseAbs().dot(half);
 }
 
-/// Some axis tells the two apart by more than `gap`.
+/// True if some axis separates the two by more than `gap`.
 bool are_apart(const CellBox& cell, const MapBody& body, float gap) noexcept
 {
     const Vec3 between = body.centre - cell.centre;
@@ -81,7 +81,7 @@ bool are_apart(const CellBox& cell, const MapBody& body, float gap) noexcept
         for (Eigen::Index j = 0; j < 3; ++j) {
             const Vec3 across = cell.axes.col(i).cross(body.axes.col(j));
             const float size = across.norm();
-            // Of nearly parallel edges the axes above tell as much.
+            // For nearly parallel edges the axes above suffice.
             if (size > 1e-3F && tells(across / size)) {
                 return true;
             }

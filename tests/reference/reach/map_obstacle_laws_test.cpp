@@ -116,12 +116,13 @@ TEST(MapObstacleLaws, NoCellThatIsTouchedIsClear)
         }
     }
     EXPECT_GT(inside, 300000U);
-    // Some cells are named that no sample was in: corners of boxes, and what 2000 samples leave out.
+    // Some cells without a sample are listed: corners of boxes, and cells missed by 2000 samples.
     EXPECT_LT(static_cast<double>(said), 2.0 * static_cast<double>(touched));
     RecordProperty("named_per_touched_percent", static_cast<int>(100 * said / touched));
 }
 
-/// The cloud made on the fly touches no cell that the closed form calls clear, and no body it calls soft.
+/// The cloud computed on the fly overlaps no cell that the closed form calls clear, and its body no cell that it calls
+/// soft.
 TEST(MapObstacleLaws, TheCloudAgreesWithTheClosedForm)
 {
     constexpr std::uint64_t kSeed = 12;
@@ -148,7 +149,7 @@ TEST(MapObstacleLaws, TheCloudAgreesWithTheClosedForm)
     EXPECT_GT(touched, 10000U);
 }
 
-/// The box of a cell holds all of it, and is no larger than it has to be along its own axis.
+/// The box of a cell contains the whole cell, and is tight along its own axis.
 TEST(MapObstacleLaws, BoxesHoldTheirCells)
 {
     constexpr std::uint64_t kSeed = 13;

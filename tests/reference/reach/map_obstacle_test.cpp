@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles out of a map, by the reach-set specification, section 13.2, and the three cases of the source's figure
-// 6.13.
+// Obstacles of a map, by the reach-set specification, section 13.2, and the three cases of Gomola's figure 6.13.
 #include "tests/reference/reach/map_obstacle.hpp"
 
 #include <limits>
@@ -32,7 +31,7 @@ MapObstacle pillar()
 }
 constexpr CellPlace kAhead{5, 3, 2};
 
-/// Figure 6.13, obstacle o1: on the chart, in plain view, and detected by nobody: it is not there.
+/// Figure 6.13, obstacle o1: on the chart, in view of the sensor, and not detected: absent.
 TEST(MapObstacles, Figure613ChartedAndVisibleButNotDetected)
 {
     CellRating cell;
@@ -118,7 +117,7 @@ TEST(MapObstacles, BodiesAreHardAndMarginsSoft)
     EXPECT_EQ(nothing.threat(), 0.0F);
 }
 
-/// A line's main axis: ahead, turned to the side, nose down, and on a grid that heads elsewhere.
+/// A line's main axis: ahead, turned to the side, nose down, and on a grid with another heading.
 TEST(MapObstacles, TheMainAxisTurnsAsTheConventionsSay)
 {
     const Grid<float> grid;

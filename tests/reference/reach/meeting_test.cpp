@@ -126,7 +126,7 @@ TEST(CombinedModels, NoModelIsAnErrorAndTakenAsAll)
     EXPECT_EQ(CombinedModel(e.grid, e.intruder, {true, false, false, true}, 0.0F).status(), ModelStatus::good);
 }
 
-/// A hovering one is in its own cell for ever, by every model.
+/// A hovering intruder is in its own cell for ever, by every model.
 TEST(CombinedModels, WhatStandsIsThereForEver)
 {
     Example e;
@@ -138,7 +138,7 @@ TEST(CombinedModels, WhatStandsIsThereForEver)
             EXPECT_EQ(m.rate, 1.0F) << speed << " " << model;
         }
     }
-    // And a slow one does go on: 20 s at 0.09 are 1.8.
+    // A slow intruder does move on: 20 s at 0.09 are 1.8.
     e.intruder.radius = 0.1F;
     e.intruder.velocity = Vec3(0, 0.09F, 0);
     e.intruder.position = e.ball.centre - Vec3(0, e.ball.radius + 0.11F + 1.0F, 0);
@@ -147,7 +147,7 @@ TEST(CombinedModels, WhatStandsIsThereForEver)
     EXPECT_NEAR(later->from, 1.01F / 0.09F, 0.05F);
 }
 
-/// A body that grazes a cell is seen from afar: the difference of squares of single precision would lose it.
+/// A body that grazes a cell is found from afar: a difference of squares in single precision would lose it.
 TEST(CombinedModels, ABodyFromAfarIsNotLost)
 {
     const Grid<float> grid;
@@ -161,7 +161,7 @@ TEST(CombinedModels, ABodyFromAfarIsNotLost)
             const Vec3 towards(std::cos(angle), std::sin(angle), 0.0F);
             const Vec3 aside(-towards.y(), towards.x(), 0.0F);
             intruder.velocity = 20.0F * towards;
-            // Nearer by rounding of the position than touching.
+            // Closer than contact by the rounding of the position.
             const float beside = (ball.radius + 1.0F) * (1.0F - 1e-6F) - 2e-7F * far;
             intruder.position = ball.centre + beside * aside - far * towards;
             seen += body_in(ball, intruder) ? 1 : 0;

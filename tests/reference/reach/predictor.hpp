@@ -8,24 +8,24 @@
 #include "core/base/static_vector.hpp"
 #include "tests/reference/reach/segments.hpp"
 
-// Where orders lead: trajectories of the movement automaton, in exact form and as samples for a tracking controller
-// (Gomola 6.2.1, 6.2.3, 6.2.7).
+// Trajectories of orders of the movement automaton, in exact form and as samples for a tracking controller (Gomola
+// 6.2.1, 6.2.3, 6.2.7).
 //
-// Frame: z up, yaw counter-clockwise from x, pitch > 0 nose down; the grid's or the world's, as the start has it.
-// The integrator's part: a controller that keeps the vehicle in a tube about the samples, whose radius goes into the
-// safety margin.
+// Frame: z up, yaw counter-clockwise from x, pitch > 0 nose down; the grid's or the world's, as for the start. The
+// integrator's part: a controller that keeps the vehicle in a tube about the samples, whose radius goes into the safety
+// margin.
 
 namespace jink::reach {
 
-/// One order: what the navigator says to the pilot.
+/// One order of the navigator to the autopilot.
 struct Order {
     Movement movement = Movement::straight;
     float duration = 1.0F;  ///< [s]
-    float speed = 1.0F;     ///< all the while [m/s], >= 0; straight at 0 is to stay
+    float speed = 1.0F;     ///< constant [m/s], >= 0; straight at 0 means to stay
 };
 
-/// Time that a change of what is flown takes before it is flown [s], and is flown straight on: the source has 0 for
-/// all (Gomola 6.2.5). Two changes at once take as long as the longer one; from one side to the other takes two.
+/// Transition time before a change of the order takes effect [s], flown straight; Gomola uses 0 for all (Gomola 6.2.5).
+/// Two simultaneous changes take the longer time; a change from one side to the other takes two.
 struct TransitionTimes {
     float turn = 0.0F;   ///< between straight flight and a turn
     float pitch = 0.0F;  ///< between level flight and a climb or descent
@@ -34,7 +34,7 @@ struct TransitionTimes {
 
 struct AutomatonSettings {
     float period = 1.0F;         ///< of a movement that turns by one whole step [s], > 0
-    float least_holding = 1.0F;  ///< time that an order has to be flown after the changes it takes [s]
+    float least_holding = 1.0F;  ///< least time that an order is flown after its transitions [s]
     TransitionTimes transitions;
     float payload = 0.0F;  ///< [kg]
 };
@@ -45,26 +45,26 @@ struct AutomatonSettings {
 /// maximum of the sum). O(movements).
 [[nodiscard]] float least_duration(const AutomatonSettings& settings, const Order& order) noexcept;
 
-/// A movement, a positive duration that is long enough, within 1e-6 of it, and a speed.
+/// True for a valid movement and speed, and a positive duration of at least the least duration, within 1e-6.
 [[nodiscard]] bool can_be_flown(const AutomatonSettings& settings, const Order& order) noexcept;
 
-/// Of a vehicle under way.
+/// State of a flying vehicle.
 struct FlightState {
     Pose<float> pose;    ///< [m], [rad]
     float speed = 1.0F;  ///< [m/s]
 };
-/// What was flown last, which says what changes the next order takes.
+/// End of the last order; sets the transitions of the next order.
 struct Exit {
     Movement movement = Movement::straight;
     float speed = 1.0F;  ///< [m/s]
 };
 
-/// An order as it is flown: changes, the order, and the change back to straight flight (Gomola eq. 6.6).
+/// An order as flown: transitions, the order, and the transition back to straight flight (Gomola eq. 6.6).
 struct Leg {
     Order order;
     float begin = 0.0F;  ///< in the trajectory [s]
     float entry = 0.0F;  ///< changes before [s]: straight, at the speed before
-    float leave = 0.0F;  ///< change after [s], when nothing follows: straight
+    float leave = 0.0F;  ///< transition after [s], if nothing follows: straight
     FlightState from;
     float pitch_rate = 0.0F;  ///< [rad/s]
     float yaw_rate = 0.0F;    ///< [rad/s]
@@ -72,9 +72,8 @@ struct Leg {
 
     [[nodiscard]] float end() const noexcept { return begin + order.duration; }
 };
-/// The automaton's builder (Gomola eq. 6.19): puts in the changes that an order takes.
-/// @param last  nothing follows, so that straight flight has to be reached at the end (Gomola definition 2)
-/// O(1).
+/// The automaton's builder (Gomola eq. 6.19): adds the transitions of an order.
+/// @param last  no order follows, so the leg must end in straight flight (Gomola definition 2) O(1).
 [[nodiscard]] Leg build_leg(const AutomatonSettings& settings, const SegmentLimits& limits, const FlightState& from,
                             const Exit& before, const Order& order, float begin, bool last) noexcept;
 /// The same in the segment of the state before (Gomola eq. 6.48). False, and nothing written, when the order cannot be
@@ -84,17 +83,17 @@ struct Leg {
 [[nodiscard]] bool build_leg(const AutomatonSettings& settings, const Segments& segments, const FlightState& from,
                              const Exit& before, const Order& order, float begin, bool last, Leg& out,
                              bool& outside) noexcept;
-/// Of a leg after `elapsed` in [0, duration]; exact, in float: 1e-6 of the way's length. O(1).
+/// State on a leg after `elapsed` in [0, duration]; exact, in float: 1e-6 of the path length. O(1).
 [[nodiscard]] FlightState at(const Leg& leg, float elapsed) noexcept;
 
-/// Orders of one trajectory: the one under way and kMaxPlanned more. A path out of a reach set has up to 16.
+/// Orders of one trajectory: the present order and kMaxPlanned more. A path from a reach set has up to 16.
 inline constexpr std::size_t kMaxPlanned = 32;
 inline constexpr std::size_t kMaxLegs = kMaxPlanned + 1;
 static_assert(kMaxPlanned >= 16 && kMaxPlanned <= 256);
 
 enum class PredictStatus : std::uint8_t {
     complete,
-    truncated,    ///< more orders than there is room for
+    truncated,    ///< more orders than the capacity
     refused,      ///< an order that is too short or not a number, or a speed too far from the one before
     bad_setting,  ///< of the automaton
 };
@@ -104,16 +103,16 @@ struct Trajectory {
     FlightState start;
     float begin = 0.0F;  ///< [s]
     StaticVector<Leg, kMaxLegs> legs;
-    std::size_t not_emitted = 0;  ///< orders that are missing, when truncated or refused
+    std::size_t not_emitted = 0;  ///< missing orders, when truncated or refused
     std::size_t outside = 0;      ///< legs whose state before lies outside the envelope
 
     /// Gomola eq. 6.22. With no leg: the begin.
     [[nodiscard]] float end() const noexcept { return legs.empty() ? begin : legs.back().end(); }
 };
 
-/// The trajectory of `orders` from `start` at time `begin`: what can be flown of them, in order, up to the first one
-/// that cannot. Pure. O(orders).
-/// @param before  what was flown until `start`
+/// The trajectory of `orders` from `start` at time `begin`, up to the first order that cannot be flown. Pure.
+/// O(orders).
+/// @param before  end of the order flown until `start`
 PredictStatus predict(const AutomatonSettings& settings, const Segments& segments, const FlightState& start,
                       const Exit& before, float begin, std::span<const Order> orders, Trajectory& out) noexcept;
 
@@ -132,9 +131,9 @@ struct Reference {
     std::size_t not_emitted = 0;  ///< orders without samples: the last ones
 };
 
-/// The start and `per_order` >= 1 evenly spaced samples of each leg, its end the last of them: n M + 1 in all (the
-/// source's eq. 6.49 leaves out the start). Truncated by whole legs, with what is missing counted, when there are more
-/// than there is room for. O(n M).
+/// The start and `per_order` >= 1 evenly spaced samples of each leg, its end the last of them: n M + 1 in all (Gomola's
+/// eq. 6.49 omits the start). If they exceed the capacity, truncated by whole legs, with the missing orders counted.
+/// O(n M).
 PredictStatus sample(const Trajectory& trajectory, std::size_t per_order, Reference& out) noexcept;
 
 }  // namespace jink::reach

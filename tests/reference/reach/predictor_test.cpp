@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Trajectories of orders: the reference result of the reach-set specification, section 4.3 (the source's 6.2.2), and
-// what sections 4 to 7 ask for.
+// Trajectories of orders: the reference result of the reach-set specification, section 4.3 (Gomola 6.2.2), and the
+// requirements of sections 4 to 7.
 #include "tests/reference/reach/predictor.hpp"
 
 #include <limits>

@@ -12,9 +12,8 @@
 
 #include "core/reach/grid.hpp"
 
-// The source's own intruder models, by clouds of points and in double (Gomola 6.6.3, 6.6.4 with the corrections of the
-// avoidance specification, sections 2.6 and 2.7): what the closed forms of the core are judged by. Slow, and for tests
-// alone.
+// Gomola's own intruder models, by clouds of points and in double (Gomola 6.6.3, 6.6.4 with the corrections of the
+// avoidance specification, sections 2.6 and 2.7): reference for core's closed forms. Slow, for tests only.
 
 namespace jink::reach::reference {
 
@@ -27,12 +26,12 @@ struct Intruder {
     double horizontal = 0.0;
     double vertical = 0.0;
 };
-/// What the clouds say of a cell.
+/// Result of the clouds for a cell.
 struct Touch {
     double from = std::numeric_limits<double>::infinity();
     double to = -std::numeric_limits<double>::infinity();
     double sum = 0.0;  ///< of weights
-    int instants = 0;  ///< at which it was touched
+    int instants = 0;  ///< number of instants with overlap
     [[nodiscard]] double space() const { return sum / instants; }
 };
 using Touched = std::map<CellIndex, Touch>;
@@ -92,7 +91,7 @@ inline double sum_of(const std::vector<Weighted>& points)
     return sum;
 }
 
-/// Most points of one slice; a larger one is made with twice the spacing until it fits, and said so.
+/// Most points of one slice; a larger slice is built with twice the spacing until it fits, and reported.
 inline constexpr std::size_t kMaxSlicePoints = 1024;
 struct Slice {
     std::vector<Weighted> points;

@@ -79,7 +79,7 @@ TEST(SpreadReference, WithoutExtentThereIsOnePoint)
     EXPECT_EQ(slice_of(2.0, 0.0, 0.5).points.size(), 9U);
 }
 
-/// Every cell that a cloud touches has a rate far beyond the threshold of a threat: the model is yes or no.
+/// Every cell that a cloud overlaps has a rate far beyond the threshold of a threat: the model is binary.
 TEST(SpreadReference, EveryTouchedCellIsAThreat)
 {
     Intruder intruder;

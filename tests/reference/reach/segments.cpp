@@ -56,7 +56,7 @@ SegmentStatus Segments::split(Impact impact, float lower, float upper, std::span
     for (const float separator : separators) {
         split.separators.unchecked_push_back(separator);
     }
-    splits_.unchecked_push_back(split);  // each impact once, so there is room
+    splits_.unchecked_push_back(split);  // each impact once, so the capacity suffices
     count_ = count;
     limits_.fill({});
     return SegmentStatus::good;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Segments partition the states: each is in exactly one, by its intervals looked at one after the other.
+// Segments partition the states: each state is in exactly one, by a check of its intervals in sequence.
 #include <gtest/gtest.h>
 
 #include <algorithm>

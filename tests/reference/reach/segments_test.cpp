@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Segments of the automaton: the tests that the reach-set specification, section 6, asks for, and every refusal.
+// Segments of the automaton: the tests required by the reach-set specification, section 6, and every refusal.
 #include "tests/reference/reach/segments.hpp"
 
 #include <limits>

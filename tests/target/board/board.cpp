@@ -31,7 +31,7 @@ std::map<std::string, std::uint32_t> symbols_of(const std::filesystem::path& ima
     return symbols;
 }
 
-/// Between two looks at the line.
+/// Polling interval of the line.
 constexpr auto kNap = std::chrono::microseconds(500);
 /// The plant waits for the board's clock no longer than BoardClock::kDeaf.
 constexpr auto kPatience = std::chrono::seconds(30);

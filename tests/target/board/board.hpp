@@ -16,9 +16,8 @@
 namespace jink::target {
 
 /// A flight image in an emulated board, its debugger, and the simulator's autopilot at the other end of its line.
-/// Everything that the board says is kept, with the plant's time, which is the board's: a machine with other work makes
-/// the flight longer and no step late. From a fault on, until the board that started anew tells its time, it is the
-/// wall's.
+/// Records all board output with the plant's time, which is the board's: load on the host makes the flight longer but
+/// no step late. From a fault until the restarted board reports its time, the plant follows wall time.
 class Board {
 public:
     struct Heard {
@@ -28,7 +27,7 @@ public:
         std::array<std::byte, link::mavlink::kMaxPayload> payload;
     };
 
-    /// The board stands still before its first instruction.
+    /// The board is halted before its first instruction.
     Board(const std::filesystem::path& image, const std::string& machine, const sim::Scenario& scenario,
           const std::filesystem::path& folder);
 
@@ -47,25 +46,24 @@ public:
         static_cast<void>(fly_until([] { return false; }, end));
     }
 
-    /// Lets the processor run until it comes to `address`, while the plant flies on; false at the limit. It stands
-    /// there.
+    /// Runs the processor to `address`, while the plant flies on; false at the limit. The processor is then halted.
     bool run_to(std::uint32_t address, double limit);
-    /// Has it execute these Thumb instructions from `address` on, from where it stands.
+    /// Makes the halted processor execute these Thumb instructions, placed at `address`.
     void execute(const std::vector<std::uint16_t>& instructions, std::uint32_t address);
 
     /// The one symbol whose (mangled) name contains `part`, or is it. @throws std::runtime_error
     [[nodiscard]] std::uint32_t symbol(const std::string& part) const;
-    /// A ground station's wish.
+    /// A ground station's request.
     void ask_for_mission();
 
     [[nodiscard]] double seconds() const { return static_cast<double>(plant_.now()) * 1e-6; }
     [[nodiscard]] sim::Plant& plant() { return plant_; }
     [[nodiscard]] Debugger& debugger() { return *debugger_; }
     [[nodiscard]] const std::vector<Heard>& heard() const { return heard_; }
-    /// What was lost on the way by this machine.
+    /// Bytes lost by the host.
     [[nodiscard]] std::uint64_t dropped() const { return line_.dropped(); }
-    /// How long this machine kept the emulator from running, the longest [s]. Beyond HoldUp::kStall the board's clock
-    /// has leapt while it waited: its watchdog may have bitten, and what the flight shows says nothing.
+    /// Longest delay of the emulator by the host [s]. Beyond HoldUp::kStall the board's clock has jumped while it
+    /// waited: its watchdog may have fired, and the flight is inconclusive.
     [[nodiscard]] double held_up() const { return hold_up_.longest(); }
     [[nodiscard]] const link::mavlink::ParserDiagnostics& parser() const { return parser_.diagnostics(); }
 

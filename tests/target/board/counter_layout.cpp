@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where an image's counters lie within the objects that hold them, for who reads its memory from outside. Compiled for
-// the target with the image's own settings, access control off, and linked into nothing: the sizes of these arrays are
-// the answer, less one for offsets, and the list of symbols tells them.
+// Offsets of an image's counters within their objects, for reading its memory from outside. Compiled for the target
+// with the image's own settings, access control off, and never linked: the sizes of these arrays, less one for offsets,
+// are read from the symbol table.
 #include <cstddef>
 
 #include "firmware/app/coprocessor.hpp"

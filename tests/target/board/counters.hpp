@@ -14,7 +14,7 @@
 
 namespace jink::target {
 
-/// What a flight image counts, as its memory says.
+/// The counters of a flight image, read from its memory.
 struct Counters {
     hal::PortHealth port;  ///< overruns and line errors of the interrupt handlers included
     link::LinkDiagnostics link;
@@ -22,16 +22,17 @@ struct Counters {
     app::Diagnostics app;
 };
 
-/// Finds them: the image's symbols say where the objects are, those of tests/target/board/counter_layout.cpp, which was
-/// compiled beside the image, where in them the counters are. Counters are integers of fixed width, little-endian and
-/// aligned alike on both machines; their sizes, and those of the objects around them, are compared.
+/// Locates the counters: the image's symbols give the objects' addresses; symbols of
+/// tests/target/board/counter_layout.cpp, compiled beside the image, give the counters' offsets. Counters are integers
+/// of fixed width, little-endian and aligned alike on both machines; their sizes, and those of the objects around them,
+/// are compared.
 class CounterReader {
 public:
     /// @param layout  library of counter_layout.cpp
     /// @throws std::runtime_error where a symbol is missing, or the two do not belong together
     CounterReader(const std::filesystem::path& image, const std::filesystem::path& layout);
 
-    /// The processor has to stand still.
+    /// The processor must be halted.
     [[nodiscard]] Counters read(Debugger& debugger) const;
 
 private:

@@ -7,18 +7,18 @@
 
 namespace jink::target {
 
-/// qemu's debugger stub over a UNIX socket (gdb's Remote Serial Protocol): as much of it as faults are made with.
+/// qemu's debugger stub over a UNIX socket (gdb's Remote Serial Protocol): the subset needed to cause faults.
 class Debugger {
 public:
-    /// @throws std::runtime_error where nobody listens within 10 s. The processor stands still from then on.
+    /// @throws std::runtime_error if the socket does not accept within 10 s. Halts the processor.
     explicit Debugger(const std::string& socket_path);
     ~Debugger();
     Debugger(const Debugger&) = delete;
     Debugger& operator=(const Debugger&) = delete;
 
-    /// Lets it run on.
+    /// Resumes the processor.
     void go();
-    /// Stops it wherever it is.
+    /// Halts the processor.
     void halt();
     void break_at(std::uint32_t address);
     void clear(std::uint32_t address);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight image, as it would be flashed, made to fault by the debugger of its emulated board: what it says before the
-// reset, what it does after it, and that it serves again.
+// A release flight image, made to fault by the debugger of its emulated board: its messages before the reset, its
+// behaviour afterwards, and its return to service.
 //
 //   jink_board_faults IMAGE MACHINE CASE
 #include <cstdio>
@@ -19,7 +19,7 @@ namespace {
 
 using namespace link::mavlink;
 
-// Two things that stand in the way: one to crash before, one to show that all is well again.
+// Two static obstacles on the leg: the fault occurs before the first, the second shows that avoidance works again.
 constexpr const char* kScenario = R"(
 title: Two obstacles on the leg
 duration: 120
@@ -51,7 +51,7 @@ std::vector<Case> cases_for(const std::string& machine)
     const std::string step = "3app11Coprocessor4stepE";
     const std::string interrupt = m7 ? "jink_uart_receive" : "jink_usart1";
     const std::vector<std::uint16_t> undefined{kUndefined};
-    // movw r1, #0; movt r1, #0x9000; str r0, [r1]: nobody lives there
+    // movw r1, #0; movt r1, #0x9000; str r0, [r1]: an unmapped address
     const std::vector<std::uint16_t> nowhere{0xF240, 0x0100, 0xF2C9, 0x0100, 0x6008};
     const std::string stuck = m7 ? "exc 2 cause 00000000 address 00000000" : "exc 15 cause 00000000 address 00000000";
     return {
@@ -193,7 +193,7 @@ void check_words(Board& board, Test& test, std::size_t first, bool held)
 
 void check_service(Board& board, Test& test)
 {
-    // A machine with other work can make the board late, which then drops its control and asks for a hold: once more.
+    // Load on the host can delay the board, which then gives up control and requests a hold: tried again.
     constexpr int kAttempts = 4;
     bool again = false;
     bool back = false;
@@ -231,7 +231,7 @@ int run_fault(Board& board, const Case& c)
     return test.failures();
 }
 
-/// Before anything can be said: nothing is, and it starts anew.
+/// A fault before any output is possible: no message, and a restart.
 int run_early(Board& board)
 {
     Test test(board, "start_up");
@@ -301,7 +301,7 @@ int run_loop(Board& board)
     const std::size_t passive_from = board.heard().size();
     const double since = board.seconds();
     const unsigned requests = board.plant().autopilot().heard().external_requests;
-    // The fourth is told, a power of two; those from the fifth to the seventh are not.
+    // The fourth is reported, a power of two; the fifth to the seventh are not.
     for (int i = 4; i <= 7; ++i) {
         board.fly_for(0.1);
         crash();

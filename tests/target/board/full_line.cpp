@@ -146,8 +146,8 @@ void FullLine::add_next()
         const std::vector<std::byte> fresh = plant_.collect();
         telemetry_.insert(telemetry_.end(), fresh.begin(), fresh.end());
     }
-    // First of all the HEARTBEAT: who has not heard it answers nothing. Bursts of telemetry come last, so that they do
-    // not push requests together.
+    // HEARTBEAT first: the board answers nothing before receiving it. Bursts of telemetry come last, so that requests
+    // stay spread out.
     if (frames_ == 0) {
         add_telemetry();
     } else if (due(kTimesyncs, requests_.timesyncs)) {
@@ -163,7 +163,7 @@ void FullLine::add_next()
         write(read, sim::kGroundStation);
     } else if (due(kCommands, requests_.commands)) {
         ++requests_.commands;
-        CommandLong command;  // a message that we do not send on request: denied, and so answered
+        CommandLong command;  // a message that is not sent on request: denied, and therefore answered
         command.command = 512;
         command.param1 = 1.0F;
         command.target_system = sim::kAutopilot.system;

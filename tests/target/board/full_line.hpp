@@ -17,36 +17,36 @@ namespace jink::target {
 /// 921600 baud, ten bits a byte.
 inline constexpr std::uint32_t kLineBytesPerSecond = 92'160;
 
-/// So much is on its way or unread at most: 33 ms of the line.
+/// Largest number of bytes in transit or unread: 33 ms of the line.
 inline constexpr std::uint64_t kMostUnread = 3'000;
-/// What each of our TIMESYNC requests carries: this, and the bytes in front of it. The answer brings it back.
+/// Each of our TIMESYNC requests carries this plus the number of preceding bytes. The answer returns it.
 inline constexpr std::int64_t kPlaceMark = std::int64_t{1} << 62;
 
-/// 32 aircraft, one after the other on a collision course, all of them in sight all the time.
+/// 32 aircraft, successively on a collision course, all visible all the time.
 [[nodiscard]] sim::Scenario crowd_for(double seconds);
 
-/// The autopilot's end of a line that never pauses: the simulator's autopilot in the crowd above, a range scan that
-/// sees something in all of its 72 sectors, requests by the score, and ODOMETRY in what is left. Whole frames, back to
-/// back, numbered per sender without a gap.
+/// The autopilot's end of a line without pauses: the simulator's autopilot in the crowd above, a range scan with
+/// returns in all 72 sectors, many requests, and ODOMETRY in the remaining bytes. Whole frames, back to back, numbered
+/// per sender without a gap.
 ///
-/// Its time is that of the bytes on the line, so what the board has to take within a step does not depend on how evenly
-/// the machine runs. The rates leave room in the board's inbox for a step that reads kMostUnread bytes at once.
+/// Its time is that of the bytes on the line, so the board's load per step does not depend on the host's load. The
+/// rates leave space in the board's inbox for a step that reads kMostUnread bytes at once.
 class FullLine {
 public:
     struct Requests {
         std::uint32_t params = 0;
         std::uint32_t commands = 0;
         std::uint32_t timesyncs = 0;
-        std::uint32_t own_timesyncs = 0;  ///< that the simulator's autopilot asks for by itself
+        std::uint32_t own_timesyncs = 0;  ///< requests of the simulator's own autopilot
     };
 
     /// @param scenario  outlives it
     explicit FullLine(const sim::Scenario& scenario) : plant_(scenario) {}
 
-    /// At least `n` bytes of what comes next, whole frames.
+    /// At least the next `n` bytes, whole frames.
     [[nodiscard]] std::span<const std::byte> ahead(std::size_t n);
     void take(std::size_t n);
-    /// What the board said.
+    /// Bytes from the board.
     void deliver(std::span<const std::byte> bytes) { plant_.deliver(bytes); }
 
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }  ///< made so far

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A flight image, as it would be flashed, with its line full: 92160 bytes a second to the board, as 921600 baud bring
-// them, and as many answers as it can send. Then its own counters, read by the debugger, against what was sent.
+// A release flight image with a full line: 92160 bytes per second to the board, the rate of 921600 baud, and as many
+// answers as it can send. Then compares its own counters, read by the debugger, with the sent bytes.
 //
 //   jink_board_soak IMAGE MACHINE LAYOUT [--seconds S] [--drop N] [--shift N]
 //
@@ -47,12 +47,12 @@ struct Options {
     unsigned shift = 3;
 };
 
-/// What the board says.
+/// Receives the board's output.
 struct Ear {
     Parser parser{nullptr, LongerPayload::reject};
     std::uint64_t bytes = 0;
     double clock = -1.0;     ///< the board's own, at the last step that answered [s]
-    std::uint64_t read = 0;  ///< so many of our bytes it has read at least
+    std::uint64_t read = 0;  ///< lower bound on the number of our bytes that the board has read
     std::uint32_t params = 0, acknowledged = 0, timesyncs = 0, setpoints = 0, heartbeats = 0;
 
     void listen(std::span<const std::byte> heard)
@@ -159,7 +159,7 @@ private:
             const std::uint64_t now =
                 std::min({static_cast<std::uint64_t>(std::max(owed, 0.0)), room, kMostInSlice, total - sent_});
             if (now > 0 && wire_.may_send()) {
-                // Whole frames: a machine that holds us up does not leave the board in the middle of one.
+                // Whole frames: a delay of the host never leaves the board within a frame.
                 send(line_.ahead(now).size());
             }
             // Nothing else ends it where the board falls silent.
@@ -260,7 +260,7 @@ private:
     sim::HoldUp hold_up_;
     Clock::time_point start_ = Clock::now();
     std::uint64_t sent_ = 0;
-    double first_ = -1.0;  ///< what the board's clock told first [s]
+    double first_ = -1.0;  ///< first reported value of the board's clock [s]
     double walled_ = 0.0;  ///< by the wall's [s]
     double longest_lag_ = 0.0;
     int failures_ = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stack of a flight image after a flight: the paint that start-up left on it is read by the board's debugger, so
-// that the image is the one that is flashed.
+// Stack use of a flight image after a flight: the board's debugger reads the paint written at start-up, so the image is
+// the unmodified release image.
 //
 //   jink_board_stack IMAGE MACHINE SCENARIO
 //
@@ -34,7 +34,7 @@ int main(int argc, char** argv)
         const auto bytes = board.debugger().read(bottom, board.symbol("_stack_top") - bottom);
         const auto touched = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b != kPaint; });
         std::printf("stack %td\ntakeovers %u\n", bytes.end() - touched, board.plant().autopilot().takeovers());
-        status = touched == bytes.end() ? 1 : 0;  // nothing used: that was no flight
+        status = touched == bytes.end() ? 1 : 0;  // nothing used: not a valid flight
     } catch (const std::exception& e) {
         std::printf("%s: %s\n", argv[3], e.what());
     }

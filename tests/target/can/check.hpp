@@ -3,7 +3,7 @@
 
 namespace jink::target {
 
-/// Counts a check, and says which one failed.
+/// Counts a check, and prints a failed check.
 void expect(bool ok, const char* what, int line);
 
 }  // namespace jink::target

@@ -234,7 +234,7 @@ void try_mavlink(Peer& peer, Netlink& links, const char* interface)
     EXPECT(links.set_up(interface, true) == 0);
     peer.statuses.clear();
     EXPECT(peer.until([&] { return peer.heartbeats > before && peer.state == kStandby && !peer.statuses.empty(); }));
-    // Without an autopilot: it goes on as a node, and says what it lacks.
+    // Without an autopilot: continues as a node, and reports the missing autopilot.
     peer.speaks = false;
     EXPECT(peer.until([&] { return peer.status.health == can::Health::error; }));
     EXPECT(peer.status.vendor_status != 0);

@@ -5,8 +5,8 @@
 
 namespace jink::target {
 
-/// Runs /jinkd on an interface that is up, and speaks to it as another node of the bus: who it is, its parameters, its
-/// status, MAVLink through the tunnel, the interface down and up again, its end. False where there is no /jinkd.
+/// Runs /jinkd on an active interface, and tests it as another node of the bus: identity, parameters, status, MAVLink
+/// through the tunnel, interface down and up again, shutdown. False if /jinkd is missing.
 bool try_daemon(Netlink& links, const char* interface);
 
 }  // namespace jink::target

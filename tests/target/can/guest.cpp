@@ -75,7 +75,7 @@ bool same(const CanFrame& a, const CanFrame& b)
            a.bit_rate_switch == b.bit_rate_switch && std::memcmp(a.data.data(), b.data.data(), a.length) == 0;
 }
 
-/// Within a moment: the other end may be another controller.
+/// With a short time-out: the other end may be another controller.
 bool receive_soon(SocketCanPort& port, CanFrame& f)
 {
     for (int i = 0; i < 200; ++i) {
@@ -133,7 +133,7 @@ void try_frames()
     remote.remote = true;
     EXPECT(a.send(remote));
     EXPECT(b.receive(got) && same(got, remote));
-    // What no frame can be.
+    // Invalid frames.
     EXPECT(!a.send(frame(0x800, false, 1)));
     EXPECT(!a.send(frame(0x20000000, true, 1)));
     CanFrame odd = frame(1, false, 12);
@@ -182,7 +182,7 @@ void try_overrun()
     while (b.receive(got)) {
         ++received;
     }
-    // The kernel tells of a loss with the next frame that finds room.
+    // The kernel reports a loss with the next frame that fits into the queue.
     EXPECT(a.send(frame(2, false, 0)));
     EXPECT(b.receive(got));
     EXPECT(received > 0 && received < 100);
@@ -316,8 +316,8 @@ void try_controllers(Netlink& links)
         EXPECT(b.send(f));
         EXPECT(receive_soon(a, got) && same(got, f));
     }
-    // A burst nobody reads meanwhile: what is lost, in the controller or the socket's queue, is told, and what arrives
-    // is whole and in order.
+    // An unread burst: losses in the controller or the socket's queue are reported, and received frames are whole and
+    // in order.
     unsigned sent = 0;
     for (unsigned i = 0; i < 2000; ++i) {
         CanFrame f = frame(i, true, 8);
@@ -335,7 +335,7 @@ void try_controllers(Netlink& links)
         last = i;
         ++received;
     }
-    EXPECT(a.send(frame(2000, true, 0)));  // the kernel tells of a loss with the next frame that finds room
+    EXPECT(a.send(frame(2000, true, 0)));  // the kernel reports a loss with the next frame that fits into the queue
     EXPECT(receive_soon(b, got) && got.id == 2000);
     std::printf("  burst: %u taken of 2000, %u refused, %u arrived, %llu overruns told\n", sent,
                 static_cast<unsigned>(a.health().frames_refused), received,

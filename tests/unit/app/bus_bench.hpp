@@ -26,7 +26,7 @@ inline can::NodeOptions node_options(std::uint8_t node = kOurNode)
     return options;
 }
 
-/// What another node hears of us, put together and decoded.
+/// Our transfers as received by another node, assembled and decoded.
 class Listener {
 public:
     static constexpr std::uint8_t kNode = 10;
@@ -83,7 +83,7 @@ public:
     {
     }
 
-    /// Another node says something; it arrives before the next tick.
+    /// A transfer from another node; arrives before the next tick.
     template <class M>
     void give(const M& message, std::uint8_t node = 20, std::uint8_t destination = 0)
     {
@@ -119,7 +119,7 @@ public:
         return report;
     }
 
-    /// As a receiver has it: at `local` [m, ENU] from Flight's origin.
+    /// A receiver's fix at `local` [m, ENU] from Flight's origin.
     static can::Fix2 fix(const Vec3& local, const Vec3& velocity = Vec3::Zero())
     {
         const GlobalPosition where = to_global(local, kFlightOrigin).value();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CanBus at its limits: what a stall is, what a loss is, what a NearObject says, and the tunnel's counters.
+// CanBus at its limits: stalls, losses, contents of a NearObject, and the tunnel's counters.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/bus_bench.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// Frames in as told; frames out kept, as far as there is room.
+/// Delivers given frames; records output frames, up to a capacity.
 struct CountedPort final : hal::CanPort {
     bool receive(hal::CanFrame& frame) noexcept override
     {
@@ -158,7 +158,7 @@ TEST_F(CanBusEdges, AStallIsLongerThanItsTimeWithoutAFrameTaken)
     EXPECT_EQ(bus.endpoint().pending(), nullptr);
     EXPECT_EQ(bus.diagnostics().losses, 0U);
     port.room = 1000;
-    step(900'000);  // idle: what comes then waits from then on
+    step(900'000);  // idle: later frames wait from then on
     port.room = 0;
     ASSERT_GT(bus.serial().write(std::span(bytes).first(50)), 0U);
     step(50'000);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// CanBus by itself: what it takes from a controller and gives to it, and what it refuses to pass on because it is old.
+// CanBus alone: frames from and to a controller, and refusal of outdated frames.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/bus_bench.hpp"
@@ -27,7 +27,7 @@ constexpr bool copies_all(bool extended, bool remote)
 }
 static_assert(copies_all(true, false) && copies_all(true, true) && copies_all(false, false) && copies_all(false, true));
 
-/// A controller in the test's hands: frames in as told, frames out kept with the time at which they were taken.
+/// A controller operated by the test: delivers given frames, records output frames with their times.
 class FakePort final : public hal::CanPort {
 public:
     bool receive(hal::CanFrame& frame) noexcept override
@@ -287,7 +287,7 @@ TEST_F(CanBusTest, FdFramesAreRefusedAndCounted)
     EXPECT_EQ(bus.diagnostics().frames_foreign, 2U) << "a classic one is none";
 }
 
-/// Nothing waits: nothing is late or lost, however long nobody calls.
+/// Without waiting frames nothing is late or lost, for any pause between calls.
 TEST_F(CanBusTest, WithoutFramesThatWaitThereIsNoStallAndNoLoss)
 {
     step();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed areas and their upload at the limits: stamps, ends, growth, the origin, what a set differs by.
+// Closed areas and their upload at the limits: stamps, ends, growth, the origin, differences between sets.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -151,7 +151,7 @@ TEST_F(ClosedAreas, WhatIsRefusedIsNoReasonToMerge)
     EXPECT_EQ(table.diagnostics().merged, 0U);
     EXPECT_EQ(table.diagnostics().refused, 1U);
     EXPECT_EQ(table.barrels().size(), kMaxBarrels);
-    told.front().barrel.circle.radius = kNan;  // the first is none: what is merged is placed about the next
+    told.front().barrel.circle.radius = kNan;  // the first is invalid: the merged area is placed about the next
     told.back() = closed_at(5000, 0);
     told.push_back(closed_at(5050, 0));
     tell(told);
@@ -160,7 +160,7 @@ TEST_F(ClosedAreas, WhatIsRefusedIsNoReasonToMerge)
     EXPECT_EQ(table.barrels().size(), kMaxBarrels);
 }
 
-/// Those far from the vehicle are merged first, and what stands by itself keeps its place.
+/// Areas far from the vehicle are merged first; isolated areas are kept.
 TEST_F(ClosedAreas, WhatIsFarFromTheVehicleIsMerged)
 {
     enum class Told : std::uint8_t { locally, locally_with_an_origin, on_the_globe };
@@ -227,11 +227,11 @@ TEST_F(ClosedAreas, WhatIsMergedIsNoYoungerThanNow)
     const auto first = std::find_if(barrels.begin(), barrels.end(),
                                     [](const world::Barrel& b) { return std::abs(b.circle.centre.x()) < 1.0F; });
     ASSERT_NE(first, barrels.end());
-    // It stands from here on, and holds where it is now and where it will be.
+    // Static from now on, and contains its present and its later positions.
     EXPECT_LE((first->circle.centre - world::Vec2(0, 0)).norm() + 30.0F, first->circle.radius + 0.1F);
 }
 
-/// Whatever is merged ends with the last of them, and grows at twice the greatest speed once it is old.
+/// A merged area ends with the last of its parts, and grows at twice the greatest speed once outdated.
 TEST_F(ClosedAreas, TheMergedEndWithTheLastAndGrowTwiceAsFastAsTheFastest)
 {
     std::vector<Constraint> told;
@@ -308,7 +308,7 @@ TEST(ClosedAreaUpload, EachValueTellsASetFromTheOneInForce)
     }
 }
 
-/// Without an end the stamp says nothing: the same area, told again later.
+/// Without an end the stamp is irrelevant: the same area, reported again later.
 TEST(ClosedAreaUpload, AnEndlessAreaToldAgainIsTheSame)
 {
     ConstraintUpload upload;
@@ -359,7 +359,7 @@ TEST(ClosedAreaUpload, AnEmptySetAgainIsTheSame)
     ConstraintUpload upload;
     ConstraintPart none;
     none.set = 4;
-    none.constraint.barrel.circle.radius = -1.0F;  // says nothing
+    none.constraint.barrel.circle.radius = -1.0F;  // invalid
     EXPECT_EQ(upload.take(none, kTold), ConstraintResult::in_force);
     upload.mark_in_force();
     EXPECT_EQ(upload.take(none, kTold), ConstraintResult::in_force);

@@ -13,7 +13,7 @@ namespace jink::app::test {
 
 namespace cloud = link::cloud;
 
-/// A line that never fills: bytes go in at one end and come out at the other, whole or not at all.
+/// A line of unlimited capacity: bytes pass from one end to the other, whole or not at all.
 class CloudLine final : public hal::SerialPort {
 public:
     std::size_t read(std::span<std::byte> into) noexcept override

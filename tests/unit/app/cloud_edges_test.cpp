@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The polar image at its limits: body, floor, reach, patch, age, and what a scan says of an empty direction.
+// The range image at its limits: body, floor, reach, patch, age, and a scan's effect on an empty direction.
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -32,7 +32,7 @@ TEST_F(CloudEdges, TheBodyEndsWithTheBox)
     EXPECT_EQ(count().body, 2U);
     EXPECT_EQ(scan({Vec3(2.01F, 0.0F, 0.0F), Vec3(0.0F, -1.51F, 0.0F), Vec3(0.0F, 0.0F, 1.01F)}), 3U);
     EXPECT_EQ(count().body, 2U);
-    // Where the vehicle is, is not known: nor is what is of it.
+    // Unknown vehicle position: own-body hits are unknown too.
     view.is_placed = false;
     EXPECT_EQ(scan({Vec3(1.0F, 0.0F, 0.0F)}), 3U);
     EXPECT_EQ(count().body, 2U);
@@ -88,7 +88,7 @@ TEST_F(CloudEdges, APatchIsAMetreDeepOrThreeTenthsOfItsRange)
     }
 }
 
-/// Each extent by itself: what was seen is covered, and not the whole of the bin.
+/// Each extent separately: the hits are covered, not the whole bin.
 TEST_F(CloudEdges, ASphereIsAsWideAsWhatWasSeenInItsBin)
 {
     const float range = 40.0F;

@@ -13,7 +13,7 @@
 
 namespace jink::app::test {
 
-/// A polar image that gives to a table of its own, and scans made of hits.
+/// A range image with its own obstacle table, and scans made of hits.
 class CloudImageBench : public ::testing::Test {
 protected:
     CloudImageBench()
@@ -34,7 +34,7 @@ protected:
         scan.max_range = 100.0F;
         image->begin_scan(scan);
     }
-    /// Returns how many obstacles there are then.
+    /// Returns the number of obstacles afterwards.
     std::size_t scan(const std::vector<Vec3>& hits, std::uint32_t lost = 0, std::uint8_t sensor = 0)
     {
         begin(sensor);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point clouds on their way in: a step's share of a port that never ends, and what spoils a direction.
+// Point cloud input: a step's share of an endless port, and causes that spoil a direction.
 #include "firmware/app/cloud_input.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ protected:
     }
 };
 
-/// Part of the own vehicle in front of it takes nothing away that was seen beside it.
+/// A part of the own vehicle in front does not remove hits beside it.
 TEST_F(SpoiledDirections, AHitOfTheBodyDoesNotHideAnotherHit)
 {
     EXPECT_EQ(scan({at(1.0F, 1.0F, 20.0F), at(1.5F, 1.5F, 0.5F)}), 1U);
@@ -62,7 +62,7 @@ TEST_F(SpoiledDirections, AHitOfTheBodyDoesNotHideAnotherHit)
     EXPECT_EQ(count().kept, 2U);
 }
 
-/// What is there beyond the reach is no reason to keep what is not.
+/// A hit beyond the reach is no reason to keep a removed obstacle.
 TEST_F(SpoiledDirections, AnEmptyDirectionStaysEmptyWithAHitBeyondTheReach)
 {
     ASSERT_EQ(scan({at(1.0F, 1.0F, 20.0F)}), 1U);
@@ -72,7 +72,7 @@ TEST_F(SpoiledDirections, AnEmptyDirectionStaysEmptyWithAHitBeyondTheReach)
     image->end_scan(0);
     EXPECT_EQ(obstacles().size(), 0U);
     EXPECT_EQ(count().beyond, 1U);
-    // A hit of the body hides what lies behind it: what was there stays.
+    // A hit of the body hides the space behind: obstacles there stay.
     ASSERT_EQ(scan({at(1.0F, 1.0F, 20.0F)}), 1U);
     begin();
     image->add(link::Ray::hit, at(1.5F, 1.5F, 0.5F));

@@ -153,9 +153,9 @@ TEST_F(CloudImage, SeenEmptyGivesUpTheFormerObstacle)
         image->end_scan(lost);
         return obstacles().size();
     };
-    EXPECT_EQ(scan_of(Ray::nothing, 0), 1U);  // the other direction was not seen: it stays
+    EXPECT_EQ(scan_of(Ray::nothing, 0), 1U);  // the other direction was not scanned: it stays
     EXPECT_TRUE(is_covered(Vec3(100, 200, 50) + at(95, 2, 20)));
-    EXPECT_EQ(scan_of(Ray::nothing, 1), 2U);  // the hit may be among what was lost
+    EXPECT_EQ(scan_of(Ray::nothing, 1), 2U);  // the hit may be among the lost points
     EXPECT_EQ(scan_of(Ray::invalid, 0), 2U);
 }
 
@@ -212,7 +212,7 @@ TEST_F(CloudImage, NearestFirstAndNoMoreThanItsShare)
     for (std::size_t i = 0; i < hits.size(); ++i) {
         EXPECT_EQ(is_covered(own + hits[i]), i >= 10) << i;
     }
-    // What falls behind the share goes, even if it was told before.
+    // Obstacles beyond the share are dropped, even if reported before.
     scan({hits[0]});
     EXPECT_EQ(obstacles().size(), kMaxCloudObstacles + 1);
     scan(hits);

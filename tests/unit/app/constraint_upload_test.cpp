@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sets of closed areas that come over the link in parts: when they count, and what a lost, wrong or repeated part does.
+// Sets of closed areas received over the link in parts: when they take effect, and effects of lost, wrong or repeated
+// parts.
 #include <gtest/gtest.h>
 
 #include "firmware/app/constraint_upload.hpp"
@@ -166,7 +167,7 @@ TEST(ConstraintUpload, WhatIsWrongIsRefusedAndChangesNothing)
     EXPECT_EQ(upload.take(part_of(1, 1, 2), kAt), ConstraintResult::in_force);
 }
 
-/// Whole path: bytes in, answers out, and the picture that is planned with.
+/// Whole chain: bytes in, answers out, and the closed areas used by the planner.
 class CoprocessorConstraintUpload : public testing::Test {
 protected:
     void SetUp() override { f->fly(100); }

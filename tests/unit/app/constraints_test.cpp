@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed areas as they are told: refused, moved on, grown, merged, placed; and the co-processor that keeps out of them.
+// Reported closed areas: refused, moved, grown, merged, placed; and the co-processor that avoids them.
 #include "firmware/app/constraints.hpp"
 
 #include <limits>
@@ -99,7 +99,7 @@ TEST(Constraints, OnTheGlobeTheyWaitForAnOriginAndFollowIt)
     EXPECT_GE(table.barrels()[0].circle.radius, 50.0F + 1e-3F * 100.0F) << "maps differ by 0.11 %";
 }
 
-/// Whatever is merged: nothing that was told is open, then or later.
+/// After any merge: every reported area stays closed, now and later.
 TEST(Constraints, TooManyAreMergedAndNothingIsLost)
 {
     Random random(11);
@@ -137,7 +137,7 @@ TEST(Constraints, TooManyAreMergedAndNothingIsLost)
     }
 }
 
-/// A copter flies north at 50 m; a cell stands across its way.
+/// A copter flies north at 50 m; a static cell is across its path.
 class CoprocessorConstraints : public ::testing::Test {
 protected:
     void SetUp() override
@@ -207,7 +207,7 @@ TEST_F(CoprocessorConstraints, OnTheGlobeIsPlacedByTheLinksOrigin)
     EXPECT_EQ(f.last.faults, 0U);
 }
 
-/// What is closed and cannot be placed must not count as open.
+/// A closed area that cannot be placed must not count as open.
 TEST(CoprocessorWithoutOrigin, ClosedAreasOnTheGlobeAreAFault)
 {
     const auto flight = std::make_unique<Flight>();

@@ -43,7 +43,7 @@ protected:
         sent += bytes.size();
     }
 
-    /// One tick; what was said goes to `heard`.
+    /// One tick; appends the output to `heard`.
     void step()
     {
         clock.advance(20'000);
@@ -57,7 +57,7 @@ protected:
         ASSERT_LE(endpoint->parser_diagnostics().checksum_bytes, (kMaxFrame - 1) * sent) << "bounded work";
     }
 
-    /// A good frame after whatever was: found, and answered, at once or after the silence that ends a cut frame.
+    /// A good frame after any input is found and answered, at once or after the silence that ends a cut frame.
     void expect_next_good_frame(const std::string& after)
     {
         ParamRequestRead ask;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor with a DroneCAN bus beside its link: whose own state counts, in which frame things are placed, what the
-// bus is told, parameters. Where something was placed shows in the Proximity that goes out.
+// Coprocessor with a DroneCAN bus beside its link: the source of own state, the frame of placed objects, output to the
+// bus, parameters. The sent Proximity shows where an object was placed.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/bus_bench.hpp"
@@ -19,7 +19,7 @@ std::unique_ptr<BusBench> bench(std::initializer_list<std::pair<Param, float>> c
     return std::make_unique<BusBench>(with(changes), tunnel);
 }
 
-/// The only thing that Proximity tells of, level distance north and east of the vehicle; nothing: none, or several.
+/// The only object reported by Proximity, level distance north and east of the vehicle; nothing: none, or several.
 std::optional<float> only_distance(BusBench& b, int ticks = 12)
 {
     b.heard.near.clear();
@@ -208,7 +208,7 @@ TEST(CoprocessorBus, ThereIsOneFrameAndItIsTheAutopilots)
     ASSERT_TRUE(only_distance(*b));
     EXPECT_NEAR(b->heard.near.back().distance, 20.0F - 1.0F - 1.5F, 0.5F) << "radius and three sigmas off";
 
-    // An autopilot appears, whose origin is not known yet: what was told before means nothing, and nothing is placed.
+    // An autopilot appears with an unknown origin: earlier reports are void, and nothing is placed.
     b->f.position = start;
     b->f.velocity = Vec3::Zero();
     b->f.mode = wire::kCopterLoiter;
@@ -277,7 +277,7 @@ TEST(CoprocessorBus, ARestartOfTheAutopilotForgetsItsOrigin)
     int placed = 0;
     const std::uint32_t refused = b->bus.endpoint().diagnostics().no_origin;
     for (int i = 0; i < 48; ++i) {
-        if (i > 5) {  // its clock has been seen to go back
+        if (i > 5) {  // its clock has gone back
             EXPECT_FALSE(b->f.endpoint.has_origin());
             b->give(BusBench::traffic(b->f.position + Vec3(0.0F, 100.0F, 0.0F), Vec3::Zero(), 77), 21);
         }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the co-processor tells its point clouds of itself, and what a reach picture is told.
+// Own state that the co-processor passes to its point clouds, and inputs of a reach range image.
 #include "firmware/app/clouds.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ public:
     void end_scan(std::uint32_t /*points_lost*/) noexcept override {}
 };
 
-/// Notes what it is told.
+/// Records its inputs.
 class NotingClouds final : public Clouds {
 public:
     void give_to(world::ObstacleTable& obstacles) noexcept override { table = &obstacles; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Point clouds through the whole step: from the wire to what is avoided.
+// Point clouds through the whole step: from the wire to the avoided obstacle.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/cloud_bench.hpp"
@@ -34,7 +34,7 @@ TEST(CoprocessorClouds, AWallInTheWayIsAvoided)
 {
     const auto f = quiet_flight();
     std::vector<cloud::RawPoint> wall;
-    // 30 m ahead, 6 m wide and high, a metre to the side so that there is a better one. It stands still.
+    // 30 m ahead, 6 m wide and high, a metre to the side so that one side is better. Static.
     const float stands = f->flight.position.y() + 30.0F;
     bool took_over = false;
     for (int i = 0; i < 1500 && f->flight.position.y() < stands + 30.0F; ++i) {

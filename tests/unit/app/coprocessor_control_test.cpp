@@ -49,7 +49,7 @@ TEST_F(CoprocessorControl, PilotTakesOverAndIsLeftAlone)
         f.obstacles.clear();
         f.position = Vec3(0.0F, f.position.y() + 200.0F, 50.0F);
         f.velocity = Vec3(0.0F, 5.0F, 0.0F);
-        f.fly(400);  // until what was seen has been forgotten
+        f.fly(400);  // until the obstacle is forgotten
     }
     EXPECT_EQ(f.coprocessor.takeover_diagnostics().overruled, 3U);
 }
@@ -58,7 +58,7 @@ TEST_F(CoprocessorControl, DisarmingEndsControl)
 {
     ASSERT_TRUE(f.until(in_control));
     f.armed = false;
-    f.fly(51);  // the next HEARTBEAT says so
+    f.fly(51);  // the next HEARTBEAT reports it
     EXPECT_NE(f.last.control, Control::ours);
     const int setpoints = f.setpoints;
     f.fly(200);

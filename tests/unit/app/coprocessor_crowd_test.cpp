@@ -21,7 +21,7 @@ AdsbVehicle seen_at(std::uint32_t id, const Vec3& where, const Vec3& velocity)
     return m;
 }
 
-/// An intruder that meets the vehicle after `kUntilMet`, at its height: 20 courses, head-on to overtaking.
+/// An intruder that reaches the vehicle after `kUntilMet`, at its height: 20 courses, head-on to overtaking.
 struct Encounter {
     static constexpr float kUntilMet = 12.0F;
     explicit Encounter(int i) : f(std::make_unique<Flight>())
@@ -32,7 +32,7 @@ struct Encounter {
         velocity = 10.0F * Vec3(std::sin(angle), std::cos(angle), 0.0F);
         where = f->position + kUntilMet * (f->velocity - velocity);
     }
-    /// Least distance between the centres. `tell(tick)` sends what is heard in this tick.
+    /// Least distance between the centres. `tell(tick)` sends this tick's reports.
     template <class Tell>
     float fly(const Tell& tell)
     {
@@ -136,7 +136,7 @@ TEST(CoprocessorCrowd, AGeometricAltitudeAboveTheEllipsoidIsStillAvoided)
     EXPECT_EQ(hits, 0) << "of " << flown;
 }
 
-/// What is said to be 60 m above may be at our height; where satellites say so, it is 60 m above.
+/// A reported height of 60 m above may be our height; a geometric (satellite) height is 60 m above.
 TEST(CoprocessorCrowd, HeightsOfSatellitesStillSeparate)
 {
     for (const std::uint8_t type : {std::uint8_t{0}, std::uint8_t{1}}) {

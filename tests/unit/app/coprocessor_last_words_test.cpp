@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is ready for a fault handler to say, what a start tells of the fault before, and staying passive.
+// Text prepared for a fault handler, report of the previous fault after a start, and staying passive.
 #include <memory>
 
 #include <gtest/gtest.h>

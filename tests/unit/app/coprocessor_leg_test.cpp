@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step when the autopilot flies on to a place that cannot be known: nobody is judged on the leg before.
+// Coprocessor::step when the autopilot flies to an unknown place: the previous leg is not used for conflicts.
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -11,11 +11,11 @@ namespace {
 
 class CoprocessorLeg : public ::testing::Test {
 protected:
-    /// Standing still on a leg that leads north, with an obstacle on it.
+    /// Static on a leg to the north, with an obstacle on the leg.
     void SetUp() override
     {
         f.hovers = true;
-        f.obeys = false;  // nobody takes over: the leg alone is looked at
+        f.obeys = false;  // no take-over: the leg alone is checked
         f.velocity = Vec3::Zero();
         ASSERT_TRUE(f.until([](const StepReport& r) { return r.faults == 0; }, 200));
         f.fly(300);

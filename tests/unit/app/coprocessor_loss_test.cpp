@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step when control is lost by a fault of ours: what is said once, what is said until it is heard, and a
-// command that is not a number.
+// Coprocessor::step when control is lost by a fault of ours: reports made once, reports repeated until received, and a
+// non-finite command.
 #include <algorithm>
 #include <limits>
 #include <memory>
@@ -50,7 +50,7 @@ TEST_F(CoprocessorLoss, SaysCriticalOnceAndAsksToHold)
 
 TEST_F(CoprocessorLoss, AsksAgainWhenTheRequestWasNotHeeded)
 {
-    f->obeys = false;  // the frame is lost on its way
+    f->obeys = false;  // the frame is lost in transit
     f->own_state = false;
     ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults != 0; }, 100));
     f->fly(30);

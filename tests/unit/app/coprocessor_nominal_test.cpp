@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step: a way that is blocked for good, and what is said in a conflict.
+// Coprocessor::step: a permanently blocked path, and reports in a conflict.
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ Course east(float speed)
     return {[=](Seconds t) { return Vec3(speed * t, 0.0F, 50.0F); }, [=](Seconds) { return Vec3(speed, 0.0F, 0.0F); }};
 }
 
-/// A mission that leads through a wall, which a scanner sees.
+/// A mission that leads through a wall, which a scanner detects.
 class WayBlocked : public ::testing::Test {
 protected:
     WayBlocked()
@@ -81,7 +81,7 @@ TEST_F(WayBlocked, HandsStayOffInTheHoldAndAPilotsOtherModeIsSaid)
     EXPECT_EQ(other.said("jink: mode changed by others, hands off"), 1);
 }
 
-/// A way that was blocked is over once the pilot chooses the mission: what comes next is given back to the mission.
+/// A blocked path ends once the pilot chooses the mission: the next conflict is given back to the mission.
 TEST_F(WayBlocked, TheNextConflictIsGivenBackToTheMission)
 {
     while (flight->time < 45.0F && flight->mode != link::FlightMode::hold) {
@@ -115,7 +115,7 @@ TEST_F(WayBlocked, NeverWithoutPatience)
     EXPECT_LE(f.said(link::Severity::critical), 1) << "once per conflict";
 }
 
-/// A ground station leads the vehicle away from its mission: the mission's leg says nothing of where it goes.
+/// A ground station leads the vehicle away from its mission: the mission's leg does not predict its motion.
 TEST(NominalPath, IsTheMeasuredMotionInAnExternalModeThatIsNotOurs)
 {
     DirectFlight f(east(5.0F), Parameters{}, 1);
@@ -148,7 +148,7 @@ TEST(NominalPath, IsTheMissionsLegWhileWeLead)
     EXPECT_GT(led, 20);
 }
 
-/// Intruders that come at a standing vehicle: an escape that keeps clear is no reason for a CRITICAL text.
+/// Intruders that approach a static vehicle: an escape that keeps clear gives no CRITICAL text.
 TEST(WhatIsSaid, NothingCriticalOfAnEscapeThatKeepsClear)
 {
     DirectFlight f(east(0.0F), Parameters{}, 1);

@@ -10,7 +10,7 @@
 namespace jink::app::test {
 namespace {
 
-/// 5 m/s towards a point obstacle, told of itself for the last time some ticks ago.
+/// 5 m/s towards a point obstacle, last own-state report some ticks ago.
 TEST(CoprocessorOwnState, IsCarriedForwardToTheStepByItsVelocity)
 {
     const auto f = std::make_unique<Flight>();

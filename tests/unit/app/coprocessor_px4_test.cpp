@@ -21,7 +21,7 @@ std::unique_ptr<Flight> px4_flight(bool standby)
     return f;
 }
 
-/// Time from when an obstacle was seen to when the mode had changed [s].
+/// Time from the detection of an obstacle to the change of mode [s].
 float time_to_control(Flight& f)
 {
     f.obstacles = {f.position + Vec3(0.4F, 25.0F, 0.0F)};
@@ -55,7 +55,7 @@ TEST(CoprocessorPx4, StreamsNothingBeforehandWhereItMayNotAct)
 {
     const auto f = px4_flight(true);
     const auto quiet = [&](const char* why) {
-        f->fly(60);  // the next HEARTBEAT tells
+        f->fly(60);  // the next HEARTBEAT reports it
         const int before = f->setpoints;
         f->fly(100);
         EXPECT_EQ(f->setpoints, before) << why;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step: numbers that are none, parameters, commands, and what the counters count.
+// Coprocessor::step: non-finite values, parameters, commands, and the counters.
 #include <cmath>
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step on a line that is open and takes nothing, or a few bytes: what goes out later must still be true.
+// Coprocessor::step on a line that is open and takes nothing, or a few bytes: delayed output must still be true.
 #include <algorithm>
 #include <memory>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the co-processor says of who flies, of vehicles that it cannot steer and of lines that were lost.
+// The co-processor's reports about control, vehicles that it cannot steer, and lost lines.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/telling_bench.hpp"
@@ -162,7 +162,7 @@ TEST(TellingLine, ThatIsLostIsNotSaidOverWhileItIsLost)
     t->port.state = hal::PortState::lost;
     t->autopilot.mode = link::FlightMode::hold;
     for (int i = 0; i < 50; ++i) {
-        t->beat();  // heard, but nothing goes out
+        t->beat();  // received, but no output passes
         t->step();
         ASSERT_EQ(t->said("jink: line lost"), 0);
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the co-processor says of itself, step by step: its state, faults, notices, last words.
+// The co-processor's reports about itself, step by step: state, faults, notices, last words.
 #include <array>
 
 #include <gtest/gtest.h>
@@ -226,7 +226,7 @@ TEST(TellingNotices, ReachSetsThatDoNotSuitTheVehicleAreSaidEachTimeThatTheyCome
     EXPECT_EQ(t->said("jink: reach sets do not"), 2) << "nobody asks them";
 }
 
-/// Notes how it is told that the application is.
+/// Records the reported application state.
 class NotingBus final : public link::SensorBus {
 public:
     void receive(TimePoint /*now*/, link::Inbox& /*inbox*/) noexcept override {}

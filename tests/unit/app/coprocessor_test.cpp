@@ -42,7 +42,7 @@ void settle(Flight& f)
     ASSERT_EQ(f.setpoints, 0);
 }
 
-/// As `settle`, then an obstacle in the way and control over the vehicle.
+/// As `settle`, then an obstacle on the path and control over the vehicle.
 void take_over(Flight& f)
 {
     ASSERT_NO_FATAL_FAILURE(settle(f));
@@ -285,7 +285,7 @@ TEST(CoprocessorReboot, ForgetsEverythingThatTheOldAutopilotSaidAndRecovers)
     EXPECT_EQ(f->coprocessor.takeover_diagnostics().taken, 2U);
 }
 
-/// The stream has its rate, but what is decided anew does not wait for its turn.
+/// The stream has a fixed rate, but a new decision is sent at once.
 TEST(CoprocessorStream, ANewCommandGoesOutInTheStepThatDecidesIt)
 {
     const auto f = make_flight({{Param::rate, 10.0F}});
@@ -294,7 +294,7 @@ TEST(CoprocessorStream, ANewCommandGoesOutInTheStepThatDecidesIt)
     TimePoint sent_at{};
     int early = 0;
     for (int i = 0; i < 400 && f->last.control == Control::ours; ++i) {
-        if (i == 60) {  // something else in the way, near
+        if (i == 60) {  // another near threat on the path
             f->obstacles.push_back(f->position + f->velocity.normalized() * 9.0F);
         }
         f->fly(1);

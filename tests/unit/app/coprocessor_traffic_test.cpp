@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step and traffic that does not say all of what it does.
+// Coprocessor::step and traffic with incomplete reports.
 #include <memory>
 
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 namespace jink::app::test {
 namespace {
 
-/// Climbs towards the place where the vehicle will be in 7 s, and says how fast or does not. Height below the vehicle
-/// at which the conflict is seen; 0: never.
+/// An aircraft climbs towards the vehicle's position in 7 s, with or without a reported climb rate. Returns the height
+/// below the vehicle at which the conflict is detected; 0: never.
 float seen_below(bool says_climb, float climb)
 {
     constexpr GlobalPosition kOrigin{473977420, 85455940, 488000};
@@ -44,8 +44,8 @@ TEST(CoprocessorTraffic, OfUnknownClimbIsAConflictAsEarlyAsOfKnown)
     }
 }
 
-/// A copter whose autopilot has told a first origin `aside` metres east of where it truly lies. Something stands 40 m
-/// ahead in its way.
+/// A copter whose autopilot has reported a first origin `aside` metres east of the true origin. A static obstacle is 40
+/// m ahead.
 struct MisplacedOrigin {
     explicit MisplacedOrigin(float aside)
     {
@@ -96,7 +96,7 @@ TEST(CoprocessorTraffic, FromBeyondTheMapIsForgottenAndCounted)
 constexpr GlobalPosition kHome{473977420, 85455940, 488000};
 constexpr std::uint8_t kOther = 9;
 
-/// What the vehicle beside us says of itself, on the wire of whoever says it.
+/// The neighbouring vehicle's report about itself, in its sender's format.
 GlobalPositionInt said_by_system(const Vec3& where, std::uint32_t boot_ms)
 {
     const GlobalPosition p = to_global(where, kHome).value();

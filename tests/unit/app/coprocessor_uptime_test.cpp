@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Uptime is no matter: a flight with an avoidance in it goes the same way, tick by tick, wherever the clocks of jink
-// and of the autopilot stand, and across each value at which a narrower count of them would wrap.
+// Invariance to uptime: a flight with an avoidance is the same, tick by tick, for any values of jink's and the
+// autopilot's clocks, and across each value at which a narrower counter would wrap.
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step with vehicles that cannot be steered or do not follow, with sticks that move, and with lines that
-// come back: what is done, and what is said of it once.
+// Coprocessor::step with vehicles that cannot be steered or do not follow, with moved sticks, and with restored lines:
+// actions, and reports made once.
 #include <algorithm>
 #include <memory>
 #include <string>
@@ -81,7 +81,7 @@ TEST_F(CoprocessorVehicle, PlaneIsAdvisedOnly)
     EXPECT_EQ(times("advising only"), 1);
 }
 
-/// A plane of ArduPlane that says that it is no VTOL.
+/// An ArduPlane plane that reports no VTOL.
 Parameters plane_parameters(float fixed_wing)
 {
     Parameters parameters;

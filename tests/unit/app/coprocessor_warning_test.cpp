@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the co-processor says of a conflict: COLLISION reports, their numbers against the conflict itself, and texts.
+// The co-processor's reports of a conflict: COLLISION reports, their values against the conflict itself, and texts.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/telling_bench.hpp"
@@ -158,7 +158,7 @@ TEST(Warnings, AreHighWhenTheLossIsNearerThanTheStopAndASecond)
 struct Actions {
     int report = 0, horizontal = 0, vertical = 0, hover = 0;
 
-    /// Each warning of the last step says what is flown, not what is met.
+    /// Each warning of the last step reports the flown action, not the threat.
     void check(const Teller& t)
     {
         for (const CollisionWarning& w : t.link.warnings) {
@@ -184,7 +184,7 @@ TEST(Warnings, SayWhetherItIsFlownAroundOverOrUnder)
         ASSERT_EQ(parameters.set(Param::rotation_penalty, 0.0F), ParamStatus::ok);
         const auto t = std::make_unique<Teller>(parameters);
         t->fly(60);
-        // A row so wide that over or under it is the shorter way; or a single body.
+        // A row so wide that the path over or under it is shorter; or a single body.
         for (int k = offset != 0.0F ? -6 : 0; k <= (offset != 0.0F ? 6 : 0); ++k) {
             t->put_ahead(50.0F, Vec3::Zero(), Vec3(0.0F, 0.4F + 2.0F * static_cast<float>(k), offset));
         }

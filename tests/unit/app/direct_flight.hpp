@@ -10,8 +10,8 @@
 #include "core/base/random.hpp"
 #include "firmware/app/coprocessor.hpp"
 
-// A closed loop around Coprocessor::step without a wire: a link that hands over what the test says, and an autopilot
-// that flies where it likes while the link may report something else.
+// A closed loop around Coprocessor::step without a wire: a link controlled by the test, and an autopilot whose motion
+// may differ from the link's reports.
 
 namespace jink::app::test {
 
@@ -20,7 +20,7 @@ struct SaidText {
     std::string text;
 };
 
-/// Hands over `next`, and keeps what it is asked to send.
+/// Delivers `next`, and records its output.
 class DirectLink final : public link::Link {
 public:
     void receive(std::span<const std::byte> /*bytes*/, TimePoint /*now*/, link::Inbox& inbox) noexcept override
@@ -86,7 +86,7 @@ public:
     void feed() noexcept override {}
 };
 
-/// Flies straight, known to us by reports of 5 Hz with noise.
+/// Flies straight, reported at 5 Hz with noise.
 struct Intruder {
     Vec3 position = Vec3::Zero();  ///< at time 0
     Vec3 velocity = Vec3::Zero();
@@ -95,7 +95,7 @@ struct Intruder {
     [[nodiscard]] Vec3 at(Seconds t) const { return position + t * velocity; }
 };
 
-/// What the mission really does: where it wants to be `s` seconds of mission time on, and how fast.
+/// The true mission: position and speed at mission time `s` [s].
 struct Course {
     std::function<Vec3(Seconds)> position;
     std::function<Vec3(Seconds)> velocity;
@@ -163,7 +163,7 @@ private:
     {
         Vec3 wanted = Vec3::Zero();
         if (mode == link::FlightMode::mission) {
-            // On from the place of the course that is nearest, looked for ahead and a little behind.
+            // Continues from the nearest place of the course, searched ahead and a little behind.
             Seconds best = mission_time_;
             for (int i = -10; i <= 20; ++i) {
                 const Seconds at = std::max(0.0F, mission_time_ + 0.02F * static_cast<float>(i));
@@ -262,10 +262,10 @@ public:
     bool reports_leg = false;
     world::Leg leg;
     std::vector<Intruder> intruders;
-    float wall_at = 0.0F;  ///< seen by a scanner; 0: none [m]
+    float wall_at = 0.0F;  ///< position of a wall detected by a scanner; 0: none [m]
     StepReport last;
     float nearest = 1e9F;        ///< between the centres, over all intruders [m]
-    std::vector<Seconds> taken;  ///< when control was
+    std::vector<Seconds> taken;  ///< times of take-overs
     std::vector<Seconds> given_back;
 };
 

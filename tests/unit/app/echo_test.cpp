@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a range sensor saw, as solids: every point at the measured range within the beam is covered, nothing reaches
-// much nearer, and nothing holds the vehicle. Distances to the solids are computed here, in double precision.
+// Solids of range returns: every point at the measured range within the beam is covered, no solid extends much nearer,
+// and none contains the vehicle. Distances to the solids are computed here, in double precision.
 #include <algorithm>
 #include <cmath>
 
@@ -251,7 +251,8 @@ TEST_F(RangeSensors, AnUpwardBeamTooWideToBePlacedIsRefusedAndCounted)
     EXPECT_EQ(f.coprocessor.diagnostics().readings, 1U);
 }
 
-/// A scanner of eight sectors: what is 20 m away somewhere in the forward one stands in the way, and nobody is in it.
+/// A scanner of eight sectors: a return at 20 m somewhere in the forward sector is on the path, and no solid contains
+/// the vehicle.
 TEST_F(RangeSensors, WideSectorsOfAScanAreCoveredToTheirEdges)
 {
     f.feed(wire::attitude(f.boot_ms(), 0.5F * kPi));

@@ -21,7 +21,7 @@ using link::mavlink::test::all_of;
 using link::mavlink::test::Received;
 namespace wire = link::mavlink::test;
 
-/// Both directions in fixed memory: whatever allocates within a step, the port does not.
+/// Both directions in fixed memory: the port never allocates within a step.
 class FixedPort final : public hal::SerialPort {
 public:
     std::size_t read(std::span<std::byte> into) noexcept override
@@ -46,7 +46,8 @@ public:
         return health;
     }
 
-    /// False when there is no room: a test that loses its own bytes proves nothing. A lost line loses them by right.
+    /// False when the buffer is full: a test that loses its own bytes proves nothing. A cut line loses them as
+    /// intended.
     [[nodiscard]] bool arrive(std::span<const std::byte> bytes)
     {
         if (state != hal::PortState::open) {
@@ -78,7 +79,7 @@ public:
     int fed = 0;
 };
 
-/// A copter on its way north at 5 m/s, 50 m above the origin: AUTO follows the leg, GUIDED the set-points, BRAKE stops.
+/// A copter flying north at 5 m/s, 50 m above the origin: AUTO follows the leg, GUIDED the set-points, BRAKE stops.
 /// prepare(), step(), react() are one tick of 20 ms.
 class Flight {
 public:
@@ -146,7 +147,7 @@ public:
             requested.push_back(m.param2);
             const auto number = static_cast<std::uint32_t>(m.param2);
             const std::uint32_t asked = px4 ? px4_mode(number, static_cast<std::uint32_t>(m.param3)) : number;
-            // As PX4 documents it: more than a second of set-points, 2 Hz or more.
+            // As documented by PX4: more than a second of set-points, 2 Hz or more.
             const bool seen = now - stream_since_ > 1.0F && now - last_heard_ <= 0.5F;
             const bool granted = obeys && (!px4 || asked != external_mode() || seen);
             mode = granted ? asked : mode;
@@ -223,14 +224,14 @@ public:
     int ticks = 0;
     bool heartbeats = true;
     bool own_state = true;
-    bool obeys = true;             ///< grants the modes it is asked for
+    bool obeys = true;             ///< grants requested modes
     bool acknowledges = false;     ///< answers requests by COMMAND_ACK
     bool px4 = false;              ///< a PX4; set `mode` too
     bool deaf = false;             ///< grants the external mode and flies on as on its mission
-    bool answers_requests = true;  ///< sends a HEARTBEAT when it is asked for
+    bool answers_requests = true;  ///< sends a HEARTBEAT on request
     std::uint8_t mav_type = 2;
     bool armed = true;
-    bool hovers = false;  ///< stands still on its mission
+    bool hovers = false;  ///< hovers on its mission
     bool answers_mission = true;
     std::uint16_t mission_current = 1;
     /// Home, and one waypoint 2 km to the north.
@@ -238,8 +239,8 @@ public:
     std::uint32_t mode = wire::kCopterAuto;
     Vec3 position = Vec3(0.0F, 0.0F, 50.0F);
     Vec3 velocity = Vec3(0.0F, 5.0F, 0.0F);
-    std::vector<Vec3> obstacles;  ///< standing, told as traffic
-    float ring = 0.0F;            ///< a scanner sees this range all around [m]; 0: no scanner
+    std::vector<Vec3> obstacles;  ///< static, reported as traffic
+    float ring = 0.0F;            ///< range of a scanner's returns all around [m]; 0: no scanner
     StepReport last;
     std::vector<Received> said;    ///< in the last tick
     std::vector<float> requested;  ///< modes, in their order

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a HEARTBEAT proves, to the microsecond, and when another one is asked for.
+// Evidence of a HEARTBEAT, to the microsecond, and when another one is requested.
 #include <cmath>
 #include <initializer_list>
 
@@ -18,7 +18,7 @@ TimePoint moment(Seconds time, std::int64_t later_us = 0)
     return {kFirstHeard.us + std::llround(static_cast<double>(time) * 1e6) + later_us};
 }
 
-/// HEARTBEATs of the autopilot's own, this long apart; the last one is heard at moment(sum).
+/// The autopilot's own HEARTBEATs with these intervals; the last is received at moment(sum).
 ModeEvidence heard_in_gaps(std::initializer_list<Seconds> gaps)
 {
     ModeEvidence evidence;

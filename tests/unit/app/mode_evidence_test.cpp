@@ -10,7 +10,7 @@ namespace {
 
 constexpr TimePoint kHeardFrom{1'000'000};
 
-/// HEARTBEATs at 0, 1, .. 4 s that nobody asked for: the period is 1 s.
+/// Unsolicited HEARTBEATs at 0, 1, .. 4 s: the period is 1 s.
 ModeEvidence heard_once_a_second()
 {
     ModeEvidence evidence;

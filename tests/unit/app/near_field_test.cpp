@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is near, against points sampled on the solids and an own search over all things.
+// Near objects, against points sampled on the solids and an independent search over all objects.
 #include <numbers>
 
 #include <Eigen/Geometry>
@@ -45,8 +45,8 @@ TEST(NearField, NoPointOfASolidIsNearerThanTheNearest)
         const Vec3 from = any(random, 30.0F);
         const Vec3 nearest = nearest_point(shape, from);
         const float distance = (nearest - from).norm();
-        // Along the way there nothing of the solid reaches beyond the nearest point, so none is nearer in this
-        // direction; and in any other direction the solid's farthest point towards us is not nearer either.
+        // Along the direction to the nearest point no part of the solid is nearer; in any other direction the solid's
+        // extreme point towards us is not nearer either.
         if (distance > 0.0F) {
             const Vec3 towards = (from - nearest) / distance;
             const float reach = (geometry::support(shape, towards) - from).dot(-towards);
@@ -146,7 +146,7 @@ TEST(NearField, AnglesAgreeWithTheCompassForAnyNose)
         }
         const NearObjects found = find_near(own, {&track, 1}, {}, 0.0F);
         ASSERT_EQ(found.size(), 1U);
-        // Turned by the yaw that is told, clockwise, the nose looks at it.
+        // Turned clockwise by the reported yaw, the nose points at it.
         const double nose = static_cast<double>(own.yaw) - static_cast<double>(found[0].yaw);
         const double level = std::hypot(static_cast<double>(off.x()), static_cast<double>(off.y()));
         ASSERT_NEAR(std::cos(nose), static_cast<double>(off.x()) / level, 1e-4) << i;

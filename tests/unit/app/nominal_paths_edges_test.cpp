@@ -12,7 +12,7 @@ namespace {
 constexpr float kDegree = kPi / 180.0F;
 constexpr Seconds kSixteenth = 0.0625F;  ///< sums of it are exact
 
-/// On a leg to the east, 50 m high; the test says where the vehicle is and how it moves.
+/// On a leg to the east, 50 m high; the test sets the vehicle's position and motion.
 class NominalEdges : public ::testing::Test {
 protected:
     NominalEdges()
@@ -26,7 +26,7 @@ protected:
         own.stamp = now;
         paths.update(own, own, has_leg ? &leg : nullptr, limits, in_control);
     }
-    /// Stays where it is: as seen from a leg that moves along.
+    /// Constant position relative to a leg that moves along.
     void hold(const Vec3& velocity, int ticks, bool in_control = false)
     {
         own.velocity = velocity;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NominalPaths: the speed along the leg, what is kept from a take-over on, and which of both paths is flown.
+// NominalPaths: the speed along the leg, state kept from a take-over on, and which of both paths is flown.
 #include "firmware/app/nominal_paths.hpp"
 
 #include <cmath>

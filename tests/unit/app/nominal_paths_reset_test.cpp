@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NominalPaths: what is forgotten and made anew, and what slow motion or an own state that is shown again leave alone.
+// NominalPaths: reset and rebuilt state, and state unaffected by slow motion or a repeated own state.
 #include "firmware/app/nominal_paths.hpp"
 
 #include <cmath>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NominalPaths: what it expects of a vehicle that turns, stands, leaves its leg, or flies faster than the parameter.
+// NominalPaths: the expected path of a vehicle that turns, is static, leaves its leg, or flies faster than the
+// parameter.
 #include "firmware/app/nominal_paths.hpp"
 
 #include <cmath>
@@ -246,8 +247,8 @@ TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
     EXPECT_LT((paths.primary().route->at(0.0F).position - at).norm(), 0.2F);
 }
 
-/// A turn comes near to itself: its end leads back beside its beginning. From anywhere about it a vehicle that follows
-/// the way comes to the straight part and gets on.
+/// A turn comes near to itself: its end leads back beside its beginning. From anywhere near it a vehicle that follows
+/// the path reaches the straight part and continues.
 TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
 {
     has_leg = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NominalPaths: what is measured of a turn, and the path that is expected of a vehicle that turns.
+// NominalPaths: measurement of a turn, and the expected path of a turning vehicle.
 #include "firmware/app/nominal_paths.hpp"
 
 #include <cmath>

@@ -28,7 +28,7 @@ ParamValues own_with(Param p, float value)
     return values;
 }
 
-/// What a restart brings.
+/// The parameters after a restart.
 ParamValues restarted(hal::FlashRegion& flash, ParamLoad* load = nullptr)
 {
     ParamFlash store(flash);
@@ -260,7 +260,7 @@ TEST(ParamFlash, WhatAnotherProgramLeftInBothSectorsIsErasedAndNoDamage)
     EXPECT_EQ(flash.erases(), 1U);
 }
 
-/// Flash that fails as it is told to.
+/// Flash with configurable faults.
 class FailingFlash final : public hal::FlashRegion {
 public:
     std::uint32_t sector_bytes() const noexcept override { return kSmall; }
@@ -278,8 +278,8 @@ public:
     SmallFlash inner;
     bool programs = true, erases = true;
     bool lies = false;    ///< other words than those asked for
-    bool drops = false;   ///< the same, and says that all is well
-    bool leaves = false;  ///< says erased, and is not
+    bool drops = false;   ///< the same, and reports success
+    bool leaves = false;  ///< reports erased, and is not
 };
 
 TEST(ParamFlash, AFailureIsCountedAndKeepsWhatIsThere)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When parameters are kept: never in the air, never while the autopilot may be in it, and what a restart brings.
+// When parameters are saved: never in the air or while the autopilot may be airborne, and values after a restart.
 #include <algorithm>
 #include <cstring>
 #include <memory>
@@ -201,7 +201,7 @@ TEST(ParamKeeper, AFailureIsNotTriedAgainBeforeItsTime)
     EXPECT_EQ(age_after_restart(flash), 9.0F);
 }
 
-/// What "save" on the bus answers: whether a restart would bring the present values.
+/// Answer to "save" on the bus: whether a restart would restore the present values.
 TEST(ParamKeeper, TheBusIsToldWhetherARestartBringsThePresentValues)
 {
     Store flash;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What JNK_METHODS asks for, what several methods share, and the parameters as a bus is served them.
+// Effect of JNK_METHODS, parameters shared by methods, and the parameters as served on a bus.
 #include <array>
 #include <string>
 
@@ -85,7 +85,7 @@ TEST(ParamMethods, TheReachSetsOnlySuitTheirVehicle)
     EXPECT_FALSE(parameters.configuration().reach_unsuited) << "the default vehicle is theirs";
 }
 
-/// The time that costs 1 is stretched by the source's 1.15 and has to lie above that which costs 0.
+/// The time of cost 1 is stretched by Pinheiro's 1.15 and must be above the time of cost 0.
 TEST(ParamMethods, TimesThatCostNothingAndAllLieApart)
 {
     const auto fit = [](float low, float high) {

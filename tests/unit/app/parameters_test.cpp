@@ -31,7 +31,7 @@ Values initial_with(const Changes& changes)
     return values;
 }
 
-/// What has to change along with a parameter at its limit, so that the set fits together.
+/// Changes required with a parameter at its limit, so that the set is consistent.
 Changes company_of(Param p, float value)
 {
     switch (p) {
@@ -171,10 +171,10 @@ TEST(Parameters, RefusesSetsThatDoNotFitTogether)
         {{Param::weight_passing, 0.3F}, {Param::weight_beyond, 0.3F}},
         {{Param::weight_smoothness, 0.9F}},                 // closeness -0.1
         {{Param::offsets, 3.0F}},                           // odd
-        {{Param::offsets, 64.0F}, {Param::planes, 31.0F}},  // more candidates than there is room for
+        {{Param::offsets, 64.0F}, {Param::planes, 31.0F}},  // more candidates than the capacity
         {{Param::time_low, 8.15F}},                         // 7.0814 * 1.15 = 8.1436
         {{Param::time_high, 1.0F}},                         // 1.15 < 1.2530
-        {{Param::bounds, 3.0F}, {Param::ceiling, 2.0F}},    // no room between floor and ceiling
+        {{Param::bounds, 3.0F}, {Param::ceiling, 2.0F}},    // no space between floor and ceiling
         {{Param::bounds, 3.0F}, {Param::ceiling, 5.99F}},   // 4 half heights are 4 m
         {{Param::bounds, 7.0F}, {Param::half_z, 20.0F}, {Param::ceiling, 81.9F}},
         {{Param::bounds, 3.0F}, {Param::floor, 130.0F}},

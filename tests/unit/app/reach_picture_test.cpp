@@ -106,7 +106,7 @@ TEST(ReachPictures, WithoutAPlaceOrThePitchOfTheRaysThereIsNone)
     }
 }
 
-/// Cells of a set along the course that are free where what is not seen is blocked, after a sweep of such rays.
+/// Free cells of a set along the course, with hidden cells blocked, after a sweep of such rays.
 std::ptrdiff_t free_after(Ray ray)
 {
     Flying f;
@@ -135,7 +135,7 @@ TEST(ReachPictures, RaysThatCameBackFromNowhereSeeAndThoseThatAreNotValidDoNot)
     EXPECT_EQ(free_after(Ray::invalid), 0);
 }
 
-/// The start of a scan, as the picture has it once the scan has ended.
+/// The start of a scan, as stored in the range image after the scan's end.
 const reach::ScanStart& start_of(Flying& f)
 {
     f.look();
@@ -201,7 +201,7 @@ TEST(ReachPictures, EachScanCountsAndOnlyWhatCannotBeUsedIsUnused)
     EXPECT_EQ(f.picture.unused(), 1U);
 }
 
-/// Sets of a narrow grid first, or of a wide one: what is hit near the top of the wide one is known either way.
+/// Sets of a narrow grid first, or of a wide grid: a hit near the top of the wide grid is known in both cases.
 TEST(ReachPictures, GridIsThatOfTheSetsThatReachWidest)
 {
     const auto segments = reach_sets().segments;

@@ -14,8 +14,8 @@
 #include "firmware/app/coprocessor.hpp"
 #include "hal/memory/counting_watchdog.hpp"
 
-// Coprocessor::step without a wire: a link, a bus and a port in the test's hands. What is in `in` arrives with the next
-// step; what the co-processor asks of them is kept.
+// Coprocessor::step without a wire: a link, a bus and a port in the test's hands. The contents of `in` arrive with the
+// next step; the co-processor's output is recorded.
 
 namespace jink::app::test {
 
@@ -92,7 +92,7 @@ struct StepLink final : link::Link {
     const link::LinkDiagnostics& diagnostics() const noexcept override { return counts; }
 
     link::Inbox in;
-    std::vector<link::TrackReport> tracks;  ///< arrive with the next step, behind those of the bus
+    std::vector<link::TrackReport> tracks;  ///< arrive with the next step, after those of the bus
     std::optional<link::GlobalPosition> where;
     std::optional<std::int32_t> above_ellipsoid;  ///< undulation [mm]
     std::vector<std::byte> waiting;
@@ -170,12 +170,12 @@ struct StepPort final : hal::SerialPort {
     }
     hal::PortState state = hal::PortState::open;
     std::size_t arriving = 0;
-    std::size_t room = 1U << 20U;  ///< bytes taken from here on
+    std::size_t room = 1U << 20U;  ///< bytes accepted from now on
     std::size_t most = 1U << 20U;  ///< at once
     int writes = 0;
 };
 
-/// A copter on a mission, 50 m above the origin, northwards at 5 m/s; what it reports is the test's.
+/// A copter on a mission, 50 m above the origin, northwards at 5 m/s; the test sets its reports.
 struct StepBench {
     enum class Bus : std::uint8_t { none, there };
 
@@ -224,7 +224,7 @@ struct StepBench {
         r.has_velocity = true;
         return r;
     }
-    /// What stands, known almost exactly.
+    /// A static obstacle, known almost exactly.
     link::TrackReport& hear_mast(std::uint32_t id, const Vec3& position, float radius = 1.0F)
     {
         link::TrackReport& r = hear_track(id, position);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bounds of the airspace and changed parameters in Coprocessor: what is decided obeys both, from the step on.
+// Bounds of the airspace and changed parameters in Coprocessor: decisions obey both, from the same step on.
 #include <gtest/gtest.h>
 
 #include "core/vehicle/vehicle.hpp"
@@ -19,8 +19,8 @@ Parameters with(const Changes& changes)
     return parameters;
 }
 
-/// What reciprocal avoidance, which decides by velocities alone, commands in front of a mast that stands 15 m ahead
-/// and a little to the side of where it will not go. Zero: nothing, because what it would command is refused.
+/// Command of reciprocal avoidance, which decides by velocities alone, in front of a static mast 15 m ahead and
+/// slightly to the avoided side. Zero: no command, because its command is refused.
 Vec3 command(const Changes& changes, const Vec3& off, const Vec3& home = Vec3::Zero())
 {
     Changes all{{Param::methods, 4.0F}, {Param::k_sigma, 0.0F}, {Param::bounds, 0.0F}};

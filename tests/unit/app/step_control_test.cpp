@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Taking over in Coprocessor::step: who is steered and by what, what waits for the line, what is asked for instead.
+// Taking over in Coprocessor::step: which vehicles are steered and how, output waiting for the line, alternative
+// requests.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/step_flight.hpp"

@@ -225,7 +225,7 @@ TEST(StepDetails, SettingsOfABenchStayUntilTheNextChangeOfAParameter)
     }
 }
 
-/// Until the autopilot follows, a stream says what it does anyway, at its own rate however the vehicle is shaken.
+/// Until the autopilot follows, the stream repeats the present motion at its own rate, also in gusts.
 TEST(StepDetails, AProvingStreamKeepsItsRateInGusts)
 {
     StepBench b({{Param::standby, 1.0F}});
@@ -242,7 +242,7 @@ TEST(StepDetails, AProvingStreamKeepsItsRateInGusts)
     EXPECT_LE(sent, 11) << "2 s at 5 Hz";
 }
 
-/// The cloud that reach sets see: where nothing is seen, they find no way.
+/// The cloud used by reach sets: where directions are hidden, they find no trajectory.
 TEST(StepDetails, ReachSetsPlanByThePictureTheyAreGiven)
 {
     struct Sink final : link::CloudSink {

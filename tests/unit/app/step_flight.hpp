@@ -9,7 +9,7 @@
 
 namespace jink::app::test {
 
-/// Flies, obeys modes and set-points, and sends a HEARTBEAT a second and when asked for one.
+/// Flies, follows modes and set-points, and sends a HEARTBEAT every second and on request.
 struct StepFlight : StepBench {
     using StepBench::StepBench;
 
@@ -70,8 +70,8 @@ struct StepFlight : StepBench {
     static bool ours(const StepReport& r) { return r.control == Control::ours; }
 
     link::FlightMode mode = link::FlightMode::mission;
-    std::optional<Vec3> mast;      ///< stands there
-    std::optional<Vec3> intruder;  ///< is there now
+    std::optional<Vec3> mast;      ///< static at this position
+    std::optional<Vec3> intruder;  ///< present position
     Vec3 intruder_velocity = Vec3::Zero();
     bool fixed_wing = false;
     bool steerable = true;

@@ -72,7 +72,7 @@ TEST(StepFrame, FromTheFirstHeartbeatOnItIsTheAutopilots)
     EXPECT_EQ(b->last.own_source, OwnSource::bus) << "for advice";
     EXPECT_TRUE(b->has(Fault::own_state_missing));
 
-    // Another origin: what the bus knows is placed anew, the tracks stay.
+    // Another origin: the bus's objects are placed again, the tracks stay.
     b->wire.where = kBenchOrigin;
     b->hear_bus_own();
     b->step();
@@ -161,7 +161,7 @@ TEST(StepBusState, AResetOfTheReceiverForgetsPlacesWhereItCounts)
     EXPECT_EQ(b->last.own_source, OwnSource::bus);
 }
 
-/// The limit said in PlacesAgree: 30 m, k_sigma times what both say of their error, and what a second of flight makes.
+/// The limit in PlacesAgree: 30 m, k_sigma times both stated errors, and a second of flight.
 TEST(StepBusState, PlacesThatDifferAreSaidOnceUntilTheyAgree)
 {
     const auto b = bus_bench({{Param::k_sigma, 2.0F}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What Coprocessor::step does where it may not steer: the hold in time; and what was never heard.
+// Coprocessor::step without permission to steer: the hold in time; and inputs never received.
 #include <gtest/gtest.h>
 
 #include "core/vehicle/vehicle.hpp"
@@ -8,7 +8,7 @@
 namespace jink::app::test {
 namespace {
 
-/// Refuses the external mode once it is asked for it; true when that has been said.
+/// Refuses the first request of the external mode; true when the refusal was reported.
 bool refuse(StepFlight& f)
 {
     f.obeys = false;
@@ -57,8 +57,8 @@ TEST(StepHold, TrafficThatStoppingHelpsAgainstIsStoppedForAndOtherIsNot)
     }
 }
 
-/// In front of a closed area stopping is safer, whoever else is known: another aircraft that follows is no threat of
-/// the conflict.
+/// In front of a closed area stopping is safer, with any other traffic: a following aircraft is not part of the
+/// conflict.
 TEST(StepHold, InFrontOfAClosedAreaItStopsWhateverOtherTrafficDoes)
 {
     StepFlight f;
@@ -99,7 +99,7 @@ TEST(StepHold, WhatWasNeverHeardIsNotFreshAtTheStart)
         StepBench b({{Param::k_sigma, 0.0F}, {Param::mode, 1.0F}});
         b.now = {0};
         b.hear_autopilot();
-        b.hear_mast(1, Vec3(0.0F, 0.5F, 0.0F));  // on the place that nobody has told
+        b.hear_mast(1, Vec3(0.0F, 0.5F, 0.0F));  // at an unreported place
         b.step();
         EXPECT_EQ(b.last.own_source, OwnSource::none);
         EXPECT_FALSE(b.last.guidance.conflict.has_value());

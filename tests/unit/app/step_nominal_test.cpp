@@ -37,7 +37,7 @@ TEST(StepNominal, AConflictOnTheLegCountsBesideMotionThatIsClear)
     EXPECT_FALSE(b.last.guidance.on_other);
 }
 
-/// Taken over because of the motion, that is what is flown, and the leg has to be clear too.
+/// After a take-over because of the measured motion, that path is the nominal path, and the leg must be clear too.
 TEST(StepNominal, ThePathThatTheConflictWasOnIsFlown)
 {
     StepFlight f;

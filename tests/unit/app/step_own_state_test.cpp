@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Own state, HEARTBEATs and frames in Coprocessor::step: what is taken, refused, carried forward and forgotten.
+// Own state, HEARTBEATs and frames in Coprocessor::step: accepted, refused, extrapolated and forgotten.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/step_bench.hpp"
@@ -62,7 +62,7 @@ TEST(StepOwnState, OlderThanWhatIsKnownIsRefused)
     EXPECT_EQ(b->counted().own_state_refused, 2U);
 }
 
-/// The own position of `age` ago, flown on to now: 40 m ahead of it stands a mast. Own box and mast take 2 m.
+/// The own position of `age` ago, extrapolated to now: a mast is 40 m ahead of it. Own box and mast take 2 m.
 TEST(StepOwnState, IsFlownOnFromItsStampToNow)
 {
     for (const float age : {0.0F, 0.1F, 0.3F, 0.5F}) {

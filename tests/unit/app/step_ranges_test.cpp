@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Range scans and readings in Coprocessor::step: where their obstacles are, when they go, and what becomes ground.
+// Range scans and readings in Coprocessor::step: positions and expiry of their obstacles, and detection of ground.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -16,7 +16,7 @@ namespace {
 
 using link::RangeScan;
 
-/// Is given the obstacle table and what the co-processor knows of itself.
+/// Receives the obstacle table and the co-processor's own state.
 struct ShownWorld final : Clouds {
     void give_to(world::ObstacleTable& given) noexcept override { table = &given; }
     link::CloudSink& link_points() noexcept override { return sink; }
@@ -217,7 +217,7 @@ TEST_F(StepRanges, ReadingsAreLevelSlantedCeilingOrGroundByTheirSteepness)
     EXPECT_EQ(kind_of(1.0F), "ceiling");
 }
 
-/// Of an upward sensor aboard a vehicle that leans. Every place at the range within the beam may be what it saw.
+/// An upward sensor on a tilted vehicle. The return may come from every place at the range within the beam.
 TEST_F(StepRanges, AnOverheadReadingCoversAllThatItsBeamMayHaveSeen)
 {
     for (const float height : {0.5F, 10.0F}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Reports of traffic in Coprocessor::step: what of a report, and of the parameters, becomes the track.
+// Reports of traffic in Coprocessor::step: how report and parameters become a track.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/step_bench.hpp"
@@ -76,7 +76,7 @@ TEST(StepTraffic, ThatStandsHasASizeOfItsOwnAndNoMotion)
     for (const float radius : {0.0F, 3.0F}) {
         StepBench b(values);
         link::TrackReport r = b.track_report(1, Vec3(100.0F, 0.0F, 50.0F));
-        r.velocity = Vec3(30.0F, 0.0F, 0.0F);  // what it says of that counts for nothing
+        r.velocity = Vec3(30.0F, 0.0F, 0.0F);  // the reported value is ignored
         r.sigma_velocity = 5.0F;
         r.has_velocity = false;
         r.at_rest = true;
@@ -137,7 +137,7 @@ TEST(StepTraffic, AnUncertainHeightIsAsUncertainAsItsSource)
     EXPECT_EQ(half_height(link::HeightSource::compared, 3.0F), 11.0F);
 }
 
-/// The bus does not know the undulation, the link does. What came over the link holds both readings already.
+/// The bus does not know the undulation, the link does. Reports of the link already contain both heights.
 TEST(StepTraffic, OfTheBusHoldsBothReadingsOfAGeometricHeight)
 {
     using link::HeightSource;

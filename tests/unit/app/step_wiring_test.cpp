@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor::step: what was heard reaches whoever decides by it, and what a jump of the frame makes worthless is
-// forgotten everywhere.
+// Coprocessor::step: inputs reach the deciding modules, and data invalidated by a jump of the frame are forgotten
+// everywhere.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/step_flight.hpp"
@@ -166,7 +166,7 @@ int ticks_until_unfollowed(StepFlight& f)
     return ticks;
 }
 
-/// What an earlier take-over missed says nothing of the next one.
+/// A failure of an earlier take-over does not affect the next one.
 TEST(StepWiring, EachTakeOverIsFollowedFromItsOwnBeginning)
 {
     StepFlight alone;

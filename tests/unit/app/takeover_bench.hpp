@@ -67,7 +67,7 @@ inline TakeoverInput input_of(const Step& s)
     return input;
 }
 
-/// A take-over with its clock. As in the application, the newest report stays in the input when none is new.
+/// A take-over with its clock. As in the application, the input keeps the newest report if no new report arrives.
 struct Bench {
     Takeover takeover;
     TimePoint now{1'000'000};
@@ -109,7 +109,7 @@ inline TakeoverOutput with_two(Bench& b, const Step& first, const Step& newest)
 
 using Change = std::function<void(TakeoverInput&)>;
 
-/// A step with an input that the alphabet of Step does not have. The newest report stays where none is new.
+/// A step with an input outside the alphabet of Step. The newest report stays if no new report arrives.
 inline TakeoverOutput varied(Bench& b, const Step& s, const Change& change)
 {
     b.now = b.now + s.dt;

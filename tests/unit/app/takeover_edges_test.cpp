@@ -138,7 +138,7 @@ TEST(TakeoverEdges, RefusalIsAnsweredByAnotherRequestAfterTheStacksOwnPause)
     }
 }
 
-/// A PX4 that refuses: requests count as tries from the moment that its stream is old enough.
+/// A PX4 that refuses: requests count as tries from the instant that its stream is old enough.
 TEST(TakeoverEdges, TriesOfAPx4CountOnceTheStreamIsOldEnough)
 {
     for (const std::int64_t early : {std::int64_t{0}, std::int64_t{1}}) {

@@ -22,7 +22,7 @@ TEST(TakeoverEnds, AcceptedReturnIsNotRepeatedBeforeAHeartbeatContradictsIt)
 {
     Bench b = commanding();
     ASSERT_EQ(b.step(calm(Beat::external)).action, TakeoverAction::request_former);
-    b.step(calm(Beat::external));  // on its way when the request was granted
+    b.step(calm(Beat::external));  // in transit when the request was granted
     Step accepted = calm(Beat::none);
     accepted.accepted = true;
     b.step(accepted);

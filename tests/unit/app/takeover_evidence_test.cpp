@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mode is asked for on fresh evidence alone: what a pilot chose meanwhile is not overridden.
+// A mode is requested on fresh evidence only: a mode that the pilot chose meanwhile is not overridden.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/takeover_bench.hpp"
@@ -132,7 +132,7 @@ TEST(TakeoverEvidence, AcceptedRequestIsNotRepeatedBeforeAHeartbeatContradictsIt
     Bench b = on_mission(link::AutopilotStack::ardupilot);
     b.step(wants(Beat::former));
     EXPECT_EQ(requests_within(b, 0.1F), 1);
-    b.step(wants(Beat::former));  // on its way when the request was granted
+    b.step(wants(Beat::former));  // in transit when the request was granted
     Step accepted = kWant;
     accepted.accepted = true;
     b.step(accepted);
@@ -242,7 +242,7 @@ TEST(TakeoverEvidence, ModeGivenBackIsTheOneOfTheTakeoverNotAnOlderOne)
     Bench b = on_mission(link::AutopilotStack::ardupilot);
     b.step(wants(Beat::former));
     EXPECT_EQ(b.takeover.former_mode(), kMission);
-    // Another mission-like mode before the request: somebody chose it.
+    // Another mission-like mode before the request: chosen by another party.
     TakeoverInput other = input_of(wants(Beat::former));
     other.report.custom_mode = 33;
     b.now = b.now + 0.02F;

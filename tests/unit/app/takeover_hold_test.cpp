@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What follows a loss of control (the hold mode, asked for until it is seen), and PX4's wish to see the stream first.
+// Behaviour after a loss of control (the hold mode, requested until confirmed), and PX4's requirement of a prior
+// stream.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/takeover_bench.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the take-over remembers of a former request, loss or flight, and what it has to see anew.
+// The take-over's memory of an earlier request, loss or flight, and evidence that it needs again.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/takeover_bench.hpp"
@@ -66,7 +66,7 @@ TEST(TakeoverMemory, ExternalModeIsTakenUpAgainOnFreshEvidenceAlone)
 {
     Bench b = commanding();
     b.step(fault(Beat::external));
-    b.step(fault(Beat::external));  // seen since the loss
+    b.step(fault(Beat::external));  // observed since the loss
     b.step(fault(Beat::none, 2.0F));
     for (int i = 0; i < 20; ++i) {
         const TakeoverOutput out = b.step(wants(Beat::none, 0.1F));

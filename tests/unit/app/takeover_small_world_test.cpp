@@ -12,10 +12,10 @@ namespace {
 
 using namespace test;
 
-/// What must hold whatever happens, kept by a witness that sees inputs and outputs only.
+/// Invariants for every sequence, checked by a witness that observes inputs and outputs only.
 struct Witness {
     bool hands_off = false;  ///< overruled in this conflict
-    bool due = false;        ///< the external mode, once seen, is ours to fly
+    bool due = false;        ///< the external mode, once observed, is under our control
     bool flown = false;      ///< and was confirmed
     int requests = 0;        ///< in this conflict, since last in control
     int most_requests = Takeover::kTries;
@@ -24,7 +24,7 @@ struct Witness {
     bool seen_external = false;  ///< as the newest report
     bool was_seen = false;       ///< a stream of either kind
 
-    /// Empty, or what is broken.
+    /// Empty, or the broken invariant.
     std::string watch(const Bench& before, const Bench& after, const Step& s, const TakeoverOutput& out)
     {
         const Control control = after.control();
@@ -101,7 +101,7 @@ struct Witness {
             (s.beat == Beat::former && (unanswered || flown))) {
             due = false;
         }
-        // Seen under a fault, and over again: somebody else has ended it.
+        // Observed under a fault, and ended again: another party has ended it.
         flown = (flown || after.takeover.in_control() || s.beat == Beat::external) && due;
         if (out.action == TakeoverAction::request_external) {
             due = true;
@@ -143,7 +143,7 @@ struct Search {
         return true;
     }
 
-    /// Walks a given way first, under the same rules.
+    /// First executes a given sequence, under the same rules.
     bool explore_after(const std::vector<Step>& way, int depth, const Bench& first = {}, const Witness& watch = {})
     {
         Bench bench = first;

@@ -241,7 +241,7 @@ TEST(Takeover, FaultInControlIsLost)
         EXPECT_EQ(b.control(), Control::autopilot);
         EXPECT_EQ(b.takeover.diagnostics().lost_by_fault, 1U);
         EXPECT_EQ(b.step(fault(Beat::external)).event, TakeoverEvent::none);
-        EXPECT_EQ(b.step(kWant).event, TakeoverEvent::took_over);  // nobody changed the mode since
+        EXPECT_EQ(b.step(kWant).event, TakeoverEvent::took_over);  // the mode has not changed since
     }
 }
 

@@ -13,11 +13,11 @@
 
 #include "firmware/app/coprocessor.hpp"
 
-// A co-processor whose link keeps what it is asked to send, step by step, and whose autopilot does what the test says.
+// A co-processor with a link that records its output, step by step, and an autopilot controlled by the test.
 
 namespace jink::app::test {
 
-/// Hands over `next`; keeps what it is asked to send until `forget()`.
+/// Delivers `next`; records its output until `forget()`.
 class RecordingLink final : public link::Link {
 public:
     struct Said {
@@ -192,7 +192,7 @@ public:
         return std::any_of(texts.begin(), texts.end(),
                            [&](const RecordingLink::Said& t) { return t.severity == severity && t.text == text; });
     }
-    /// Something that stands `ahead` metres in front of the vehicle, known as traffic.
+    /// A static threat `ahead` metres in front of the vehicle, reported as traffic.
     void put_ahead(float ahead, const Vec3& velocity = Vec3::Zero(), const Vec3& aside = Vec3::Zero())
     {
         link::TrackReport r;
@@ -213,10 +213,10 @@ public:
     vehicle::VehicleState own;
     link::AutopilotReport autopilot;
     bool heartbeats = true;
-    bool answers = true;  ///< sends a HEARTBEAT when it is asked for
+    bool answers = true;  ///< sends a HEARTBEAT on request
     bool own_state = true;
     bool has_yaw = true;
-    bool grants = true;   ///< the modes it is asked for
+    bool grants = true;   ///< grants requested modes
     bool follows = true;  ///< in the external mode flies as commanded
     bool flies_freely = true;
     std::vector<link::TrackReport> traffic;
@@ -274,7 +274,7 @@ inline std::unique_ptr<Teller> teller(std::initializer_list<std::pair<Param, flo
     return std::make_unique<Teller>(parameters);
 }
 
-/// Something in the way, and control.
+/// A threat on the leg, and control.
 inline std::unique_ptr<Teller> in_command(std::initializer_list<std::pair<Param, float>> values = {})
 {
     auto t = teller(values);

@@ -26,7 +26,7 @@ TEST(WingCourse, LeavesCommandsThatAreNoReversalAsTheyAre)
     EXPECT_EQ(wing_course(Vec3(-5, 0, 0), Vec3::Zero(), Vec3::Zero()), Vec3(-5, 0, 0)) << "no own course";
 }
 
-// The sides changed from tick to tick, and the plane flew straight on until it was said not to follow.
+// Regression: the side changed from tick to tick, and the plane flew straight on until reported as not following.
 TEST(WingCourse, AReversalKeepsTheSideThatItBeganWith)
 {
     Vec3 own(18, 0, 0);

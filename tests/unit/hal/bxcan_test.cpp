@@ -38,7 +38,7 @@ struct Model {
     std::deque<std::array<std::uint32_t, 4>> fifo;
     bool overrun = false, error_interrupt = false, stuck = false, woken = false;
     std::vector<WireFrame> line;
-    std::function<void()> after_look;  ///< an interrupt right behind a look at the errors, once
+    std::function<void()> after_look;  ///< an interrupt right after a check of the errors, once
 
     std::uint32_t read(std::uint32_t offset)
     {
@@ -294,10 +294,10 @@ TEST_F(BxCanTest, OverrunsOfFifoAndRingAreCounted)
     start();
     Random random(3);
     for (int i = 0; i < 5; ++i) {
-        model.arrive(random_frame(random));  // three deep, and nobody serves it
+        model.arrive(random_frame(random));  // three deep, and not served
     }
     serve();
-    EXPECT_EQ(can.health().overruns, 1U);  // the hardware tells that, not how often
+    EXPECT_EQ(can.health().overruns, 1U);  // the hardware reports an overrun, not the number
     for (std::size_t i = 0; i < 40; ++i) {
         model.arrive(random_frame(random));
         serve();
@@ -318,7 +318,7 @@ TEST_F(BxCanTest, ErrorsBusOffAndTheReturnAreSeenAndCountedOnce)
     can.service();
     EXPECT_EQ(can.health().state, CanState::error_passive);
     model.errors = 0;
-    can.service();  // no interrupt tells of that
+    can.service();  // no interrupt reports this
     EXPECT_EQ(can.health().state, CanState::active);
     model.errors = 2U;
     can.on_status();

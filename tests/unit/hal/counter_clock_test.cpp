@@ -34,7 +34,7 @@ TEST(CounterClock, CountsSlowTicksWhole)
     EXPECT_EQ(clock.now_us(), 3000);
 }
 
-/// Clock control that comes up as far as it is told to.
+/// Clock control that starts as far as configured.
 struct RccModel {
     std::uint32_t control = 0x83, pll = 0x24003010, configuration = 0, flash = 0;
     bool has_crystal = true, has_pll = true, switches = true;
@@ -75,7 +75,7 @@ struct ByFlash {
     void write(std::uint32_t, std::uint32_t value) const { m->flash = value; }
 };
 
-/// What the PLL makes of its input, by the manual's formula (RM0090, 7.3.2).
+/// Output of the PLL by the manual's formula (RM0090, 7.3.2).
 double pll_output(const RccModel& m)
 {
     const double input = (m.pll & (1U << 22U)) != 0 ? 8e6 : 16e6;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The flash driver of the STM32F4 against a model of the controller, written from the manual (ST RM0090, 3.5 to 3.9),
-// and the flash in memory that stands for it on hosts.
+// and the flash in memory that replaces it on hosts.
 #include "hal/stm32f4/flash.hpp"
 
 #include <map>
@@ -33,7 +33,7 @@ struct ControllerModel {
     bool refuses_keys = false;  ///< locked until the next reset, as after a wrong sequence
     bool is_protected = false;  ///< write protection of both sectors
     bool absent = false;        ///< an emulator's: reads as zero, takes anything
-    bool bus_stalled = false;   ///< touched while busy
+    bool bus_stalled = false;   ///< accessed while busy
     bool faulted = false;       ///< bus fault
 
     std::uint32_t read(std::uint32_t offset)

@@ -9,8 +9,8 @@
 
 namespace jink::hal::test {
 
-/// While one lives, every ioctl() of this program goes through it first: drivers that no test machine has.
-/// The hook answers with ioctl's result (errno set where -1), or with nothing to let the kernel answer.
+/// While a hook exists, every ioctl() of this program passes through it first: simulates drivers that test machines
+/// lack. The hook answers with ioctl's result (errno set where -1), or with nothing to let the kernel answer.
 class IoctlHook {
 public:
     using Answer = std::function<std::optional<int>(int descriptor, unsigned long request, void* argument)>;
@@ -21,7 +21,7 @@ public:
     IoctlHook& operator=(const IoctlHook&) = delete;
 };
 
-/// The same for write(): what no machine's device answers on demand.
+/// The same for write(): answers that real devices do not give on demand.
 class WriteHook {
 public:
     using Answer = std::function<std::optional<ssize_t>(int descriptor, const void* data, std::size_t size)>;
@@ -32,7 +32,7 @@ public:
     WriteHook& operator=(const WriteHook&) = delete;
 };
 
-/// What the kernel says, hook or not.
+/// The kernel's answer, bypassing the hook.
 int kernel_ioctl(int descriptor, unsigned long request, void* argument);
 
 }  // namespace jink::hal::test

@@ -72,7 +72,7 @@ TEST(WriteHook, AnswersInTheKernelsPlaceWhileItLives)
 
 }  // namespace jink::hal::test
 
-// Stand in front of the C library's functions for everything that is linked into this program.
+// Replace the C library's functions for everything linked into this program.
 extern "C" int ioctl(int descriptor, unsigned long request, ...) noexcept
 {
     va_list arguments;

@@ -35,7 +35,7 @@ Bytes valid(const LastWords& words)
 TEST(LastWords, NothingIsValidBeforeAnythingWasPublished)
 {
     LastWords words;
-    std::memset(static_cast<void*>(&words), 0xA5, sizeof words);  // what memory holds at power-on
+    std::memset(static_cast<void*>(&words), 0xA5, sizeof words);  // memory contents at power-on
     EXPECT_TRUE(words.valid().empty());
     words.clear();
     EXPECT_TRUE(words.valid().empty());
@@ -52,7 +52,7 @@ TEST(LastWords, TheNewestCountAndAHalfWrittenDraftDoesNot)
         std::copy(half.begin(), half.end(), words.draft().begin());
         EXPECT_EQ(valid(words), bytes_of(i % 2 == 0 ? "even" : "odd words"));
     }
-    words.publish(LastWords::kMost + 1);  // what cannot be: the older ones stand
+    words.publish(LastWords::kMost + 1);  // invalid size: the older words stay
     EXPECT_EQ(valid(words), bytes_of("even"));
 }
 
@@ -68,7 +68,7 @@ TEST(LastWords, NoChangeOfAByteGoesUnnoticed)
         }
         put(words, said);
         ASSERT_EQ(valid(words), said);
-        // Every byte of the object that the words depend on: flip one, and what is valid is the words or nothing.
+        // Every byte of the object that the words depend on: after a flip the result is the words or nothing.
         auto* raw = reinterpret_cast<unsigned char*>(&words);
         unsigned refused = 0;
         for (std::size_t i = 0; i < sizeof words; ++i) {
@@ -85,7 +85,7 @@ TEST(LastWords, NoChangeOfAByteGoesUnnoticed)
     }
 }
 
-/// A UART that takes a byte at every other look, and stops for good after `room` bytes.
+/// A UART that takes a byte at every other poll, and stops for good after `room` bytes.
 struct Line {
     Bytes* sent;
     std::size_t room = 1U << 20U;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bus in memory has to be what tests take it for: arbitration, time on the wire, losses that are counted.
+// The bus in memory must behave as tests assume: arbitration, time on the wire, counted losses.
 #include <gtest/gtest.h>
 
 #include "hal/memory/manual_clock.hpp"

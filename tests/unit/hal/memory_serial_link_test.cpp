@@ -26,7 +26,7 @@ std::vector<std::byte> random_bytes(std::size_t size, std::mt19937& random)
     return bytes;
 }
 
-/// 0, 1, 2, ... so that the order of what arrives shows.
+/// 0, 1, 2, ... so that the order of arrival is visible.
 std::vector<std::byte> counting_bytes(std::size_t size)
 {
     std::vector<std::byte> bytes(size);
@@ -62,8 +62,8 @@ TEST(MemorySerialLink, StartsOpenAndEmpty)
     }
 }
 
-// Law: without faults each end reads exactly what the other wrote, in order, however both cut it into pieces, and never
-// more than the capacity is under way. The oracle is a queue.
+// Law: without faults each end reads exactly what the other wrote, in order, for any division into pieces, and never
+// more than the capacity is in transit. The oracle is a queue.
 TEST(MemorySerialLink, IsAQueueInEachDirection)
 {
     for (std::uint32_t seed = 1; seed <= 50; ++seed) {
@@ -306,7 +306,7 @@ TEST(MemorySerialLink, ADisconnectLosesWhatIsUnderWayOnBothEnds)
     expect_sum(link.b_to_a().counters());
 }
 
-/// Random faults, cuts, reads and writes; what the reader got.
+/// Random faults, cuts, reads and writes; returns the received bytes.
 std::vector<std::byte> run_with_all_faults(std::uint32_t seed)
 {
     std::mt19937 random(seed);
@@ -348,7 +348,7 @@ std::vector<std::byte> run_with_all_faults(std::uint32_t seed)
     return received;
 }
 
-// Law: whatever happens, every byte taken is accounted for, and the same seed gives the same bytes.
+// Law: every accepted byte is accounted for in all cases, and the same seed gives the same bytes.
 TEST(MemorySerialLink, AccountsForEveryByteUnderAllFaultsAtOnce)
 {
     for (std::uint32_t seed = 1; seed <= 50; ++seed) {

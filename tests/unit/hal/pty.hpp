@@ -62,7 +62,7 @@ private:
     std::string path_;
 };
 
-/// Folder of its own that goes away with its content.
+/// Temporary folder that is removed with its contents.
 class TemporaryFolder {
 public:
     TemporaryFolder()
@@ -109,7 +109,7 @@ private:
     int kept_;
 };
 
-/// Gives root's rights up while it lives, so that permissions count; nothing for other users.
+/// Drops root's rights while it exists, so that permissions apply; no effect for other users.
 class AsNobody {
 public:
     AsNobody() : me_(::geteuid())

@@ -23,7 +23,7 @@
 
 namespace jink::hal::test {
 
-/// What the faked kernel answers to the port, and what the port has asked of it. An error of 0 is success.
+/// The faked kernel's answers to the port, and the port's requests. An error of 0 is success.
 struct FakeCan {
     int bus_end = -1;  ///< set when the port opens its socket
     int socket_error = 0;
@@ -46,7 +46,7 @@ struct FakeCan {
     bool counts_drops = false;
     std::optional<int> receive_buffer;
 };
-/// Faked while it points somewhere. Its functions stand in socket_can_port_test.cpp.
+/// The kernel is faked while this is not null. Its functions are in socket_can_port_test.cpp.
 extern FakeCan* fake_can;
 
 class SocketCan : public testing::Test {
@@ -86,7 +86,7 @@ protected:
         }
         if (missing_error != 0 || request == unanswered) {
             errno = missing_error != 0 ? missing_error : EINVAL;
-            return -1;  // whatever stands in the answer
+            return -1;  // independent of the answer's contents
         }
         return 0;
     }};
@@ -100,7 +100,7 @@ protected:
         options.fd = true;
         ASSERT_EQ(port.open("can0", options, kRetry), CanOpenStatus::ok);
     }
-    /// Something from the controller.
+    /// An error message of the controller.
     void put_error(std::uint32_t id, std::uint8_t controller = 0) const
     {
         can_frame raw{};
@@ -109,7 +109,7 @@ protected:
         raw.data[1] = controller;
         put(&raw, CAN_MTU);
     }
-    /// The same, worked off by the port.
+    /// The same, processed by the port.
     void error_frame(std::uint32_t id, std::uint8_t controller = 0)
     {
         put_error(id, controller);

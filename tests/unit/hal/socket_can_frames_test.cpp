@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames and error frames of the SocketCAN port: what passes, what is refused, what is counted.
+// Frames and error frames of the SocketCAN port: accepted, refused, counted.
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -245,7 +245,7 @@ TEST_F(SocketCan, DropsAreCountedExactlyAcrossTheWrap)
     EXPECT_EQ(receive_with(5), 5U);
     EXPECT_EQ(receive_with(0xFFFFFFFFU), 0xFFFFFFFFULL);
     EXPECT_EQ(receive_with(2), 0x100000002ULL);
-    // Ancillary data of another sort says nothing of drops.
+    // Other ancillary data contains no drop counter.
     for (const auto& [level, type] : {std::pair(SOL_SOCKET, SO_TIMESTAMP), std::pair(SOL_CAN_RAW, SO_RXQ_OVFL)}) {
         kernel.ancillary = {{level, type, 77}};
         put(&raw, CAN_MTU);

@@ -102,7 +102,7 @@ TEST_F(SocketCan, AnInterfaceThatGoesAndComesIsFollowed)
 }  // namespace
 }  // namespace jink::hal::test
 
-// Stand in front of the C library's functions for everything that is linked into this program.
+// Replace the C library's functions for everything linked into this program.
 extern "C" int socket(int domain, int type, int protocol) noexcept
 {
     jink::hal::test::FakeCan* const fake = jink::hal::test::fake_can;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Why a serial device does not open, and what drivers do that no test machine has.
+// Why a serial device does not open, and behaviour of drivers that test machines lack.
 #include <array>
 #include <cerrno>
 #include <filesystem>
@@ -286,7 +286,7 @@ TEST(TermiosSerialPort, TellsWhatTheDriverStillHolds)
     EXPECT_EQ(port.unsent(), 17U);
     held = -1;
     EXPECT_EQ(port.unsent(), 0U);
-    held.reset();  // the driver does not tell
+    held.reset();  // the driver does not report
     EXPECT_EQ(port.unsent(), 0U);
     held = 17;
     port.close();

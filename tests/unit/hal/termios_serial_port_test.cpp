@@ -143,7 +143,7 @@ TEST(TermiosSerialPort, ChangesNoByteValue)
     EXPECT_EQ(read_all(peer, all.size()), all);
     ASSERT_EQ(peer.write(all.data(), all.size()), all.size());
     EXPECT_EQ(read_all(port, all.size()), all);
-    // No echo: what the peer sent did not come back to it.
+    // No echo: the peer's bytes are not returned.
     EXPECT_TRUE(peer.read(1, 0).empty());
 }
 
@@ -253,7 +253,7 @@ TEST(TermiosSerialPort, ServiceNoticesAHangUp)
     EXPECT_EQ(port.health().disconnects, 1U);
 }
 
-// The descriptor is pulled away under the port: the one way to make read() itself fail without a broken driver.
+// The descriptor is closed under the port: the only method to make read() fail without a broken driver.
 TEST(TermiosSerialPort, ReadErrorsAreCountedAndLoseThePort)
 {
     const Pty peer;

@@ -30,9 +30,9 @@ struct CmsdkModel {
     std::uint32_t state = 0, control = 0, interrupts = 0, divider = 0;
     std::uint8_t received = 0;
     std::deque<std::byte> shifting;  ///< one byte at most
-    Bytes line;                      ///< what has left
+    Bytes line;                      ///< sent bytes
     bool woken = false;
-    bool free_running = false;  ///< a byte leaves at each look at the state
+    bool free_running = false;  ///< a byte is sent at each read of the state
 
     std::uint32_t read(std::uint32_t offset)
     {
@@ -101,7 +101,7 @@ struct UsartModel {
     std::deque<std::byte> shifting;
     Bytes line;
     bool woken = false;
-    bool free_running = false;  ///< a byte leaves at each look at the status
+    bool free_running = false;  ///< a byte is sent at each read of the status
 
     std::uint32_t read(std::uint32_t offset)
     {

@@ -85,7 +85,8 @@ TEST(CloudFrame, ChecksumsAreThoseOfAnotherImplementation)
 TEST(CloudFrame, EveryFlippedBitIsSeen)
 {
     const Bytes frame = from_hex(kGolden);
-    for (std::size_t bit = 16; bit < 8 * frame.size(); ++bit) {  // the start bytes are not covered: they are looked for
+    for (std::size_t bit = 16; bit < 8 * frame.size(); ++bit) {  // the checksum does not cover the start bytes: they
+                                                                 // are searched
         Bytes flipped = frame;
         flipped[bit / 8] ^= static_cast<std::byte>(1U << bit % 8);
         EXPECT_FALSE(read_header(flipped) && checksum_holds(flipped)) << "bit " << bit;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The receiver of compact frames: scans whole and in pieces, every cause of refusal, what is lost.
+// The receiver of compact frames: scans whole and in pieces, every cause of refusal, losses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -95,7 +95,7 @@ TEST_F(CloudReceiver, CutFrameCostsNoOther)
 
 TEST_F(CloudReceiver, SilentLineGivesUpACutFrame)
 {
-    // A frame inside of what a cut one claims.
+    // A frame inside the length claimed by a cut frame.
     Bytes bytes = frames(120)[0];
     bytes.resize(100);
     const Bytes inside = frames(20)[0];
@@ -131,7 +131,7 @@ TEST_F(CloudReceiver, GoodFramesInGarbage)
 
 TEST_F(CloudReceiver, WorkPerByteIsBounded)
 {
-    // Headers that hold, each claiming the longest frame: what a search can be made to do at worst.
+    // Valid headers, each claiming the longest frame: worst case of the search.
     Part part = driver.first;
     part.scan_points = kMaxPoints;
     Bytes header = frame_of(part, std::vector<RawPoint>(kMaxPoints));
@@ -187,7 +187,7 @@ TEST_F(CloudReceiver, SendersClockThatRestartsIsFollowed)
         hear(driver.scan(row(300), 500 + 100 * i));  // several frames, one sample of the clock
         taken += sink.scans.size() > before ? 1 : 0;
     }
-    EXPECT_EQ(taken, 8);  // the third in a row is believed
+    EXPECT_EQ(taken, 8);  // the third consecutive one is accepted
     EXPECT_EQ(count().clock_relocks, 1U);
     EXPECT_EQ(count().restarts, 1U);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The receiver of compact frames: scans whole and in pieces, every cause of refusal, what is lost.
+// The receiver of compact frames: scans whole and in pieces, every cause of refusal, losses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ TEST_F(CloudReceiver, AzimuthIsToTheLeftAndElevationUp)
 
 TEST_F(CloudReceiver, RollAndPitchMakeItLevel)
 {
-    // Nose up by 0.3 rad: what the platform sees ahead lies above. Right side down: what it sees to the left, above.
+    // Nose up by 0.3 rad: points ahead of the platform are above. Right side down: points to the left are above.
     driver.first.pitch = 3000;
     hear(driver.scan(std::vector<RawPoint>{{0, 0, 1000}}, sender_ms()));
     EXPECT_NEAR((sink.scans.at(0).rays[0].second - Vec3(9.5534F, 0, 2.9552F)).norm(), 0.0F, 1e-3F);
@@ -63,7 +63,7 @@ TEST_F(CloudReceiver, RollAndPitchMakeItLevel)
     driver.first.roll = 3000;
     hear(driver.scan(std::vector<RawPoint>{{15708, 0, 1000}}, sender_ms()));
     EXPECT_NEAR((sink.scans.at(1).rays[0].second - Vec3(0, 9.5534F, 2.9552F)).norm(), 0.0F, 1e-3F);
-    // Both: the pitch is about the level axis, so what is to the left keeps its height.
+    // Both: the pitch is about the level axis, so points to the left keep their height.
     driver.first.pitch = 3000;
     hear(driver.scan(std::vector<RawPoint>{{15708, 0, 1000}}, sender_ms()));
     EXPECT_NEAR(sink.scans.at(2).rays[0].second.z(), 10.0F * std::sin(0.3F) * std::cos(0.3F), 1e-3F);
@@ -198,7 +198,7 @@ TEST_F(CloudReceiver, InconsistentPartsAreRefused)
     hear(with([](Part& p) { ++p.ray_pitch_level; }));
     hear(with([](Part& p) { ++p.ray_pitch_vertical; }));
     EXPECT_EQ(count().inconsistent, 8U);
-    // More points than the scan was said to have.
+    // More points than the scan's stated number.
     hear(all[1]);
     part.part = 2;
     hear(frame_of(part, std::vector<RawPoint>(11)));

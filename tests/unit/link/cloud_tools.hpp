@@ -10,13 +10,13 @@
 #include "firmware/link/cloud/frame.hpp"
 #include "firmware/link/cloud/receiver.hpp"
 
-// The driver's side of a cloud line for tests, and a sink that remembers.
+// The driver's side of a cloud line for tests, and a recording sink.
 
 namespace jink::link::cloud::test {
 
 using Bytes = std::vector<std::byte>;
 
-/// Everything that was handed on, in its order.
+/// Records all calls in order.
 struct Recorder final : CloudSink {
     struct Scan {
         CloudScan scan;
@@ -53,10 +53,10 @@ struct Recorder final : CloudSink {
         return n;
     }
     std::vector<Scan> scans;
-    bool broken = false;  ///< calls came out of their order
+    bool broken = false;  ///< calls came out of order
 };
 
-/// Counts alone: for clouds that nobody wants to remember.
+/// Counts only.
 struct Counter final : CloudSink {
     void begin_scan(const CloudScan& /*scan*/) noexcept override { ++begun; }
     void add(Ray /*ray*/, const Vec3& /*point*/) noexcept override { ++points; }

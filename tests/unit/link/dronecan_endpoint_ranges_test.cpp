@@ -160,7 +160,7 @@ TEST_F(DronecanEndpoint, EachDirectionOfEachSensorHasItsOwnNumber)
     now = now + 0.01F;
     const std::uint8_t first = number(0.0F, 20);
     now = now + 0.01F;
-    const std::uint8_t evicting = number(0.0F, 22);  // one more: one not heard for longest gives way
+    const std::uint8_t evicting = number(0.0F, 22);  // one more: the sensor with the oldest report is replaced
     EXPECT_NE(evicting, first);
     EXPECT_EQ(used[evicting], 1);
     EXPECT_EQ(endpoint.beams_evicted(), 1U);

@@ -53,7 +53,7 @@ TEST_F(DronecanEndpoint, CovariancesOfEachForm)
     Fix2 m = fix();
     m.covariance.resize(6);
     std::fill(m.covariance.begin(), m.covariance.end(), 4.0F);
-    m.covariance[1] = 0.0F;  // the others stand
+    m.covariance[1] = 0.0F;  // the others are unchanged
     give(m);
     EXPECT_EQ(inbox.bus_state.state.sigma_position, 2.0F);
     m.covariance[1] = -1.0F;
@@ -171,7 +171,7 @@ TEST_F(DronecanEndpoint, Traffic)
     EXPECT_EQ(inbox.tracks[1].velocity.z(), 0.0F);
     EXPECT_GE(inbox.tracks[1].sigma_velocity, 5.0F) << "it may climb";
     m.velocity_valid = false;
-    m.velocity[0] = kNan;  // not said: no fault
+    m.velocity[0] = kNan;  // not reported: no fault
     give(m);
     EXPECT_FALSE(inbox.tracks[2].has_velocity);
     m.traffic_type = TrafficReport::kPointObstacle;

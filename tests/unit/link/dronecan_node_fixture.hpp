@@ -22,7 +22,7 @@ inline ParamName param_name(std::string_view text)
     return name;
 }
 
-/// Two parameters, one of them whole; refuses what is out of range, as the application does.
+/// Two parameters, one an integer; refuses values out of range, as the application does.
 class Params final : public ParamServer {
 public:
     bool read(std::uint16_t index, ParamEntry& entry) const noexcept override
@@ -64,7 +64,7 @@ public:
 
 class DronecanNode : public testing::Test {
 protected:
-    /// Everything that the node has queued, put together by a receiver of its own; payloads by type and kind.
+    /// All queued output of the node, assembled by a separate receiver; payloads by type and kind.
     struct Heard {
         TypeInfo type;
         std::uint8_t source, transfer, priority;

@@ -51,9 +51,9 @@ TEST_F(DronecanTime, AGapOrAFirstMessageIsNoPair)
     sync(node, 5, 2, second);
     EXPECT_EQ(node.time().diagnostics().updates, 1U);
     now = now + 0.5F;
-    sync(node, 5, 3, 0);  // says that there was none
+    sync(node, 5, 3, 0);  // states that there was none
     EXPECT_EQ(node.time().diagnostics().not_a_pair, 3U);
-    EXPECT_EQ(node.time().to_local(master_time(), now)->us, now.us);  // the last one stands
+    EXPECT_EQ(node.time().to_local(master_time(), now)->us, now.us);  // the last one stays valid
 }
 
 TEST_F(DronecanTime, TheLowestMasterIsFollowed)
@@ -69,7 +69,7 @@ TEST_F(DronecanTime, TheLowestMasterIsFollowed)
     sync(node, 3, 0, 0);
     EXPECT_EQ(node.time().master(now), 3);
     EXPECT_EQ(node.time().diagnostics().master_changes, 1U);
-    EXPECT_FALSE(node.time().to_local(first, now).has_value());  // the other's clock says nothing of this one's
+    EXPECT_FALSE(node.time().to_local(first, now).has_value());  // the other's clock gives no information on this one's
     now = now + (TimeSlave::kMasterTimeout + 0.01F);
     sync(node, 9, 1, 0);
     EXPECT_EQ(node.time().master(now), 9);

@@ -32,7 +32,7 @@ inline Bytes from_hex(std::string_view hex)
     return bytes;
 }
 
-/// A payload that tells its sender and number.
+/// A payload that contains its sender and number.
 inline Bytes long_payload(std::uint8_t number, std::size_t length = 40)
 {
     Bytes payload(length);
@@ -53,7 +53,7 @@ inline std::string to_hex(std::span<const std::byte> bytes)
     return hex;
 }
 
-/// As candump and the golden frames write it: 1001552A#E8030000003412C0
+/// In the notation of candump and the golden frames: 1001552A#E8030000003412C0
 inline Frame frame_of(std::string_view text)
 {
     const Bytes data = from_hex(text.substr(9));

@@ -22,7 +22,7 @@ TEST(DronecanTransmitQueue, DropsTheOldestTransfersWholeWhenFull)
         EXPECT_EQ(queue.diagnostics().transfers_dropped, count > kTransmitFrames ? 1U : 0U);
         EXPECT_EQ(unpack(queue.front()->data[5]).transfer, count > kTransmitFrames ? 1 : 0);
     }
-    // One of which a part has gone goes with all that is left of it.
+    // A partly sent transfer is dropped with all its remaining frames.
     TransmitQueue queue;
     EXPECT_TRUE(push(queue, 0, 40));  // 6 frames
     queue.pop();

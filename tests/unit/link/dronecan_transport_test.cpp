@@ -130,7 +130,7 @@ TEST_F(DronecanReceiver, AnonymousMessagesAreOfOneFrame)
     ASSERT_NE(transfer, nullptr);
     EXPECT_EQ(transfer->source, kAnonymous);
     EXPECT_EQ(transfer->type.id, Allocation::kType.id);
-    EXPECT_NE(take(frames[0]), nullptr);  // another client may say the same: no memory of who says it
+    EXPECT_NE(take(frames[0]), nullptr);  // another client may send the same: the sender is not stored
     frames[0].data[7] = pack(Tail{true, false, false, 0});
     EXPECT_EQ(take(frames[0]), nullptr);
     EXPECT_EQ(seen().anonymous_refused, 1U);
@@ -196,7 +196,7 @@ TEST_F(DronecanReceiver, ANewStartInterrupts)
     EXPECT_EQ(feed({first.begin(), first.begin() + 3}), 0);
     EXPECT_EQ(feed(log_frames(9, 1)), 1);
     EXPECT_EQ(seen().interrupted, 1U);
-    // With the same transfer id the frames of the two could not be told apart: neither is delivered.
+    // With the same transfer id the frames of the two are indistinguishable: neither is delivered.
     const std::vector<Frame> third = log_frames(9, 2);
     EXPECT_EQ(feed({third.begin(), third.begin() + 3}), 0);
     EXPECT_EQ(feed(third), 0);
@@ -314,7 +314,8 @@ TEST_F(DronecanReceiver, AssembliesAtTheirLimit)
                 if (transfer != nullptr) {
                     ++delivered;
                     EXPECT_EQ(to_hex(transfer->payload), to_hex(long_payload(transfer->source)));
-                    EXPECT_NE(transfer->source, senders > kAssemblies ? 1 : 0);  // the first begun gave way
+                    EXPECT_NE(transfer->source, senders > kAssemblies ? 1 : 0);  // the first begun transfer was
+                                                                                 // replaced
                 }
             }
         }

@@ -8,7 +8,7 @@
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "tests/unit/link/mavlink_tools.hpp"
 
-// The autopilot's side of the wire for tests: messages as PX4 and ArduPilot send them, and what an endpoint said.
+// The autopilot's side of the wire for tests: messages of PX4 and ArduPilot, and an endpoint's output.
 
 namespace jink::link::mavlink::test {
 
@@ -119,7 +119,7 @@ struct Wire {
     }
     void hear_bytes(const Bytes& bytes) { endpoint.receive(bytes, now, inbox); }
 
-    /// What the endpoint has to say since the last call.
+    /// The endpoint's output since the last call.
     std::vector<Received> said()
     {
         std::vector<Received> frames = parse(parser, endpoint.pending());

@@ -147,7 +147,7 @@ TEST(MavlinkClockSync, ARestartSoonAfterTheStartIsFoundByRoundTrips)
 TEST(MavlinkClockSync, RoundTripsThatAreAheadMoveItForward)
 {
     ClockSync clock;
-    clock.one_way(0, kOffset + 900'000);  // the first sample was held up
+    clock.one_way(0, kOffset + 900'000);  // the first sample was delayed
     ClockEvent event = ClockEvent::none;
     for (std::int64_t i = 0; i < 3; ++i) {
         const std::int64_t t = i * 1'000'000;
@@ -178,7 +178,7 @@ TEST(MavlinkClockSync, BootClockIsExtendedOverItsWrapAndBack)
 
 TEST(MavlinkClockSync, ABlockedReadWithTheClockReadBeforeItIsNoRestart)
 {
-    // The clock was read, then the read blocked for 0.5 s: what came meanwhile seems to come from the future.
+    // The clock was read, then the read blocked for 0.5 s: messages received meanwhile appear to be from the future.
     ClockSync clock;
     std::int64_t t = 0;
     for (; t < 10'000'000; t += 40'000) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the endpoint makes of the autopilot's reports on its clock and its origin.
+// The endpoint's handling of the autopilot's reports on its clock and its origin.
 #include <map>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed areas over TUNNEL: the payload byte by byte, what is passed on, what is refused and how it is answered.
+// Closed areas over TUNNEL: the payload byte by byte, accepted and refused parts, and the answers.
 #include <gtest/gtest.h>
 
 #include <bit>

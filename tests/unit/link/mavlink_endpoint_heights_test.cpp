@@ -30,7 +30,7 @@ protected:
         attitude(0.0F);
         clear();
     }
-    /// 100 m above the origin, as it says.
+    /// 100 m above the origin, as reported.
     static AdsbVehicle traffic(std::uint8_t altitude_type)
     {
         AdsbVehicle m;
@@ -90,7 +90,7 @@ TEST_F(MavlinkEndpointHeights, OfSatellitesIsExactAndOfABarometerIsNot)
 }
 
 /// Weather: the pressure altitude of where we are is 80 m less than our height. Traffic that sends its standard
-/// pressure altitude is then 80 m higher than it says; traffic that knows the pressure at sea level, where it says.
+/// pressure altitude is then 80 m above its reported height; traffic that knows the pressure at sea level is at it.
 TEST_F(MavlinkEndpointHeights, BothReadingsOfAPressureAltitudeAreHeld)
 {
     for (const double error : {0.0, 80.0, -120.0}) {
@@ -129,7 +129,7 @@ TEST_F(MavlinkEndpointHeights, AGeometricAltitudeIsAsReportedUntilTheUndulationI
     EXPECT_TRUE(as_reported());
     EXPECT_FALSE(endpoint->undulation());
     gps(48'000, 2);  // no 3D fix
-    gps(-518'000);   // ellipsoid height 0: not said
+    gps(-518'000);   // ellipsoid height 0: unknown
     gps(121'000);    // no geoid on earth
     gps(-121'000);
     gps(48'000, 3, 156);  // not the autopilot's

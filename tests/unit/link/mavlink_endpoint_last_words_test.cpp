@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is to be said when the processor faults, composed beforehand.
+// The message for a processor fault, composed beforehand.
 #include <gtest/gtest.h>
 
 #include "firmware/link/mavlink/text.hpp"
@@ -59,7 +59,7 @@ TEST_F(EndpointLastWords, InControlTheyAskForTheHoldModeTwice)
         EXPECT_EQ(frames[i].header.system_id, kSystem);
         EXPECT_EQ(frames[i].header.component_id, kUs);
     }
-    // And what is sent in truth is numbered as if they had never been.
+    // The sent frames are numbered as if the last words did not exist.
     EXPECT_TRUE(endpoint->pending().empty());
     endpoint->send_heartbeat(SystemState::active);
     const auto next = sent();
@@ -128,7 +128,7 @@ TEST(MavlinkLastWordsSigned, AreAcceptedAfterEverythingThatWasSentBefore)
         for (int i = 0; i < 5; ++i) {
             endpoint->send_text(Severity::info, "of this step");
         }
-        // Composed before the step's frames go out, and said after all of them.
+        // Composed before the step's frames are sent, and sent after all of them.
         Bytes words(hal::LastWords::kMost);
         const std::size_t n =
             endpoint->compose_last_words(words, true, "12345678901234567890123456789012345678901234567890");

@@ -67,7 +67,7 @@ TEST_F(EndpointPoints, BodyFrameIsForwardRightDown)
 
 TEST_F(EndpointPoints, RollAndPitchOfEveryAttitudeMessageLevelIt)
 {
-    // Nose up: what lies ahead of the body lies above. Right side down: what lies to its right lies below.
+    // Nose up: points ahead of the body are above. Right side down: points to its right are below.
     const float s = std::sin(0.3F);
     const float c = std::cos(0.3F);
     attitude_of(0.0F, 0.3F, 2.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What others ask of us, what we ask and tell: modes, commands, parameters, time, sending.
+// Requests to us, our requests and reports: modes, commands, parameters, time, sending.
 #include <gtest/gtest.h>
 #include <limits>
 

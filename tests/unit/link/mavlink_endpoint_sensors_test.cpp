@@ -155,7 +155,7 @@ TEST_F(MavlinkEndpointSensors, TrafficBeyondTheInboxIsCounted)
 
 TEST_F(MavlinkEndpointSensors, BodyScanTurnsWithTheVehicle)
 {
-    attitude(kPi / 2);  // nose east: sector 0 looks east, sector 18 (90 degrees clockwise) south
+    attitude(kPi / 2);  // nose east: sector 0 points east, sector 18 (90 degrees clockwise) south
     ObstacleDistance m = scan();
     m.distances[0] = 1000;
     m.distances[18] = 2000;

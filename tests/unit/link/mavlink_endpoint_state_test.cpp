@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the endpoint makes of the autopilot's reports on itself: mode, own state.
+// The endpoint's handling of the autopilot's reports on itself: mode, own state.
 #include <gtest/gtest.h>
 #include <limits>
 

@@ -42,7 +42,7 @@ TEST_F(MavlinkEndpointSticks, LostTransmittersAreNoSticks)
     all.fill(centred());
     all[0].chan1_raw = 0;
     all[1].chan4_raw = 65535;
-    all[2].chan3_raw = 950;  // what a receiver says that has lost its transmitter
+    all[2].chan3_raw = 950;  // value of a receiver that has lost its transmitter
     all[3].chancount = 0;
     all[4].chan2_raw = 799;
     all[5].chan2_raw = 2201;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What other vehicles say of themselves: positions of systems of the link, UTM_GLOBAL_POSITION, and what is our own.
+// Reports of other vehicles: positions of systems of the link, UTM_GLOBAL_POSITION, and recognition of our own.
 #include <gtest/gtest.h>
 #include <limits>
 
@@ -176,7 +176,7 @@ TEST_F(MavlinkEndpointTraffic, WithoutOwnGpsUtmHeightsAreUncertainByTheGeoid)
 {
     origin();
     gps(47000, 2);  // no 3D fix
-    gps(-490000);   // ellipsoid height 0: not said
+    gps(-490000);   // ellipsoid height 0: unknown
     gps(121'000);   // no geoid on earth
     from(kSystem, 25, GpsRawInt{0, 0, 0, 490000, 0, 0, 0, 0, 3, 9, 537000, 0, 0, 0, 0, 0});  // not the autopilot's
     EXPECT_EQ(count().frames_ignored, 4U);
@@ -257,7 +257,7 @@ TEST_F(MavlinkEndpointTraffic, OurOwnUtmComesBackAndIsNoTrack)
     EXPECT_EQ(count().own_heard, 3U);
     from(kSystem, 158, utm(6));
     EXPECT_EQ(inbox->tracks.size(), 1U) << "a receiver of ours hears another";
-    // An autopilot that stops to say its name has it still; one without any makes nobody our own.
+    // An autopilot that stops reporting its name keeps it; without a name no report counts as our own.
     UtmGlobalPosition nameless = utm(5);
     nameless.flags = 4 | 8;
     from(kSystem, 1, nameless);

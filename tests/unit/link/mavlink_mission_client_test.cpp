@@ -166,7 +166,7 @@ TEST_F(MavlinkMissionClient, ARefusalEndsTheTransferWithoutAnAnswer)
     current(1);
     EXPECT_EQ(next(), MissionStep::list);
     client.refused(0, now);
-    client.refused(14, now);  // denied: somebody uploads
+    client.refused(14, now);  // denied: an upload is in progress
     EXPECT_TRUE(steps(0.8F).empty());
     wait(0.3F);
     EXPECT_EQ(read(mission_of(2)).size(), 2U);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a mission client keeps of a mission, and when it believes it.
+// A mission client's copy of a mission, and when it is valid.
 #include "tests/unit/link/mission_client_fixture.hpp"
 
 namespace jink::link::mavlink {

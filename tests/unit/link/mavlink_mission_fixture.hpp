@@ -34,7 +34,7 @@ inline MissionItemInt north(float metres, float z = 30.0F, std::uint16_t command
     return item_of(command, kLat + static_cast<std::int32_t>(metres * 1e-3F * kNorth1000m), kLon, z);
 }
 
-/// An autopilot that flies a mission and answers requests of it.
+/// An autopilot that flies a mission and answers mission requests.
 class MissionEndpointTest : public HeardEndpointTest {
 protected:
     void home(std::int32_t lat = kLat, std::int32_t lon = kLon, std::int32_t alt = 488000)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What ArduPlane is sent in place of velocities: DO_REPOSITION, when, where to, and when not.
+// Commands to ArduPlane in place of velocities: DO_REPOSITION, its times and targets, and when it is omitted.
 #include <gtest/gtest.h>
 
 #include <cmath>

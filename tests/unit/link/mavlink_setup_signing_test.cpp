@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SETUP_SIGNING: who may set a key, when, and what is said and sent afterwards.
+// SETUP_SIGNING: permitted senders and times, and reports and output afterwards.
 #include <gtest/gtest.h>
 
 #include "tests/unit/link/mavlink_endpoint_fixture.hpp"
@@ -46,7 +46,7 @@ protected:
         frame.resize(encode_signed(message, {255, 190, sequence++}, theirs, frame));
         endpoint->receive(frame, now, *inbox);
     }
-    /// The text that comes as the only answer, heard by somebody with `key` (nullptr: without).
+    /// The text that is the only answer, received with `key` (nullptr: without).
     std::string answer(Signing* key)
     {
         Parser listener(key);

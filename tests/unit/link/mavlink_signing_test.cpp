@@ -201,7 +201,7 @@ TEST(MavlinkSigning, NothingHeardBeforeARestartIsTakenAfterIt)
     for (const Bytes& frame : heard) {
         ASSERT_EQ(after.accepted(frame), 0U);
     }
-    // The sender hears us, goes on from there, and is heard again.
+    // The sender receives our frame, continues from its time stamp, and is accepted again.
     EXPECT_EQ(after.accepted(signed_frame(after.signing.time())), 1U);
 }
 

@@ -45,7 +45,7 @@ inline std::string to_hex(std::span<const std::byte> bytes)
     return hex;
 }
 
-/// A frame as a test keeps it: the parser's own one lives only until its next call.
+/// A copy of a frame: the parser's own frame is valid only until its next call.
 struct Received {
     std::uint32_t message_id;
     std::uint8_t version;
@@ -65,7 +65,7 @@ inline Received keep(const Frame& f)
     return {f.message_id, f.version, f.header, f.is_signed, f.length, Bytes(f.payload.begin(), f.payload.end())};
 }
 
-/// Feeds `stream` in pieces of `chunk` bytes and collects the frames; with `flush`, the incomplete end is given up too.
+/// Feeds `stream` in pieces of `chunk` bytes and collects the frames; with `flush`, discards the incomplete end too.
 inline std::vector<Received> parse(Parser& parser, std::span<const std::byte> stream, std::size_t chunk = 1U << 20U,
                                    bool flush = false)
 {
@@ -178,7 +178,7 @@ void for_each_message(F f)
     for_each_message(AllMessages{}, f);
 }
 
-/// CRC-16/MCRF4XX bit by bit: another form than the product's.
+/// CRC-16/MCRF4XX bit by bit: another algorithm than the product's.
 inline std::uint16_t reference_crc(std::span<const std::byte> data, std::uint8_t extra)
 {
     unsigned crc = 0xFFFF;
@@ -195,7 +195,7 @@ inline std::uint16_t reference_crc(std::span<const std::byte> data, std::uint8_t
     return static_cast<std::uint16_t>(crc);
 }
 
-/// Any v1 or v2 frame with a right checksum, whatever else is wrong with it.
+/// Any v1 or v2 frame with a correct checksum and arbitrary other errors.
 struct RawFrame {
     unsigned version = 2;
     std::uint8_t incompatible = 0;

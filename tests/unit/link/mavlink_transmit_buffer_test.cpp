@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The transmit buffer against a list of frames: whatever comes off is whole frames in order, and a frame that only
-// holds for a while can be taken back until its first byte has gone.
+// The transmit buffer against a list of frames: output is whole frames in order, and a perishable frame can be
+// withdrawn until its first byte is sent.
 #include <deque>
 #include <optional>
 
@@ -72,7 +72,7 @@ TEST(MavlinkTransmitBuffer, RandomUseMatchesAListOfFrames)
         const std::size_t what = random.below(4);
         if (what < 2) {
             const auto old = newest(kind);
-            if (kind != Perishable::no) {  // as the endpoint does: the old one gives way
+            if (kind != Perishable::no) {  // as the endpoint does: the old frame is replaced
                 ASSERT_EQ(buffer.take_back(kind), old.has_value()) << i;
                 if (old) {
                     list.erase(list.begin() + static_cast<std::ptrdiff_t>(*old));

@@ -17,7 +17,7 @@ inline MissionItem at(std::int32_t x, std::uint16_t command = kWaypoint)
     return {true, 0, command, x, 0, 0.0F, 0.0F};
 }
 
-/// A mission client with the test for its autopilot.
+/// A mission client; the test plays its autopilot.
 struct MissionClientTest : ::testing::Test {
     MissionClient client;
     TimePoint now{5'000'000};
@@ -36,7 +36,7 @@ struct MissionClientTest : ::testing::Test {
         progress.sequence = sequence;
         client.current(progress, now);
     }
-    /// All steps of a while, at 10 Hz.
+    /// All steps of `seconds`, at 10 Hz.
     std::vector<MissionStep> steps(float seconds)
     {
         std::vector<MissionStep> all;

@@ -111,7 +111,7 @@ inline path::TimedPath path_under(const Scene& scene, bool turn, float duration)
     return path;
 }
 
-/// Some time after the beginning of what is flown, and not quite where it should be.
+/// Some time after the start of the manoeuvre, with a tracking error.
 inline void take_up_midway(Random& random, Drawn& d)
 {
     const float into = random.uniform(0.0F, 0.8F) * d.manoeuvre.path.duration();
@@ -121,7 +121,7 @@ inline void take_up_midway(Random& random, Drawn& d)
     d.scene.own.velocity = at.velocity + in_cube(random, 0.5F);
 }
 
-/// What a method answers; false where it has no answer.
+/// A method's answer; false without an answer.
 inline bool plan(Random& random, Drawn& d)
 {
     static const auto planner = std::make_unique<geometric::Planner>(geometric::Settings{});
@@ -262,7 +262,7 @@ inline void place_ball(Random& random, Drawn& d, const DenseFlight& flight, doub
     const Vec3d half = s.limits.half_extents.cast<double>();
     const Vec3d direction = across.cast<double>();
     const double far = placed([&](double x) { return world::oracle::point_box(direction * x, half) - radius; }, wanted);
-    // Of an uncertain height: the end that looks this way is what the flight grazes.
+    // For an uncertain height, the flight grazes the end facing this direction.
     const double shift = std::copysign(double(track.half_height), direction.z());
     const Vec3d centre = own.position + direction * far + shift * Vec3d::UnitZ() - track.velocity.cast<double>() * t;
     if (moves) {

@@ -2,8 +2,8 @@
 // The final check against dense flight in double precision (flown_densely.hpp), on manoeuvres that graze threats
 // (drawn_manoeuvre.hpp).
 //
-// Law: the margin that is stated is never above the flight's true margin by more than stated_accuracy. So no manoeuvre
-// that is told clear enters the safety box by more than that.
+// Law: the stated margin never exceeds the flight's true margin by more than stated_accuracy. So no manoeuvre reported
+// clear enters the safety box by more than that.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,8 +22,8 @@ using dense::kAmple;
 using geometry::oracle::case_count;
 using geometry::oracle::seed_of;
 
-/// As core/avoid/final_check.hpp says [m]: a flight that leaves the 100 m about the origin has the rounding of each
-/// set-point's position on top.
+/// From core/avoid/final_check.hpp [m]: a flight beyond 100 m from the origin adds the rounding of each set-point's
+/// position.
 constexpr double kStatedAccuracy = 2e-3;
 constexpr double kStatedWithin = 100.0;
 
@@ -38,7 +38,7 @@ double stated_accuracy(const DenseFlight& flight)
     return kStatedAccuracy + half_a_unit * static_cast<double>(flight.commands());
 }
 
-/// What is told of it. `direction`: in which a fallback turns; 0 where it is a command, which `d` then holds.
+/// The reported margin. `direction`: turn direction of a fallback; 0 for a command, stored in `d`.
 float told_of(Drawn& d, float& direction)
 {
     WorkBudget budget(kAmple);
@@ -86,12 +86,12 @@ bool starts_inside_a_solid(const Drawn& d)
 struct Counts {
     int checked = 0;
     int clear = 0;
-    int above = 0;       ///< told more than there is
-    int entered = 0;     ///< and told clear, and enters the box
-    double worst = 0.0;  ///< told above the truth by this much [m]
+    int above = 0;       ///< reported above the true margin
+    int entered = 0;     ///< reported clear, and enters the box
+    double worst = 0.0;  ///< largest excess of the report over the true margin [m]
     double deepest = 0.0;
-    double below = 0.0;  ///< sum of what is told too little, of flights told clear [m]
-    /// Told clear, by what is flown and by the kind of vehicle.
+    double below = 0.0;  ///< sum of the conservatism, over flights reported clear [m]
+    /// Reported clear, by manoeuvre and by kind of vehicle.
     std::array<std::array<int, 2>, static_cast<std::size_t>(Flying::count)> clear_of{};
 };
 
@@ -114,7 +114,7 @@ Counts compare(std::uint64_t default_seed, std::size_t cases, bool solids)
         counts.clear += told >= 0.0F ? 1 : 0;
         counts.clear_of[static_cast<std::size_t>(d.flying)][static_cast<std::size_t>(d.scene.limits.kind)] +=
             told >= 0.0F ? 1 : 0;
-        // Margins beyond the cap are not told apart.
+        // Margins saturate at the cap.
         const double truth = std::max(true_margin(d, flight, floor), -double(world::kSeparationCap));
         if (truth < floor) {
             counts.worst = std::max(counts.worst, double(told) - truth);

@@ -9,16 +9,16 @@
 #include "core/avoid/final_check.hpp"
 #include "tests/property/core/world/separation_oracle.hpp"
 
-// A manoeuvre as it is flown, in double precision: set-points one period apart, the vehicle model between them solved
-// by itself, and how near each threat comes. Of the code under test it shares the follower alone, which makes the
-// commands.
+// A manoeuvre as flown, in double precision: set-points one period apart, the vehicle model between them solved
+// independently, and the separation from each threat. Shares only the follower, which makes the commands, with the code
+// under test.
 
 namespace jink::avoid::dense {
 
 using geometry::oracle::Vec3d;
 using world::test::Scene;
 
-/// The model while one command is held: what is left of a velocity error decays at the rate min(error / lag, limit).
+/// The model while one command is held: the velocity error decays at the rate min(error / lag, limit).
 struct Decayed {
     double left = 0.0;      ///< of the error [m/s]
     double integral = 0.0;  ///< [m]
@@ -44,7 +44,7 @@ struct FlownState {
     Vec3d velocity = Vec3d::Zero();
 };
 
-/// A flight of commands that are held one after the other.
+/// A flight of commands held in sequence.
 class DenseFlight {
 public:
     DenseFlight(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits)
@@ -116,7 +116,7 @@ private:
     double farthest_ = 0.0;
 };
 
-/// As the supervisor says: to a stand, or straight on with fixed wings.
+/// As the supervisor does: to a stop, or straight on for fixed wings.
 inline void fly_on(const vehicle::VehicleLimits& limits, DenseFlight& flight)
 {
     const Vec3d velocity = flight.last().velocity;
@@ -140,7 +140,7 @@ inline void fly_on(const vehicle::VehicleLimits& limits, DenseFlight& flight)
     }
 }
 
-/// The rest of a manoeuvre with a set-point every `period`, and what follows it.
+/// The rest of a manoeuvre with a set-point every `period`, and the flight after it.
 inline DenseFlight fly_densely(const Scene& scene, const world::Manoeuvre& m, const Settings& settings, float period)
 {
     DenseFlight flight(scene.own, scene.limits);
@@ -164,7 +164,7 @@ inline DenseFlight fly_densely(const Scene& scene, const world::Manoeuvre& m, co
     return flight;
 }
 
-/// A margin over the time of a flight, and what the escape rule takes off it where the flight starts inside.
+/// A margin over the time of a flight, and the escape rule's reduction if the flight starts inside.
 struct Judged {
     double start = 0.0;
     double slack = 0.0;
@@ -172,15 +172,15 @@ struct Judged {
 
     [[nodiscard]] double operator()(double margin, double t) const
     {
-        // A start within rounding of the surface may be taken for one inside.
+        // A start within rounding of the surface may count as inside.
         constexpr double kRounding = 1e-4;
         return start < kRounding ? margin + std::max(0.0, slack - start - speed * t) : margin;
     }
 };
 
-/// Least of `judged(t)`, no exacter than needed to say whether it is below `floor`: time is passed over as far as
-/// `rate` [m/s] lets the margin fall, but no less than a millisecond: the distance to a convex body is smooth, so that
-/// between two such instants it falls by less than a millimetre more.
+/// Minimum of `judged(t)`, as exact as needed to decide whether it is below `floor`. Steps in time as far as `rate`
+/// [m/s] lets the margin fall, at least a millisecond. The distance to a convex body is smooth, so that between two
+/// such instants it falls by less than a millimetre more.
 template <class Margin>
 double least_margin(const Margin& margin, double end, double rate, const world::EscapeRule& escape, double floor)
 {
@@ -197,7 +197,7 @@ double least_margin(const Margin& margin, double end, double rate, const world::
     }
 }
 
-/// What comes nearest, of everything that is not a solid, and how near.
+/// Least margin over all threats that are not solids, and its threat.
 inline double least_of_all(const Scene& scene, const DenseFlight& flight, const Settings& settings, double shared,
                            double floor)
 {
@@ -212,7 +212,7 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
                             double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
         const auto margin = [&](double t) {
             Vec3d gap = track.position.cast<double>() + track.velocity.cast<double>() * t - flight.at(t).position;
-            // Whichever of its possible heights is nearest.
+            // The nearest of its possible heights.
             gap.z() -= std::clamp(gap.z(), -double(track.half_height), double(track.half_height));
             return world::oracle::point_box(gap, half) - world::oracle::radius_of(scene, track, t);
         };
@@ -239,7 +239,7 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
     return least;
 }
 
-/// Of an obstacle at an instant; 0 in contact for all but spheres.
+/// Margin to an obstacle at an instant; 0 in contact for all but spheres.
 inline double obstacle_margin_at(const Scene& scene, const geometry::Shape& shape, const Vec3d& own)
 {
     const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);

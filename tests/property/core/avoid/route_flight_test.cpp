@@ -8,8 +8,8 @@
 #include "tests/oracle/route_oracle.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
-// Flights along routes with bends and corners, the supervisor in control whenever it wants to be; otherwise the mission
-// flies the way. Judged by the true motion of both.
+// Flights along routes with bends and corners, the supervisor in control whenever it requests control; otherwise the
+// mission flies the route. Judged by the true motion of both.
 
 namespace jink::avoid {
 namespace {
@@ -78,8 +78,8 @@ world::Track traffic(const Vec3& position, const Vec3& velocity)
     return track;
 }
 
-/// Traffic comes down the second leg and is met where the mission turns: behind the corner nobody looks along the
-/// first.
+/// Traffic comes down the second leg; the encounter is where the mission turns. A prediction along the first leg does
+/// not extend behind the corner.
 TEST(RouteFlight, TrafficBehindTheCornerIsAvoided)
 {
     TwinRoute twin;

@@ -19,10 +19,10 @@ using geometry::oracle::in_cube;
 using geometry::oracle::seed_of;
 
 constexpr int kCourses = 48;
-/// As core/avoid/final_check.hpp says [m].
+/// From core/avoid/final_check.hpp [m].
 constexpr double kAccuracy = 2e-3;
 
-/// Met level after 6 to 8 s, at a random course.
+/// Level encounter after 6 to 8 s, at a random course.
 void draw_intruder(Random& random, dense::Scene& s)
 {
     s.own.position = Vec3(0, 0, 30);
@@ -96,7 +96,7 @@ TEST(UncertainHeight, ReachSetsGoAroundTheWholeCapsule)
     expect_sound(fly_with(*planner), kCourses / 2);
 }
 
-/// Its half-spaces are not as tall as the capsule: what is stated clear is clear nevertheless.
+/// Its half-spaces are not as tall as the capsule; manoeuvres reported clear are still clear.
 TEST(UncertainHeight, TheReciprocalMethodIsCheckedAgainstTheWholeCapsule)
 {
     const auto planner = std::make_unique<orca::Planner>();
@@ -111,7 +111,7 @@ TEST(UncertainHeight, TheFallbackKeepsClearOfTheWholeCapsule)
     for (int i = 0; i < kCourses; ++i) {
         dense::Scene s;
         draw_intruder(random, s);
-        s.tracks[0].position += 3.0F * s.tracks[0].velocity;  // met 3 s sooner
+        s.tracks[0].position += 3.0F * s.tracks[0].velocity;  // encounter 3 s earlier
         s.own.position += 3.0F * s.own.velocity;
         WorkBudget budget(kAmple);
         const world::Situation situation = s.situation();

@@ -51,7 +51,7 @@ Case draw(Random& random, const Tables& tables)
     q.distance = random.uniform(0.5F, 60.0F);
     q.offset = random.uniform(-kLargestRatio, kLargestRatio) * q.distance;
     constexpr double kHalf = 0.5 * std::numbers::pi;
-    // A leg in five is level or a plane upright: what is flown most.
+    // A leg in five is level or a plane upright: the most common cases.
     const double elevation = random.below(5) == 0 ? 0.0 : wide(random.uniform(-1.0F, 1.0F)) * kHalf;
     const double plane = random.below(5) == 0 ? kHalf : wide(random.uniform(0.0F, 2.0F)) * kHalf;
     const double heading = wide(random.uniform(0.0F, 6.0F));

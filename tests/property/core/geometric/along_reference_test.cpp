@@ -95,7 +95,7 @@ TEST(AlongReference, OffsetsAreAppliedAcrossTheReference)
             const Vec3d beside = path.points[k].position.cast<double>() - p.at(way);
             const double offset = double(curve_offset(shape, p.problem.distance, static_cast<float>(way)));
             ASSERT_NEAR(beside.norm(), std::abs(offset), 5e-3) << "case " << i << " at " << k;
-            // Where a bend begins or ends the tangent is taken between neighbours: half of what one step turns.
+            // Where a bend begins or ends the tangent is taken between neighbours: half of one step's turn.
             const double turn = length / 24.0 / 8.0;
             ASSERT_LE(std::abs(beside.dot(p.twin.along(p.start + way))), std::abs(offset) * 0.55 * turn + 5e-3)
                 << "case " << i << " at " << k;
@@ -103,7 +103,7 @@ TEST(AlongReference, OffsetsAreAppliedAcrossTheReference)
     }
 }
 
-/// On a level reference with corners, what goes up goes straight up, and what goes aside stays level.
+/// On a level reference with corners, vertical offsets stay vertical, and lateral offsets stay level.
 TEST(AlongReference, PlanesDoNotTwist)
 {
     const std::uint64_t seed = seed_of(20261131);
@@ -168,13 +168,13 @@ TEST(AlongReference, CornersAreRounded)
             const Seconds time = 0.5F * (path.points[k + 1].time - path.points[k - 1].time);
             sharpest = std::max(sharpest, (path.points[k].velocity - path.points[k - 1].velocity).norm() / time);
         }
-        // Inside the curve the way is shorter than the arc length that it is made by, and flown at the same speed.
+        // Inside the bend the path is shorter than its arc length parameter, and flown at the same speed.
         ASSERT_LE(sharpest, 1.05F * 0.5F * limits.max_acceleration / std::pow(std::cos(0.5F * turn), 2.0F) + 0.05F);
     }
 }
 
-/// A corner just before the end leaves no room to be rounded in: at full speed the family that ends there is not
-/// flyable, the one that ends well past it is, and slow ones are.
+/// A corner just before the end leaves no space for rounding: at full speed the family that ends there is not flyable,
+/// the one that ends well past it is, and slow ones are.
 TEST(AlongReference, SharpCornersAreNotFlyable)
 {
     TwinRoute twin;
@@ -220,7 +220,7 @@ TEST(AlongReference, OneLegIsALeg)
         ASSERT_EQ(route.add_leg(p.problem.frame.origin, p.problem.frame.origin + 20.0F * along), path::RouteStatus::ok);
         Settings settings;
         settings.wait = true;
-        settings.check_units = 100'000;  // curves along a route are dearer
+        settings.check_units = 100'000;  // curves along a route are more expensive
         auto straight = std::make_unique<Result>();
         auto bent = std::make_unique<Result>();
         WorkBudget first(1'000'000);
@@ -245,7 +245,7 @@ TEST(AlongReference, OneLegIsALeg)
     EXPECT_GT(found, 500U);
 }
 
-/// What the method finds along random routes passes the check of the supervisor, and ends on the route.
+/// The method's results along random routes pass the supervisor's check, and end on the route.
 TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
 {
     static Planner planner{Settings{}};

@@ -6,7 +6,7 @@
 #include "core/geometric/planner.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"
 
-// What `solve` says of each candidate, against distances found by minimisation and by dense sampling in double.
+// The status that `solve` gives each candidate, against distances by minimisation and dense sampling in double.
 
 namespace jink::geometric {
 namespace {
@@ -221,7 +221,7 @@ TEST(Availability, ObstaclesAreNeverTouched)
                 continue;
             }
             ++free;
-            // Points of the box's surface and inside, on points of the way: a sample of the swept volume.
+            // Points of the box's surface and inside, at points of the path: a sample of the swept volume.
             const oracle::Flight flight = p.flight(c.shape, settings.waypoints);
             const oracle::Box box = p.box();
             for (const world::Obstacle& obstacle : p.obstacles) {

@@ -10,8 +10,8 @@
 #include "core/path/flight.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"
 
-// How far the coarser parts, in which the planner flies a candidate once it has found the path, take it from where the
-// finer ones of predict_flight do, which what is chosen is checked in.
+// Difference between the planner's coarse flight of a candidate and the finer flight of predict_flight, in which the
+// choice is checked.
 
 namespace jink::geometric {
 namespace {

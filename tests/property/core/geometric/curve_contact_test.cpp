@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves and balls that touch by less than any bound leaves for rounding, against distances in double: none of the
-// looks that pass over what is far passes over these, from however far the ball comes and however long it is under way.
+// Curves and balls in contact by less than any bound leaves for rounding, against distances in double: no quick reject
+// skips these contacts, for any distance and flight time of the ball.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,12 +13,12 @@
 namespace jink::geometric {
 namespace {
 
-/// A short curve, from the origin on or far out, and a ball: at rest, or under way in a plane of two of the world's
-/// axes or anywhere, which is near some point of the curve when that is reached.
+/// A short curve, from the origin on or far out, and a ball: static, or moving in a plane of two of the world's axes or
+/// anywhere, and near some point of the curve at that point's time.
 struct Encounter {
     CurveBench bench;
     oracle::Flight flight;
-    double lengths = 0.0;  ///< sum of what is involved [m]
+    double lengths = 0.0;  ///< sum of the involved lengths [m]
 
     static std::vector<CurvePoint> curve(Random& random)
     {
@@ -91,7 +91,7 @@ TEST(CurveContact, ABallIsMetWhereItTouchesByAHair)
         Encounter encounter(random);
         const bool moves = detail::is_moving(encounter.bench.threats[0].threat(0));
         const double distance = oracle::margin(encounter.flight, encounter.ball(), box);
-        const double hair = 1e-6 * (encounter.lengths + 2.0 * distance);  // twice what the exact test may be wrong by
+        const double hair = 1e-6 * (encounter.lengths + 2.0 * distance);  // twice the error bound of the exact test
         if (distance > 4.0 * hair) {
             ASSERT_EQ(encounter.status(distance - 4.0 * hair), CandidateStatus::available) << i;
         }
@@ -114,7 +114,7 @@ TEST(CurveContact, AVolumeIsMetWhereItTouches)
         const bool moves = detail::is_moving(encounter.bench.threats[0].threat(0));
         const double end = double(encounter.bench.curve.duration());
         const double distance = oracle::swept_margin(encounter.flight, encounter.ball(), end, box);
-        // Touching is enough, to the last bit of the radius.
+        // Contact counts, to the last bit of the radius.
         const float radius = std::nextafter(static_cast<float>(distance), std::numeric_limits<float>::infinity());
         if (moves) {
             ASSERT_EQ(encounter.status(double(radius)), CandidateStatus::hits_moving) << i << " at " << distance;
@@ -128,7 +128,8 @@ TEST(CurveContact, AVolumeIsMetWhereItTouches)
     EXPECT_GT(touching, case_count(1'500) / 4);
 }
 
-/// Distance of a box about `own` from an upright cylinder, in double precision: below 0 by the least way out.
+/// Signed distance of a box about `own` from an upright cylinder, in double precision: inside negative, to the nearest
+/// surface.
 double cylinder_distance(const world::Barrel& body, double t, const Eigen::Vector3d& own, double half)
 {
     const Eigen::Vector2d centre = body.circle.centre.cast<double>() + t * body.velocity.cast<double>();
@@ -175,7 +176,7 @@ TEST(CurveContact, ACylinderIsTouchedWhereItIsWhenTheCurveIsThere)
             }
         }
         least -= double(bench.uncertainty);
-        // Sampling sees contact up to half a step too late; rounding takes a share of all coordinates.
+        // Sampling finds contact up to half a step late; rounding is a share of all coordinates.
         const double rounding = 1e-5 * (encounter.lengths + 100.0);
         if (least < -1e-9) {
             ASSERT_EQ(bench.status(), CandidateStatus::hits_airspace) << i << " at " << least;

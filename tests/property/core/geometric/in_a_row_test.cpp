@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Manoeuvres of two parts along random legs and through random traffic: clear of everything in double precision, beside
-// the main threat half-way, back on the leg in the end, and around what is first in the way back.
+// Two-stage manoeuvres along random legs and through random traffic: clear of everything in double precision, beside
+// the main threat half-way, back on the leg at the end, and around the first threat on the path back.
 #include <gtest/gtest.h>
 
 #include <cmath>

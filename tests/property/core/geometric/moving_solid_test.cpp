@@ -95,7 +95,7 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
             const bool is_free = c.status == CandidateStatus::available || c.status == CandidateStatus::chosen;
             const oracle::Flight flight = p.flight(c.shape, settings.waypoints);
             double least = 1e9;
-            double least_grown = 1e9;  // as large as at the end of each segment, as it is looked at
+            double least_grown = 1e9;  // with the size at the end of each segment, as in the check
             for (std::size_t s = 0; s < solids.size(); ++s) {
                 const MovingSolid& solid = solids[s];
                 const auto grown_at = [&](double t) {
@@ -111,7 +111,7 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
                         const Vec3d way = (t + static_cast<double>(p.problem.begins)) * solid.velocity.cast<double>();
                         const Vec3d own = Vec3d(flight.p[k].data()) +
                                           share * (Vec3d(flight.p[k + 1].data()) - Vec3d(flight.p[k].data()));
-                        const double distance = sampled(solid.shape, own - way, half);  // seen from the solid
+                        const double distance = sampled(solid.shape, own - way, half);  // relative to the solid
                         least = std::min(least, distance - grown_at(t));
                         least_grown = std::min(least_grown, distance - grown_at(flight.t[k + 1]));
                     }
@@ -126,7 +126,7 @@ TEST(MovingSolids, AreNeverTouchedAndSolelyHitWhereTheyAre)
                 ASSERT_LT(c.hit.index, solids.size());
                 ++hits;
                 seen_to_touch += least < 0.0 ? 1U : 0U;
-                // Points of a box that is up to 2.4 m wide lie 0.85 m from any other one, instants 0.3 m of way.
+                // Points of a box that is up to 2.4 m wide lie 0.85 m from any other one, instants 0.3 m of path.
                 ASSERT_LT(least_grown, 1.6) << "seed " << seed;
             }
         }

@@ -12,9 +12,9 @@
 #include "core/geometry/sweep.hpp"
 #include "core/path/flight.hpp"
 
-// `solve` without anything that makes it fast: every candidate against every ball on every segment by contact_interval,
-// every flight flown by `follow` and `advance`, then checked. Time-aware, threats and airspace, the
-// start of the manoeuvre in the world's origin. Which candidates there are is taken over from `solve`.
+// `solve` without its optimisations: every candidate against every ball on every segment by contact_interval, every
+// flight flown by `follow` and `advance`, then checked. Time-aware, threats and airspace, the start of the manoeuvre in
+// the world's origin. The list of candidates is that of `solve`.
 
 namespace jink::geometric {
 
@@ -50,7 +50,7 @@ public:
     }
 
 private:
-    /// True: it was refused, and there may be others.
+    /// True: refused, and others may remain.
     bool try_cheapest(Answer& answer)
     {
         Candidate* best = nullptr;
@@ -117,7 +117,7 @@ private:
             const float from = out.back().time;
             const float to = length - static_cast<float>(k) * dt > kLeast * dt ? static_cast<float>(k) * dt : length;
             const int parts = parts_of(dt, from >= 3.0F ? 0.25F : path::kFollowerPeriod);
-            // Whole steps are all of the same length, whatever their ends are rounded to.
+            // Whole steps have the same length, independent of the rounding of their ends.
             const float part = (to == length ? to - from : dt) / static_cast<float>(parts);
             for (int i = 0; i < parts; ++i) {
                 const float t = from + static_cast<float>(i) * part;
@@ -141,7 +141,7 @@ private:
         return out;
     }
 
-    /// `follow`, or what it says on average of a part that is longer than the follower's.
+    /// `follow`, or its average over a part longer than the follower's.
     Vec3 command(const path::TimedPath& path, float t, float part, const Vec3& position) const
     {
         if (part <= path::kFollowerPeriod) {

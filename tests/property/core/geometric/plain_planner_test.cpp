@@ -6,7 +6,7 @@
 #include "tests/property/core/geometric/plain_planner.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"
 
-// What makes a plan fast changes no bit of it.
+// The planner's optimisations change no bit of a plan.
 
 namespace jink::geometric {
 namespace {
@@ -29,7 +29,7 @@ Settings any_settings(Random& random)
     return s;
 }
 
-/// A random problem about the world's origin, most often with traffic that is in the way of many candidates.
+/// A random problem about the world's origin, most often with traffic in conflict with many candidates.
 void make_harder(RandomProblem& p, Random& random)
 {
     Problem& problem = p.problem;
@@ -143,7 +143,7 @@ TEST(PlainPlanner, TheChoiceIsTheSameWhereDearerCandidatesAreNotLookedAt)
             ASSERT_EQ(few.path.points[k].position, all.path.points[k].position) << "seed " << seed;
         }
         for (std::size_t i = 0; i < few.candidates.size(); ++i) {
-            // What was looked at is judged as it is with all; nothing passes for available unseen.
+            // Checked candidates have the same status as with all; no unchecked candidate is available.
             const CandidateStatus said = few.candidates[i].status;
             ASSERT_NE(said, CandidateStatus::available) << "seed " << seed;
             not_looked_at += said == CandidateStatus::not_evaluated ? 1U : 0U;

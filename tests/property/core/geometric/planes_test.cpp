@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Looks at planes: never "apart" of what touches, never "touches" of what is clear, against least-norm points in
-// double; and most of what they are there for is seen.
+// Plane checks: never "apart" for contact, never "touches" for clear cases, against least-norm points in double; and
+// most intended cases are decided.
 #include "core/geometric/planes.hpp"
 
 #include <gtest/gtest.h>
@@ -24,8 +24,8 @@ constexpr std::array kKinds{ShapeKind::sphere, ShapeKind::box, ShapeKind::capsul
                             ShapeKind::hull};
 
 struct Seen {
-    unsigned clear = 0, parted = 0;  ///< farther than the clearance, and told so
-    unsigned near = 0, touched = 0;  ///< a box at rest well within the clearance, and told so
+    unsigned clear = 0, parted = 0;  ///< farther than the clearance, and reported so
+    unsigned near = 0, touched = 0;  ///< a static box well within the clearance, and reported so
 };
 
 /// A curve of points a and b alone.
@@ -58,7 +58,7 @@ TEST(PlanesLaw, NothingIsToldThatIsNotSo)
         const Vec3 b = random.below(3) == 0 ? Vec3(a + in_cube(random, 0.5F)) : Vec3(centre + in_cube(random, 25.0F));
         const detail::Planes planes(shape, shape.centre);
         const auto way = geometry::oracle::swept_box_bounds(half, a, b, shape, 1e-7);
-        // About what they are apart, or none, or anything.
+        // About their distance, or zero, or any value.
         const float d = static_cast<float>(way.upper);
         const float clearance = random.below(3) == 0   ? 0.0F
                                 : random.below(2) == 0 ? d * random.uniform(0.98F, 1.01F)
@@ -87,7 +87,7 @@ TEST(PlanesLaw, NothingIsToldThatIsNotSo)
     }
 }
 
-/// Faces that lie on one another but for a hair: whatever is told lies on the safe side of rounding.
+/// Nearly coincident faces: the result is on the safe side of rounding.
 TEST(PlanesLaw, AHairIsNeverTakenForRoom)
 {
     Random random(seed_of(812));
@@ -114,15 +114,15 @@ TEST(PlanesLaw, AHairIsNeverTakenForRoom)
         const detail::Curve curve = curve_of(a, b);
         const bool all = planes.part(detail::view_of(curve), half, 0.0F);
         ASSERT_TRUE(!all || gap > 0.0) << i << ": " << gap;
-        // At rest: within this clearance it touches, beyond it it does not.
+        // Static: within this clearance contact, beyond it none.
         const bool touched = planes.touch(a, half, 0.0F);
         ASSERT_TRUE(!touched || gap < 0.0) << i << ": " << gap;
     }
     EXPECT_GT(told, case_count(20'000) / 4) << "a hair that rounding cannot reach is seen";
 }
 
-/// One end of the way touches by a hair, and all that the slack is taken from is large: what comes from far away, what
-/// is wide, what is long. However it is added up, rounding stays on the safe side.
+/// One end of the path barely in contact, with large terms in the slack: distant, wide and long bodies. For any order
+/// of summation, rounding stays on the safe side.
 TEST(PlanesLaw, AHairIsNeverTakenForRoomOfWhatIsLarge)
 {
     Random random(seed_of(813));
@@ -153,8 +153,7 @@ TEST(PlanesLaw, AHairIsNeverTakenForRoomOfWhatIsLarge)
     EXPECT_GT(told, count / 20) << "some hairs are longer than rounding";
 }
 
-/// A way that stays beyond one face of a box, or one flat end of what is round, is parted from it wherever it goes
-/// there.
+/// A path that stays beyond one face of a box, or one flat end of a round body, is always separated from it.
 TEST(PlanesLaw, WhatStaysBeyondAFaceIsParted)
 {
     Random random(seed_of(814));
@@ -201,7 +200,7 @@ TEST(PlanesLaw, WhatRestsBesideSomethingRoundIsParted)
     }
 }
 
-/// What is in a solid by far is seen to be, where the ball in the box or the box's own corner shows it.
+/// Deep overlap with a solid is detected if the ball in the box or the box's corner shows it.
 TEST(PlanesLaw, WhatIsInASolidByFarIsSeenToBe)
 {
     const Vec3 half = Vec3::Constant(0.5F);
@@ -223,13 +222,13 @@ TEST(PlanesLaw, WhatIsInASolidByFarIsSeenToBe)
         EXPECT_FALSE(touches(drum, Vec3(3.0F, 2.0F, side * 2.1F), half, 1.0F));
         EXPECT_TRUE(touches(pole, Vec3(0.0F, 0.0F, side * 22.4F), half, 0.0F));
         EXPECT_FALSE(touches(pole, Vec3(0.0F, 0.0F, side * 22.6F), half, 0.0F));
-        // A box with long arms: what reaches into the wall is an arm, the ball in the box does not.
+        // A box with long arms: an arm reaches into the wall, the ball in the box does not.
         EXPECT_TRUE(touches(wall, Vec3(side * 4.0F, 3.0F, 4.0F), Vec3(4.0F, 0.1F, 0.1F), 0.0F));
         EXPECT_FALSE(touches(wall, Vec3(side * 4.6F, 3.0F, 4.0F), Vec3(4.0F, 0.1F, 0.1F), 0.0F));
     }
 }
 
-/// What passes a box's edge between two faces is left to a search, which is what planes across all of its edges cost.
+/// Paths past a box's edge between two faces are left to a search, which costs as much as planes across all edges.
 TEST(PlanesLaw, ABoxIsPartedByItsFacesAlone)
 {
     const Mat3 turned = Eigen::AngleAxisf(0.25F * 3.14159265F, Vec3::UnitZ()).toRotationMatrix();
@@ -241,8 +240,8 @@ TEST(PlanesLaw, ABoxIsPartedByItsFacesAlone)
     EXPECT_TRUE(on_face.part(Vec3(-0.2F, 2.0F, 0.0F), Vec3(0.2F, 2.0F, 0.0F), half, 0.0F));
 }
 
-/// Solids and boxes of no size, so that all there is is the room left for rounding, to the bit: as far as that nothing
-/// is told, and by a little more it is.
+/// Solids and boxes of zero size, so that only the rounding allowance remains, to the bit: up to it no decision,
+/// slightly beyond it a decision.
 TEST(PlanesLaw, AtTheRoomLeftForRoundingNothingIsTold)
 {
     const Vec3 zero = Vec3::Zero();

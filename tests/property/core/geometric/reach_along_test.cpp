@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Along random routes: what is kept in sight holds every candidate, and a start that moves leaves the threat where it
-// is.
+// Along random routes: the considered region contains every candidate, and a moved start leaves the threat in place.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -83,12 +82,12 @@ TEST(ReachAlong, HoldsWhatGoesRoundOutside)
     EXPECT_LE(path.duration(), longest);
     // Chords of 64 points are shorter than the bends: the curve itself is longer still.
     const float turned = 2.0F * kPi * static_cast<float>(kMaxRouteSegments);
-    const float out = 1.0F - kPlateauRise;  // the share of the way on which it is out, at least
+    const float out = 1.0F - kPlateauRise;  // least share of the path at full offset
     EXPECT_GE(longest, (length + out * turned * widest) / problem.speed);
 }
 
-/// The collision point stays where it is on the route, or, where the way comes to the route only past it, is the point
-/// of the way that is nearest to it; the threat stays where it is in any case.
+/// The collision point stays where it is on the route, or, if the path joins the route only past it, is the nearest
+/// point of the path; the threat stays in place in any case.
 TEST(ReachAlong, AMovedStartLeavesTheThreatWhereItIs)
 {
     const std::uint64_t seed = seed_of(20261201);

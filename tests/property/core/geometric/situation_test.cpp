@@ -12,8 +12,8 @@
 #include "tests/oracle/planner_oracle.hpp"
 #include "tests/oracle/random_situation.hpp"
 
-// `Planner::plan` on random situations: what it returns must pass the check of the supervisor, which measures by other
-// means, and must never touch a track that grows as world::threat_radius says.
+// `Planner::plan` on random situations: its result must pass the supervisor's check, which measures by other means, and
+// must never contact a track that grows by world::threat_radius.
 
 namespace jink::geometric {
 namespace {
@@ -46,7 +46,7 @@ TEST(PlannerLaws, WhatIsFoundPassesTheFinalCheck)
         }
         ++found;
         const float planned = world::least_separation(s.view(), manoeuvre.path, 100.0F, budget).margin;
-        ASSERT_GE(planned, -0.06F) << "seed " << seed;  // distances of solids are told apart to 0.05 m
+        ASSERT_GE(planned, -0.06F) << "seed " << seed;  // distances of solids have a resolution of 0.05 m
         rejected += avoid::check_manoeuvre(s.view(), manoeuvre, avoid::Settings{}, budget).margin < 0.0F ? 1U : 0U;
     }
     EXPECT_GT(found, 4000U);
@@ -80,7 +80,7 @@ TEST(PlannerLaws, WhatEachAttemptAdds)
     }
 }
 
-/// Until the vehicle answers the path is what it flies; threats are met as they then are.
+/// Until the vehicle responds, the path is its present flight; threats are predicted to that time.
 TEST(PlannerLaws, BeginsWithWhatIsFlownDuringTheLatency)
 {
     static Planner planner{Settings{}};

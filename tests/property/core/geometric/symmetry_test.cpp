@@ -7,7 +7,7 @@
 #include "core/geometric/planner.hpp"
 #include "tests/property/core/geometric/random_problem.hpp"
 
-// What must not matter does not: order of threats, place, heading, left and right.
+// Invariance to the order of threats, place, heading, left and right.
 
 namespace jink::geometric {
 namespace {
@@ -21,7 +21,7 @@ Settings settings_for(Random& random)
     settings.check_acceleration = random.uniform() < 0.5F;
     settings.verify_flight = settings.check_acceleration;
     settings.evaluate_all = true;
-    settings.check_units = 100'000'000;  // what is not reached depends on the order
+    settings.check_units = 100'000'000;  // unchecked candidates depend on the order
     return settings;
 }
 
@@ -37,7 +37,7 @@ bool usable(const Candidate& c)
     return c.status == CandidateStatus::available || c.status == CandidateStatus::chosen;
 }
 
-/// The threat that decides may be touched or missed by rounding; everything else must be equal.
+/// Rounding may decide contact with the deciding threat; everything else must be equal.
 void expect_same(const RandomProblem& p, const Settings& settings, const Candidate& a, const Candidate& b,
                  std::uint64_t seed)
 {

@@ -70,8 +70,7 @@ Case ordinary(Random& random, float size, float far)
     return c;
 }
 
-/// Small whole numbers: parallel faces, equal coordinates and exact touching are common, and rounding has no part in
-/// them.
+/// Small whole numbers: parallel faces, equal coordinates and exact contact are common, without rounding.
 Case on_grid(Random& random)
 {
     const auto whole = [&](std::uint64_t n) {
@@ -137,7 +136,7 @@ struct Tally {
     std::size_t cases = 0, hits = 0, missed = 0, spurious = 0, late = 0, loose = 0, within_slack = 0;
     double worst_instant = 0;  ///< of contacts that go deeper than a hundredth of the radius, as a share of the horizon
     double worst_grazing = 0;  ///< of the others
-    double worst_excess = 0;   ///< distance beyond the radius at a reported instant, as a share of what is allowed
+    double worst_excess = 0;   ///< distance beyond the radius at a reported instant, as a share of the tolerance
 
     void judge(const Case& c, const Passage& passage, const std::optional<TimeInterval>& found)
     {

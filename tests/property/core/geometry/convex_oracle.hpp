@@ -11,15 +11,16 @@
 #include "core/geometry/shape.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
-// Distance of convex solids in double precision by Wolfe's least-norm-point method (Wolfe 1976) on support functions of
-// its own: an upper bound (a point of the difference) and a lower one (a separating plane) that close in on the truth.
+// Distance of convex solids in double precision by Wolfe's least-norm-point method (Wolfe 1976) with its own support
+// functions: an upper bound (a point of the difference) and a lower bound (a separating plane) that converge to the
+// true value.
 
 namespace jink::geometry::oracle {
 
 using Vec3d = Eigen::Vector3d;
 
 struct Bounds {
-    double lower = 0;  ///< proven by a plane, 0 when touching
+    double lower = 0;  ///< proven by a plane, 0 in contact
     double upper = 0;  ///< norm of a point of the difference
 };
 
@@ -59,14 +60,14 @@ inline Vec3d exact_support(const Shape& shape, const Vec3d& direction)
     return shape.centre.cast<double>() + axes * point;
 }
 
-/// Points kept at once. Four span a simplex; affinely dependent ones may stay a while.
+/// Capacity of the point set. Four points span a simplex; affinely dependent points may stay for some iterations.
 inline constexpr int kMostPoints = 16;
 
 /// Least-norm point of the affine hull of `points`, as weights.
 std::vector<double> affine_weights(const std::vector<Vec3d>& points);
 
-/// Distance of the origin from the convex set that `reach(direction)` supports; the radius of spheres and capsules is
-/// left out.
+/// Distance of the origin from the convex set with support function `reach(direction)`, without the radius of spheres
+/// and capsules.
 template <class Support>
 Bounds distance_from_origin(const Support& reach, double tolerance)
 {

@@ -104,7 +104,7 @@ ccd_t plain_libccd()
 struct Opinion {
     const char* name;
     std::size_t agreed = 0, false_contact = 0, false_clear = 0;
-    double widest = 0;  ///< of the disagreements: how far from touching [m]
+    double widest = 0;  ///< largest distance from contact of a disagreement [m]
 
     void judge(double gap, bool contact)
     {
@@ -129,7 +129,7 @@ protected:
     Random random{seed};
 };
 
-/// Coordinates are up to 4 m here: what the closed forms and the convex test promise for such.
+/// Coordinates are up to 4 m here: accuracy of the closed forms and the convex test for these.
 constexpr double kBand = 1e-4;
 
 TEST_F(ConvexPeers, SweptCubeAgainstSphere)

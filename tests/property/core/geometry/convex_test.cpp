@@ -42,7 +42,7 @@ double band(const ConvexCase& c, float clearance = 0.0F)
     return 1e-5 * double(extent.sum() + bounding_radius(c.shape) + clearance);
 }
 
-/// A clearance of any size, often that of touching.
+/// A clearance of any size, often equal to the distance.
 float any_clearance(Random& random, const ConvexCase& c, double distance)
 {
     const auto about = static_cast<float>(distance);

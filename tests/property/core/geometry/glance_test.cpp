@@ -51,7 +51,7 @@ TEST(Glance, EdgeCases)
 {
     const Vec3 half = Vec3::Ones();
     EXPECT_EQ(glance(half, Vec3(3, 0, 0), Vec3(3, 0, 0), 1.0F), Glance::apart);
-    EXPECT_EQ(glance(half, Vec3(2, 0, 0), Vec3(2, 0, 0), 1.0F), Glance::unclear);  // touching is left to the exact test
+    EXPECT_EQ(glance(half, Vec3(2, 0, 0), Vec3(2, 0, 0), 1.0F), Glance::unclear);  // contact is left to the exact test
     EXPECT_EQ(glance(half, Vec3(0, 0, 0), Vec3(0, 0, 0), 0.0F), Glance::touches);  // inside
     EXPECT_EQ(glance(half, Vec3(-5, 0, 0), Vec3(5, 0, 0), 0.0F), Glance::touches);
     EXPECT_EQ(glance(half, Vec3(-9, 3, 0), Vec3(9, 3, 0), 1.0F), Glance::apart);  // along a face

@@ -40,7 +40,7 @@ std::vector<Vec3> any_hull(Random& random, const Vec3& centre, float size)
     return vertices;
 }
 
-/// What a case may be wrong by, as the header says [m].
+/// Accuracy of a case by the header [m].
 double band(const std::vector<Vec3>& vertices, const Vec3& origin, float stretch)
 {
     double most = 0;
@@ -182,7 +182,7 @@ TEST(HullHullDistance, AgreesWithWolfesMethodAndItsPlaneParts)
         const float far = random.below(8) == 0 ? 1000.0F : 3.0F * size;
         std::vector<Vec3> second = any_hull(random, centre + oracle::in_cube(random, far), size);
         if (random.below(10) == 0) {
-            second[0] = first[1];  // touching, up to what lies about it
+            second[0] = first[1];  // in contact, up to the surroundings
         }
         DistanceQuery query;
         query.stretch = any_stretch(random);
@@ -214,8 +214,8 @@ TEST(HullHullDistance, AgreesWithWolfesMethodAndItsPlaneParts)
     EXPECT_GT(tally.touching, oracle::case_count(20'000) / 50);
 }
 
-/// Shapes have curved sides, on which the search closes in without end: what is told is never above the truth, and not
-/// far below it.
+/// Shapes have curved sides, on which the search converges without terminating exactly: the result is never above the
+/// true value, and close below it.
 TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
 {
     Random random(oracle::seed_of(13));
@@ -257,7 +257,7 @@ TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
     }
 }
 
-/// An obstacle that is left by its nearest face: the same as the least way to any face's plane, in double precision.
+/// An exit by the nearest face: equal to the least distance to any face's plane, in double precision.
 TEST(ExitByFaces, IsTheNearestFaceOfTheStretchedSolid)
 {
     Random random(oracle::seed_of(14));

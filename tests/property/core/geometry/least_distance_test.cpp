@@ -39,7 +39,7 @@ LeastCase any_least_case(Random& random)
     return c;
 }
 
-/// Rounding that a distance may carry: of the relative coordinates, and of the way travelled since.
+/// Rounding that a distance may carry: of the relative coordinates, and of the travelled distance.
 double allowed_least(const LeastCase& c)
 {
     const Vec3 relative = c.threat.position - c.own.position;
@@ -154,7 +154,7 @@ TEST_F(LeastDistance, IsZeroExactlyWhereAPointTouches)
 
 TEST_F(LeastDistance, GivesTheFirstOfEquallyCloseInstants)
 {
-    // Along a face, and through the inside: a plateau begins where the nose meets the slab.
+    // Along a face, and through the inside: a plateau begins where the nose enters the slab.
     const Vec3 half(1.0F, 2.0F, 3.0F);
     const Approach along = least_distance(half, {}, {{-5.0F, 4.0F, 0.0F}, {2.0F, 0.0F, 0.0F}}, 10.0F);
     EXPECT_EQ(along.distance, 2.0F);

@@ -8,7 +8,7 @@
 #include "tests/oracle/map_of_hulls.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
-// Queries of a map through its tree against a look at every piece.
+// Queries of a map through its tree against a check of every piece.
 
 namespace jink::geometry {
 namespace {
@@ -66,7 +66,7 @@ TEST(NearestPieces, AreThoseThatALookAtEveryPieceFinds)
             WorkBudget budget(10'000'000);
             const NearestPieces found = nearest_pieces(map, point, query, out, budget);
             const std::vector<Seen> truth = look_at_all(map, point, query);
-            // What lies at the reach but for the resolution may be left out.
+            // Pieces at the reach, within the resolution, may be left out.
             const auto sure = static_cast<std::size_t>(std::count_if(
                 truth.begin(), truth.end(), [&](const Seen& seen) { return seen.distance < query.reach - 2.5e-4F; }));
             ASSERT_GE(found.found, std::min(out.size(), sure)) << "case " << n;
@@ -85,7 +85,7 @@ TEST(NearestPieces, AreThoseThatALookAtEveryPieceFinds)
             } else if (truth.size() < out.size()) {
                 ASSERT_EQ(found.dropped, query.reach) << "case " << n;
             }
-            // The same with little to spend: what is not in the answer is no nearer than it says.
+            // The same with a small budget: pieces outside the answer are not nearer than stated.
             WorkBudget little(static_cast<std::uint32_t>(random.below(300)));
             const NearestPieces some = nearest_pieces(map, point, query, out, little);
             for (const Seen& seen : truth) {

@@ -10,7 +10,7 @@
 #include "core/geometry/sweep.hpp"
 
 // Double-precision oracle for moving tests: bisection on the slope of a convex function, then on the function itself.
-// It shares nothing with the closed forms: no breakpoints, no quadratics.
+// Independent of the closed forms: no breakpoints, no quadratics.
 
 namespace jink::geometry::oracle {
 

@@ -83,7 +83,7 @@ SweptCase any_swept_case(Random& random)
         break;
     }
     case 6: c.half[static_cast<int>(random.below(3))] = 0.0F; break;
-    case 7:  // the ways cross
+    case 7:  // the paths cross
         c.threat_to = c.threat_from + 2.0F * (0.5F * (c.own_from + c.own_to) - c.threat_from);
         break;
     case 8:  // along an axis

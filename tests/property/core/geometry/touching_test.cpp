@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solids that touch exactly, and scenes that differ by a power of two alone. All coordinates are multiples of 1/64 of
-// moderate size, so that sums of them are exact: where two faces lie in one plane, they do so without any rounding, and
-// what is said of them may not depend on luck.
+// Solids in exact contact, and scenes that differ by a power of two alone. All coordinates are multiples of 1/64 of
+// moderate size, so that their sums are exact. Faces in one plane are so without rounding, and the result must not
+// depend on rounding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ struct Scene {
     float side;  ///< of that face
 };
 
-/// A box swept along a way, short, long or none, and a point on it: on a face, an edge or a corner.
+/// A box swept along a path, short, long or of zero length, and a point on it: on a face, an edge or a corner.
 Scene any_scene(std::uint64_t seed)
 {
     Random random(seed);
@@ -105,7 +105,7 @@ TEST(Touching, OfAPointIsContactForTheClosedForms)
         const Scene scene = any_scene(seed);
         const float radius = kSizes[seed % kSizes.size()];
         const Vec3 centre = scene.point + radius * scene.side * Vec3::Unit(scene.axis);
-        // The sphere stands still, or moves and the box does not.
+        // The sphere is static, or moves while the box is static.
         const Motion own{scene.from, scene.to - scene.from};
         const Motion still{centre, Vec3::Zero()};
         ASSERT_TRUE(contact_interval(scene.half, own, still, radius, 1.0F)) << "seed " << seed;
@@ -122,7 +122,7 @@ TEST(Touching, OfAPointIsContactForTheClosedForms)
 
 TEST(Touching, AGlanceAtLongWaysPastLargeBoxesIsNotDeceived)
 {
-    // Along a face, at its radius exactly, where one end of the way lies much farther out than the other.
+    // Along a face, exactly at its radius, with one end of the path much farther out than the other.
     for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
         Random random(seed);
         const auto axis = static_cast<int>(random.below(3));

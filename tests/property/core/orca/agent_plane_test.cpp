@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Half-spaces of pairs against the velocity obstacle's own definition, in doubles (G-ORCA specification, T2), and what
-// they promise together.
+// Half-spaces of pairs against the velocity obstacle's own definition, in doubles (G-ORCA specification, T2), and their
+// joint guarantee.
 #include "core/orca/agent_plane.hpp"
 
 #include <algorithm>
@@ -173,7 +173,7 @@ TEST(AgentPlaneLaws, WhatBothObeyDoesNotCollide)
     EXPECT_GT(tried, 10000);
 }
 
-/// Conflict::at_rest: whatever both do that obeys, one brake time on they are not within the conflict region.
+/// Conflict::at_rest: for all obeying commands of both, after one brake time they are not within the conflict region.
 TEST(AgentPlaneLaws, AtRestTheConflictRegionIsNotEnteredInOneBrakeTime)
 {
     constexpr std::uint64_t kSeed = 20261126;
@@ -208,7 +208,7 @@ TEST(AgentPlaneLaws, AtRestTheConflictRegionIsNotEnteredInOneBrakeTime)
     }
 }
 
-/// Nobody who is beyond the reach can be met: exact pruning.
+/// No conflict is possible beyond the reach: exact pruning.
 TEST(AgentPlaneLaws, BeyondTheReachNothingCollides)
 {
     constexpr std::uint64_t kSeed = 20261127;

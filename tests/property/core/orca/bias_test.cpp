@@ -167,7 +167,7 @@ TEST(BiasClosedLoop, S1WithoutABiasIsStuck)
     EXPECT_TRUE(outcome.blocked);
 }
 /// Section 10, REFERENCE: with the H-bias 15.1 s, purely horizontal (vz = 0), least distance 1.000 m. The time depends
-/// on how the last metre is flown, of which nothing is said.
+/// on the flight of the last metre, which is not published.
 TEST(BiasClosedLoop, S1WithTheHorizontalBias)
 {
     BiasSettings horizontal;
@@ -191,7 +191,7 @@ TEST(BiasClosedLoop, S1WithBothBiases)
 /// Section 19.1, S2: walls that leave 0.6 m to the sides.
 const std::vector<BoxScene> kCorridor{{Vector(-2, 1.3, 0), Vector(2, 2, 4)}, {Vector(-2, -2, 0), Vector(2, -1.3, 4)}};
 
-/// Section 10, S2-like corridor: without the V-bias stuck, and told so.
+/// Section 10, S2-like corridor: without the V-bias the vehicles are stuck, and this is reported.
 TEST(BiasClosedLoop, S2WithoutTheVerticalBiasIsStuck)
 {
     for (const float sideways : {0.0F, 0.05F}) {

@@ -12,7 +12,7 @@
 #include "tests/reference/orca/broadcast.hpp"
 
 // Vehicles that each fly by a VelocityFilter of their own, closed over a plant in double precision with delays, and a
-// judge that shares nothing with the filter: distances of centres across and in height, and of obstacles by Wolfe's
+// judge that is independent of the filter: distances of centres across and in height, and of obstacles by Wolfe's
 // method.
 
 namespace jink::orca::closed_loop {
@@ -91,7 +91,7 @@ private:
             }
         }
     }
-    /// As told: late, and with noise.
+    /// As reported: delayed, with noise.
     [[nodiscard]] State told(const Vehicle& v)
     {
         State out = v.past.back();
@@ -110,7 +110,7 @@ private:
         return way.norm() > scene_.cruise ? Vec3d(way * (scene_.cruise / way.norm())) : way;
     }
 
-    /// What the others make of vehicle `j`, all told `age` late.
+    /// The others' prediction of vehicle `j`, with all reports delayed by `age`.
     [[nodiscard]] Predicted seen_of(std::size_t j, double age)
     {
         const State seen = told(vehicles_[j]);
@@ -123,7 +123,7 @@ private:
         heard.state.position = seen.at.cast<float>();
         heard.state.velocity = seen.velocity.cast<float>();
         heard.loop = filters_[j].settings().loop;
-        // Those that were on their way when the state was told; each stands for as many as have to share its place.
+        // Commands in transit at the time of the state; each represents as many as must share its slot.
         const Vehicle& v = vehicles_[j];
         const auto tick = std::llround(now_ / scene_.plant.period);
         const auto told_at = tick - std::llround(age / scene_.plant.period);

@@ -7,7 +7,7 @@
 
 #include "tests/property/core/orca/closed_loop.hpp"
 
-// Scenes flown by tests: what came of them printed, and what always has to hold expected.
+// Scenes flown by tests: prints the outcomes and expects the general properties.
 
 namespace jink::orca::closed_loop {
 
@@ -39,13 +39,13 @@ inline Outcome fly(const char* name, const Scene& scene)
     return outcome;
 }
 
-/// Two vehicles that change places, exactly head-on.
+/// Two vehicles that exchange places, exactly head-on.
 inline std::vector<Agent> head_on(const Vec3d& half_way, const Vec3d& middle)
 {
     return {{middle - half_way, middle + half_way}, {middle + half_way, middle - half_way}};
 }
 
-/// Two walls beside the way along x that leave 2.6 m between them (S2).
+/// Two walls beside the path along x with a gap of 2.6 m (S2).
 inline std::vector<Body> corridor()
 {
     return {{Vec3d(0, 1.65, 2), Vec3d(2, 0.35, 2)}, {Vec3d(0, -1.65, 2), Vec3d(2, 0.35, 2)}};

@@ -10,24 +10,24 @@
 #include "core/orca/velocity_filter.hpp"
 #include "tests/property/core/geometry/convex_oracle.hpp"
 
-// What is flown in a closed loop, by whom and how, and what came of it.
+// Closed-loop scenes: vehicles, plant and outcome.
 
 namespace jink::orca::closed_loop {
 
 using Vec3d = Eigen::Vector3d;
 
-/// How the world answers. Times in [s].
+/// Response of the world. Times in [s].
 struct Plant {
     double period = 0.025;
-    double sense = 0.0;    ///< everybody's states and commands are told so late
-    double act = 0.0;      ///< commands begin to act so late
+    double sense = 0.0;    ///< delay of all reported states and commands
+    double act = 0.0;      ///< delay until commands take effect
     double lag = 0.0;      ///< of the velocity loop, first order
     double natural = 0.0;  ///< above 0 the velocity loop is of second order: its natural frequency [rad/s]
     double damping = 0.7;  ///< and damping ratio
-    double noise = 0.0;    ///< of what is told of velocities, standard deviation [m/s]
+    double noise = 0.0;    ///< of reported velocities, standard deviation [m/s]
     std::uint64_t seed = 1;
 
-    /// What a filter that knows its plant takes for the lag: the time by which a ramp comes late.
+    /// Lag known to a filter that models its plant: the delay of a ramp response.
     [[nodiscard]] double known_lag() const { return natural > 0.0 ? 2.0 * damping / natural : lag; }
 };
 
@@ -47,7 +47,7 @@ struct Body {
         return radius < 0.0 ? geometry::make_box(centre.cast<float>(), half.cast<float>())
                             : geometry::make_capsule(a.cast<float>(), b.cast<float>(), float(radius));
     }
-    /// No more than distance(), and quickly: stretching does not bring anything nearer than the lesser scale does.
+    /// A fast lower bound of distance(): stretching reduces distances at most by the smaller scale.
     [[nodiscard]] double lower_bound(const Vec3d& point, double stretch) const
     {
         const Vec3d from = point - centre;
@@ -100,38 +100,38 @@ struct Agent {
     double wait = 0.0;  ///< [s] before it sets out
 };
 
-/// What happened.
+/// Outcome of a scene.
 struct Outcome {
     double time = -1.0;         ///< [s] until all were at their goals; -1: never
     double least = 1e9;         ///< distance of two centres [m]
     double least_across = 1e9;  ///< the same across [m]
     double ellipsoid = 1e9;     ///< least of sqrt((across / E_xy)^2 + (height / E_z)^2)
     double cylinder = 1e9;      ///< least of max(across / E_xy, height / E_z)
-    double obstacle = 1e9;      ///< least distance to one, stretched, over what is to be kept
+    double obstacle = 1e9;      ///< least stretched distance to an obstacle, over the required distance
     double climb = 0.0;         ///< fastest vertical velocity [m/s]
     double command_rate = 0.0;  ///< rms of the commands' rate of change [m/s2]
     std::uint64_t solves = 0;
     std::uint64_t warning = 0, conflict = 0, obstacle_relaxed = 0, other = 0;  ///< relaxations
     std::uint64_t outside = 0;  ///< commands that were not finite or faster than allowed
-    std::uint64_t turns = 0;    ///< times a command's rate of change turned round
+    std::uint64_t turns = 0;    ///< number of sign reversals of a command's rate of change
     bool blocked = false;
-    std::vector<double> waits;  ///< [s] longest that each did not get nearer to its goal
-    std::size_t missions = 0;   ///< with Scene::swaps: how often all were at their goals
+    std::vector<double> waits;  ///< [s] longest time without progress to the goal, per vehicle
+    std::size_t missions = 0;   ///< with Scene::swaps: number of times that all were at their goals
 };
 
-/// How others are told of.
+/// Kind of reports about other vehicles.
 enum class Told : std::uint8_t {
-    velocity,  ///< and fly on at it (CONST_VEL of G-ORCA 11.4)
-    commands,  ///< and the last of their commands, eight at most (BROADCAST)
+    velocity,  ///< velocity, predicted constant (CONST_VEL of G-ORCA 11.4)
+    commands,  ///< velocity and the last commands, eight at most (BROADCAST)
 };
 
-/// One vehicle's tick, for tests that look closer.
+/// One vehicle's tick, for detailed tests.
 struct Watched {
     double now;
     std::size_t vehicle;
     const FilterInput& input;
     const Decision& decision;
-    const VelocityFilter& filter;  ///< once it has decided
+    const VelocityFilter& filter;  ///< after its decision
 };
 
 struct Scene {
@@ -142,9 +142,9 @@ struct Scene {
     double cruise = 0.6;      ///< [m/s]
     double near_goal = 0.15;  ///< [m]
     double until = 60.0;      ///< [s]
-    double e_xy = 0.7;        ///< what is judged: conflict regions [m]
+    double e_xy = 0.7;        ///< judged conflict regions [m]
     double e_z = 0.45;
-    bool knows_delay = true;  ///< own commands on their way, and the others' velocities, are reckoned with
+    bool knows_delay = true;  ///< accounts for own commands in transit, and the others' velocities
     Told told = Told::velocity;
     bool there_and_back = false;
     bool swaps = false;  ///< once all are at their goals, each gets the start of another one for its next
@@ -169,7 +169,7 @@ inline FilterSettings testbed_settings()
     return s;
 }
 
-/// Vehicles on a circle that change places with those across.
+/// Vehicles on a circle that exchange places with the opposite vehicle.
 inline std::vector<Agent> on_a_circle(std::size_t count, double radius, double height)
 {
     std::vector<Agent> agents;

@@ -23,7 +23,7 @@ class ExchangeLaws : public Precision<Real> {
 };
 TYPED_TEST_SUITE(ExchangeLaws, Precisions);
 
-/// Half-spaces of which the first `soft` never give way, and four of them that contradict each other.
+/// Half-spaces of which the first `soft` never yield, and four contradicting ones.
 struct Contradiction {
     std::vector<Row> rows;
     std::vector<float> yields;
@@ -159,7 +159,7 @@ TYPED_TEST(ExchangeLaws, WhatIsNoCornerIsSaid)
     }
     EXPECT_FALSE(ends(flat, 0));
     std::vector<Row> agree = corners;
-    agree[0].normal = -agree[0].normal;  // all look the same way
+    agree[0].normal = -agree[0].normal;  // all have the same direction
     EXPECT_FALSE(ends(agree, 0));
 }
 

@@ -8,8 +8,8 @@
 #include "tests/oracle/map_of_hulls.hpp"
 #include "tests/property/core/geometry/convex_oracle.hpp"
 
-// Theorem 7.2.1: a velocity that keeps to all half-spaces meets no convex piece within the horizon. Judged by distances
-// in double precision (Wolfe's method) along the way.
+// Theorem 7.2.1: a velocity within all half-spaces has no contact with a convex piece within the horizon. Judged by
+// distances in double precision (Wolfe's method) along the path.
 
 namespace jink::orca {
 namespace {
@@ -75,7 +75,7 @@ ObstacleSettings any_settings(Random& random)
     return settings;
 }
 
-/// The velocity at which the envelope touches the plane's obstacle at its nearest point when the horizon ends.
+/// The velocity at which the envelope contacts the plane's obstacle at its nearest point at the end of the horizon.
 Vec3 touching(const HalfSpace& plane, float stretch)
 {
     const Vec3 towards = -plane.normal;
@@ -95,7 +95,7 @@ bool admitted(Random& random, const ObstaclePlanes& planes, float stretch, float
             velocity = go::in_cube(random, 1.0F);
             velocity *= most * random.uniform() / std::max(velocity.norm(), 1e-3F);
         }
-        // Onto the border of what it breaks, a few times over.
+        // Repeatedly onto the border of a violated half-space.
         for (int round = 0; round < 8; ++round) {
             for (const HalfSpace& plane : planes.planes) {
                 velocity += std::max(0.0F, plane.violation(velocity)) * plane.normal;
@@ -151,7 +151,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
             ASSERT_GE(nearest, double(envelope.radius) - 2e-5) << "case " << n << " at " << t << " s";
         }
         border += nearest < double(envelope.radius) + 1e-3 ? 1 : 0;
-        // And the check along the way agrees.
+        // The check along the path agrees.
         WorkBudget plenty(10'000'000);
         const WayClearance way =
             clearance_along({&map.map(), {}}, own.position, 0.999F * velocity, settings.horizon, settings, plenty);
@@ -160,7 +160,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
     std::cout << flown << " velocities flown, " << border << " to the border, " << truncated << " with a speed cap\n";
     EXPECT_GT(flown, go::case_count(GetParam() ? 60 : 300) / 5);
     EXPECT_GT(border, flown / 20);
-    // Rare, where there is room for all: not in a tenth of the cases.
+    // Rare if the capacity suffices for all: below a tenth of the cases.
     EXPECT_TRUE(truncated > 0 || go::case_count(300) < 300);
 }
 
@@ -187,7 +187,7 @@ TEST(Theorem, OneHalfSpaceIsTangentToWhatIsForbidden)
         if (distance < double(envelope.radius) + 1e-3 || planes.planes.empty()) {
             continue;
         }
-        // Fly along the stretched normal for the whole horizon at the bound: the envelope ends up touching.
+        // Fly along the stretched normal for the whole horizon at the bound: the envelope ends in contact.
         const HalfSpace& plane = planes.planes[0];
         const Vec3d end =
             own.position.cast<double>() + touching(plane, envelope.stretch).cast<double>() * double(settings.horizon);
@@ -196,8 +196,8 @@ TEST(Theorem, OneHalfSpaceIsTangentToWhatIsForbidden)
     }
 }
 
-/// How long a way is clear, against small steps in double precision: never later than the first contact, and not much
-/// earlier where it does not say that it is a bound.
+/// Clear duration of a path, against small steps in double precision: never later than the first contact, and not much
+/// earlier unless marked as a bound.
 TEST(ClearanceAlong, EndsAtTheFirstContact)
 {
     Random random(go::seed_of(24));
@@ -232,7 +232,7 @@ TEST(ClearanceAlong, EndsAtTheFirstContact)
         clear += way.clear ? 1 : 0;
         ASSERT_LE(double(way.clear_until), std::min(contact, double(settings.horizon)) + 1e-4) << "case " << n;
         if (!way.clear && !way.bounded) {
-            // Where it ends the envelope is as good as touching.
+            // At its end the envelope is nearly in contact.
             const Vec3d end = position.cast<double>() + double(way.clear_until) * velocity.cast<double>();
             ASSERT_LE(true_distance(hulls, end, stretch, 1e9), double(envelope.radius) + 1e-3) << "case " << n;
         }
@@ -243,7 +243,7 @@ TEST(ClearanceAlong, EndsAtTheFirstContact)
     EXPECT_LT(bounded, go::case_count(300) / 50 + 2);
 }
 
-/// In the margin, whatever is asked for leads out of it.
+/// Inside the margin, every preferred velocity gives a command out of the margin.
 TEST(Theorem, RecoveryLeadsAway)
 {
     Random random(go::seed_of(25));

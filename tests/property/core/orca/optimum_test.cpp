@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The incremental programs by themselves, in both precisions: what they return is feasible, and nothing near it is
-// better.
+// The incremental programs alone, in both precisions: results are feasible, and no nearby point is better.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +15,7 @@ namespace {
 
 using namespace precision;
 
-/// Half-spaces and balls about a point that all of them leave free by `room`.
+/// Half-spaces and balls about a point that is inside all of them by `room`.
 struct Roomy {
     Vec3 inside = Vec3::Zero();
     std::vector<Row> rows;
@@ -63,7 +62,7 @@ struct Roomy {
         double best = 1e9;
         for (int k = 0; k < 120; ++k) {
             Eigen::Vector3d way = unit_vector(random).cast<double>();
-            // Into what is free, more often than chance has it.
+            // Towards the feasible set, more often than by chance.
             if (k % 3 == 0) {
                 way = (way * 0.5 + (inside.cast<double>() - x)).normalized();
             }
@@ -116,7 +115,7 @@ TYPED_TEST(OptimumLaws, TheOptimumIsFeasibleAndNothingNearItIsBetter)
         ASSERT_LE(c.outside(x), TestFixture::kOutside) << "seed " << kOptimumSeed << ", case " << i;
         ASSERT_LE(c.objective(x), c.best_near(x, random) + TestFixture::kWorse)
             << "seed " << kOptimumSeed << ", case " << i;
-        // What holds it alone gives it again.
+        // The active constraints alone give the same result.
         std::vector<RowOf<TypeParam>> alone;
         for (std::size_t k = 0; k < found.basis.size; ++k) {
             ASSERT_LT(found.basis.rows[k], rows.size());
@@ -224,7 +223,7 @@ TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
             const Eigen::Vector3d wanted = (0.6F * axis + 0.8F * across).template cast<double>();
             EXPECT_LT((got - wanted).norm(), 2e-6) << farthest;
         }
-        // A plane across the axis, and a goal along its normal: every point of what it cuts off is as good.
+        // A plane across the axis, and a goal along its normal: every point of the cut is equally good.
         const std::vector<RowOf<TypeParam>> rows = rows_as<TypeParam>({{axis, 0.5F}});
         WorkBudget budget(kEnoughWork);
         Vec3Of<TypeParam> x;
@@ -236,7 +235,7 @@ TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
         EXPECT_NEAR(axis.cast<double>().dot(got), 0.5, 2e-6);
         EXPECT_LE(got.norm(), 1.0 + 2e-6);
     }
-    // Discs of one plane that overlap only beside both centres: the middle of what they share.
+    // Discs of one plane that overlap only beside both centres: the middle of their overlap.
     const std::vector<Ball> beside{{Vec3(-1, 0, 0), 1.2F}, {Vec3(1.5F, 0, 0), 1.7F}};
     const std::vector<RowOf<TypeParam>> level = rows_as<TypeParam>({{Vec3::UnitZ(), 0.0F}});
     WorkBudget budget(kEnoughWork);

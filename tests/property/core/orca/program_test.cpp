@@ -104,7 +104,7 @@ double distance(const Vec3& a, const std::array<double, 3>& b)
     return (a.cast<double>() - Eigen::Vector3d(b[0], b[1], b[2])).norm();
 }
 
-/// What the worst of many cases came to.
+/// Worst values over many cases.
 struct Tally {
     std::uint64_t cases = 0, feasible = 0, relaxed = 0, hard_relaxed = 0, on_edge = 0;
     double optimum = 0.0, objective = 0.0, violation = 0.0, least = 0.0;
@@ -121,9 +121,9 @@ struct Tally {
     }
 };
 
-constexpr double kEdge = 1e-5;  // [m/s] of room or contradiction, within which a level may give way or not
+constexpr double kEdge = 1e-5;  // [m/s] of slack or contradiction, within which a level may yield or not
 
-/// The question with every half-space moved by what rounding may be: into what is free, or out of it.
+/// The question with every half-space moved by the rounding bound: into the feasible set, or out of it.
 oracle::Question moved(const Case& c, oracle::Question q, double sign)
 {
     for (oracle::Plane& plane : q.planes) {
@@ -147,7 +147,7 @@ void compare_optimum(const Case& c, const oracle::Question& q, const Solution& s
 {
     ++tally.feasible;
     ASSERT_EQ(solution.status, 0U) << where;
-    // From the point with most room.
+    // From the point with the largest slack.
     const std::array<double, 3> inside = oracle::least_violation(q, 0, 1e-6).x;
     const std::array<double, 3> best = oracle::nearest(q, inside);
     const double off = distance(solution.velocity, best);
@@ -187,7 +187,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     first.planes.resize(hard);
     const oracle::Least hards = hard > 0 ? oracle::least_violation(first, 0) : oracle::Least{true, -1.0, {}};
     if (!hards.hard_hold) {
-        ++tally.on_edge;  // the balls touch in a point
+        ++tally.on_edge;  // the balls have a single common point
         return;
     }
     if (std::fabs(hards.d) < kEdge) {
@@ -242,8 +242,8 @@ TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)
     }
 }
 
-/// With any budget: a finite velocity within the balls, the same as ever or kWorkLimit, no more spent than was given,
-/// and no half-space broken that is not said to be.
+/// With any budget: a finite velocity within the balls, the usual result or kWorkLimit, no more spent than given, and
+/// every violated half-space reported.
 TEST(ProgramLaws, WhateverTheBudget)
 {
     const std::uint64_t seed = from_environment("JINK_SEED", 20261123);
@@ -282,7 +282,7 @@ TEST(ProgramLaws, WhateverTheBudget)
     std::printf("at most %u units, seed %llu\n", most, static_cast<unsigned long long>(seed));
 }
 
-/// The same half-space again and again, opposite ones, and what two vehicles in one place ask for.
+/// Repeated half-spaces, opposite ones, and those of two vehicles at one place.
 TEST(ProgramLaws, SameAndOppositeHalfSpaces)
 {
     Random random(20261124);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flights of Alejo 8.3 and 8.5 (E1 to E6) with half a second of delay, on a velocity loop of second order: what
-// reckoning with the delay is worth. The source draws their plans and gives no coordinates; speeds, walls and pillars
-// are ours. Separations are judged as the source does, across or in height (E of table 8.1), so the cover of the
-// cylinder is flown.
+// Flights of Alejo 8.3 and 8.5 (E1 to E6) with half a second of delay, on a velocity loop of second order: the benefit
+// of accounting for the delay. Alejo draws their plans without coordinates; speeds, walls and pillars are our choice.
+// Separations are judged as by Alejo, across or in height (E of table 8.1), so the cover of the cylinder is flown.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -39,7 +38,7 @@ FilterSettings flight_settings(Parameters which)
     return s;
 }
 
-/// Vehicles are told of 0.2 s late, and commands act 0.3 s later.
+/// Reports of vehicles are 0.2 s late, and commands act 0.3 s later.
 Scene flight(Parameters which)
 {
     Scene scene;
@@ -171,8 +170,8 @@ Scene crossing_of_four(Parameters which)
     return scene;
 }
 
-/// E3 REFERENCE: oscillation as in E1, deadlocks of about 10 s, small violations. The first; 9 s of standing in one of
-/// 200 noises (JINK_CASES=200 JINK_SEED=5000); violations stay within the cover.
+/// E3 REFERENCE: oscillation as in E1, deadlocks of about 10 s, small violations. The first; 9 s of standstill for one
+/// of 200 noise seeds (JINK_CASES=200 JINK_SEED=5000); violations stay within the cover.
 TEST(PublishedFlight, E3)
 {
     const Comparison c = compare("E3", crossing_of_four(Parameters::preliminary), noises(10));
@@ -182,7 +181,7 @@ TEST(PublishedFlight, E3)
 }
 
 /// E4 REFERENCE: out and back, oscillation much reduced, both passes alike but not the same. Not reproduced: it passed
-/// sideways, with more than 2 m most of the time; ours takes the shorter way in height.
+/// sideways, with more than 2 m most of the time; ours takes the shorter path in height.
 TEST(PublishedFlight, E4)
 {
     Scene scene = flight(Parameters::final_ones);

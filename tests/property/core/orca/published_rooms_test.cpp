@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulations of Alejo 7.3 among obstacles (S3 to S5), flown by VelocityFilter. The source draws its rooms and gives no
-// coordinates: these are the G-ORCA specification's of section 19.1.
+// Simulations of Alejo 7.3 among obstacles (S3 to S5), flown by VelocityFilter. Alejo draws the rooms without
+// coordinates: these are from the G-ORCA specification, section 19.1.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -32,7 +32,7 @@ Scene room(std::size_t vehicles)
 }
 
 /// Manoeuvres as section 19.1 counts them: the command off the preferred velocity by more than 0.05 m/s, gaps of less
-/// than 1 s left out; and half-spaces of others or of obstacles are what holds it, or each start would be one.
+/// than 1 s ignored; and half-spaces of others or of obstacles are active, otherwise each start would count.
 class Manoeuvres {
 public:
     void watch(const Watched& tick)
@@ -60,7 +60,7 @@ public:
         open->second.last = tick.now;
         open->second.with.insert(with.begin(), with.end());
     }
-    /// Those with other vehicles alone: Table 7.1 tells how many were involved.
+    /// Only manoeuvres with other vehicles: Table 7.1 gives the number involved.
     void finish()
     {
         for (const auto& [vehicle, one] : open_) {
@@ -97,8 +97,8 @@ private:
 };
 
 /// S3 REFERENCE, Table 7.1: 55 manoeuvres in 600 s, 9.56 s each, 2.81 vehicles involved; least separations 0.853 to
-/// 1.17 m across or in height, 0.81 to 0.87 m to obstacles where 0.8 m is asked for. Separations hold; manoeuvres hang
-/// on a room and a mission that are not published.
+/// 1.17 m across or in height, 0.81 to 0.87 m to obstacles with 0.8 m required. Separations hold; manoeuvres depend on
+/// an unpublished room and mission.
 TEST(PublishedRoom, S3)
 {
     Scene scene = room(4);
@@ -124,7 +124,7 @@ TEST(PublishedRoom, S3)
 }
 
 /// S4 REFERENCE: 8 vehicles, at least 1.12 m between vehicles and 1.02 m to obstacles. The latter to 2 %; between
-/// vehicles what is asked for, 0.7 m across or 0.45 m in height, is used up.
+/// vehicles the minimum, 0.7 m across or 0.45 m in height, is reached.
 TEST(PublishedRoom, S4)
 {
     const Scene scene = room(8);
@@ -135,7 +135,7 @@ TEST(PublishedRoom, S4)
     EXPECT_EQ(o.conflict + o.obstacle_relaxed, 0U);
 }
 
-/// 12 hulls of 0.5 to 1.5 m on a disc of 5.8 m, 1.9 m of room between any two.
+/// 12 hulls of 0.5 to 1.5 m on a disc of 5.8 m, gaps of 1.9 m between any two.
 std::vector<Body> random_hulls(Random& random)
 {
     constexpr std::size_t kHulls = 12;
@@ -150,7 +150,7 @@ std::vector<Body> random_hulls(Random& random)
             fits = fits && (at - bodies[i].centre).norm() >= radius + radii[i] + kGap;
         }
         if (!fits) {
-            if (random.below(20'000) == 0) {  // no room left for one more: all anew
+            if (random.below(20'000) == 0) {  // no space left for another hull: starts again
                 bodies.clear();
                 radii.clear();
             }

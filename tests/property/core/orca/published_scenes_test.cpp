@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Simulations of Alejo 7.3 without a room around them (S1, S2, S6), and the prototype's results of the G-ORCA
-// specification's section 10, flown by VelocityFilter. What is not reproduced says so;
-// docs/evidence/reproduction_alejo.md has it all.
+// Simulations of Alejo 7.3 without surrounding walls (S1, S2, S6), and the prototype's results of the G-ORCA
+// specification's section 10, flown by VelocityFilter. Results that are not reproduced are marked;
+// docs/evidence/reproduction_alejo.md has all.
 #include <gtest/gtest.h>
 
 #include "tests/property/core/geometry/oracle.hpp"
@@ -84,7 +84,7 @@ TEST(PublishedScene, EveryExactHeadOnStartEnds)
     EXPECT_LT(slowest, 25.0);
 }
 
-/// Section 10, S2 REFERENCE: 17.0 s by a change of altitude, obstacle margin 1.02 of what is to be kept; at every
+/// Section 10, S2 REFERENCE: 17.0 s by a change of altitude, obstacle margin 1.02 of the required distance; at every
 /// instant apart across or in height (Alejo 7.3).
 TEST(PublishedScene, S2)
 {
@@ -98,8 +98,8 @@ TEST(PublishedScene, S2)
     EXPECT_EQ(o.conflict + o.obstacle_relaxed, 0U);
 }
 
-/// Section 10, S2 with the sideways bias alone: the prototype is stuck, as the walls leave no room for it. Not
-/// reproduced: in single precision the balance does not last, and it ends by a change of altitude, but later.
+/// Section 10, S2 with the sideways bias alone: the prototype is stuck, as the walls leave no space. Not reproduced: in
+/// single precision the balance does not last, and the scene ends by a later change of altitude.
 TEST(PublishedScene, S2WithTheSidewaysBiasAlone)
 {
     Scene scene = swap_scene();
@@ -210,9 +210,9 @@ TEST(PublishedScene, S6WithRadiiPerVehicle)
     EXPECT_EQ(o.conflict, 0U);
 }
 
-/// Not reproduced: with half-spaces about the present velocities the speed is capped for the three neighbours without
-/// one as long as they may be met within the horizon, and all crawl. With room for all 19 (JINK_MAX_ORCA_NEIGHBOURS=32)
-/// it takes 27.5 s. Nobody comes near anybody.
+/// Not reproduced: with half-spaces about the present velocities the speed is capped for the three neighbours without a
+/// half-space while a conflict is possible within the horizon, and all crawl. With capacity for all 19
+/// (JINK_MAX_ORCA_NEIGHBOURS=32) it takes 27.5 s. No two vehicles come near each other.
 TEST(PublishedScene, S6AboutPresentVelocitiesCrawls)
 {
     Scene scene = circle_of_ten_metres(20, Conflict::present);

@@ -12,8 +12,7 @@
 #include "core/orca/velocity_filter.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
-// Random ticks of VelocityFilter: settings that are accepted, what a vehicle may see at one instant, and what its
-// command has to keep to.
+// Random ticks of VelocityFilter: accepted settings, a vehicle's inputs at one instant, and constraints of its command.
 
 namespace jink::orca::random_tick {
 
@@ -74,7 +73,7 @@ struct Box {
     Vec3 half;
 };
 
-/// Everything of one tick; `input` looks into the rest once seen() has been called.
+/// All data of one tick; `input` refers to the other members after seen().
 struct Seen {
     FilterSettings settings;
     FilterInput input;
@@ -113,7 +112,7 @@ inline Seen random_seen(Random& random, std::size_t crowd)
         n.max_speed = random.uniform(0.5F, 5.0F);
         n.velocity = in_ball(random, n.max_speed);
         n.half_width = random.uniform(0.2F, 1.0F);
-        // The pair's region as stretched as is let pass.
+        // The pair's region within the accepted stretch.
         n.half_height = n.half_width * random.uniform(0.4F, 1.5F);
         n.id = static_cast<std::uint32_t>(out.neighbours.size() * 37 + 300);
         n.cooperative = random.below(5) != 0;
@@ -143,7 +142,7 @@ inline Decision decide(Seen& tick, std::uint32_t units = 1'000'000)
     return decide(filter, tick, units);
 }
 
-/// What says that a level is broken.
+/// Status bits of a broken level.
 inline constexpr std::array<std::uint32_t, kLevels> kSaid{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
                                                           kRelaxedWarning};
 
@@ -167,7 +166,7 @@ inline ::testing::AssertionResult is_flyable(const Decision& decision, const Mot
     return ::testing::AssertionFailure() << "command of " << speed << " m/s, changed by " << change;
 }
 
-/// Half-spaces of the vehicles that select() chooses, and of bounds, made anew.
+/// Half-spaces of the vehicles chosen by select(), and of bounds, recomputed.
 inline std::vector<HalfSpace> planes_of(Seen& tick)
 {
     const FilterInput& input = tick.seen();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Smoothing in the filter's loop (G-ORCA specification, section 12): what comes out keeps to everything hard, and is
-// late by what is said.
+// Smoothing in the filter's loop (G-ORCA specification, section 12): the output satisfies all hard constraints, and has
+// the documented delay.
 #include <gtest/gtest.h>
 
 #include "core/orca/obstacle_way.hpp"
@@ -13,7 +13,7 @@ namespace {
 
 using namespace closed_loop;
 
-/// Looks at every command of a flight: slew and speed, obstacles and conflict regions, made anew from what was seen.
+/// Checks every command of a flight: slew and speed, obstacles and conflict regions, recomputed from the inputs.
 class HardLevels {
 public:
     explicit HardLevels(std::size_t vehicles) : last_(vehicles, Vec3::Zero()) {}
@@ -105,7 +105,7 @@ TEST(SmoothingLoop, CommandsKeepToAllThatIsHard)
     fly_watched("16 on a circle, about rest", scene);
 }
 
-/// (N - 1) / 3 periods, which is what settings.delay has to count for it.
+/// (N - 1) / 3 periods, which settings.delay must include.
 TEST(SmoothingLoop, ASlowChangeComesAsLateAsIsSaid)
 {
     for (const std::size_t length : {2U, 10U, 32U}) {

@@ -18,7 +18,7 @@ Vec3 random_velocity(Random& random, float most)
     return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
 }
 
-/// Eq. 8.3 with its weights, of whatever there is.
+/// Eq. 8.3 with its weights, over the available commands.
 Eigen::Vector3d mean_of(const std::deque<Vec3>& commands)
 {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -38,7 +38,7 @@ TEST(CommandFilterLaws, IsTheWeightedMeanForLong)
         CommandFilter filter(length);
         std::deque<Vec3> last;
         for (int i = 0; i < 50'000; ++i) {
-            // Stretches of large and of small speeds: what is left of the large ones would show.
+            // Alternating large and small speeds: remainders of large ones would be visible.
             const Vec3 command = random_velocity(random, i / 1500 % 2 == 0 ? 20.0F : 0.01F);
             last.push_back(command);
             if (last.size() > length) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter's tick with any budget, and with numbers that are none. JINK_CASES and JINK_SEED are taken.
+// The filter's tick with any budget, and with non-finite values. JINK_CASES and JINK_SEED are used.
 #include "core/orca/velocity_filter.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@ using namespace random_tick;
 using geometry::oracle::case_count;
 using geometry::oracle::seed_of;
 
-/// Budgets of any size: flyable, the budget kept to but for what is said, and nothing broken that is not told.
+/// Budgets of any size: the command is flyable, the budget is kept up to the documented excess, and every violation is
+/// reported.
 TEST(VelocityFilterFaultLaws, NoBudgetBreaksTheContract)
 {
     Random random(seed_of(7));
@@ -30,7 +31,7 @@ TEST(VelocityFilterFaultLaws, NoBudgetBreaksTheContract)
         if (units == 0) {
             ASSERT_TRUE(out_of_work);
         }
-        // What was never looked at is capped or told; what was has its half-space.
+        // Unchecked obstacles are capped or reported; checked ones have their half-space.
         const std::uint32_t unlooked = kObstaclesTruncated | kNeighboursTruncated;
         if ((decision.status & unlooked) != 0 || out_of_work) {
             continue;
@@ -47,7 +48,7 @@ TEST(VelocityFilterFaultLaws, NoBudgetBreaksTheContract)
     EXPECT_GE(limited, count / 10);
 }
 
-/// One number of a tick is none, or huge: said or harmless, and flyable.
+/// One value of a tick is non-finite or huge: reported or without effect, and the command is flyable.
 TEST(VelocityFilterFaultLaws, NumbersThatAreNoneDoNotGetThrough)
 {
     Random random(seed_of(8));

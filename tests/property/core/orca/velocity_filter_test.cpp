@@ -97,7 +97,7 @@ TEST(VelocityFilterLaws, CommandsAreFlyableAndBreakNoMoreThanTheySay)
     }
 }
 
-/// The identity wherever the preferred velocity keeps to everything, near or far: nothing else is changed.
+/// The identity wherever the preferred velocity satisfies all constraints, near or far.
 TEST(VelocityFilterLaws, WhatKeepsToEverythingIsLeftAlone)
 {
     Random random(seed_of(2));
@@ -134,7 +134,7 @@ TEST(VelocityFilterLaws, WhatKeepsToEverythingIsLeftAlone)
     EXPECT_GE(near, count / 20);
 }
 
-/// A flight of several ticks twice over: the same to the bit, whatever another filter did between.
+/// A flight of several ticks twice: bit-identical, independent of another filter in between.
 TEST(VelocityFilterLaws, TheSameCallsGiveTheSameAnswers)
 {
     Random random(seed_of(3));
@@ -164,8 +164,8 @@ TEST(VelocityFilterLaws, TheSameCallsGiveTheSameAnswers)
     }
 }
 
-/// How far apart answers to the same question may be: an optimum among nearly parallel half-spaces is a long edge that
-/// rounding leaves open, so few are let off; never what it breaks.
+/// Tolerance between answers to the same question: an optimum among nearly parallel half-spaces is a long edge that
+/// rounding does not resolve, so a few deviations are permitted, but no violations.
 struct Apart {
     std::size_t far = 0;
     float worst = 0.0F;
@@ -270,7 +270,7 @@ TEST(VelocityFilterLaws, MirroredAndTurnedTheCommandIsToo)
     turns.check("turned", count);
 }
 
-/// Two that see nobody but each other: what one does is the opposite of what the other does, also stalled for long.
+/// Two vehicles alone: their commands are opposite, also after a long stall.
 TEST(VelocityFilterLaws, APairDoesOppositeThings)
 {
     Random random(seed_of(6));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers of twice single precision against double: each operation alone, and what cancels.
+// Double-float numbers against double: each operation alone, and cancellation.
 #include "core/orca/wide.hpp"
 
 #include <cmath>
@@ -58,7 +58,8 @@ TEST(Wide, RootOfNothingAndOfLess)
     EXPECT_EQ(sqrt(Wide(-1.0F)), Wide(0.0F));
 }
 
-/// What single precision makes 0 of: a product of three numbers beside 1 less the same with its last bit turned.
+/// Differences that single precision rounds to 0: a product of three numbers near 1 less the same with its last bit
+/// flipped.
 TEST(Wide, VectorsOfItKeepWhatCancels)
 {
     Random random(20261126);

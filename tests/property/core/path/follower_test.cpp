@@ -96,7 +96,7 @@ TEST(FollowerLaws, StaysNearTheTimedPointOfAFeasibleCurve)
     EXPECT_GT(slower.flown, 10000);
     EXPECT_LE(slower.modest, 0.25F);
     EXPECT_LE(slower.full, 0.4F);
-    // What a corner costs is not caught up with at cruise speed.
+    // The lag from a corner is not recovered at cruise speed.
     const Worst at_cruise = worst_tracking(1.0F);
     EXPECT_GT(at_cruise.flown, 10000);
     EXPECT_LE(at_cruise.modest, 0.4F);
@@ -131,7 +131,7 @@ TEST(FollowerLaws, APositionErrorDiesAway)
     }
 }
 
-/// Whatever the path and wherever the vehicle is.
+/// For any path and vehicle position.
 TEST(FollowerLaws, CommandsStayWithinLimits)
 {
     for (std::uint64_t seed = 1; seed <= 20000; ++seed) {

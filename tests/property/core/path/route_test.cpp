@@ -88,7 +88,7 @@ TEST(Route, LiesWhereItsSegmentsDo)
             const RoutePoint point = chain.route.at(static_cast<float>(chain.at[k]));
             ASSERT_LE((point.position.cast<double>() - chain.points[k]).norm(), 2e-3) << "case " << i << " at " << k;
             ASSERT_NEAR(point.along.norm(), 1.0F, 1e-5F);
-            // At a joint, rounding says which of its two tangents is told.
+            // At a joint, rounding decides which of its two tangents is returned.
             if (k > 0 && k + 2 < chain.points.size() && chain.of[k + 2] == chain.of[k - 1] &&
                 chain.at[k + 2] - chain.at[k - 1] > 2.5 * kStep) {
                 const Vec3d chord = chain.points[k + 1] - chain.points[k];
@@ -163,7 +163,7 @@ TEST(Route, SidesAreCarriedWithoutTwist)
             from = to;
         }
         ASSERT_LE((side - first).norm(), 1e-3F) << "case " << i;
-        // Level plane: what points up goes on pointing up.
+        // Level plane: an upward vector stays upward.
         ASSERT_NEAR(carried(Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY()).z(), 1.0F, 1e-6F);
     }
 }
@@ -206,7 +206,7 @@ TEST(Route, GoesOnStraightPastItsEnds)
     EXPECT_LE((beyond.along - Vec3::UnitY()).norm(), 1e-5F);
 }
 
-/// Two legs side by side: what was pushed off the one being flown is not taken to be on the other.
+/// Two parallel legs: a vehicle pushed off the present leg is not matched to the other.
 TEST(Route, HairpinIsNotCutShort)
 {
     Route route;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Merged constraints: whatever was in one of them, at any time, is in the one that they became.
+// Merged constraints: every point of either constraint, at any time, is in the merged constraint.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,7 +86,7 @@ TEST(BarrelTableLaws, NothingIsLostInAMerge)
     EXPECT_GT(closed, 50000U);
 }
 
-/// What comes within range at some time is active.
+/// A constraint that comes within range at some time is active.
 TEST(BarrelTableLaws, WhatComesNearIsActive)
 {
     constexpr std::uint64_t kSeed = 9;

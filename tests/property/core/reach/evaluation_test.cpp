@@ -71,7 +71,7 @@ struct RandomTree {
     }
 };
 
-/// What one of the source's four passes says, of a node and of all cells.
+/// Result of one of Gomola's four passes, for a node and for all cells.
 struct Pass {
     std::vector<bool> node;
     std::vector<bool> cell;
@@ -134,7 +134,7 @@ TEST(EvaluationLaws, OnePassIsFour)
     EXPECT_GT(free_nodes, 100000U);
 }
 
-/// What is chosen is free, ends (or passes) where the rule says, and nothing cheaper does.
+/// The choice is free, ends (or passes) as the rule requires, and no cheaper trajectory does.
 TEST(EvaluationLaws, TheChoiceIsTheCheapestOfTheBestCell)
 {
     constexpr std::uint64_t kSeed = 5;

@@ -48,7 +48,7 @@ void every_point_lies_in_its_cell(int count, T slack)
         ASSERT_LT(grid.index(p), grid.cells());
         const T near = slack * grid.distance();
         ASSERT_TRUE(within(polar.distance, grid.layer_start(p.layer), grid.layer_end(p.layer), near)) << "case " << i;
-        // Near the vehicle angles are what rounding makes of them.
+        // Near the vehicle rounding dominates the angles.
         const T angle = slack * (T(1) + grid.distance() / std::max(polar.distance * std::cos(polar.vertical), T(1e-3)));
         ASSERT_TRUE(within(polar.horizontal, grid.column_start(p.column), grid.column_start(p.column + 1U), angle))
             << "case " << i;

@@ -90,7 +90,7 @@ TEST(MovementLaws, MirroredOrdersFlyMirroredPathsOfTheSameLength)
     }
 }
 
-/// Section 16.1: n movements are n long along their arcs, whatever they turn; with either model their chords no longer.
+/// Section 16.1: n movements have arc length n for any turns; with either model their chords are not longer.
 TEST(MovementLaws, NMovementsAreNLong)
 {
     constexpr std::uint64_t kSeed = 8;

@@ -54,8 +54,8 @@ ScanStart straight_ahead(float unit = 1.0F)
     return start;
 }
 
-/// A ray in every direction of a sensor that sees `up` and `across` to either side: from nowhere, but for those near
-/// `hit`, which end there.
+/// A ray in every direction of a sensor with fields of view `up` and `across` to either side: no returns, except for
+/// rays near `hit`, which end there.
 void look_around(
     ScanPicture& picture, const std::vector<Vec3>& hits = {}, float across = 1.2F, float up = 0.6F,
     const std::function<bool(const Vec3&)>& is_fired = [](const Vec3&) { return true; })
@@ -115,7 +115,7 @@ TEST(ScanPictures, WhereRaysAreMissingNothingIsSeen)
     GridAlone grid;
     ScanPicture picture;
     ASSERT_TRUE(picture.configure(grid.set.grid));
-    // Half of one direction lost; and a sensor that sees 15 degrees up and down, not the grid's 30.
+    // Half of one direction lost; and a sensor with 15 degrees up and down, not the grid's 30.
     ASSERT_TRUE(picture.begin(straight_ahead()));
     look_around(picture, {}, 1.2F, 0.6F,
                 [](const Vec3& ray) { return !(std::abs(ray.y()) < 0.11F && ray.z() > 0.0F && ray.z() < 0.105F); });
@@ -158,7 +158,7 @@ TEST(ScanPictures, AScanThatCannotBeUsedLeavesTheOneBefore)
     }
 }
 
-/// Moved, turned and of another unit, the picture says of the place of each point what it is.
+/// Moved, turned and with another unit, the range image gives the correct state at the place of each point.
 TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
 {
     std::size_t hits = 0;
@@ -173,7 +173,7 @@ TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
         start.course = random.uniform(-kPi, kPi);
         start.nose = random.uniform(-kPi, kPi);
         ASSERT_TRUE(picture.begin(start));
-        // In the world, then as the sensor sees it.
+        // In the world frame, then in the sensor frame.
         const float azimuth = start.course + random.uniform(-0.7F, 0.7F);
         const float elevation = random.uniform(-0.45F, 0.45F);
         const Vec3 apart =

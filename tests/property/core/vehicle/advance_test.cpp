@@ -130,7 +130,7 @@ TEST(AdvanceLaws, NeverBeyondItsLimits)
             ASSERT_LE(std::abs(change.z()), limits.max_vertical_acceleration * dt * 1.0001F + 1e-5F) << "seed " << seed;
             ASSERT_LE(state.velocity.z(), limits.max_climb * 1.0001F) << "seed " << seed;
             ASSERT_GE(state.velocity.z(), -limits.max_descent * 1.0001F) << "seed " << seed;
-            // The error of the velocity never grows: no overshoot, whatever the step.
+            // The velocity error never grows: no overshoot for any step.
             ASSERT_LE((state.velocity - command).head<2>().norm(), (before.velocity - command).head<2>().norm() + 1e-5F)
                 << "seed " << seed;
         }

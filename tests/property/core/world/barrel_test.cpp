@@ -98,7 +98,7 @@ TEST(BarrelSeparation, NeverOptimisticAndExactInTime)
     EXPECT_GT(inside, case_count(4000) / 50);
 }
 
-/// A barrel that moves as seen from itself: a cylinder that stands, for the general solids' distance (Wolfe's method).
+/// A moving barrel in its own frame: a static cylinder, for the general solids' distance (Wolfe's method).
 TEST(BarrelSeparation, IsTheDistanceOfACylinderInItsOwnFrame)
 {
     const std::uint64_t seed = seed_of(20261124);
@@ -152,7 +152,7 @@ TEST(BarrelSeparation, AtOneInstantIsTheDefinition)
     }
 }
 
-/// The way in double precision: straight to its end, then hovering.
+/// The nominal path in double precision: straight to its end, then hovering.
 Vec3d on_way(const Way& way, double t)
 {
     const double flown = std::min(double(way.speed) * t, double(way.length));
@@ -189,7 +189,7 @@ TEST(BarrelConflict, FindsEachLossAndNeverTooLate)
         WorkBudget budget(kPlenty);
         const bool found = main_conflict(scene.situation(), way, static_cast<float>(lookahead), budget, conflict);
         if (margin(0.0) <= 0.0) {
-            // Inside, only what leaves for good is passed over.
+            // Inside, only motion that leaves for good is skipped.
             const double shrunk = double(kDrawingApart.slack) - margin(0.0);
             for (double t = 0; !found && t <= lookahead; t += 0.02) {
                 ASSERT_GE(margin(t) + std::max(0.0, shrunk - double(kDrawingApart.speed) * t), -1e-3) << "case " << i;

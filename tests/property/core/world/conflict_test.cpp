@@ -15,7 +15,7 @@ using oracle::Vec3d;
 using test::kPlenty;
 using test::Scene;
 
-/// The way in double precision: straight to its end, then hovering.
+/// The nominal path in double precision: straight to its end, then hovering.
 Vec3d place_on_way(const Way& way, double t)
 {
     const double flown = std::min(double(way.speed) * t, double(way.length));
@@ -41,7 +41,7 @@ Scene any_scene(Random& random)
     scene.leg(random.below(2) == 0 ? scene.own.position : in_cube(random, 30.0F), end, random.uniform(0.5F, 15.0F));
     Track& track = scene.track(Vec3::Zero(), in_cube(random, 10.0F), random.uniform(0.0F, 3.0F));
     track.stamp = scene.now - random.uniform(0.0F, 2.0F);
-    // Aimed at some point of the way, more or less.
+    // Aimed near some point of the nominal path.
     const Way way = way_of(scene.situation());
     const Seconds meet = random.uniform(0.0F, 9.0F);
     track.position = place_on_way(way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
@@ -116,7 +116,7 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
     EXPECT_GT(conflicts, case_count(20000) / 5) << "the cases have to be worth something";
 }
 
-/// Inside a margin only what gets out of it, and stays out, may be passed over.
+/// Inside a margin only threats that leave it for good may be skipped.
 TEST(PredictConflict, InsideAMarginOnlyLeavingIsNoConflict)
 {
     const std::uint64_t seed = seed_of(20260722);
@@ -148,7 +148,7 @@ TEST(PredictConflict, InsideAMarginOnlyLeavingIsNoConflict)
     EXPECT_GT(passed_over, case_count(20000) / 50);
 }
 
-/// A solid on the way: seen, and never too late; what is passed over is clear of it.
+/// A solid on the path is detected, never too late; skipped parts are clear of it.
 TEST(MainConflict, SolidsAreFoundInTime)
 {
     const std::uint64_t seed = seed_of(20260723);

@@ -18,7 +18,7 @@ using geometry::oracle::seed_of;
 using geometry::oracle::swept_box_bounds;
 using test::kPlenty;
 
-/// Both ways: what obstacle_margin says of solids is never more than the truth, and less by no more than it promises.
+/// Two-sided: obstacle_margin of solids is never above the true value, and below it by at most its stated accuracy.
 TEST(ObstacleMargin, OfSolidsIsWithinItsFiguresOfTheTruth)
 {
     const std::uint64_t seed = seed_of(20261124);
@@ -44,7 +44,7 @@ TEST(ObstacleMargin, OfSolidsIsWithinItsFiguresOfTheTruth)
         const Vec3 way = random.below(3) == 0 ? Vec3(Vec3::Zero()) : in_cube(random, 4.0F);
         const double first = swept_box_bounds(half, from, from + way, shape, 1e-5).lower;
         if (first > 0.0 && random.below(2) == 0) {
-            // Up to where it nearly touches.
+            // Up to near contact.
             const Vec3 towards = (shape.centre - (from + 0.5F * way)).normalized();
             from += towards * (static_cast<float>(first) - random.uniform(0.0F, 0.08F));
         }
@@ -65,7 +65,7 @@ TEST(ObstacleMargin, OfSolidsIsWithinItsFiguresOfTheTruth)
             near_miss += truth.upper < double(kObstacleResolution) ? 1U : 0U;
         } else if (truth.upper <= 0.0) {
             ASSERT_LT(margin, 0.0) << "seed " << seed << ", case " << i;
-            // What is left of the box is clear; a box larger by the resolution is not.
+            // The reduced box is clear; a box larger by the resolution is not.
             const double largest = double(half.maxCoeff());
             const double left = 1.0 + margin / largest;
             const Vec3 smaller = half * static_cast<float>(left);

@@ -5,7 +5,7 @@
 #include "tests/oracle/route_oracle.hpp"
 #include "tests/property/core/world/separation_oracle.hpp"
 
-// Conflicts with a way along a route against the way walked in small steps, in double precision.
+// Conflicts of a nominal path along a route against sampling in small steps, in double precision.
 
 namespace jink::world {
 namespace {
@@ -18,7 +18,7 @@ using oracle::Vec3d;
 using test::Scene;
 
 constexpr Seconds kAhead = 8.0F;
-/// A chord lies off the way, and the corner of a box that is larger to every side by as much further still.
+/// A chord deviates from the path, and the corner of a box enlarged by this deviation deviates further.
 const double kWider = 1.0 + std::sqrt(3.0);
 
 struct Course {
@@ -50,7 +50,7 @@ struct Course {
         return flown < straight ? Vec3d(way.origin.cast<double>() + flown * way.direction.cast<double>())
                                 : twin.at(double(way.ahead.joined_at) + flown - straight);
     }
-    /// What chords may lie off the way, by the header: half an angle of 0.2 rad, or of a tenth of the turn.
+    /// Largest deviation of chords from the path, by the header: half an angle of 0.2 rad, or of a tenth of the turn.
     [[nodiscard]] double slack() const
     {
         double turn = 0.0;
@@ -207,7 +207,7 @@ TEST(RouteConflict, OneLegIsALeg)
         ASSERT_LE((way.direction - leg.direction).norm(), 1e-4F) << "case " << i;
         ASSERT_NEAR(way.length, leg.length, 1e-3F);
         if (way.ahead.straight < leg.length - 1e-3F) {
-            continue;  // from there on it is the route, and the leg's way goes straight on
+            continue;  // from there on the path is the route, and the leg's path continues straight
         }
         ++compared;
         Conflict along;

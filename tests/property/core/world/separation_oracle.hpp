@@ -10,8 +10,7 @@
 #include "tests/unit/core/world/scene.hpp"
 
 // Margins by brute force in double precision: time is sampled, distances come from their definition (a point and a box
-// by clamping, general solids by Wolfe's method), the growth and the escape rule are written down anew from their
-// headers.
+// by clamping, general solids by Wolfe's method), the growth and the escape rule are reimplemented from their headers.
 
 namespace jink::world::oracle {
 
@@ -45,8 +44,8 @@ inline double radius_of(const Scene& scene, const Track& track, double t)
            0.5 * double(track.max_acceleration) * age * age;
 }
 
-/// Least of margin(t) + what the escape rule takes off the surface, over [0, end], by samples and then around the best
-/// one.
+/// Minimum of margin(t) + the escape rule's reduction of the surface, over [0, end], by samples and refinement around
+/// the best sample.
 template <class Margin>
 double least(const Margin& margin, double end, const EscapeRule& escape, double* when = nullptr)
 {
@@ -108,7 +107,8 @@ inline double track_margin(const Scene& scene, const path::TimedPath& path, std:
     return least([&](double t) { return track_margin_at(scene, path, index, t); }, flight_end(path, horizon), escape);
 }
 
-/// Sphere or capsule, any direction: the nearest point of its axis by golden section (the distance is convex along it).
+/// Sphere or capsule, any direction: the nearest point of its axis by golden section (the distance is convex along the
+/// axis).
 inline double ball_margin_at(const Scene& scene, const path::TimedPath& path, const geometry::Shape& shape, double t)
 {
     const Vec3d own = position_at(path, t);
@@ -144,7 +144,8 @@ inline double solid_distance(const Scene& scene, const path::TimedPath& path, co
     return best;
 }
 
-/// A barrel's body at one instant: out of it sideways and up or down, or the least way out.
+/// Signed distance from a barrel's body at one instant: outside by the level and vertical excess, inside to the nearest
+/// surface.
 inline double barrel_margin_at(const Scene& scene, const Vec3d& own, const Barrel& barrel, double t)
 {
     const Vec3d half = scene.limits.half_extents.cast<double>();
@@ -157,7 +158,7 @@ inline double barrel_margin_at(const Scene& scene, const Vec3d& own, const Barre
     return distance - double(scene.k_sigma) * double(scene.own.sigma_position);
 }
 
-/// What a bound leaves, at one instant.
+/// Margin to a bound at one instant.
 inline double bound_margin_at(const Scene& scene, const Vec3d& own, ThreatKind kind)
 {
     const Airspace& air = scene.airspace;

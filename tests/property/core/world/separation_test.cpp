@@ -109,8 +109,7 @@ double escape_pessimism(const EscapeRule& escape)
     return std::max(0.5 * double(escape.slack), 0.02 * double(escape.speed));
 }
 
-/// How much too small a margin may come out: what growth and the escape rule do within the pieces that they are looked
-/// at in.
+/// Largest conservatism of a margin: growth and escape rule within the pieces of the check.
 double pessimism(const Scene& scene, const Track& track, double end, const EscapeRule& escape, bool inside)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6) + end;
@@ -120,7 +119,7 @@ double pessimism(const Scene& scene, const Track& track, double end, const Escap
 
 struct Expected {
     double least = double(kSeparationCap);   ///< the truth
-    double capped = double(kSeparationCap);  ///< with solids told apart up to kObstacleReach only
+    double capped = double(kSeparationCap);  ///< with solids, distances are resolved up to kObstacleReach only
     double pessimism = 2e-3;
     bool solid_in_contact = false;
     bool solid_starts_inside = false;
@@ -149,7 +148,7 @@ Expected expect(const Case& c, const EscapeRule& escape)
             const double extra = double(c.scene.k_sigma) * double(c.scene.own.sigma_position);
             const double distance = oracle::solid_distance(c.scene, c.path, o.shape, double(c.horizon));
             const double start = oracle::solid_distance(c.scene, c.path, o.shape, 0.0);
-            // Whoever starts clear gets no credit, however near: that is told apart up to rounding.
+            // A start outside gets no escape credit at any distance, exact up to rounding.
             const Vec3& begin = c.path.points.front().position;
             const double rounding =
                 1e-4 + 1e-5 * double((o.shape.centre - begin).cwiseAbs().sum() + c.scene.limits.half_extents.sum() +
@@ -240,8 +239,8 @@ TEST(LeastSeparation, CullingChangesNothing)
     }
 }
 
-/// However small the budget, the answer is never better than with plenty of it; with none and something to look at it
-/// is contact.
+/// For any budget the answer is never better than with a large one. With an empty budget and at least one threat the
+/// answer is contact.
 TEST(LeastSeparation, TinyBudgetsNeverGiveABetterAnswer)
 {
     const std::uint64_t seed = seed_of(20260714);
@@ -283,7 +282,8 @@ TEST(SeparationAt, IsThePlainMarginOfThatInstant)
                 oracle::point_box(threat - own.cast<double>(), c.scene.limits.half_extents.cast<double>());
             least = std::min(least, distance - oracle::radius_of(c.scene, track, double(t)));
         }
-        // Of capsules that lean: the depth inside is not the oracle's, and distances are told apart up to a reach only.
+        // For inclined capsules the depth inside differs from the oracle's, and distances are resolved up to a reach
+        // only.
         double capped = double(kSeparationCap);
         bool overlaps = false;
         const double extra = double(c.scene.k_sigma) * double(c.scene.own.sigma_position);

@@ -146,7 +146,8 @@ struct Tally {
     [[nodiscard]] double chance(int k) const { return 5.0 * std::sqrt(kShare[k] * (1.0 - kShare[k]) / double(all)); }
 };
 
-/// Flies one track of the filter's own model (white acceleration of density q squared), seen as the sighting says.
+/// Flies one track by the filter's own model (white acceleration of density q squared), measured with the sighting's
+/// accuracy.
 struct Flown {
     TrackTable table;
     Truth truth;
@@ -173,7 +174,7 @@ void fly(Random& random, Flown& flown, float q, float sigma_p, float sigma_v, bo
     }
 }
 
-/// With a target that does what the filter believes, its doubt is neither too small nor too large.
+/// For a target that follows the filter's model, its covariance is consistent.
 TEST(TrackFilter, DoubtIsWhatTheErrorsAre)
 {
     const std::uint64_t seed = seed_of(20260702);
@@ -237,7 +238,7 @@ TEST(TrackFilter, TheGrownSphereHoldsAStraightFlyer)
     }
 }
 
-/// Whatever finite numbers are thrown at it, what comes out are numbers.
+/// For any finite inputs the outputs are finite.
 TEST(TrackFilter, NothingButNumbersComesOut)
 {
     const std::uint64_t seed = seed_of(20260704);
@@ -327,7 +328,7 @@ TEST(TrackFilter, OrderOfArrivalDoesNotMatter)
     }
 }
 
-/// More than fit, once each: the table ends with the most dangerous ones, whatever the order.
+/// More tracks than the capacity, once each: the table keeps the most dangerous ones, for any order.
 TEST(TrackFilter, AFullTableKeepsTheMostDangerousInAnyOrder)
 {
     const std::uint64_t seed = seed_of(20260706);

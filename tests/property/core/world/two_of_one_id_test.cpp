@@ -73,7 +73,7 @@ TEST(TwoOfOneId, BothAreAlwaysWithinSomeTrack)
     for (std::size_t i = 0; i < case_count(300); ++i) {
         std::array<Aircraft, 2> two{random_aircraft(random), random_aircraft(random)};
         if ((two[0].start - two[1].start).norm() < 60.0) {
-            continue;  // first seen apart, as the table's contract has it
+            continue;  // first received apart, as the table's contract requires
         }
         TrackTable table;
         const vehicle::VehicleState own;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The co-processor built with reach sets alone: which parameters it takes, and what it flies.
+// The co-processor built with reach sets alone: accepted parameters and flown manoeuvres.
 #include <algorithm>
 
 #include <gtest/gtest.h>

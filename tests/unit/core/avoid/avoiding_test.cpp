@@ -42,7 +42,7 @@ TEST(Avoiding, KeepsWhatItFliesWhileThatIsSafe)
     EXPECT_EQ(method.asked, asked);
 }
 
-/// A method that changes its mind each time is not asked while the picture stays.
+/// A method that alternates its answers is not called while the situation is unchanged.
 TEST(Avoiding, DoesNotFlipWhileThePictureStays)
 {
     Flight f;
@@ -65,7 +65,7 @@ TEST(Avoiding, DoesNotFlipWhileThePictureStays)
     EXPECT_EQ(supervisor.diagnostics().flips, 0U);
 }
 
-/// A method that goes to `side` as long as nobody says otherwise.
+/// A method that avoids to `side` by default.
 FakeMethod to_the(const Vec3& side)
 {
     return {[&side](const Situation& s, WorkBudget&, Manoeuvre& out) {
@@ -106,8 +106,8 @@ TEST(Avoiding, TheOtherSideIsTakenWhenTimeIsUpAndCounted)
     EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
 }
 
-/// A manoeuvre's own side counts beside the one that the vehicle has come to fly: what was called up, and led to the
-/// left, is not replaced by what is called down.
+/// A manoeuvre's named side counts besides the flown side: a manoeuvre named "up" that led to the left is not replaced
+/// by one named "down".
 TEST(Avoiding, TheOppositeOfWhatWasChosenIsTheOtherSideToo)
 {
     Flight f;
@@ -206,8 +206,7 @@ TEST(Avoiding, UnsafeWithoutAnotherPlanItFliesOnUntilItMustBrake)
     EXPECT_EQ(supervisor.diagnostics().brakes, 1U);
 }
 
-/// What counts is when the margin is entered, not when it is at its worst: behind the surface of a large threat that is
-/// late.
+/// The entry into the margin counts, not its minimum: for a large threat the minimum is late, behind the surface.
 TEST(Avoiding, BrakesBeforeTheSurfaceOfALargeThreatNotBeforeItsMiddle)
 {
     Flight f;

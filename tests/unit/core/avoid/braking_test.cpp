@@ -128,7 +128,7 @@ TEST(Braking, DoesNotBackIntoWhatIsBehind)
     }
 }
 
-// On its way back it turned through traffic beside the way, and said that nothing is in conflict.
+// Regression: on its path back it turned through traffic beside the path, and reported no conflict.
 TEST(Rejoining, AFixedWingKeepsItsCourseWhileTheTurnBackIsNotClear)
 {
     for (const bool blocked : {false, true}) {
@@ -141,7 +141,7 @@ TEST(Rejoining, AFixedWingKeepsItsCourseWhileTheTurnBackIsNotClear)
         f.scene.own.position = Vec3(100, 80, 30);
         f.scene.own.velocity = Vec3(0, 18, 0);
         if (blocked) {
-            // Where the turn back leads; the way, straight to the leg, passes it by 60 m.
+            // On the turn back; the straight path to the leg passes it at 60 m.
             f.scene.track(Vec3(135, 150, 30), Vec3::Zero(), 10.0F);
         }
         FakeMethod method = never();

@@ -50,7 +50,7 @@ TEST(Commit, APlanIsMadeFromTheCommitTimeOn)
 TEST(Commit, ALatestManoeuvreTimeThatIsEarlierComesFirst)
 {
     Flight f;
-    head_on(f, 21.0F);  // touches in 1.9 s; the stop takes longer with the reserve
+    head_on(f, 21.0F);  // contact in 1.9 s; the stop takes longer with the reserve
     Settings settings = quick();
     settings.commit = 0.5F;
     FakeMethod method = always(kLeft, 8.0F);
@@ -62,7 +62,7 @@ TEST(Commit, ALatestManoeuvreTimeThatIsEarlierComesFirst)
     EXPECT_EQ(method.asked, asked);
 }
 
-/// Standing, an obstacle in the way: the reserve alone is the latest time.
+/// Static, an obstacle on the path: the reserve alone is the latest time.
 TEST(LatestManoeuvreTime, IsTheStopAndTheReserve)
 {
     Flight f;
@@ -93,7 +93,7 @@ Flight crossing(float way_speed, float way_length, Seconds seconds)
     return f;
 }
 
-/// As good as standing in the way of traffic, it gets going with three quarters of the fallback horizon left.
+/// Nearly static on the path of traffic, the vehicle starts with three quarters of the fallback horizon left.
 TEST(LatestManoeuvreTime, IsEarlierWhereTheVehicleAsGoodAsStands)
 {
     FakeMethod method = never();
@@ -113,7 +113,7 @@ TEST(LatestManoeuvreTime, StandingObstaclesAskForNoHurry)
     Flight f;
     f.scene.own.velocity = Vec3::Zero();
     f.scene.leg(f.scene.own.position, f.scene.own.position + Vec3(300, 0, 0), 1.0F);
-    f.scene.obstacle(geometry::make_sphere(f.scene.own.position + Vec3(4, 0, 0), 1.0F));  // touched in 2 s
+    f.scene.obstacle(geometry::make_sphere(f.scene.own.position + Vec3(4, 0, 0), 1.0F));  // contact in 2 s
     FakeMethod method = never();
     EXPECT_FALSE(once(f, quick(), method).wants_control) << "a second is left to stop";
 }
@@ -154,7 +154,8 @@ TEST(PlanBudget, IsWhatIsLeftWhereThatIsLess)
 
 TEST(PlanBudget, ExhaustedByTheFirstOfTwoPlansIsCounted)
 {
-    // A velocity is flown; renewing it spends all. What was flown is met by something new: a second plan is found.
+    // A velocity is flown; its renewal spends the whole budget. A new threat conflicts with the flown velocity: a
+    // second plan is found.
     Flight f;
     head_on(f, 30.0F);
     int plan = 0;

@@ -49,7 +49,7 @@ TEST(Ends, ExactlyAtThePathsDuration)
     t.f.scene.own.position = Vec3(0, 40, 30);
     t.f.scene.own.velocity = Vec3(0, 4, 0);
     t.f.scene.tracks[0].velocity = Vec3::Zero();
-    t.f.scene.tracks[0].position = Vec3(20, 28, 30);  // in the way back, far enough
+    t.f.scene.tracks[0].position = Vec3(20, 28, 30);  // on the path back, far enough
     t.f.scene.now = t.f.scene.now + 9.99F;
     t.f.scene.tracks[0].stamp = t.f.scene.now;
     EXPECT_EQ(t.f.update(supervisor, true).state, State::avoiding);
@@ -58,7 +58,7 @@ TEST(Ends, ExactlyAtThePathsDuration)
     EXPECT_EQ(t.f.update(supervisor, true).state, State::rejoining);
 }
 
-/// However often a faster one was looked for, its own time ends it.
+/// For any number of searches for a faster one, its own time ends the manoeuvre.
 TEST(Ends, OfASlowManoeuvreAreThoseOfItsTime)
 {
     Scripted t;
@@ -79,7 +79,7 @@ TEST(Ends, OfASlowManoeuvreAreThoseOfItsTime)
     EXPECT_EQ(supervisor.diagnostics().manoeuvres, 2U) << "10 s are over: another one is begun";
 }
 
-/// Rejoining by way of a velocity that is renewed counts once, and is done once.
+/// Rejoining through a renewed velocity counts once, and ends once.
 TEST(Ends, OfAVelocityOverAClearWayGiveBackOnce)
 {
     Flight f;

@@ -13,7 +13,7 @@ using world::Manoeuvre;
 using world::PlanStatus;
 using world::Situation;
 
-/// A method that does as the test says.
+/// A method controlled by the test.
 struct FakeMethod {
     static constexpr world::MethodTraits kTraits{
         .id = 11, .reactive = false, .keeps_clearance = false, .needs_sets = false};
@@ -28,13 +28,13 @@ struct FakeMethod {
     }
 };
 
-/// Another one, to be asked beside it.
+/// A second method beside it.
 struct SecondFake : FakeMethod {
     static constexpr world::MethodTraits kTraits{
         .id = 12, .reactive = false, .keeps_clearance = false, .needs_sets = false};
 };
 
-/// One that decides every tick anew.
+/// A method that decides anew every tick.
 struct ReactiveFake : FakeMethod {
     static constexpr world::MethodTraits kTraits{
         .id = 13, .reactive = true, .keeps_clearance = true, .needs_sets = false};
@@ -55,7 +55,7 @@ inline Manoeuvre along(const Situation& s, const std::vector<Vec3>& positions, c
     return m;
 }
 
-/// Out to `side` by `width`, past and back to the leg, over `length` along the way.
+/// Out to `side` by `width`, past and back to the leg, over `length` along the leg.
 inline Manoeuvre detour(const Situation& s, const Vec3& side, float width, float length)
 {
     const world::Way way = world::way_of(s);
@@ -96,7 +96,7 @@ struct Flight {
     {
         return supervisor.update(scene.situation(), in_control);
     }
-    /// Time passes: the vehicle follows `command`, tracks fly straight on (and are seen at their place).
+    /// Advances time: the vehicle follows `command`, tracks fly straight on (and are measured at their place).
     void pass(const Vec3& command, Seconds dt)
     {
         vehicle::advance(scene.own, command, scene.limits, dt);
@@ -120,7 +120,7 @@ inline Settings quick()
     return s;
 }
 
-/// A threat that comes head on and is `ahead` metres away.
+/// A head-on threat `ahead` metres away.
 inline void head_on(Flight& f, float ahead = 40.0F)
 {
     f.scene.track(f.scene.own.position + Vec3(ahead, 0, 0), Vec3(-5, 0, 0), 1.0F);

@@ -28,7 +28,7 @@ float margin_under(const Flight& f, const Vec3& command)
     return command_margin(f.scene.situation(), command, Settings{}, budget);
 }
 
-/// Standing, its box exactly on the floor and, where asked for, right below the ceiling.
+/// Static, with its box exactly on the floor and, with `ceiling`, directly below the ceiling.
 Flight between_bounds(bool ceiling)
 {
     Flight f;
@@ -168,7 +168,7 @@ TEST(FallbackEdges, StraightUpAtTheClimbLimit)
     EXPECT_EQ(chosen_for(down).command, Vec3(0, 0, -5));
 }
 
-/// A way that leads straight up gives no course to begin with: all are tried all the same.
+/// A vertical path gives no initial course: all courses are still tried.
 TEST(FallbackEdges, AVerticalWayHasLevelWaysOutToo)
 {
     Flight f;
@@ -187,7 +187,7 @@ TEST(FallbackEdges, ThreatsBeyondTheHorizonDoNotCount)
 {
     Flight f;
     f.scene.own.velocity = Vec3::Zero();
-    f.scene.track(Vec3(32, 0, 30), Vec3(-6, 0, 0), 1.0F);  // touches after 5 s
+    f.scene.track(Vec3(32, 0, 30), Vec3(-6, 0, 0), 1.0F);  // contact after 5 s
     Settings settings;
     settings.fallback_horizon = 4.0F;
     EXPECT_EQ(chosen_for(f, nullptr, settings).kind, ManoeuvreKind::brake);
@@ -196,8 +196,8 @@ TEST(FallbackEdges, ThreatsBeyondTheHorizonDoNotCount)
     EXPECT_EQ(chosen_for(f, nullptr, settings).kind, ManoeuvreKind::velocity);
 }
 
-/// What was nearest before is checked first: tracks in an unlucky order make the first of all commands dearer, and none
-/// after it.
+/// The previously nearest threat is checked first: an unfavourable track order makes only the first command more
+/// expensive.
 TEST(FallbackEdges, TheOrderOfTracksCostsOneCheck)
 {
     struct Cost {
@@ -245,7 +245,7 @@ TEST(FallbackOfAFixedWing, TurnsLeftWhereBothSidesAreAlike)
     EXPECT_EQ(chosen_for(f).command, Vec3(0, 0, 1));
 }
 
-/// A former command that was no turn says nothing of a side, climbing or not.
+/// An earlier command without a turn gives no side, climbing or not.
 TEST(FallbackOfAFixedWing, AFormerVelocityIsNoTurn)
 {
     const Flight f = fixed_wing();
@@ -287,7 +287,7 @@ TEST(FallbackOfAFixedWing, LooksAsFarAsTheHorizonAndEscapesByTheSettings)
 
 // --- the command of a turn ---
 
-/// The command leads the velocity by what the lag needs, and by 0.7 rad at most.
+/// The command leads the velocity as required by the lag, by 0.7 rad at most.
 TEST(TurnCommand, LeadsByTheLagsShareOfAFullTurn)
 {
     vehicle::VehicleLimits limits;

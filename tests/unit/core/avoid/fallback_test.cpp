@@ -78,7 +78,7 @@ TEST(ChooseFallback, CommandsWhatTheVehicleCanFly)
     }
 }
 
-/// Looking at a way only until it is no better changes nothing in what is found.
+/// Ending a check once a command is no better does not change the result.
 TEST(CheckSeparation, ACutOffSearchTellsTheSameSideOfTheCut)
 {
     Random random(20261123);
@@ -161,7 +161,7 @@ TEST(ChooseFallback, AFixedWingsTurnIsPaidForAndNotTrustedWithout)
     EXPECT_LT(chosen.margin, 0.0F);
 }
 
-/// However small the budget: never a margin above that of the same command looked at to the end.
+/// For any budget: never a margin above that of the same command with a complete check.
 TEST(ChooseFallback, ASpentBudgetNeverMakesACommandBetter)
 {
     Flight f;
@@ -202,7 +202,7 @@ TEST(ChooseFallback, AFixedWingsMarginIsWhatItsTurnKeeps)
     EXPECT_EQ(second.margin, first.margin) << "holding on does not make it any clearer";
 }
 
-// Both turns were all that was looked at: the wing turned into what stood beside it.
+// Regression: only both turns were checked, and the wing turned into a static obstacle beside it.
 TEST(ChooseFallback, AFixedWingBetweenTwoThreatsGoesStraightOn)
 {
     Flight f;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The final check at the edges of its contract: times, the rest that is flown, the stop at its end, horizon, escape
-// rule, and what it costs.
+// The final check at the edges of its contract: times, the remaining flight, the stop at its end, horizon, escape rule,
+// and cost.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -122,7 +122,7 @@ TEST(FinalCheckOfAPath, ThatHasBeenFlownIsAStop)
     EXPECT_NEAR(checked(f, m).margin, 38.0F - kStop, 0.1F);
 }
 
-/// Down is stopped more slowly than level: until then the check looks.
+/// A vertical stop takes longer than a level one: the check covers it.
 TEST(FinalCheckOfAPath, TheStopLastsUntilTheVehicleStandsVertically)
 {
     Flight f;
@@ -159,7 +159,7 @@ TEST(FinalCheckOfAPath, LooksUntilTheHorizonAndNoFarther)
     }
 }
 
-/// What is said of the bounds holds for the vehicle that may be anywhere within its uncertainty.
+/// The margin to the bounds holds for any position of the vehicle within its uncertainty.
 TEST(FinalCheckOfBounds, OwnUncertaintyAndBoxAreTakenOff)
 {
     const auto margin = [](float sigma, auto set) {
@@ -198,7 +198,7 @@ TEST(FinalCheck, JudgesAStartInsideByTheEscapeRuleThatIsSet)
     EXPECT_GE(command_margin(f.scene.situation(), Vec3(-1, 0, 0), Settings{}, budget), 0.0F);
 }
 
-/// What is shared counts until the vehicle has stopped: time_to_stop, for a velocity alone.
+/// Cooperative tracks count until the vehicle has stopped: time_to_stop, for a velocity alone.
 TEST(FinalCheckOfACommand, TracksThatShareTheReactionCountUntilTheStop)
 {
     Flight f;
@@ -218,7 +218,7 @@ TEST(FinalCheckOfACommand, TracksThatShareTheReactionCountUntilTheStop)
     EXPECT_NEAR(time_to_stop(f.scene.situation(), settings), 1.0F, 1e-6F);
 }
 
-/// Margins from the cut-off on are not told apart; those below it are told as below.
+/// Margins saturate at the cut-off; smaller ones are reported below it.
 TEST(FinalCheck, IsCutOffAsAsked)
 {
     Flight f;
@@ -281,7 +281,7 @@ TEST(FinalCheckCosts, LongFlightsAreTakenInLongerChords)
     }
 }
 
-/// A command: room for all its points is paid for while it lasts, and its stop alone once it has ended.
+/// A command: all its points cost work units while it lasts, and only its stop after its end.
 TEST(FinalCheckCosts, OfACommandDependOnItsChords)
 {
     Flight f;
@@ -304,7 +304,7 @@ float margin_within(const Flight& f, Seconds horizon, Seconds step, std::uint32_
     return margin;
 }
 
-/// Whatever the horizon and the step: the flight reaches the horizon, and no farther.
+/// For any horizon and step: the flight reaches exactly the horizon.
 TEST(CommandMargin, ReachesTheHorizon)
 {
     Flight f;

@@ -63,7 +63,7 @@ TEST(CheckManoeuvre, CountsTheTimeSinceTheManoeuvreBegan)
     Manoeuvre m = begun;
     m.start = f.scene.now - 5.0F;
     EXPECT_LT(check_manoeuvre(f.scene.situation(), m, Settings{}, budget).margin, 0.0F);
-    // Met now by the detour's beginning, which has been flown.
+    // Contact at present with the detour's beginning, which is already flown.
     f.scene.tracks.clear();
     f.scene.track(begun.path.points.front().position, Vec3::Zero(), 1.0F);
     EXPECT_GT(check_manoeuvre(f.scene.situation(), m, Settings{}, budget).margin, 5.0F);
@@ -103,7 +103,7 @@ TEST(CheckManoeuvre, NumbersThatAreNotFiniteAreContact)
     }
 }
 
-/// Predicting costs units too; what was not looked at to the end is contact.
+/// Prediction costs work units too; an unfinished check is contact.
 TEST(CheckManoeuvre, IsPaidForAndContactWithout)
 {
     Flight f;

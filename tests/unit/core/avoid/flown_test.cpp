@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is flown, and what it is replaced by: other sides, faster manoeuvres, velocities.
+// The flown manoeuvre, and its replacements: other sides, faster manoeuvres, velocities.
 #include <cmath>
 #include <vector>
 
@@ -15,8 +15,7 @@ using world::ManoeuvreKind;
 
 // --- the other side ---
 
-/// The leg is blocked, and so is the detour to the left that is flown: only up is free. `side`: what the new answer
-/// says of itself.
+/// The leg is blocked, and so is the flown detour to the left: only up is free. `side`: the new answer's named side.
 std::uint32_t replans_at_once(const Vec3& first_side, const Vec3& next_side)
 {
     Scripted t;
@@ -28,7 +27,7 @@ std::uint32_t replans_at_once(const Vec3& first_side, const Vec3& next_side)
     };
     Supervisor supervisor(quick(), t.method);
     EXPECT_EQ(avoid_head_on(t.f, supervisor).state, State::avoiding);
-    t.f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // met in 5 s
+    t.f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // contact in 5 s
     up = true;
     const Guidance g = t.f.update(supervisor, true);
     EXPECT_EQ(g.state, State::avoiding);
@@ -70,7 +69,7 @@ TEST(OtherSide, OfWhatIsFlownOrOfWhatWasChosen)
         EXPECT_EQ(t.f.update(supervisor, true).state, State::avoiding);
         return supervisor.diagnostics().replans;
     };
-    // Called up, flown to the left (2 m): what is called down or right turns over, what is called forward does not.
+    // Named "up", flown to the left (2 m): answers named "down" or "right" reverse the side, "forward" does not.
     EXPECT_EQ(replans(Vec3(0, 0, 1), Vec3(0, 0, -1), 2.0F), 0U);
     EXPECT_EQ(replans(Vec3(0, 0, 1), Vec3(0, -1, 0), 2.0F), 0U);
     EXPECT_EQ(replans(Vec3(0, 0, 1), Vec3(1, 0, 0), 2.0F), 1U);
@@ -146,8 +145,8 @@ struct Renewing {
     Supervisor<FakeMethod, ReactiveFake> supervisor{settings, planning, reacting};
 };
 
-/// Without an answer the last velocity is flown on while it is clear, and what is clear of it is said. What the method
-/// left behind with its refusal is not flown.
+/// Without an answer the last velocity is continued while clear, and its margin is reported. Contents that the method
+/// wrote with its refusal are not flown.
 TEST(Velocities, WithoutAnAnswerTheLastOneIsChecked)
 {
     Renewing t;
@@ -171,7 +170,7 @@ TEST(Velocities, WithoutAnAnswerTheLastOneIsChecked)
     }
 }
 
-/// A slow velocity is not a slow manoeuvre: no faster one is looked for beside the answer of each update.
+/// A slow velocity is not a slow manoeuvre: no faster one is searched besides the answer of each update.
 TEST(Velocities, ThatAreSlowAreNotReplacedByFasterPaths)
 {
     Renewing t;
@@ -209,7 +208,7 @@ TEST(Velocities, ArePassedOnToAPathAsANewManoeuvre)
 
 // --- faster ones ---
 
-/// Sideways at `first` m/s, past a threat that stays; later what `faster` makes.
+/// Sideways at `first` m/s, past a static threat; later the answer of `faster`.
 struct Slowly : Scripted {
     Slowly(float first, const Vec3& side)
     {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Giving up in front of what stands, and giving control back.
+// Giving up in front of static obstacles, and giving control back.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -61,7 +61,7 @@ TEST(GivingUp, InsideAMarginAllTheSame)
     EXPECT_EQ(g.velocity, Vec3(0, 0, 0));
 }
 
-/// What was flown before is forgotten with it.
+/// The earlier manoeuvre is forgotten with it.
 TEST(GivingUp, ForgetsWhatWasFlown)
 {
     AtAWall w(giving_up());
@@ -94,7 +94,7 @@ TEST(GivingUp, NotWhereThreatsWereNeverCollected)
     EXPECT_EQ(w.supervisor.diagnostics().blocked, 0U);
 }
 
-/// The wall is gone; what comes from the side is avoided all the same.
+/// The wall is gone; traffic from the side is still avoided.
 TEST(GivingUp, IsOverWhenTrafficComesThoughTheWayIsClear)
 {
     AtAWall w(giving_up());
@@ -102,7 +102,7 @@ TEST(GivingUp, IsOverWhenTrafficComesThoughTheWayIsClear)
     ASSERT_TRUE(w.wait(20.0F, 0.5F).blocked);
     w.f.scene.obstacles.clear();
     ASSERT_TRUE(w.after(0.5F).blocked);
-    w.f.scene.track(Vec3(55, 14, 30), Vec3(0, -4, 0), 1.0F);  // here in 3 s, when the way has led on
+    w.f.scene.track(Vec3(55, 14, 30), Vec3(0, -4, 0), 1.0F);  // here in 3 s, when the path has moved on
     const Guidance g = w.after(0.1F);
     EXPECT_FALSE(g.blocked);
     EXPECT_TRUE(g.wants_control);
@@ -200,7 +200,7 @@ TEST(GivingUp, NotWhileAManoeuvreIsFlown)
     }
 }
 
-/// The wall is met first and is the main conflict; what comes from the side counts all the same.
+/// The wall is the first and main conflict; traffic from the side still counts.
 TEST(GivingUp, NotWhileTrafficComes)
 {
     const auto blocked = [](float distance, float height) {
@@ -223,7 +223,7 @@ TEST(GivingUp, NotWhileTrafficComes)
 
 // --- what control is kept for ---
 
-/// In control, nothing in the way: given back after the least time, and once.
+/// In control, clear path: control is returned after the least time, and once.
 struct GivenBack : Waiting {
     GivenBack() : Waiting(quick())
     {
@@ -247,7 +247,7 @@ TEST(GivenBackControl, IsNotTakenBackWhileNothingHappens)
     EXPECT_EQ(w.supervisor.diagnostics().control_lost, 0U) << "it was not wanted any more";
 }
 
-/// Each take-over has its own least time, whatever became of the one before.
+/// Each take-over has its own least time, independent of the previous one.
 TEST(GivenBackControl, IsKeptForTheLeastTimeWhenItIsTakenAnew)
 {
     GivenBack w;
@@ -274,7 +274,7 @@ TEST(GivenBackControl, IsKeptAfterAllForAConflictToCome)
 TEST(GivenBackControl, IsKeptAfterAllWhereTheVehicleIsFarOffItsLeg)
 {
     GivenBack w;
-    w.f.scene.own.position.y() = 2.0F;  // twice what counts as on it
+    w.f.scene.own.position.y() = 2.0F;  // twice the tolerance of being on the leg
     EXPECT_FALSE(w.after(0.1F).wants_control);
     w.f.scene.own.position.y() = 2.01F;
     const Guidance g = w.after(0.1F);
@@ -285,7 +285,7 @@ TEST(GivenBackControl, IsKeptAfterAllWhereTheVehicleIsFarOffItsLeg)
     EXPECT_FALSE(w.after(0.1F).wants_control);
 }
 
-/// What counts as back on the leg.
+/// Definition of being back on the leg.
 TEST(GivingBack, WithinTheLegsWidth)
 {
     const auto given_back = [](float off) {

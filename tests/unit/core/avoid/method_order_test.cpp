@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 using world::ManoeuvreKind;
 
-/// Each of these says "found".
+/// Each of these reports "found".
 struct BadAnswer {
     const char* name;
     void (*make)(const Situation&, Manoeuvre&);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways that are free with little to spare.
+// Paths that are free with a small clearance buffer.
 #include <gtest/gtest.h>
 
 #include "tests/unit/core/avoid/waiting.hpp"
@@ -10,7 +10,7 @@ namespace {
 using namespace test;
 using world::ManoeuvreKind;
 
-/// Something 0.2 m beside the way: free, but not with half a metre to spare.
+/// An obstacle 0.2 m beside the path: free, but not with a buffer of half a metre.
 struct Narrow : Waiting {
     explicit Narrow() : Waiting(quick())
     {
@@ -48,7 +48,7 @@ TEST(NarrowPaths, AreWaitedAtAnewAfterEachConflict)
     EXPECT_EQ(w.after(0.1F).state, State::rejoining);
 }
 
-/// Room to spare is asked for as far ahead as conflicts are looked for.
+/// The clearance buffer is required over the whole look-ahead of conflicts.
 TEST(NarrowPaths, AreThoseFarAheadToo)
 {
     Narrow w;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which of two nominal paths counts, what methods are shown of it, and of what is flown and commanded.
+// Which of two nominal paths counts, and the methods' inputs on it, the flown manoeuvre and the command.
 #include <cmath>
 #include <vector>
 
@@ -13,7 +13,7 @@ namespace {
 
 using namespace test;
 
-/// The leg leads east, the other path north; each has traffic that stands so many seconds ahead.
+/// The leg leads east, the other path north; each has a static threat the given seconds ahead.
 struct TwoAhead {
     TwoAhead()
     {
@@ -93,7 +93,7 @@ TEST(OtherPath, IsForgottenInControlThatIsGivenBack)
     EXPECT_FALSE(t.update(6.0F, 6.4F).on_other) << "no advantage is left";
 }
 
-/// Standing, its leg ahead: what comes to where it stands counts by how it stands, not by how it would fly.
+/// Static, with its leg ahead: traffic towards the vehicle counts against its static position, not against a flight.
 TEST(OtherPath, ThatStandsIsLeftInTime)
 {
     TwoAhead t;
@@ -109,7 +109,7 @@ TEST(OtherPath, ThatStandsIsLeftInTime)
     EXPECT_TRUE(acts(2.9F));
 }
 
-/// Plans for the other path are checked against all traffic to their end, whoever shares the reaction.
+/// Plans for the other path are checked against all traffic to their end, cooperative or not.
 TEST(OtherPath, PlansForItAreCheckedAgainstCooperativeTraffic)
 {
     TwoAhead t;

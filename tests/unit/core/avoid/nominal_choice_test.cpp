@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two nominal paths, how long control is kept, and what stands in the way for good.
+// Two nominal paths, how long control is kept, and permanent static obstacles on the path.
 #include <gtest/gtest.h>
 
 #include "tests/unit/core/avoid/fakes.hpp"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace test;
 
-/// Beside the leg to the east: the vehicle really flies north.
+/// A leg to the east, but the vehicle actually flies north.
 class TwoNominalPaths : public ::testing::Test {
 protected:
     TwoNominalPaths()

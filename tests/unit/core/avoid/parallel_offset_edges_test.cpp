@@ -9,9 +9,9 @@ namespace {
 
 using namespace test;
 
-/// 4 m above the leg, on what is flown. The way back is blocked, flying on above the leg is free.
+/// 4 m above the leg, on the flown manoeuvre. The path back is blocked, flying on above the leg is free.
 struct Outside : Scripted {
-    /// What is flown leads from 4 m above the leg `rise` metres up in the next 40, at `speed`.
+    /// The flown manoeuvre leads from 4 m above the leg `rise` metres up over the next 40 m, at `speed`.
     Outside(float speed, float rise, const Settings& settings = quick()) : supervisor(settings, method)
     {
         f.scene.own.velocity = Vec3(speed, 0, 0);
@@ -66,7 +66,7 @@ TEST(ParallelOffsetWhileAvoiding, IsTakenWhereThePathLeadsBack)
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
 }
 
-/// Outwards and level on the floor: exactly clear is clear, and nothing else is looked for.
+/// Outwards and level on the floor: exactly clear is clear, and no alternative is searched.
 TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
 {
     Settings settings = quick();
@@ -93,7 +93,7 @@ TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
     EXPECT_EQ(supervisor.diagnostics().replans, 0U);
 }
 
-/// `y` metres beside the leg, with a threat on the way back and one `gap` metres beside the flight along the leg.
+/// `y` metres beside the leg, with a threat on the path back and one `gap` metres beside the flight along the leg.
 Flight along_side(float y, float gap)
 {
     Flight f;
@@ -179,11 +179,11 @@ TEST(ParallelToTheLeg, BeginsBeyondTheLegsWidthAndBeforeItsEnd)
     EXPECT_EQ(holds(2.0F, 12.01F), 1U);
 }
 
-/// What is checked is the whole look-ahead, not the fallback's horizon.
+/// The check covers the whole look-ahead, not the fallback's horizon.
 TEST(ParallelToTheLeg, IsClearForAsLongAsConflictsAreLookedFor)
 {
     Flight f = along_side(8.0F, 3.0F);
-    f.scene.track(Vec3(20.0F + 33.0F, 8, 30), Vec3::Zero(), 1.0F);  // met in 6.2 s
+    f.scene.track(Vec3(20.0F + 33.0F, 8, 30), Vec3::Zero(), 1.0F);  // contact in 6.2 s
     EXPECT_EQ(holds_of(f), 0U);
 }
 

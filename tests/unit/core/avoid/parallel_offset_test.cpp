@@ -74,7 +74,7 @@ TEST(ParallelOffset, AManoeuvreThatWouldReturnBehindSlowTrafficIsLeftForIt)
 TEST(ParallelOffset, IsNotFlownIntoSomethingElse)
 {
     Flight f = behind_slow_traffic();
-    f.scene.track(Vec3(50, 8, 30), Vec3::Zero(), 1.0F);  // met in 6 s
+    f.scene.track(Vec3(50, 8, 30), Vec3::Zero(), 1.0F);  // contact in 6 s
     FakeMethod method = always(kLeft, 10.0F);
     Supervisor supervisor(quick(), method);
     EXPECT_EQ(f.update(supervisor, true).state, State::avoiding);
@@ -101,7 +101,7 @@ TEST(ParallelOffset, IsNotFlownPastABoundOrTheEndOfTheLeg)
     EXPECT_FALSE(holds([](Flight& f) { f.scene.limits.kind = vehicle::VehicleKind::fixed_wing; }));
 }
 
-/// The side told to methods is where the vehicle is, not where a manoeuvre once meant to go.
+/// The side passed to methods is the vehicle's present side, not the side of an earlier manoeuvre.
 TEST(ParallelOffset, MethodsAreToldTheSideThatIsFlown)
 {
     Flight f;
@@ -120,7 +120,7 @@ TEST(ParallelOffset, MethodsAreToldTheSideThatIsFlown)
     EXPECT_LT(told.y(), -0.99F);
 }
 
-/// A crawl of 1.5 m/s around a threat that stays in the way; later `speed` is found, to `side`.
+/// A crawl of 1.5 m/s around a threat that stays on the path; later a manoeuvre with `speed` is found, to `side`.
 struct Crawl {
     Crawl(const Vec3& side, float speed)
         : method{[this, side, speed](const Situation& s, WorkBudget&, Manoeuvre& out) {
@@ -140,7 +140,7 @@ struct Crawl {
     Crawl(const Crawl&) = delete;
     Crawl& operator=(const Crawl&) = delete;
 
-    /// Flies on for `span`; only the first metre of the detour, so that there is no flying beside the leg.
+    /// Flies on for `span`; only the first metre of the detour, so that no parallel offset begins.
     void fly(Seconds span)
     {
         for (Seconds t = 0.0F; t < span; t += 0.1F) {

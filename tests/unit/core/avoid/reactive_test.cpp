@@ -116,7 +116,7 @@ TEST(ReactiveMethods, AnswersAreCheckedLikeAllOthers)
     EXPECT_EQ(supervisor.diagnostics().answers_rejected, 1U);
 }
 
-/// What one that gives way does beyond the stopping time is not known: it is looked at until then.
+/// The motion of a cooperative track beyond the stopping time is unknown: it is checked until then.
 TEST(ReactiveMethods, TracksThatShareTheReactionAreLookedAtAsFarAsTheStop)
 {
     for (const bool cooperative : {false, true}) {
@@ -152,7 +152,7 @@ TEST(ReactiveMethods, PlansOfOthersDoNotCountOnAnybody)
     EXPECT_GE(supervisor.diagnostics().answers_rejected, 1U);
 }
 
-/// Methods are told what was really sent, and nothing while the autopilot flies.
+/// Methods receive the last sent command, and none while the autopilot flies.
 TEST(ReactiveMethods, AreToldTheLastCommand)
 {
     Flight f;
@@ -180,7 +180,7 @@ TEST(ReactiveMethods, AreToldTheLastCommand)
     EXPECT_EQ(values[2].at, second);
 }
 
-/// The product's own: two vehicles that share the reaction pass each other, and both come back to their legs.
+/// The product's own: two cooperative vehicles pass each other, and both return to their legs.
 TEST(ReactiveMethods, TwoVehiclesPassEachOther)
 {
     struct Vehicle {

@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-/// What is commanded in control with nothing in the way. The vehicle is at 30 m and flies along a leg in `direction`.
+/// Command in control with a clear path. The vehicle is at 30 m and flies along a leg in `direction`.
 Vec3 command_back(Flight& f, const Vec3& direction, float speed)
 {
     f.scene.leg(f.scene.own.position, f.scene.own.position + 200.0F * direction.normalized(), speed);
@@ -38,11 +38,11 @@ Flight uncertain()
     Flight f;
     f.scene.limits.half_extents = Vec3(1.0F, 2.0F, 0.5F);
     f.scene.own.sigma_position = 0.2F;
-    f.scene.own.sigma_velocity = 5.0F;  // not what is meant
+    f.scene.own.sigma_velocity = 5.0F;  // not the tested quantity
     return f;
 }
 
-/// What is left to a bound is used up in a second at most: box and uncertainty of the position taken off.
+/// The remaining distance to a bound, less box and position uncertainty, lasts at least a second.
 TEST(PathBack, SlowsDownBelowTheCeiling)
 {
     const auto climb = [](float ceiling) {
@@ -129,7 +129,7 @@ TEST(PathBack, ABoundThatIsNotSetIsNone)
     expect_near(command_back(f, Vec3(4, 0, -3), 5.0F), Vec3(4, 0, -3), "down");
 }
 
-/// The command is the way's: its climb and descent within limits, the mission's speed and not cruise speed.
+/// The command follows the path: climb and descent within limits, the mission's speed instead of cruise speed.
 TEST(PathBack, FliesAtTheSpeedOfTheLeg)
 {
     Flight f;

@@ -40,7 +40,7 @@ TEST(Rejoining, ANewConflictIsAvoided)
     f.scene.own.position = Vec3(20, 8, 30);
     ASSERT_EQ(f.update(supervisor, true).state, State::rejoining);
     f.scene.track(Vec3(36, -3, 30), Vec3::Zero(), 2.0F);
-    f.scene.track(Vec3(50, 9, 30), Vec3::Zero(), 2.0F);  // nor is there a way beside the leg
+    f.scene.track(Vec3(50, 9, 30), Vec3::Zero(), 2.0F);  // nor is there a parallel offset
     EXPECT_EQ(f.update(supervisor, true).state, State::avoiding);
     EXPECT_EQ(supervisor.diagnostics().manoeuvres, 1U);
 }
@@ -73,8 +73,8 @@ int rejoin(Flight& f, Supervisor<FakeMethod>& supervisor, int most)
     return steps;
 }
 
-/// A leg that lies below the floor is the mission's business: our command leads down to the floor, and when nothing is
-/// in the way any more the autopilot has the vehicle again.
+/// A leg below the floor is permitted: our command leads down to the floor, and when the path is clear control returns
+/// to the autopilot.
 TEST(Rejoining, AFloorAboveTheLegIsKept)
 {
     for (const float beside : {0.0F, 15.0F}) {
@@ -91,7 +91,7 @@ TEST(Rejoining, AFloorAboveTheLegIsKept)
     }
 }
 
-/// A descent that goes on below the floor: above what is left of it the vehicle stands, beside it for good.
+/// A descent that continues below the floor: the vehicle hovers above the rest of it, beside it for good.
 TEST(Rejoining, ADescentThatEndsBelowTheFloorIsGivenBack)
 {
     for (const Vec3& slope : {Vec3(-12, 0, -90), Vec3(-30, 10, -90), Vec3(0, 0, -90)}) {
@@ -170,7 +170,7 @@ float gives_back_after(vehicle::VehicleKind kind, const Vec3& position)
         if (!g.wants_control) {
             return 0.05F * static_cast<float>(steps);
         }
-        f.pass(Vec3(15, 0, 0), 0.05F);  // whatever it is told
+        f.pass(Vec3(15, 0, 0), 0.05F);  // for any command
         g = f.update(supervisor, true);
     }
     return -1.0F;

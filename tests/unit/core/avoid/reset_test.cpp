@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What reset() forgets: each thing that would show in the updates after it.
+// State cleared by reset(): each item that would be visible in later updates.
 #include <gtest/gtest.h>
 
 #include "tests/unit/core/avoid/scripted.hpp"

@@ -27,7 +27,7 @@ inline Manoeuvre at_speed(const Situation& s, const std::vector<Vec3>& positions
     return m;
 }
 
-/// Gives what the test puts there, or nothing.
+/// Returns the manoeuvre set by the test, or nothing.
 struct Scripted {
     std::function<PlanStatus(const Situation&, Manoeuvre&)> next;
     FakeMethod method{[this](const Situation& s, WorkBudget&, Manoeuvre& out) { return next(s, out); }};

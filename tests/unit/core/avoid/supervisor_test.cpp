@@ -31,7 +31,7 @@ TEST(Supervisors, TheWorkOfEachUpdateIsTold)
     EXPECT_EQ(supervisor.diagnostics().most_work, busy.work);
 }
 
-/// Whatever state it is in and whatever the methods say, what is commanded is what the vehicle may fly.
+/// In every state and for all answers of the methods, the command is within the vehicle's limits.
 TEST(Supervisors, CommandsStayWithinTheLimits)
 {
     constexpr std::uint64_t kSeed = 20261125;

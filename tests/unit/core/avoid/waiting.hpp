@@ -7,7 +7,7 @@
 
 namespace jink::avoid::test {
 
-/// A supervisor without plans, and a vehicle that is put where the test wants it.
+/// A supervisor without plans, and a vehicle placed by the test.
 struct Waiting {
     explicit Waiting(const Settings& s = quick()) : settings(s) {}
 
@@ -42,7 +42,7 @@ struct Waiting {
     Supervisor<FakeMethod> supervisor{settings, method};
 };
 
-/// Standing 3 m in front of a wall across the leg.
+/// Static 3 m in front of a wall across the leg.
 struct AtAWall : Waiting {
     explicit AtAWall(const Settings& s = quick()) : Waiting(s)
     {

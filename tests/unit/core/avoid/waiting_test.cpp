@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fallbacks while they last: what is offered and counted, what reset() forgets, and backing off.
+// Fallbacks while they last: offers and counts, reset(), and backing off.
 #include <cmath>
 #include <vector>
 
@@ -134,7 +134,7 @@ TEST(Fallbacks, OfAFixedWingTurnToTheSideThatIsFree)
     }
 }
 
-/// Over in one update, and begun in the next: what was flown before neither counts as the beginning nor stays.
+/// Ended in one update, and begun in the next: the earlier fallback neither counts as the beginning nor stays.
 TEST(Fallbacks, RightAfterAnotherAreNewOnes)
 {
     Settings settings = quick();
@@ -156,7 +156,7 @@ TEST(Fallbacks, RightAfterAnotherAreNewOnes)
     EXPECT_EQ(w.supervisor.diagnostics().brakes, 2U);
 }
 
-/// What reset() forgets: the next updates are those of a supervisor that begins with them.
+/// After reset() the updates equal those of a new supervisor.
 TEST(Reset, LeavesNothingOfFormerFlightsBehind)
 {
     for (int kind = 0; kind < 5; ++kind) {
@@ -172,7 +172,7 @@ TEST(Reset, LeavesNothingOfFormerFlightsBehind)
             head_on(w.f);
             ASSERT_EQ(w.update().state, State::avoiding);
             break;
-        case 2:  // beside the leg
+        case 2:  // parallel offset
             w.f.scene.own.position = Vec3(20, 8, 30);
             w.f.scene.track(Vec3(27, 0, 30), Vec3(2, 0, 0), 2.0F);
             ASSERT_EQ(w.update().state, State::rejoining);
@@ -233,7 +233,7 @@ TEST(BackingOff, BeginsAfterThePatience)
     EXPECT_EQ(g.velocity, Vec3(-1, 0, 0));
 }
 
-/// Another wait after each time that the way was clear.
+/// A new wait after each time that the path was clear.
 TEST(BackingOff, BeginsAnewAfterTheWayWasClear)
 {
     Settings settings = quick();
@@ -249,7 +249,7 @@ TEST(BackingOff, BeginsAnewAfterTheWayWasClear)
     EXPECT_EQ(w.wait(1.9F).kind, ManoeuvreKind::brake);
 }
 
-/// Faster than it backs off and a little more, the vehicle does not stand, and the wait begins anew.
+/// Slightly faster than the back-off speed the vehicle is not static, and the wait restarts.
 TEST(BackingOff, ByAVehicleThatStandsAlone)
 {
     Settings settings = quick();
@@ -305,7 +305,7 @@ TEST(BackingOff, UntilTheLimitOfEachConflict)
     EXPECT_TRUE(backs(0.1F)) << "another conflict";
 }
 
-/// Out of the way of traffic is where the fallback says, not backwards.
+/// An escape from traffic follows the fallback, not backwards.
 TEST(BackingOff, NotWhileEscaping)
 {
     Settings settings = quick();

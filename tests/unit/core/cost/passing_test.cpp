@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The terms that the source leaves for later: where moving threats are passed, and the time beyond the collision point.
+// The terms that Pinheiro leaves for future work: the passing side of moving threats, and the time beyond the collision
+// point.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +26,7 @@ struct AlongX {
     [[nodiscard]] Waypoints view() const { return {x, y, z, t}; }
 };
 
-/// A threat at 5 m/s on `course` (0: the same way, 180: head-on) that is at `at` after 4 s.
+/// A threat at 5 m/s on `course` (0: same direction, 180: head-on) that is at `at` after 4 s.
 MovingThreat threat_on(float course_degrees, const Vec3& at)
 {
     const float course = course_degrees * kPi / 180.0F;

@@ -82,7 +82,7 @@ TEST(CostTables, AlongTheLegThereIsNothingToTurn)
 
 TEST(CostTables, ALegThatIsTooSteepIsFlownAtTheLimit)
 {
-    // Straight up: 3 m/s, whatever the cruise speed. Straight down: likewise.
+    // Straight up: 3 m/s, for any cruise speed. Straight down: likewise.
     for (const float along_z : {1.0F, -1.0F}) {
         const CurveQuery query{.family = 1, .offset = 0.0F, .distance = 6.0F, .speed = 5.0F, .along_z = along_z};
         EXPECT_NEAR(estimate(kDefault, query)->time, 12.0F / 3.0F, 1e-5F);

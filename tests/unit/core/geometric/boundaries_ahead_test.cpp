@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a manoeuvre has ahead of it, straight or a route: what is refused of it, when it begins, and what a route costs.
+// The nominal path ahead of a manoeuvre, straight or a route: refusals, start of a route, and its cost.
 #include <gtest/gtest.h>
 
 #include "core/base/work_units.hpp"
@@ -19,7 +19,7 @@ path::Route straight_route()
     return route;
 }
 
-/// By both that look at it.
+/// By both functions that check it.
 bool is_refused(Scene& scene)
 {
     path::TimedPath path;

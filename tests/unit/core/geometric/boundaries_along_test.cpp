@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Along a route: when it counts as straight, where a start that moves comes to, which waits can be flown, and what a
-// family's curve is where it hardly moves.
+// Along a route: when it counts as straight, the position of a moved start, flyable waits, and a family's curve where
+// it hardly moves.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -93,7 +93,7 @@ TEST(AlongBorder, WaitsThatRiseFasterThanTheVehicleAreNotFlyable)
     }
 }
 
-/// Curves are flown from flight along the way, as along a leg; what the vehicle does at the start is the flight's.
+/// Curves start from flight along the path, as along a leg; the vehicle's motion at the start belongs to the flight.
 TEST(AlongBorder, CurvesAreFlyableFromFlightAlongTheWay)
 {
     TwinRoute twin;
@@ -113,7 +113,7 @@ TEST(AlongBorder, CurvesAreFlyableFromFlightAlongTheWay)
     }
 }
 
-/// About the centre of a bend a plateau as far out as the radius stands still.
+/// About the centre of a bend a plateau with an offset equal to the radius is stationary.
 TEST(AlongBorder, TimesRiseWhereACurveStandsStill)
 {
     TwinRoute twin;
@@ -136,7 +136,7 @@ TEST(AlongBorder, TimesRiseWhereACurveStandsStill)
     EXPECT_GT(standing, 10U);
 }
 
-/// Working memory holds nothing from one call to the next: whatever it holds, the answer is the same.
+/// Working memory carries no state between calls: for any contents, the answer is the same.
 TEST(AlongBorder, WhatTheWorkspaceHeldIsNotRead)
 {
     const TwinRoute bent = corner();

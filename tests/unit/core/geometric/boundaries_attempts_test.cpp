@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which attempts are made, for whom, and what each of them tries.
+// The attempts, their conditions, and their contents.
 #include <gtest/gtest.h>
 
 #include <algorithm>

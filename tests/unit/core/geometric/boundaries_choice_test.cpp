@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which candidate is taken, what is told of those that are not, and what their work costs, at the last number before
-// each limit.
+// The chosen candidate, reports on the others, and their cost in work units, at the last number before each limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,8 +78,8 @@ TEST(ChoiceBorder, EnergyIsToldWhereItIsAskedFor)
 
 TEST(ChoiceBorder, WhatIsNotLookedAtIsNotCalledAvailable)
 {
-    // Without evaluate_all nothing dearer than the chosen one is looked at: a ball that only they would touch stays
-    // unfound.
+    // Without evaluate_all no candidate more expensive than the chosen one is checked: a ball in contact only with
+    // those stays unfound.
     Scene scene;
     scene.settings.evaluate_all = false;
     ASSERT_EQ(scene.run(), PlanStatus::found);
@@ -94,7 +93,7 @@ TEST(ChoiceBorder, WhatIsNotLookedAtIsNotCalledAvailable)
     ASSERT_EQ(scene.run(), PlanStatus::found);
     EXPECT_GT(scene.count(CandidateStatus::hits_static), 0U);
     EXPECT_GT(scene.count(CandidateStatus::available), 0U);
-    // Nor what the checks' share of work does not reach.
+    // Nor candidates beyond the checks' share of work.
     scene.settings.check_units = units::kCandidatePoint * scene.settings.waypoints;
     EXPECT_EQ(scene.run(), PlanStatus::none_available);
     EXPECT_EQ(scene.count(CandidateStatus::available), 0U);
@@ -140,7 +139,7 @@ TEST(ChoiceBorder, CostsArePaidForWhatIsClearAlone)
     EXPECT_EQ(spent(0, true), spent(9, true));
 }
 
-/// Every budget up to what is needed and a little more: an answer that says how it came about.
+/// Every budget up to slightly more than needed: the status is true.
 void expect_true_to_every_budget(const Settings& settings)
 {
     Scene whole;
@@ -163,7 +162,7 @@ void expect_true_to_every_budget(const Settings& settings)
             ++ended;
         }
         ASSERT_EQ(scene.count(CandidateStatus::chosen), status == PlanStatus::found ? 1U : 0U);
-        // With every candidate looked at, one that is not has been cut off.
+        // With every candidate checked, an unchecked one was cut off by the budget.
         if (settings.evaluate_all && scene.count(CandidateStatus::not_evaluated) > 0) {
             ASSERT_TRUE(scene.result.cut_short) << units;
         }
@@ -191,7 +190,7 @@ TEST(ChoiceBorder, NoMoreIsKeptForCheckingThanItMayTake)
     ASSERT_EQ(scene.run(), PlanStatus::found);
     const std::uint32_t spent = scene.budget.spent();
     ASSERT_GT(spent, 4 * scene.settings.check_units);
-    // Enough for all there is to do and what is kept, far less than twice that.
+    // Enough for all work and the reserve, far less than twice that.
     scene.budget = WorkBudget{spent + scene.settings.check_units};
     EXPECT_EQ(scene.run(), PlanStatus::found);
     EXPECT_FALSE(scene.result.cut_short);
@@ -211,7 +210,7 @@ TEST(ChoiceBorder, TheLargestShareOfWorkIsNoLessThanASmallerOne)
 
 TEST(ChoiceBorder, NoTotalIsAboveOne)
 {
-    // Weights whose sum is above 1 by what is taken for rounding, every term at its worst.
+    // Weights whose sum is above 1 by the rounding tolerance, every term at its largest.
     Scene scene;
     scene.settings.check_acceleration = scene.settings.verify_flight = false;
     scene.settings.weights = {0.40005F, 0.10F, 0.50F};
@@ -219,7 +218,7 @@ TEST(ChoiceBorder, NoTotalIsAboveOne)
     scene.settings.caps.time_high = 2e-3F;
     scene.settings.rotation_penalty = 1e6F;
     scene.limits.half_extents = Vec3::Constant(0.05F);
-    // Alongside all of the way, half a metre beside it, and the curves not much farther.
+    // Alongside the whole path, half a metre beside it, and the curves not much farther.
     scene.problem.main_radius = 0.3F;
     scene.threats = {Scene::still(Vec3(20.0F, 0.0F, 50.0F), 0.3F),
                      {{Vec3(0.0F, 0.0F, 49.0F), Vec3(5.0F, 0.0F, 0.0F)}, 0.2F}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One curve against what stands or moves about it: which of it is asked after, balls as small as a point, solids that
-// grow, bounds used up to nothing, and what each look costs.
+// One curve against what stands or moves about it: the queried parts, balls as small as a point, growing solids, bounds
+// with zero margin, and the cost of each check.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -138,7 +138,7 @@ TEST(ClearanceBorder, AMovingSolidReachesAsFarAsItsUncertainty)
 
 TEST(ClearanceBorder, SweptAMovingSolidIsInTheWayOfWhatPassesBeforeAndAfterIt)
 {
-    // It comes across the way a second before its end; whoever flies is by then far from there.
+    // It crosses the path a second before the path's end; the vehicle is then far away.
     CurveBench bench(straight_way());
     bench.solids = {{geometry::make_box(Vec3(2.0F, 9.0F, 0.0F), Vec3::Constant(0.5F)), Vec3(0.0F, -1.0F, 0.0F)}};
     EXPECT_EQ(bench.status(), CandidateStatus::available);
@@ -148,7 +148,7 @@ TEST(ClearanceBorder, SweptAMovingSolidIsInTheWayOfWhatPassesBeforeAndAfterIt)
 
 TEST(ClearanceBorder, AMovingSolidThatGrowsIsPassedWhileItIsSmall)
 {
-    // Passed at 2 m after two seconds; when it reaches as far as that, the way is far from it.
+    // Passed at 2 m after two seconds; when it has grown to that size, the path is far away.
     for (const auto& [rate, acceleration] : {std::array{0.4F, 0.0F}, std::array{0.0F, 0.12F}}) {
         CurveBench bench(straight_way());
         bench.solids = {
@@ -176,7 +176,7 @@ CurveBench segment(const Vec3& to, Seconds duration) { return CurveBench({{Vec3:
 
 TEST(ClearanceBorder, APointIsInTheWayToo)
 {
-    // Of a segment whose middle is far from it, so that no glance at that tells.
+    // A segment whose middle is far from it, so that the quick reject of the middle does not decide.
     CurveBench bench = segment(Vec3(3.0F, 0.0F, 0.0F), 1.0F);
     for (const Vec3& velocity : {Vec3(0.0F, 0.0F, 0.0F), Vec3(-1.0F, 0.0F, 0.0F)}) {
         bench.threats = {{{Vec3(-0.4F, 0.0F, 0.0F), velocity}, 0.0F}};
@@ -211,7 +211,7 @@ TEST(ClearanceBorder, WhoLeavesAMarginStraightAwayIsSeenToAtAGlance)
 
 TEST(ClearanceBorder, AMarginThatGrowsBackAsSlowlyAsNumbersAllowIsLookedAtAllTheSame)
 {
-    // A quarter of a metre inside: one way leads out, the other deeper, by far more than the slack.
+    // A quarter of a metre inside: one direction leads out, the other deeper, by far more than the slack.
     for (const float speed : {0.0F, 1e-44F, 1e-20F, 0.5F}) {
         for (const bool ball : {true, false}) {
             for (const float way : {-1.0F, 1.0F}) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What candidates touch, at the border: solids that touch exactly, or by less than the bounds allow that pass them
-// over; airspace that is used up to its last number; volumes that end where they are said to; what looking at it all
-// costs.
+// Contact of candidates at the limits: solids in exact contact, or overlapping by less than the quick rejects'
+// tolerance; airspace used to the last number; exact ends of volumes; the cost of all checks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +36,7 @@ struct StraightScene : Scene {
         problem.start_velocity = 5.0F * direction;
         airspace = {};
     }
-    /// Where the cheapest candidate ends; it stays the cheapest whatever does not move.
+    /// End of the cheapest candidate; static threats do not change which is cheapest.
     Vec3 end()
     {
         EXPECT_EQ(run(), PlanStatus::found);
@@ -62,8 +61,8 @@ void add_far_balls(StraightScene& scene, const Vec3& end, std::size_t count)
 
 TEST(ContactBorder, WhatIsTouchedByAHairAheadIsHit)
 {
-    // A ball behind the end of the way, a tenth of a millimetre within the box's reach: no bound in the sum of all
-    // lengths may pass over it, whichever way the leg goes and however many others are looked at.
+    // A ball behind the end of the path, a tenth of a millimetre within the box's reach: no bound on the sum of all
+    // lengths may skip it, for any direction of the leg and any number of other threats.
     for (const Vec3& direction : kDirections) {
         for (const std::size_t others : {std::size_t{0}, std::size_t{6}}) {
             for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
@@ -100,7 +99,7 @@ TEST(ContactBorder, WhatTouchesExactlyBesideTheWayIsHit)
                 const Vec3 place = 15.0F * direction + side * 1.5F * aside;
                 scene.threats = {Scene::still(place, 0.5F)};
                 EXPECT_EQ(scene.status(), CandidateStatus::hits_static);
-                // One that comes along beside the way, touching all the time.
+                // One that moves alongside the path, always in contact.
                 scene.threats = {{{place, -0.25F * direction}, 0.5F}};
                 EXPECT_EQ(scene.status(), CandidateStatus::hits_moving);
                 scene.threats = {{{place + 1e-3F * side * aside, -0.25F * direction}, 0.5F}};
@@ -189,7 +188,7 @@ TEST(ContactBorder, AStartOutsideOfTheAirspaceHasAWayIn)
 
 TEST(ContactBorder, TheMainThreatsVolumeEndsAtTheCollisionPointAndNotBeyondTheLongestCandidate)
 {
-    // Of the source's planner; symmetric candidates 1.6 m beside the leg, level.
+    // Pinheiro's planner; symmetric candidates 1.6 m beside the leg, level.
     const auto free = [](const Vec3& position, const Vec3& velocity) {
         Scene scene;
         scene.settings = source_settings();
@@ -201,15 +200,15 @@ TEST(ContactBorder, TheMainThreatsVolumeEndsAtTheCollisionPointAndNotBeyondTheLo
     };
     // Its volume comes down from the left as far as the leg: 3.2 m on the right are beyond it, 1.6 m are not.
     ASSERT_EQ(free(Vec3(20.0F, 24.0F, 50.0F), Vec3(0.0F, -8.0F, 0.0F)), 1U);
-    // It goes away from the collision point: nothing behind it counts.
+    // It moves away from the collision point: the volume behind it does not count.
     EXPECT_EQ(free(Vec3(3.0F, 4.6F, 50.0F), Vec3(0.0F, 2.0F, 0.0F)), 4U);
-    // It would be there in 16 s, when nobody is.
+    // It arrives in 16 s, after the vehicle has left.
     EXPECT_EQ(free(Vec3(3.0F, 8.0F, 50.0F), Vec3(0.0F, -0.5F, 0.0F)), 4U);
 }
 
 TEST(ContactBorder, ALookAtWhatIsFarCostsTheSameForEach)
 {
-    // Up to four balls are looked at one by one, more of them first as a whole.
+    // Up to four balls are checked singly, more of them first as a group.
     const auto spent = [](std::size_t balls) {
         Scene scene = two_level_candidates(6.0F);
         for (std::size_t i = 0; i < balls; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Candidates as they are flown and as a Planner makes them: how long limits make them, what bounds a flight's speed,
-// when the start moves, how many tracks and how much work there may be.
+// Candidates as they are flown and as a Planner makes them: their duration under limits, bounds of a flight's speed,
+// when the start moves, and limits of tracks and work.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -118,7 +118,7 @@ TEST(FlightBorder, AStandingVehiclesStartStaysWhereItIs)
     ASSERT_EQ(leg.plan(), PlanStatus::found);
     EXPECT_EQ(leg.points(), 25U);
     EXPECT_GT(leg.out.path.points[1].time, 0.0F);
-    // Nor is there room for one more.
+    // The capacity is exhausted.
     leg.own.velocity = Vec3(5.0F, 0.0F, 0.0F);
     leg.settings.waypoints = kMaxPathPoints - 1;
     ASSERT_EQ(leg.plan(), PlanStatus::found);
@@ -134,7 +134,7 @@ TEST(FlightBorder, AStandingVehiclesStartStaysWhereItIs)
 
 TEST(FlightBorder, TheStartIsNotMovedTooNear)
 {
-    // Four times the way on are left at least.
+    // At least four times the travelled distance remain.
     Leg leg;
     leg.settings.check_acceleration = false;
     leg.settings.verify_flight = false;
@@ -149,7 +149,7 @@ TEST(FlightBorder, TheStartIsNotMovedTooNear)
 
 TEST(FlightBorder, ASlowStartIsNotMovedTooNearEither)
 {
-    // 2.5 R are left at least, also where four times the way is next to nothing.
+    // At least 2.5 R remain, also if four times the travelled distance is negligible.
     Leg leg;
     leg.settings.check_acceleration = leg.settings.verify_flight = false;
     leg.settings.latency = 0.2F;
@@ -179,7 +179,7 @@ TEST(FlightBorder, ASmallBodyIsPlannedForAsTheLeastOne)
     ASSERT_FALSE(least.empty());
     for (const float radius : {0.3F, 0.1F, 0.0F}) {
         leg.tracks[0].radius = radius;
-        // It is met a little later, so that curves are a little longer and offsets a little less.
+        // The encounter is slightly later, so that curves are slightly longer and offsets slightly smaller.
         const std::vector<float> offsets = leg.offsets();
         ASSERT_EQ(offsets.size(), least.size());
         for (std::size_t i = 0; i < offsets.size(); ++i) {
@@ -205,7 +205,7 @@ TEST(FlightBorder, AnObstacleThatIsASphereIsPassedAsATrackThatStands)
 
 TEST(FlightBorder, ATrackStampedAheadIsNotTakenForSmaller)
 {
-    // It comes from the side and grows; what is available of it now is available of it at no later stamp.
+    // It comes from the side and grows; the set of available candidates never grows at a later stamp.
     std::size_t fewer = 0;
     for (float acceleration = 0.0F; acceleration < 2.0F; acceleration += 0.1F) {
         Leg leg;

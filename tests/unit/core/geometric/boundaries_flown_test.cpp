@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A candidate as it is flown, at the border: what its flight costs to the last unit, how long swept volumes last for
-// it, how fast it may be before its path is.
+// A candidate as it is flown, at the border: the cost of its flight to the last work unit, the duration of swept
+// volumes, and the permitted speed relative to its path.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -12,7 +12,7 @@
 namespace jink::geometric {
 namespace {
 
-/// A straight path of `length` at 5 m/s along the leg, about its start, and nothing in the way.
+/// A straight path of `length` at 5 m/s along the leg, about its start, without threats.
 struct FlightBench : Scene {
     path::TimedPath path;
 
@@ -86,7 +86,7 @@ TEST(FlownBorder, WhatIsInTheWayAtAGlanceIsNotLookedAtCloser)
 
 TEST(FlownBorder, WhatIsPassedAtAGlanceIsNotLookedAtCloser)
 {
-    // As large as the leg is long, a tenth of a metre beside all of it: each segment is looked at, once.
+    // As large as the leg is long, a tenth of a metre beside all of it: each segment is checked once.
     FlightBench bench(60.0F, Vec3(1.0F, 1.0F, 0.0F));
     const Mat3& axes = bench.problem.frame.axes;
     bench.threats = {Scene::still(Vec3(0.0F, 0.0F, 50.0F) + axes * Vec3(30.0F, 202.5F, 0.0F), 200.0F)};
@@ -127,12 +127,12 @@ TEST(FlownBorder, AFlightMayBeginFasterThanItsPath)
     bench.limits.max_acceleration = 2.0F;
     bench.problem.start_velocity = Vec3(18.0F, 0.0F, 0.0F);
     ASSERT_EQ(bench.status(), CandidateStatus::available);
-    // Passed within the first second; by the path's speed it would be looked at after that.
+    // Passed within the first second; by the path's speed it would be checked after that.
     bench.threats = {Scene::still(Vec3(12.0F, 1.0F, 50.0F), 0.3F)};
     EXPECT_EQ(bench.status(), CandidateStatus::hits_static);
 }
 
-/// A track that hardly moves sweeps no volume to speak of, and is in the way all the same.
+/// A nearly static track sweeps a negligible volume, and still blocks the path.
 TEST(FlownBorder, ATrackAsSlowAsNumbersAllowIsInTheWay)
 {
     for (const float speed : {1e-6F, 1e-20F, 1e-25F, 1e-38F}) {
@@ -151,7 +151,7 @@ TEST(FlownBorder, WhatTouchesAtTheStartIsNoMarginToEscapeFrom)
 {
     FlightBench bench(30.0F);
     bench.settings.escape_from_margin = true;
-    // The box reaches 1 m; 1e-3 m within, the escape rule shrinks it; touching exactly it does not.
+    // The box extends 1 m; 1e-3 m inside, the escape rule shrinks the ball; in exact contact it does not.
     bench.threats = {Scene::still(Vec3(-3.0F, 0.0F, 50.0F), 2.001F)};
     EXPECT_EQ(bench.status(), CandidateStatus::available);
     bench.threats[0].radius = 2.0F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a vehicle's accelerations allow, at the limits themselves: as much as they say, and not the next number.
+// Flyability by a vehicle's accelerations, at the limits themselves: the limit is allowed, the next number is not.
 #include <gtest/gtest.h>
 
 #include <cmath>

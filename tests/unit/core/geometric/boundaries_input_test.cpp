@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is refused whatever else is set, and what is too close or too curved by how much.
+// Unconditional refusals, and the limits of "too close" and "too curved".
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -103,7 +103,7 @@ world::Track standing(const Vec3& position, float radius)
 
 TEST(InputBorder, TooCloseGoesByTheBodyAndOffsetsByAllOfIt)
 {
-    // Half a metre that may be 4 m elsewhere: 2.5 of its radii are far away, 2.5 of what must be cleared are not.
+    // Radius half a metre, position uncertain by 4 m: 2.5 radii are far away, 2.5 times the clearing radius are not.
     world::Track track = standing(Vec3(16.0F, 0.0F, 50.0F), 0.5F);
     track.sigma_position = 2.0F;
     Settings settings;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cheap looks that pass over what is far: the room that they leave is never less than what exact tests may be wrong by,
-// whichever length it comes from, and what lies on their border is looked at.
+// Quick rejects of far threats: their tolerance is never below the error of the exact tests, from any length involved,
+// and threats on their limit are checked.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using detail::kExtentRounding;
 using detail::kStraight;
 using detail::Room;
 
-/// What exact contact tests allow themselves, as a share of the largest coordinates involved: 5e-7 of sums of them
+/// Tolerance of exact contact tests, as a share of the largest coordinates involved: 5e-7 of their sums
 /// (core/geometry/sweep.hpp).
 constexpr double kExactRounding = 1e-6;
 
@@ -29,7 +29,7 @@ struct Passing {
     Vec3 apart, half;
 };
 
-/// How long nothing can happen, by the look at the beginning; and that it is right to the last instant.
+/// Duration without possible contact, by the check at the beginning; verified to the last instant.
 Seconds expect_room_is_left(const Passing& p)
 {
     Room room(p.fastest, p.ball_fastest, p.largest, p.duration);
@@ -131,7 +131,7 @@ bool are_apart(int axis, float at, float gap, float half)
 
 TEST(LookBorder, BoxesFarOutAreApartByMoreThanRounding)
 {
-    // At 1 km numbers are 6e-5 m from one another: what lies nearer than some of them may as well touch.
+    // At 1 km adjacent numbers differ by 6e-5 m: bodies within a few of these may be in contact.
     for (int axis = 0; axis < 3; ++axis) {
         for (const float at : {-1000.0F, 1000.0F}) {
             EXPECT_FALSE(are_apart(axis, at, 2e-3F, 0.0F)) << axis << " " << at;
@@ -150,7 +150,7 @@ TEST(LookBorder, BoxesFarOutAreApartByMoreThanRounding)
 
 TEST(LookBorder, WhatTouchesTheRoomLeftIsNotApart)
 {
-    // About the origin the room left is the constant alone, to the bit.
+    // About the origin the tolerance is the constant alone, to the bit.
     const Vec3 zero = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis) {
         for (const float side : {-1.0F, 1.0F}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clearing offsets: the innermost one clears the main threat, whatever it is and however near, and by no more than it
-// has to; the outermost one goes as far as it is said to.
+// Clearing offsets: the innermost one clears any main threat at any distance, by no more than necessary; the outermost
+// one extends to its stated value.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using world::PlanStatus;
 
-/// Nothing but what offsets depend on.
+/// Only the inputs of the offsets.
 struct OffsetScene : Scene {
     OffsetScene(Family family, float distance)
     {
@@ -117,7 +117,7 @@ TEST(OffsetBorder, AWallIsClearedOnEitherSide)
 
 TEST(OffsetBorder, WhatIsHardlyInTheWayIsLeftAtTheLeastOffset)
 {
-    // A sphere far to the left: on the right there is nothing to clear, and an offset of nothing is no way round.
+    // A sphere far to the left: on the right there is nothing to clear, and a zero offset is no avoidance.
     OffsetScene scene(Family::symmetric, 40.0F);
     scene.set_main(geometry::make_sphere(Vec3(40.0F, 8.0F, 50.0F), 1.0F), 1.0F);
     scene.problem.main_centre_offset = Vec3(0.0F, 8.0F, 0.0F);
@@ -128,7 +128,7 @@ TEST(OffsetBorder, WhatIsHardlyInTheWayIsLeftAtTheLeastOffset)
     // The fan ends at 3.2 R of the body, or one box width past the first where that is more.
     EXPECT_NEAR(offsets[0], -0.3F - (3.2F - 0.3F), 1e-4F);
     EXPECT_NEAR(offsets[3] - offsets[2], 2.0F, 1e-4F);
-    // What lies there is cleared by as much as anywhere.
+    // A threat there is cleared by the same amount as elsewhere.
     scene.problem.main_centre_offset = Vec3(0.0F, 1.75F, 0.0F);
     const std::vector<float> near = scene.offsets(0.0F);
     EXPECT_NEAR(near[1], -0.3F, 0.02F) << "R + 1 m - 1.75 m + 5 cm is as much";
@@ -228,7 +228,7 @@ TEST(OffsetBorder, NearAndFarEndsOfACurveAreNotAskedToClear)
                 EXPECT_LE(std::abs(offset), 1.2801F * 10.0F);
             }
             if (along > 8.0F) {
-                // Over the ends nothing would help: what would clear a third of the way is offered, three times 1.55 m.
+                // Beyond the ends no offset clears: the offset for a third of the path is offered, three times 1.55 m.
                 EXPECT_NEAR(offsets[offsets.size() / 2], 4.65F, 0.01F) << along;
             }
         }
@@ -291,7 +291,7 @@ TEST(OffsetBorder, ABallsWidthDoesNotDependOnHowFarAheadItIsNearest)
 TEST(OffsetBorder, WhatReachesPastACurvesEndsIsClearedAThirdOfTheWay)
 {
     // A wall from the collision point back beyond the start, or on beyond the curve's end: there the curve is on the
-    // leg whatever its offset. The unit curve goes on past its ends, and would be far out again there.
+    // leg for any offset. The unit curve continues past its ends, and would be far out again there.
     constexpr float kDistance = 20.0F;
     const Vec3 half(0.4F, 0.4F, 0.2F);
     for (const Family family : {Family::simple, Family::symmetric, Family::smooth, Family::plateau}) {

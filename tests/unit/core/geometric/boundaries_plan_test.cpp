@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the planner makes of a situation: at the last number before it refuses, before it moves the start, and before a
+// The planner's problem for a situation: at the last number before it refuses, before it moves the start, and before a
 // body counts as small.
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using world::PlanStatus;
 
 float next_below(float x) { return std::nextafter(x, 0.0F); }
 
-/// A sphere that stands `ahead` of a vehicle in whose way numbers are exact: the collision point is its centre.
+/// A static sphere `ahead` of a vehicle on a path with exact numbers: the collision point is its centre.
 struct SphereAhead : Flight {
     explicit SphereAhead(float ahead)
     {
@@ -67,7 +67,7 @@ TEST(PlanBorder, ASmallBodyIsTheLeastOneHoweverUncertain)
         }
         return all;
     };
-    // Both are 0.6 m large with what is not known of them; the offsets go on to 3.2 times the body.
+    // Both are 0.6 m large including their uncertainty; the offsets extend to 3.2 times the body.
     const std::vector<float> least = offsets(Planner::kLeastMainRadius, 0.1F / 3.0F);
     const std::vector<float> small = offsets(0.1F, 0.5F / 3.0F);
     ASSERT_EQ(small.size(), least.size());
@@ -108,8 +108,8 @@ TEST(PlanBorder, WorkThatHasRunOutBeforeLeavesNothingKnown)
     EXPECT_EQ(flight.plan(), PlanStatus::budget_spent);
 }
 
-/// A path begins where the vehicle is, and where it goes on from after the latency, the vehicle then is. Along a route
-/// there is a hair between both: 2.5 R are left to the collision point, but not along the way to there.
+/// A path begins at the vehicle's position, and the flight continues from its position after the latency. Along a route
+/// both differ minimally: 2.5 R remain to the collision point, but not along the path to it.
 TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
 {
     path::Route route;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is kept in sight for all candidates together: the last of them that is still under way, the widest, the slowest.
+// The region considered for all candidates together: the last one still flying, the widest, the slowest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using world::PlanStatus;
 
-/// Curves alone, checked as such, nothing in the way.
+/// Curves alone, checked as such, without threats.
 struct CurveScene : Scene {
     explicit CurveScene(Family family)
     {
@@ -34,7 +34,7 @@ struct CurveScene : Scene {
     }
 };
 
-/// Whoever is where a candidate ends, when it ends there, is hit by it, from however far it comes.
+/// A threat at a candidate's end at its end time is in contact, from any initial distance.
 void expect_ends_in_sight(CurveScene& scene)
 {
     ASSERT_EQ(scene.run(), PlanStatus::found);
@@ -128,7 +128,7 @@ TEST(ReachBorder, VolumesLastAsLongAsTheLongestCandidate)
                 const std::array<float, 1> one{cost::closeness(path, threat, closeness)};
                 ASSERT_FLOAT_EQ(scene.result.candidates[i].terms.closeness, cost::combined_closeness(one));
             }
-            // It comes across the leg after 3 s, where nobody is any more: its volume is in the way, it is not.
+            // It crosses the leg after 3 s, behind the vehicle: its swept volume blocks, the threat itself does not.
             scene.threats = {{{Vec3(4.0F, 18.0F, 50.0F), Vec3(0.0F, -6.0F, 0.0F)}, 0.5F}};
             static_cast<void>(scene.run());
             const bool hit = scene.count(CandidateStatus::hits_moving) == scene.result.candidates.size();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One curve against solids that no closed form knows: touching by a hair, starts inside of margins and how long they
-// are forgiven, and how little is spent on what is far.
+// One curve against solids without a closed form: marginal contact, starts inside margins and the duration of their
+// tolerance, and the low cost of far solids.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -23,8 +23,7 @@ world::Obstacle wall(float face)
     return {1, geometry::make_box(Vec3(face - 2.0F, 0.0F, 0.0F), Vec3(2.0F, 20.0F, 20.0F))};
 }
 
-/// A bar along z, standing on its edge at `x`: that is what is nearest to a way along x, `gap` from a box of half a
-/// metre.
+/// A bar along z, on its edge at `x`: the edge is nearest to a path along x, `gap` from a box of half a metre.
 world::Obstacle bar(float x, float gap)
 {
     const Mat3 turned = Eigen::AngleAxisf(0.25F * kPi, Vec3::UnitZ()).toRotationMatrix();
@@ -43,7 +42,7 @@ TEST(SolidBorder, OneSegmentMayPassByLessThanWhatIsStraightMayBeOff)
 
 TEST(SolidBorder, ARunThatIsStraightBarAHairIsHitByThatHair)
 {
-    // The straight way from end to end passes; the point in the middle, almost on it, does not.
+    // The straight path from end to end is clear; the point in the middle, almost on it, is not.
     const Vec3 middle(0.5F, 0.9F * detail::kStraight, 0.0F);
     CurveBench bench({{Vec3::Zero(), 0.0F}, {middle, 0.5F}, {Vec3::UnitX(), 1.0F}});
     bench.obstacles = {bar(0.5F, 0.5F * detail::kStraight)};
@@ -64,7 +63,7 @@ CurveBench escaping(const std::vector<CurvePoint>& points, float slack, float sp
 
 TEST(SolidBorder, AStartThatIsClearIsNoStartInside)
 {
-    // A hundredth of a metre off a wall that is never to grow back; the way leads a fiftieth into it.
+    // 0.01 m off a wall that never grows back; the path leads 0.02 m into it.
     for (const float into : {0.02F, 0.2F}) {
         CurveBench bench = escaping({{Vec3::Zero(), 0.0F}, {Vec3(-0.01F - into, 0.0F, 0.0F), 1.0F}}, 0.05F, 0.0F);
         bench.obstacles = {wall(-0.51F)};
@@ -105,7 +104,7 @@ TEST(SolidBorder, AMarginIsForgivenByTheClock)
 
 TEST(SolidBorder, WithNothingLeftToForgiveBesideIsClear)
 {
-    // Off the bar's edge in an eighth of a second, and on beside it, nearer than distances are told apart.
+    // Off the bar's edge in an eighth of a second, and on beside it, nearer than the distance resolution.
     CurveBench bench = escaping({{Vec3::Zero(), 0.0F},
                                  {Vec3(0.0F, -0.12F, 0.0F), 0.15F},
                                  {Vec3(0.3F, -0.12F, 0.0F), 0.45F},
@@ -127,7 +126,8 @@ TEST(SolidBorder, WhateverOneStartsInsideOfOneMayLeave)
             escaping({{Vec3::Zero(), 0.0F}, {0.5F * out, 0.5F}, {2.0F * out, 1.0F}, {9.0F * out, 2.0F}}, 0.0F, 0.0F);
         const Mat3 turned =
             Eigen::AngleAxisf(number(3.0F), Vec3(number(1.0F), number(1.0F), 1.0F).normalized()).toRotationMatrix();
-        // Its face, square to the way out, is beside the box; the box may be within the clearance or beyond the face.
+        // Its face, perpendicular to the exit direction, is beside the box; the box may be within the clearance or
+        // beyond the face.
         const geometry::Shape drum =
             geometry::make_cylinder(random.uniform(-6.0F, -5.0F) * out, random.uniform(-1.0F, 0.0F) * out, 4.0F);
         const geometry::Shape box =
@@ -140,7 +140,7 @@ TEST(SolidBorder, WhateverOneStartsInsideOfOneMayLeave)
 
 TEST(SolidBorder, WithoutSlackASurfaceThatGrowsBackIsFollowedAllTheSame)
 {
-    // Solids are forgiven what distances are told apart by: out at twice the speed at which this one grows back.
+    // Solids are tolerated within the distance resolution: out at twice the speed at which this one grows back.
     CurveBench bench = escaping({{Vec3::Zero(), 0.0F}, {Vec3(1.0F, 0.0F, 0.0F), 1.0F}}, 0.0F, 0.5F);
     bench.obstacles = {wall(-0.25F)};
     EXPECT_EQ(bench.status(), CandidateStatus::available);
@@ -172,7 +172,7 @@ TEST(SolidBorder, SegmentsThatAreFarAreNotLookedAtCloser)
 
 TEST(SolidBorder, WhoFliesIntoAWallAtItsTopTakesNoCloserLook)
 {
-    // In it at one point alone, half of the way or two thirds of it out.
+    // Inside at one point only, half or two thirds of the path out.
     for (const std::size_t top : {3U, 4U}) {
         std::vector<CurvePoint> points;
         for (std::size_t i = 0; i <= 6; ++i) {

@@ -42,7 +42,7 @@ public:
         }
         return sum;
     }
-    /// The way that is left after waiting takes as long as at full speed, and speeding up comes on top.
+    /// The remaining path after waiting takes as long as at full speed, plus the time of the acceleration.
     double total() const
     {
         return until_ + (speed_ - at(until_)) / acceleration_ + std::max(0.0, length_ - way(until_)) / speed_;
@@ -54,10 +54,10 @@ private:
 
 std::vector<Wait> waits()
 {
-    return {{30.0F, 5.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // slows down, waits, goes on
+    return {{30.0F, 5.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // slows down, waits, continues
             {30.0F, 5.0F, 5.0F, 0.0F, 6.0F, 3.5F},   // stands
             {30.0F, 0.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // speeds up to less than it will
-            {30.0F, 0.0F, 5.0F, 0.0F, 4.0F, 3.5F},   // stands from the beginning
+            {30.0F, 0.0F, 5.0F, 0.0F, 4.0F, 3.5F},   // static from the beginning
             {30.0F, 3.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // is as slow already
             {30.0F, 5.0F, 5.0F, 0.0F, 3.0F, 0.7F},   // still slowing down when the wait is over
             {30.0F, 1.0F, 5.0F, 0.6F, 1.5F, 0.7F},   // still speeding up
@@ -88,7 +88,7 @@ TEST(WaitingCurve, IsWhereTheRuleSaysAndAsFast)
         // Never short of the end, and past it by speeding up alone or by the wait itself.
         const double end = double(curve.position(curve.points - 1).dot(along));
         EXPECT_GE(end, double(wait.length) - bend);
-        // No coordinate is faster than the bound says, and the bound is not far off.
+        // No coordinate is faster than the bound, and the bound is tight.
         for (std::size_t i = 0; i + 1 < curve.points; ++i) {
             EXPECT_LE(curve.velocity(i).norm(), curve.fastest);
         }
@@ -96,7 +96,7 @@ TEST(WaitingCurve, IsWhereTheRuleSaysAndAsFast)
     }
 }
 
-/// Only candidates that wait, nothing in the way.
+/// Only waiting candidates, without threats.
 struct WaitScene : Scene {
     explicit WaitScene(const Vec3& direction)
     {
@@ -172,7 +172,7 @@ TEST(Waiting, IsForMultirotorsAlone)
 
 TEST(Waiting, IsNeverTooMuchForTheVehicleAndOnNoSide)
 {
-    // From a stand, and from flight the other way: no curve could be flown.
+    // From rest, and from flight in the opposite direction: no curve is flyable.
     for (const float speed : {0.0F, -5.0F}) {
         WaitScene scene(Vec3::UnitX());
         scene.problem.start_velocity = Vec3(speed, 0.0F, 0.0F);
@@ -190,7 +190,7 @@ TEST(Waiting, IsNeverTooMuchForTheVehicleAndOnNoSide)
 
 TEST(Waiting, FindsWhatStandsAnywhereOnItsWay)
 {
-    // From a stand too, whose speed bounds nothing; as far as a wait comes, and not beside it.
+    // From rest too, where the speed bounds nothing; up to a wait's extent, and not beside it.
     for (const float speed : {0.0F, 5.0F}) {
         for (const float ahead : {3.0F, 15.0F, 29.0F}) {
             WaitScene scene(Vec3::UnitX());
@@ -207,15 +207,15 @@ TEST(Waiting, FindsWhatStandsAnywhereOnItsWay)
 
 TEST(Waiting, FindsWhatCrossesItsEndAsLateAsItIsThere)
 {
-    // For each candidate a threat that crosses the last metres of its way just before it is there: nobody else is there
-    // then, and no bound of all candidates together may hide it.
+    // For each candidate a threat that crosses the last metres of its path just before its arrival: no other candidate
+    // is there then, and no common bound of all candidates may hide the threat.
     WaitScene free(Vec3::UnitX());
     ASSERT_EQ(free.run(), PlanStatus::found);
     for (std::size_t i = 0; i < kWaits; ++i) {
         const Seconds then = free.result.candidates[i].duration - 0.1F;
         WaitScene scene(Vec3::UnitX());
         scene.settings.max_cost = 1.0F;
-        // At `then` it is where the candidate ends, whatever it comes past before.
+        // At `then` it is at the candidate's end, for any earlier passes.
         Wait wait{30.0F, 5.0F, 5.0F, free.result.candidates[i].shape.share, free.result.candidates[i].shape.until,
                   3.5F};
         const float there = static_cast<float>(Rule(wait).way(double(then)));

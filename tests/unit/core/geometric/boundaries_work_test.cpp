@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Less work than is needed takes answers away and never changes them: what has not been looked at to the end is not
-// clear.
+// Too few work units remove answers and never change them: an unfinished check is not clear.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -16,7 +15,7 @@ namespace {
 
 using world::PlanStatus;
 
-/// With every share of work up to what is needed: the same choice, or none.
+/// With every share of work up to the needed one: the same choice, or none.
 void expect_same_or_none(Scene scene, std::uint32_t step)
 {
     scene.settings.evaluate_all = false;
@@ -77,7 +76,7 @@ TEST(WorkBorder, BallsThatCross)
             Scene scene = flat();
             scene.settings.verify_flight = verify;
             scene.settings.security = security;
-            scene.settings.weights = {0.8F, 0.2F, 0.0F};  // what is close is as cheap
+            scene.settings.weights = {0.8F, 0.2F, 0.0F};  // close candidates are as cheap
             scene.settings.escape_from_margin = security == SecurityMode::time_aware;
             scene.threats.push_back({{Vec3(20.0F, -12.0F, 50.0F), Vec3(0.0F, 2.0F, 0.0F)}, 1.5F});
             scene.threats.push_back({{Vec3(20.0F, 12.0F, 50.0F), Vec3(0.0F, -2.0F, 0.0F)}, 1.5F});
@@ -129,9 +128,9 @@ TEST(WorkBorder, ASolidCostsWhatItsPlaceSays)
     const auto more = [&](const Vec3& at, bool escape) {
         return spent_on({{1, geometry::make_box(at, Vec3::Ones())}}, escape) - none;
     };
-    // Out of reach: seen to be.
+    // Out of reach, detected by a quick reject.
     EXPECT_EQ(more(Vec3(60.0F, 100.0F, 50.0F), true), units::kCollected);
-    // Within what all candidates together may reach, far from each, and from the start: one look for each.
+    // Within the common reach of all candidates, but far from each, and from the start: one check each.
     const std::uint32_t beside = units::kCollected + 2 * units::kSolidLook;
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), true), beside);
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), false), beside);
@@ -147,7 +146,7 @@ TEST(WorkBorder, ManyBallsOutOfACurvesReachCostALookEach)
         scene.settings.escape_from_margin = false;
         scene.settings.security = security;
         scene.settings.closeness_nearest = 1;
-        // Within what both level candidates together may reach, and far above either.
+        // Within the common reach of both level candidates, and far above either.
         scene.threats.assign(kBalls, {{Vec3(60.0F, 0.0F, 59.0F), velocity}, 0.1F});
         EXPECT_EQ(scene.run(), PlanStatus::found);
         return scene.budget.spent();
@@ -157,7 +156,7 @@ TEST(WorkBorder, ManyBallsOutOfACurvesReachCostALookEach)
     for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
         EXPECT_EQ(spent(security, Vec3::Zero()), none + kPassed);
     }
-    // What moves is looked at for closeness besides, one at most here.
+    // Moving threats are also evaluated for closeness, at most one here.
     const std::uint32_t costed = 2 * units::closeness_units(25, 1);
     EXPECT_EQ(spent(SecurityMode::time_aware, Vec3(0.0F, 0.0F, 0.01F)), none + kPassed + costed);
     EXPECT_GT(spent(SecurityMode::swept, Vec3(0.0F, 0.0F, 0.01F)), none + kPassed + costed);

@@ -49,7 +49,7 @@ TEST(CandidateStatuses, HitsObstacle)
 TEST(CandidateStatuses, HitsMoving)
 {
     Scene scene;
-    // Crosses the way to the right 1 s after the vehicle has left the leg's abeam point.
+    // Crosses the path to the right 1 s after the vehicle has left the leg's abeam point.
     scene.threats.push_back({{Vec3(20.0F, -3.0F - 4.0F * 2.0F, 50.0F), Vec3(0.0F, 2.0F, 0.0F)}, 1.5F});
     ASSERT_EQ(scene.run(), PlanStatus::found);
     EXPECT_GT(scene.count(CandidateStatus::hits_moving), 0U);
@@ -80,7 +80,7 @@ TEST(CandidateStatuses, HitsAirspace)
 {
     Scene scene;
     scene.airspace.has_floor = true;
-    scene.airspace.floor = 48.5F;  // half a metre of room below the box
+    scene.airspace.floor = 48.5F;  // half a metre of clearance below the box
     scene.airspace.has_ceiling = true;
     scene.airspace.ceiling = 51.5F;
     scene.airspace.has_keep_in = true;
@@ -103,7 +103,7 @@ TEST(CandidateStatuses, HitsAirspace)
     }
     EXPECT_TRUE(floor);
     EXPECT_TRUE(ceiling);
-    scene.airspace.keep_in_radius = 43.0F;  // the corner of the box touches when the vehicle is far enough ahead
+    scene.airspace.keep_in_radius = 43.0F;  // contact of the box's corner when the vehicle is far enough ahead
     EXPECT_EQ(scene.run(), PlanStatus::none_available);
     EXPECT_GT(static_cast<int>(std::count_if(scene.result.candidates.begin(), scene.result.candidates.end(),
                                              [](const Candidate& c) { return c.hit.kind == ThreatKind::keep_in; })),
@@ -144,8 +144,8 @@ TEST(CandidateStatuses, SteepReturnToTheLegIsNotFlyable)
 {
     Scene scene;
     ASSERT_EQ(scene.run(), PlanStatus::found);
-    // At D = 20 m and |w| > 2 m the simple candidate meets the leg at 24 degrees: it would overshoot by more than half
-    // a metre.
+    // At D = 20 m and |w| > 2 m the simple candidate rejoins the leg at 24 degrees: it would overshoot by more than
+    // half a metre.
     for (const Candidate& c : scene.result.candidates) {
         if (c.shape.family == Family::simple) {
             EXPECT_EQ(c.status, CandidateStatus::not_flyable);

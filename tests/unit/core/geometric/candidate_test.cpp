@@ -50,7 +50,7 @@ TEST(PathFrame, AnyLengthOfDirection)
 
 TEST(PathFrame, AcrossIsTakenAsFarAsItIsAcross)
 {
-    // Along the world's axes and between them, whatever their lengths.
+    // Along the world's axes and between them, for any lengths.
     for (const Vec3& x : {Vec3(1.0F, 0.0F, 0.0F), Vec3(0.0F, 0.0F, -1.0F), Vec3(0.6F, -0.8F, 0.0F)}) {
         for (const Vec3& aside : {Vec3(0.0F, 1.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(0.3F, 2.0F, -1.0F)}) {
             const Vec3 y = (aside - aside.dot(x) * x);
@@ -81,7 +81,7 @@ TEST(Curve, MeetsItsDefinition)
         EXPECT_FLOAT_EQ(curve_offset(symmetric, distance, distance), offset);
         EXPECT_NEAR(curve_offset(symmetric, distance, 2.0F * distance), 0.0F, 1e-5F);
         for (float s = 0.0F; s <= distance; s += 0.5F) {
-            // Polynomial of the source: a s^3 + b s^2, a = -2 w / D^3, b = 3 w / D^2 (Pinheiro eq. 3.1 to 3.4).
+            // Pinheiro's polynomial: a s^3 + b s^2, a = -2 w / D^3, b = 3 w / D^2 (Pinheiro eq. 3.1 to 3.4).
             const float a = -2.0F * offset / (distance * distance * distance);
             const float b = 3.0F * offset / (distance * distance);
             EXPECT_NEAR(curve_offset(simple, distance, s), a * s * s * s + b * s * s, 1e-4F);
@@ -108,7 +108,7 @@ TEST(Curve, ContinuousWithItsSlope)
         }
         EXPECT_NEAR(unit_offset(family, h) / h, 0.0F, 4.0F * h);
     }
-    // It meets the leg again at a slope of -4.5 w / D (simple).
+    // It rejoins the leg at a slope of -4.5 w / D (simple).
     EXPECT_NEAR((unit_offset(Family::simple, 1.5F) - unit_offset(Family::simple, 1.5F - h)) / h, -4.5F, 0.02F);
 }
 

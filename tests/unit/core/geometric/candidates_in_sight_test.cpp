@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing that a candidate may meet is left out for being far: waits with a near apex, curves that outlast waits, what
-// lies behind a bend. And what is told of candidates because it was asked for.
+// No threat within a candidate's reach is excluded as far: waits with a near apex, curves that outlast waits, threats
+// behind a bend. And requested reports on candidates.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using world::PlanStatus;
 
-/// Curves and waits checked as such; nothing in the way.
+/// Curves and waits checked as such; no threats.
 struct Unhindered : Scene {
     Unhindered()
     {
@@ -97,14 +97,14 @@ TEST(InSight, WhatStandsBehindABendIsMet)
     scene.settings.simple = false;
     scene.problem.ahead.route = &route;
     ASSERT_EQ(scene.run(), PlanStatus::found);
-    // 2 m before the end of all of them, on the route and hence in the way of each.
+    // 2 m before the end of all of them, on the route and so blocking each.
     scene.threats = {Scene::still(Vec3(20.0F, 22.0F, 50.0F), 0.5F)};
     EXPECT_EQ(scene.run(), PlanStatus::none_available);
     EXPECT_EQ(scene.count(CandidateStatus::hits_static), scene.result.candidates.size());
 }
 
-/// A threat beside the collision point asks for the same offsets to the left and right of the way there, whichever way
-/// the vehicle faces at the start.
+/// A threat beside the collision point requires the same offsets to the left and right of the path there, for any
+/// course of the vehicle at the start.
 TEST(InSight, OffsetsAreToTheSidesOfTheCollisionPoint)
 {
     const path::Route route = bend();
@@ -136,7 +136,7 @@ TEST(InSight, OfMovingSolidsTheNearestSurfaceCountsFirst)
         return s;
     };
     const MovingSolid small = solid(Vec3(0.0F, 30.0F, 50.0F), 0.3F, 0.0F);
-    // Farther away, but each within 20 m of the start with its bounding ball, kept clear of by as much as it says.
+    // Farther away, but each within 20 m of the start with its bounding ball, with its stated clearance.
     for (const MovingSolid& large :
          {solid(Vec3(0.0F, -40.0F, 50.0F), 11.5F, 0.0F), solid(Vec3(0.0F, -40.0F, 50.0F), 6.0F, 10.0F)}) {
         const auto closeness = [](const std::vector<MovingSolid>& solids) {
@@ -182,7 +182,7 @@ TEST(InSight, TermsAreToldWhereTheyCountOrAreAskedFor)
     }
 }
 
-/// A table that says twice of what is true is believed.
+/// A table with twice the true values is used as is.
 TEST(InSight, SmoothnessIsWhatTheTableSays)
 {
     cost::tables::Tables doubled = cost::tables::kDefault;

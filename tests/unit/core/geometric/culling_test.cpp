@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a plan costs, in units of its budget: it grows with what is near, not with what there is.
+// Cost of a plan, in work units of its budget: grows with the near threats, not with all threats.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -116,7 +116,7 @@ TEST(Culling, WhatIsFarCostsItsBoundingTest)
     EXPECT_LE(units_of(scene), with_obstacles + kMostCollections * units::kCollected * still);
 }
 
-/// A long wall beside the leg, within reach of its candidates by any ball about it, is seen to be far by its faces.
+/// A long wall beside the leg, within reach of the candidates by its bounding ball, is rejected as far by its faces.
 TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
 {
     for (const float yaw : {0.0F, 0.4F, 2.0F}) {
@@ -133,14 +133,14 @@ TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
         static_cast<void>(scene.run());
         const auto looked_at =
             static_cast<std::uint32_t>(scene.result.candidates.size() - scene.count(CandidateStatus::not_evaluated));
-        // Each as a curve and in flight: two looks and all points once.
+        // Each as a curve and in flight: two checks and all points once.
         const std::uint32_t each =
             units::kCollected + 4 * units::kSolidLook + units::points_units(25) + units::points_units(kMaxPathPoints);
         EXPECT_LE(with_wall, alone + units::kCollected + looked_at * each) << yaw;
     }
 }
 
-/// Of a candidate on a straight line, whatever its speed: one query for each solid that bounds do not part from it.
+/// A candidate on a straight line, at any speed: one query per solid that bounds do not separate from it.
 TEST(Culling, AStraightCandidateTakesOneQueryForASolid)
 {
     std::array<Vec3, 6> prism{};
@@ -160,14 +160,14 @@ TEST(Culling, AStraightCandidateTakesOneQueryForASolid)
         scene.obstacles = {{1, geometry::make_hull(prism, Vec3(15.0F, 2.2F, 53.0F))}};
         return units_of(scene) - alone;
     };
-    // Without one query for all of the way, each further waypoint would bring a query for each of the candidates.
+    // Without one query for the whole path, each further waypoint would add a query per candidate.
     const std::uint32_t few = units_for(13);
     const std::uint32_t many = units_for(61);
     EXPECT_GT(few, kWaits * (units::kSolidQuery + units::kExactTurn)) << "a query it is";
     EXPECT_LE(many, few + 48 * kWaits * (units::kSolidSegment + 1));
 }
 
-/// Within reach of candidates in general, which are level, and above each single one: of many, seen at a glance.
+/// Within the common reach of the level candidates, and above each single one: many are rejected by a quick check.
 TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
 {
     constexpr std::uint32_t kMore = 6;
@@ -187,7 +187,7 @@ TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
             const bool by_volume = velocity.y() > 0.0F && security == SecurityMode::swept;
             const std::uint32_t each = units::kFarItem + (by_volume ? units::kItem : 0);
             static_cast<void>(scene.run());
-            // The others cannot be flown, or meet what comes before.
+            // The others are not flyable, or in contact with an earlier threat.
             const auto looked_at = static_cast<std::uint32_t>(scene.count(CandidateStatus::available) +
                                                               scene.count(CandidateStatus::chosen));
             ASSERT_GT(looked_at, 1U);
@@ -196,7 +196,8 @@ TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
     }
 }
 
-/// What lies beyond the end of all candidates that there are costs its bounding test, whatever others would reach.
+/// Threats beyond the end of all requested candidates cost their bounding test, independent of the reach of other
+/// families.
 TEST(Culling, ReachIsThatOfTheFamiliesThatAreAskedFor)
 {
     for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {

@@ -11,13 +11,14 @@
 
 namespace jink::geometric {
 
-/// A point of a curve, about its start [m], and when it is there [s].
+/// A point of a curve, about its start [m], and its time [s].
 struct CurvePoint {
     Vec3 position;
     Seconds time = 0.0F;
 };
 
-/// A curve through these points. What comes behind them is no part of it: `behind` stands there, early and far away.
+/// A curve through these points. The array after them does not belong to the curve: filled with `behind`, early and far
+/// away.
 inline detail::Curve curve_through(const std::vector<CurvePoint>& points, const Vec3& behind = Vec3::Constant(1e3F))
 {
     detail::Curve curve{};
@@ -35,12 +36,12 @@ inline detail::Curve curve_through(const std::vector<CurvePoint>& points, const 
     return curve;
 }
 
-/// One curve from the world's origin on, checked against what stands in the scene: nothing at first. The box reaches
+/// One curve from the world's origin on, checked against the scene's static obstacles: none at first. The box extends
 /// half a metre to each side.
 struct CurveBench : Scene {
     detail::Curve curve{};
     detail::Selection deferred{};
-    std::uint32_t spent = 0;  ///< by the last check, what it takes to collect apart
+    std::uint32_t spent = 0;  ///< by the last check, without collection
     std::uint32_t counted_solids = 0;
 
     explicit CurveBench(const std::vector<CurvePoint>& points) : curve(curve_through(points))
@@ -52,7 +53,7 @@ struct CurveBench : Scene {
         settings.escape_from_margin = false;
     }
 
-    /// `collected`: points that others fly, whose reach is looked at as well.
+    /// `collected`: points of other curves, whose reach is checked as well.
     detail::Verdict check(detail::Clearance::Part part = detail::Clearance::Part::all,
                           std::initializer_list<Vec3> collected = {}, std::uint32_t units = 1'000'000)
     {

@@ -56,8 +56,7 @@ struct Flight {
     world::PlanStatus plan() { return planner.plan(situation(), budget, out); }
 };
 
-/// A problem as the planner makes it of where the vehicle is, `distance` along its way on a route to the collision
-/// point.
+/// The planner's problem for the vehicle's position, `distance` along the route to the collision point.
 inline Problem problem_along(const Flight& flight, float distance)
 {
     const world::Way way = world::way_along(flight.situation(), flight.own.position);

@@ -14,14 +14,14 @@
 #include "core/world/obstacle_distance.hpp"
 #include "tests/unit/core/geometric/scene.hpp"
 
-// Manoeuvres of two parts, and their second part in double precision: what is met on the straight way back to the leg
-// by dense sampling and bisection.
+// Two-stage manoeuvres, and their second stage in double precision: the contact on the straight path back to the leg by
+// dense sampling and bisection.
 
 namespace jink::geometric {
 
 using Vec3d = Eigen::Vector3d;
 
-/// A main threat 20 m ahead, and both parts around what comes after it as well.
+/// A main threat 20 m ahead, and both stages, also around threats after it.
 struct InARow : Scene {
     Workspace workspace;
 
@@ -41,7 +41,7 @@ struct InARow : Scene {
     {
         return static_cast<std::uint16_t>(std::max(settings.waypoints / 2 + 1, 8));
     }
-    /// The cheapest curve that ends beside the main threat; on another side where `not_on` is one.
+    /// The cheapest curve that ends beside the main threat; on another side than `not_on` if given.
     world::PlanStatus first_part(Result& first, const Vec3& not_on = Vec3::Zero())
     {
         put_into(problem);
@@ -58,7 +58,7 @@ struct InARow : Scene {
     }
 };
 
-/// Beside the main threat, and `share` of the way from there to the leg, 20 m on.
+/// The point at `share` of the path from beside the main threat to the leg, 20 m on.
 inline Vec3 on_way_back(InARow& scene, float share)
 {
     auto first = std::make_unique<Result>();
@@ -67,7 +67,7 @@ inline Vec3 on_way_back(InARow& scene, float share)
     return Vec3(20.0F, 0.0F, 50.0F) + (1.0F - share) * beside + share * Vec3(20.0F, 0.0F, 0.0F);
 }
 
-/// What a straight flight meets first, growing evenly to what it is at the flight's end.
+/// The first contact of a straight flight, with a body that grows linearly to its size at the flight's end.
 struct Met {
     bool any = false;
     double first = 0.0;
@@ -78,7 +78,7 @@ struct Met {
 
 inline double gap(const Vec3d& half, const Vec3d& apart) { return (apart.cwiseAbs() - half).cwiseMax(0.0).norm(); }
 
-/// `met`, or this ball where it is touched earlier; `at_end` is how large it is in the end.
+/// `met`, or this ball if the contact is earlier; `at_end`: its size at the end.
 inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, double duration, const Met& ball,
                  Met& met)
 {
@@ -126,9 +126,9 @@ inline Met first_met(const Problem& problem, const Vec3& half, const Vec3d& from
     return met;
 }
 
-/// The problem of the second part: from beside the main threat back to the leg, around what is met first on the way.
-/// The way ends twice as far away as that is, and at least half as far on as the main threat; false where there is no
-/// such manoeuvre.
+/// The problem of the second stage: from beside the main threat back to the leg, around the first contact on that path.
+/// The path ends at twice the contact's distance, and at least half the main threat's distance farther; false without
+/// such a manoeuvre.
 inline bool second_problem(const InARow& scene, const Result& first, Problem& out)
 {
     const Problem& problem = scene.problem;
@@ -164,7 +164,7 @@ inline bool second_problem(const InARow& scene, const Result& first, Problem& ou
             out.apex_share = 1.0F;
             return true;
         }
-        // The closest approach of the centres, by golden section, however far past the end it is.
+        // The closest approach of the centres, by golden section, also past the end.
         const auto apart = [&](double t) { return Vec3d(met.position + t * met.velocity - from - t * velocity); };
         double low = 0.0;
         double high = 100.0 * duration;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two threats in a row: what is met on the way back from beside the first one, and how the second part goes around it.
+// Two-stage manoeuvres: the contact on the path back from beside the first threat, and the second stage around it.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -11,8 +11,8 @@ namespace {
 
 using world::PlanStatus;
 
-/// The second part is that of the problem seen in double precision, and ends where that ends. Its offsets say how far
-/// out what is met is taken to be, and how large.
+/// The second stage equals that of the problem computed in double precision, and has the same end. Its offsets show the
+/// assumed position and size of the contact.
 void expect_second_part(InARow& scene, const std::string& what, Problem* seen = nullptr)
 {
     SCOPED_TRACE(what);
@@ -96,7 +96,7 @@ TEST(InARowSecond, WhatIsMetFirstCountsInWhateverOrderItIsTold)
 
 TEST(InARowSecond, OfThoseMetAtOnceTheFirstCounts)
 {
-    // As far above the way as below it.
+    // Equally far above and below the path.
     for (const float up : {0.5F, -0.5F}) {
         InARow scene;
         const Vec3 on_way = on_way_back(scene, 0.5F);
@@ -135,7 +135,7 @@ TEST(InARowSecond, ObstaclesAreMetAsThreatsAreAndKeptClearOf)
         InARow scene;
         const Vec3 there = on_way_back(scene, 0.6F);
         scene.uncertainty = clearance;
-        // Beside the way: with the clearance it is met.
+        // Beside the path: in contact with the clearance.
         scene.obstacles = {{1, geometry::make_sphere(there + Vec3(0.0F, 0.0F, 1.9F), 0.6F)}};
         expect_second_part(scene, std::to_string(clearance));
     }
@@ -157,7 +157,7 @@ TEST(InARowSecond, AWayBackThatIsFreeIsFlown)
 {
     InARow scene;
     expect_second_part(scene, "free");
-    // 20 m to the main threat and 20 m back: a leg that goes on for so long will do, and no shorter one.
+    // 20 m to the main threat and 20 m back: a leg of exactly this length suffices, a shorter one does not.
     scene.problem.straight = 40.0F;
     EXPECT_EQ(scene.run_in_a_row(), PlanStatus::found);
     scene.problem.straight = std::nextafter(40.0F, 0.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Two threats in a row: what both parts make together, what they cost, and what is tried where one of them fails.
+// Two-stage manoeuvres: both stages together, their cost, and attempts if one of them fails.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ TEST(InARowWhole, WhereOneSideLeadsNowhereAnotherIsTried)
 
 TEST(InARowWhole, ItsCostIsThatOfTheDearerPart)
 {
-    // Somebody who flies away from beside the first part, or comes to beside the second one.
+    // A threat that flies away from beside the first stage, or comes to beside the second stage.
     for (const bool comes : {false, true}) {
         InARow scene;
         scene.threats.push_back(comes ? Sphere{{Vec3(30.0F, 53.0F, 50.0F), Vec3(0.0F, -3.0F, 0.0F)}, 0.5F}
@@ -110,7 +110,7 @@ TEST(InARowWhole, ItsCostIsThatOfTheDearerPart)
     }
 }
 
-/// What is found has been paid for; where work ends before that, that is told.
+/// A found manoeuvre is fully paid for; if the work units end before, this is reported.
 void expect_true_to_every_budget(const InARow& what, std::uint32_t step)
 {
     InARow whole = what;
@@ -159,7 +159,7 @@ TEST(InARowWhole, AnAnswerThatMoreChecksWouldChangeIsCutShort)
     unlimited.settings.evaluate_all = false;
     unlimited.settings.extra_planes = 1;
     const Vec3 side = first_side(unlimited);
-    // Beside the first part on that side, and the second on it: whoever flies there has to look closer.
+    // Beside the first stage on that side, and the second threat on it: a flight there needs a detailed check.
     unlimited.threats.push_back(Scene::still(Vec3(14.0F, 0.0F, 50.0F) + 6.0F * side, 1.0F));
     unlimited.threats.push_back(Scene::still(Vec3(26.0F, 0.0F, 50.0F) + 6.0F * side, 1.0F));
     const InARow scene = unlimited;
@@ -197,7 +197,7 @@ TEST(InARowWhole, WithLessThanAllWorkEveryAnswerIsCutShort)
     EXPECT_GT(found, 0U);
 }
 
-/// The whole is flown and checked within what one attempt may spend on that, and else not taken.
+/// The whole is flown and checked within the work units of one attempt; otherwise it is not used.
 TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
 {
     InARow whole;
@@ -217,7 +217,7 @@ TEST(InARowWhole, WhatCannotBeCheckedIsNotTaken)
         scene.settings.check_units = needed.spent() - (enough ? 0U : 1U);
         EXPECT_EQ(scene.run_in_a_row(), enough ? PlanStatus::found : PlanStatus::none_available);
         EXPECT_EQ(scene.result.cut_short, !enough);
-        // On either side as much is done but for that unit; and a budget of just so much is not what was short.
+        // On either side the same work is done except for that unit; a budget of exactly this size suffices.
         const std::uint32_t spent = enough ? whole.budget.spent() : 2U * (whole.budget.spent() - 1U);
         EXPECT_EQ(scene.budget.spent(), spent);
         scene.budget = WorkBudget{spent};

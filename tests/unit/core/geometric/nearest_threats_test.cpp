@@ -15,10 +15,10 @@ namespace {
 
 using world::PlanStatus;
 
-/// Along x at 5 m/s from (0, 0, 50), as Scene's leg is flown: stays where it is, seen from a straight flight.
+/// Along x at 5 m/s from (0, 0, 50), as Scene's leg is flown: static relative to a straight flight.
 const Vec3 kAlongside(5.0F, 0.0F, 0.0F);
 
-/// Curves that nobody checks, so that all of them are assessed.
+/// Unchecked curves, so that all of them are assessed.
 struct Assessed : Scene {
     Assessed()
     {
@@ -129,8 +129,8 @@ TEST(NearestThreats, OfEquallyNearOnesTheFirstIsNearer)
     EXPECT_EQ(scene.closeness(), closeness_of({right}));
 }
 
-/// What is looked at last is told last only where it is looked at apart: with every candidate evaluated the first cause
-/// by index is told, near or far.
+/// A threat that is checked later is reported later only if it is checked separately: with every candidate evaluated
+/// the first cause by index is reported, near or far.
 TEST(NearestThreats, TheFirstCauseIsToldWhereEveryCandidateIsEvaluated)
 {
     Scene scene;
@@ -138,7 +138,7 @@ TEST(NearestThreats, TheFirstCauseIsToldWhereEveryCandidateIsEvaluated)
     scene.settings.moving_nearest = 1;
     scene.problem.main = kNoThreat;
     const Vec3 slow(0.01F, 0.0F, 0.0F);
-    // In the way of all, and one that comes no nearer to the leg than a metre, in the way of those that go up.
+    // One blocks all candidates; one stays at least a metre from the leg and blocks the upward candidates.
     scene.threats = {{{Vec3(20.0F, 0.0F, 75.0F), slow}, 24.0F}, {{Vec3(5.0F, 0.0F, 50.0F), slow}, 2.0F}};
     EXPECT_EQ(scene.run(), PlanStatus::none_available);
     std::size_t up = 0;

@@ -52,7 +52,7 @@ TEST(Planner, TreeInTheWay)
     Flight flight;
     flight.obstacles = {{1, geometry::make_capsule(Vec3(30.0F, 0.5F, 0.0F), Vec3(30.0F, 0.5F, 70.0F), 1.0F)}};
     ASSERT_EQ(flight.plan(), PlanStatus::found);
-    EXPECT_LT(flight.out.side.y(), -0.5F);  // the tree stands half a metre to the left
+    EXPECT_LT(flight.out.side.y(), -0.5F);  // the tree is half a metre to the left
 }
 
 TEST(Planner, WallIsFlownOver)
@@ -225,7 +225,7 @@ TEST(PlannerRetry, AWallOfBalloonsHasItsGapFurtherOut)
     ASSERT_TRUE(flight.planner.configure(settings));
     ASSERT_EQ(flight.plan(), PlanStatus::found);
     EXPECT_GE(world::least_separation(flight.situation(), flight.out.path, 100.0F, flight.budget).margin, 0.0F);
-    // In source mode the offsets are what they are.
+    // With Pinheiro's settings the offsets are unchanged.
     Settings source = source_settings();
     source.retries = 4;
     ASSERT_TRUE(flight.planner.configure(source));
@@ -338,7 +338,7 @@ TEST(Planner, SmallThreatsArePlannedForAsIfHalfAMetre)
 TEST(Planner, AnyBudgetIsAnsweredOrSpentAlongALegAndARoute)
 {
     // Solids near the nominal path, none of which blocks it: the search for conflicts may run out of work units before
-    // it has met anything.
+    // it finds a conflict.
     oracle::TwinRoute bent;
     ASSERT_TRUE(bent.leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(25.0F, 0.0F, 50.0F)));
     ASSERT_TRUE(bent.leg(Vec3(25.0F, 0.0F, 50.0F), Vec3(25.0F, 60.0F, 50.0F)));
@@ -355,7 +355,7 @@ TEST(Planner, AnyBudgetIsAnsweredOrSpentAlongALegAndARoute)
         for (std::uint32_t units = 0; units < plenty.spent(); ++units) {
             WorkBudget budget(units);
             const PlanStatus status = flight.planner.plan(flight.situation(), budget, flight.out);
-            // A solid at which the search ran out counts as met now.
+            // A solid at which the search ran out counts as a conflict now.
             ASSERT_TRUE(status == PlanStatus::budget_spent || status == PlanStatus::too_close || status == answer)
                 << units;
         }

@@ -16,7 +16,7 @@ using detail::ReferenceAhead;
 using oracle::TwinRoute;
 using oracle::Vec3d;
 
-/// Two legs that meet at (40, 0, 50), the second one in `direction`.
+/// Two legs that join at (40, 0, 50), the second one in `direction`.
 TwinRoute legs(const Vec3& direction, float first = 40.0F)
 {
     TwinRoute twin;
@@ -37,8 +37,8 @@ Problem problem_to(const TwinRoute& twin, const Vec3& start, float joined_at)
     return problem;
 }
 
-/// The one corner at `way`, where the tangent turns from `before` to `after`: what a parabola is that begins as far
-/// before it as it ends behind, and that is flown at the problem's speed with half of what the vehicle can do.
+/// The single corner at arc length `way`, where the tangent turns from `before` to `after`: a parabola symmetric about
+/// the corner, flown at the problem's speed with half of the vehicle's acceleration.
 void expect_one_corner(const Problem& problem, float way, const Vec3d& before, const Vec3d& after,
                        double tolerance = 2e-4)
 {
@@ -84,8 +84,8 @@ TEST(RoundedCorners, TurnAsGentlyAsHalfOfTheAccelerationAllows)
     }
 }
 
-/// A way that joins the route at a joint turns once, from its straight beginning into what follows there: whatever
-/// rounding makes of the arc length at which it joins.
+/// A path that joins the route at a joint turns once, from its straight beginning into the following segment, for any
+/// rounding of the joining arc length.
 TEST(RoundedCorners, AJointThatIsJoinedAtIsTurnedOnce)
 {
     constexpr float kPast = 1e-3F;

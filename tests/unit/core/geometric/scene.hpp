@@ -8,7 +8,7 @@
 
 namespace jink::geometric {
 
-/// Each candidate looked at, as far as it can be.
+/// Settings that evaluate every candidate as far as possible.
 inline Settings every_candidate()
 {
     Settings settings;

@@ -27,7 +27,7 @@ TEST(Solve, FindsAWayRoundOneStaticThreat)
     EXPECT_EQ(scene.result.path.points.front().position, Vec3(0.0F, 0.0F, 50.0F));
     EXPECT_FLOAT_EQ(scene.result.path.duration(), chosen.duration);
     EXPECT_NEAR(scene.result.side.norm(), 1.0F, 1e-5F);
-    EXPECT_LT(scene.result.side.y(), 0.0F);  // of two equal ways the first generated: to the right
+    EXPECT_LT(scene.result.side.y(), 0.0F);  // of two equal candidates the first generated: to the right
 }
 
 TEST(Solve, OrderOfGeneration)
@@ -214,7 +214,7 @@ TEST(CheckUnits, BoundTheWorkOfCheckingWhateverIsInTheWay)
         EXPECT_EQ(scene.run(), PlanStatus::none_available) << units;
         const std::uint32_t spent = scene.budget.spent();
         EXPECT_GE(spent, before);
-        before = units == 0 ? spent : before;  // what comes before the checks
+        before = units == 0 ? spent : before;  // the cost before the checks
         EXPECT_LE(spent, before + 2 * units);  // twice for one solid
     }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a query costs where its answer is known early, and what it answers at the last number before a limit. Work is
-// counted in turns; each case says why it takes no more.
+// Cost of a query with an early answer, and answers at the last number before a limit. Work is counted in iterations;
+// each case states why no more are needed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -39,7 +39,7 @@ Cost search(const Shape& shape, float reach, float resolution)
 
 TEST(ConvexBorder, TheLineOfTheCentresIsLookedAlongFirst)
 {
-    // Square to two faces, whatever the axis: the first plane parts the two.
+    // Perpendicular to two faces, for any axis: the first plane separates the two.
     for (const Vec3& at : {Vec3(2.5F, 0.0F, 0.0F), Vec3(0.0F, 2.5F, 0.0F), Vec3(0.0F, 0.0F, -2.5F)}) {
         WorkBudget budget(kUnitsPerQuery);
         EXPECT_EQ(swept_box_contact(kHalf, kZero, kZero, make_box(at, kHalf), 0.0F, budget), Contact::clear);
@@ -65,7 +65,8 @@ TEST(ConvexBorder, ASearchEndsWithTheReachProven)
 
 TEST(ConvexBorder, AClearanceThatTheFirstPointsUndercutIsSearchedNoFurther)
 {
-    // libccd says yes, and the search needs one turn to find a point within the clearance: its proof takes many.
+    // libccd reports contact, and the search needs one iteration to find a point within the clearance; the proof takes
+    // many.
     const Mat3 axes = Eigen::AngleAxisf(0.6F, Vec3(1.0F, 2.0F, 0.3F).normalized()).toRotationMatrix();
     const Shape shape = make_box(Vec3(2.6F, 1.5F, 0.4F), Vec3(1.0F, 0.6F, 0.4F), axes);
     ASSERT_GT(search(shape, 100.0F, 0.0F).turns, 3U);
@@ -171,8 +172,8 @@ TEST(ConvexBorder, TheSearchEndsAtItsLimits)
 
 TEST(ConvexBorder, LibccdGetsHalfOfTheCallsAndNoMore)
 {
-    // Whole coordinates: faces, edges and corners that touch, for which libccd's loop is at its longest. What the
-    // distance search takes after it is found out by another one.
+    // Integer coordinates: faces, edges and corners in contact, for which libccd's loop is longest. Another test
+    // measures the distance search after it.
     std::uint32_t most = 0;
     for (std::uint64_t seed = 1; seed <= 2'000; ++seed) {
         Random random(seed);
@@ -202,8 +203,7 @@ TEST(ConvexBorder, LibccdGetsHalfOfTheCallsAndNoMore)
 
 TEST(ConvexBorder, SearchesEndByThemselves)
 {
-    // Of pairs that graze, that lie far from their own size, or that are thin, none needs all calls it is allowed:
-    // rounds that bring nothing nearer are counted.
+    // Grazing, distant or thin pairs never need all permitted calls: iterations without progress are counted.
     std::uint32_t most = 0;
     for (std::uint64_t seed = 1; seed <= 3'000; ++seed) {
         Random random(seed);

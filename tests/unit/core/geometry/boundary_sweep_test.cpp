@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed forms where they change: the slowest speed that counts, points that cross each other's way exactly, the first
-// instant of many that are equally near, every side of a box.
+// Closed forms where they change: the slowest speed that counts, points with exactly crossing paths, the first of many
+// equally near instants, every side of a box.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -50,12 +50,12 @@ TEST(SweepBorder, TheSlowestSpeedThatCountsArrivesInItsTime)
 
 TEST(SweepBorder, PointsWhoseWaysCrossTouch)
 {
-    // No box, no radius: the plane of both ways goes through the only point there is.
+    // No box, no radius: the plane of both paths contains the single point.
     EXPECT_EQ(swept_distance(kOrigin, -Vec3::UnitX(), Vec3::UnitX(), -Vec3::UnitY(), Vec3::UnitY()), 0.0F);
     EXPECT_EQ(swept_distance(kOrigin, Vec3(-3.0F, 1.0F, 2.0F), Vec3(1.0F, 1.0F, 2.0F), Vec3(0.0F, 1.0F, -2.0F),
                              Vec3(0.0F, 1.0F, 3.0F)),
               0.0F);
-    // A flat box in their plane, and one that its own way passes edgewise.
+    // A flat box in their plane, and one that moves edgewise.
     EXPECT_EQ(swept_distance(Vec3(0.5F, 0.5F, 0.0F), -Vec3::UnitX(), Vec3::UnitX(), -4.0F * Vec3::UnitY(),
                              4.0F * Vec3::UnitY()),
               0.0F);
@@ -84,7 +84,7 @@ TEST(SweepBorder, TheFirstOfManyInstantsThatAreEquallyNearIsTold)
             entry = std::max(entry, speed > 0 ? (-double(half[i]) - place) / speed : 0.0);
         }
         ASSERT_LE(approach.distance, 1e-5F) << "seed " << seed;
-        // It comes at a speed of at least its way through the slab over the time it has left.
+        // Its speed is at least its distance through the slab over the remaining time.
         ASSERT_NEAR(double(approach.when), entry, 1e-3) << "seed " << seed;
     }
 }
@@ -113,7 +113,7 @@ TEST(SweepBorder, TheBoxDistanceKnowsEverySide)
 
 TEST(SweepBorder, TheGlanceKeepsOffTheBorderByItsShareOfAllLengths)
 {
-    // 1e-5 of both places, the box and the radius together. A point that stands still above the box.
+    // 1e-5 of both places, the box and the radius together. A static point above the box.
     const auto at_gap = [](const Vec3& half, float radius, float share) {
         const float most = half.z() + radius;
         const float sizes = 2.0F * most + half.sum() + radius;
@@ -130,7 +130,7 @@ TEST(SweepBorder, TheGlanceKeepsOffTheBorderByItsShareOfAllLengths)
 
 TEST(SweepBorder, ASphereIsAPointMovedPastTheBox)
 {
-    // Whoever asks about a sphere by its shape hears what whoever asks about its centre does, to the last bit.
+    // Queries for a sphere by shape and by centre give the same result, to the last bit.
     for (std::uint64_t seed = 1; seed <= 2'000; ++seed) {
         Random random(seed);
         const auto any = [&](float side) {

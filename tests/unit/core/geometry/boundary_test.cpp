@@ -163,7 +163,7 @@ TEST(Border, TheGlanceLeavesTouchingToTheExactTest)
 
 TEST(Border, EverySolidIsTouchedAtItsClearance)
 {
-    // Straight above: the distance is exactly what stands between the faces, and every solid is as high.
+    // Straight above: the distance is exactly the gap between the faces, and every solid has the same height.
     const Vec3 above(0.0F, 0.0F, 6.0F);
     const std::array<Vec3, 3> flat{Vec3(-1.0F, -1.0F, -1.0F), Vec3(1.0F, -1.0F, -1.0F), Vec3(0.0F, 1.0F, -1.0F)};
     for (const Shape& shape : {make_sphere(above, 1.0F), make_box(above, Vec3::Ones()), make_hull(flat, above),

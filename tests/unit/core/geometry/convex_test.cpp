@@ -56,7 +56,7 @@ TEST(SweptBoxContact, WithEachKindOnItsWayAndBesideIt)
 
 TEST(SweptBoxContact, ASweptBoxIsNotTheBoxAroundItsWay)
 {
-    // A diagonal way leaves two corners of its bounding box free.
+    // A diagonal path leaves two corners of its bounding box free.
     const Shape post = make_cylinder({8.0F, -8.0F, -5.0F}, {8.0F, -8.0F, 5.0F}, 1.0F);
     EXPECT_EQ(contact({-10.0F, -10.0F, 0.0F}, {10.0F, 10.0F, 0.0F}, post), Contact::clear);
     EXPECT_NEAR(distance({-10.0F, -10.0F, 0.0F}, {10.0F, 10.0F, 0.0F}, post), 8.8995F, 1e-3F);

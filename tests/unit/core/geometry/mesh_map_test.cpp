@@ -186,7 +186,7 @@ TEST(NearestPieces, TellsWhatItLeavesOut)
     ASSERT_EQ(found.found, 2U);
     EXPECT_NEAR(out[0].from.distance, 2.0F, 1e-4F);
     EXPECT_NEAR(out[1].from.distance, 2.0F, 1e-4F);
-    // The cube behind is sqrt(1 + 4.5^2) away; its box is all that was looked at, or the box above it.
+    // The cube behind is sqrt(1 + 4.5^2) away; only its box was checked, or the box above it.
     EXPECT_LE(found.dropped, std::sqrt(1.0F + 4.5F * 4.5F) + 1e-4F);
     EXPECT_GE(found.dropped, 2.0F - 1e-4F);
     query.reach = 3.0F;

@@ -86,7 +86,7 @@ TEST(Shape, BoundingRadiusHoldsEverySupportPoint)
         const auto any = [&](float side) {
             return Vec3(random.uniform(-side, side), random.uniform(-side, side), random.uniform(-side, side));
         };
-        // Axes at the limit of what is_valid lets pass.
+        // Axes at the limit of is_valid.
         Mat3 axes = Eigen::AngleAxisf(random.uniform(0.0F, 6.0F), any(1.0F).normalized()).toRotationMatrix();
         const Mat3 turned = axes;
         axes += 2.4e-4F * Mat3(turned * Mat3::Ones());

@@ -108,7 +108,7 @@ TEST(AgentPlane, RampGrowsFromTheRimAndStaysAtItsMost)
     EXPECT_NEAR(offset_at(0.85F), 0.5F * 0.15F, kExact);  // the own half of half of 0.3 m/s
     EXPECT_NEAR(offset_at(0.7F), 0.5F * 0.3F, kExact);
     EXPECT_NEAR(offset_at(0.1F), 0.5F * 0.3F, kExact);
-    // Just outside: the original's half-space says nothing else, since neither moves.
+    // Just outside: the original half-space is the same, since neither moves.
     EXPECT_NEAR(offset_at(1.00001F), 0.0F, 1e-5F);
 }
 
@@ -125,7 +125,7 @@ TEST(AgentPlane, ConflictRegionIsLeftWithinTheRecoveryTime)
     EXPECT_EQ(plane.level, Level::conflict);
     settings.recovery_time = 0.5F;
     EXPECT_NEAR(pair_planes(pair, settings).conflict.offset, 0.5F * 0.3F, kExact);
-    // A share of 1 for those that do not give way.
+    // A share of 1 for non-cooperative neighbours.
     pair.weights = kAlone;
     EXPECT_NEAR(pair_planes(pair, settings).conflict.offset, 0.3F, kExact);
 }
@@ -196,7 +196,7 @@ TEST(AgentPlane, WhoDoesNotGiveWayIsPassedAlone)
     const float unmoved = shared.normal.dot(pair.own_velocity);
     EXPECT_GT(shared.offset, unmoved);
     EXPECT_NEAR(alone.offset - unmoved, 2.0F * (shared.offset - unmoved), 1e-6F);
-    // What is left outside of the obstacle is shared all the same.
+    // The part outside the obstacle is still shared.
     pair.other_velocity = {1, 0, 0};
     const HalfSpace slack = pair_plane(pair, settings);
     pair.weights = kShared;
@@ -216,7 +216,7 @@ TEST(AgentPlane, AtRestHalfOfTheGapIsLeftInEachBrakeTime)
     const HalfSpace plane = pair_planes(pair, settings).conflict;
     expect_near(plane.normal, {0, -1, 0});
     EXPECT_NEAR(plane.offset, -0.5F * (2.0F - 0.7F) / 0.5F, kExact);
-    // The other's velocity counts where it does not give way: 1 m/s towards us.
+    // The other's velocity counts if it is not cooperative: 1 m/s towards us.
     pair.weights = kAlone;
     EXPECT_NEAR(pair_planes(pair, settings).conflict.offset, -1.3F / 0.5F + 1.0F, kExact);
 }
@@ -225,7 +225,7 @@ TEST(AgentPlane, ReachAndWhatARangeLeavesOfTheHorizon)
 {
     EXPECT_EQ(reach(1.0F, 5.0F, 2.0F, 3.0F, 0.5F), 26.0F);
     EXPECT_EQ(reach(1.0F, 5.0F, 2.0F, 3.0F, 2.0F), 51.0F);
-    // The source's own: 4 m of range, 1.2 m apart, 1.5 m/s each.
+    // Alejo's values: 4 m of range, 1.2 m apart, 1.5 m/s each.
     EXPECT_NEAR(effective_horizon(4.0F, 1.2F, 10.0F, 1.5F, 1.5F, 1.0F), 2.8F / 3.0F, 1e-6F);
     EXPECT_EQ(effective_horizon(40.0F, 1.2F, 10.0F, 1.5F, 1.5F, 1.0F), 10.0F);
     EXPECT_EQ(effective_horizon(1.0F, 1.2F, 10.0F, 1.5F, 1.5F, 1.0F), 0.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nothing depends on where the world's origin lies, or on which way is north.
+// Results do not depend on the world's origin, or on the direction of north.
 #include <gtest/gtest.h>
 
 #include <cmath>

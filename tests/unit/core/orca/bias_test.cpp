@@ -20,7 +20,7 @@ BiasNeighbour at(std::uint16_t id, const Vec3& offset)
     return {id, offset, offset.cross(Vec3(Vec3::UnitZ())).normalized()};
 }
 
-/// Stalled for `time` seconds with nobody near.
+/// Stalled for `time` seconds without neighbours.
 Bias stalled_for(Seconds time, const BiasSettings& settings = {})
 {
     Bias bias(settings);
@@ -108,7 +108,7 @@ TEST(Bias, ABlockEnds)
     bias.reset();
     EXPECT_EQ(bias.stalled(), 0.0F);
 }
-/// Who wants to stand does not stall.
+/// An intentional stop is not a stall.
 TEST(Bias, StandingOnPurposeIsNoStall)
 {
     Bias bias;

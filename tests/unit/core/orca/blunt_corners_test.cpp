@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// When a program is solved once more in twice the precision: where what holds its answer meets in angles below 0.1, or
-// in more than three. Seen by the work, of which a turn in twice the precision takes sixteen times as much.
+// When a program is solved again in double-float: if the active planes' angles are below 0.1 rad, or more than three
+// are active. Detected by the work units: an iteration in double-float costs sixteen times as much.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ protected:
         EXPECT_EQ(solution.status & (kBadInput | kWorkLimit | kInfeasibleDynamics), 0U);
         return budget.spent();
     }
-    /// Less than one turn on one plane takes in twice the precision, beyond what it takes in single precision.
+    /// Threshold: below the extra cost of one double-float iteration on one plane.
     bool refined() { return work() > 100U; }
 
     std::vector<HalfSpace> planes;
@@ -84,7 +84,7 @@ TEST_F(BluntCorners, SmallAnglesAre)
     }
 }
 
-/// Three that meet in a flat corner, though no two of them are nearly parallel.
+/// Three planes in a flat corner, though no two are nearly parallel.
 TEST_F(BluntCorners, FlatCornersOfThreeAre)
 {
     for (const float height : {0.02F, 0.2F}) {
@@ -115,7 +115,7 @@ TEST_F(BluntCorners, MoreThanThreeAre)
     planes.pop_back();
     balls.push_back({{1, 0, 0}, std::sqrt(2.0F) - 1.0F});
     EXPECT_GT(work(), 32U) << "two balls beside two";
-    // One that stands off by a centimetre a second is not in it.
+    // A plane off by 0.01 m/s is not active.
     planes = {below({1, 1, 0}, 1.0F), below({1, -1, 0}, 1.0F), below({1, 0, 1}, 1.0F), below({1, 0, -1}, 1.01F)};
     balls = {{Vec3::Zero(), 20.0F}};
     EXPECT_FALSE(refined()) << work();
@@ -148,7 +148,7 @@ TEST_F(BluntCorners, AFifthAsFarBrokenIs)
     EXPECT_NEAR(solution.broken[2], 0.5F, 1e-4F);
 }
 
-/// Half-spaces that may not give way hold those that do by many times their part.
+/// Hard half-spaces balance the yielding ones with many times their share.
 TEST_F(BluntCorners, LargeSharesAre)
 {
     for (const float yield : {1.0F, 0.06F, 0.04F, 0.02F}) {

@@ -10,8 +10,8 @@
 #include "core/base/random.hpp"
 #include "core/orca/half_space.hpp"
 
-// Small velocity programs solved by looking at every set of half-spaces that may hold the answer, in doubles. It shares
-// nothing with the solver: no order, no search, no balls.
+// Small velocity programs solved by enumeration of every set of half-spaces that may be active, in doubles. Independent
+// of the solver: no order, no search, no balls.
 
 namespace jink::orca::enumerated {
 
@@ -30,18 +30,18 @@ inline Vec3 unit(Random& random)
 struct Plane {
     Vec3d normal;
     double offset = 0.0;
-    double yield = 1.0;  ///< 0: it does not give way
+    double yield = 1.0;  ///< 0: does not yield
 
     [[nodiscard]] double violation(const Vec3d& x) const { return offset - normal.dot(x); }
 };
 
-/// The rows of a program; those above `hard` give way.
+/// The rows of a program; rows from `hard` on yield.
 inline std::vector<Plane> planes_of(const std::vector<HalfSpace>& planes, std::size_t hard = 0)
 {
     std::vector<Plane> out;
     for (std::size_t i = 0; i < planes.size(); ++i) {
         const Vec3d n = planes[i].normal.cast<double>();
-        // A normal's length is 1 but for its rounding.
+        // A normal's length is 1 up to rounding.
         out.push_back({n / n.norm(), static_cast<double>(planes[i].offset) / n.norm(),
                        i < hard ? 0.0 : static_cast<double>(planes[i].yield)});
     }
@@ -57,7 +57,7 @@ inline double worst(const std::vector<Plane>& planes, const Vec3d& x)
     return out;
 }
 
-/// The point nearest to `goal` that all planes leave free, where there is one.
+/// The feasible point nearest to `goal`, if any.
 inline std::optional<Vec3d> nearest(const std::vector<Plane>& planes, const Vec3d& goal)
 {
     if (worst(planes, goal) <= 1e-10) {
@@ -96,8 +96,8 @@ inline std::optional<Vec3d> nearest(const std::vector<Plane>& planes, const Vec3
     return std::nullopt;
 }
 
-/// The least d for which all hold once each has given way by d * yield, and where: of four planes at least one of which
-/// gives way. Shares that are not negative prove that it is no less; the largest of all sets is it.
+/// The least d for which all planes hold after each yields by d * yield, and its point, for four planes of which at
+/// least one yields. Non-negative shares prove a lower bound; the largest over all sets is the result.
 struct Least {
     double d = -1e9;
     Vec3d x = Vec3d::Zero();

@@ -87,7 +87,7 @@ TYPED_TEST(ExchangeEdges, OppositeOnesAreACornerBesideTwoThatHoldNothing)
     EXPECT_EQ(static_cast<float>(shares[3]), 0.0F);
 }
 
-/// One look at each row is all the work where the corner decides already.
+/// If the first corner is optimal, the work is one check per row.
 TYPED_TEST(ExchangeEdges, ACornerThatDecidesTakesOneTurn)
 {
     this->add_opposites();
@@ -128,7 +128,7 @@ TYPED_TEST(ExchangeEdges, AFifthJoinsWhereItIsBrokenByMoreThanTwiceTheTolerance)
     EXPECT_EQ(this->x().y(), -0.5F);
 }
 
-/// A turn has to raise the violation: y >= 0.75 takes the place of y >= 0.5, and x stays what decides.
+/// An exchange must raise the violation: y >= 0.75 replaces y >= 0.5, and x stays decisive.
 TYPED_TEST(ExchangeEdges, ATurnThatRaisesNothingGivesUp)
 {
     this->add_opposites();
@@ -136,8 +136,8 @@ TYPED_TEST(ExchangeEdges, ATurnThatRaisesNothingGivesUp)
     EXPECT_FALSE(this->found());
 }
 
-/// y, z and x >= 0 hold, and the fourth gives way for them. A fifth that holds too takes the place of the third: in
-/// that of the first or the second the others would have to pull. Where it contradicts the three there is no corner.
+/// y, z and x >= 0 hold, and the fourth yields to them. A fifth hard row replaces the third: replacing the first or the
+/// second would need negative shares. If it contradicts the three there is no corner.
 TYPED_TEST(ExchangeEdges, AFifthTakesThePlaceThatMakesACornerOfIt)
 {
     const float part = -1.0F / std::sqrt(3.0F);
@@ -174,7 +174,7 @@ TYPED_TEST(ExchangeEdges, YieldsThatAreTooSmallAreTooBlunt)
     EXPECT_FALSE(this->found(2));
 }
 
-/// Three of the four planes have to meet in a point that can be computed.
+/// Three of the four planes must intersect in a computable point.
 TYPED_TEST(ExchangeEdges, NormalsThatNearlyLieInAPlaneAreTooBlunt)
 {
     const auto with_height = [&](float height) {

@@ -9,13 +9,13 @@
 #include "core/orca/velocity_filter.hpp"
 #include "tests/numbers.hpp"
 
-// A filter that is flown tick by tick, for its tests.
+// A filter flown tick by tick, for its tests.
 
 namespace jink::orca::flown {
 
 inline constexpr std::uint32_t kPlenty = 1'000'000;
 
-/// A filter that is flown perfectly, each command looked at: finite, and within both balls of the limits.
+/// A perfectly followed filter; checks that each command is finite, and within both balls of the limits.
 class Flown {
 public:
     explicit Flown(const FilterSettings& settings = {}, const Vec3& velocity = Vec3::Zero())

@@ -5,7 +5,7 @@
 
 namespace jink::orca::test {
 
-/// Velocities whose part along `normal` is at least `offset` [m/s].
+/// Velocities whose component along `normal` is at least `offset` [m/s].
 inline HalfSpace at_least(const Vec3& normal, float offset, Level level = Level::warning, float yield = 1.0F)
 {
     HalfSpace out;

@@ -125,11 +125,11 @@ TEST(LimitContract, EveryNumberIsLookedAt)
     }
 }
 
-/// What is asked for is enough, to its rounding of 1e-5, and nothing below that.
+/// The required value suffices, up to its rounding of 1e-5, and no smaller value does.
 TEST(LimitContract, WhatIsAskedForIsEnough)
 {
     constexpr float kShare = 1.0F + 1e-5F;
-    // A time just so long that its slack is exactly what braking takes.
+    // A time whose slack equals exactly the braking distance.
     const auto brakes_for = [](SafetyQuestion& q, float time) {
         q.limits.acceleration = 1.0F;
         q.limits.max_speed = time;
@@ -159,7 +159,7 @@ TEST(LimitContract, WhatIsAskedForIsEnough)
     }
 }
 
-/// The same of the delay: the product is searched for that meets the slack to the bit.
+/// The same for the delay: searches the product that equals the slack to the bit.
 TEST(LimitContract, WhatTheDelayAsksForIsEnough)
 {
     constexpr float kShare = 1.0F + 1e-5F;
@@ -197,7 +197,7 @@ TEST(LimitContract, WhatTheDelayAsksForIsEnough)
     EXPECT_GT(met, 3);
 }
 
-/// And of the ramp: as fast as the delay bears within what lies between both regions.
+/// The same for the ramp: as fast as the delay permits within the gap between both regions.
 TEST(LimitContract, TheRampThatTheDelayBearsIsNotTooFast)
 {
     SafetyQuestion q;

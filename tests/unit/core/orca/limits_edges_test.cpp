@@ -14,7 +14,7 @@ namespace {
 constexpr float kNoFloat = std::numeric_limits<float>::quiet_NaN();
 constexpr float kEndless = std::numeric_limits<float>::infinity();
 
-/// A turn of 0.05 rad to either side and no more, whatever the heading.
+/// A turn of at most 0.05 rad to either side, for any heading.
 TEST(LimitEdges, TheTurnIsBoundedToBothSidesInEveryDirection)
 {
     MotionLimits limits;

@@ -45,8 +45,8 @@ TEST(Limits, LeastSpeedIsAHalfSpaceBeyondIt)
     ASSERT_EQ(set.size, 1U);
     EXPECT_TRUE(lets_pass(set, {0, 10, 0}));
     EXPECT_FALSE(lets_pass(set, {0, 9.9F, 0}));
-    EXPECT_FALSE(lets_pass(set, {9.9F, 9.9F, 0}));  // fast enough, but not in what is convex
-    // Too slow: made up across. With no direction across: left out, and said.
+    EXPECT_FALSE(lets_pass(set, {9.9F, 9.9F, 0}));  // fast enough, but outside the convex part
+    // Too slow: compensated across. Without a direction across: omitted, and reported.
     EXPECT_NEAR(limit_set(limits, {3, 0, 6}).reference.x(), 8.0F, 1e-5F);
     EXPECT_EQ(limit_set(limits, {3, 0, 6}).reference.z(), 6.0F);
     const LimitSet still = limit_set(limits, Vec3::Zero());
@@ -112,7 +112,7 @@ TEST(Limits, ACapGoesAsFarAsBrakingDoes)
     EXPECT_TRUE(cap_speed(set, 0.8F));
     EXPECT_EQ(set.balls[0].radius, 0.8F);
     EXPECT_FALSE(cap_speed(set, 0.1F));
-    EXPECT_GT(set.balls[0].radius, 0.6F);  // what a period of braking leaves
+    EXPECT_GT(set.balls[0].radius, 0.6F);  // the rest after a period of braking
     EXPECT_LT(set.balls[0].radius, 0.61F);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where two planes meet, of nearly one direction or nearly opposite; and what is within a ball to the bit.
+// Intersection of two planes of nearly equal or opposite directions; and containment in a ball to the bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace jink::orca {
 namespace {
 
-/// Planes whose angle rounding does not tell from 0 do not meet.
+/// Planes whose angle is 0 within rounding do not intersect.
 TEST(WherePlanesMeet, AnAngleOfRoundingIsNone)
 {
     const float angle = kSameDirection<float>;

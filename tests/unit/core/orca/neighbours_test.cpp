@@ -34,7 +34,7 @@ TEST(Neighbours, WhoCanNotBeMetIsLeftOutAndNothingIsLost)
     EXPECT_EQ(out.truncated, 0);
     EXPECT_TRUE(std::isinf(out.speed_cap));
     EXPECT_EQ(out.horizon, 10.0F);
-    // Faster than it says.
+    // Faster than reported.
     Neighbour fast = at(41.1F, 2);
     fast.velocity = {-3, 0, 0};
     EXPECT_EQ(selected(settings, {fast}).chosen.size(), 1U);

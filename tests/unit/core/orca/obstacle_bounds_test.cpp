@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles whose distances are exact in single precision: at the reach, at the end of a way, and as near as each
-// other.
+// Obstacles whose distances are exact in single precision: at the reach, at the end of a path, and equally near.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +15,7 @@ namespace {
 
 using test::ObstacleContract;
 
-/// What is proven of the distance of an obstacle.
+/// Proven distance of an obstacle.
 float distance_of(const ObstacleScene& scene, std::size_t i, const Vec3& point)
 {
     WorkBudget budget(test::kUnlimited);
@@ -24,7 +23,7 @@ float distance_of(const ObstacleScene& scene, std::size_t i, const Vec3& point)
     return view.obstacle(i, point, 100.0F, budget).distance;
 }
 
-/// 5 m/s for 1 s beside an envelope of 1 m: nothing at 6 m can be met in time. Step by step of a float to either side.
+/// 5 m/s for 1 s beside an envelope of 1 m: no contact at 6 m is possible in time. One float step to either side.
 TEST_F(ObstacleContract, WhatLiesAtTheReachIsLeftOut)
 {
     add(geometry::make_sphere({7, 0, 0}, 1.0F));
@@ -70,7 +69,7 @@ TEST_F(ObstacleContract, OfMoreThanThereIsRoomForAsNearTheFirstStay)
     for (const Vec3& centre : spread) {
         add(geometry::make_sphere(centre, 1.0F));
     }
-    // What is proven of them differs by rounding: in its order, the last two as near as each other.
+    // Their proven distances differ by rounding: in that order, the last two equally near.
     const auto distance = [](const world::Obstacle& obstacle) {
         return distance_of({nullptr, {&obstacle, 1}}, 0, Vec3::Zero());
     };
@@ -87,7 +86,7 @@ TEST_F(ObstacleContract, OfMoreThanThereIsRoomForAsNearTheFirstStay)
     }
 }
 
-/// Deep in one obstacle only the fastest way out is left, which does for another one behind it, and not for one ahead.
+/// Deep in one obstacle only the fastest exit remains, which also satisfies an obstacle behind, but not one ahead.
 TEST_F(ObstacleContract, AHalfSpaceThatLeavesOneVelocitySpeaksForThatOne)
 {
     own.reach_speed = settings.recovery_speed;
@@ -99,7 +98,7 @@ TEST_F(ObstacleContract, AHalfSpaceThatLeavesOneVelocitySpeaksForThatOne)
     EXPECT_EQ(planes().planes.size(), 2U);
 }
 
-/// A way of just the distance that is proven is clear; what is met half of the resolution before its end is not.
+/// A path of exactly the proven distance is clear; contact half of the resolution before its end is not.
 TEST_F(ObstacleContract, AWayMayEndWhereTheMarginBegins)
 {
     for (const bool box : {false, true}) {

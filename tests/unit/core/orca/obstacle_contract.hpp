@@ -7,7 +7,7 @@
 
 #include "core/orca/obstacle_way.hpp"
 
-// Obstacles about a vehicle at the origin, for tests of what is made of them.
+// Obstacles about a vehicle at the origin, for tests of their half-spaces.
 
 namespace jink::orca::test {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles, sentence by sentence of their headers: which half-space may be left out, what an exhausted budget says,
-// and where a way ends.
+// Obstacles, sentence by sentence of their headers: which half-space may be left out, the report of an exhausted
+// budget, and the end of a path.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -122,7 +122,7 @@ TEST_F(ObstacleContract, AnEnvelopeThatTouchesDoesNotPenetrate)
 
 // --- budgets ---
 
-/// Wherever the budget runs out: the cap keeps clear of whatever was not looked at, and says so.
+/// If the budget runs out anywhere, the cap keeps clear of all unchecked obstacles, and this is reported.
 TEST_F(ObstacleContract, ABudgetThatRunsOutCapsTheSpeedForWhatIsMissing)
 {
     settings.vertical = 0.8F;  // every shape but spheres is searched
@@ -178,10 +178,10 @@ TEST_F(ObstacleContract, WithoutAnyBudgetTheBoundOfTheObstacleCounts)
     EXPECT_LE(mapped.speed_cap, 3.0F / 1.25F);
 }
 
-/// Of a piece that lies askew in its box: what is proven of it counts, and never less than is known of the box.
+/// A piece oblique in its box: its proven distance counts, and is never below the distance of the box.
 TEST_F(ObstacleContract, OfAPieceThatIsCutShortTheBetterBoundCounts)
 {
-    // A plate that stands 4.24 m off, askew in a box that holds the vehicle.
+    // A plate at 4.24 m, oblique in a box that contains the vehicle.
     const oracle::MapOfHulls hulls({{{-4, 10, -3}, {10, -4, -4}, {10, -4, 3}, {-3, 9, 4}, {8, 8, 0}, {3, 3, 5}}});
     map = &hulls.map();
     const ObstaclePlanes whole = planes();
@@ -242,7 +242,7 @@ TEST_F(ObstacleContract, EnoughIsNotABound)
     }
 }
 
-/// A smooth shape near its edge, asked for more exactly than float can say: the distance is a bound and said to be one.
+/// A smooth shape near its edge, with a resolution beyond float: the distance is a bound, and marked as such.
 TEST_F(ObstacleContract, ASearchThatIsCutShortIsABound)
 {
     settings.vertical = 0.8F;
@@ -280,7 +280,8 @@ TEST_F(ObstacleContract, TheBoundOfALargeObstacleIsNeverAboveItsDistance)
     }
 }
 
-/// Just outside of a face, just in it, and on it: never farther than it is, never nearer than said to be at most.
+/// Just outside a face, just inside, and on it: never above the true distance, and below it by at most the stated
+/// accuracy.
 TEST_F(ObstacleContract, BesideAFaceNothingIsClaimedThatIsNotSo)
 {
     add(geometry::make_box({0, 0, 0}, {5, 5, 5}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles: how far they are looked at, what a cap does for those without a half-space, and where single ones lie.
+// Obstacles: range of the check, effect of the cap for obstacles without a half-space, and positions of single ones.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -38,7 +38,7 @@ ObstacleSettings some_settings(Random& random)
 
 world::Obstacle sphere_at(const Vec3& centre, float radius) { return {0, geometry::make_sphere(centre, radius)}; }
 
-/// What lies beyond the reach gives no half-space that an admitted velocity could violate.
+/// Obstacles beyond the reach give no half-space that an admitted velocity could violate.
 TEST(ObstacleEdges, BeyondTheReachNothingBinds)
 {
     Random random(20261124);
@@ -53,7 +53,7 @@ TEST(ObstacleEdges, BeyondTheReachNothingBinds)
             obstacle_half_space(reach * 1.0001F + 1e-4F, some_direction(random), envelope, own, settings);
         ASSERT_LE(plane.offset, -own.reach_speed * 0.9999F) << "case " << i;
     }
-    // And no farther than that, where it can be said by hand: 2.4 s at 2 m/s.
+    // And no farther, for a case computed by hand: 2.4 s at 2 m/s.
     ObstacleSettings round;
     round.vertical = round.horizontal;
     OwnMotion two;
@@ -88,7 +88,7 @@ TEST(ObstacleEdges, FlyingOffGainsNoSpeedTowardsIt)
     EXPECT_EQ(obstacle_half_space(1.6F, Vec3::UnitX(), envelope, own, settings).offset, 0.0F) << "and no less than 0";
 }
 
-/// A cap for something not looked at keeps to the half-space that it would have had, wherever it lies.
+/// A cap for an unchecked obstacle satisfies the obstacle's half-space, at any position.
 TEST(ObstacleEdges, TheCapKeepsToTheHalfSpaceThatIsMissing)
 {
     Random random(7);
@@ -254,7 +254,7 @@ TEST(ObstacleSight, TheBoundIsNeverAboveTheDistance)
     EXPECT_GT(view.obstacle_bound(0, Vec3::Zero()), 7.99F);
 }
 
-/// Within an obstacle the distance is the way out below 0, and the direction points away from it.
+/// Within an obstacle the distance is negative, to the nearest surface, and the direction points outwards.
 TEST(ObstacleSight, WithinAnObstacleTheWayOutIsSeen)
 {
     const world::Obstacle box{0, geometry::make_box({0, 0, 0}, {5, 5, 5})};

@@ -98,7 +98,7 @@ TEST_P(CheckBox, CheckValueTouching)
     EXPECT_NEAR(found.planes[0].offset, 0.0F, kTolerance);
 }
 
-/// A little way in, recovery asks for little: the half-space moves without a jump where the margin ends.
+/// Slightly inside, recovery demands little: the half-space has no jump at the end of the margin.
 TEST_P(CheckBox, RecoversAsDeepAsItIs)
 {
     EXPECT_NEAR(planes(at(1.2F), check_settings()).planes[0].offset, 0.1F, kTolerance);
@@ -188,7 +188,7 @@ TEST_P(CheckBox, InTheMarginAWayOutIsClearAndAWayInIsNot)
 
 TEST(ObstaclePlanes, StretchIsMappedBackToVelocities)
 {
-    // A ceiling 4 m above, of which 0.8 m are wanted upright and 1.1 m level: climbing 3.2 m in 2.4 s is what may be.
+    // A ceiling 4 m above, with 0.8 m required vertically and 1.1 m level: a climb of 3.2 m in 2.4 s is permitted.
     const world::Obstacle ceiling{1, geometry::make_box({0.0F, 0.0F, 5.0F}, {50.0F, 50.0F, 1.0F})};
     const ObstacleSettings settings;
     const ObstaclePlanes found = planes_of({nullptr, {&ceiling, 1}}, at(0.0F), settings);
@@ -263,7 +263,7 @@ TEST(ObstaclePlanes, WhatIsImpliedIsLeftOut)
     const std::vector<world::Obstacle> walls{{1, geometry::make_box({3.0F, 0.0F, 0.0F}, {0.5F, 9.0F, 9.0F})},
                                              {2, geometry::make_box({5.0F, 0.0F, 0.0F}, {0.5F, 9.0F, 9.0F})}};
     EXPECT_EQ(planes_of({nullptr, walls}, at(0.0F), check_settings()).planes.size(), 1U);
-    // Turned a little, it is not: fast enough sideways, the farther wall is met first.
+    // Turned slightly, not: at sufficient lateral speed the farther wall is reached first.
     const Mat3 turned = Eigen::AngleAxisf(0.5F, Vec3::UnitZ()).toRotationMatrix();
     const std::vector<world::Obstacle> askew{walls[0],
                                              {2, geometry::make_box({4.0F, 4.0F, 0.0F}, {0.5F, 9.0F, 9.0F}, turned)}};

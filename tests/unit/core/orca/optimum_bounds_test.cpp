@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What misses a ball, a plane or a line by just the tolerance touches it; by one bit more there is nothing. In both
+// A gap of exactly the tolerance to a ball, a plane or a line counts as contact; one bit more does not. In both
 // precisions.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Optima within balls and half-spaces, in both precisions: within all of them, and no way on that is allowed leads
-// nearer to the goal. Checked by the conditions of optimality, in doubles.
+// Optima within balls and half-spaces, in both precisions: within all of them, and no feasible direction leads nearer
+// to the goal. Checked by the conditions of optimality, in doubles.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -44,12 +44,12 @@ struct Constrained {
         goal = farthest ? unit(random) : Vec3(inside + random.uniform(0.0F, 3.0F) * unit(random));
     }
 
-    /// How far `x` is outside of the worst, and how far the way to the goal is from one that all that is reached holds
-    /// back: 0 of an optimum. On row `on`, where one is named, either side of it holds.
+    /// Largest violation at `x`, and the deviation of the direction to the goal from the cone of the active
+    /// constraints: 0 at an optimum. Row `on`, if given, is an equality.
     struct Judged {
         double outside = 0.0;
         double unheld = 0.0;
-        bool is_blunt = false;  ///< what holds it meets in too small an angle to say so
+        bool is_blunt = false;  ///< the active constraints' angle is too small to decide
     };
     [[nodiscard]] Judged judge(const Vec3d& x, double reached, std::ptrdiff_t on = -1) const
     {
@@ -194,7 +194,7 @@ TYPED_TEST(UnitPrecision, OnAPlaneItIsHeldByWhatItReachesThere)
     }
 }
 
-/// What leaves no point has no optimum, and what came before it is satisfied.
+/// An infeasible constraint gives no optimum, and the earlier constraints are satisfied.
 TYPED_TEST(UnitPrecision, WhatLeavesNothingIsSaid)
 {
     Random random(kBallSeed + 2);
@@ -224,7 +224,7 @@ TYPED_TEST(UnitPrecision, WhatLeavesNothingIsSaid)
     }
 }
 
-/// Wherever the budget runs out that is said, and with no more than was needed the answer is the same.
+/// If the budget runs out anywhere, this is reported; with exactly the needed budget the answer is the same.
 TYPED_TEST(UnitPrecision, ABudgetThatRunsOutIsSaid)
 {
     Random random(kBallSeed + 3);
@@ -272,7 +272,7 @@ TEST(SolverInBalls, WhatIsFoundIsHeldByWhatItReaches)
     }
 }
 
-/// With any budget: as ever, or said to be limited, with the best of a few that is within the balls.
+/// With any budget: the usual result, or reported as limited with the best of a few points within the balls.
 TEST(SolverInBalls, AnyBudgetIsEnoughOrSaid)
 {
     Random random(kBallSeed + 5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls, half-spaces and lines that touch in a point, and miss each other by less than the tolerance: the point is
-// found, and it is a number. In both precisions.
+// Balls, half-spaces and lines with a single common point, or apart by less than the tolerance: the point is found, and
+// is finite. In both precisions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -66,7 +66,7 @@ TYPED_TEST(OptimumTouch, AHalfSpaceAndABall)
 TYPED_TEST(OptimumTouch, ALineAndABall)
 {
     for (const float miss : kMisses) {
-        // Where both planes meet is a line upright; of the ball in its point at 45 degrees.
+        // Both planes intersect in a vertical line, which contacts the ball at 45 degrees.
         using std::sqrt;
         const TypeParam half = sqrt(TypeParam(0.5F)) * (TypeParam(1.0F) + TypeParam(miss * this->kTolerance));
         this->rows = {this->row(Vec3::UnitX(), half), this->row(Vec3::UnitY(), half)};

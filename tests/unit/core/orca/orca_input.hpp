@@ -14,7 +14,7 @@ namespace jink::orca::test {
 using world::PlanStatus;
 using world::test::Scene;
 
-/// A vehicle that stands at (0, 0, 30) and means to fly to the east at 5 m/s. Its box is 2 m wide: its cylinder has a
+/// A static vehicle at (0, 0, 30) with an eastward preferred velocity of 5 m/s. Its box is 2 m wide: its cylinder has a
 /// half width of 1.414 m and a half height of 1 m.
 class OrcaInput : public ::testing::Test {
 protected:
@@ -39,14 +39,14 @@ protected:
         spent = budget.spent();
         return status;
     }
-    /// The first command of a vehicle that has not been planned for.
+    /// The first command of a new planner.
     Vec3 command()
     {
         planner = Planner(settings);
         EXPECT_EQ(plan(), PlanStatus::found);
         return out.command;
     }
-    /// Least distance of a pair, over what is kept in its conflict region: sqrt(2) of both half widths.
+    /// Least distance of a pair, relative to its conflict region: sqrt(2) of both half widths.
     float nearest()
     {
         static_cast<void>(command());

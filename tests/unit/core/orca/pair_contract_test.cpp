@@ -35,7 +35,7 @@ TEST(PairContract, BesideTheCapTheConeIsLeft)
     EXPECT_NEAR(cap.depth, 0.1F - from_ball.norm(), 1e-5F);
 }
 
-/// The same velocity seen from along the axis, over four decades of the way off it: side and depth stay what they are.
+/// The same velocity near the axis, over four decades of the offset: side and depth are unchanged.
 TEST(PairContract, NearTheAxisTheSideOfTheVelocityIsKept)
 {
     for (const Vec3& axis : {Vec3(0.6F, 0.8F, 0), Vec3(0.48F, 0.64F, 0.6F), Vec3(-0.36F, 0.48F, 0.8F)}) {
@@ -102,7 +102,7 @@ TEST(PairContract, PresentIsTheSmallerRegionsHalfSpace)
     }
 }
 
-/// At its rim both ways to say it are the same: nothing jumps where a region is entered.
+/// At its rim both formulations agree: no jump on entering a region.
 TEST(PairContract, NothingJumpsAtTheRims)
 {
     for (const Conflict conflict : {Conflict::present, Conflict::at_rest}) {
@@ -126,7 +126,7 @@ TEST(PairContract, NothingJumpsAtTheRims)
     }
 }
 
-/// Both sides of a pair get mirrored half-spaces, by the bit, whatever the shape, in and out of the regions.
+/// Both sides of a pair get mirrored half-spaces, to the bit, for any shape, inside and outside the regions.
 TEST(PairContract, BothSidesAreMirrored)
 {
     for (const float upright : {1.0F, 0.5F, 1.5F}) {
@@ -232,7 +232,7 @@ TEST(NeighbourContract, TheLeastCapOfThoseLeftOutCounts)
     }
 }
 
-/// Each that is looked at is paid for; with a budget for some the speed is capped at standstill.
+/// Each checked neighbour costs work units; with a budget for only some the speed is capped at zero.
 TEST(NeighbourContract, ABudgetForSomeIsStandstill)
 {
     const std::vector<Neighbour> all{ahead(5, 1), ahead(6, 2), ahead(7, 3)};

@@ -91,7 +91,7 @@ TEST(PairGeometry, ARangeLeavesAShorterHorizon)
     EXPECT_FLOAT_EQ(reach(2.0F, 10.0F, 1.0F, 1.5F, 0.5F), 27.0F);
 }
 
-/// One of 1 m half a metre to each side, 2 m/s, with an own vehicle like it: met within 41 m.
+/// A neighbour of 1 m width, 2 m/s, with an equal own vehicle: a conflict is possible within 41 m.
 Neighbour at_distance(float x, std::uint32_t id = 1)
 {
     Neighbour n;
@@ -195,7 +195,7 @@ TEST(NeighbourEdges, TheCapKeepsClearOfWhoIsLeftOut)
     Neighbour alone = at_distance(21.0F, 99);
     alone.cooperative = false;
     EXPECT_EQ(cap(alone), 0.0F) << "it caps nothing for us";
-    // A region that is taller than wide shrinks heights: the way across counts as it is.
+    // A region that is taller than wide shrinks heights: the horizontal distance is unchanged.
     Neighbour tall = at_distance(31.0F, 99);
     tall.half_height = 1.5F;
     EXPECT_FLOAT_EQ(cap(tall), 1.0F);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The answers of the ORCA planner: its horizons, refusals, budget, limits, and what was flown before.
+// The answers of the ORCA planner: its horizons, refusals, budget, limits, and previous commands.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -135,7 +135,7 @@ TEST_F(OrcaInput, ABudgetThatRunsOutIsNoAnswer)
     }
     planner = Planner(settings);
     EXPECT_EQ(plan(needed), PlanStatus::found);
-    // Each track and barrel is paid for before it is looked at.
+    // Each track and barrel costs work units before its check.
     planner = Planner(settings);
     ASSERT_EQ(plan(45), PlanStatus::budget_spent);
     EXPECT_EQ(planner.last().status, 0U) << "no decision was made";
@@ -179,7 +179,7 @@ TEST_F(OrcaInput, WhatWasSentSinceTheLastPlanIsFlownFirst)
     EXPECT_FALSE(is_known());
 }
 
-/// Where the own vehicle will be is what the commands make of it, not what was measured.
+/// The own vehicle's predicted position follows from the commands, not from the measurement alone.
 TEST_F(OrcaInput, CommandsOnTheirWayMoveTheVehicle)
 {
     scene.limits.velocity_lag = 0.0F;

@@ -14,8 +14,8 @@ namespace {
 using test::OrcaInput;
 using world::PlanStatus;
 
-/// Seven barrels about it at gaps from 1.0 m to 1.6 m, and room for five beside the airspace's own bounds: these five
-/// are kept, whatever the order, and none of the other two takes the place of one.
+/// Seven barrels about it at gaps from 1.0 m to 1.6 m, and capacity for five beside the airspace's own bounds: the
+/// nearest five are kept, in any order.
 TEST_F(OrcaInput, TheNearestBarrelsAreKeptInWhicheverOrderTheyCome)
 {
     scene.airspace.has_floor = scene.airspace.has_ceiling = scene.airspace.has_keep_in = true;
@@ -48,7 +48,7 @@ TEST_F(OrcaInput, TheNearestBarrelsAreKeptInWhicheverOrderTheyCome)
     }
 }
 
-/// One that flies off is nearest now: what is not known of it has grown since it was seen, and that is not taken back.
+/// A receding track is nearest now: its uncertainty has grown since the measurement, and does not shrink.
 TEST_F(OrcaInput, OneThatFliesOffIsAsUncertainAsItIsNow)
 {
     scene.own.velocity = Vec3(5, 0, 0);
@@ -56,7 +56,7 @@ TEST_F(OrcaInput, OneThatFliesOffIsAsUncertainAsItIsNow)
     track.stamp = scene.now - 2.0F;
     track.sigma_velocity = 0.2F;
     track.max_acceleration = 0.1F;
-    // Position and velocity are those of now; it is 2.1 s since it was seen when the command acts.
+    // Position and velocity are the present ones; the measurement is 2.1 s old when the command acts.
     const float radius = 1.0F + 3.0F * 0.2F * 2.1F + 0.05F * 2.1F * 2.1F;
     const float distance = 30.0F + 0.8F - 0.5F;
     EXPECT_NEAR(nearest(), distance / (1.41421356F * (kHalfWidth + radius)), 2e-3F);
@@ -65,7 +65,7 @@ TEST_F(OrcaInput, OneThatFliesOffIsAsUncertainAsItIsNow)
 /// Plans at the same instant are timed by next to nothing, also where the commands are known and nothing is forgotten.
 TEST_F(OrcaInput, PlansAtTheSameInstantDoNotBlock)
 {
-    scene.airspace.has_keep_in = true;  // no way on
+    scene.airspace.has_keep_in = true;  // no path ahead
     scene.airspace.home = Vec3(-100, 0, 0);
     scene.airspace.keep_in_radius = 100.0F + kHalfWidth;
     world::Commanded sent{Vec3::Zero(), scene.now};
@@ -76,7 +76,7 @@ TEST_F(OrcaInput, PlansAtTheSameInstantDoNotBlock)
     }
 }
 
-/// The flight is predicted to the end of the horizon, however long, in pieces of 0.2 s where there is room for them.
+/// The flight is predicted to the end of any horizon, in pieces of 0.2 s as far as the capacity permits.
 TEST_F(OrcaInput, ThePathReachesTheEndOfTheHorizon)
 {
     scene.own.velocity = Vec3(5, 0, 0);
@@ -142,7 +142,7 @@ TEST_F(OrcaInput, NothingOfTheSituationBeforeIsLeft)
     EXPECT_EQ(planner.last().status, planner.last().status & kDelayClipped);
 }
 
-/// The answer is written whole, whatever was in its place; without an answer nothing is written.
+/// The answer is fully written over any old contents; without an answer nothing is written.
 TEST_F(OrcaInput, TheAnswerReplacesWhatWasInItsPlace)
 {
     const auto planned = [&](world::Manoeuvre& place, std::uint32_t units) {

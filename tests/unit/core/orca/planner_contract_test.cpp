@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The planner's header and notes, sentence by sentence: what the filter is set to, and what is no answer.
+// The planner's header and notes, sentence by sentence: the filter's settings, and refusals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -70,7 +70,7 @@ TEST_F(OrcaInput, ATallBoxIsHeldInHeight)
 
 // --- bounds ---
 
-/// Within the horizon of obstacles: what braking, the delay or a second asks for.
+/// The obstacle horizon: the largest of braking, the delay and a second.
 TEST_F(OrcaInput, ABoundIsMetNoSoonerThanBrakingAndTheDelayNeed)
 {
     scene.airspace.has_floor = true;
@@ -114,7 +114,7 @@ TEST_F(OrcaInput, OfABarrelTheFaceAboveOrBelowCountsBySide)
     scene.barrels[0].bottom = 28.2F;
     towards(Vec3(0, 0, -1), 2.0F);
     EXPECT_NEAR(command().z(), -0.6F, 1e-3F);
-    // The upright side's motion says nothing of the level faces.
+    // The motion of the vertical side does not affect the level faces.
     scene.barrels[0].velocity = world::Vec2(20, 0);
     EXPECT_NEAR(command().z(), -0.6F, 1e-3F);
 }
@@ -140,7 +140,7 @@ TEST_F(OrcaInput, TheConflictRegionIsTheCylindersWhateverItsShare)
     }
 }
 
-/// The warning region is as much larger: within it a vehicle that stands is asked to go off.
+/// The warning region is larger by the same amount: within it a static vehicle must move away.
 TEST_F(OrcaHover, WithinTheWarningRegionItGoesOff)
 {
     world::Track& track = scene.track(Vec3(kKept / 0.8F - 0.1F, 0, 30), Vec3::Zero());
@@ -195,7 +195,7 @@ TEST_F(OrcaHover, TheConflictRegionIsLeftNoFasterThanTheDelayBears)
 {
     scene.limits.max_acceleration = 5.0F;
     world::Track& track = scene.track(Vec3(kKept - 0.4F, 0, 30), Vec3::Zero());
-    // The warning region's own demand is 0.3 m/s: the two are told apart by what gives way to a wall.
+    // The warning region's own demand is 0.3 m/s: a wall shows which of the two yields.
     scene.airspace.has_keep_in = true;
     scene.airspace.home = Vec3(100, 0, 0);
     const auto broken = [&] {
@@ -223,7 +223,7 @@ TEST_F(OrcaHover, CoincidentVehiclesPartByTheirIds)
 TEST_F(OrcaInput, TheBiasIsThatOfTheSettings)
 {
     scene.own.velocity = Vec3(5, 0, 0);
-    // It flies ahead at the same speed: nothing else is asked for.
+    // The track flies ahead at the same speed: no further constraint.
     world::Track& track = scene.track(Vec3(14.9F, 0, 30), Vec3(5, 0, 0));
     EXPECT_NEAR(command().y(), -0.25F, 1e-3F) << "0.05 of the speed to the right";
     track.position.x() = 15.1F;
@@ -272,7 +272,7 @@ TEST_F(OrcaInput, CommandsAreTheMeanOfTheLast)
 /// A pause is no time in which the vehicle was blocked.
 TEST_F(OrcaInput, APauseCountsAsHalfASecond)
 {
-    scene.airspace.has_keep_in = true;  // no way on
+    scene.airspace.has_keep_in = true;  // no path ahead
     scene.airspace.home = Vec3(-100, 0, 0);
     scene.airspace.keep_in_radius = 100.0F + kHalfWidth;
     ASSERT_EQ(plan(), PlanStatus::found);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the ORCA planner makes of a situation: bounds, obstacles and tracks where they are when the command acts, each
-// with all that is not known of it.
+// The ORCA planner's inputs from a situation: bounds, obstacles and tracks at the time when the command acts, each with
+// its uncertainty.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -109,7 +109,7 @@ TEST_F(OrcaInput, ABarrelIsKeptFromItsNearestSide)
     EXPECT_NE(planner.last().status & kBoundsOverlap, 0U);
 }
 
-/// Bounds come before barrels; of these the nearest are taken, whatever their order.
+/// Bounds come before barrels; of barrels the nearest are used, in any order.
 TEST_F(OrcaInput, OfManyBarrelsTheNearestAreTaken)
 {
     scene.airspace.has_floor = scene.airspace.has_ceiling = scene.airspace.has_keep_in = true;

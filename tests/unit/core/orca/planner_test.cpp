@@ -69,12 +69,12 @@ TEST(OrcaPlanner, WhoDoesNotGiveWayIsGivenTwiceAsMuchRoom)
     EXPECT_LT(alone, -0.1F);
     EXPECT_LT(shared, -0.05F);
     EXPECT_NEAR(shared / alone, 0.5F, 0.15F);
-    // Not seen for long it is not counted on.
+    // An outdated track does not count as cooperative.
     track.stamp = scene.now - 1.5F;
     EXPECT_NEAR(found(scene).command.y(), alone, 0.02F);
 }
 
-/// Two that meet head on and share the reaction go to opposite sides: each to its right.
+/// Two cooperative vehicles head-on pass on opposite sides: each to its right.
 TEST(OrcaPlanner, TwoThatMeetPassEachOtherOnTheRight)
 {
     Scene east = eastward();
@@ -174,7 +174,7 @@ TEST(OrcaPlanner, SettingsOutOfRangeChangeNothing)
     EXPECT_EQ(planner.settings().horizon, Settings{}.horizon);
 }
 
-/// Shut in on all sides it makes no progress, and says so once another method can be asked.
+/// Enclosed on all sides it makes no progress, and reports this once another method is available.
 TEST(OrcaPlanner, BlockedIsNoAnswer)
 {
     Scene scene = eastward();

@@ -22,8 +22,8 @@ vehicle::VehicleState state_at(TimePoint stamp, const Vec3& position, const Vec3
     return state;
 }
 
-/// A vehicle with a pure delay and a velocity loop, in double and in steps of a microsecond's precision: what T9
-/// predicts.
+/// A vehicle with a pure delay and a velocity loop, in double and in steps of a microsecond's precision: the reference
+/// for T9.
 struct Plant {
     double act = 0.0;
     double lag = 0.0;
@@ -90,7 +90,7 @@ double constant_velocity(int /*step*/) { return 1.25; }
 /// 0.5 m/s2: in each tick of 25 ms 0.0125 m/s more.
 double ramp(int step) { return 0.0025 * step; }
 
-/// T9: error 0 with the ideal plant; what is left is the rounding of 10 m in float.
+/// T9: error 0 with the ideal plant; the remainder is the rounding of 10 m in float.
 TEST(PredictionT9, ConstantVelocityWithAKnownDelayIsExact)
 {
     const Errors worst = worst_errors(constant_velocity, 0.0, 0.0F);
@@ -170,7 +170,7 @@ TEST_F(ThreeCommands, BackwardsAlongTheMeasuredVelocity)
     EXPECT_NEAR(p.position.x(), -0.05F, 1e-7F);
     EXPECT_EQ(p.velocity.x(), 0.5F);
 }
-/// A lag that is next to nothing is none.
+/// A negligible lag counts as zero.
 TEST_F(ThreeCommands, AVanishingLagIsIdeal)
 {
     const Predicted ideal = from_to(110'000, 160'000);

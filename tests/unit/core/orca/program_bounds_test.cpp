@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program says of velocities that are on a rim, or that break a level by just what rounding is.
+// A program's reports on velocities on a rim, or violating a level by just the rounding tolerance.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ TEST(ProgramBounds, APointOnTheRimStaysThere)
     EXPECT_EQ(into_balls(balls, {2, 0, 0}), Vec3(2, 0, 0));
 }
 
-/// Without a budget the velocity is the reference; what it breaks by no more than rounding is not said to be broken.
+/// Without a budget the velocity is the reference; violations within rounding are not reported.
 TEST(ProgramBounds, WithoutTimeRoundingBreaksNothing)
 {
     const float speed = test::exact_scale<float>();
@@ -47,7 +47,7 @@ TEST(ProgramBounds, WithoutTimeRoundingBreaksNothing)
 }
 
 /// Programs of round numbers, in which ties are the rule: many half-spaces through one point, opposite ones,
-/// duplicates, levels that lack as much in several places. What is found is checked against all sets of half-spaces, in
+/// duplicates, levels with equal gaps in several places. Results are checked against all sets of half-spaces, in
 /// doubles.
 class RoundPrograms : public ::testing::Test {
 protected:
@@ -91,7 +91,7 @@ TEST_F(RoundPrograms, TheNearestPointIsFoundWhereThereIsOne)
         ++feasible;
         ASSERT_EQ(solution.status, 0U) << i;
         ASSERT_LT((solution.velocity.cast<double>() - *exact).norm(), 2e-4) << i;
-        // What is said to hold it does, and it is the optimum of these alone.
+        // The reported active set is active, and the point is the optimum of this set alone.
         std::vector<HalfSpace> active;
         for (std::size_t k = 0; k < solution.actives; ++k) {
             active.push_back(planes[solution.active[k]]);
@@ -102,7 +102,7 @@ TEST_F(RoundPrograms, TheNearestPointIsFoundWhereThereIsOne)
     EXPECT_GT(feasible, 130);
 }
 
-/// Hard ones beside those that give way: the least violation is the largest of all sets of four.
+/// Hard rows beside yielding ones: the least violation is the largest over all sets of four.
 TEST_F(RoundPrograms, ALevelGivesWayByTheLeastThatItHasTo)
 {
     Random random(20261206);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program answers where the budget ends, what it does not spend, and what is rounding at great speeds.
+// A program's answers at the end of the budget, unspent work units, and rounding at large speeds.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -32,7 +32,7 @@ Answer answer_of(const std::vector<HalfSpace>& planes, Balls balls, const Vec3& 
     return out;
 }
 
-/// Half of the way is better than none: where the budget ends after the first half-space, that one is kept.
+/// A partial result is kept: if the budget ends after the first half-space, that one holds.
 TEST(ProgramBudget, TheBestPointSoFarIsKept)
 {
     const std::array<Ball, 1> balls{{{Vec3::Zero(), 10.0F}}};
@@ -47,7 +47,7 @@ TEST(ProgramBudget, TheBestPointSoFarIsKept)
     EXPECT_GT(halves, 0);
 }
 
-/// That the budget is spent is said only where it is, also where twice the precision does not end.
+/// A spent budget is reported only if spent, also if double-float does not finish.
 TEST(ProgramBudget, AWorkLimitIsABudgetThatIsSpent)
 {
     std::vector<HalfSpace> planes{
@@ -64,7 +64,7 @@ TEST(ProgramBudget, AWorkLimitIsABudgetThatIsSpent)
     EXPECT_EQ(answer.solution.status & kWorkLimit, 0U);
 }
 
-/// Levels that there are none of take no work, before or after the one that gives way.
+/// Empty levels cost no work units, before or after the yielding one.
 TEST(ProgramBudget, EmptyLevelsCostNothing)
 {
     const std::array<Ball, 1> balls{{{Vec3::Zero(), 10.0F}}};
@@ -82,7 +82,7 @@ TEST(ProgramBudget, EmptyLevelsCostNothing)
     EXPECT_EQ(spent[1], spent[2]);
 }
 
-/// Without a ball nothing is read of any: the reference, or to stand still.
+/// Without a ball no ball is read: the reference, or zero velocity.
 TEST(ProgramBudget, WithoutABallNoneIsRead)
 {
     const std::array<Ball, 2> none{{{{7, 7, 7}, 1.0F}, {{7, 7, 7}, 1.0F}}};

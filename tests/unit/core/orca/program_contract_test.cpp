@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a program reads, what it brings within the balls, and levels that give way where balls hold as well.
+// Inputs of a program, projection into the balls, and levels that yield while balls are active.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,17 +73,18 @@ TEST(ProgramContract, WhereABallHoldsALevelGivesWayToIt)
         const Solution solution = solution_of(planes, {{Vec3::Zero(), 2.0F}}, {0, 1, 0}, Vec3::Zero());
         EXPECT_EQ(solution.level, level);
         EXPECT_NEAR(solution.broken[static_cast<std::size_t>(level)], 1.0F, 1e-4F);
-        // It gives way by 1e-4 m/s more, and in what that leaves of the ball it goes towards the preferred one.
+        // It yields by 1e-4 m/s more, and within the remaining part of the ball it moves towards the preferred
+        // velocity.
         EXPECT_LT((solution.velocity - 2.0F * normal).norm(), 0.03F);
         EXPECT_LE(planes[0].violation(solution.velocity), 1.0F + 2.1e-4F);
-        // With what can be reached, from the side.
+        // With the reachable set, from the side.
         const Solution reached = solution_of(planes, {{Vec3::Zero(), 2.0F}, {{1, 0, 0}, 0.5F}}, {0, 1, 0}, {1, 0, 0});
         EXPECT_NEAR(reached.broken[static_cast<std::size_t>(level)], 3.0F - 0.6F - 0.5F, 1e-4F);
         EXPECT_LT((reached.velocity - Vec3(1.3F, 0, 0.4F)).norm(), 0.02F);
     }
 }
 
-/// Three levels beside each other, all of them contradictions of two: each by its own half, whatever else is given up.
+/// Three levels, each with two contradicting half-spaces: each violated by its own half, independent of the others.
 TEST(ProgramContract, LimitsHoldWhateverGivesWay)
 {
     Random random(20261130);
@@ -103,7 +104,7 @@ TEST(ProgramContract, LimitsHoldWhateverGivesWay)
         const Solution solution = solution_of(planes, {{Vec3::Zero(), 4.0F}}, preferred, Vec3::Zero());
         EXPECT_EQ(solution.status & (kInfeasibleDynamics | kWorkLimit | kBadInput), 0U) << i;
         EXPECT_LE(planes[0].violation(solution.velocity), 1e-5F) << i;
-        // Of the strongest that gives way the least that it has to is half of what its two lack: the limit holds at 0.
+        // The strongest yielding level yields by half of its gap: the limit holds at 0.
         EXPECT_NEAR(solution.broken[1], std::max(gaps[0], 0.0F), 2e-5F) << i;
         EXPECT_EQ((solution.status & kRelaxedObstacle) != 0, gaps[0] > 0.0F) << i;
         for (const HalfSpace& plane : planes) {
@@ -120,7 +121,7 @@ TEST(ProgramContract, LimitsHoldWhateverGivesWay)
     }
 }
 
-/// Limits that contradict each other, in every place among others: the reference, and what it breaks.
+/// Contradicting limits, at every place among others: the reference, and its violations.
 TEST(ProgramContract, LimitsThatContradictLeaveTheReferenceWhateverElseThereIs)
 {
     for (const bool others : {false, true}) {
@@ -144,7 +145,7 @@ TEST(ProgramContract, LimitsThatContradictLeaveTheReferenceWhateverElseThereIs)
     }
 }
 
-/// Without any budget the point so far is the reference, not what was preferred.
+/// Without any budget the point so far is the reference, not the preferred velocity.
 TEST(ProgramContract, WithoutABudgetTheReferenceIsKept)
 {
     const std::vector<HalfSpace> planes{at_least({1, 0, 0}, -3.0F, Level::obstacles)};

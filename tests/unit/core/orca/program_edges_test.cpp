@@ -136,7 +136,7 @@ TEST(ProgramEdges, LimitsThatContradictEachOtherLeaveTheReference)
     EXPECT_NEAR(solution.broken[0], 0.2F, 1e-5F);
 }
 
-// Without any budget: the best of the reference, braking, and all acceleration away from what is broken most.
+// Without any budget: the best of the reference, braking, and full acceleration away from the largest violation.
 
 TEST(ProgramEdges, WithoutTimeItAcceleratesAwayFromTheWorstObstacle)
 {

@@ -41,7 +41,7 @@ Solution solve_for(const std::vector<HalfSpace>& planes, const std::vector<Ball>
 
 const std::vector<Ball> kTwo{{Vec3::Zero(), 2.0F}};
 
-/// The program as the source runs it, row by row.
+/// The program as in Alejo, row by row.
 Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred)
 {
     std::vector<Row> rows;
@@ -85,7 +85,7 @@ TEST(OrcaCheckVectors, G4)
     EXPECT_EQ(solution.status, kRelaxedWarning);
     EXPECT_EQ(solution.level, Level::warning);
     EXPECT_NEAR(solution.broken[3], 1.0F, 1e-5F);
-    expect_vector_near(solution.velocity, {1, 0, 0}, 1e-5F);  // not (0, 0, 0), where the whole way along is lost
+    expect_vector_near(solution.velocity, {1, 0, 0}, 1e-5F);  // not (0, 0, 0), which would lose all progress
 }
 TEST(OrcaCheckVectors, G5)
 {
@@ -156,7 +156,7 @@ TEST(Program, EachLevelGivesWayForThoseBeforeIt)
     EXPECT_NEAR(solution.broken[3], 0.75F, 3e-4F);
     EXPECT_LE(solution.velocity.norm(), 2.0F);
 
-    // Limits never give way: the last command is flown.
+    // Limits never yield: the last command is flown.
     solution = solve_for(clash(Level::limits, 0.5F), kTwo, {0, 0, 1});
     EXPECT_EQ(solution.status, kInfeasibleDynamics);
     EXPECT_EQ(solution.level, Level::limits);
@@ -264,7 +264,7 @@ TEST(Program, OrderWithinALevelChangesNothing)
 
 TEST(Program, StandsStillWhereThatIsAll)
 {
-    // A cage of six half-spaces through 0: what a crowd at the rim of the conflict region leaves.
+    // A cage of six half-spaces through 0: the feasible set in a crowd at the rim of the conflict region.
     std::vector<HalfSpace> planes;
     for (int axis = 0; axis < 3; ++axis) {
         planes.push_back(plane(Vec3::Zero(), Vec3::Unit(axis), Level::conflict));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the search among half-spaces promises where it goes round, hardly gets on, or rounding leaves little of a level.
+// Guarantees of the search among half-spaces when it cycles, makes little progress, or rounding leaves little of a
+// level.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +27,7 @@ protected:
     SearchContract() : SearchRows(40.0F) {}
 
     Search<Real> search(const Vec3& goal, WorkBudget& budget) { return this->template search_for<Real>(goal, budget); }
-    /// What holds the point pushes it to where it is from the goal, and none of it pulls: no other one is as near.
+    /// The active constraints push the point away from the goal, and none pulls: no other point is as near.
     void expect_nearest(const Search<Real>& found, const Vec3& goal) const
     {
         ASSERT_GT(found.basis().size, 0U);
@@ -128,7 +129,7 @@ TEST_F(GoingRound, TheNearestPointIsFoundAllTheSame)
     }
 }
 
-/// Where it says that it has found the optimum all of them hold.
+/// If the search reports an optimum, all constraints hold.
 TEST_F(GoingRound, WhatBreaksARowIsNoOptimum)
 {
     for (const GoesRound& given : kThatDoNotHold) {
@@ -141,7 +142,7 @@ TEST_F(GoingRound, WhatBreaksARowIsNoOptimum)
     }
 }
 
-/// Wherever the budget runs out, that is said: neither a point nor that there is none.
+/// If the budget runs out anywhere, this is reported: neither a point nor infeasibility.
 TEST_F(GoingRound, ABudgetThatRunsOutIsSaid)
 {
     for (const auto& all : {std::span<const GoesRound>(kThatHold), std::span<const GoesRound>(kThatDoNotHold)}) {
@@ -159,7 +160,7 @@ TEST_F(GoingRound, ABudgetThatRunsOutIsSaid)
     }
 }
 
-/// An answer that rounding may have left open stays so, whatever holds the next one.
+/// An answer that rounding may have left open stays so, for any later active constraints.
 TEST_F(GoingRound, WhatWasOpenStaysOpen)
 {
     int open = 0;
@@ -194,7 +195,7 @@ TEST_F(GoingRound, WhatWasOpenStaysOpen)
     EXPECT_GT(open, 20);
 }
 
-/// In twice the precision there is no such way out: that it has not ended is said, although there is budget left.
+/// In double-float there is no such fallback: an unfinished search is reported, although budget is left.
 TEST_F(SearchOfWides, GoingRoundIsNoContradiction)
 {
     add({-0.152856186F, 0.142239839F, -0.9779585F}, 0.333230585F);
@@ -226,7 +227,8 @@ public:
 };
 TYPED_TEST_SUITE(ManyTurns, ContractPrecisions);
 
-/// A goal so far off that each turn gets on by less than rounding of the way to it: more of them than the search holds.
+/// A goal so far off that each iteration progresses by less than the distance's rounding: more iterations than the
+/// search permits.
 TYPED_TEST(ManyTurns, ThoseThatHardlyGetOnEndAtTheNearestPoint)
 {
     Random random(20270101);
@@ -243,7 +245,7 @@ TYPED_TEST(ManyTurns, ThoseThatHardlyGetOnEndAtTheNearestPoint)
     }
 }
 
-/// What it holds is few: of planes that meet in large angles none is open, however many turns it takes.
+/// Few active rows: for planes at large angles none is open, for any number of iterations.
 TYPED_TEST(ManyTurns, RowsThatAreLetGoOpenNothing)
 {
     Random random(20270102);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The search among half-spaces where what is near, blunt or broken is so by one bit.
+// The search among half-spaces with near, blunt or violated rows decided by one bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ template <class Real>
 class SearchEdges : public ::testing::Test {
 protected:
     static constexpr float kOutside = test::kTolerance<Real>;
-    /// Of what is near, in either precision: four times the tolerance of single precision.
+    /// Tolerance of "near", in either precision: four times the tolerance of single precision.
     float rounding() const { return 4.0F * Tolerance<float>(scale).outside; }
 
     /// Every velocity whose part along `direction` is `most` at most.
@@ -40,7 +40,7 @@ protected:
         held.resize(n + 8);
         return Search<Real>(balls, goal, {rows, derived, yields, held}, scale, budget);
     }
-    /// Whether what holds the point nearest to `goal` is said to be blunt.
+    /// Whether the active set of the point nearest to `goal` is reported as blunt.
     bool blunt(const Vec3& goal)
     {
         Search<Real> s = search(goal);
@@ -159,7 +159,7 @@ TEST_F(BluntEdges, ThreeThatSpanATenthAreNotBlunt)
     }
 }
 
-/// What meets in a point, at angles of 45 degrees and more: three are no reason to compute more exactly, four are.
+/// Planes through one point, at angles of 45 degrees and more: three need no higher precision, four do.
 TEST_F(BluntEdges, MoreThanThreeThroughOnePointAreBlunt)
 {
     add_below({0.6F, 0.8F, 0}, 1.0F);
@@ -183,7 +183,7 @@ TEST_F(BluntEdges, MoreThanThreeThroughOnePointAreBlunt)
 
 // --- four that contradict each other ---
 
-/// y >= 0 and z >= 0 hold; x >= gap and x <= -gap give way by what their yield makes of it.
+/// y >= 0 and z >= 0 hold; x >= gap and x <= -gap yield in proportion to their yields.
 template <class Real>
 class FourRows : public SearchEdges<Real> {
 protected:
@@ -227,7 +227,7 @@ TYPED_TEST(FourRows, SharesAboveTwentyAreBlunt)
     EXPECT_TRUE(this->blunt_corner(0.25F, 0.0499F));
 }
 
-/// What was blunt before stays so, whatever the corner is like.
+/// An earlier blunt result stays blunt, for any corner.
 TYPED_TEST(SearchEdges, ACornerAfterABluntAnswerIsBlunt)
 {
     for (const float inner : {15.0F, 14.0F}) {
@@ -236,7 +236,7 @@ TYPED_TEST(SearchEdges, ACornerAfterABluntAnswerIsBlunt)
         this->add_below(-Vec3::UnitZ(), -1.0F);
         this->add_below(-Vec3::UnitX(), -0.25F);
         this->add_below(Vec3::UnitX(), -0.25F);
-        // The second ball touches the first one from within, or lies within it.
+        // The second ball contacts the first from inside, or is inside it.
         this->balls = {{Vec3::Zero(), 16.0F}, {Vec3::UnitX(), inner}};
         Search<TypeParam> s = this->search({20, 0, 0});
         ASSERT_EQ(s.nearest(0), Found::optimum);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a level gives way in the search, asked of the search itself and in both precisions: a whole program takes the
-// shorter way of four rows where it can. Checked against all sets of four rows, in doubles.
+// How a level yields in the search, tested directly and in both precisions: a whole program uses the shortcut of four
+// rows where possible. Checked against all sets of four rows, in doubles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -109,7 +109,7 @@ TYPED_TEST(SearchRelax, TheLeastViolationAndTheNearestPointForIt)
         const auto planes = enumerated::planes_of(c.planes, c.hards);
         const Found found = this->run(c, kAllUnits);
         if (this->stage < 2) {
-            continue;  // it holds, or those that do not give way contradict each other
+            continue;  // feasible, or the non-yielding rows contradict each other
         }
         ASSERT_EQ(found, Found::optimum) << "seed " << kRelaxSeed << ", case " << i;
         if (this->least.norm() > 50.0F || this->x.norm() > 50.0F) {
@@ -143,7 +143,7 @@ TYPED_TEST(SearchRelax, TheLeastViolationAndTheNearestPointForIt)
     EXPECT_GT(relaxed, 40);
 }
 
-/// Wherever the budget runs out that is said; what was needed is enough.
+/// If the budget runs out anywhere, this is reported; the needed budget suffices.
 TYPED_TEST(SearchRelax, ABudgetThatRunsOutIsSaid)
 {
     Random random(kRelaxSeed + 1);

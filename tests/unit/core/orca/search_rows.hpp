@@ -11,7 +11,7 @@
 
 namespace jink::orca::test {
 
-/// Rows for velocities of about 4 m/s, with what a search needs beside them. Each search begins with the rows as given.
+/// Rows for velocities of about 4 m/s, with the other inputs of a search. Each search begins with the rows as given.
 class SearchRows : public ::testing::Test {
 protected:
     explicit SearchRows(float radius) : balls{{Vec3::Zero(), radius}} {}
@@ -34,7 +34,7 @@ protected:
         held.resize(rows.size() + 8);
         return Search<Real>(balls, goal, {shifted, derived, yields, held}, scale, budget);
     }
-    /// How far `x` is outside of the first `count` rows at most.
+    /// Largest violation of the first `count` rows at `x`.
     [[nodiscard]] float outside(std::size_t count, const Vec3& x) const
     {
         float out = 0.0F;
@@ -43,7 +43,7 @@ protected:
         }
         return out;
     }
-    /// How far `x` is outside of the rows `from` on at most, in units of their yields.
+    /// Largest violation of the rows from `from` on at `x`, in units of their yields.
     [[nodiscard]] float given_way(std::size_t from, const Vec3& x) const
     {
         float out = 0.0F;
@@ -55,7 +55,7 @@ protected:
 
     float scale = 4.0F;
     std::vector<Row> rows;
-    std::vector<Row> shifted;  ///< rows as they have given way
+    std::vector<Row> shifted;  ///< rows after yielding
     std::vector<Row> derived;
     std::vector<float> yields;
     std::vector<std::uint16_t> held;

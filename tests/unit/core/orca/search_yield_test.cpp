@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a level gives way: what is said of it, what rounding leaves, and where there is no room for more.
+// How a level yields: reports, rounding, and the capacity limit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ using test::below;
 
 constexpr std::uint32_t kAmple = 100'000'000;
 
-/// Rows, those from `hards` on of which give way.
+/// Rows; those from `hards` on yield.
 template <class Real>
 class SearchYield : public test::SearchRows {
 protected:
@@ -46,7 +46,8 @@ protected:
     {
         return search_for<R>(goal, budget);
     }
-    /// Nothing holds all, and what does not give way leaves a point: then it gives way. Whether it has come to that.
+    /// No point satisfies all rows, but the non-yielding rows are feasible: then the others yield. Returns whether this
+    /// occurred.
     template <class R = Real>
     bool relaxes(Search<R>& s)
     {
@@ -63,8 +64,7 @@ TYPED_TEST_SUITE(SearchYield, YieldPrecisions);
 using YieldOfFloats = SearchYield<float>;
 using YieldOfWides = SearchYield<Wide>;
 
-/// What is said to be broken is all that is: by the point that is found no row is broken by more, not by rounding
-/// either.
+/// The reported violation is complete: at the found point no row is violated by more, not even by rounding.
 TEST_F(YieldOfFloats, WhatIsBrokenIsSaidInFull)
 {
     Random random(20270103);
@@ -82,8 +82,7 @@ TEST_F(YieldOfFloats, WhatIsBrokenIsSaidInFull)
     EXPECT_GT(relaxed, 50);
 }
 
-/// At thousands of metres per second what rows give way beyond what they have to is less than rounding: they give way
-/// further, and there is a point.
+/// At thousands of metres per second the excess yield is below rounding: the rows yield further, and a point exists.
 TYPED_TEST(SearchYield, WhereRoundingLeavesNoPointRowsGiveWayFurther)
 {
     Random random(20270104);
@@ -103,7 +102,7 @@ TYPED_TEST(SearchYield, WhereRoundingLeavesNoPointRowsGiveWayFurther)
     EXPECT_GT(relaxed, 50);
 }
 
-/// No giving way helps where those before contradict each other: that is found soon.
+/// If the earlier rows contradict each other, yielding does not help: detected early.
 TYPED_TEST(SearchYield, RowsThatDoNotGiveWayAndContradictEachOtherLeaveNothing)
 {
     this->add(Vec3::UnitX(), 1.0F);
@@ -116,7 +115,7 @@ TYPED_TEST(SearchYield, RowsThatDoNotGiveWayAndContradictEachOtherLeaveNothing)
 
 // --- corners of four rows ---
 
-/// x, y and z >= 0 hold, and the fourth, which is held by its parts of them, gives way.
+/// x, y and z >= 0 hold, and the fourth row, a combination of them, yields.
 template <class Real>
 class CornerYield : public SearchYield<Real> {
 protected:
@@ -129,7 +128,7 @@ protected:
         }
         this->add({-part, -0.6F, -0.8F}, 0.25F);
         this->goal = {1, 0, 0};
-        // Without the first one the others meet far off.
+        // Without the first one the others intersect far off.
         this->balls = {{Vec3::Zero(), 10'000.0F}};
     }
 };
@@ -154,7 +153,7 @@ TYPED_TEST(CornerYield, AShareOfAThousandthLeavesAnEdge)
     }
 }
 
-/// Whenever it says that it knows the least violation, the point is one for it, also where the budget then runs out.
+/// Whenever it reports the least violation, the point attains it, also if the budget then runs out.
 TYPED_TEST(CornerYield, ABudgetThatRunsOutLeavesAPointOfTheLeastViolation)
 {
     this->add_corner(1e-4F);
@@ -179,7 +178,7 @@ TYPED_TEST(CornerYield, ABudgetThatRunsOutLeavesAPointOfTheLeastViolation)
     EXPECT_GT(known, 1);
 }
 
-/// Three rows are no corner, whatever a search of more rows has held before.
+/// Three rows are no corner, independent of the active rows of an earlier search.
 TYPED_TEST(CornerYield, RowsOfAnEarlierSearchMakeNoCorner)
 {
     // Across the diagonal, which the others lie along.
@@ -212,7 +211,7 @@ protected:
         const Vec3 to = unit(random);
         return -(axis + std::pow(10.0F, random.uniform(-3.0F, 0.0F)) * to).normalized();
     }
-    /// All but the first give way.
+    /// All but the first yield.
     void one_against_all(Random& random, std::size_t count)
     {
         clear();
@@ -224,7 +223,7 @@ protected:
         }
         goal = unit(random);
     }
-    /// The last few give way.
+    /// The last few yield.
     void all_against_few(Random& random, std::size_t count)
     {
         clear();
@@ -239,7 +238,8 @@ protected:
         }
         goal = unit(random);
     }
-    /// Either it says that it has not ended, or what it says is as in single precision, which has room. Whether it has.
+    /// Either it reports an unfinished search, or its result equals single precision, which has the capacity. Returns
+    /// whether it finished.
     bool gives_way_by_the_least()
     {
         WorkBudget budget(2'000'000'000);
@@ -282,7 +282,7 @@ TEST_F(ManyYield, WhereThereIsNoRoomForAllThatHoldThatIsSaid)
     }
 }
 
-/// Sixteen beside the one that is pushed out always have room.
+/// Sixteen rows beside the removed one always fit.
 TEST_F(ManyYield, SeventeenHaveRoom)
 {
     Random random(20270107);

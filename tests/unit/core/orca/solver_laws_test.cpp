@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Velocity programs against an enumeration in doubles: the optimum, the least violation, and what is said of both.
+// Velocity programs against an enumeration in doubles: the optimum, the least violation, and their reports.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ using enumerated::Vec3d;
 constexpr std::uint64_t kSolverSeed = 20261127;
 constexpr std::uint32_t kWorkEnough = 10'000'000;
 
-/// Half-spaces of a family about a point, of which each is `room` [m/s] off or less.
+/// Half-spaces of a family about a point, each at most `room` [m/s] off.
 std::vector<HalfSpace> about(Random& random, const Vec3& point, int family, float room, std::size_t count)
 {
     std::vector<HalfSpace> out;
@@ -50,8 +50,7 @@ Solution solved(const std::vector<HalfSpace>& planes, const Vec3& preferred, flo
     return solve({planes, ball, preferred, Vec3::Zero()}, scratch.view(), budget);
 }
 
-/// Where there is room: no level gives way, and the nearest point is found to 1e-4 m/s, in any order of the
-/// half-spaces.
+/// Feasible programs: no level yields, and the nearest point is found to 1e-4 m/s, in any order of the half-spaces.
 TEST(SolverLaws, TheNearestPointIsFound)
 {
     Random random(kSolverSeed);
@@ -79,7 +78,7 @@ TEST(SolverLaws, TheNearestPointIsFound)
     }
 }
 
-/// Where half-spaces contradict each other: the least violation, said as it is, and no half-space broken by more.
+/// Contradicting half-spaces: the least violation is reported exactly, and no half-space is violated by more.
 TEST(SolverLaws, TheLeastViolationIsFound)
 {
     Random random(kSolverSeed + 1);
@@ -93,7 +92,7 @@ TEST(SolverLaws, TheLeastViolationIsFound)
             hard = 1 + random.below(2);
             for (std::size_t k = 0; k < hard; ++k) {
                 planes[k].level = Level::conflict;
-                planes[k].offset -= 0.8F;  // they leave room for each other
+                planes[k].offset -= 0.8F;  // they are jointly feasible
             }
         }
         const std::vector<enumerated::Plane> exact = enumerated::planes_of(planes, hard);
@@ -123,8 +122,8 @@ TEST(SolverLaws, TheLeastViolationIsFound)
     EXPECT_GT(corners, 20);
 }
 
-/// Two opposite half-spaces that leave no room, beside others that do: halfway between them, and as near to the
-/// preferred velocity as the others allow.
+/// Two contradicting opposite half-spaces among feasible others: halfway between them, and as near to the preferred
+/// velocity as the others allow.
 TEST(SolverLaws, BetweenOppositeOnesTheRestIsAsPreferred)
 {
     Random random(kSolverSeed + 2);
@@ -147,7 +146,7 @@ TEST(SolverLaws, BetweenOppositeOnesTheRestIsAsPreferred)
         const Solution solution = solved(planes, preferred);
         ASSERT_EQ(solution.status, kRelaxedWarning) << i;
         ASSERT_NEAR(solution.broken[3], gap, 2e-5F) << "case " << i;
-        // All that give way have done so by as much.
+        // All yielding ones yield by the same amount.
         std::vector<enumerated::Plane> given = enumerated::planes_of(planes);
         for (std::size_t k = 0; k < planes.size(); ++k) {
             given[k].offset -=
@@ -240,7 +239,7 @@ void expect_least_of_all(double tolerance)
 TEST(SolverLaws, AnExchangeEndsAtTheLeastViolationOfAll) { expect_least_of_all<float>(1e-4); }
 TEST(SolverLaws, AnExchangeInTwiceThePrecisionDoesTheSame) { expect_least_of_all<Wide>(2e-6); }
 
-/// A regular corner, half a metre per second broken by each: what is none, what a ball holds, and what is not alone.
+/// A regular corner, each violated by 0.5 m/s: non-corners, corners limited by a ball, and corners with further rows.
 TEST(SolverLaws, WhatIsNoCornerIsRefused)
 {
     const float s = 1.0F / std::sqrt(3.0F);
@@ -265,7 +264,7 @@ TEST(SolverLaws, WhatIsNoCornerIsRefused)
     c.rows[4].offset = 0.49F;
     ASSERT_TRUE(c.ends(0));
     EXPECT_TRUE(c.corner.is_alone);
-    // One that does not give way and is not broken: near, too, or not.
+    // A hard, satisfied row: near, or not.
     c.rows.insert(c.rows.begin(), {Vec3::UnitY(), 0.0F});
     c.yields.insert(c.yields.begin(), 1.0F);
     const auto from_one = [&] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter's header, sentence by sentence: what settings change, what is refused, and that nothing that was not
-// finished is said to be safe.
+// The filter's header, sentence by sentence: effects of settings, refusals, and that no unfinished check counts as
+// safe.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace flown;
 
-/// A bound that is not a number is refused before anything is timed, and nothing else is said.
+/// A non-finite bound is refused before any timing, without other status.
 TEST(VelocityFilterContract, EveryNumberOfABoundIsLookedAt)
 {
     for (const float bad : {kNan, kInfinity, -kInfinity}) {
@@ -104,8 +104,8 @@ TEST(VelocityFilterContract, OfTwoPairsAsNearTheFirstIsSaid)
     }
 }
 
-/// Vehicles, spheres, a bound and a map's worth of work: whatever the budget, an answer that is not finished says so,
-/// and a command is within the limits (Flown looks at each).
+/// Vehicles, spheres, a bound and a map: for every budget, an unfinished answer is reported, and a command is within
+/// the limits (Flown checks each).
 TEST(VelocityFilterContract, WhatIsNotFinishedIsSaid)
 {
     for (const std::size_t smoothing : {std::size_t{1}, std::size_t{4}}) {

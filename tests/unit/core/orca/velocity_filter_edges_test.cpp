@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter's settings at their ends, what it remembers and forgets, and what each word of a decision is about.
+// The filter's settings at their limits, its memory and resets, and the meaning of each status of a decision.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ TEST(VelocityFilterEdges, SettingsAtTheirEndsAreTaken)
     EXPECT_FALSE(takes([](FilterSettings& s) { s.bias.blocked = 0.0F; }));
 }
 
-/// What is checked is the pair of two like it, with the cover: twice both halves.
+/// The check is for a pair of two equal vehicles, with the cover: twice both halves.
 TEST(VelocityFilterEdges, TheCheckIsOfAPairLikeItself)
 {
     VelocityFilter filter;
@@ -66,7 +66,7 @@ TEST(VelocityFilterEdges, TheCheckIsOfAPairLikeItself)
     EXPECT_EQ(filter.configure(s), Unsafe::ramp_gain);
     s.cover = 1.1F;
     EXPECT_EQ(filter.configure(s), Unsafe::none);
-    // Studies may choose, but for what is no number.
+    // Studies may choose any value except non-finite ones.
     s.cover = 1.0F;
     s.accepts_unsafe = true;
     EXPECT_EQ(filter.configure(s), Unsafe::none);
@@ -74,7 +74,7 @@ TEST(VelocityFilterEdges, TheCheckIsOfAPairLikeItself)
     EXPECT_EQ(filter.configure(s), Unsafe::not_positive);
 }
 
-/// A change of settings keeps what is timed and smoothed, a change of the mean's length begins it anew.
+/// A change of settings keeps timing and smoothing state; a change of the mean's length restarts the mean.
 TEST(VelocityFilterEdges, SettingsThatChangeKeepWhatIsRemembered)
 {
     FilterSettings s;
@@ -100,7 +100,7 @@ TEST(VelocityFilterEdges, AResetForgetsEverything)
         const Decision first = flown.tick();
         EXPECT_EQ(first.status, 0U) << "no command that is not flown";
         expect_near(first.command, {0.2F, 0.4F, 0}, 1e-5F);
-        // What was sent is forgotten as well: the measured velocity holds.
+        // The sent command is forgotten as well: the measured velocity is used.
         flown.filter.reset();
         vehicle::VehicleState measured;
         measured.stamp = flown.now - 0.1F;
@@ -133,7 +133,7 @@ TEST(VelocityFilterEdges, APredictionIsOfWhenTheCommandBeginsToAct)
     EXPECT_FALSE(there.clipped);
 }
 
-/// Braking begins at what was sent, at what is flown where nothing was, and ends at rest.
+/// Braking starts from the sent command, without one from the present velocity, and ends at rest.
 TEST(VelocityFilterEdges, BrakingTakesWhatOnePeriodAllows)
 {
     Flown flown({}, {0.6F, 0.8F, 0});
@@ -143,7 +143,7 @@ TEST(VelocityFilterEdges, BrakingTakesWhatOnePeriodAllows)
     Flown nearly({}, {0.05F, 0, 0});
     nearly.input.own_age = 1.0F;
     EXPECT_EQ(nearly.tick().command, Vec3::Zero()) << "just what it can";
-    // Sent by somebody else meanwhile: from there.
+    // A command of another sender meanwhile: braking starts from it.
     VelocityFilter filter;
     FilterInput input;
     input.own.velocity = input.preferred = {1, 0, 0};
@@ -179,7 +179,7 @@ TEST(VelocityFilterEdges, EveryBoundIsSaidByItsPlace)
     EXPECT_NEAR(beyond_it.command.y(), -0.15F, 1e-4F) << "in a second, where that is slower than the recovery";
 }
 
-/// A bound that moves: the gap may be closed only beside its own way.
+/// A moving bound: the closing velocity is relative to the bound's own motion.
 TEST(VelocityFilterEdges, ABoundThatGoesAwayIsFollowed)
 {
     Flown flown({}, {0.5F, 0, 0});
@@ -203,7 +203,7 @@ TEST(VelocityFilterEdges, TheNearestPairAndObstacleAreSaid)
     EXPECT_EQ(decision.status & (kConflictOverlap | kObstaclePenetration), 0U);
 }
 
-/// No obstacle is looked at that no command within this period's acceleration could come near to.
+/// Obstacles that no command within this period's acceleration could approach are not checked.
 TEST(VelocityFilterEdges, ObstaclesAreLookedAtAsFarAsTheSpeedAllows)
 {
     const auto seen = [](float speed, float surface) {
@@ -256,7 +256,7 @@ TEST(VelocityFilterEdges, LookingAlongIsLeftOutWhereItIsNotAskedFor)
     EXPECT_EQ(decision.clear_until, 0.0F);
 }
 
-/// What cannot be used changes nothing that is timed, and is said by its one word.
+/// Unusable input changes no timing, and gives its own status.
 TEST(VelocityFilterEdges, WhatIsNotANumberIsNotTimed)
 {
     Flown flown;
@@ -279,7 +279,7 @@ TEST(VelocityFilterEdges, WhatIsNotANumberIsNotTimed)
     EXPECT_EQ(never.tick().command, Vec3::Zero());
 }
 
-/// After commands that nobody flew the mean begins anew.
+/// After commands that were not flown the mean restarts.
 TEST(VelocityFilterEdges, TheMeanBeginsAnewWhereTheCommandsWereNotFlown)
 {
     FilterSettings s;
@@ -292,7 +292,7 @@ TEST(VelocityFilterEdges, TheMeanBeginsAnewWhereTheCommandsWereNotFlown)
     EXPECT_NEAR(flown.tick().command.x(), (-0.45F - 2.0F * 0.40F) / 3.0F, 1e-4F);
 }
 
-/// Where nothing was sent, braking goes on from the last solution.
+/// Without a sent command, braking continues from the last solution.
 TEST(VelocityFilterEdges, BrakingGoesOnFromTheSolutionWhereNothingWasSent)
 {
     VelocityFilter filter;

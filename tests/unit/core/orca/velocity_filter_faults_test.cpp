@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What goes wrong: one status for each cause, and a command within the limits whatever it is (G-ORCA specification,
-// T7).
+// Faults: one status per cause, and always a command within the limits (G-ORCA specification, T7).
 #include <gtest/gtest.h>
 
 #include "core/orca/velocity_filter.hpp"
@@ -62,7 +61,7 @@ TEST(VelocityFilterFaults, WhatIsNotFiniteBrakes)
     EXPECT_EQ(decision.command, Vec3::Zero());
 }
 
-/// Numbers whose squares or sums are none: nothing can be said, so it brakes.
+/// Values whose squares or sums overflow: undecidable, so the filter brakes.
 TEST(VelocityFilterFaults, AbsurdSizesBrake)
 {
     for (int what = 0; what < 2; ++what) {
@@ -93,7 +92,7 @@ TEST(VelocityFilterFaults, AnOwnStateThatIsTooOldBrakes)
     EXPECT_EQ(flown.tick().status, 0U);
 }
 
-/// What is braked from is what was sent, not what the filter had been told to smooth.
+/// Braking starts from the sent command, not from the unsmoothed command.
 TEST(VelocityFilterFaults, BrakesFromWhatWasSentWhereItSmooths)
 {
     FilterSettings settings;
@@ -104,7 +103,7 @@ TEST(VelocityFilterFaults, BrakesFromWhatWasSentWhereItSmooths)
     flown.ticks(12);
     flown.input.own_age = 1.0F;
     const Vec3 before = flown.last;
-    const Decision decision = flown.tick();  // its slew is looked at there
+    const Decision decision = flown.tick();  // its slew is checked there
     expect_near(decision.command, before - Vec3(0.05F, 0, 0), 1e-5F);
 }
 
@@ -270,7 +269,7 @@ TEST(VelocityFilterFaults, TheSeventeenthObstacleCapsTheSpeed)
     EXPECT_LE(decision.command.norm(), (1.9F - 1.1F) / 2.4F);
 }
 
-/// T7's work limit of 10, and every other: said, and what the command breaks is said as well.
+/// T7's work limit of 10, and every other: the limit and the command's violations are reported.
 TEST(VelocityFilterFaults, WorkThatIsNotDoneIsSaid)
 {
     for (std::uint32_t units = 0; units < 400; ++units) {

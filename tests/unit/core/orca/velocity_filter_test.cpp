@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter's tick: the identity where nothing is near, what holds a command, and what is said of it.
+// The filter's tick: the identity without near threats, active constraints of a command, and its status.
 #include <gtest/gtest.h>
 
 #include "core/orca/velocity_filter.hpp"
@@ -112,7 +112,7 @@ TEST(VelocityFilter, WhoDoesNotFlyItsCommandsIsFollowed)
     const Decision decision = flown.tick();
     EXPECT_EQ(decision.status, kResynchronised);
     expect_near(decision.command, {-0.45F, 0, 0}, 1e-5F);
-    // Within what is said to be apart its commands are what counts.
+    // Within the stated tolerance the commands are used.
     flown.input.own.velocity = {0.5F, 0, 0};
     EXPECT_EQ(flown.tick().status, 0U);
     // Nothing is expected after a reset.
@@ -155,7 +155,7 @@ TEST(VelocityFilter, AWingThatHoversIsStalled)
     EXPECT_EQ(filter.decide(input, budget).status, 0U);
 }
 
-/// Commands that nobody flew say nothing, so they are not in the mean either.
+/// Commands that were not flown carry no information and do not enter the mean.
 TEST(VelocityFilter, WhoDoesNotFlyItsCommandsIsFollowedWhereItSmooths)
 {
     FilterSettings settings;
@@ -169,7 +169,7 @@ TEST(VelocityFilter, WhoDoesNotFlyItsCommandsIsFollowedWhereItSmooths)
     expect_near(decision.command, {-0.45F, 0, 0}, 1e-5F);
 }
 
-/// Where the mean can not be brought back within its slew the newest command is sent as it is, and that is said.
+/// If the mean cannot be corrected within its slew, the newest command is sent unchanged, and this is reported.
 TEST(VelocityFilter, WhereTheMeanBreaksAHalfSpaceTheNewestCommandIsSent)
 {
     FilterSettings settings;
@@ -187,7 +187,7 @@ TEST(VelocityFilter, WhereTheMeanBreaksAHalfSpaceTheNewestCommandIsSent)
     expect_near(decision.command, {0.35F, 0, 0}, 1e-3F);
 }
 
-/// A cap holds for what is sent, not for what it is the mean of.
+/// A cap applies to the sent mean, not to the averaged commands.
 TEST(VelocityFilter, SmoothedCommandsKeepToACap)
 {
     FilterSettings settings;
@@ -221,7 +221,7 @@ TEST(VelocityFilter, SlowsDownWhereConflictRegionsOverlap)
     }
 }
 
-/// The mean goes once more through what is hard; where it can not, the newest command is taken.
+/// The mean is corrected by the hard constraints; if impossible, the newest command is used.
 TEST(VelocityFilter, SmoothedCommandsKeepToObstacles)
 {
     FilterSettings settings;

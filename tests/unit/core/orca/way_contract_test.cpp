@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways along obstacles, sentence by sentence of their header: where a way ends, and what an exhausted budget says.
+// Paths along obstacles, sentence by sentence of their header: the end of a path, and the report of an exhausted
+// budget.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +14,7 @@ namespace {
 
 using test::ObstacleContract;
 
-/// What a coarse resolution leaves open is not clear: met 0.2 m before the end of the way.
+/// Undecided at a coarse resolution is not clear: contact 0.2 m before the end of the path.
 TEST_F(ObstacleContract, ACoarseResolutionDoesNotOverlookTheEndOfTheWay)
 {
     settings.resolution = 0.5F;
@@ -36,7 +37,7 @@ TEST_F(ObstacleContract, TheFirstStepIsTakenWhateverTheResolution)
     EXPECT_NEAR(found.clear_until, 0.3F, 1e-3F);
 }
 
-/// Contact at 3.677 m: a way that ends before it is clear, also where that shows at the second place only.
+/// Contact at 3.677 m: a path that ends before it is clear, also if only the second sample shows this.
 TEST_F(ObstacleContract, AWayThatEndsShortlyBeforeTheContactIsClear)
 {
     add(geometry::make_sphere({5, 1.5F, 0}, 1.0F));
@@ -49,7 +50,7 @@ TEST_F(ObstacleContract, AWayThatEndsShortlyBeforeTheContactIsClear)
     EXPECT_NEAR(way({1, 0, 0}, 3.7F).clear_until, contact, 1e-3F);
 }
 
-/// Without a way and without a budget nothing is known of the place itself.
+/// Without path length and budget the place itself is unknown.
 TEST_F(ObstacleContract, AWayOfNoLengthIsNotClearWithoutABudget)
 {
     settings.vertical = 0.8F;
@@ -82,7 +83,7 @@ TEST_F(ObstacleContract, AProvenContactIsNoBound)
     }
 }
 
-/// Wherever the budget runs out the way is not said to be clear any farther than it is.
+/// If the budget runs out anywhere, the path is never reported clear beyond the truth.
 TEST_F(ObstacleContract, AWayIsNeverClearBeyondWhatWasLookedAt)
 {
     settings.vertical = 0.8F;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways along obstacles, and levels that give way one after the other, at their edges.
+// Paths along obstacles, and levels that yield in sequence, at their limits.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -113,7 +113,7 @@ TEST(LevelsGiveWay, EachForThoseBeforeItAndAllAreSaid)
     }
 }
 
-/// A level that cannot hold beside a stronger one gives way alone, however little the stronger one would have to.
+/// A level that contradicts a stronger one yields alone, even if the stronger one would need to yield only little.
 TEST(LevelsGiveWay, NoneIsBrokenForTheSakeOfAWeakerOne)
 {
     const Vec3 x = Vec3::UnitX();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tables of constraints: what is merged and what may matter (reach-set specification, section 13.3).
+// Tables of constraints: merging and relevance (reach-set specification, section 13.3).
 #include "core/reach/barrel_table.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(BarrelTables, WhatHasNoRoomIsMergedWithTheFarthest)
     EXPECT_EQ(table.merged(), 0U);
 }
 
-/// Equation 6.110: near enough with the margin, by its way too, and heights that overlap.
+/// Equation 6.110: near enough with the margin, including its motion, and overlapping heights.
 TEST(BarrelTables, OnlyWhatMayMatterIsActive)
 {
     Barrel barrel;

@@ -5,7 +5,7 @@
 
 #include "core/reach/evaluation.hpp"
 
-// Evaluation and choice with all that a test has at hand: levels in a table, cells' centres made on the spot.
+// Evaluation and choice with a test's data: levels in a table, cells' centres computed on the fly.
 
 namespace jink::reach {
 

@@ -156,7 +156,7 @@ TEST_F(EvaluationTest, TheGoalsCellIsTakenByTheCheapestThatEndsThere)
 TEST_F(EvaluationTest, WhereNothingEndsWhatPassesThroughIsTaken)
 {
     const CellIndex passed = set.grid.index({1, 2, 2});
-    tree.enter(passed);  // the costlier one, first
+    tree.enter(passed);  // the more expensive one, first
     const NodeIndex cheaper = tree.add(left, Movement::straight, 270);
     tree.enter(passed);
     set = tree.view();
@@ -166,7 +166,7 @@ TEST_F(EvaluationTest, WhereNothingEndsWhatPassesThroughIsTaken)
     EXPECT_EQ(choose(goal, kSoftRun).node, cheaper);
     nodes[cheaper] = 0;
     EXPECT_EQ(choose(goal, kSoftRun).node, farther_left);
-    // One that ends there wins, whatever it costs and wherever it stands.
+    // A trajectory that ends there wins, at any cost and index.
     nodes[cheaper] = kFree;
     const NodeIndex ends = tree.add(0, Movement::straight, 60000);
     set = tree.view();

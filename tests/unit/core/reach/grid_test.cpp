@@ -32,7 +32,7 @@ TEST(AvoidanceGrid, IsTheSources)
     EXPECT_EQ(outer, 215U);
 }
 
-/// What lies on a face by construction is in the cell before it; the first of each range has its start too.
+/// A point on a face is in the cell before it; the first cell of each range includes its start.
 TEST(AvoidanceGrid, FacesBelongToTheCellBefore)
 {
     const Grid<double> grid;

@@ -31,7 +31,7 @@ void hit(LidarScan& scan, const Grid<float>& grid, const CellPlace& place, int c
     }
 }
 
-/// Figure 6.12: what is stopped in a layer is missing in all behind it.
+/// Figure 6.12: rays stopped in a layer are missing in all layers behind.
 TEST(LidarScans, VisibilityFallsBehindWhatStopsRays)
 {
     const Grid<float> grid;

@@ -82,7 +82,7 @@ TEST(Movements, EndInTheCellsOfTheReferenceResults)
     EXPECT_EQ(single.locate(fly<float>(std::vector<Movement>(10, S)).position).place, (CellPlace{9, 3, 2}));
 }
 
-/// Section 3: against 20 000 steps of numerical integration the source of the figure was within 2e-9.
+/// Section 3: against 20 000 steps of numerical integration the published figure was within 2e-9.
 TEST(Movements, AgreeWithTheFigureOfTheClosedForm)
 {
     Pose<double> from;
@@ -121,7 +121,7 @@ TEST(Movements, AreThoseOfTheCorrectedTable)
     }
 }
 
-/// Section 5.2: the other reading of the source jumps to the end's heading.
+/// Section 5.2: the other reading of Gomola jumps to the end's heading.
 TEST(Movements, WithEndHeadingAreStraight)
 {
     const Pose<double> left = fly<double>({L}, {}, DisplacementModel::end_heading);

@@ -14,8 +14,8 @@
 
 namespace jink::reach::test {
 
-/// A reach planner with trees of a few movements, for a vehicle that flies east at 5 m/s on a leg that goes on for
-/// long. Movements are 2.5 m long, the grid reaches 10 m. Nothing else is there.
+/// A reach planner with trees of a few movements, for a vehicle that flies east at 5 m/s on a long leg. Movements are
+/// 2.5 m long, the grid extends 10 m. No threats.
 struct PlannerBench {
     static constexpr std::uint32_t kAllTheWork = 1'000'000;
     static inline const Grid<float> kGrid{4, 7, 3, 4.0F, 0.8F, 0.5F};
@@ -52,7 +52,7 @@ struct PlannerBench {
     PlannerBench(const PlannerBench&) = delete;
     PlannerBench& operator=(const PlannerBench&) = delete;
 
-    /// Tables that stay where they are.
+    /// Tables with a stable address.
     const ReachSet* keep(const SmallTree& tree)
     {
         trees.push_back(tree);
@@ -161,7 +161,7 @@ protected:
     void leg(const Vec3& start, const Vec3& to) { reference.leg = {start, to, 5.0F}; }
 };
 
-/// Rates cells as it is told to, and remembers what it was asked.
+/// Rates cells as configured, and records its calls.
 class FakeSource final : public CellSource {
 public:
     RateStatus status = RateStatus::rated;

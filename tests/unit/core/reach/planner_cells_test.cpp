@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What rates the cells of the reach planner: when it is asked, and what its answer does.
+// The source of cell ratings of the reach planner: times of its calls, and effects of its answers.
 #include <gtest/gtest.h>
 
 #include "core/reach/planner.hpp"

@@ -16,7 +16,7 @@ using world::PlanStatus;
 TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
 {
     EXPECT_EQ(way(), Way::straight);
-    // Beside the leg, the way back to it.
+    // Beside the leg, the path back to it.
     leg(Vec3(-20.0F, 4.0F, 30.0F), Vec3(500.0F, 4.0F, 30.0F));
     EXPECT_EQ(way(), Way::left);
     leg(Vec3(-20.0F, -4.0F, 30.0F), Vec3(500.0F, -4.0F, 30.0F));
@@ -30,7 +30,7 @@ TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
 
 TEST_F(PlannerChoice, TheGoalLiesOnTheLegNotOnTheWayBackToIt)
 {
-    // 1.2 m beside the leg: its point 10.2 m on lies 7.1 degrees to the left, the way there 5.7.
+    // 1.2 m beside the leg: its point 10.2 m ahead is 7.1 degrees to the left, the path there 5.7.
     leg(Vec3(-20.0F, 1.2F, 30.0F), Vec3(500.0F, 1.2F, 30.0F));
     EXPECT_EQ(way(), Way::left);
 }
@@ -58,7 +58,7 @@ TEST_F(PlannerChoice, ALegThatEndsWithinTheGridIsFlownToItsEnd)
     leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 4.0F, 0.0F, 30.0F));
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(end().x(), 0.5F + 5.0F, 1e-3F);
-    // The goal is 1.02 of the grid's range away at most, and so outside of it where the leg goes on.
+    // The goal is at most 1.02 of the grid's range away, and outside the grid if the leg continues.
     leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 10.05F, 0.0F, 30.0F));
     EXPECT_EQ(way(), Way::straight);
 }
@@ -78,8 +78,8 @@ TEST_F(PlannerChoice, ARouteIsFollowedAlongItsWayToItsEnd)
     leg(Vec3(0, 0, 30), Vec3(500, -300, 30));
     reference.route = &route;
     EXPECT_EQ(way(), Way::left) << "not along the leg";
-    // 6.4 degrees to the left: as seen from where the vehicle answers, the point 10.2 m on lies in the column to the
-    // left (from 6.55 degrees on), one that is far does not.
+    // 6.4 degrees to the left: from the position at which the vehicle responds, the point 10.2 m ahead is in the column
+    // to the left (from 6.55 degrees on), a far point is not.
     path::Route long_one;
     ASSERT_EQ(long_one.add_leg(Vec3(0, 0, 30), Vec3(500.0F, 56.1F, 30)), path::RouteStatus::ok);
     reference.route = &long_one;
@@ -179,7 +179,7 @@ TEST_F(PlannerChoice, AClosedVolumeIsNeverEnteredAndItsMarginLast)
 
 TEST_F(PlannerChoice, AStartThatTouchesMayBeLeftByTheEscapeRule)
 {
-    // 5 cm inside of a sphere that stands behind.
+    // 5 cm inside a static sphere behind.
     add_sphere(Vec3(-0.95F, 0.0F, 30.0F), 0.5F);
     settings.latency = 0.0F;
     settings.escape = {1.0F, 0.5F};
@@ -224,21 +224,21 @@ TEST_F(PlannerChoice, EndsAreTriedAsOftenAsTheSettingsSay)
     EXPECT_EQ(report().tries, 2);
 }
 
-/// What is struck out is an end, not what leads through it.
+/// An end is excluded, not the trajectories through it.
 TEST_F(PlannerChoice, WaysThroughAnEndThatDoesNotDoAreKept)
 {
     test::SmallTree chain(kGrid);
     chain.chain(Movement::straight, 2, 1024);
     only(chain);
     leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(0.5F + 2.0F, 0.0F, 30.0F));
-    // Falls through the place where the vehicle would stop after one movement, when it stands there.
+    // Falls through the place where the vehicle would stop after one movement, at the time of the stop.
     add_track(Vec3(5.5F, 0.0F, 30.0F + 20.0F * 1.7F), Vec3(0.0F, 0.0F, -20.0F), 0.3F);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_EQ(report().tries, 2);
     EXPECT_NEAR(end().x(), 5.5F, 1e-3F) << "the second movement is by then past it";
 }
 
-/// The stop takes 1.555 s after the path's end, at 2.1 s from now; then the vehicle stands at 13.1 m.
+/// The stop takes 1.555 s after the path's end, at 2.1 s from now; then the vehicle is static at 13.1 m.
 TEST_F(PlannerChoice, WhatCrossesTheStopCountsWhileTheVehicleIsThere)
 {
     const auto falling = [&](float x, float t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reach planner refuses: input, settings and sets that it is not for.
+// Refusals of the reach planner: unsuitable input, settings and sets.
 #include <gtest/gtest.h>
 
 #include <limits>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reach planner with trees of a few movements: what is placed where, what is refused, what an answer holds.
+// The reach planner with trees of a few movements: placement, refusals, contents of an answer.
 #include "core/reach/planner.hpp"
 
 #include <gtest/gtest.h>
@@ -148,7 +148,7 @@ TEST_F(PlannerTest, MirroredTablesClimbWhereTheyWereBuiltToDescend)
     }
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR((end() - Vec3(fallen.x(), fallen.y(), 60.0F - fallen.z())).norm(), 0.0F, 1e-4F);
-    // And it is looked at where it leads.
+    // The trajectory is checked at its end.
     add_sphere(Vec3(2.97F, 0.0F, 31.05F), 0.3F);
     EXPECT_EQ(plan(), PlanStatus::none_available);
     obstacles.clear();
@@ -168,7 +168,7 @@ TEST_F(PlannerTest, FasterThanAnySetNothingIsAvailable)
     EXPECT_TRUE(out.path.points.empty());
 }
 
-/// A multirotor that hardly moves: no latency, along the way, at the least speed of the sets.
+/// A nearly static multirotor: no latency, along the nominal path, at the least speed of the sets.
 TEST_F(PlannerTest, StandingItBeginsAlongTheLegFromWhereItIs)
 {
     own.velocity = Vec3(0.0F, 1.2F, 0.0F);
@@ -228,7 +228,7 @@ TEST_F(PlannerTest, StandingItTurnsFromTheCourseOfItsWay)
     EXPECT_NEAR(course(), 5.0F * kPi / 6.0F, 1e-3F) << "from north by 60 degrees to the left";
 }
 
-/// What it does upwards says nothing of one that hardly moves.
+/// For a nearly static vehicle the vertical velocity is ignored.
 TEST_F(PlannerTest, SinkingSlowlyItIsLevel)
 {
     test::SmallTree left(kGrid);
@@ -290,7 +290,7 @@ TEST_F(PlannerTest, ASmallStepAsideHasNoSide)
     reference.leg.end = Vec3(100.0F, 0.0F, 30.0F);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_GT(out.side.y(), 0.999F) << "from the way towards the path";
-    // On a way that leads along the path there is no side: (3.886, 0.907) is where the tree ends.
+    // A nominal path along the trajectory gives no side: (3.886, 0.907) is the tree's end.
     reference.leg.start = Vec3(0.5F, 0.0F, 30.0F) - 3.0F * Vec3(3.886F, 0.907F, 0.0F);
     reference.leg.end = Vec3(0.5F, 0.0F, 30.0F) + 30.0F * Vec3(3.886F, 0.907F, 0.0F);
     ASSERT_EQ(plan(), PlanStatus::found);
@@ -304,7 +304,7 @@ TEST_F(PlannerTest, ASmallStepAsideHasNoSide)
     EXPECT_EQ(out.side, Vec3::Zero());
 }
 
-/// With less work than the answer takes there is none, and nothing is written.
+/// With fewer work units than needed there is no answer, and nothing is written.
 TEST_F(PlannerTest, ABudgetThatRunsOutIsNoAnswer)
 {
     add_track(Vec3(12.0F, 0.0F, 30.0F), Vec3::Zero(), 0.5F);
@@ -326,7 +326,7 @@ TEST_F(PlannerTest, ABudgetThatRunsOutIsNoAnswer)
     sweep();
 }
 
-/// What is not a number is in the way, or gives no answer: never a way that is called free.
+/// Non-finite values count as contact, or give no answer: never a free trajectory.
 TEST_F(PlannerTest, NumbersThatAreNotFiniteAreNeverClear)
 {
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {

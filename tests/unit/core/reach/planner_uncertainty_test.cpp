@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the reach planner keeps from each sort of threat: the own box, and all that is not known of either place.
+// The reach planner's clearance from each kind of threat: the own box, and both position uncertainties.
 #include <gtest/gtest.h>
 
 #include "core/reach/planner.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 using test::PlannerChoice;
 
-/// One way alone, straight on, with its box from 29.5 m to 30.5 m; a movement may bend by 0.12 m.
+/// One trajectory, straight ahead, with its box from 29.5 m to 30.5 m; a movement may bend by 0.12 m.
 class PlannerUncertainty : public PlannerChoice {
 protected:
     PlannerUncertainty()
@@ -20,8 +20,8 @@ protected:
         only(alone);
         settings.room = 0.0F;
     }
-    /// All of the way is flown where the own place is known, and where it is known to 0.1 m it is not: three times
-    /// that.
+    /// With a known own position the whole trajectory is flown; with 0.1 m uncertainty, which counts three times, it is
+    /// not.
     void expect_own_uncertainty_counts(float sigma = 0.1F)
     {
         own.sigma_position = 0.0F;

@@ -11,7 +11,7 @@
 
 namespace jink::reach::test {
 
-/// A tree whose nodes lie where the movements lead. Each movement enters the cell that it ends in, and no other.
+/// A tree whose nodes are at the ends of their movements. Each movement enters only the cell of its end.
 class SmallTree {
 public:
     explicit SmallTree(const Grid<float>& grid = {}) : grid_(grid)

@@ -114,7 +114,7 @@ TEST_F(AirspaceBounds, OfSeveralTheNearestCounts)
     EXPECT_EQ(nearest(10.375F, 30.0F, 99.8125F).when, 6.0F);
 }
 
-/// Until the horizon: what the flight does afterwards does not count, and the place at the horizon does.
+/// Up to the horizon: the later flight does not count, the position at the horizon does.
 TEST_F(AirspaceBounds, TheHorizonEndsTheFlight)
 {
     scene.airspace.has_floor = true;

@@ -101,7 +101,7 @@ TEST(LeastSeparationOfBadNumbers, IsContact)
     }
 }
 
-/// One threat of each kind 30 m beside the way, whose box is 1 m, and a number that is not finite.
+/// One threat of each kind 30 m beside the path, a box of 1 m, and a non-finite value.
 struct OneBadNumber {
     ThreatKind kind;
     std::function<void(Scene&)> spoil;

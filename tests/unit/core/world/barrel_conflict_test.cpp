@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What is said about a closed area on the way.
+// Reports on a closed area on the path.
 #include <gtest/gtest.h>
 
 #include "core/base/work_units.hpp"
@@ -40,7 +40,7 @@ TEST_F(BarrelOnTheWay, IsToldAsTheBodyIsMet)
     EXPECT_LT(found.margin, 0.0F);
 }
 
-/// The barrel's centre is told at the own height, or the nearest that it has.
+/// The barrel's centre is reported at the own height, or at the nearest height of the barrel.
 TEST_F(BarrelOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
 {
     scene.barrel(Vec2(30, 0), 4.0F);
@@ -56,7 +56,7 @@ TEST_F(BarrelOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
     EXPECT_EQ(height(-20.0F, -0.75F), -0.75F);
 }
 
-/// Met at the way's end, long after it was reached.
+/// Contact at the path's end, long after the arrival.
 TEST_F(BarrelOnTheWay, AStormOverTheEndIsToldWhenItComes)
 {
     scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
@@ -71,7 +71,7 @@ TEST_F(BarrelOnTheWay, AStormOverTheEndIsToldWhenItComes)
     EXPECT_FALSE(meets(found)) << "12.2 s";
 }
 
-/// Whatever is left of the budget: what could not be looked at is met now.
+/// For any remaining budget: an unchecked threat is a conflict now.
 TEST_F(BarrelOnTheWay, WhereTheBudgetRunsOutItIsMetNow)
 {
     scene.barrel(Vec2(300, 0), 4.0F);
@@ -92,7 +92,7 @@ TEST_F(BarrelOnTheWay, WhereTheBudgetRunsOutItIsMetNow)
     }
 }
 
-/// Into its rim at the way's end; it moves on over the vehicle that hovers there.
+/// Into its rim at the path's end; the barrel moves on over the hovering vehicle.
 TEST_F(BarrelOnTheWay, IsDeepestWhileItHovers)
 {
     scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
@@ -106,7 +106,7 @@ TEST_F(BarrelOnTheWay, IsDeepestWhileItHovers)
     EXPECT_NEAR(found.threat_at_closest.x(), 18.0F - 0.8F * found.time_to_closest, 1e-3F);
 }
 
-/// Touching exactly is contact; what passes a little beside it is none.
+/// Exact contact counts; a slightly wider pass does not.
 TEST_F(BarrelOnTheWay, BesideItIsNoConflict)
 {
     scene.barrel(Vec2(30, 5.7F), 4.0F);  // 0.1 m beside the box and its uncertainty

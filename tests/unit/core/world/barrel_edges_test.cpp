@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Barrels: exact limits, rounding at large coordinates, slopes, and what the search between two instants costs.
+// Barrels: exact limits, rounding at large coordinates, slopes, and the cost of the search between two instants.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -62,7 +62,8 @@ double true_distance(const Vec3& half, const Vec3& own, const Barrel& b, double 
     return level > 0.0 && height > 0.0 ? std::hypot(level, height) : std::max(level, height);
 }
 
-/// However far from the origin, and on whatever side: never above the truth, and 1e-6 of the coordinates below it.
+/// At any distance from the origin, on any side: never above the true value, and at most 1e-6 of the coordinates below
+/// it.
 TEST(BarrelEdges, RoundingIsOnTheSafeSideAtLargeCoordinates)
 {
     Random random(20261201);
@@ -110,7 +111,7 @@ struct Approaching {
         const Vec3 at(own.position.x(), own.position.y(), static_cast<float>(z));
         return true_distance(half, at, b, t) - double(outset) - double(growth) * t;
     }
-    /// The same without rounding, however far it goes.
+    /// The same without rounding, at any distance.
     [[nodiscard]] double exact(double t) const
     {
         const auto off = [](double c, double h) { return c - std::clamp(c, -h, h); };
@@ -155,7 +156,7 @@ TEST(BarrelApproach, LooksAreDistancesAndTheirSlopes)
     EXPECT_GT(compared, 3000);
 }
 
-/// Fast and long: what rounding may add is taken off, of each speed and growth, whatever its sign.
+/// Fast and long: the rounding bound of each speed and growth is subtracted, for either sign.
 TEST(BarrelApproach, LooksNeverSayMoreThanThereIs)
 {
     Random random(20261204);

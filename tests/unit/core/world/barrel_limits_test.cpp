@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Barrels: one large number among small ones, instants of the least distance, and what the search for it costs.
+// Barrels: one large value among small ones, instants of the least distance, and the cost of its search.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -18,7 +18,7 @@ namespace {
 using namespace test;
 using detail::BarrelApproach;
 
-/// Whichever number is the large one, what rounding may add is taken off for it: never above the truth.
+/// For every large value its rounding bound is subtracted: never above the true value.
 TEST(BarrelRounding, OneLargeNumberIsEnough)
 {
     Random random(20261211);
@@ -90,7 +90,7 @@ TEST(BarrelLooks, ByHand)
         p.growth = 0.25F;
         EXPECT_NEAR(p.approach().look(0.0F).value, e.value - 0.5F, 1e-4F) << e.where;
         EXPECT_NEAR(p.approach().look(0.0F).slope, e.slope - 0.25F, 1e-4F) << e.where;
-        // The same where it is after two seconds, seen from two seconds before, and with the barrel moving instead.
+        // The same position after two seconds, starting two seconds before, and with the barrel moving instead.
         p.own = e.own - 2.0F * e.velocity;
         EXPECT_NEAR(p.approach().look(2.0F).value, e.value - 1.0F, 1e-3F) << e.where;
         EXPECT_NEAR(p.approach().look(2.0F).slope, e.slope - 0.25F, 1e-3F) << e.where;
@@ -103,7 +103,7 @@ TEST(BarrelLooks, ByHand)
     }
 }
 
-/// What does not change is nearest at the beginning.
+/// A constant distance is reported for the beginning.
 TEST(BarrelLeast, OfADistanceThatDoesNotChangeTheBeginningIsTold)
 {
     for (const Vec2& velocity : {Vec2(0, 0), Vec2(3, -2)}) {
@@ -118,7 +118,7 @@ TEST(BarrelLeast, OfADistanceThatDoesNotChangeTheBeginningIsTold)
     }
 }
 
-/// What ends where it is nearest, or a little after, needs no search.
+/// A pass that ends at its closest approach, or slightly after, needs no search.
 TEST(BarrelLeast, AtTheEndOrJustBeforeItCostsNoInstants)
 {
     const Pair p;  // nearest after 4 s, for 2 / 5 s
@@ -155,7 +155,7 @@ TEST(BarrelLeast, EndsAtWhatIsEnough)
     EXPECT_GT(more.spent(), units::kBarrelPart);
 }
 
-/// The least distance is never above what there is at the instant that it is told for, nor at either end.
+/// The least distance is never above the distance at its reported instant, nor at either end.
 TEST(BarrelLeast, IsNotAboveWhatWasLookedAt)
 {
     Random random(20261212);

@@ -8,7 +8,7 @@
 
 namespace jink::world::test {
 
-/// A box and a barrel that both may move, by name so that a test can change each number.
+/// A box and a barrel that both may move, with named members so that a test can change each number.
 struct Pair {
     Vec3 half = Vec3(1, 1, 1);
     Vec3 own = Vec3(-20, 8, 0);

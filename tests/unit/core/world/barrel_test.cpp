@@ -85,7 +85,7 @@ TEST(BarrelDistance, CheckValueOfTheShiftedCentre)
 TEST(BarrelSeparation, OneThatPassesBeforeOrAfterIsClear)
 {
     Scene scene;
-    // It crosses the way at x = 20 while we do, at 4 s.
+    // It crosses the path at x = 20 at the same time as we do, 4 s.
     scene.barrel({20, -40}, 5.0F, {0, 10});
     const Separation met = separation(scene, flight({{0, 0, 0}, {40, 0, 0}}, 8.0F));
     EXPECT_NEAR(met.margin, -5.0F, 1e-2F);
@@ -179,7 +179,7 @@ TEST(BarrelConflict, LeavingOneForGoodIsNone)
     EXPECT_EQ(conflict.time_to_loss, 0.0F);
 }
 
-/// The first loss decides, whatever it is of.
+/// The first loss decides, for any kind of threat.
 TEST(BarrelConflict, WhatComesFirstIsTheMainThreat)
 {
     Scene scene;
@@ -216,7 +216,7 @@ TEST(BarrelConflict, ASpentBudgetIsAConflictNow)
     }
 }
 
-/// Along a route: around a corner, with the rest of the way.
+/// Along a route: around a corner, with the rest of the path.
 TEST(BarrelConflict, AlongARouteIsSeenBehindItsCorner)
 {
     Scene scene;

@@ -23,7 +23,7 @@ geometry::Approach least(const Pair& pair, Seconds span, float enough = 1e9F)
     return pair.approach().least(span, enough, budget);
 }
 
-/// Inside, two ways out are equally short: the slope is that of one of them, always the same one.
+/// Inside, two exits are equally short: the slope is that of one of them, always the same one.
 TEST(BarrelTies, OfTwoWaysOutTheSideGoesBeforeTheHeightAndUpBeforeDown)
 {
     Pair corner{Vec3(1, 1, 1), Vec3(4, 0, 20), Vec3(2, 0, 9), {{Vec2(0, 0), 4.0F}, Vec2(0, 0), 10.0F, 20.0F, 0.0F}};
@@ -89,7 +89,7 @@ TEST(BarrelLeast, IsAsExactInsideAsOutside)
     }
 }
 
-/// What begins and ends equally far is told for the beginning.
+/// With equal distance at both ends, the beginning is reported.
 TEST(BarrelLeast, OfEqualEndsTheFirstIsTold)
 {
     const Pair p;
@@ -124,12 +124,12 @@ TEST(BarrelLeast, IsNotBelowTheFirstTangentAtTheEnd)
     }
 }
 
-/// The instant before the contact is clear, also where one that was looked at touches exactly.
+/// The instant before the contact is clear, also if a sampled instant is in exact contact.
 TEST(BarrelFirstContact, IsAnInstantThatIsClear)
 {
     Pair p;
     p.own = Vec3(-20, 0, 0);
-    // After 2 s the box is 6 m off; a barrel that is larger by so much touches it, to the bit.
+    // After 2 s the box is 6 m off; a barrel larger by this distance is in contact, to the bit.
     p.outset = 5.999F;
     while (p.approach().look(2.0F).value > 0.0F) {
         p.outset = std::nextafter(p.outset, 7.0F);

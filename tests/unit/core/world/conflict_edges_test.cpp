@@ -49,7 +49,7 @@ TEST_F(ConflictEdges, ASolidCountsAsASphereOfThreeMetresAtMost)
     EXPECT_NEAR(found.time_to_closest, 6.0F, 1e-3F);
 }
 
-/// The centre behind the way's end is nearest at its end.
+/// A centre behind the path's end is nearest at the end.
 TEST_F(ConflictEdges, AnObstacleBehindTheEndIsNearestAtTheEnd)
 {
     scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
@@ -61,7 +61,7 @@ TEST_F(ConflictEdges, AnObstacleBehindTheEndIsNearestAtTheEnd)
     EXPECT_LT(found.time_to_loss, 2.0F);
 }
 
-/// A way without a speed is a place.
+/// A path without speed is a place.
 TEST_F(ConflictEdges, AWayWithoutSpeedStands)
 {
     scene.own.sigma_position = 0.0F;
@@ -103,7 +103,7 @@ TEST_F(ConflictEdges, WhateverIsLeftOfTheBudgetWhatIsNotLookedAtIsMetNow)
     EXPECT_FALSE(meets(10.0F, all));
 }
 
-/// A track that does not grow is looked at as a whole, whatever the time ahead.
+/// A track of constant size is checked as a whole, for any look-ahead.
 TEST_F(ConflictEdges, OnlyWhatGrowsIsLookedAtInHalfSeconds)
 {
     scene.track(Vec3(30, 0, 0), Vec3::Zero(), 1.0F);

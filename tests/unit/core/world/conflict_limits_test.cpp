@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Conflicts at the limits of what is said about them: own uncertainty, ties, ways that end, and budgets that run out.
+// Conflicts at the limits of their contract: own uncertainty, ties, paths that end, and budgets that run out.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST_P(ConflictLimits, ATrackIsMetByTheUncertainBoxAndAtItsAge)
     const auto radius = [](float t) {
         return 1.0F + std::sqrt(0.5F) + 0.2F * (t + 2.0F) + 0.1F * (t + 2.0F) * (t + 2.0F);
     };
-    // Met at t with 60 - 10 t = 3 + radius(t): a little before 4.6 s.
+    // Contact at t with 60 - 10 t = 3 + radius(t): a little before 4.6 s.
     const float loss = found.time_to_loss;
     EXPECT_LE(60.0F - 10.0F * loss, 3.0F + radius(loss + 0.5F) + 1e-3F);
     EXPECT_GE(60.0F - 10.0F * loss, 3.0F + radius(loss) - 1e-3F);
@@ -70,7 +70,7 @@ TEST_P(ConflictLimits, ATrackIsMetByTheUncertainBoxAndAtItsAge)
     EXPECT_NEAR((found.threat_at_closest - Vec3(30, 0, 0)).norm(), 0.0F, 1e-3F);
 }
 
-/// Beside the way: the box's own side and its uncertainty; what is farther by a centimetre is no conflict.
+/// Beside the path: the box's own side and its uncertainty; a centimetre farther is no conflict.
 TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
 {
     const auto beside = [&](float y, float z) {
@@ -106,7 +106,7 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
     EXPECT_FALSE(beside(4.01F, 0));
 }
 
-/// Inside the margin that the uncertainty makes: what draws apart does so from that margin, not from another.
+/// Inside the margin of the uncertainty: "drawing apart" is relative to that margin.
 TEST_P(ConflictLimits, DrawingApartIsJudgedWithTheSameUncertainty)
 {
     // Half a metre inside of 1 + 6 * 0.25 m, and 1.75 m outside of the body alone.
@@ -126,7 +126,7 @@ TEST_P(ConflictLimits, DrawingApartIsJudgedWithTheSameUncertainty)
     EXPECT_TRUE(starts(1.0F, Vec3(5, 0, 0)));
 }
 
-/// What lies around does not matter to the one that is left: it is judged by itself.
+/// Each threat is judged separately, independent of the others.
 TEST_P(ConflictLimits, DrawingApartIsJudgedForEachByItself)
 {
     scene.track(Vec3(-4.4F, 0, 0), Vec3(-5, 0, 0), 1.0F);
@@ -139,7 +139,7 @@ TEST_P(ConflictLimits, DrawingApartIsJudgedForEachByItself)
     EXPECT_GT(found.time_to_loss, 6.0F);
 }
 
-/// Tracks, barrels, obstacles: of two that are met at the same time with the same margin the first in that order.
+/// Tracks, barrels, obstacles: of two conflicts at the same time with the same margin the first in that order.
 TEST_P(ConflictLimits, TiesGoByKindAndIndex)
 {
     scene.own.sigma_position = 0.0F;
@@ -152,7 +152,7 @@ TEST_P(ConflictLimits, TiesGoByKindAndIndex)
     ASSERT_TRUE(meets());
     EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::track, 0}));
     scene.tracks[1].radius = 1.5F;
-    scene.tracks[1].position.x() = 40.5F;  // met at the same time, deeper
+    scene.tracks[1].position.x() = 40.5F;  // contact at the same time, deeper
     ASSERT_TRUE(meets());
     EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::track, 1}));
     scene.tracks.clear();
@@ -166,7 +166,7 @@ TEST_P(ConflictLimits, TiesGoByKindAndIndex)
     EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0}));
 }
 
-/// Of instants that are equally near the first is told: at rest to each other, now.
+/// Of equally near instants the first is reported: without relative motion, now.
 TEST_P(ConflictLimits, OfEquallyNearInstantsTheFirstIsTold)
 {
     scene.own.sigma_position = 0.0F;
@@ -177,7 +177,7 @@ TEST_P(ConflictLimits, OfEquallyNearInstantsTheFirstIsTold)
     EXPECT_NEAR(found.miss_distance, 2.5F, 1e-5F);
 }
 
-/// Beyond the way's end nothing is met that stands; what moves is met there.
+/// Beyond the path's end static threats give no contact; moving threats do.
 TEST_P(ConflictLimits, WhoHoversMeetsWhatComes)
 {
     way_to(Vec3(10, 0, 0));
@@ -204,7 +204,7 @@ TEST_P(ConflictLimits, AnObstacleBeyondTheEndIsNearestOnArrival)
     EXPECT_NEAR(found.time_to_loss, (16.0F - 4.0F - 0.5F - 3.0F) / 5.0F, 1e-3F);
 }
 
-/// Whatever is left of the budget, who stands at a place meets what could not be looked at, now.
+/// For any remaining budget, a static vehicle has a conflict now with every unchecked threat.
 TEST_P(ConflictLimits, AtItsEndASpentBudgetIsAConflictNow)
 {
     way_to(Vec3(10, 0, 0));
@@ -220,7 +220,7 @@ TEST_P(ConflictLimits, AtItsEndASpentBudgetIsAConflictNow)
     }
 }
 
-/// The threat that the budget ran out at is told, not one after it.
+/// The threat at which the budget ran out is reported, not a later one.
 TEST_P(ConflictLimits, ASpentBudgetNamesTheThreatThatItRanOutAt)
 {
     const auto cost_until = [&](const auto& add) {
@@ -242,8 +242,8 @@ TEST_P(ConflictLimits, ASpentBudgetNamesTheThreatThatItRanOutAt)
     }
 }
 
-/// Drawing apart from a threat that grows is followed for a minute, in quarters of a second; what takes twice that is
-/// not followed to its end.
+/// Drawing apart from a growing threat is followed for a minute, in quarters of a second; a case that takes twice that
+/// is not followed to its end.
 TEST_P(ConflictLimits, DrawingApartIsFollowedForAMinute)
 {
     way_to(Vec3(2000, 0, 0));
@@ -253,7 +253,7 @@ TEST_P(ConflictLimits, DrawingApartIsFollowedForAMinute)
     EXPECT_EQ(found.time_to_loss, 0.0F);
 }
 
-/// A way that ends soon is judged to its end: within a second nothing has grown back yet.
+/// A path that ends soon is judged to its end: within a second nothing has grown back yet.
 TEST_P(ConflictLimits, InsideAMarginAShortWayIsJudgedToItsEnd)
 {
     scene.own.sigma_position = 0.0F;

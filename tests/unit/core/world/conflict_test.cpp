@@ -303,7 +303,7 @@ TEST_F(Conflicts, InsideALongWallsMarginAndFlyingIntoItIsOne)
     EXPECT_EQ(conflict.time_to_loss, 0.0F);
 }
 
-/// The way is halved eight times to find the loss: what comes sooner than a 256th of it is not "already inside".
+/// The path is bisected eight times to find the loss: a loss within the first 256th does not count as "already inside".
 TEST_F(Conflicts, AWallMetAtOnceIsOneWhereverItsMiddleLies)
 {
     scene.leg(Vec3(40, 1.51F, 0), Vec3(80, -10, 0), 5.0F);
@@ -312,7 +312,7 @@ TEST_F(Conflicts, AWallMetAtOnceIsOneWhereverItsMiddleLies)
     ASSERT_TRUE(find());
 }
 
-/// Every track and every obstacle that is looked at is paid for; what was not looked at to the end is met now.
+/// Every checked track and obstacle costs work units; an unfinished check is a conflict now.
 TEST_F(Conflicts, WhereTheBudgetRunsOutThereIsOneNow)
 {
     for (int i = 0; i < 4; ++i) {

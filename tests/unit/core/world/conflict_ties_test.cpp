@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Conflicts at the instant where the time ahead or the way ends, threats that touch exactly, and what a look costs that
-// finds nothing.
+// Conflicts at the end of the look-ahead or of the path, threats in exact contact, and the cost of a check without a
+// result.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct ConflictTies : testing::TestWithParam<bool> {
         spent = budget.spent();
         return met;
     }
-    /// What a route costs before anything is looked at.
+    /// Cost of a route before any check.
     [[nodiscard]] std::uint32_t before() const
     {
         Scene empty;
@@ -54,7 +54,7 @@ struct ConflictTies : testing::TestWithParam<bool> {
 
 INSTANTIATE_TEST_SUITE_P(LegAndRoute, ConflictTies, testing::Bool());
 
-/// A track that is not met costs one look at each two phases, whether it grows or not.
+/// A track without conflict costs one check per two phases, growing or not.
 TEST_P(ConflictTies, ATrackThatIsNotMetIsNotLookedAtInParts)
 {
     scene.track(Vec3(20, 60, 0), Vec3::Zero(), 1.0F);
@@ -65,7 +65,7 @@ TEST_P(ConflictTies, ATrackThatIsNotMetIsNotLookedAtInParts)
     EXPECT_EQ(spent, before() + units::kConflict);
 }
 
-/// Without time ahead nothing is met, and no part of the way is looked at.
+/// Without look-ahead there is no conflict, and no part of the path is checked.
 TEST_P(ConflictTies, WithoutTimeAheadNothingIsMet)
 {
     scene.track(Vec3(1, 0, 0), Vec3(-5, 0, 0), 1.0F);
@@ -81,7 +81,7 @@ TEST_P(ConflictTies, WithoutTimeAheadNothingIsMet)
     EXPECT_EQ(spent, before() + (GetParam() ? 0U : units::kConflictBall));
 }
 
-/// At the end of its way a vehicle inside a sphere has no conflict that a way could mend.
+/// At the end of its path a vehicle inside a sphere has no conflict that a path could resolve.
 TEST_P(ConflictTies, AtItsEndInsideASphereThereIsNoConflict)
 {
     way_to(Vec3(10, 0, 0));
@@ -91,7 +91,7 @@ TEST_P(ConflictTies, AtItsEndInsideASphereThereIsNoConflict)
     EXPECT_EQ(spent, before() + (GetParam() ? 0U : units::kConflictBall));
 }
 
-/// Beside the way a barrel that touches the box to the bit is met, as one that is entered.
+/// Beside the path a barrel in exact contact with the box counts, like an entered one.
 TEST_P(ConflictTies, ABarrelThatTouchesExactlyIsMet)
 {
     scene.barrel(Vec2(30, 6), 4.5F);
@@ -114,7 +114,7 @@ TEST_P(ConflictTies, ABarrelThatTouchesExactlyIsMet)
     EXPECT_GT(found.time_to_loss, 0.0F);
 }
 
-/// Where the budget runs out before the way is known, all that is said of the obstacle is that it is met now.
+/// If the budget runs out before the path is known, the obstacle is reported as a conflict now, without details.
 TEST_P(ConflictTies, BeforeAnythingIsLookedAtTheConflictIsNow)
 {
     scene.obstacle(geometry::make_sphere(Vec3(40, 0, 0), 1.0F));
@@ -129,7 +129,7 @@ TEST_P(ConflictTies, BeforeAnythingIsLookedAtTheConflictIsNow)
     }
 }
 
-/// Where the budget runs out while a barrel is looked at, only the barrel is told, not a place that was not found.
+/// If the budget runs out during a barrel's check, only the barrel is reported, without a place.
 TEST_P(ConflictTies, ABarrelThatIsNotPaidForHasNoPlace)
 {
     scene.barrel(Vec2(30, 0), 4.0F);
@@ -142,8 +142,8 @@ TEST_P(ConflictTies, ABarrelThatIsNotPaidForHasNoPlace)
     }
 }
 
-/// On a hovering vehicle's way a track that hardly moves counts as standing, one that moves a little
-/// more comes nearer until the end of the time.
+/// For a hovering vehicle a nearly static track counts as static; a slightly faster one approaches until the end of the
+/// look-ahead.
 TEST_P(ConflictTies, WhatHardlyMovesIsNearestNow)
 {
     way_to(Vec3(10, 0, 0));
@@ -162,7 +162,7 @@ TEST_P(ConflictTies, WhatHardlyMovesIsNearestNow)
     EXPECT_EQ(found.time_to_closest, 10.0F);
 }
 
-/// Whatever is left of the budget, one track's conflict is now where it runs out, also while it draws apart.
+/// For any remaining budget, a track's conflict is now if the budget runs out, also while receding.
 TEST_P(ConflictTies, ABudgetThatRunsOutWhileATrackDrawsApartIsAConflictNow)
 {
     scene.track(Vec3(-2.5F, 0, 0), Vec3(-1, 0, 0), 1.0F).sigma_position = 0.3F;
@@ -183,7 +183,7 @@ TEST_P(ConflictTies, ABudgetThatRunsOutWhileATrackDrawsApartIsAConflictNow)
     EXPECT_FALSE(predict(all));
 }
 
-/// Who hovers is followed as one piece: a look at its path, at the track, and at its two seconds.
+/// A hovering vehicle is one piece: one check of its path, of the track, and of its two seconds.
 TEST_P(ConflictTies, WhoHoversIsFollowedAsOnePiece)
 {
     way_to(Vec3(10, 0, 0));
@@ -196,7 +196,8 @@ TEST_P(ConflictTies, WhoHoversIsFollowedAsOnePiece)
     EXPECT_EQ(spent, before() + units::kConflict + units::kConflictPart + budget.spent());
 }
 
-/// A wall that leans over the way ahead is met after its centre was abeam: no closer approach is told than the loss.
+/// A wall inclined over the path ahead is reached after its centre was abeam: the reported closest approach is not
+/// earlier than the loss.
 TEST_P(ConflictTies, TheClosestApproachIsNoSoonerThanTheLoss)
 {
     scene.obstacle(geometry::make_capsule(Vec3(-10, 40, 0), Vec3(30, 0, 0), 0.5F));
@@ -204,25 +205,26 @@ TEST_P(ConflictTies, TheClosestApproachIsNoSoonerThanTheLoss)
     EXPECT_GT(found.time_to_loss, 5.0F);
     EXPECT_EQ(found.time_to_closest, found.time_to_loss);
     scene.obstacles.clear();
-    // Beside the way, as fast: the centres are as near now as later, and it grows to the box after 2 s and more.
+    // Beside the path, equally fast: the centres' distance is constant, and the track grows to the box after more than
+    // 2 s.
     scene.track(Vec3(0, 3, 0), Vec3(5, 0, 0), 1.0F).max_acceleration = 0.5F;
     ASSERT_TRUE(meets());
     EXPECT_GT(found.time_to_loss, 1.0F);
     EXPECT_EQ(found.time_to_closest, found.time_to_loss);
 }
 
-/// A track that has grown to the box only when the box is far is not met.
+/// A track that reaches the box's size only when the box is far is no conflict.
 TEST_P(ConflictTies, WhatGrowsBehindIsNotMet)
 {
     scene.track(Vec3(0, 4, 0), Vec3::Zero(), 1.0F).max_acceleration = 0.1F;  // 6 m after 10 s
     EXPECT_FALSE(meets());
 }
 
-/// The way ends after 2 s. Of the flight what is flown counts, and of hovering what is hovered.
+/// The path ends after 2 s. The flight counts until then, hovering afterwards.
 TEST_P(ConflictTies, TheClosestApproachIsOnTheWayThatIsFlown)
 {
     way_to(Vec3(10, 0, 0));
-    // Over the way's end after a second, when the vehicle is half way; they are nearest half a second later.
+    // Over the path's end after a second, when the vehicle is half-way; closest approach half a second later.
     scene.track(Vec3(10, 5, 0), Vec3(0, -5, 0), 3.0F);
     ASSERT_TRUE(meets());
     EXPECT_NEAR(found.time_to_closest, 1.5F, 1e-3F);
@@ -237,7 +239,7 @@ TEST_P(ConflictTies, TheClosestApproachIsOnTheWayThatIsFlown)
     EXPECT_EQ(found.time_to_closest, 10.0F) << "it comes nearer until the time is over";
 }
 
-/// Flown through at 1 s, and once more while hovering, a metre less deep: the first time is told, for what it costs.
+/// Flown through at 1 s, and again while hovering, a metre less deep: the first time is reported, at its cost.
 TEST_P(ConflictTies, ABarrelIsToldWhereItIsDeepest)
 {
     way_to(Vec3(10, 0, 0));
@@ -265,7 +267,7 @@ TEST_P(ConflictTies, ABarrelIsToldWhereItIsDeepest)
     EXPECT_EQ(spent, before() + budget.spent() + 2 * units::kConflictBarrel);
 }
 
-/// Beyond the second corner nothing is nearer: what is met before it is nearest at the corner.
+/// Beyond the second corner nothing is nearer: an obstacle in conflict before it is nearest at the corner.
 TEST(ConflictBehindCorners, AnObstacleBeyondACornerIsNearestAtTheCorner)
 {
     Scene scene;
@@ -283,7 +285,7 @@ TEST(ConflictBehindCorners, AnObstacleBeyondACornerIsNearestAtTheCorner)
     EXPECT_NEAR(found.time_to_loss, 39.5F / 5.0F, 1e-3F);
     EXPECT_NEAR(found.time_to_closest, 8.0F, 1e-3F);
     EXPECT_NEAR(found.miss_distance, 4.0F, 1e-3F);
-    // The same where the way ends at that corner: on arrival, not while it hovers there.
+    // The same if the path ends at that corner: on arrival, not while hovering.
     path::Route shorter;
     ASSERT_EQ(shorter.add_leg(Vec3(0, 0, 0), Vec3(20, 0, 0)), path::RouteStatus::ok);
     ASSERT_EQ(shorter.add_leg(Vec3(20, 0, 0), Vec3(20, 20, 0)), path::RouteStatus::ok);
@@ -309,7 +311,7 @@ TEST(WayToALeg, BeforeItsStartAimsAheadOfTheStart)
     EXPECT_NEAR((way_of(scene.situation()).direction - (aim - scene.own.position).normalized()).norm(), 0.0F, 1e-5F);
 }
 
-/// A way without a speed is a place, also for solids, and where the budget runs out.
+/// A path without speed is a place, also for solids, and if the budget runs out.
 TEST(PlaceAsAWay, HasNoConflictWithWhatItIsInside)
 {
     Scene scene;
@@ -328,7 +330,7 @@ TEST(PlaceAsAWay, HasNoConflictWithWhatItIsInside)
     }
 }
 
-/// A leg of a millimetre gives no direction: the way points east. One that is a little longer does.
+/// A leg of a millimetre gives no direction: the path points east. A slightly longer leg does.
 TEST(ShortLegs, AMillimetreGivesNoDirection)
 {
     Scene scene;

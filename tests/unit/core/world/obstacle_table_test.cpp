@@ -106,7 +106,7 @@ TEST_F(ObstacleTables, CapacityLessOneFullAndOneMore)
     EXPECT_EQ(table.update(ball(1000, Vec3(11, 0, 0)), later, own), ObstacleStatus::updated);
 }
 
-/// The smallest id there is goes to the front, of an empty table too.
+/// The smallest possible id is placed first, also in an empty table.
 TEST_F(ObstacleTables, TheSmallestIdComesFirst)
 {
     for (const ObstacleId id : {0U, 7U}) {
@@ -120,7 +120,7 @@ TEST_F(ObstacleTables, TheSmallestIdComesFirst)
     }
 }
 
-/// What lies before the table in memory is neither read for its order nor written.
+/// Memory before the table is neither read nor written.
 TEST_F(ObstacleTables, NothingBesideTheTableIsTouched)
 {
     struct {
@@ -145,7 +145,7 @@ TEST_F(ObstacleTables, AnEquallyFarOneDoesNotReplaceTheFarthest)
     EXPECT_EQ(table.update(ball(2000, Vec3(0, -39.9F, 0)), later, own), ObstacleStatus::replaced);
 }
 
-/// A renewal has its own time, whatever its place in the table; an obstacle lives to the end of it.
+/// A renewal has its own expiry, at any place in the table; an obstacle lives until its expiry.
 TEST_F(ObstacleTables, EachExpiresAtItsOwnTime)
 {
     for (const ObstacleId id : {3U, 1U, 2U}) {
@@ -173,7 +173,7 @@ TEST_F(ObstacleTables, OrderStaysSortedThroughReplacement)
     }
 }
 
-/// Full: of two that are equally far the one of the smaller id gives way; one as far as the farthest does not come in.
+/// Full: of two equally far ones the one with the smaller id is replaced; one as far as the farthest is not added.
 TEST_F(ObstacleTables, OfEquallyFarOnesTheFirstGivesWay)
 {
     for (ObstacleId id = 1; id <= kMaxObstacles; ++id) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Least separation of predicted flights, which leave their chords, and what a check costs.
+// Least separation of predicted flights, which deviate from their chords, and the cost of a check.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -65,7 +65,7 @@ TEST(PredictedFlights, AreMetAsMuchEarlierAsTheyLeaveTheirChord)
     }
 }
 
-/// Another threat is nearly as near: what is not looked at more closely because of it is not nearer for certain.
+/// Another threat is nearly as near: a threat skipped because of it is certainly not nearer.
 TEST(PredictedFlights, AreNotPassedOverBecauseOfAnotherThreat)
 {
     for (const auto& [kind, place] : kBesideTheFourth) {
@@ -101,7 +101,7 @@ TEST(PredictedFlights, MeetFloorAndCeilingByTheirVerticalPart)
     EXPECT_NEAR(margin(keep_in, 3), 2.0F, 1e-4F) << "not where it is far from it";
 }
 
-/// What a flight costs that is far from everything, or near to one of many.
+/// Cost of a flight far from everything, or near one of many threats.
 std::uint32_t cost(const Scene& scene, const path::TimedPath& path, const EscapeRule& escape = {},
                    const Cutoff& cutoff = {})
 {
@@ -120,7 +120,7 @@ path::TimedPath eastwards(int pieces = 8)
     return flight(positions, 1.0F);
 }
 
-/// Of a chunk that may be near only the pieces that are near cost a closer look.
+/// In a chunk that may be near, only the near pieces cost a detailed check.
 TEST(SeparationCosts, PiecesThatStayBeyondAreNotLookedAt)
 {
     Scene scene;
@@ -146,7 +146,7 @@ TEST(SeparationCosts, PiecesThatStayBeyondAreNotLookedAt)
     EXPECT_LT(cost(solid, eastwards()), cost(first, eastwards())) << "the nearer one first spares looks at the solid";
 }
 
-/// Each bound that is set is looked at for each point.
+/// Each set bound is checked for each point.
 TEST(SeparationCosts, EachBoundOfTheAirspaceIsPaidFor)
 {
     const std::uint32_t none = cost(Scene(), eastwards());
@@ -157,7 +157,7 @@ TEST(SeparationCosts, EachBoundOfTheAirspaceIsPaidFor)
     }
 }
 
-/// A solid is looked at once for each piece; in parts only while the flight escapes from it.
+/// A solid is checked once per piece; in parts only while the flight escapes from it.
 TEST(SeparationCosts, ASolidIsLookedAtInPartsOnlyDuringAnEscape)
 {
     Scene scene;
@@ -191,7 +191,7 @@ TEST(SeparationCosts, AnEscapeIsLookedAtInPiecesOfItsSlack)
     EXPECT_EQ(parts(0.4F, 0.5F), 4U) << "but growth does: a quarter of a second";
 }
 
-/// Threats after one that is below the cut-off cost nothing; the first one to be looked at is the one that is named.
+/// Threats after one below the cut-off cost nothing; the named threat is checked first.
 TEST(SeparationCosts, ACutOffEndsTheLook)
 {
     Scene scene;
@@ -214,13 +214,13 @@ TEST(SeparationCosts, ACutOffEndsTheLook)
     scene.obstacle(geometry::make_box(Vec3(4, 3, 0), Vec3::Ones()));
     EXPECT_EQ(cost(scene, path, {}, {0.0F, kSeparationCap, {ThreatKind::track, 7}}), one) << "nor any other kind";
     EXPECT_GT(cost(scene, path, {}, {-5.0F, kSeparationCap, {ThreatKind::track, 7}}), one) << "not below that";
-    // Named first and looked at once.
+    // Named as first and checked once.
     Scene two;
     two.track(Vec3(4, 9, 0), Vec3::Zero(), 1.0F);
     EXPECT_EQ(cost(two, path, {}, {-kSeparationCap, kSeparationCap, {ThreatKind::track, 0}}), cost(two, path));
 }
 
-/// Whichever is looked at first, all others are looked at too.
+/// For any first threat, all others are checked too.
 TEST(Cutoffs, AnyTrackMayBeTheFirstAndAllCount)
 {
     Scene scene;
@@ -238,7 +238,7 @@ TEST(Cutoffs, AnyTrackMayBeTheFirstAndAllCount)
     }
 }
 
-/// Tracks that share the reaction until the shared horizon, all others to the end.
+/// Cooperative tracks until the shared horizon, all others to the end.
 TEST(SharedHorizon, BoundsTracksThatShareTheReactionAlone)
 {
     Scene scene;
@@ -261,7 +261,7 @@ TEST(SharedHorizon, BoundsTracksThatShareTheReactionAlone)
     EXPECT_NEAR(margin(3.0F, kInfinity), 2.0F, 1e-3F) << "the other one still counts to the end";
 }
 
-/// A flight that stands, one that has a point at the horizon, and one of many chunks.
+/// A static flight, one with a point at the horizon, and one of many chunks.
 TEST(FlightPieces, AreThoseBeforeTheHorizon)
 {
     const path::TimedPath path = eastwards(20);

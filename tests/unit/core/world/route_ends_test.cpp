@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces of a way along a route where the time, a segment or the way ends exactly, and ways that are shorter than one.
+// Pieces of a path along a route at exact ends of the time, a segment or the path, and paths shorter than a piece.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST_F(RouteEnds, AnArcThatBeginsWithTheEndOfTheTimeDoesNotCount)
     EXPECT_GT(pieces(way(), 4.01F).off(), 0.0F);
 }
 
-/// A part that is too short for a piece leaves time over; what lies beyond what is reached is not flown in it.
+/// A part too short for a piece leaves time over; segments beyond the reach are not flown in it.
 TEST_F(RouteEnds, AnArcBeyondWhatIsReachedIsNotOffTheWay)
 {
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
@@ -49,7 +49,7 @@ TEST_F(RouteEnds, AnArcBeyondWhatIsReachedIsNotOffTheWay)
     follow_on(all, 60.0F);
 }
 
-/// Of several arcs the one whose chords lie farthest off counts, wherever on the way it is.
+/// Of several arcs the one with the largest chord deviation counts, anywhere on the path.
 TEST_F(RouteEnds, OfSeveralArcsTheLargestCounts)
 {
     leg(Vec3(0, 0, 0), Vec3(5, 0, 0));
@@ -71,7 +71,7 @@ TEST_F(RouteEnds, AMillimetreIsNoPiece)
     EXPECT_EQ(pieces(joining(std::nextafter(1e-3F, 1.0F), 0.0F), 8.0F).size(), 2U);
 }
 
-/// What is left of the time after a piece: a tenth of a millisecond exactly is none, a little more is time.
+/// Remaining time after a piece: exactly a tenth of a millisecond counts as none, slightly more counts.
 TEST_F(RouteEnds, ATenthOfAMillisecondIsNoTime)
 {
     leg(Vec3(0, 0, 0), Vec3(0, 50, 0));
@@ -82,7 +82,7 @@ TEST_F(RouteEnds, ATenthOfAMillisecondIsNoTime)
     EXPECT_EQ(pieces(joining(std::nextafter(straight, 0.0F), 0.0F), 1.0F).size(), 2U);
 }
 
-/// Each piece begins on the way where it says, to the bit, also behind a part that was too short for a piece.
+/// Each piece begins at its stated place on the path, to the bit, also behind a part too short for a piece.
 TEST_F(RouteEnds, APieceBeginsWhereItSays)
 {
     for (int i = 0; i < 40; ++i) {
@@ -116,7 +116,7 @@ TEST_F(RouteEnds, WithinAMillimetreOfTheEndItStaysInItsPlace)
     }
 }
 
-/// Whatever is too short for a piece, there is one to look at, over the whole time.
+/// Even if all parts are too short for a piece, there is one piece over the whole time.
 TEST_F(RouteEnds, ThereIsAlwaysAPiece)
 {
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces of a way along a route: how long their chords are, what lies behind and beyond them, and wings.
+// Pieces of a path along a route: lengths of chords, segments behind and beyond, and fixed wings.
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +17,7 @@ using detail::RoutePieces;
 using detail::WayPiece;
 using path::RouteStatus;
 
-/// The chords are those of what is reached, not of the whole arc: two and a half metres of it are one chord.
+/// Chords cover the reached part, not the whole arc: two and a half metres are one chord.
 TEST_F(RoutePiecesTest, ChordsEndWithTheLookAhead)
 {
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
@@ -33,7 +33,7 @@ TEST_F(RoutePiecesTest, ChordsEndWithTheLookAhead)
     follow_on(pieces(w, 5.2F), 5.2F);
 }
 
-/// On the second leg, beside it: the straight way back to the route does not make what is reached any longer.
+/// Beside the second leg: the straight path back to the route does not extend the reach.
 TEST_F(RoutePiecesTest, TheWayBackIsPartOfWhatIsReached)
 {
     leg(Vec3(0, 0, 0), Vec3(40, 0, 0));
@@ -65,7 +65,7 @@ TEST_F(RoutePiecesTest, ALegBeforeAnArcThatIsFlownAllTheWayDoesNotLengthenItsCho
     EXPECT_LE(all.off(), 1.01F * sagitta(10.0F, 4.0F) + detail::kChordSlack + 1e-3F);
 }
 
-/// Six radians ahead are ten chords, whatever turns lie behind the vehicle.
+/// Six radians ahead are ten chords, for any turns behind the vehicle.
 TEST_F(RoutePiecesTest, ArcsBehindDoNotCount)
 {
     ASSERT_EQ(route.add_arc(Vec3(0, 0, 0), Vec3(0, 5, 0), Vec3::UnitZ(), 1.9F * kPi), RouteStatus::ok);
@@ -118,7 +118,7 @@ TEST_F(RoutePiecesTest, AnArcThatIsClimbedEndsWithTheTime)
     }
 }
 
-/// Without a time to look ahead there is the place.
+/// Without look-ahead the path is a place.
 TEST_F(RoutePiecesTest, ALookAheadOfNothingIsThePlace)
 {
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
@@ -174,7 +174,7 @@ TEST_F(RoutePiecesTest, APartWithoutExtentIsPassed)
     EXPECT_NEAR(all[2].own.position.y(), 30.0F, 1e-4F);
 }
 
-/// What is too short for a piece does not take the vehicle to the route's end: it flies until the time is over.
+/// A part too short for a piece does not move the vehicle to the route's end: it flies until the end of the time.
 TEST_F(RoutePiecesTest, WhatIsTooShortForAPieceIsNotSpentAtTheRoutesEnd)
 {
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
@@ -194,7 +194,7 @@ TEST_F(RoutePiecesTest, WhatIsTooShortForAPieceIsNotSpentAtTheRoutesEnd)
     EXPECT_FALSE(main_conflict(scene.situation(), w, 60.0F, budget, found)) << "it is not there for minutes";
 }
 
-/// Exactly a millimetre from the end the way has no length, and the route's direction.
+/// Exactly a millimetre from the end the path has no length, and the route's direction.
 TEST_F(RoutePiecesTest, AMillimetreFromTheEndNothingIsLeft)
 {
     leg(Vec3(-10, 0, 0), Vec3(0, 0, 0));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ways along a route: where they aim, their pieces, and conflicts on them by hand.
+// Paths along a route: their aims, their pieces, and conflicts on them computed by hand.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -198,7 +198,7 @@ TEST_F(OnRoute, AtItsEndItHovers)
     EXPECT_NEAR(pieces.way_at(5.0F), 0.0F, 1e-4F);
 }
 
-/// Two full turns in the time that is looked ahead: longer chords, so that ten are enough.
+/// Two full turns within the look-ahead: longer chords, so that ten are enough.
 TEST(WindingRoute, HasTenChordsAtMost)
 {
     path::Route route;
@@ -238,7 +238,7 @@ TEST(ClimbingRoute, FliesEachPieceAsFastAsTheLimitsLet)
 
 // --- conflicts along it ---
 
-/// Behind the corner: when its surface is met, and when its centre is nearest.
+/// Behind the corner: times of the first contact with its surface, and of the centre's closest approach.
 TEST_F(OnRoute, AnObstacleBehindTheCorner)
 {
     scene.obstacle(geometry::make_sphere(Vec3(33, 6, 0), 3.2F));
@@ -252,7 +252,7 @@ TEST_F(OnRoute, AnObstacleBehindTheCorner)
     EXPECT_EQ(found.threat_at_closest, Vec3(33, 6, 0));
 }
 
-/// Met before the corner, nearest after it.
+/// Contact before the corner, closest approach after it.
 TEST_F(OnRoute, AnObstacleAtTheCornerIsNearestWhereItIs)
 {
     scene.obstacle(geometry::make_sphere(Vec3(32, 1, 0), 1.5F));
@@ -319,7 +319,7 @@ TEST_F(OnRoute, WhereTheBudgetRunsOutThereIsAConflictNow)
 
 TEST_F(OnRoute, NothingOnItIsNoConflict)
 {
-    scene.track(Vec3(10, 30, 0), Vec3::Zero(), 1.0F);  // 50 m and more along the way
+    scene.track(Vec3(10, 30, 0), Vec3::Zero(), 1.0F);  // more than 50 m along the path
     EXPECT_FALSE(meets(found, 8.0F));
     EXPECT_TRUE(meets(found, 16.0F));
 }

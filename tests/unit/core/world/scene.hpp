@@ -42,7 +42,7 @@ struct Scene {
         reference.valid = true;
         reference.leg = {start, end, speed};
     }
-    /// A track without any uncertainty, seen just now.
+    /// A track without uncertainty, measured now.
     Track& track(const Vec3& position, const Vec3& velocity, float radius = 1.0F)
     {
         Track t;
@@ -53,7 +53,7 @@ struct Scene {
         t.radius = radius;
         return tracks.emplace_back(t);
     }
-    /// Body alone, from 20 m below to 20 m above the origin. The scene is not to be copied afterwards.
+    /// Body alone, from 20 m below to 20 m above the origin. Do not copy the scene afterwards.
     Barrel& barrel(const Vec2& centre, float radius, const Vec2& velocity = Vec2::Zero())
     {
         barrels.push_back({{centre, radius}, velocity, -20.0F, 20.0F, 0.0F});
@@ -101,7 +101,7 @@ inline TrackMeasurement sighting(TrackId id, const Vec3& position, const Vec3& v
     return m;
 }
 
-/// Units that no test of one query uses up.
+/// More work units than any test of one query uses.
 inline constexpr std::uint32_t kPlenty = 10'000'000;
 
 inline Separation separation(const Scene& scene, const path::TimedPath& path, Seconds horizon = 100.0F,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a check costs, to the unit: what certainly is not nearer is not looked at, what is looked at is paid for once.
+// Cost of a check, to the work unit: threats that are certainly not nearer are skipped, checked ones cost once.
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 using namespace test;
 
 struct ExactCosts : testing::Test {
-    /// Without what the path itself costs.
+    /// Without the cost of the path itself.
     [[nodiscard]] std::uint32_t cost(const path::TimedPath& path, const EscapeRule& escape = {},
                                      const Cutoff& cutoff = {}) const
     {
@@ -47,7 +47,7 @@ struct ExactCosts : testing::Test {
     Scene scene;
 };
 
-/// A solid is looked at once where the flight begins and once for each piece.
+/// A solid is checked once at the start of the flight and once per piece.
 TEST_F(ExactCosts, ASolidOnceAtTheStartAndOnceForEachPiece)
 {
     scene.obstacle(geometry::make_box(Vec3(2, 4, 0), Vec3(40, 2.5F, 40)));
@@ -71,7 +71,8 @@ TEST_F(ExactCosts, PiecesFarFromASolidAreNotLookedAt)
     EXPECT_EQ(cost(path), near(8) + query(Vec3::Zero(), Vec3::Zero()) + query(Vec3::Zero(), Vec3(10, 0, 0)));
 }
 
-/// Met 2 m deep before: a sphere is not looked at while it is smaller than that, though it is met and grows later.
+/// After an earlier contact 2 m deep, a sphere is not checked while it is smaller than that, though later in contact
+/// and growing.
 TEST_F(ExactCosts, WhatIsSmallerThanADeepContactIsNotLookedAt)
 {
     const path::TimedPath path = flight({Vec3::Zero(), Vec3(3, 0, 0), Vec3(6, 0, 0), Vec3(9, 0, 0)}, 1.0F);
@@ -82,7 +83,7 @@ TEST_F(ExactCosts, WhatIsSmallerThanADeepContactIsNotLookedAt)
     EXPECT_EQ(cost(path) - first, near(3));
 }
 
-/// While it is shrunk a sphere is looked at with the size that it has then, not with a larger one.
+/// A shrunk sphere is checked with its size at that time, not with a larger one.
 TEST_F(ExactCosts, AShrunkSphereIsSmallerNotLarger)
 {
     scene.track(Vec3(4, 0, 0), Vec3(-4, 0, 0), 1.0F);
@@ -133,7 +134,7 @@ TEST(BarrelStarts, ExactlyOutsideHaveNoCredit)
     EXPECT_GT(separation(scene, flight({Vec3::Zero(), Vec3(0.04F, 0, 0)}, 0.01F)).margin, 0.0F) << "inside";
 }
 
-/// Of a large box that nearly touches a solid, the margin is the distance less the clearance, not a share of the box.
+/// For a large box close to a solid, the margin is the distance less the clearance, not a share of the box.
 TEST(ObstacleMargins, OfALargeBoxAreNoShareOfItWhereItIsClear)
 {
     const auto margin = [](float gap, float extra) {

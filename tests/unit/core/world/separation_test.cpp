@@ -53,12 +53,12 @@ std::uint32_t spent_on(const Scene& scene, const path::TimedPath& path)
     return budget.spent();
 }
 
-/// What costs no unit is not bounded: each piece, bound, threat, chunk of pieces and part has its weight.
+/// Every loop costs work units: each piece, bound, threat, chunk of pieces and part has its weight.
 TEST(LeastSeparation, EachLoopIsPaidFor)
 {
     const path::TimedPath path = flight({Vec3::Zero(), Vec3(1, 0, 0), Vec3(2, 0, 0)}, 1.0F);
     Scene scene;
-    std::uint32_t spent = 1 + 3 * units::kPathPiece;  // one for the look itself
+    std::uint32_t spent = 1 + 3 * units::kPathPiece;  // one for the check itself
     EXPECT_EQ(spent_on(scene, path), spent);
     scene.airspace.has_ceiling = scene.airspace.has_floor = true;
     scene.airspace.floor = -20.0F;
@@ -120,7 +120,7 @@ TEST(LeastSeparation, OnlyUpToTheHorizonAndToThePathsEnd)
     EXPECT_NEAR(separation(scene, flight({Vec3::Zero()}, 1.0F)).margin, 18.0F, 1e-4F) << "a single point is an instant";
 }
 
-/// Whatever is met, it is met as early as the own position is uncertain.
+/// The own uncertainty brings every contact forward.
 TEST(LeastSeparation, OwnUncertaintyCountsTowardsEverything)
 {
     using Place = void (*)(Scene&);
@@ -175,11 +175,11 @@ TEST(LeastSeparation, NamesWhatItIsMeasuredAgainst)
 // --- the escape rule
 // ---------------------------------------------------------------------------------------------------------
 
-/// What a flight may start inside of.
+/// Margins that a flight may start inside.
 struct Margin {
     const char* name;
     void (*place)(Scene&);
-    Vec3 out;        ///< the way out
+    Vec3 out;        ///< direction outwards
     float leave;     ///< pace that must do [m/s]
     float too_slow;  ///< pace that must not
 
@@ -239,7 +239,7 @@ TEST_P(EscapeRules, StartsInside)
     EXPECT_LT(separation_at(scene.situation(), Vec3::Zero(), 0.0F, budget).margin, -0.3F);
 }
 
-/// Whatever the length of the pieces: leaving fast enough is clear.
+/// For any length of the pieces: leaving fast enough is clear.
 TEST_P(EscapeRules, LeavingIsClear)
 {
     for (const Seconds step : {0.02F, 0.1F, 0.2F, 0.5F, 4.0F}) {
@@ -318,8 +318,8 @@ TEST(EscapeRule, AFlightThatStartsOutsideGetsNoCredit)
     EXPECT_LT(separation(scene, straight(Vec3(1, 0, 0), 0.01F, 1.0F, 1)).margin, 0.0F);
 }
 
-/// A mast 400 m tall whose top leans 8 cm towards the flight. What it would be as an upright, thicker one must not
-/// count as a start inside: the flight starts 1 mm clear, and has no credit to go 4 cm in with.
+/// A mast 400 m tall whose top leans 8 cm towards the flight. Its thicker, upright bound must not count as a start
+/// inside: the flight starts 1 mm clear, and has no credit to go 4 cm inside.
 TEST(EscapeRule, AStartThatIsClearOfALeaningMastGetsNoCredit)
 {
     Scene scene;
@@ -331,7 +331,7 @@ TEST(EscapeRule, AStartThatIsClearOfALeaningMastGetsNoCredit)
     EXPECT_LE(separation(scene, flight({start, start + Vec3(0.04F, 0, 0), start}, 0.02F)).margin, -0.03F);
 }
 
-/// Distances from solids are told apart no finer than kObstacleResolution; which side a flight starts on, is.
+/// Distances from solids have the resolution kObstacleResolution; the side on which a flight starts is exact.
 TEST(EscapeRule, AStartThatIsBarelyClearOfASolidsClearanceGetsNoCredit)
 {
     Scene scene;
@@ -365,7 +365,7 @@ TEST(ObstacleMargin, OfALeaningMastIsThatOfItsTop)
     const Vec3 axis(0.0009F, 0, 1.0F);
     const geometry::Shape mast = geometry::make_capsule(-axis * reach, axis * reach, 0.5F);
     WorkBudget budget(kPlenty);
-    // At its top the axis stands 0.27 m off.
+    // At its top the axis is 0.27 m off.
     const float margin = obstacle_margin(Vec3::Ones(), Vec3(5, 0, 295), Vec3(5, 0, 295), mast, budget);
     const float truth = 5.0F - 1.0F - 0.5F - 0.0009F * 296.0F;
     EXPECT_LE(margin, truth + 1e-4F);

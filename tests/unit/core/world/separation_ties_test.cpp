@@ -39,7 +39,7 @@ struct TiedCosts : testing::Test {
     Scene scene;
 };
 
-/// What cannot be nearer than the margin so far is passed over, also where it may be exactly as near.
+/// Threats that cannot be nearer than the margin so far are skipped, also if exactly as near.
 TEST_F(TiedCosts, AThreatThatIsNoNearerIsPassedOver)
 {
     const path::TimedPath path = east(2);
@@ -60,7 +60,7 @@ TEST_F(TiedCosts, AThreatThatIsNoNearerIsPassedOver)
     EXPECT_EQ(empty, cost(path) + kFar);
 }
 
-/// Touching the box about the flight a barrel may be as deep as anything, and is looked at.
+/// A barrel in contact with the flight's bounding box may have any depth, and is checked.
 TEST_F(TiedCosts, ABarrelThatTouchesTheFlightsBoxIsLookedAt)
 {
     const path::TimedPath path = east(2);
@@ -74,7 +74,7 @@ TEST_F(TiedCosts, ABarrelThatTouchesTheFlightsBoxIsLookedAt)
     EXPECT_EQ(cost(path), first + kFar);
 }
 
-/// As deep as the margin so far, and no deeper: a sphere of that size about the vehicle is looked at.
+/// A sphere about the vehicle of exactly the depth of the margin so far is checked.
 TEST_F(TiedCosts, ASphereOfExactlyTheDepthSoFarIsLookedAt)
 {
     const path::TimedPath path = east(2);
@@ -102,7 +102,7 @@ TEST(SeparationAtTies, AnObstacleThatIsNoNearerCostsNoQuery)
     EXPECT_GT(more.spent(), 2 * units::kThreat + units::kSolidQuery);
 }
 
-/// Spheres are met in closed form, at the price of a look.
+/// Spheres are checked in closed form, at the cost of a quick check.
 TEST(SeparationAtTies, ASphereCostsNoQueryHoweverNear)
 {
     Scene scene;
@@ -112,7 +112,7 @@ TEST(SeparationAtTies, ASphereCostsNoQueryHoweverNear)
     EXPECT_EQ(budget.spent(), units::kThreat);
 }
 
-/// Touching exactly at the start a flight is outside: no credit to go in.
+/// A flight in exact contact at the start is outside: no credit to go inside.
 TEST(TouchingStarts, HaveNoCredit)
 {
     const path::TimedPath in = flight({Vec3::Zero(), Vec3(0.04F, 0, 0)}, 0.01F);
@@ -151,7 +151,7 @@ TEST(FloorEscapes, AreJudgedInThePieceInWhichTheCreditEnds)
     EXPECT_NEAR(margin({{0.0F, 0.0F}, {1.0F, 0.1F}, {2.0F, 3.0F}}), -0.07F, 1e-5F) << "0.03 m higher when it ends";
 }
 
-/// Across the way in each direction, fast: a moving threat counts from where it begins to where it ends.
+/// Across the path in each direction, fast: a moving threat counts from its start to its end.
 TEST(CrossingThreats, CountOnAllOfTheirWay)
 {
     for (const Vec3& along : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(0, -1, 0)}) {
@@ -166,7 +166,7 @@ TEST(CrossingThreats, CountOnAllOfTheirWay)
     }
 }
 
-/// A path that jumps is looked at where each piece begins, too.
+/// A path with jumps is also checked at the beginning of each piece.
 TEST(JumpingPaths, CountWhereEachPieceBegins)
 {
     for (const float side : {1.0F, -1.0F}) {
@@ -184,7 +184,7 @@ TEST(JumpingPaths, CountWhereEachPieceBegins)
     }
 }
 
-/// What grows counts with its size at the end of a part, what was shrunk with what has grown back by then.
+/// A growing threat counts with its size at the end of a part, a shrunk one with its regrown size at that time.
 TEST(GrowingThreats, CountAsTheyAreAtTheEndOfAPart)
 {
     Scene beside;
@@ -199,7 +199,7 @@ TEST(GrowingThreats, CountAsTheyAreAtTheEndOfAPart)
     EXPECT_NEAR(separation(inside, stay).margin, -0.45F, 1e-3F);
 }
 
-/// Beside something nearer than it at first, a growing threat is looked at in each part on its own way.
+/// Beside an initially nearer threat, a growing threat is checked separately in each part.
 TEST(GrowingThreats, AreNotPassedOverInThePartInWhichTheyComeNear)
 {
     Scene scene;
@@ -208,7 +208,7 @@ TEST(GrowingThreats, AreNotPassedOverInThePartInWhichTheyComeNear)
     EXPECT_NEAR(separation(scene, flight({Vec3::Zero(), Vec3::Zero()}, 1.0F)).margin, 8.0F, 1e-2F);
 }
 
-/// Nearer than what is nearest so far by less than the uncertainty of the own position.
+/// Nearer than the nearest threat so far by less than the uncertainty of the own position.
 TEST(UncertainPlaces, ThreatsThatAreNearerByTheUncertaintyCount)
 {
     const auto scene_with = [](float nearest) {
@@ -234,8 +234,8 @@ TEST(UncertainPlaces, ThreatsThatAreNearerByTheUncertaintyCount)
     EXPECT_NEAR(separation_at(sphere.situation(), Vec3::Zero(), 0.0F, budget).margin, 2.5F, 1e-4F);
 }
 
-/// Out of a solid and out of a barrel: whatever is left of the budget, what was not looked at is contact, from the
-/// first instant that was not paid for.
+/// Out of a solid and out of a barrel: for any remaining budget, unchecked parts are contact, from the first unchecked
+/// instant.
 TEST(SpentBudgets, AreContactAlsoDuringAnEscape)
 {
     const path::TimedPath path = flight({Vec3::Zero(), Vec3(-3, 0, 0), Vec3(-6, 0, 0)}, 1.0F);

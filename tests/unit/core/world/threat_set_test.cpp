@@ -85,7 +85,7 @@ TEST_F(OfEachKind, UprightOnesMakeTheBoxTaller)
     EXPECT_EQ(s.threats[3].nearest_in_height(2.0F, -30.0F), Vec3(44, 1, 0));
 }
 
-/// Never collected, or more than there is room for: contact, whoever asks.
+/// Never collected, or beyond the capacity: contact for every query.
 TEST_F(OfEachKind, WithoutASetEverythingIsContact)
 {
     Situation s = scene.situation();
@@ -116,7 +116,7 @@ TEST_F(OfEachKind, WithoutASetEverythingIsContact)
     EXPECT_FALSE(set.collect(scene.situation()));
 }
 
-/// What is not finite about a track grows, so that no check takes it for a track of a fixed size.
+/// A track with a non-finite value counts as growing, so that no check treats it as a track of fixed size.
 TEST_F(OfEachKind, NonFiniteGrowthIsGrowth)
 {
     scene.tracks[0].sigma_velocity = std::numeric_limits<float>::quiet_NaN();

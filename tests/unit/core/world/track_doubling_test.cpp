@@ -124,14 +124,14 @@ TEST_F(TrackDoubling, AnUncertainHeightHasATrackOfItsOwn)
     }
 }
 
-/// 64 that are aimed at us from 3 km; a real one comes 9 s before it is met, 5 m off. Before, it was left out.
+/// 64 tracks aimed at us from 3 km; a real one appears 9 s before the encounter, 5 m off, and must be kept.
 TEST_F(TrackDoubling, AFloodAimedFromAfarDoesNotDisplaceWhatIsMetSoon)
 {
     own.velocity = Vec3(0, 5, 0);
     for (std::size_t i = 0; i < kMaxTracks; ++i) {
         const float angle = 0.09F * static_cast<float>(i);
         const Vec3 from = 3000.0F * Vec3(std::cos(angle), std::sin(angle), 0);
-        const Vec3 aimed = own.velocity - from / 100.0F;  // met after 100 s
+        const Vec3 aimed = own.velocity - from / 100.0F;  // encounter after 100 s
         static_cast<void>(hear(static_cast<TrackId>(100 + i), from, aimed, kBegin));
     }
     EXPECT_EQ(table.size(), kMaxTracks);

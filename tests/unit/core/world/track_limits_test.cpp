@@ -125,7 +125,7 @@ TEST_F(TrackEdges, OfAFullIdTheLeastUrgentGivesWayWhateverTheOrder)
     }
 }
 
-/// As urgent as the least urgent one is not more urgent: nobody gives way.
+/// Equal urgency to the least urgent track is not more urgent: no track is replaced.
 TEST_F(TrackEdges, AsUrgentAsTheLeastUrgentIsNotEnough)
 {
     const auto see = [&](float y) {

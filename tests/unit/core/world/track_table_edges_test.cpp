@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tracks at the edges of what is taken and fits.
+// Tracks at the limits of acceptance and capacity.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -70,7 +70,7 @@ TEST_F(TrackEdges, AgesAreTakenUpToTheirLimits)
 
 // --- the filter ---
 
-/// Without a velocity of its own a sighting says nothing of it: no jump, however fast the track.
+/// A sighting without velocity gives no information on it: no jump, for any speed of the track.
 TEST_F(TrackEdges, ASightingWithoutVelocityIsNoJumpOfIt)
 {
     TrackMeasurement m = seen(1, Vec3(0, 0, 0));
@@ -139,7 +139,7 @@ TEST_F(TrackEdges, FollowsTheTextbook)
 
 // --- which track a sighting belongs to ---
 
-/// Reach: what both may be off by, and 10 m/s2 beside the larger of both bounds of acceleration.
+/// Reach: both uncertainties, and 10 m/s2 plus the larger of both acceleration bounds.
 TEST_F(TrackEdges, AccelerationOfTheTrackOrOfTheSightingExtendsItsReach)
 {
     const auto doubled = [&](float of_track, float of_sighting, float off) {
@@ -238,7 +238,7 @@ TEST_F(TwoOfOneId, ThePlaceDecidesWithoutAVelocity)
 {
     TrackMeasurement m = seen(1, Vec3(0, 2.5F, 0), kStart + 1.0F);  // nearer to the second
     m.has_velocity = false;
-    m.velocity = Vec3(30, 0, 0);  // not said
+    m.velocity = Vec3(30, 0, 0);  // not reported
     EXPECT_EQ(take(m), TrackStatus::updated);
     EXPECT_EQ(renewed(m.stamp), 1);
 }

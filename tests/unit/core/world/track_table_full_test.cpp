@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Full tables and full ids: who gives way, and in what order tracks are handed out.
+// Full tables and full ids: which track is replaced, and the order of the snapshot.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using namespace test;
 
-/// A full table of tracks that stand at `distance` to all sides and were seen three times.
+/// A full table of static tracks at `distance` to all sides, each measured three times.
 struct FullTable : TrackEdges {
     void fill(float distance)
     {
@@ -71,7 +71,7 @@ TEST_F(FullTable, ANewcomerCountsMoreInAFlood)
     EXPECT_EQ(take(standing(503, 22.0F, now)), TrackStatus::replaced) << "a second after the flood began it is over";
 }
 
-/// Who is all but here gives way to who is nearer still.
+/// A very near track is replaced by a nearer one.
 TEST_F(FullTable, TheLeastUrgentGivesWayHoweverUrgentAllAre)
 {
     fill(3.0F);  // 2 m: two thirds of a second
@@ -97,7 +97,7 @@ TEST_F(FullTable, LessUrgentThanTheLeastUrgentIsNotEnough)
     EXPECT_EQ(take(m), TrackStatus::replaced);
 }
 
-/// Four of one id: the least urgent of these gives way, not that of the table, and its instance passes on.
+/// Four of one id: the least urgent of these is replaced, not that of the table, and its instance is reused.
 TEST_F(TrackEdges, AFullIdGivesWayToItself)
 {
     const auto at = [&](float y, TrackId id = 1) {
@@ -156,7 +156,7 @@ TEST_F(FullTable, ASecondOneOfAnIdThatReplacesAnotherHasItsOwnInstance)
     EXPECT_EQ(of_id, 2U);
 }
 
-/// Whatever order they came in: by id, then by instance.
+/// For any input order: by id, then by instance.
 TEST_F(TrackEdges, SnapshotsAreOrderedByIdAndInstance)
 {
     for (const TrackId id : {5U, 3U, 5U, 3U, 5U, 4U}) {

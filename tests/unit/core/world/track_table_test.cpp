@@ -184,7 +184,7 @@ TEST_F(TrackTables, AJumpWithinReachStartsTheTrackAnewFromTheSighting)
     EXPECT_EQ(table.diagnostics().doubled, 0U);
 }
 
-/// 5 m/s, turning with 3 m/s2: what the filter says must stay within its own doubt, or start anew.
+/// 5 m/s, turning with 3 m/s2: the filter's estimate must stay within its own uncertainty, or restart.
 TEST_F(TrackTables, ATurningIntruderIsFollowed)
 {
     float worst = 0.0F;
@@ -269,7 +269,7 @@ TEST_F(TrackTables, EachStatusCountsAsItself)
     EXPECT_EQ(table.diagnostics().expired, 0U);
 }
 
-/// Tracks standing around at growing distances; the table must hold the nearest.
+/// Static tracks at growing distances; the table must hold the nearest.
 TEST_F(TrackTables, CapacityLessOneFullAndOneMore)
 {
     const auto at = [](std::size_t i) { return Vec3(100.0F + static_cast<float>(i), 0, 0); };
@@ -304,8 +304,8 @@ TEST_F(TrackTables, WhatGivesWayIsJudgedByTheBodysSurface)
     EXPECT_TRUE(std::none_of(tracks.begin(), tracks.end(), [](const Track& t) { return t.id == 3; }));
 }
 
-/// An old sighting is compared where the track is by now: here it is about to be met, though it was seen far off the
-/// own way.
+/// An old sighting is compared at the track's present position: here close to an encounter, though measured far off the
+/// own path.
 TEST_F(TrackTables, WhatGivesWayIsJudgedWhereItIsNow)
 {
     own.velocity = Vec3(20, 0, 0);

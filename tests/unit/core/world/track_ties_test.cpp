@@ -23,7 +23,7 @@ bool holds(TrackTable& table, TrackId id)
     return false;
 }
 
-/// Table full: of two tracks that are equally little urgent the one that was there first gives way.
+/// Full table: of two equally least urgent tracks the first is replaced.
 TEST_F(TrackEdges, OfEquallyUrgentTracksTheFirstGivesWay)
 {
     ASSERT_EQ(take(seen(1, Vec3(3000, 0, 0))), TrackStatus::created);
@@ -58,7 +58,7 @@ TEST_F(TrackEdges, OfEquallyUrgentTracksOfAnIdTheFirstGivesWay)
 /// Of two tracks of an id that a sighting fits equally well the first takes it.
 TEST_F(TrackEdges, ASightingThatFitsTwoTracksGoesToTheFirst)
 {
-    // Apart when they are first seen, flying towards each other: half way after 5 s.
+    // Apart at first, flying towards each other: half-way after 5 s.
     TrackMeasurement a = seen(7, Vec3(0, 100, 0));
     TrackMeasurement b = seen(7, Vec3(0, -100, 0));
     a.velocity = Vec3(0, -20, 0);
@@ -76,7 +76,7 @@ TEST_F(TrackEdges, ASightingThatFitsTwoTracksGoesToTheFirst)
     EXPECT_EQ(tracks[1].stamp, kStart);
 }
 
-/// However full the table and whatever its tracks are like, the snapshot is in order of id.
+/// For any number and kind of tracks, the snapshot is in order of id.
 TEST_F(TrackEdges, AFullTablesSnapshotIsInOrder)
 {
     for (TrackId id = 1; id <= kMaxTracks; ++id) {
@@ -98,7 +98,7 @@ TEST_F(TrackEdges, AFullTablesSnapshotIsInOrder)
     }
 }
 
-/// One that flies away was nearest before: its time to the closest approach is none.
+/// A receding track was nearest before: its time to the closest approach is 0.
 TEST(TrackUrgency, OfATrackThatFliesAwayIsItsDistance)
 {
     Track track;
@@ -108,7 +108,7 @@ TEST(TrackUrgency, OfATrackThatFliesAwayIsItsDistance)
     track.velocity = Vec3(2, 0, 0);
     const vehicle::VehicleState own;
     EXPECT_NEAR(urgency(track, 3, false, own, kStart), 10.0F, 1e-5F);
-    // So slow that it counts as standing, and a little faster: 31 m at that speed take days.
+    // So slow that it counts as static, and slightly faster: 31 m at that speed take days.
     float aside = 0.0F;
     while (3.162e-5F * 3.162e-5F + aside * aside < 1e-9F) {
         aside += 1e-11F;
@@ -121,7 +121,7 @@ TEST(TrackUrgency, OfATrackThatFliesAwayIsItsDistance)
 }
 
 /// A track whose place is known through its velocity alone, and then the velocity to a tenth of a millimetre per
-/// second: what is left of its variance is rounding, and no less than nothing.
+/// second: the remaining variance is rounding, and never negative.
 TEST(TrackFilter, UncertaintiesStayNumbers)
 {
     const vehicle::VehicleState own;

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Fcl,
 
 float power_of_two(Random& random) { return std::ldexp(1.0F, 1 - static_cast<int>(random.below(8))); }
 
-/// A sheared cube of any size, whose faces are known without looking for them.
+/// A sheared cube of any size, whose faces are known in advance.
 Shape simple_hull(Random& random, const Vec3& centre, std::vector<Vec3>& vertices)
 {
     vertices = sheared_cube(random);
