@@ -248,7 +248,7 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
             neighbours_.try_push_back(neighbour_of(s, track, input.own, settings, ahead, settings_.stale)));
     }
     input.neighbours = {neighbours_.data(), neighbours_.size()};
-    input.scene = {map_, s.obstacles};
+    input.obstacles = s.obstacles;
     const Cylinder kept = cylinder_of(s.limits.half_extents, world::own_uncertainty(s));
     const Bounds bounds = bounds_of(s, input.own.position, kept, ahead);
     input.bounds = {bounds.data(), bounds.size()};

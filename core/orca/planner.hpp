@@ -66,8 +66,6 @@ public:
         filter_.reset();
         has_planned_ = false;
     }
-    /// Convex pieces that are obstacles beside the situation's; good (geometry::check), outlives this; null: none.
-    void use_map(const geometry::MeshMap* map) noexcept { map_ = map; }
     [[nodiscard]] const Decision& last() const noexcept { return decision_; }
 
 private:
@@ -76,7 +74,6 @@ private:
 
     Settings settings_;
     VelocityFilter filter_;
-    const geometry::MeshMap* map_ = nullptr;
     StaticVector<Neighbour, kMaxTracks> neighbours_;  ///< of a plan; not on the stack
     Decision decision_;
     TimePoint last_plan_;

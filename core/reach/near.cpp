@@ -41,9 +41,9 @@ void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
     case geometry::ShapeKind::hull: {
         Vec3 low = Vec3::Constant(kUnbounded);
         Vec3 high = Vec3::Constant(-kUnbounded);
-        for (const Vec3& vertex : shape.vertices) {
-            low = low.cwiseMin(vertex);
-            high = high.cwiseMax(vertex);
+        for (const Point3& vertex : shape.vertices) {
+            low = low.cwiseMin(vertex.vec());
+            high = high.cwiseMax(vertex.vec());
         }
         solid.position = shape.centre + shape.axes * (0.5F * (low + high));
         solid.half = 0.5F * (high - low) + own_in;

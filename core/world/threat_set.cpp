@@ -141,7 +141,8 @@ bool ThreatSet::collect(const Situation& s) noexcept
         threats_.unchecked_push_back(cylinder_threat(i, air.barrels[i], uncertainty));
     }
     for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
-        threats_.unchecked_push_back(obstacle_threat(i, s.obstacles[i].shape, uncertainty));
+        threats_.unchecked_push_back(
+            obstacle_threat(i, s.obstacles[i].shape, uncertainty + s.obstacles[i].uncertainty));
     }
     return true;
 }

@@ -49,6 +49,7 @@ struct Track {
 struct Obstacle {
     ObstacleId id = 0;
     geometry::Shape shape;
+    float uncertainty = 0.0F;  ///< the obstacle may stand out of `shape` by this much [m], >= 0
 };
 
 /// Bounds of the airspace, met like any obstacle by the own box, own position uncertainty included. Heights above the

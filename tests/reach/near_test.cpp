@@ -78,8 +78,8 @@ struct Crowd : RandomSituation {
     }
 
     static constexpr std::size_t kCorners = 5;
-    static inline const std::array<Vec3, kCorners> kWedge{Vec3(0, 0, 2), Vec3(2, 0, 0), Vec3(-1, 2, 0), Vec3(-1, -2, 0),
-                                                          Vec3(0, 0, -1)};
+    static inline const std::array<Point3, kCorners> kWedge{
+        {{0, 0, 2}, {2, 0, 0}, {-1, 2, 0}, {-1, -2, 0}, {0, 0, -1}}};
     Random random;
     Placed placed;
     std::vector<world::Barrel> barrels;

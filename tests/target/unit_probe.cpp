@@ -126,7 +126,7 @@ private:
     void program(WorkBudget& budget) noexcept;
 
     Random random_{0};
-    std::array<Vec3, kMaxHullVertices> vertices_{};
+    std::array<Point3, kMaxHullVertices> vertices_{};
     vehicle::VehicleState own_;
     vehicle::VehicleLimits limits_;
     vehicle::Airframe airframe_;
@@ -154,7 +154,7 @@ geometry::Shape UnitProbe::solid(const Vec3& at) noexcept
     }
     const std::size_t count = 4 + below(kMaxHullVertices - 3);
     for (std::size_t i = 0; i < count; ++i) {
-        vertices_[i] = within(3.0F);
+        vertices_[i] = Point3::of(within(3.0F));
     }
     return geometry::make_hull({vertices_.data(), count}, at, turned());
 }

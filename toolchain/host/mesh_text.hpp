@@ -20,7 +20,7 @@ namespace jink::host {
 /// A map made by one recipe, to be compared with others.
 struct MeasuredMap {
     std::string name;
-    mesh::StoredMap map;
+    files::MapTables map;
     double excess = 0.0;  ///< greatest distance of a piece's surface from the mesh [m]
     double gap = 0.0;     ///< and of the mesh's surface from the pieces
 };

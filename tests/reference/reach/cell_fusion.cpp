@@ -41,8 +41,8 @@ MapBody body_of(const geometry::Shape& shape, const Placed& placed, float about,
         Vec3 low = Vec3::Zero();
         Vec3 high = Vec3::Zero();
         for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
-            low = i == 0 ? shape.vertices[0] : Vec3(low.cwiseMin(shape.vertices[i]));
-            high = i == 0 ? shape.vertices[0] : Vec3(high.cwiseMax(shape.vertices[i]));
+            low = i == 0 ? shape.vertices[0].vec() : Vec3(low.cwiseMin(shape.vertices[i].vec()));
+            high = i == 0 ? shape.vertices[0].vec() : Vec3(high.cwiseMax(shape.vertices[i].vec()));
         }
         centre += shape.axes * (0.5F * (low + high));
         half = 0.5F * (high - low);

@@ -29,7 +29,7 @@ struct Drawn {
     Settings settings;
     world::Manoeuvre manoeuvre;
     Flying flying = Flying::path;
-    std::vector<std::vector<Vec3>> vertices;  // of hulls
+    std::vector<std::vector<Point3>> vertices;  // of hulls
 };
 
 inline Vec3 any_direction(Random& random)

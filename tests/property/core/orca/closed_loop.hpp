@@ -176,7 +176,7 @@ private:
             neighbours.push_back(n);
         }
         input.neighbours = neighbours;
-        input.scene.obstacles = obstacles_;
+        input.obstacles = obstacles_;
         WorkBudget budget(1'000'000);
         const Decision decision = filter.decide(input, budget);
         static_cast<void>(filter.issued(now, decision.command));

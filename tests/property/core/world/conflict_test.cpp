@@ -154,7 +154,7 @@ TEST(MainConflict, SolidsAreFoundInTime)
     const std::uint64_t seed = seed_of(20260723);
     SCOPED_TRACE(seed);
     Random random(seed);
-    std::vector<Vec3> vertices;
+    std::vector<Point3> vertices;
     for (std::size_t i = 0; i < case_count(2000); ++i) {
         Scene scene = any_scene(random);
         scene.tracks.clear();

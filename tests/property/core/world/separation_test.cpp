@@ -25,7 +25,7 @@ struct Case {
     Scene scene;
     path::TimedPath path;
     Seconds horizon = 0.0F;
-    std::vector<std::vector<Vec3>> vertices;  // of hulls
+    std::vector<std::vector<Point3>> vertices;  // of hulls
 };
 
 path::TimedPath random_flight(Random& random, std::size_t points, float speed)

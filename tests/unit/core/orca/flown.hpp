@@ -28,7 +28,7 @@ public:
     Decision tick(std::uint32_t units = kPlenty)
     {
         input.neighbours = neighbours;
-        input.scene.obstacles = obstacles;
+        input.obstacles = obstacles;
         input.bounds = bounds;
         WorkBudget budget(units);
         const Decision decision = filter.decide(input, budget);

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
 #include "tests/unit/core/orca/orca_input.hpp"
 
 namespace jink::orca {
@@ -327,7 +327,7 @@ TEST_F(OrcaInput, AWingThatCanNotKeepItsSpeedHasNoAnswer)
     EXPECT_EQ(plan(), PlanStatus::found) << "a multirotor slows down";
 }
 
-/// Wherever the budget runs out - among bounds, obstacles, pieces of a map, tracks, programs, or along the command -
+/// Wherever the budget runs out - among bounds, obstacles, hulls, tracks, programs, or along the command -
 /// nothing is found.
 TEST_F(OrcaInput, ABudgetThatRunsOutAmongObstaclesIsNoAnswer)
 {
@@ -335,17 +335,15 @@ TEST_F(OrcaInput, ABudgetThatRunsOutAmongObstaclesIsNoAnswer)
     for (int i = 0; i < 8; ++i) {
         corners.emplace_back((i & 1) != 0 ? 16.0F : 14.0F, (i & 2) != 0 ? 5.0F : -5.0F, (i & 4) != 0 ? 80.0F : 0.0F);
     }
-    const oracle::MapOfHulls map({corners});
+    const oracle::HullObstacles hull({corners});
+    scene.obstacles.push_back(hull.all()[0]);
     scene.own.velocity = Vec3(5, 0, 0);
     scene.obstacle(geometry::make_capsule(Vec3(9, 4, 20), Vec3(9, 5, 40), 0.5F));
     scene.obstacle(geometry::make_box(Vec3(8, -5, 30), Vec3(1, 1, 9)));
     scene.airspace.has_floor = true;
     scene.track(Vec3(40, 0.5F, 30), Vec3(-5, 0, 0));
     scene.track(Vec3(-20, 20, 31), Vec3(5, -5, 0));
-    const auto anew = [&] {
-        planner = Planner(settings);
-        planner.use_map(&map.map());
-    };
+    const auto anew = [&] { planner = Planner(settings); };
     anew();
     ASSERT_EQ(plan(), PlanStatus::found);
     const std::uint32_t needed = spent;

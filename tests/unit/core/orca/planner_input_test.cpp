@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
 #include "tests/unit/core/orca/orca_input.hpp"
 
 namespace jink::orca {
@@ -163,17 +163,17 @@ TEST_F(OrcaInput, SpeedTowardsAWallLeavesRoomToStopAfterTheDelay)
     EXPECT_NEAR(command().x(), std::sqrt(2.0F * 5.0F * (margin - 4.0F * 0.35F)), 2e-3F);
 }
 
-TEST_F(OrcaInput, AMapOfPiecesIsAnObstacleToo)
+TEST_F(OrcaInput, AHullIsAnObstacleToo)
 {
     std::vector<Vec3> corners;
     for (int i = 0; i < 8; ++i) {
         corners.emplace_back((i & 1) != 0 ? 6.0F : 4.0F, (i & 2) != 0 ? 50.0F : -50.0F, (i & 4) != 0 ? 80.0F : 0.0F);
     }
-    const oracle::MapOfHulls map({corners});
-    planner.use_map(&map.map());
+    const oracle::HullObstacles hull({corners});
+    scene.obstacles.push_back(hull.all()[0]);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(planner.last().margin, 4.0F - 1.41421356F * kHalfWidth, 1e-3F);
-    planner.use_map(nullptr);
+    scene.obstacles.clear();
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_TRUE(std::isinf(planner.last().margin));
 }

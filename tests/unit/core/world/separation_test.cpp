@@ -186,10 +186,10 @@ struct Margin {
     friend void PrintTo(const Margin& m, std::ostream* out) { *out << m.name; }
 };
 
-const std::vector<Vec3>& block()
+const std::vector<Point3>& block()
 {
-    static const std::vector<Vec3> vertices{{-2, -2, -2}, {-2, -2, 2}, {-2, 2, -2}, {-2, 2, 2},
-                                            {2, -2, -2},  {2, -2, 2},  {2, 2, -2},  {2, 2, 2}};
+    static const std::vector<Point3> vertices{{-2, -2, -2}, {-2, -2, 2}, {-2, 2, -2}, {-2, 2, 2},
+                                              {2, -2, -2},  {2, -2, 2},  {2, 2, -2},  {2, 2, 2}};
     return vertices;
 }
 
