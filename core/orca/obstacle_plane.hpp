@@ -47,7 +47,7 @@ struct Envelope {
 /// What may be in the way. Outlives what is made of it.
 struct ObstacleScene {
     const geometry::MeshMap* map = nullptr;  ///< good (geometry::check), or none
-    std::span<const world::Obstacle> obstacles{};
+    std::span<const world::Threat> obstacles{};  ///< at rest, by their `solid`; own uncertainty is in the envelope
 };
 
 /// `source` of what comes from ObstacleScene::obstacles[0]; pieces of the map have their own index.

@@ -37,7 +37,7 @@ Sighting ObstacleView::piece(std::size_t index, const Vec3& point, float reach, 
 
 Sighting ObstacleView::obstacle(std::size_t index, const Vec3& point, float reach, WorkBudget& budget) const noexcept
 {
-    const geometry::Shape& shape = scene.obstacles[index].shape;
+    const geometry::Shape& shape = *scene.obstacles[index].solid;
     const geometry::DistanceQuery query{envelope.stretch, reach, resolution, Vec3::Zero()};
     const geometry::Separation from = geometry::point_shape_distance(point, shape, query, budget);
     if (from.distance > 0.0F || budget.exhausted()) {
@@ -49,7 +49,7 @@ Sighting ObstacleView::obstacle(std::size_t index, const Vec3& point, float reac
 float ObstacleView::obstacle_bound(std::size_t index, const Vec3& point) const noexcept
 {
     constexpr float kRoundedOff = 1e-6F;
-    const geometry::Shape& shape = scene.obstacles[index].shape;
+    const geometry::Shape& shape = *scene.obstacles[index].solid;
     Vec3 offset = shape.centre - point;
     offset.z() *= envelope.stretch;
     const float radius = std::max(1.0F, envelope.stretch) * geometry::bounding_radius(shape);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/orca/obstacle_way.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 
 // Obstacles about a vehicle at the origin, for tests of what is made of them.
 
@@ -24,7 +25,7 @@ protected:
     ObstaclePlanes planes(std::uint32_t units = kUnlimited)
     {
         WorkBudget budget(units);
-        const ObstaclePlanes found = obstacle_planes({map, obstacles}, own, settings, budget);
+        const ObstaclePlanes found = obstacle_planes({map, oracle::threats_of(obstacles)}, own, settings, budget);
         exhausted = budget.exhausted();
         spent = budget.spent();
         return found;
@@ -32,7 +33,7 @@ protected:
     WayClearance way(const Vec3& velocity, Seconds length, std::uint32_t units = kUnlimited)
     {
         WorkBudget budget(units);
-        return clearance_along({map, obstacles}, Vec3::Zero(), velocity, length, settings, budget);
+        return clearance_along({map, oracle::threats_of(obstacles)}, Vec3::Zero(), velocity, length, settings, budget);
     }
     void add(const geometry::Shape& shape)
     {

@@ -9,6 +9,7 @@
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_view.hpp"
 #include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/obstacle_contract.hpp"
 
 namespace jink::orca {
@@ -212,7 +213,8 @@ TEST_F(ObstacleContract, ASearchWithoutABudgetHasNoDirection)
 {
     add(geometry::make_capsule({3.5F, 0, -1}, {4.5F, 0, 1}, 0.25F));
     const oracle::MapOfHulls hulls({{{4, -1, -1}, {4, 1, -1}, {4, 0, 1}, {5, 0, 0}}});
-    const ObstacleScene scene{&hulls.map(), obstacles};
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const ObstacleScene scene{&hulls.map(), threats};
     const detail::ObstacleView view{scene, {1.25F, 1.0F}, 1e-4F};
     for (const bool piece : {false, true}) {
         WorkBudget none(0);
@@ -228,7 +230,8 @@ TEST_F(ObstacleContract, ASearchWithoutABudgetHasNoDirection)
 TEST_F(ObstacleContract, EnoughIsNotABound)
 {
     add(geometry::make_box({9, 2, 1}, {1, 3, 2}, Eigen::AngleAxisf(0.5F, Vec3(0, 0.6F, 0.8F)).toRotationMatrix()));
-    const ObstacleScene scene{nullptr, obstacles};
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const ObstacleScene scene{nullptr, threats};
     const detail::ObstacleView view{scene, {1.25F, 1.0F}, 1e-4F};
     WorkBudget budget(kUnlimited);
     const detail::Sighting exact = view.obstacle(0, Vec3::Zero(), 100.0F, budget);
@@ -272,7 +275,8 @@ TEST_F(ObstacleContract, TheBoundOfALargeObstacleIsNeverAboveItsDistance)
         const float radius = random.uniform(100.0F, 1000.0F);
         const Vec3 to = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
         add(geometry::make_sphere((radius + random.uniform(0.1F, 5.0F)) * to, radius));
-        const ObstacleScene scene{nullptr, obstacles};
+        const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+        const ObstacleScene scene{nullptr, threats};
         const detail::ObstacleView view{scene, {1.0F, 1.0F}, 1e-4F};
         const double distance =
             obstacles[0].shape.centre.cast<double>().norm() - static_cast<double>(obstacles[0].shape.radius);
@@ -289,7 +293,8 @@ TEST_F(ObstacleContract, BesideAFaceNothingIsClaimedThatIsNotSo)
         corners.emplace_back((c & 1) != 0 ? 5.0F : -5.0F, (c & 2) != 0 ? 5.0F : -5.0F, (c & 4) != 0 ? 5.0F : -5.0F);
     }
     const oracle::MapOfHulls hulls({corners});
-    const ObstacleScene scene{&hulls.map(), obstacles};
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const ObstacleScene scene{&hulls.map(), threats};
     for (const float stretch : {1.0F, 1.375F}) {
         const detail::ObstacleView view{scene, {stretch, 1.0F}, 1e-4F};
         for (float off = -1e-3F; off <= 1e-3F; off += 1.7e-5F) {
