@@ -6,6 +6,7 @@
 
 #include "core/avoid/tick.hpp"
 #include "core/geometry/sweep.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 
@@ -131,9 +132,9 @@ bool StateMachine::keep_parallel(Tick& tick) noexcept
         parallel.off.norm() <= settings_.on_leg || parallel.left <= world::kRejoinLookahead) {
         return false;
     }
-    const float margin = command_margin(tick.s, parallel.command, settings_.lookahead, settings_, tick.budget);
+    const float margin = command_margin(tick.s, parallel.command, tick.s.rules.lookahead, settings_, tick.budget);
     const bool kept = phase_ == Phase::parallel_offset;
-    if (!(margin >= (kept ? 0.0F : settings_.clearance_buffer))) {
+    if (!(margin >= (kept ? 0.0F : tick.s.rules.clearance))) {
         return false;
     }
     diagnostics_.holds += kept ? 0U : 1U;
@@ -154,7 +155,7 @@ bool StateMachine::keep_course(Tick& tick) noexcept
         world::of_kind(tick.s.threats, world::ThreatKind::track).empty()) {
         return false;
     }
-    const Seconds ahead = std::min(settings_.lookahead, kTurning);
+    const Seconds ahead = std::min(tick.s.rules.lookahead, kTurning);
     const Vec3 back = kept_inside(tick.s, tick.nominal.direction * tick.nominal.speed);
     if (command_margin(tick.s, back, ahead, settings_, tick.budget) >= 0.0F) {
         return false;

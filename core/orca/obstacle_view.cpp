@@ -29,7 +29,7 @@ Sighting way_out(const geometry::Exit& out, float grown) noexcept
 
 Sighting ObstacleView::obstacle(std::size_t index, const Vec3& point, float reach, WorkBudget& budget) const noexcept
 {
-    const geometry::Shape& shape = obstacles[index].shape;
+    const geometry::Shape& shape = *obstacles[index].solid;
     const float grown = stretched_uncertainty(index);
     const geometry::DistanceQuery query{envelope.stretch, reach + grown, resolution, Vec3::Zero()};
     const geometry::Separation from = geometry::point_shape_distance(point, shape, query, budget);
@@ -41,13 +41,13 @@ Sighting ObstacleView::obstacle(std::size_t index, const Vec3& point, float reac
 
 float ObstacleView::stretched_uncertainty(std::size_t index) const noexcept
 {
-    return std::max(1.0F, envelope.stretch) * obstacles[index].uncertainty;
+    return std::max(1.0F, envelope.stretch) * obstacles[index].slack;
 }
 
 float ObstacleView::obstacle_bound(std::size_t index, const Vec3& point) const noexcept
 {
     constexpr float kRoundedOff = 1e-6F;
-    const geometry::Shape& shape = obstacles[index].shape;
+    const geometry::Shape& shape = *obstacles[index].solid;
     Vec3 offset = shape.centre - point;
     offset.z() *= envelope.stretch;
     const float radius = std::max(1.0F, envelope.stretch) * geometry::bounding_radius(shape);

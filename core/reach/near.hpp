@@ -48,12 +48,6 @@ struct NearThreat {
 /// no more than it is. O(1).
 [[nodiscard]] float distance_to(const NearThreat& solid, const Vec3& point) noexcept;
 
-/// How node checks are made.
-struct NearRule {
-    world::EscapeRule escape;
-    float room = 0.4F;  ///< nearer than this is better avoided: level soft_constraints [m]
-};
-
 /// A straight piece of a flight, from the start of the path on.
 struct Piece {
     Vec3 from = Vec3::Zero();  ///< [m]
@@ -70,8 +64,7 @@ public:
     /// @param lead    the path begins so long after Situation::now [s]
     /// @param beyond  way past the grid's border that is looked at as well [m]
     /// O(tracks + obstacles + barrels).
-    void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
-                 const NearRule& rule) noexcept;
+    void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond) noexcept;
 
     /// Finds, for each cell in which a node ends, what may come near to the way to or from there at the times at which
     /// a node is there. False when the budget does not allow for it. O(nodes + cells * threats).
@@ -109,7 +102,7 @@ private:
     [[nodiscard]] float shrunk_by(float margin_at_start) const noexcept;
     [[nodiscard]] float shrunk_at(float shrunk, Seconds t) const noexcept;
 
-    NearRule rule_;
+    world::FlightRules rules_;  ///< of the situation
     StaticVector<NearThreat, ThreatBits::kMost> near_;
     std::array<ThreatBits, kMaxReachCells> of_cell_{};
     ThreatBits all_;

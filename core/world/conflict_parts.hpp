@@ -155,7 +155,7 @@ bool meets_point(const Situation& situation, const Parts& phases, const Position
     out.own_at_closest = position_at(out.time_to_closest);
     out.threat_at_closest = threat.nearest_in_height(out.time_to_closest, out.own_at_closest.z());
     out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
-    out.radius_at_closest = threat_radius(situation, situation.tracks[threat.ref.index], out.time_to_closest);
+    out.radius_at_closest = threat_radius(situation, *threat.track, out.time_to_closest);
     out.margin = geometry::box_distance(half, out.threat_at_closest - out.own_at_closest) - out.radius_at_closest;
     return true;
 }

@@ -12,6 +12,7 @@
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
 #include "core/world/barrel.hpp"
+#include "core/world/flight_rules.hpp"
 #include "core/world/threat.hpp"
 
 // What is known at one instant. Plain values; tables that fill them are in track_table.hpp and obstacle_table.hpp.
@@ -108,14 +109,11 @@ struct Situation {
     const vehicle::VehicleLimits& limits;
     const vehicle::Airframe& airframe;
     const Reference& reference;
-    std::span<const Track> tracks;
-    std::span<const Obstacle> obstacles;
-    const Airspace& airspace;
+    const FlightRules& rules;
     /// All that must be kept clear of, a ThreatSet's or some of them. Without data (null): never collected; then
     /// everything counts as contact.
     std::span<const Threat> threats{};
     const Manoeuvre* flying = nullptr;  ///< what is being flown or was last chosen, for hysteresis
-    float k_sigma = 3.0F;               ///< standard deviations that count as possible
     /// By which the others of the same link know us (TrackSource::datalink); 0: not known. Says nothing beside the id
     /// of a track of another source: that is of another scheme, and they may know us by another too.
     TrackId own_id = 0;
@@ -130,10 +128,9 @@ struct Situation {
 [[nodiscard]] inline Situation copy_with(const Situation& s, const vehicle::VehicleLimits& limits,
                                          const Reference& reference) noexcept
 {
-    const auto& [now, own, other_limits, airframe, other_reference, tracks, obstacles, airspace, threats, flying,
-                 k_sigma, own_id, commanded, shared_horizon] = s;
-    return {now,      own,     limits, airframe, reference, tracks,    obstacles,
-            airspace, threats, flying, k_sigma,  own_id,    commanded, shared_horizon};
+    const auto& [now, own, other_limits, airframe, other_reference, rules, threats, flying, own_id, commanded,
+                 shared_horizon] = s;
+    return {now, own, limits, airframe, reference, rules, threats, flying, own_id, commanded, shared_horizon};
 }
 [[nodiscard]] inline Situation with_limits(const Situation& s, const vehicle::VehicleLimits& limits) noexcept
 {
@@ -153,10 +150,18 @@ enum class PlanStatus : std::uint8_t {
     bad_input,       ///< no leg, or settings out of range
 };
 
+/// Whether a method can plan in it: a reference, flight rules within their ranges, threats collected. O(1).
+[[nodiscard]] inline bool is_complete(const Situation& situation) noexcept
+{
+    const path::Route* const route = situation.reference.route;
+    return situation.reference.valid && (route == nullptr || !route->empty()) && is_valid(situation.rules) &&
+           situation.threats.data() != nullptr;
+}
+
 /// How much earlier everything is met because the own position is not known better: k_sigma standard deviations [m].
 [[nodiscard]] inline float own_uncertainty(const Situation& situation) noexcept
 {
-    return situation.k_sigma * situation.own.sigma_position;
+    return situation.rules.k_sigma * situation.own.sigma_position;
 }
 
 /// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma standard deviations of the distance
@@ -166,20 +171,13 @@ enum class PlanStatus : std::uint8_t {
 /// error cancels: conservative. The only place where threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
 
-/// Half extents of the own box as this track meets it: taller by the track's `half_height`. A box against an upright
-/// capsule is the taller box against the capsule's sphere; exact. O(1).
-[[nodiscard]] inline Vec3 box_against(const Situation& situation, const Track& track) noexcept
-{
-    return situation.limits.half_extents + track.half_height * Vec3::UnitZ();
-}
 /// The point of a track's upright axis that is nearest in height to `height`, its centre being at `centre`. O(1).
 [[nodiscard]] inline Vec3 nearest_in_height(const Track& track, const Vec3& centre, float height) noexcept
 {
     return {centre.x(), centre.y(), std::clamp(height, centre.z() - track.half_height, centre.z() + track.half_height)};
 }
 
-/// `threat_radius` from `lead` seconds after Situation::now on; never below it where the track's stamp lies ahead of
-/// now. O(1).
-[[nodiscard]] Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept;
+/// `threat_radius` from Situation::now on; never below it where the track's stamp lies ahead of now. O(1).
+[[nodiscard]] Growth growth_of(const Situation& situation, const Track& track) noexcept;
 
 }  // namespace jink::world

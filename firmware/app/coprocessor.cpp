@@ -84,7 +84,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
         heed(own_.take_autopilot(inbox.own_state, now));
     }
     if (inbox.has_bus_state) {
-        heed(own_.take_bus(inbox.bus_state, c.own_age, c.k_sigma, now, outbox_));
+        heed(own_.take_bus(inbox.bus_state, c.own_age, c.rules.k_sigma, now, outbox_));
     }
     picture_.take_home(inbox);
     control_.watch_sticks(inbox.has_sticks ? &inbox.sticks : nullptr, c.sticks);
@@ -137,7 +137,7 @@ avoid::Guidance Coprocessor::decide(TimePoint now, const vehicle::VehicleState& 
     report.map_pieces = static_cast<std::uint16_t>(picture_.obstacles().size() - picture_.sensed().size());
     report.barrels = static_cast<std::uint16_t>(air.barrels.size());
     return decision_.update({now, own_.measured(), own, autopilot_.flown_leg(takeover.streaming()),
-                             takeover.in_control(), tracks, picture_.obstacles(), air, link_.own_track()},
+                             takeover.in_control(), {tracks, picture_.obstacles(), air}, link_.own_track()},
                             c);
 }
 

@@ -197,7 +197,7 @@ void Telemetry::report_near(TimePoint now, std::span<const world::Track> tracks,
     last_near_ = now;
     const Configuration& c = of.configuration;
     for (const link::NearObject& object :
-         find_near(of.own.at(now, c.own_age), tracks, of.picture.sensed(), c.k_sigma)) {
+         find_near(of.own.at(now, c.own_age), tracks, of.picture.sensed(), c.rules.k_sigma)) {
         counts_.near_told += bus_->send_near(object) ? 1U : 0U;
     }
 }

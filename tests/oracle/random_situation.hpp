@@ -21,6 +21,7 @@ struct RandomSituation {
     std::vector<world::Track> tracks;
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
+    world::FlightRules rules{.lookahead = 10.0F};
 
     explicit RandomSituation(std::uint64_t seed)
     {
@@ -64,8 +65,8 @@ struct RandomSituation {
 
     [[nodiscard]] world::Situation view() const
     {
-        world::Situation s{now, own, limits, airframe, reference, tracks, obstacles, airspace, {}, nullptr, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules};
+        static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;
     }

@@ -114,12 +114,7 @@ private:
                 limits_,
                 airframe_,
                 reference_,
-                {tracks_.data(), tracks_.size()},
-                {obstacles_.data(), obstacles_.size()},
-                airspace_,
-                {},
-                nullptr,
-                3.0F};
+                rules_};
     }
     void geometry(Work work, WorkBudget& budget) noexcept;
     void curve(Work work, WorkBudget& budget) noexcept;
@@ -128,6 +123,7 @@ private:
     Random random_{0};
     std::array<Point3, kMaxHullVertices> vertices_{};
     vehicle::VehicleState own_;
+    const world::FlightRules rules_;
     vehicle::VehicleLimits limits_;
     vehicle::Airframe airframe_;
     world::Reference reference_;
@@ -337,7 +333,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     }
     scene(work);
     world::Situation s = situation();
-    static_cast<void>(threats_.collect(s));
+    static_cast<void>(threats_.collect(s, {{tracks_.data(), tracks_.size()}, {obstacles_.data(), obstacles_.size()}, airspace_}));
     s.threats = threats_.all();
     const avoid::Settings settings;
     const world::Way way = world::way_of(s);
@@ -349,7 +345,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     case Work::conflict_tracks:
     case Work::conflict_spheres:
     case Work::conflict_solids:
-        sink_ = world::main_conflict(s, way, settings.lookahead, budget, conflict) ? 1.0F : 0.0F;
+        sink_ = world::main_conflict(s, way, rules_.lookahead, budget, conflict) ? 1.0F : 0.0F;
         break;
     case Work::check: sink_ = avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; break;
     case Work::command: sink_ = avoid::command_margin(s, command, settings, budget); break;

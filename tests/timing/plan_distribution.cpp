@@ -86,17 +86,10 @@ public:
     std::int64_t operator()(const Scene& scene)
     {
         static_cast<void>(planner_->configure(scene.settings));
-        const oracle::Collected situation(world::Situation{{},
-                                                           scene.own,
-                                                           scene.limits,
-                                                           scene.airframe,
-                                                           scene.reference,
-                                                           scene.tracks,
-                                                           {},
-                                                           scene.airspace,
-                                                           {},
-                                                           nullptr,
-                                                           3.0F});
+        const world::FlightRules rules{.lookahead = 10.0F};
+        const oracle::Collected situation(
+            world::Situation{{}, scene.own, scene.limits, scene.airframe, scene.reference, rules},
+            {scene.tracks, {}, scene.airspace});
         WorkBudget budget(avoid::Settings{}.plan_budget);
         const Clock::time_point begin = Clock::now();
         status = planner_->plan(situation, budget, out_);

@@ -91,11 +91,12 @@ struct Scene {
 
     [[nodiscard]] world::Situation view() const
     {
-        world::Situation s{now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules};
+        static_cast<void>(threats.collect(s, {tracks, {}, airspace}));
         s.threats = threats.all();
         return s;
     }
+    world::FlightRules rules;
     mutable world::ThreatSet threats;  ///< of the newest view
 };
 

@@ -269,8 +269,10 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
         own.velocity = vehicle::clamped_velocity(from.along, reference.leg.speed, limits);
         std::vector<world::Track> tracks(1 + random.below(3));
         const world::Airspace airspace;
+        const vehicle::Airframe airframe;
+        const world::FlightRules rules{.lookahead = 10.0F};
         const world::Situation empty{
-            TimePoint{50'000'000}, own, limits, {}, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
+            TimePoint{50'000'000}, own, limits, airframe, reference, rules};
         const world::Way way = world::way_of(empty);
         for (world::Track& track : tracks) {
             track.stamp = empty.now;
@@ -282,7 +284,7 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
             track.radius = random.uniform(0.2F, 1.5F);
             track.sigma_velocity = random.uniform(0.0F, 0.1F);
         }
-        const oracle::Collected situation(empty);
+        const oracle::Collected situation(empty, {tracks, {}, airspace});
         WorkBudget budget(1'000'000);
         world::Manoeuvre manoeuvre;
         const world::PlanStatus status = planner.plan(situation, budget, manoeuvre);

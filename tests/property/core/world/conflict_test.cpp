@@ -36,7 +36,7 @@ Scene any_scene(Random& random)
         Vec3(random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F));
     scene.own.sigma_position = random.below(3) == 0 ? random.uniform(0.0F, 0.5F) : 0.0F;
     scene.own.position = in_cube(random, 20.0F);
-    scene.k_sigma = random.uniform(0.0F, 4.0F);
+    scene.rules.k_sigma = random.uniform(0.0F, 4.0F);
     const Vec3 end = random.below(4) == 0 ? Vec3(scene.own.position + in_cube(random, 5.0F)) : in_cube(random, 100.0F);
     scene.leg(random.below(2) == 0 ? scene.own.position : in_cube(random, 30.0F), end, random.uniform(0.5F, 15.0F));
     Track& track = scene.track(Vec3::Zero(), in_cube(random, 10.0F), random.uniform(0.0F, 3.0F));
@@ -55,7 +55,7 @@ Scene any_scene(Random& random)
 double growth(const Scene& scene, const Track& track, double lookahead, double dt)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6) + lookahead;
-    return dt * (double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age);
+    return dt * (double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age);
 }
 
 TEST(PredictConflict, FindsEachLossAndNeverTooLate)
@@ -168,7 +168,7 @@ TEST(MainConflict, SolidsAreFoundInTime)
                                                    vertices));
         const geometry::Shape& shape = scene.obstacles[0].shape;
         const Seconds lookahead = random.uniform(1.0F, 10.0F);
-        const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);
+        const double extra = double(scene.rules.k_sigma) * double(scene.own.sigma_position);
         const auto distance_until = [&](double t) {
             return geometry::oracle::swept_box_bounds(scene.limits.half_extents, way.origin,
                                                       place_on_way(way, t).cast<float>(), shape, 1e-4);

@@ -129,7 +129,7 @@ TEST(RouteConflict, FindsEachLossAndNeverTooLate)
             continue;
         }
         ++conflicts;
-        const double grown = 0.5 * double(c.scene.k_sigma) * double(track.sigma_velocity);
+        const double grown = 0.5 * double(c.scene.rules.k_sigma) * double(track.sigma_velocity);
         ASSERT_LE(least, kWider * c.slack() + grown + 0.02) << "case " << i << ": nothing there";
         const double closest = double(conflict.time_to_closest);
         past_bend += conflict.way_at_closest > c.way.ahead.straight ? 1U : 0U;

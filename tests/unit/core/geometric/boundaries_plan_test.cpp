@@ -28,11 +28,11 @@ struct SphereAhead : Flight {
     {
         Settings settings;
         settings.check_acceleration = settings.verify_flight = false;
-        settings.latency = latency;
+        rules.latency = latency;
         EXPECT_TRUE(planner.configure(settings));
         return plan();
     }
-    bool begins_later() const { return out.path.points[1].time == planner.settings().latency; }
+    bool begins_later() const { return out.path.points[1].time == rules.latency; }
 };
 
 TEST(PlanBorder, TwoAndAHalfRadiiAreNotTooClose)
@@ -117,7 +117,6 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
     ASSERT_EQ(route.add_leg(Vec3(25.0F, 0.0F, 50.0F), Vec3(25.0F, 80.0F, 50.0F)), path::RouteStatus::ok);
     Settings settings;
     settings.check_acceleration = settings.verify_flight = false;
-    settings.latency = 1.0F;
     settings.retries = 0;
     std::size_t moved = 0;
     std::size_t stays = 0;
@@ -126,6 +125,7 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
     for (float x = 10.94F; x < 10.96F; x += 2e-4F) {
         Flight flight;
         flight.reference.route = &route;
+        flight.rules.latency = 1.0F;
         flight.own.velocity = Vec3(1.0F, 1.0F, 0.0F);
         flight.add(Vec3(x, 0.0F, 50.0F), Vec3::Zero(), 4.0F);
         ASSERT_TRUE(flight.planner.configure(settings));
@@ -140,7 +140,7 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
         before = is_moved;
         (is_moved ? moved : stays) += 1;
         if (is_moved) {
-            const Vec3 then = flight.own.position + settings.latency * flight.own.velocity;
+            const Vec3 then = flight.own.position + flight.rules.latency * flight.own.velocity;
             ASSERT_LT((points[1].position - then).norm(), 1e-4F) << x;
         }
     }

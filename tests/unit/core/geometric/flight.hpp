@@ -19,6 +19,7 @@ struct Flight {
     std::vector<world::Track> tracks;
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
+    world::FlightRules rules{.lookahead = 10.0F};
     const world::Manoeuvre* flying = nullptr;
     Planner planner{Settings{}};
     WorkBudget budget{1'000'000};
@@ -46,8 +47,8 @@ struct Flight {
 
     [[nodiscard]] world::Situation situation() const
     {
-        world::Situation s{now, own, limits, airframe, reference, tracks, obstacles, airspace, {}, flying, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules, {}, flying};
+        static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;
     }

@@ -101,9 +101,7 @@ TEST(PlannerStatus, NoConflictWithinTheLookahead)
     Flight flight;
     flight.add(Vec3(90.0F, 0.0F, 50.0F), Vec3::Zero(), 1.0F);
     EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
-    Settings settings;
-    settings.lookahead = 20.0F;
-    ASSERT_TRUE(flight.planner.configure(settings));
+    flight.rules.lookahead = 20.0F;
     EXPECT_EQ(flight.plan(), PlanStatus::found);
 }
 

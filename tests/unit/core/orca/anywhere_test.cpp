@@ -9,6 +9,7 @@
 #include "core/orca/obstacle_view.hpp"
 #include "core/orca/smoothing.hpp"
 #include "tests/oracle/hull_obstacles.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/orca_input.hpp"
 
 namespace jink::orca {
@@ -107,7 +108,8 @@ TEST(ObstacleSearches, ThatEndByThemselvesAreNotCutShort)
         const Vec3 to = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
         const Mat3 turned = Eigen::AngleAxisf(random.uniform(0, 3), to).toRotationMatrix();
         const world::Obstacle box{0, geometry::make_box(random.uniform(5.0F, 90.0F) * to, Vec3(2, 1, 3), turned)};
-        const Obstacles scene{&box, 1};
+        const std::vector<world::Threat> threats = oracle::threats_of({&box, 1});
+        const Obstacles scene(threats);
         const detail::ObstacleView view{scene, {random.uniform(0.6F, 3.0F), 1.0F}, 1e-4F};
         WorkBudget budget(1'000'000);
         const detail::Sighting whole = view.obstacle(0, Vec3::Zero(), 1e6F, budget);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/orca/obstacle_view.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/obstacle_contract.hpp"
 
 namespace jink::orca {
@@ -31,7 +32,7 @@ TEST_F(ObstacleContract, WhatLiesAtTheReachIsLeftOut)
     int at_the_reach = 0;
     for (int step = -40; step <= 40; ++step) {
         own.position.x() = static_cast<float>(step) * 0x1p-22F;
-        const float distance = distance_of(obstacles, 0, own.position);
+        const float distance = distance_of(oracle::threats_of(obstacles), 0, own.position);
         EXPECT_EQ(std::isfinite(planes().margin), distance < 6.0F) << step;
         at_the_reach += distance == 6.0F ? 1 : 0;
     }
@@ -71,7 +72,9 @@ TEST_F(ObstacleContract, OfMoreThanThereIsRoomForAsNearTheFirstStay)
         add(geometry::make_sphere(centre, 1.0F));
     }
     // What is proven of them differs by rounding: in its order, the last two as near as each other.
-    const auto distance = [](const world::Obstacle& obstacle) { return distance_of({&obstacle, 1}, 0, Vec3::Zero()); };
+    const auto distance = [](const world::Obstacle& obstacle) {
+        return distance_of(oracle::threats_of({&obstacle, 1}), 0, Vec3::Zero());
+    };
     std::stable_sort(obstacles.begin(), obstacles.end(), [&](const world::Obstacle& one, const world::Obstacle& other) {
         return distance(one) < distance(other);
     });
@@ -103,7 +106,7 @@ TEST_F(ObstacleContract, AWayMayEndWhereTheMarginBegins)
     for (const bool box : {false, true}) {
         obstacles.clear();
         add(box ? geometry::make_box({5, 0, 0}, {1, 1, 1}) : geometry::make_sphere({5, 0, 0}, 1.0F));
-        const float free = distance_of(obstacles, 0, Vec3::Zero()) - 1.0F;
+        const float free = distance_of(oracle::threats_of(obstacles), 0, Vec3::Zero()) - 1.0F;
         EXPECT_NEAR(free, 3.0F, 1e-4F);
         EXPECT_TRUE(way({1, 0, 0}, free).clear) << box;
         EXPECT_EQ(way({1, 0, 0}, free).clear_until, free);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/orca/obstacle_way.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/oracle/points.hpp"
 
 // Obstacles about a vehicle at the origin, for tests of what is made of them.
@@ -26,7 +27,7 @@ protected:
     ObstaclePlanes planes(std::uint32_t units = kUnlimited)
     {
         WorkBudget budget(units);
-        const ObstaclePlanes found = obstacle_planes(obstacles, own, settings, budget);
+        const ObstaclePlanes found = obstacle_planes(oracle::threats_of(obstacles), own, settings, budget);
         exhausted = budget.exhausted();
         spent = budget.spent();
         return found;
@@ -34,7 +35,7 @@ protected:
     WayClearance way(const Vec3& velocity, Seconds length, std::uint32_t units = kUnlimited)
     {
         WorkBudget budget(units);
-        return clearance_along(obstacles, Vec3::Zero(), velocity, length, settings, budget);
+        return clearance_along(oracle::threats_of(obstacles), Vec3::Zero(), velocity, length, settings, budget);
     }
     void add(const geometry::Shape& shape)
     {

@@ -8,6 +8,7 @@
 
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_view.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/obstacle_contract.hpp"
 
 namespace jink::orca {
@@ -197,7 +198,8 @@ TEST_F(ObstacleContract, ASearchWithoutABudgetHasNoDirection)
 {
     add(geometry::make_capsule({3.5F, 0, -1}, {4.5F, 0, 1}, 0.25F));
     add_hull({{4, -1, -1}, {4, 1, -1}, {4, 0, 1}, {5, 0, 0}});
-    const detail::ObstacleView view{obstacles, {1.25F, 1.0F}, 1e-4F};
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const detail::ObstacleView view{threats, {1.25F, 1.0F}, 1e-4F};
     for (const std::size_t i : {0U, 1U}) {
         WorkBudget none(0);
         const detail::Sighting seen = view.obstacle(i, Vec3::Zero(), 9.0F, none);
@@ -216,7 +218,7 @@ TEST_F(ObstacleContract, UncertaintyMakesObstaclesLarger)
     for (const std::size_t i : {0U, 1U}) {
         obstacles[i].uncertainty = 0.25F;
         for (const float stretch : {0.5F, 1.0F, 2.0F}) {
-            const detail::ObstacleView view{obstacles, {stretch, 1.0F}, 1e-4F};
+            const detail::ObstacleView view{threats, {stretch, 1.0F}, 1e-4F};
             const float grown = 0.25F * std::max(1.0F, stretch);
             WorkBudget budget(kUnlimited);
             const detail::Sighting outside = view.obstacle(i, Vec3::Zero(), 9.0F, budget);
@@ -241,7 +243,8 @@ TEST_F(ObstacleContract, UncertaintyMakesObstaclesLarger)
 TEST_F(ObstacleContract, EnoughIsNotABound)
 {
     add(geometry::make_box({9, 2, 1}, {1, 3, 2}, Eigen::AngleAxisf(0.5F, Vec3(0, 0.6F, 0.8F)).toRotationMatrix()));
-    const Obstacles scene(obstacles);
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const Obstacles scene(threats);
     const detail::ObstacleView view{scene, {1.25F, 1.0F}, 1e-4F};
     WorkBudget budget(kUnlimited);
     const detail::Sighting exact = view.obstacle(0, Vec3::Zero(), 100.0F, budget);
@@ -285,7 +288,8 @@ TEST_F(ObstacleContract, TheBoundOfALargeObstacleIsNeverAboveItsDistance)
         const float radius = random.uniform(100.0F, 1000.0F);
         const Vec3 to = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
         add(geometry::make_sphere((radius + random.uniform(0.1F, 5.0F)) * to, radius));
-        const Obstacles scene(obstacles);
+        const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+        const Obstacles scene(threats);
         const detail::ObstacleView view{scene, {1.0F, 1.0F}, 1e-4F};
         const double distance =
             obstacles[0].shape.centre.cast<double>().norm() - static_cast<double>(obstacles[0].shape.radius);
@@ -302,8 +306,9 @@ TEST_F(ObstacleContract, BesideAFaceNothingIsClaimedThatIsNotSo)
         corners.emplace_back((c & 1) != 0 ? 5.0F : -5.0F, (c & 2) != 0 ? 5.0F : -5.0F, (c & 4) != 0 ? 5.0F : -5.0F);
     }
     add_hull(corners);
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
     for (const float stretch : {1.0F, 1.375F}) {
-        const detail::ObstacleView view{obstacles, {stretch, 1.0F}, 1e-4F};
+        const detail::ObstacleView view{threats, {stretch, 1.0F}, 1e-4F};
         for (float off = -1e-3F; off <= 1e-3F; off += 1.7e-5F) {
             const Vec3 point(0.3F, 5.0F + off, -0.2F);
             const float true_distance = point.y() - 5.0F;

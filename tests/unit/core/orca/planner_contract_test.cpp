@@ -80,7 +80,7 @@ TEST_F(OrcaInput, ABoundIsMetNoSoonerThanBrakingAndTheDelayNeed)
     EXPECT_NEAR(command().z(), -0.4F / 2.0F, 1e-3F) << "2 s of braking";
     scene.limits.max_acceleration = 50.0F;
     EXPECT_NEAR(command().z(), -0.4F, 1e-3F) << "a second at least";
-    settings.latency = 0.75F;
+    scene.rules.latency = 0.75F;
     EXPECT_NEAR(command().z(), -0.4F / 2.72F, 1e-3F) << "e times a delay of 1 s";
     scene.limits.velocity_lag = 0.5F;
     EXPECT_NEAR(command().z(), -0.4F / (2.72F * 1.25F), 1e-3F);
@@ -183,7 +183,7 @@ TEST_F(OrcaHover, ThePairsBrakingTimeIsWhatBrakingAndTheDelayNeed)
     EXPECT_TRUE(from(1.19F)) << "2 s of braking";
     EXPECT_FALSE(from(1.21F));
     scene.limits.max_acceleration = 5.0F;
-    settings.latency = 0.75F;
+    scene.rules.latency = 0.75F;
     EXPECT_TRUE(from(0.6F * 2.72F - 0.01F)) << "e times 1 s";
     EXPECT_FALSE(from(0.6F * 2.72F + 0.01F));
     settings.conflict = Conflict::present;
@@ -204,9 +204,9 @@ TEST_F(OrcaHover, TheConflictRegionIsLeftNoFasterThanTheDelayBears)
         return planner.last().broken[2];
     };
     EXPECT_NEAR(broken(), 0.3F, 2e-3F);
-    settings.latency = 0.75F;
+    scene.rules.latency = 0.75F;
     EXPECT_NEAR(broken(), 0.4F / 2.72F, 2e-3F);
-    settings.latency = 0.1F;
+    scene.rules.latency = 0.1F;
     track.position.x() = kKept - 0.2F;
     EXPECT_NEAR(broken(), 0.2F, 2e-3F) << "a second";
 }
@@ -238,7 +238,7 @@ TEST_F(OrcaInput, TheBiasIsThatOfTheSettings)
 /// Commands act after the latency and are followed with the lag of the velocity loop.
 TEST_F(OrcaInput, CommandsOnTheirWayAreFollowedWithTheLoopsLag)
 {
-    settings.latency = 0.4F;
+    scene.rules.latency = 0.4F;
     planner = Planner(settings);
     scene.track(Vec3(0, 60, 30), Vec3::Zero());
     world::Commanded sent{Vec3(0, 4, 0), scene.now - 0.3F};

@@ -25,7 +25,7 @@ TEST_F(OrcaInput, TheFloorIsKeptFromTheBottomOfTheCylinder)
     EXPECT_NEAR(command().z(), -0.4F, 1e-3F) << "met in a second";
     scene.own.sigma_position = 0.1F;
     EXPECT_NEAR(command().z(), -0.1F, 1e-3F) << "three standard deviations of the own place";
-    scene.k_sigma = 2.0F;
+    scene.rules.k_sigma = 2.0F;
     EXPECT_NEAR(command().z(), -0.2F, 1e-3F);
     scene.own.sigma_position = 0.0F;
     scene.own.velocity = Vec3(0, 0, -1);
@@ -188,7 +188,7 @@ TEST_F(OrcaInput, ATrackIsMetWhereItIsWhenTheCommandActs)
     EXPECT_NEAR(nearest(), 39.5F / kept, 1e-3F);
     track.velocity = Vec3(-10, 0, 0);
     EXPECT_NEAR(nearest(), 38.5F / kept, 1e-3F);
-    settings.latency = 0.5F;
+    scene.rules.latency = 0.5F;
     EXPECT_NEAR(nearest(), 32.5F / kept, 1e-3F);
     EXPECT_EQ(planner.last().nearest_id, track.id);
 }

@@ -164,14 +164,12 @@ TEST(OrcaPlanner, SettingsOutOfRangeChangeNothing)
         change(settings);
         return !planner.configure(settings);
     };
-    EXPECT_TRUE(refused([](Settings& s) { s.horizon = 0.5F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.conflict_ratio = 1.0F; }));
-    EXPECT_TRUE(refused([](Settings& s) { s.latency = -0.1F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.reach = std::numeric_limits<float>::quiet_NaN(); }));
     EXPECT_TRUE(refused([](Settings& s) { s.stale = 0.0F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.smoothing = 0; }));
     EXPECT_TRUE(refused([](Settings& s) { s.smoothing = CommandFilter::kMost + 1; }));
-    EXPECT_EQ(planner.settings().horizon, Settings{}.horizon);
+    EXPECT_EQ(planner.settings().smoothing, Settings{}.smoothing);
 }
 
 /// Shut in on all sides it makes no progress, and says so once another method can be asked.
@@ -222,7 +220,7 @@ TEST(OrcaPlanner, AnyVehicleHasSettings)
         scene.own.velocity = v.cruise_speed * Vec3(1, 0, 0);
         scene.track(Vec3(random.uniform(20, 80), random.uniform(-9, 9), 30), Vec3(random.uniform(-9, 9), 0, 0));
         Settings settings;
-        settings.latency = random.uniform(0.0F, 1.0F);
+        scene.rules.latency = random.uniform(0.0F, 1.0F);
         settings.smoothing = static_cast<std::uint16_t>(1 + random.below(CommandFilter::kMost));
         Planner planner(settings);
         world::Manoeuvre out;

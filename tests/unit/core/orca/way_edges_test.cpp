@@ -8,6 +8,7 @@
 
 #include "core/orca/obstacle_way.hpp"
 #include "core/orca/program.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 
 namespace jink::orca {
 namespace {
@@ -20,7 +21,7 @@ protected:
                                      const Vec3& from = Vec3::Zero()) const
     {
         WorkBudget budget(units);
-        return clearance_along(obstacles, from, velocity, 4.0F, settings, budget);
+        return clearance_along(oracle::threats_of(obstacles), from, velocity, 4.0F, settings, budget);
     }
     void add(const Vec3& centre)
     {

@@ -74,10 +74,8 @@ struct PlannerBench {
                            .limits = limits,
                            .airframe = airframe,
                            .reference = reference,
-                           .tracks = tracks,
-                           .obstacles = obstacles,
-                           .airspace = airspace};
-        static_cast<void>(threats.collect(s));
+                           .rules = rules};
+        static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;
     }
@@ -129,6 +127,7 @@ struct PlannerBench {
     std::vector<world::Track> tracks;
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
+    world::FlightRules rules;
     Planner planner{Settings{}};
     world::Manoeuvre out;
     std::uint32_t spent = 0;
@@ -151,7 +150,7 @@ protected:
         if (plan() != world::PlanStatus::found) {
             return Way::nothing;
         }
-        const Vec3 at = end() - own.position - settings.latency * own.velocity;
+        const Vec3 at = end() - own.position - rules.latency * own.velocity;
         const float y = at.x() > 9.0F ? at.y() : NAN;
         return std::abs(y) < 0.01F                    ? Way::straight
                : std::abs(y - 2.5F * 0.9066F) < 0.01F ? Way::left

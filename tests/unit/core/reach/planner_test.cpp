@@ -100,13 +100,13 @@ TEST_F(PlannerTest, SpeedScalesTheMovements)
 
 TEST_F(PlannerTest, WithoutLatencyThePathBeginsInItsFirstMovement)
 {
-    settings.latency = 0.0F;
+    rules.latency = 0.0F;
     ASSERT_EQ(plan(), PlanStatus::found);
     ASSERT_EQ(out.path.points.size(), 9U);
     EXPECT_EQ(out.path.points[0].position, own.position);
     EXPECT_NEAR(out.path.points[1].position.x(), 1.25F, 1e-4F);
     EXPECT_NEAR(out.path.duration(), 2.0F, 1e-6F);
-    settings.latency = 0.4F;
+    rules.latency = 0.4F;
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(out.path.points[1].position.x(), 2.0F, 1e-4F);
     EXPECT_NEAR(out.path.points[1].time, 0.4F, 1e-6F);

@@ -18,7 +18,7 @@ protected:
         test::SmallTree alone(kGrid);
         alone.chain(Movement::straight, 4, 1024);
         only(alone);
-        settings.room = 0.0F;
+        rules.clearance = 0.0F;
     }
     /// All of the way is flown where the own place is known, and where it is known to 0.1 m it is not: three times
     /// that.

@@ -21,7 +21,7 @@ struct ConflictLimits : testing::TestWithParam<bool> {
     {
         scene.limits.half_extents = Vec3(3, 2, 1);
         scene.own.sigma_position = 0.25F;
-        scene.k_sigma = 2.0F;
+        scene.rules.k_sigma = 2.0F;
         way_to(Vec3(100, 0, 0));
     }
     void way_to(const Vec3& end)
@@ -101,7 +101,7 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
     EXPECT_FALSE(beside(0, 2.51F));
     EXPECT_TRUE(beside(0, -2.49F));
     EXPECT_FALSE(beside(0, -2.51F));
-    scene.k_sigma = 4.0F;
+    scene.rules.k_sigma = 4.0F;
     EXPECT_TRUE(beside(3.99F, 0));
     EXPECT_FALSE(beside(4.01F, 0));
 }
@@ -110,7 +110,7 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
 TEST_P(ConflictLimits, DrawingApartIsJudgedWithTheSameUncertainty)
 {
     // Half a metre inside of 1 + 6 * 0.25 m, and 1.75 m outside of the body alone.
-    scene.k_sigma = 6.0F;
+    scene.rules.k_sigma = 6.0F;
     const auto starts = [&](float gap, const Vec3& velocity) {
         scene.tracks.clear();
         scene.track(Vec3(-3.0F - gap, 0, 0), velocity, 1.0F);
@@ -121,7 +121,7 @@ TEST_P(ConflictLimits, DrawingApartIsJudgedWithTheSameUncertainty)
     EXPECT_EQ(found.time_to_loss, 0.0F);
     EXPECT_TRUE(starts(2.0F, Vec3(5.2F, 0, 0)));
     EXPECT_FALSE(starts(2.6F, Vec3(5, 0, 0))) << "outside";
-    scene.k_sigma = 1.0F;
+    scene.rules.k_sigma = 1.0F;
     EXPECT_FALSE(starts(2.0F, Vec3(5, 0, 0))) << "outside of a smaller margin";
     EXPECT_TRUE(starts(1.0F, Vec3(5, 0, 0)));
 }

@@ -95,7 +95,7 @@ TEST_P(ConflictTies, AtItsEndInsideASphereThereIsNoConflict)
 TEST_P(ConflictTies, ABarrelThatTouchesExactlyIsMet)
 {
     scene.barrel(Vec2(30, 6), 4.5F);
-    scene.k_sigma = 1.0F;
+    scene.rules.k_sigma = 1.0F;
     float& clearance = scene.own.sigma_position;
     const auto distance = [&] {
         WorkBudget budget(kPlenty);
