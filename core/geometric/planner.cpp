@@ -37,9 +37,7 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
         problem.main_clearance = world::own_uncertainty(situation);
     }
-    if (way.ahead.route != nullptr) {
-        detail::follow_route(situation, way, conflict, problem);
-    }
+    detail::follow_route(situation, way, conflict, problem);
     return problem;
 }
 
@@ -58,7 +56,7 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     if (world::separation_at(situation, problem.frame.origin + way, latency, budget).margin < 0.0F) {
         return 0.0F;
     }
-    if (problem.ahead.route != nullptr) {
+    if (!problem.ahead.route.empty()) {
         return detail::move_start_along(situation, way, least, problem) ? latency : 0.0F;
     }
     problem.frame = make_path_frame(problem.frame.origin + way, left);
@@ -129,7 +127,7 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
             continue;
         }
         const bool in_a_row = attempt.kind == Attempt::Kind::in_a_row;
-        if (in_a_row && problem.ahead.route != nullptr) {
+        if (in_a_row && !problem.ahead.route.empty()) {
             continue;  // both of its parts are about a straight leg
         }
         Problem tried = problem;
@@ -161,8 +159,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     result_.candidates.clear();
     result_.chosen = 0;
     result_.cut_short = false;
-    const path::Route* const route = situation.reference.route;
-    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
+    if (!situation.reference.valid || situation.reference.route().empty() || !is_valid(settings_) ||
         situation.threats.data() == nullptr) {
         return PlanStatus::bad_input;
     }
