@@ -5,33 +5,16 @@
 #include <limits>
 
 #include "core/avoid/tick.hpp"
-#include "core/geometry/sweep.hpp"
 #include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 
 float cross_track(const world::Situation& s) noexcept
 {
-    if (s.reference.route != nullptr) {
-        return s.reference.route->abeam_of(s.own.position, s.reference.segment).off;
-    }
-    return geometry::point_segment_distance(s.own.position, s.reference.leg.start, s.reference.leg.end);
+    return s.reference.route().abeam_of(s.own.position, s.reference.segment).off;
 }
 
 namespace {
-
-/// Along the tangent where the vehicle is abeam of the route.
-ParallelOffset parallel_to_route(const world::Situation& s) noexcept
-{
-    const path::Route& route = *s.reference.route;
-    const path::Abeam abeam = route.abeam_of(s.own.position, s.reference.segment);
-    const Vec3 from_route = s.own.position - abeam.point.position;
-    ParallelOffset parallel;
-    parallel.left = route.length() - abeam.arc_length;
-    parallel.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
-    parallel.command = vehicle::clamped_velocity(abeam.point.along, s.reference.leg.speed, s.limits);
-    return parallel;
-}
 
 /// Time in which what is left to a bound of the airspace is used up at most.
 constexpr Seconds kBoundTime = 1.0F;
@@ -72,19 +55,15 @@ Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
 
 ParallelOffset parallel_offset(const world::Situation& s) noexcept
 {
-    if (s.reference.route != nullptr) {
-        return parallel_to_route(s);
-    }
-    const world::Leg& leg = s.reference.leg;
-    const Vec3 span = leg.end - leg.start;
-    const float length = span.norm();
+    const path::RouteView route = s.reference.route();
+    const float length = route.length();
     ParallelOffset parallel;
     if (length > 0.0F) {
-        const Vec3 forward = span / length;
-        const Vec3 from_start = s.own.position - leg.start;
-        parallel.left = length - from_start.dot(forward);
-        parallel.off = from_start - from_start.dot(forward) * forward;
-        parallel.command = vehicle::clamped_velocity(forward, leg.speed, s.limits);
+        const path::Abeam abeam = route.abeam_of(s.own.position, s.reference.segment);
+        const Vec3 from_route = s.own.position - abeam.point.position;
+        parallel.left = length - abeam.arc_length;
+        parallel.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
+        parallel.command = vehicle::clamped_velocity(abeam.point.along, s.reference.speed, s.limits);
     }
     return parallel;
 }

@@ -38,9 +38,7 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
         problem.main_clearance = world::own_uncertainty(situation);
     }
-    if (way.ahead.route != nullptr) {
-        detail::follow_route(situation, way, conflict, problem);
-    }
+    detail::follow_route(situation, way, conflict, problem);
     return problem;
 }
 
@@ -59,7 +57,7 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     if (world::separation_at(situation, problem.frame.origin + way, latency, budget).margin < 0.0F) {
         return 0.0F;
     }
-    if (problem.ahead.route != nullptr) {
+    if (!problem.ahead.route.empty()) {
         return detail::move_start_along(situation, way, least, problem) ? latency : 0.0F;
     }
     problem.frame = make_path_frame(problem.frame.origin + way, left);
@@ -130,7 +128,7 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
             continue;
         }
         const bool in_a_row = attempt.kind == Attempt::Kind::in_a_row;
-        if (in_a_row && problem.ahead.route != nullptr) {
+        if (in_a_row && !problem.ahead.route.empty()) {
             continue;  // both of its parts are about a straight leg
         }
         Problem tried = problem;

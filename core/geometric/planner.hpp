@@ -183,7 +183,7 @@ struct Problem {
 /// Where the leg or the reference is at D [m].
 [[nodiscard]] inline Vec3 collision_point(const Problem& problem) noexcept
 {
-    return problem.ahead.route == nullptr ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
+    return problem.ahead.route.empty() ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
                                           : collision_point_along(problem);
 }
 

@@ -170,7 +170,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     const bool wing = limits.kind == vehicle::VehicleKind::fixed_wing;
     FilterSettings out;
     MotionLimits& motion = out.limits;
-    motion.max_speed = std::max(limits.cruise_speed, std::max(s.reference.leg.speed, kLeastSpeed));
+    motion.max_speed = std::max(limits.cruise_speed, std::max(s.reference.speed, kLeastSpeed));
     motion.acceleration = limits.max_acceleration;
     motion.climb_acceleration = motion.sink_acceleration = limits.max_vertical_acceleration;
     motion.climb_rate = limits.max_climb;

@@ -33,20 +33,16 @@ bool fits(const ReachSet* set) noexcept
            set->grid.cells() <= kMaxReachCells && CellBalls::serves(set->grid);
 }
 
-/// The point of the reference that lies `ahead` [m] in front of the vehicle, or its end.
+/// The point of the route that lies `ahead` [m] in front of the vehicle, or its end; of a place, beyond it.
 Vec3 goal_of(const Situation& s, const world::Way& way, float ahead) noexcept
 {
-    if (s.reference.route != nullptr) {
-        return way.origin + way.direction * std::min(way.length, ahead);
-    }
-    const Vec3 leg = s.reference.leg.end - s.reference.leg.start;
-    const float length = leg.norm();
+    const path::RouteView route = s.reference.route();
+    const float length = route.length();
     if (!(length > 0.0F)) {
         return way.origin + way.direction * ahead;
     }
-    const Vec3 along = leg / length;
-    const float done = along.dot(s.own.position - s.reference.leg.start);
-    return s.reference.leg.start + along * std::clamp(done + ahead, 0.0F, length);
+    const float abeam = route.abeam_of(s.own.position, s.reference.segment).arc_length;
+    return route.at(std::min(abeam + ahead, length)).position;
 }
 
 /// Unit vector from the way towards the farthest point of the path.

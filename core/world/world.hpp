@@ -67,19 +67,43 @@ struct Airspace {
     std::span<const Barrel> barrels{};
 };
 
-/// A straight leg to fly.
+/// A straight leg to fly, as it is reported.
 struct Leg {
     Vec3 start = Vec3::Zero();
     Vec3 end = Vec3::Zero();
     float speed = 5.0F;  ///< [m/s], > 0
 };
 
-/// Where the vehicle means to go: along the leg, or at its speed along the route where there is one.
-struct Reference {
+/// Where the vehicle means to go: along a route. A leg is a route of one segment, which the reference holds itself; at
+/// the end of its route the vehicle hovers, or goes on straight where it cannot.
+class Reference {
+public:
+    Reference() noexcept = default;  ///< none: not valid
+    explicit Reference(const Leg& leg) noexcept
+        : valid(true), speed(leg.speed), leg_(path::straight_segment(leg.start, leg.end))
+    {
+    }
+    /// `route` outlives the Situation; it is not empty when a Situation is made of this.
+    Reference(const path::Route& route, float along, std::size_t from = 0) noexcept
+        : valid(true), speed(along), segment(from), route_(&route)
+    {
+    }
+    Reference(const path::Route&&, float, std::size_t = 0) = delete;
+
+    /// Valid as long as this and what it was made of.
+    [[nodiscard]] path::RouteView route() const& noexcept
+    {
+        return route_ != nullptr ? path::RouteView(*route_) : path::RouteView({&leg_, 1});
+    }
+    path::RouteView route() const&& = delete;
+
     bool valid = false;
-    Leg leg;                             ///< with a route its speed alone counts
-    const path::Route* route = nullptr;  ///< outlives the Situation, not empty
-    std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
+    float speed = 5.0F;       ///< along the route [m/s], > 0
+    std::size_t segment = 0;  ///< of the route: the one being flown, or one before it
+
+private:
+    path::RouteSegment leg_;
+    const path::Route* route_ = nullptr;  ///< null: leg_ is the route
 };
 
 enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
@@ -147,14 +171,13 @@ enum class PlanStatus : std::uint8_t {
     too_close,       ///< nearer to the main threat than the method can plan for
     none_available,  ///< every candidate touches something or cannot be flown
     budget_spent,    ///< the work budget ran out before an answer that may be trusted
-    bad_input,       ///< no leg, or settings out of range
+    bad_input,       ///< no reference, or settings out of range
 };
 
 /// Whether a method can plan in it: a reference, flight rules within their ranges, threats collected. O(1).
 [[nodiscard]] inline bool is_complete(const Situation& situation) noexcept
 {
-    const path::Route* const route = situation.reference.route;
-    return situation.reference.valid && (route == nullptr || !route->empty()) && is_valid(situation.rules) &&
+    return situation.reference.valid && !situation.reference.route().empty() && is_valid(situation.rules) &&
            situation.threats.data() != nullptr;
 }
 

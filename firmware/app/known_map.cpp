@@ -56,9 +56,9 @@ void KnownMap::append_to(world::ObstacleTable& table, const std::optional<link::
     }
     const float speed = own.velocity.norm();
     const float stop = vehicle::stopping_distance(speed, c.limits) + kReaction * speed;
-    const float own_size = c.limits.half_extents.norm() + c.k_sigma * own.sigma_position;
+    const float own_size = c.limits.half_extents.norm() + c.rules.k_sigma * own.sigma_position;
     const float fastest = std::max(speed, kFastest * c.limits.cruise_speed);
-    const float reach = own_size + std::max(stop, kLookaheads * c.supervisor.lookahead * fastest);
+    const float reach = own_size + std::max(stop, kLookaheads * c.rules.lookahead * fastest);
     const std::optional<world::MapPlace> placed = place(origin, own.position, reach);
     lacks_place_ = !placed;
     if (!placed) {

@@ -32,9 +32,8 @@ struct RandomSituation {
         const float heading = random.uniform(-kPi, kPi);
         const Vec3 along(std::cos(heading), std::sin(heading), random.uniform(-0.3F, 0.3F));
         limits.max_acceleration = random.uniform(3.0F, 8.0F);
-        reference.valid = true;
-        reference.leg = {own.position - 20.0F * along, own.position + 150.0F * along, random.uniform(3.0F, 8.0F)};
-        own.velocity = reference.leg.speed * along.normalized();
+        reference = world::Reference({own.position - 20.0F * along, own.position + 150.0F * along, random.uniform(3.0F, 8.0F)});
+        own.velocity = reference.speed * along.normalized();
         airspace.has_floor = true;
         airspace.floor = 2.0F;
         for (std::uint64_t i = 0, n = 1 + random.below(5); i < n; ++i) {

@@ -200,7 +200,7 @@ struct Case : RandomSituation {
         own.position = Vec3(0.0F, 0.0F, 30.0F);
         own.velocity = Vec3(5.0F, 0.0F, 0.0F);
         limits = {};
-        reference.leg = {Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F};
+        reference = world::Reference({Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F});
         tracks.clear();
         obstacles.clear();
     }

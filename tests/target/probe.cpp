@@ -96,8 +96,7 @@ struct Probe::World {
         own.position = vec(r.own_position);
         own.velocity = vec(r.own_velocity);
         own.sigma_position = r.own_sigma;
-        reference.valid = true;
-        reference.leg = {vec(r.leg_start), vec(r.leg_end), r.leg_speed};
+        reference = world::Reference({vec(r.leg_start), vec(r.leg_end), r.leg_speed});
         airspace.has_floor = (r.bounds & 1U) != 0;
         airspace.has_ceiling = (r.bounds & 2U) != 0;
         airspace.has_keep_in = (r.bounds & 4U) != 0;

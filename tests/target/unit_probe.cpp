@@ -188,8 +188,7 @@ void UnitProbe::scene(Work work) noexcept
     airspace_.floor = -60.0F;
     airspace_.ceiling = 60.0F;
     airspace_.keep_in_radius = 200.0F;
-    reference_.valid = true;
-    reference_.leg = {own_.position, own_.position + within(50.0F), 5.0F};
+    reference_ = world::Reference({own_.position, own_.position + within(50.0F), 5.0F});
     tracks_.clear();
     obstacles_.clear();
     path();

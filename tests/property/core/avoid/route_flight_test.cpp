@@ -38,8 +38,7 @@ Flown fly(const TwinRoute& twin, std::vector<world::Track> tracks, Seconds durat
     const path::RoutePoint start = twin.route.at(0.0F);
     own.position = start.position;
     own.velocity = 5.0F * start.along;
-    world::Reference reference{true, {}, &twin.route};
-    reference.leg.speed = 5.0F;
+    world::Reference reference(twin.route, 5.0F);
     const world::Airspace airspace;
     const vehicle::Airframe airframe;
     const world::FlightRules rules;

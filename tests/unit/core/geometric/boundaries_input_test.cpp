@@ -73,8 +73,7 @@ PlanStatus plan(const std::vector<world::Track>& tracks, WorkBudget& budget, Pla
     own.position = Vec3(0.0F, 0.0F, 50.0F);
     own.velocity = Vec3(5.0F, 0.0F, 0.0F);
     world::Reference reference;
-    reference.valid = true;
-    reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
+    reference = world::Reference({Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F});
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
     const world::Airspace airspace;

@@ -20,7 +20,7 @@ struct SphereAhead : Flight {
     explicit SphereAhead(float ahead)
     {
         limits.half_extents = Vec3::Constant(0.5F);
-        limits.cruise_speed = reference.leg.speed = 8.0F;
+        limits.cruise_speed = reference.speed = 8.0F;
         own.velocity = Vec3(8.0F, 0.0F, 0.0F);
         obstacles = {{1, geometry::make_sphere(Vec3(ahead, 0.0F, 50.0F), 0.5F)}};
     }
@@ -87,7 +87,7 @@ TEST(PlanBorder, BadInputIsRefusedWhereThereIsNoConflict)
     EXPECT_EQ(crowded.plan(), PlanStatus::bad_input);
     Flight without_route;
     const path::Route empty;
-    without_route.reference.route = &empty;
+    without_route.reference = world::Reference(empty, without_route.reference.speed);
     EXPECT_EQ(without_route.plan(), PlanStatus::bad_input);
     Flight misset;
     Settings settings;
@@ -104,7 +104,7 @@ TEST(PlanBorder, WorkThatHasRunOutBeforeLeavesNothingKnown)
     EXPECT_EQ(flight.plan(), PlanStatus::budget_spent);
     path::Route route;
     ASSERT_EQ(route.add_leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F)), path::RouteStatus::ok);
-    flight.reference.route = &route;
+    flight.reference = world::Reference(route, flight.reference.speed);
     EXPECT_EQ(flight.plan(), PlanStatus::budget_spent);
 }
 
@@ -124,7 +124,7 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
     bool before = false;
     for (float x = 10.94F; x < 10.96F; x += 2e-4F) {
         Flight flight;
-        flight.reference.route = &route;
+        flight.reference = world::Reference(route, flight.reference.speed);
         flight.rules.latency = 1.0F;
         flight.own.velocity = Vec3(1.0F, 1.0F, 0.0F);
         flight.add(Vec3(x, 0.0F, 50.0F), Vec3::Zero(), 4.0F);

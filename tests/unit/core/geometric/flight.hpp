@@ -30,8 +30,7 @@ struct Flight {
         own.stamp = now;
         own.position = Vec3(0.0F, 0.0F, 50.0F);
         own.velocity = Vec3(5.0F, 0.0F, 0.0F);
-        reference.valid = true;
-        reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
+        reference = world::Reference({Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F});
     }
 
     void add(const Vec3& position, const Vec3& velocity, float radius)
@@ -61,7 +60,7 @@ struct Flight {
 /// point.
 inline Problem problem_along(const Flight& flight, float distance)
 {
-    const world::Way way = world::way_along(flight.situation(), flight.own.position);
+    const world::Way way = world::way_of(flight.situation());
     Problem problem;
     problem.frame = make_path_frame(way.origin, way.direction);
     problem.ahead = way.ahead;

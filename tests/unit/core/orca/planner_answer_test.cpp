@@ -52,7 +52,7 @@ TEST_F(OrcaInput, HorizonsAreAsLongAsBrakingAndTheDelayNeed)
     EXPECT_FLOAT_EQ(horizon(), 2.0F) << "5 m/s at 5 m/s2, twice";
     scene.limits.max_acceleration = 1.0F;
     EXPECT_FLOAT_EQ(horizon(), 10.0F);
-    scene.reference.leg.speed = 8.0F;
+    scene.reference.speed = 8.0F;
     EXPECT_FLOAT_EQ(horizon(), 16.0F) << "a leg that is faster than the cruise";
     scene.limits.max_acceleration = 50.0F;
     scene.rules.latency = 1.0F;
@@ -97,7 +97,7 @@ TEST_F(OrcaInput, WhatIsNotANumberIsNoAnswer)
         for (int field = 0; field < 5; ++field) {
             const Scene good = scene;
             float* const places[] = {&scene.own.position.x(), &scene.own.position.z(), &scene.own.velocity.y(),
-                                     &scene.reference.leg.speed, &scene.limits.max_acceleration};
+                                     &scene.reference.speed, &scene.limits.max_acceleration};
             *places[field] = bad;
             planner = Planner(settings);
             EXPECT_NE(plan(), PlanStatus::found) << "field " << field << ", " << bad;

@@ -216,7 +216,7 @@ TEST(OrcaPlanner, AnyVehicleHasSettings)
         v.half_extents = Vec3(random.uniform(0.05F, 5.0F), random.uniform(0.05F, 5.0F), random.uniform(0.05F, 5.0F));
         v.kind = random.below(2) == 0 ? vehicle::VehicleKind::multirotor : vehicle::VehicleKind::fixed_wing;
         ASSERT_TRUE(vehicle::is_valid(v));
-        scene.reference.leg.speed = random.uniform(0.1F, v.cruise_speed);
+        scene.reference.speed = random.uniform(0.1F, v.cruise_speed);
         scene.own.velocity = v.cruise_speed * Vec3(1, 0, 0);
         scene.track(Vec3(random.uniform(20, 80), random.uniform(-9, 9), 30), Vec3(random.uniform(-9, 9), 0, 0));
         Settings settings;
@@ -226,7 +226,7 @@ TEST(OrcaPlanner, AnyVehicleHasSettings)
         world::Manoeuvre out;
         const PlanStatus status = plan(planner, scene, out);
         ASSERT_EQ(status, PlanStatus::found) << i;
-        ASSERT_LE(out.command.norm(), std::max(v.cruise_speed, scene.reference.leg.speed) * 1.0001F) << i;
+        ASSERT_LE(out.command.norm(), std::max(v.cruise_speed, scene.reference.speed) * 1.0001F) << i;
     }
 }
 

@@ -46,8 +46,7 @@ struct PlannerBench {
         own.position = Vec3(0.0F, 0.0F, 30.0F);
         own.velocity = Vec3(5.0F, 0.0F, 0.0F);
         limits.half_extents = Vec3(0.5F, 0.5F, 0.5F);
-        reference.valid = true;
-        reference.leg = {Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F};
+        reference = world::Reference({Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F});
     }
     PlannerBench(const PlannerBench&) = delete;
     PlannerBench& operator=(const PlannerBench&) = delete;
@@ -157,7 +156,7 @@ protected:
                : std::abs(y + 2.5F * 0.9066F) < 0.01F ? Way::right
                                                       : Way::other;
     }
-    void leg(const Vec3& start, const Vec3& to) { reference.leg = {start, to, 5.0F}; }
+    void leg(const Vec3& start, const Vec3& to) { reference = world::Reference({start, to, 5.0F}); }
 };
 
 /// Rates cells as it is told to, and remembers what it was asked.

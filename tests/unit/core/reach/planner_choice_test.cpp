@@ -76,17 +76,17 @@ TEST_F(PlannerChoice, ARouteIsFollowedAlongItsWayToItsEnd)
     path::Route route;
     ASSERT_EQ(route.add_leg(Vec3(0, 0, 30), Vec3(500, 300, 30)), path::RouteStatus::ok);
     leg(Vec3(0, 0, 30), Vec3(500, -300, 30));
-    reference.route = &route;
+    reference = world::Reference(route, reference.speed);
     EXPECT_EQ(way(), Way::left) << "not along the leg";
     // 6.4 degrees to the left: as seen from where the vehicle answers, the point 10.2 m on lies in the column to the
     // left (from 6.55 degrees on), one that is far does not.
     path::Route long_one;
     ASSERT_EQ(long_one.add_leg(Vec3(0, 0, 30), Vec3(500.0F, 56.1F, 30)), path::RouteStatus::ok);
-    reference.route = &long_one;
+    reference = world::Reference(long_one, reference.speed);
     EXPECT_EQ(way(), Way::left);
     path::Route ends;
     ASSERT_EQ(ends.add_leg(Vec3(-20, 0, 30), Vec3(6.5F, 0, 30)), path::RouteStatus::ok);
-    reference.route = &ends;
+    reference = world::Reference(ends, reference.speed);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(end().x(), 8.0F, 1e-3F);
 }

@@ -22,11 +22,11 @@ TEST_F(PlannerRefusal, WhatItIsNotForIsBadInputAndWritesNothing)
     EXPECT_TRUE(out.path.points.empty());
     reference.valid = true;
     path::Route route;
-    reference.route = &route;
+    reference = world::Reference(route, reference.speed);
     EXPECT_EQ(plan(), PlanStatus::bad_input) << "an empty route";
     ASSERT_EQ(route.add_leg(Vec3(-20, 0, 30), Vec3(200, 0, 30)), path::RouteStatus::ok);
     EXPECT_EQ(plan(), PlanStatus::found);
-    reference.route = nullptr;
+    leg(Vec3(-20, 0, 30), Vec3(200, 0, 30));
     for (std::size_t i = 0; i < kMaxTracks; ++i) {
         add_track(Vec3(-1000, 0, 30), Vec3::Zero(), 0.5F);
     }

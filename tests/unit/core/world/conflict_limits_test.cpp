@@ -29,7 +29,9 @@ struct ConflictLimits : testing::TestWithParam<bool> {
         scene.leg(Vec3::Zero(), end, 5.0F);
         route = path::Route();
         EXPECT_EQ(route.add_leg(Vec3::Zero(), end), path::RouteStatus::ok);
-        scene.reference.route = GetParam() ? &route : nullptr;
+        if (GetParam()) {
+            scene.reference = Reference(route, scene.reference.speed);
+        }
     }
     bool meets(Seconds lookahead = 10.0F, std::uint32_t units = kPlenty)
     {
@@ -261,7 +263,7 @@ TEST_P(ConflictLimits, InsideAMarginAShortWayIsJudgedToItsEnd)
     way_to(Vec3(2.5F, 0, 0));                                           // half a second
     EXPECT_FALSE(meets());
     way_to(Vec3(100, 0, 0));
-    scene.reference.leg.speed = 1.0F;
+    scene.reference.speed = 1.0F;
     EXPECT_TRUE(meets());
     EXPECT_EQ(found.time_to_loss, 0.0F);
 }
@@ -275,7 +277,7 @@ TEST(ConflictAroundCorners, TheFirstApproachToAnObstacleIsTold)
     ASSERT_EQ(route.add_leg(Vec3(30, 0, 0), Vec3(30, 1, 0)), path::RouteStatus::ok);
     ASSERT_EQ(route.add_leg(Vec3(30, 1, 0), Vec3(60, 1, 0)), path::RouteStatus::ok);
     scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-    scene.reference.route = &route;
+    scene.reference = world::Reference(route, scene.reference.speed);
     scene.obstacle(geometry::make_sphere(Vec3(36, -1, 0), 5.5F));
     Conflict found;
     WorkBudget budget(kPlenty);

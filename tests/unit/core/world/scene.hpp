@@ -40,8 +40,7 @@ struct Scene {
 
     void leg(const Vec3& start, const Vec3& end, float speed = 5.0F)
     {
-        reference.valid = true;
-        reference.leg = {start, end, speed};
+        reference = world::Reference({start, end, speed});
     }
     /// A track without any uncertainty, seen just now.
     Track& track(const Vec3& position, const Vec3& velocity, float radius = 1.0F)
