@@ -84,6 +84,11 @@ inline constexpr std::size_t kMaxSameId = 4;
 inline constexpr std::size_t kMaxObstacles = JINK_MAX_OBSTACLES;
 static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
 
+/// Places among the obstacles that are kept for a map, where there is one; sensed obstacles then have the others. When
+/// the map has more pieces within reach, boxes that hold several of them stand for those farthest away (append_map):
+/// nothing is lost, more than needed may be closed.
+inline constexpr std::size_t kMaxMapObstacles = kMaxObstacles < 4 ? 1 : kMaxObstacles / 4;
+
 /// Closed volumes and storm cells at once (Gomola 6.6.5). When there are more, the two farthest become one that holds
 /// both, and BarrelTable::merged() counts it: nothing is lost, more than needed may be closed.
 inline constexpr std::size_t kMaxBarrels = JINK_MAX_BARRELS;

@@ -54,7 +54,7 @@ void StateMachine::fly(const world::Manoeuvre& manoeuvre, Tick& tick) const noex
     tick.out.velocity = manoeuvre.kind == world::ManoeuvreKind::velocity
                             ? manoeuvre.command
                             : path::follow(manoeuvre.path, tick.s.now - manoeuvre.start, tick.s.own.position,
-                                           tick.s.limits, settings_.gains);
+                                           tick.s.limits, tick.s.rules.gains);
 }
 
 /// A velocity is good for one update: the methods are asked again. False where they have no answer: then the flown

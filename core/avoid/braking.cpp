@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/avoid/tick.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 namespace {

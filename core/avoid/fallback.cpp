@@ -46,7 +46,7 @@ public:
             return -world::kSeparationCap;
         }
         path::predict_velocity_command(s_.own, command, horizon_, later_step_, s_.limits, flight_);
-        const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, settings_.escape,
+        const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, s_.rules.escape,
                                                                 {cut, world::kSeparationCap, nearest_});
         nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
         return least.margin;

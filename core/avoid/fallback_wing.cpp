@@ -77,7 +77,7 @@ Fallback better_turn(const world::Situation& s, const Fallback* previous, const 
     for (const float direction : {1.0F, -1.0F}) {
         const float margin =
             predict_turn(s, direction, settings, budget, flight)
-                ? world::least_separation(s, flight, settings.fallback_horizon, budget, settings.escape).margin
+                ? world::least_separation(s, flight, settings.fallback_horizon, budget, s.rules.escape).margin
                 : -world::kSeparationCap;
         const bool kept = previous != nullptr && previous->kind == world::ManoeuvreKind::hold_turn &&
                           previous->command.z() * direction > 0.0F;
@@ -128,7 +128,7 @@ float detail::wing_margin(const world::Situation& s, const Vec3& command, Second
     Prediction flight;
     const auto turn = [&](const vehicle::VehicleState& state) { return towards(state, s.limits, command); };
     return is_finite(command) && predict_wing(s, horizon, settings, budget, turn, flight)
-               ? world::least_separation(s, flight, horizon, budget, settings.escape).margin
+               ? world::least_separation(s, flight, horizon, budget, s.rules.escape).margin
                : -world::kSeparationCap;
 }
 

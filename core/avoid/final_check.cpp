@@ -90,13 +90,13 @@ world::Separation check_manoeuvre(const world::Situation& situation, const world
         if (!budget.spend(detail::prediction_units(rest, path::kSetpointPeriod, units::kFlightPart))) {
             return contact;
         }
-        path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, settings.gains,
+        path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, s.rules.gains,
                              kFlightPoints, flight);
     }
     if (!predict_tail(s, settings, budget, flight)) {
         return contact;
     }
-    return world::least_separation(s, flight, std::min(flight.path.duration(), horizon), budget, settings.escape,
+    return world::least_separation(s, flight, std::min(flight.path.duration(), horizon), budget, s.rules.escape,
                                    cutoff);
 }
 

@@ -23,7 +23,7 @@ void StateMachine::choose_nominal(Tick& tick) noexcept
 {
     Guidance& out = tick.out;
     world::Conflict conflict;
-    if (world::main_conflict(tick.s, tick.nominal, settings_.lookahead, tick.budget, conflict)) {
+    if (world::main_conflict(tick.s, tick.nominal, tick.s.rules.lookahead, tick.budget, conflict)) {
         out.conflict = conflict;
     }
     if (tick.in_control || tick.other == nullptr) {
@@ -31,7 +31,7 @@ void StateMachine::choose_nominal(Tick& tick) noexcept
     }
     const world::Way nominal = world::way_of(*tick.other);
     conflict = {};
-    const bool found = world::main_conflict(*tick.other, nominal, settings_.lookahead, tick.budget, conflict) &&
+    const bool found = world::main_conflict(*tick.other, nominal, tick.s.rules.lookahead, tick.budget, conflict) &&
                        counts(tick, conflict);
     const Seconds ahead = conflict_on_ == ConflictOn::other ? -kClearlyFirst : kClearlyFirst;
     const bool first = found && (!out.conflict || conflict.time_to_loss + ahead < out.conflict->time_to_loss);
@@ -54,7 +54,7 @@ bool StateMachine::may_give_back(Tick& tick) noexcept
     }
     world::Conflict conflict;
     const world::Way nominal = world::way_of(*tick.other);
-    tick.out.other_conflict = world::main_conflict(*tick.other, nominal, settings_.lookahead, tick.budget, conflict) &&
+    tick.out.other_conflict = world::main_conflict(*tick.other, nominal, tick.s.rules.lookahead, tick.budget, conflict) &&
                               counts(tick, conflict);
     diagnostics_.kept_control += tick.out.other_conflict ? 1U : 0U;
     return !tick.out.other_conflict;

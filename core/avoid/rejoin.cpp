@@ -5,32 +5,16 @@
 #include <limits>
 
 #include "core/avoid/tick.hpp"
-#include "core/geometry/sweep.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 
 float cross_track(const world::Situation& s) noexcept
 {
-    if (s.reference.route != nullptr) {
-        return s.reference.route->abeam_of(s.own.position, s.reference.segment).off;
-    }
-    return geometry::point_segment_distance(s.own.position, s.reference.leg.start, s.reference.leg.end);
+    return s.reference.route().abeam_of(s.own.position, s.reference.segment).off;
 }
 
 namespace {
-
-/// Along the tangent where the vehicle is abeam of the route.
-ParallelOffset parallel_to_route(const world::Situation& s) noexcept
-{
-    const path::Route& route = *s.reference.route;
-    const path::Abeam abeam = route.abeam_of(s.own.position, s.reference.segment);
-    const Vec3 from_route = s.own.position - abeam.point.position;
-    ParallelOffset parallel;
-    parallel.left = route.length() - abeam.arc_length;
-    parallel.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
-    parallel.command = vehicle::clamped_velocity(abeam.point.along, s.reference.leg.speed, s.limits);
-    return parallel;
-}
 
 /// Time in which what is left to a bound of the airspace is used up at most.
 constexpr Seconds kBoundTime = 1.0F;
@@ -71,19 +55,15 @@ Vec3 kept_inside(const world::Situation& s, const Vec3& velocity) noexcept
 
 ParallelOffset parallel_offset(const world::Situation& s) noexcept
 {
-    if (s.reference.route != nullptr) {
-        return parallel_to_route(s);
-    }
-    const world::Leg& leg = s.reference.leg;
-    const Vec3 span = leg.end - leg.start;
-    const float length = span.norm();
+    const path::RouteView route = s.reference.route();
+    const float length = route.length();
     ParallelOffset parallel;
     if (length > 0.0F) {
-        const Vec3 forward = span / length;
-        const Vec3 from_start = s.own.position - leg.start;
-        parallel.left = length - from_start.dot(forward);
-        parallel.off = from_start - from_start.dot(forward) * forward;
-        parallel.command = vehicle::clamped_velocity(forward, leg.speed, s.limits);
+        const path::Abeam abeam = route.abeam_of(s.own.position, s.reference.segment);
+        const Vec3 from_route = s.own.position - abeam.point.position;
+        parallel.left = length - abeam.arc_length;
+        parallel.off = from_route - from_route.dot(abeam.point.along) * abeam.point.along;
+        parallel.command = vehicle::clamped_velocity(abeam.point.along, s.reference.speed, s.limits);
     }
     return parallel;
 }
@@ -131,9 +111,9 @@ bool StateMachine::keep_parallel(Tick& tick) noexcept
         parallel.off.norm() <= settings_.on_leg || parallel.left <= world::kRejoinLookahead) {
         return false;
     }
-    const float margin = command_margin(tick.s, parallel.command, settings_.lookahead, settings_, tick.budget);
+    const float margin = command_margin(tick.s, parallel.command, tick.s.rules.lookahead, settings_, tick.budget);
     const bool kept = phase_ == Phase::parallel_offset;
-    if (!(margin >= (kept ? 0.0F : settings_.clearance_buffer))) {
+    if (!(margin >= (kept ? 0.0F : tick.s.rules.clearance))) {
         return false;
     }
     diagnostics_.holds += kept ? 0U : 1U;
@@ -154,7 +134,7 @@ bool StateMachine::keep_course(Tick& tick) noexcept
         world::of_kind(tick.s.threats, world::ThreatKind::track).empty()) {
         return false;
     }
-    const Seconds ahead = std::min(settings_.lookahead, kTurning);
+    const Seconds ahead = std::min(tick.s.rules.lookahead, kTurning);
     const Vec3 back = kept_inside(tick.s, tick.nominal.direction * tick.nominal.speed);
     if (command_margin(tick.s, back, ahead, settings_, tick.budget) >= 0.0F) {
         return false;

@@ -6,16 +6,14 @@ namespace jink::avoid {
 bool is_valid(const Settings& s) noexcept
 {
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
-    return within(s.lookahead, 1.0F, 60.0F) && within(s.commit, 0.5F, 60.0F) &&
-           within(s.clearance_buffer, 0.0F, 10.0F) && within(s.prediction_step, 0.02F, 0.5F) &&
+    return within(s.commit, 0.5F, 60.0F) &&
+           within(s.prediction_step, 0.02F, 0.5F) &&
            within(s.fallback_horizon, 1.0F, 20.0F) && within(s.reserve, 0.0F, 5.0F) && within(s.settle, 0.0F, 10.0F) &&
            within(s.clear_extra, 0.0F, 10.0F) && within(s.on_leg, 0.05F, 50.0F) &&
            within(s.blocked_patience, 0.0F, 600.0F) && within(s.back_off_speed, 0.0F, 5.0F) &&
            within(s.back_off_limit, 0.0F, 600.0F) && within(s.least_control, 0.0F, 60.0F) &&
            within(s.patience, 0.0F, 600.0F) && s.budget >= 1000 && within(s.clutter_radius, 1.0F, 200.0F) &&
-           s.plan_budget >= 100 && s.plan_budget <= s.budget && s.kept_for_next <= s.plan_budget &&
-           within(s.gains.position_gain, 0.0F, 10.0F) && within(s.gains.max_correction, 0.0F, 10.0F) &&
-           within(s.escape.slack, 0.0F, 1.0F) && within(s.escape.speed, 0.0F, 10.0F);
+           s.plan_budget >= 100 && s.plan_budget <= s.budget && s.kept_for_next <= s.plan_budget;
 }
 
 }  // namespace jink::avoid

@@ -8,8 +8,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/path/follower.hpp"
-#include "core/world/separation.hpp"
+#include "core/base/time.hpp"
 
 namespace jink::avoid {
 
@@ -54,7 +53,7 @@ private:
     std::array<std::uint8_t, kMaxMethods> ids_{};
 };
 
-/// Of the supervisor.
+/// Of the supervisor alone; what it shares with the methods is in world::FlightRules.
 struct Settings {
     /// The methods that are asked. Empty: all of the supervisor's, in its own order. Ids of methods that the supervisor
     /// does not have are skipped.
@@ -63,10 +62,7 @@ struct Settings {
     /// Clutter: so many tracks and obstacles within `clutter_radius`; 0: never.
     std::uint16_t clutter = 0;
     float clutter_radius = 20.0F;  ///< 1..200 [m]
-    Seconds lookahead = 8.0F;      ///< conflicts are predicted this far ahead, 1..60 [s]
     Seconds commit = 5.0F;         ///< a loss of separation nearer than this is planned around, 0.5..60 [s]
-    /// Plans keep this much more than the margin, so that noise does not undo them, 0..10 [m].
-    float clearance_buffer = 0.4F;
     Seconds prediction_step = 0.2F;   ///< of the predicted flight, 0.02..0.5 [s]
     Seconds fallback_horizon = 4.0F;  ///< over which fallbacks are compared, 1..20 [s]
     Seconds reserve = 0.75F;          ///< on top of the stopping time, before which nothing is forced, 0..5 [s]
@@ -87,8 +83,6 @@ struct Settings {
     /// Of `plan_budget` kept back for each method that is asked after another one [work units].
     std::uint32_t kept_for_next = 8000;
     std::uint32_t budget = 60000;  ///< per update [work units]: what bounds a step's time on every target
-    path::FollowerGains gains;
-    world::EscapeRule escape;
 };
 /// Whether every setting lies within its range. O(1).
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;

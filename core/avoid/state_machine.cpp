@@ -86,7 +86,7 @@ void StateMachine::update_clearness(Tick& tick) noexcept
     free_since_ = free_since_.value_or(tick.s.now);
     const Inflated inflated(tick.s, settings_.clear_extra);
     world::Conflict unused;
-    if (world::main_conflict(inflated.situation, tick.nominal, settings_.lookahead, tick.budget, unused)) {
+    if (world::main_conflict(inflated.situation, tick.nominal, tick.s.rules.lookahead, tick.budget, unused)) {
         clear_since_.reset();
     } else {
         clear_since_ = clear_since_.value_or(tick.s.now);
@@ -122,7 +122,7 @@ bool StateMachine::is_urgent(const Tick& tick, Seconds time_to_loss) const noexc
 /// Asks the methods for an answer.
 bool StateMachine::plan(Tick& tick) noexcept
 {
-    const Inflated inflated(tick.s, settings_.clearance_buffer);
+    const Inflated inflated(tick.s, tick.s.rules.clearance);
     WorkBudget budget(std::min(settings_.plan_budget, tick.budget.left()));
     float margin = 0.0F;
     tick.out.plan_status = tick.planning.plan(tick.planning.self, {inflated.situation, tick.s}, settings_, budget,
@@ -200,8 +200,9 @@ Guidance StateMachine::update(const world::Situation& given, const world::Refere
     transitions_ = 0;
     update_control(given.now, in_control);
     world::Situation first = given;
-    static_cast<void>(threats_.collect(given));
-    first.threats = threats_.all();
+    if (!world::is_valid(given.rules)) {
+        first.threats = {};  // nothing is known to be clear
+    }
     first.flying = flying();
     first.commanded = in_control && commanded_ ? &*commanded_ : nullptr;
     const world::Situation second = world::with_reference(first, other != nullptr ? *other : given.reference);

@@ -7,13 +7,12 @@
 #include "core/avoid/final_check.hpp"
 #include "core/avoid/phase.hpp"
 #include "core/world/method.hpp"
-#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 
 /// The two situations that a method may be asked in.
 struct Situations {
-    const world::Situation& inflated;  ///< for a vehicle larger by Settings::clearance_buffer to every side
+    const world::Situation& inflated;  ///< for a vehicle larger by FlightRules::clearance to every side
     const world::Situation& plain;     ///< for the vehicle as it is
 };
 
@@ -89,7 +88,6 @@ private:
 
     Settings settings_;
     Diagnostics diagnostics_;
-    world::ThreatSet threats_;       ///< of this update
     std::uint32_t transitions_ = 0;  ///< of this update, as Guidance::transitions
     Phase phase_ = Phase::watching;
     ConflictOn conflict_on_ = ConflictOn::none;

@@ -7,23 +7,22 @@
 
 namespace jink::avoid {
 
-/// Distance from the leg [m], or from the route. O(1), O(segments).
+/// Distance from the route [m]. O(segments).
 [[nodiscard]] float cross_track(const world::Situation& situation) noexcept;
 
-/// Flight parallel to the leg from where the vehicle is.
+/// Flight parallel to the route from where the vehicle is, along the tangent abeam.
 struct ParallelOffset {
-    Vec3 off = Vec3::Zero();      ///< from the leg's line to the vehicle [m]
+    Vec3 off = Vec3::Zero();      ///< from the tangent to the vehicle [m]
     Vec3 command = Vec3::Zero();  ///< [m/s]
-    float left = 0.0F;            ///< until abeam of the leg's end [m]
+    float left = 0.0F;            ///< until abeam of the route's end [m]
 };
 
-/// A leg without a length gives zeros. With a route: along its tangent abeam of the vehicle, left until its end. O(1),
-/// O(segments).
+/// A route without a length gives zeros. O(segments).
 [[nodiscard]] ParallelOffset parallel_offset(const world::Situation& situation) noexcept;
 
 /// Whether the vehicle is as near to its leg as the bounds of the airspace let it be. Bounds take `removed` [m/s] off
 /// its velocity back and leave `left` [m/s]. True above or below the leg, at the keep-in radius, or where floor or
-/// ceiling leave next to nothing: above the continuation of a steep leg below the floor. O(1), O(segments).
+/// ceiling leave next to nothing: above the continuation of a steep leg below the floor. O(segments).
 [[nodiscard]] bool is_held_by_bounds(const world::Situation& situation, const Vec3& removed, const Vec3& left,
                                      float on_leg) noexcept;
 

@@ -50,8 +50,8 @@ ReferenceAhead::ReferenceAhead(const Problem& problem, const vehicle::VehicleLim
 {
     const path::RouteAhead& ahead = problem.ahead;
     const Vec3 straight = problem.frame.axes.col(0);
-    round(ahead.straight, ahead.route->at(ahead.joined_at + kPastJoint).along - straight, problem.speed, limits);
-    const std::span<const path::RouteSegment> segments = ahead.route->segments();
+    round(ahead.straight, ahead.route.at(ahead.joined_at + kPastJoint).along - straight, problem.speed, limits);
+    const std::span<const path::RouteSegment> segments = ahead.route.segments();
     float joint = 0.0F;
     for (std::size_t i = 0; i + 1 < segments.size(); ++i) {
         joint += segments[i].length;
@@ -202,7 +202,7 @@ void reach_along(const Problem& problem, float length, float widest, float slowe
     reach.high += aside;
     // Outside of a bend a curve is longer by its offset times the turn; no corner turns further than back.
     float turn = 0.0F;
-    for (const path::RouteSegment& segment : problem.ahead.route->segments()) {
+    for (const path::RouteSegment& segment : problem.ahead.route.segments()) {
         turn += (segment.is_arc() ? segment.length / segment.radius : 0.0F) + kPi;
     }
     longest += widest * turn / slowest;

@@ -12,7 +12,7 @@ using world::PlanStatus;
 
 bool Run::can_be_flown(const CandidateShape& shape) const noexcept
 {
-    if (problem_.ahead.route != nullptr) {
+    if (!problem_.ahead.route.empty()) {
         return is_flyable_along(shape);
     }
     return shape.family == Family::wait ||  // it is made of what the vehicle can do

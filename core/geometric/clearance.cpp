@@ -78,7 +78,7 @@ Seconds Clearance::sweep_end(const world::Threat& track) const noexcept
 
 float Clearance::shrink_to_clear(float start_margin) const noexcept
 {
-    return settings_.escape_from_margin && start_margin < 0.0F ? settings_.escape.slack - start_margin : 0.0F;
+    return settings_.escape_from_margin && start_margin < 0.0F ? problem_.rules.escape.slack - start_margin : 0.0F;
 }
 
 /// Parts of a segment so short that a surface growing back takes half the slack at most in each.
@@ -86,7 +86,7 @@ int Clearance::escape_parts(Seconds duration) const noexcept
 {
     constexpr Seconds kLeast = 0.02F;
     const Seconds longest =
-        settings_.escape.speed > 0.0F ? 0.5F * settings_.escape.slack / settings_.escape.speed : duration;
+        problem_.rules.escape.speed > 0.0F ? 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed : duration;
     return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
 }
 

@@ -151,7 +151,7 @@ private:
     [[nodiscard]] float shrink_to_clear(float start_margin) const noexcept;
     [[nodiscard]] float shrink_at(float shrunk, Seconds t) const noexcept
     {
-        return shrunk > 0.0F ? std::max(0.0F, shrunk - settings_.escape.speed * t) : 0.0F;
+        return shrunk > 0.0F ? std::max(0.0F, shrunk - problem_.rules.escape.speed * t) : 0.0F;
     }
     [[nodiscard]] int escape_parts(Seconds duration) const noexcept;
     [[nodiscard]] bool leaves(const View& view, std::size_t i, const Solid& solid, WorkBudget& budget) const noexcept;

@@ -31,9 +31,9 @@ bool brakes_at_end(const vehicle::VehicleLimits& limits) noexcept
     return limits.kind == vehicle::VehicleKind::multirotor;
 }
 
-float fastest_goal(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
+float fastest_goal(const Problem& problem, const vehicle::VehicleLimits& limits) noexcept
 {
-    const float commanded = problem.speed + settings.gains.max_correction;
+    const float commanded = problem.speed + problem.rules.gains.max_correction;
     const bool wing = limits.kind == vehicle::VehicleKind::fixed_wing;
     return wing ? std::max(commanded, limits.cruise_speed + std::max(limits.max_climb, limits.max_descent)) : commanded;
 }
@@ -41,10 +41,10 @@ float fastest_goal(const Problem& problem, const Settings& settings, const vehic
 }  // namespace
 
 Flown::Flown(const Problem& problem, const Settings& settings, const vehicle::VehicleLimits& limits) noexcept
-    : limits_(limits), settings_(settings), clearance_(problem, settings, limits),
+    : limits_(limits), gains_(problem.rules.gains), clearance_(problem, settings, limits),
       start_velocity_(problem.start_velocity),
       // A velocity is always between the one before and what a command leads to: the path's, and a correction.
-      fastest_(kSpeedTolerance * std::max(start_velocity_.norm(), fastest_goal(problem, settings, limits))),
+      fastest_(kSpeedTolerance * std::max(start_velocity_.norm(), fastest_goal(problem, limits))),
       fading_(limits.velocity_lag)
 {
 }
@@ -56,7 +56,7 @@ bool Flown::fly(const path::TimedPath& path, WorkBudget& budget) noexcept
     state.velocity = start_velocity_;
     const Seconds duration = path.duration();
     const Seconds step = std::max(kFlightStep, duration / static_cast<float>(kMaxPathPoints - kTailPoints - 1));
-    path::detail::Flight flight(state, path, 0.0F, step, limits_, settings_.gains, {kSettled, kSettledPart});
+    path::detail::Flight flight(state, path, 0.0F, step, limits_, gains_, {kSettled, kSettledPart});
     const std::size_t tail = brakes_at_end(limits_) ? kTailPoints - 1 : 0;
     if (units::kCandidatePart * (flight.all_parts() + tail) + units::kCandidateStep * flight.steps() > budget.left()) {
         static_cast<void>(budget.spend(budget.left()));

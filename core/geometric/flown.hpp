@@ -45,7 +45,7 @@ private:
     void brake(WorkBudget& budget) noexcept;
 
     const vehicle::VehicleLimits& limits_;
-    const Settings& settings_;
+    const path::FollowerGains& gains_;
     Clearance clearance_;
     const Vec3 start_velocity_;
     float fastest_;  ///< of any flight [m/s]

@@ -32,7 +32,7 @@ Wait Run::waiting(float share, Seconds until) const noexcept
 
 void Run::build(const CandidateShape& shape) noexcept
 {
-    if (problem_.ahead.route != nullptr) {
+    if (!problem_.ahead.route.empty()) {
         build_along(shape);
         return;
     }
@@ -96,7 +96,7 @@ void Run::generate() noexcept
     for (int i = 0; i < planes; ++i) {
         sides_[static_cast<std::size_t>(i)] = plane_direction(problem_.frame, angle_of(i, planes));
     }
-    if (problem_.ahead.route == nullptr) {
+    if (problem_.ahead.route.empty()) {
         generate_curves(problem_);
     } else {
         generate_curves(seen_at_collision(problem_, limits_));
@@ -130,7 +130,7 @@ void Run::prepare() noexcept
         flown_.defer(far_);
     }
     Extent reach{end.cwiseMin(0.0F) - aside, end.cwiseMax(0.0F) + aside};
-    if (problem_.ahead.route != nullptr) {
+    if (!problem_.ahead.route.empty()) {
         static_cast<void>(budget_.spend(units::kRoute));
         reach_along(problem_, length, widest, slowest, reach, longest);
     }

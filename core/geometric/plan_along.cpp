@@ -20,20 +20,23 @@ constexpr float kFarthestEnd =
 void follow_route(const world::Situation& situation, const world::Way& way, const world::Conflict& conflict,
                   Problem& problem) noexcept
 {
+    if (way.ahead.joined_at >= way.ahead.route.length()) {
+        return;  // straight to the route's end, past which curves go on straight
+    }
     if (way.ahead.straight >= kFarthestEnd * conflict.way_at_closest) {
         problem.straight = way.ahead.straight;
         return;
     }
     problem.ahead = way.ahead;
     problem.distance = conflict.way_at_closest;
-    problem.speed = situation.reference.leg.speed;
+    problem.speed = situation.reference.speed;
     problem.main_centre_offset = conflict.threat_at_closest - collision_point(problem);
 }
 
 bool move_start_along(const world::Situation& situation, const Vec3& by, float least, Problem& problem) noexcept
 {
     const Vec3 start = problem.frame.origin + by;
-    const world::Way way = world::way_along(situation, start);
+    const world::Way way = world::way_from(situation, start);
     const Vec3 threat = collision_point(problem) + problem.main_centre_offset;
     const float on_route = problem.distance - problem.ahead.straight + problem.ahead.joined_at;
     const float distance = on_route >= way.ahead.joined_at ? way.ahead.straight + (on_route - way.ahead.joined_at)

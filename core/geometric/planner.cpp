@@ -18,28 +18,27 @@ static_assert(world::AvoidanceMethod<Planner>);
 
 Problem problem_of(const Situation& situation, const world::Way& way, const world::Conflict& conflict) noexcept
 {
+    const world::Threat& main = world::of_kind(situation.threats, conflict.threat.kind)[conflict.threat.index];
     Problem problem;
     problem.frame = make_path_frame(way.origin, way.direction);
     problem.distance = (conflict.own_at_closest - way.origin).norm();
     problem.main_radius = std::max(conflict.radius_at_closest, Planner::kLeastMainRadius);
     if (conflict.threat.kind == world::ThreatKind::track) {
-        problem.body_radius = std::max(situation.tracks[conflict.threat.index].radius, Planner::kLeastMainRadius);
+        problem.body_radius = std::max(main.track->radius, Planner::kLeastMainRadius);
     }
     problem.threats = situation.threats;
+    problem.rules = situation.rules;
     problem.start_velocity = situation.own.velocity;
     problem.speed = way.speed;
     problem.preferred_side = situation.flying != nullptr ? situation.flying->side : Vec3(Vec3::Zero());
     problem.main_centre_offset = conflict.threat_at_closest - conflict.own_at_closest;
-    const world::Threat& main = world::of_kind(situation.threats, conflict.threat.kind)[conflict.threat.index];
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.main = conflict.threat.index;
     } else {
         problem.main_shape = main.solid->kind == geometry::ShapeKind::sphere ? nullptr : main.solid;
         problem.main_clearance = world::own_uncertainty(situation);
     }
-    if (way.ahead.route != nullptr) {
-        detail::follow_route(situation, way, conflict, problem);
-    }
+    detail::follow_route(situation, way, conflict, problem);
     return problem;
 }
 
@@ -47,7 +46,7 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
 Seconds move_start(const Situation& situation, const Vec3& collision_point, const Settings& settings, Problem& problem,
                    WorkBudget& budget) noexcept
 {
-    const Seconds latency = settings.latency;
+    const Seconds latency = settings.starts_after_latency ? situation.rules.latency : 0.0F;
     const Vec3 way = problem.start_velocity * latency;
     const Vec3 left = collision_point - problem.frame.origin - way;
     const float least = std::max(Planner::kLeastLeadRatio * way.norm(), kLeastDistanceInRadii * scale_radius(problem));
@@ -58,7 +57,7 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     if (world::separation_at(situation, problem.frame.origin + way, latency, budget).margin < 0.0F) {
         return 0.0F;
     }
-    if (problem.ahead.route != nullptr) {
+    if (!problem.ahead.route.empty()) {
         return detail::move_start_along(situation, way, least, problem) ? latency : 0.0F;
     }
     problem.frame = make_path_frame(problem.frame.origin + way, left);
@@ -129,7 +128,7 @@ PlanStatus solve_with_retries(const Problem& problem, const Settings& settings, 
             continue;
         }
         const bool in_a_row = attempt.kind == Attempt::Kind::in_a_row;
-        if (in_a_row && problem.ahead.route != nullptr) {
+        if (in_a_row && !problem.ahead.route.empty()) {
             continue;  // both of its parts are about a straight leg
         }
         Problem tried = problem;
@@ -161,14 +160,12 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     result_.candidates.clear();
     result_.chosen = 0;
     result_.cut_short = false;
-    const path::Route* const route = situation.reference.route;
-    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
-        situation.threats.data() == nullptr) {
+    if (!world::is_complete(situation) || !is_valid(settings_)) {
         return PlanStatus::bad_input;
     }
     const world::Way way = world::way_of(situation);
     world::Conflict conflict;
-    if (!world::main_conflict(situation, way, settings_.lookahead, budget, conflict)) {
+    if (!world::main_conflict(situation, way, situation.rules.lookahead, budget, conflict)) {
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
     }
     if (conflict.threat.kind != world::ThreatKind::track && conflict.threat.kind != world::ThreatKind::obstacle) {

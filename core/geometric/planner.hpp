@@ -120,13 +120,10 @@ struct Settings {
     float max_cost = 1.0F;  ///< (0, 1]; a cheapest candidate above this, flip penalty aside, counts as not found
     /// Time-aware mode: a start inside a margin is judged by this rule, so that there is a way out. Off in source mode.
     bool escape_from_margin = true;
-    world::EscapeRule escape;
-    path::FollowerGains gains;  ///< for verify_flight
-    Seconds lookahead = 10.0F;  ///< Planner: conflicts are looked for this far ahead, 1..60 [s]
-    std::uint8_t retries = 9;   ///< Planner: further attempts when nothing is available, 0..9
-    /// Planner: until the vehicle answers, planning and the way to the autopilot included, it flies on as it does; the
-    /// manoeuvre begins where it then is, 0..1 [s].
-    Seconds latency = 0.1F;
+    /// Planner: the manoeuvre begins where the vehicle is when it answers (FlightRules::latency). Off in source mode:
+    /// Pinheiro's begins where the vehicle is now.
+    bool starts_after_latency = true;
+    std::uint8_t retries = 9;  ///< Planner: further attempts when nothing is available, 0..9
 };
 /// The source's planner: swept security ending at the collision point, source offsets, no feasibility, swept closeness.
 [[nodiscard]] Settings source_settings() noexcept;
@@ -162,6 +159,7 @@ struct Problem {
     /// kMaxObstacles obstacles, kMaxMovingSolids of which move. Moving solids, time-aware: checked exactly, in their
     /// own frame; swept: as their bounding spheres. Cylinders are checked where they are, when, in either mode.
     std::span<const world::Threat> threats;
+    world::FlightRules rules;                ///< escape rule, and gains for Settings::verify_flight
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
     Vec3 preferred_side = Vec3::Zero();      ///< of what is being flown; zero for none
@@ -185,7 +183,7 @@ struct Problem {
 /// Where the leg or the reference is at D [m].
 [[nodiscard]] inline Vec3 collision_point(const Problem& problem) noexcept
 {
-    return problem.ahead.route == nullptr ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
+    return problem.ahead.route.empty() ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
                                           : collision_point_along(problem);
 }
 
@@ -230,7 +228,7 @@ private:
 /// may be chosen: up to half of it, Settings::check_units at most, is kept for that.
 ///
 /// @return found; too_close (D < 2.5 R); none_available; budget_spent (nothing available until then); bad_input
-///         (settings, limits or problem not finite or out of range). `result.candidates` is filled as far as evaluated
+///         (settings, limits, rules or problem not finite or out of range). `result.candidates` is filled as far as evaluated
 ///         on every status but bad_input and too_close.
 /// O(candidates * waypoints * threats); with verify_flight that once more in the worst case.
 [[nodiscard]] world::PlanStatus solve(const Problem& problem, const Settings& settings,
@@ -260,7 +258,7 @@ private:
 /// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
 /// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
 /// radius then, at least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. It begins
-/// with what the vehicle flies during Settings::latency, so that it is joined without a jump; threats are met where and
+/// with what the vehicle flies during FlightRules::latency, so that it is joined without a jump; threats are met where and
 /// as large as they are from then on. The start is not moved where that would bring the collision point nearer than
 /// kLeastLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
 ///

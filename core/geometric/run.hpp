@@ -60,7 +60,7 @@ private:
         constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
         // Curves along a route are dearer: one share more.
         const std::uint64_t shares =
-            (problem_.ahead.route != nullptr ? 2U : 1U) + std::uint64_t{units::kSolidShares} * clearance_.solids();
+            (!problem_.ahead.route.empty() ? 2U : 1U) + std::uint64_t{units::kSolidShares} * clearance_.solids();
         return static_cast<std::uint32_t>(std::min(kMost, settings_.check_units * shares));
     }
     [[nodiscard]] std::uint32_t units_of_costs() const noexcept
@@ -71,7 +71,7 @@ private:
     }
     [[nodiscard]] std::uint32_t units_of_curve() const noexcept
     {
-        const std::uint32_t each = units::kCandidatePoint + (problem_.ahead.route != nullptr ? units::kRoutePoint : 0);
+        const std::uint32_t each = units::kCandidatePoint + (!problem_.ahead.route.empty() ? units::kRoutePoint : 0);
         return each * settings_.waypoints;
     }
     [[nodiscard]] float smoothness_of(const CandidateShape& shape) const noexcept;

@@ -50,13 +50,12 @@ bool is_valid(const PathFrame& frame) noexcept
 
 bool is_valid(const path::RouteAhead& ahead) noexcept
 {
-    return ahead.route == nullptr ||
-           (!ahead.route->empty() && is_not_negative(ahead.straight) && is_not_negative(ahead.joined_at));
+    return ahead.route.empty() || (is_not_negative(ahead.straight) && is_not_negative(ahead.joined_at));
 }
 
 bool has_valid_scales(const Problem& p) noexcept
 {
-    return is_valid(p.frame) && is_valid(p.ahead) && is_positive(p.distance) && is_positive(p.main_radius) &&
+    return is_valid(p.frame) && is_valid(p.ahead) && world::is_valid(p.rules) && is_positive(p.distance) && is_positive(p.main_radius) &&
            is_positive(p.speed) && is_not_negative(p.main_clearance) && is_not_negative(p.body_radius) &&
            is_not_negative(p.span_from) && is_not_negative(p.span_to) && is_positive(p.apex_share) &&
            is_not_negative(p.lead) && is_not_negative(p.begins) && p.straight >= 0.0F && is_finite(p.start_velocity) &&
@@ -108,7 +107,7 @@ bool make_candidate_path(const Problem& problem, const CandidateShape& shape, st
     const detail::UnitCurve unit = detail::make_unit_curve(shape.family, waypoints);
     const Vec3 along = problem.frame.axes.col(0);
     const Vec3 side = detail::plane_direction(problem.frame, shape.plane);
-    if (problem.ahead.route == nullptr) {
+    if (problem.ahead.route.empty()) {
         detail::make_curve(unit, along, side, scale_of(problem), shape.offset, problem.speed, limits, curve);
     } else {
         detail::BaseCurve base;

@@ -22,24 +22,20 @@ constexpr float kProductRoundings = 16.0F;
 
 Vec3 stretched(const Vec3& v, float stretch) noexcept { return {v.x(), v.y(), stretch * v.z()}; }
 
-const Vec3& vector_of(const Vec3& v) noexcept { return v; }
-Vec3 vector_of(const Point3& v) noexcept { return v.vec(); }
-
-/// The vertices relative to `origin`, in the stretched space.
-template <class Vertex>
+/// The vertices seen from `origin`, in the stretched space.
 struct Seen {
-    std::span<const Vertex> vertices;
+    std::span<const Point3> vertices;
     Vec3 origin;
     float stretch = 1.0F;
 
-    [[nodiscard]] Vec3 at(std::size_t i) const noexcept { return stretched(vector_of(vertices[i]) - origin, stretch); }
+    [[nodiscard]] Vec3 at(std::size_t i) const noexcept { return stretched(vertices[i].vec() - origin, stretch); }
     [[nodiscard]] Vec3 support(const Vec3& direction) const noexcept
     {
         const Vec3 along = stretched(direction, stretch);
         std::size_t best = 0;
-        float most = along.dot(vector_of(vertices[0]) - origin);
+        float most = along.dot(vertices[0].vec() - origin);
         for (std::size_t i = 1; i < vertices.size(); ++i) {
-            const float product = along.dot(vector_of(vertices[i]) - origin);
+            const float product = along.dot(vertices[i].vec() - origin);
             if (product > most) {
                 most = product;
                 best = i;
@@ -134,10 +130,9 @@ void try_exit(const Support& support, const Vec3& direction, Exit& best) noexcep
     }
 }
 
-/// Distance of a triangle by its nearest point, where the plane through that point across the offset proves the
-/// distance. False where the plane does not prove it: thin triangles, and points on the triangle.
-template <class Vertex>
-bool distance_from_triangle(const Seen<Vertex>& seen, const DistanceQuery& query, Separation& out) noexcept
+/// Of a triangle by its nearest point, where the plane across the way there proves it. False where it does not: thin
+/// triangles, and points on it.
+bool distance_from_triangle(const Seen& seen, const DistanceQuery& query, Separation& out) noexcept
 {
     const Vec3 a = seen.at(0);
     const Vec3 b = seen.at(1);
@@ -157,12 +152,13 @@ bool distance_from_triangle(const Seen<Vertex>& seen, const DistanceQuery& query
     return true;
 }
 
-template <class Vertex>
-Separation distance_from_hull(const Vec3& point, std::span<const Vertex> vertices, const DistanceQuery& query,
-                              WorkBudget& budget) noexcept
+}  // namespace
+
+Separation point_hull_distance(const Vec3& point, std::span<const Point3> vertices, const DistanceQuery& query,
+                               WorkBudget& budget) noexcept
 {
     assert(!vertices.empty() && query.stretch > 0.0F && query.reach > 0.0F);
-    const Seen<Vertex> seen{vertices, point, query.stretch};
+    const Seen seen{vertices, point, query.stretch};
     const std::uint32_t turn = distance_turn_units(vertices.size());
     if (Separation out; vertices.size() == 3) {
         if (!budget.spend(turn)) {
@@ -191,40 +187,13 @@ Separation distance_from_hull(const Vec3& point, std::span<const Vertex> vertice
     return search(support, begin, size, query, turn, budget);
 }
 
-}  // namespace
-
-Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices, const DistanceQuery& query,
-                               WorkBudget& budget) noexcept
-{
-    return distance_from_hull(point, vertices, query, budget);
-}
-
-Separation point_hull_distance(const Vec3& point, std::span<const Point3> vertices, const DistanceQuery& query,
-                               WorkBudget& budget) noexcept
-{
-    return distance_from_hull(point, vertices, query, budget);
-}
-
-Separation hull_hull_distance(std::span<const Vec3> first, std::span<const Vec3> second, const DistanceQuery& query,
-                              WorkBudget& budget) noexcept
-{
-    assert(!first.empty() && !second.empty() && query.stretch > 0.0F && query.reach > 0.0F);
-    const Seen<Vec3> own{first, first[0], query.stretch};
-    const Seen<Vec3> other{second, first[0], query.stretch};
-    Vec3 nearest = Vec3::Zero();
-    Vec3 unused = Vec3::Zero();
-    const float size = other.size(nearest) + own.size(unused);
-    const auto support = [&](const Vec3& direction) -> Vec3 {
-        return other.support(direction) - own.support(-direction);
-    };
-    return search(support, begin_with(query, nearest), size, query, distance_turn_units(first.size() + second.size()),
-                  budget);
-}
-
 Separation point_shape_distance(const Vec3& point, const Shape& shape, const DistanceQuery& query,
                                 WorkBudget& budget) noexcept
 {
     assert(is_valid(shape) && query.stretch > 0.0F && query.reach > 0.0F);
+    if (shape.kind == ShapeKind::hull && shape.axes == Mat3::Identity()) {
+        return point_hull_distance(point - shape.centre, shape.vertices, query, budget);
+    }
     const Vec3 offset = stretched(shape.centre - point, query.stretch);
     const float size = offset.cwiseAbs().sum() + std::max(1.0F, query.stretch) * bounding_radius(shape);
     const std::uint32_t turn = distance_turn_units(shape.vertices.size());
@@ -240,46 +209,6 @@ Separation point_shape_distance(const Vec3& point, const Shape& shape, const Dis
         return offset + stretched(geometry::support(centred, stretched(direction, query.stretch)), query.stretch);
     };
     return search(support, begin_with(query, offset), size, query, turn, budget);
-}
-
-Exit exit_by_faces(const Vec3& point, std::span<const FacePlane> faces, float stretch) noexcept
-{
-    assert(!faces.empty());
-    // The plane normal . y = offset is (S^-1 normal) . y' = offset in the stretched space.
-    const float shrink = 1.0F / stretch;
-    Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
-    for (const FacePlane& face : faces) {
-        const Vec3 normal = stretched(face.normal.vec(), shrink);
-        const float length = normal.norm();
-        const float depth = (face.offset - face.normal.vec().dot(point)) / length;
-        if (depth < best.depth) {
-            best = {depth, normal / length};
-        }
-    }
-    return best;
-}
-
-Exit exit_by_vertices(const Vec3& point, std::span<const Point3> vertices, float stretch) noexcept
-{
-    assert(!vertices.empty());
-    const Seen<Point3> seen{vertices, point, stretch};
-    const auto support = [&](const Vec3& direction) { return seen.support(direction); };
-    Vec3 mean = Vec3::Zero();
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-        mean += seen.at(i);
-    }
-    Exit best{std::numeric_limits<float>::max(), Vec3::UnitZ()};
-    try_exit(support, -mean, best);
-    for (int axis = 0; axis < 3; ++axis) {
-        try_exit(support, Vec3::Unit(axis), best);
-        try_exit(support, -Vec3::Unit(axis), best);
-    }
-    if (vertices.size() >= 3) {
-        const Vec3 normal = (seen.at(1) - seen.at(0)).cross(seen.at(2) - seen.at(0));
-        try_exit(support, normal, best);
-        try_exit(support, -normal, best);
-    }
-    return best;
 }
 
 Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcept
@@ -298,6 +227,13 @@ Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcep
     try_exit(support, -offset, best);
     for (int axis = 0; axis < 3; ++axis) {
         const Vec3 normal = stretched(shape.axes.col(axis), 1.0F / stretch);
+        try_exit(support, normal, best);
+        try_exit(support, -normal, best);
+    }
+    if (shape.vertices.size() >= 3) {
+        const Vec3 corner = shape.vertices[0].vec();
+        const Vec3 across = (shape.vertices[1].vec() - corner).cross(shape.vertices[2].vec() - corner);
+        const Vec3 normal = stretched(shape.axes * across, 1.0F / stretch);
         try_exit(support, normal, best);
         try_exit(support, -normal, best);
     }

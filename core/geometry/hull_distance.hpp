@@ -49,48 +49,24 @@ struct DistanceQuery {
 /// ends the search, `distance` is the bound proven by then. Takes kSearchTurn + hull_units of `budget` a turn. A good
 /// `start` needs one or two turns.
 /// O(kMostDistanceTurns * vertices).
-[[nodiscard]] Separation point_hull_distance(const Vec3& point, std::span<const Vec3> vertices,
-                                             const DistanceQuery& query, WorkBudget& budget) noexcept;
-
-/// The same of vertices in a constant table.
 [[nodiscard]] Separation point_hull_distance(const Vec3& point, std::span<const Point3> vertices,
                                              const DistanceQuery& query, WorkBudget& budget) noexcept;
 
-/// The same of two hulls, of `first` and of `second`. Accuracy as above, with the vertices of both relative to
-/// `first[0]`. O(kMostDistanceTurns * vertices of both).
-[[nodiscard]] Separation hull_hull_distance(std::span<const Vec3> first, std::span<const Vec3> second,
-                                            const DistanceQuery& query, WorkBudget& budget) noexcept;
-
-/// The same of a point and any shape. Without stretching, spheres and capsules are exact but for rounding (2e-6 * the
-/// sum of magnitudes of place and size). All other shapes as above, with an additional gap of 1e-5 * that sum for a
-/// curved shape. O(kMostDistanceTurns * vertices).
+/// The same of a point and any shape. Where nothing is stretched, spheres and capsules are exact but for rounding (2e-6
+/// * the sum of magnitudes of place and size); of all others as above, but that a curved one may be left with a gap of
+/// 1e-5 * that sum. Hulls that are not turned take the search above. O(kMostDistanceTurns * vertices).
 [[nodiscard]] Separation point_shape_distance(const Vec3& point, const Shape& shape, const DistanceQuery& query,
                                               WorkBudget& budget) noexcept;
 
-/// A face's plane: outward unit normal; normal . y <= offset for each point y of the solid.
-struct FacePlane {
-    Point3 normal{0.0F, 0.0F, 1.0F};
-    float offset = 0.0F;  ///< [m]
-};
-
-/// The face through which the distance out of a solid is least.
+/// The face by which a point leaves a solid soonest.
 struct Exit {
     float depth = 0.0F;              ///< to that face's plane [m], below 0 for a point outside
     Vec3 direction = Vec3::UnitZ();  ///< unit vector out of the solid, square to the face, in the stretched space
 };
 
-/// Exit of the intersection of `faces`, at least one, in space stretched by `stretch` along z. Exact but for rounding
-/// (1e-6 * the sum of magnitudes of the point and the offset). O(faces).
-[[nodiscard]] Exit exit_by_faces(const Vec3& point, std::span<const FacePlane> faces, float stretch) noexcept;
-
-/// Exit of the hull of `vertices` (1..4 vertices need not span a solid), along the thinnest of a few directions: from
-/// the vertices' mean to the point, the axes and, for a triangle, its normal. `depth` is not below the true one.
-/// O(vertices).
-[[nodiscard]] Exit exit_by_vertices(const Vec3& point, std::span<const Point3> vertices, float stretch) noexcept;
-
-/// Exit of any shape, along the best of its own axes and the direction away from its centre or its axis. `depth` is not
-/// below the true one; it equals the true one for spheres, boxes, capsules and cylinders without stretching.
-/// O(vertices).
+/// Out of any shape: along the best of its own axes and the direction away from its centre or its axis, of a hull also
+/// across its first three vertices, which is the way out of a flat one. `depth` is not below the true one, and it is
+/// that of spheres, boxes, capsules and cylinders where nothing is stretched. O(vertices).
 [[nodiscard]] Exit exit_of_shape(const Vec3& point, const Shape& shape, float stretch) noexcept;
 
 /// Work units of one turn of a search on a hull, or on a shape.

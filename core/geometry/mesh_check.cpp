@@ -11,8 +11,10 @@ namespace jink::geometry {
 
 namespace {
 
-/// Largest error of a stored normal's length.
-constexpr float kUnitTolerance = 1e-4F;
+/// Where maps may lie on the globe: degrees * 1e7, and millimetres.
+constexpr std::int32_t kHighestLatitude = 850'000'000;
+constexpr std::int32_t kHighestLongitude = 1'800'000'000;
+constexpr std::int32_t kHighestAltitude = 1'000'000'000;
 
 void add_point(Crc& crc, const Point3& v) noexcept
 {
@@ -21,15 +23,18 @@ void add_point(Crc& crc, const Point3& v) noexcept
     crc.add(v.z);
 }
 
-bool is_within_map(const Point3& point) noexcept
+bool is_within(std::int32_t value, std::int32_t limit) noexcept { return value >= -limit && value <= limit; }
+
+bool is_on_globe(const MapOrigin& origin) noexcept
 {
-    const Vec3 v = point.vec();
-    return is_finite(v) && (v.array().abs() <= kMaxMeshCoordinate).all();
+    return is_within(origin.latitude, kHighestLatitude) && is_within(origin.longitude, kHighestLongitude) &&
+           is_within(origin.altitude, kHighestAltitude);
 }
 
-bool lies_within(const Point3& point, const Point3& low, const Point3& high) noexcept
+bool is_within_map(const Vec3& v) noexcept { return is_finite(v) && (v.array().abs() <= kMaxMeshCoordinate).all(); }
+
+bool lies_within(const Vec3& v, const Point3& low, const Point3& high) noexcept
 {
-    const Vec3 v = point.vec();
     return (v.array() >= low.vec().array()).all() && (v.array() <= high.vec().array()).all();
 }
 
@@ -40,6 +45,9 @@ MapStatus check_sizes(const MeshMap& m) noexcept
     }
     if (m.metres_per_unit != 1.0F) {
         return MapStatus::wrong_units;
+    }
+    if (!is_on_globe(m.origin)) {
+        return MapStatus::wrong_origin;
     }
     if (m.pieces.empty()) {
         return MapStatus::empty;
@@ -53,55 +61,34 @@ MapStatus check_sizes(const MeshMap& m) noexcept
     return MapStatus::good;
 }
 
-MapStatus check_faces(const MeshMap& m, std::size_t piece) noexcept
-{
-    for (const FacePlane& face : m.faces_of(piece)) {
-        const Vec3 normal = face.normal.vec();
-        if (!is_finite(normal) || !std::isfinite(face.offset) || !(std::abs(normal.norm() - 1.0F) <= kUnitTolerance)) {
-            return MapStatus::bad_face;
-        }
-        for (const Point3& vertex : m.vertices_of(piece)) {
-            if (!(normal.dot(vertex.vec()) <= face.offset + kFaceTolerance)) {
-                return MapStatus::bad_face;
-            }
-        }
-    }
-    return MapStatus::good;
-}
-
-/// Tables without gaps: each piece's vertices and faces follow those of the one before.
+/// Tables without gaps: each piece's vertices follow those of the piece before.
 MapStatus check_pieces(const MeshMap& m) noexcept
 {
     std::size_t vertex = 0;
-    std::size_t face = 0;
     for (const MeshPiece& piece : m.pieces) {
-        if (piece.vertices > kMaxPieceVertices || piece.faces > kMaxPieceFaces) {
+        if (piece.vertices > kMaxPieceVertices) {
             return MapStatus::too_large;
         }
-        if (piece.vertices < 3 || (piece.faces > 0 && piece.faces < 4) || piece.first_vertex != vertex ||
-            piece.first_face != face) {
+        if (piece.vertices < 3 || piece.first_vertex != vertex) {
             return MapStatus::sizes_differ;
         }
         vertex += piece.vertices;
-        face += piece.faces;
     }
-    if (vertex != m.vertices.size() || face != m.faces.size()) {
+    if (vertex != m.vertices.size()) {
         return MapStatus::sizes_differ;
     }
-    if (!std::isfinite(m.slack) || !(m.slack >= 0.0F) || !is_within_map(m.low) || !is_within_map(m.high)) {
+    if (!std::isfinite(m.slack) || !(m.slack >= 0.0F) || !is_within_map(m.low.vec()) || !is_within_map(m.high.vec())) {
         return MapStatus::bad_coordinate;
     }
-    for (const Point3& v : m.vertices) {
-        if (!is_within_map(v)) {
-            return MapStatus::bad_coordinate;
-        }
-        if (!lies_within(v, m.low, m.high)) {
-            return MapStatus::bad_bounds;
-        }
-    }
     for (std::size_t piece = 0; piece < m.pieces.size(); ++piece) {
-        if (const MapStatus status = check_faces(m, piece); status != MapStatus::good) {
-            return status;
+        const Vec3 centre = m.pieces[piece].centre.vec();
+        for (const Point3& v : m.vertices_of(piece)) {
+            if (!is_within_map(centre) || !is_within_map(centre + v.vec())) {
+                return MapStatus::bad_coordinate;
+            }
+            if (!lies_within(centre + v.vec(), m.low, m.high)) {
+                return MapStatus::bad_bounds;
+            }
         }
     }
     return MapStatus::good;
@@ -130,8 +117,9 @@ MapStatus check_leaf(const MeshMap& m, const MeshNode& node, Met& met) noexcept
     if (node.piece >= m.pieces.size() || node.right != 0 || !met.add(node.piece)) {
         return MapStatus::bad_tree;
     }
+    const Vec3 centre = m.pieces[node.piece].centre.vec();
     for (const Point3& v : m.vertices_of(node.piece)) {
-        if (!lies_within(v, node.low, node.high)) {
+        if (!lies_within(centre + v.vec(), node.low, node.high)) {
             return MapStatus::bad_bounds;
         }
     }
@@ -140,7 +128,8 @@ MapStatus check_leaf(const MeshMap& m, const MeshNode& node, Met& met) noexcept
 
 bool holds_box(const MeshNode& parent, const MeshNode& child) noexcept
 {
-    return lies_within(child.low, parent.low, parent.high) && lies_within(child.high, parent.low, parent.high);
+    return lies_within(child.low.vec(), parent.low, parent.high) &&
+           lies_within(child.high.vec(), parent.low, parent.high);
 }
 
 MapStatus check_parent(const MeshMap& m, std::size_t i, std::uint8_t depth) noexcept
@@ -166,7 +155,7 @@ MapStatus check_tree(const MeshMap& m) noexcept
     std::uint8_t depth = 0;
     for (std::size_t i = 0; i < m.nodes.size(); ++i) {
         const MeshNode& node = m.nodes[i];
-        if (!is_within_map(node.low) || !is_within_map(node.high)) {
+        if (!is_within_map(node.low.vec()) || !is_within_map(node.high.vec())) {
             return MapStatus::bad_coordinate;
         }
         if (!node.is_leaf()) {
@@ -204,20 +193,19 @@ std::uint32_t checksum_of(const MeshMap& m) noexcept
     crc.add16(m.version);
     crc.add(m.metres_per_unit);
     crc.add(m.slack);
+    crc.add16(m.origin.known ? 1 : 0);
+    for (const std::int32_t number : {m.origin.latitude, m.origin.longitude, m.origin.altitude}) {
+        crc.add32(static_cast<std::uint32_t>(number));
+    }
     add_point(crc, m.low);
     add_point(crc, m.high);
     for (const MeshPiece& piece : m.pieces) {
+        add_point(crc, piece.centre);
         crc.add32(piece.first_vertex);
-        crc.add32(piece.first_face);
-        crc.add16(piece.vertices);
-        crc.add16(piece.faces);
+        crc.add32(piece.vertices);
     }
     for (const Point3& vertex : m.vertices) {
         add_point(crc, vertex);
-    }
-    for (const FacePlane& face : m.faces) {
-        add_point(crc, face.normal);
-        crc.add(face.offset);
     }
     for (const MeshNode& node : m.nodes) {
         add_point(crc, node.low);

@@ -34,16 +34,16 @@ float signed_like(float magnitude, float sign) noexcept { return sign < 0.0F ? -
 Vec3 hull_support(const Shape& shape, const Vec3& local) noexcept
 {
     assert(!shape.vertices.empty());
-    const Vec3* best = &shape.vertices.front();
-    float most = best->dot(local);
-    for (const Vec3& vertex : shape.vertices.subspan(1)) {
-        const float along = vertex.dot(local);
+    const Point3* best = &shape.vertices.front();
+    float most = best->vec().dot(local);
+    for (const Point3& vertex : shape.vertices.subspan(1)) {
+        const float along = vertex.vec().dot(local);
         if (along > most) {
             most = along;
             best = &vertex;
         }
     }
-    return *best;
+    return best->vec();
 }
 
 /// Farthest point in the solid's own frame; `local` is the direction in that frame, of length 1 or zero.
@@ -93,7 +93,8 @@ Shape make_along(ShapeKind kind, const Vec3& a, const Vec3& b, float radius) noe
 bool has_valid_vertices(const Shape& shape) noexcept
 {
     const auto& v = shape.vertices;
-    return !v.empty() && v.size() <= kMaxHullVertices && std::all_of(v.begin(), v.end(), is_finite);
+    return !v.empty() && v.size() <= kMaxHullVertices &&
+           std::all_of(v.begin(), v.end(), [](const Point3& p) { return is_finite(p.vec()); });
 }
 
 }  // namespace
@@ -126,7 +127,7 @@ Shape make_cylinder(const Vec3& a, const Vec3& b, float radius) noexcept
     return make_along(ShapeKind::cylinder, a, b, radius);
 }
 
-Shape make_hull(std::span<const Vec3> vertices, const Vec3& centre, const Mat3& axes) noexcept
+Shape make_hull(std::span<const Point3> vertices, const Vec3& centre, const Mat3& axes) noexcept
 {
     Shape shape;
     shape.kind = ShapeKind::hull;
@@ -183,8 +184,8 @@ float bounding_radius(const Shape& shape) noexcept
     case ShapeKind::hull: break;
     }
     float squared = 0.0F;
-    for (const Vec3& vertex : shape.vertices) {
-        squared = std::max(squared, vertex.squaredNorm());
+    for (const Point3& vertex : shape.vertices) {
+        squared = std::max(squared, vertex.vec().squaredNorm());
     }
     return kAxesStretch * std::sqrt(squared);
 }

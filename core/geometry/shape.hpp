@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "core/base/point3.hpp"
 #include "core/base/vec3.hpp"
 
 namespace jink::geometry {
@@ -19,7 +20,7 @@ struct Shape {
     Mat3 axes = Mat3::Identity();  ///< columns: the solid's own axes in the world frame, orthonormal
     float radius = 0.0F;           ///< sphere, capsule, cylinder [m]
     Vec3 half = Vec3::Zero();  ///< box: half extents [m]; capsule, cylinder: z = half length of the axis segment [m]
-    std::span<const Vec3> vertices{};  ///< hull: in its own frame [m], at most kMaxHullVertices
+    std::span<const Point3> vertices{};  ///< hull: in its own frame [m], at most kMaxHullVertices
 };
 
 [[nodiscard]] Shape make_sphere(const Vec3& centre, float radius) noexcept;
@@ -30,7 +31,7 @@ struct Shape {
 /// Flat-ended cylinder with its axis from `a` to `b` [m].
 [[nodiscard]] Shape make_cylinder(const Vec3& a, const Vec3& b, float radius) noexcept;
 /// Convex hull of `vertices`, placed by rotation `axes` and translation `centre`.
-[[nodiscard]] Shape make_hull(std::span<const Vec3> vertices, const Vec3& centre,
+[[nodiscard]] Shape make_hull(std::span<const Point3> vertices, const Vec3& centre,
                               const Mat3& axes = Mat3::Identity()) noexcept;
 
 /// Finite, non-negative sizes, orthonormal axes (1e-3), 1..kMaxHullVertices vertices for a hull.

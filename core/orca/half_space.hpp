@@ -22,7 +22,7 @@ struct HalfSpace {
     Vec3 normal = Vec3::UnitZ();  ///< unit length, into what is allowed
     float offset = 0.0F;          ///< [m/s]
     Level level = Level::limits;
-    std::uint16_t source = 0;  ///< index of the neighbour or of the piece of an obstacle it comes from
+    std::uint16_t source = 0;  ///< index of the neighbour or of the obstacle it comes from
     float yield = 1.0F;        ///< > 0: how fast it gives way when the level is relaxed, beside the others
 
     /// How far `velocity` is on the wrong side [m/s]; negative: on the right one.

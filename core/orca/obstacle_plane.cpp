@@ -61,15 +61,6 @@ public:
     /// Something not looked at that may be `distance` away.
     void drop(float distance) noexcept { dropped_ = std::min(dropped_, distance - envelope_.radius); }
     [[nodiscard]] float dropped() const noexcept { return dropped_; }
-    /// Pieces farther than this change nothing any more.
-    [[nodiscard]] float reach(float reach) const noexcept
-    {
-        if (!out_.planes.full()) {
-            return reach;
-        }
-        const float last = margins_[out_.planes.size() - 1] + envelope_.radius;
-        return std::clamp(last, std::numeric_limits<float>::min(), reach);
-    }
 
     void add(std::uint16_t source, const detail::Sighting& seen) noexcept
     {
@@ -119,29 +110,10 @@ private:
     float dropped_ = std::numeric_limits<float>::infinity();
 };
 
-void add_map(const detail::ObstacleView& view, const OwnMotion& own, float reach, NearestPlanes& selection,
-             WorkBudget& budget) noexcept
-{
-    const auto visit = [&](std::uint16_t piece, float bound) {
-        const detail::Sighting seen = view.piece(piece, own.position, selection.reach(reach), budget);
-        if (budget.exhausted()) {
-            selection.drop(std::max(bound, seen.distance));
-        } else if (seen.distance < reach) {
-            selection.add(piece, seen);
-        }
-        return selection.reach(reach);
-    };
-    const float passed_over =
-        geometry::visit_near(*view.scene.map, own.position, view.envelope.stretch, reach, budget, visit);
-    if (passed_over < reach) {
-        selection.drop(passed_over);
-    }
-}
-
 void add_obstacles(const detail::ObstacleView& view, const OwnMotion& own, float reach, NearestPlanes& selection,
                    WorkBudget& budget) noexcept
 {
-    for (std::size_t i = 0; i < view.scene.obstacles.size(); ++i) {
+    for (std::size_t i = 0; i < view.obstacles.size(); ++i) {
         const float bound = view.obstacle_bound(i, own.position);
         if (bound >= reach) {
             continue;
@@ -150,7 +122,7 @@ void add_obstacles(const detail::ObstacleView& view, const OwnMotion& own, float
         if (budget.exhausted()) {
             selection.drop(std::max(bound, seen.distance));
         } else if (seen.distance < reach) {
-            selection.add(static_cast<std::uint16_t>(kFirstObstacleSource + i), seen);
+            selection.add(static_cast<std::uint16_t>(i), seen);
         }
     }
 }
@@ -205,20 +177,17 @@ float obstacle_reach(const Envelope& envelope, const OwnMotion& own, const Obsta
     return envelope.radius + margin;
 }
 
-ObstaclePlanes obstacle_planes(const ObstacleScene& scene, const OwnMotion& own, const ObstacleSettings& settings,
+ObstaclePlanes obstacle_planes(Obstacles obstacles, const OwnMotion& own, const ObstacleSettings& settings,
                                WorkBudget& budget) noexcept
 {
     assert(is_valid(settings) && is_finite(own.position) && is_finite(own.velocity) && own.reach_speed >= 0.0F);
     ObstaclePlanes out;
-    const detail::ObstacleView view{scene, envelope_of(settings), settings.resolution};
+    const detail::ObstacleView view{obstacles, envelope_of(settings), settings.resolution};
     const float reach = obstacle_reach(view.envelope, own, settings);
     NearestPlanes selection(view.envelope, own, settings, out);
     add_obstacles(view, own, reach, selection, budget);
-    if (scene.map != nullptr) {
-        add_map(view, own, reach, selection, budget);
-    }
     if (selection.dropped() < std::numeric_limits<float>::infinity()) {
-        // Whatever direction a dropped piece lies in: no velocity within this bound closes in faster than it may.
+        // Whatever direction a dropped obstacle lies in: no velocity within this bound closes in faster than it may.
         const float margin = std::max(0.0F, selection.dropped());
         const float stretch = most_stretch(view.envelope);
         float bound = margin / settings.horizon;

@@ -10,11 +10,10 @@
 #include "core/base/work_budget.hpp"
 #include "core/capacity.hpp"
 #include "core/geometry/hull_distance.hpp"
-#include "core/geometry/mesh_map.hpp"
 #include "core/orca/half_space.hpp"
 #include "core/world/world.hpp"
 
-// Velocities that keep clear of static obstacles: one half-space for each convex piece, tangent to what the piece
+// Velocities that keep clear of static obstacles: one half-space for each of them, tangent to what it
 // forbids at its nearest point (Alejo 7.19-7.25, theorem 7.2.1). The vehicle's envelope is an ellipsoid of revolution;
 // space is stretched along z until it is a ball (Alejo 7.29-7.31), and half-spaces are mapped back.
 
@@ -44,15 +43,9 @@ struct Envelope {
 };
 [[nodiscard]] Envelope envelope_of(const ObstacleSettings& settings) noexcept;
 
-/// What may be in the way. Outlives what is made of it.
-struct ObstacleScene {
-    const geometry::MeshMap* map = nullptr;  ///< good (geometry::check), or none
-    std::span<const world::Obstacle> obstacles{};
-};
-
-/// `source` of what comes from ObstacleScene::obstacles[0]; pieces of the map have their own index.
-inline constexpr std::uint16_t kFirstObstacleSource = static_cast<std::uint16_t>(geometry::kMaxMeshPieces);
-static_assert(kMaxObstacles <= 0xFFFFU - kFirstObstacleSource);
+/// Obstacles at rest, by their `solid`, which may be in the way. What is not known of the own place is in the envelope. The
+/// `source` of what comes from an obstacle is its place among them.
+using Obstacles = std::span<const world::Threat>;
 
 /// The vehicle at the planning instant.
 struct OwnMotion {
@@ -64,24 +57,24 @@ struct OwnMotion {
 /// Half-spaces of everything within reach, nearest first.
 struct ObstaclePlanes {
     StaticVector<HalfSpace, kMaxObstaclePlanes> planes;
-    /// Not every piece has a half-space of its own: velocities have to be no faster than this [m/s] beside the planes,
-    /// which then keeps clear of all others. Infinite when nothing was dropped.
+    /// Not every obstacle has a half-space of its own: velocities have to be no faster than this [m/s] beside the
+    /// planes, which then keeps clear of all others. Infinite when nothing was dropped.
     float speed_cap = std::numeric_limits<float>::infinity();
-    /// Of the nearest piece: its distance in the stretched space less the envelope's radius [m], infinite when nothing
-    /// is within reach; below 0 in its margin.
+    /// Of the nearest obstacle: its distance in the stretched space less the envelope's radius [m], infinite when
+    /// nothing is within reach; below 0 in its margin.
     float margin = std::numeric_limits<float>::infinity();
     std::uint16_t nearest = 0;  ///< its source
-    bool truncated = false;     ///< there is a speed cap: more pieces than planes, or the budget ran out
-    bool penetrating = false;   ///< the vehicle's envelope meets some piece
-    bool bounded = false;       ///< of some piece less than its distance is proven (searches that were cut short)
+    bool truncated = false;     ///< there is a speed cap: more obstacles than planes, or the budget ran out
+    bool penetrating = false;   ///< the vehicle's envelope meets some obstacle
+    bool bounded = false;       ///< of some obstacle less than its distance is proven (searches that were cut short)
 };
 
-/// The half-space of one piece that lies at `distance` [m] (a lower bound) and more along `direction` (unit vector), in
-/// the space stretched for `envelope`.
+/// The half-space of one obstacle that lies at `distance` [m] (a lower bound) and more along `direction` (unit vector),
+/// in the space stretched for `envelope`.
 ///
 /// Outside of the margin: x' . direction <= (distance - radius) / horizon, x' the stretched velocity: no admitted one
-/// comes within the envelope of the piece before `horizon`, whatever else the piece looks like (theorem 7.2.1). In it:
-/// away from the piece, at `recovery_speed` or what takes `recovery_time`. Continuous where both meet, unlike
+/// comes within the envelope of the obstacle before `horizon`, whatever else that looks like (theorem 7.2.1). In it:
+/// away from the obstacle, at `recovery_speed` or what takes `recovery_time`. Continuous where both meet, unlike
 /// Alejo 7.19, which says nothing there and turns round beyond. Rounding below 1e-6 * (distance + radius) / horizon.
 /// O(1).
 [[nodiscard]] HalfSpace obstacle_half_space(float distance, const Vec3& direction, const Envelope& envelope,
@@ -92,13 +85,13 @@ struct ObstaclePlanes {
 [[nodiscard]] float obstacle_reach(const Envelope& envelope, const OwnMotion& own,
                                    const ObstacleSettings& settings) noexcept;
 
-/// Half-spaces of all pieces of the scene within reach.
+/// Half-spaces of all obstacles within reach.
 ///
 /// Each keeps to `obstacle_half_space` with a distance that is proven, never above the true one. A half-space that
 /// another one implies for all velocities within `own.reach_speed` is left out. Where the nearest kMaxObstaclePlanes do
 /// not do, or `budget` runs out, `speed_cap` does for the rest, down to standstill.
-/// O((pieces + obstacles) * (kMostDistanceTurns * vertices + kMaxObstaclePlanes)) at worst.
-[[nodiscard]] ObstaclePlanes obstacle_planes(const ObstacleScene& scene, const OwnMotion& own,
+/// O(obstacles * (kMostDistanceTurns * vertices + kMaxObstaclePlanes)) at worst.
+[[nodiscard]] ObstaclePlanes obstacle_planes(Obstacles obstacles, const OwnMotion& own,
                                              const ObstacleSettings& settings, WorkBudget& budget) noexcept;
 
 }  // namespace jink::orca

@@ -16,19 +16,21 @@ struct Sighting {
     bool bounded = false;  ///< the search was cut short: `distance` may be less than could be known
 };
 
-/// The scene in the space that is stretched for the vehicle's envelope.
+/// The obstacles in the space that is stretched for the vehicle's envelope.
 struct ObstacleView {
-    const ObstacleScene& scene;
+    Obstacles obstacles;
     Envelope envelope;
     float resolution = 1e-4F;  ///< [m]
 
-    /// Of a piece of the map; `reach` as in geometry::DistanceQuery. With an exhausted budget what was proven by then.
-    [[nodiscard]] Sighting piece(std::size_t index, const Vec3& point, float reach, WorkBudget& budget) const noexcept;
-    /// Of an obstacle of the scene.
+    /// Grown by its uncertainty; `reach` as in geometry::DistanceQuery. With an exhausted budget what was proven by
+    /// then.
     [[nodiscard]] Sighting obstacle(std::size_t index, const Vec3& point, float reach,
                                     WorkBudget& budget) const noexcept;
     /// A lower bound of its distance. O(1), O(vertices) for a hull.
     [[nodiscard]] float obstacle_bound(std::size_t index, const Vec3& point) const noexcept;
+
+private:
+    [[nodiscard]] float stretched_uncertainty(std::size_t index) const noexcept;
 };
 
 }  // namespace jink::orca::detail

@@ -75,11 +75,11 @@ void take(const Advance& found, std::uint16_t source, Way& way, WayClearance& ou
 
 }  // namespace
 
-WayClearance clearance_along(const ObstacleScene& scene, const Vec3& position, const Vec3& velocity, Seconds length,
+WayClearance clearance_along(Obstacles obstacles, const Vec3& position, const Vec3& velocity, Seconds length,
                              const ObstacleSettings& settings, WorkBudget& budget) noexcept
 {
     assert(is_valid(settings) && is_finite(position) && is_finite(velocity) && length >= 0.0F);
-    const ObstacleView view{scene, envelope_of(settings), settings.resolution};
+    const ObstacleView view{obstacles, envelope_of(settings), settings.resolution};
     const float stretch = view.envelope.stretch;
     const float radius = view.envelope.radius;
     Way way{position, velocity, {velocity.x(), velocity.y(), stretch * velocity.z()}, length};
@@ -88,21 +88,10 @@ WayClearance clearance_along(const ObstacleScene& scene, const Vec3& position, c
     constexpr float kRoom = 1.0F + 1e-5F;
     const Vec3 middle = way.at(0.5F * length);
     const float reach = kRoom * (radius + 0.5F * length * way.stretched.norm()) + settings.resolution;
-    for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
         if (view.obstacle_bound(i, middle) <= reach) {
             const auto sight = [&](const Vec3& at) { return view.obstacle(i, at, 2.0F * reach, budget); };
-            take(advance(way, radius, settings.resolution, sight, budget),
-                 static_cast<std::uint16_t>(kFirstObstacleSource + i), way, out);
-        }
-    }
-    if (scene.map != nullptr) {
-        const auto visit = [&](std::uint16_t piece, float /*bound*/) {
-            const auto sight = [&](const Vec3& at) { return view.piece(piece, at, 2.0F * reach, budget); };
-            take(advance(way, radius, settings.resolution, sight, budget), piece, way, out);
-            return reach;
-        };
-        if (geometry::visit_near(*scene.map, middle, stretch, reach, budget, visit) < reach) {
-            out = {0.0F, out.source, false, true};  // some were not looked at
+            take(advance(way, radius, settings.resolution, sight, budget), static_cast<std::uint16_t>(i), way, out);
         }
     }
     return out;

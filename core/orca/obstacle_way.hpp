@@ -21,13 +21,14 @@ struct WayClearance {
     bool bounded = false;
 };
 
-/// How long the envelope keeps clear of the scene when it flies from `position` at `velocity` [m/s] for `length` [s].
+/// How long the envelope keeps clear of the obstacles when it flies from `position` at `velocity` [m/s] for `length`
+/// [s].
 ///
 /// Conservative advancement (Mirtich 1996) on proven distances: never past a contact. Where it ends before the true
 /// contact and is not `bounded`, it is by what takes the vehicle `resolution` nearer to the obstacle. An obstacle whose
 /// margin the vehicle is in already counts as met as soon as it comes nearer than it is.
-/// O((pieces + obstacles) * kMostWaySteps * kMostDistanceTurns * vertices) at worst.
-[[nodiscard]] WayClearance clearance_along(const ObstacleScene& scene, const Vec3& position, const Vec3& velocity,
+/// O(obstacles * kMostWaySteps * kMostDistanceTurns * vertices) at worst.
+[[nodiscard]] WayClearance clearance_along(Obstacles obstacles, const Vec3& position, const Vec3& velocity,
                                            Seconds length, const ObstacleSettings& settings,
                                            WorkBudget& budget) noexcept;
 

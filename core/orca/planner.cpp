@@ -7,6 +7,7 @@
 #include "core/base/work_units.hpp"
 #include "core/path/follower.hpp"
 #include "core/world/conflict.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::orca {
 
@@ -46,23 +47,24 @@ Seconds time_of_closest(const Vec3& position, const Vec3& velocity, Seconds hori
     return speed2 > 1e-6F ? std::clamp(-position.dot(velocity) / speed2, 0.0F, horizon) : 0.0F;
 }
 
-/// As it will be when the command acts; its sphere with all that is not known of it by the time it is nearest.
-Neighbour neighbour_of(const world::Situation& s, const world::Track& track, const Predicted& own,
-                       const FilterSettings& settings, Seconds ahead, Seconds stale) noexcept
+/// A track's threat as it will be when the command acts; its sphere with all that is not known of it by the time it is
+/// nearest.
+Neighbour neighbour_of(const world::Situation& s, const world::Threat& threat, const Predicted& own,
+                       const FilterSettings& settings, Seconds stale) noexcept
 {
+    const Seconds ahead = s.rules.latency;
     Neighbour out;
-    out.position =
-        world::nearest_in_height(track, track.position + ahead * track.velocity, own.position.z()) - own.position;
-    out.velocity = track.velocity;
-    const Seconds t = time_of_closest(out.position, track.velocity - own.velocity, settings.pair.horizon);
-    const float radius = world::threat_radius(s, track, t + ahead);
+    out.position = threat.nearest_in_height(ahead, own.position.z()) - own.position;
+    out.velocity = threat.velocity;
+    const Seconds t = time_of_closest(out.position, threat.velocity - own.velocity, settings.pair.horizon);
+    const float radius = world::threat_radius(s, *threat.track, t + ahead);
     out.half_width = radius;
     // No taller than half-spaces can be made for: what is left of an uncertain height the final check keeps clear.
-    out.half_height = std::max(radius, std::min(radius + track.half_height, radius / kTallest));
-    out.max_speed = std::max(settings.limits.max_speed, track.velocity.norm());
-    out.acceleration = track.max_acceleration;
-    out.id = track.id;
-    out.cooperative = track.cooperative && s.now - track.stamp <= stale;
+    out.half_height = std::max(radius, std::min(radius + threat.half_height, radius / kTallest));
+    out.max_speed = std::max(settings.limits.max_speed, threat.velocity.norm());
+    out.acceleration = threat.track->max_acceleration;
+    out.id = threat.track->id;
+    out.cooperative = threat.reciprocal && s.now - threat.track->stamp <= stale;
     return out;
 }
 
@@ -148,7 +150,7 @@ Vec3 preferred_velocity(const world::Situation& s) noexcept
 bool is_valid(const Settings& s) noexcept
 {
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
-    return within(s.horizon, 1.0F, 60.0F) && within(s.conflict_ratio, 0.5F, 0.95F) && within(s.latency, 0.0F, 1.0F) &&
+    return within(s.conflict_ratio, 0.5F, 0.95F) &&
            within(s.reach, 0.1F, 5.0F) && within(s.stale, 0.01F, 60.0F) && s.smoothing >= 1 &&
            s.smoothing <= CommandFilter::kMost;
 }
@@ -168,7 +170,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     const bool wing = limits.kind == vehicle::VehicleKind::fixed_wing;
     FilterSettings out;
     MotionLimits& motion = out.limits;
-    motion.max_speed = std::max(limits.cruise_speed, std::max(s.reference.leg.speed, kLeastSpeed));
+    motion.max_speed = std::max(limits.cruise_speed, std::max(s.reference.speed, kLeastSpeed));
     motion.acceleration = limits.max_acceleration;
     motion.climb_acceleration = motion.sink_acceleration = limits.max_vertical_acceleration;
     motion.climb_rate = limits.max_climb;
@@ -179,7 +181,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
         motion.turn_radius = limits.cruise_speed * limits.cruise_speed / limits.max_acceleration;
     }
     out.tick = tick;
-    out.delay = settings_.latency + limits.velocity_lag + CommandFilter(settings_.smoothing).delay(tick);
+    out.delay = s.rules.latency + limits.velocity_lag + CommandFilter(settings_.smoothing).delay(tick);
     const Seconds delayed = kDelayMargin * out.delay;
     const Seconds brakes = motion.max_speed / motion.acceleration;
     const Cylinder own = cylinder_of(limits.half_extents, 0.0F);
@@ -190,7 +192,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     PairSettings& pair = out.pair;
     pair.conflict = settings_.conflict;
     pair.conflict_ratio = settings_.conflict_ratio;
-    pair.horizon = std::max(settings_.horizon, std::max(2.0F * brakes, delayed));
+    pair.horizon = std::max(s.rules.lookahead, std::max(2.0F * brakes, delayed));
     pair.brake = std::max(brakes, delayed);
     pair.recovery_time = std::max(1.0F, delayed);
     pair.ramp_speed =
@@ -203,7 +205,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     out.obstacles.braking = motion.acceleration;
     out.obstacles.delay = out.delay;
     out.bias = settings_.bias;
-    out.loop = {settings_.latency, limits.velocity_lag};
+    out.loop = {s.rules.latency, limits.velocity_lag};
     out.most_apart = 0.5F * motion.max_speed + 0.5F;
     out.own_stale = kLongestTick;
     out.smoothing = settings_.smoothing;
@@ -222,11 +224,12 @@ void Planner::take_command(const world::Situation& s) noexcept
 
 world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, world::Manoeuvre& out) noexcept
 {
-    if (!s.reference.valid || s.threats.data() == nullptr) {
+    if (!world::is_complete(s)) {
         return world::PlanStatus::bad_input;
     }
+    const std::span tracks = world::of_kind(s.threats, world::ThreatKind::track);
     if (!budget.spend(kPlanUnits +
-                      kThreatUnits * static_cast<std::uint32_t>(s.tracks.size() + s.airspace.barrels.size()))) {
+                      kThreatUnits * static_cast<std::uint32_t>(tracks.size() + world::of_kind(s.threats, world::ThreatKind::barrel).size()))) {
         return world::PlanStatus::budget_spent;
     }
     take_command(s);
@@ -237,18 +240,17 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     if (filter_.configure(settings) != Unsafe::none) {
         return world::PlanStatus::bad_input;
     }
-    const Seconds ahead = settings_.latency;
+    const Seconds ahead = s.rules.latency;
     FilterInput input;
     input.own = filter_.predicted(s.own, s.now);
     input.own_age = s.now - s.own.stamp;
     input.preferred = preferred_velocity(s);
     neighbours_.clear();
-    for (const world::Track& track : s.tracks) {
-        static_cast<void>(
-            neighbours_.try_push_back(neighbour_of(s, track, input.own, settings, ahead, settings_.stale)));
+    for (const world::Threat& threat : tracks) {
+        static_cast<void>(neighbours_.try_push_back(neighbour_of(s, threat, input.own, settings, settings_.stale)));
     }
     input.neighbours = {neighbours_.data(), neighbours_.size()};
-    input.scene = {map_, s.obstacles};
+    input.obstacles = world::of_kind(s.threats, world::ThreatKind::obstacle);
     const Cylinder kept = cylinder_of(s.limits.half_extents, world::own_uncertainty(s));
     const Bounds bounds = bounds_of(s, input.own.position, kept, ahead);
     input.bounds = {bounds.data(), bounds.size()};

@@ -8,11 +8,10 @@
 
 namespace jink::orca {
 
-/// What the situation does not say.
+/// What the situation does not say. FlightRules::lookahead is the horizon towards other vehicles, longer where braking
+/// or the delay ask for it.
 struct Settings {
-    Seconds horizon = 8.0F;       ///< towards other vehicles, 1..60; longer where braking or the delay ask for it
     float conflict_ratio = 0.8F;  ///< conflict region's size, of the warning region's, 0.5..0.95
-    Seconds latency = 0.1F;       ///< from planning until the vehicle answers, 0..1
     Seconds reach = 0.5F;         ///< of full acceleration that a new command may ask for, 0.1..5
     Seconds stale = 1.0F;         ///< a track not seen for longer is not counted on, > 0
     std::uint16_t smoothing = 1;  ///< commands in the mean, 1..CommandFilter::kMost
@@ -66,8 +65,6 @@ public:
         filter_.reset();
         has_planned_ = false;
     }
-    /// Convex pieces that are obstacles beside the situation's; good (geometry::check), outlives this; null: none.
-    void use_map(const geometry::MeshMap* map) noexcept { map_ = map; }
     [[nodiscard]] const Decision& last() const noexcept { return decision_; }
 
 private:
@@ -76,7 +73,6 @@ private:
 
     Settings settings_;
     VelocityFilter filter_;
-    const geometry::MeshMap* map_ = nullptr;
     StaticVector<Neighbour, kMaxTracks> neighbours_;  ///< of a plan; not on the stack
     Decision decision_;
     TimePoint last_plan_;

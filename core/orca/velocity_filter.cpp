@@ -156,7 +156,7 @@ void VelocityFilter::add_obstacles(Tick& tick, WorkBudget& budget) const noexcep
     own.position = tick.input.own.position;
     own.velocity = tick.input.own.velocity;
     own.reach_speed = std::min(tick.limits.balls[0].radius, tick.limits.reference.norm() + tick.limits.balls[1].radius);
-    const ObstaclePlanes found = obstacle_planes(tick.input.scene, own, settings_.obstacles, budget);
+    const ObstaclePlanes found = obstacle_planes(tick.input.obstacles, own, settings_.obstacles, budget);
     for (const HalfSpace& plane : found.planes) {
         tick.add(plane);
     }
@@ -260,7 +260,7 @@ void VelocityFilter::choose(Tick& tick, WorkBudget& budget) noexcept
     has_solution_ = true;
     smooth(tick, solution, budget);
     if (settings_.looks_along) {
-        const WayClearance way = clearance_along(tick.input.scene, tick.input.own.position, tick.out.command,
+        const WayClearance way = clearance_along(tick.input.obstacles, tick.input.own.position, tick.out.command,
                                                  settings_.obstacles.horizon, settings_.obstacles, budget);
         tick.out.clear_until = way.clear_until;
         tick.say(!way.clear, kObstacleAhead);

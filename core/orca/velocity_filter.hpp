@@ -85,14 +85,14 @@ struct FilterInput {
     Seconds own_age = 0.0F;                   ///< of the measured own state
     Vec3 preferred = Vec3::Zero();            ///< [m/s]
     std::span<const Neighbour> neighbours{};  ///< relative to own.position, at the same instant
-    ObstacleScene scene{};
+    Obstacles obstacles{};
     std::span<const Bound> bounds{};  ///< kMaxBounds at most: more is kBadInput
 };
 
 /// A half-space that holds the command where it is.
 struct Binding {
     Level level = Level::limits;
-    std::uint16_t source = 0;  ///< place in FilterInput::neighbours, source of an obstacle, kBoundSource + bound
+    std::uint16_t source = 0;  ///< place in FilterInput::neighbours or obstacles, kBoundSource + bound
 };
 inline constexpr std::uint16_t kBoundSource = 0xFF00U;
 

@@ -44,6 +44,22 @@ RoutePoint point_of(const RouteSegment& segment, float arc_length) noexcept
     return {position + (arc_length - on) * along, along};
 }
 
+RouteSegment straight_segment(const Vec3& start, const Vec3& end) noexcept
+{
+    /// Nearer than this, two points give no direction [m].
+    constexpr float kNoLength = 1e-3F;
+    const Vec3 span = end - start;
+    const float length = span.norm();
+    RouteSegment segment;
+    segment.start = end;
+    if (length > kNoLength) {
+        segment.start = start;
+        segment.along = span / length;
+        segment.length = length;
+    }
+    return segment;
+}
+
 bool Route::meets_end(const Vec3& start) const noexcept
 {
     return segments_.empty() || (point_of(segments_.back(), segments_.back().length).position - start).norm() <= kJoin;
@@ -72,15 +88,8 @@ RouteStatus Route::add_leg(const Vec3& start, const Vec3& end) noexcept
     if (!meets_end(start)) {
         return RouteStatus::gap;
     }
-    RouteSegment segment;
-    segment.start = segments_.empty() ? start : point_of(segments_.back(), segments_.back().length).position;
-    const Vec3 span = end - segment.start;
-    segment.length = span.norm();
-    if (!(segment.length >= kShortest)) {
-        return RouteStatus::too_short;
-    }
-    segment.along = span / segment.length;
-    return add(segment);
+    return add(straight_segment(
+        segments_.empty() ? start : point_of(segments_.back(), segments_.back().length).position, end));
 }
 
 RouteStatus Route::add_arc(const Vec3& start, const Vec3& centre, const Vec3& axis, float angle) noexcept
@@ -115,7 +124,7 @@ RouteStatus Route::add_arc(const Vec3& start, const Vec3& centre, const Vec3& ax
     return add(segment);
 }
 
-float Route::length() const noexcept
+float RouteView::length() const noexcept
 {
     float length = 0.0F;
     for (const RouteSegment& segment : segments_) {
@@ -124,7 +133,7 @@ float Route::length() const noexcept
     return length;
 }
 
-RoutePoint Route::at(float arc_length) const noexcept
+RoutePoint RouteView::at(float arc_length) const noexcept
 {
     std::size_t i = 0;
     while (i + 1 < segments_.size() && arc_length >= segments_[i].length) {
@@ -134,7 +143,7 @@ RoutePoint Route::at(float arc_length) const noexcept
     return point_of(segments_[i], arc_length);
 }
 
-Abeam Route::abeam_of(const Vec3& position, std::size_t from) const noexcept
+Abeam RouteView::abeam_of(const Vec3& position, std::size_t from) const noexcept
 {
     const std::size_t first = std::min(from, segments_.size() - 1);
     Abeam best;
@@ -157,10 +166,10 @@ Abeam Route::abeam_of(const Vec3& position, std::size_t from) const noexcept
 
 RoutePoint point_of(const RouteAhead& ahead, const Vec3& origin, const Vec3& direction, float way) noexcept
 {
-    if (ahead.route == nullptr || way < ahead.straight) {
+    if (ahead.route.empty() || way < ahead.straight) {
         return {origin + way * direction, direction};
     }
-    return ahead.route->at(ahead.joined_at + (way - ahead.straight));
+    return ahead.route.at(ahead.joined_at + (way - ahead.straight));
 }
 
 Vec3 carried(const Vec3& side, const Vec3& from, const Vec3& to) noexcept

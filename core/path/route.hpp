@@ -45,8 +45,37 @@ struct Abeam {
     RoutePoint point;
 };
 
-/// Straight legs and circular arcs, each beginning where the previous segment ends. Where two segments are not
-/// tangential, the route has a corner. World frame.
+/// Where a segment is `arc_length` [m] from its start; outside of it straight on. O(1).
+[[nodiscard]] RoutePoint point_of(const RouteSegment& segment, float arc_length) noexcept;
+
+/// The straight segment from `start` to `end` [m]; within 1 mm of each other they are a point: `end`, of length 0, with
+/// the tangent +x. O(1).
+[[nodiscard]] RouteSegment straight_segment(const Vec3& start, const Vec3& end) noexcept;
+
+/// The segments of a route, each beginning where the one before ends. They outlive the view. O(1) to copy.
+class RouteView {
+public:
+    constexpr RouteView() noexcept = default;
+    explicit constexpr RouteView(std::span<const RouteSegment> segments) noexcept : segments_(segments) {}
+
+    [[nodiscard]] constexpr std::span<const RouteSegment> segments() const noexcept { return segments_; }
+    [[nodiscard]] constexpr bool empty() const noexcept { return segments_.empty(); }
+    /// [m]. O(segments).
+    [[nodiscard]] float length() const noexcept;
+    /// Where the route is at an arc length [m]; before its start and past its end straight on. At a corner the tangent
+    /// of what follows. Not empty. O(segments).
+    [[nodiscard]] RoutePoint at(float arc_length) const noexcept;
+    /// From segment `from` on (the last one where there are fewer), the first one whose nearest point is nearer than
+    /// that of the one after it: a later leg that passes close by is not mistaken for the one being flown. Not empty.
+    /// O(segments).
+    [[nodiscard]] Abeam abeam_of(const Vec3& position, std::size_t from = 0) const noexcept;
+
+private:
+    std::span<const RouteSegment> segments_;
+};
+
+/// Straight legs and circular arcs, each beginning where the one before ends; where they do not meet tangentially the
+/// route has a corner. World frame.
 ///
 /// Memory: 44 bytes per segment and a counter. Accuracy: positions within 1e-3 m of exact ones for coordinates up to
 /// 1 km (tests/property/core/path).
@@ -66,20 +95,22 @@ public:
     /// either way: positive is counter-clockwise as seen from the tip of `axis`, negative clockwise. O(1).
     [[nodiscard]] RouteStatus add_arc(const Vec3& start, const Vec3& centre, const Vec3& axis, float angle) noexcept;
 
+    void clear() noexcept { segments_.clear(); }
+
     [[nodiscard]] std::span<const RouteSegment> segments() const noexcept
     {
         return {segments_.data(), segments_.size()};
     }
     [[nodiscard]] bool empty() const noexcept { return segments_.empty(); }
-    /// [m]. O(segments).
-    [[nodiscard]] float length() const noexcept;
-    /// Point of the route at an arc length [m]; before the start and past the end the route continues straight. At a
-    /// corner the tangent is that of the next segment. Not empty. O(segments).
-    [[nodiscard]] RoutePoint at(float arc_length) const noexcept;
-    /// The nearest point of the first segment, from segment `from` on (the last segment if there are fewer), that is
-    /// nearer than the segment after it. So a later leg that passes close by is not mistaken for the present leg. Not
-    /// empty. O(segments).
-    [[nodiscard]] Abeam abeam_of(const Vec3& position, std::size_t from = 0) const noexcept;
+    /// Valid until the route is changed.
+    operator RouteView() const& noexcept { return RouteView(segments()); }  // NOLINT(google-explicit-constructor)
+    operator RouteView() const&& = delete;
+    [[nodiscard]] float length() const noexcept { return RouteView(segments()).length(); }
+    [[nodiscard]] RoutePoint at(float arc_length) const noexcept { return RouteView(segments()).at(arc_length); }
+    [[nodiscard]] Abeam abeam_of(const Vec3& position, std::size_t from = 0) const noexcept
+    {
+        return RouteView(segments()).abeam_of(position, from);
+    }
 
 private:
     [[nodiscard]] RouteStatus add(const RouteSegment& segment) noexcept;
@@ -88,14 +119,11 @@ private:
     StaticVector<RouteSegment, kMaxRouteSegments> segments_;
 };
 
-/// Point of a segment at `arc_length` [m] from its start; beyond its ends straight on. O(1).
-[[nodiscard]] RoutePoint point_of(const RouteSegment& segment, float arc_length) noexcept;
-
-/// Nominal path ahead of a vehicle: straight for some distance, then a route.
+/// What a vehicle has ahead: straight for a while, then a route.
 struct RouteAhead {
-    const Route* route = nullptr;  ///< null: straight for ever
-    float straight = 0.0F;         ///< until the route is reached [m]
-    float joined_at = 0.0F;        ///< arc length of the route where it is reached [m]
+    RouteView route;         ///< empty: straight for ever
+    float straight = 0.0F;   ///< until the route is reached [m]
+    float joined_at = 0.0F;  ///< arc length of the route where it is reached [m]
 };
 /// Point of the nominal path at arc length `way` [m] from `origin`, in `direction` (unit vector) at first. O(segments).
 [[nodiscard]] RoutePoint point_of(const RouteAhead& ahead, const Vec3& origin, const Vec3& direction,

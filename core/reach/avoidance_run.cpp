@@ -33,20 +33,16 @@ bool fits(const ReachSet* set) noexcept
            set->grid.cells() <= kMaxReachCells && CellBalls::serves(set->grid);
 }
 
-/// The point of the reference that lies `ahead` [m] in front of the vehicle, or its end.
+/// The point of the route that lies `ahead` [m] in front of the vehicle, or its end; of a place, beyond it.
 Vec3 goal_of(const Situation& s, const world::Way& way, float ahead) noexcept
 {
-    if (s.reference.route != nullptr) {
-        return way.origin + way.direction * std::min(way.length, ahead);
-    }
-    const Vec3 leg = s.reference.leg.end - s.reference.leg.start;
-    const float length = leg.norm();
+    const path::RouteView route = s.reference.route();
+    const float length = route.length();
     if (!(length > 0.0F)) {
         return way.origin + way.direction * ahead;
     }
-    const Vec3 along = leg / length;
-    const float done = along.dot(s.own.position - s.reference.leg.start);
-    return s.reference.leg.start + along * std::clamp(done + ahead, 0.0F, length);
+    const float abeam = route.abeam_of(s.own.position, s.reference.segment).arc_length;
+    return route.at(std::min(abeam + ahead, length)).position;
 }
 
 /// Unit vector from the nominal path towards the farthest point of the path.
@@ -75,8 +71,7 @@ struct Planner::Start {
 
 bool is_valid(const Settings& s) noexcept
 {
-    return s.sets != nullptr && is_not_negative(s.room) && s.room <= 10.0F && is_not_negative(s.latency) &&
-           s.latency <= 1.0F && is_not_negative(s.escape.slack) && is_not_negative(s.escape.speed) && s.tries >= 1 &&
+    return s.sets != nullptr && s.tries >= 1 &&
            s.tries <= 64 && std::all_of(s.sets->segments.begin(), s.sets->segments.end(), [](const SegmentSets& sets) {
                return fits(sets.navigation) && fits(sets.emergency);
            });
@@ -103,9 +98,7 @@ bool Planner::configure(const Settings& settings) noexcept
 PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::Manoeuvre& out) noexcept
 {
     report_ = {};
-    const path::Route* const route = situation.reference.route;
-    if (!situation.reference.valid || (route != nullptr && route->empty()) || !is_valid(settings_) ||
-        situation.threats.data() == nullptr) {
+    if (!world::is_complete(situation) || !is_valid(settings_)) {
         return PlanStatus::bad_input;
     }
     const VehicleSets& sets = *settings_.sets;
@@ -123,7 +116,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (of == nullptr) {
         return PlanStatus::none_available;  // faster or steeper than every set allows
     }
-    const Seconds lead = hovers ? 0.0F : settings_.latency;
+    const Seconds lead = hovers ? 0.0F : situation.rules.latency;
     const Start start{way, *of, lead, speed, stops ? vehicle::stopping_distance(speed, situation.limits) : 0.0F};
     Placed placed;
     placed.origin = situation.own.position + velocity * lead;
@@ -247,7 +240,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     if (const PlanStatus looked = look(situation, placed, start, budget); looked != PlanStatus::found) {
         return looked;
     }
-    near_.collect(situation, placed, start.lead, start.stop, {settings_.escape, settings_.room});
+    near_.collect(situation, placed, start.lead, start.stop);
     report_.near = static_cast<std::uint16_t>(near_.size());
     const auto entries = static_cast<std::uint32_t>(set.entries.size());
     if (!near_.mark(placed, balls_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {

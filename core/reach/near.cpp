@@ -42,9 +42,9 @@ void grow_by_box(NearThreat& solid, const Vec3& own) noexcept
     case geometry::ShapeKind::hull: {
         Vec3 low = Vec3::Constant(kUnbounded);
         Vec3 high = Vec3::Constant(-kUnbounded);
-        for (const Vec3& vertex : shape.vertices) {
-            low = low.cwiseMin(vertex);
-            high = high.cwiseMax(vertex);
+        for (const Point3& vertex : shape.vertices) {
+            low = low.cwiseMin(vertex.vec());
+            high = high.cwiseMax(vertex.vec());
         }
         solid.position = shape.centre + shape.axes * (0.5F * (low + high));
         solid.half = 0.5F * (high - low) + own_in;
@@ -72,12 +72,12 @@ float distance_to(const NearThreat& solid, const Vec3& point) noexcept
 
 float NearThreats::shrunk_by(float margin_at_start) const noexcept
 {
-    return margin_at_start < 0.0F ? rule_.escape.slack - margin_at_start : 0.0F;
+    return margin_at_start < 0.0F ? rules_.escape.slack - margin_at_start : 0.0F;
 }
 
 float NearThreats::shrunk_at(float shrunk, Seconds t) const noexcept
 {
-    return shrunk > 0.0F ? std::max(0.0F, shrunk - rule_.escape.speed * t) : 0.0F;
+    return shrunk > 0.0F ? std::max(0.0F, shrunk - rules_.escape.speed * t) : 0.0F;
 }
 
 void NearThreats::set_far(NearThreat& threat, Seconds last, const Placed& placed) const noexcept
@@ -97,7 +97,7 @@ void NearThreats::add_point(const world::Threat& threat, const Vec3& own, const 
     near.position = threat.position_at(lead);
     near.velocity = threat.velocity;
     near.growth = threat.growth_from(lead);
-    near.room = rule_.room;
+    near.room = rules_.clearance;
     const Seconds last = near.is_track ? placed.period * static_cast<float>(kMaxDepth) : 0.0F;
     const float margin = geometry::box_distance(near.half, near.position - placed.origin) - near.growth.at(0.0F);
     const float apart = geometry::point_segment_distance(placed.origin, near.position, near.at(last));
@@ -114,7 +114,7 @@ void NearThreats::add_solid(const world::Threat& threat, const Vec3& own, const 
     NearThreat near;
     near.shape = threat.solid;
     near.position = threat.position;
-    near.room = rule_.room;
+    near.room = rules_.clearance;
     grow_by_box(near, own);
     near.growth = threat.growth;
     const float margin = distance_to(near, placed.origin) - near.growth.radius;
@@ -146,15 +146,14 @@ void NearThreats::add_bound(const world::Threat& threat, const Vec3& own, const 
     }
 }
 
-void NearThreats::collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
-                          const NearRule& rule) noexcept
+void NearThreats::collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond) noexcept
 {
-    rule_ = rule;
+    rules_ = situation.rules;
     bulge_ = placed.bulge();
     near_.clear();
     inside_ = {};
     const Vec3& own = situation.limits.half_extents;
-    const float range = placed.unit * placed.set->grid.distance() + bulge_ + beyond + rule_.room;
+    const float range = placed.unit * placed.set->grid.distance() + bulge_ + beyond + rules_.clearance;
     for (const world::Threat& threat : situation.threats) {
         switch (threat.form) {
         case world::ThreatForm::point: add_point(threat, own, placed, lead, range); break;
@@ -192,15 +191,15 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
             least = std::min(least, 0.5F * (before + after - length));
             before = after;
         }
-        // Written so that a NaN blocks.
-        return !(least > radius) ? kObstacle : !(least > radius + rule_.room) ? kNoRoom : kFree;
+        // The other way round what is not a number would be free.
+        return !(least > radius) ? kObstacle : !(least > radius + rules_.clearance) ? kNoRoom : kFree;
     }
-    if (radius + rule_.room < 0.0F) {
+    if (radius + rules_.clearance < 0.0F) {
         return kFree;
     }
     const Vec3 first = threat.at(piece.start) - from;
     const Vec3 last = threat.at(piece.end) - to;
-    if (geometry::glance(threat.half, first, last, radius + rule_.room) == geometry::Glance::apart) {
+    if (geometry::glance(threat.half, first, last, radius + rules_.clearance) == geometry::Glance::apart) {
         return kFree;
     }
     if (!(radius >= 0.0F)) {  // NaN blocks

@@ -48,12 +48,6 @@ struct NearThreat {
 /// other shapes not above the true distance. O(1).
 [[nodiscard]] float distance_to(const NearThreat& solid, const Vec3& point) noexcept;
 
-/// Settings of the node checks.
-struct NearRule {
-    world::EscapeRule escape;
-    float room = 0.4F;  ///< nearer than this is better avoided: level soft_constraints [m]
-};
-
 /// A straight piece of a flight, from the start of the path on.
 struct Piece {
     Vec3 from = Vec3::Zero();  ///< [m]
@@ -70,8 +64,7 @@ public:
     /// @param lead    time from Situation::now until the path begins [s]
     /// @param beyond  distance past the grid's border that is checked as well [m]
     /// O(tracks + obstacles + barrels).
-    void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond,
-                 const NearRule& rule) noexcept;
+    void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond) noexcept;
 
     /// Finds, for each cell in which a node ends, the threats that may come near to the movements to and from that cell
     /// at the times at which a node is there. False when the budget is too small. O(nodes + cells * threats).
@@ -109,7 +102,7 @@ private:
     [[nodiscard]] float shrunk_by(float margin_at_start) const noexcept;
     [[nodiscard]] float shrunk_at(float shrunk, Seconds t) const noexcept;
 
-    NearRule rule_;
+    world::FlightRules rules_;  ///< of the situation
     StaticVector<NearThreat, ThreatBits::kMost> near_;
     std::array<ThreatBits, kMaxReachCells> of_cell_{};
     ThreatBits all_;

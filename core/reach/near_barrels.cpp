@@ -50,7 +50,7 @@ void NearThreats::add_cylinder(const world::Threat& threat, const Vec3& own, con
     near.velocity = threat.velocity;
     near.growth.radius = barrel.circle.radius + extra;
     near.body = std::hypot(own.x(), own.y());
-    near.room = std::max(rule_.room, barrel.margin);
+    near.room = std::max(rules_.clearance, barrel.margin);
     near.is_tall = near.is_barrel = true;
     const Seconds last = placed.period * static_cast<float>(kMaxDepth);
     const auto level = [](const Vec3& v) { return Vec3(v.x(), v.y(), 0.0F); };
@@ -76,8 +76,8 @@ Level NearThreats::against_barrel(const NearThreat& barrel, const Piece& piece) 
     if (radius >= 0.0F && height >= 0.0F && touches_between(barrel, first, last, radius, height)) {
         return static_cast<Level>(AvoidanceRun::hard_constraints);
     }
-    const bool is_close = radius + barrel.room >= 0.0F && height + rule_.room >= 0.0F &&
-                          touches_between(barrel, first, last, radius + barrel.room, height + rule_.room);
+    const bool is_close = radius + barrel.room >= 0.0F && height + rules_.clearance >= 0.0F &&
+                          touches_between(barrel, first, last, radius + barrel.room, height + rules_.clearance);
     return is_close ? static_cast<Level>(AvoidanceRun::soft_constraints) : kFree;
 }
 

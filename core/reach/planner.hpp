@@ -13,9 +13,6 @@ namespace jink::reach {
 
 struct Settings {
     const VehicleSets* sets = nullptr;  ///< of the vehicle, checked by the caller; outlives the planner
-    float room = 0.4F;                  ///< trajectories that keep this clearance buffer come first [m], 0..10
-    Seconds latency = 0.1F;             ///< from planning until the vehicle responds, 0..1
-    world::EscapeRule escape;
     /// Cells at the grid's sides nearer than this many layers are no exits.
     std::uint8_t least_outer_layer = 2;
     /// Trajectories whose end is checked before the planner gives up, 1..64.
@@ -51,7 +48,7 @@ struct Report {
 class Planner {
 public:
     static constexpr std::size_t kHeadings = 3;
-    /// Settings::room is its clearance buffer.
+    /// Ways that keep FlightRules::clearance come first.
     static constexpr world::MethodTraits kTraits{
         .id = 2, .reactive = false, .keeps_clearance = true, .needs_sets = true};
 

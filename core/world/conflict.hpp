@@ -15,20 +15,20 @@ struct Conflict {
     Vec3 own_at_closest = Vec3::Zero();     ///< the collision point: own position on the way then [m]
     Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then, a barrel's at the own height [m]
     float radius_at_closest = 0.0F;         ///< threat's grown radius then [m]
-    float way_at_closest = 0.0F;            ///< along the way until then; a way with a route alone [m]
+    float way_at_closest = 0.0F;            ///< along the way until then [m]
 };
 
-/// The way that the vehicle takes when nothing is in it: straight from its position back to and along the leg at the
-/// leg's speed; or back to a route, and along it.
+/// The nominal path: where the vehicle goes when nothing is in the way, straight from its position to the reference's
+/// route and along it. Valid as long as the reference.
 struct Way {
     Vec3 origin = Vec3::Zero();      ///< own position [m]
-    Vec3 direction = Vec3::UnitX();  ///< unit vector; with a route at the start
-    float speed = 0.0F;              ///< after climb and descent limits [m/s]; likewise
-    float length = 0.0F;             ///< to the end of the leg, or the route [m]
-    path::RouteAhead ahead{};        ///< with a route: what comes after the straight beginning
+    Vec3 direction = Vec3::UnitX();  ///< unit vector at the start
+    float speed = 0.0F;              ///< at the start, after climb and descent limits [m/s]
+    float length = 0.0F;             ///< to the end of the route [m]
+    path::RouteAhead ahead{};        ///< what comes after the straight beginning
 };
 
-/// Off the leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer
+/// Off a leg, the way aims at the point of the leg this far ahead of the abeam point, or its end where that is nearer
 /// [m].
 inline constexpr float kRejoinLookahead = 12.0F;
 
@@ -41,23 +41,27 @@ inline constexpr float kRejoinLookahead = 12.0F;
 /// whatever passes by.
 inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 
-/// The way for a situation with a valid reference. Within 1e-3 m of the leg's end: the leg's direction, length 0. O(1).
+/// The way from `position` for a situation with a valid reference.
 ///
-/// With a route: on a straight leg of it as above, but ending with that leg; on an arc of radius R, `off` metres beside
-/// it, the way aims at the point sqrt(R) + 2 off ahead, kRejoinLookahead at most. Near a segment's end it aims at that
-/// end, but 1 m or 2 off ahead at least, and from there on it is the route. On a route of one leg it is the leg's way.
-/// O(segments).
-[[nodiscard]] Way way_of(const Situation& situation) noexcept;
-/// The same from another position, with a reference that has a route.
-[[nodiscard]] Way way_along(const Situation& situation, const Vec3& position) noexcept;
+/// On a straight segment the way aims at the segment's end; off it, at the point rejoin_lookahead ahead; on an arc of
+/// radius R, `off` metres beside it, at the point sqrt(R) + 2 off ahead, kRejoinLookahead at most. Near a segment's end
+/// the way aims at that end, but 1 m or 2 off ahead at least. From where the way meets the route it is the route.
+/// Within 1 mm of the route's end: the route's direction there, length 0. O(segments).
+[[nodiscard]] Way way_from(const Situation& situation, const Vec3& position) noexcept;
+/// From the own position.
+[[nodiscard]] inline Way way_of(const Situation& situation) noexcept
+{
+    return way_from(situation, situation.own.position);
+}
 
 /// Conflict of one threat with the way within `lookahead` seconds. Of a track: exact closest approach and loss times
 /// with the radius the threat has grown to (loss: with growth bounded piecewise over 0.5 s pieces, never later than the
 /// true one). A budget that runs out means a conflict now. O(lookahead).
 ///
-/// A way with a route is taken in straight pieces, each at the speed that the climb limits leave it: legs as they are,
-/// corners and all, arcs in chords, and the own box larger to every side by as much as they lie off the arc: 2 % of the
-/// radius at most while the way turns by less than 4 rad in the time looked ahead (kWayPieces).
+/// The way is taken in straight pieces, each at the speed that the climb limits leave it: legs as they are, corners and
+/// all, arcs in chords, and the own box larger to every side by as much as they lie off the arc: 2 % of the radius at
+/// most while the way turns by less than 4 rad in the time looked ahead (kWayPieces). At its end the vehicle hovers,
+/// which counts for what moves.
 [[nodiscard]] bool conflict_with(const Situation& situation, const Way& way, const Threat& threat, Seconds lookahead,
                                  WorkBudget& budget, Conflict& out) noexcept;
 
@@ -66,7 +70,7 @@ inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 /// never collected are a conflict now. A barrel is met when the own box enters its body, at the way's end too; its
 /// margin does not count. Floor, ceiling and keep-in are no threats: candidates obey them, but a leg outside them is
 /// the mission's business. When the budget runs out, the threat that it ran out at is the main one, its loss of
-/// separation now. O(tracks + barrels + obstacles).
+/// separation now. O(pieces * (tracks + barrels + obstacles)).
 [[nodiscard]] bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                                  Conflict& out) noexcept;
 

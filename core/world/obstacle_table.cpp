@@ -13,6 +13,13 @@ float gap(const geometry::Shape& shape, const Vec3& own) noexcept
 
 }  // namespace
 
+void ObstacleTable::drop_appended() noexcept { obstacles_.resize(expiry_.size()); }
+
+bool ObstacleTable::append(const Obstacle& obstacle) noexcept
+{
+    return obstacles_.size() - expiry_.size() < kMaxMapObstacles && obstacles_.try_push_back(obstacle);
+}
+
 void ObstacleTable::erase(std::size_t at) noexcept
 {
     for (std::size_t i = at; i + 1 < obstacles_.size(); ++i) {
@@ -48,7 +55,7 @@ ObstacleStatus ObstacleTable::place(const Obstacle& obstacle, TimePoint expires,
         expiry_[static_cast<std::size_t>(known - obstacles_.begin())] = expires;
         return ObstacleStatus::updated;
     }
-    if (!obstacles_.full()) {
+    if (obstacles_.size() < own_places_) {
         insert(obstacle, expires);
         return ObstacleStatus::created;
     }
@@ -65,6 +72,7 @@ ObstacleStatus ObstacleTable::place(const Obstacle& obstacle, TimePoint expires,
 
 ObstacleStatus ObstacleTable::update(const Obstacle& obstacle, TimePoint expires, const Vec3& own) noexcept
 {
+    drop_appended();
     const ObstacleStatus status = place(obstacle, expires, own);
     switch (status) {
     case ObstacleStatus::updated: ++diagnostics_.updated; break;
@@ -78,6 +86,7 @@ ObstacleStatus ObstacleTable::update(const Obstacle& obstacle, TimePoint expires
 
 bool ObstacleTable::remove(ObstacleId id) noexcept
 {
+    drop_appended();
     for (std::size_t i = 0; i < obstacles_.size(); ++i) {
         if (obstacles_[i].id == id) {
             erase(i);
@@ -89,6 +98,7 @@ bool ObstacleTable::remove(ObstacleId id) noexcept
 
 void ObstacleTable::expire(TimePoint now) noexcept
 {
+    drop_appended();
     for (std::size_t i = 0; i < obstacles_.size();) {
         if (expiry_[i] < now) {
             erase(i);

@@ -11,6 +11,8 @@ namespace {
 
 /// Nearer than this, two points give no direction [m].
 constexpr float kNoDistance = 1e-3F;
+/// Cross-track error up to which the vehicle counts as being on a leg [m].
+constexpr float kOnLeg = 0.25F;
 /// The way aims at least this far ahead, past the end of a segment if need be [m].
 constexpr float kLeastAhead = 1.0F;
 /// A piece that ends this close to the look-ahead ends with it: sums of times are rounded, and how many pieces there
@@ -25,8 +27,8 @@ float ahead_of(const Situation& situation, const path::RouteSegment& segment, co
 {
     const bool wing = situation.limits.kind == vehicle::VehicleKind::fixed_wing;
     const float most =
-        rejoin_lookahead(situation.limits, situation.reference.leg.speed, position.z() - abeam.point.position.z());
-    const bool on_leg = !segment.is_arc() && abeam.off <= detail::kOnLeg;
+        rejoin_lookahead(situation.limits, situation.reference.speed, position.z() - abeam.point.position.z());
+    const bool on_leg = !segment.is_arc() && abeam.off <= kOnLeg;
     const float least = std::min(most, std::max(kLeastAhead, 2.0F * abeam.off));
     const float on_arc = wing ? kWingOnArc * segment.radius : std::sqrt(segment.radius);
     const float wanted = on_leg ? abeam.left : segment.is_arc() ? std::min(most, on_arc + 2.0F * abeam.off) : most;
@@ -35,10 +37,20 @@ float ahead_of(const Situation& situation, const path::RouteSegment& segment, co
 
 }  // namespace
 
-Way way_along(const Situation& situation, const Vec3& position) noexcept
+float rejoin_lookahead(const vehicle::VehicleLimits& limits, float speed, float height) noexcept
+{
+    constexpr Seconds kWingAhead = 4.0F;
+    if (limits.kind == vehicle::VehicleKind::multirotor) {
+        return kRejoinLookahead;
+    }
+    const Seconds climb = std::max(-height / limits.max_climb, height / limits.max_descent);
+    return std::max(kRejoinLookahead, speed * std::max(kWingAhead, climb));
+}
+
+Way way_from(const Situation& situation, const Vec3& position) noexcept
 {
     const Reference& reference = situation.reference;
-    const path::Route& route = *reference.route;
+    const path::RouteView route = reference.route();
     const path::Abeam abeam = route.abeam_of(position, reference.segment);
     const float length = route.length();
     const float joined =
@@ -50,17 +62,17 @@ Way way_along(const Situation& situation, const Vec3& position) noexcept
     way.origin = position;
     way.direction = distance > kNoDistance ? Vec3(to_aim / distance) : aim.along;
     way.length = distance > kNoDistance || joined < length ? distance + (length - joined) : 0.0F;
-    way.speed = vehicle::clamped_velocity(way.direction, reference.leg.speed, situation.limits).norm();
-    way.ahead = {&route, distance, joined};
+    way.speed = vehicle::clamped_velocity(way.direction, reference.speed, situation.limits).norm();
+    way.ahead = {route, distance, joined};
     return way;
 }
 
 namespace detail {
 
 RoutePieces::RoutePieces(const Situation& situation, const Way& way, Seconds lookahead) noexcept
-    : way_(way), limits_(situation.limits), speed_(situation.reference.leg.speed), lookahead_(lookahead)
+    : way_(way), limits_(situation.limits), speed_(situation.reference.speed), lookahead_(lookahead)
 {
-    const std::span<const path::RouteSegment> segments = way.ahead.route->segments();
+    const std::span<const path::RouteSegment> segments = way.ahead.route.segments();
     // What is reached at most, and how far the way turns in it.
     const float reach = way.ahead.joined_at + std::max(0.0F, speed_ * lookahead - way.ahead.straight);
     float turn = 0.0F;
@@ -78,15 +90,17 @@ RoutePieces::RoutePieces(const Situation& situation, const Way& way, Seconds loo
     for (const path::RouteSegment& segment : segments) {
         const float from = std::clamp(way.ahead.joined_at - start, 0.0F, segment.length);
         if (now_ < lookahead_) {
-            add_segment(segment, from, std::clamp(reach - start, from, segment.length));
+            const float to = segment.is_arc() ? std::clamp(reach - start, from, segment.length) : segment.length;
+            add_segment(segment, from, to);
         }
         start += segment.length;
     }
     if (now_ < lookahead_ && !pieces_.empty() && flown_ < way.length - 2.0F * kNoDistance) {
         pieces_.back().end = lookahead_;  // what was too short for a piece is missing at the end
     } else if (now_ < lookahead_ || pieces_.empty()) {
-        const Vec3 end = way.length > 0.0F ? way.ahead.route->at(start).position : way.origin;
-        pieces_.unchecked_push_back({{end, Vec3::Zero()}, now_, lookahead_, flown_});
+        const bool moves = way.length > 0.0F && !segments.empty();
+        const Vec3 end = moves ? way.ahead.route.at(start).position : way.origin;
+        pieces_.unchecked_push_back({{end, Vec3::Zero()}, now_, lookahead_, flown_, 0.0F});
     }
 }
 
@@ -119,7 +133,7 @@ void RoutePieces::add(const Vec3& from, const Vec3& to, float length) noexcept
     const float speed = vehicle::clamped_velocity(span, speed_, limits_).norm();
     const Seconds duration = length / speed;
     const Seconds end = now_ + duration >= lookahead_ - kSliver ? lookahead_ : now_ + duration;
-    pieces_.unchecked_push_back({{from, span / duration}, now_, end, flown_});
+    pieces_.unchecked_push_back({{from, span / duration}, now_, end, flown_, duration});
     now_ = end;
     flown_ += length;
 }
@@ -132,7 +146,7 @@ float RoutePieces::way_at(Seconds t) const noexcept
     }
     const WayPiece& piece = pieces_[i];
     const float next = i + 1 < pieces_.size() ? pieces_[i + 1].way : way_.length;
-    if (piece.own.velocity == Vec3::Zero()) {
+    if (piece.hovers()) {
         return piece.way;
     }
     const float speed = vehicle::clamped_velocity(piece.own.velocity, speed_, limits_).norm();

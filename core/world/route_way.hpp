@@ -5,12 +5,9 @@
 #include "core/geometry/sweep.hpp"
 #include "core/world/conflict.hpp"
 
-// The way along a route, cut into straight pieces. Private to this room.
+// The nominal path cut into straight pieces. Private to this module.
 
 namespace jink::world::detail {
-
-/// Cross-track error up to which the vehicle counts as being on the leg [m].
-inline constexpr float kOnLeg = 0.25F;
 
 /// On an arc, chords of this angle, longer where more than kWayChords were needed [rad].
 inline constexpr float kChordAngle = 0.4F;
@@ -26,10 +23,16 @@ struct WayPiece {
     geometry::Motion own;  ///< position at `start`
     Seconds start = 0.0F;
     Seconds end = 0.0F;
-    float way = 0.0F;  ///< along the way until `start` [m]
+    float way = 0.0F;     ///< along the way until `start` [m]
+    Seconds whole = 0.0F;  ///< it would take so long without the look-ahead's end
+
+    [[nodiscard]] Seconds span() const noexcept { return end - start; }
+    [[nodiscard]] Vec3 last() const noexcept { return own.position + own.velocity * span(); }
+    [[nodiscard]] bool hovers() const noexcept { return own.velocity == Vec3::Zero(); }
 };
 
-/// A way with a route for `lookahead` seconds. 36 bytes per piece.
+/// A way for `lookahead` seconds. On a leg, two pieces: the rest of the leg, and hovering at its end. 40 bytes per
+/// piece.
 class RoutePieces {
 public:
     static constexpr std::size_t kMost = kWayPieces;

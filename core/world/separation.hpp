@@ -16,14 +16,6 @@ struct Separation {
     ThreatRef against;
 };
 
-/// How a flight that starts inside a margin is judged: each threat's sphere (or clearance) is shrunk to just clear the
-/// start and grows back at `speed`, so that a flight which leaves the margin at least that fast, and does not come
-/// back, is clear.
-struct EscapeRule {
-    float slack = 0.05F;  ///< the shrunk surface clears the start by this much [m]
-    float speed = 0.5F;   ///< the surface grows back at this speed [m/s]
-};
-
 /// How closely a flight has to be looked at.
 struct Cutoff {
     float below = -kSeparationCap;  ///< a margin below this ends the look: it is no better than what a search has [m]

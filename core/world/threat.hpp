@@ -11,9 +11,11 @@
 
 namespace jink::world {
 
+struct Track;
+
 enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in, barrel };
 
-/// Where a threat comes from: the kind and, for tracks, obstacles and barrels, the index in the Situation.
+/// Where a threat comes from: the kind and, for tracks, obstacles and barrels, the index in Surroundings.
 struct ThreatRef {
     ThreatKind kind = ThreatKind::none;
     std::uint16_t index = 0;
@@ -46,8 +48,8 @@ enum class ThreatForm : std::uint8_t {
 
 /// Something that must be kept clear of, in the form in which everybody meets it: a shape in straight motion that grows
 /// with what is not known of it. World frame, times from Situation::now on. Contact is contact of the own box with the
-/// grown shape; the own box is no part of it. 60 bytes on a 32-bit target.
-// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): one of the two pointers is set, which stands for both
+/// grown shape; the own box is no part of it. 64 bytes on a 32-bit target.
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): one of the three pointers is set, which stands for all
 struct Threat {
     ThreatRef ref;
     ThreatForm form = ThreatForm::point;
@@ -59,9 +61,11 @@ struct Threat {
     Growth growth;                 ///< own uncertainty of position included
     Seconds growth_begins = 0.0F;  ///< a stamp ahead of now: the threat grows from there on
     float level_radius = 0.0F;     ///< of keep_in [m]
-    union {                        ///< by `form`; a point that is an obstacle has its shape
+    float slack = 0.0F;            ///< of an obstacle: what `growth` holds beside its shape and the own uncertainty [m]
+    union {                        ///< by `form`; a point is an obstacle's or a track's, by `ref.kind`
         const geometry::Shape* solid = nullptr;
         const Barrel* cylinder;  ///< where it is at time 0
+        const Track* track;      ///< of a ThreatSet; null where a point is made without one
     };
 
     /// By how much the shape has grown at time `t` >= 0 [m].

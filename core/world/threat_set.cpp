@@ -18,14 +18,14 @@ Threat at_rest(ThreatKind kind, std::size_t index, ThreatForm form, const Vec3& 
     return threat;
 }
 
-Threat threat_of(const Situation& situation, std::size_t index) noexcept
+Threat threat_of(const Situation& situation, const Track& track, std::size_t index) noexcept
 {
-    const Track& track = situation.tracks[index];
     Threat threat =
-        track_threat(index, {track.position, track.velocity}, growth_of(situation, track, 0.0F), track.half_height);
+        track_threat(index, {track.position, track.velocity}, growth_of(situation, track), track.half_height);
     threat.growth_begins = std::max(track.stamp - situation.now, 0.0F);
     threat.grows = !(track.sigma_velocity <= 0.0F && track.max_acceleration <= 0.0F);  // non-finite ones too
     threat.reciprocal = track.cooperative;
+    threat.track = &track;
     return threat;
 }
 
@@ -121,12 +121,12 @@ std::span<const Threat> of_kind(std::span<const Threat> threats, ThreatKind kind
     return {begin, end};
 }
 
-bool ThreatSet::collect(const Situation& s) noexcept
+bool ThreatSet::collect(const Situation& s, const Surroundings& around) noexcept
 {
-    const Airspace& air = s.airspace;
+    const Airspace& air = around.airspace;
     threats_.clear();
     collected_ =
-        s.tracks.size() <= kMaxTracks && s.obstacles.size() <= kMaxObstacles && air.barrels.size() <= kMaxBarrels;
+        around.tracks.size() <= kMaxTracks && around.obstacles.size() <= kMaxObstacles && air.barrels.size() <= kMaxBarrels;
     if (!collected_) {
         return false;
     }
@@ -134,14 +134,17 @@ bool ThreatSet::collect(const Situation& s) noexcept
     for (const Threat& bound : bounds_of(air, uncertainty)) {
         threats_.unchecked_push_back(bound);
     }
-    for (std::size_t i = 0; i < s.tracks.size(); ++i) {
-        threats_.unchecked_push_back(threat_of(s, i));
+    for (std::size_t i = 0; i < around.tracks.size(); ++i) {
+        threats_.unchecked_push_back(threat_of(s, around.tracks[i], i));
     }
     for (std::size_t i = 0; i < air.barrels.size(); ++i) {
         threats_.unchecked_push_back(cylinder_threat(i, air.barrels[i], uncertainty));
     }
-    for (std::size_t i = 0; i < s.obstacles.size(); ++i) {
-        threats_.unchecked_push_back(obstacle_threat(i, s.obstacles[i].shape, uncertainty));
+    for (std::size_t i = 0; i < around.obstacles.size(); ++i) {
+        const Obstacle& obstacle = around.obstacles[i];
+        Threat threat = obstacle_threat(i, obstacle.shape, uncertainty + obstacle.uncertainty);
+        threat.slack = obstacle.uncertainty;
+        threats_.unchecked_push_back(threat);
     }
     return true;
 }

@@ -8,19 +8,27 @@
 
 namespace jink::world {
 
+/// What is around the vehicle, as its tables hold it.
+struct Surroundings {
+    std::span<const Track> tracks{};  ///< at Situation::now
+    std::span<const Obstacle> obstacles{};
+    const Airspace& airspace;
+};
+
 /// Everything that must be kept clear of, collected once per update. Conflict prediction, separation, methods and
 /// fallback iterate over it; a new kind of threat enters here.
 ///
-/// Order: floor, ceiling, keep-in; tracks; barrels; obstacles; each in the order of the Situation.
+/// Order: floor, ceiling, keep-in; tracks; barrels; obstacles; each in the order of the Surroundings.
 /// Memory: kMaxThreats times sizeof(Threat).
 class ThreatSet {
 public:
     /// Floor, ceiling, keep-in, and whatever the tables hold.
     static constexpr std::size_t kMaxThreats = 3 + kMaxTracks + kMaxBarrels + kMaxObstacles;
 
-    /// Takes in the tracks, obstacles and airspace of a situation, whose spans outlive this. False when there is more
-    /// than the capacities allow: then there is no set (all() says so). O(tracks + barrels + obstacles).
-    [[nodiscard]] bool collect(const Situation& situation) noexcept;
+    /// Takes in what is around the vehicle of a situation, whose own threats do not count; the tables outlive this.
+    /// False when there is more than the capacities allow: then there is no set (all() says so). O(tracks + barrels +
+    /// obstacles).
+    [[nodiscard]] bool collect(const Situation& situation, const Surroundings& around) noexcept;
 
     /// A span without data (null) before `collect` and after one that failed: Situation::threats counts that as contact
     /// everywhere.

@@ -12,6 +12,7 @@
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
 #include "core/world/barrel.hpp"
+#include "core/world/flight_rules.hpp"
 #include "core/world/threat.hpp"
 
 // What is known at one instant. Plain values; tables that fill them are in track_table.hpp and obstacle_table.hpp.
@@ -49,6 +50,7 @@ struct Track {
 struct Obstacle {
     ObstacleId id = 0;
     geometry::Shape shape;
+    float uncertainty = 0.0F;  ///< the obstacle may stand out of `shape` by this much [m], >= 0
 };
 
 /// Bounds of the airspace, met like any obstacle by the own box, own position uncertainty included. Heights above the
@@ -65,19 +67,43 @@ struct Airspace {
     std::span<const Barrel> barrels{};
 };
 
-/// A straight leg to fly.
+/// A straight leg to fly, as it is reported.
 struct Leg {
     Vec3 start = Vec3::Zero();
     Vec3 end = Vec3::Zero();
     float speed = 5.0F;  ///< [m/s], > 0
 };
 
-/// Where the vehicle means to go: along the leg, or at its speed along the route where there is one.
-struct Reference {
+/// Where the vehicle means to go: along a route. A leg is a route of one segment, which the reference holds itself; at
+/// the end of its route the vehicle hovers, or goes on straight where it cannot.
+class Reference {
+public:
+    Reference() noexcept = default;  ///< none: not valid
+    explicit Reference(const Leg& leg) noexcept
+        : valid(true), speed(leg.speed), leg_(path::straight_segment(leg.start, leg.end))
+    {
+    }
+    /// `route` outlives the Situation; it is not empty when a Situation is made of this.
+    Reference(const path::Route& route, float along, std::size_t from = 0) noexcept
+        : valid(true), speed(along), segment(from), route_(&route)
+    {
+    }
+    Reference(const path::Route&&, float, std::size_t = 0) = delete;
+
+    /// Valid as long as this and what it was made of.
+    [[nodiscard]] path::RouteView route() const& noexcept
+    {
+        return route_ != nullptr ? path::RouteView(*route_) : path::RouteView({&leg_, 1});
+    }
+    path::RouteView route() const&& = delete;
+
     bool valid = false;
-    Leg leg;                             ///< with a route its speed alone counts
-    const path::Route* route = nullptr;  ///< outlives the Situation, not empty
-    std::size_t segment = 0;             ///< of the route: the one being flown, or one before it
+    float speed = 5.0F;       ///< along the route [m/s], > 0
+    std::size_t segment = 0;  ///< of the route: the one being flown, or one before it
+
+private:
+    path::RouteSegment leg_;
+    const path::Route* route_ = nullptr;  ///< null: leg_ is the route
 };
 
 enum class ManoeuvreKind : std::uint8_t { follow_path, velocity, brake, hold_turn };
@@ -107,14 +133,11 @@ struct Situation {
     const vehicle::VehicleLimits& limits;
     const vehicle::Airframe& airframe;
     const Reference& reference;
-    std::span<const Track> tracks;
-    std::span<const Obstacle> obstacles;
-    const Airspace& airspace;
+    const FlightRules& rules;
     /// All that must be kept clear of, a ThreatSet's or some of them. Without data (null): never collected; then
     /// everything counts as contact.
     std::span<const Threat> threats{};
     const Manoeuvre* flying = nullptr;  ///< what is being flown or was last chosen, for hysteresis
-    float k_sigma = 3.0F;               ///< standard deviations that count as possible
     /// By which the others of the same link know us (TrackSource::datalink); 0: not known. Says nothing beside the id
     /// of a track of another source: that is of another scheme, and they may know us by another too.
     TrackId own_id = 0;
@@ -129,10 +152,9 @@ struct Situation {
 [[nodiscard]] inline Situation copy_with(const Situation& s, const vehicle::VehicleLimits& limits,
                                          const Reference& reference) noexcept
 {
-    const auto& [now, own, other_limits, airframe, other_reference, tracks, obstacles, airspace, threats, flying,
-                 k_sigma, own_id, commanded, shared_horizon] = s;
-    return {now,      own,     limits, airframe, reference, tracks,    obstacles,
-            airspace, threats, flying, k_sigma,  own_id,    commanded, shared_horizon};
+    const auto& [now, own, other_limits, airframe, other_reference, rules, threats, flying, own_id, commanded,
+                 shared_horizon] = s;
+    return {now, own, limits, airframe, reference, rules, threats, flying, own_id, commanded, shared_horizon};
 }
 [[nodiscard]] inline Situation with_limits(const Situation& s, const vehicle::VehicleLimits& limits) noexcept
 {
@@ -149,13 +171,20 @@ enum class PlanStatus : std::uint8_t {
     too_close,       ///< nearer to the main threat than the method can plan for
     none_available,  ///< every candidate touches something or cannot be flown
     budget_spent,    ///< the work budget ran out before an answer that may be trusted
-    bad_input,       ///< no leg, or settings out of range
+    bad_input,       ///< no reference, or settings out of range
 };
+
+/// Whether a method can plan in it: a reference, flight rules within their ranges, threats collected. O(1).
+[[nodiscard]] inline bool is_complete(const Situation& situation) noexcept
+{
+    return situation.reference.valid && !situation.reference.route().empty() && is_valid(situation.rules) &&
+           situation.threats.data() != nullptr;
+}
 
 /// How much earlier everything is met because the own position is not known better: k_sigma standard deviations [m].
 [[nodiscard]] inline float own_uncertainty(const Situation& situation) noexcept
 {
-    return situation.k_sigma * situation.own.sigma_position;
+    return situation.rules.k_sigma * situation.own.sigma_position;
 }
 
 /// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma standard deviations of the distance
@@ -165,20 +194,13 @@ enum class PlanStatus : std::uint8_t {
 /// error cancels: conservative. The only place where threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
 
-/// Half extents of the own box as this track meets it: taller by the track's `half_height`. A box against an upright
-/// capsule is the taller box against the capsule's sphere; exact. O(1).
-[[nodiscard]] inline Vec3 box_against(const Situation& situation, const Track& track) noexcept
-{
-    return situation.limits.half_extents + track.half_height * Vec3::UnitZ();
-}
 /// The point of a track's upright axis that is nearest in height to `height`, its centre being at `centre`. O(1).
 [[nodiscard]] inline Vec3 nearest_in_height(const Track& track, const Vec3& centre, float height) noexcept
 {
     return {centre.x(), centre.y(), std::clamp(height, centre.z() - track.half_height, centre.z() + track.half_height)};
 }
 
-/// `threat_radius` from `lead` seconds after Situation::now on; never below it where the track's stamp lies ahead of
-/// now. O(1).
-[[nodiscard]] Growth growth_of(const Situation& situation, const Track& track, Seconds lead) noexcept;
+/// `threat_radius` from Situation::now on; never below it where the track's stamp lies ahead of now. O(1).
+[[nodiscard]] Growth growth_of(const Situation& situation, const Track& track) noexcept;
 
 }  // namespace jink::world

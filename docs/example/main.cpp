@@ -9,7 +9,7 @@ int main()
     using namespace jink;
     const vehicle::VehicleLimits limits;  // 5 m/s cruise, 3 m/s climb, a safety box of 2 m
     const vehicle::Airframe airframe;
-    const world::Reference way{true, {{0, 0, 30}, {100, 0, 30}, 5.0F}};  // a level leg eastwards
+    const world::Reference way({{0, 0, 30}, {100, 0, 30}, 5.0F});  // a level leg eastwards
     world::Airspace airspace;
     airspace.has_floor = true;
     airspace.floor = 2.0F;

@@ -84,7 +84,7 @@ void Coprocessor::take_inbox(TimePoint now) noexcept
         heed(own_.take_autopilot(inbox.own_state, now));
     }
     if (inbox.has_bus_state) {
-        heed(own_.take_bus(inbox.bus_state, c.own_age, c.k_sigma, now, outbox_));
+        heed(own_.take_bus(inbox.bus_state, c.own_age, c.rules.k_sigma, now, outbox_));
     }
     picture_.take_home(inbox);
     control_.watch_sticks(inbox.has_sticks ? &inbox.sticks : nullptr, c.sticks);
@@ -118,7 +118,9 @@ std::uint16_t Coprocessor::find_faults(TimePoint now, bool stalled) const noexce
     } else if (now - *stamp > c.own_age) {
         faults |= bit(Fault::own_state_stale);
     }
-    faults |= heard && picture_.constraints().lacks_origin() ? bit(Fault::airspace_unplaced) : 0U;
+    const bool unplaced = picture_.constraints().lacks_origin() || picture_.known_map().lacks_place();
+    faults |= heard && unplaced ? bit(Fault::airspace_unplaced) : 0U;
+    faults |= picture_.known_map().is_unresolved() ? bit(Fault::map_unresolved) : 0U;
     return static_cast<std::uint16_t>(faults);
 }
 
@@ -132,9 +134,10 @@ avoid::Guidance Coprocessor::decide(TimePoint now, const vehicle::VehicleState& 
     report.uncertain_heights = static_cast<std::uint16_t>(
         std::count_if(tracks.begin(), tracks.end(), [](const auto& t) { return t.half_height > 0.0F; }));
     report.obstacles = static_cast<std::uint16_t>(picture_.obstacles().size());
+    report.map_pieces = static_cast<std::uint16_t>(picture_.obstacles().size() - picture_.sensed().size());
     report.barrels = static_cast<std::uint16_t>(air.barrels.size());
     return decision_.update({now, own_.measured(), own, autopilot_.flown_leg(takeover.streaming()),
-                             takeover.in_control(), tracks, picture_.obstacles(), air, link_.own_track()},
+                             takeover.in_control(), {tracks, picture_.obstacles(), air}, link_.own_track()},
                             c);
 }
 
@@ -190,6 +193,7 @@ StepReport Coprocessor::step(TimePoint now) noexcept
     take_inbox(now);
     link_.service(now);
     picture_.place_constraints(link_.origin(), now);
+    picture_.place_map(link_.origin(), own_, autopilot_.is_heard(), params_.configuration(), now);
     report.faults = find_faults(now, gap > kStall);
     decide_and_control(now, report);
     report_state(now, report);

@@ -67,6 +67,9 @@ public:
     {
         picture_.set_constraints(constraints, link_.origin(), own_.measured().position, now);
     }
+    /// A map of known surroundings, kept clear of like what sensors see, by all methods and the final check. Good
+    /// (geometry::check), before the first step; it outlives this.
+    void use_map(const geometry::MeshMap& map) noexcept { picture_.use_map(map); }
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
     /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
@@ -105,6 +108,7 @@ public:
     {
         return picture_.constraints().diagnostics();
     }
+    [[nodiscard]] const KnownMap& known_map() const noexcept { return picture_.known_map(); }
     [[nodiscard]] const ConstraintUploadDiagnostics& constraint_upload_diagnostics() const noexcept
     {
         return picture_.constraint_upload().diagnostics();

@@ -35,9 +35,10 @@ avoid::Guidance Decision::update(const DecisionInput& input, const Configuration
 {
     const vehicle::VehicleLimits limits = vehicle::limits_in_flight(c.limits, input.own.velocity);
     nominal_.update(input.measured, input.own, input.leg, limits, input.in_control);
-    const world::Situation situation{input.now,    input.own,       limits,         c.airframe, nominal_.primary(),
-                                     input.tracks, input.obstacles, input.airspace, {},         nullptr,
-                                     c.k_sigma,    input.own_track};
+    world::Situation situation{input.now, input.own, limits, c.airframe, nominal_.primary(), c.rules};
+    situation.own_id = input.own_track;
+    static_cast<void>(threats_.collect(situation, input.around));
+    situation.threats = threats_.all();
     const avoid::Guidance guidance = supervisor_.update(situation, input.in_control, nominal_.other());
     nominal_.note(guidance.conflict.has_value(), guidance.on_other, guidance.other_conflict);
     return guidance;

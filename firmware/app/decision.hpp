@@ -16,9 +16,7 @@ struct DecisionInput {
     const vehicle::VehicleState& own;       ///< the same carried forward to now
     const world::Leg* leg;                  ///< AutopilotState::flown_leg
     bool in_control;                        ///< the autopilot follows our commands
-    std::span<const world::Track> tracks;   ///< at now
-    std::span<const world::Obstacle> obstacles;
-    const world::Airspace& airspace;
+    world::Surroundings around;             ///< at now
     world::TrackId own_track;  ///< Link::own_track
 };
 
@@ -60,6 +58,7 @@ private:
     Methods methods_;
     Methods::Supervisor supervisor_;
     NominalPaths nominal_;
+    world::ThreatSet threats_;  ///< of one update
 };
 
 }  // namespace jink::app

@@ -85,7 +85,9 @@ void NominalPaths::Motion::copy_from(const Motion& other) noexcept
 {
     reference = other.reference;
     route = other.route;
-    reference.route = other.reference.route != nullptr ? &route : nullptr;
+    if (!route.empty()) {
+        reference = world::Reference(route, reference.speed, reference.segment);
+    }
 }
 
 void NominalPaths::reset() noexcept
@@ -200,15 +202,13 @@ void NominalPaths::intend(const vehicle::VehicleState& own, const vehicle::Vehic
     if (!has_leg_) {
         return;
     }
-    intended_.valid = true;
-    intended_.leg = leg_;
-    intended_.route = nullptr;
+    intended_ = world::Reference(leg_);
     const float meant = leg_.speed > 0.0F ? leg_.speed : steady_leg_ > 0.0F ? steady_leg_ : limits.cruise_speed;
     const Seen seen = seen_of(leg_, own.position);
     const float speed = own.velocity.norm();
     const bool along = !in_control && speed > kMoving && cosine(own.velocity, seen.forward) >= kAlong;
     const float flown = along && steady_now_ > 0.0F ? steady_now_ : meant;
-    intended_.leg.speed = along ? std::max(flown, speed) : meant;
+    intended_.speed = along ? std::max(flown, speed) : meant;
 }
 
 /// A turn from where the vehicle is: an arc, or legs where it climbs or descends; then straight on.
@@ -224,7 +224,6 @@ bool NominalPaths::add_turn(const vehicle::VehicleState& own) noexcept
     const Vec3 left = Vec3(-level.y(), level.x(), 0.0F) / speed;
     const Vec3 centre = own.position + sense * radius * left;
     path::Route& route = live_.route;
-    route = {};
     const float climb = own.velocity.z();
     if (std::abs(climb) <= kLevel) {
         if (route.add_arc(own.position, centre, Vec3::UnitZ(), sense * kPi) != path::RouteStatus::ok) {
@@ -250,26 +249,25 @@ bool NominalPaths::add_turn(const vehicle::VehicleState& own) noexcept
 void NominalPaths::extrapolate(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits) noexcept
 {
     const float speed = own.velocity.norm();
-    world::Reference& r = live_.reference;
-    r.valid = true;
-    r.segment = 0;
-    r.route = nullptr;
-    r.leg = {own.position, own.position, limits.cruise_speed};
-    if (speed >= kStanding) {
-        r.leg.end += own.velocity * kAhead;
-        r.leg.speed = speed;
-        r.route = add_turn(own) ? &live_.route : nullptr;
+    const bool moves = speed >= kStanding;
+    live_.route.clear();
+    if (moves && add_turn(own)) {
+        live_.reference = world::Reference(live_.route, speed);
+        return;
     }
+    live_.route.clear();
+    const Vec3 end = moves ? Vec3(own.position + own.velocity * kAhead) : own.position;
+    live_.reference = world::Reference({own.position, end, moves ? speed : limits.cruise_speed});
 }
 
 /// What drifts in gusts is going nowhere: its place is kept, not a path that it would be brought back to.
 void NominalPaths::keep(const vehicle::VehicleLimits& limits) noexcept
 {
     kept_.copy_from(live_);
-    world::Reference& r = kept_.reference;
-    if (r.leg.end != r.leg.start && r.leg.speed < std::min(kMoving, kDriftShare * limits.cruise_speed)) {
-        r.route = nullptr;
-        r.leg = {r.leg.start, r.leg.start, limits.cruise_speed};
+    if (kept_.reference.speed < std::min(kMoving, kDriftShare * limits.cruise_speed)) {
+        const Vec3 place = kept_.reference.route().at(0.0F).position;
+        kept_.route.clear();
+        kept_.reference = world::Reference({place, place, limits.cruise_speed});
     }
 }
 
@@ -277,9 +275,7 @@ void NominalPaths::keep(const vehicle::VehicleLimits& limits) noexcept
 void NominalPaths::progress(const vehicle::VehicleState& own) noexcept
 {
     world::Reference& r = kept_.reference;
-    if (r.route != nullptr) {
-        r.segment = r.route->abeam_of(own.position, r.segment).segment;
-    }
+    r.segment = r.route().abeam_of(own.position, r.segment).segment;
 }
 
 const world::Reference* NominalPaths::other() const noexcept

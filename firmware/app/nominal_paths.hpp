@@ -76,7 +76,7 @@ private:
         float turned = 0.0F;           ///< since the sample before, counter-clockwise [rad]
         Vec3 velocity = Vec3::Zero();  ///< [m/s]
     };
-    /// A reference with the route that it may point to.
+    /// A reference, and the route that it follows where the vehicle turns; empty where the reference holds a leg.
     struct Motion {
         world::Reference reference;
         path::Route route;

@@ -88,7 +88,7 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     const auto whole = [&](Param p) { return static_cast<std::uint32_t>(at(p)); };
     Configuration c;
     c.mode = static_cast<ActMode>(whole(Param::mode));
-    c.supervisor.lookahead = at(Param::lookahead);
+    c.rules.lookahead = at(Param::lookahead);
     c.supervisor.reserve = at(Param::reserve);
     c.supervisor.settle = at(Param::settle);
     c.supervisor.patience = at(Param::patience);
@@ -105,7 +105,8 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.airframe.mass = at(Param::mass);
     c.airframe.drag_coefficient = at(Param::drag);
     c.airframe.effective_area = at(Param::area);
-    c.k_sigma = at(Param::k_sigma);
+    c.rules.latency = at(Param::latency);
+    c.rules.k_sigma = at(Param::k_sigma);
     c.floor_on = (whole(Param::bounds) & 1U) != 0;
     c.ceiling_on = (whole(Param::bounds) & 2U) != 0;
     c.keep_in_on = (whole(Param::bounds) & 4U) != 0;
@@ -136,8 +137,6 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.tell_near = whole(Param::tell_near) == 1;
     c.sticks = 0.01F * at(Param::sticks);
     geometric::Settings& g = c.planner;
-    // What the supervisor sees as a conflict the planner has to see too.
-    g.lookahead = c.supervisor.lookahead;
     // What the vehicle cannot fly shows in the predicted flight, which every answer has to pass.
     g.check_acceleration = false;
     g.offsets = static_cast<std::uint16_t>(whole(Param::offsets));
@@ -169,23 +168,18 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
         c.reach.sets = &reach_sets();
         c.reach_unsuited = !reach::suits(reach_sets(), c.limits);
     }
-    c.reach.room = c.supervisor.clearance_buffer;
-    c.reach.latency = at(Param::latency);
-    c.reach.escape = c.supervisor.escape;
     c.blocks_unseen = whole(Param::unseen) == 1;
-    c.orca.horizon = c.supervisor.lookahead;
-    c.orca.latency = at(Param::latency);
     c.orca.gives_up_blocked = methods.order.ids().back() != kOrca;
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);
-    g.latency = at(Param::latency);
     return c;
 }
 
 bool fits_together(const Configuration& c) noexcept
 {
     const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
-    return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && avoid::is_valid(c.supervisor) &&
+    return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && world::is_valid(c.rules) &&
+           avoid::is_valid(c.supervisor) &&
            vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner) &&
            (!kHasReach || reach::is_valid(c.reach));
 }

@@ -109,6 +109,7 @@ enum class ParamStatus : std::uint8_t {
 /// Everything that parameters decide, as the rooms of core want it.
 struct Configuration {
     ActMode mode = ActMode::act;
+    world::FlightRules rules;  ///< of the supervisor and all methods
     avoid::Settings supervisor;
     geometric::Settings planner;
     reach::Settings reach;
@@ -119,7 +120,6 @@ struct Configuration {
     vehicle::VehicleLimits limits;
     vehicle::Airframe airframe;
     world::TrackTableSettings tracks;
-    float k_sigma = 3.0F;
     bool floor_on = false, ceiling_on = false, keep_in_on = false;
     float floor = 0.0F, ceiling = 0.0F, keep_in = 0.0F;  ///< above and about home [m]
     float track_radius = 1.0F, point_radius = 1.0F;      ///< of traffic that does not say its size [m]

@@ -135,6 +135,17 @@ void Picture::take_constraints(const link::Inbox& inbox, const OwnState& own, li
     }
 }
 
+void Picture::place_map(const std::optional<link::GlobalPosition>& origin, const OwnState& own, bool has_autopilot,
+                        const Configuration& c, TimePoint now) noexcept
+{
+    if (!has_autopilot || !own.is_known()) {
+        map_.leave_out();
+        return;
+    }
+    map_.append_to(obstacles_, origin, own.at(now, c.own_age), c);
+    counts_.map_coarse += map_.is_coarse() ? 1U : 0U;
+}
+
 world::Airspace Picture::airspace(bool has_autopilot, const Configuration& c, TimePoint now) const noexcept
 {
     world::Airspace air;

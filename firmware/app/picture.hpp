@@ -9,6 +9,7 @@
 #include "firmware/app/constraint_upload.hpp"
 #include "firmware/app/constraints.hpp"
 #include "firmware/app/diagnostics.hpp"
+#include "firmware/app/known_map.hpp"
 #include "firmware/app/own_state.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/link/link.hpp"
@@ -18,7 +19,7 @@ namespace jink::app {
 class Clouds;
 class ReachPicture;
 
-/// What is known around the vehicle, in the local frame: tracks, obstacles, closed areas, ground and home.
+/// What is known around the vehicle, in the local frame: tracks, obstacles, closed areas, a map, ground and home.
 ///
 /// Tracks are known by their place on the globe: where the frame's origin turns out to lie elsewhere, they are moved.
 class Picture {
@@ -31,6 +32,8 @@ public:
     void forward_clouds_to(link::CloudSink& sink) noexcept;
     /// The scans show the reach sets what is seen. After use_clouds(); it outlives this.
     void show_scans_in(ReachPicture& picture) noexcept;
+    /// Its pieces become obstacles from now on. Good (geometry::check), before the first step; it outlives this.
+    void use_map(const geometry::MeshMap& map) noexcept { map_.use(map, obstacles_); }
     void configure(const world::TrackTableSettings& tracks) noexcept { tracks_.configure(tracks); }
     void set_constraints(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
                          const Vec3& own, TimePoint now) noexcept
@@ -55,10 +58,16 @@ public:
     {
         constraints_.place(origin, now);
     }
+    /// The pieces of the map about the vehicle follow the obstacles that are sensed, until the next step.
+    /// @param has_autopilot  the map is placed in its frame: without one there is no map
+    void place_map(const std::optional<link::GlobalPosition>& origin, const OwnState& own, bool has_autopilot,
+                   const Configuration& c, TimePoint now) noexcept;
 
     /// Valid until the next call.
     [[nodiscard]] std::span<const world::Track> tracks(TimePoint now) noexcept { return tracks_.snapshot(now); }
     [[nodiscard]] std::span<const world::Obstacle> obstacles() const noexcept { return obstacles_.obstacles(); }
+    /// Those that are not of the map.
+    [[nodiscard]] std::span<const world::Obstacle> sensed() const noexcept { return obstacles_.own(); }
     /// Bounds and closed areas. Without an autopilot the ground seen is the only bound: there is no home.
     [[nodiscard]] world::Airspace airspace(bool has_autopilot, const Configuration& c, TimePoint now) const noexcept;
     /// Home in the local frame [m]; its origin until it was received.
@@ -67,6 +76,7 @@ public:
     [[nodiscard]] const world::TrackTable& track_table() const noexcept { return tracks_; }
     [[nodiscard]] const world::ObstacleTable& obstacle_table() const noexcept { return obstacles_; }
     [[nodiscard]] const ConstraintTable& constraints() const noexcept { return constraints_; }
+    [[nodiscard]] const KnownMap& known_map() const noexcept { return map_; }
     [[nodiscard]] const ConstraintUpload& constraint_upload() const noexcept { return constraint_upload_; }
 
 private:
@@ -80,6 +90,7 @@ private:
     world::TrackTable tracks_;
     world::ObstacleTable obstacles_;
     ConstraintTable constraints_;
+    KnownMap map_;
     ConstraintUpload constraint_upload_;
     std::optional<link::GlobalPosition> placed_by_;  ///< the origin that places the tracks
     Vec3 home_ = Vec3::Zero();

@@ -21,7 +21,9 @@ enum class Fault : std::uint16_t {
     not_finite = 64,          ///< a command with NaN or infinity: never sent
     passive = 128,            ///< set to plan and request nothing (stay_passive)
     bus_lost = 256,           ///< the sensor bus is not there: its silence does not mean that nothing is near
-    airspace_unplaced = 512,  ///< a closed area is known by its place on the globe, but no origin to place it by
+    airspace_unplaced = 512,  ///< a closed area or the map is known by its place on the globe, but no origin to place
+                              ///< it by, or one that is too far away
+    map_unresolved = 1024,    ///< pieces of the map about the vehicle are too many to be known one by one
 };
 
 [[nodiscard]] constexpr std::uint16_t bit(Fault fault) noexcept { return static_cast<std::uint16_t>(fault); }
@@ -44,7 +46,8 @@ struct StepReport {
     std::uint16_t tracks = 0;
     std::uint16_t uncertain_heights = 0;  ///< tracks with a Track::half_height
     std::uint16_t obstacles = 0;
-    std::uint16_t barrels = 0;  ///< closed volumes and storm cells that are known
+    std::uint16_t map_pieces = 0;  ///< obstacles among them that are a piece of the map, or several
+    std::uint16_t barrels = 0;     ///< closed volumes and storm cells that are known
     Control control = Control::autopilot;
     OwnSource own_source = OwnSource::none;
     avoid::Guidance guidance;

@@ -100,6 +100,10 @@ void Telemetry::report_causes(const Reported& of, Outbox& outbox) noexcept
         outbox.say(link::Severity::warning, "jink: too much traffic, some is left out");
         said_.flood = true;
     }
+    if (of.picture.known_map().is_coarse() && !said_.coarse && heard) {
+        outbox.say(link::Severity::warning, "jink: map too dense here, boxes close more");
+        said_.coarse = true;
+    }
     const bool unsuited = of.configuration.reach_unsuited && asks_reach_sets(of.configuration.supervisor);
     if (unsuited && !said_.unsuited && heard) {
         outbox.say(link::Severity::warning, "jink: reach sets do not suit this vehicle");
@@ -193,7 +197,7 @@ void Telemetry::report_near(TimePoint now, std::span<const world::Track> tracks,
     last_near_ = now;
     const Configuration& c = of.configuration;
     for (const link::NearObject& object :
-         find_near(of.own.at(now, c.own_age), tracks, of.picture.obstacles(), c.k_sigma)) {
+         find_near(of.own.at(now, c.own_age), tracks, of.picture.sensed(), c.rules.k_sigma)) {
         counts_.near_told += bus_->send_near(object) ? 1U : 0U;
     }
 }

@@ -73,6 +73,7 @@ private:
         bool left_out = false;
         bool unsuited = false;
         bool flood = false;
+        bool coarse = false;    ///< boxes stand for pieces of the map
         bool advising = false;  ///< this vehicle cannot be steered
         bool alone = false;     ///< no autopilot
     };

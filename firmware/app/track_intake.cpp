@@ -27,8 +27,8 @@ bool is_cooperative(const link::TrackReport& report, const Configuration& c) noe
 float half_height_of(const link::TrackReport& report, const Configuration& c) noexcept
 {
     switch (report.height) {
-    case link::HeightSource::pressure: return c.k_sigma * c.sigma_baro;
-    case link::HeightSource::compared: return report.height_spread + c.k_sigma * c.sigma_compared;
+    case link::HeightSource::pressure: return c.rules.k_sigma * c.sigma_baro;
+    case link::HeightSource::compared: return report.height_spread + c.rules.k_sigma * c.sigma_compared;
     case link::HeightSource::geometric: break;
     }
     return report.height_spread;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/cortex_m/flight.hpp"
 
+#include "firmware/app/built_map.hpp"
 #include "firmware/app/reach_sets.hpp"
 
 #include <bit>
@@ -51,6 +52,22 @@ void settle_reach_sets(app::Coprocessor& coprocessor) noexcept
             coprocessor.leave_out_reach_sets();
         }
     }
+}
+
+void settle_map(app::Coprocessor& coprocessor) noexcept
+{
+    const geometry::MeshMap* const map = app::built_map();
+    if (map == nullptr) {
+        return;
+    }
+    if (geometry::check(*map) == geometry::MapStatus::good) {
+        coprocessor.use_map(*map);
+        return;
+    }
+    app::Text text;
+    text << "jink: map damaged, passive";
+    static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, text));
+    coprocessor.stay_passive();
 }
 
 bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept

@@ -160,6 +160,12 @@ std::string suggestion(std::string_view name, std::span<const std::string_view> 
 
 std::optional<std::string> read_text_file(const std::filesystem::path& path, Complaints& complaints)
 {
+    return read_file(path, kMaxFileSize, "is larger than 1 MiB: not a hand-written file", complaints);
+}
+
+std::optional<std::string> read_file(const std::filesystem::path& path, std::size_t most, const char* too_large,
+                                     Complaints& complaints)
+{
     const auto refuse = [&](const char* why) {
         complaints.push_back({0, 0, why, path.string()});
         return std::nullopt;
@@ -183,7 +189,7 @@ std::optional<std::string> read_text_file(const std::filesystem::path& path, Com
     if (!S_ISREG(status.st_mode)) {
         return refuse("is not a regular file");
     }
-    std::string text(kMaxFileSize + 1, '\0');
+    std::string text(most + 1, '\0');
     std::size_t size = 0;
     while (size < text.size()) {
         const ssize_t n = ::read(file, text.data() + size, text.size() - size);
@@ -199,8 +205,8 @@ std::optional<std::string> read_text_file(const std::filesystem::path& path, Com
         size += static_cast<std::size_t>(n);
     }
     text.resize(size);
-    if (text.size() > kMaxFileSize) {
-        return refuse("is larger than 1 MiB: not a hand-written file");
+    if (text.size() > most) {
+        return refuse(too_large);
     }
     return text;
 }

@@ -58,5 +58,8 @@ inline constexpr std::size_t kMaxFileSize = 1U << 20U;
 /// Whole text of a regular file. If the file cannot be read or is larger than kMaxFileSize: a complaint and nothing.
 /// FIFOs, sockets and devices are refused without waiting for them.
 [[nodiscard]] std::optional<std::string> read_text_file(const std::filesystem::path& path, Complaints& complaints);
+/// The same of any file up to `most` bytes; a larger one is complained of in the words `too_large`.
+[[nodiscard]] std::optional<std::string> read_file(const std::filesystem::path& path, std::size_t most,
+                                                   const char* too_large, Complaints& complaints);
 
 }  // namespace jink::files

@@ -25,10 +25,9 @@
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
-#include "firmware/linux/airspace_file.hpp"
 #include "firmware/linux/background.hpp"
-#include "firmware/linux/complaint.hpp"
 #include "firmware/linux/housekeeping.hpp"
+#include "firmware/linux/loading.hpp"
 #include "firmware/linux/node_identity.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/param_store.hpp"
@@ -46,6 +45,8 @@ using namespace jink;
 using host::complain_now;
 
 constexpr std::int64_t kTickMicroseconds = 20'000;
+/// Exit status for a map that is not good.
+constexpr int kBadMap = 2;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -62,6 +63,7 @@ struct Options {
     std::string param_file;
     std::string state_file;
     std::string airspace_file;
+    std::string map_file;
     host::SigningFiles signing;
     std::string watchdog;
     std::string summary;
@@ -118,46 +120,7 @@ void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
     }
 }
 
-void complain(const files::Complaints& complaints)
-{
-    for (const files::Complaint& complaint : complaints) {
-        complain_now(files::to_string(complaint));
-    }
-}
-
-/// Call it before the first step. False, with a message, if the file is not good.
-bool load_airspace(const std::string& file, hal::SystemClock& clock, app::Coprocessor& coprocessor)
-{
-    timespec t{};
-    ::clock_gettime(CLOCK_REALTIME, &t);
-    const TimePoint now{clock.now_us()};
-    const double unix_seconds = static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
-    files::Complaints complaints;
-    const auto constraints = files::read_airspace_file(file, {unix_seconds, now}, complaints);
-    complain(complaints);
-    if (constraints) {
-        coprocessor.set_constraints(*constraints, now);
-        complain_now(file + ": " + std::to_string(constraints->size()) + " areas are closed");
-    }
-    return constraints.has_value();
-}
-
-/// Loads parameters that were set over a link before the last stop. Wrong lines are left out, with a message.
-void load_state(const std::string& file, app::Parameters& parameters)
-{
-    if (file.empty()) {
-        return;
-    }
-    files::Complaints complaints;
-    const files::StateLoad load = files::load_state(file, parameters, complaints);
-    complain(complaints);
-    if (load.taken + load.refused > 0) {
-        complain_now(file + ": " + std::to_string(load.taken) + " parameters as set over a link, " +
-                     std::to_string(load.refused) + " lines left out");
-    }
-}
-
-/// A closed pipe or a full quota is an error of a write, not a reason to exit.
+/// A closed pipe or a full quota is an error of a write, not a reason to die.
 void ignore_what_outputs_raise()
 {
     std::signal(SIGPIPE, SIG_IGN);
@@ -189,10 +152,11 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
-/// @param initial  parameters of the hand-written files
-/// @param stored   values in force: `initial`, with the values set over a link before
+/// @param initial  parameters of the files that people write
+/// @param stored   values in force: these, and over them what was set over a link before
+/// @param map      null: none
 int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
-        const std::string& device, std::uint32_t baud)
+        const geometry::MeshMap* map, const std::string& device, std::uint32_t baud)
 {
     hal::SystemClock clock;
     hal::TermiosSerialPort serial;
@@ -247,6 +211,9 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         coprocessor->note_stored(coprocessor->parameters().generation());
     }
     coprocessor->use_clouds(*clouds);
+    if (map != nullptr) {
+        coprocessor->use_map(*map);
+    }
     const auto picture = std::make_unique<app::ReachPicture>(app::reach_sets());
     if (cloud_line) {
         coprocessor->let_reach_sets_see(*picture);
@@ -255,7 +222,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         complain_now("the reach sets are damaged and left out");
         coprocessor->leave_out_reach_sets();
     }
-    if (!options.airspace_file.empty() && !load_airspace(options.airspace_file, clock, *coprocessor)) {
+    if (!options.airspace_file.empty() && !host::load_airspace(options.airspace_file, clock, *coprocessor)) {
         return EXIT_FAILURE;
     }
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
@@ -334,6 +301,8 @@ int main(int argc, char** argv)
                    "option: the parameter file's name with .state, if there is one");
     cli.add_option("--airspace", options.airspace_file,
                    "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
+    cli.add_option("--map", options.map_file,
+                   "map of known surroundings, made by jink mesh build; one that is not good ends jinkd with status 2");
     cli.add_option("--signing-key", options.signing.key,
                    "file with the key of MAVLink signing: 64 hexadecimal digits, or 'passphrase TEXT'. Frames are then "
                    "signed, and unsigned ones refused");
@@ -368,7 +337,7 @@ int main(int argc, char** argv)
     }
     files::Complaints complaints;
     auto parameters = files::load_parameters(options.vehicle_file, options.param_file, complaints);
-    complain(complaints);
+    host::complain(complaints);
     if (!parameters) {
         return EXIT_FAILURE;
     }
@@ -381,6 +350,14 @@ int main(int argc, char** argv)
     } else if (!options.signing.key.empty()) {
         options.signing.store = options.signing.key + ".state";
     }
-    load_state(options.state_file, *parameters);
-    return run(options, initial, parameters->values(), device, baud);
+    std::optional<files::MapTables> map;
+    if (!options.map_file.empty()) {
+        map = host::load_map(options.map_file);
+        if (!map) {
+            return kBadMap;
+        }
+    }
+    host::load_state(options.state_file, *parameters);
+    const geometry::MeshMap view = map ? map->view() : geometry::MeshMap{};
+    return run(options, initial, parameters->values(), map ? &view : nullptr, device, baud);
 }

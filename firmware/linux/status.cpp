@@ -279,6 +279,9 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
     const app::ConstraintUploadDiagnostics& u = coprocessor.constraint_upload_diagnostics();
     std::fprintf(f, "  \"area_sets\": %u, \"area_sets_abandoned\": %u, \"area_parts_refused\": %u,\n", u.sets,
                  u.abandoned, u.refused);
+    const world::MapSelection& map = coprocessor.known_map().selection();
+    std::fprintf(f, "  \"map_pieces\": %u, \"map_boxes\": %u, \"map_coarse\": %u,\n", map.pieces, map.boxes,
+                 d.map_coarse);
     if (watched.bus != nullptr) {
         write_bus(f, *watched.bus);
     }

@@ -90,6 +90,7 @@ extern "C" void hal::cortex_m::jink_main()
     }
     hal::cortex_m::start_systick(kClockHz / 1000U);
     firmware::settle_reach_sets(coprocessor);
+    firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);
     watchdog.start(kWatchdogTicks);
     firmware::fly(coprocessor, clock, passive, [] {});

@@ -248,6 +248,7 @@ extern "C" void hal::cortex_m::jink_main()
     }
     keeper.start(coprocessor);
     firmware::settle_reach_sets(coprocessor);
+    firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);
     if (bus == nullptr) {
         app::Text text;

@@ -13,7 +13,7 @@ TEST(Jinkd, HelpNamesEveryOptionOfTheReadme)
     EXPECT_EQ(daemon.wait(kPatience), 0);
     const std::string help = text_of(scratch / "out");
     for (const char* option : {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog",
-                               "--system-id", "--cloud"}) {
+                               "--system-id", "--cloud", "--map"}) {
         EXPECT_NE(help.find(option), std::string::npos) << option;
     }
 }

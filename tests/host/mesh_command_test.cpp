@@ -31,6 +31,12 @@ Outcome jink_mesh(const Scratch& scratch, const std::string& arguments)
             slurp(scratch.path() / "err.txt")};
 }
 
+jink::files::MapTables map_of(const Scratch& scratch, const char* name)
+{
+    jink::files::Complaints complaints;
+    return jink::files::read_map_file(scratch.path() / name, complaints).value_or(jink::files::MapTables{});
+}
+
 TEST(MeshCommand, BuildsAMapThatIsShownAgain)
 {
     const Scratch scratch;
@@ -41,9 +47,8 @@ TEST(MeshCommand, BuildsAMapThatIsShownAgain)
     EXPECT_NE(built.out.find("of 28 triangles: no piece stands out of the mesh by more than 0."), std::string::npos)
         << built.out;
     EXPECT_NE(built.out.find("nothing of it out of the pieces by more than 0.0000 m"), std::string::npos) << built.out;
-    const std::string file = slurp(scratch.path() / "gate.map");
-    const jink::mesh::StoredMap map = jink::mesh::StoredMap::from_file(file);
-    EXPECT_EQ(map.view().name, "gate");
+    EXPECT_NE(built.out.find("no origin on the globe: taken in the autopilot's local frame"), std::string::npos);
+    EXPECT_EQ(map_of(scratch, "gate.map").name, "gate");
     const Outcome shown = jink_mesh(scratch, "show gate.map");
     EXPECT_EQ(shown.status, 0) << shown.err;
     EXPECT_EQ(built.out.rfind(shown.out, 0), 0U) << shown.out << built.out;
@@ -66,10 +71,27 @@ TEST(MeshCommand, BuildsAHeaderOfConstantTablesThatCompiles)
                                 "' && c++ -std=c++20 -Wall -Wextra -Werror -fsyntax-only -I'" JINK_SOURCES
                                 "' -isystem /usr/include/eigen3 main.cpp";
     EXPECT_EQ(std::system(compile.c_str()), 0);
-    const jink::mesh::StoredMap map = jink::mesh::StoredMap::from_file(slurp(scratch.path() / "box.map"));
     char checksum[16];
-    std::snprintf(checksum, sizeof checksum, "0x%08XU", static_cast<unsigned>(map.view().checksum));
+    std::snprintf(checksum, sizeof checksum, "0x%08XU", static_cast<unsigned>(map_of(scratch, "box.map").checksum));
     EXPECT_NE(header.find(checksum), std::string::npos) << "file and header are the same map";
+}
+
+TEST(MeshCommand, AnOriginIsKeptInFileAndHeader)
+{
+    const Scratch scratch;
+    static_cast<void>(scratch.write("box.obj", jink::test::as_obj(jink::test::box(1, 1, 1))));
+    const Outcome built =
+        jink_mesh(scratch, "build box.obj --origin=-47.3977421,8.5455938,488.25 -o a.map --header a.hpp");
+    EXPECT_EQ(built.status, 0) << built.err;
+    EXPECT_NE(built.out.find("origin -47.3977421,8.5455938 degrees, 488.250 m above mean sea level"), std::string::npos)
+        << built.out;
+    const jink::geometry::MapOrigin origin = map_of(scratch, "a.map").origin;
+    EXPECT_TRUE(origin.known);
+    EXPECT_EQ(origin.latitude, -473'977'421);
+    EXPECT_EQ(origin.longitude, 85'455'938);
+    EXPECT_EQ(origin.altitude, 488'250);
+    EXPECT_NE(slurp(scratch.path() / "a.hpp").find("{true, -473977421, 85455938, 488250}"), std::string::npos);
+    EXPECT_EQ(jink_mesh(scratch, "build box.obj --origin 47,8").status, 1) << "two numbers";
 }
 
 TEST(MeshCommand, MeasureComparesTheMethods)
@@ -110,9 +132,11 @@ TEST(MeshCommand, WhatIsWrongIsSaidInALine)
         {"build far.obj", "jink mesh build: far.obj: a coordinate of 2000"},
         {"build 1.obj", "jink mesh build: '1' leaves nothing that a C++ name can be made of"},
         {"build box.obj -o none/box.map", "jink mesh build: none/box.map"},
+        {"build box.obj --origin 89,8,500", "jink mesh build: --origin: latitude within 85 degrees"},
+        {"build box.obj --origin 47,8,nan", "jink mesh build: --origin: latitude within 85 degrees"},
         {"measure none.obj", "jink mesh measure: none.obj: no such file\n"},
-        {"show none.map", "jink mesh show: none.map: cannot be read\n"},
-        {"show box.obj", "jink mesh show: box.obj: not a map file\n"},
+        {"show none.map", "jink mesh show: none.map: no such file\n"},
+        {"show box.obj", "jink mesh show: box.obj: not a map file: jink mesh build makes them\n"},
     };
     for (const auto& [arguments, complaint] : cases) {
         const Outcome bad = jink_mesh(scratch, arguments);

@@ -10,6 +10,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/geometry/hull_distance.hpp"
+#include "tests/host/held_points.hpp"
 #include "tests/host/mesh_shapes.hpp"
 #include "tests/host/scratch.hpp"
 #include "toolchain/mesh/decompose.hpp"
@@ -35,47 +37,7 @@ TriangleMesh read(const std::string& name, const std::string& text, const ReadOp
     return read_mesh(scratch.write(name, text), options);
 }
 
-/// Whether a point lies in some piece, by the pieces' planes in double precision, or of a flat one by its triangles.
-bool is_held(const geometry::MeshMap& map, const Vec3d& point, double room)
-{
-    for (std::size_t i = 0; i < map.pieces.size(); ++i) {
-        const auto faces = map.faces_of(i);
-        if (!faces.empty()) {
-            const bool inside = std::all_of(faces.begin(), faces.end(), [&](const geometry::FacePlane& face) {
-                return face.normal.vec().cast<double>().dot(point) <= double(face.offset) + room;
-            });
-            if (inside) {
-                return true;
-            }
-            continue;
-        }
-        const auto v = map.vertices_of(i);
-        Vec3d low = v[0].vec().cast<double>();
-        Vec3d high = low;
-        for (const Point3& corner : v) {
-            low = low.cwiseMin(corner.vec().cast<double>());
-            high = high.cwiseMax(corner.vec().cast<double>());
-        }
-        if ((low - point).cwiseMax(point - high).maxCoeff() > room) {
-            continue;
-        }
-        for (std::size_t k = 2; k < v.size(); ++k) {
-            // Barycentric coordinates of the point's foot.
-            const Vec3d a = v[0].vec().cast<double>();
-            const Vec3d b = v[k - 1].vec().cast<double>() - a;
-            const Vec3d c = v[k].vec().cast<double>() - a;
-            Eigen::Matrix<double, 3, 2> sides;
-            sides << b, c;
-            const Eigen::Vector2d share = sides.colPivHouseholderQr().solve(point - a);
-            const double off = (sides * share - (point - a)).norm();
-            const double beside = 4 * room + 1e-6;  // sides are a quarter of a metre and longer
-            if (off <= room + 1e-6 && share.minCoeff() >= -beside && share.sum() <= 1 + beside) {
-                return true;
-            }
-        }
-    }
-    return false;
-}
+bool is_held(const geometry::MeshMap& map, const Vec3d& point, double room) { return Held(map).holds(point, room); }
 
 /// Random points of every triangle, its corners and its edges among them.
 void expect_all_held(const TriangleMesh& mesh, const geometry::MeshMap& map, int samples)
@@ -83,6 +45,7 @@ void expect_all_held(const TriangleMesh& mesh, const geometry::MeshMap& map, int
     std::mt19937 random(7);
     std::uniform_real_distribution<double> uniform(0.0, 1.0);
     const double room = double(map.slack) + 2e-6 * mesh.vertices[0].cwiseAbs().maxCoeff() + 1e-6;
+    const Held held(map);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const auto c = mesh.corners(t);
         for (int n = 0; n < samples; ++n) {
@@ -93,7 +56,7 @@ void expect_all_held(const TriangleMesh& mesh, const geometry::MeshMap& map, int
                 b = 1 - b;
             }
             const Vec3d point = c[0] + a * (c[1] - c[0]) + b * (c[2] - c[0]);
-            ASSERT_TRUE(is_held(map, point, room)) << "triangle " << t << " sample " << n;
+            ASSERT_TRUE(held.holds(point, room)) << "triangle " << t << " sample " << n;
         }
     }
 }
@@ -131,7 +94,7 @@ TEST(MeshPieces, EveryPointOfTheMeshLiesInAPieceWhateverTheMethod)
             Recipe recipe;
             recipe.method = method;
             recipe.concavity = 0.3;
-            const StoredMap stored("test", pieces_of(shape.mesh, recipe));
+            const files::MapTables stored = stored_map("test", pieces_of(shape.mesh, recipe));
             const geometry::MeshMap map = stored.view();
             ASSERT_EQ(geometry::check(map), geometry::MapStatus::good);
             ASSERT_LE(map.slack, 1e-4F);
@@ -162,7 +125,7 @@ TEST(MeshPieces, DecompositionKeepsToTheConcavityAndLeavesTheGateOpen)
         const std::vector<Piece> pieces = pieces_of(gate(), recipe);
         EXPECT_LE(most_excess(pieces), concavity);
         EXPECT_GE(pieces.size(), 2U);
-        const StoredMap stored("gate", pieces);
+        const files::MapTables stored = stored_map("gate", pieces);
         EXPECT_FALSE(is_held(stored.view(), {2.0, 3.0, 1.0}, 0.0)) << "the middle of the passage";
     }
 }
@@ -257,20 +220,36 @@ TEST(Solid, DistanceIsThatOfTheNearestOfManyPoints)
     }
 }
 
+/// Of a text that is no good map: why.
+std::string complaint_of(const std::string& text)
+{
+    files::Complaints complaints;
+    const bool good = files::parse_map(text, "x.map", complaints).has_value();
+    EXPECT_EQ(complaints.size(), good ? 0U : 1U);
+    return good ? "" : files::to_string(complaints.front());
+}
+
 TEST(MeshFile, AMapIsReadAsItWasWritten)
 {
-    const StoredMap stored("gate", pieces_of(gate(), Recipe{}));
-    const std::string text = stored.file();
-    const StoredMap again = StoredMap::from_file(text);
-    EXPECT_EQ(again.file(), text);
-    EXPECT_EQ(again.view().name, "gate");
-    EXPECT_EQ(again.view().checksum, geometry::checksum_of(again.view()));
-    EXPECT_EQ(bytes_of(again.view()), bytes_of(stored.view()));
+    const geometry::MapOrigin origin{true, 481'234'567, -1'123'456'789, -250'500};
+    const files::MapTables stored = stored_map("gate", pieces_of(gate(), Recipe{}), origin);
+    const std::string text = files::map_file_of(stored.view());
+    files::Complaints complaints;
+    const auto again = files::parse_map(text, "gate.map", complaints);
+    ASSERT_TRUE(again);
+    EXPECT_EQ(files::map_file_of(again->view()), text);
+    EXPECT_EQ(again->view().name, "gate");
+    EXPECT_TRUE(again->origin.known);
+    EXPECT_EQ(again->origin.latitude, origin.latitude);
+    EXPECT_EQ(again->origin.longitude, origin.longitude);
+    EXPECT_EQ(again->origin.altitude, origin.altitude);
+    EXPECT_EQ(again->view().checksum, geometry::checksum_of(again->view()));
+    EXPECT_EQ(bytes_of(again->view()), bytes_of(stored.view()));
 }
 
 TEST(MeshFile, EveryChangedByteAndEveryCutIsNoticed)
 {
-    const std::string text = StoredMap("box", pieces_of(box(1, 2, 3), Recipe{})).file();
+    const std::string text = files::map_file_of(stored_map("box", pieces_of(box(1, 2, 3), Recipe{})).view());
     const std::size_t name = 12;  // the name is not in the checksum
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (i >= name && i < name + 3) {
@@ -278,12 +257,26 @@ TEST(MeshFile, EveryChangedByteAndEveryCutIsNoticed)
         }
         std::string damaged = text;
         damaged[i] = static_cast<char>(damaged[i] ^ 0x10);
-        EXPECT_NE(refusal([&] { static_cast<void>(StoredMap::from_file(damaged)); }), "") << "byte " << i;
+        EXPECT_NE(complaint_of(damaged), "") << "byte " << i;
     }
     for (std::size_t length = 0; length < text.size(); ++length) {
-        EXPECT_NE(refusal([&] { static_cast<void>(StoredMap::from_file(text.substr(0, length))); }), "") << length;
+        EXPECT_NE(complaint_of(text.substr(0, length)), "") << length;
     }
-    EXPECT_NE(refusal([&] { static_cast<void>(StoredMap::from_file(text + "x")); }), "");
+    EXPECT_NE(complaint_of(text + "x"), "");
+}
+
+TEST(MeshFile, WhatIsWrongIsSaid)
+{
+    const std::string text = files::map_file_of(stored_map("box", pieces_of(box(1, 2, 3), Recipe{})).view());
+    EXPECT_EQ(complaint_of("solid box"), "x.map: not a map file: jink mesh build makes them");
+    EXPECT_EQ(complaint_of(text.substr(0, 40)), "x.map: the file ends too early");
+    EXPECT_EQ(complaint_of(text + "x"), "x.map: the file goes on after its end");
+    std::string old = text;
+    old[8] = 1;
+    EXPECT_EQ(complaint_of(old), "x.map: version 1 of the file, where 2 is read: make it anew by jink mesh build");
+    std::string damaged = text;
+    damaged.back() = static_cast<char>(damaged.back() ^ 1);
+    EXPECT_EQ(complaint_of(damaged), "x.map: wrong checksum");
 }
 
 TEST(ReadMesh, StlAndObjAreTheSameMesh)
@@ -341,7 +334,7 @@ TEST(MeshPieces, AnOpenMeshIsRefusedWhereItMatters)
         const std::string why = refusal([&] { static_cast<void>(pieces_of(open, recipe)); });
         EXPECT_NE(why.find("not closed: 3 edges"), std::string::npos) << why;
         recipe.open = true;
-        expect_all_held(open, StoredMap("open", pieces_of(open, recipe)).view(), 20);
+        expect_all_held(open, stored_map("open", pieces_of(open, recipe)).view(), 20);
     }
     TriangleMesh inside_out = box(1, 1, 1);
     std::swap(inside_out.triangles[3][0], inside_out.triangles[3][1]);
@@ -360,7 +353,7 @@ TEST(MeshPieces, MoreThanAMapHoldsIsRefused)
     Recipe recipe;
     recipe.concavity = 0.0;
     EXPECT_NE(refusal([&] { static_cast<void>(pieces_of(box(1, 1, 1), recipe)); }), "");
-    EXPECT_NE(refusal([] { StoredMap("none", {}); }), "");
+    EXPECT_NE(refusal([] { static_cast<void>(stored_map("none", {})); }), "");
 }
 
 /// Degenerate triangles (lines, points and needles) are kept as obstacles.
@@ -375,12 +368,15 @@ TEST(MeshPieces, TrianglesWithoutAreaAreKept)
         Recipe recipe;
         recipe.method = method;
         recipe.open = true;
-        const StoredMap stored("line", pieces_of(mesh, recipe));
-        WorkBudget budget(10'000);
-        std::array<geometry::NearPiece, 1> nearest;
-        geometry::DistanceQuery query;
-        EXPECT_EQ(geometry::nearest_pieces(stored.view(), {3.0F, 1.0F, 0.0F}, query, nearest, budget).found, 1U);
-        EXPECT_NEAR(nearest[0].from.distance, 1.0F, 1e-4F);
+        const files::MapTables stored = stored_map("line", pieces_of(mesh, recipe));
+        float nearest = 1e9F;
+        for (std::size_t i = 0; i < stored.pieces.size(); ++i) {
+            WorkBudget budget(10'000);
+            nearest = std::min(
+                nearest,
+                geometry::point_shape_distance({3.0F, 1.0F, 0.0F}, stored.view().shape_of(i), {}, budget).distance);
+        }
+        EXPECT_NEAR(nearest, 1.0F, 1e-4F);
     }
 }
 

@@ -10,9 +10,9 @@ namespace jink::oracle {
 /// A situation with its threats collected.
 class Collected {
 public:
-    explicit Collected(const world::Situation& situation) : situation_(situation)
+    Collected(const world::Situation& situation, const world::Surroundings& around) : situation_(situation)
     {
-        static_cast<void>(set_->collect(situation));
+        static_cast<void>(set_->collect(situation, around));
         situation_.threats = set_->all();
     }
     // NOLINTNEXTLINE(google-explicit-constructor): stands for the situation

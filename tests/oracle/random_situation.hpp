@@ -20,6 +20,7 @@ struct RandomSituation {
     std::vector<world::Track> tracks;
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
+    world::FlightRules rules{.lookahead = 10.0F};
 
     explicit RandomSituation(std::uint64_t seed)
     {
@@ -30,9 +31,8 @@ struct RandomSituation {
         const float heading = random.uniform(-kPi, kPi);
         const Vec3 along(std::cos(heading), std::sin(heading), random.uniform(-0.3F, 0.3F));
         limits.max_acceleration = random.uniform(3.0F, 8.0F);
-        reference.valid = true;
-        reference.leg = {own.position - 20.0F * along, own.position + 150.0F * along, random.uniform(3.0F, 8.0F)};
-        own.velocity = reference.leg.speed * along.normalized();
+        reference = world::Reference({own.position - 20.0F * along, own.position + 150.0F * along, random.uniform(3.0F, 8.0F)});
+        own.velocity = reference.speed * along.normalized();
         airspace.has_floor = true;
         airspace.floor = 2.0F;
         for (std::uint64_t i = 0, n = 1 + random.below(5); i < n; ++i) {
@@ -63,8 +63,8 @@ struct RandomSituation {
 
     [[nodiscard]] world::Situation view() const
     {
-        world::Situation s{now, own, limits, airframe, reference, tracks, obstacles, airspace, {}, nullptr, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules};
+        static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;
     }

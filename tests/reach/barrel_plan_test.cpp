@@ -84,8 +84,8 @@ TEST(BarrelPlans, WhatIsFoundKeepsOutOfBodies)
         }
         // In the strictest run margins are kept as well, except before the vehicle responds.
         ++kept_margins;
-        const float extra = s.view().k_sigma * s.own.sigma_position;
-        for (float t = barrel_planner().settings().latency; t < manoeuvre.path.duration(); t += 0.05F) {
+        const float extra = s.rules.k_sigma * s.own.sigma_position;
+        for (float t = s.rules.latency; t < manoeuvre.path.duration(); t += 0.05F) {
             for (Barrel barrel : s.barrels) {
                 barrel.circle.radius += barrel.margin;
                 ASSERT_GE(
@@ -115,13 +115,14 @@ struct LegScene {
     }
     [[nodiscard]] world::Situation view() const
     {
-        world::Situation s{now, own, limits, airframe, reference, {}, {}, airspace, {}, nullptr, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules};
+        static_cast<void>(threats.collect(s, {.airspace = airspace}));
         s.threats = threats.all();
         return s;
     }
     mutable world::ThreatSet threats;  ///< of the newest view
     TimePoint now{1'000'000};
+    world::FlightRules rules;
     vehicle::VehicleState own;
     vehicle::VehicleLimits limits;
     vehicle::Airframe airframe;

@@ -78,8 +78,8 @@ struct Crowd : RandomSituation {
     }
 
     static constexpr std::size_t kCorners = 5;
-    static inline const std::array<Vec3, kCorners> kWedge{Vec3(0, 0, 2), Vec3(2, 0, 0), Vec3(-1, 2, 0), Vec3(-1, -2, 0),
-                                                          Vec3(0, 0, -1)};
+    static inline const std::array<Point3, kCorners> kWedge{
+        {{0, 0, 2}, {2, 0, 0}, {-1, 2, 0}, {-1, -2, 0}, {0, 0, -1}}};
     Random random;
     Placed placed;
     std::vector<world::Barrel> barrels;
@@ -88,7 +88,7 @@ struct Crowd : RandomSituation {
 NearThreats& near_of(const Crowd& crowd, WorkBudget& budget)
 {
     static NearThreats near;
-    near.collect(crowd.view(), crowd.placed, 0.0F, 0.0F, {world::EscapeRule{}, 0.5F});
+    near.collect(crowd.view(), crowd.placed, 0.0F, 0.0F);
     EXPECT_TRUE(near.mark(crowd.placed, CellBalls(crowd.placed.set->grid), budget));
     return near;
 }
@@ -135,7 +135,7 @@ TEST(NearThreatsLaw, BarrelsCloseBodiesAndTellMargins)
         const NearThreats& near = near_of(crowd, budget);
         const Placed& placed = crowd.placed;
         const ReachSet& set = *placed.set;
-        const float extra = crowd.view().k_sigma * crowd.own.sigma_position;
+        const float extra = crowd.rules.k_sigma * crowd.own.sigma_position;
         for (int draw = 0; draw < 60; ++draw) {
             const auto node = static_cast<NodeIndex>(1 + crowd.random.below(set.nodes() - 1));
             const NodeIndex parent = set.parent[node];

@@ -128,7 +128,7 @@ TEST(ReachPlannerLaws, BeginsWhereTheVehicleAnswersAndKeepsItsSpeed)
         ++found;
         const auto& points = m.path.points;
         const float speed = s.own.velocity.norm();
-        const Vec3 answered = s.own.position + planner().settings().latency * s.own.velocity;
+        const Vec3 answered = s.own.position + s.rules.latency * s.own.velocity;
         ASSERT_EQ(points[0].position, s.own.position) << "seed " << seed;
         ASSERT_LT((points[1].position - answered).norm(), 1e-4F) << "seed " << seed;
         ASSERT_EQ(m.kind, world::ManoeuvreKind::follow_path);
@@ -201,7 +201,7 @@ struct Case : RandomSituation {
         own.position = Vec3(0.0F, 0.0F, 30.0F);
         own.velocity = Vec3(5.0F, 0.0F, 0.0F);
         limits = {};
-        reference.leg = {Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F};
+        reference = world::Reference({Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F});
         tracks.clear();
         obstacles.clear();
     }
@@ -266,10 +266,8 @@ TEST(ReachPlanner, RefusesWhatItIsNotFor)
     WorkBudget budget(kPlannerPlenty);
     EXPECT_EQ(without.plan(Case().view(), budget, m), PlanStatus::bad_input);
     for (const auto& spoil : std::vector<void (*)(Settings&)>{
-             [](Settings& s) { s.sets = nullptr; }, [](Settings& s) { s.room = -0.1F; },
-             [](Settings& s) { s.room = NAN; }, [](Settings& s) { s.latency = 1.1F; }, [](Settings& s) { s.tries = 0; },
-             [](Settings& s) { s.tries = 65; }, [](Settings& s) { s.escape.speed = -1.0F; },
-             [](Settings& s) { s.escape.slack = NAN; }}) {
+             [](Settings& s) { s.sets = nullptr; }, [](Settings& s) { s.tries = 0; },
+             [](Settings& s) { s.tries = 65; }}) {
         Settings bad = unit_settings();
         spoil(bad);
         EXPECT_FALSE(is_valid(bad));

@@ -93,6 +93,7 @@ std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, floa
     limits.max_climb = limits.max_descent = 100.0F;
     const vehicle::Airframe airframe;
     const world::Airspace airspace;
+    const world::FlightRules rules{.k_sigma = k_sigma};
     std::vector<Prediction> all;
     for (const auto& [mine, theirs] : sim::pair_by_time(own, other).fixes) {
         vehicle::VehicleState state;
@@ -110,22 +111,11 @@ std::vector<Prediction> predict(const Aircraft& own, const Aircraft& other, floa
         seen.sigma_velocity = 1.0F;
         const world::TrackStatus status = table.update(seen, state, at(mine.time));
         EXPECT_TRUE(status == world::TrackStatus::updated || status == world::TrackStatus::created) << mine.time;
-        world::Reference reference;
-        reference.valid = true;
-        limits.cruise_speed = reference.leg.speed = state.velocity.norm();
-        reference.leg.start = state.position;
-        reference.leg.end = state.position + state.velocity * 300.0F;
-        const oracle::Collected collected(world::Situation{at(mine.time),
-                                                           state,
-                                                           limits,
-                                                           airframe,
-                                                           reference,
-                                                           table.snapshot(at(mine.time)),
-                                                           {},
-                                                           airspace,
-                                                           {},
-                                                           nullptr,
-                                                           k_sigma});
+        limits.cruise_speed = state.velocity.norm();
+        const world::Reference reference(
+            {state.position, state.position + state.velocity * 300.0F, limits.cruise_speed});
+        const oracle::Collected collected(world::Situation{at(mine.time), state, limits, airframe, reference, rules},
+                                          {table.snapshot(at(mine.time)), {}, airspace});
         const world::Situation& situation = *collected;
         Prediction prediction;
         prediction.time = mine.time;

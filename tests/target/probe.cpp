@@ -62,11 +62,11 @@ app::Configuration configuration_of(const ProbeRecord& r) noexcept
     c.planner.retries = static_cast<std::uint8_t>(r.retries);
     c.planner.waypoints = static_cast<std::uint16_t>(r.waypoints);
     c.planner.security = r.swept != 0 ? geometric::SecurityMode::swept : geometric::SecurityMode::time_aware;
-    c.planner.lookahead = c.supervisor.lookahead = r.lookahead;
+    c.rules.lookahead = r.lookahead;
     if (r.reduced_sets != 0) {
         c.reach.sets = &reach::kDefaultReducedSets;
     }
-    c.k_sigma = r.k_sigma;
+    c.rules.k_sigma = r.k_sigma;
     c.limits.half_extents = vec(r.half);
     c.limits.cruise_speed = r.cruise_speed;
     c.limits.max_climb = r.max_climb;
@@ -96,8 +96,7 @@ struct Probe::World {
         own.position = vec(r.own_position);
         own.velocity = vec(r.own_velocity);
         own.sigma_position = r.own_sigma;
-        reference.valid = true;
-        reference.leg = {vec(r.leg_start), vec(r.leg_end), r.leg_speed};
+        reference = world::Reference({vec(r.leg_start), vec(r.leg_end), r.leg_speed});
         airspace.has_floor = (r.bounds & 1U) != 0;
         airspace.has_ceiling = (r.bounds & 2U) != 0;
         airspace.has_keep_in = (r.bounds & 4U) != 0;
@@ -152,13 +151,10 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
                                world.configuration.limits,
                                world.configuration.airframe,
                                world.reference,
-                               {world.tracks.data(), world.tracks.size()},
-                               {world.obstacles.data(), world.obstacles.size()},
-                               world.airspace,
-                               {},
-                               nullptr,
-                               world.configuration.k_sigma};
-    static_cast<void>(threats_.collect(situation));
+                               world.configuration.rules};
+    static_cast<void>(threats_.collect(situation, {{world.tracks.data(), world.tracks.size()},
+                                                   {world.obstacles.data(), world.obstacles.size()},
+                                                   world.airspace}));
     situation.threats = threats_.all();
     if (!planner_.configure(world.configuration.planner) || !reach_.configure(world.configuration.reach) ||
         !orca_.configure(world.configuration.orca) || !supervisor_.configure(world.configuration.supervisor)) {

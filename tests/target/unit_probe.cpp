@@ -114,20 +114,16 @@ private:
                 limits_,
                 airframe_,
                 reference_,
-                {tracks_.data(), tracks_.size()},
-                {obstacles_.data(), obstacles_.size()},
-                airspace_,
-                {},
-                nullptr,
-                3.0F};
+                rules_};
     }
     void geometry(Work work, WorkBudget& budget) noexcept;
     void curve(Work work, WorkBudget& budget) noexcept;
     void program(WorkBudget& budget) noexcept;
 
     Random random_{0};
-    std::array<Vec3, kMaxHullVertices> vertices_{};
+    std::array<Point3, kMaxHullVertices> vertices_{};
     vehicle::VehicleState own_;
+    const world::FlightRules rules_;
     vehicle::VehicleLimits limits_;
     vehicle::Airframe airframe_;
     world::Reference reference_;
@@ -154,7 +150,7 @@ geometry::Shape UnitProbe::solid(const Vec3& at) noexcept
     }
     const std::size_t count = 4 + below(kMaxHullVertices - 3);
     for (std::size_t i = 0; i < count; ++i) {
-        vertices_[i] = within(3.0F);
+        vertices_[i] = Point3::of(within(3.0F));
     }
     return geometry::make_hull({vertices_.data(), count}, at, turned());
 }
@@ -192,8 +188,7 @@ void UnitProbe::scene(Work work) noexcept
     airspace_.floor = -60.0F;
     airspace_.ceiling = 60.0F;
     airspace_.keep_in_radius = 200.0F;
-    reference_.valid = true;
-    reference_.leg = {own_.position, own_.position + within(50.0F), 5.0F};
+    reference_ = world::Reference({own_.position, own_.position + within(50.0F), 5.0F});
     tracks_.clear();
     obstacles_.clear();
     path();
@@ -337,7 +332,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     }
     scene(work);
     world::Situation s = situation();
-    static_cast<void>(threats_.collect(s));
+    static_cast<void>(threats_.collect(s, {{tracks_.data(), tracks_.size()}, {obstacles_.data(), obstacles_.size()}, airspace_}));
     s.threats = threats_.all();
     const avoid::Settings settings;
     const world::Way way = world::way_of(s);
@@ -349,7 +344,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     case Work::conflict_tracks:
     case Work::conflict_spheres:
     case Work::conflict_solids:
-        sink_ = world::main_conflict(s, way, settings.lookahead, budget, conflict) ? 1.0F : 0.0F;
+        sink_ = world::main_conflict(s, way, rules_.lookahead, budget, conflict) ? 1.0F : 0.0F;
         break;
     case Work::check: sink_ = avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; break;
     case Work::command: sink_ = avoid::command_margin(s, command, settings, budget); break;

@@ -132,7 +132,7 @@ void fly_room(std::size_t vehicles, Times& times)
             input.own = {own.at, own.velocity, false};
             input.preferred = way.norm() > 0.6F ? Vec3(0.6F * way.normalized()) : way;
             input.neighbours = others;
-            input.scene.obstacles = pipes;
+            input.obstacles = pipes;
             WorkBudget budget(kPlenty);
             commands[i] = times.time([&] { return own.filter.decide(input, budget); }).command;
         }
@@ -155,9 +155,9 @@ void crowd(std::size_t ticks, Times& times)
     const auto in_cube = [&](float side) {
         return Vec3(random.uniform(-side, side), random.uniform(-side, side), random.uniform(-side, side));
     };
-    std::vector<Vec3> vertices;
+    std::vector<Point3> vertices;
     for (int k = 0; k < 32; ++k) {
-        vertices.push_back(0.4F * in_cube(1.0F).normalized());
+        vertices.push_back(Point3::of(0.4F * in_cube(1.0F).normalized()));
     }
     for (std::size_t i = 0; i < ticks; ++i) {
         VelocityFilter filter(room_settings(500));
@@ -180,7 +180,7 @@ void crowd(std::size_t ticks, Times& times)
             hulls.push_back({static_cast<world::ObstacleId>(k), geometry::make_hull(vertices, at)});
         }
         input.neighbours = others;
-        input.scene.obstacles = hulls;
+        input.obstacles = hulls;
         WorkBudget budget(kPlenty);
         static_cast<void>(times.time([&] { return filter.decide(input, budget); }));
     }

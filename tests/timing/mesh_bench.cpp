@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Half-spaces of static obstacles for a swarm of 100 among the 1000 triangles of fifty corner buildings: the tree's
-// query, the distances and the choice of planes, for a soup of triangles and for the same mesh in convex pieces. And
-// the whole step of the swarm on a flight through them: neighbours and their half-spaces, obstacles, the program.
+// A map of the 1000 triangles of fifty corner buildings about each of a swarm of 100: the choice of the obstacles near
+// a vehicle, and what G-ORCA makes of them (half-spaces, the way ahead), for a soup of triangles and for the same mesh
+// in convex pieces. And the whole step of the swarm on a flight through them: neighbours and their half-spaces, the
+// choice of obstacles and their half-spaces, the program.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -81,38 +82,49 @@ const Town& swarm()
     return made;
 }
 
-mesh::StoredMap made_by(mesh::Method method)
+jink::files::MapTables made_by(mesh::Method method)
 {
     mesh::Recipe recipe;
     recipe.method = method;
-    return mesh::StoredMap("town", mesh::pieces_of(swarm().town, recipe));
+    return mesh::stored_map("town", mesh::pieces_of(swarm().town, recipe));
 }
 
-const mesh::StoredMap& map_of(mesh::Method method)
+const jink::files::MapTables& map_of(mesh::Method method)
 {
     if (method == mesh::Method::soup) {
-        static const mesh::StoredMap soup = made_by(mesh::Method::soup);
+        static const jink::files::MapTables soup = made_by(mesh::Method::soup);
         return soup;
     }
-    static const mesh::StoredMap decomposed = made_by(mesh::Method::decompose);
+    static const jink::files::MapTables decomposed = made_by(mesh::Method::decompose);
     return decomposed;
 }
 
-/// All agents in each iteration. `work(agent, budget)` is timed per agent for the worst agent; an agent's time is its
-/// least over all iterations.
+/// What is about each agent, chosen beforehand.
+std::vector<jink::world::ObstacleTable> obstacles_of(const jink::geometry::MeshMap& map)
+{
+    std::vector<jink::world::ObstacleTable> tables(kAgents);
+    for (std::size_t i = 0; i < kAgents; ++i) {
+        WorkBudget budget(1'000'000);
+        tables[i].keep_places_for_map();
+        static_cast<void>(orca::choose_obstacles(map, swarm().agents[i], {}, budget, tables[i]));
+    }
+    return tables;
+}
+
+/// All agents in each turn; `work(agent's number, budget)` of each alone is timed for the worst of them, the least time
+/// of all turns standing for an agent.
 template <class Work>
 void run(benchmark::State& state, mesh::Method method, const Work& work)
 {
     using Clock = std::chrono::steady_clock;
     const jink::geometry::MeshMap map = map_of(method).view();
-    const orca::ObstacleScene scene{&map, {}};
     std::vector<double> least(kAgents, 1e9);
     std::uint32_t most_units = 0;
     for (auto _ : state) {
         for (std::size_t i = 0; i < kAgents; ++i) {
             WorkBudget budget(1'000'000);
             const auto start = Clock::now();
-            work(scene, swarm().agents[i], budget);
+            work(i, budget);
             least[i] = std::min(least[i], std::chrono::duration<double, std::nano>(Clock::now() - start).count());
             most_units = std::max(most_units, budget.spent());
         }
@@ -128,13 +140,32 @@ void run(benchmark::State& state, mesh::Method method, const Work& work)
     state.counters["most_units"] = most_units;
 }
 
+void select(benchmark::State& state, mesh::Method method)
+{
+    const jink::geometry::MeshMap map = map_of(method).view();
+    const orca::ObstacleSettings settings;
+    std::size_t boxes = 0;
+    float exact = 1e9F;
+    jink::world::ObstacleTable table;
+    table.keep_places_for_map();
+    run(state, method, [&](std::size_t i, WorkBudget& budget) {
+        const auto found = orca::choose_obstacles(map, swarm().agents[i], settings, budget, table);
+        boxes += found.boxes;
+        exact = std::min(exact, found.exact_within);
+    });
+    state.counters["boxes_per_agent"] = double(boxes) / double(kAgents) / double(state.iterations());
+    state.counters["least_exact_m"] = double(exact);
+}
+
 void planes(benchmark::State& state, mesh::Method method)
 {
     const orca::ObstacleSettings settings;
+    const auto tables = obstacles_of(map_of(method).view());
     std::size_t most = 0;
     std::size_t truncated = 0;
-    run(state, method, [&](const orca::ObstacleScene& scene, const orca::OwnMotion& own, WorkBudget& budget) {
-        const orca::ObstaclePlanes found = orca::obstacle_planes(scene, own, settings, budget);
+    run(state, method, [&](std::size_t i, WorkBudget& budget) {
+        const orca::ObstaclePlanes found =
+            orca::obstacle_planes(tables[i].obstacles(), swarm().agents[i], settings, budget);
         most = std::max(most, found.planes.size());
         truncated += found.truncated ? 1 : 0;
         benchmark::DoNotOptimize(found.margin);
@@ -146,9 +177,11 @@ void planes(benchmark::State& state, mesh::Method method)
 void way(benchmark::State& state, mesh::Method method)
 {
     const orca::ObstacleSettings settings;
-    run(state, method, [&](const orca::ObstacleScene& scene, const orca::OwnMotion& own, WorkBudget& budget) {
-        const orca::WayClearance found =
-            orca::clearance_along(scene, own.position, own.velocity, settings.horizon, settings, budget);
+    const auto tables = obstacles_of(map_of(method).view());
+    run(state, method, [&](std::size_t i, WorkBudget& budget) {
+        const orca::OwnMotion& own = swarm().agents[i];
+        const orca::WayClearance found = orca::clearance_along(tables[i].obstacles(), own.position, own.velocity,
+                                                               settings.horizon, settings, budget);
         benchmark::DoNotOptimize(found.clear_until);
     });
 }
@@ -157,15 +190,18 @@ void way(benchmark::State& state, mesh::Method method)
 std::vector<Vec3> free_places()
 {
     const jink::geometry::MeshMap map = map_of(mesh::Method::decompose).view();
-    const orca::ObstacleScene scene{&map, {}};
     jink::Random random(2);
     std::vector<Vec3> out;
+    jink::world::ObstacleTable table;
+    table.keep_places_for_map();
     while (out.size() < kAgents) {
         const Vec3 at(random.uniform(-6.0F, kTown + 6.0F), random.uniform(-6.0F, kTown + 6.0F),
                       random.uniform(2.0F, 30.0F));
+        const orca::OwnMotion own{at, Vec3::Zero(), 3.0F};
         WorkBudget budget(1'000'000);
         const bool is_near = std::any_of(out.begin(), out.end(), [&](const Vec3& p) { return (p - at).norm() < 3.0F; });
-        if (!is_near && orca::obstacle_planes(scene, {at, Vec3::Zero(), 3.0F}, {}, budget).margin > 0.5F) {
+        static_cast<void>(orca::choose_obstacles(map, own, {}, budget, table));
+        if (!is_near && orca::obstacle_planes(table.obstacles(), own, {}, budget).margin > 0.5F) {
             out.push_back(at);
         }
     }
@@ -191,7 +227,7 @@ void step(benchmark::State& state, mesh::Method method)
     float apart = 1e9F;
     for (auto _ : state) {
         orca::Swarm flying(places, goals, settings);
-        flying.set_obstacles({&map, {}}, {});
+        flying.set_map(map, {});
         for (double& time : least) {
             std::timespec start{};
             std::timespec end{};
@@ -220,6 +256,8 @@ void step(benchmark::State& state, mesh::Method method)
 
 BENCHMARK_CAPTURE(step, soup, mesh::Method::soup)->Unit(benchmark::kMillisecond)->Iterations(5);
 BENCHMARK_CAPTURE(step, decomposed, mesh::Method::decompose)->Unit(benchmark::kMillisecond)->Iterations(5);
+BENCHMARK_CAPTURE(select, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(select, decomposed, mesh::Method::decompose)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(planes, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(planes, decomposed, mesh::Method::decompose)->Unit(benchmark::kMicrosecond);
 BENCHMARK_CAPTURE(way, soup, mesh::Method::soup)->Unit(benchmark::kMicrosecond);

@@ -47,9 +47,18 @@ Swarm::Swarm(std::vector<Vec3> positions, std::vector<Vec3> goals, const SwarmSe
     settings_.pair.conflict_ratio = settings_.regions ? 2.0F * settings_.radius / settings_.warning : 0.999F;
 }
 
-void Swarm::set_obstacles(const ObstacleScene& scene, const ObstacleSettings& settings)
+world::MapSelection choose_obstacles(const geometry::MeshMap& map, const OwnMotion& own,
+                                     const ObstacleSettings& settings, WorkBudget& budget, world::ObstacleTable& table)
 {
-    scene_ = scene;
+    table.clear();
+    return world::append_map(map, {}, own.position, obstacle_reach(envelope_of(settings), own, settings), budget,
+                             table);
+}
+
+void Swarm::set_map(const geometry::MeshMap& map, const ObstacleSettings& settings)
+{
+    map_ = map;
+    table_.keep_places_for_map();
     obstacle_settings_ = settings;
     is_among_obstacles_ = true;
 }
@@ -58,8 +67,9 @@ void Swarm::set_obstacles(const ObstacleScene& scene, const ObstacleSettings& se
 std::size_t Swarm::add_obstacles(std::size_t self, float& cap)
 {
     WorkBudget budget(1'000'000);
-    const ObstaclePlanes found =
-        obstacle_planes(scene_, {positions_[self], velocities_[self], settings_.max_speed}, obstacle_settings_, budget);
+    const OwnMotion own{positions_[self], velocities_[self], settings_.max_speed};
+    static_cast<void>(choose_obstacles(map_, own, obstacle_settings_, budget, table_));
+    const ObstaclePlanes found = obstacle_planes(table_.obstacles(), own, obstacle_settings_, budget);
     cap = std::min(cap, found.speed_cap);
     counts_.penetrating += found.penetrating ? 1U : 0U;
     counts_.beside_obstacles += found.planes.size();

@@ -10,6 +10,7 @@
 #include "core/orca/agent_plane.hpp"
 #include "core/orca/obstacle_plane.hpp"
 #include "core/orca/program.hpp"
+#include "core/world/map_obstacles.hpp"
 #include "tests/timing/orca_nearest.hpp"
 
 // Many vehicles in one process, each avoiding all others by core/orca: the antipodal sphere of the public ORCA-3D
@@ -48,6 +49,10 @@ struct SwarmSettings {
     }
 };
 
+/// The obstacles of a map that bind some velocity of the vehicle, into a table that keeps places for them.
+world::MapSelection choose_obstacles(const geometry::MeshMap& map, const OwnMotion& own,
+                                     const ObstacleSettings& settings, WorkBudget& budget, world::ObstacleTable& table);
+
 class Swarm {
 public:
     /// On a sphere, each to the opposite point.
@@ -55,8 +60,8 @@ public:
     /// From given positions to given goals, equal in number.
     Swarm(std::vector<Vec3> positions, std::vector<Vec3> goals, const SwarmSettings& settings);
 
-    /// Also avoids these obstacles; the scene must outlive the swarm.
-    void set_obstacles(const ObstacleScene& scene, const ObstacleSettings& settings);
+    /// Keeps clear of a map that outlives this, too.
+    void set_map(const geometry::MeshMap& map, const ObstacleSettings& settings);
 
     /// Advances all vehicles by one period.
     void step();
@@ -89,7 +94,8 @@ private:
     static constexpr std::size_t kMostPlanes = 2 * NearestPoints::kMost + kMaxObstaclePlanes;
     Scratch<kMostPlanes> scratch_;
     std::array<HalfSpace, kMostPlanes> planes_;
-    ObstacleScene scene_;
+    geometry::MeshMap map_;
+    world::ObstacleTable table_;
     ObstacleSettings obstacle_settings_;
     bool is_among_obstacles_ = false;
     std::array<NearestPoints::Found, NearestPoints::kMost> found_;

@@ -61,8 +61,8 @@ struct Scene {
         const Vec3 direction(std::cos(heading) * std::cos(climb), std::sin(heading) * std::cos(climb), std::sin(climb));
         own.position = Vec3(0.0F, 0.0F, in(20.0F, 80.0F));
         own.sigma_position = in(0.0F, 0.3F);
-        reference = {true, {own.position, own.position + 100.0F * direction, in(2.0F, 8.0F)}};
-        own.velocity = reference.leg.speed * direction;
+        reference = world::Reference({own.position, own.position + 100.0F * direction, in(2.0F, 8.0F)});
+        own.velocity = reference.speed * direction;
         for (std::size_t i = 0; i < tracks.size(); ++i) {
             world::Track& track = tracks[i];
             const Seconds t = in(1.5F, 7.0F);
@@ -85,17 +85,10 @@ public:
     std::int64_t operator()(const Scene& scene)
     {
         static_cast<void>(planner_->configure(scene.settings));
-        const oracle::Collected situation(world::Situation{{},
-                                                           scene.own,
-                                                           scene.limits,
-                                                           scene.airframe,
-                                                           scene.reference,
-                                                           scene.tracks,
-                                                           {},
-                                                           scene.airspace,
-                                                           {},
-                                                           nullptr,
-                                                           3.0F});
+        const world::FlightRules rules{.lookahead = 10.0F};
+        const oracle::Collected situation(
+            world::Situation{{}, scene.own, scene.limits, scene.airframe, scene.reference, rules},
+            {scene.tracks, {}, scene.airspace});
         WorkBudget budget(avoid::Settings{}.plan_budget);
         const Clock::time_point begin = Clock::now();
         status = planner_->plan(situation, budget, out_);

@@ -59,8 +59,7 @@ struct Scene {
         own.position = Vec3(0.0F, 0.0F, 30.0F);
         own.velocity = Vec3(kSpeed, 0.0F, 0.0F);
         own.stamp = now;
-        reference.valid = true;
-        reference.leg = {Vec3(-10.0F, 0.0F, 30.0F), Vec3(400.0F, 0.0F, 30.0F), kSpeed};
+        reference = world::Reference({Vec3(-10.0F, 0.0F, 30.0F), Vec3(400.0F, 0.0F, 30.0F), kSpeed});
         for (std::size_t i = 0; i < intruders; ++i) {
             world::Track track;
             track.id = static_cast<world::TrackId>(i);
@@ -91,11 +90,12 @@ struct Scene {
 
     [[nodiscard]] world::Situation view() const
     {
-        world::Situation s{now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules};
+        static_cast<void>(threats.collect(s, {tracks, {}, airspace}));
         s.threats = threats.all();
         return s;
     }
+    world::FlightRules rules;
     mutable world::ThreatSet threats;  ///< of the newest view
 };
 

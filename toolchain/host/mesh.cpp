@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink mesh: maps of convex pieces built from meshes, compared, drawn and inspected.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <sstream>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "toolchain/host/commands.hpp"
 #include "toolchain/host/header_text.hpp"
@@ -27,6 +28,7 @@ struct MeshOptions {
     std::string header;
     mesh::ReadOptions reading;
     mesh::Recipe recipe;
+    std::vector<double> origin;  ///< latitude and longitude [degrees], altitude [m]; or nothing
     std::string figures;
     std::string python = "/usr/bin/python3";
 };
@@ -89,12 +91,30 @@ double spacing_of(const mesh::TriangleMesh& mesh)
 }
 
 MeasuredMap measured(const std::string& name, const std::string& map_name, const mesh::TriangleMesh& mesh,
-                     const mesh::Recipe& recipe)
+                     const mesh::Recipe& recipe, const geometry::MapOrigin& origin = {})
 {
     const std::vector<mesh::Piece> pieces = mesh::pieces_of(mesh, recipe);
-    MeasuredMap out{name, mesh::StoredMap(map_name, pieces), excess_of_all(pieces), 0.0};
+    MeasuredMap out{name, mesh::stored_map(map_name, pieces, origin), excess_of_all(pieces), 0.0};
     out.gap = mesh::gap_of(mesh, out.map.view(), spacing_of(mesh));
     return out;
+}
+
+geometry::MapOrigin origin_of(const MeshOptions& options)
+{
+    if (options.origin.empty()) {
+        return {};
+    }
+    const double highest[] = {85.0, 180.0, 1e6};
+    for (std::size_t i = 0; i < options.origin.size(); ++i) {
+        if (!(std::abs(options.origin[i]) <= highest[i])) {
+            refuse(kBuildMesh, "--origin: latitude within 85 degrees, longitude within 180 degrees and altitude within "
+                               "1000 km are wanted");
+        }
+    }
+    const auto scaled = [&](std::size_t i, double by) {
+        return static_cast<std::int32_t>(std::lround(by * options.origin[i]));
+    };
+    return {true, scaled(0, 1e7), scaled(1, 1e7), scaled(2, 1e3)};
 }
 
 void build_mesh(const MeshOptions& options)
@@ -103,8 +123,9 @@ void build_mesh(const MeshOptions& options)
     const std::string name = name_of(kBuildMesh, options);
     mesh::Recipe recipe = options.recipe;
     recipe.method = method_of(options.method);
+    const geometry::MapOrigin origin = origin_of(options);
     const MeasuredMap made =
-        refusing(kBuildMesh, options.file, [&] { return measured(options.method, name, mesh, recipe); });
+        refusing(kBuildMesh, options.file, [&] { return measured(options.method, name, mesh, recipe, origin); });
     const geometry::MeshMap map = made.map.view();
     std::fputs(summary_of(map).c_str(), stdout);
     std::printf(
@@ -112,7 +133,7 @@ void build_mesh(const MeshOptions& options)
         "by more than %.4f m\n",
         mesh.triangles.size(), made.excess, made.gap);
     if (!options.out.empty()) {
-        write_whole(kBuildMesh, options.out, made.map.file());
+        write_whole(kBuildMesh, options.out, files::map_file_of(map));
     }
     if (!options.header.empty()) {
         write_whole(kBuildMesh, options.header, map_header(map, fs::path(options.file).filename().string()));
@@ -157,15 +178,12 @@ void measure_mesh(const MeshOptions& options)
 
 void show_mesh(const MeshOptions& options)
 {
-    std::ifstream in(options.file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) {
-        refuse(kShowMesh, options.file + ": cannot be read");
+    files::Complaints complaints;
+    const std::optional<files::MapTables> stored = files::read_map_file(options.file, complaints);
+    if (!stored) {
+        refuse(kShowMesh, files::to_string(complaints.front()));
     }
-    const mesh::StoredMap stored =
-        refusing(kShowMesh, options.file, [&] { return mesh::StoredMap::from_file(text.str()); });
-    std::fputs(summary_of(stored.view()).c_str(), stdout);
+    std::fputs(summary_of(stored->view()).c_str(), stdout);
 }
 
 void add_reading(CLI::App& command, MeshOptions& options)
@@ -195,6 +213,13 @@ void add_mesh(CLI::App& jink)
     build_command->add_option("--method", options->method, "hull of each object, decompose, or soup of triangles")
         ->capture_default_str()
         ->check(CLI::IsMember({"hull", "decompose", "soup"}));
+    build_command
+        ->add_option(
+            "--origin", options->origin,
+            "where the mesh's origin lies: LATITUDE,LONGITUDE,ALTITUDE in degrees and in metres above mean sea "
+            "level; without it the map is taken in the autopilot's local frame")
+        ->delimiter(',')
+        ->expected(3);
     build_command->add_option("-o,--out", options->out, "write the map to this file");
     build_command->add_option("--header", options->header, "write it as constant tables to this C++ header");
     build_command->callback([options] { build_mesh(*options); });

@@ -49,8 +49,7 @@ std::string map_header(const geometry::MeshMap& map, const std::string& source)
     out.append(" {\n\n");
     std::vector<std::string> items;
     for (const geometry::MeshPiece& piece : map.pieces) {
-        items.push_back(
-            braces(number(piece.first_vertex), number(piece.first_face), number(piece.vertices), number(piece.faces)));
+        items.push_back(braces(braced(piece.centre), number(piece.first_vertex), number(piece.vertices)));
     }
     append_array_of(out, "MeshPiece", "kPieces", items);
     items.clear();
@@ -59,11 +58,6 @@ std::string map_header(const geometry::MeshMap& map, const std::string& source)
     }
     append_array_of(out, "Point3", "kVertices", items);
     items.clear();
-    for (const geometry::FacePlane& face : map.faces) {
-        items.push_back(braces(braced(face.normal), literal(face.offset)));
-    }
-    append_array_of(out, "FacePlane", "kFaces", items);
-    items.clear();
     for (const geometry::MeshNode& node : map.nodes) {
         items.push_back(braces(braced(node.low), braced(node.high), number(node.right), number(node.piece)));
     }
@@ -71,8 +65,10 @@ std::string map_header(const geometry::MeshMap& map, const std::string& source)
     out.append("\n}  // namespace ").append(space).append("\n\ninline constexpr MeshMap k").append(name);
     out.append("Map{\n    \"").append(map.name).append("\", ").append(number(map.version)).append(", ");
     out.append(literal(map.metres_per_unit)).append(", ").append(literal(map.slack)).append(", ");
-    out.append(braced(map.low)).append(", ").append(braced(map.high)).append(",\n    ");
-    for (const char* table : {"kPieces", "kVertices", "kFaces", "kNodes"}) {
+    out.append(braces(std::string(map.origin.known ? "true" : "false"), std::to_string(map.origin.latitude),
+                      std::to_string(map.origin.longitude), std::to_string(map.origin.altitude)));
+    out.append(", ").append(braced(map.low)).append(", ").append(braced(map.high)).append(",\n    ");
+    for (const char* table : {"kPieces", "kVertices", "kNodes"}) {
         out.append(space).append("::").append(table).append(", ");
     }
     out.append(formatted("0x%08XU};\n", static_cast<unsigned>(map.checksum)));
@@ -81,13 +77,19 @@ std::string map_header(const geometry::MeshMap& map, const std::string& source)
 
 std::string summary_of(const geometry::MeshMap& map)
 {
-    std::string out = formatted("%s: %zu pieces, %zu vertices, %zu faces, %zu bytes, checksum %08X\n",
-                                std::string(map.name).c_str(), map.pieces.size(), map.vertices.size(), map.faces.size(),
-                                mesh::bytes_of(map), static_cast<unsigned>(map.checksum));
+    std::string out =
+        formatted("%s: %zu pieces, %zu vertices, %zu bytes, checksum %08X\n", std::string(map.name).c_str(),
+                  map.pieces.size(), map.vertices.size(), mesh::bytes_of(map), static_cast<unsigned>(map.checksum));
     const auto real = [](float value) { return static_cast<double>(value); };
     out += formatted("bounds [m] %.2f..%.2f east, %.2f..%.2f north, %.2f..%.2f up; slack %.1e m\n", real(map.low.x),
                      real(map.high.x), real(map.low.y), real(map.high.y), real(map.low.z), real(map.high.z),
                      real(map.slack));
+    const geometry::MapOrigin& origin = map.origin;
+    out += origin.known
+               ? formatted("origin %.7f,%.7f degrees, %.3f m above mean sea level\n",
+                           static_cast<double>(origin.latitude) * 1e-7, static_cast<double>(origin.longitude) * 1e-7,
+                           static_cast<double>(origin.altitude) * 1e-3)
+               : "no origin on the globe: taken in the autopilot's local frame\n";
     return out;
 }
 
@@ -121,7 +123,8 @@ std::string drawing_of(const std::vector<MeasuredMap>& maps, const mesh::Triangl
         for (std::size_t i = 0; i < map.pieces.size(); ++i) {
             json vertices = json::array();
             for (const Point3& v : map.vertices_of(i)) {
-                vertices.push_back({v.x, v.y, v.z});
+                const Vec3 at = map.pieces[i].centre.vec() + v.vec();
+                vertices.push_back({at.x(), at.y(), at.z()});
             }
             pieces.push_back(vertices);
         }

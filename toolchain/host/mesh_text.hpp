@@ -20,9 +20,9 @@ namespace jink::host {
 /// A map built with one recipe, for comparison.
 struct MeasuredMap {
     std::string name;
-    mesh::StoredMap map;
-    double excess = 0.0;  ///< greatest distance from a piece's surface to the mesh [m]
-    double gap = 0.0;     ///< greatest distance from the mesh's surface to the pieces [m]
+    files::MapTables map;
+    double excess = 0.0;  ///< greatest distance of a piece's surface from the mesh [m]
+    double gap = 0.0;     ///< and of the mesh's surface from the pieces
 };
 /// Name, pieces, vertices, bytes, excess, gap, one line each.
 [[nodiscard]] std::string table_of(const std::vector<MeasuredMap>& maps);

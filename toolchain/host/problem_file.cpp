@@ -329,7 +329,7 @@ geometric::Problem problem_of(const ProblemFile& file, ProblemStorage& storage)
     if (file.frame_y != Vec3::Zero()) {
         problem.frame = geometric::make_path_frame(file.start, file.direction, file.frame_y);
     }
-    problem.ahead.route = file.route.empty() ? nullptr : &file.route;
+    problem.ahead.route = file.route;
     problem.distance = file.distance;
     problem.main_radius = file.main_radius;
     problem.threats = storage.threats;

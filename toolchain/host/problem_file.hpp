@@ -42,7 +42,7 @@ struct ProblemFile {
     std::vector<NamedThreat> threats;
     std::vector<NamedObstacle> obstacles;  ///< static
     std::vector<NamedMovingSolid> moving_solids;
-    std::vector<std::shared_ptr<const std::vector<Vec3>>> hulls;  ///< vertices that obstacles refer to
+    std::vector<std::shared_ptr<const std::vector<Point3>>> hulls;  ///< vertices that obstacles refer to
     bool has_airspace = false;
     world::Airspace airspace;
 

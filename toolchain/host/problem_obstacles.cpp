@@ -45,7 +45,7 @@ geometry::Shape read_round(YamlMap& map, const Make& make)
 
 geometry::Shape read_hull(YamlMap& map, const std::string& file, ProblemFile& out, files::Complaints& complaints)
 {
-    auto vertices = std::make_shared<std::vector<Vec3>>();
+    auto vertices = std::make_shared<std::vector<Point3>>();
     if (const auto list = map.list("vertices", kNeed)) {
         if (list->size() < 4 || list->size() > kMaxHullVertices) {
             map.complain("vertices", "4 to " + std::to_string(kMaxHullVertices) + " are wanted, not " +
@@ -53,8 +53,8 @@ geometry::Shape read_hull(YamlMap& map, const std::string& file, ProblemFile& ou
         } else {
             for (std::size_t i = 0; i < list->size(); ++i) {
                 const std::string where = map.name("vertices") + "[" + std::to_string(i) + "]";
-                vertices->push_back(
-                    files::vector_of((*list)[i], kCoordinate, where, file, complaints).value_or(Vec3::Zero()));
+                vertices->push_back(Point3::of(
+                    files::vector_of((*list)[i], kCoordinate, where, file, complaints).value_or(Vec3::Zero())));
             }
         }
     }

@@ -189,8 +189,8 @@ std::pair<Vec3d, double> plane_around(const Hull& hull, const Vec3d& normal)
     return {normal, offset};
 }
 
-/// Distance and direction from the hull to a corner outside the hull.
-std::pair<double, Vec3d> outside_of(const std::vector<Vec3>& hull, const Vec3d& centre, const Vec3d& corner)
+/// From the hull to a corner outside of it: how far, and which way.
+std::pair<double, Vec3d> outside_of(const std::vector<Point3>& hull, const Vec3d& centre, const Vec3d& corner)
 {
     WorkBudget budget(1'000'000);
     const Vec3 point = (corner - centre).cast<float>();
@@ -202,9 +202,9 @@ std::pair<double, Vec3d> outside_of(const std::vector<Vec3>& hull, const Vec3d& 
 std::vector<Vec3d> simplified(const Hull& hull, const Spread& spread)
 {
     Planes planes;
-    std::vector<Vec3> near;
+    std::vector<Point3> near;
     for (const Vec3d& v : hull.vertices) {
-        near.emplace_back((v - spread.centre).cast<float>());
+        near.push_back(Point3::of((v - spread.centre).cast<float>()));
     }
     for (int axis = 0; axis < 3; ++axis) {
         planes.push_back(plane_around(hull, spread.axes.col(axis)));
@@ -298,9 +298,8 @@ std::optional<Piece> piece_around(const std::vector<Vec3d>& points)
     if (hull && hull->vertices.size() > geometry::kMaxPieceVertices) {
         hull = hull_of(simplified(*hull, spread));
     }
-    // Sets too thin for a hull and too thick for a plane must be divided.
-    const bool fits = hull && hull->vertices.size() <= geometry::kMaxPieceVertices && hull->planes.size() >= 4 &&
-                      hull->planes.size() <= geometry::kMaxPieceFaces;
+    // What is too thin for a hull and too thick for a plane has to be divided.
+    const bool fits = hull && hull->vertices.size() <= geometry::kMaxPieceVertices && hull->planes.size() >= 4;
     return fits ? std::optional<Piece>(Piece{hull->vertices, hull->planes, hull->triangles, 0.0}) : std::nullopt;
 }
 

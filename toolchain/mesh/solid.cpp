@@ -233,19 +233,32 @@ double excess_of(const Piece& piece, const Solid& solid, double tolerance)
     return known > 0.0 ? known + tolerance : (parts.empty() ? 0.0 : std::max(0.0, parts.top().bound));
 }
 
+namespace {
+
+/// Distance of the nearest piece below `node` where that is less than `least` [m].
+float nearest_piece(const geometry::MeshMap& map, std::size_t node, const Vec3& point, float least)
+{
+    const geometry::MeshNode& at = map.nodes[node];
+    if (geometry::box_distance(at, point) >= least) {
+        return least;
+    }
+    if (!at.is_leaf()) {
+        return nearest_piece(map, at.right, point, nearest_piece(map, node + 1, point, least));
+    }
+    geometry::DistanceQuery query;
+    query.resolution = 0.0F;
+    WorkBudget budget(1'000'000'000);
+    return std::min(least, geometry::point_shape_distance(point, map.shape_of(at.piece), query, budget).distance);
+}
+
+}  // namespace
+
 double gap_of(const TriangleMesh& mesh, const geometry::MeshMap& map, double spacing)
 {
     double gap = 0.0;
     const auto look = [&](const Vec3d& point) {
-        geometry::DistanceQuery query;
-        query.resolution = 0.0F;
-        query.reach = 1e4F;
-        std::array<geometry::NearPiece, 1> nearest;
-        WorkBudget budget(1'000'000'000);
-        const Vec3 at = point.cast<float>();
-        if (geometry::nearest_pieces(map, at, query, nearest, budget).found > 0) {
-            gap = std::max(gap, static_cast<double>(nearest[0].from.distance));
-        }
+        const float distance = nearest_piece(map, 0, point.cast<float>(), 1e4F);
+        gap = std::max(gap, static_cast<double>(distance) - static_cast<double>(map.slack));
     };
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const Corners c = mesh.corners(i);

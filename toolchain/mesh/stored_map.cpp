@@ -8,7 +8,6 @@
 
 namespace jink::mesh {
 
-using geometry::FacePlane;
 using geometry::MapStatus;
 using geometry::MeshMap;
 using geometry::MeshNode;
@@ -16,10 +15,82 @@ using geometry::MeshPiece;
 
 std::size_t bytes_of(const MeshMap& map)
 {
-    return map.pieces.size_bytes() + map.vertices.size_bytes() + map.faces.size_bytes() + map.nodes.size_bytes();
+    return map.pieces.size_bytes() + map.vertices.size_bytes() + map.nodes.size_bytes();
 }
 
-StoredMap::StoredMap(std::string name, const std::vector<Piece>& pieces) : name_(std::move(name))
+namespace {
+
+/// A vertex of a piece, as users add it up.
+Vec3 vertex_of(const files::MapTables& map, const MeshPiece& piece, std::size_t i)
+{
+    return piece.centre.vec() + map.vertices[piece.first_vertex + i].vec();
+}
+
+void add_rounded(files::MapTables& map, const Piece& piece)
+{
+    Vec3d low = piece.vertices.front();
+    Vec3d high = low;
+    for (const Vec3d& v : piece.vertices) {
+        low = low.cwiseMin(v);
+        high = high.cwiseMax(v);
+    }
+    MeshPiece stored;
+    stored.centre = Point3::of((0.5 * (low + high)).cast<float>());
+    stored.first_vertex = static_cast<std::uint32_t>(map.vertices.size());
+    stored.vertices = static_cast<std::uint32_t>(piece.vertices.size());
+    const Vec3d centre = stored.centre.vec().cast<double>();
+    for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
+        const Vec3d& v = piece.vertices[i];
+        map.vertices.push_back(Point3::of((v - centre).cast<float>()));
+        // The hull of points that have moved by less than this holds the hull of the points, but for this much.
+        const double moved = std::max((vertex_of(map, stored, i).cast<double>() - v).norm(),
+                                      (centre + map.vertices.back().vec().cast<double>() - v).norm()) +
+                             kFlat * v.cwiseAbs().maxCoeff();
+        const auto up = std::nextafter(static_cast<float>(moved), std::numeric_limits<float>::max());
+        map.slack = std::max(map.slack, up);
+    }
+    map.pieces.push_back(stored);
+}
+
+MeshNode box_of(const files::MapTables& map, const std::vector<std::uint16_t>& order, std::size_t first,
+                std::size_t last)
+{
+    Vec3 low = Vec3::Constant(std::numeric_limits<float>::max());
+    Vec3 high = -low;
+    for (std::size_t i = first; i < last; ++i) {
+        const MeshPiece& piece = map.pieces[order[i]];
+        for (std::size_t v = 0; v < piece.vertices; ++v) {
+            low = low.cwiseMin(vertex_of(map, piece, v));
+            high = high.cwiseMax(vertex_of(map, piece, v));
+        }
+    }
+    return {Point3::of(low), Point3::of(high), 0, last - first == 1 ? order[first] : geometry::kNoPiece};
+}
+
+void split(files::MapTables& map, std::vector<std::uint16_t>& order, std::size_t first, std::size_t last)
+{
+    const std::size_t at = map.nodes.size();
+    map.nodes.push_back(box_of(map, order, first, last));
+    if (last - first == 1) {
+        return;
+    }
+    int axis = 0;
+    (map.nodes[at].high.vec() - map.nodes[at].low.vec()).maxCoeff(&axis);
+    const std::size_t middle = (first + last) / 2;
+    const auto place = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
+    std::nth_element(place(first), place(middle), place(last), [&](std::uint16_t a, std::uint16_t b) {
+        const float x = map.pieces[a].centre.vec()[axis];
+        const float y = map.pieces[b].centre.vec()[axis];
+        return x != y ? x < y : a < b;
+    });
+    split(map, order, first, middle);
+    map.nodes[at].right = static_cast<std::uint16_t>(map.nodes.size());
+    split(map, order, middle, last);
+}
+
+}  // namespace
+
+files::MapTables stored_map(std::string name, const std::vector<Piece>& pieces, const geometry::MapOrigin& origin)
 {
     if (pieces.empty()) {
         throw CannotBuild("no piece");
@@ -28,121 +99,22 @@ StoredMap::StoredMap(std::string name, const std::vector<Piece>& pieces) : name_
         throw CannotBuild(std::to_string(pieces.size()) + " pieces are more than a map may have, " +
                           std::to_string(geometry::kMaxMeshPieces));
     }
+    files::MapTables map;
+    map.name = std::move(name);
+    map.origin = origin;
     for (const Piece& piece : pieces) {
-        round(piece);
+        add_rounded(map, piece);
     }
     std::vector<std::uint16_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::uint16_t{0});
-    split(order, 0, order.size());
-    low_ = nodes_.front().low;
-    high_ = nodes_.front().high;
-    checksum_ = geometry::checksum_of(view());
-    if (const MapStatus status = geometry::check(view()); status != MapStatus::good) {
-        throw CannotBuild(to_string(status));
+    split(map, order, 0, order.size());
+    map.low = map.nodes.front().low;
+    map.high = map.nodes.front().high;
+    map.checksum = geometry::checksum_of(map.view());
+    if (const MapStatus status = geometry::check(map.view()); status != MapStatus::good) {
+        throw CannotBuild(files::to_string(status));
     }
-}
-
-void StoredMap::round(const Piece& piece)
-{
-    MeshPiece stored;
-    stored.first_vertex = static_cast<std::uint32_t>(vertices_.size());
-    stored.first_face = static_cast<std::uint32_t>(faces_.size());
-    stored.vertices = static_cast<std::uint16_t>(piece.vertices.size());
-    stored.faces = static_cast<std::uint16_t>(piece.planes.size());
-    for (const Vec3d& v : piece.vertices) {
-        const Vec3 rounded = v.cast<float>();
-        vertices_.push_back(Point3::of(rounded));
-        // If points move by less than `moved`, the hull of the moved points contains the original hull up to this
-        // distance.
-        const double moved = (rounded.cast<double>() - v).norm() + kFlat * v.cwiseAbs().maxCoeff();
-        const auto up = std::nextafter(static_cast<float>(moved), std::numeric_limits<float>::max());
-        slack_ = std::max(slack_, up);
-    }
-    for (const auto& plane : piece.planes) {
-        const Vec3 normal = plane.first.cast<float>();
-        double offset = -std::numeric_limits<double>::max();
-        for (std::size_t i = stored.first_vertex; i < vertices_.size(); ++i) {
-            offset = std::max(offset, normal.cast<double>().dot(vertices_[i].vec().cast<double>()));
-        }
-        faces_.push_back({Point3::of(normal), static_cast<float>(offset)});
-    }
-    pieces_.push_back(stored);
-}
-
-void StoredMap::split(std::vector<std::uint16_t>& order, std::size_t first, std::size_t last)
-{
-    const std::size_t at = nodes_.size();
-    const auto centre_of = [&](std::uint16_t piece, int axis) {
-        float sum = 0.0F;
-        for (std::size_t i = 0; i < pieces_[piece].vertices; ++i) {
-            sum += vertices_[pieces_[piece].first_vertex + i].vec()[axis];
-        }
-        return sum / static_cast<float>(pieces_[piece].vertices);
-    };
-    MeshNode node;
-    Vec3 low = Vec3::Constant(std::numeric_limits<float>::max());
-    Vec3 high = -low;
-    for (std::size_t i = first; i < last; ++i) {
-        const MeshPiece& piece = pieces_[order[i]];
-        for (std::size_t v = 0; v < piece.vertices; ++v) {
-            low = low.cwiseMin(vertices_[piece.first_vertex + v].vec());
-            high = high.cwiseMax(vertices_[piece.first_vertex + v].vec());
-        }
-    }
-    node.low = Point3::of(low);
-    node.high = Point3::of(high);
-    node.piece = last - first == 1 ? order[first] : geometry::kNoPiece;
-    nodes_.push_back(node);
-    if (last - first == 1) {
-        return;
-    }
-    int axis = 0;
-    (high - low).maxCoeff(&axis);
-    const std::size_t middle = (first + last) / 2;
-    const auto place = [&](std::size_t i) { return order.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(place(first), place(middle), place(last), [&](std::uint16_t a, std::uint16_t b) {
-        const float x = centre_of(a, axis);
-        const float y = centre_of(b, axis);
-        return x != y ? x < y : a < b;
-    });
-    split(order, first, middle);
-    nodes_[at].right = static_cast<std::uint16_t>(nodes_.size());
-    split(order, middle, last);
-}
-
-MeshMap StoredMap::view() const
-{
-    MeshMap map;
-    map.name = name_;
-    map.version = version_;
-    map.metres_per_unit = metres_per_unit_;
-    map.slack = slack_;
-    map.low = low_;
-    map.high = high_;
-    map.pieces = pieces_;
-    map.vertices = vertices_;
-    map.faces = faces_;
-    map.nodes = nodes_;
-    map.checksum = checksum_;
     return map;
-}
-
-const char* to_string(MapStatus status)
-{
-    switch (status) {
-    case MapStatus::good: return "good";
-    case MapStatus::empty: return "no piece";
-    case MapStatus::wrong_version: return "stored in another version";
-    case MapStatus::wrong_units: return "not in metres";
-    case MapStatus::too_large: return "more pieces, vertices or faces than a map may have, or too deep a tree";
-    case MapStatus::sizes_differ: return "tables that do not belong together";
-    case MapStatus::bad_coordinate: return "a coordinate that is not finite, or beyond 1000 m";
-    case MapStatus::bad_bounds: return "a box that does not hold its piece";
-    case MapStatus::bad_tree: return "a tree that does not hold every piece once";
-    case MapStatus::bad_face: return "a face that cuts its piece";
-    case MapStatus::wrong_checksum: return "wrong checksum";
-    }
-    return "unknown";
 }
 
 }  // namespace jink::mesh

@@ -106,10 +106,7 @@ void Bench::hand_over_settings()
 {
     generation_ = coprocessor_->parameters().generation();
     if (planner_ == PlannerKind::source) {
-        geometric::Settings settings = geometric::source_settings();
-        // The planner must detect every conflict that the supervisor detects.
-        settings.lookahead = coprocessor_->parameters().configuration().planner.lookahead;
-        if (!coprocessor_->planner().configure(settings)) {
+        if (!coprocessor_->planner().configure(geometric::source_settings())) {
             throw std::logic_error("the planner refuses the source's settings");
         }
     }

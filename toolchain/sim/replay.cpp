@@ -200,10 +200,10 @@ Belief Replay::belief() const
         belief.velocity = own.velocity.cast<double>();
         const app::NominalPaths& paths = coprocessor_->nominal_paths();
         const world::Reference& nominal = paths.primary();
-        const Vec3 end =
-            nominal.route != nullptr ? nominal.route->at(nominal.route->length()).position : nominal.leg.end;
-        belief.nominal = {paths.is_intended(), end.cast<double>(), static_cast<double>(nominal.leg.speed),
-                          nominal.route != nullptr};
+        const path::RouteView route = nominal.route();
+        const Vec3 end = route.at(route.length()).position;
+        belief.nominal = {paths.is_intended(), end.cast<double>(), static_cast<double>(nominal.speed),
+                          route.segments().size() > 1};
     }
     return belief;
 }

@@ -114,8 +114,8 @@ TEST(TurnRate, ItsPathLiesOnTheExactCircleAndLeavesAtHalfATurn)
     std::size_t arcs = 0;
     for (std::size_t i = 0; i < case_count(5'000); ++i) {
         const Turning flight(random);
-        const path::Route* const route = flight.paths.primary().route;
-        if (route == nullptr || !route->segments().front().is_arc()) {
+        const path::RouteView route = flight.paths.primary().route();
+        if (!route.segments().front().is_arc()) {
             continue;
         }
         ++arcs;
@@ -127,10 +127,10 @@ TEST(TurnRate, ItsPathLiesOnTheExactCircleAndLeavesAtHalfATurn)
         for (double turned = 0.0; turned < kExactHalfTurn; turned += 0.3) {
             const Vec3d exact =
                 centre + Eigen::AngleAxisd(std::copysign(turned, rate), Vec3d::UnitZ()) * (position - centre);
-            const Vec3d ours = route->at(static_cast<float>(turned * radius)).position.cast<double>();
+            const Vec3d ours = route.at(static_cast<float>(turned * radius)).position.cast<double>();
             ASSERT_LT((ours - exact).norm(), 1e-3) << "case " << i << " after " << turned;
         }
-        const Vec3 out = route->at(static_cast<float>(kExactHalfTurn * radius) + 10.0F).along;
+        const Vec3 out = route.at(static_cast<float>(kExactHalfTurn * radius) + 10.0F).along;
         const Vec3d back = -flight.own.velocity.cast<double>();
         ASSERT_GT(out.cast<double>().head<2>().normalized().dot(back.head<2>().normalized()), 0.99999) << "case " << i;
     }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/world/threat_set.hpp"
+
 namespace jink::reach {
 namespace {
 
@@ -41,8 +43,8 @@ MapBody body_of(const geometry::Shape& shape, const Placed& placed, float about,
         Vec3 low = Vec3::Zero();
         Vec3 high = Vec3::Zero();
         for (std::size_t i = 0; i < shape.vertices.size(); ++i) {
-            low = i == 0 ? shape.vertices[0] : Vec3(low.cwiseMin(shape.vertices[i]));
-            high = i == 0 ? shape.vertices[0] : Vec3(high.cwiseMax(shape.vertices[i]));
+            low = i == 0 ? shape.vertices[0].vec() : Vec3(low.cwiseMin(shape.vertices[i].vec()));
+            high = i == 0 ? shape.vertices[0].vec() : Vec3(high.cwiseMax(shape.vertices[i].vec()));
         }
         centre += shape.axes * (0.5F * (low + high));
         half = 0.5F * (high - low);
@@ -74,17 +76,17 @@ bool CellFusion::find_times(const Placed& placed, WorkBudget& budget) noexcept
     return true;
 }
 
-void CellFusion::rate_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
+void CellFusion::rate_track(const world::Situation& situation, const world::Threat& track, const Placed& placed,
                             const CellBalls& balls, Seconds lead, std::span<Level> blocks) const noexcept
 {
     const ReachSet& set = *placed.set;
     const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
     Intruder intruder;
     intruder.position =
-        placed.to_set(world::nearest_in_height(track, track.position + track.velocity * lead, placed.origin.z()));
+        placed.to_set(track.nearest_in_height(lead, placed.origin.z()));
     intruder.velocity = turned(placed, track.velocity) / placed.unit;
     intruder.radius =
-        (world::growth_of(situation, track, lead).at(longest) + situation.limits.half_extents.norm()) / placed.unit;
+        (track.growth_from(lead).at(longest) + situation.limits.half_extents.norm()) / placed.unit;
     intruder.horizontal = rule_.horizontal;
     intruder.vertical = rule_.vertical;
     intruder.speed_share = 0.0F;  // its growth has the error of its speed
@@ -100,12 +102,12 @@ void CellFusion::rate_track(const world::Situation& situation, const world::Trac
     }
 }
 
-void CellFusion::rate_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+void CellFusion::rate_obstacle(const world::Situation& situation, const world::Threat& obstacle, const Placed& placed,
                                std::span<Level> blocks) const noexcept
 {
     const Grid<float>& grid = placed.set->grid;
     const float about = situation.limits.half_extents.norm() + world::own_uncertainty(situation);
-    const MapBody body = body_of(shape, placed, about, rule_.room);
+    const MapBody body = body_of(*obstacle.solid, placed, about, rule_.room);
     if (body.centre.norm() - body.half.norm() - body.rounding - body.margin > grid.distance()) {
         return;
     }
@@ -123,9 +125,7 @@ void CellFusion::rate_obstacle(const world::Situation& situation, const geometry
 void CellFusion::rate_airspace(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
                                std::span<Level> blocks) noexcept
 {
-    const world::Airspace& air = situation.airspace;
     const Vec3& half = situation.limits.half_extents;
-    const float extra = world::own_uncertainty(situation);
     const Grid<float>& grid = placed.set->grid;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const CellPlace place = grid.place(static_cast<CellIndex>(i));
@@ -134,11 +134,18 @@ void CellFusion::rate_airspace(const world::Situation& situation, const Placed& 
         const float top = placed.unit * (placed.upside_down ? -heights.bottom : heights.top) + placed.origin.z();
         const Vec3 centre = placed.to_world(balls.centre(place));
         const float reach = placed.unit * balls.radius(place.layer, place.row);
-        const bool passes = (air.has_floor && bottom < air.floor + half.z() + extra) ||
-                            (air.has_ceiling && top > air.ceiling - half.z() - extra) ||
-                            (air.has_keep_in && (centre - air.home).head<2>().norm() + reach >
-                                                    air.keep_in_radius - std::hypot(half.x(), half.y()) - extra);
-        if (passes) {
+        const auto passes = [&](const world::Threat& bound) {
+            const float extra = bound.growth.radius;
+            switch (bound.form) {
+            case world::ThreatForm::floor: return bottom < bound.position.z() + half.z() + extra;
+            case world::ThreatForm::ceiling: return top > bound.position.z() - half.z() - extra;
+            case world::ThreatForm::keep_in:
+                return (centre - bound.position).head<2>().norm() + reach >
+                       bound.level_radius - std::hypot(half.x(), half.y()) - extra;
+            default: return false;
+            }
+        };
+        if (std::any_of(situation.threats.begin(), situation.threats.end(), passes)) {
             lower(blocks[i], AvoidanceRun::hard_constraints);
         }
     }
@@ -148,17 +155,18 @@ RateStatus CellFusion::rate(const world::Situation& situation, const Placed& pla
                             Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept
 {
     const auto cells = static_cast<std::uint32_t>(blocks.size());
-    const auto tracks = static_cast<std::uint32_t>(situation.tracks.size());
-    const auto obstacles = static_cast<std::uint32_t>(situation.obstacles.size());
-    if (!find_times(placed, budget) ||
-        !budget.spend(cells * (kUnitsCellBounds + tracks * kUnitsCellTrack + obstacles * kUnitsCellSolid))) {
+    const std::span tracks = world::of_kind(situation.threats, world::ThreatKind::track);
+    const std::span obstacles = world::of_kind(situation.threats, world::ThreatKind::obstacle);
+    const auto units = static_cast<std::uint32_t>(kUnitsCellBounds + tracks.size() * kUnitsCellTrack +
+                                                  obstacles.size() * kUnitsCellSolid);
+    if (!find_times(placed, budget) || !budget.spend(cells * units)) {
         return RateStatus::budget_spent;
     }
-    for (const world::Track& track : situation.tracks) {
+    for (const world::Threat& track : tracks) {
         rate_track(situation, track, placed, balls, lead, blocks);
     }
-    for (const world::Obstacle& obstacle : situation.obstacles) {
-        rate_obstacle(situation, obstacle.shape, placed, blocks);
+    for (const world::Threat& obstacle : obstacles) {
+        rate_obstacle(situation, obstacle, placed, blocks);
     }
     rate_airspace(situation, placed, balls, blocks);
     return RateStatus::rated;

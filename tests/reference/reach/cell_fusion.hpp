@@ -42,9 +42,9 @@ public:
 
 private:
     [[nodiscard]] bool find_times(const Placed& placed, WorkBudget& budget) noexcept;
-    void rate_track(const world::Situation& situation, const world::Track& track, const Placed& placed,
+    void rate_track(const world::Situation& situation, const world::Threat& track, const Placed& placed,
                     const CellBalls& balls, Seconds lead, std::span<Level> blocks) const noexcept;
-    void rate_obstacle(const world::Situation& situation, const geometry::Shape& shape, const Placed& placed,
+    void rate_obstacle(const world::Situation& situation, const world::Threat& obstacle, const Placed& placed,
                        std::span<Level> blocks) const noexcept;
     static void rate_airspace(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
                               std::span<Level> blocks) noexcept;
@@ -55,8 +55,8 @@ private:
     std::array<Stay, kMaxReachCells> times_{};
 };
 
-/// A static solid in a placed set's frame: its bounding box or ball, enlarged by `about` [m]. O(1), O(vertices) for a
-/// hull.
-[[nodiscard]] MapBody body_of(const geometry::Shape& shape, const Placed& placed, float about, float margin) noexcept;
+/// A solid at rest as a placed set sees it: the box or the ball about it, enlarged by `about` [m]. O(1), O(vertices)
+/// for a hull.
+[[nodiscard]] MapBody body_of(const world::Threat& obstacle, const Placed& placed, float about, float margin) noexcept;
 
 }  // namespace jink::reach

@@ -351,8 +351,8 @@ TEST(CoprocessorBus, ParametersAreServed)
     EXPECT_EQ(answer.low.real, 1.0F);
     EXPECT_EQ(answer.high.real, 60.0F);
     EXPECT_EQ(now.get(Param::lookahead), 12.5F);
-    EXPECT_EQ(now.configuration().planner.lookahead, 12.5F);
-    EXPECT_EQ(b->f.coprocessor.planner().settings().lookahead, 12.5F) << "taken over in the step";
+    EXPECT_EQ(now.configuration().rules.lookahead, 12.5F);
+    EXPECT_EQ(b->f.coprocessor.parameters().configuration().rules.lookahead, 12.5F) << "taken over in the step";
     EXPECT_EQ(counted.params_set, 1U);
     answer = set("JNK_LOOKAHEAD", 0, 61.0F, Tag::real);
     EXPECT_EQ(answer.value.real, 12.5F);
@@ -411,7 +411,7 @@ TEST(CoprocessorBus, EraseBringsBackTheInitialValuesNotThoseThatWereStored)
     stored[static_cast<std::size_t>(Param::lookahead)] = 12.0F;
     EXPECT_EQ(b->f.coprocessor.restore_parameters(stored), 0U);
     EXPECT_EQ(b->f.coprocessor.parameters().get(Param::lookahead), 12.0F);
-    EXPECT_EQ(b->f.coprocessor.planner().settings().lookahead, 12.0F) << "before the first step";
+    EXPECT_EQ(b->f.coprocessor.parameters().configuration().rules.lookahead, 12.0F) << "before the first step";
     can::GetSetRequest ask;
     ask.index = static_cast<std::uint16_t>(Param::lookahead);
     b->ask(ask);

@@ -154,8 +154,8 @@ TEST_F(CloudViews, ReachPictureIsForwardedToAndLooksFromTheSamePlace)
         const vehicle::VehicleLimits limits;
         const vehicle::Airframe airframe;
         const world::Reference reference;
-        const world::Airspace airspace;
-        const world::Situation now{t->now, t->own, limits, airframe, reference, {}, {}, airspace};
+        const world::FlightRules rules;
+        const world::Situation now{t->now, t->own, limits, airframe, reference, rules};
         ASSERT_EQ(picture.picture().rate(now, placed, reach::CellBalls(placed.set->grid), 0.0F, levels, budget),
                   reach::RateStatus::rated);
         const bool any = std::any_of(levels.begin(), levels.end(), [](reach::Level l) { return l != reach::kFree; });

@@ -212,7 +212,7 @@ TEST_F(CoprocessorRequests, SetIsAnsweredWithTheValueThatStands)
 TEST_F(CoprocessorRequests, SetTakesEffectInThePlannerAtOnce)
 {
     ASSERT_EQ(set("JNK_LOOKAHEAD", 12.0F).size(), 1U);
-    EXPECT_EQ(f.coprocessor.planner().settings().lookahead, 12.0F);
+    EXPECT_EQ(f.coprocessor.parameters().configuration().rules.lookahead, 12.0F);
     ASSERT_EQ(set("JNK_MODE", 0.0F).size(), 1U);
     EXPECT_EQ(f.last.state, link::SystemState::standby);
 }

@@ -238,7 +238,7 @@ TEST(NearField, PointOnTheSurfaceOrWithinIsNearestToItself)
         EXPECT_LT((nearest_point(shape, Vec3(1.0F, 0.0F, 0.0F)) - Vec3(1.0F, 0.0F, 0.0F)).norm(), 1e-6F);
         EXPECT_LT((nearest_point(shape, Vec3(3.0F, 0.0F, 0.0F)) - Vec3(1.0F, 0.0F, 0.0F)).norm(), 1e-6F);
     }
-    const std::array<Vec3, 4> corners{Vec3(1, 0, 0), Vec3(-1, 1, 0), Vec3(-1, -1, 0), Vec3(0, 0, 2)};
+    const std::array<Point3, 4> corners{{{1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}, {0, 0, 2}}};
     const Shape hull = geometry::make_hull(corners, Vec3(10.0F, 0.0F, 0.0F));
     const Vec3 nearest = nearest_point(hull, Vec3::Zero());
     EXPECT_LE(nearest.x(), 8.0F) << "its bounding sphere: nearer than it is";

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/oracle/reference_ends.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -245,14 +247,14 @@ TEST_F(NominalEdges, StandingIsSlowerThanItsBound)
 {
     has_leg = false;
     hold(Vec3(0.499F, 0, 0), 1);
-    EXPECT_EQ(paths.primary().leg.end, own.position);
-    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+    EXPECT_EQ(end_of(paths.primary()), own.position);
+    EXPECT_EQ(paths.primary().speed, limits.cruise_speed);
     hold(Vec3(NominalPaths::kStanding, 0, 0), 1);
-    EXPECT_EQ(paths.primary().leg.speed, NominalPaths::kStanding);
-    EXPECT_NEAR(paths.primary().leg.end.x() - own.position.x(), 30.0F, 1e-3F) << "kAhead";
+    EXPECT_EQ(paths.primary().speed, NominalPaths::kStanding);
+    EXPECT_NEAR(end_of(paths.primary()).x() - own.position.x(), 30.0F, 1e-3F) << "kAhead";
     hold(Vec3(3.0F, -4.0F, 1.0F), 1);
-    EXPECT_LT((paths.primary().leg.end - own.position - 60.0F * own.velocity).norm(), 1e-3F);
-    EXPECT_NEAR(paths.primary().leg.speed, std::sqrt(26.0F), 1e-5F);
+    EXPECT_LT((end_of(paths.primary()) - own.position - 60.0F * own.velocity).norm(), 1e-3F);
+    EXPECT_NEAR(paths.primary().speed, std::sqrt(26.0F), 1e-5F);
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/oracle/reference_ends.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -35,7 +37,7 @@ protected:
             tick(in_control);
         }
     }
-    [[nodiscard]] float meant() const { return paths.primary().leg.speed; }
+    [[nodiscard]] float meant() const { return paths.primary().speed; }
 
     NominalPaths paths;
     vehicle::VehicleState own;
@@ -133,7 +135,7 @@ TEST_F(NominalKept, ConflictOnTheMotionIsFlownOnTheMotionAndOneOnTheLegOnTheLeg)
         tick(true);
         EXPECT_EQ(paths.is_intended(), !on_other);
         ASSERT_NE(paths.other(), nullptr);
-        EXPECT_EQ(paths.other()->leg.end == leg.end, on_other) << "the other one of both";
+        EXPECT_EQ(end_of(*paths.other()) == leg.end, on_other) << "the other one of both";
         fly(Vec3(5, 0, 0), 0.1F);
         EXPECT_TRUE(paths.is_intended()) << "given back";
     }
@@ -241,19 +243,19 @@ TEST_F(NominalKept, StraightMotionAfterAKeptTurnIsKeptStraight)
     has_leg = false;
     circle(1.5F);
     tick(true);
-    ASSERT_NE(paths.primary().route, nullptr);
-    const Vec3 began = paths.primary().route->at(0.0F).position;
+    ASSERT_TRUE(turns(paths.primary()));
+    const Vec3 began = paths.primary().route().at(0.0F).position;
     circle(1.0F, true);
-    ASSERT_NE(paths.primary().route, nullptr);
-    EXPECT_EQ(paths.primary().route->at(0.0F).position, began) << "kept, while the vehicle turns on";
+    ASSERT_TRUE(turns(paths.primary()));
+    EXPECT_EQ(paths.primary().route().at(0.0F).position, began) << "kept, while the vehicle turns on";
     fly(Vec3(5, 0, 0), 2.0F);
-    EXPECT_EQ(paths.primary().route, nullptr);
+    EXPECT_FALSE(turns(paths.primary()));
     tick(true);
-    EXPECT_EQ(paths.primary().route, nullptr);
-    const Vec3 kept = paths.primary().leg.start;
+    EXPECT_FALSE(turns(paths.primary()));
+    const Vec3 kept = start_of(paths.primary());
     fly(Vec3(0, 5, 0), 1.0F, true);
-    EXPECT_EQ(paths.primary().leg.start, kept);
-    EXPECT_NEAR(paths.primary().leg.speed, 5.0F, 1e-4F);
+    EXPECT_EQ(start_of(paths.primary()), kept);
+    EXPECT_NEAR(paths.primary().speed, 5.0F, 1e-4F);
 }
 
 TEST_F(NominalKept, MotionIsTheOtherPathInControlOfTheLeg)
@@ -263,8 +265,8 @@ TEST_F(NominalKept, MotionIsTheOtherPathInControlOfTheLeg)
     fly(Vec3(0, 3, 0), 0.5F, true);
     ASSERT_TRUE(paths.is_intended());
     ASSERT_NE(paths.other(), nullptr);
-    EXPECT_LT((paths.other()->leg.start - own.position).norm(), 1e-4F);
-    EXPECT_NEAR(paths.other()->leg.end.y() - own.position.y(), 180.0F, 1e-2F) << "what is flown now";
+    EXPECT_LT((start_of(*paths.other()) - own.position).norm(), 1e-4F);
+    EXPECT_NEAR(end_of(*paths.other()).y() - own.position.y(), 180.0F, 1e-2F) << "what is flown now";
 }
 
 TEST_F(NominalKept, BeforeAnythingIsKnownThereIsNoPath)

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/oracle/reference_ends.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -52,7 +54,7 @@ TEST_F(NominalReset, TheTurnOfTheFrameBeforeIsForgotten)
     EXPECT_EQ(paths.turn_rate(), 0.0F) << "at once";
     turn(20);
     EXPECT_EQ(paths.turn_rate(), 0.0F) << "0.4 s are too short to know";
-    EXPECT_EQ(paths.primary().route, nullptr);
+    EXPECT_FALSE(turns(paths.primary()));
     turn(40);
     EXPECT_NEAR(paths.turn_rate(), 0.5F, 0.01F);
 }
@@ -62,10 +64,10 @@ TEST_F(NominalReset, TheSteadySpeedOfTheFrameBeforeIsForgotten)
     has_leg = true;
     leg.speed = 4.0F;
     fly(Vec3(2, 0, 0), 100);
-    ASSERT_NEAR(paths.primary().leg.speed, 2.0F, 1e-3F) << "flown steadily";
+    ASSERT_NEAR(paths.primary().speed, 2.0F, 1e-3F) << "flown steadily";
     paths.reset();
     fly(Vec3(2, 0, 0), 2);
-    EXPECT_EQ(paths.primary().leg.speed, 4.0F) << "what is steady has to be measured anew";
+    EXPECT_EQ(paths.primary().speed, 4.0F) << "what is steady has to be measured anew";
 }
 
 /// Made anew once: from then on it is kept as before.
@@ -76,37 +78,37 @@ TEST_F(NominalReset, ThePathOfAJumpInControlIsKeptFromThereOn)
     paths.reset();
     own.position += Vec3(1000, 0, 0);
     fly(Vec3(0, 5, 0), 1, true);
-    const Vec3 anew = paths.primary().leg.start;
+    const Vec3 anew = start_of(paths.primary());
     EXPECT_LT((anew - own.position).norm(), 0.2F);
     fly(Vec3(0, 5, 0), 50, true);
-    EXPECT_EQ(paths.primary().leg.start, anew);
+    EXPECT_EQ(start_of(paths.primary()), anew);
 }
 
 TEST_F(NominalReset, AVehicleThatStopsInATurnStays)
 {
     turn(75);
-    ASSERT_NE(paths.primary().route, nullptr);
+    ASSERT_TRUE(turns(paths.primary()));
     fly(Vec3::Zero(), 1);
-    EXPECT_EQ(paths.primary().route, nullptr);
-    EXPECT_EQ(paths.primary().leg.end, own.position);
+    EXPECT_FALSE(turns(paths.primary()));
+    EXPECT_EQ(end_of(paths.primary()), own.position);
 }
 
 TEST_F(NominalReset, OfATurnThatHasBecomeSlowThePlaceIsKept)
 {
     turn(77);  // the next tick is no sample
     fly(Vec3(0.8F * std::cos(heading), 0.8F * std::sin(heading), 0.0F), 1);
-    ASSERT_NE(paths.primary().route, nullptr) << "its turn is that of the last second";
+    ASSERT_TRUE(turns(paths.primary())) << "its turn is that of the last second";
     fly(own.velocity, 1, true);
-    EXPECT_EQ(paths.primary().route, nullptr);
-    EXPECT_EQ(paths.primary().leg.end, paths.primary().leg.start);
-    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+    EXPECT_FALSE(turns(paths.primary()));
+    EXPECT_EQ(end_of(paths.primary()), start_of(paths.primary()));
+    EXPECT_EQ(paths.primary().speed, limits.cruise_speed);
 }
 
 TEST_F(NominalReset, MotionAtTheBoundIsKeptAsAPath)
 {
     fly(Vec3(NominalPaths::kMoving, 0, 0), 100);
     fly(Vec3(0, 3, 0), 10, true);
-    EXPECT_NEAR(paths.primary().leg.end.x() - paths.primary().leg.start.x(), 60.0F, 0.1F) << "it is not slower";
+    EXPECT_NEAR(end_of(paths.primary()).x() - start_of(paths.primary()).x(), 60.0F, 0.1F) << "it is not slower";
 }
 
 /// Of a ground speed that does not stay above kMoving the turn rate is 0.
@@ -144,7 +146,7 @@ TEST_F(NominalReset, MotionThatWasSlowWithinTheSecondIsNotSteady)
     limits.cruise_speed = 4.0F;
     fly(Vec3(0.9F, 0, 0), 60);
     fly(Vec3(1.3F, 0, 0), 15);
-    EXPECT_EQ(paths.primary().leg.speed, 4.0F) << "from slow motion on, by the parameter";
+    EXPECT_EQ(paths.primary().speed, 4.0F) << "from slow motion on, by the parameter";
 }
 
 TEST_F(NominalReset, SlowMotionSaysNothingOfASlowMissionsSpeed)
@@ -152,9 +154,9 @@ TEST_F(NominalReset, SlowMotionSaysNothingOfASlowMissionsSpeed)
     has_leg = true;
     leg.speed = 0.6F;
     fly(Vec3(0.9F, 0, 0), 100);
-    EXPECT_EQ(paths.primary().leg.speed, 0.6F);
+    EXPECT_EQ(paths.primary().speed, 0.6F);
     fly(Vec3(1.4F, 0, 0), 2);
-    EXPECT_NEAR(paths.primary().leg.speed, 1.4F, 1e-4F) << "faster than kMoving, and than the mission";
+    EXPECT_NEAR(paths.primary().speed, 1.4F, 1e-4F) << "faster than kMoving, and than the mission";
 }
 
 }  // namespace

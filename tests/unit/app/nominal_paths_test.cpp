@@ -9,6 +9,7 @@
 
 #include "core/base/random.hpp"
 #include "core/world/conflict.hpp"
+#include "tests/oracle/reference_ends.hpp"
 
 namespace jink::app {
 namespace {
@@ -39,11 +40,7 @@ protected:
     /// Where the path leads in `t` seconds, from the own position.
     [[nodiscard]] static Vec3 ahead(const world::Reference& r, Seconds t)
     {
-        if (r.route != nullptr) {
-            return r.route->at(r.leg.speed * t).position;
-        }
-        const Vec3 span = r.leg.end - r.leg.start;
-        return r.leg.start + std::min(1.0F, r.leg.speed * t / std::max(span.norm(), 1e-3F)) * span;
+        return r.route().at(std::min(r.speed * t, r.route().length())).position;
     }
 
     NominalPaths paths;
@@ -66,7 +63,7 @@ TEST_F(NominalPathsTest, WithoutALegTheMotionIsTheOnlyOne)
 TEST_F(NominalPathsTest, TheMotionStandsBesideABelievedLeg)
 {
     fly(Vec3(5, 0, 0), 2.0F);
-    EXPECT_EQ(paths.primary().leg.end, leg.end);
+    EXPECT_EQ(end_of(paths.primary()), leg.end);
     ASSERT_NE(paths.other(), nullptr);
     EXPECT_LT((ahead(*paths.other(), 2.0F) - own.position - Vec3(10, 0, 0)).norm(), 1e-3F);
 }
@@ -75,9 +72,9 @@ TEST_F(NominalPathsTest, StandingItStays)
 {
     update();
     ASSERT_NE(paths.other(), nullptr);
-    EXPECT_EQ(paths.other()->leg.end, own.position);
+    EXPECT_EQ(end_of(*paths.other()), own.position);
     EXPECT_EQ(paths.other()->route, nullptr);
-    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed) << "from rest by the parameter";
+    EXPECT_EQ(paths.primary().speed, limits.cruise_speed) << "from rest by the parameter";
 }
 
 TEST_F(NominalPathsTest, ATurnIsAnArcOfHalfATurnThenStraightOn)
@@ -88,7 +85,7 @@ TEST_F(NominalPathsTest, ATurnIsAnArcOfHalfATurnThenStraightOn)
         now = now + 5.0F;
         fly(Vec3(5, 0, 0), 1.5F, rate);
         EXPECT_NEAR(paths.turn_rate(), rate, 0.01F);
-        ASSERT_NE(paths.primary().route, nullptr);
+        ASSERT_TRUE(turns(paths.primary()));
         const world::Reference& r = paths.primary();
         const Vec3 forward = own.velocity / 5.0F;
         const Vec3 inwards = std::copysign(1.0F, rate) * Vec3(-forward.y(), forward.x(), 0.0F);
@@ -108,7 +105,7 @@ TEST_F(NominalPathsTest, AClimbingTurnClimbs)
 {
     has_leg = false;
     fly(Vec3(5, 0, 1), 1.5F, 0.4F);
-    ASSERT_NE(paths.primary().route, nullptr);
+    ASSERT_TRUE(turns(paths.primary()));
     EXPECT_NEAR(ahead(paths.primary(), 4.0F).z() - own.position.z(), 4.0F, 0.5F);
 }
 
@@ -117,7 +114,7 @@ TEST_F(NominalPathsTest, NoiseIsNoTurn)
     has_leg = false;
     for (int i = 0; i < 500; ++i) {
         fly(Vec3(5, i % 2 == 0 ? 0.1F : -0.1F, 0), 0.02F);
-        EXPECT_EQ(paths.primary().route, nullptr);
+        EXPECT_FALSE(turns(paths.primary()));
     }
 }
 
@@ -172,16 +169,16 @@ TEST_F(NominalPathsTest, StandingAcceleratingReturningAndTurningAtTheEndContradi
 TEST_F(NominalPathsTest, FlownFasterThanTheParameterItIsExpectedAtThatSpeed)
 {
     fly(Vec3(12, 0, 0), 2.0F);
-    EXPECT_NEAR(paths.primary().leg.speed, 12.0F, 0.01F);
+    EXPECT_NEAR(paths.primary().speed, 12.0F, 0.01F);
     fly(Vec3(0, 0, 0), 2.0F);
-    EXPECT_NEAR(paths.primary().leg.speed, 12.0F, 0.01F) << "it will fly on at the speed that it flew";
+    EXPECT_NEAR(paths.primary().speed, 12.0F, 0.01F) << "it will fly on at the speed that it flew";
     leg.speed = 7.0F;
     update();
-    EXPECT_NEAR(paths.primary().leg.speed, 7.0F, 0.01F) << "the mission says so";
+    EXPECT_NEAR(paths.primary().speed, 7.0F, 0.01F) << "the mission says so";
     fly(Vec3(3, 0, 0), 2.0F);
-    EXPECT_NEAR(paths.primary().leg.speed, 3.0F, 0.01F) << "it flies steadily otherwise";
+    EXPECT_NEAR(paths.primary().speed, 3.0F, 0.01F) << "it flies steadily otherwise";
     fly(Vec3(9, 0, 0), 0.1F);
-    EXPECT_NEAR(paths.primary().leg.speed, 9.0F, 0.01F) << "and never slower than it flies now";
+    EXPECT_NEAR(paths.primary().speed, 9.0F, 0.01F) << "and never slower than it flies now";
 }
 
 TEST_F(NominalPathsTest, AcceleratingItIsExpectedAtTheSpeedToCome)
@@ -189,9 +186,9 @@ TEST_F(NominalPathsTest, AcceleratingItIsExpectedAtTheSpeedToCome)
     for (int i = 0; i < 20; ++i) {
         fly(Vec3(0.2F * static_cast<float>(i), 0, 0), 0.1F);
     }
-    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+    EXPECT_EQ(paths.primary().speed, limits.cruise_speed);
     ASSERT_NE(paths.other(), nullptr);
-    EXPECT_NEAR(paths.other()->leg.speed, 3.8F, 0.01F) << "the motion says the other";
+    EXPECT_NEAR(paths.other()->speed, 3.8F, 0.01F) << "the motion says the other";
 }
 
 TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
@@ -202,27 +199,27 @@ TEST_F(NominalPathsTest, TakenOverOnTheMotionThatPathIsKept)
     paths.note(true, true, false);
     const Vec3 at = own.position;
     fly(Vec3(-5, 0, 0), 3.0F, 0.0F, true);
-    EXPECT_LT((paths.primary().leg.start - at).norm(), 0.2F);
-    EXPECT_GT(paths.primary().leg.end.y(), 100.0F) << "not where our commands lead";
+    EXPECT_LT((start_of(paths.primary()) - at).norm(), 0.2F);
+    EXPECT_GT(end_of(paths.primary()).y(), 100.0F) << "not where our commands lead";
     ASSERT_NE(paths.other(), nullptr);
-    EXPECT_EQ(paths.other()->leg.end, leg.end) << "the leg has to be clear too";
+    EXPECT_EQ(end_of(*paths.other()), leg.end) << "the leg has to be clear too";
     EXPECT_TRUE(paths.believes_leg()) << "our commands say nothing of the autopilot's intent";
     paths.note(false, false, true);
     update(true);
-    EXPECT_EQ(paths.primary().leg.end, leg.end) << "what is left to solve is the leg's conflict";
+    EXPECT_EQ(end_of(paths.primary()), leg.end) << "what is left to solve is the leg's conflict";
 }
 
 TEST_F(NominalPathsTest, OfAVehicleThatDriftsWhileItWaitsThePlaceIsKept)
 {
     has_leg = false;
     fly(Vec3(0.5F, 0.2F, 0.3F), 2.0F);
-    EXPECT_GT(paths.primary().leg.end.x() - own.position.x(), 10.0F) << "the drift counts for conflicts";
+    EXPECT_GT(end_of(paths.primary()).x() - own.position.x(), 10.0F) << "the drift counts for conflicts";
     const Vec3 at = own.position;
     fly(Vec3(3, 0, 0), 2.0F, 0.0F, true);
-    EXPECT_LT((paths.primary().leg.start - at).norm(), 0.2F);
-    EXPECT_EQ(paths.primary().leg.end, paths.primary().leg.start);
-    EXPECT_EQ(paths.primary().route, nullptr);
-    EXPECT_EQ(paths.primary().leg.speed, limits.cruise_speed);
+    EXPECT_LT((start_of(paths.primary()) - at).norm(), 0.2F);
+    EXPECT_EQ(end_of(paths.primary()), start_of(paths.primary()));
+    EXPECT_FALSE(turns(paths.primary()));
+    EXPECT_EQ(paths.primary().speed, limits.cruise_speed);
 }
 
 TEST_F(NominalPathsTest, WhatIsKeptIsMadeAnewWhenTheFrameJumps)
@@ -233,8 +230,8 @@ TEST_F(NominalPathsTest, WhatIsKeptIsMadeAnewWhenTheFrameJumps)
     paths.reset();
     own.position += Vec3(1000, 0, 0);
     fly(Vec3(0, 5, 0), 1.0F, 0.0F, true);
-    EXPECT_NEAR(paths.primary().leg.start.x(), own.position.x(), 0.1F);
-    EXPECT_NEAR(paths.primary().leg.end.x(), own.position.x(), 0.1F);
+    EXPECT_NEAR(start_of(paths.primary()).x(), own.position.x(), 0.1F);
+    EXPECT_NEAR(end_of(paths.primary()).x(), own.position.x(), 0.1F);
 }
 
 TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
@@ -243,8 +240,8 @@ TEST_F(NominalPathsTest, ATurnIsKeptAsARoute)
     fly(Vec3(5, 0, 0), 1.5F, 0.5F);
     const Vec3 at = own.position;
     fly(Vec3(0, 0, 2), 3.0F, 0.0F, true);
-    ASSERT_NE(paths.primary().route, nullptr);
-    EXPECT_LT((paths.primary().route->at(0.0F).position - at).norm(), 0.2F);
+    ASSERT_TRUE(turns(paths.primary()));
+    EXPECT_LT((paths.primary().route().at(0.0F).position - at).norm(), 0.2F);
 }
 
 /// A turn comes near to itself: its end leads back beside its beginning. From anywhere near it a vehicle that follows
@@ -263,7 +260,7 @@ TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
         update();
         const float climb = random.below(2) == 0 ? 0.0F : random.uniform(-1.0F, 1.0F);
         fly(Vec3(4.7F, 0, climb), 1.5F, sign() * random.uniform(0.2F, 0.9F));
-        ASSERT_NE(paths.primary().route, nullptr) << i;
+        ASSERT_TRUE(turns(paths.primary())) << i;
         own.position += Vec3(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(-5, 5));
         for (Seconds t = 0.0F; t < 30.0F; t += 0.02F) {
             update(true);
@@ -272,8 +269,8 @@ TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
             own.position += 0.02F * own.velocity;
             now = now + 0.02F;
         }
-        const path::Abeam abeam = paths.primary().route->abeam_of(own.position, paths.primary().segment);
-        EXPECT_EQ(abeam.segment + 1, paths.primary().route->segments().size()) << i;
+        const path::Abeam abeam = paths.primary().route().abeam_of(own.position, paths.primary().segment);
+        EXPECT_EQ(abeam.segment + 1, paths.primary().route().segments().size()) << i;
         EXPECT_LT(abeam.off, 3.0F) << i;
     }
 }
@@ -283,12 +280,12 @@ TEST_F(NominalPathsTest, TakenOverOnTheLegTheLegIsFlown)
     fly(Vec3(5, 0, 0), 2.0F);
     paths.note(true, false, false);
     fly(Vec3(3, 3, 0), 3.0F, 0.0F, true);
-    EXPECT_EQ(paths.primary().leg.end, leg.end);
-    EXPECT_NEAR(paths.primary().leg.speed, 5.0F, 0.01F);
+    EXPECT_EQ(end_of(paths.primary()), leg.end);
+    EXPECT_NEAR(paths.primary().speed, 5.0F, 0.01F);
     has_leg = false;
     update(true);
-    EXPECT_GT(paths.primary().leg.end.x(), 100.0F) << "a leg lost in control: the motion at the take-over";
-    EXPECT_NEAR(paths.primary().leg.end.y(), 0.0F, 0.1F);
+    EXPECT_GT(end_of(paths.primary()).x(), 100.0F) << "a leg lost in control: the motion at the take-over";
+    EXPECT_NEAR(end_of(paths.primary()).y(), 0.0F, 0.1F);
     EXPECT_EQ(paths.other(), nullptr);
 }
 

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/oracle/reference_ends.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -50,7 +52,7 @@ TEST_F(NominalTurns, TurnRateIsTheSameOnEveryHeading)
         for (int i = 0; i < 65; ++i) {
             turn(5.0F, rate, 0.2F);
             ASSERT_NEAR(paths.turn_rate(), rate, 0.005F) << "heading " << heading;
-            ASSERT_NE(paths.primary().route, nullptr);
+            ASSERT_TRUE(turns(paths.primary()));
         }
     }
 }
@@ -61,11 +63,11 @@ TEST_F(NominalTurns, SlowerTurnThanTheLeastIsNone)
         paths.reset();
         turn(5.0F, side * 0.058F, 1.5F);
         EXPECT_EQ(paths.turn_rate(), 0.0F);
-        EXPECT_EQ(paths.primary().route, nullptr);
+        EXPECT_FALSE(turns(paths.primary()));
         paths.reset();
         turn(5.0F, side * 0.062F, 1.5F);
         EXPECT_NEAR(paths.turn_rate(), side * 0.062F, 0.002F);
-        EXPECT_NE(paths.primary().route, nullptr);
+        EXPECT_TRUE(turns(paths.primary()));
     }
 }
 
@@ -90,7 +92,7 @@ TEST_F(NominalTurns, TurnIsMeasuredOverMostOfASecondAndForgottenAfterIt)
     EXPECT_LT(paths.turn_rate(), 0.45F);
     turn(5.0F, 0.0F, 0.7F);
     EXPECT_EQ(paths.turn_rate(), 0.0F);
-    EXPECT_EQ(paths.primary().route, nullptr);
+    EXPECT_FALSE(turns(paths.primary()));
 }
 
 TEST_F(NominalTurns, GapInOwnStatesBeginsTheMeasurementAnew)
@@ -130,8 +132,8 @@ TEST_F(NominalTurns, LevelTurnIsHalfACircleAndAMinuteBack)
             paths.reset();
             turn(5.0F, rate, 1.5F, climb);
             const world::Reference& r = paths.primary();
-            ASSERT_NE(r.route, nullptr);
-            const auto segments = r.route->segments();
+            ASSERT_TRUE(turns(r));
+            const auto segments = r.route().segments();
             ASSERT_EQ(segments.size(), 2U);
             const Vec3 forward(std::cos(heading), std::sin(heading), 0.0F);
             const Vec3 inwards = std::copysign(1.0F, rate) * Vec3(-forward.y(), forward.x(), 0.0F);
@@ -146,7 +148,7 @@ TEST_F(NominalTurns, LevelTurnIsHalfACircleAndAMinuteBack)
             EXPECT_NEAR(segments[1].length, 60.0F * own.velocity.norm(), 0.5F);
             const Vec3 back = (Vec3(0.0F, 0.0F, climb) - 5.0F * forward).normalized();
             EXPECT_LT((segments[1].along - back).norm(), 1e-2F);
-            EXPECT_NEAR(r.leg.speed, own.velocity.norm(), 1e-4F);
+            EXPECT_NEAR(r.speed, own.velocity.norm(), 1e-4F);
         }
     }
 }
@@ -157,8 +159,8 @@ TEST_F(NominalTurns, ClimbingTurnIsThreeLegsOnTheHelixAndClimbsOn)
         for (const float rate : {0.5F, -0.5F}) {
             paths.reset();
             turn(5.0F, rate, 1.5F, climb);
-            ASSERT_NE(paths.primary().route, nullptr);
-            const auto segments = paths.primary().route->segments();
+            ASSERT_TRUE(turns(paths.primary()));
+            const auto segments = paths.primary().route().segments();
             ASSERT_EQ(segments.size(), 4U);
             const Vec3 forward(std::cos(heading), std::sin(heading), 0.0F);
             const Vec3 inwards = std::copysign(1.0F, rate) * Vec3(-forward.y(), forward.x(), 0.0F);
@@ -180,12 +182,12 @@ TEST_F(NominalTurns, TurnOnTheSpotIsTakenForStraight)
 {
     turn(1.2F, 2.6F, 2.0F);
     ASSERT_GT(paths.turn_rate(), 2.4F) << "0.46 m of radius";
-    EXPECT_EQ(paths.primary().route, nullptr);
-    EXPECT_LT((paths.primary().leg.end - own.position - 60.0F * own.velocity).norm(), 1e-2F);
+    EXPECT_FALSE(turns(paths.primary()));
+    EXPECT_LT((end_of(paths.primary()) - own.position - 60.0F * own.velocity).norm(), 1e-2F);
     turn(1.2F, 2.6F, 2.0F, 0.5F);
-    EXPECT_EQ(paths.primary().route, nullptr) << "climbing too";
+    EXPECT_FALSE(turns(paths.primary())) << "climbing too";
     turn(1.5F, 2.6F, 2.0F);
-    EXPECT_NE(paths.primary().route, nullptr) << "0.58 m";
+    EXPECT_TRUE(turns(paths.primary())) << "0.58 m";
 }
 
 TEST_F(NominalTurns, SlowMotionWithinTheWindowMakesItUnknown)
@@ -211,7 +213,7 @@ TEST_F(NominalTurns, OwnStateThatIsShownAgainIsNotMeasuredAgain)
     const float rate = paths.turn_rate();
     show();
     EXPECT_EQ(paths.turn_rate(), rate);
-    EXPECT_NE(paths.primary().route, nullptr);
+    EXPECT_TRUE(turns(paths.primary()));
 }
 
 TEST_F(NominalTurns, WindowIsASecondLong)
@@ -271,7 +273,7 @@ TEST_F(NominalTurns, TurnThatLeavesTheMapIsTakenForStraight)
             ASSERT_NEAR(paths.turn_rate(), -0.5F, 0.01F);
             EXPECT_EQ(own.position, before);
             // It turns from west over north to the east, half a circle, and flies 300 m on.
-            EXPECT_EQ(paths.primary().route == nullptr, inside < 1000.0F) << inside << ' ' << climb;
+            EXPECT_EQ(turns(paths.primary()), inside >= 1000.0F) << inside << ' ' << climb;
         }
     }
 }

@@ -51,15 +51,8 @@ TEST(ParamMethods, AllSeeAsFarAndAnswerAsLate)
     ASSERT_EQ(parameters.set(Param::lookahead, 13.0F), ParamStatus::ok);
     ASSERT_EQ(parameters.set(Param::latency, 0.3F), ParamStatus::ok);
     const Configuration& c = parameters.configuration();
-    EXPECT_EQ(c.supervisor.lookahead, 13.0F);
-    EXPECT_EQ(c.planner.lookahead, 13.0F);
-    EXPECT_EQ(c.orca.horizon, 13.0F);
-    EXPECT_EQ(c.planner.latency, 0.3F);
-    EXPECT_EQ(c.reach.latency, 0.3F);
-    EXPECT_EQ(c.orca.latency, 0.3F);
-    EXPECT_EQ(c.reach.room, c.supervisor.clearance_buffer);
-    EXPECT_EQ(c.reach.escape.slack, c.supervisor.escape.slack);
-    EXPECT_EQ(c.reach.escape.speed, c.supervisor.escape.speed);
+    EXPECT_EQ(c.rules.lookahead, 13.0F);
+    EXPECT_EQ(c.rules.latency, 0.3F);
     EXPECT_EQ(c.reach.sets, &reach_sets());
     EXPECT_FALSE(c.planner.check_acceleration) << "the predicted flight shows it";
     EXPECT_EQ(c.planner.tables, &cost::tables::kDefault);

@@ -56,12 +56,12 @@ void expect_refused(Parameters& parameters, ParamStatus expected, const std::fun
 {
     const Values before = parameters.values();
     const std::uint32_t generation = parameters.generation();
-    const float lookahead = parameters.configuration().supervisor.lookahead;
+    const float lookahead = parameters.configuration().rules.lookahead;
     const float weight = parameters.configuration().planner.weights.closeness;
     EXPECT_EQ(change(), expected);
     EXPECT_EQ(parameters.values(), before);
     EXPECT_EQ(parameters.generation(), generation);
-    EXPECT_EQ(parameters.configuration().supervisor.lookahead, lookahead);
+    EXPECT_EQ(parameters.configuration().rules.lookahead, lookahead);
     EXPECT_EQ(parameters.configuration().planner.weights.closeness, weight);
 }
 
@@ -252,12 +252,11 @@ std::vector<Route> routes()
     };
     return {
         same(Param::mode, 1, [](C c) { return static_cast<float>(c.mode); }),
-        same(Param::lookahead, 11, [](C c) { return c.supervisor.lookahead; }),
-        same(Param::lookahead, 13, [](C c) { return c.planner.lookahead; }),
+        same(Param::lookahead, 11, [](C c) { return c.rules.lookahead; }),
         same(Param::half_xy, 1.5F, [](C c) { return c.limits.half_extents.x(); }),
         same(Param::half_xy, 1.6F, [](C c) { return c.limits.half_extents.y(); }),
         same(Param::half_z, 1.7F, [](C c) { return c.limits.half_extents.z(); }),
-        same(Param::k_sigma, 2.5F, [](C c) { return c.k_sigma; }),
+        same(Param::k_sigma, 2.5F, [](C c) { return c.rules.k_sigma; }),
         {Param::bounds, 1, [](C c) { return c.floor_on && !c.ceiling_on && !c.keep_in_on ? 1.0F : 0.0F; }, 1},
         {Param::bounds, 2, [](C c) { return !c.floor_on && c.ceiling_on && !c.keep_in_on ? 1.0F : 0.0F; }, 1},
         {Param::bounds, 4, [](C c) { return !c.floor_on && !c.ceiling_on && c.keep_in_on ? 1.0F : 0.0F; }, 1},
@@ -283,7 +282,7 @@ std::vector<Route> routes()
         {Param::coop, 8,
          [](C c) { return !c.coop_systems && !c.coop_utm && !c.coop_unmanned && c.coop_all ? 1.0F : 0.0F; }, 1},
         same(Param::own_address, 16777215, [](C c) { return static_cast<float>(c.own_address); }),
-        same(Param::latency, 0.3F, [](C c) { return c.reach.latency; }),
+        same(Param::latency, 0.3F, [](C c) { return c.rules.latency; }),
         {Param::acceleration, 4, [](C c) { return c.reach_unsuited ? 1.0F : 0.0F; }, 1},
         {Param::acceleration, 6, [](C c) { return c.reach_unsuited ? 1.0F : 0.0F; }, 0},
         {Param::tell_near, 1, [](C c) { return c.tell_near ? 1.0F : 0.0F; }, 1},
@@ -335,7 +334,6 @@ std::vector<Route> routes()
         same(Param::max_cost, 0.55F, [](C c) { return c.planner.max_cost; }),
         same(Param::time_low, 1.5F, [](C c) { return c.planner.caps.time_low; }),
         same(Param::time_high, 9.5F, [](C c) { return c.planner.caps.time_high; }),
-        same(Param::latency, 0.2F, [](C c) { return c.planner.latency; }),
         {Param::sticks, 45.0F, [](C c) { return c.sticks; }, 0.45F},
         same(Param::patience, 12.5F, [](C c) { return c.supervisor.patience; }),
         {Param::sticks, 45, [](C c) { return c.sticks; }, 0.45F},

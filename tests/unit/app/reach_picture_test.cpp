@@ -54,8 +54,8 @@ struct Flying {
         const vehicle::VehicleLimits limits;
         const vehicle::Airframe airframe;
         const world::Reference reference;
-        const world::Airspace airspace;
-        const world::Situation now{scan.stamp, own, limits, airframe, reference, {}, {}, airspace};
+        const world::FlightRules rules;
+        const world::Situation now{scan.stamp, own, limits, airframe, reference, rules};
         return picture.picture().rate(now, placed, reach::CellBalls(placed.set->grid), 0.0F, blocks, budget) ==
                reach::RateStatus::rated;
     }
@@ -232,8 +232,8 @@ TEST(ReachPictures, GridIsThatOfTheSetsThatReachWidest)
         const vehicle::VehicleLimits limits;
         const vehicle::Airframe airframe;
         const world::Reference reference;
-        const world::Airspace airspace;
-        const world::Situation now{f.scan.stamp, own, limits, airframe, reference, {}, {}, airspace};
+        const world::FlightRules rules;
+        const world::Situation now{f.scan.stamp, own, limits, airframe, reference, rules};
         ASSERT_EQ(picture.picture().rate(now, placed, reach::CellBalls(wide.grid), 0.0F, blocks, budget),
                   reach::RateStatus::rated);
         EXPECT_GT(std::count_if(blocks.begin(), blocks.end(), [](reach::Level b) { return b != reach::kFree; }), 0);

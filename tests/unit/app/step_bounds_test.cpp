@@ -95,14 +95,12 @@ TEST(StepChanges, TheSupervisorLooksAsFarAheadAsItIsToldFromTheSameStepOn)
     EXPECT_TRUE(b.last.guidance.conflict.has_value());
 }
 
-TEST(StepChanges, EveryMethodKnowsTheNewLatencyAndTheLineTheWish)
+TEST(StepChanges, TheNewLatencyIsInTheFlightRules)
 {
     StepBench b;
     set_by_wire(b, "GEO_LATENCY", 0.35F);
     b.step();
-    EXPECT_EQ(b.coprocessor.planner().settings().latency, 0.35F);
-    EXPECT_EQ(b.coprocessor.reach_planner().settings().latency, 0.35F);
-    EXPECT_EQ(b.coprocessor.orca_planner().settings().latency, 0.35F);
+    EXPECT_EQ(b.coprocessor.parameters().configuration().rules.latency, 0.35F);
 }
 
 TEST(StepChanges, RestoredValuesAreInForceBeforeTheFirstStep)
@@ -112,12 +110,12 @@ TEST(StepChanges, RestoredValuesAreInForceBeforeTheFirstStep)
     values[static_cast<std::size_t>(Param::lookahead)] = 11.0F;
     values[static_cast<std::size_t>(Param::ask_rates)] = 0.0F;
     EXPECT_EQ(b.coprocessor.restore_parameters(values), 0U);
-    EXPECT_EQ(b.coprocessor.planner().settings().lookahead, 11.0F);
+    EXPECT_EQ(b.coprocessor.parameters().configuration().rules.lookahead, 11.0F);
     EXPECT_EQ(b.wire.rates, false);
     values[static_cast<std::size_t>(Param::track_age)] = 1000.0F;
     values[static_cast<std::size_t>(Param::lookahead)] = 12.0F;
     EXPECT_EQ(b.coprocessor.restore_parameters(values), 1U) << "out of range; the others count";
-    EXPECT_EQ(b.coprocessor.planner().settings().lookahead, 12.0F);
+    EXPECT_EQ(b.coprocessor.parameters().configuration().rules.lookahead, 12.0F);
     EXPECT_EQ(b.coprocessor.initial_parameters(), Parameters().values());
 }
 

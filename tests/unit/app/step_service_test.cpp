@@ -158,13 +158,12 @@ TEST(StepParams, ASetIsInForceInTheStepAndARefusedOneAnsweredWithWhatStands)
         return b.wire.params.empty() ? -1.0F : b.wire.params.back().value;
     };
     EXPECT_EQ(set("JNK_LOOKAHEAD", 12.0F), 12.0F);
-    EXPECT_EQ(b.coprocessor.planner().settings().lookahead, 12.0F);
-    EXPECT_EQ(b.coprocessor.orca_planner().settings().horizon, 12.0F);
+    EXPECT_EQ(b.coprocessor.parameters().configuration().rules.lookahead, 12.0F);
     EXPECT_EQ(set("JNK_LOOKAHEAD", 61.0F), 12.0F);
     EXPECT_EQ(set("JNK_LOOKAHEAD", 3.0F, false), 12.0F) << "what the sender did not send as a number";
     EXPECT_EQ(b.counted().params_set, 1U);
     EXPECT_EQ(b.counted().params_refused, 2U);
-    EXPECT_EQ(b.coprocessor.planner().settings().lookahead, 12.0F);
+    EXPECT_EQ(b.coprocessor.parameters().configuration().rules.lookahead, 12.0F);
     EXPECT_EQ(set("JNK_ASK_RATES", 0.0F), 0.0F);
     EXPECT_EQ(b.wire.rates, false);
     const std::size_t answers = b.wire.params.size();

@@ -29,7 +29,7 @@ struct Drawn {
     Settings settings;
     world::Manoeuvre manoeuvre;
     Flying flying = Flying::path;
-    std::vector<std::vector<Vec3>> vertices;  // of hulls
+    std::vector<std::vector<Point3>> vertices;  // of hulls
 };
 
 inline Vec3 any_direction(Random& random)
@@ -258,7 +258,7 @@ inline void place_ball(Random& random, Drawn& d, const DenseFlight& flight, doub
         track.half_height = random.below(4) == 0 ? random.uniform(0.0F, 60.0F) : 0.0F;
     }
     const double radius = moves ? world::oracle::radius_of(s, track, t)
-                                : double(track.radius) + double(s.k_sigma) * double(s.own.sigma_position);
+                                : double(track.radius) + double(s.rules.k_sigma) * double(s.own.sigma_position);
     const Vec3d half = s.limits.half_extents.cast<double>();
     const Vec3d direction = across.cast<double>();
     const double far = placed([&](double x) { return world::oracle::point_box(direction * x, half) - radius; }, wanted);
@@ -285,7 +285,7 @@ inline void place_barrel(Random& random, Drawn& d, const DenseFlight& flight, do
     barrel.velocity = random.below(2) == 0 ? world::Vec2(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F))
                                            : world::Vec2(world::Vec2::Zero());
     const bool beside = random.below(3) != 0;
-    const float below = beside ? 10.0F : float(wanted) + s.limits.half_extents.z() + s.k_sigma * s.own.sigma_position;
+    const float below = beside ? 10.0F : float(wanted) + s.limits.half_extents.z() + s.rules.k_sigma * s.own.sigma_position;
     barrel.top = beside ? float(own.z()) + below : float(own.z()) - below;
     barrel.bottom = barrel.top - 20.0F;
     const auto put = [&](double x) {
@@ -306,7 +306,7 @@ inline void place_barrel(Random& random, Drawn& d, const DenseFlight& flight, do
 inline void place_bound(Random& random, Drawn& d, const DenseFlight& flight, double wanted)
 {
     Scene& s = d.scene;
-    const double extra = double(s.k_sigma) * double(s.own.sigma_position);
+    const double extra = double(s.rules.k_sigma) * double(s.own.sigma_position);
     const double height = double(s.limits.half_extents.z()) + extra + wanted;
     const Vec3d home = flight.at(0.0).position + in_cube(random, 20.0F).cast<double>();
     double low = 1e9;
@@ -380,10 +380,10 @@ inline bool draw(Random& random, Drawn& d, bool solids)
     s.own.velocity = any_velocity(random, s.limits, random.uniform(0.0F, 1.0F) * s.limits.cruise_speed);
     s.own.yaw = std::atan2(s.own.velocity.y(), s.own.velocity.x());
     s.own.sigma_position = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.3F);
-    s.k_sigma = random.uniform(0.0F, 3.0F);
+    s.rules.k_sigma = random.uniform(0.0F, 3.0F);
     if (random.below(4) == 0) {
         d.settings.prediction_step = random.uniform(0.02F, 0.5F);
-        d.settings.gains = {random.uniform(0.0F, 2.0F), random.uniform(0.0F, 4.0F)};
+        d.scene.rules.gains = {random.uniform(0.0F, 2.0F), random.uniform(0.0F, 4.0F)};
     }
     d.flying = static_cast<Flying>(random.below(static_cast<std::size_t>(Flying::count)));
     if (!draw_manoeuvre(random, d)) {

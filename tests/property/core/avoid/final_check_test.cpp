@@ -67,8 +67,8 @@ double true_margin(const Drawn& d, const DenseFlight& flight, double floor)
             return dense::obstacle_margin_at(d.scene, o.shape, flight.at(t).position);
         };
         least = std::min(least,
-                         dense::least_margin(margin, flight.end(), flight.fastest() + double(d.settings.escape.speed),
-                                             d.settings.escape, floor));
+                         dense::least_margin(margin, flight.end(), flight.fastest() + double(d.scene.rules.escape.speed),
+                                             d.scene.rules.escape, floor));
     }
     return least;
 }

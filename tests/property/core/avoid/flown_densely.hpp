@@ -155,7 +155,7 @@ inline DenseFlight fly_densely(const Scene& scene, const world::Manoeuvre& m, co
         for (int i = 0; i < count; ++i) {
             const Vec3 position = flight.last().position.cast<float>();
             flight.hold(
-                path::follow(m.path, start + static_cast<float>(i) * period, position, scene.limits, settings.gains)
+                path::follow(m.path, start + static_cast<float>(i) * period, position, scene.limits, scene.rules.gains)
                     .cast<double>(),
                 double(period));
         }
@@ -202,35 +202,35 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
                            double floor)
 {
     const double end = flight.end();
-    const double own_rate = flight.fastest() + double(settings.escape.speed);
+    const double own_rate = flight.fastest() + double(scene.rules.escape.speed);
     const Vec3d half = scene.limits.half_extents.cast<double>();
     double least = double(world::kSeparationCap);
     for (const world::Track& track : scene.tracks) {
         const double until = track.cooperative ? std::min(end, shared) : end;
         const double age = std::max(0.0, double(scene.now - track.stamp)) + until;
         const double rate = own_rate + double(track.velocity.norm()) +
-                            double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
+                            double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
         const auto margin = [&](double t) {
             Vec3d gap = track.position.cast<double>() + track.velocity.cast<double>() * t - flight.at(t).position;
             // The nearest of its possible heights.
             gap.z() -= std::clamp(gap.z(), -double(track.half_height), double(track.half_height));
             return world::oracle::point_box(gap, half) - world::oracle::radius_of(scene, track, t);
         };
-        least = std::min(least, least_margin(margin, until, rate, settings.escape, floor));
+        least = std::min(least, least_margin(margin, until, rate, scene.rules.escape, floor));
     }
     for (const world::Barrel& barrel : scene.airspace.barrels) {
         const auto margin = [&](double t) {
             return world::oracle::barrel_margin_at(scene, flight.at(t).position, barrel, t);
         };
         const double rate = own_rate + double(barrel.velocity.norm());
-        least = std::min(least, least_margin(margin, end, rate, settings.escape, floor));
+        least = std::min(least, least_margin(margin, end, rate, scene.rules.escape, floor));
     }
     const auto bound = [&](bool active, world::ThreatKind kind) {
         if (active) {
             const auto margin = [&](double t) {
                 return world::oracle::bound_margin_at(scene, flight.at(t).position, kind);
             };
-            least = std::min(least, least_margin(margin, end, own_rate, settings.escape, floor));
+            least = std::min(least, least_margin(margin, end, own_rate, scene.rules.escape, floor));
         }
     };
     bound(scene.airspace.has_floor, world::ThreatKind::floor);
@@ -242,7 +242,7 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
 /// Margin to an obstacle at an instant; 0 in contact for all but spheres.
 inline double obstacle_margin_at(const Scene& scene, const geometry::Shape& shape, const Vec3d& own)
 {
-    const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);
+    const double extra = double(scene.rules.k_sigma) * double(scene.own.sigma_position);
     if (shape.kind == geometry::ShapeKind::sphere) {
         return world::oracle::point_box(shape.centre.cast<double>() - own, scene.limits.half_extents.cast<double>()) -
                double(shape.radius) - extra;

@@ -5,6 +5,7 @@
 
 #include "core/avoid/supervisor.hpp"
 #include "core/geometric/planner.hpp"
+#include "tests/oracle/collected.hpp"
 #include "tests/oracle/route_oracle.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
@@ -37,9 +38,10 @@ Flown fly(const TwinRoute& twin, std::vector<world::Track> tracks, Seconds durat
     const path::RoutePoint start = twin.route.at(0.0F);
     own.position = start.position;
     own.velocity = 5.0F * start.along;
-    world::Reference reference{true, {}, &twin.route};
-    reference.leg.speed = 5.0F;
+    world::Reference reference(twin.route, 5.0F);
     const world::Airspace airspace;
+    const vehicle::Airframe airframe;
+    const world::FlightRules rules;
     Flown flown;
     bool in_control = false;
     for (int tick = 0; tick < static_cast<int>(duration / kTick); ++tick) {
@@ -48,7 +50,9 @@ Flown fly(const TwinRoute& twin, std::vector<world::Track> tracks, Seconds durat
             track.stamp = now;
         }
         reference.segment = twin.route.abeam_of(own.position, reference.segment).segment;
-        const world::Situation situation{now, own, limits, {}, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
+        const oracle::Collected collected(world::Situation{now, own, limits, airframe, reference, rules},
+                                          {tracks, {}, airspace});
+        const world::Situation& situation = *collected;
         const Guidance guidance = supervisor->update(situation, in_control);
         in_control = guidance.wants_control;
         const world::Way way = world::way_of(situation);

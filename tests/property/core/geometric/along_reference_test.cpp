@@ -34,7 +34,7 @@ struct AlongRoute {
         start = double(random.uniform(0.0F, 0.7F * static_cast<float>(twin.length())));
         const path::RoutePoint from = twin.route.at(static_cast<float>(start));
         problem.frame = make_path_frame(from.position, from.along);
-        problem.ahead = {&twin.route, 0.0F, static_cast<float>(start)};
+        problem.ahead = {twin.route, 0.0F, static_cast<float>(start)};
         problem.distance = random.uniform(5.0F, 30.0F);
         problem.main_radius = 1.0F;
         problem.speed = random.uniform(2.0F, 8.0F);
@@ -143,7 +143,7 @@ TEST(AlongReference, CornersAreRounded)
         ASSERT_TRUE(twin.leg(corner, corner + 60.0F * Vec3(std::cos(turn), std::sin(turn), 0.0F)));
         Problem problem;
         problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
-        problem.ahead = {&twin.route, 0.0F, 0.0F};
+        problem.ahead = {twin.route, 0.0F, 0.0F};
         problem.distance = 35.0F;
         problem.main_radius = 1.0F;
         problem.speed = random.uniform(2.0F, 6.0F);
@@ -183,7 +183,7 @@ TEST(AlongReference, SharpCornersAreNotFlyable)
     const world::Threat main = world::track_threat(0, {Vec3(20.0F, 0.0F, 50.0F), Vec3::Zero()}, {1.0F});
     Problem problem;
     problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
-    problem.ahead = {&twin.route, 0.0F, 0.0F};
+    problem.ahead = {twin.route, 0.0F, 0.0F};
     problem.distance = 20.0F;
     problem.main_radius = 1.0F;
     problem.main = 0;
@@ -227,7 +227,7 @@ TEST(AlongReference, OneLegIsALeg)
         WorkBudget second(1'000'000);
         const world::PlanStatus status = solve(p.problem, settings, p.limits, p.airframe, first, *straight);
         Problem routed = p.problem;
-        routed.ahead.route = &route;
+        routed.ahead.route = route;
         ASSERT_EQ(solve(routed, settings, p.limits, p.airframe, second, *bent), status) << "seed " << seed;
         if (status != world::PlanStatus::found) {
             continue;
@@ -260,17 +260,18 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
         const TwinRoute twin = jink::oracle::random_route(random, Vec3(0.0F, 0.0F, 60.0F), random.below(2) == 0, 1.0F);
         vehicle::VehicleState own;
         vehicle::VehicleLimits limits;
-        world::Reference reference{true, {}, &twin.route};
-        reference.leg.speed = random.uniform(2.0F, 6.0F);
+        world::Reference reference(twin.route, random.uniform(2.0F, 6.0F));
         reference.segment = random.below(twin.pieces.size());
         const auto segment = twin.route.segments()[reference.segment];
         const path::RoutePoint from = path::point_of(segment, random.uniform() * segment.length);
         own.position = from.position + RandomProblem::vector(random, random.below(4) == 0 ? 2.0F : 0.1F);
-        own.velocity = vehicle::clamped_velocity(from.along, reference.leg.speed, limits);
+        own.velocity = vehicle::clamped_velocity(from.along, reference.speed, limits);
         std::vector<world::Track> tracks(1 + random.below(3));
         const world::Airspace airspace;
+        const vehicle::Airframe airframe;
+        const world::FlightRules rules{.lookahead = 10.0F};
         const world::Situation empty{
-            TimePoint{50'000'000}, own, limits, {}, reference, tracks, {}, airspace, {}, nullptr, 3.0F};
+            TimePoint{50'000'000}, own, limits, airframe, reference, rules};
         const world::Way way = world::way_of(empty);
         for (world::Track& track : tracks) {
             track.stamp = empty.now;
@@ -282,7 +283,7 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
             track.radius = random.uniform(0.2F, 1.5F);
             track.sigma_velocity = random.uniform(0.0F, 0.1F);
         }
-        const oracle::Collected situation(empty);
+        const oracle::Collected situation(empty, {tracks, {}, airspace});
         WorkBudget budget(1'000'000);
         world::Manoeuvre manoeuvre;
         const world::PlanStatus status = planner.plan(situation, budget, manoeuvre);

@@ -145,7 +145,7 @@ private:
     Vec3 command(const path::TimedPath& path, float t, float part, const Vec3& position) const
     {
         if (part <= path::kFollowerPeriod) {
-            return path::follow(path, t, position, limits_, settings_.gains);
+            return path::follow(path, t, position, limits_, problem_.rules.gains);
         }
         const float ahead = t + limits_.velocity_lag + 0.5F * (part - path::kFollowerPeriod);
         const auto after = [&](float at) {
@@ -155,7 +155,7 @@ private:
             }
             return next;
         };
-        return path::detail::command(path, t, after(t), ahead, after(ahead), position, limits_, settings_.gains);
+        return path::detail::command(path, t, after(t), ahead, after(ahead), position, limits_, problem_.rules.gains);
     }
 
     CandidateStatus verdict(const path::TimedPath& path, world::ThreatRef& hit) const
@@ -183,9 +183,9 @@ private:
 
     float shrunk_to_clear(float margin) const
     {
-        return settings_.escape_from_margin && margin < 0.0F ? settings_.escape.slack - margin : 0.0F;
+        return settings_.escape_from_margin && margin < 0.0F ? problem_.rules.escape.slack - margin : 0.0F;
     }
-    float shrunk_at(float shrunk, float t) const { return std::max(0.0F, shrunk - settings_.escape.speed * t); }
+    float shrunk_at(float shrunk, float t) const { return std::max(0.0F, shrunk - problem_.rules.escape.speed * t); }
 
     bool touches(const std::vector<path::PathPoint>& points, const Sphere& t) const
     {
@@ -197,8 +197,8 @@ private:
             const float start = points[i].time;
             const float duration = points[i + 1].time - start;
             const Vec3 after = points[i + 1].position - (t.motion.position + t.motion.velocity * points[i + 1].time);
-            const float longest = settings_.escape.speed > 0.0F
-                                      ? std::max(0.02F, 0.5F * settings_.escape.slack / settings_.escape.speed)
+            const float longest = problem_.rules.escape.speed > 0.0F
+                                      ? std::max(0.02F, 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed)
                                       : duration;
             const int parts = shrunk_at(shrunk, start) > 0.0F
                                   ? std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, 0.02F))))

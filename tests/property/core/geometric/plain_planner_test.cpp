@@ -23,7 +23,6 @@ Settings any_settings(Random& random)
     s.offset_rule = random.uniform() < 0.2F ? OffsetRule::source : OffsetRule::clearing;
     s.escape_from_margin = random.uniform() < 0.7F;
     s.verify_flight = random.uniform() < 0.9F;
-    s.gains.max_correction = random.uniform(0.0F, 4.0F);
     s.evaluate_all = true;
     s.check_units = 100'000'000;
     return s;
@@ -45,6 +44,7 @@ void make_harder(RandomProblem& p, Random& random)
                 p.threats.end());
     problem.main = kNoThreat;
     problem.start_velocity = random.uniform() < 0.5F ? problem.start_velocity : RandomProblem::vector(random, 6.0F);
+    problem.rules.gains.max_correction = random.uniform(0.0F, 4.0F);
     p.limits.velocity_lag = random.uniform() < 0.1F ? 0.0F : random.uniform(0.05F, 0.6F);
     p.limits.kind = random.uniform() < 0.1F ? vehicle::VehicleKind::fixed_wing : vehicle::VehicleKind::multirotor;
     if (random.uniform() < 0.4F) {

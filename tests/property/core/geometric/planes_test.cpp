@@ -50,7 +50,7 @@ TEST(PlanesLaw, NothingIsToldThatIsNotSo)
     const std::size_t count = case_count(20'000);
     for (std::size_t i = 0; i < count; ++i) {
         const std::size_t k = i % kKinds.size();
-        std::vector<Vec3> vertices;
+        std::vector<Point3> vertices;
         const Vec3 centre = in_cube(random, 40.0F);
         const geometry::Shape shape = any_shape(random, kKinds[k], centre, random.uniform(0.2F, 12.0F), vertices);
         const Vec3 half(random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F));
@@ -159,7 +159,7 @@ TEST(PlanesLaw, WhatStaysBeyondAFaceIsParted)
     Random random(seed_of(814));
     for (std::size_t i = 0; i < case_count(3'000); ++i) {
         const ShapeKind kind = std::array{ShapeKind::box, ShapeKind::capsule, ShapeKind::cylinder}[i % 3];
-        std::vector<Vec3> none;
+        std::vector<Point3> none;
         const Vec3 centre = in_cube(random, 20.0F);
         const geometry::Shape shape = any_shape(random, kind, centre, 8.0F, none);
         const Vec3 half(random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F));
@@ -186,7 +186,7 @@ TEST(PlanesLaw, WhatRestsBesideSomethingRoundIsParted)
     Random random(seed_of(815));
     for (std::size_t i = 0; i < case_count(3'000); ++i) {
         const ShapeKind kind = std::array{ShapeKind::sphere, ShapeKind::capsule, ShapeKind::cylinder}[i % 3];
-        std::vector<Vec3> none;
+        std::vector<Point3> none;
         const Vec3 centre = in_cube(random, 20.0F);
         const geometry::Shape shape = any_shape(random, kind, centre, 20.0F, none);
         const Vec3 half(random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F), random.uniform(0.1F, 2.0F));

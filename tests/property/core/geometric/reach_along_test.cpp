@@ -29,7 +29,7 @@ TEST(ReachAlong, HoldsEveryCandidate)
         const float start = random.uniform(0.0F, 0.7F * static_cast<float>(twin.length()));
         const path::RoutePoint from = twin.route.at(start);
         problem.frame = make_path_frame(from.position, from.along);
-        problem.ahead = {&twin.route, 0.0F, start};
+        problem.ahead = {twin.route, 0.0F, start};
         problem.distance = random.uniform(5.0F, 40.0F);
         problem.main_radius = 1.0F;
         problem.speed = random.uniform(1.0F, 5.0F);
@@ -68,7 +68,7 @@ TEST(ReachAlong, HoldsWhatGoesRoundOutside)
     }
     Problem problem;
     problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
-    problem.ahead.route = &twin.route;
+    problem.ahead.route = twin.route;
     const float length = static_cast<float>(twin.length());
     problem.distance = 0.5F * length;
     problem.main_radius = 1.0F;
@@ -98,7 +98,7 @@ TEST(ReachAlong, AMovedStartLeavesTheThreatWhereItIs)
     for (std::size_t i = 0; i < case_count(3000); ++i) {
         const TwinRoute twin = jink::oracle::random_route(random, Vec3(0.0F, 0.0F, 60.0F), random.below(2) == 0, 1.2F);
         Flight flight;
-        flight.reference.route = &twin.route;
+        flight.reference = world::Reference(twin.route, flight.reference.speed);
         const float start = random.uniform(0.0F, 0.7F * static_cast<float>(twin.length()));
         flight.own.position = twin.route.at(start).position + RandomProblem::vector(random, 3.0F);
         Problem problem = problem_along(flight, random.uniform(5.0F, 30.0F));

@@ -86,9 +86,9 @@ TEST(PlannerLaws, BeginsWithWhatIsFlownDuringTheLatency)
     static Planner planner{Settings{}};
     std::size_t moved = 0;
     for (std::uint64_t seed = 1; seed <= 1500; ++seed) {
-        const RandomSituation s(seed);
-        Settings settings;
-        settings.latency = 0.05F + 0.3F * static_cast<float>(seed % 7) / 6.0F;
+        RandomSituation s(seed);
+        const Settings settings;
+        s.rules.latency = 0.05F + 0.3F * static_cast<float>(seed % 7) / 6.0F;
         ASSERT_TRUE(planner.configure(settings));
         WorkBudget budget(1'000'000);
         world::Manoeuvre manoeuvre;
@@ -106,8 +106,8 @@ TEST(PlannerLaws, BeginsWithWhatIsFlownDuringTheLatency)
         ASSERT_EQ(path.points.size(), settings.waypoints + 1U + (in_a_row ? settings.waypoints / 2U : 0U))
             << "seed " << seed;
         ASSERT_EQ(path.points.front().velocity, s.own.velocity) << "seed " << seed;
-        ASSERT_NEAR(path.points[1].time, settings.latency, 1e-6F) << "seed " << seed;
-        const Vec3 answered = s.own.position + settings.latency * s.own.velocity;
+        ASSERT_NEAR(path.points[1].time, s.rules.latency, 1e-6F) << "seed " << seed;
+        const Vec3 answered = s.own.position + s.rules.latency * s.own.velocity;
         ASSERT_LT((path.points[1].position - answered).norm(), 1e-4F) << "seed " << seed;
     }
     EXPECT_GT(moved, 1000U);

@@ -9,6 +9,7 @@
 
 #include "core/base/random.hpp"
 #include "core/geometry/shape.hpp"
+#include "tests/oracle/points.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
 // Distance of convex solids in double precision by Wolfe's least-norm-point method (Wolfe 1976) with its own support
@@ -47,7 +48,8 @@ inline Vec3d exact_support(const Shape& shape, const Vec3d& direction)
     }
     case ShapeKind::hull: {
         double most = -std::numeric_limits<double>::infinity();
-        for (const Vec3& vertex : shape.vertices) {
+        for (const Point3& corner : shape.vertices) {
+            const Vec3 vertex = corner.vec();
             const double along = vertex.cast<double>().dot(local);
             if (along > most) {
                 most = along;
@@ -164,7 +166,7 @@ inline std::vector<Vec3> any_vertices(Random& random, float size)
 }
 
 /// A shape of about `size` around `centre`; a hull's vertices go to `vertices`.
-inline Shape any_shape(Random& random, ShapeKind kind, const Vec3& centre, float size, std::vector<Vec3>& vertices)
+inline Shape any_shape(Random& random, ShapeKind kind, const Vec3& centre, float size, std::vector<Point3>& vertices)
 {
     const Vec3 arm = in_cube(random, size);
     switch (kind) {
@@ -177,7 +179,7 @@ inline Shape any_shape(Random& random, ShapeKind kind, const Vec3& centre, float
     case ShapeKind::cylinder: return make_cylinder(centre - arm, centre + arm, random.uniform(0.0F, size));
     case ShapeKind::hull: break;
     }
-    vertices = any_vertices(random, size);
+    vertices = jink::oracle::points_of(any_vertices(random, size));
     return make_hull(vertices, centre, any_rotation(random));
 }
 

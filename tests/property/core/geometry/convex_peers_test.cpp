@@ -147,7 +147,7 @@ TEST_F(ConvexPeers, SweptCubeAgainstSphere)
         hits += gap <= 0 ? 1 : 0;
         const Motion own{c.from, c.to - c.from};
         closed.judge(gap, contact_interval(c.half, own, {c.a, Vec3::Zero()}, c.radius, 1.0F).has_value());
-        const std::array<Vec3, 1> centre{Vec3::Zero()};
+        const std::array<Point3, 1> centre{};
         WorkBudget budget(1000);
         const Contact contact = swept_box_contact(c.half, c.from, c.to, make_hull(centre, c.a), c.radius, budget);
         convex.judge(gap, contact != Contact::clear);
@@ -180,7 +180,7 @@ TEST_F(ConvexPeers, SweptCubeAgainstCapsule)
         }
         const double gap = double(distance) - double(c.radius);
         hits += gap <= 0 ? 1 : 0;
-        const std::array<Vec3, 2> axis{Vec3::Zero(), c.b - c.a};
+        const std::array<Point3, 2> axis{Point3{}, Point3::of(c.b - c.a)};
         WorkBudget budget(1000);
         convex.judge(gap,
                      swept_box_contact(c.half, c.from, c.to, make_hull(axis, c.a), c.radius, budget) != Contact::clear);

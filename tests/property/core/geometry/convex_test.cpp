@@ -18,7 +18,7 @@ struct ConvexCase {
     Vec3 half = Vec3::Zero();
     Vec3 from, to;
     Shape shape;
-    std::vector<Vec3> vertices;
+    std::vector<Point3> vertices;
     float size = 1.0F;
 };
 

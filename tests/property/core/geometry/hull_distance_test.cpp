@@ -97,9 +97,10 @@ void check_point(Random& random, const Vec3& point, const std::vector<Vec3>& ver
     query.stretch = any_stretch(random);
     query.resolution = random.below(2) == 0 ? 1e-4F : 0.0F;
     WorkBudget unlimited(1'000'000);
-    query.start = any_start(random, point_hull_distance(point, vertices, query, unlimited));
+    const std::vector<Point3> corners = jink::oracle::points_of(vertices);
+    query.start = any_start(random, point_hull_distance(point, corners, query, unlimited));
     WorkBudget budget(1'000'000);
-    const Separation found = point_hull_distance(point, vertices, query, budget);
+    const Separation found = point_hull_distance(point, corners, query, budget);
     const double room = bands * band(vertices, point, query.stretch);
     const auto support = [&](const Vec3d& direction) {
         Vec3d best = stretched(vertices[0], query.stretch) - stretched(point, query.stretch);
@@ -171,51 +172,8 @@ TEST(PointHullDistance, OfTrianglesThinOnesTooAgreesWithWolfesMethod)
     EXPECT_GT(tally.touching, oracle::case_count(20'000) / 200);
 }
 
-TEST(HullHullDistance, AgreesWithWolfesMethodAndItsPlaneParts)
-{
-    Random random(oracle::seed_of(12));
-    HullTally tally;
-    for (std::size_t n = 0; n < oracle::case_count(20'000); ++n) {
-        const float size = oracle::power_of_ten(random, -2.0F, 2.0F);
-        const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);
-        const std::vector<Vec3> first = any_hull(random, centre, size);
-        const float far = random.below(8) == 0 ? 1000.0F : 3.0F * size;
-        std::vector<Vec3> second = any_hull(random, centre + oracle::in_cube(random, far), size);
-        if (random.below(10) == 0) {
-            second[0] = first[1];  // in contact, up to the surroundings
-        }
-        DistanceQuery query;
-        query.stretch = any_stretch(random);
-        query.resolution = random.below(2) == 0 ? 1e-4F : 0.0F;
-        WorkBudget unlimited(1'000'000);
-        query.start = any_start(random, hull_hull_distance(first, second, query, unlimited));
-        WorkBudget budget(1'000'000);
-        const Separation found = hull_hull_distance(first, second, query, budget);
-        const double room = band(first, first[0], query.stretch) + band(second, first[0], query.stretch);
-        const auto farthest = [&](const std::vector<Vec3>& of, const Vec3d& direction) {
-            Vec3d best = stretched(of[0], query.stretch);
-            for (const Vec3& v : of) {
-                const Vec3d w = stretched(v, query.stretch);
-                best = w.dot(direction) > best.dot(direction) ? w : best;
-            }
-            return best;
-        };
-        const auto support = [&](const Vec3d& d) -> Vec3d { return farthest(second, d) - farthest(first, -d); };
-        const oracle::Bounds truth = oracle::distance_from_origin(support, 1e-2 * room);
-        check(found, truth, room, double(query.resolution), tally);
-        ASSERT_FALSE(HasFatalFailure()) << "case " << n;
-        const Vec3d direction = found.direction.cast<double>();
-        ASSERT_GE(direction.dot(farthest(second, -direction) - farthest(first, direction)), double(found.distance));
-        tally.most_turns =
-            std::max(tally.most_turns, budget.spent() / distance_turn_units(first.size() + second.size()));
-    }
-    print("hull to hull", tally);
-    EXPECT_LT(tally.most_turns, kMostDistanceTurns);
-    EXPECT_GT(tally.touching, oracle::case_count(20'000) / 50);
-}
-
-/// Shapes have curved sides, on which the search converges without terminating exactly: the result is never above the
-/// true value, and close below it.
+/// Shapes have curved sides, on which the search closes in without end: what is told is never above the truth, and not
+/// far below it.
 TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
 {
     Random random(oracle::seed_of(13));
@@ -225,8 +183,11 @@ TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
         for (std::size_t n = 0; n < oracle::case_count(4'000); ++n) {
             const float size = oracle::power_of_ten(random, -1.0F, 2.0F);
             const Vec3 centre = oracle::in_cube(random, random.below(4) == 0 ? 900.0F : size);
-            std::vector<Vec3> vertices;
-            const Shape shape = oracle::any_shape(random, kind, centre, size, vertices);
+            std::vector<Point3> vertices;
+            Shape shape = oracle::any_shape(random, kind, centre, size, vertices);
+            if (kind == ShapeKind::hull && n % 2 == 0) {
+                shape.axes = Mat3::Identity();  // searched by its vertices as they are
+            }
             const Vec3 point = centre + oracle::in_cube(random, 4.0F * size);
             DistanceQuery query;
             query.stretch = any_stretch(random);
@@ -254,36 +215,6 @@ TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
         }
         std::cout << "point to shape " << int(kind) << ": worst shortfall " << worst << " of its extent\n";
         EXPECT_LT(worst, 1e-5);
-    }
-}
-
-/// An exit by the nearest face: equal to the least distance to any face's plane, in double precision.
-TEST(ExitByFaces, IsTheNearestFaceOfTheStretchedSolid)
-{
-    Random random(oracle::seed_of(14));
-    for (std::size_t n = 0; n < oracle::case_count(20'000); ++n) {
-        const Vec3 centre = oracle::in_cube(random, 100.0F);
-        std::vector<FacePlane> faces(4 + random.below(50));
-        for (FacePlane& face : faces) {
-            face.normal = Point3::of((oracle::in_cube(random, 1.0F) + Vec3(0.0F, 0.0F, 1e-3F)).normalized());
-            face.offset = face.normal.vec().dot(centre) + random.uniform(0.1F, 10.0F);
-        }
-        const float stretch = any_stretch(random);
-        const Vec3 point = centre + oracle::in_cube(random, 3.0F);
-        const Exit out = exit_by_faces(point, faces, stretch);
-        double least = 1e300;
-        for (const FacePlane& face : faces) {
-            // Distance of a point from a plane in the stretched space, from three points of the plane.
-            const Vec3d normal = face.normal.vec().cast<double>();
-            const Vec3d foot = normal * double(face.offset) / normal.squaredNorm();
-            const Vec3d side = normal.unitOrthogonal();
-            const auto up = [&](const Vec3d& v) { return Vec3d(v.x(), v.y(), double(stretch) * v.z()); };
-            const Vec3d across = up(side).cross(up(normal.cross(side))).normalized();
-            const double away = across.dot(up(foot) - up(point.cast<double>()));
-            least = std::min(least, across.dot(up(normal)) > 0 ? away : -away);
-        }
-        ASSERT_NEAR(double(out.depth), least, 1e-4 * double(stretch) + 1e-4) << "case " << n;
-        ASSERT_NEAR(out.direction.norm(), 1.0F, 1e-5F);
     }
 }
 

@@ -63,13 +63,13 @@ Scene any_scene(std::uint64_t seed)
 
 /// One of each kind, all of extent `size` from their centre towards the box of the scene; the nearest point of each is
 /// a face, a corner or a side, and lies at the scene's point moved off by `gap`.
-std::array<Shape, 6> at_point(const Scene& scene, float size, float gap, std::array<Vec3, 4>& vertices)
+std::array<Shape, 6> at_point(const Scene& scene, float size, float gap, std::array<Point3, 4>& vertices)
 {
     const Vec3 out = scene.side * Vec3::Unit(scene.axis);
     const Vec3 across = Vec3::Unit((scene.axis + 1) % 3);
     const Vec3 centre = scene.point + (gap + size) * out;
-    vertices = {-size * out, size * out + size * across, size * out - size * across,
-                size * out + size * Vec3::Unit((scene.axis + 2) % 3)};
+    vertices = {Point3::of(-size * out), Point3::of(size * out + size * across), Point3::of(size * out - size * across),
+                Point3::of(size * out + size * Vec3::Unit((scene.axis + 2) % 3))};
     const Vec3 half = 0.5F * size * (Vec3::Ones() + Vec3::Unit(scene.axis));
     return {make_sphere(centre, size),
             make_box(centre, half),
@@ -87,7 +87,7 @@ TEST(Touching, IsContactForEverySolidAtEveryPlace)
         const Scene scene = any_scene(seed);
         const float size = kSizes[seed % kSizes.size()];
         const float gap = seed % 2 == 0 ? 0.0F : 2.0F * size;
-        std::array<Vec3, 4> vertices;
+        std::array<Point3, 4> vertices;
         for (const Shape& shape : at_point(scene, size, gap, vertices)) {
             WorkBudget budget(2 * kUnitsPerQuery);
             ASSERT_EQ(swept_box_contact(scene.half, scene.from, scene.to, shape, gap, budget), Contact::contact)
@@ -150,13 +150,13 @@ TEST(Scale, APowerOfTwoChangesNeitherAnswersNorWork)
         const float size = kSizes[1 + seed % 2];
         const float gap = random.below(2) == 0 ? std::abs(exact(random, 1)) : std::abs(exact(random, 20));
         scene.point += 0.25F * exact_vector(random, 1);
-        std::array<Vec3, 4> vertices;
+        std::array<Point3, 4> vertices;
         const auto shapes = at_point(scene, size, 0.1F * gap, vertices);
         for (const float scale : {0x1p-24F, 0x1p-12F, 0x1p12F}) {
             for (Shape shape : shapes) {
-                std::array<Vec3, 4> scaled;
+                std::array<Point3, 4> scaled;
                 for (std::size_t i = 0; i < vertices.size(); ++i) {
-                    scaled[i] = scale * vertices[i];
+                    scaled[i] = Point3::of(scale * vertices[i].vec());
                 }
                 WorkBudget budget(2 * kUnitsPerQuery);
                 const Contact contact = swept_box_contact(scene.half, scene.from, scene.to, shape, gap, budget);
@@ -164,7 +164,7 @@ TEST(Scale, APowerOfTwoChangesNeitherAnswersNorWork)
                 shape.centre *= scale;
                 shape.radius *= scale;
                 shape.half *= scale;
-                shape.vertices = shape.vertices.empty() ? shape.vertices : std::span<const Vec3>(scaled);
+                shape.vertices = shape.vertices.empty() ? shape.vertices : std::span<const Point3>(scaled);
                 const Vec3 half = scale * scene.half;
                 const Vec3 from = scale * scene.from;
                 const Vec3 to = scale * scene.to;

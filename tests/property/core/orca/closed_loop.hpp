@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/property/core/orca/closed_loop_scene.hpp"
 #include "tests/reference/orca/broadcast.hpp"
 
@@ -37,6 +38,7 @@ public:
         for (const Body& body : scene.bodies) {
             obstacles_.push_back({static_cast<world::ObstacleId>(obstacles_.size()), body.shape()});
         }
+        threats_ = oracle::threats_of(obstacles_);
         out_.waits.resize(scene.agents.size(), 0.0);
     }
 
@@ -176,7 +178,7 @@ private:
             neighbours.push_back(n);
         }
         input.neighbours = neighbours;
-        input.scene.obstacles = obstacles_;
+        input.obstacles = threats_;
         WorkBudget budget(1'000'000);
         const Decision decision = filter.decide(input, budget);
         static_cast<void>(filter.issued(now, decision.command));
@@ -309,6 +311,7 @@ private:
     std::vector<VelocityFilter> filters_;
     std::vector<Vehicle> vehicles_;
     std::vector<world::Obstacle> obstacles_;
+    std::vector<world::Threat> threats_;  ///< of the obstacles
     bool configured_ = true;
     double now_ = 0.0;
     double rate2_ = 0.0;

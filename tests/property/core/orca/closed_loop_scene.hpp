@@ -35,7 +35,7 @@ struct Body {
     Vec3d centre;
     Vec3d half;            ///< box: half extents; capsule along `half`: to its end
     double radius = -1.0;  ///< of a capsule; below 0: a box
-    std::vector<Vec3> hull{};
+    std::vector<Point3> hull{};
 
     [[nodiscard]] geometry::Shape shape() const
     {
@@ -57,8 +57,8 @@ struct Body {
             return scale * ((from - std::clamp(along, -1.0, 1.0) * half).norm() - radius);
         }
         double most = half.norm();
-        for (const Vec3& vertex : hull) {
-            most = std::max(most, vertex.cast<double>().norm());
+        for (const Point3& vertex : hull) {
+            most = std::max(most, vertex.vec().cast<double>().norm());
         }
         return scale * (from.norm() - most);
     }
@@ -73,8 +73,8 @@ struct Body {
             Vec3d best = Vec3d::Zero();
             if (!hull.empty()) {
                 double most = -1e300;
-                for (const Vec3& vertex : hull) {
-                    const Vec3d w = (centre + vertex.cast<double>() - point).cwiseProduct(scale);
+                for (const Point3& vertex : hull) {
+                    const Vec3d w = (centre + vertex.vec().cast<double>() - point).cwiseProduct(scale);
                     if (w.dot(direction) > most) {
                         most = w.dot(direction);
                         best = w;

@@ -5,7 +5,7 @@
 
 #include "core/orca/obstacle_plane.hpp"
 #include "core/orca/obstacle_way.hpp"
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
 #include "tests/property/core/geometry/convex_oracle.hpp"
 
 // Theorem 7.2.1: a velocity within all half-spaces has no contact with a convex piece within the horizon. Judged by
@@ -123,7 +123,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
     std::size_t truncated = 0;
     for (std::size_t n = 0; n < go::case_count(GetParam() ? 60 : 300); ++n) {
         const Hulls hulls = any_hulls(random, GetParam() ? 60 : 1 + random.below(6), GetParam() ? 7.0F : 5.0F);
-        const oracle::MapOfHulls map(hulls);
+        const oracle::HullObstacles solids(hulls);
         const ObstacleSettings settings = any_settings(random);
         const Envelope envelope = envelope_of(settings);
         OwnMotion own;
@@ -131,7 +131,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
         own.velocity = go::in_cube(random, 2.0F);
         own.reach_speed = random.uniform(0.1F, 5.0F);
         WorkBudget budget(random.below(4) == 0 ? static_cast<std::uint32_t>(random.below(500)) : 1'000'000);
-        const ObstaclePlanes planes = obstacle_planes({&map.map(), {}}, own, settings, budget);
+        const ObstaclePlanes planes = obstacle_planes(solids.all(), own, settings, budget);
         truncated += planes.truncated ? 1 : 0;
         const double stretch = double(envelope.stretch);
         if (true_distance(hulls, own.position.cast<double>(), stretch, 1e9) < double(envelope.radius)) {
@@ -154,7 +154,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
         // The check along the path agrees.
         WorkBudget plenty(10'000'000);
         const WayClearance way =
-            clearance_along({&map.map(), {}}, own.position, 0.999F * velocity, settings.horizon, settings, plenty);
+            clearance_along(solids.all(), own.position, 0.999F * velocity, settings.horizon, settings, plenty);
         ASSERT_TRUE(way.clear || way.clear_until > 0.99F * settings.horizon) << "case " << n;
     }
     std::cout << flown << " velocities flown, " << border << " to the border, " << truncated << " with a speed cap\n";
@@ -170,7 +170,7 @@ TEST(Theorem, OneHalfSpaceIsTangentToWhatIsForbidden)
     Random random(go::seed_of(23));
     for (std::size_t n = 0; n < go::case_count(2'000); ++n) {
         const Hulls hulls = any_hulls(random, 1, 6.0F);
-        const oracle::MapOfHulls map(hulls);
+        const oracle::HullObstacles solids(hulls);
         const ObstacleSettings settings = [&] {
             ObstacleSettings s = any_settings(random);
             s.braking = 0.0F;
@@ -181,7 +181,7 @@ TEST(Theorem, OneHalfSpaceIsTangentToWhatIsForbidden)
         own.position = go::in_cube(random, 4.0F);
         own.reach_speed = 20.0F;
         WorkBudget budget(1'000'000);
-        const ObstaclePlanes planes = obstacle_planes({&map.map(), {}}, own, settings, budget);
+        const ObstaclePlanes planes = obstacle_planes(solids.all(), own, settings, budget);
         const double stretch = double(envelope.stretch);
         const double distance = true_distance(hulls, own.position.cast<double>(), stretch, 1e9);
         if (distance < double(envelope.radius) + 1e-3 || planes.planes.empty()) {
@@ -206,7 +206,7 @@ TEST(ClearanceAlong, EndsAtTheFirstContact)
     std::size_t clear = 0;
     for (std::size_t n = 0; n < go::case_count(300); ++n) {
         const Hulls hulls = any_hulls(random, 1 + random.below(20), 6.0F);
-        const oracle::MapOfHulls map(hulls);
+        const oracle::HullObstacles solids(hulls);
         const ObstacleSettings settings = any_settings(random);
         const Envelope envelope = envelope_of(settings);
         const Vec3 position = go::in_cube(random, 6.0F);
@@ -216,8 +216,7 @@ TEST(ClearanceAlong, EndsAtTheFirstContact)
             continue;
         }
         WorkBudget budget(1'000'000);
-        const WayClearance way =
-            clearance_along({&map.map(), {}}, position, velocity, settings.horizon, settings, budget);
+        const WayClearance way = clearance_along(solids.all(), position, velocity, settings.horizon, settings, budget);
         constexpr int kSamples = 300;
         double contact = 1e300;
         for (int i = 0; i <= kSamples && contact > 1e299; ++i) {
@@ -250,7 +249,7 @@ TEST(Theorem, RecoveryLeadsAway)
     std::size_t inside = 0;
     for (std::size_t n = 0; n < go::case_count(2'000); ++n) {
         const Hulls hulls = any_hulls(random, 1, 1.0F);
-        const oracle::MapOfHulls map(hulls);
+        const oracle::HullObstacles solids(hulls);
         const ObstacleSettings settings = any_settings(random);
         const Envelope envelope = envelope_of(settings);
         const double stretch = double(envelope.stretch);
@@ -263,7 +262,7 @@ TEST(Theorem, RecoveryLeadsAway)
             continue;
         }
         WorkBudget budget(1'000'000);
-        const ObstaclePlanes planes = obstacle_planes({&map.map(), {}}, own, settings, budget);
+        const ObstaclePlanes planes = obstacle_planes(solids.all(), own, settings, budget);
         ASSERT_TRUE(planes.penetrating) << "case " << n;
         ASSERT_EQ(planes.planes.size(), 1U);
         ASSERT_GT(planes.planes[0].offset, 0.0F);

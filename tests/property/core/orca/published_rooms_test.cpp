@@ -159,7 +159,7 @@ std::vector<Body> random_hulls(Random& random)
         Body body{at, Vec3d::Zero()};
         for (int k = 0; k < 12; ++k) {
             const Vec3 direction(random.normal(), random.normal(), random.normal());
-            body.hull.push_back(direction.normalized() * float(radius));
+            body.hull.push_back(Point3::of(direction.normalized() * float(radius)));
         }
         radii.push_back(radius);
         bodies.push_back(body);

@@ -10,6 +10,7 @@
 
 #include "core/base/random.hpp"
 #include "core/orca/velocity_filter.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/property/core/geometry/oracle.hpp"
 
 // Random ticks of VelocityFilter: accepted settings, a vehicle's inputs at one instant, and constraints of its command.
@@ -81,6 +82,7 @@ struct Seen {
     std::vector<Box> boxes;
     std::vector<Bound> bounds;
     std::vector<world::Obstacle> obstacles;
+    std::vector<world::Threat> threats;
 
     const FilterInput& seen()
     {
@@ -90,7 +92,8 @@ struct Seen {
                 {static_cast<world::ObstacleId>(obstacles.size()), geometry::make_box(box.centre, box.half)});
         }
         input.neighbours = neighbours;
-        input.scene.obstacles = obstacles;
+        threats = oracle::threats_of(obstacles);
+        input.scene.obstacles = threats;
         input.bounds = bounds;
         return input;
     }

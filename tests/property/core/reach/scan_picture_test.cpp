@@ -35,8 +35,8 @@ struct GridAlone {
         const vehicle::VehicleLimits limits;
         const vehicle::Airframe airframe;
         const world::Reference reference;
-        const world::Airspace airspace;
-        const world::Situation now{TimePoint{1'000'000}, own, limits, airframe, reference, {}, {}, airspace};
+        const world::FlightRules rules;
+        const world::Situation now{TimePoint{1'000'000}, own, limits, airframe, reference, rules};
         return picture.rate(now, placed, CellBalls(set.grid), 0.0F, blocks, budget) == RateStatus::rated;
     }
     [[nodiscard]] Level level(std::uint8_t layer, std::uint8_t column, std::uint8_t row) const

@@ -38,7 +38,7 @@ void any_vehicle(Random& random, Scene& scene)
     scene.limits.half_extents =
         Vec3(random.uniform(0.2F, 3.0F), random.uniform(0.2F, 3.0F), random.uniform(0.2F, 2.0F));
     scene.own.sigma_position = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.4F);
-    scene.k_sigma = random.uniform(0.0F, 4.0F);
+    scene.rules.k_sigma = random.uniform(0.0F, 4.0F);
 }
 
 path::TimedPath any_flight(Random& random, std::size_t points, float speed)

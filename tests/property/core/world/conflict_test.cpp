@@ -15,17 +15,26 @@ using oracle::Vec3d;
 using test::kPlenty;
 using test::Scene;
 
-/// The nominal path in double precision: straight to its end, then hovering.
-Vec3d place_on_way(const Way& way, double t)
+/// The way in double precision: straight to the leg, along it to its end, then hovering.
+Vec3d place_on_way(const Scene& scene, const Way& way, double t)
 {
-    const double flown = std::min(double(way.speed) * t, double(way.length));
-    return way.origin.cast<double>() + way.direction.cast<double>() * flown;
+    const double joining = double(way.ahead.straight) / std::max(double(way.speed), 1e-9);
+    if (t < joining) {
+        return way.origin.cast<double>() + way.direction.cast<double>() * (double(way.speed) * t);
+    }
+    if (!(way.length > 0.0F)) {
+        return way.origin.cast<double>();
+    }
+    const path::RouteSegment& leg = scene.reference.route().segments().front();
+    const Vec3 velocity = vehicle::clamped_velocity(leg.along, scene.reference.speed, scene.limits);
+    const double on = double(way.ahead.joined_at) + double(velocity.norm()) * (t - joining);
+    return leg.start.cast<double>() + leg.along.cast<double>() * std::min(on, double(leg.length));
 }
 
 double margin_at(const Scene& scene, const Way& way, const Track& track, double t)
 {
     const Vec3d threat = track.position.cast<double>() + track.velocity.cast<double>() * t;
-    return oracle::point_box(threat - place_on_way(way, t), scene.limits.half_extents.cast<double>()) -
+    return oracle::point_box(threat - place_on_way(scene, way, t), scene.limits.half_extents.cast<double>()) -
            oracle::radius_of(scene, track, t);
 }
 
@@ -36,7 +45,7 @@ Scene any_scene(Random& random)
         Vec3(random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F));
     scene.own.sigma_position = random.below(3) == 0 ? random.uniform(0.0F, 0.5F) : 0.0F;
     scene.own.position = in_cube(random, 20.0F);
-    scene.k_sigma = random.uniform(0.0F, 4.0F);
+    scene.rules.k_sigma = random.uniform(0.0F, 4.0F);
     const Vec3 end = random.below(4) == 0 ? Vec3(scene.own.position + in_cube(random, 5.0F)) : in_cube(random, 100.0F);
     scene.leg(random.below(2) == 0 ? scene.own.position : in_cube(random, 30.0F), end, random.uniform(0.5F, 15.0F));
     Track& track = scene.track(Vec3::Zero(), in_cube(random, 10.0F), random.uniform(0.0F, 3.0F));
@@ -44,7 +53,7 @@ Scene any_scene(Random& random)
     // Aimed near some point of the nominal path.
     const Way way = way_of(scene.situation());
     const Seconds meet = random.uniform(0.0F, 9.0F);
-    track.position = place_on_way(way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
+    track.position = place_on_way(scene, way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
     track.sigma_position = random.uniform(0.0F, 0.3F);
     track.sigma_velocity = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.5F);
     track.max_acceleration = random.below(3) == 0 ? random.uniform(0.0F, 0.5F) : 0.0F;
@@ -55,7 +64,7 @@ Scene any_scene(Random& random)
 double growth(const Scene& scene, const Track& track, double lookahead, double dt)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6) + lookahead;
-    return dt * (double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age);
+    return dt * (double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age);
 }
 
 TEST(PredictConflict, FindsEachLossAndNeverTooLate)
@@ -96,7 +105,7 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
         ASSERT_LE(then, growth(scene, track, lookahead, 0.5) + 2e-3) << "case " << i << ": too early";
         ASSERT_GE(conflict.time_to_closest, conflict.time_to_loss);
         ASSERT_LE(double(conflict.time_to_closest), lookahead + 1e-3);
-        const Vec3d own = place_on_way(way, double(conflict.time_to_closest));
+        const Vec3d own = place_on_way(scene, way, double(conflict.time_to_closest));
         const Vec3d threat = (track.position + track.velocity * conflict.time_to_closest).cast<double>();
         ASSERT_NEAR((own - conflict.own_at_closest.cast<double>()).norm(), 0, 1e-3) << "case " << i;
         ASSERT_NEAR((threat - conflict.threat_at_closest.cast<double>()).norm(), 0, 1e-3) << "case " << i;
@@ -108,7 +117,7 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
         if (conflict.time_to_closest > conflict.time_to_loss) {
             for (double t = 0; t <= lookahead; t += 0.01) {
                 const double distance =
-                    (place_on_way(way, t) - track.position.cast<double>() - track.velocity.cast<double>() * t).norm();
+                    (place_on_way(scene, way, t) - track.position.cast<double>() - track.velocity.cast<double>() * t).norm();
                 ASSERT_GE(distance, double(conflict.miss_distance) - 1e-3) << "case " << i << " at " << t;
             }
         }
@@ -154,7 +163,7 @@ TEST(MainConflict, SolidsAreFoundInTime)
     const std::uint64_t seed = seed_of(20260723);
     SCOPED_TRACE(seed);
     Random random(seed);
-    std::vector<Vec3> vertices;
+    std::vector<Point3> vertices;
     for (std::size_t i = 0; i < case_count(2000); ++i) {
         Scene scene = any_scene(random);
         scene.tracks.clear();
@@ -163,15 +172,21 @@ TEST(MainConflict, SolidsAreFoundInTime)
                                                   geometry::ShapeKind::hull};
         const Way way = way_of(scene.situation());
         const float meet = random.uniform(-2.0F, 9.0F);
-        const Vec3 centre = way.origin + way.direction * (way.speed * meet) + in_cube(random, 5.0F);
+        const Vec3 centre = place_on_way(scene, way, double(meet)).cast<float>() + in_cube(random, 5.0F);
         scene.obstacle(geometry::oracle::any_shape(random, kKinds[random.below(5)], centre, random.uniform(0.5F, 15.0F),
                                                    vertices));
         const geometry::Shape& shape = scene.obstacles[0].shape;
         const Seconds lookahead = random.uniform(1.0F, 10.0F);
-        const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);
+        const double extra = double(scene.rules.k_sigma) * double(scene.own.sigma_position);
         const auto distance_until = [&](double t) {
-            return geometry::oracle::swept_box_bounds(scene.limits.half_extents, way.origin,
-                                                      place_on_way(way, t).cast<float>(), shape, 1e-4);
+            const Vec3 joint = way.origin + way.direction * std::min(way.ahead.straight, way.speed * float(t));
+            const Vec3& half = scene.limits.half_extents;
+            auto bounds = geometry::oracle::swept_box_bounds(half, way.origin, joint, shape, 1e-4);
+            const auto rest = geometry::oracle::swept_box_bounds(
+                half, joint, place_on_way(scene, way, t).cast<float>(), shape, 1e-4);
+            bounds.lower = std::min(bounds.lower, rest.lower);
+            bounds.upper = std::min(bounds.upper, rest.upper);
+            return bounds;
         };
         WorkBudget budget(kPlenty);
         Conflict conflict;

@@ -29,7 +29,7 @@ TEST(ObstacleMargin, OfSolidsIsWithinItsFiguresOfTheTruth)
     double most_below = 0.0;
     const std::size_t cases = case_count(30000);
     for (std::size_t i = 0; i < cases; ++i) {
-        std::vector<Vec3> vertices;
+        std::vector<Point3> vertices;
         constexpr geometry::ShapeKind kKinds[] = {geometry::ShapeKind::box, geometry::ShapeKind::capsule,
                                                   geometry::ShapeKind::cylinder, geometry::ShapeKind::hull};
         const geometry::Shape shape =

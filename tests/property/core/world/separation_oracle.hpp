@@ -39,7 +39,7 @@ inline double radius_of(const Scene& scene, const Track& track, double t)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6 + t);
     return double(track.radius) +
-           double(scene.k_sigma) * (std::hypot(double(scene.own.sigma_position), double(track.sigma_position)) +
+           double(scene.rules.k_sigma) * (std::hypot(double(scene.own.sigma_position), double(track.sigma_position)) +
                                     double(track.sigma_velocity) * age) +
            0.5 * double(track.max_acceleration) * age * age;
 }
@@ -124,7 +124,7 @@ inline double ball_margin_at(const Scene& scene, const path::TimedPath& path, co
         (distance(a) <= distance(b) ? high : low) = distance(a) <= distance(b) ? b : a;
     }
     return distance(0.5 * (low + high)) - double(shape.radius) -
-           double(scene.k_sigma) * double(scene.own.sigma_position);
+           double(scene.rules.k_sigma) * double(scene.own.sigma_position);
 }
 
 /// Any solid, no escape rule: distance of the swept box, piece by piece; 0 for contact.
@@ -155,14 +155,14 @@ inline double barrel_margin_at(const Scene& scene, const Vec3d& own, const Barre
     const double beyond = std::max(double(barrel.bottom) - own.z() - half.z(), own.z() - half.z() - double(barrel.top));
     const double distance = beside <= 0.0 && beyond <= 0.0 ? std::max(beside, beyond)
                                                            : std::hypot(std::max(beside, 0.0), std::max(beyond, 0.0));
-    return distance - double(scene.k_sigma) * double(scene.own.sigma_position);
+    return distance - double(scene.rules.k_sigma) * double(scene.own.sigma_position);
 }
 
 /// Margin to a bound at one instant.
 inline double bound_margin_at(const Scene& scene, const Vec3d& own, ThreatKind kind)
 {
     const Airspace& air = scene.airspace;
-    const double extra = double(scene.k_sigma) * double(scene.own.sigma_position);
+    const double extra = double(scene.rules.k_sigma) * double(scene.own.sigma_position);
     const Vec3d half = scene.limits.half_extents.cast<double>();
     switch (kind) {
     case ThreatKind::floor: return own.z() - half.z() - double(air.floor) - extra;

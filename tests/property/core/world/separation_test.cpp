@@ -25,7 +25,7 @@ struct Case {
     Scene scene;
     path::TimedPath path;
     Seconds horizon = 0.0F;
-    std::vector<std::vector<Vec3>> vertices;  // of hulls
+    std::vector<std::vector<Point3>> vertices;  // of hulls
 };
 
 path::TimedPath random_flight(Random& random, std::size_t points, float speed)
@@ -66,7 +66,7 @@ Case any_case(Random& random, bool with_solids)
     c.scene.limits.half_extents =
         Vec3(random.uniform(0.2F, 2.0F), random.uniform(0.2F, 2.0F), random.uniform(0.2F, 1.5F));
     c.scene.own.sigma_position = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.4F);
-    c.scene.k_sigma = random.uniform(0.0F, 4.0F);
+    c.scene.rules.k_sigma = random.uniform(0.0F, 4.0F);
     c.path = random_flight(random, 1 + random.below(random.below(3) == 0 ? kMaxPathPoints : 12), 8.0F);
     c.horizon = random.below(4) == 0 ? random.uniform(0.0F, 3.0F) : 100.0F;
     for (std::size_t n = random.below(4); n > 0; --n) {
@@ -113,7 +113,7 @@ double escape_pessimism(const EscapeRule& escape)
 double pessimism(const Scene& scene, const Track& track, double end, const EscapeRule& escape, bool inside)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6) + end;
-    const double rate = double(scene.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
+    const double rate = double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
     return 2e-3 + 0.25 * rate + (inside ? escape_pessimism(escape) : 0.0);
 }
 
@@ -145,7 +145,7 @@ Expected expect(const Case& c, const EscapeRule& escape)
             const auto at = [&](double t) { return oracle::ball_margin_at(c.scene, c.path, o.shape, t); };
             take(oracle::least(at, end, escape), 2e-3 + (at(0.0) < 0.0 ? escape_pessimism(escape) : 0.0));
         } else {
-            const double extra = double(c.scene.k_sigma) * double(c.scene.own.sigma_position);
+            const double extra = double(c.scene.rules.k_sigma) * double(c.scene.own.sigma_position);
             const double distance = oracle::solid_distance(c.scene, c.path, o.shape, double(c.horizon));
             const double start = oracle::solid_distance(c.scene, c.path, o.shape, 0.0);
             // A start outside gets no escape credit at any distance, exact up to rounding.
@@ -233,7 +233,7 @@ TEST(LeastSeparation, CullingChangesNothing)
             alone.obstacles = {o};
             least = std::min(least, separation(alone, c.path, c.horizon).margin);
         }
-        const float cap = kObstacleReach - c.scene.k_sigma * c.scene.own.sigma_position;
+        const float cap = kObstacleReach - c.scene.rules.k_sigma * c.scene.own.sigma_position;
         ASSERT_TRUE(all == least || (least == cap && all > least))
             << "case " << i << ": " << all << ", alone " << least;
     }
@@ -286,7 +286,7 @@ TEST(SeparationAt, IsThePlainMarginOfThatInstant)
         // only.
         double capped = double(kSeparationCap);
         bool overlaps = false;
-        const double extra = double(c.scene.k_sigma) * double(c.scene.own.sigma_position);
+        const double extra = double(c.scene.rules.k_sigma) * double(c.scene.own.sigma_position);
         for (const Obstacle& o : c.scene.obstacles) {
             const double margin = oracle::ball_margin_at(c.scene, hover, o.shape, 0.0);
             least = std::min(least, margin);

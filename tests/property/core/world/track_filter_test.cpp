@@ -219,9 +219,9 @@ TEST(TrackFilter, TheGrownSphereHoldsAStraightFlyer)
         vehicle::VehicleLimits limits;
         vehicle::Airframe airframe;
         world::Reference reference;
-        Airspace airspace;
+        const FlightRules rules{.k_sigma = 1.0F};
         const auto tracks = flown.table.snapshot(flown.now);
-        const Situation situation{flown.now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 1.0F};
+        const Situation situation{flown.now, own, limits, airframe, reference, rules};
         for (std::size_t a = 0; a < 4; ++a) {
             const float sigma = threat_radius(situation, tracks[0], kAhead[a]);  // no body, one sigma
             const Vec3 error = tracks[0].position + tracks[0].velocity * kAhead[a] - flown.truth.position -
@@ -274,9 +274,8 @@ TEST(TrackFilter, NothingButNumbersComesOut)
             const vehicle::VehicleLimits limits;
             const vehicle::Airframe airframe;
             const world::Reference reference;
-            const Airspace airspace;
-            const Situation situation{now, own,      limits, airframe, reference, {&track, 1},
-                                      {},  airspace, {},     nullptr,  6.0F};
+            const FlightRules rules{.k_sigma = 6.0F};
+            const Situation situation{now, own, limits, airframe, reference, rules};
             ASSERT_TRUE(std::isfinite(threat_radius(situation, track, 60.0F))) << "case " << i;
             ASSERT_GE(threat_radius(situation, track, 60.0F), 0.0F) << "case " << i;
         }

@@ -236,9 +236,8 @@ TEST(Answers, ThatAreExactlyClearAreTaken)
         path::predict_velocity_command(s.own, out.command, 3.0F, 0.2F, s.limits, out.path);
         return PlanStatus::found;
     }};
-    Settings settings = quick();
-    settings.clearance_buffer = 0.0F;
-    const Guidance g = once(f, settings, method, true);
+    f.scene.rules.clearance = 0.0F;
+    const Guidance g = once(f, quick(), method, true);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(g.margin, 0.0F);
 }
@@ -254,7 +253,7 @@ TEST(Answers, AreToldWithTheirMargin)
     const Situation s = f.scene.situation();
     const float margin = check_manoeuvre(s, detour(s, kLeft, 6.0F, 60.0F), quick(), budget).margin;
     EXPECT_GT(margin, 1.0F);
-    EXPECT_NEAR(g.margin, margin - quick().clearance_buffer, 0.1F) << "for the wider vehicle that was asked for first";
+    EXPECT_NEAR(g.margin, margin - f.scene.rules.clearance, 0.1F) << "for the wider vehicle that was asked for first";
 }
 
 TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)

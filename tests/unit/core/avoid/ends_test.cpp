@@ -18,11 +18,10 @@ TEST(Follows, WithTheGainsThatAreSet)
             out = along(s, {s.own.position, s.own.position + Vec3(0, 0, 20)}, Vec3(0, 0, 1));
             return PlanStatus::found;
         };
-        Settings settings = quick();
-        settings.gains = {gain, most};
+        t.f.scene.rules.gains = {gain, most};
         t.f.scene.own.velocity = Vec3::Zero();
         t.f.scene.track(Vec3(22, 0, 30), Vec3::Zero(), 1.0F);
-        Supervisor supervisor(settings, t.method);
+        Supervisor supervisor(quick(), t.method);
         EXPECT_EQ(t.f.update(supervisor, true).state, State::avoiding);
         t.f.scene.own.position.y() = -0.8F;
         const Guidance g = t.f.update(supervisor, true);

@@ -278,8 +278,8 @@ TEST(FallbackOfAFixedWing, LooksAsFarAsTheHorizonAndEscapesByTheSettings)
     inside.scene.track(Vec3(-4.5F, -2.0F, 30), Vec3::Zero(), 4.0F);
     EXPECT_GE(chosen_for(inside).margin, 0.0F);
     settings = {};
-    settings.escape.speed = 10.0F;
-    settings.escape.slack = 0.0F;
+    inside.scene.rules.escape.speed = 10.0F;
+    inside.scene.rules.escape.slack = 0.0F;
     inside.scene.own.velocity = Vec3(4, 0, 0);
     inside.scene.limits.cruise_speed = 4.0F;
     EXPECT_LT(chosen_for(inside, nullptr, settings).margin, 0.0F) << "at less than is asked for";

@@ -191,11 +191,12 @@ TEST(FinalCheck, JudgesAStartInsideByTheEscapeRuleThatIsSet)
     Manoeuvre m = held(f, Vec3(-1, 0, 0), 3.0F);
     Settings settings;
     EXPECT_GE(checked(f, m, settings).margin, 0.0F) << "leaves at twice the pace that is asked for";
-    settings.escape.speed = 3.0F;
+    f.scene.rules.escape.speed = 3.0F;
     EXPECT_LT(checked(f, m, settings).margin, 0.0F) << "at a third of it";
     WorkBudget budget(kPlenty);
     EXPECT_LT(command_margin(f.scene.situation(), Vec3(-1, 0, 0), settings, budget), 0.0F);
-    EXPECT_GE(command_margin(f.scene.situation(), Vec3(-1, 0, 0), Settings{}, budget), 0.0F);
+    f.scene.rules.escape = {};
+    EXPECT_GE(command_margin(f.scene.situation(), Vec3(-1, 0, 0), settings, budget), 0.0F);
 }
 
 /// Cooperative tracks count until the vehicle has stopped: time_to_stop, for a velocity alone.

@@ -59,9 +59,8 @@ TEST(OtherSide, OfWhatIsFlownOrOfWhatWasChosen)
             out.side = up ? next : chosen;
             return PlanStatus::found;
         };
-        Settings settings = quick();
-        settings.lookahead = 6.0F;
-        Supervisor supervisor(settings, t.method);
+        t.f.scene.rules.lookahead = 6.0F;
+        Supervisor supervisor(quick(), t.method);
         EXPECT_EQ(avoid_head_on(t.f, supervisor).state, State::avoiding);
         t.f.scene.own.position.y() = off;
         t.f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);

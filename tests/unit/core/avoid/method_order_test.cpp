@@ -262,7 +262,7 @@ TEST(MethodOrders, AMethodThatKeepsClearanceIsAskedOnceAndForTheVehicleAsItIs)
     Supervisor supervisor(settings, plain, clear);
     static_cast<void>(f.update(supervisor, true));
     const float width = f.scene.limits.half_extents.x();
-    EXPECT_EQ(widths, (std::vector<float>{width + settings.clearance_buffer, width, width}));
+    EXPECT_EQ(widths, (std::vector<float>{width + f.scene.rules.clearance, width, width}));
 }
 
 TEST(MethodOrders, AMethodThatSpendsTheBudgetLeavesNothingToTrust)

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/numbers.hpp"
+#include "tests/oracle/reference_ends.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -17,8 +18,7 @@ using namespace test;
 struct TwoAhead {
     TwoAhead()
     {
-        north.valid = true;
-        north.leg = {f.scene.own.position, f.scene.own.position + Vec3(0, 300, 0), 5.0F};
+        north = world::Reference({f.scene.own.position, f.scene.own.position + Vec3(0, 300, 0), 5.0F});
         f.scene.own.velocity = Vec3::Zero();
     }
     Guidance update(Seconds east, Seconds north_of, bool in_control = false)
@@ -97,7 +97,7 @@ TEST(OtherPath, IsForgottenInControlThatIsGivenBack)
 TEST(OtherPath, ThatStandsIsLeftInTime)
 {
     TwoAhead t;
-    t.north.leg = {t.f.scene.own.position, t.f.scene.own.position, 5.0F};
+    t.north = world::Reference({t.f.scene.own.position, t.f.scene.own.position, 5.0F});
     const auto acts = [&](Seconds seconds) {
         t.f.scene.tracks.clear();
         t.f.scene.track(t.f.scene.own.position + Vec3(0, 2.0F + 10.0F * seconds, 0), Vec3(0, -10, 0), 1.0F);
@@ -167,7 +167,7 @@ TEST(OtherPath, IsShownToMethodsWhereItCounts)
     TwoAhead t;
     std::vector<float> ends;
     t.method = {[&](const Situation& s, WorkBudget&, Manoeuvre&) {
-        ends.push_back(s.reference.leg.end.y());
+        ends.push_back(end_of(s.reference).y());
         return PlanStatus::none_available;
     }};
     static_cast<void>(t.update(6.0F, 4.0F));

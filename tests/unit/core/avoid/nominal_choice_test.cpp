@@ -15,8 +15,7 @@ protected:
     TwoNominalPaths()
     {
         f.scene.own.velocity = Vec3(0, 5, 0);
-        north.valid = true;
-        north.leg = {f.scene.own.position, f.scene.own.position + Vec3(0, 300, 0), 5.0F};
+        north = world::Reference({f.scene.own.position, f.scene.own.position + Vec3(0, 300, 0), 5.0F});
     }
     Guidance update(bool in_control) { return supervisor.update(f.scene.situation(), in_control, &north); }
 
@@ -76,8 +75,7 @@ TEST_F(TwoNominalPaths, ControlIsNotGivenBackIntoAConflictOfTheOtherOne)
     f.scene.track(f.scene.own.position + Vec3(0, 30, 0), Vec3(0, -0.5F, 0));
     Guidance g;
     for (int i = 0; i < 100; ++i) {
-        north.leg.start = f.scene.own.position;
-        north.leg.end = f.scene.tracks[0].position;
+        north = world::Reference({f.scene.own.position, f.scene.tracks[0].position, 5.0F});
         g = update(true);
         EXPECT_TRUE(g.wants_control);
         f.pass(g.velocity, 0.05F);
@@ -93,7 +91,7 @@ TEST_F(TwoNominalPaths, StandingInTheWayItGetsGoingInTime)
     method = never();
     f.scene.own.velocity = Vec3::Zero();
     f.scene.leg(f.scene.own.position, f.scene.own.position, 5.0F);
-    north.leg.end = north.leg.start;
+    north = world::Reference({f.scene.own.position, f.scene.own.position, 5.0F});
     f.scene.track(f.scene.own.position + Vec3(40, 0, 0), Vec3(-10, 0, 0), 1.5F);
     Guidance g;
     while (!(g = update(false)).wants_control && f.scene.tracks[0].position.x() > 0.0F) {

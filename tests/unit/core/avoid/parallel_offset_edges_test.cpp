@@ -46,7 +46,7 @@ TEST(ParallelOffsetWhileAvoiding, IsTakenWhereWhatIsFlownIsNotClear)
     EXPECT_EQ(g.state, State::rejoining);
     EXPECT_EQ(t.supervisor.diagnostics().holds, 1U);
     EXPECT_NEAR((g.velocity - Vec3(5, 0, 0)).norm(), 0.0F, 1e-4F);
-    EXPECT_GE(g.margin, quick().clearance_buffer);
+    EXPECT_GE(g.margin, t.f.scene.rules.clearance);
 }
 
 TEST(ParallelOffsetWhileAvoiding, IsTakenInsteadOfACrawl)
@@ -70,8 +70,8 @@ TEST(ParallelOffsetWhileAvoiding, IsTakenWhereThePathLeadsBack)
 TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
 {
     Settings settings = quick();
-    settings.clearance_buffer = 0.0F;
     Scripted t;
+    t.f.scene.rules.clearance = 0.0F;
     t.next = [](const Situation& s, Manoeuvre& out) {
         out = at_speed(s, {Vec3(0, 4, 30), Vec3(40, 8, 30)}, 5.0F, kLeft);
         return PlanStatus::found;
@@ -155,7 +155,7 @@ TEST(ParallelToTheLeg, ExactlyClearIsClear)
     f.scene.airspace.has_floor = true;
     f.scene.airspace.floor = 29.0F;
     Settings settings = quick();
-    settings.clearance_buffer = 0.0F;
+    f.scene.rules.clearance = 0.0F;
     EXPECT_EQ(holds_of(f, settings), 1U);
     f.scene.airspace.floor = 29.01F;
     EXPECT_EQ(holds_of(f, settings), 0U);

@@ -215,7 +215,7 @@ struct OnARoute : testing::Test {
         EXPECT_EQ(route.add_arc(Vec3(100, 0, 30), Vec3(100, 50, 30), Vec3::UnitZ(), 0.5F * kPi), path::RouteStatus::ok);
         EXPECT_EQ(route.add_leg(Vec3(150, 50, 30), Vec3(150, 110, 30)), path::RouteStatus::ok);
         f.scene.leg(Vec3(-500, -500, 0), Vec3(-400, -500, 0), 4.0F);
-        f.scene.reference.route = &route;
+        f.scene.reference = world::Reference(route, f.scene.reference.speed);
     }
     void expect(const Vec3& at, std::size_t segment, float off, float left, const Vec3& along)
     {

@@ -23,9 +23,7 @@ struct Range {
 
 const Range kRanges[] = {
     {"clutter_radius", [](Settings& s) -> float& { return s.clutter_radius; }, 1.0F, 200.0F},
-    {"lookahead", [](Settings& s) -> float& { return s.lookahead; }, 1.0F, 60.0F},
     {"commit", [](Settings& s) -> float& { return s.commit; }, 0.5F, 60.0F},
-    {"clearance_buffer", [](Settings& s) -> float& { return s.clearance_buffer; }, 0.0F, 10.0F},
     {"prediction_step", [](Settings& s) -> float& { return s.prediction_step; }, 0.02F, 0.5F},
     {"fallback_horizon", [](Settings& s) -> float& { return s.fallback_horizon; }, 1.0F, 20.0F},
     {"reserve", [](Settings& s) -> float& { return s.reserve; }, 0.0F, 5.0F},
@@ -37,10 +35,6 @@ const Range kRanges[] = {
     {"back_off_limit", [](Settings& s) -> float& { return s.back_off_limit; }, 0.0F, 600.0F},
     {"least_control", [](Settings& s) -> float& { return s.least_control; }, 0.0F, 60.0F},
     {"patience", [](Settings& s) -> float& { return s.patience; }, 0.0F, 600.0F},
-    {"position_gain", [](Settings& s) -> float& { return s.gains.position_gain; }, 0.0F, 10.0F},
-    {"max_correction", [](Settings& s) -> float& { return s.gains.max_correction; }, 0.0F, 10.0F},
-    {"escape_slack", [](Settings& s) -> float& { return s.escape.slack; }, 0.0F, 1.0F},
-    {"escape_speed", [](Settings& s) -> float& { return s.escape.speed; }, 0.0F, 10.0F},
 };
 
 struct SettingsRanges : testing::TestWithParam<Range> {
@@ -110,18 +104,18 @@ TEST(Settings, ThatAreRefusedChangeNothing)
 {
     FakeMethod method = never();
     Settings first;
-    first.lookahead = 11.0F;
+    first.commit = 11.0F;
     Supervisor supervisor(first, method);
     Settings bad;
-    bad.lookahead = 12.0F;
-    bad.clearance_buffer = -1.0F;
+    bad.commit = 12.0F;
+    bad.clear_extra = -1.0F;
     EXPECT_FALSE(supervisor.configure(bad));
-    EXPECT_EQ(supervisor.settings().lookahead, 11.0F);
-    EXPECT_EQ(supervisor.settings().clearance_buffer, first.clearance_buffer);
-    bad.clearance_buffer = 1.0F;
+    EXPECT_EQ(supervisor.settings().commit, 11.0F);
+    EXPECT_EQ(supervisor.settings().clear_extra, first.clear_extra);
+    bad.clear_extra = 1.0F;
     EXPECT_TRUE(supervisor.configure(bad));
-    EXPECT_EQ(supervisor.settings().lookahead, 12.0F);
-    EXPECT_EQ(supervisor.settings().clearance_buffer, 1.0F);
+    EXPECT_EQ(supervisor.settings().commit, 12.0F);
+    EXPECT_EQ(supervisor.settings().clear_extra, 1.0F);
 }
 
 }  // namespace

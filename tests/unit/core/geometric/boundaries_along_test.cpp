@@ -33,21 +33,21 @@ TEST(AlongBorder, ARouteAsStraightAsAnyManoeuvreIsLongIsALeg)
 {
     const TwinRoute twin = corner();
     Flight flight;
-    flight.reference.route = &twin.route;
+    flight.reference = world::Reference(twin.route, flight.reference.speed);
     world::Conflict conflict;
     conflict.way_at_closest = 10.0F;
     conflict.threat_at_closest = Vec3(10.0F, 1.0F, 50.0F);
     world::Way way;
     // Twice the scale, which is 1.5 D at most.
-    way.ahead = {&twin.route, 30.0F, 20.0F};
+    way.ahead = {twin.route, 30.0F, 20.0F};
     Problem problem;
     detail::follow_route(flight.situation(), way, conflict, problem);
-    EXPECT_EQ(problem.ahead.route, nullptr);
+    EXPECT_TRUE(problem.ahead.route.empty());
     EXPECT_EQ(problem.straight, 30.0F);
     way.ahead.straight = std::nextafter(30.0F, 0.0F);
     problem = {};
     detail::follow_route(flight.situation(), way, conflict, problem);
-    EXPECT_EQ(problem.ahead.route, &twin.route);
+    EXPECT_EQ(problem.ahead.route.segments().data(), twin.route.segments().data());
     EXPECT_EQ(problem.distance, 10.0F);
     EXPECT_LT((collision_point(problem) + problem.main_centre_offset - conflict.threat_at_closest).norm(), 1e-5F);
 }
@@ -56,7 +56,7 @@ TEST(AlongBorder, AStartIsMovedWhereItIsLeftWithTheLeast)
 {
     const TwinRoute twin = corner();
     Flight flight;
-    flight.reference.route = &twin.route;
+    flight.reference = world::Reference(twin.route, flight.reference.speed);
     const Vec3 by(1.0F, 0.0F, 0.0F);
     Problem problem = problem_along(flight, 30.0F);
     EXPECT_FALSE(detail::move_start_along(flight.situation(), by, std::nextafter(29.0F, 30.0F), problem));
@@ -81,7 +81,7 @@ TEST(AlongBorder, WaitsThatRiseFasterThanTheVehicleAreNotFlyable)
             scene.settings.wait = true;
             scene.limits.max_climb = climb;
             scene.limits.max_descent = descent;
-            scene.problem.ahead.route = &twin.route;
+            scene.problem.ahead.route = twin.route;
             scene.problem.main = kNoThreat;
             scene.threats.clear();
             static_cast<void>(scene.run());
@@ -107,7 +107,7 @@ TEST(AlongBorder, CurvesAreFlyableFromFlightAlongTheWay)
         static_cast<void>(scene.run());
         const std::size_t along_a_leg = scene.count(CandidateStatus::not_flyable);
         EXPECT_LT(along_a_leg, scene.result.candidates.size());
-        scene.problem.ahead.route = &twin.route;
+        scene.problem.ahead.route = twin.route;
         static_cast<void>(scene.run());
         EXPECT_EQ(scene.count(CandidateStatus::not_flyable), along_a_leg);
     }
@@ -120,7 +120,7 @@ TEST(AlongBorder, TimesRiseWhereACurveStandsStill)
     ASSERT_TRUE(twin.arc(Vec3(0.0F, 0.0F, 50.0F), Vec3(0.0F, 16.0F, 50.0F), Vec3::UnitZ(), 3.0F));
     Problem problem;
     problem.frame = make_path_frame(Vec3(0.0F, 0.0F, 50.0F), Vec3::UnitX());
-    problem.ahead.route = &twin.route;
+    problem.ahead.route = twin.route;
     problem.distance = 20.0F;
     problem.main_radius = 1.0F;
     path::TimedPath path;
@@ -140,7 +140,7 @@ TEST(AlongBorder, TimesRiseWhereACurveStandsStill)
 TEST(AlongBorder, WhatTheWorkspaceHeldIsNotRead)
 {
     const TwinRoute bent = corner();
-    for (const path::Route* route : {static_cast<const path::Route*>(nullptr), &bent.route}) {
+    for (const path::RouteView route : {path::RouteView(), path::RouteView(bent.route)}) {
         std::vector<std::unique_ptr<Result>> results;
         for (const int held : {0x00, 0xFF}) {  // all bits set: no number at all
             auto scene = std::make_unique<Scene>();

@@ -162,7 +162,7 @@ TEST(Attempts, TwoPartsAreNeitherForRoutesNorForSweptVolumes)
     path::Route route;
     ASSERT_EQ(route.add_leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F)), path::RouteStatus::ok);
     Hopeless along;
-    along.problem.ahead.route = &route;
+    along.problem.ahead.route = route;
     EXPECT_EQ(along.run_all(), PlanStatus::none_available);
     EXPECT_EQ(along.attempts, 9U);
     Hopeless swept;

@@ -202,8 +202,8 @@ TEST(ClearanceBorder, WhoLeavesAMarginStraightAwayIsSeenToAtAGlance)
 {
     // An eighth of a metre inside; the ball grows back half its slack in each of 16 parts.
     CurveBench bench = segment(Vec3(2.0F, 0.0F, 0.0F), 1.0F);
-    bench.settings.escape_from_margin = true;
-    bench.settings.escape = {0.0625F, 0.5F};
+    bench.problem.rules.escape_from_margin = true;
+    bench.problem.rules.escape = {0.0625F, 0.5F};
     bench.threats = {Scene::still(Vec3(-2.0F, 0.0F, 0.0F), 1.625F)};
     ASSERT_EQ(bench.status(), CandidateStatus::available);
     EXPECT_EQ(bench.spent, units::kItem + units::kBallLook + 16 * units::kBallLookPart);
@@ -216,8 +216,8 @@ TEST(ClearanceBorder, AMarginThatGrowsBackAsSlowlyAsNumbersAllowIsLookedAtAllThe
         for (const bool ball : {true, false}) {
             for (const float way : {-1.0F, 1.0F}) {
                 CurveBench bench = segment(Vec3(way, 0.0F, 0.0F), 1.0F);
-                bench.settings.escape_from_margin = true;
-                bench.settings.escape.speed = speed;
+                bench.problem.rules.escape_from_margin = true;
+                bench.problem.rules.escape.speed = speed;
                 if (ball) {
                     bench.threats = {Scene::still(Vec3(-2.25F, 0.0F, 0.0F), 2.0F)};
                 } else {

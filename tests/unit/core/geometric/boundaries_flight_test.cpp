@@ -113,7 +113,7 @@ TEST(FlightBorder, AStandingVehiclesStartStaysWhereItIs)
     leg.add(Vec3(30.0F, 0.0F, 50.0F), 1.0F);
     ASSERT_EQ(leg.plan(), PlanStatus::found);
     EXPECT_EQ(leg.points(), 26U) << "what is flown meanwhile comes first";
-    EXPECT_EQ(leg.out.path.points[1].time, leg.settings.latency);
+    EXPECT_EQ(leg.out.path.points[1].time, leg.rules.latency);
     leg.own.velocity = Vec3::Zero();
     ASSERT_EQ(leg.plan(), PlanStatus::found);
     EXPECT_EQ(leg.points(), 25U);
@@ -138,7 +138,7 @@ TEST(FlightBorder, TheStartIsNotMovedTooNear)
     Leg leg;
     leg.settings.check_acceleration = false;
     leg.settings.verify_flight = false;
-    leg.settings.latency = 1.0F;
+    leg.rules.latency = 1.0F;
     leg.add(Vec3(22.0F, 0.0F, 50.0F), 0.5F);
     ASSERT_EQ(leg.plan(), PlanStatus::found);
     EXPECT_EQ(leg.points(), 25U) << "the closest approach comes before the threat: less than 20 m are left after 5 m";
@@ -152,7 +152,7 @@ TEST(FlightBorder, ASlowStartIsNotMovedTooNearEither)
     // At least 2.5 R remain, also if four times the travelled distance is negligible.
     Leg leg;
     leg.settings.check_acceleration = leg.settings.verify_flight = false;
-    leg.settings.latency = 0.2F;
+    leg.rules.latency = 0.2F;
     leg.own.velocity = Vec3(1.0F, 0.0F, 0.0F);
     leg.add(Vec3(0.0F, 0.0F, 50.0F), 4.0F);
     std::size_t moved = 0;
@@ -162,7 +162,7 @@ TEST(FlightBorder, ASlowStartIsNotMovedTooNearEither)
         if (leg.plan() != PlanStatus::found) {
             continue;
         }
-        const bool is_moved = leg.out.path.points[1].time == leg.settings.latency;
+        const bool is_moved = leg.out.path.points[1].time == leg.rules.latency;
         (is_moved ? moved : as_it_is) += 1;
         EXPECT_TRUE(as_it_is > 0 || !is_moved) << "the nearest that is planned for is not moved nearer";
     }
@@ -211,7 +211,7 @@ TEST(FlightBorder, ATrackStampedAheadIsNotTakenForSmaller)
         Leg leg;
         leg.settings.evaluate_all = true;
         leg.settings.retries = 0;
-        leg.settings.latency = 0.0F;
+        leg.rules.latency = 0.0F;
         world::Track& track = leg.add(Vec3(30.0F, -24.0F, 50.0F), 0.5F);
         track.velocity = Vec3(0.0F, 4.0F, 0.0F);
         track.max_acceleration = acceleration;

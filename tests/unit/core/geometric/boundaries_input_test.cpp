@@ -21,13 +21,6 @@ TEST(InputBorder, CountsAreRefusedWhateverElseThereIsToTry)
     EXPECT_TRUE(is_valid(settings));
     settings.offsets = 0;
     EXPECT_FALSE(is_valid(settings)) << "the waits alone would be candidates enough";
-    settings = Settings{};
-    settings.latency = 1.0F;
-    EXPECT_TRUE(is_valid(settings));
-    settings.latency = std::nextafter(1.0F, 2.0F);
-    EXPECT_FALSE(is_valid(settings));
-    settings.latency = 0.0F;
-    EXPECT_TRUE(is_valid(settings));
 }
 
 TEST(InputBorder, TheApexLiesAheadAndSomewhere)
@@ -80,14 +73,14 @@ PlanStatus plan(const std::vector<world::Track>& tracks, WorkBudget& budget, Pla
     own.position = Vec3(0.0F, 0.0F, 50.0F);
     own.velocity = Vec3(5.0F, 0.0F, 0.0F);
     world::Reference reference;
-    reference.valid = true;
-    reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
+    reference = world::Reference({Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F});
     const vehicle::VehicleLimits limits;
     const vehicle::Airframe airframe;
     const world::Airspace airspace;
+    const world::FlightRules rules;
     world::Manoeuvre out;
     const oracle::Collected situation(
-        world::Situation{now, own, limits, airframe, reference, tracks, {}, airspace, {}, nullptr, 3.0F});
+        world::Situation{now, own, limits, airframe, reference, rules}, {tracks, {}, airspace});
     return planner.plan(situation, budget, out);
 }
 

@@ -20,7 +20,7 @@ struct SphereAhead : Flight {
     explicit SphereAhead(float ahead)
     {
         limits.half_extents = Vec3::Constant(0.5F);
-        limits.cruise_speed = reference.leg.speed = 8.0F;
+        limits.cruise_speed = reference.speed = 8.0F;
         own.velocity = Vec3(8.0F, 0.0F, 0.0F);
         obstacles = {{1, geometry::make_sphere(Vec3(ahead, 0.0F, 50.0F), 0.5F)}};
     }
@@ -28,11 +28,11 @@ struct SphereAhead : Flight {
     {
         Settings settings;
         settings.check_acceleration = settings.verify_flight = false;
-        settings.latency = latency;
+        rules.latency = latency;
         EXPECT_TRUE(planner.configure(settings));
         return plan();
     }
-    bool begins_later() const { return out.path.points[1].time == planner.settings().latency; }
+    bool begins_later() const { return out.path.points[1].time == rules.latency; }
 };
 
 TEST(PlanBorder, TwoAndAHalfRadiiAreNotTooClose)
@@ -87,7 +87,7 @@ TEST(PlanBorder, BadInputIsRefusedWhereThereIsNoConflict)
     EXPECT_EQ(crowded.plan(), PlanStatus::bad_input);
     Flight without_route;
     const path::Route empty;
-    without_route.reference.route = &empty;
+    without_route.reference = world::Reference(empty, without_route.reference.speed);
     EXPECT_EQ(without_route.plan(), PlanStatus::bad_input);
     Flight misset;
     Settings settings;
@@ -104,7 +104,7 @@ TEST(PlanBorder, WorkThatHasRunOutBeforeLeavesNothingKnown)
     EXPECT_EQ(flight.plan(), PlanStatus::budget_spent);
     path::Route route;
     ASSERT_EQ(route.add_leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F)), path::RouteStatus::ok);
-    flight.reference.route = &route;
+    flight.reference = world::Reference(route, flight.reference.speed);
     EXPECT_EQ(flight.plan(), PlanStatus::budget_spent);
 }
 
@@ -117,7 +117,6 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
     ASSERT_EQ(route.add_leg(Vec3(25.0F, 0.0F, 50.0F), Vec3(25.0F, 80.0F, 50.0F)), path::RouteStatus::ok);
     Settings settings;
     settings.check_acceleration = settings.verify_flight = false;
-    settings.latency = 1.0F;
     settings.retries = 0;
     std::size_t moved = 0;
     std::size_t stays = 0;
@@ -125,7 +124,8 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
     bool before = false;
     for (float x = 10.94F; x < 10.96F; x += 2e-4F) {
         Flight flight;
-        flight.reference.route = &route;
+        flight.reference = world::Reference(route, flight.reference.speed);
+        flight.rules.latency = 1.0F;
         flight.own.velocity = Vec3(1.0F, 1.0F, 0.0F);
         flight.add(Vec3(x, 0.0F, 50.0F), Vec3::Zero(), 4.0F);
         ASSERT_TRUE(flight.planner.configure(settings));
@@ -140,7 +140,7 @@ TEST(PlanBorder, AStartAlongARouteIsMovedOrElseThreatsAreMetAsTheyAre)
         before = is_moved;
         (is_moved ? moved : stays) += 1;
         if (is_moved) {
-            const Vec3 then = flight.own.position + settings.latency * flight.own.velocity;
+            const Vec3 then = flight.own.position + flight.rules.latency * flight.own.velocity;
             ASSERT_LT((points[1].position - then).norm(), 1e-4F) << x;
         }
     }

@@ -56,8 +56,8 @@ TEST(SolidBorder, ARunThatIsStraightBarAHairIsHitByThatHair)
 CurveBench escaping(const std::vector<CurvePoint>& points, float slack, float speed)
 {
     CurveBench bench(points);
-    bench.settings.escape_from_margin = true;
-    bench.settings.escape = {slack, speed};
+    bench.problem.rules.escape_from_margin = true;
+    bench.problem.rules.escape = {slack, speed};
     return bench;
 }
 

@@ -95,7 +95,7 @@ TEST(InSight, WhatStandsBehindABendIsMet)
     const path::Route route = bend();
     Unhindered scene;
     scene.settings.simple = false;
-    scene.problem.ahead.route = &route;
+    scene.problem.ahead.route = route;
     ASSERT_EQ(scene.run(), PlanStatus::found);
     // 2 m before the end of all of them, on the route and so blocking each.
     scene.threats = {Scene::still(Vec3(20.0F, 22.0F, 50.0F), 0.5F)};
@@ -114,7 +114,7 @@ TEST(InSight, OffsetsAreToTheSidesOfTheCollisionPoint)
         straight.problem.main_centre_offset = Vec3(0.0F, left, 0.5F);
         Unhindered bent;
         bent.problem.distance = 30.0F;
-        bent.problem.ahead.route = &route;
+        bent.problem.ahead.route = route;
         bent.problem.main_centre_offset = Vec3(-left, 0.0F, 0.5F);
         const std::vector<float> expected = straight.offsets();
         const std::vector<float> offsets = bent.offsets();

@@ -143,10 +143,10 @@ TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
 /// A candidate on a straight line, at any speed: one query per solid that bounds do not separate from it.
 TEST(Culling, AStraightCandidateTakesOneQueryForASolid)
 {
-    std::array<Vec3, 6> prism{};
+    std::array<Point3, 6> prism{};
     for (std::size_t i = 0; i < prism.size(); ++i) {
         const float angle = kPi * static_cast<float>(i) / 3.0F + 0.3F;
-        prism[i] = Vec3(i % 2 == 0 ? 12.0F : -12.0F, 2.0F * std::cos(angle), 2.0F * std::sin(angle));
+        prism[i] = {i % 2 == 0 ? 12.0F : -12.0F, 2.0F * std::cos(angle), 2.0F * std::sin(angle)};
     }
     const auto units_for = [&](std::uint16_t waypoints) {
         Scene scene;

@@ -19,6 +19,7 @@ struct Flight {
     std::vector<world::Track> tracks;
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
+    world::FlightRules rules{.lookahead = 10.0F};
     const world::Manoeuvre* flying = nullptr;
     Planner planner{Settings{}};
     WorkBudget budget{1'000'000};
@@ -29,8 +30,7 @@ struct Flight {
         own.stamp = now;
         own.position = Vec3(0.0F, 0.0F, 50.0F);
         own.velocity = Vec3(5.0F, 0.0F, 0.0F);
-        reference.valid = true;
-        reference.leg = {Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F};
+        reference = world::Reference({Vec3(0.0F, 0.0F, 50.0F), Vec3(200.0F, 0.0F, 50.0F), 5.0F});
     }
 
     void add(const Vec3& position, const Vec3& velocity, float radius)
@@ -46,8 +46,8 @@ struct Flight {
 
     [[nodiscard]] world::Situation situation() const
     {
-        world::Situation s{now, own, limits, airframe, reference, tracks, obstacles, airspace, {}, flying, 3.0F};
-        static_cast<void>(threats.collect(s));
+        world::Situation s{now, own, limits, airframe, reference, rules, {}, flying};
+        static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;
     }
@@ -59,7 +59,7 @@ struct Flight {
 /// The planner's problem for the vehicle's position, `distance` along the route to the collision point.
 inline Problem problem_along(const Flight& flight, float distance)
 {
-    const world::Way way = world::way_along(flight.situation(), flight.own.position);
+    const world::Way way = world::way_of(flight.situation());
     Problem problem;
     problem.frame = make_path_frame(way.origin, way.direction);
     problem.ahead = way.ahead;

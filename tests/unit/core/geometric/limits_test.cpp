@@ -85,20 +85,13 @@ TEST(SettingsLimits, AmountsAreZeroOrMoreAndFinite)
     each([](Settings& s, float x) { s.source_drop_margin = x; });
     each([](Settings& s, float x) { s.rotation_penalty = x; });
     each([](Settings& s, float x) { s.flip_penalty = x; });
-    each([](Settings& s, float x) { s.escape.slack = x; });
-    each([](Settings& s, float x) { s.escape.speed = x; });
-    each([](Settings& s, float x) { s.gains.position_gain = x; });
-    each([](Settings& s, float x) { s.gains.max_correction = x; });
 }
 
-TEST(SettingsLimits, CostAndLookaheadHaveTheirRanges)
+TEST(SettingsLimits, CostAndWeightsHaveTheirRanges)
 {
     const auto cost = [](Settings& s, float x) { s.max_cost = x; };
     expect_settings<float>(true, cost, {kLeast, 1.0F});
     expect_settings<float>(false, cost, {0.0F, -1.0F, limit_above(1.0F), kInfinity, kNan});
-    const auto lookahead = [](Settings& s, float x) { s.lookahead = x; };
-    expect_settings<float>(true, lookahead, {1.0F, 60.0F});
-    expect_settings<float>(false, lookahead, {limit_below(1.0F), limit_above(60.0F), kInfinity, kNan});
     const auto weight = [](Settings& s, float x) { s.weights.time = x; };
     expect_settings<float>(false, weight, {kNan});
     const auto passing = [](Settings& s, float x) { s.weights.passing = x; };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "tests/oracle/route_oracle.hpp"
@@ -101,9 +100,7 @@ TEST(PlannerStatus, NoConflictWithinTheLookahead)
     Flight flight;
     flight.add(Vec3(90.0F, 0.0F, 50.0F), Vec3::Zero(), 1.0F);
     EXPECT_EQ(flight.plan(), PlanStatus::no_conflict);
-    Settings settings;
-    settings.lookahead = 20.0F;
-    ASSERT_TRUE(flight.planner.configure(settings));
+    flight.rules.lookahead = 20.0F;
     EXPECT_EQ(flight.plan(), PlanStatus::found);
 }
 
@@ -342,9 +339,11 @@ TEST(Planner, AnyBudgetIsAnsweredOrSpentAlongALegAndARoute)
     oracle::TwinRoute bent;
     ASSERT_TRUE(bent.leg(Vec3(0.0F, 0.0F, 50.0F), Vec3(25.0F, 0.0F, 50.0F)));
     ASSERT_TRUE(bent.leg(Vec3(25.0F, 0.0F, 50.0F), Vec3(25.0F, 60.0F, 50.0F)));
-    for (const path::Route* route : {static_cast<const path::Route*>(nullptr), &std::as_const(bent.route)}) {
+    for (const bool bends : {false, true}) {
         Flight flight;
-        flight.reference.route = route;
+        if (bends) {
+            flight.reference = world::Reference(bent.route, flight.reference.speed);
+        }
         flight.airspace.has_floor = true;
         for (int i = 0; i < 6; ++i) {
             const Vec3 beside(4.0F + 4.0F * static_cast<float>(i), 2.6F, 50.0F);

@@ -31,7 +31,7 @@ Problem problem_to(const TwinRoute& twin, const Vec3& start, float joined_at)
     const Vec3 joint = twin.at(double(joined_at)).cast<float>();
     Problem problem;
     problem.frame = make_path_frame(start, joint - start);
-    problem.ahead = {&twin.route, (joint - start).norm(), joined_at};
+    problem.ahead = {twin.route, (joint - start).norm(), joined_at};
     problem.distance = 30.0F;
     problem.speed = 3.0F;
     return problem;

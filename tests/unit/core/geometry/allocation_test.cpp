@@ -73,7 +73,8 @@ TEST(Allocation, NoQueryAllocates)
         sink += contact_interval(own, threat, 1.0F, 1.0F) ? 1.0F : 0.0F;
         sink += least_distance(half, own, threat, 1.0F).distance;
         sink += swept_distance(half, own.position, to, threat.position, threat.position + threat.velocity);
-        const std::array<Vec3, 5> vertices{any(1.0F), any(1.0F), any(1.0F), any(1.0F), any(1.0F)};
+        const auto vertex = [&] { return Point3::of(any(1.0F)); };
+        const std::array<Point3, 5> vertices{vertex(), vertex(), vertex(), vertex(), vertex()};
         const Vec3 a = any(4.0F);
         const Vec3 b = any(4.0F);
         for (const Shape& shape : {make_sphere(a, 1.0F), make_box(a, any(1.0F).cwiseAbs()), make_capsule(a, b, 1.0F),

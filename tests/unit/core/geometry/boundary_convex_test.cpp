@@ -88,7 +88,7 @@ TEST(ConvexBorder, CornersThatTouchAreFoundAtOnce)
 TEST(ConvexBorder, BeyondTheReachByItsBoundingSphereAlone)
 {
     // A hull of one point has no extent, so that its sphere is as near as the point.
-    const std::array<Vec3, 1> point{kZero};
+    const std::array<Point3, 1> point{};
     const Shape shape = make_hull(point, Vec3(0.0F, 3.5F, 0.0F));
     const detail::SweptBox box{kHalf, kZero, kZero};
     const float surely = 2.5F - box.slack(shape);

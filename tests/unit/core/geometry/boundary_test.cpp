@@ -165,7 +165,7 @@ TEST(Border, EverySolidIsTouchedAtItsClearance)
 {
     // Straight above: the distance is exactly the gap between the faces, and every solid has the same height.
     const Vec3 above(0.0F, 0.0F, 6.0F);
-    const std::array<Vec3, 3> flat{Vec3(-1.0F, -1.0F, -1.0F), Vec3(1.0F, -1.0F, -1.0F), Vec3(0.0F, 1.0F, -1.0F)};
+    const std::array<Point3, 3> flat{{{-1, -1, -1}, {1, -1, -1}, {0, 1, -1}}};
     for (const Shape& shape : {make_sphere(above, 1.0F), make_box(above, Vec3::Ones()), make_hull(flat, above),
                                make_capsule(above - Vec3(0.0F, 0.0F, 0.5F), above + Vec3(0.0F, 0.0F, 0.5F), 0.5F),
                                make_cylinder(above - Vec3::UnitX(), above + Vec3::UnitX(), 1.0F)}) {

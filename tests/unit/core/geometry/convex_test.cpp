@@ -13,8 +13,7 @@ namespace {
 
 const Vec3 kConvexHalf(1.0F, 1.0F, 1.0F);
 const Vec3 kStill = Vec3::Zero();
-const std::array<Vec3, 4> kWedge{Vec3(0.0F, -1.0F, -1.0F), Vec3(0.0F, 1.0F, -1.0F), Vec3(2.0F, 0.0F, -1.0F),
-                                 Vec3(0.0F, 0.0F, 1.0F)};
+const std::array<Point3, 4> kWedge{{{0, -1, -1}, {0, 1, -1}, {2, 0, -1}, {0, 0, 1}}};
 
 /// One of each kind, all about 1 m in size.
 std::array<Shape, 5> one_of_each(const Vec3& centre)
@@ -75,7 +74,7 @@ TEST(SweptBoxContact, TouchingCounts)
 
 TEST(SweptBoxContact, OfThingsWithoutSize)
 {
-    const std::array<Vec3, 1> point{kStill};
+    const std::array<Point3, 1> point{};
     WorkBudget budget(10'000);
     EXPECT_EQ(swept_box_contact(kStill, kStill, kStill, make_hull(point, kStill), 0.0F, budget), Contact::contact);
     EXPECT_EQ(swept_box_contact(kStill, kStill, kStill, make_hull(point, Vec3::UnitX()), 0.0F, budget), Contact::clear);
@@ -154,7 +153,7 @@ TEST(SweptBoxContact, BeyondTheBoundingSphereNoSearchIsPaidFor)
 
 TEST(SweptBoxContact, AHullPaysForItsVertices)
 {
-    std::array<Vec3, 16> many;
+    std::array<Point3, 16> many;
     for (std::size_t i = 0; i < many.size(); ++i) {
         many[i] = kWedge[i % kWedge.size()];
     }
@@ -207,7 +206,7 @@ TEST(SweptBoxDistance, IsZeroWhenTheBudgetRunsOut)
 
 TEST(SweptBoxDistance, AHullNeedNotHoldItsOwnCentre)
 {
-    const std::array<Vec3, 2> far{Vec3(10.0F, 0.0F, -1.0F), Vec3(10.0F, 0.0F, 1.0F)};
+    const std::array<Point3, 2> far{{{10, 0, -1}, {10, 0, 1}}};
     EXPECT_NEAR(distance(kStill, kStill, make_hull(far, kStill)), 9.0F, 1e-3F);
     EXPECT_EQ(contact(kStill, kStill, make_hull(far, kStill)), Contact::clear);
 }

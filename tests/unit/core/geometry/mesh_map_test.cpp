@@ -71,7 +71,6 @@ TEST(MeshMapCheck, WhatIsTooLargeIsRefused)
     EXPECT_EQ(Changed([&](auto&, MeshMap& m) { m.pieces = many; }).status(), MapStatus::too_large);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[0].vertices = kMaxPieceVertices + 1; }).status(),
               MapStatus::too_large);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[0].faces = kMaxPieceFaces + 1; }).status(), MapStatus::too_large);
 }
 
 TEST(MeshMapCheck, ATreeThatIsTooDeepIsRefused)
@@ -84,7 +83,7 @@ TEST(MeshMapCheck, ATreeThatIsTooDeepIsRefused)
     box.high = {1.0F, 1.0F, 1.0F};
     constexpr std::uint16_t kCount = kMaxMeshDepth + 2;
     for (std::uint16_t i = 0; i < kCount; ++i) {
-        some.push_back({3U * i, 0, 3, 0});
+        some.push_back({{}, 3U * i, 3});
         vertices.insert(vertices.end(), {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}});
         if (i + 1 < kCount) {
             nodes.push_back(box);
@@ -111,20 +110,15 @@ TEST(MeshMapCheck, TablesThatDoNotBelongTogetherAreRefused)
                   m.vertices = {t.vertices_.data(), t.vertices_.size() - 1};
               }).status(),
               MapStatus::sizes_differ);
-    EXPECT_EQ(Changed([](auto& t, MeshMap& m) {
-                  m.faces = {t.faces_.data(), t.faces_.size() - 1};
-              }).status(),
-              MapStatus::sizes_differ);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[1].first_vertex = 0; }).status(), MapStatus::sizes_differ);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[1].first_face = 1; }).status(), MapStatus::sizes_differ);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[3].vertices = 2; }).status(), MapStatus::sizes_differ);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[3].faces = 3; }).status(), MapStatus::sizes_differ);
 }
 
 TEST(MeshMapCheck, BadCoordinatesAreRefused)
 {
     for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(), 1000.1F}) {
         EXPECT_EQ(Changed([bad](auto& t, auto&) { t.vertices_[3].y = bad; }).status(), MapStatus::bad_coordinate);
+        EXPECT_EQ(Changed([bad](auto& t, auto&) { t.pieces_[2].centre.z = bad; }).status(), MapStatus::bad_coordinate);
         EXPECT_EQ(Changed([bad](auto& t, auto&) { t.nodes_[0].high.y = bad; }).status(), MapStatus::bad_coordinate);
         EXPECT_EQ(Changed([bad](auto&, MeshMap& m) { m.high.x = bad; }).status(), MapStatus::bad_coordinate);
     }
@@ -158,12 +152,15 @@ TEST(MeshMapCheck, TreesThatDoNotHoldEveryPieceOnceAreRefused)
     EXPECT_NE(Changed([&](auto& t, auto&) { leaf(t).piece ^= 1; }).status(), MapStatus::good);
 }
 
-TEST(MeshMapCheck, FacesThatCutTheirPieceAreRefused)
+TEST(MeshMapCheck, OriginsThatAreNotOnTheGlobeAreRefused)
 {
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].offset -= 0.01F; }).status(), MapStatus::bad_face);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].normal.x += 0.9F; }).status(), MapStatus::bad_face);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].normal.x = std::numeric_limits<float>::quiet_NaN(); }).status(),
-              MapStatus::bad_face);
+    const auto status = [](const MapOrigin& origin) {
+        return Changed([&](auto&, MeshMap& m) { m.origin = origin; }).status();
+    };
+    EXPECT_EQ(status({true, 850'000'000, -1'800'000'000, 1'000'000'000}), MapStatus::good);
+    EXPECT_EQ(status({true, -850'000'001, 0, 0}), MapStatus::wrong_origin) << "where east turns too fast";
+    EXPECT_EQ(status({true, 0, 1'800'000'001, 0}), MapStatus::wrong_origin);
+    EXPECT_EQ(status({true, 0, 0, -1'000'000'001}), MapStatus::wrong_origin);
 }
 
 TEST(MeshMapCheck, EveryTableIsInTheChecksum)
@@ -171,47 +168,34 @@ TEST(MeshMapCheck, EveryTableIsInTheChecksum)
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.checksum ^= 1U; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.slack = 1e-6F; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.high.x += 1.0F; }, false).status(), MapStatus::wrong_checksum);
-    EXPECT_EQ(Changed([](auto& t, auto&) { t.faces_[2].offset += 1e-6F; }, false).status(), MapStatus::wrong_checksum);
+    EXPECT_EQ(Changed([](auto& t, auto&) { t.pieces_[0].centre.x += 1e-4F; }, false).status(), MapStatus::bad_bounds);
+    for (std::int32_t MapOrigin::*number : {&MapOrigin::latitude, &MapOrigin::longitude, &MapOrigin::altitude}) {
+        EXPECT_EQ(Changed([&](auto&, MeshMap& m) { m.origin.*number = 1; }, false).status(), MapStatus::wrong_checksum);
+    }
+    EXPECT_EQ(Changed([](auto&, MeshMap& m) { m.origin.known = true; }, false).status(), MapStatus::wrong_checksum);
     EXPECT_EQ(Changed([](auto& t, auto&) { t.vertices_[0].x += 1e-4F; }, false).status(), MapStatus::wrong_checksum);
 }
 
-TEST(NearestPieces, TellsWhatItLeavesOut)
+TEST(MeshMapShape, APieceIsTheHullOfItsVerticesWhereItLies)
 {
     const oracle::MapOfHulls tables(pieces());
-    std::array<NearPiece, 2> out;
-    DistanceQuery query;
-    query.reach = 100.0F;
-    WorkBudget budget(100'000);
-    const NearestPieces found = nearest_pieces(tables.map(), {3.0F, 0.5F, 0.5F}, query, out, budget);
-    ASSERT_EQ(found.found, 2U);
-    EXPECT_NEAR(out[0].from.distance, 2.0F, 1e-4F);
-    EXPECT_NEAR(out[1].from.distance, 2.0F, 1e-4F);
-    // The cube behind is sqrt(1 + 4.5^2) away; only its box was checked, or the box above it.
-    EXPECT_LE(found.dropped, std::sqrt(1.0F + 4.5F * 4.5F) + 1e-4F);
-    EXPECT_GE(found.dropped, 2.0F - 1e-4F);
-    query.reach = 3.0F;
-    const NearestPieces near = nearest_pieces(tables.map(), {3.0F, 0.5F, 0.5F}, query, out, budget);
-    EXPECT_EQ(near.found, 2U);
-    EXPECT_EQ(near.dropped, 3.0F) << "nothing else within reach";
+    const Shape shape = tables.map().shape_of(2);
+    ASSERT_TRUE(is_valid(shape));
+    EXPECT_EQ(support(shape, {1, 1, 1}), Vec3(2, 7, 2));
+    EXPECT_EQ(support(shape, {-1, -1, -1}), Vec3(0, 5, 0));
+    EXPECT_LE(bounding_radius(shape), 3.5F) << "about a centre of its own";
 }
 
-TEST(PieceDistance, SlackMakesPiecesLarger)
+/// A lower bound, and no more than rounding below the truth.
+TEST(MeshMapNode, DistanceOfABox)
 {
-    const oracle::MapOfHulls tables(pieces(), 0.25F);
-    WorkBudget budget(100'000);
-    DistanceQuery query;
-    EXPECT_NEAR(piece_distance(tables.map(), 0, {-1.0F, 0.5F, 0.5F}, query, budget).distance, 0.75F, 1e-4F);
-    query.stretch = 2.0F;
-    EXPECT_NEAR(piece_distance(tables.map(), 0, {0.5F, 0.5F, -1.0F}, query, budget).distance, 1.5F, 1e-4F);
-    EXPECT_NEAR(piece_exit(tables.map(), 0, {0.1F, 0.5F, 0.5F}, 1.0F).depth, 0.35F, 1e-4F);
-}
-
-TEST(PieceExit, AFlatPieceIsLeftAcrossItsPlane)
-{
-    const oracle::MapOfHulls tables(pieces());
-    const Exit out = piece_exit(tables.map(), 3, {9.0F, 8.5F, 0.5F}, 1.0F);
-    EXPECT_NEAR(out.depth, 0.0F, 1e-5F);
-    EXPECT_NEAR(std::abs(out.direction.x()), 1.0F, 1e-5F);
+    MeshNode node;
+    node.low = {1, 2, 3};
+    node.high = {2, 4, 9};
+    EXPECT_EQ(box_distance(node, {1.5F, 3, 4}), 0.0F);
+    EXPECT_LE(box_distance(node, {-2, 3, 13}), 5.0F);
+    EXPECT_NEAR(box_distance(node, {-2, 3, 13}), 5.0F, 1e-5F);
+    EXPECT_NEAR(box_distance(node, {1.5F, 6, 4}), 2.0F, 1e-5F);
 }
 
 }  // namespace

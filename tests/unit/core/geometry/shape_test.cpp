@@ -15,8 +15,7 @@
 namespace jink::geometry {
 namespace {
 
-const std::array<Vec3, 4> kTetrahedron{Vec3(0.0F, 0.0F, 0.0F), Vec3(1.0F, 0.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F),
-                                       Vec3(0.0F, 0.0F, 1.0F)};
+const std::array<Point3, 4> kTetrahedron{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 void expect_near(const Vec3& found, const Vec3& expected, float tolerance = 1e-5F)
 {
@@ -90,7 +89,7 @@ TEST(Shape, BoundingRadiusHoldsEverySupportPoint)
         Mat3 axes = Eigen::AngleAxisf(random.uniform(0.0F, 6.0F), any(1.0F).normalized()).toRotationMatrix();
         const Mat3 turned = axes;
         axes += 2.4e-4F * Mat3(turned * Mat3::Ones());
-        const std::array<Vec3, 3> vertices{any(2.0F), any(2.0F), any(2.0F)};
+        const std::array<Point3, 3> vertices{Point3::of(any(2.0F)), Point3::of(any(2.0F)), Point3::of(any(2.0F))};
         Shape capsule = make_capsule(any(2.0F), any(2.0F), random.uniform());
         capsule.axes = axes;
         Shape cylinder = make_cylinder(any(2.0F), any(2.0F), random.uniform());
@@ -138,10 +137,10 @@ TEST(Shape, IsValidRefusesWhatIsNotASolid)
     EXPECT_FALSE(is_valid(make_box(Vec3::Zero(), Vec3::Ones(), skewed)));
     EXPECT_FALSE(is_valid(make_capsule({0.0F, 0.0F, kNan}, Vec3::Ones(), 1.0F)));
     EXPECT_FALSE(is_valid(make_hull({}, Vec3::Zero())));
-    const std::array<Vec3, 2> broken{Vec3(0.0F, 0.0F, 0.0F), Vec3(kNan, 0.0F, 0.0F)};
+    const std::array<Point3, 2> broken{{{0, 0, 0}, {kNan, 0, 0}}};
     EXPECT_FALSE(is_valid(make_hull(broken, Vec3::Zero())));
-    std::array<Vec3, kMaxHullVertices + 1> many;
-    many.fill(Vec3::Ones());
+    std::array<Point3, kMaxHullVertices + 1> many;
+    many.fill({1, 1, 1});
     EXPECT_FALSE(is_valid(make_hull(many, Vec3::Zero())));
     EXPECT_TRUE(is_valid(make_hull(std::span(many).first(kMaxHullVertices), Vec3::Zero())));
     Shape unknown;

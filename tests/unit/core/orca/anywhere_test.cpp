@@ -8,7 +8,8 @@
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_view.hpp"
 #include "core/orca/smoothing.hpp"
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/orca_input.hpp"
 
 namespace jink::orca {
@@ -20,7 +21,7 @@ using world::PlanStatus;
 /// The scene of one thing that binds, moved by `by` and turned by quarters, and the command turned back.
 class OrcaAnywhere : public OrcaInput {
 protected:
-    enum Thing { barrel, fence, floor, ceiling, box, map, track, leg, kThings };
+    enum Thing { barrel, fence, floor, ceiling, box, hull, track, leg, kThings };
 
     [[nodiscard]] static Vec3 quarter(const Vec3& v, int quarters)
     {
@@ -60,7 +61,7 @@ protected:
             scene.airspace.ceiling = by.z() + 30.9F;
             break;
         case box: scene.obstacle(geometry::make_box(placed(Vec3(6, 1, 31)), Vec3(2, 2, 2))); break;
-        case map:
+        case hull:
             for (int c = 0; c < 8; ++c) {
                 corners.push_back(placed(
                     Vec3((c & 1) != 0 ? 8.0F : 4.0F, (c & 2) != 0 ? 3.0F : -1.0F, (c & 4) != 0 ? 33.0F : 29.0F)));
@@ -71,14 +72,12 @@ protected:
             break;
         default: break;
         }
-        const oracle::MapOfHulls hulls(
-            thing == map ? std::vector<std::vector<Vec3>>{corners}
-                         : std::vector<std::vector<Vec3>>{{placed(Vec3(500, 0, 0)), placed(Vec3(501, 0, 0)),
-                                                           placed(Vec3(500, 1, 0)), placed(Vec3(500, 0, 1))}});
+        const oracle::HullObstacles hulls({corners});
+        if (thing == hull) {
+            scene.obstacles.push_back(hulls.all()[0]);
+        }
         planner = Planner(settings);
-        planner.use_map(&hulls.map());
         EXPECT_EQ(plan(), PlanStatus::found);
-        planner.use_map(nullptr);
         return quarter(out.command, (4 - quarters) % 4);
     }
 };
@@ -109,7 +108,8 @@ TEST(ObstacleSearches, ThatEndByThemselvesAreNotCutShort)
         const Vec3 to = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
         const Mat3 turned = Eigen::AngleAxisf(random.uniform(0, 3), to).toRotationMatrix();
         const world::Obstacle box{0, geometry::make_box(random.uniform(5.0F, 90.0F) * to, Vec3(2, 1, 3), turned)};
-        const ObstacleScene scene{nullptr, {&box, 1}};
+        const std::vector<world::Threat> threats = oracle::threats_of({&box, 1});
+        const Obstacles scene(threats);
         const detail::ObstacleView view{scene, {random.uniform(0.6F, 3.0F), 1.0F}, 1e-4F};
         WorkBudget budget(1'000'000);
         const detail::Sighting whole = view.obstacle(0, Vec3::Zero(), 1e6F, budget);

@@ -8,6 +8,7 @@
 
 #include "core/orca/velocity_filter.hpp"
 #include "tests/numbers.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 
 // A filter flown tick by tick, for its tests.
 
@@ -28,7 +29,8 @@ public:
     Decision tick(std::uint32_t units = kPlenty)
     {
         input.neighbours = neighbours;
-        input.scene.obstacles = obstacles;
+        threats = oracle::threats_of(obstacles);
+        input.obstacles = threats;
         input.bounds = bounds;
         WorkBudget budget(units);
         const Decision decision = filter.decide(input, budget);
@@ -59,6 +61,7 @@ public:
     FilterInput input;
     std::vector<Neighbour> neighbours;
     std::vector<world::Obstacle> obstacles;
+    std::vector<world::Threat> threats;  ///< of the newest tick
     std::vector<Bound> bounds;
     Vec3 last;
     TimePoint now{1'000'000};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/orca/obstacle_view.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/obstacle_contract.hpp"
 
 namespace jink::orca {
@@ -15,8 +16,8 @@ namespace {
 
 using test::ObstacleContract;
 
-/// Proven distance of an obstacle.
-float distance_of(const ObstacleScene& scene, std::size_t i, const Vec3& point)
+/// What is proven of the distance of an obstacle.
+float distance_of(Obstacles scene, std::size_t i, const Vec3& point)
 {
     WorkBudget budget(test::kUnlimited);
     const detail::ObstacleView view{scene, {1.0F, 1.0F}, 1e-4F};
@@ -30,7 +31,7 @@ TEST_F(ObstacleContract, WhatLiesAtTheReachIsLeftOut)
     int at_the_reach = 0;
     for (int step = -40; step <= 40; ++step) {
         own.position.x() = static_cast<float>(step) * 0x1p-22F;
-        const float distance = distance_of({nullptr, obstacles}, 0, own.position);
+        const float distance = distance_of(oracle::threats_of(obstacles), 0, own.position);
         EXPECT_EQ(std::isfinite(planes().margin), distance < 6.0F) << step;
         at_the_reach += distance == 6.0F ? 1 : 0;
     }
@@ -71,7 +72,7 @@ TEST_F(ObstacleContract, OfMoreThanThereIsRoomForAsNearTheFirstStay)
     }
     // Their proven distances differ by rounding: in that order, the last two equally near.
     const auto distance = [](const world::Obstacle& obstacle) {
-        return distance_of({nullptr, {&obstacle, 1}}, 0, Vec3::Zero());
+        return distance_of(oracle::threats_of({&obstacle, 1}), 0, Vec3::Zero());
     };
     std::stable_sort(obstacles.begin(), obstacles.end(), [&](const world::Obstacle& one, const world::Obstacle& other) {
         return distance(one) < distance(other);
@@ -82,7 +83,7 @@ TEST_F(ObstacleContract, OfMoreThanThereIsRoomForAsNearTheFirstStay)
     EXPECT_TRUE(found.truncated);
     EXPECT_NEAR(found.speed_cap, 13.0F, 1e-3F);
     for (std::size_t i = 0; i < found.planes.size(); ++i) {
-        EXPECT_EQ(found.planes[i].source, kFirstObstacleSource + i);
+        EXPECT_EQ(found.planes[i].source, i);
     }
 }
 
@@ -104,7 +105,7 @@ TEST_F(ObstacleContract, AWayMayEndWhereTheMarginBegins)
     for (const bool box : {false, true}) {
         obstacles.clear();
         add(box ? geometry::make_box({5, 0, 0}, {1, 1, 1}) : geometry::make_sphere({5, 0, 0}, 1.0F));
-        const float free = distance_of({nullptr, obstacles}, 0, Vec3::Zero()) - 1.0F;
+        const float free = distance_of(oracle::threats_of(obstacles), 0, Vec3::Zero()) - 1.0F;
         EXPECT_NEAR(free, 3.0F, 1e-4F);
         EXPECT_TRUE(way({1, 0, 0}, free).clear) << box;
         EXPECT_EQ(way({1, 0, 0}, free).clear_until, free);

@@ -8,7 +8,7 @@
 
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_view.hpp"
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/unit/core/orca/obstacle_contract.hpp"
 
 namespace jink::orca {
@@ -31,7 +31,7 @@ TEST_F(ObstacleContract, TheNearerOfTwoParallelWallsIsKept)
         ASSERT_GE(found.planes.size(), 1U);
         EXPECT_NEAR(found.planes[0].offset, -2.5F, 1e-4F) << "3.5 m less 1 m, in 1 s";
         EXPECT_NEAR(found.margin, 2.5F, 1e-4F);
-        EXPECT_EQ(found.nearest, kFirstObstacleSource + (far_first ? 1 : 0));
+        EXPECT_EQ(found.nearest, (far_first ? 1 : 0));
     }
 }
 
@@ -105,9 +105,9 @@ TEST_F(ObstacleContract, OfTwoAsNearTheFirstIsSaidAndComesFirst)
     add_point(-Vec3::UnitX(), 2.0F);
     const ObstaclePlanes found = planes();
     ASSERT_EQ(found.planes.size(), 2U);
-    EXPECT_EQ(found.nearest, kFirstObstacleSource);
-    EXPECT_EQ(found.planes[0].source, kFirstObstacleSource);
-    EXPECT_EQ(found.planes[1].source, kFirstObstacleSource + 1);
+    EXPECT_EQ(found.nearest, 0);
+    EXPECT_EQ(found.planes[0].source, 0);
+    EXPECT_EQ(found.planes[1].source, 1);
 }
 
 /// Penetration begins below a margin of zero.
@@ -126,13 +126,14 @@ TEST_F(ObstacleContract, AnEnvelopeThatTouchesDoesNotPenetrate)
 TEST_F(ObstacleContract, ABudgetThatRunsOutCapsTheSpeedForWhatIsMissing)
 {
     settings.vertical = 0.8F;  // every shape but spheres is searched
-    const oracle::MapOfHulls hulls(
-        {{{3, -2, -2}, {3, 2, -2}, {3, 0, 2}, {4, 0, 0}}, {{-3, -2, -2}, {-3, 2, -2}, {-3.5F, 0, 2}, {-4, 0, 0}}});
-    for (const bool has_map : {false, true}) {
-        map = has_map ? &hulls.map() : nullptr;
+    for (const bool has_hulls : {false, true}) {
         obstacles.clear();
+        if (has_hulls) {
+            add_hull({{3, -2, -2}, {3, 2, -2}, {3, 0, 2}, {4, 0, 0}});
+            add_hull({{-3, -2, -2}, {-3, 2, -2}, {-3.5F, 0, 2}, {-4, 0, 0}});
+        }
         add(geometry::make_capsule({0, 3, -2}, {1, 3, 2}, 0.25F));
-        if (!has_map) {
+        if (!has_hulls) {
             add(geometry::make_box({0, -4, 0}, {3, 1, 3}));
         }
         const ObstaclePlanes all = planes();
@@ -169,21 +170,13 @@ TEST_F(ObstacleContract, WithoutAnyBudgetTheBoundOfTheObstacleCounts)
     EXPECT_TRUE(none.planes.empty());
     // Its middle is 4 m away, and no point of it more than 1.25 m from there, heights stretched by 1.25.
     EXPECT_NEAR(none.speed_cap, (4.0F - 1.25F * 1.25F - 1.0F) / 1.25F, 0.02F);
-    const std::vector<Vec3> far{{4, -0.5F, -0.5F}, {4, 0.5F, -0.5F}, {4, 0, 0.5F}, {5, 0, 0}};
-    const oracle::MapOfHulls hulls({far});
-    map = &hulls.map();
-    obstacles.clear();
-    const ObstaclePlanes mapped = planes(0);
-    EXPECT_TRUE(mapped.truncated && mapped.planes.empty());
-    EXPECT_LE(mapped.speed_cap, 3.0F / 1.25F);
 }
 
-/// A piece oblique in its box: its proven distance counts, and is never below the distance of the box.
-TEST_F(ObstacleContract, OfAPieceThatIsCutShortTheBetterBoundCounts)
+/// Of a hull that lies askew in its box: what is proven of it counts.
+TEST_F(ObstacleContract, OfAHullThatIsCutShortWhatIsProvenCounts)
 {
-    // A plate at 4.24 m, oblique in a box that contains the vehicle.
-    const oracle::MapOfHulls hulls({{{-4, 10, -3}, {10, -4, -4}, {10, -4, 3}, {-3, 9, 4}, {8, 8, 0}, {3, 3, 5}}});
-    map = &hulls.map();
+    // A plate that stands 4.24 m off, askew in a box that holds the vehicle.
+    only_hull({{-4, 10, -3}, {10, -4, -4}, {10, -4, 3}, {-3, 9, 4}, {8, 8, 0}, {3, 3, 5}});
     const ObstaclePlanes whole = planes();
     const std::uint32_t needed = spent;
     ASSERT_EQ(whole.planes.size(), 1U);
@@ -197,13 +190,6 @@ TEST_F(ObstacleContract, OfAPieceThatIsCutShortTheBetterBoundCounts)
         most = std::max(most, some.speed_cap);
     }
     EXPECT_GT(most, 0.1F);
-    // One whose box begins 3 m off: never less than that.
-    const oracle::MapOfHulls off({{{3, 4, 0}, {7, -4, 0}, {7, 4, 3}, {7, 4, -3}}});
-    map = &off.map();
-    ASSERT_EQ(planes().planes.size(), 1U);
-    for (std::uint32_t units = spent; units-- > 0;) {
-        ASSERT_GE(planes(units).speed_cap, 3.0F - 1.0F - 1e-3F) << units;
-    }
 }
 
 // --- single obstacles ---
@@ -211,24 +197,54 @@ TEST_F(ObstacleContract, OfAPieceThatIsCutShortTheBetterBoundCounts)
 TEST_F(ObstacleContract, ASearchWithoutABudgetHasNoDirection)
 {
     add(geometry::make_capsule({3.5F, 0, -1}, {4.5F, 0, 1}, 0.25F));
-    const oracle::MapOfHulls hulls({{{4, -1, -1}, {4, 1, -1}, {4, 0, 1}, {5, 0, 0}}});
-    const ObstacleScene scene{&hulls.map(), obstacles};
-    const detail::ObstacleView view{scene, {1.25F, 1.0F}, 1e-4F};
-    for (const bool piece : {false, true}) {
+    add_hull({{4, -1, -1}, {4, 1, -1}, {4, 0, 1}, {5, 0, 0}});
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const detail::ObstacleView view{threats, {1.25F, 1.0F}, 1e-4F};
+    for (const std::size_t i : {0U, 1U}) {
         WorkBudget none(0);
-        const detail::Sighting seen =
-            piece ? view.piece(0, Vec3::Zero(), 9.0F, none) : view.obstacle(0, Vec3::Zero(), 9.0F, none);
+        const detail::Sighting seen = view.obstacle(i, Vec3::Zero(), 9.0F, none);
         EXPECT_TRUE(none.exhausted());
         EXPECT_EQ(seen.direction, Vec3::Zero()) << "nothing was known";
         EXPECT_EQ(seen.distance, 0.0F);
     }
 }
 
+/// An obstacle that may stand out of its shape is as near as if it did, whatever its shape, also in the stretched space
+/// and within it.
+TEST_F(ObstacleContract, UncertaintyMakesObstaclesLarger)
+{
+    add(geometry::make_box({4, 0, 0}, {1, 9, 9}));
+    add_hull({{3, -9, -9}, {3, 9, -9}, {3, -9, 9}, {3, 9, 9}, {5, 0, 0}});
+    for (const std::size_t i : {0U, 1U}) {
+        obstacles[i].uncertainty = 0.25F;
+        for (const float stretch : {0.5F, 1.0F, 2.0F}) {
+            const detail::ObstacleView view{threats, {stretch, 1.0F}, 1e-4F};
+            const float grown = 0.25F * std::max(1.0F, stretch);
+            WorkBudget budget(kUnlimited);
+            const detail::Sighting outside = view.obstacle(i, Vec3::Zero(), 9.0F, budget);
+            EXPECT_NEAR(outside.distance, 3.0F - grown, 1e-3F) << i;
+            EXPECT_NEAR(outside.upper, 3.0F - grown, 1e-3F) << i;
+            EXPECT_FALSE(outside.bounded);
+            EXPECT_LE(view.obstacle_bound(i, Vec3(-20, 0, 0)), outside.distance + 20.0F);
+            const detail::Sighting between = view.obstacle(i, Vec3(2.9F, 0, 0), 9.0F, budget);
+            EXPECT_NEAR(between.distance, 0.1F - grown, 1e-3F) << i;
+            EXPECT_NEAR(between.direction.x(), 1.0F, 1e-3F) << i;
+            EXPECT_NEAR(view.obstacle(i, Vec3(3.5F, 0, 0), 9.0F, budget).distance, -0.5F - grown, 1e-3F) << i;
+        }
+    }
+    const float bare = planes().margin;
+    obstacles[0].uncertainty = 0.5F;
+    EXPECT_NEAR(planes().margin, bare - 0.25F, 1e-3F);
+    EXPECT_EQ(planes().nearest, 0);
+    EXPECT_NEAR(way({1, 0, 0}, 4.0F).clear_until, 3.0F - 0.5F - 1.0F, 1e-3F);
+}
+
 /// A search that ends because enough is proven has not been cut short.
 TEST_F(ObstacleContract, EnoughIsNotABound)
 {
     add(geometry::make_box({9, 2, 1}, {1, 3, 2}, Eigen::AngleAxisf(0.5F, Vec3(0, 0.6F, 0.8F)).toRotationMatrix()));
-    const ObstacleScene scene{nullptr, obstacles};
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+    const Obstacles scene(threats);
     const detail::ObstacleView view{scene, {1.25F, 1.0F}, 1e-4F};
     WorkBudget budget(kUnlimited);
     const detail::Sighting exact = view.obstacle(0, Vec3::Zero(), 100.0F, budget);
@@ -272,7 +288,8 @@ TEST_F(ObstacleContract, TheBoundOfALargeObstacleIsNeverAboveItsDistance)
         const float radius = random.uniform(100.0F, 1000.0F);
         const Vec3 to = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)).normalized();
         add(geometry::make_sphere((radius + random.uniform(0.1F, 5.0F)) * to, radius));
-        const ObstacleScene scene{nullptr, obstacles};
+        const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
+        const Obstacles scene(threats);
         const detail::ObstacleView view{scene, {1.0F, 1.0F}, 1e-4F};
         const double distance =
             obstacles[0].shape.centre.cast<double>().norm() - static_cast<double>(obstacles[0].shape.radius);
@@ -289,17 +306,16 @@ TEST_F(ObstacleContract, BesideAFaceNothingIsClaimedThatIsNotSo)
     for (int c = 0; c < 8; ++c) {
         corners.emplace_back((c & 1) != 0 ? 5.0F : -5.0F, (c & 2) != 0 ? 5.0F : -5.0F, (c & 4) != 0 ? 5.0F : -5.0F);
     }
-    const oracle::MapOfHulls hulls({corners});
-    const ObstacleScene scene{&hulls.map(), obstacles};
+    add_hull(corners);
+    const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
     for (const float stretch : {1.0F, 1.375F}) {
-        const detail::ObstacleView view{scene, {stretch, 1.0F}, 1e-4F};
+        const detail::ObstacleView view{threats, {stretch, 1.0F}, 1e-4F};
         for (float off = -1e-3F; off <= 1e-3F; off += 1.7e-5F) {
             const Vec3 point(0.3F, 5.0F + off, -0.2F);
             const float true_distance = point.y() - 5.0F;
-            for (const bool piece : {false, true}) {
+            for (const std::size_t i : {0U, 1U}) {
                 WorkBudget budget(kUnlimited);
-                const detail::Sighting seen =
-                    piece ? view.piece(0, point, 9.0F, budget) : view.obstacle(0, point, 9.0F, budget);
+                const detail::Sighting seen = view.obstacle(i, point, 9.0F, budget);
                 EXPECT_LE(seen.distance, true_distance + 5e-6F) << off;
                 EXPECT_GE(seen.distance, true_distance - 1.5e-4F) << off;
                 EXPECT_GE(seen.upper, true_distance - 5e-6F) << off;

@@ -9,7 +9,8 @@
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_plane.hpp"
 #include "core/orca/obstacle_view.hpp"
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 
 namespace jink::orca {
 namespace {
@@ -106,7 +107,7 @@ TEST(ObstacleEdges, TheCapKeepsToTheHalfSpaceThatIsMissing)
                           distance * direction.z() / envelope.stretch);
         const world::Obstacle obstacle = sphere_at(centre, 1e-3F);
         WorkBudget none(0);
-        const ObstaclePlanes found = obstacle_planes({nullptr, {&obstacle, 1}}, own, settings, none);
+        const ObstaclePlanes found = obstacle_planes(oracle::threats_of({&obstacle, 1}), own, settings, none);
         if (!found.truncated) {
             continue;
         }
@@ -126,7 +127,7 @@ TEST(ObstacleEdges, TheNearestOfWhatIsDroppedCounts)
     own.reach_speed = 5.0F;
     const auto cap = [&](const std::vector<world::Obstacle>& obstacles) {
         WorkBudget none(0);
-        return obstacle_planes({nullptr, obstacles}, own, settings, none).speed_cap;
+        return obstacle_planes(oracle::threats_of(obstacles), own, settings, none).speed_cap;
     };
     const world::Obstacle near = sphere_at({4, 0, 0}, 0.5F);
     const world::Obstacle far = sphere_at({0, 9, 0}, 0.5F);
@@ -171,7 +172,7 @@ TEST(ObstacleEdges, MoreThanThereIsRoomForLeaveTheNearest)
             std::rotate(shuffled.begin(), shuffled.begin() + 7, shuffled.end());
         }
         WorkBudget budget(kAllWork);
-        const ObstaclePlanes found = obstacle_planes({nullptr, shuffled}, own, settings, budget);
+        const ObstaclePlanes found = obstacle_planes(oracle::threats_of(shuffled), own, settings, budget);
         ASSERT_EQ(found.planes.size(), kMaxObstaclePlanes);
         EXPECT_TRUE(found.truncated);
         EXPECT_NEAR(found.speed_cap, dropped / 2.4F, 1e-3F) << order;
@@ -180,10 +181,10 @@ TEST(ObstacleEdges, MoreThanThereIsRoomForLeaveTheNearest)
             EXPECT_NEAR(-found.planes[k].offset, (distance_of(k) - 1.1F) / 2.4F, 1e-3F) << "nearest first, " << k;
         }
     }
-    // Pieces of a map are chosen in the same way.
-    const oracle::MapOfHulls map(hulls);
+    // Hulls are chosen in the same way.
+    const oracle::HullObstacles solids(hulls);
     WorkBudget budget(kAllWork);
-    const ObstaclePlanes found = obstacle_planes({&map.map(), {}}, own, settings, budget);
+    const ObstaclePlanes found = obstacle_planes(solids.all(), own, settings, budget);
     ASSERT_EQ(found.planes.size(), kMaxObstaclePlanes);
     for (std::size_t k = 0; k < found.planes.size(); ++k) {
         EXPECT_EQ(found.planes[k].source, k);
@@ -199,10 +200,10 @@ TEST(ObstacleEdges, AHalfSpaceThatNothingKeepsToSaysNothingOfOthers)
     own.reach_speed = 0.1F;
     const std::vector<world::Obstacle> two{sphere_at({0.4F, 0, 0}, 0.1F), sphere_at({0, 1.3F, 0}, 0.1F)};
     WorkBudget budget(kAllWork);
-    const ObstaclePlanes found = obstacle_planes({nullptr, two}, own, settings, budget);
+    const ObstaclePlanes found = obstacle_planes(oracle::threats_of(two), own, settings, budget);
     EXPECT_EQ(found.planes.size(), 2U);
     EXPECT_TRUE(found.penetrating) << "also where the next one is clear";
-    EXPECT_EQ(found.nearest, kFirstObstacleSource);
+    EXPECT_EQ(found.nearest, 0);
 }
 
 TEST(ObstacleEdges, SizesThatAreNoneAreRefused)
@@ -237,7 +238,8 @@ TEST(ObstacleSight, TheBoundIsNeverAboveTheDistance)
 {
     const world::Obstacle obstacle = sphere_at({10, 0, 0}, 2.0F);
     for (const float stretch : {0.5F, 1.0F, 3.0F}) {
-        const ObstacleScene scene{nullptr, {&obstacle, 1}};
+        const std::vector<world::Threat> threats = oracle::threats_of({&obstacle, 1});
+        const Obstacles scene(threats);
         const detail::ObstacleView view{scene, {stretch, 1.0F}, 1e-4F};
         EXPECT_LE(view.obstacle_bound(0, Vec3::Zero()), 8.0F);
         EXPECT_LE(view.obstacle_bound(0, {10, 0, 10}), stretch * 8.0F) << stretch;
@@ -249,7 +251,8 @@ TEST(ObstacleSight, TheBoundIsNeverAboveTheDistance)
         EXPECT_GE(level.upper, 8.0F - 1e-4F);
         EXPECT_FALSE(level.bounded);
     }
-    const ObstacleScene scene{nullptr, {&obstacle, 1}};
+    const std::vector<world::Threat> threats = oracle::threats_of({&obstacle, 1});
+    const Obstacles scene(threats);
     const detail::ObstacleView view{scene, {1.0F, 1.0F}, 1e-4F};
     EXPECT_GT(view.obstacle_bound(0, Vec3::Zero()), 7.99F);
 }
@@ -258,7 +261,8 @@ TEST(ObstacleSight, TheBoundIsNeverAboveTheDistance)
 TEST(ObstacleSight, WithinAnObstacleTheWayOutIsSeen)
 {
     const world::Obstacle box{0, geometry::make_box({0, 0, 0}, {5, 5, 5})};
-    const ObstacleScene scene{nullptr, {&box, 1}};
+    const std::vector<world::Threat> threats = oracle::threats_of({&box, 1});
+    const Obstacles scene(threats);
     const detail::ObstacleView view{scene, {1.0F, 1.0F}, 1e-4F};
     WorkBudget budget(kAllWork);
     const detail::Sighting seen = view.obstacle(0, {4, 0, 0}, 100.0F, budget);
@@ -270,10 +274,9 @@ TEST(ObstacleSight, WithinAnObstacleTheWayOutIsSeen)
     for (int c = 0; c < 8; ++c) {
         corners.emplace_back((c & 1) != 0 ? 5.0F : -5.0F, (c & 2) != 0 ? 5.0F : -5.0F, (c & 4) != 0 ? 5.0F : -5.0F);
     }
-    const oracle::MapOfHulls map({corners});
-    const ObstacleScene mapped{&map.map(), {}};
+    const oracle::HullObstacles hull({corners});
     const detail::Sighting piece =
-        detail::ObstacleView{mapped, {1.0F, 1.0F}, 1e-4F}.piece(0, {0, -4.5F, 0}, 100.0F, budget);
+        detail::ObstacleView{hull.all(), {1.0F, 1.0F}, 1e-4F}.obstacle(0, {0, -4.5F, 0}, 100.0F, budget);
     EXPECT_NEAR(piece.distance, -0.5F, 1e-3F);
     EXPECT_EQ(piece.upper, 0.0F);
     EXPECT_NEAR((piece.direction - Vec3(0, 1, 0)).norm(), 0.0F, 1e-3F);

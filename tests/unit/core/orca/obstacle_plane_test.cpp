@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "core/orca/obstacle_way.hpp"
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
+#include "tests/oracle/points.hpp"
 
 namespace jink::orca {
 namespace {
@@ -41,7 +42,7 @@ OwnMotion at(float x, float y = 0.0F, float z = 0.0F)
     return own;
 }
 
-ObstaclePlanes planes_of(const ObstacleScene& scene, const OwnMotion& own, const ObstacleSettings& settings)
+ObstaclePlanes planes_of(Obstacles scene, const OwnMotion& own, const ObstacleSettings& settings)
 {
     WorkBudget budget(1'000'000);
     return obstacle_planes(scene, own, settings, budget);
@@ -54,19 +55,16 @@ protected:
     {
         return planes_of(scene(), own, settings);
     }
-    [[nodiscard]] ObstacleScene scene() const
-    {
-        return GetParam() == 2 ? ObstacleScene{&map_.map(), {}} : ObstacleScene{nullptr, {&obstacle_, 1}};
-    }
+    [[nodiscard]] Obstacles scene() const { return threats_; }
 
 private:
-    std::vector<Vec3> corners_ = corners({-0.5F, -1.0F, -1.0F}, {0.5F, 1.0F, 1.0F});
-    oracle::MapOfHulls map_{{corners({2.0F, -1.0F, -1.0F}, {3.0F, 1.0F, 1.0F})}};
+    std::vector<Point3> corners_ = oracle::points_of(corners({-0.5F, -1.0F, -1.0F}, {0.5F, 1.0F, 1.0F}));
     world::Obstacle obstacle_{1, GetParam() == 0 ? geometry::make_box({2.5F, 0.0F, 0.0F}, {0.5F, 1.0F, 1.0F})
                                                  : geometry::make_hull(corners_, {2.5F, 0.0F, 0.0F})};
+    std::vector<world::Threat> threats_ = oracle::threats_of({&obstacle_, 1});
 };
 
-INSTANTIATE_TEST_SUITE_P(BoxHullPiece, CheckBox, ::testing::Values(0, 1, 2));
+INSTANTIATE_TEST_SUITE_P(BoxHull, CheckBox, ::testing::Values(0, 1));
 
 TEST_P(CheckBox, CheckValueBoxAhead)
 {
@@ -76,7 +74,7 @@ TEST_P(CheckBox, CheckValueBoxAhead)
     EXPECT_TRUE(found.planes[0].normal.isApprox(-Vec3::UnitX(), kTolerance));
     EXPECT_NEAR(found.planes[0].offset, -0.55F, kTolerance);
     EXPECT_EQ(found.planes[0].level, Level::obstacles);
-    EXPECT_EQ(found.planes[0].source, GetParam() == 2 ? 0 : kFirstObstacleSource);
+    EXPECT_EQ(found.planes[0].source, 0);
     EXPECT_FALSE(found.penetrating || found.truncated || found.bounded);
 }
 
@@ -159,7 +157,7 @@ TEST_P(CheckBox, TheWayAheadEndsAtTheMargin)
     EXPECT_FALSE(met.clear || met.bounded);
     EXPECT_LE(met.clear_until, 1.1F);
     EXPECT_NEAR(met.clear_until, 1.1F, 3e-4F);
-    EXPECT_EQ(met.source, GetParam() == 2 ? 0 : kFirstObstacleSource);
+    EXPECT_EQ(met.source, 0);
     const WayClearance before =
         clearance_along(scene(), Vec3::Zero(), {1.0F, 0.0F, 0.0F}, 1.09F, check_settings(), budget);
     EXPECT_TRUE(before.clear);
@@ -191,7 +189,7 @@ TEST(ObstaclePlanes, StretchIsMappedBackToVelocities)
     // A ceiling 4 m above, with 0.8 m required vertically and 1.1 m level: a climb of 3.2 m in 2.4 s is permitted.
     const world::Obstacle ceiling{1, geometry::make_box({0.0F, 0.0F, 5.0F}, {50.0F, 50.0F, 1.0F})};
     const ObstacleSettings settings;
-    const ObstaclePlanes found = planes_of({nullptr, {&ceiling, 1}}, at(0.0F), settings);
+    const ObstaclePlanes found = planes_of(oracle::threats_of({&ceiling, 1}), at(0.0F), settings);
     ASSERT_EQ(found.planes.size(), 1U);
     EXPECT_TRUE(found.planes[0].normal.isApprox(-Vec3::UnitZ(), 1e-4F));
     EXPECT_NEAR(found.planes[0].offset, -3.2F / 2.4F, 1e-4F);
@@ -202,7 +200,7 @@ TEST(ObstaclePlanes, CoveringTheCylinderTakesRootTwoOfBoth)
     const world::Obstacle wall{1, geometry::make_box({5.0F, 0.0F, 0.0F}, {1.0F, 50.0F, 50.0F})};
     ObstacleSettings settings;
     settings.covers_cylinder = true;
-    const ObstaclePlanes found = planes_of({nullptr, {&wall, 1}}, at(0.0F), settings);
+    const ObstaclePlanes found = planes_of(oracle::threats_of({&wall, 1}), at(0.0F), settings);
     ASSERT_EQ(found.planes.size(), 1U);
     EXPECT_NEAR(found.planes[0].offset, -(4.0F - 1.1F * std::sqrt(2.0F)) / 2.4F, 1e-4F);
 }
@@ -224,13 +222,13 @@ TEST(ObstaclePlanes, TheSeventeenthObstacleBecomesASpeedCap)
 {
     const std::vector<world::Obstacle> sixteen = ring(kMaxObstaclePlanes, 4.0F);
     const ObstacleSettings settings = check_settings();
-    const ObstaclePlanes all = planes_of({nullptr, sixteen}, at(0.0F), settings);
+    const ObstaclePlanes all = planes_of(oracle::threats_of(sixteen), at(0.0F), settings);
     EXPECT_EQ(all.planes.size(), kMaxObstaclePlanes);
     EXPECT_FALSE(all.truncated);
     EXPECT_EQ(all.speed_cap, std::numeric_limits<float>::infinity());
 
     const std::vector<world::Obstacle> more = ring(kMaxObstaclePlanes + 1, 4.0F);
-    const ObstaclePlanes some = planes_of({nullptr, more}, at(0.0F), settings);
+    const ObstaclePlanes some = planes_of(oracle::threats_of(more), at(0.0F), settings);
     EXPECT_EQ(some.planes.size(), kMaxObstaclePlanes);
     EXPECT_TRUE(some.truncated);
     EXPECT_NEAR(some.speed_cap, (4.16F - 0.1F - 0.9F) / 2.0F, 1e-4F);
@@ -245,16 +243,11 @@ TEST(ObstaclePlanes, ABudgetThatRunsOutIsASpeedCapAndNotSilence)
     const ObstacleSettings settings;  // stretched: every capsule is searched
     for (const std::uint32_t units : {0U, 9U, 40U, 100U}) {
         WorkBudget budget(units);
-        const ObstaclePlanes found = obstacle_planes({nullptr, obstacles}, at(0.0F), settings, budget);
+        const ObstaclePlanes found = obstacle_planes(oracle::threats_of(obstacles), at(0.0F), settings, budget);
         ASSERT_TRUE(found.truncated) << units;
         const float stretch = envelope_of(settings).stretch;
         EXPECT_LE(found.speed_cap, (4.09F - 0.1F - 1.1F) / settings.horizon / stretch) << units;
     }
-    const oracle::MapOfHulls map({corners({3.0F, -1.0F, -1.0F}, {4.0F, 1.0F, 1.0F})});
-    WorkBudget none(0);
-    const ObstaclePlanes found = obstacle_planes({&map.map(), {}}, at(0.0F), settings, none);
-    EXPECT_TRUE(found.truncated && found.planes.empty());
-    EXPECT_LE(found.speed_cap, (3.0F - 1.1F) / settings.horizon);
 }
 
 TEST(ObstaclePlanes, WhatIsImpliedIsLeftOut)
@@ -262,12 +255,12 @@ TEST(ObstaclePlanes, WhatIsImpliedIsLeftOut)
     // A wall in front of another one that is as wide and as high.
     const std::vector<world::Obstacle> walls{{1, geometry::make_box({3.0F, 0.0F, 0.0F}, {0.5F, 9.0F, 9.0F})},
                                              {2, geometry::make_box({5.0F, 0.0F, 0.0F}, {0.5F, 9.0F, 9.0F})}};
-    EXPECT_EQ(planes_of({nullptr, walls}, at(0.0F), check_settings()).planes.size(), 1U);
-    // Turned slightly, not: at sufficient lateral speed the farther wall is reached first.
+    EXPECT_EQ(planes_of(oracle::threats_of(walls), at(0.0F), check_settings()).planes.size(), 1U);
+    // Turned a little, it is not: fast enough sideways, the farther wall is met first.
     const Mat3 turned = Eigen::AngleAxisf(0.5F, Vec3::UnitZ()).toRotationMatrix();
     const std::vector<world::Obstacle> askew{walls[0],
                                              {2, geometry::make_box({4.0F, 4.0F, 0.0F}, {0.5F, 9.0F, 9.0F}, turned)}};
-    EXPECT_EQ(planes_of({nullptr, askew}, at(0.0F), check_settings()).planes.size(), 2U);
+    EXPECT_EQ(planes_of(oracle::threats_of(askew), at(0.0F), check_settings()).planes.size(), 2U);
 }
 
 TEST(ObstacleSettings, RefusesWhatIsOutOfRange)

@@ -46,16 +46,16 @@ TEST_F(OrcaInput, HorizonsAreAsLongAsBrakingAndTheDelayNeed)
         EXPECT_NEAR(planner.last().horizon, out.valid_until - out.start, 1e-4F);
         return planner.last().horizon;
     };
-    settings.horizon = 20.0F;
+    scene.rules.lookahead = 20.0F;
     EXPECT_FLOAT_EQ(horizon(), 20.0F);
-    settings.horizon = 1.0F;
+    scene.rules.lookahead = 1.0F;
     EXPECT_FLOAT_EQ(horizon(), 2.0F) << "5 m/s at 5 m/s2, twice";
     scene.limits.max_acceleration = 1.0F;
     EXPECT_FLOAT_EQ(horizon(), 10.0F);
-    scene.reference.leg.speed = 8.0F;
+    scene.reference.speed = 8.0F;
     EXPECT_FLOAT_EQ(horizon(), 16.0F) << "a leg that is faster than the cruise";
     scene.limits.max_acceleration = 50.0F;
-    settings.latency = 1.0F;
+    scene.rules.latency = 1.0F;
     EXPECT_FLOAT_EQ(horizon(), 2.72F * 1.25F) << "latency and lag";
     settings.smoothing = 11;
     EXPECT_NEAR(horizon(), 2.72F * (1.25F + 10.0F / 3.0F * 0.02F), 1e-4F) << "and the mean of commands 20 ms apart";
@@ -73,9 +73,7 @@ TEST_F(OrcaInput, EveryEndOfTheSettingsIsTakenAndNothingBeyond)
         EXPECT_FALSE(takes(member, std::nextafter(low, -1.0F)) || takes(member, std::nextafter(high, 100.0F))) << low;
         EXPECT_FALSE(takes(member, kNotANumber)) << low;
     };
-    ends(&Settings::horizon, 1.0F, 60.0F);
     ends(&Settings::conflict_ratio, 0.5F, 0.95F);
-    ends(&Settings::latency, 0.0F, 1.0F);
     ends(&Settings::reach, 0.1F, 5.0F);
     ends(&Settings::stale, 0.01F, 60.0F);
     using Length = std::uint16_t;
@@ -83,12 +81,12 @@ TEST_F(OrcaInput, EveryEndOfTheSettingsIsTakenAndNothingBeyond)
     EXPECT_FALSE(takes(&Settings::smoothing, Length{0}));
     EXPECT_FALSE(takes(&Settings::smoothing, Length{CommandFilter::kMost + 1}));
     Settings good;
-    good.horizon = 11.0F;
+    good.stale = 11.0F;
     EXPECT_TRUE(planner.configure(good));
     good.reach = 0.0F;
-    good.horizon = 12.0F;
+    good.stale = 12.0F;
     EXPECT_FALSE(planner.configure(good));
-    EXPECT_EQ(planner.settings().horizon, 11.0F);
+    EXPECT_EQ(planner.settings().stale, 11.0F);
 }
 
 // --- no answer ---
@@ -99,7 +97,7 @@ TEST_F(OrcaInput, WhatIsNotANumberIsNoAnswer)
         for (int field = 0; field < 5; ++field) {
             const Scene good = scene;
             float* const places[] = {&scene.own.position.x(), &scene.own.position.z(), &scene.own.velocity.y(),
-                                     &scene.reference.leg.speed, &scene.limits.max_acceleration};
+                                     &scene.reference.speed, &scene.limits.max_acceleration};
             *places[field] = bad;
             planner = Planner(settings);
             EXPECT_NE(plan(), PlanStatus::found) << "field " << field << ", " << bad;
@@ -183,7 +181,7 @@ TEST_F(OrcaInput, WhatWasSentSinceTheLastPlanIsFlownFirst)
 TEST_F(OrcaInput, CommandsOnTheirWayMoveTheVehicle)
 {
     scene.limits.velocity_lag = 0.0F;
-    settings.latency = 0.4F;
+    scene.rules.latency = 0.4F;
     planner = Planner(settings);
     scene.track(Vec3(0, 60, 30), Vec3::Zero());
     world::Commanded sent{Vec3(0, 4, 0), scene.now - 0.3F};

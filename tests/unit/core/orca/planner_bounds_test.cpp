@@ -81,12 +81,12 @@ TEST_F(OrcaInput, ThePathReachesTheEndOfTheHorizon)
 {
     scene.own.velocity = Vec3(5, 0, 0);
     for (const float horizon : {8.0F, 20.0F, 60.0F}) {
-        settings.horizon = horizon;
+        scene.rules.lookahead = horizon;
         static_cast<void>(command());
         EXPECT_NEAR(out.path.duration(), horizon, 1e-3F);
         EXPECT_NEAR(out.path.points.back().position.x(), 5.0F * horizon, 1e-2F);
     }
-    settings.horizon = 8.0F;
+    scene.rules.lookahead = 8.0F;
     static_cast<void>(command());
     EXPECT_LE(out.path.points.size(), 44U) << "40 pieces, and the first few periods";
 }
@@ -106,7 +106,7 @@ TEST_F(OrcaInput, OnlyWhatCanStopSlowsDownBeforeTheEnd)
 TEST_F(OrcaInput, OfOldTracksNothingIsExpected)
 {
     settings.stale = 0.5F;
-    settings.latency = 1.0F;
+    scene.rules.latency = 1.0F;
     scene.own.velocity = Vec3(5, 0, 0);
     world::Track& track = scene.track(Vec3(60, 0.5F, 30), Vec3(-5, 0, 0));
     const float alone = command().y();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
 #include "tests/unit/core/orca/orca_input.hpp"
 
 namespace jink::orca {
@@ -80,7 +80,7 @@ TEST_F(OrcaInput, ABoundIsMetNoSoonerThanBrakingAndTheDelayNeed)
     EXPECT_NEAR(command().z(), -0.4F / 2.0F, 1e-3F) << "2 s of braking";
     scene.limits.max_acceleration = 50.0F;
     EXPECT_NEAR(command().z(), -0.4F, 1e-3F) << "a second at least";
-    settings.latency = 0.75F;
+    scene.rules.latency = 0.75F;
     EXPECT_NEAR(command().z(), -0.4F / 2.72F, 1e-3F) << "e times a delay of 1 s";
     scene.limits.velocity_lag = 0.5F;
     EXPECT_NEAR(command().z(), -0.4F / (2.72F * 1.25F), 1e-3F);
@@ -183,7 +183,7 @@ TEST_F(OrcaHover, ThePairsBrakingTimeIsWhatBrakingAndTheDelayNeed)
     EXPECT_TRUE(from(1.19F)) << "2 s of braking";
     EXPECT_FALSE(from(1.21F));
     scene.limits.max_acceleration = 5.0F;
-    settings.latency = 0.75F;
+    scene.rules.latency = 0.75F;
     EXPECT_TRUE(from(0.6F * 2.72F - 0.01F)) << "e times 1 s";
     EXPECT_FALSE(from(0.6F * 2.72F + 0.01F));
     settings.conflict = Conflict::present;
@@ -204,9 +204,9 @@ TEST_F(OrcaHover, TheConflictRegionIsLeftNoFasterThanTheDelayBears)
         return planner.last().broken[2];
     };
     EXPECT_NEAR(broken(), 0.3F, 2e-3F);
-    settings.latency = 0.75F;
+    scene.rules.latency = 0.75F;
     EXPECT_NEAR(broken(), 0.4F / 2.72F, 2e-3F);
-    settings.latency = 0.1F;
+    scene.rules.latency = 0.1F;
     track.position.x() = kKept - 0.2F;
     EXPECT_NEAR(broken(), 0.2F, 2e-3F) << "a second";
 }
@@ -238,7 +238,7 @@ TEST_F(OrcaInput, TheBiasIsThatOfTheSettings)
 /// Commands act after the latency and are followed with the lag of the velocity loop.
 TEST_F(OrcaInput, CommandsOnTheirWayAreFollowedWithTheLoopsLag)
 {
-    settings.latency = 0.4F;
+    scene.rules.latency = 0.4F;
     planner = Planner(settings);
     scene.track(Vec3(0, 60, 30), Vec3::Zero());
     world::Commanded sent{Vec3(0, 4, 0), scene.now - 0.3F};
@@ -327,7 +327,7 @@ TEST_F(OrcaInput, AWingThatCanNotKeepItsSpeedHasNoAnswer)
     EXPECT_EQ(plan(), PlanStatus::found) << "a multirotor slows down";
 }
 
-/// Wherever the budget runs out - among bounds, obstacles, pieces of a map, tracks, programs, or along the command -
+/// Wherever the budget runs out - among bounds, obstacles, hulls, tracks, programs, or along the command -
 /// nothing is found.
 TEST_F(OrcaInput, ABudgetThatRunsOutAmongObstaclesIsNoAnswer)
 {
@@ -335,17 +335,15 @@ TEST_F(OrcaInput, ABudgetThatRunsOutAmongObstaclesIsNoAnswer)
     for (int i = 0; i < 8; ++i) {
         corners.emplace_back((i & 1) != 0 ? 16.0F : 14.0F, (i & 2) != 0 ? 5.0F : -5.0F, (i & 4) != 0 ? 80.0F : 0.0F);
     }
-    const oracle::MapOfHulls map({corners});
+    const oracle::HullObstacles hull({corners});
+    scene.obstacles.push_back(hull.all()[0]);
     scene.own.velocity = Vec3(5, 0, 0);
     scene.obstacle(geometry::make_capsule(Vec3(9, 4, 20), Vec3(9, 5, 40), 0.5F));
     scene.obstacle(geometry::make_box(Vec3(8, -5, 30), Vec3(1, 1, 9)));
     scene.airspace.has_floor = true;
     scene.track(Vec3(40, 0.5F, 30), Vec3(-5, 0, 0));
     scene.track(Vec3(-20, 20, 31), Vec3(5, -5, 0));
-    const auto anew = [&] {
-        planner = Planner(settings);
-        planner.use_map(&map.map());
-    };
+    const auto anew = [&] { planner = Planner(settings); };
     anew();
     ASSERT_EQ(plan(), PlanStatus::found);
     const std::uint32_t needed = spent;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/oracle/map_of_hulls.hpp"
+#include "tests/oracle/hull_obstacles.hpp"
 #include "tests/unit/core/orca/orca_input.hpp"
 
 namespace jink::orca {
@@ -25,7 +25,7 @@ TEST_F(OrcaInput, TheFloorIsKeptFromTheBottomOfTheCylinder)
     EXPECT_NEAR(command().z(), -0.4F, 1e-3F) << "met in a second";
     scene.own.sigma_position = 0.1F;
     EXPECT_NEAR(command().z(), -0.1F, 1e-3F) << "three standard deviations of the own place";
-    scene.k_sigma = 2.0F;
+    scene.rules.k_sigma = 2.0F;
     EXPECT_NEAR(command().z(), -0.2F, 1e-3F);
     scene.own.sigma_position = 0.0F;
     scene.own.velocity = Vec3(0, 0, -1);
@@ -163,17 +163,17 @@ TEST_F(OrcaInput, SpeedTowardsAWallLeavesRoomToStopAfterTheDelay)
     EXPECT_NEAR(command().x(), std::sqrt(2.0F * 5.0F * (margin - 4.0F * 0.35F)), 2e-3F);
 }
 
-TEST_F(OrcaInput, AMapOfPiecesIsAnObstacleToo)
+TEST_F(OrcaInput, AHullIsAnObstacleToo)
 {
     std::vector<Vec3> corners;
     for (int i = 0; i < 8; ++i) {
         corners.emplace_back((i & 1) != 0 ? 6.0F : 4.0F, (i & 2) != 0 ? 50.0F : -50.0F, (i & 4) != 0 ? 80.0F : 0.0F);
     }
-    const oracle::MapOfHulls map({corners});
-    planner.use_map(&map.map());
+    const oracle::HullObstacles hull({corners});
+    scene.obstacles.push_back(hull.all()[0]);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(planner.last().margin, 4.0F - 1.41421356F * kHalfWidth, 1e-3F);
-    planner.use_map(nullptr);
+    scene.obstacles.clear();
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_TRUE(std::isinf(planner.last().margin));
 }
@@ -188,7 +188,7 @@ TEST_F(OrcaInput, ATrackIsMetWhereItIsWhenTheCommandActs)
     EXPECT_NEAR(nearest(), 39.5F / kept, 1e-3F);
     track.velocity = Vec3(-10, 0, 0);
     EXPECT_NEAR(nearest(), 38.5F / kept, 1e-3F);
-    settings.latency = 0.5F;
+    scene.rules.latency = 0.5F;
     EXPECT_NEAR(nearest(), 32.5F / kept, 1e-3F);
     EXPECT_EQ(planner.last().nearest_id, track.id);
 }

@@ -164,14 +164,12 @@ TEST(OrcaPlanner, SettingsOutOfRangeChangeNothing)
         change(settings);
         return !planner.configure(settings);
     };
-    EXPECT_TRUE(refused([](Settings& s) { s.horizon = 0.5F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.conflict_ratio = 1.0F; }));
-    EXPECT_TRUE(refused([](Settings& s) { s.latency = -0.1F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.reach = std::numeric_limits<float>::quiet_NaN(); }));
     EXPECT_TRUE(refused([](Settings& s) { s.stale = 0.0F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.smoothing = 0; }));
     EXPECT_TRUE(refused([](Settings& s) { s.smoothing = CommandFilter::kMost + 1; }));
-    EXPECT_EQ(planner.settings().horizon, Settings{}.horizon);
+    EXPECT_EQ(planner.settings().smoothing, Settings{}.smoothing);
 }
 
 /// Enclosed on all sides it makes no progress, and reports this once another method is available.
@@ -218,17 +216,17 @@ TEST(OrcaPlanner, AnyVehicleHasSettings)
         v.half_extents = Vec3(random.uniform(0.05F, 5.0F), random.uniform(0.05F, 5.0F), random.uniform(0.05F, 5.0F));
         v.kind = random.below(2) == 0 ? vehicle::VehicleKind::multirotor : vehicle::VehicleKind::fixed_wing;
         ASSERT_TRUE(vehicle::is_valid(v));
-        scene.reference.leg.speed = random.uniform(0.1F, v.cruise_speed);
+        scene.reference.speed = random.uniform(0.1F, v.cruise_speed);
         scene.own.velocity = v.cruise_speed * Vec3(1, 0, 0);
         scene.track(Vec3(random.uniform(20, 80), random.uniform(-9, 9), 30), Vec3(random.uniform(-9, 9), 0, 0));
         Settings settings;
-        settings.latency = random.uniform(0.0F, 1.0F);
+        scene.rules.latency = random.uniform(0.0F, 1.0F);
         settings.smoothing = static_cast<std::uint16_t>(1 + random.below(CommandFilter::kMost));
         Planner planner(settings);
         world::Manoeuvre out;
         const PlanStatus status = plan(planner, scene, out);
         ASSERT_EQ(status, PlanStatus::found) << i;
-        ASSERT_LE(out.command.norm(), std::max(v.cruise_speed, scene.reference.leg.speed) * 1.0001F) << i;
+        ASSERT_LE(out.command.norm(), std::max(v.cruise_speed, scene.reference.speed) * 1.0001F) << i;
     }
 }
 

@@ -198,7 +198,7 @@ TEST(VelocityFilterEdges, TheNearestPairAndObstacleAreSaid)
     const Decision decision = flown.tick();
     EXPECT_EQ(decision.nearest_id, 2U);
     EXPECT_NEAR(decision.nearest, 3.0F / (0.7F * 1.2F), 1e-4F);
-    EXPECT_EQ(decision.nearest_obstacle, kFirstObstacleSource + 1);
+    EXPECT_EQ(decision.nearest_obstacle, 1);
     EXPECT_NEAR(decision.margin, 1.2F - 1.1F, 1e-3F);
     EXPECT_EQ(decision.status & (kConflictOverlap | kObstaclePenetration), 0U);
 }

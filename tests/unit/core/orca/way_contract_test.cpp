@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/oracle/map_of_hulls.hpp"
 #include "tests/unit/core/orca/obstacle_contract.hpp"
 
 namespace jink::orca {
@@ -21,9 +20,7 @@ TEST_F(ObstacleContract, ACoarseResolutionDoesNotOverlookTheEndOfTheWay)
     add(geometry::make_sphere({5.8F, 0, 0}, 1.0F));
     EXPECT_FALSE(way({1, 0, 0}, 4.0F).clear);
     EXPECT_LE(way({1, 0, 0}, 4.0F).clear_until, 3.8F + 1e-3F);
-    const oracle::MapOfHulls hulls({{{4.8F, -1, -1}, {4.8F, 1, -1}, {4.8F, 0, 1}, {6, 0, 0}}});
-    map = &hulls.map();
-    obstacles.clear();
+    only_hull({{4.8F, -1, -1}, {4.8F, 1, -1}, {4.8F, 0, 1}, {6, 0, 0}});
     EXPECT_FALSE(way({1, 0, 0}, 4.0F).clear);
 }
 
@@ -78,7 +75,7 @@ TEST_F(ObstacleContract, AProvenContactIsNoBound)
         EXPECT_FALSE(both.clear) << units;
         if (!alone[units].bounded) {
             EXPECT_FALSE(both.bounded) << units;
-            EXPECT_EQ(both.source, kFirstObstacleSource) << units;
+            EXPECT_EQ(both.source, 0) << units;
         }
     }
 }
@@ -87,8 +84,7 @@ TEST_F(ObstacleContract, AProvenContactIsNoBound)
 TEST_F(ObstacleContract, AWayIsNeverClearBeyondWhatWasLookedAt)
 {
     settings.vertical = 0.8F;
-    const oracle::MapOfHulls hulls({{{5, -2, -2}, {5, 2, -2}, {5, 0, 2}, {6, 0, 0}}});
-    map = &hulls.map();
+    add_hull({{5, -2, -2}, {5, 2, -2}, {5, 0, 2}, {6, 0, 0}});
     add(geometry::make_capsule({5, 3, -3}, {4, 3, 3}, 0.5F));
     const Vec3 velocity(1, 0.4F, 0.1F);
     const WayClearance whole = way(velocity, 6.0F);
@@ -103,7 +99,7 @@ TEST_F(ObstacleContract, AWayIsNeverClearBeyondWhatWasLookedAt)
     EXPECT_GT(enough, 3U);
     EXPECT_LT(enough, 400U);
     // And one that is clear needs all of its budget.
-    obstacles.clear();
+    only_hull({{5, -2, -2}, {5, 2, -2}, {5, 0, 2}, {6, 0, 0}});
     const Vec3 beside(1, 0.6F, 0);
     ASSERT_TRUE(way(beside, 6.0F).clear);
     EXPECT_FALSE(way(beside, 6.0F, 0).clear);

@@ -8,6 +8,7 @@
 
 #include "core/orca/obstacle_way.hpp"
 #include "core/orca/program.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 
 namespace jink::orca {
 namespace {
@@ -20,7 +21,7 @@ protected:
                                      const Vec3& from = Vec3::Zero()) const
     {
         WorkBudget budget(units);
-        return clearance_along({nullptr, obstacles}, from, velocity, 4.0F, settings, budget);
+        return clearance_along(oracle::threats_of(obstacles), from, velocity, 4.0F, settings, budget);
     }
     void add(const Vec3& centre)
     {
@@ -40,7 +41,7 @@ TEST_F(WayEdges, TheWayEndsWhereTheFirstObstacleIsMet)
     EXPECT_FALSE(way.clear);
     EXPECT_FALSE(way.bounded);
     EXPECT_NEAR(way.clear_until, 2.0F, 1e-3F);
-    EXPECT_EQ(way.source, kFirstObstacleSource + 2);
+    EXPECT_EQ(way.source, 2);
     const WayClearance shorter = along({0.7F, 0, 0});
     EXPECT_TRUE(shorter.clear) << "2.8 m in 4 s, 3 m are free";
     EXPECT_EQ(shorter.clear_until, 4.0F);

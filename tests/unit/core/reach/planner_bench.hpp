@@ -46,8 +46,7 @@ struct PlannerBench {
         own.position = Vec3(0.0F, 0.0F, 30.0F);
         own.velocity = Vec3(5.0F, 0.0F, 0.0F);
         limits.half_extents = Vec3(0.5F, 0.5F, 0.5F);
-        reference.valid = true;
-        reference.leg = {Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F};
+        reference = world::Reference({Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F});
     }
     PlannerBench(const PlannerBench&) = delete;
     PlannerBench& operator=(const PlannerBench&) = delete;
@@ -74,10 +73,8 @@ struct PlannerBench {
                            .limits = limits,
                            .airframe = airframe,
                            .reference = reference,
-                           .tracks = tracks,
-                           .obstacles = obstacles,
-                           .airspace = airspace};
-        static_cast<void>(threats.collect(s));
+                           .rules = rules};
+        static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;
     }
@@ -129,6 +126,7 @@ struct PlannerBench {
     std::vector<world::Track> tracks;
     std::vector<world::Obstacle> obstacles;
     world::Airspace airspace;
+    world::FlightRules rules;
     Planner planner{Settings{}};
     world::Manoeuvre out;
     std::uint32_t spent = 0;
@@ -151,14 +149,14 @@ protected:
         if (plan() != world::PlanStatus::found) {
             return Way::nothing;
         }
-        const Vec3 at = end() - own.position - settings.latency * own.velocity;
+        const Vec3 at = end() - own.position - rules.latency * own.velocity;
         const float y = at.x() > 9.0F ? at.y() : NAN;
         return std::abs(y) < 0.01F                    ? Way::straight
                : std::abs(y - 2.5F * 0.9066F) < 0.01F ? Way::left
                : std::abs(y + 2.5F * 0.9066F) < 0.01F ? Way::right
                                                       : Way::other;
     }
-    void leg(const Vec3& start, const Vec3& to) { reference.leg = {start, to, 5.0F}; }
+    void leg(const Vec3& start, const Vec3& to) { reference = world::Reference({start, to, 5.0F}); }
 };
 
 /// Rates cells as configured, and records its calls.

@@ -18,7 +18,7 @@ TEST_F(PlannerChoice, ASourceRatesTheCellsOfACourseOnce)
     planner.look_at(&picture);
     EXPECT_EQ(way(), Way::straight);
     EXPECT_EQ(picture.calls, 1U);
-    EXPECT_EQ(picture.lead, settings.latency);
+    EXPECT_EQ(picture.lead, rules.latency);
     EXPECT_EQ(picture.cells, kGrid.cells());
     EXPECT_EQ(picture.free, kGrid.cells()) << "all are free before";
     EXPECT_NEAR((picture.origin - Vec3(0.5F, 0.0F, 30.0F)).norm(), 0.0F, 1e-5F);
@@ -106,7 +106,7 @@ TEST_F(PlannerChoice, FusionRatesInsteadOfNodesAndForEachSet)
     EXPECT_EQ(way(), Way::straight) << "its cells have said nothing of what is in the way";
     EXPECT_EQ(fusion.calls, 1U);
     EXPECT_EQ(picture.calls, 1U) << "both say what they know";
-    EXPECT_EQ(fusion.lead, settings.latency);
+    EXPECT_EQ(fusion.lead, rules.latency);
     fusion.blocked = {kGrid.index({3, 3, 1})};
     picture.blocked = {kGrid.index({3, 4, 1})};
     EXPECT_EQ(way(), Way::right);

@@ -76,17 +76,17 @@ TEST_F(PlannerChoice, ARouteIsFollowedAlongItsWayToItsEnd)
     path::Route route;
     ASSERT_EQ(route.add_leg(Vec3(0, 0, 30), Vec3(500, 300, 30)), path::RouteStatus::ok);
     leg(Vec3(0, 0, 30), Vec3(500, -300, 30));
-    reference.route = &route;
+    reference = world::Reference(route, reference.speed);
     EXPECT_EQ(way(), Way::left) << "not along the leg";
     // 6.4 degrees to the left: from the position at which the vehicle responds, the point 10.2 m ahead is in the column
     // to the left (from 6.55 degrees on), a far point is not.
     path::Route long_one;
     ASSERT_EQ(long_one.add_leg(Vec3(0, 0, 30), Vec3(500.0F, 56.1F, 30)), path::RouteStatus::ok);
-    reference.route = &long_one;
+    reference = world::Reference(long_one, reference.speed);
     EXPECT_EQ(way(), Way::left);
     path::Route ends;
     ASSERT_EQ(ends.add_leg(Vec3(-20, 0, 30), Vec3(6.5F, 0, 30)), path::RouteStatus::ok);
-    reference.route = &ends;
+    reference = world::Reference(ends, reference.speed);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(end().x(), 8.0F, 1e-3F);
 }
@@ -121,9 +121,9 @@ TEST_F(PlannerChoice, RoomToSpareComesFirstAndIsGivenUpForWantOfBetter)
     obstacles.clear();
     add_sphere(Vec3(8.0F, 0.0F, 30.0F + 0.5F + 0.3F + 1.5F), 0.3F);
     EXPECT_EQ(way(), Way::straight) << "1.5 m above it";
-    settings.room = 2.0F;
+    rules.clearance = 2.0F;
     EXPECT_NE(way(), Way::straight);
-    settings.room = 0.4F;
+    rules.clearance = 0.4F;
     test::SmallTree alone(kGrid);
     alone.chain(Movement::straight, 1, 1024);
     only(alone);
@@ -181,16 +181,16 @@ TEST_F(PlannerChoice, AStartThatTouchesMayBeLeftByTheEscapeRule)
 {
     // 5 cm inside a static sphere behind.
     add_sphere(Vec3(-0.95F, 0.0F, 30.0F), 0.5F);
-    settings.latency = 0.0F;
-    settings.escape = {1.0F, 0.5F};
+    rules.latency = 0.0F;
+    rules.escape = {1.0F, 0.5F};
     EXPECT_EQ(way(), Way::straight);
-    settings.escape.speed = 5.0F;
+    rules.escape.speed = 5.0F;
     EXPECT_EQ(way(), Way::nothing) << "a rule that asks to draw apart faster";
-    settings.escape = {0.0F, 0.0F};
+    rules.escape = {0.0F, 0.0F};
     EXPECT_EQ(way(), Way::nothing) << "a rule that asks not to come nearer by anything";
     obstacles.clear();
     add_sphere(Vec3(0.95F, 0.0F, 30.0F), 0.5F);
-    settings.escape = {0.25F, 0.5F};
+    rules.escape = {0.25F, 0.5F};
     EXPECT_EQ(way(), Way::nothing) << "deeper is no escape";
 }
 
@@ -258,7 +258,7 @@ TEST_F(PlannerChoice, WhatCrossesTheStopCountsWhileTheVehicleIsThere)
 
 TEST_F(PlannerChoice, TheStopCountsFromThePathsEndNotFromTheLatency)
 {
-    settings.latency = 1.0F;
+    rules.latency = 1.0F;
     ASSERT_EQ(plan(), PlanStatus::found);
     const Vec3 alone = end();
     ASSERT_NEAR(alone.x(), 12.5F, 1e-3F);

@@ -83,8 +83,7 @@ TEST_F(PlannerTest, TheGridLiesAlongTheCourseNotTheYaw)
 {
     own.yaw = 1.0F;
     own.velocity = Vec3(-3.0F, 4.0F, 0.0F);
-    reference.leg.end = Vec3(-300.0F, 400.0F, 30.0F);
-    reference.leg.start = own.position;
+    leg(own.position, Vec3(-300.0F, 400.0F, 30.0F));
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR((out.path.points[1].position - Vec3(-0.3F, 0.4F, 30.0F)).norm(), 0.0F, 1e-4F) << "after the latency";
     EXPECT_NEAR((end() - Vec3(-6.3F, 8.4F, 30.0F)).norm(), 0.0F, 1e-3F);
@@ -100,13 +99,13 @@ TEST_F(PlannerTest, SpeedScalesTheMovements)
 
 TEST_F(PlannerTest, WithoutLatencyThePathBeginsInItsFirstMovement)
 {
-    settings.latency = 0.0F;
+    rules.latency = 0.0F;
     ASSERT_EQ(plan(), PlanStatus::found);
     ASSERT_EQ(out.path.points.size(), 9U);
     EXPECT_EQ(out.path.points[0].position, own.position);
     EXPECT_NEAR(out.path.points[1].position.x(), 1.25F, 1e-4F);
     EXPECT_NEAR(out.path.duration(), 2.0F, 1e-6F);
-    settings.latency = 0.4F;
+    rules.latency = 0.4F;
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(out.path.points[1].position.x(), 2.0F, 1e-4F);
     EXPECT_NEAR(out.path.points[1].time, 0.4F, 1e-6F);
@@ -222,7 +221,7 @@ TEST_F(PlannerTest, StandingItTurnsFromTheCourseOfItsWay)
     ahead.chain(Movement::straight, 4, 1024);
     only(ahead);
     own.velocity = Vec3::Zero();
-    reference.leg = {Vec3(0.0F, -20.0F, 30.0F), Vec3(0.0F, 500.0F, 30.0F), 5.0F};
+    reference = world::Reference({Vec3(0.0F, -20.0F, 30.0F), Vec3(0.0F, 500.0F, 30.0F), 5.0F});
     add_sphere(Vec3(0.0F, 1.15F, 30.0F), 0.2F);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(course(), 5.0F * kPi / 6.0F, 1e-3F) << "from north by 60 degrees to the left";
@@ -248,7 +247,7 @@ TEST_F(PlannerTest, StandingOnALegStraightUpItFacesItsYaw)
 {
     own.velocity = Vec3::Zero();
     own.yaw = 0.5F * kPi;
-    reference.leg = {Vec3(0.0F, 0.0F, 0.0F), Vec3(0.0F, 0.0F, 100.0F), 3.0F};
+    reference = world::Reference({Vec3(0.0F, 0.0F, 0.0F), Vec3(0.0F, 0.0F, 100.0F), 3.0F});
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_GT(end().y(), 2.0F);
     EXPECT_EQ(report().headings, 1);
@@ -287,19 +286,19 @@ TEST_F(PlannerTest, ASmallStepAsideHasNoSide)
     test::SmallTree left(kGrid);
     left.chain(Movement::left, 4, 1024);
     only(left);
-    reference.leg.end = Vec3(100.0F, 0.0F, 30.0F);
+    leg(Vec3(-20.0F, 0.0F, 30.0F), Vec3(100.0F, 0.0F, 30.0F));
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_GT(out.side.y(), 0.999F) << "from the way towards the path";
-    // A nominal path along the trajectory gives no side: (3.886, 0.907) is the tree's end.
-    reference.leg.start = Vec3(0.5F, 0.0F, 30.0F) - 3.0F * Vec3(3.886F, 0.907F, 0.0F);
-    reference.leg.end = Vec3(0.5F, 0.0F, 30.0F) + 30.0F * Vec3(3.886F, 0.907F, 0.0F);
+    // On a way that leads along the path there is no side: (3.886, 0.907) is where the tree ends.
+    leg(Vec3(0.5F, 0.0F, 30.0F) - 3.0F * Vec3(3.886F, 0.907F, 0.0F),
+        Vec3(0.5F, 0.0F, 30.0F) + 30.0F * Vec3(3.886F, 0.907F, 0.0F));
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_NEAR(out.side.norm(), 1.0F, 1e-5F) << "the turn bends off the chord by more than the least side";
     test::SmallTree straight(kGrid);
     straight.chain(Movement::straight, 4, 1024);
     only(straight);
     own.position.y() = 0.2F;
-    reference.leg = {Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F};
+    reference = world::Reference({Vec3(-20.0F, 0.0F, 30.0F), Vec3(500.0F, 0.0F, 30.0F), 5.0F});
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_EQ(out.side, Vec3::Zero());
 }

@@ -18,7 +18,7 @@ protected:
         test::SmallTree alone(kGrid);
         alone.chain(Movement::straight, 4, 1024);
         only(alone);
-        settings.room = 0.0F;
+        rules.clearance = 0.0F;
     }
     /// With a known own position the whole trajectory is flown; with 0.1 m uncertainty, which counts three times, it is
     /// not.

@@ -20,7 +20,7 @@ struct AirspaceBounds : testing::Test {
     {
         scene.limits.half_extents = Vec3(3, 4, 2);
         scene.own.sigma_position = 0.25F;
-        scene.k_sigma = 2.0F;
+        scene.rules.k_sigma = 2.0F;
         scene.airspace.floor = 10.0F;
         scene.airspace.ceiling = 30.0F;
         scene.airspace.home = Vec3(10, -20, 500);
@@ -133,14 +133,14 @@ const std::pair<ThreatKind, Change> kSpoiltBounds[] = {
     {ThreatKind::floor, [](Scene& s, Vec3&) { s.airspace.floor = kNan; }},
     {ThreatKind::floor, [](Scene& s, Vec3&) { s.limits.half_extents.z() = kNan; }},
     {ThreatKind::floor, [](Scene& s, Vec3&) { s.own.sigma_position = kNan; }},
-    {ThreatKind::floor, [](Scene& s, Vec3&) { s.k_sigma = kNan; }},
+    {ThreatKind::floor, [](Scene& s, Vec3&) { s.rules.k_sigma = kNan; }},
     {ThreatKind::floor, [](Scene&, Vec3& p) { p.z() = kNan; }},
     {ThreatKind::floor, [](Scene& s, Vec3&) { s.airspace.floor = kInfinity; }},
     {ThreatKind::floor, [](Scene& s, Vec3&) { s.own.sigma_position = kInfinity; }},
     {ThreatKind::ceiling, [](Scene& s, Vec3&) { s.airspace.ceiling = kNan; }},
     {ThreatKind::ceiling, [](Scene& s, Vec3&) { s.limits.half_extents.z() = kNan; }},
     {ThreatKind::ceiling, [](Scene& s, Vec3&) { s.own.sigma_position = kNan; }},
-    {ThreatKind::ceiling, [](Scene& s, Vec3&) { s.k_sigma = kNan; }},
+    {ThreatKind::ceiling, [](Scene& s, Vec3&) { s.rules.k_sigma = kNan; }},
     {ThreatKind::ceiling, [](Scene&, Vec3& p) { p.z() = kNan; }},
     {ThreatKind::ceiling, [](Scene& s, Vec3&) { s.airspace.ceiling = -kInfinity; }},
     {ThreatKind::keep_in, [](Scene& s, Vec3&) { s.airspace.keep_in_radius = kNan; }},
@@ -149,7 +149,7 @@ const std::pair<ThreatKind, Change> kSpoiltBounds[] = {
     {ThreatKind::keep_in, [](Scene& s, Vec3&) { s.limits.half_extents.x() = kNan; }},
     {ThreatKind::keep_in, [](Scene& s, Vec3&) { s.limits.half_extents.y() = kNan; }},
     {ThreatKind::keep_in, [](Scene& s, Vec3&) { s.own.sigma_position = kNan; }},
-    {ThreatKind::keep_in, [](Scene& s, Vec3&) { s.k_sigma = kNan; }},
+    {ThreatKind::keep_in, [](Scene& s, Vec3&) { s.rules.k_sigma = kNan; }},
     {ThreatKind::keep_in, [](Scene&, Vec3& p) { p.x() = kNan; }},
     {ThreatKind::keep_in, [](Scene&, Vec3& p) { p.y() = -kInfinity; }},
 };

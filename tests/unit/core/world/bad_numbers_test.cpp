@@ -117,12 +117,12 @@ const OneBadNumber kBadNumbers[] = {
     {ThreatKind::track, [](Scene& s) { s.tracks[0].sigma_velocity = kInfinity; }},
     {ThreatKind::track, [](Scene& s) { s.tracks[0].max_acceleration = kNan; }},
     {ThreatKind::track, [](Scene& s) { s.own.sigma_position = kNan; }},
-    {ThreatKind::track, [](Scene& s) { s.k_sigma = kInfinity; }},
+    {ThreatKind::track, [](Scene& s) { s.rules.k_sigma = kInfinity; }},
     {ThreatKind::obstacle, [](Scene& s) { s.obstacles[0].shape.centre.x() = kNan; }},
     {ThreatKind::obstacle, [](Scene& s) { s.obstacles[0].shape.radius = kNan; }},
     {ThreatKind::obstacle, [](Scene& s) { s.own.sigma_position = kNan; }},
     {ThreatKind::obstacle, [](Scene& s) { s.own.sigma_position = kInfinity; }},
-    {ThreatKind::obstacle, [](Scene& s) { s.k_sigma = kNan; }},
+    {ThreatKind::obstacle, [](Scene& s) { s.rules.k_sigma = kNan; }},
     {ThreatKind::barrel, [](Scene& s) { s.barrels[0].circle.centre.y() = kNan; }},
     {ThreatKind::barrel, [](Scene& s) { s.barrels[0].circle.radius = kNan; }},
     {ThreatKind::barrel, [](Scene& s) { s.barrels[0].velocity.x() = kNan; }},
@@ -131,7 +131,7 @@ const OneBadNumber kBadNumbers[] = {
     {ThreatKind::barrel, [](Scene& s) { s.barrels[0].top = kNan; }},
     {ThreatKind::barrel, [](Scene& s) { s.limits.half_extents.x() = kNan; }},
     {ThreatKind::barrel, [](Scene& s) { s.own.sigma_position = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.k_sigma = kNan; }},
+    {ThreatKind::barrel, [](Scene& s) { s.rules.k_sigma = kNan; }},
 };
 
 struct BesideTheWay : testing::TestWithParam<OneBadNumber> {

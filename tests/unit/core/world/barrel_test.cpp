@@ -225,7 +225,7 @@ TEST(BarrelConflict, AlongARouteIsSeenBehindItsCorner)
     ASSERT_EQ(route.add_leg(corners[0], corners[1]), path::RouteStatus::ok);
     ASSERT_EQ(route.add_leg(corners[1], corners[2]), path::RouteStatus::ok);
     scene.leg(corners[0], corners[1], 5.0F);
-    scene.reference.route = &route;
+    scene.reference = world::Reference(route, scene.reference.speed);
     scene.barrel({20, 20}, 6.0F);
     Conflict conflict;
     WorkBudget budget(kPlenty);

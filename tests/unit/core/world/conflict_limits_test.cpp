@@ -21,7 +21,7 @@ struct ConflictLimits : testing::TestWithParam<bool> {
     {
         scene.limits.half_extents = Vec3(3, 2, 1);
         scene.own.sigma_position = 0.25F;
-        scene.k_sigma = 2.0F;
+        scene.rules.k_sigma = 2.0F;
         way_to(Vec3(100, 0, 0));
     }
     void way_to(const Vec3& end)
@@ -29,7 +29,9 @@ struct ConflictLimits : testing::TestWithParam<bool> {
         scene.leg(Vec3::Zero(), end, 5.0F);
         route = path::Route();
         EXPECT_EQ(route.add_leg(Vec3::Zero(), end), path::RouteStatus::ok);
-        scene.reference.route = GetParam() ? &route : nullptr;
+        if (GetParam()) {
+            scene.reference = Reference(route, scene.reference.speed);
+        }
     }
     bool meets(Seconds lookahead = 10.0F, std::uint32_t units = kPlenty)
     {
@@ -101,7 +103,7 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
     EXPECT_FALSE(beside(0, 2.51F));
     EXPECT_TRUE(beside(0, -2.49F));
     EXPECT_FALSE(beside(0, -2.51F));
-    scene.k_sigma = 4.0F;
+    scene.rules.k_sigma = 4.0F;
     EXPECT_TRUE(beside(3.99F, 0));
     EXPECT_FALSE(beside(4.01F, 0));
 }
@@ -110,7 +112,7 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
 TEST_P(ConflictLimits, DrawingApartIsJudgedWithTheSameUncertainty)
 {
     // Half a metre inside of 1 + 6 * 0.25 m, and 1.75 m outside of the body alone.
-    scene.k_sigma = 6.0F;
+    scene.rules.k_sigma = 6.0F;
     const auto starts = [&](float gap, const Vec3& velocity) {
         scene.tracks.clear();
         scene.track(Vec3(-3.0F - gap, 0, 0), velocity, 1.0F);
@@ -121,7 +123,7 @@ TEST_P(ConflictLimits, DrawingApartIsJudgedWithTheSameUncertainty)
     EXPECT_EQ(found.time_to_loss, 0.0F);
     EXPECT_TRUE(starts(2.0F, Vec3(5.2F, 0, 0)));
     EXPECT_FALSE(starts(2.6F, Vec3(5, 0, 0))) << "outside";
-    scene.k_sigma = 1.0F;
+    scene.rules.k_sigma = 1.0F;
     EXPECT_FALSE(starts(2.0F, Vec3(5, 0, 0))) << "outside of a smaller margin";
     EXPECT_TRUE(starts(1.0F, Vec3(5, 0, 0)));
 }
@@ -261,7 +263,7 @@ TEST_P(ConflictLimits, InsideAMarginAShortWayIsJudgedToItsEnd)
     way_to(Vec3(2.5F, 0, 0));                                           // half a second
     EXPECT_FALSE(meets());
     way_to(Vec3(100, 0, 0));
-    scene.reference.leg.speed = 1.0F;
+    scene.reference.speed = 1.0F;
     EXPECT_TRUE(meets());
     EXPECT_EQ(found.time_to_loss, 0.0F);
 }
@@ -275,7 +277,7 @@ TEST(ConflictAroundCorners, TheFirstApproachToAnObstacleIsTold)
     ASSERT_EQ(route.add_leg(Vec3(30, 0, 0), Vec3(30, 1, 0)), path::RouteStatus::ok);
     ASSERT_EQ(route.add_leg(Vec3(30, 1, 0), Vec3(60, 1, 0)), path::RouteStatus::ok);
     scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-    scene.reference.route = &route;
+    scene.reference = world::Reference(route, scene.reference.speed);
     scene.obstacle(geometry::make_sphere(Vec3(36, -1, 0), 5.5F));
     Conflict found;
     WorkBudget budget(kPlenty);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How threats grow, and boxes against uncertain heights.
+// How threats grow, and tracks of uncertain height.
 #include <cmath>
 #include <utility>
 
@@ -34,7 +34,7 @@ TEST_F(Growing, AsAPolynomialOfTimeItIsTheRadius)
     for (const float age : {0.0F, 1.5F}) {
         for (const float lead : {0.0F, 2.0F}) {
             track->stamp = scene.now - age;
-            const Growth growth = growth_of(scene.situation(), *track, lead);
+            const Growth growth = growth_of(scene.situation(), *track).from(lead);
             EXPECT_NEAR(growth.radius, radius(age + lead), 1e-5F);
             EXPECT_NEAR(growth.rate, 0.3F + 0.4F * (age + lead), 1e-5F);
             EXPECT_EQ(growth.acceleration, 0.4F);
@@ -72,7 +72,7 @@ TEST_F(Growing, TheErrorsOfBothPlacesLeaveItAsOftenAsThoseOfOne)
 TEST_F(Growing, AStampAheadGrowsFromNowOn)
 {
     track->stamp = scene.now + 1.0F;
-    const Growth growth = growth_of(scene.situation(), *track, 0.0F);
+    const Growth growth = growth_of(scene.situation(), *track);
     EXPECT_NEAR(growth.radius, radius(0.0F), 1e-5F);
     EXPECT_NEAR(growth.rate, 0.3F, 1e-5F);
     for (const float t : {0.0F, 0.5F, 1.0F, 4.0F}) {
@@ -100,11 +100,9 @@ TEST_F(Growing, NumbersByHand)
     EXPECT_EQ(growth.at(2.0F), 2.0F + 6.0F + 8.0F);
 }
 
-TEST_F(Growing, AnUncertainHeightMakesTheBoxTaller)
+TEST_F(Growing, AnUncertainHeightIsNearAtManyHeights)
 {
     track->half_height = 7.0F;
-    scene.limits.half_extents = Vec3(1, 2, 3);
-    EXPECT_EQ(box_against(scene.situation(), *track), Vec3(1, 2, 10));
     EXPECT_EQ(nearest_in_height(*track, Vec3(1, 2, 50), 30.0F), Vec3(1, 2, 43));
     EXPECT_EQ(nearest_in_height(*track, Vec3(1, 2, 50), 90.0F), Vec3(1, 2, 57));
     EXPECT_EQ(nearest_in_height(*track, Vec3(1, 2, 50), 55.0F), Vec3(1, 2, 55));

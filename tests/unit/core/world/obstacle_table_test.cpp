@@ -50,7 +50,7 @@ TEST_F(ObstacleTables, InvalidShapesAreRefused)
     bad.push_back(geometry::make_box(Vec3::Zero(), Vec3(1, -1, 1)));
     bad.push_back(geometry::make_box(Vec3::Zero(), Vec3::Ones(), Mat3(2.0F * Mat3::Identity())));
     bad.push_back(geometry::make_hull({}, Vec3::Zero()));
-    const std::vector<Vec3> many(kMaxHullVertices + 1, Vec3::Ones());
+    const std::vector<Point3> many(kMaxHullVertices + 1, Point3{1, 1, 1});
     bad.push_back(geometry::make_hull(many, Vec3::Zero()));
     for (const geometry::Shape& shape : bad) {
         EXPECT_EQ(table.update({1, shape}, later, own), ObstacleStatus::invalid);
@@ -184,6 +184,36 @@ TEST_F(ObstacleTables, OfEquallyFarOnesTheFirstGivesWay)
     EXPECT_EQ(table.update(ball(5000, Vec3(0, 899, 0)), later, own), ObstacleStatus::replaced);
     EXPECT_EQ(table.obstacles()[0].id, 1U);
     EXPECT_EQ(table.obstacles()[1].id, 3U);
+}
+
+/// Obstacles of a map lie behind all others, in places of their own, until the table changes.
+TEST_F(ObstacleTables, AppendedOnesGiveWayToNothingAndGoWithTheNextChange)
+{
+    table.keep_places_for_map();
+    for (ObstacleId id = 0; id < kMaxObstacles; ++id) {
+        static_cast<void>(table.update(ball(id, Vec3(static_cast<float>(id), 0, 0)), later, own));
+    }
+    const std::size_t sensed = kMaxObstacles - kMaxMapObstacles;
+    ASSERT_EQ(table.obstacles().size(), sensed) << "the others are kept";
+    EXPECT_EQ(table.diagnostics().full, kMaxMapObstacles);
+    for (std::size_t i = 0; i < kMaxMapObstacles; ++i) {
+        EXPECT_TRUE(table.append(ball(7, Vec3(0, static_cast<float>(i), 0))));
+    }
+    EXPECT_FALSE(table.append(ball(7, Vec3::Zero())));
+    EXPECT_EQ(table.obstacles().size(), kMaxObstacles);
+    EXPECT_EQ(table.own().size(), sensed);
+    EXPECT_EQ(table.obstacles()[sensed + 1].shape.centre.y(), 1.0F);
+    EXPECT_EQ(table.update(ball(0, Vec3::Zero()), later, own), ObstacleStatus::updated);
+    EXPECT_EQ(table.obstacles().size(), sensed);
+    const auto append_and = [&](auto change) {
+        EXPECT_TRUE(table.append(ball(7, Vec3::Zero())));
+        change();
+        return table.obstacles().size() == table.own().size();
+    };
+    EXPECT_TRUE(append_and([&] { EXPECT_TRUE(table.remove(3)); }));
+    EXPECT_TRUE(append_and([&] { table.expire(kNow); }));
+    EXPECT_EQ(table.own().size(), sensed - 1);
+    EXPECT_TRUE(append_and([&] { table.clear(); }));
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ struct RouteEnds : RoutePiecesTest {
     {
         Way w;
         w.length = straight + route.length() - joined;
-        w.speed = scene.reference.leg.speed;
-        w.ahead = {&route, straight, joined};
+        w.speed = scene.reference.speed;
+        w.ahead = {route, straight, joined};
         return w;
     }
 };
@@ -42,7 +42,7 @@ TEST_F(RouteEnds, AnArcBeyondWhatIsReachedIsNotOffTheWay)
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
     leg(Vec3(20, 0, 0), Vec3(20, 300, 0));
     turn(10.0F, kPi);
-    scene.reference.leg.speed = 1.0F;
+    scene.reference.speed = 1.0F;
     const RoutePieces all = pieces(joining(20.0F - 0.0009F, 20.0F - 0.0009F), 60.0F);
     ASSERT_EQ(all.size(), 2U);
     EXPECT_LE(all.off(), detail::kChordSlack);
@@ -75,7 +75,7 @@ TEST_F(RouteEnds, AMillimetreIsNoPiece)
 TEST_F(RouteEnds, ATenthOfAMillisecondIsNoTime)
 {
     leg(Vec3(0, 0, 0), Vec3(0, 50, 0));
-    scene.reference.leg.speed = 16.0F;
+    scene.reference.speed = 16.0F;
     const float straight = 16.0F * (1.0F - 1e-4F);
     EXPECT_EQ(pieces(joining(straight, 0.0F), 1.0F).size(), 1U);
     follow_on(pieces(joining(straight, 0.0F), 1.0F), 1.0F);
@@ -91,7 +91,7 @@ TEST_F(RouteEnds, APieceBeginsWhereItSays)
         leg(Vec3(0, 0, 0), Vec3(first, 0, 0));
         turn(7.7F, 2.9F);
         turn(3.1F, -1.3F);
-        scene.reference.leg.speed = 1.0F + 0.23F * static_cast<float>(i);
+        scene.reference.speed = 1.0F + 0.23F * static_cast<float>(i);
         for (const float cut : {0.0F, 0.0009F, 5.1F}) {
             const Way w = joining(first - cut, first - cut);
             const RoutePieces all = pieces(w, 80.0F);

@@ -180,7 +180,7 @@ TEST_F(RoutePiecesTest, WhatIsTooShortForAPieceIsNotSpentAtTheRoutesEnd)
     leg(Vec3(0, 0, 0), Vec3(20, 0, 0));
     leg(Vec3(20, 0, 0), Vec3(20, 300, 0));
     // 0.9 mm short of the corner it joins the route, in sight of it from the side.
-    scene.reference.leg.speed = 1.0F;
+    scene.reference.speed = 1.0F;
     scene.own.position = Vec3(8.0F - 0.0009F, 4, 0);
     const Way w = way();
     ASSERT_NEAR(w.ahead.joined_at, 20.0F - 0.0009F, 1e-5F);
@@ -227,7 +227,7 @@ struct WingOnRoute : RoutePiecesTest {
         scene.limits.kind = vehicle::VehicleKind::fixed_wing;
         scene.limits.max_climb = 3.0F;
         scene.limits.max_descent = 2.0F;
-        scene.reference.leg.speed = 15.0F;
+        scene.reference.speed = 15.0F;
     }
     [[nodiscard]] float ahead() const
     {
@@ -248,7 +248,7 @@ TEST_F(WingOnRoute, ComesBackAsFarAheadAsItsClimbNeeds)
     EXPECT_NEAR(at(Vec3(50, 0, 70)), 150.0F, 1e-2F) << "30 m too low: 10 s";
     EXPECT_NEAR(at(Vec3(50, 0, 130)), 225.0F, 1e-2F) << "30 m too high: 15 s";
     EXPECT_NEAR(at(Vec3(50, 0, 94)), 60.0F, 1e-2F) << "6 m too low: 2 s";
-    scene.reference.leg.speed = 2.0F;
+    scene.reference.speed = 2.0F;
     EXPECT_NEAR(at(Vec3(50, 20, 100)), kRejoinLookahead, 1e-2F) << "no less than a multirotor";
     EXPECT_EQ(rejoin_lookahead(scene.limits, 2.0F, 0.0F), kRejoinLookahead);
     EXPECT_EQ(rejoin_lookahead(scene.limits, 15.0F, 0.0F), 60.0F);

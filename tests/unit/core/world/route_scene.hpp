@@ -16,7 +16,7 @@ struct RoutePiecesTest : testing::Test {
     RoutePiecesTest()
     {
         scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-        scene.reference.route = &route;
+        scene.reference = world::Reference(route, scene.reference.speed);
     }
     void leg(const Vec3& from, const Vec3& to) { ASSERT_EQ(route.add_leg(from, to), path::RouteStatus::ok); }
     /// Level, from the end of the route about a centre to its left, or to its right where `angle` is negative.

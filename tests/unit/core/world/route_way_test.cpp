@@ -33,7 +33,7 @@ struct OnRoute : testing::Test {
     void fly(const path::Route& r)
     {
         scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-        scene.reference.route = &r;
+        scene.reference = world::Reference(r, scene.reference.speed);
     }
     Way at(const Vec3& position, std::size_t segment = 0)
     {
@@ -114,7 +114,7 @@ TEST(FoldedRoute, GoesOnWhereTheAimIsTheOwnPlace)
     ASSERT_EQ(route.add_leg(Vec3(100, 0, 0), Vec3(0, 0.15F, 0)), RouteStatus::ok);
     Scene scene;
     scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-    scene.reference.route = &route;
+    scene.reference = world::Reference(route, scene.reference.speed);
     scene.own.position = Vec3(99.5F, 0, 0);
     const Way way = way_of(scene.situation());
     EXPECT_NEAR(way.ahead.joined_at, 100.5F, 1e-4F);
@@ -208,7 +208,7 @@ TEST(WindingRoute, HasTenChordsAtMost)
               RouteStatus::ok);
     Scene scene;
     scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-    scene.reference.route = &route;
+    scene.reference = world::Reference(route, scene.reference.speed);
     scene.own.position = Vec3(3, 0, 0);
     const Way way = way_of(scene.situation());
     const Seconds all = way.length / 5.0F;
@@ -227,7 +227,7 @@ TEST(ClimbingRoute, FliesEachPieceAsFastAsTheLimitsLet)
     ASSERT_EQ(route.add_leg(Vec3(40, 0, 0), Vec3(40, 0, 30)), RouteStatus::ok);
     Scene scene;
     scene.leg(Vec3::Zero(), Vec3::Zero(), 5.0F);
-    scene.reference.route = &route;
+    scene.reference = world::Reference(route, scene.reference.speed);
     const RoutePieces pieces(scene.situation(), way_of(scene.situation()), 30.0F);
     ASSERT_EQ(pieces.size(), 3U);
     EXPECT_NEAR(pieces[0].end, 8.0F, 1e-4F);

@@ -22,7 +22,7 @@ struct Scene {
     std::vector<Barrel> barrels;
     Airspace airspace;
     const Manoeuvre* flying = nullptr;
-    float k_sigma = 3.0F;
+    FlightRules rules;
     TrackId own_id = 0;
     const Commanded* commanded = nullptr;
     Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
@@ -30,17 +30,17 @@ struct Scene {
 
     [[nodiscard]] Situation situation() const
     {
-        Situation s{now,      own, limits, airframe, reference, tracks,    obstacles,
-                    airspace, {},  flying, k_sigma,  own_id,    commanded, shared_horizon};
-        static_cast<void>(threats.collect(s));
+        Situation s{now, own, limits, airframe, reference, rules, {}, flying, own_id, commanded, shared_horizon};
+        static_cast<void>(threats.collect(s, around()));
         s.threats = threats.all();
         return s;
     }
 
+    [[nodiscard]] Surroundings around() const { return {tracks, obstacles, airspace}; }
+
     void leg(const Vec3& start, const Vec3& end, float speed = 5.0F)
     {
-        reference.valid = true;
-        reference.leg = {start, end, speed};
+        reference = world::Reference({start, end, speed});
     }
     /// A track without uncertainty, measured now.
     Track& track(const Vec3& position, const Vec3& velocity, float radius = 1.0F)

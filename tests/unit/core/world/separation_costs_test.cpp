@@ -127,7 +127,7 @@ TEST(BarrelStarts, ExactlyOutsideHaveNoCredit)
 {
     Scene scene;
     scene.barrel(Vec2(5, 0), 3.0F);
-    scene.k_sigma = 1.0F;
+    scene.rules.k_sigma = 1.0F;
     scene.own.sigma_position = barrel_distance(Vec3::Ones(), Vec3::Zero(), scene.barrels[0], 0.0F);
     EXPECT_NEAR(separation(scene, flight({Vec3::Zero(), Vec3(0.04F, 0, 0)}, 0.01F)).margin, -0.04F, 1e-5F);
     scene.own.sigma_position += 1e-4F;

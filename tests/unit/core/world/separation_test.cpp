@@ -31,7 +31,7 @@ TEST(ThreatRadius, AddsBodyDoubtAndAcceleration)
     EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 3.0F * (both + 0.6F) + 0.1F * 36.0F);
     track.stamp = scene.now + 1.0F;
     EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 0.0F), 2.0F + 3.0F * both) << "no negative age";
-    scene.k_sigma = 0.0F;
+    scene.rules.k_sigma = 0.0F;
     track.stamp = scene.now;
     EXPECT_FLOAT_EQ(threat_radius(scene.situation(), track, 4.0F), 2.0F + 0.1F * 16.0F);
 }
@@ -186,10 +186,10 @@ struct Margin {
     friend void PrintTo(const Margin& m, std::ostream* out) { *out << m.name; }
 };
 
-const std::vector<Vec3>& block()
+const std::vector<Point3>& block()
 {
-    static const std::vector<Vec3> vertices{{-2, -2, -2}, {-2, -2, 2}, {-2, 2, -2}, {-2, 2, 2},
-                                            {2, -2, -2},  {2, -2, 2},  {2, 2, -2},  {2, 2, 2}};
+    static const std::vector<Point3> vertices{{-2, -2, -2}, {-2, -2, 2}, {-2, 2, -2}, {-2, 2, 2},
+                                              {2, -2, -2},  {2, -2, 2},  {2, 2, -2},  {2, 2, 2}};
     return vertices;
 }
 
@@ -337,7 +337,7 @@ TEST(EscapeRule, AStartThatIsBarelyClearOfASolidsClearanceGetsNoCredit)
     Scene scene;
     scene.limits.half_extents = Vec3(0.5F, 0.7F, 0.3F);
     scene.own.sigma_position = 0.3F;
-    const float clearance = scene.k_sigma * scene.own.sigma_position;
+    const float clearance = scene.rules.k_sigma * scene.own.sigma_position;
     for (int i = 0; i < 400; ++i) {
         const float turn = 0.37F * static_cast<float>(i);
         const Mat3 axes = (Eigen::AngleAxisf(turn, Vec3::UnitZ()) * Eigen::AngleAxisf(0.61F * turn, Vec3::UnitX()) *

@@ -108,12 +108,12 @@ TEST_F(OfEachKind, WithoutASetEverythingIsContact)
     EXPECT_EQ(scene.situation().threats.size(), kMaxTracks + 6);
     scene.barrels.resize(kMaxBarrels + 1);
     scene.airspace.barrels = scene.barrels;
-    EXPECT_FALSE(set.collect(scene.situation()));
+    EXPECT_FALSE(set.collect(scene.situation(), scene.around()));
     EXPECT_EQ(set.all().data(), nullptr);
     scene.airspace.barrels = {};
-    EXPECT_TRUE(set.collect(scene.situation()));
+    EXPECT_TRUE(set.collect(scene.situation(), scene.around()));
     scene.obstacles.resize(kMaxObstacles + 1);
-    EXPECT_FALSE(set.collect(scene.situation()));
+    EXPECT_FALSE(set.collect(scene.situation(), scene.around()));
 }
 
 /// A track with a non-finite value counts as growing, so that no check treats it as a track of fixed size.
