@@ -86,11 +86,4 @@ void advance(VehicleState& state, const Vec3& command, const VehicleLimits& limi
 [[nodiscard]] bool is_valid(const VehicleLimits& limits) noexcept;
 [[nodiscard]] bool is_valid(const Airframe& airframe) noexcept;
 
-<<<<<<< HEAD
-=======
-/// Pinheiro's second vehicle (tab. 4.5); rotor data as the default where Pinheiro gives none.
-[[nodiscard]] VehicleLimits uav2_limits() noexcept;
-[[nodiscard]] Airframe uav2_airframe() noexcept;
-
->>>>>>> 557814aa44ef6e2848b4039d97b6a2525c9a747e
 }  // namespace jink::vehicle
