@@ -16,8 +16,8 @@
 #ifndef JINK_MAX_OBSTACLES
 #define JINK_MAX_OBSTACLES 96
 #endif
-#ifndef JINK_MAX_BARRELS
-#define JINK_MAX_BARRELS 32
+#ifndef JINK_MAX_CYLINDERS
+#define JINK_MAX_CYLINDERS 32
 #endif
 #ifndef JINK_MAX_PATH_POINTS
 #define JINK_MAX_PATH_POINTS 64
@@ -57,7 +57,7 @@
 #define JINK_CAPACITY(name) "_" JINK_TEXT_OF(name)
 /// Name of the symbol that core defines, and every unit that includes this header asks for.
 #define JINK_CAPACITIES_SYMBOL                                                                                         \
-    "jink_capacities" JINK_CAPACITY(JINK_MAX_TRACKS) JINK_CAPACITY(JINK_MAX_OBSTACLES) JINK_CAPACITY(JINK_MAX_BARRELS) \
+    "jink_capacities" JINK_CAPACITY(JINK_MAX_TRACKS) JINK_CAPACITY(JINK_MAX_OBSTACLES) JINK_CAPACITY(JINK_MAX_CYLINDERS) \
         JINK_CAPACITY(JINK_MAX_PATH_POINTS) JINK_CAPACITY(JINK_MAX_ROUTE_SEGMENTS) JINK_CAPACITY(JINK_MAX_CANDIDATES)  \
             JINK_CAPACITY(JINK_MAX_HULL_VERTICES) JINK_CAPACITY(JINK_MAX_REACH_NODES)                                  \
                 JINK_CAPACITY(JINK_MAX_REACH_CELLS) JINK_CAPACITY(JINK_MAX_COMMANDS)                                   \
@@ -90,9 +90,9 @@ static_assert(kMaxObstacles >= 1 && kMaxObstacles <= 1024);
 inline constexpr std::size_t kMaxMapObstacles = kMaxObstacles < 4 ? 1 : kMaxObstacles / 4;
 
 /// Closed volumes and storm cells at once (Gomola 6.6.5). When there are more, the two farthest become one that holds
-/// both, and BarrelTable::merged() counts it: nothing is lost, more than needed may be closed.
-inline constexpr std::size_t kMaxBarrels = JINK_MAX_BARRELS;
-static_assert(kMaxBarrels >= 2 && kMaxBarrels <= 256);
+/// both, and CylinderTable::merged() counts it: nothing is lost, more than needed may be closed.
+inline constexpr std::size_t kMaxCylinders = JINK_MAX_CYLINDERS;
+static_assert(kMaxCylinders >= 2 && kMaxCylinders <= 256);
 
 /// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;

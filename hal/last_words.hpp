@@ -16,7 +16,7 @@ namespace jink::hal {
 class LastWords {
 public:
     /// Four signed MAVLink frames take 226.
-    static constexpr std::size_t kMost = 240;
+    static constexpr std::size_t kMax = 240;
 
     void clear() noexcept
     {
@@ -28,23 +28,23 @@ public:
     /// Buffer for the next words. They are valid from publish() on.
     [[nodiscard]] std::span<std::byte> draft() noexcept { return places_[1U - (newest_ & 1U)].bytes; }
 
-    /// @param size  of the words in draft(), at most kMost; 0: nothing to send
+    /// @param size  of the words in draft(), at most kMax; 0: nothing to send
     /// O(size): a checksum over 4-byte words.
     void publish(std::size_t size) noexcept
     {
         Place& place = places_[1U - (newest_ & 1U)];
-        place.size = size <= kMost ? static_cast<std::uint32_t>(size) : 0;
+        place.size = size <= kMax ? static_cast<std::uint32_t>(size) : 0;
         place.check = check_of(place);
         std::atomic_signal_fence(std::memory_order_release);  // complete before it is valid
         newest_ = 1U - (newest_ & 1U);
     }
 
-    /// The newest words with a correct checksum; empty if there are none. O(kMost).
+    /// The newest words with a correct checksum; empty if there are none. O(kMax).
     [[nodiscard]] std::span<const std::byte> valid() const noexcept
     {
         for (const std::uint32_t i : {newest_ & 1U, 1U - (newest_ & 1U)}) {
             const Place& place = places_[i];
-            if (place.size > 0 && place.size <= kMost && place.check == check_of(place)) {
+            if (place.size > 0 && place.size <= kMax && place.check == check_of(place)) {
                 return {place.bytes.data(), place.size};
             }
         }
@@ -55,9 +55,9 @@ private:
     struct Place {
         std::uint32_t size;
         std::uint32_t check;
-        std::array<std::byte, kMost> bytes;
+        std::array<std::byte, kMax> bytes;
     };
-    static_assert(kMost % sizeof(std::uint32_t) == 0);
+    static_assert(kMax % sizeof(std::uint32_t) == 0);
 
     /// For each word the sum is rotated and multiplied by an odd number: any change of one word is detected.
     [[nodiscard]] static std::uint32_t check_of(const Place& place) noexcept

@@ -45,9 +45,9 @@ float faded_share(float x) noexcept
 
 float natural_log(float value) noexcept
 {
-    constexpr float kLeastNormal = 1.17549435e-38F;
+    constexpr float kMinNormal = 1.17549435e-38F;
     constexpr float kSqrtHalf = 0.707106781186547524F;
-    const bool is_subnormal = value < kLeastNormal;
+    const bool is_subnormal = value < kMinNormal;
     const auto bits = std::bit_cast<std::uint32_t>(is_subnormal ? value * power_of_two(kMantissaBits) : value);
     int exponent =
         static_cast<int>(bits >> kMantissaBits) - (kBias - 1) - (is_subnormal ? static_cast<int>(kMantissaBits) : 0);

@@ -117,13 +117,13 @@ struct Passing {
 };
 /// Path not empty. One half where threat and vehicle are at one point, or the threat is static. O(points).
 [[nodiscard]] Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept;
-/// Mean over threats, weighted by 1 / gap, gaps of at least kLeastGap; 0 for none.
+/// Mean over threats, weighted by 1 / gap, gaps of at least kMinGap; 0 for none.
 class PassingMean {
 public:
-    static constexpr float kLeastGap = 0.1F;
+    static constexpr float kMinGap = 0.1F;
     void add(const Passing& threat) noexcept
     {
-        const float weight = 1.0F / (threat.gap > kLeastGap ? threat.gap : kLeastGap);
+        const float weight = 1.0F / (threat.gap > kMinGap ? threat.gap : kMinGap);
         sum_ += weight * threat.share;
         weights_ += weight;
     }

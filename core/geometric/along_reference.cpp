@@ -21,7 +21,7 @@ constexpr float kNoCorner = 1e-4F;
 /// What follows a joint is looked at this far past it, so that rounding does not find what comes before it [m].
 constexpr float kPastJoint = 1e-3F;
 /// No chord takes less, however short it is: times rise strictly and velocities are numbers [s].
-constexpr Seconds kLeastDuration = 1e-3F;
+constexpr Seconds kMinDuration = 1e-3F;
 /// Tangents by which the planes are carried to the collision point.
 constexpr int kCarrySteps = 8;
 /// The tangent at the collision point is taken between points this share of D before and behind it.
@@ -140,7 +140,7 @@ void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& 
         const Vec3 step = position - before;
         const Seconds needed =
             std::max(step.norm() * per_speed, std::max(step.z() * per_climb, step.z() * per_descent));
-        now += i > 0 ? std::max(needed, kLeastDuration) : 0.0F;
+        now += i > 0 ? std::max(needed, kMinDuration) : 0.0F;
         out.x[i] = position.x();
         out.y[i] = position.y();
         out.z[i] = position.z();

@@ -37,7 +37,7 @@ Clearance::Clearance(const Problem& problem, const Settings& settings, const veh
     : problem_(problem), settings_(settings), half_(limits.half_extents), bounds_(bounds_of(problem, half_)),
       tracks_(world::of_kind(problem.threats, ThreatKind::track)),
       obstacles_(world::of_kind(problem.threats, ThreatKind::obstacle)),
-      cylinders_(world::of_kind(problem.threats, ThreatKind::barrel))
+      cylinders_(world::of_kind(problem.threats, ThreatKind::cylinder))
 {
 }
 
@@ -84,13 +84,13 @@ float Clearance::shrink_to_clear(float start_margin) const noexcept
 /// Parts of a segment so short that a surface growing back takes half the slack at most in each.
 int Clearance::escape_parts(Seconds duration) const noexcept
 {
-    constexpr Seconds kLeast = 0.02F;
+    constexpr Seconds kMin = 0.02F;
     const Seconds longest =
         problem_.rules.escape.speed > 0.0F ? 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed : duration;
-    return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kLeast))));
+    return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kMin))));
 }
 
-Clearance::Ball Clearance::ball_of(const world::Threat& threat) const noexcept
+Clearance::Sphere Clearance::sphere_of(const world::Threat& threat) const noexcept
 {
     const Vec3& origin = problem_.frame.origin;
     if (threat.ref.kind == ThreatKind::track) {
@@ -100,19 +100,19 @@ Clearance::Ball Clearance::ball_of(const world::Threat& threat) const noexcept
     return {threat.position - origin, threat.velocity, threat.box_against(half_), threat.growth};  // at rest
 }
 
-void Clearance::add_ball(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept
+void Clearance::add_sphere(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept
 {
-    const Ball ball = ball_of(threat);
-    if (!out_of(reach, ball, longest)) {
-        const float margin = geometry::box_distance(ball.half, ball.position) - ball.growth.radius;
+    const Sphere sphere = sphere_of(threat);
+    if (!out_of(reach, sphere, longest)) {
+        const float margin = geometry::box_distance(sphere.half, sphere.position) - sphere.growth.radius;
         items_.unchecked_push_back({index_of(threat), shrink_to_clear(margin)});
     }
 }
 
-bool Clearance::out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept
+bool Clearance::out_of(const Extent& reach, const Sphere& sphere, Seconds longest) noexcept
 {
-    const Extent path = about(ball.position, ball.position + ball.velocity * longest);
-    return apart(path.low, path.high, reach.low, reach.high, ball.half, ball.growth.at(longest));
+    const Extent path = about(sphere.position, sphere.position + sphere.velocity * longest);
+    return apart(path.low, path.high, reach.low, reach.high, sphere.half, sphere.growth.at(longest));
 }
 
 bool Clearance::is_out_of(const Extent& reach, const geometry::Shape& solid, float clearance) const noexcept
@@ -129,7 +129,7 @@ void Clearance::add_tracks(const Extent& reach, Seconds longest, Which which) no
                           : deferred_[index_of(track)] ? Which::deferred
                                                        : Which::moving;
         if (its == which) {
-            add_ball(track, reach, longest);
+            add_sphere(track, reach, longest);
         }
     }
 }
@@ -145,8 +145,8 @@ void Clearance::add_obstacles(const Extent& reach, Seconds longest, bool moving,
             continue;
         }
         if (obstacle.form != world::ThreatForm::solid) {
-            add_ball(obstacle, reach, longest);
-        } else if (moving ? !out_of(reach, ball_about(obstacle), longest)
+            add_sphere(obstacle, reach, longest);
+        } else if (moving ? !out_of(reach, sphere_about(obstacle), longest)
                           : !is_out_of(reach, *obstacle.solid, obstacle.growth.radius)) {
             add_solid(obstacle, budget);
         }
@@ -174,7 +174,7 @@ Clearance::Solid Clearance::solid_of(const world::Threat& threat, float shrunk) 
 }
 
 /// The bounding sphere of a moving solid.
-Clearance::Ball Clearance::ball_about(const world::Threat& solid) const noexcept
+Clearance::Sphere Clearance::sphere_about(const world::Threat& solid) const noexcept
 {
     const AtStart start = at_start(problem_, solid);
     world::Growth growth = start.growth;
@@ -186,7 +186,7 @@ bool Clearance::touches_moving_solid(const View& view, const Item& item, WorkBud
 {
     const world::Threat& solid = problem_.threats[item.index];
     if (settings_.security == SecurityMode::swept) {
-        return touches_swept(view.curve, view.extent, ball_about(solid), t_max_, budget);
+        return touches_swept(view.curve, view.extent, sphere_about(solid), t_max_, budget);
     }
     if (!budget.spend(units::kSolidSegment * static_cast<std::uint32_t>(view.last()))) {
         return true;
@@ -205,10 +205,10 @@ bool Clearance::touches(const View& view, const Item& item, WorkBudget& budget) 
     if (threat.form == world::ThreatForm::cylinder) {
         return touches_cylinder(view.curve, threat, item.shrunk, budget);
     }
-    const Ball ball = ball_of(threat);
+    const Sphere sphere = sphere_of(threat);
     return moving && settings_.security == SecurityMode::swept
-               ? touches_swept(view.curve, view.extent, ball, sweep_end(threat), budget)
-               : touches(view.curve, ball, item.shrunk, budget);
+               ? touches_swept(view.curve, view.extent, sphere, sweep_end(threat), budget)
+               : touches(view.curve, sphere, item.shrunk, budget);
 }
 
 Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) const noexcept
@@ -228,11 +228,11 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) cons
             if (!budget.spend(units::kFarItem)) {
                 return {CandidateStatus::not_evaluated, {}};
             }
-            if (is_ball_out_of(view.extent, item, curve.duration())) {
+            if (is_sphere_out_of(view.extent, item, curve.duration())) {
                 continue;
             }
         }
-        const bool hit = budget.spend(is_solid(item) ? units::kSolidLook : units::kItem) && touches(view, item, budget);
+        const bool hit = budget.spend(is_solid(item) ? units::kSolidCheck : units::kItem) && touches(view, item, budget);
         if (budget.exhausted()) {
             return {CandidateStatus::not_evaluated, {}};
         }
@@ -243,7 +243,7 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) cons
     return {};
 }
 
-bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept
+bool Clearance::is_sphere_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept
 {
     const world::Threat& threat = problem_.threats[item.index];
     if (threat.form == world::ThreatForm::cylinder) {
@@ -252,7 +252,7 @@ bool Clearance::is_ball_out_of(const Extent& extent, const Item& item, Seconds d
     if (settings_.security == SecurityMode::swept && is_moving(threat)) {
         return false;  // its volume ends when others say
     }
-    return out_of(extent, ball_of(threat), duration);
+    return out_of(extent, sphere_of(threat), duration);
 }
 
 Verdict Clearance::verdict_of(const Item& item) const noexcept

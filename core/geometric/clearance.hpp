@@ -22,18 +22,18 @@ struct AtStart {
 };
 [[nodiscard]] AtStart at_start(const Problem& problem, const world::Threat& threat) noexcept;
 
-/// How far a curve and a ball are from meeting, by bounds on their speeds: segments are passed over while nothing can
+/// How far a curve and a sphere are from meeting, by bounds on their speeds: segments are passed over while nothing can
 /// happen. Never hides what the exact test would find: the bounds leave more room than that test's rounding takes.
-class Room {
+class MotionBound {
 public:
-    /// Of a curve whose coordinates change no faster than `fastest` [m/s] and that lasts `duration`, and a ball whose
-    /// coordinates change no faster than `ball_fastest` and that is never larger than `largest`.
-    Room(float fastest, float ball_fastest, float largest, Seconds duration) noexcept
-        : closing_(fastest + ball_fastest), largest_(largest), scale_(1.0F + closing_ * duration + largest)
+    /// Of a curve whose coordinates change no faster than `fastest` [m/s] and that lasts `duration`, and a sphere whose
+    /// coordinates change no faster than `sphere_fastest` and that is never larger than `largest`.
+    MotionBound(float fastest, float sphere_fastest, float largest, Seconds duration) noexcept
+        : closing_(fastest + sphere_fastest), largest_(largest), scale_(1.0F + closing_ * duration + largest)
     {
     }
 
-    /// Looks at where the ball's centre is from the curve, at `t`.
+    /// Looks at where the sphere's centre is from the curve, at `t`.
     void look(const Vec3& apart, const Vec3& half, Seconds t) noexcept
     {
         const Vec3 size = apart.cwiseAbs();
@@ -96,7 +96,7 @@ public:
 
 private:
     /// A static or moving sphere, or an obstacle with the sphere's closed form.
-    struct Ball {
+    struct Sphere {
         Vec3 position;  ///< relative to the start
         Vec3 velocity;
         Vec3 half;  ///< own box as this one meets it
@@ -135,15 +135,15 @@ private:
     {
         return static_cast<std::uint16_t>(&threat - problem_.threats.data());
     }
-    [[nodiscard]] Ball ball_of(const world::Threat& threat) const noexcept;
-    void add_ball(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept;
+    [[nodiscard]] Sphere sphere_of(const world::Threat& threat) const noexcept;
+    void add_sphere(const world::Threat& threat, const Extent& reach, Seconds longest) noexcept;
     enum class Which : std::uint8_t { at_rest, moving, deferred };
     void add_tracks(const Extent& reach, Seconds longest, Which which) noexcept;
     void add_obstacles(const Extent& reach, Seconds longest, bool moving, WorkBudget& budget) noexcept;
     void add_cylinders(const Extent& reach, Seconds longest) noexcept;
     void add_solid(const world::Threat& threat, WorkBudget& budget) noexcept;
     [[nodiscard]] Solid solid_of(const world::Threat& threat, float shrunk) const noexcept;
-    [[nodiscard]] Ball ball_about(const world::Threat& solid) const noexcept;
+    [[nodiscard]] Sphere sphere_about(const world::Threat& solid) const noexcept;
     [[nodiscard]] bool is_solid(const Item& item) const noexcept
     {
         return problem_.threats[item.index].form == world::ThreatForm::solid;
@@ -159,18 +159,18 @@ private:
     [[nodiscard]] bool meets(const View& view, std::size_t i, std::size_t end, const Solid& solid,
                              WorkBudget& budget) const noexcept;
     [[nodiscard]] world::ThreatKind left_airspace(const Curve& curve) const noexcept;
-    [[nodiscard]] static bool out_of(const Extent& reach, const Ball& ball, Seconds longest) noexcept;
+    [[nodiscard]] static bool out_of(const Extent& reach, const Sphere& sphere, Seconds longest) noexcept;
     [[nodiscard]] bool is_out_of(const Extent& reach, const geometry::Shape& solid, float clearance) const noexcept;
     [[nodiscard]] static Bounds bounds_of(const Problem& problem, const Vec3& half) noexcept;
     [[nodiscard]] Verdict verdict_of(const Item& item) const noexcept;
-    [[nodiscard]] bool is_ball_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Ball& ball, float shrunk, const Vec3& before,
+    [[nodiscard]] bool is_sphere_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept;
+    [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk, const Vec3& before,
                                const Vec3& after, WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Ball& ball, float shrunk,
+    [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk,
                                         const Vec3& before, const Vec3& after, int parts,
                                         WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, const Ball& ball, float shrunk, WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Ball& ball, Seconds end,
+    [[nodiscard]] bool touches(const Curve& curve, const Sphere& sphere, float shrunk, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Sphere& sphere, Seconds end,
                                      WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches(const View& view, const Solid& solid, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_moving_solid(const View& view, const Item& item, WorkBudget& budget) const noexcept;
@@ -191,7 +191,7 @@ private:
     const std::span<const world::Threat> obstacles_;
     const std::span<const world::Threat> cylinders_;
     Selection deferred_{};
-    StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids + kMaxBarrels> items_;
+    StaticVector<Item, kMaxTracks + kMaxObstacles + kMaxMovingSolids + kMaxCylinders> items_;
     std::size_t near_items_ = 0;  ///< the deferred ones come after these
     bool needs_extent_ = false;   ///< some item is tested against a curve's extent
 };

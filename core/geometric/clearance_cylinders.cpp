@@ -2,7 +2,7 @@
 // Upright cylinders, at rest or moving: closed areas and weather.
 #include "core/base/work_units.hpp"
 #include "core/geometric/clearance.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 
 namespace jink::geometric::detail {
 
@@ -11,7 +11,7 @@ void Clearance::add_cylinders(const Extent& reach, Seconds longest) noexcept
     const Seconds start = problem_.lead + problem_.begins;
     for (const world::Threat& threat : cylinders_) {
         if (!is_cylinder_out_of(reach, threat, 0.0F, longest)) {
-            const float margin = world::barrel_distance(half_, problem_.frame.origin, *threat.cylinder, start) -
+            const float margin = world::cylinder_distance(half_, problem_.frame.origin, *threat.cylinder, start) -
                                  at_start(problem_, threat).growth.radius;
             items_.unchecked_push_back({index_of(threat), shrink_to_clear(margin)});
         }
@@ -22,7 +22,7 @@ void Clearance::add_cylinders(const Extent& reach, Seconds longest) noexcept
 bool Clearance::is_cylinder_out_of(const Extent& extent, const world::Threat& threat, Seconds from,
                                    Seconds until) const noexcept
 {
-    const world::Barrel& body = *threat.cylinder;
+    const world::Cylinder& body = *threat.cylinder;
     const Vec3& origin = problem_.frame.origin;
     const auto corner = [&](Seconds t, float height, float side) -> Vec3 {
         const world::Vec2 level = body.circle.centre + body.velocity * (problem_.lead + problem_.begins + t);
@@ -45,7 +45,7 @@ bool Clearance::touches_cylinder(const Curve& curve, std::size_t i, const world:
     for (int part = 0; part < parts; ++part) {
         const Seconds from = span * static_cast<float>(part);
         const float outset = threat.growth.radius - shrink_at(shrunk, curve.t[i] + from + span);
-        const world::detail::BarrelApproach approach(
+        const world::detail::CylinderApproach approach(
             half_, {problem_.frame.origin + curve.position(i) + from * velocity, velocity}, *threat.cylinder,
             problem_.lead + problem_.begins + curve.t[i] + from, outset, 0.0F);
         if (!(approach.least(span, 0.0F, budget).distance >= 0.0F)) {
@@ -59,7 +59,7 @@ bool Clearance::touches_cylinder(const Curve& curve, const world::Threat& threat
                                  WorkBudget& budget) const noexcept
 {
     for (std::size_t i = 0; i + 1 < curve.points; ++i) {
-        if (!budget.spend(units::kBallLook)) {
+        if (!budget.spend(units::kSphereCheck)) {
             return true;
         }
         const Extent piece = about(curve.position(i), curve.position(i + 1));

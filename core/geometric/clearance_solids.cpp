@@ -97,7 +97,7 @@ bool Clearance::touches(const View& view, const Solid& solid, WorkBudget& budget
     if (planes.part(middle, middle, half_ + view.extent.half(), largest)) {
         return false;
     }
-    if (!budget.spend(units::kSolidLook)) {
+    if (!budget.spend(units::kSolidCheck)) {
         return true;
     }
     if (touches_at_its_top(view, planes, solid)) {

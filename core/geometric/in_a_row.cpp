@@ -63,7 +63,7 @@ bool first_met(const Problem& problem, const geometry::Motion& own, const Vec3& 
     const std::span obstacles = world::of_kind(problem.threats, world::ThreatKind::obstacle);
     const auto moving = std::count_if(obstacles.begin(), obstacles.end(), is_moving);
     const std::size_t all = tracks.size() + obstacles.size() - static_cast<std::size_t>(moving);
-    if (!budget.spend(units::kBallContact * static_cast<std::uint32_t>(all))) {
+    if (!budget.spend(units::kSphereContact * static_cast<std::uint32_t>(all))) {
         return false;
     }
     for (const world::Threat& threat : tracks) {
@@ -124,7 +124,7 @@ bool second_part(const Problem& problem, const Beginning& first, const vehicle::
         out.main_centre_offset =
             met.motion.position + when * met.motion.velocity - (out.frame.origin + when * velocity);
         // So near to the main threat the next one often is nearer than the 2.5 R; whether a curve clears it is checked.
-        out.body_radius = std::min(out.main_radius, kWithin * out.distance / kLeastDistanceInRadii);
+        out.body_radius = std::min(out.main_radius, kWithin * out.distance / kMinDistanceInRadii);
         out.apex_share = out.distance > 0.0F ? 0.5F * way.norm() / out.distance : 0.0F;
         const float reach = 4.0F * out.distance * out.distance - aside * aside;
         back = reach > 0.0F ? std::max(std::sqrt(reach), 0.5F * top) : top;

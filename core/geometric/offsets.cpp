@@ -13,7 +13,7 @@ constexpr float kFan = 3.2F;
 /// Offsets within rounding of the drop limit are kept.
 constexpr float kKeep = 1.0F - 1e-5F;
 /// Where the curve has less than this share of its offset, it is not asked to clear anything.
-constexpr float kLeastShare = 1.0F / 3.0F;
+constexpr float kMinShare = 1.0F / 3.0F;
 
 void source_offsets(float radius, const Settings& settings, Offsets& out) noexcept
 {
@@ -59,7 +59,7 @@ float smallest_clearing_offset(const Problem& problem, const Settings& settings,
     const float box_aside = half_extents.dot(side.cwiseAbs());
     const float box_along = half_extents.dot(along.cwiseAbs());
     const float extent = main_extent(problem, side);
-    float smallest = std::max(kLeastOffset, extent + box_aside + kClearingSlack);
+    float smallest = std::max(kMinOffset, extent + box_aside + kClearingSlack);
     // The chords of the curve lie inside of it, by y'' / 8 of a step at its top.
     const float step = curve_length_x(family, 1.0F) / static_cast<float>(settings.waypoints - 1);
     const float chord = 0.75F * step * step;
@@ -75,7 +75,7 @@ float smallest_clearing_offset(const Problem& problem, const Settings& settings,
         const float share = std::min(unit_offset(family, std::max(u_before, 0.0F)),
                                      unit_offset(family, std::min(u_behind, curve_length_x(family, 1.0F))));
         smallest =
-            std::max(smallest, (extent - drop + box_aside + kClearingSlack) / std::max(share - chord, kLeastShare));
+            std::max(smallest, (extent - drop + box_aside + kClearingSlack) / std::max(share - chord, kMinShare));
     }
     return smallest;
 }

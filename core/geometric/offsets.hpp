@@ -17,7 +17,7 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
 
 /// Smallest offset towards `side` with which a family's curve clears the main threat at rest, the box around it: the
 /// curve is on its way back when the box's corners leave the threat behind, so a little more than both extents. At
-/// least kLeastOffset.
+/// least kMinOffset.
 ///
 /// Of threats so near that the curve comes down upon them whatever its offset, the simple family's at 2.5 R foremost,
 /// the result says what would clear a third of the way: such candidates are then found out by the contact test. O(1).
@@ -27,7 +27,7 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
 /// Offsets beyond this share of the distance are left out: the source's go no further (3.2 R at D = 2.5 R).
 inline constexpr float kLargestRatio = 1.2801F;
 /// An offset below this is no way round anything [m].
-inline constexpr float kLeastOffset = 0.3F;
+inline constexpr float kMinOffset = 0.3F;
 /// Clearing offsets clear by this much [m].
 inline constexpr float kClearingSlack = 0.05F;
 

@@ -22,9 +22,9 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     Problem problem;
     problem.frame = make_path_frame(way.origin, way.direction);
     problem.distance = (conflict.own_at_closest - way.origin).norm();
-    problem.main_radius = std::max(conflict.radius_at_closest, Planner::kLeastMainRadius);
+    problem.main_radius = std::max(conflict.radius_at_closest, Planner::kMinMainRadius);
     if (conflict.threat.kind == world::ThreatKind::track) {
-        problem.body_radius = std::max(main.track->radius, Planner::kLeastMainRadius);
+        problem.body_radius = std::max(main.track->radius, Planner::kMinMainRadius);
     }
     problem.threats = situation.threats;
     problem.rules = situation.rules;
@@ -49,7 +49,7 @@ Seconds move_start(const Situation& situation, const Vec3& collision_point, cons
     const Seconds latency = settings.starts_after_latency ? situation.rules.latency : 0.0F;
     const Vec3 way = problem.start_velocity * latency;
     const Vec3 left = collision_point - problem.frame.origin - way;
-    const float least = std::max(Planner::kLeastLeadRatio * way.norm(), kLeastDistanceInRadii * scale_radius(problem));
+    const float least = std::max(Planner::kMinLeadRatio * way.norm(), kMinDistanceInRadii * scale_radius(problem));
     if (!(way.squaredNorm() > 0.0F) || left.norm() < least || settings.waypoints >= kMaxPathPoints) {
         return 0.0F;
     }
@@ -174,7 +174,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
     }
     Problem problem = problem_of(situation, way, conflict);
-    if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
+    if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
     problem.lead = move_start(situation, conflict.own_at_closest, settings_, problem, budget);

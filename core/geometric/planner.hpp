@@ -27,7 +27,7 @@ enum class OffsetRule : std::uint8_t { clearing, source };
 /// What a vehicle may overshoot the leg by where a simple candidate meets it again [m]: half the default safety box.
 inline constexpr float kRejoinOvershoot = 0.5F;
 /// Nearest distance to the main threat that is planned for, in its radii (Pinheiro 3.1.1).
-inline constexpr float kLeastDistanceInRadii = 2.5F;
+inline constexpr float kMinDistanceInRadii = 2.5F;
 /// One go at a problem: which candidates, at a share of the leg's speed, over which part of the span of clearing
 /// offsets.
 struct Attempt {
@@ -210,7 +210,7 @@ struct Result {
 class Workspace {
 public:
     static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) +
-                                          16 * (kMaxTracks + kMaxObstacles + kMaxBarrels) + 3 * kMaxProblemThreats +
+                                          16 * (kMaxTracks + kMaxObstacles + kMaxCylinders) + 3 * kMaxProblemThreats +
                                           48 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1280;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
@@ -257,10 +257,10 @@ private:
 ///
 /// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
 /// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
-/// radius then, at least kLeastMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. It begins
+/// radius then, at least kMinMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. It begins
 /// with what the vehicle flies during FlightRules::latency, so that it is joined without a jump; threats are met where and
 /// as large as they are from then on. The start is not moved where that would bring the collision point nearer than
-/// kLeastLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
+/// kMinLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
 ///
 /// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).
 class Planner {
@@ -269,8 +269,8 @@ public:
         .id = 1, .reactive = false, .keeps_clearance = false, .needs_sets = false};
     /// Smaller main threats are planned for as if they had this radius, so that offsets have something to scale with
     /// [m].
-    static constexpr float kLeastMainRadius = 0.5F;
-    static constexpr float kLeastLeadRatio = 4.0F;
+    static constexpr float kMinMainRadius = 0.5F;
+    static constexpr float kMinLeadRatio = 4.0F;
 
     explicit Planner(const Settings& settings) noexcept : settings_(settings) {}
 

@@ -57,11 +57,11 @@ private:
     void assess(Candidate& candidate) noexcept;
     [[nodiscard]] std::uint32_t units_of_checks() const noexcept
     {
-        constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+        constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
         // Curves along a route are dearer: one share more.
         const std::uint64_t shares =
             (!problem_.ahead.route.empty() ? 2U : 1U) + std::uint64_t{units::kSolidShares} * clearance_.solids();
-        return static_cast<std::uint32_t>(std::min(kMost, settings_.check_units * shares));
+        return static_cast<std::uint32_t>(std::min(kMax, settings_.check_units * shares));
     }
     [[nodiscard]] std::uint32_t units_of_costs() const noexcept
     {
@@ -123,7 +123,7 @@ private:
     BaseCurve base_;        ///< with a route
     Curve curve_;           ///< of the candidate at hand
     path::TimedPath path_;  ///< the same, about the start
-    /// Threats and solids, about the start; a solid as the ball about it.
+    /// Threats and solids, about the start; a solid as the sphere about it.
     static constexpr std::size_t kMaxMoving = kMaxTracks + kMaxMovingSolids;
     StaticVector<cost::MovingThreat, kMaxMoving> moving_;
 };

@@ -81,7 +81,7 @@ PlanStatus solve(const Problem& problem, const Settings& settings, const vehicle
     if (!is_valid(settings) || !vehicle::is_valid(limits) || !vehicle::is_valid(airframe) || !is_valid(problem)) {
         return PlanStatus::bad_input;
     }
-    if (problem.distance < kLeastDistanceInRadii * scale_radius(problem)) {
+    if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {
         return PlanStatus::too_close;
     }
     static_assert(sizeof(Run) <= Workspace::kBytes && Workspace::kBytes <= sizeof(Run) + sizeof(Run) / 4 + 1024);

@@ -28,7 +28,7 @@ struct Progress {
 
 /// A query in units of its own size, so that libccd's absolute tolerances (1.5e-8 on lengths) are relative ones.
 ///
-/// The own solid is the sum of a segment (+-sweep), a box (+-half) and a ball (`rounding`), centred on the origin; the
+/// The own solid is the sum of a segment (+-sweep), a box (+-half) and a sphere (`rounding`), centred on the origin; the
 /// other one is `core` moved by `offset`.
 struct Query {
     ccd_vec3_t sweep{};
@@ -67,10 +67,10 @@ void own_support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* an
     progress.calls += 2;
     const ccd_real_t end = dot(*direction, query.sweep) < 0 ? ccd_real_t(-1) : ccd_real_t(1);
     const ccd_real_t length = std::sqrt(dot(*direction, *direction));
-    const ccd_real_t ball = length > 0 ? query.rounding / length : ccd_real_t(0);
+    const ccd_real_t sphere = length > 0 ? query.rounding / length : ccd_real_t(0);
     for (int i = 0; i < 3; ++i) {
         const ccd_real_t along = direction->v[i];
-        answer->v[i] = end * query.sweep.v[i] + signed_like(query.half.v[i], along) + ball * along;
+        answer->v[i] = end * query.sweep.v[i] + signed_like(query.half.v[i], along) + sphere * along;
     }
     progress.own_along = dot(*answer, *direction);
 }
@@ -119,7 +119,7 @@ Query make_query(const detail::SweptBox& box, const Shape& shape, float clearanc
         query.half.v[i] = static_cast<ccd_real_t>(box.half[i]) * query.scale;
         query.offset.v[i] = (static_cast<ccd_real_t>(shape.centre[i]) - (a + b) / 2) * query.scale;
     }
-    // The ball also covers the rounding of the float support points, and of libccd's own sums.
+    // The sphere also covers the rounding of the float support points, and of libccd's own sums.
     const ccd_real_t largest =
         std::abs(query.offset.v[0]) + std::abs(query.offset.v[1]) + std::abs(query.offset.v[2]) + 1;
     query.rounding = static_cast<ccd_real_t>(clearance + 8.0F * kRounding * radius) * query.scale +

@@ -70,7 +70,7 @@ Separation search(const Support& support, const detail::SearchBegin& begin, floa
     if (!is_start(begin.nearest)) {
         return {};
     }
-    const detail::SearchLimits limits{0.0F, query.reach, query.resolution, 2 * kMostDistanceTurns};
+    const detail::SearchLimits limits{0.0F, query.reach, query.resolution, 2 * kMaxDistanceTurns};
     const detail::SearchResult found =
         detail::search_origin(support, begin, kProductRoundings * kUnitRoundoff * size, limits, turn, budget);
     Separation out{found.proven, found.upper, found.towards};
@@ -86,8 +86,8 @@ detail::SearchBegin begin_with(const DistanceQuery& query, const Vec3& nearest) 
     return {is_start(query.start) ? query.start : nearest, nullptr, std::numeric_limits<float>::max()};
 }
 
-/// Of a ball about a point `offset` away.
-Separation from_ball(const Vec3& offset, float radius, float slack) noexcept
+/// Of a sphere about a point `offset` away.
+Separation from_sphere(const Vec3& offset, float radius, float slack) noexcept
 {
     const float length = offset.norm();
     const float distance = length - radius - slack;
@@ -201,7 +201,7 @@ Separation point_shape_distance(const Vec3& point, const Shape& shape, const Dis
         if (!budget.spend(turn)) {
             return {0.0F, std::numeric_limits<float>::infinity(), Vec3::Zero()};
         }
-        return from_ball(to_axis(point, shape), shape.radius, kProductRoundings * kUnitRoundoff * size);
+        return from_sphere(to_axis(point, shape), shape.radius, kProductRoundings * kUnitRoundoff * size);
     }
     Shape centred = shape;
     centred.centre = Vec3::Zero();

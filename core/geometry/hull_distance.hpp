@@ -20,7 +20,7 @@ namespace jink::geometry {
 /// Turns of one search. Of a million random hulls of up to 31 vertices and a point none took more than 13
 /// (JINK_CASES=1000000 property_geometry --gtest_filter=PointHull*); smooth shapes may take more. If the turns are used
 /// up, the answer is the distance proven by then.
-inline constexpr std::uint32_t kMostDistanceTurns = 24;
+inline constexpr std::uint32_t kMaxDistanceTurns = 24;
 
 /// Where the second solid lies, relative to the first.
 struct Separation {
@@ -45,16 +45,16 @@ struct DistanceQuery {
 ///
 /// `distance` is never above the true one. Where the search ends by itself, `distance` is below the true one by at most
 /// `resolution` + 3e-6 * (largest sum of magnitudes of the stretched vertices relative to `point`). For a triangle that
-/// is a thousand times as long as it is wide the last term is 3e-4 * that sum. Where `budget` or kMostDistanceTurns
+/// is a thousand times as long as it is wide the last term is 3e-4 * that sum. Where `budget` or kMaxDistanceTurns
 /// ends the search, `distance` is the bound proven by then. Takes kSearchTurn + hull_units of `budget` a turn. A good
 /// `start` needs one or two turns.
-/// O(kMostDistanceTurns * vertices).
+/// O(kMaxDistanceTurns * vertices).
 [[nodiscard]] Separation point_hull_distance(const Vec3& point, std::span<const Point3> vertices,
                                              const DistanceQuery& query, WorkBudget& budget) noexcept;
 
 /// The same of a point and any shape. Where nothing is stretched, spheres and capsules are exact but for rounding (2e-6
 /// * the sum of magnitudes of place and size); of all others as above, but that a curved one may be left with a gap of
-/// 1e-5 * that sum. Hulls that are not turned take the search above. O(kMostDistanceTurns * vertices).
+/// 1e-5 * that sum. Hulls that are not turned take the search above. O(kMaxDistanceTurns * vertices).
 [[nodiscard]] Separation point_shape_distance(const Vec3& point, const Shape& shape, const DistanceQuery& query,
                                               WorkBudget& budget) noexcept;
 

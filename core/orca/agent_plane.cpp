@@ -21,13 +21,13 @@ JINK_INLINE Vec3 stretched(const Vec3& v, float by) noexcept { return {v.x(), v.
 JINK_INLINE Exit exit_of(const Vec3& position, const Vec3& velocity, float radius, float horizon) noexcept
 {
     const float rate = 1.0F / horizon;
-    const Vec3 from_ball = velocity - position * rate;
-    const float along = from_ball.dot(position);
-    const float length2 = from_ball.squaredNorm();
+    const Vec3 from_sphere = velocity - position * rate;
+    const float along = from_sphere.dot(position);
+    const float length2 = from_sphere.squaredNorm();
     if (along < 0.0F && along * along > radius * radius * length2) {
-        // The ball at the horizon, on the side of the apex.
+        // The sphere at the horizon, on the side of the apex.
         const float length = std::sqrt(length2);
-        return {from_ball / length, radius * rate - length};
+        return {from_sphere / length, radius * rate - length};
     }
     const float distance2 = position.squaredNorm();
     const float distance = std::sqrt(distance2);
@@ -138,9 +138,9 @@ Exit nearest_exit(const Vec3& position, const Vec3& velocity, float radius, floa
 
 Exit original_exit(const Vec3& position, const Vec3& velocity, float radius, float period) noexcept
 {
-    const Vec3 from_ball = velocity - position / period;
-    const float length = from_ball.norm();
-    return {from_ball / length, radius / period - length};
+    const Vec3 from_sphere = velocity - position / period;
+    const float length = from_sphere.norm();
+    return {from_sphere / length, radius / period - length};
 }
 
 Exit separating(const Vec3& position, float distance, const Vec3& velocity, float speed, bool above) noexcept

@@ -49,7 +49,7 @@ Biased Bias::apply(std::uint32_t own, const Vec3& preferred, const Vec3& velocit
 
 float SlowDown::update(float nearest, Seconds period) noexcept
 {
-    const float wanted = std::clamp(nearest, kLeast, 1.0F);
+    const float wanted = std::clamp(nearest, kMin, 1.0F);
     const float most = kRate * period;
     factor_ += std::clamp(wanted - factor_, -most, most);
     return factor_;

@@ -72,13 +72,13 @@ private:
 /// cannot take its half because of an obstacle gets time. Never scale the solution: an escape must not be slowed.
 class SlowDown {
 public:
-    static constexpr float kLeast = 0.2F;  ///< it goes on, and so ends
+    static constexpr float kMin = 0.2F;  ///< it goes on, and so ends
     static constexpr float kRate = 1.0F;   ///< change of the factor [1/s]
 
     /// @param nearest  least scaled distance over required one, rho / R_c, of all neighbours; 1 or more where no
     ///                 conflict regions overlap, infinite where there is nobody
     /// @param period   since the last call [s], > 0
-    /// @return the factor g in [kLeast, 1]: clamp(nearest, kLeast, 1), approached at kRate. O(1).
+    /// @return the factor g in [kMin, 1]: clamp(nearest, kMin, 1), approached at kRate. O(1).
     [[nodiscard]] float update(float nearest, Seconds period) noexcept;
     [[nodiscard]] float factor() const noexcept { return factor_; }
     void reset() noexcept { factor_ = 1.0F; }

@@ -15,7 +15,7 @@ using std::fabs;
 
 namespace {
 
-constexpr int kMostTurns = 16;
+constexpr int kMaxTurns = 16;
 /// Volume that normals span, below which a corner is too blunt to compute with.
 template <class Real>
 constexpr float kBluntCorner = std::is_same_v<Real, float> ? 1e-3F : 1e-10F;
@@ -106,7 +106,7 @@ struct Corners {
 }  // namespace
 
 template <class Real>
-bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Balls balls,
+bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Spheres spheres,
               Tolerance<Real> tolerance, WorkBudget& budget, Corner<Real>& corner) noexcept
 {
     const Corners<Real> corners{rows, yields, soft};
@@ -114,7 +114,7 @@ bool exchange(std::span<const Row> rows, std::span<const float> yields, std::siz
     if (!corners.shares(corner) || !corners.solve(corner)) {
         return false;
     }
-    for (int turn = 0; turn < kMostTurns; ++turn) {
+    for (int turn = 0; turn < kMaxTurns; ++turn) {
         if (!budget.spend(cost<Real>(units::kOrcaExchange + units::orca_rows(rows.size())))) {
             return false;
         }
@@ -131,8 +131,8 @@ bool exchange(std::span<const Row> rows, std::span<const float> yields, std::siz
         }
         if (entering == rows.size()) {
             corner.is_alone = near <= 4;
-            return std::all_of(balls.begin(), balls.end(),
-                               [&](const Ball& ball) { return within<Real>(ball, corner.x, tolerance.outside); });
+            return std::all_of(spheres.begin(), spheres.end(),
+                               [&](const Sphere& sphere) { return within<Real>(sphere, corner.x, tolerance.outside); });
         }
         const Real before = corner.d;
         if (!corners.exchanged(static_cast<std::uint16_t>(entering), corner) || corner.d <= before) {
@@ -142,9 +142,9 @@ bool exchange(std::span<const Row> rows, std::span<const float> yields, std::siz
     return false;
 }
 
-template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Balls, Tolerance<float>, WorkBudget&,
+template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Spheres, Tolerance<float>, WorkBudget&,
                        Corner<float>&) noexcept;
-template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Balls, Tolerance<Wide>, WorkBudget&,
-                       Corner<Wide>&) noexcept;
+template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Spheres, Tolerance<DoubleFloat>, WorkBudget&,
+                       Corner<DoubleFloat>&) noexcept;
 
 }  // namespace jink::orca

@@ -27,14 +27,14 @@ struct Corner {
 /// The least d for which all rows from `soft` on, each shifted by d * yield, and all rows before hold together.
 ///
 /// @param corner  in: rows that contradict each other, any order; out: those that decide, and the answer
-/// @return false where it does not end at four rows (a ball decides too, normals lie in a plane, all four are hard) or
-///         the answer is not within the balls: then nothing is known. True: `corner.x` keeps to all that has to hold,
+/// @return false where it does not end at four rows (a sphere decides too, normals lie in a plane, all four are hard) or
+///         the answer is not within the spheres: then nothing is known. True: `corner.x` keeps to all that has to hold,
 ///         and d is the least.
 ///
 /// With all shares well above 0 that point is the only one. A turn is a look at each row and at four corners; it ends
-/// after a few, each with a larger d, and gives up after kMostTurns. There is one for float and one for Wide.
+/// after a few, each with a larger d, and gives up after kMaxTurns. There is one for float and one for Wide.
 template <class Real>
-[[nodiscard]] bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Balls balls,
+[[nodiscard]] bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Spheres spheres,
                             Tolerance<Real> tolerance, WorkBudget& budget, Corner<Real>& corner) noexcept;
 
 }  // namespace jink::orca

@@ -30,7 +30,7 @@ struct HalfSpace {
 };
 
 /// The velocities no farther than `radius` from `centre` [m/s].
-struct Ball {
+struct Sphere {
     Vec3 centre = Vec3::Zero();
     float radius = 0.0F;
 };

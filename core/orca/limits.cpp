@@ -92,8 +92,8 @@ LimitSet limit_set(const MotionLimits& limits, const Vec3& reference) noexcept
 {
     LimitSet set;
     set.reference = clamped(limits, reference);
-    set.balls[0] = {Vec3::Zero(), limits.max_speed};
-    set.balls[1] = {set.reference, limits.acceleration * limits.period};
+    set.spheres[0] = {Vec3::Zero(), limits.max_speed};
+    set.spheres[1] = {set.reference, limits.acceleration * limits.period};
     const float speed = set.reference.norm();
     if (limits.min_speed > 0.0F) {
         constexpr float kRounding = 1.0F - 1e-6F;
@@ -110,13 +110,13 @@ LimitSet limit_set(const MotionLimits& limits, const Vec3& reference) noexcept
 
 bool cap_speed(LimitSet& set, float cap) noexcept
 {
-    float& radius = set.balls[0].radius;
+    float& radius = set.spheres[0].radius;
     if (cap >= radius) {
         return true;
     }
-    // What is left of the speed after a period of braking, and a little, so that the two balls have more than a point.
+    // What is left of the speed after a period of braking, and a little, so that the two spheres have more than a point.
     constexpr float kBrake = 0.99F;
-    const float least = std::max(set.reference.norm() - kBrake * set.balls[1].radius, 0.0F);
+    const float least = std::max(set.reference.norm() - kBrake * set.spheres[1].radius, 0.0F);
     radius = std::min(radius, std::max(cap, least));
     return cap >= least;
 }
@@ -141,7 +141,7 @@ Unsafe check(const SafetyQuestion& q) noexcept
         return Unsafe::regions;
     }
     const float stretch = q.across / q.upright;
-    if (stretch < kLeastStretch || stretch > kMostStretch) {
+    if (stretch < kMinStretch || stretch > kMaxStretch) {
         return Unsafe::stretch;
     }
     const float brakes = limits.max_speed / limits.acceleration;
@@ -174,8 +174,8 @@ Unsafe check(const SafetyQuestion& q) noexcept
 
 float ramp_speed_for(float across, float conflict_ratio, float delay, float acceleration) noexcept
 {
-    constexpr float kMost = 0.3F;  // [m/s]
-    const float most = std::min(kMost, acceleration);
+    constexpr float kMax = 0.3F;  // [m/s]
+    const float most = std::min(kMax, acceleration);
     const float width = across * (1.0F - conflict_ratio);
     return delay > 0.0F ? std::min(most, width / (kEulersNumber * delay)) : most;
 }

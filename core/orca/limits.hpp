@@ -10,7 +10,7 @@
 #include "core/orca/agent_plane.hpp"
 #include "core/orca/half_space.hpp"
 
-// What a vehicle can fly within one period, as balls and half-spaces of velocities (Alejo 7.2.1), and whether settings
+// What a vehicle can fly within one period, as spheres and half-spaces of velocities (Alejo 7.2.1), and whether settings
 // fit to what it can fly.
 
 namespace jink::orca {
@@ -36,7 +36,7 @@ struct LimitSet {
     std::array<HalfSpace, kMaxLimitPlanes> planes{};
     std::size_t size = 0;
     /// The speed first (Alejo 7.17), then what one period's acceleration can reach (7.16).
-    std::array<Ball, 2> balls{};
+    std::array<Sphere, 2> spheres{};
     Vec3 reference = Vec3::Zero();  ///< [m/s], clamped into the limits
     bool stalled = false;  ///< a least speed is asked for, but the reference has no direction across: it is left out
 
@@ -54,13 +54,13 @@ struct Reference {
 /// `velocity` [m/s] within speed, climb and sink limits; finite input. The least speed is made up across.
 [[nodiscard]] Vec3 clamped(const MotionLimits& limits, const Vec3& velocity) noexcept;
 
-/// Balls and half-spaces about the reference, which is clamped. The least speed, which is not convex, becomes the
+/// Spheres and half-spaces about the reference, which is clamped. The least speed, which is not convex, becomes the
 /// half-space beyond it in the reference's direction; the turn, two upright half-spaces through 0 (left out below
 /// kHover of speed across: what hovers turns on the spot). O(1).
 [[nodiscard]] LimitSet limit_set(const MotionLimits& limits, const Vec3& reference) noexcept;
 inline constexpr float kHover = 0.2F;  ///< [m/s]
 
-/// Brings the speed ball down to `cap` [m/s], or as far as one period's acceleration lets it. False where that is not
+/// Brings the speed sphere down to `cap` [m/s], or as far as one period's acceleration lets it. False where that is not
 /// all the way. A least speed stays: it is a limit of flight.
 [[nodiscard]] bool cap_speed(LimitSet& set, float cap) noexcept;
 
@@ -69,7 +69,7 @@ enum class Unsafe : std::uint8_t {
     none,
     not_positive,             ///< a limit, a horizon or a radius that is no number above zero
     regions,                  ///< the conflict region is not within the warning region
-    stretch,                  ///< wider or higher than kMostStretch of the other
+    stretch,                  ///< wider or higher than kMaxStretch of the other
     obstacle_horizon_brakes,  ///< too short to brake within it
     obstacle_horizon_delay,   ///< too short for the delay: it would overshoot
     horizon_brakes,           ///< the same between vehicles, the other one not giving way
@@ -89,8 +89,8 @@ struct SafetyQuestion {
     float obstacle_horizon = 2.4F;  ///< [s]
     float delay = 0.5F;             ///< [s] from sensing to flying, filters included
 };
-inline constexpr float kMostStretch = 4.0F;
-inline constexpr float kLeastStretch = 0.5F;
+inline constexpr float kMaxStretch = 4.0F;
+inline constexpr float kMinStretch = 0.5F;
 
 /// Whether one period's limits let the vehicle stop in time later on: horizons of max_speed / acceleration for
 /// obstacles and twice that between vehicles, and e delays each, below which a delayed loop overshoots. O(1).

@@ -71,7 +71,7 @@ Pair pair_of(const NeighbourSettings& settings, const Vec3& own_velocity, const 
              std::uint16_t source) noexcept
 {
     const float ageing =
-        std::min(settings.velocity_error * other.age + 0.5F * other.acceleration * other.age * other.age, kMostAgeing);
+        std::min(settings.velocity_error * other.age + 0.5F * other.acceleration * other.age * other.age, kMaxAgeing);
     Pair pair;
     pair.position = other.position;
     pair.own_velocity = own_velocity;

@@ -52,7 +52,7 @@ struct NeighbourSettings {
 };
 
 /// Most that an age adds to the distance kept [m].
-inline constexpr float kMostAgeing = 3.0F;
+inline constexpr float kMaxAgeing = 3.0F;
 
 /// The pair of the own vehicle and `other`: distances with what its age adds, a share of 1 where it does not give way
 /// or is stale.

@@ -15,7 +15,7 @@
 
 // Velocities that keep clear of static obstacles: one half-space for each of them, tangent to what it
 // forbids at its nearest point (Alejo 7.19-7.25, theorem 7.2.1). The vehicle's envelope is an ellipsoid of revolution;
-// space is stretched along z until it is a ball (Alejo 7.29-7.31), and half-spaces are mapped back.
+// space is stretched along z until it is a sphere (Alejo 7.29-7.31), and half-spaces are mapped back.
 
 namespace jink::orca {
 
@@ -36,7 +36,7 @@ struct ObstacleSettings {
 /// Finite and in the ranges above, and the stretch (horizontal / vertical) in [0.5, 4].
 [[nodiscard]] bool is_valid(const ObstacleSettings& settings) noexcept;
 
-/// The ellipsoid as a ball in the stretched space.
+/// The ellipsoid as a sphere in the stretched space.
 struct Envelope {
     float stretch = 1.0F;  ///< of z
     float radius = 0.0F;   ///< [m]
@@ -90,7 +90,7 @@ struct ObstaclePlanes {
 /// Each keeps to `obstacle_half_space` with a distance that is proven, never above the true one. A half-space that
 /// another one implies for all velocities within `own.reach_speed` is left out. Where the nearest kMaxObstaclePlanes do
 /// not do, or `budget` runs out, `speed_cap` does for the rest, down to standstill.
-/// O(obstacles * (kMostDistanceTurns * vertices + kMaxObstaclePlanes)) at worst.
+/// O(obstacles * (kMaxDistanceTurns * vertices + kMaxObstaclePlanes)) at worst.
 [[nodiscard]] ObstaclePlanes obstacle_planes(Obstacles obstacles, const OwnMotion& own,
                                              const ObstacleSettings& settings, WorkBudget& budget) noexcept;
 

@@ -37,7 +37,7 @@ Advance advance(const Way& way, float radius, float resolution, const Sight& sig
 {
     Advance result;
     float wanted = radius;
-    for (std::uint32_t step = 0; step < kMostWaySteps; ++step) {
+    for (std::uint32_t step = 0; step < kMaxWaySteps; ++step) {
         const Sighting seen = sight(way.at(result.until));
         if (budget.exhausted()) {
             result.bounded = true;

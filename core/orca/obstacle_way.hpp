@@ -10,7 +10,7 @@ namespace jink::orca {
 
 /// Steps along the way for one obstacle. A velocity that keeps to the obstacle's half-space needs one;
 /// none of the 300 random ways of test ClearanceAlong.EndsAtTheFirstContact used up all eight.
-inline constexpr std::uint32_t kMostWaySteps = 8;
+inline constexpr std::uint32_t kMaxWaySteps = 8;
 
 struct WayClearance {
     /// Until then the envelope meets no obstacle [s]: the length that was asked for, or less.
@@ -27,7 +27,7 @@ struct WayClearance {
 /// Conservative advancement (Mirtich 1996) on proven distances: never past a contact. Where it ends before the true
 /// contact and is not `bounded`, it is by what takes the vehicle `resolution` nearer to the obstacle. An obstacle whose
 /// margin the vehicle is in already counts as met as soon as it comes nearer than it is.
-/// O(obstacles * kMostWaySteps * kMostDistanceTurns * vertices) at worst.
+/// O(obstacles * kMaxWaySteps * kMaxDistanceTurns * vertices) at worst.
 [[nodiscard]] WayClearance clearance_along(Obstacles obstacles, const Vec3& position, const Vec3& velocity,
                                            Seconds length, const ObstacleSettings& settings,
                                            WorkBudget& budget) noexcept;

@@ -23,7 +23,7 @@ constexpr float kTiny = std::is_same_v<Real, float> ? 1e-12F : 1e-22F;
 constexpr float kEndless = 1e18F;  // [m/s]
 constexpr std::uint16_t kNoRow = 0xFFFF;
 
-/// Disc: what a plane leaves of a ball.
+/// Disc: what a plane leaves of a sphere.
 template <class Real>
 struct Disc {
     Vec3Of<Real> centre = Vec3Of<Real>::Zero();
@@ -31,12 +31,12 @@ struct Disc {
 };
 
 template <class Real>
-Disc<Real> whole_of(const Ball& ball) noexcept
+Disc<Real> whole_of(const Sphere& sphere) noexcept
 {
-    return {ball.centre.template cast<Real>(), ball.radius};
+    return {sphere.centre.template cast<Real>(), sphere.radius};
 }
 
-/// The point of a ball (or, with everything in one plane, of a disc) nearest to the goal or farthest along it.
+/// The point of a sphere (or, with everything in one plane, of a disc) nearest to the goal or farthest along it.
 template <class Real>
 Vec3Of<Real> onto(const Vec3Of<Real>& centre, Real radius, const GoalOf<Real>& goal) noexcept
 {
@@ -69,7 +69,7 @@ Vec3Of<Real> any_across(const Vec3Of<Real>& axis) noexcept
     return axis.cross(is_x ? Vec3Of<Real>(Vec3Of<Real>::UnitX()) : Vec3Of<Real>(Vec3Of<Real>::UnitY())).normalized();
 }
 
-/// Where the spheres of two balls cut, towards the goal.
+/// Where the spheres of two spheres cut, towards the goal.
 template <class Real>
 bool optimum_on_circle(const Disc<Real>& one, const Disc<Real>& other, const GoalOf<Real>& goal, float tolerance,
                        Vec3Of<Real>& x) noexcept
@@ -93,16 +93,16 @@ bool optimum_on_circle(const Disc<Real>& one, const Disc<Real>& other, const Goa
     return true;
 }
 
-/// What of `ball` lies in the plane; false where nothing does.
+/// What of `sphere` lies in the plane; false where nothing does.
 template <class Real>
-bool disc_of(const Disc<Real>& ball, const RowOf<Real>& plane, float tolerance, Disc<Real>& disc) noexcept
+bool disc_of(const Disc<Real>& sphere, const RowOf<Real>& plane, float tolerance, Disc<Real>& disc) noexcept
 {
-    const Real height = -plane.violation(ball.centre);
-    if (fabs(height) > ball.radius + tolerance) {
+    const Real height = -plane.violation(sphere.centre);
+    if (fabs(height) > sphere.radius + tolerance) {
         return false;
     }
-    disc.centre = ball.centre - height * plane.normal;
-    disc.radius = sqrt(std::max((ball.radius - height) * (ball.radius + height), Real(0.0F)));
+    disc.centre = sphere.centre - height * plane.normal;
+    disc.radius = sqrt(std::max((sphere.radius - height) * (sphere.radius + height), Real(0.0F)));
     return true;
 }
 
@@ -162,13 +162,13 @@ bool optimum_on_two_discs(const Disc<Real>& one, const Disc<Real>& other, const 
     return optimum_on_corners(one, other, plane.normal, goal, tolerance, x);
 }
 
-/// On a plane, within the balls.
+/// On a plane, within the spheres.
 template <class Real>
-bool optimum_on_disc(const RowOf<Real>& plane, Balls balls, const GoalOf<Real>& goal, float tolerance,
+bool optimum_on_disc(const RowOf<Real>& plane, Spheres spheres, const GoalOf<Real>& goal, float tolerance,
                      Vec3Of<Real>& x) noexcept
 {
     Disc<Real> one;
-    if (!disc_of(whole_of<Real>(balls[0]), plane, tolerance, one)) {
+    if (!disc_of(whole_of<Real>(spheres[0]), plane, tolerance, one)) {
         return false;
     }
     const Real off = goal.farthest ? -goal.point.dot(plane.normal) : plane.violation(goal.point);
@@ -180,12 +180,12 @@ bool optimum_on_disc(const RowOf<Real>& plane, Balls balls, const GoalOf<Real>& 
             level.point = Vec3Of<Real>::Zero();
         }
     }
-    if (balls.size() == 1) {
+    if (spheres.size() == 1) {
         x = onto(one.centre, one.radius, level);
         return true;
     }
     Disc<Real> other;
-    return disc_of(whole_of<Real>(balls[1]), plane, tolerance, other) &&
+    return disc_of(whole_of<Real>(spheres[1]), plane, tolerance, other) &&
            optimum_on_two_discs(one, other, plane, level, tolerance, x);
 }
 
@@ -216,21 +216,21 @@ struct Piece {
     }
 };
 
-/// What the balls leave of the line from + t * along.
+/// What the spheres leave of the line from + t * along.
 template <class Real>
-bool piece_in_balls(Balls balls, const Vec3Of<Real>& from, const Vec3Of<Real>& along, float tolerance,
+bool piece_in_spheres(Spheres spheres, const Vec3Of<Real>& from, const Vec3Of<Real>& along, float tolerance,
                     Piece<Real>& piece) noexcept
 {
-    for (const Ball& given : balls) {
-        const auto ball = whole_of<Real>(given);
-        const Vec3Of<Real> away = from - ball.centre;
+    for (const Sphere& given : spheres) {
+        const auto sphere = whole_of<Real>(given);
+        const Vec3Of<Real> away = from - sphere.centre;
         const Real middle = -away.dot(along);
         // Of the point of the line nearest to the centre: no difference of squares.
         const Real nearest = (away + middle * along).norm();
-        if (nearest > ball.radius + tolerance) {
+        if (nearest > sphere.radius + tolerance) {
             return false;
         }
-        const Real half = sqrt(std::max((ball.radius - nearest) * (ball.radius + nearest), Real(0.0F)));
+        const Real half = sqrt(std::max((sphere.radius - nearest) * (sphere.radius + nearest), Real(0.0F)));
         piece.low = std::max(piece.low, middle - half);
         piece.high = std::min(piece.high, middle + half);
     }
@@ -258,14 +258,14 @@ void cut_by(const RowOf<Real>& row, std::size_t j, const Vec3Of<Real>& from, con
     }
 }
 
-/// On the line, within rows[0 .. before) and the balls. `end` is the row that holds the optimum, or kNoRow.
+/// On the line, within rows[0 .. before) and the spheres. `end` is the row that holds the optimum, or kNoRow.
 template <class Real>
 bool optimum_on_line(std::span<const RowOf<Real>> rows, std::size_t before, const Vec3Of<Real>& from,
-                     const Vec3Of<Real>& along, Balls balls, const GoalOf<Real>& goal, float tolerance, Vec3Of<Real>& x,
+                     const Vec3Of<Real>& along, Spheres spheres, const GoalOf<Real>& goal, float tolerance, Vec3Of<Real>& x,
                      std::uint16_t& end) noexcept
 {
     Piece<Real> piece;
-    if (!piece_in_balls(balls, from, along, tolerance, piece)) {
+    if (!piece_in_spheres(spheres, from, along, tolerance, piece)) {
         return false;
     }
     for (std::size_t j = 0; j < before; ++j) {
@@ -293,16 +293,16 @@ bool optimum_on_line(std::span<const RowOf<Real>> rows, std::size_t before, cons
 }  // namespace
 
 template <class Real>
-bool optimum_in_balls(Balls balls, const GoalOf<Real>& goal, Tolerance<Real> tolerance, Vec3Of<Real>& x) noexcept
+bool optimum_in_spheres(Spheres spheres, const GoalOf<Real>& goal, Tolerance<Real> tolerance, Vec3Of<Real>& x) noexcept
 {
-    const auto one = whole_of<Real>(balls[0]);
+    const auto one = whole_of<Real>(spheres[0]);
     x = onto(one.centre, one.radius, goal);
-    if (balls.size() == 1 || within(balls[1], x, tolerance.outside)) {
+    if (spheres.size() == 1 || within(spheres[1], x, tolerance.outside)) {
         return true;
     }
-    const auto other = whole_of<Real>(balls[1]);
+    const auto other = whole_of<Real>(spheres[1]);
     const Vec3Of<Real> second = onto(other.centre, other.radius, goal);
-    if (within(balls[0], second, tolerance.outside)) {
+    if (within(spheres[0], second, tolerance.outside)) {
         x = second;
         return true;
     }
@@ -310,7 +310,7 @@ bool optimum_in_balls(Balls balls, const GoalOf<Real>& goal, Tolerance<Real> tol
 }
 
 template <class Real>
-Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Balls balls,
+Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Spheres spheres,
                        const GoalOf<Real>& goal, Tolerance<Real> tolerance, WorkBudget& budget, Vec3Of<Real>& x,
                        Basis& basis) noexcept
 {
@@ -318,7 +318,7 @@ Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::s
         return Found::exhausted;
     }
     Vec3Of<Real> best;
-    if (!optimum_on_disc(rows[on], balls, goal, tolerance.outside, best)) {
+    if (!optimum_on_disc(rows[on], spheres, goal, tolerance.outside, best)) {
         return Found::nothing;
     }
     Basis held{{static_cast<std::uint16_t>(on)}, 1};
@@ -333,7 +333,7 @@ Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::s
         Vec3Of<Real> along;
         std::uint16_t end = kNoRow;
         if (!line_of(rows[on], rows[j], best, from, along) ||
-            !optimum_on_line(rows, j, from, along, balls, goal, tolerance.outside, best, end)) {
+            !optimum_on_line(rows, j, from, along, spheres, goal, tolerance.outside, best, end)) {
             return Found::nothing;
         }
         held = {{static_cast<std::uint16_t>(on), static_cast<std::uint16_t>(j), end},
@@ -345,7 +345,7 @@ Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::s
 }
 
 template <class Real>
-Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const GoalOf<Real>& goal,
+Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Spheres spheres, const GoalOf<Real>& goal,
                       Tolerance<Real> tolerance, WorkBudget& budget) noexcept
 {
     Optimum<Real> out;
@@ -353,7 +353,7 @@ Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const Goal
         out.found = Found::exhausted;
         return out;
     }
-    if (!optimum_in_balls(balls, goal, tolerance, out.x)) {
+    if (!optimum_in_spheres(spheres, goal, tolerance, out.x)) {
         return out;
     }
     for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -361,7 +361,7 @@ Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const Goal
         if (rows[i].violation(out.x) <= tolerance.outside) {
             continue;
         }
-        out.found = optimum_on_plane(rows, i, i, balls, goal, tolerance, budget, out.x, out.basis);
+        out.found = optimum_on_plane(rows, i, i, spheres, goal, tolerance, budget, out.x, out.basis);
         if (out.found != Found::optimum) {
             return out;
         }
@@ -371,15 +371,15 @@ Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const Goal
     return out;
 }
 
-template bool optimum_in_balls(Balls, const GoalOf<float>&, Tolerance<float>, Vec3Of<float>&) noexcept;
-template bool optimum_in_balls(Balls, const GoalOf<Wide>&, Tolerance<Wide>, Vec3Of<Wide>&) noexcept;
-template Found optimum_on_plane(std::span<const RowOf<float>>, std::size_t, std::size_t, Balls, const GoalOf<float>&,
+template bool optimum_in_spheres(Spheres, const GoalOf<float>&, Tolerance<float>, Vec3Of<float>&) noexcept;
+template bool optimum_in_spheres(Spheres, const GoalOf<DoubleFloat>&, Tolerance<DoubleFloat>, Vec3Of<DoubleFloat>&) noexcept;
+template Found optimum_on_plane(std::span<const RowOf<float>>, std::size_t, std::size_t, Spheres, const GoalOf<float>&,
                                 Tolerance<float>, WorkBudget&, Vec3Of<float>&, Basis&) noexcept;
-template Found optimum_on_plane(std::span<const RowOf<Wide>>, std::size_t, std::size_t, Balls, const GoalOf<Wide>&,
-                                Tolerance<Wide>, WorkBudget&, Vec3Of<Wide>&, Basis&) noexcept;
-template Optimum<float> optimum(std::span<const RowOf<float>>, Balls, const GoalOf<float>&, Tolerance<float>,
+template Found optimum_on_plane(std::span<const RowOf<DoubleFloat>>, std::size_t, std::size_t, Spheres, const GoalOf<DoubleFloat>&,
+                                Tolerance<DoubleFloat>, WorkBudget&, Vec3Of<DoubleFloat>&, Basis&) noexcept;
+template Optimum<float> optimum(std::span<const RowOf<float>>, Spheres, const GoalOf<float>&, Tolerance<float>,
                                 WorkBudget&) noexcept;
-template Optimum<Wide> optimum(std::span<const RowOf<Wide>>, Balls, const GoalOf<Wide>&, Tolerance<Wide>,
+template Optimum<DoubleFloat> optimum(std::span<const RowOf<DoubleFloat>>, Spheres, const GoalOf<DoubleFloat>&, Tolerance<DoubleFloat>,
                                WorkBudget&) noexcept;
 
 }  // namespace jink::orca

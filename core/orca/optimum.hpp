@@ -11,10 +11,10 @@
 #include "core/base/work_budget.hpp"
 #include "core/base/work_units.hpp"
 #include "core/orca/half_space.hpp"
-#include "core/orca/wide.hpp"
+#include "core/orca/double_float.hpp"
 
-// The best velocity within balls and half-spaces: the incremental programs of van den Berg et al., one dimension at a
-// time, with one or two balls in each (Alejo 7.16 and 7.17 hold together). Points are velocities [m/s]; what is said of
+// The best velocity within spheres and half-spaces: the incremental programs of van den Berg et al., one dimension at a
+// time, with one or two spheres in each (Alejo 7.16 and 7.17 hold together). Points are velocities [m/s]; what is said of
 // "within" holds but for Tolerance::outside.
 
 namespace jink::orca {
@@ -48,7 +48,7 @@ struct GoalOf {
     bool farthest = false;
 };
 
-/// Rows that hold the optimum in place: it is the optimum of these and the balls alone, but for degenerate corners.
+/// Rows that hold the optimum in place: it is the optimum of these and the spheres alone, but for degenerate corners.
 struct Basis {
     std::array<std::uint16_t, 3> rows{};
     std::uint8_t size = 0;
@@ -57,7 +57,7 @@ struct Basis {
 /// How exact the programs can be [m/s]: from the speeds that are computed with.
 template <class Real>
 struct Tolerance {
-    float outside;  ///< a point is within a half-space or a ball by this much: twice the rounding of n . x
+    float outside;  ///< a point is within a half-space or a sphere by this much: twice the rounding of n . x
 
     /// @param scale  the largest speed that occurs [m/s]
     explicit constexpr Tolerance(float scale) noexcept : outside((scale > 1.0F ? scale : 1.0F) * kShare) {}
@@ -69,18 +69,18 @@ struct Tolerance {
 template <class Real>
 [[nodiscard]] constexpr std::uint32_t cost(std::uint32_t single) noexcept
 {
-    return std::is_same_v<Real, float> ? single : units::kOrcaWide * single;
+    return std::is_same_v<Real, float> ? single : units::kOrcaDoubleFloat * single;
 }
 
-/// Balls of one program: one or two.
-using Balls = std::span<const Ball>;
+/// Spheres of one program: one or two.
+using Spheres = std::span<const Sphere>;
 
-/// Whether `x` is within the ball, but for a tolerance [m/s].
+/// Whether `x` is within the sphere, but for a tolerance [m/s].
 template <class Real>
-[[nodiscard]] bool within(const Ball& ball, const Vec3Of<Real>& x, float tolerance) noexcept
+[[nodiscard]] bool within(const Sphere& sphere, const Vec3Of<Real>& x, float tolerance) noexcept
 {
-    const Real reach = Real(ball.radius) + Real(tolerance);
-    return (x - ball.centre.cast<Real>()).squaredNorm() <= reach * reach;
+    const Real reach = Real(sphere.radius) + Real(tolerance);
+    return (x - sphere.centre.cast<Real>()).squaredNorm() <= reach * reach;
 }
 
 /// How a search ended.
@@ -92,19 +92,19 @@ enum class Found : std::uint8_t {
 
 // All of what follows is there for float and for Wide.
 
-/// Within the balls alone. False where they do not meet. O(1).
+/// Within the spheres alone. False where they do not meet. O(1).
 template <class Real>
-[[nodiscard]] bool optimum_in_balls(Balls balls, const GoalOf<Real>& goal, Tolerance<Real> tolerance,
+[[nodiscard]] bool optimum_in_spheres(Spheres spheres, const GoalOf<Real>& goal, Tolerance<Real> tolerance,
                                     Vec3Of<Real>& x) noexcept;
 
-/// On the plane of rows[on], within rows[0 .. before) and the balls. False, with `x` as it was, where there is no such
+/// On the plane of rows[on], within rows[0 .. before) and the spheres. False, with `x` as it was, where there is no such
 /// point. O(before^2), of which one look at each row and one line for each row that turns out to be violated.
 template <class Real>
-[[nodiscard]] Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Balls balls,
+[[nodiscard]] Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Spheres spheres,
                                      const GoalOf<Real>& goal, Tolerance<Real> tolerance, WorkBudget& budget,
                                      Vec3Of<Real>& x, Basis& basis) noexcept;
 
-/// Within rows and balls, row by row; the rows' order is the order of priority. `x` is the optimum, or where there is
+/// Within rows and spheres, row by row; the rows' order is the order of priority. `x` is the optimum, or where there is
 /// none (nothing) the optimum of the first `satisfied` rows. O(n^3), expected O(n) in a good order.
 template <class Real>
 struct Optimum {
@@ -114,7 +114,7 @@ struct Optimum {
     Basis basis;
 };
 template <class Real>
-[[nodiscard]] Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Balls balls, const GoalOf<Real>& goal,
+[[nodiscard]] Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Spheres spheres, const GoalOf<Real>& goal,
                                     Tolerance<Real> tolerance, WorkBudget& budget) noexcept;
 
 }  // namespace jink::orca

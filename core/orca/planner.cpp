@@ -17,12 +17,12 @@ constexpr float kDelayMargin = 2.72F;   ///< e: horizons and times in delays, ag
 constexpr Seconds kPathStep = 0.2F;     ///< of the predicted flight
 constexpr Seconds kLongestTick = 0.5F;  ///< a pause counts as this for what is timed
 constexpr Seconds kUsualTick = 0.02F;   ///< before there were two plans
-constexpr float kLeastSpeed = 0.05F;    ///< [m/s] of a leg
+constexpr float kMinSpeed = 0.05F;    ///< [m/s] of a leg
 constexpr float kNearEnd = 1.0F;        ///< [1/s] the last metres of a reference are flown at so much of what is left
-constexpr float kFlattest = kMostStretch * 0.99F;
-constexpr float kTallest = kLeastStretch * 1.01F;
+constexpr float kFlattest = kMaxStretch * 0.99F;
+constexpr float kTallest = kMinStretch * 1.01F;
 
-/// Units of what the filter does not count itself: settings and reference; a track or barrel looked at.
+/// Units of what the filter does not count itself: settings and reference; a track or cylinder looked at.
 constexpr std::uint32_t kPlanUnits = 40;
 constexpr std::uint32_t kThreatUnits = 3;
 
@@ -86,17 +86,17 @@ void add_bound(const world::Threat& threat, const Vec3& position, const Cylinder
     }
 }
 
-/// The level or the upright side of the barrel that is farther off: all of it lies behind.
-Bound bound_of(const world::Barrel& barrel, const Vec3& position, const Cylinder& own, Seconds ahead) noexcept
+/// The level or the upright side of the cylinder that is farther off: all of it lies behind.
+Bound bound_of(const world::Cylinder& cylinder, const Vec3& position, const Cylinder& own, Seconds ahead) noexcept
 {
-    const world::Vec2 centre = barrel.circle.centre + ahead * barrel.velocity;
+    const world::Vec2 centre = cylinder.circle.centre + ahead * cylinder.velocity;
     const Vec3 to(centre.x() - position.x(), centre.y() - position.y(), 0.0F);
     const float off = to.norm();
     const Vec3 outward = off > 0.0F ? Vec3(to / off) : Vec3(Vec3::UnitX());
-    Bound level{outward, off - barrel.circle.radius - own.half_width,
-                outward.x() * barrel.velocity.x() + outward.y() * barrel.velocity.y()};
-    const float above = position.z() - own.half_height - barrel.top;
-    const float below = barrel.bottom - position.z() - own.half_height;
+    Bound level{outward, off - cylinder.circle.radius - own.half_width,
+                outward.x() * cylinder.velocity.x() + outward.y() * cylinder.velocity.y()};
+    const float above = position.z() - own.half_height - cylinder.top;
+    const float below = cylinder.bottom - position.z() - own.half_height;
     if (std::max(above, below) > level.gap) {
         return above > below ? Bound{-Vec3::UnitZ(), above, 0.0F} : Bound{Vec3::UnitZ(), below, 0.0F};
     }
@@ -152,7 +152,7 @@ bool is_valid(const Settings& s) noexcept
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
     return within(s.conflict_ratio, 0.5F, 0.95F) &&
            within(s.reach, 0.1F, 5.0F) && within(s.stale, 0.01F, 60.0F) && s.smoothing >= 1 &&
-           s.smoothing <= CommandFilter::kMost;
+           s.smoothing <= CommandFilter::kMax;
 }
 
 bool Planner::configure(const Settings& settings) noexcept
@@ -170,7 +170,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     const bool wing = limits.kind == vehicle::VehicleKind::fixed_wing;
     FilterSettings out;
     MotionLimits& motion = out.limits;
-    motion.max_speed = std::max(limits.cruise_speed, std::max(s.reference.speed, kLeastSpeed));
+    motion.max_speed = std::max(limits.cruise_speed, std::max(s.reference.speed, kMinSpeed));
     motion.acceleration = limits.max_acceleration;
     motion.climb_acceleration = motion.sink_acceleration = limits.max_vertical_acceleration;
     motion.climb_rate = limits.max_climb;
@@ -229,7 +229,7 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
     }
     const std::span tracks = world::of_kind(s.threats, world::ThreatKind::track);
     if (!budget.spend(kPlanUnits +
-                      kThreatUnits * static_cast<std::uint32_t>(tracks.size() + world::of_kind(s.threats, world::ThreatKind::barrel).size()))) {
+                      kThreatUnits * static_cast<std::uint32_t>(tracks.size() + world::of_kind(s.threats, world::ThreatKind::cylinder).size()))) {
         return world::PlanStatus::budget_spent;
     }
     take_command(s);

@@ -14,7 +14,7 @@ struct Settings {
     float conflict_ratio = 0.8F;  ///< conflict region's size, of the warning region's, 0.5..0.95
     Seconds reach = 0.5F;         ///< of full acceleration that a new command may ask for, 0.1..5
     Seconds stale = 1.0F;         ///< a track not seen for longer is not counted on, > 0
-    std::uint16_t smoothing = 1;  ///< commands in the mean, 1..CommandFilter::kMost
+    std::uint16_t smoothing = 1;  ///< commands in the mean, 1..CommandFilter::kMax
     Conflict conflict = Conflict::at_rest;
     /// No answer where the vehicle makes no progress for long, so that another method is asked; else it waits.
     bool gives_up_blocked = true;

@@ -23,14 +23,14 @@ float read(const Problem& problem, ScratchView scratch) noexcept
 {
     const std::size_t n = problem.planes.size();
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    if (n > scratch.rows.size() || problem.balls.empty() || problem.balls.size() > 2) {
+    if (n > scratch.rows.size() || problem.spheres.empty() || problem.spheres.size() > 2) {
         return kNan;
     }
     float scale = 0.0F;
     float sum = 0.0F;  // NaN or infinite where anything in it is
-    for (const Ball& ball : problem.balls) {
-        scale = std::max(scale, ball.centre.norm() + ball.radius);
-        sum += ball.centre.squaredNorm() + (ball.radius >= 0.0F ? ball.radius : kNan);
+    for (const Sphere& sphere : problem.spheres) {
+        scale = std::max(scale, sphere.centre.norm() + sphere.radius);
+        sum += sphere.centre.squaredNorm() + (sphere.radius >= 0.0F ? sphere.radius : kNan);
     }
     sum += problem.preferred.squaredNorm() + problem.reference.squaredNorm();
     bool sound = true;
@@ -47,12 +47,12 @@ float read(const Problem& problem, ScratchView scratch) noexcept
     return sound && std::isfinite(sum) ? scale : kNan;
 }
 
-/// The reference, within the balls where these are sound.
+/// The reference, within the spheres where these are sound.
 Vec3 last_command(const Problem& problem) noexcept
 {
-    const auto is_sound = [](const Ball& ball) { return is_finite(ball.centre) && is_not_negative(ball.radius); };
-    if (!problem.balls.empty() && std::all_of(problem.balls.begin(), problem.balls.end(), is_sound)) {
-        return into_balls(problem.balls, problem.reference);
+    const auto is_sound = [](const Sphere& sphere) { return is_finite(sphere.centre) && is_not_negative(sphere.radius); };
+    if (!problem.spheres.empty() && std::all_of(problem.spheres.begin(), problem.spheres.end(), is_sound)) {
+        return into_spheres(problem.spheres, problem.reference);
     }
     return is_finite(problem.reference) ? problem.reference : Vec3(Vec3::Zero());
 }
@@ -102,7 +102,7 @@ void report(std::span<const HalfSpace> planes, float scale, Solution& out) noexc
 /// All the acceleration there is along the half-space of `level` that the reference breaks most.
 Vec3 away_from(const Problem& problem, Level level) noexcept
 {
-    const Ball& reachable = problem.balls.back();
+    const Sphere& reachable = problem.spheres.back();
     Vec3 out = problem.reference;
     float most = -std::numeric_limits<float>::infinity();
     for (const HalfSpace& plane : problem.planes) {
@@ -119,7 +119,7 @@ Vec3 away_from(const Problem& problem, Level level) noexcept
 /// given way to until then.
 void choose(const Problem& problem, const Vec3& so_far, float scale, Solution& out) noexcept
 {
-    const Ball& reachable = problem.balls.back();
+    const Sphere& reachable = problem.spheres.back();
     const float speed = reachable.centre.norm();
     const Vec3 braking =
         speed <= reachable.radius ? Vec3(Vec3::Zero()) : Vec3(reachable.centre * (1.0F - reachable.radius / speed));
@@ -127,7 +127,7 @@ void choose(const Problem& problem, const Vec3& so_far, float scale, Solution& o
                                          away_from(problem, Level::conflict)};
     bool first = true;
     for (const Vec3& candidate : candidates) {
-        const Vec3 x = into_balls(problem.balls, candidate);
+        const Vec3 x = into_spheres(problem.spheres, candidate);
         const std::array<float, kLevels> broken = broken_by(problem.planes, x);
         if (first || broken < out.broken) {
             out.velocity = x;
@@ -192,7 +192,7 @@ template <class Real>
 Found attempt(const Problem& problem, ScratchView scratch, float scale, WorkBudget& budget, Solution& out, Vec3& best,
               bool& is_blunt) noexcept
 {
-    Search<Real> search(problem.balls, problem.preferred, scratch, scale, budget);
+    Search<Real> search(problem.spheres, problem.preferred, scratch, scale, budget);
     Found found = search.nearest(problem.planes.size());
     best = search.x();
     is_blunt = false;
@@ -228,7 +228,7 @@ Found attempt(const Problem& problem, ScratchView scratch, float scale, WorkBudg
     Solution finer;
     Vec3 finer_best;
     bool unused = false;
-    const Found found = attempt<Wide>(problem, scratch, scale, budget, finer, finer_best, unused);
+    const Found found = attempt<DoubleFloat>(problem, scratch, scale, budget, finer, finer_best, unused);
     if (budget.exhausted()) {
         return Found::exhausted;
     }
@@ -242,22 +242,22 @@ Found attempt(const Problem& problem, ScratchView scratch, float scale, WorkBudg
 
 }  // namespace
 
-Vec3 into_balls(Balls balls, const Vec3& point) noexcept
+Vec3 into_spheres(Spheres spheres, const Vec3& point) noexcept
 {
     constexpr float kUlps = 3e-7F;
-    Vec3 out = is_finite(point) ? point : balls.back().centre;
-    const auto in = [&](const Ball& ball) { return (out - ball.centre).squaredNorm() <= ball.radius * ball.radius; };
-    if (std::all_of(balls.begin(), balls.end(), in)) {
+    Vec3 out = is_finite(point) ? point : spheres.back().centre;
+    const auto in = [&](const Sphere& sphere) { return (out - sphere.centre).squaredNorm() <= sphere.radius * sphere.radius; };
+    if (std::all_of(spheres.begin(), spheres.end(), in)) {
         return out;
     }
-    if (!optimum_in_balls<float>(balls, {out, false}, Tolerance<float>(0.0F), out)) {
-        out = balls.front().centre;
+    if (!optimum_in_spheres<float>(spheres, {out, false}, Tolerance<float>(0.0F), out)) {
+        out = spheres.front().centre;
     }
-    for (const Ball& ball : balls) {
-        const Vec3 away = out - ball.centre;
+    for (const Sphere& sphere : spheres) {
+        const Vec3 away = out - sphere.centre;
         const float length = away.norm();
-        if (length > ball.radius) {
-            out = ball.centre + away * (ball.radius / length * (1.0F - kUlps));
+        if (length > sphere.radius) {
+            out = sphere.centre + away * (sphere.radius / length * (1.0F - kUlps));
         }
     }
     return out;
@@ -288,11 +288,11 @@ Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) 
         return out;
     }
     if ((out.status & kInfeasibleDynamics) != 0) {
-        out.velocity = into_balls(problem.balls, problem.reference);
+        out.velocity = into_spheres(problem.spheres, problem.reference);
         out.broken = broken_by(problem.planes, out.velocity);
         return out;
     }
-    out.velocity = into_balls(problem.balls, best);
+    out.velocity = into_spheres(problem.spheres, best);
     report(problem.planes, scale, out);
     return out;
 }

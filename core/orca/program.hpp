@@ -22,9 +22,9 @@ enum StatusBit : std::uint32_t {
     kRelaxedWarning = 1U << 0U,      ///< half-spaces of the warning level are broken
     kRelaxedConflict = 1U << 1U,     ///< of the conflict level
     kRelaxedObstacle = 1U << 2U,     ///< of the obstacle level
-    kInfeasibleDynamics = 1U << 3U,  ///< the limits contradict each other: the reference, within the balls
+    kInfeasibleDynamics = 1U << 3U,  ///< the limits contradict each other: the reference, within the spheres
     kWorkLimit = 1U << 4U,           ///< the budget is spent: the best of a few candidates
-    kBadInput = 1U << 5U,            ///< something is not finite or no half-space: the reference, within the balls
+    kBadInput = 1U << 5U,            ///< something is not finite or no half-space: the reference, within the spheres
 };
 
 /// Most levels there are.
@@ -32,13 +32,13 @@ inline constexpr std::size_t kLevels = 4;
 
 struct Problem {
     std::span<const HalfSpace> planes;  ///< by level, the strongest first; within a level in any order
-    Balls balls;                        ///< one or two: what the vehicle can fly; the last one is what it can reach
+    Spheres spheres;                        ///< one or two: what the vehicle can fly; the last one is what it can reach
     Vec3 preferred = Vec3::Zero();      ///< [m/s]
     Vec3 reference = Vec3::Zero();      ///< the last command [m/s]: what is flown where nothing can be said
 };
 
 struct Solution {
-    Vec3 velocity = Vec3::Zero();         ///< [m/s], always finite and within the balls
+    Vec3 velocity = Vec3::Zero();         ///< [m/s], always finite and within the spheres
     Level level = Level::warning;         ///< the strongest level that is broken; meaningless where `status` is 0
     std::array<float, kLevels> broken{};  ///< by level: how far its half-spaces are broken at most, over their yield
     std::array<std::uint16_t, 3>
@@ -59,7 +59,7 @@ struct Solution {
 /// each turn, so it ends; should rounding make it go round, the whole program is run once in the given order.
 ///
 /// With planes.size() > the scratch's size (a caller's mistake) or a yield <= 0: kBadInput. Where the budget runs out:
-/// of the best point so far, the reference, all braking that the last ball allows, and all acceleration along the most
+/// of the best point so far, the reference, all braking that the last sphere allows, and all acceleration along the most
 /// violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
 /// order; what it breaks is said as for any other. Five looks at each half-space beyond the budget.
 ///
@@ -72,12 +72,12 @@ struct Solution {
 /// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum
 /// and the least violation are exact to 1e-4 m/s for speeds up to some m/s, also among half-spaces within 1e-4 of each
 /// other's direction or of its opposite; whether a level has to give way at all is open within 1e-5 m/s. O(n) per turn,
-/// usually 2 - 6 turns; each turn is counted, those in twice the precision sixteen times (units::kOrcaWide), and n^3
+/// usually 2 - 6 turns; each turn is counted, those in twice the precision sixteen times (units::kOrcaDoubleFloat), and n^3
 /// bounds them all. Four more looks at each half-space are not counted. Allocates nothing.
 [[nodiscard]] Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept;
 
-/// The point nearest to `point` that is within all balls, as near as rounding lets it be. Finite where the balls are,
+/// The point nearest to `point` that is within all spheres, as near as rounding lets it be. Finite where the spheres are,
 /// whatever the point is.
-[[nodiscard]] Vec3 into_balls(Balls balls, const Vec3& point) noexcept;
+[[nodiscard]] Vec3 into_spheres(Spheres spheres, const Vec3& point) noexcept;
 
 }  // namespace jink::orca

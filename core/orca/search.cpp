@@ -16,12 +16,12 @@ using std::sqrt;
 
 namespace {
 
-constexpr int kMostShifts = 2;  // times that a level gives way ten times as far, before what was found is taken
+constexpr int kMaxShifts = 2;  // times that a level gives way ten times as far, before what was found is taken
 constexpr float kFirm = 1e-3F;  // least share of a corner that is a point and no edge
 
 // From when on single precision is not enough for 1e-4 of the speed: sine of an angle, and sum of a corner's shares.
 constexpr float kBluntAngle = 0.1F;
-constexpr float kMostShares = 20.0F;
+constexpr float kMaxShares = 20.0F;
 
 /// By how much a square of a distance has to grow to be said to.
 template <class Real>
@@ -95,7 +95,7 @@ Found Search<Real>::whole(std::size_t count) noexcept
 {
     if constexpr (std::is_same_v<Real, float>) {
         blunt_ = true;
-        const Optimum<Real> all = optimum<Real>(scratch_.rows.first(count), balls_, goal_, tolerance_, budget_);
+        const Optimum<Real> all = optimum<Real>(scratch_.rows.first(count), spheres_, goal_, tolerance_, budget_);
         x_ = all.x;
         basis_ = all.basis;
         // It does not look back at rows that it has passed; near corners that hardly are any, rounding may have left
@@ -110,13 +110,13 @@ Found Search<Real>::whole(std::size_t count) noexcept
 template <class Real>
 void Search<Real>::judge(std::size_t count) noexcept
 {
-    blunt_ = blunt_ || (near_ + balls_.size() > 1 && is_held_bluntly(count));
+    blunt_ = blunt_ || (near_ + spheres_.size() > 1 && is_held_bluntly(count));
 }
 
 template <class Real>
 bool Search<Real>::is_held_bluntly(std::size_t count) const noexcept
 {
-    // Unit normals of all that is near: rows that hold x or nearly do, and balls.
+    // Unit normals of all that is near: rows that hold x or nearly do, and spheres.
     std::array<Vec3, 3> normals;
     std::size_t near = 0;
     const Vec3 at = x();
@@ -128,9 +128,9 @@ bool Search<Real>::is_held_bluntly(std::size_t count) const noexcept
             normals[near++] = scratch_.rows[i].normal;
         }
     }
-    for (const Ball& ball : balls_) {
-        const Vec3 away = at - ball.centre;
-        const float from = ball.radius - rounding_;
+    for (const Sphere& sphere : spheres_) {
+        const Vec3 away = at - sphere.centre;
+        const float from = sphere.radius - rounding_;
         if (from <= 0.0F || away.squaredNorm() > from * from) {
             if (near == normals.size()) {
                 return true;
@@ -153,7 +153,7 @@ template <class Real>
 Found Search<Real>::nearest(std::size_t count) noexcept
 {
     basis_ = Basis{};
-    if (!optimum_in_balls(balls_, goal_, tolerance_, x_)) {
+    if (!optimum_in_spheres(spheres_, goal_, tolerance_, x_)) {
         return Found::nothing;
     }
     std::array<RowOf<Real>, kMaxHeld> held;
@@ -176,7 +176,7 @@ Found Search<Real>::nearest(std::size_t count) noexcept
         ++size;
         Basis local;
         const Found found = optimum_on_plane<Real>(std::span<const RowOf<Real>>(held.data(), size), size - 1, size - 1,
-                                                   balls_, goal_, tolerance_, budget_, x_, local);
+                                                   spheres_, goal_, tolerance_, budget_, x_, local);
         if (found != Found::optimum) {
             return found;
         }
@@ -207,14 +207,14 @@ bool Search<Real>::relax_at_corner(std::size_t from, std::size_t count, float& d
     Corner<Real> corner;
     std::copy_n(ids_.begin(), 4, corner.rows.begin());
     const bool blunt_before = blunt_;
-    if (!exchange(scratch_.rows.first(count), scratch_.yields.first(count), from, balls_, tolerance_, budget_,
+    if (!exchange(scratch_.rows.first(count), scratch_.yields.first(count), from, spheres_, tolerance_, budget_,
                   corner)) {
         return false;
     }
     d = static_cast<float>(corner.d);
     // No shares so large that rounding of what they share is more than what is wanted.
     const float held = static_cast<float>(corner.shares[0] + corner.shares[1] + corner.shares[2] + corner.shares[3]);
-    blunt_ = blunt_before || !corner.is_alone || held > kMostShares || d < held * rounding_;
+    blunt_ = blunt_before || !corner.is_alone || held > kMaxShares || d < held * rounding_;
     if (*std::min_element(corner.shares.begin(), corner.shares.end()) > kFirm) {
         x_ = corner.x;
         basis_ = {{corner.rows[0], corner.rows[1], corner.rows[2]}, 3};
@@ -243,7 +243,7 @@ Found Search<Real>::nearest_relaxed(std::size_t from, std::size_t count) noexcep
 {
     Found found = nearest(count);
     float further = kShifted;
-    for (int turn = 0; turn < kMostShifts && found == Found::nothing; ++turn) {
+    for (int turn = 0; turn < kMaxShifts && found == Found::nothing; ++turn) {
         further *= 10.0F;
         shift(from, count, further);
         found = nearest(count);
@@ -288,7 +288,7 @@ Found Search<Real>::push_out(std::size_t soft, std::size_t hards, std::size_t so
         derived[size++] = {normal * shrink, (other.offset * other_by - most.offset * by) * shrink};
     }
     const Optimum<Real> best =
-        optimum<Real>(derived.first(size), balls_, GoalOf<Real>{most.normal, true}, tolerance_, budget_);
+        optimum<Real>(derived.first(size), spheres_, GoalOf<Real>{most.normal, true}, tolerance_, budget_);
     if (best.found == Found::exhausted) {
         return Found::exhausted;
     }
@@ -352,6 +352,6 @@ Found Search<Real>::relax(std::size_t from, std::size_t to, float& broken) noexc
 }
 
 template class Search<float>;
-template class Search<Wide>;
+template class Search<DoubleFloat>;
 
 }  // namespace jink::orca

@@ -43,8 +43,8 @@ class Search {
 public:
     /// scratch.rows and scratch.yields are the problem's, by level.
     /// scale: the largest speed that occurs [m/s].
-    Search(Balls balls, const Vec3& goal, ScratchView scratch, float scale, WorkBudget& budget) noexcept
-        : balls_(balls), goal_{goal.cast<Real>(), false}, scratch_(scratch), tolerance_(scale),
+    Search(Spheres spheres, const Vec3& goal, ScratchView scratch, float scale, WorkBudget& budget) noexcept
+        : spheres_(spheres), goal_{goal.cast<Real>(), false}, scratch_(scratch), tolerance_(scale),
           rounding_(4.0F * Tolerance<float>(scale).outside), budget_(budget)
     {
     }
@@ -88,7 +88,7 @@ private:
     [[nodiscard]] Found push_out(std::size_t soft, std::size_t hards, std::size_t softs, Real& d) noexcept;
     [[nodiscard]] bool is_held_bluntly(std::size_t count) const noexcept;
 
-    Balls balls_;
+    Spheres spheres_;
     GoalOf<Real> goal_;
     ScratchView scratch_;
     Tolerance<Real> tolerance_;

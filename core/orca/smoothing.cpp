@@ -5,7 +5,7 @@
 
 namespace jink::orca {
 
-CommandFilter::CommandFilter(std::size_t length) noexcept : length_(std::clamp<std::size_t>(length, 1, kMost))
+CommandFilter::CommandFilter(std::size_t length) noexcept : length_(std::clamp<std::size_t>(length, 1, kMax))
 {
     commands_.fill(Vec3::Zero());
 }

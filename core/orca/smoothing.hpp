@@ -21,17 +21,17 @@ namespace jink::orca {
 /// Two running sums, made anew of all N every kExact commands so that rounding does not add up: the weighted sum adds
 /// up the other one's error, so in float it grows faster than the number of commands. Within 1e-4 m/s of the exact mean
 /// for speeds up to 20 m/s (property tests); every 1024, as the specification proposes for N = 10, it would be 1e-3,
-/// and 0.025 m/s for short filters. Memory: 12 bytes for each of kMost, 56 more. O(1) a command, O(N) every kExact.
+/// and 0.025 m/s for short filters. Memory: 12 bytes for each of kMax, 56 more. O(1) a command, O(N) every kExact.
 class CommandFilter {
 public:
     /// Longest filter: 0.8 s at 40 Hz, three times what was flown.
-    static constexpr std::size_t kMost = 32;
+    static constexpr std::size_t kMax = 32;
     /// In flight (Alejo table 8.3).
     static constexpr std::size_t kFlown = 10;
     /// Commands between two exact sums: on average no more work than a command itself.
     static constexpr std::size_t kExact = 32;
 
-    /// @param length  N in [1, kMost]; what lies outside is taken as the nearer end, length() tells
+    /// @param length  N in [1, kMax]; what lies outside is taken as the nearer end, length() tells
     explicit CommandFilter(std::size_t length = kFlown) noexcept;
 
     /// @param command  [m/s], finite
@@ -50,7 +50,7 @@ public:
 private:
     void sum_up() noexcept;
 
-    std::array<Vec3, kMost> commands_;
+    std::array<Vec3, kMax> commands_;
     std::size_t length_;
     std::size_t count_ = 0;   ///< of commands there are, length_ at most
     std::size_t oldest_ = 0;  ///< its place once there are length_

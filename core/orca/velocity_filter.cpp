@@ -42,7 +42,7 @@ bool has_good_numbers(const FilterSettings& s) noexcept
            is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= kLargestCover &&
            is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
            is_not_negative(s.tick) && is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) &&
-           is_not_negative(s.loop.lag) && s.smoothing >= 1 && s.smoothing <= CommandFilter::kMost;
+           is_not_negative(s.loop.lag) && s.smoothing >= 1 && s.smoothing <= CommandFilter::kMax;
 }
 
 Unsafe check_filter(const FilterSettings& s) noexcept
@@ -155,7 +155,7 @@ void VelocityFilter::add_obstacles(Tick& tick, WorkBudget& budget) const noexcep
     OwnMotion own;
     own.position = tick.input.own.position;
     own.velocity = tick.input.own.velocity;
-    own.reach_speed = std::min(tick.limits.balls[0].radius, tick.limits.reference.norm() + tick.limits.balls[1].radius);
+    own.reach_speed = std::min(tick.limits.spheres[0].radius, tick.limits.reference.norm() + tick.limits.spheres[1].radius);
     const ObstaclePlanes found = obstacle_planes(tick.input.obstacles, own, settings_.obstacles, budget);
     for (const HalfSpace& plane : found.planes) {
         tick.add(plane);
@@ -229,10 +229,10 @@ void VelocityFilter::smooth(Tick& tick, const Solution& solution, WorkBudget& bu
     const Vec3 mean = mean_.add(solution.velocity);
     const Vec3 last = anew || issued_.empty() ? tick.input.own.velocity : issued_.newest().velocity;
     LimitSet limits = limit_set(settings_.limits, last);
-    limits.balls[0].radius = std::min(limits.balls[0].radius, tick.limits.balls[0].radius);
+    limits.spheres[0].radius = std::min(limits.spheres[0].radius, tick.limits.spheres[0].radius);
     tick.put_limits(limits);
     const Solution smoothed =
-        solve({tick.until(tick.hard), limits.balls, mean, limits.reference}, scratch_.view(), budget);
+        solve({tick.until(tick.hard), limits.spheres, mean, limits.reference}, scratch_.view(), budget);
     if (smoothed.status == 0) {
         tick.out.command = smoothed.velocity;
     } else {
@@ -244,7 +244,7 @@ void VelocityFilter::choose(Tick& tick, WorkBudget& budget) noexcept
 {
     const Vec3 preferred = preferred_of(tick);
     const Solution solution =
-        solve({tick.until(tick.end), tick.limits.balls, preferred, tick.limits.reference}, scratch_.view(), budget);
+        solve({tick.until(tick.end), tick.limits.spheres, preferred, tick.limits.reference}, scratch_.view(), budget);
     tick.out.status |= solution.status;
     if ((solution.status & kBadInput) != 0) {
         brake(tick);

@@ -64,7 +64,7 @@ struct FilterSettings {
     Seconds delay = 0.5F;         ///< from sensing to flying, filters included: gains are checked against it
     float most_apart = 1.0F;      ///< command and flown velocity [m/s], > 0
     Seconds own_stale = 0.2F;     ///< of the own state, > 0
-    std::size_t smoothing = 1;    ///< commands in the mean, CommandFilter::kMost at most; 1: none
+    std::size_t smoothing = 1;    ///< commands in the mean, CommandFilter::kMax at most; 1: none
     bool slows_down = true;       ///< where conflict regions overlap
     bool looks_along = true;      ///< along the command once it is chosen, for what half-spaces leave out
     bool accepts_unsafe = false;  ///< settings that check() refuses, but for those that are no numbers: for studies
@@ -99,7 +99,7 @@ inline constexpr std::uint16_t kBoundSource = 0xFF00U;
 /// One command, with what can be said of it. Where commands are smoothed, `status`, `level`, `broken` and `bindings`
 /// are those of the solution that went into the mean: the mean keeps to all that is hard, not to warning half-spaces.
 struct Decision {
-    /// [m/s], always finite and within the limits' balls: no faster than may be, and one period's acceleration from
+    /// [m/s], always finite and within the limits' spheres: no faster than may be, and one period's acceleration from
     /// what was sent last; with kNotSmoothed from the last solution, with kResynchronised from what is flown. What can
     /// not be solved or is too old (kBadInput, kOwnStale, kConfigUnsafe) brakes.
     Vec3 command = Vec3::Zero();

@@ -15,7 +15,7 @@ namespace jink::path::detail {
 
 /// A remainder of the path shorter than this share of a step is merged with the step before it. Otherwise two points
 /// could be so near that the velocity between them is rounding.
-inline constexpr float kLeastStep = 1e-3F;
+inline constexpr float kMinStep = 1e-3F;
 
 /// The grid of times of a flight over `length` in steps of `dt` > 0, the last step shortened, `most` steps at most.
 /// Times are multiples of dt, not sums: 60 steps of 0.1 s end at 6 s.
@@ -29,7 +29,7 @@ struct Steps {
         // The first guess is off by one at most, by rounding.
         const float guess = std::min(std::floor(length / dt), static_cast<float>(most));
         count = guess > 1.0F ? static_cast<std::size_t>(guess) - 1 : 0;
-        while (count < most && left_after(count) > kLeastStep * dt) {
+        while (count < most && left_after(count) > kMinStep * dt) {
             ++count;
         }
     }
@@ -40,7 +40,7 @@ private:
     [[nodiscard]] Seconds time(std::size_t step) const noexcept { return static_cast<float>(step) * dt; }
     [[nodiscard]] Seconds left_after(std::size_t steps) const noexcept { return length - time(steps); }
     /// Less than `length` if `most` steps do not cover it.
-    [[nodiscard]] Seconds end() const noexcept { return left_after(count) > kLeastStep * dt ? time(count) : length; }
+    [[nodiscard]] Seconds end() const noexcept { return left_after(count) > kMinStep * dt ? time(count) : length; }
 };
 
 /// The first point of `path`, from `next` on, that lies after `t`; the last point if none does.

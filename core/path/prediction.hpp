@@ -38,8 +38,8 @@ public:
     ChordWriter(const vehicle::VehicleLimits& limits, Prediction& out) noexcept
         : limits_(limits), out_(out), fading_(limits.velocity_lag),
           // Without a lag each velocity error decays at the acceleration limit.
-          per_squared_lag_(limits.velocity_lag > kLeastLag ? 1.0F / (limits.velocity_lag * limits.velocity_lag)
-                                                           : 1.0F / (kLeastLag * kLeastLag))
+          per_squared_lag_(limits.velocity_lag > kMinLag ? 1.0F / (limits.velocity_lag * limits.velocity_lag)
+                                                           : 1.0F / (kMinLag * kMinLag))
     {
         if (!out.path.points.empty()) {
             position_ = out.path.points.back().position;
@@ -74,7 +74,7 @@ public:
     [[nodiscard]] const Vec3& velocity() const noexcept { return velocity_; }
 
 private:
-    static constexpr Seconds kLeastLag = 1e-5F;
+    static constexpr Seconds kMinLag = 1e-5F;
 
     void note_acceleration(const Vec3& command) noexcept
     {

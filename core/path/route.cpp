@@ -114,7 +114,7 @@ RouteStatus Route::add_arc(const Vec3& start, const Vec3& centre, const Vec3& ax
     const Vec3 level = inwards - above * up;
     RouteSegment segment;
     segment.radius = level.norm();
-    if (!(segment.radius >= kLeastRadius && segment.radius <= kLargestRadius) || !(std::abs(above) <= kJoin)) {
+    if (!(segment.radius >= kMinRadius && segment.radius <= kLargestRadius) || !(std::abs(above) <= kJoin)) {
         return RouteStatus::bad_arc;
     }
     segment.start = segments_.empty() ? start : point_of(segments_.back(), segments_.back().length).position;

@@ -25,12 +25,12 @@ constexpr float kGoalShare = 1.02F;
 constexpr int kStopPieces = 4;
 static_assert(kMaxPathPoints >= 2 * kMaxDepth + 2, "the deepest way has to fit");
 /// A path nearer to the nominal path than this has no side [m].
-constexpr float kLeastSide = 0.1F;
+constexpr float kMinSide = 0.1F;
 
 bool fits(const ReachSet* set) noexcept
 {
     return set != nullptr && set->nodes() > 0 && set->nodes() <= kMaxReachNodes &&
-           set->grid.cells() <= kMaxReachCells && CellBalls::serves(set->grid);
+           set->grid.cells() <= kMaxReachCells && CellSpheres::serves(set->grid);
 }
 
 /// The point of the route that lies `ahead` [m] in front of the vehicle, or its end; of a place, beyond it.
@@ -55,7 +55,7 @@ Vec3 side_of(const world::Way& way, const path::TimedPath& path) noexcept
         farthest = off.squaredNorm() > farthest.squaredNorm() ? off : farthest;
     }
     const float distance = farthest.norm();
-    return distance > kLeastSide ? Vec3(farthest / distance) : Vec3(Vec3::Zero());
+    return distance > kMinSide ? Vec3(farthest / distance) : Vec3(Vec3::Zero());
 }
 
 }  // namespace
@@ -210,18 +210,18 @@ PlanStatus Planner::look(const Situation& situation, const Placed& placed, const
                          WorkBudget& budget) noexcept
 {
     const Grid<float>& grid = placed.set->grid;
-    const bool same_cells = balls_.are_of(grid);
+    const bool same_cells = spheres_.are_of(grid);
     if (looked_ && same_cells && fusion_ == nullptr) {
         return PlanStatus::found;
     }
     if (!same_cells) {
-        balls_ = CellBalls(grid);
+        spheres_ = CellSpheres(grid);
     }
     const std::span<Level> blocks(blocks_.data(), grid.cells());
     std::fill(blocks.begin(), blocks.end(), kFree);
     for (CellSource* source : {picture_, fusion_}) {
         const RateStatus status =
-            source != nullptr ? source->rate(situation, placed, balls_, start.lead, blocks, budget) : RateStatus::rated;
+            source != nullptr ? source->rate(situation, placed, spheres_, start.lead, blocks, budget) : RateStatus::rated;
         if (status == RateStatus::blind || status == RateStatus::budget_spent) {
             return status == RateStatus::blind ? PlanStatus::none_available : PlanStatus::budget_spent;
         }
@@ -243,7 +243,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
     near_.collect(situation, placed, start.lead, start.stop);
     report_.near = static_cast<std::uint16_t>(near_.size());
     const auto entries = static_cast<std::uint32_t>(set.entries.size());
-    if (!near_.mark(placed, balls_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
+    if (!near_.mark(placed, spheres_, budget) || !budget.spend(units::kReachEntries * (1U + entries / 8U))) {
         return PlanStatus::budget_spent;
     }
     // A node that conflicts with any threat is of no use, nor are its descendants, whatever the threat.
@@ -264,7 +264,7 @@ PlanStatus Planner::try_set(const Situation& situation, const Placed& placed, co
             break;
         }
         const Choice choice =
-            find_best_path_of_all(set, balls_, nodes, cells, goal, AvoidanceRun::hard_constraints, rule);
+            find_best_path_of_all(set, spheres_, nodes, cells, goal, AvoidanceRun::hard_constraints, rule);
         report_.path = choice.status;
         report_.run = choice.run;
         report_.node = choice.node;

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "core/base/work_budget.hpp"
-#include "core/reach/cell_balls.hpp"
+#include "core/reach/cell_spheres.hpp"
 #include "core/reach/evaluation.hpp"
 #include "core/reach/placed.hpp"
 #include "core/world/world.hpp"
@@ -26,7 +26,7 @@ public:
     /// @param lead    time from Situation::now until the path begins [s]
     /// @param blocks  level of each cell of the placed set
     [[nodiscard]] virtual RateStatus rate(const world::Situation& situation, const Placed& placed,
-                                          const CellBalls& balls, Seconds lead, std::span<Level> blocks,
+                                          const CellSpheres& spheres, Seconds lead, std::span<Level> blocks,
                                           WorkBudget& budget) noexcept = 0;
 
 protected:

@@ -12,7 +12,7 @@ bool any_node_is_free(std::span<const Level> nodes, AvoidanceRun run) noexcept
     return std::any_of(nodes.begin() + 1, nodes.end(), [&](Level level) { return is_free(level, run); });
 }
 
-CellIndex nearest_outer(const ReachSet& set, const CellBalls& balls, std::span<const Level> cells, const Vec3& goal,
+CellIndex nearest_outer(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> cells, const Vec3& goal,
                         AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
     CellIndex best = kNoCell;
@@ -26,7 +26,7 @@ CellIndex nearest_outer(const ReachSet& set, const CellBalls& balls, std::span<c
         if (!set.grid.is_outer(place) || place.layer < rule.least_outer_layer) {
             continue;
         }
-        const float distance = (balls.centre(place) - goal).squaredNorm();
+        const float distance = (spheres.centre(place) - goal).squaredNorm();
         if (distance < least) {
             least = distance;
             best = cell;
@@ -75,7 +75,7 @@ NodeIndex cheapest_in(const ReachSet& set, std::span<const Level> nodes, CellInd
 
 }  // namespace
 
-Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+Choice find_best_path(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> nodes,
                       std::span<const Level> cells, const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule) noexcept
 {
     Choice choice;
@@ -97,7 +97,7 @@ Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<con
         }
     }
     if (choice.cell == kNoCell) {
-        choice.cell = nearest_outer(set, balls, cells, goal, run, rule);
+        choice.cell = nearest_outer(set, spheres, cells, goal, run, rule);
     }
     if (choice.cell == kNoCell) {
         choice.status = PathStatus::no_outer_cell;
@@ -108,13 +108,13 @@ Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<con
     return choice;
 }
 
-Choice find_best_path_of_all(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+Choice find_best_path_of_all(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> nodes,
                              std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
                              const ChoiceRule& rule) noexcept
 {
     Choice choice;
     for (int run = static_cast<int>(AvoidanceRun::soft_constraints); run >= static_cast<int>(loosest); --run) {
-        choice = find_best_path(set, balls, nodes, cells, goal, static_cast<AvoidanceRun>(run), rule);
+        choice = find_best_path(set, spheres, nodes, cells, goal, static_cast<AvoidanceRun>(run), rule);
         if (choice.node != kNoNode) {
             return choice;
         }

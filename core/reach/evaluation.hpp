@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/base/work_budget.hpp"
-#include "core/reach/cell_balls.hpp"
+#include "core/reach/cell_spheres.hpp"
 #include "core/reach/reach_set.hpp"
 
 // Which trajectories are free, and of which threats; and the choice of the trajectory to fly (Gomola 6.7.1, 6.7.2).
@@ -80,12 +80,12 @@ struct ChoiceRule {
 /// The cheapest trajectory that is free in `run` and ends in the goal's cell. For a goal outside the grid: the cheapest
 /// that ends in the free outer cell nearest to the goal. Ties go to the lower index. `goal`: in the grid's frame
 /// [movements' lengths]. O(nodes + cells).
-[[nodiscard]] Choice find_best_path(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+[[nodiscard]] Choice find_best_path(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> nodes,
                                     std::span<const Level> cells, const Vec3& goal, AvoidanceRun run,
                                     const ChoiceRule& rule) noexcept;
 
 /// The same in the strictest run that leaves a trajectory, from soft constraints down to `loosest`.
-[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellBalls& balls, std::span<const Level> nodes,
+[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> nodes,
                                            std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
                                            const ChoiceRule& rule) noexcept;
 

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "core/base/work_units.hpp"
-#include "core/geometry/glance.hpp"
+#include "core/geometry/quick_reject.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/world/obstacle_distance.hpp"
 
@@ -176,8 +176,8 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
     const float radius = threat.growth.at(piece.end) - shrunk_at(threat.shrunk, piece.end) + piece.bulge;
     const Vec3& from = piece.from;
     const Vec3& to = piece.to;
-    if (threat.is_barrel) {
-        return against_barrel(threat, piece);
+    if (threat.is_cylinder) {
+        return against_cylinder(threat, piece);
     }
     if (threat.shape != nullptr) {
         // Triangle inequality: no point between two points is nearer than half of (sum of both distances less their
@@ -199,15 +199,15 @@ Level NearThreats::against(const NearThreat& threat, const Piece& piece) const n
     }
     const Vec3 first = threat.at(piece.start) - from;
     const Vec3 last = threat.at(piece.end) - to;
-    if (geometry::glance(threat.half, first, last, radius + rules_.clearance) == geometry::Glance::apart) {
+    if (geometry::quick_reject(threat.half, first, last, radius + rules_.clearance) == geometry::QuickReject::apart) {
         return kFree;
     }
     if (!(radius >= 0.0F)) {  // NaN blocks
         return radius < 0.0F ? kNoRoom : threat.is_track ? kIntruder : kObstacle;
     }
-    const geometry::Glance glance = geometry::glance(threat.half, first, last, radius);
-    if (glance == geometry::Glance::touches ||
-        (glance == geometry::Glance::unclear &&
+    const geometry::QuickReject quick_reject = geometry::quick_reject(threat.half, first, last, radius);
+    if (quick_reject == geometry::QuickReject::touches ||
+        (quick_reject == geometry::QuickReject::unclear &&
          geometry::contact_interval(threat.half, {}, {first, last - first}, radius, 1.0F))) {
         return threat.is_track ? kIntruder : kObstacle;
     }
@@ -231,7 +231,7 @@ Level NearThreats::against(const ThreatBits& bits, const Piece& piece, WorkBudge
     for (std::size_t word = 0; word < ThreatBits::kWords; ++word) {
         for (std::uint32_t left = bits.words[word]; left != 0 && level > kMet; left &= left - 1) {
             const std::size_t i = word * 32 + static_cast<std::size_t>(std::countr_zero(left));
-            if (!budget.spend(near_[i].shape != nullptr ? units::kReachSolid : units::kReachLook)) {
+            if (!budget.spend(near_[i].shape != nullptr ? units::kReachSolid : units::kReachCheck)) {
                 return kBlocked;
             }
             level = std::min(level, against(near_[i], piece));
@@ -284,7 +284,7 @@ bool NearThreats::keep_near(const Piece& piece, ThreatBits& bits, WorkBudget& bu
             }
         }
     }
-    return budget.spend((looks + 2) / 3 * units::kReachGlances);
+    return budget.spend((looks + 2) / 3 * units::kReachQuickRejects);
 }
 
 }  // namespace jink::reach::detail

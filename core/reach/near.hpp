@@ -7,7 +7,7 @@
 
 #include "core/base/static_vector.hpp"
 #include "core/base/work_budget.hpp"
-#include "core/reach/cell_balls.hpp"
+#include "core/reach/cell_spheres.hpp"
 #include "core/reach/evaluation.hpp"
 #include "core/reach/placed.hpp"
 #include "core/world/separation.hpp"
@@ -18,8 +18,8 @@ namespace jink::reach::detail {
 
 /// Set of threats by number, as bits: in the order of the ThreatSet.
 struct ThreatBits {
-    static constexpr std::size_t kMost = kMaxTracks + kMaxObstacles + kMaxBarrels;
-    static constexpr std::size_t kWords = (kMost + 31) / 32;
+    static constexpr std::size_t kMax = kMaxTracks + kMaxObstacles + kMaxCylinders;
+    static constexpr std::size_t kWords = (kMax + 31) / 32;
 
     void add(std::size_t i) noexcept { words[i / 32] |= std::uint32_t{1} << (i % 32); }
 
@@ -28,18 +28,18 @@ struct ThreatBits {
 
 /// One threat to the own box, from the start of the path on.
 struct NearThreat {
-    const geometry::Shape* shape = nullptr;  ///< of a solid other than a ball; null for balls, static or moving
-    Vec3 half = Vec3::Zero();  ///< ball: of the own box, taller for upright capsules. solid: its own, grown by the box
+    const geometry::Shape* shape = nullptr;  ///< of a solid other than a sphere; null for spheres, static or moving
+    Vec3 half = Vec3::Zero();  ///< sphere: of the own box, taller for upright capsules. solid: its own, grown by the box
     Vec3 position = Vec3::Zero();  ///< centre [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
-    world::Growth growth;          ///< of the ball, or of what a solid is grown by
+    world::Growth growth;          ///< of the sphere, or of what a solid is grown by
     float shrunk = 0.0F;           ///< reduction by the escape rule, at time 0 [m]
-    float body = 0.0F;     ///< ball: what the own box adds to its radius, at most; of a tall one in the level plane [m]
-    float far = 0.0F;      ///< ball: farther apart than this halfway through a movement: apart all through it [m]
-    float room = 0.0F;     ///< nearer than this is better avoided; of a barrel level, its margin if that is more [m]
-    bool is_tall = false;  ///< ball: an upright capsule or a barrel, whose heights are checked by `half` alone
+    float body = 0.0F;     ///< sphere: what the own box adds to its radius, at most; of a tall one in the level plane [m]
+    float far = 0.0F;      ///< sphere: farther apart than this halfway through a movement: apart all through it [m]
+    float room = 0.0F;     ///< nearer than this is better avoided; of a cylinder level, its margin if that is more [m]
+    bool is_tall = false;  ///< sphere: an upright capsule or a cylinder, whose heights are checked by `half` alone
     bool is_track = false;
-    bool is_barrel = false;  ///< flat-ended: the radius is level alone
+    bool is_cylinder = false;  ///< flat-ended: the radius is level alone
 
     [[nodiscard]] Vec3 at(Seconds t) const noexcept { return position + velocity * t; }
 };
@@ -63,17 +63,17 @@ public:
     /// Collects the threats that the placed set may come near to.
     /// @param lead    time from Situation::now until the path begins [s]
     /// @param beyond  distance past the grid's border that is checked as well [m]
-    /// O(tracks + obstacles + barrels).
+    /// O(tracks + obstacles + cylinders).
     void collect(const world::Situation& situation, const Placed& placed, Seconds lead, float beyond) noexcept;
 
     /// Finds, for each cell in which a node ends, the threats that may come near to the movements to and from that cell
     /// at the times at which a node is there. False when the budget is too small. O(nodes + cells * threats).
-    [[nodiscard]] bool mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept;
+    [[nodiscard]] bool mark(const Placed& placed, const CellSpheres& spheres, WorkBudget& budget) noexcept;
 
     /// Level of the movement that leads to `node`, by the near threats and the bounds of the airspace:
-    /// obstacles, intruders, hard_constraints (a barrel's body), soft_constraints (within the clearance buffer, or a
-    /// barrel's margin) or kFree. Conservative: the movement counts as its chord with its bulge around it, threats as
-    /// large as at its end, and solids other than balls as up to an eighth of a movement nearer than they are. A
+    /// obstacles, intruders, hard_constraints (a cylinder's body), soft_constraints (within the clearance buffer, or a
+    /// cylinder's margin) or kFree. Conservative: the movement counts as its chord with its bulge around it, threats as
+    /// large as at its end, and solids other than spheres as up to an eighth of a movement nearer than they are. A
     /// movement that conflicts with an intruder is checked no further. If the budget runs out: obstacles. O(near
     /// threats).
     [[nodiscard]] Level level(const Placed& placed, NodeIndex node, WorkBudget& budget) const noexcept;
@@ -85,7 +85,7 @@ public:
 
 private:
     [[nodiscard]] Level against(const NearThreat& threat, const Piece& piece) const noexcept;
-    [[nodiscard]] Level against_barrel(const NearThreat& barrel, const Piece& piece) const noexcept;
+    [[nodiscard]] Level against_cylinder(const NearThreat& cylinder, const Piece& piece) const noexcept;
     [[nodiscard]] Level against(const ThreatBits& bits, const Piece& piece, WorkBudget& budget) const noexcept;
     struct Depths;
     struct LayerCells;
@@ -103,7 +103,7 @@ private:
     [[nodiscard]] float shrunk_at(float shrunk, Seconds t) const noexcept;
 
     world::FlightRules rules_;  ///< of the situation
-    StaticVector<NearThreat, ThreatBits::kMost> near_;
+    StaticVector<NearThreat, ThreatBits::kMax> near_;
     std::array<ThreatBits, kMaxReachCells> of_cell_{};
     ThreatBits all_;
     float bulge_ = 0.0F;  ///< of a movement [m]

@@ -34,7 +34,7 @@ struct NearThreats::Depths {
 
 /// The cells of a layer in which a node ends, in the set's frame.
 struct NearThreats::LayerCells {
-    using Numbers = std::array<float, CellBalls::kMaxDirections>;
+    using Numbers = std::array<float, CellSpheres::kMaxDirections>;
 
     std::size_t count = 0;
     Numbers x;
@@ -43,11 +43,11 @@ struct NearThreats::LayerCells {
     Numbers radius;
     Numbers first;  ///< earliest time at which a node comes from the cell before [movements]
     Numbers last;   ///< latest time at which a node has left the cell [movements]
-    std::array<CellIndex, CellBalls::kMaxDirections> cell;
+    std::array<CellIndex, CellSpheres::kMaxDirections> cell;
 
     // Elements are set up to `count`.
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
-    LayerCells(const Placed& placed, const CellBalls& balls, std::size_t layer, const Depths& depths) noexcept
+    LayerCells(const Placed& placed, const CellSpheres& spheres, std::size_t layer, const Depths& depths) noexcept
     {
         const Grid<float>& grid = placed.set->grid;
         CellIndex at = grid.index({static_cast<std::uint8_t>(layer), 0, 0});
@@ -56,11 +56,11 @@ struct NearThreats::LayerCells {
                 if (depths.most[at] == 0) {
                     continue;
                 }
-                const Vec3 centre = balls.distance(layer) * balls.direction(column, row);
+                const Vec3 centre = spheres.distance(layer) * spheres.direction(column, row);
                 x[count] = centre.x();
                 y[count] = centre.y();
                 z[count] = centre.z();
-                radius[count] = balls.radius(layer, row);
+                radius[count] = spheres.radius(layer, row);
                 first[count] = static_cast<float>(depths.least[at] - 1);
                 last[count] = static_cast<float>(depths.most[at] + 1);
                 cell[count++] = at;
@@ -87,7 +87,7 @@ struct NearThreats::LayerCells {
     float latest = 0.0F;
 };
 
-bool NearThreats::mark(const Placed& placed, const CellBalls& balls, WorkBudget& budget) noexcept
+bool NearThreats::mark(const Placed& placed, const CellSpheres& spheres, WorkBudget& budget) noexcept
 {
     const ReachSet& set = *placed.set;
     if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths +
@@ -97,7 +97,7 @@ bool NearThreats::mark(const Placed& placed, const CellBalls& balls, WorkBudget&
     const Depths depths(set);
     std::fill_n(of_cell_.begin(), set.grid.cells(), ThreatBits{});
     for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
-        const LayerCells cells(placed, balls, layer, depths);
+        const LayerCells cells(placed, spheres, layer, depths);
         for (std::size_t i = 0; i < near_.size(); ++i) {
             mark_layer(placed, cells, i);
         }
@@ -138,7 +138,7 @@ void NearThreats::mark_layer(const Placed& placed, const LayerCells& cells, std:
         return;
     }
     // Plain arrays, so that the compiler vectorises over cells.
-    std::array<float, CellBalls::kMaxDirections> spare{};
+    std::array<float, CellSpheres::kMaxDirections> spare{};
     for (std::size_t i = 0; i < cells.count; ++i) {
         const float x = cells.x[i] - at_start.x();
         const float y = cells.y[i] - at_start.y();

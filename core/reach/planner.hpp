@@ -40,7 +40,7 @@ struct Report {
 /// fixed wing flies on) is discarded, and the next best is taken.
 ///
 /// Plans even without a conflict ahead. Unlike Gomola's planner, this one never accepts a conflict with an
-/// intruder or with closed airspace (a barrel's body): such a trajectory would not pass the final check. A barrel's
+/// intruder or with closed airspace (a cylinder's body): such a trajectory would not pass the final check. A cylinder's
 /// margin is entered only where no other trajectory is left.
 ///
 /// Memory: sizeof(Planner), about 32 KiB with the default capacities: a byte a node, 22 a cell, 88 a threat. O(nodes *
@@ -85,8 +85,8 @@ private:
     Report report_;
     CellSource* picture_ = nullptr;
     CellSource* fusion_ = nullptr;
-    bool looked_ = false;  ///< `blocks_` are valid for the current course and for the cells of `balls_`
-    CellBalls balls_;
+    bool looked_ = false;  ///< `blocks_` are valid for the current course and for the cells of `spheres_`
+    CellSpheres spheres_;
     detail::NearThreats near_;
     std::array<Level, kMaxReachNodes> nodes_{};
     std::array<Level, kMaxReachCells> blocks_{};

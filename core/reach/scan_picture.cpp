@@ -228,7 +228,7 @@ Placed ScanPicture::frame() const noexcept
     return placed;
 }
 
-RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& placed, const CellBalls& /*balls*/,
+RateStatus ScanPicture::rate(const world::Situation& situation, const Placed& placed, const CellSpheres& /*spheres*/,
                              Seconds /*lead*/, std::span<Level> blocks, WorkBudget& budget) noexcept
 {
     const Grid<float>& sets = placed.set->grid;

@@ -58,7 +58,7 @@ public:
     /// picture does not see all of the cell. Each cell is sampled at eight places, and each place that was hit at nine;
     /// smaller overlaps of cells are left to the exact checks. A picture older than kFresh counts as no picture; while
     /// unseen cells are blocked, as blindness. O(cells of the set + cells hit).
-    [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+    [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellSpheres& spheres,
                                   Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
 
     /// Largest age of a usable picture [s].

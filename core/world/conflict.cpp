@@ -30,7 +30,7 @@ namespace detail {
 bool Course::meets_sphere(const WayPiece& piece, const Threat& threat, WorkBudget& budget,
                           Conflict& out) const noexcept
 {
-    if (!budget.spend(units::kConflictBall)) {
+    if (!budget.spend(units::kConflictSphere)) {
         return met_now(out);
     }
     const Vec3 half = threat.box_against(limits_.half_extents);
@@ -142,7 +142,7 @@ bool Course::meets(const Threat& threat, WorkBudget& budget, Conflict& out) cons
 {
     switch (threat.ref.kind) {
     case ThreatKind::track: return meets_point(threat, budget, out);
-    case ThreatKind::barrel: return meets_cylinder(threat, budget, out);
+    case ThreatKind::cylinder: return meets_cylinder(threat, budget, out);
     case ThreatKind::obstacle: return meets_at_rest(threat, budget, out);
     default: return false;
     }

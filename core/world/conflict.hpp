@@ -13,7 +13,7 @@ struct Conflict {
     float margin = 0.0F;             ///< at the closest approach; of a solid the least on the way [m]
     float miss_distance = 0.0F;      ///< between the centres (nearest point of an obstacle) at the closest approach [m]
     Vec3 own_at_closest = Vec3::Zero();     ///< the collision point: own position on the way then [m]
-    Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then, a barrel's at the own height [m]
+    Vec3 threat_at_closest = Vec3::Zero();  ///< threat's centre then, a cylinder's at the own height [m]
     float radius_at_closest = 0.0F;         ///< threat's grown radius then [m]
     float way_at_closest = 0.0F;            ///< along the way until then [m]
 };
@@ -67,10 +67,10 @@ inline constexpr EscapeRule kDrawingApart{0.25F, 0.25F};
 
 /// The main threat: of Situation::threats in conflict with the way within `lookahead`, the one whose loss of separation
 /// comes first (ties: the smaller margin, then the order of the threats). False when there is none; threats that were
-/// never collected are a conflict now. A barrel is met when the own box enters its body, at the way's end too; its
+/// never collected are a conflict now. A cylinder is met when the own box enters its body, at the way's end too; its
 /// margin does not count. Floor, ceiling and keep-in are no threats: candidates obey them, but a leg outside them is
 /// the mission's business. When the budget runs out, the threat that it ran out at is the main one, its loss of
-/// separation now. O(pieces * (tracks + barrels + obstacles)).
+/// separation now. O(pieces * (tracks + cylinders + obstacles)).
 [[nodiscard]] bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead, WorkBudget& budget,
                                  Conflict& out) noexcept;
 

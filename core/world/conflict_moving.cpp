@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/geometry/sweep.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 #include "core/world/conflict_parts.hpp"
 
 // Conflicts of the nominal path with tracks and moving cylinders, hovering at its end included.
@@ -15,7 +15,7 @@ namespace {
 constexpr Seconds kGrowthPiece = 0.5F;
 /// Pieces that one track is looked at in, inside a margin: 60 s of them at a quarter of a second, twice. Spent is a
 /// conflict.
-constexpr std::uint32_t kDrawingApartBudget = 480 * units::kBallPart;
+constexpr std::uint32_t kDrawingApartBudget = 480 * units::kSpherePart;
 
 /// First loss of separation within one piece; negative when there is none, 0 when the budget ran out.
 Seconds loss_within(const Vec3& half_extents, const WayPiece& piece, const Threat& threat, WorkBudget& budget) noexcept
@@ -66,7 +66,7 @@ Seconds Course::closest_time(const Threat& threat) const noexcept
 
 bool Course::draws_apart(const Threat& threat, WorkBudget& budget) const noexcept
 {
-    StaticVector<path::PathPoint, RoutePieces::kMost + 1> points;
+    StaticVector<path::PathPoint, RoutePieces::kMax + 1> points;
     for (const WayPiece& piece : pieces_) {
         if (piece.end > piece.start) {
             points.unchecked_push_back({piece.own.position, piece.own.velocity, piece.start});
@@ -113,7 +113,7 @@ bool Course::meets_point(const Threat& threat, WorkBudget& budget, Conflict& out
 /// Of one cylinder, likewise: its body alone.
 bool Course::meets_cylinder(const Threat& threat, WorkBudget& budget, Conflict& out) const noexcept
 {
-    const Barrel& barrel = *threat.cylinder;
+    const Cylinder& cylinder = *threat.cylinder;
     const float extra = threat.growth.radius;
     out = at_start(threat);
     bool met = false;
@@ -123,8 +123,8 @@ bool Course::meets_cylinder(const Threat& threat, WorkBudget& budget, Conflict& 
         if (!(span > 0.0F)) {
             continue;
         }
-        const BarrelApproach approach(limits_.half_extents, piece.own, barrel, piece.start, extra, 0.0F);
-        const bool paid_for = budget.spend(units::kConflictBarrel);
+        const CylinderApproach approach(limits_.half_extents, piece.own, cylinder, piece.start, extra, 0.0F);
+        const bool paid_for = budget.spend(units::kConflictCylinder);
         const geometry::Approach near = approach.least(span, met ? out.margin : 0.0F, budget);
         if (!met && (!(near.distance > 0.0F) || !paid_for)) {
             met = true;
@@ -147,9 +147,9 @@ bool Course::meets_cylinder(const Threat& threat, WorkBudget& budget, Conflict& 
     out.way_at_closest = pieces_.way_at(out.time_to_closest);
     out.own_at_closest = position_at(out.time_to_closest);
     const Vec3 centre = threat.position_at(out.time_to_closest);
-    out.threat_at_closest = {centre.x(), centre.y(), std::clamp(out.own_at_closest.z(), barrel.bottom, barrel.top)};
+    out.threat_at_closest = {centre.x(), centre.y(), std::clamp(out.own_at_closest.z(), cylinder.bottom, cylinder.top)};
     out.miss_distance = (out.threat_at_closest - out.own_at_closest).norm();
-    out.radius_at_closest = barrel.circle.radius + extra;
+    out.radius_at_closest = cylinder.circle.radius + extra;
     return loss > 0.0F || !draws_apart(threat, budget);
 }
 

@@ -14,7 +14,7 @@ constexpr float kNoDistance = 1e-3F;
 /// Cross-track error up to which the vehicle counts as being on a leg [m].
 constexpr float kOnLeg = 0.25F;
 /// The way aims at least this far ahead, past the end of a segment if need be [m].
-constexpr float kLeastAhead = 1.0F;
+constexpr float kMinAhead = 1.0F;
 /// A piece that ends this close to the look-ahead ends with it: sums of times are rounded, and how many pieces there
 /// are must not depend on that [s].
 constexpr Seconds kSliver = 1e-4F;
@@ -29,7 +29,7 @@ float ahead_of(const Situation& situation, const path::RouteSegment& segment, co
     const float most =
         rejoin_lookahead(situation.limits, situation.reference.speed, position.z() - abeam.point.position.z());
     const bool on_leg = !segment.is_arc() && abeam.off <= kOnLeg;
-    const float least = std::min(most, std::max(kLeastAhead, 2.0F * abeam.off));
+    const float least = std::min(most, std::max(kMinAhead, 2.0F * abeam.off));
     const float on_arc = wing ? kWingOnArc * segment.radius : std::sqrt(segment.radius);
     const float wanted = on_leg ? abeam.left : segment.is_arc() ? std::min(most, on_arc + 2.0F * abeam.off) : most;
     return std::max(std::min(wanted, abeam.left), least);

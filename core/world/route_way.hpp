@@ -35,7 +35,7 @@ struct WayPiece {
 /// piece.
 class RoutePieces {
 public:
-    static constexpr std::size_t kMost = kWayPieces;
+    static constexpr std::size_t kMax = kWayPieces;
 
     RoutePieces(const Situation& situation, const Way& way, Seconds lookahead) noexcept;
 

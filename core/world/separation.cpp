@@ -8,9 +8,9 @@
 
 #include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
-#include "core/geometry/glance.hpp"
+#include "core/geometry/quick_reject.hpp"
 #include "core/geometry/sweep.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "core/world/separation_parts.hpp"
 
@@ -21,7 +21,7 @@ using namespace detail;
 using geometry::Motion;
 
 /// No shorter, however small the slack [s].
-constexpr Seconds kLeastEscapePiece = 0.02F;
+constexpr Seconds kMinEscapePiece = 0.02F;
 /// A growing threat is looked at in pieces no longer than this, each with the size at its end [s].
 constexpr Seconds kGrowthPiece = 0.25F;
 constexpr Seconds kSolidEscapePiece = 0.2F;
@@ -30,7 +30,7 @@ constexpr Seconds kSolidEscapePiece = 0.2F;
 /// so that its size at their end may stand for it.
 Seconds escape_piece(const EscapeRule& escape) noexcept
 {
-    return escape.speed > 0.0F ? std::max(kLeastEscapePiece, 0.5F * escape.slack / escape.speed)
+    return escape.speed > 0.0F ? std::max(kMinEscapePiece, 0.5F * escape.slack / escape.speed)
                                : std::numeric_limits<Seconds>::infinity();
 }
 
@@ -44,7 +44,7 @@ int parts_of(Seconds duration, Seconds longest) noexcept
 bool stays_beyond(float margin, const Vec3& half, const Vec3& from, const Vec3& to, float radius) noexcept
 {
     const float reach = margin + radius;
-    return reach < 0.0F || geometry::glance(half, from, to, reach) == geometry::Glance::apart;
+    return reach < 0.0F || geometry::quick_reject(half, from, to, reach) == geometry::QuickReject::apart;
 }
 
 /// A sphere in straight motion, or an upright capsule.
@@ -88,7 +88,7 @@ void against_sphere(const Vec3& half_extents, const Flight& flight, const Threat
             for (int part = 0; part < parts; ++part) {
                 const Seconds offset = length * static_cast<float>(part);
                 const Seconds start = p.start + offset;
-                if (!paid(budget, units::kBallPart, best, start, ref)) {
+                if (!paid(budget, units::kSpherePart, best, start, ref)) {
                     return;
                 }
                 const Motion own{p.from + p.velocity * offset, p.velocity};
@@ -297,7 +297,7 @@ Separation separation_at(const Situation& situation, const Vec3& position, Secon
             const Vec3 apart = threat.position_at(t) - position;
             consider(best, geometry::box_distance(threat.box_against(half), apart) - grown, t, threat.ref);
         } else if (threat.form == ThreatForm::cylinder) {
-            consider(best, barrel_distance(half, position, *threat.cylinder, t) - grown, t, threat.ref);
+            consider(best, cylinder_distance(half, position, *threat.cylinder, t) - grown, t, threat.ref);
         } else {
             const geometry::Shape& shape = *threat.solid;
             const float near =

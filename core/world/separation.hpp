@@ -26,7 +26,7 @@ struct Cutoff {
 /// Least separation along a timed path, from path time 0 (= Situation::now) to min(path end, `horizon`):
 /// exact and time-aware for tracks (relative motion per segment in closed form, the threat at the size it has at the
 /// segment's end, so never optimistic), swept and exact for obstacles (libccd under `budget`, a budget that runs out
-/// counts as contact), barrels exact and time-aware (the flight's box against the moving body; their margin does not
+/// counts as contact), cylinders exact and time-aware (the flight's box against the moving body; their margin does not
 /// count), airspace bounds by their planes. All of them are met k_sigma * sigma_position of the own position early.
 ///
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface, which
@@ -40,7 +40,7 @@ struct Cutoff {
 /// Never above the truth by more than 1e-3 m within 100 m of the origin; below it by no more than what a track grows in
 /// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below
 /// Cutoff::below, and no lower bound of the least. Cost in budget: core/base/work_units.hpp, by piece of the path,
-/// threat, piece near a threat, and part of it; queries for solids. O(points * (tracks + obstacles + barrels)).
+/// threat, piece near a threat, and part of it; queries for solids. O(points * (tracks + obstacles + cylinders)).
 [[nodiscard]] Separation least_separation(const Situation& situation, std::span<const path::PathPoint> points,
                                           Seconds horizon, WorkBudget& budget, const EscapeRule& escape = {},
                                           const Cutoff& cutoff = {}) noexcept;

@@ -7,15 +7,15 @@
 #include "core/base/time.hpp"
 #include "core/base/vec3.hpp"
 #include "core/geometry/shape.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 
 namespace jink::world {
 
 struct Track;
 
-enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in, barrel };
+enum class ThreatKind : std::uint8_t { none, track, obstacle, floor, ceiling, keep_in, cylinder };
 
-/// Where a threat comes from: the kind and, for tracks, obstacles and barrels, the index in Surroundings.
+/// Where a threat comes from: the kind and, for tracks, obstacles and cylinders, the index in Surroundings.
 struct ThreatRef {
     ThreatKind kind = ThreatKind::none;
     std::uint16_t index = 0;
@@ -64,7 +64,7 @@ struct Threat {
     float slack = 0.0F;            ///< of an obstacle: what `growth` holds beside its shape and the own uncertainty [m]
     union {                        ///< by `form`; a point is an obstacle's or a track's, by `ref.kind`
         const geometry::Shape* solid = nullptr;
-        const Barrel* cylinder;  ///< where it is at time 0
+        const Cylinder* cylinder;  ///< where it is at time 0
         const Track* track;      ///< of a ThreatSet; null where a point is made without one
     };
 

@@ -37,7 +37,7 @@ int place_of(ThreatKind kind) noexcept
     case ThreatKind::ceiling: return 2;
     case ThreatKind::keep_in: return 3;
     case ThreatKind::track: return 4;
-    case ThreatKind::barrel: return 5;
+    case ThreatKind::cylinder: return 5;
     case ThreatKind::obstacle: return 6;
     case ThreatKind::none: break;
     }
@@ -81,12 +81,12 @@ Threat solid_threat(std::size_t index, const geometry::Shape& shape, const Vec3&
     return threat;
 }
 
-Threat cylinder_threat(std::size_t index, const Barrel& barrel, float uncertainty) noexcept
+Threat cylinder_threat(std::size_t index, const Cylinder& cylinder, float uncertainty) noexcept
 {
-    const Vec3 centre(barrel.circle.centre.x(), barrel.circle.centre.y(), 0.0F);
-    Threat threat = at_rest(ThreatKind::barrel, index, ThreatForm::cylinder, centre, uncertainty);
-    threat.velocity = {barrel.velocity.x(), barrel.velocity.y(), 0.0F};
-    threat.cylinder = &barrel;
+    const Vec3 centre(cylinder.circle.centre.x(), cylinder.circle.centre.y(), 0.0F);
+    Threat threat = at_rest(ThreatKind::cylinder, index, ThreatForm::cylinder, centre, uncertainty);
+    threat.velocity = {cylinder.velocity.x(), cylinder.velocity.y(), 0.0F};
+    threat.cylinder = &cylinder;
     return threat;
 }
 
@@ -126,7 +126,7 @@ bool ThreatSet::collect(const Situation& s, const Surroundings& around) noexcept
     const Airspace& air = around.airspace;
     threats_.clear();
     collected_ =
-        around.tracks.size() <= kMaxTracks && around.obstacles.size() <= kMaxObstacles && air.barrels.size() <= kMaxBarrels;
+        around.tracks.size() <= kMaxTracks && around.obstacles.size() <= kMaxObstacles && air.cylinders.size() <= kMaxCylinders;
     if (!collected_) {
         return false;
     }
@@ -137,8 +137,8 @@ bool ThreatSet::collect(const Situation& s, const Surroundings& around) noexcept
     for (std::size_t i = 0; i < around.tracks.size(); ++i) {
         threats_.unchecked_push_back(threat_of(s, around.tracks[i], i));
     }
-    for (std::size_t i = 0; i < air.barrels.size(); ++i) {
-        threats_.unchecked_push_back(cylinder_threat(i, air.barrels[i], uncertainty));
+    for (std::size_t i = 0; i < air.cylinders.size(); ++i) {
+        threats_.unchecked_push_back(cylinder_threat(i, air.cylinders[i], uncertainty));
     }
     for (std::size_t i = 0; i < around.obstacles.size(); ++i) {
         const Obstacle& obstacle = around.obstacles[i];

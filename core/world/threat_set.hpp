@@ -18,15 +18,15 @@ struct Surroundings {
 /// Everything that must be kept clear of, collected once per update. Conflict prediction, separation, methods and
 /// fallback iterate over it; a new kind of threat enters here.
 ///
-/// Order: floor, ceiling, keep-in; tracks; barrels; obstacles; each in the order of the Surroundings.
+/// Order: floor, ceiling, keep-in; tracks; cylinders; obstacles; each in the order of the Surroundings.
 /// Memory: kMaxThreats times sizeof(Threat).
 class ThreatSet {
 public:
     /// Floor, ceiling, keep-in, and whatever the tables hold.
-    static constexpr std::size_t kMaxThreats = 3 + kMaxTracks + kMaxBarrels + kMaxObstacles;
+    static constexpr std::size_t kMaxThreats = 3 + kMaxTracks + kMaxCylinders + kMaxObstacles;
 
     /// Takes in what is around the vehicle of a situation, whose own threats do not count; the tables outlive this.
-    /// False when there is more than the capacities allow: then there is no set (all() says so). O(tracks + barrels +
+    /// False when there is more than the capacities allow: then there is no set (all() says so). O(tracks + cylinders +
     /// obstacles).
     [[nodiscard]] bool collect(const Situation& situation, const Surroundings& around) noexcept;
 
@@ -50,8 +50,8 @@ private:
 /// A convex solid, where it is at time 0, that moves without turning. The shape outlives the threat.
 [[nodiscard]] Threat solid_threat(std::size_t index, const geometry::Shape& shape, const Vec3& velocity,
                                   const Growth& growth) noexcept;
-/// An upright cylinder that grows by `uncertainty` [m]. `barrel` outlives the threat.
-[[nodiscard]] Threat cylinder_threat(std::size_t index, const Barrel& barrel, float uncertainty) noexcept;
+/// An upright cylinder that grows by `uncertainty` [m]. `cylinder` outlives the threat.
+[[nodiscard]] Threat cylinder_threat(std::size_t index, const Cylinder& cylinder, float uncertainty) noexcept;
 /// Floor, ceiling and keep-in cylinder of an airspace, those that it has.
 [[nodiscard]] StaticVector<Threat, 3> bounds_of(const Airspace& airspace, float uncertainty) noexcept;
 

@@ -10,7 +10,7 @@ namespace jink::world {
 namespace {
 
 /// Sigmas below this are no measurement's, and their squares would vanish beside others [m, m/s].
-constexpr float kLeastSigma = 1e-4F;
+constexpr float kMinSigma = 1e-4F;
 /// No aircraft's: larger ones would swell a sphere over everything, or float's range [m/s2].
 constexpr float kLargestAcceleration = 1000.0F;
 
@@ -71,9 +71,9 @@ TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleS
     }
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
     const bool sizes_ok =
-        within(m.radius, 0.0F, settings_.max_range) && within(m.sigma_position, kLeastSigma, settings_.max_range) &&
+        within(m.radius, 0.0F, settings_.max_range) && within(m.sigma_position, kMinSigma, settings_.max_range) &&
         within(m.max_acceleration, 0.0F, kLargestAcceleration) && within(m.half_height, 0.0F, settings_.max_range) &&
-        (!m.has_velocity || within(m.sigma_velocity, kLeastSigma, settings_.max_speed));
+        (!m.has_velocity || within(m.sigma_velocity, kMinSigma, settings_.max_speed));
     if (!sizes_ok || !((m.position - own.position).norm() <= settings_.max_range) ||
         !(m.velocity.norm() <= settings_.max_speed)) {
         return TrackStatus::out_of_range;

@@ -11,7 +11,7 @@
 #include "core/path/route.hpp"
 #include "core/path/timed_path.hpp"
 #include "core/vehicle/vehicle.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 #include "core/world/flight_rules.hpp"
 #include "core/world/threat.hpp"
 
@@ -63,8 +63,8 @@ struct Airspace {
     float ceiling = 0.0F;
     Vec3 home = Vec3::Zero();
     float keep_in_radius = 0.0F;  ///< horizontal, about home [m]
-    /// Closed volumes and weather, kMaxBarrels at most, where they are at Situation::now. Their owner outlives this.
-    std::span<const Barrel> barrels{};
+    /// Closed volumes and weather, kMaxCylinders at most, where they are at Situation::now. Their owner outlives this.
+    std::span<const Cylinder> cylinders{};
 };
 
 /// A straight leg to fly, as it is reported.

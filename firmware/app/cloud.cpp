@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/app/echo.hpp"
+#include "firmware/app/range_return.hpp"
 
 namespace jink::app {
 namespace {
@@ -50,7 +50,7 @@ struct CloudObstacles::Direction {
     float up;
 };
 
-float CloudObstacles::patch_depth(float nearest) noexcept { return std::max(kLeastDepth, kDepthShare * nearest); }
+float CloudObstacles::patch_depth(float nearest) noexcept { return std::max(kMinDepth, kDepthShare * nearest); }
 
 CloudObstacles::Direction CloudObstacles::direction_of(const Vec3& point) noexcept
 {
@@ -179,7 +179,7 @@ geometry::Shape CloudObstacles::local_sphere(std::size_t index, const Bin& bin) 
             radius = std::max(radius, (at(right, elevation, range) - middle).norm());
         }
     }
-    return geometry::make_sphere(middle, std::max(radius + kRounding, kLeastEchoRadius));
+    return geometry::make_sphere(middle, std::max(radius + kRounding, kMinReturnRadius));
 }
 
 void CloudObstacles::give(std::size_t index) noexcept

@@ -60,7 +60,7 @@ public:
     static constexpr float kReach = 600.0F;
     /// Least depth of a patch [m], and its share of the range: a plane seen at up to 60 degrees from its normal lies
     /// within 0.3 times the range across a bin of 10 degrees.
-    static constexpr float kLeastDepth = 1.0F;
+    static constexpr float kMinDepth = 1.0F;
     static constexpr float kDepthShare = 0.3F;
     /// Hits this far below the floor are dropped, no higher ones: the vehicle may have moved since the scan [m].
     static constexpr float kFloorSlack = 0.5F;

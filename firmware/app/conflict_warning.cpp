@@ -8,7 +8,7 @@ namespace {
 
 /// Ids of warnings of closed areas, beside those of scans (0x01000000) and readings (0x02000000), and of tracks
 /// (firmware/link/track_ids.hpp).
-constexpr std::uint32_t kBarrelIds = 0x04000000;
+constexpr std::uint32_t kCylinderIds = 0x04000000;
 
 }  // namespace
 
@@ -19,10 +19,10 @@ link::CollisionWarning warning_of(const avoid::Guidance& guidance, const Picture
     const world::Conflict& c = *guidance.conflict;
     const Vec3 miss = c.threat_at_closest - c.own_at_closest;
     const bool is_track = c.threat.kind == world::ThreatKind::track;
-    const bool is_barrel = c.threat.kind == world::ThreatKind::barrel;
+    const bool is_cylinder = c.threat.kind == world::ThreatKind::cylinder;
     link::CollisionWarning warning;
     warning.id = is_track    ? picture.track_table().id_in_snapshot(c.threat.index)
-                 : is_barrel ? kBarrelIds + c.threat.index
+                 : is_cylinder ? kCylinderIds + c.threat.index
                              : picture.obstacles()[c.threat.index].id;
     warning.time_to_closest = c.time_to_closest;
     warning.horizontal_miss = miss.head<2>().norm();
@@ -42,10 +42,10 @@ link::CollisionWarning warning_of(const avoid::Guidance& guidance, const Picture
 Text text_of(const world::Conflict& conflict) noexcept
 {
     const bool is_track = conflict.threat.kind == world::ThreatKind::track;
-    const bool is_barrel = conflict.threat.kind == world::ThreatKind::barrel;
+    const bool is_cylinder = conflict.threat.kind == world::ThreatKind::cylinder;
     Text text;
     text << (is_track    ? "jink: conflict, traffic in "
-             : is_barrel ? "jink: conflict, closed area in "
+             : is_cylinder ? "jink: conflict, closed area in "
                          : "jink: conflict, obstacle in ")
          << conflict.time_to_loss << " s";
     return text;

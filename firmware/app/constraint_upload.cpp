@@ -13,9 +13,9 @@ bool is_repetition(const link::Constraint& a, const link::Constraint& b) noexcep
     const TimePoint never = link::Constraint{}.ends;
     const bool same_end =
         a.ends == never || b.ends == never ? a.ends == b.ends : a.ends.us - a.stamp.us == b.ends.us - b.stamp.us;
-    return same_end && a.about == b.about && a.barrel.circle.centre == b.barrel.circle.centre &&
-           a.barrel.circle.radius == b.barrel.circle.radius && a.barrel.velocity == b.barrel.velocity &&
-           a.barrel.bottom == b.barrel.bottom && a.barrel.top == b.barrel.top && a.barrel.margin == b.barrel.margin;
+    return same_end && a.about == b.about && a.cylinder.circle.centre == b.cylinder.circle.centre &&
+           a.cylinder.circle.radius == b.cylinder.circle.radius && a.cylinder.velocity == b.cylinder.velocity &&
+           a.cylinder.bottom == b.cylinder.bottom && a.cylinder.top == b.cylinder.top && a.cylinder.margin == b.cylinder.margin;
 }
 
 }  // namespace

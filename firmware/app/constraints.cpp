@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/reach/barrel_table.hpp"
+#include "core/reach/cylinder_table.hpp"
 #include "firmware/link/mavlink/geodesy.hpp"
 
 namespace jink::app {
@@ -14,25 +14,25 @@ namespace {
 constexpr Seconds kFutureSlack = 0.5F;
 
 /// A constraint `age` seconds after its stamp, about another point of the globe.
-world::Barrel moved(const Constraint& constraint, Seconds age, const std::optional<link::GlobalPosition>& to)
+world::Cylinder moved(const Constraint& constraint, Seconds age, const std::optional<link::GlobalPosition>& to)
 {
-    world::Barrel barrel = constraint.barrel;
-    barrel.circle.centre += age * barrel.velocity;
+    world::Cylinder cylinder = constraint.cylinder;
+    cylinder.circle.centre += age * cylinder.velocity;
     if (constraint.about && to) {
         const Vec3 shift = link::mavlink::to_local(*constraint.about, *to);
-        barrel.circle.centre += shift.head<2>();
-        barrel.bottom += shift.z();
-        barrel.top += shift.z();
-        barrel.circle.radius += ConstraintTable::kMapError * shift.head<2>().norm();
+        cylinder.circle.centre += shift.head<2>();
+        cylinder.bottom += shift.z();
+        cylinder.top += shift.z();
+        cylinder.circle.radius += ConstraintTable::kMapError * shift.head<2>().norm();
     }
-    return barrel;
+    return cylinder;
 }
 
 }  // namespace
 
 bool ConstraintTable::accepts(const Constraint& constraint, TimePoint now) noexcept
 {
-    return world::is_valid(constraint.barrel) && constraint.stamp <= now + kFutureSlack;
+    return world::is_valid(constraint.cylinder) && constraint.stamp <= now + kFutureSlack;
 }
 
 void ConstraintTable::tell(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
@@ -41,13 +41,13 @@ void ConstraintTable::tell(std::span<const Constraint> constraints, const std::o
     entries_.clear();
     std::size_t good = 0;
     for (const Constraint& constraint : constraints) {
-        ++diagnostics_.told;
+        ++diagnostics_.reported;
         if (!accepts(constraint, now)) {
             ++diagnostics_.refused;
             continue;
         }
         ++good;
-        static_cast<void>(entries_.try_push_back({constraint, constraint.barrel.velocity.norm()}));
+        static_cast<void>(entries_.try_push_back({constraint, constraint.cylinder.velocity.norm()}));
     }
     if (good > entries_.size()) {
         merge(constraints, origin, own, now);
@@ -63,7 +63,7 @@ void ConstraintTable::merge(std::span<const Constraint> constraints, const std::
         std::find_if(constraints.begin(), constraints.end(), [&](const Constraint& c) { return accepts(c, now); });
     const std::optional<link::GlobalPosition> about = first->about;
     const Vec3 vehicle = about && origin ? Vec3(own - link::mavlink::to_local(*about, *origin)) : own;
-    reach::BarrelTable table;
+    reach::CylinderTable table;
     table.begin(vehicle, 0.0F, kFresh);
     float fastest = 0.0F;
     TimePoint ends{};
@@ -72,17 +72,17 @@ void ConstraintTable::merge(std::span<const Constraint> constraints, const std::
             continue;
         }
         const Seconds age = std::max(now - constraint.stamp, 0.0F);
-        world::Barrel barrel = moved(constraint, age, about);
-        const float speed = barrel.velocity.norm();
-        barrel.circle.radius += speed * age;  // it begins to grow so much earlier than its new entry
+        world::Cylinder cylinder = moved(constraint, age, about);
+        const float speed = cylinder.velocity.norm();
+        cylinder.circle.radius += speed * age;  // it begins to grow so much earlier than its new entry
         fastest = std::max(fastest, speed);
         ends = std::max(ends, constraint.ends);
-        diagnostics_.merged += table.add(barrel) == reach::AddStatus::constraint_merged ? 1U : 0U;
+        diagnostics_.merged += table.add(cylinder) == reach::AddStatus::constraint_merged ? 1U : 0U;
     }
     entries_.clear();
-    for (const world::Barrel& barrel : table.barrels()) {
+    for (const world::Cylinder& cylinder : table.cylinders()) {
         // It stands, and has to hold what goes on and grows.
-        entries_.unchecked_push_back({{barrel, now, ends, about}, 2.0F * fastest});
+        entries_.unchecked_push_back({{cylinder, now, ends, about}, 2.0F * fastest});
     }
 }
 
@@ -100,13 +100,13 @@ void ConstraintTable::place(const std::optional<link::GlobalPosition>& origin, T
             continue;
         }
         const Seconds age = std::max(now - constraint.stamp, 0.0F);
-        world::Barrel barrel = moved(constraint, age, origin);
+        world::Cylinder cylinder = moved(constraint, age, origin);
         const Seconds old = age + kAhead - kFresh;
         if (entry.speed > 0.0F && old > 0.0F) {
-            barrel.circle.radius += entry.speed * old;
+            cylinder.circle.radius += entry.speed * old;
             ++diagnostics_.grown;
         }
-        placed_.unchecked_push_back(barrel);
+        placed_.unchecked_push_back(cylinder);
     }
 }
 

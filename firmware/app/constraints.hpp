@@ -14,9 +14,9 @@ namespace jink::app {
 using link::Constraint;
 
 struct ConstraintDiagnostics {
-    std::uint32_t told = 0;
+    std::uint32_t reported = 0;
     std::uint32_t refused = 0;  ///< not finite, no radius, upside down, beyond 100 km, stamped in the future
-    std::uint32_t merged = 0;   ///< became part of another: there were more than kMaxBarrels
+    std::uint32_t merged = 0;   ///< became part of another: there were more than kMaxCylinders
     std::uint32_t grown = 0;    ///< placings of a moving one that was told long ago and has grown
 };
 
@@ -26,10 +26,10 @@ struct ConstraintDiagnostics {
 /// besides, so that it is held where it may be if it has turned, stopped or doubled its pace since then. Nothing that
 /// stands grows old, and nothing is forgotten before its end.
 ///
-/// More than kMaxBarrels: the two farthest of the vehicle become one standing one that holds both for kFresh; after
+/// More than kMaxCylinders: the two farthest of the vehicle become one standing one that holds both for kFresh; after
 /// that it grows at twice the greatest speed of all that were told, so that it still does.
 ///
-/// Memory: 72 bytes for each of kMaxBarrels, and 32 for its place at an instant.
+/// Memory: 72 bytes for each of kMaxCylinders, and 32 for its place at an instant.
 class ConstraintTable {
 public:
     /// A moving constraint should be told anew at least this often [s].
@@ -41,15 +41,15 @@ public:
 
     /// Replaces everything. What is wrong is refused, by itself, and counted.
     /// @param own  the vehicle's place in the local frame [m], as far as it is known: what is far of it is merged first
-    /// O(told * kMaxBarrels).
+    /// O(told * kMaxCylinders).
     void tell(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
               const Vec3& own, TimePoint now) noexcept;
 
-    /// Where everything is at `now`, in the local frame that begins at `origin`. O(kMaxBarrels).
+    /// Where everything is at `now`, in the local frame that begins at `origin`. O(kMaxCylinders).
     void place(const std::optional<link::GlobalPosition>& origin, TimePoint now) noexcept;
 
     /// As placed last. What could not be placed is not in it: lacks_origin().
-    [[nodiscard]] std::span<const world::Barrel> barrels() const noexcept { return {placed_.data(), placed_.size()}; }
+    [[nodiscard]] std::span<const world::Cylinder> cylinders() const noexcept { return {placed_.data(), placed_.size()}; }
     /// Something closed is known by its place on the globe alone, and the origin of the local frame is not.
     [[nodiscard]] bool lacks_origin() const noexcept { return lacks_origin_; }
     [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }
@@ -65,8 +65,8 @@ private:
     void merge(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
                const Vec3& own, TimePoint now) noexcept;
 
-    StaticVector<Entry, kMaxBarrels> entries_;
-    StaticVector<world::Barrel, kMaxBarrels> placed_;
+    StaticVector<Entry, kMaxCylinders> entries_;
+    StaticVector<world::Cylinder, kMaxCylinders> placed_;
     bool lacks_origin_ = false;
     ConstraintDiagnostics diagnostics_;
 };

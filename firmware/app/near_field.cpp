@@ -43,7 +43,7 @@ private:
 };
 
 /// `from` pulled to within `radius` of `core`.
-[[nodiscard]] Vec3 on_ball(const Vec3& core, float radius, const Vec3& from) noexcept
+[[nodiscard]] Vec3 on_sphere(const Vec3& core, float radius, const Vec3& from) noexcept
 {
     const Vec3 out = from - core;
     const float distance = out.norm();
@@ -57,16 +57,16 @@ Vec3 nearest_point(const geometry::Shape& shape, const Vec3& from) noexcept
     using geometry::ShapeKind;
     const Vec3 local = shape.axes.transpose() * (from - shape.centre);
     switch (shape.kind) {
-    case ShapeKind::sphere: return on_ball(shape.centre, shape.radius, from);
+    case ShapeKind::sphere: return on_sphere(shape.centre, shape.radius, from);
     case ShapeKind::capsule: {
         const float along = std::clamp(local.z(), -shape.half.z(), shape.half.z());
-        return on_ball(shape.centre + shape.axes.col(2) * along, shape.radius, from);
+        return on_sphere(shape.centre + shape.axes.col(2) * along, shape.radius, from);
     }
     case ShapeKind::box: return shape.centre + shape.axes * local.cwiseMax(-shape.half).cwiseMin(shape.half);
     case ShapeKind::cylinder:
     case ShapeKind::hull: break;
     }
-    return on_ball(shape.centre, geometry::bounding_radius(shape), from);
+    return on_sphere(shape.centre, geometry::bounding_radius(shape), from);
 }
 
 NearObjects find_near(const vehicle::VehicleState& own, std::span<const world::Track> tracks,

@@ -154,7 +154,7 @@ void NominalPaths::estimate() noexcept
         return;
     }
     const float rate = (n * th - t_sum * h_sum) / spread;
-    turn_rate_ = moves && std::abs(rate) >= kLeastTurn ? rate : 0.0F;
+    turn_rate_ = moves && std::abs(rate) >= kMinTurn ? rate : 0.0F;
     steady_now_ = slowest > kMoving && fastest - slowest < kSteady ? speeds / n : 0.0F;
 }
 
@@ -217,7 +217,7 @@ bool NominalPaths::add_turn(const vehicle::VehicleState& own) noexcept
     const Vec3 level(own.velocity.x(), own.velocity.y(), 0.0F);
     const float speed = level.norm();
     const float radius = speed / std::abs(turn_rate_);
-    if (turn_rate_ == 0.0F || radius < path::Route::kLeastRadius || radius > path::Route::kLargestRadius) {
+    if (turn_rate_ == 0.0F || radius < path::Route::kMinRadius || radius > path::Route::kLargestRadius) {
         return false;
     }
     const float sense = std::copysign(1.0F, turn_rate_);

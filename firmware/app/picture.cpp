@@ -162,7 +162,7 @@ world::Airspace Picture::airspace(bool has_autopilot, const Configuration& c, Ti
         air.floor = has_autopilot ? std::max(air.floor, ground) : ground;
     }
     // Closed areas are placed in the autopilot's frame: in a bus's own frame there are none.
-    air.barrels = has_autopilot ? constraints_.barrels() : std::span<const world::Barrel>();
+    air.cylinders = has_autopilot ? constraints_.cylinders() : std::span<const world::Cylinder>();
     return air;
 }
 

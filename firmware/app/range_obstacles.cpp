@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "firmware/app/echo.hpp"
+#include "firmware/app/range_return.hpp"
 
 namespace jink::app {
 namespace {
@@ -30,11 +30,11 @@ struct LevelBeam {
 void place_level(const LevelBeam& beam, const Vec3& own, float half_height, TimePoint expires,
                  world::ObstacleTable& table) noexcept
 {
-    const std::size_t parts = echo_parts(beam.half_angle);
+    const std::size_t parts = return_parts(beam.half_angle);
     const float part = beam.half_angle / static_cast<float>(parts);
     for (std::size_t k = 0; k < parts; ++k) {
         const float aside = static_cast<float>(2 * k + 1) * part - beam.half_angle;
-        const geometry::Shape echo = level_echo(own, beam.yaw + aside, beam.range, part, half_height);
+        const geometry::Shape echo = level_return(own, beam.yaw + aside, beam.range, part, half_height);
         static_cast<void>(table.update({beam.first_id + static_cast<std::uint32_t>(k), echo}, expires, own));
     }
 }
@@ -47,12 +47,12 @@ void remove(std::uint32_t first_id, std::size_t n, world::ObstacleTable& table) 
 }
 
 /// A beam that is not quite vertical sees a ceiling as low as its lowest edge, and as far aside.
-geometry::Shape overhead_echo(const link::RangeReading& reading, const Vec3& own, float half_height) noexcept
+geometry::Shape overhead_return(const link::RangeReading& reading, const Vec3& own, float half_height) noexcept
 {
     const float edge = std::acos(std::min(reading.direction.z(), 1.0F)) + reading.half_angle;
     const float height = reading.range * std::cos(edge);
     const float aside = std::max(half_height, reading.range * std::sin(edge));
-    return ceiling_echo(own, height, 0.0F, aside);
+    return ceiling_return(own, height, 0.0F, aside);
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ void place_scan(const link::RangeScan& scan, const Vec3& own, const Configuratio
 {
     const TimePoint expires = scan.stamp + c.scan_keep;
     const float half_angle = std::min(0.5F * std::abs(scan.increment), 0.5F * kPi);
-    const std::size_t parts = echo_parts(half_angle);
+    const std::size_t parts = return_parts(half_angle);
     for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
         // 72 narrow sectors, or fewer wide ones in parts: at most 72 ids either way.
         const std::uint32_t first = kScanIds + scan.sensor * 256U + static_cast<std::uint32_t>(i * parts);
@@ -83,10 +83,10 @@ bool place_reading(const link::RangeReading& reading, const Vec3& own, const Con
 {
     const TimePoint expires = reading.stamp + c.scan_keep;
     const std::uint32_t first = kReadingIds + reading.sensor * 32U;
-    static_assert(kMaxEchoParts <= 32);
+    static_assert(kMaxReturnParts <= 32);
     const float steepness = reading.direction.z();
     if (reading.range == link::RangeScan::kNothing) {
-        remove(first, kMaxEchoParts, table);
+        remove(first, kMaxReturnParts, table);
     } else if (std::abs(steepness) <= kLevel) {
         const float yaw = std::atan2(reading.direction.y(), reading.direction.x());
         place_level({first, yaw, reading.range, std::min(reading.half_angle, 0.5F * kPi)}, own, c.scan_height, expires,
@@ -95,8 +95,8 @@ bool place_reading(const link::RangeReading& reading, const Vec3& own, const Con
         return false;
     } else {
         const geometry::Shape echo = steepness > kUpwards
-                                         ? overhead_echo(reading, own, c.scan_height)
-                                         : slanted_echo(own, reading.direction, reading.range, reading.half_angle);
+                                         ? overhead_return(reading, own, c.scan_height)
+                                         : slanted_return(own, reading.direction, reading.range, reading.half_angle);
         static_cast<void>(table.update({first, echo}, expires, own));
     }
     return true;

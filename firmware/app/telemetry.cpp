@@ -198,7 +198,7 @@ void Telemetry::report_near(TimePoint now, std::span<const world::Track> tracks,
     const Configuration& c = of.configuration;
     for (const link::NearObject& object :
          find_near(of.own.at(now, c.own_age), tracks, of.picture.sensed(), c.rules.k_sigma)) {
-        counts_.near_told += bus_->send_near(object) ? 1U : 0U;
+        counts_.near_reported += bus_->send_near(object) ? 1U : 0U;
     }
 }
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/base/time.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 #include "firmware/link/global_position.hpp"
 
 namespace jink::link {
@@ -15,13 +15,13 @@ namespace jink::link {
 struct Constraint {
     /// Where the volume was at `stamp`, relative to `about`, heights above it; without `about` in the autopilot's local
     /// frame (ENU).
-    world::Barrel barrel;
+    world::Cylinder cylinder;
     TimePoint stamp{};                                         ///< on the co-processor's clock
     TimePoint ends{std::numeric_limits<std::int64_t>::max()};  ///< the volume is open after this instant
     std::optional<GlobalPosition> about;
 };
 
-/// Constraints that one set may have over a link. A board keeps fewer apart (kMaxBarrels) and merges the rest.
+/// Constraints that one set may have over a link. A board keeps fewer apart (kMaxCylinders) and merges the rest.
 inline constexpr std::size_t kMaxReportedConstraints = 8;
 
 /// One constraint of a set as a link received it, and its sender.

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/reach/barrel.hpp"
+#include "core/reach/cylinder.hpp"
 #include "firmware/link/mavlink/geodesy.hpp"
 #include "firmware/linux/yaml_map.hpp"
 
@@ -105,7 +105,7 @@ bool enclose(const Reader& reader, const std::vector<Place>& corners, app::Const
         }
     }
     circle.radius *= 1.0F + kCircleSlack;
-    out.barrel.circle = circle;
+    out.cylinder.circle = circle;
     return true;
 }
 
@@ -116,8 +116,8 @@ void read_shape(const Reader& reader, YamlMap& map, app::Constraint& out)
         return;
     }
     if (const auto corners = read_polygon(reader, map)) {
-        if (!enclose(reader, *corners, out) || !(out.barrel.circle.radius > kRadius.low) ||
-            out.barrel.circle.radius > kRadius.high) {
+        if (!enclose(reader, *corners, out) || !(out.cylinder.circle.radius > kRadius.low) ||
+            out.cylinder.circle.radius > kRadius.high) {
             map.complain("polygon", "is no area of 0.1 m to 100 km");
         }
     }
@@ -126,11 +126,11 @@ void read_shape(const Reader& reader, YamlMap& map, app::Constraint& out)
         return;
     }
     const auto place = read_place(reader, *node, map.name("centre"));
-    out.barrel.circle.radius = map.number("radius", kRadius, kNeed).value_or(1.0F);
+    out.cylinder.circle.radius = map.number("radius", kRadius, kNeed).value_or(1.0F);
     if (place && reader.is_global) {
         out.about = place->global();
     } else if (place) {
-        out.barrel.circle.centre = place->local();
+        out.cylinder.circle.centre = place->local();
     }
 }
 
@@ -150,14 +150,14 @@ void read_motion(const Reader& reader, YamlMap& map, app::Constraint& out)
     if (const auto node = map.node("velocity")) {
         Reader metres{reader.file, reader.now, false, reader.complaints};
         if (const auto velocity = read_place(metres, *node, map.name("velocity"))) {
-            out.barrel.velocity = velocity->local();
-            if (!(out.barrel.velocity.cwiseAbs().maxCoeff() <= kSpeed.high)) {
+            out.cylinder.velocity = velocity->local();
+            if (!(out.cylinder.velocity.cwiseAbs().maxCoeff() <= kSpeed.high)) {
                 map.complain("velocity", "is more than " + to_text(kSpeed.high) + " m/s");
             }
         }
     }
     // A moving area's position is useless without its time: least of all after a restart.
-    const bool moves = out.barrel.velocity != world::Vec2::Zero();
+    const bool moves = out.cylinder.velocity != world::Vec2::Zero();
     if (const auto known = read_time(reader, map, "known_at", moves ? kNeed : YamlMap::Need::optional)) {
         out.stamp = *known;
         if (known->us > reader.now.own.us + static_cast<std::int64_t>(kClockSlack * kMicro)) {
@@ -178,12 +178,12 @@ void read_area(const Reader& reader, const YAML::Node& node, std::size_t index, 
     app::Constraint area;
     static_cast<void>(map.text("name"));
     read_shape(reader, map, area);
-    area.barrel.bottom = map.number("bottom", kHeight, kNeed).value_or(0.0F);
-    area.barrel.top = map.number("top", kHeight, kNeed).value_or(area.barrel.bottom);
-    if (area.barrel.top < area.barrel.bottom) {
+    area.cylinder.bottom = map.number("bottom", kHeight, kNeed).value_or(0.0F);
+    area.cylinder.top = map.number("top", kHeight, kNeed).value_or(area.cylinder.bottom);
+    if (area.cylinder.top < area.cylinder.bottom) {
         map.complain("top", "lies below the bottom");
     }
-    area.barrel.margin = map.number("margin", kMargin).value_or(0.0F);
+    area.cylinder.margin = map.number("margin", kMargin).value_or(0.0F);
     read_motion(reader, map, area);
     map.finish();
     out.push_back(area);

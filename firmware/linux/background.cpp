@@ -132,8 +132,8 @@ public:
         const std::string why = files::replace_file(path, text_, access_);
         is_due_ = !why.empty() && !last;
         ++(why.empty() ? done : failed);
-        const bool is_news = !why.empty() && !told_;
-        told_ = !why.empty();
+        const bool is_news = !why.empty() && !reported_;
+        reported_ = !why.empty();
         retry_at_ = now + kStoreRetry;
         return is_news ? path + ": " + failure_ + ": " + why : std::string{};
     }
@@ -145,7 +145,7 @@ private:
     files::FileAccess access_;
     std::string text_;
     bool is_due_ = false;
-    bool told_ = false;
+    bool reported_ = false;
     std::int64_t retry_at_ = 0;
 };
 

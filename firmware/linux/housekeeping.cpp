@@ -42,9 +42,9 @@ void Housekeeping::reload()
 {
     if (has_airspace_) {
         background_.reload();
-    } else if (!told_no_airspace_) {
+    } else if (!reported_no_airspace_) {
         background_.print(Stream::error, "jinkd: SIGHUP: there is no airspace file to read anew");
-        told_no_airspace_ = true;
+        reported_no_airspace_ = true;
     }
 }
 
@@ -71,11 +71,11 @@ void Housekeeping::work(TimePoint now)
     if (const auto generation = background_.stored_generation()) {
         coprocessor_.note_stored(*generation);
     }
-    if (endpoint_.parser_diagnostics().signed_unchecked > 0 && !told_unchecked_) {
+    if (endpoint_.parser_diagnostics().signed_unchecked > 0 && !reported_unchecked_) {
         background_.print(Stream::error,
                           "jinkd: frames on the link are signed and no key is set: signatures are not checked, and the "
                           "signer may refuse what jink sends (--signing-key)");
-        told_unchecked_ = true;
+        reported_unchecked_ = true;
     }
     const bool is_due = signing_.has_key() && signing_.time() - stored_time_ >= link::mavlink::Signing::kStoreStep;
     if (is_due || signing_.generation() != stored_key_) {

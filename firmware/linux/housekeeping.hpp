@@ -51,8 +51,8 @@ private:
     const link::mavlink::Signing& signing_;
     files::SigningKey given_;
     bool has_airspace_ = false;
-    bool told_no_airspace_ = false;
-    bool told_unchecked_ = false;
+    bool reported_no_airspace_ = false;
+    bool reported_unchecked_ = false;
     std::uint32_t stored_params_;
     std::uint32_t stored_key_ = 0;   ///< Signing::generation() as stored
     std::uint64_t stored_time_ = 0;  ///< Signing::time() as stored

@@ -111,10 +111,10 @@ void wait_until(std::int64_t us, hal::SystemClock& clock, host::ReadAhead* cloud
 /// Waits until the driver has sent its bytes: closing discards them, and the last words matter most.
 void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
 {
-    constexpr std::int64_t kLeast = 100'000;  // a pseudo-terminal gives no count, and its reader needs a little time
-    constexpr std::int64_t kMost = 1'000'000;
+    constexpr std::int64_t kMin = 100'000;  // a pseudo-terminal gives no count, and its reader needs a little time
+    constexpr std::int64_t kMax = 1'000'000;
     const std::int64_t began = clock.now_us();
-    for (std::int64_t now = began; now - began < kLeast || (port.unsent() > 0 && now - began < kMost);
+    for (std::int64_t now = began; now - began < kMin || (port.unsent() > 0 && now - began < kMax);
          now = clock.now_us()) {
         sleep_until(now + kTickMicroseconds);
     }

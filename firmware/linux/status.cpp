@@ -161,8 +161,8 @@ std::string status_line(const app::StepReport& report, const Watched& watched, s
     if (report.uncertain_heights > 0) {
         add("heights uncertain %2u ", report.uncertain_heights);
     }
-    if (report.barrels > 0) {
-        add("areas %2u ", report.barrels);
+    if (report.cylinders > 0) {
+        add("areas %2u ", report.cylinders);
     }
     if (g.conflict) {
         add("conflict in %.1f s ", static_cast<double>(g.conflict->time_to_loss));
@@ -271,10 +271,10 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
     std::fprintf(
         f,
         "  \"bus_states\": %u, \"bus_states_beside\": %u, \"bus_reports_dropped\": %u, \"places_disagree\": %u, "
-        "\"near_told\": %u,\n",
-        d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_told);
+        "\"near_reported\": %u,\n",
+        d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_reported);
     const app::ConstraintDiagnostics& a = coprocessor.constraint_diagnostics();
-    std::fprintf(f, "  \"areas_told\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n", a.told,
+    std::fprintf(f, "  \"areas_reported\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n", a.reported,
                  a.refused, a.merged, a.grown);
     const app::ConstraintUploadDiagnostics& u = coprocessor.constraint_upload_diagnostics();
     std::fprintf(f, "  \"area_sets\": %u, \"area_sets_abandoned\": %u, \"area_parts_refused\": %u,\n", u.sets,

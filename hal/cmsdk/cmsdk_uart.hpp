@@ -22,7 +22,7 @@ public:
     /// the rate within 2 % or is below the hardware's least (16).
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t baud) noexcept
     {
-        const std::uint32_t divider = baud_divider(peripheral_clock_hz, baud, kLeastDivider, kLargestDivider);
+        const std::uint32_t divider = baud_divider(peripheral_clock_hz, baud, kMinDivider, kLargestDivider);
         if (divider == 0) {
             return false;
         }
@@ -91,7 +91,7 @@ private:
     static constexpr std::uint32_t kOverrunInterrupts = 3U << 2U;
     /// Both directions, their interrupts, and the receive overrun interrupt.
     static constexpr std::uint32_t kAllOn = 0x2F;
-    static constexpr std::uint32_t kLeastDivider = 16;
+    static constexpr std::uint32_t kMinDivider = 16;
     static constexpr std::uint32_t kLargestDivider = 0xFFFFF;
 
     Registers registers_;

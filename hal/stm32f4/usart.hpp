@@ -22,7 +22,7 @@ public:
     /// % or is below the hardware's least (16, oversampling by 16).
     [[nodiscard]] bool start(std::uint32_t peripheral_clock_hz, std::uint32_t baud) noexcept
     {
-        const std::uint32_t divider = baud_divider(peripheral_clock_hz, baud, kLeastDivider, kLargestDivider);
+        const std::uint32_t divider = baud_divider(peripheral_clock_hz, baud, kMinDivider, kLargestDivider);
         if (divider == 0) {
             return false;
         }
@@ -71,7 +71,7 @@ private:
     static constexpr std::uint32_t kTransmitInterrupt = 1U << 7U;  // of kControl1
     /// Receiver, transmitter, the receive interrupt, and the USART itself.
     static constexpr std::uint32_t kOn = 1U << 2U | 1U << 3U | 1U << 5U | 1U << 13U;
-    static constexpr std::uint32_t kLeastDivider = 16;
+    static constexpr std::uint32_t kMinDivider = 16;
     static constexpr std::uint32_t kLargestDivider = 0xFFFF;
 
     /// Reading the data after the status clears the flags of both the byte and its errors.

@@ -183,7 +183,7 @@ TEST_F(DaemonOutputs, HangupsWithTwoThousandAreas)
     const std::string summary = stop(daemon);
     EXPECT_GT(number_of(summary, "airspace_reloads"), 0.0) << summary;
     EXPECT_EQ(number_of(summary, "airspace_reload_failures"), 0.0) << summary;
-    EXPECT_GE(number_of(summary, "areas_told"), 4000.0) << summary;
+    EXPECT_GE(number_of(summary, "areas_reported"), 4000.0) << summary;
 }
 
 TEST_F(DaemonOutputs, AFifoInPlaceOfAFileIsRefusedAtOnce)
@@ -211,7 +211,7 @@ TEST_F(DaemonOutputs, AnAirspaceFileThatBecomesAFifoChangesNothing)
     expect_heartbeats(daemon, milliseconds(1200));
     const std::string summary = stop(daemon);
     EXPECT_EQ(number_of(summary, "airspace_reload_failures"), 1.0) << summary;
-    EXPECT_EQ(number_of(summary, "areas_told"), 3.0) << summary;
+    EXPECT_EQ(number_of(summary, "areas_reported"), 3.0) << summary;
     EXPECT_NE(text_of(scratch / "out").find("is not a regular file"), std::string::npos);
 }
 

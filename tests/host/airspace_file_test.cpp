@@ -32,8 +32,8 @@ TEST(AirspaceFile, TheExampleIsReadAsItSays)
     const app::Constraint& airfield = (*areas)[0];
     ASSERT_TRUE(airfield.about);
     EXPECT_EQ(airfield.about->alt, 0);
-    EXPECT_EQ(airfield.barrel.margin, 50.0F);
-    EXPECT_EQ(airfield.barrel.top, 600.0F);
+    EXPECT_EQ(airfield.cylinder.margin, 50.0F);
+    EXPECT_EQ(airfield.cylinder.top, 600.0F);
     EXPECT_EQ(airfield.stamp, kNow.own);
     // Each corner lies in it, and two at least on its border.
     int on_border = 0;
@@ -41,16 +41,16 @@ TEST(AirspaceFile, TheExampleIsReadAsItSays)
                                    std::pair{387350000, -91280000}, std::pair{387330000, -91370000}}) {
         const Vec3 corner = link::mavlink::to_local({lat, lon, 0}, *airfield.about);
         const float off = std::hypot(corner.x(), corner.y());
-        EXPECT_LE(off, airfield.barrel.circle.radius);
-        on_border += off > airfield.barrel.circle.radius - 1.0F ? 1 : 0;
+        EXPECT_LE(off, airfield.cylinder.circle.radius);
+        on_border += off > airfield.cylinder.circle.radius - 1.0F ? 1 : 0;
     }
     EXPECT_GE(on_border, 2);
-    EXPECT_LT(airfield.barrel.circle.radius, 600.0F);
+    EXPECT_LT(airfield.cylinder.circle.radius, 600.0F);
     const app::Constraint& storm = (*areas)[1];
     EXPECT_EQ(storm.about->lat, 387600000);
     EXPECT_EQ(storm.about->lon, -91600000);
-    EXPECT_EQ(storm.barrel.circle.radius, 400.0F);
-    EXPECT_EQ(storm.barrel.velocity, world::Vec2(4, -2));
+    EXPECT_EQ(storm.cylinder.circle.radius, 400.0F);
+    EXPECT_EQ(storm.cylinder.velocity, world::Vec2(4, -2));
     EXPECT_NEAR(kNow.own - storm.stamp, 1e7F, 2.0F);
     EXPECT_EQ(storm.ends.us - storm.stamp.us, 3'600'000'000);
 }
@@ -61,12 +61,12 @@ TEST(AirspaceFile, LocalPlacesAreMetres)
     const auto areas = read(kCircle + "}\n  - {polygon: [[0, 0], [8, 0], [8, 6]], bottom: -5, top: -5}\n", complaints);
     ASSERT_TRUE(areas) << test::all_of(complaints);
     EXPECT_FALSE((*areas)[0].about);
-    EXPECT_EQ((*areas)[0].barrel.circle.centre, world::Vec2(10, 20));
-    EXPECT_EQ((*areas)[0].barrel.circle.radius, 5.0F);
-    EXPECT_NEAR((*areas)[1].barrel.circle.centre.x(), 4.0F, 1e-3F);
-    EXPECT_NEAR((*areas)[1].barrel.circle.centre.y(), 3.0F, 1e-3F);
-    EXPECT_NEAR((*areas)[1].barrel.circle.radius, 5.0F, 2e-3F);
-    EXPECT_GE((*areas)[1].barrel.circle.radius, 5.0F);
+    EXPECT_EQ((*areas)[0].cylinder.circle.centre, world::Vec2(10, 20));
+    EXPECT_EQ((*areas)[0].cylinder.circle.radius, 5.0F);
+    EXPECT_NEAR((*areas)[1].cylinder.circle.centre.x(), 4.0F, 1e-3F);
+    EXPECT_NEAR((*areas)[1].cylinder.circle.centre.y(), 3.0F, 1e-3F);
+    EXPECT_NEAR((*areas)[1].cylinder.circle.radius, 5.0F, 2e-3F);
+    EXPECT_GE((*areas)[1].cylinder.circle.radius, 5.0F);
 }
 
 TEST(AirspaceFile, AnEmptyListClosesNothing)

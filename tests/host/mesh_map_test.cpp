@@ -83,7 +83,7 @@ std::vector<Named> shapes()
         v = by * v + Vec3d(300.1, -200.7, 55.3);
     }
     return {{"box", box(1, 2, 3)}, {"corner", corner()},       {"gate", gate()},
-            {"ball", ball(6)},     {"turned and far", turned}, {"two", both(ball(5), moved(gate(), {5, 0, 0}))}};
+            {"sphere", sphere(6)},     {"turned and far", turned}, {"two", both(sphere(5), moved(gate(), {5, 0, 0}))}};
 }
 
 TEST(MeshPieces, EveryPointOfTheMeshLiesInAPieceWhateverTheMethod)
@@ -142,7 +142,7 @@ TEST(MeshPieces, ASoupIsExact)
 /// 182 vertices exceed a piece's limit: the piece grows outwards, never inwards, and states its excess.
 TEST(MeshPieces, ARoundHullIsSimplifiedOutwards)
 {
-    const TriangleMesh mesh = ball(9);
+    const TriangleMesh mesh = sphere(9);
     Recipe recipe;
     recipe.method = Method::hull;
     const std::vector<Piece> pieces = pieces_of(mesh, recipe);
@@ -281,7 +281,7 @@ TEST(MeshFile, WhatIsWrongIsSaid)
 
 TEST(ReadMesh, StlAndObjAreTheSameMesh)
 {
-    for (const TriangleMesh& mesh : {gate(), ball(4)}) {
+    for (const TriangleMesh& mesh : {gate(), sphere(4)}) {
         const TriangleMesh obj = read("a.obj", as_obj(mesh));
         const TriangleMesh stl = read("a.stl", as_stl(mesh));
         EXPECT_EQ(obj.vertices.size(), mesh.vertices.size());
@@ -348,7 +348,7 @@ TEST(MeshPieces, MoreThanAMapHoldsIsRefused)
 {
     Recipe soup;
     soup.method = Method::soup;
-    const std::string why = refusal([&] { static_cast<void>(pieces_of(ball(40), soup)); });
+    const std::string why = refusal([&] { static_cast<void>(pieces_of(sphere(40), soup)); });
     EXPECT_NE(why.find("more pieces than a map may have, 4096"), std::string::npos) << why;
     Recipe recipe;
     recipe.concavity = 0.0;

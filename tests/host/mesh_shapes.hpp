@@ -57,8 +57,8 @@ inline TriangleMesh gate()
                  {{0, 1, 4}, {0, 4, 5}, {1, 2, 3}, {1, 3, 4}, {0, 5, 6}, {0, 6, 7}}, 0, 2);
 }
 
-/// A ball of radius 1 with `rings` rings of twice as many vertices.
-inline TriangleMesh ball(std::size_t rings)
+/// A sphere of radius 1 with `rings` rings of twice as many vertices.
+inline TriangleMesh sphere(std::size_t rings)
 {
     TriangleMesh out;
     const std::size_t around = 2 * rings;

@@ -223,8 +223,8 @@ TEST(PlanOutput, EveryWayToStop)
     EXPECT_EQ(none->tries, blocked.settings.retries + 1U) << "all attempts made";
     EXPECT_NE(plan_table(blocked, *none).find("Stop: no candidate is available."), std::string::npos);
     EXPECT_NE(plan_table(blocked, *none).find("10 attempts, slower, further out and waiting"), std::string::npos);
-    const auto told = plan_json(blocked, *none, false);
-    for (const auto& c : told["candidates"]) {
+    const auto reported = plan_json(blocked, *none, false);
+    for (const auto& c : reported["candidates"]) {
         EXPECT_FALSE(c.contains("total"));
     }
 

@@ -176,13 +176,13 @@ TEST(ProblemFile, ReadsObstaclesOfEveryShape)
     const ProblemFile p =
         read_good(kHead + kThreat.substr(0, kThreat.size() - 2) +
                   ", main: true}\nobstacles:\n"
-                  "  - {name: ball, sphere: {centre: [1, 2, 3], radius: 4}}\n"
+                  "  - {name: sphere, sphere: {centre: [1, 2, 3], radius: 4}}\n"
                   "  - {box: {centre: [1, 2, 3], half_extents: [1, 2, 3], yaw: 90}}\n"
                   "  - {capsule: {from: [0, 0, 0], to: [0, 0, 10], radius: 2}}\n"
                   "  - {cylinder: {from: [0, 0, 0], to: [0, 4, 0], radius: 2}}\n"
                   "  - {hull: {vertices: [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], centre: [5, 5, 5]}}\n");
     ASSERT_EQ(p.obstacles.size(), 5U);
-    EXPECT_EQ(p.obstacles[0].name, "ball");
+    EXPECT_EQ(p.obstacles[0].name, "sphere");
     EXPECT_EQ(p.obstacles[1].name, "obstacle 1");
     const auto reach = [&](std::size_t i, const Vec3& direction) {
         return geometry::support(p.obstacles[i].obstacle.shape, direction);

@@ -20,8 +20,8 @@ struct Constraint {
     Vec4 a{};
     double b = 0.0;
 };
-/// radius^2 + slack * d >= |x - centre|^2; slack 1 where the ball gives way too
-struct BallConstraint {
+/// radius^2 + slack * d >= |x - centre|^2; slack 1 where the sphere gives way too
+struct SphereConstraint {
     std::array<double, 3> centre{};
     double radius = 0.0;
     double slack = 0.0;
@@ -30,7 +30,7 @@ struct BallConstraint {
 /// The objective: d, or |x - goal|^2 / 2 with d fixed.
 struct Barrier {
     std::vector<Constraint> planes;
-    std::vector<BallConstraint> balls;
+    std::vector<SphereConstraint> spheres;
     bool nearest = false;
     std::array<double, 3> goal{};
 
@@ -38,7 +38,7 @@ struct Barrier {
     {
         return c.a[0] * z[0] + c.a[1] * z[1] + c.a[2] * z[2] + c.a[3] * z[3] - c.b;
     }
-    [[nodiscard]] double margin(const BallConstraint& c, const Vec4& z) const
+    [[nodiscard]] double margin(const SphereConstraint& c, const Vec4& z) const
     {
         double sum = c.radius * c.radius + c.slack * z[3];
         for (std::size_t i = 0; i < 3; ++i) {
@@ -49,7 +49,7 @@ struct Barrier {
     [[nodiscard]] bool is_inside(const Vec4& z) const
     {
         const auto positive = [&](const auto& c) { return margin(c, z) > 0.0; };
-        return std::all_of(planes.begin(), planes.end(), positive) && std::all_of(balls.begin(), balls.end(), positive);
+        return std::all_of(planes.begin(), planes.end(), positive) && std::all_of(spheres.begin(), spheres.end(), positive);
     }
 
     /// Barrier's value at weight t; infinite outside.
@@ -68,7 +68,7 @@ struct Barrier {
             sum -= m > 0.0 ? std::log(m) : -std::numeric_limits<double>::infinity();
         };
         std::for_each(planes.begin(), planes.end(), add);
-        std::for_each(balls.begin(), balls.end(), add);
+        std::for_each(spheres.begin(), spheres.end(), add);
         return sum;
     }
 
@@ -88,7 +88,7 @@ struct Barrier {
         for (const Constraint& c : planes) {
             add(c.a, margin(c, z));
         }
-        for (const BallConstraint& c : balls) {
+        for (const SphereConstraint& c : spheres) {
             const double m = margin(c, z);
             add({2.0 * (c.centre[0] - z[0]), 2.0 * (c.centre[1] - z[1]), 2.0 * (c.centre[2] - z[2]), c.slack}, m);
             for (std::size_t i = 0; i < 3; ++i) {
@@ -143,7 +143,7 @@ struct Barrier {
     /// falls below `enough`.
     [[nodiscard]] Vec4 minimum(Vec4 z, double gap, double enough = -std::numeric_limits<double>::infinity()) const
     {
-        const double count = static_cast<double>(planes.size() + balls.size());
+        const double count = static_cast<double>(planes.size() + spheres.size());
         for (double t = 1.0; t * gap < 20.0 * count; t *= 20.0) {
             for (int turn = 0; turn < 60; ++turn) {
                 double decrement = 0.0;
@@ -184,32 +184,32 @@ struct Plane {
 
 struct Question {
     std::vector<Plane> planes;
-    std::vector<BallConstraint> balls;
+    std::vector<SphereConstraint> spheres;
     std::array<double, 3> goal{};
 };
 
 struct Least {
-    bool hard_hold = false;  ///< the first `hard` planes and the balls have a common interior
+    bool hard_hold = false;  ///< the first `hard` planes and the spheres have a common interior
     double d = 0.0;          ///< least common violation of the others, over the yield; negative if all have a common
                              ///< interior
     std::array<double, 3> x{};
 };
 
-/// The least d for planes from `hard` on, within the balls and the first `hard` planes.
+/// The least d for planes from `hard` on, within the spheres and the first `hard` planes.
 inline Least least_violation(const Question& q, std::size_t hard, double gap = 1e-9)
 {
     Least out;
     Barrier first;
-    // First all constraints yield, balls too: any point is inside for a large d.
+    // First all constraints yield, spheres too: any point is inside for a large d.
     for (std::size_t i = 0; i < hard; ++i) {
         first.planes.push_back({{q.planes[i].n[0], q.planes[i].n[1], q.planes[i].n[2], 1.0}, q.planes[i].b});
     }
-    first.balls = q.balls;
+    first.spheres = q.spheres;
     double most = 1.0;
-    Vec4 z{q.balls.back().centre[0], q.balls.back().centre[1], q.balls.back().centre[2], 0.0};
-    for (BallConstraint& ball : first.balls) {
-        ball.slack = 1.0;
-        most = std::max(most, 1.0 - first.margin(ball, z));
+    Vec4 z{q.spheres.back().centre[0], q.spheres.back().centre[1], q.spheres.back().centre[2], 0.0};
+    for (SphereConstraint& sphere : first.spheres) {
+        sphere.slack = 1.0;
+        most = std::max(most, 1.0 - first.margin(sphere, z));
     }
     for (const Constraint& c : first.planes) {
         most = std::max(most, 1.0 - first.margin(c, z));
@@ -223,7 +223,7 @@ inline Least least_violation(const Question& q, std::size_t hard, double gap = 1
         return out;
     }
     Barrier second;
-    second.balls = q.balls;
+    second.spheres = q.spheres;
     most = 1.0;
     for (std::size_t i = 0; i < q.planes.size(); ++i) {
         const Plane& p = q.planes[i];
@@ -247,7 +247,7 @@ inline std::array<double, 3> nearest(const Question& q, const std::array<double,
     Barrier barrier;
     barrier.nearest = true;
     barrier.goal = q.goal;
-    barrier.balls = q.balls;
+    barrier.spheres = q.spheres;
     for (const Plane& p : q.planes) {
         barrier.planes.push_back({{p.n[0], p.n[1], p.n[2], 0.0}, p.b});
     }

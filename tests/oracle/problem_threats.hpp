@@ -46,8 +46,8 @@ struct ProblemThreats {
         for (const Sphere& sphere : threats) {
             all_.push_back(sphere.threat(all_.size() - bounds.size()));
         }
-        for (const world::Barrel& barrel : airspace.barrels) {
-            all_.push_back(world::cylinder_threat(all_.size() - bounds.size() - threats.size(), barrel, uncertainty));
+        for (const world::Cylinder& cylinder : airspace.cylinders) {
+            all_.push_back(world::cylinder_threat(all_.size() - bounds.size() - threats.size(), cylinder, uncertainty));
         }
         std::size_t index = 0;
         for (const world::Obstacle& obstacle : obstacles) {

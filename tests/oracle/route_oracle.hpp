@@ -77,7 +77,7 @@ struct TwinRoute {
     /// Continues straight past the end.
     [[nodiscard]] Vec3d at(double s) const
     {
-        return told(s, [](const RoutePiece& p, double on) { return p.at(on); });
+        return reported(s, [](const RoutePiece& p, double on) { return p.at(on); });
     }
     [[nodiscard]] Vec3d along(double s) const
     {
@@ -99,7 +99,7 @@ struct TwinRoute {
     }
 
 private:
-    [[nodiscard]] Vec3d told(double s, auto of) const
+    [[nodiscard]] Vec3d reported(double s, auto of) const
     {
         for (const RoutePiece& piece : pieces) {
             if (s <= piece.length) {

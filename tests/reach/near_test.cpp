@@ -6,7 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "core/geometry/convex.hpp"
-#include "core/world/barrel.hpp"
+#include "core/world/cylinder.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "tests/oracle/planner_oracle.hpp"
 #include "tests/oracle/random_situation.hpp"
@@ -39,13 +39,13 @@ struct Crowd : RandomSituation {
             const Vec3 at = somewhere(12.0F * placed.unit);
             const float middle = at.z() + random.uniform(-4.0F, 4.0F);
             const float tall = random.uniform(0.1F, 5.0F);
-            barrels.push_back({{at.head<2>(), random.uniform(0.2F, 3.0F)},
+            cylinders.push_back({{at.head<2>(), random.uniform(0.2F, 3.0F)},
                                {random.uniform(-4.0F, 4.0F), random.uniform(-4.0F, 4.0F)},
                                middle - tall,
                                middle + tall,
                                random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 4.0F)});
         }
-        airspace.barrels = barrels;
+        airspace.cylinders = cylinders;
         airspace.has_ceiling = airspace.has_keep_in = true;
         airspace.floor = own.position.z() - random.uniform(2.0F, 20.0F);
         airspace.ceiling = own.position.z() + random.uniform(2.0F, 20.0F);
@@ -82,14 +82,14 @@ struct Crowd : RandomSituation {
         {{0, 0, 2}, {2, 0, 0}, {-1, 2, 0}, {-1, -2, 0}, {0, 0, -1}}};
     Random random;
     Placed placed;
-    std::vector<world::Barrel> barrels;
+    std::vector<world::Cylinder> cylinders;
 };
 
 NearThreats& near_of(const Crowd& crowd, WorkBudget& budget)
 {
     static NearThreats near;
     near.collect(crowd.view(), crowd.placed, 0.0F, 0.0F);
-    EXPECT_TRUE(near.mark(crowd.placed, CellBalls(crowd.placed.set->grid), budget));
+    EXPECT_TRUE(near.mark(crowd.placed, CellSpheres(crowd.placed.set->grid), budget));
     return near;
 }
 
@@ -117,9 +117,9 @@ TEST(NearThreatsLaw, CellsLoseNothing)
     EXPECT_LT(met * 10, nodes * 9);
 }
 
-/// Barrels alone, so that they set a movement's level: along its arc a free movement enters no margin, a movement short
+/// Cylinders alone, so that they set a movement's level: along its arc a free movement enters no margin, a movement short
 /// of clearance enters no body; and bodies do close movements.
-TEST(NearThreatsLaw, BarrelsCloseBodiesAndTellMargins)
+TEST(NearThreatsLaw, CylindersCloseBodiesAndTellMargins)
 {
     constexpr int kSamples = 16;
     std::array<std::size_t, kRuns + 1> seen{};
@@ -150,10 +150,10 @@ TEST(NearThreatsLaw, BarrelsCloseBodiesAndTellMargins)
                     i == 0 ? from.position
                            : at_share(from, static_cast<Movement>(set.movement[node]), share, set.step).position);
                 const Seconds t = placed.time(parent) + share * placed.period;
-                for (const world::Barrel& barrel : crowd.barrels) {
-                    world::Barrel wide = barrel;
-                    wide.circle.radius += level == kFree ? barrel.margin : 0.0F;
-                    ASSERT_GE(world::barrel_distance(crowd.limits.half_extents, own, wide, t) - extra, -2e-3F)
+                for (const world::Cylinder& cylinder : crowd.cylinders) {
+                    world::Cylinder wide = cylinder;
+                    wide.circle.radius += level == kFree ? cylinder.margin : 0.0F;
+                    ASSERT_GE(world::cylinder_distance(crowd.limits.half_extents, own, wide, t) - extra, -2e-3F)
                         << "seed " << seed << " node " << node << " share " << share;
                 }
             }

@@ -20,7 +20,7 @@ TEST(OwnEstimate, IsTheTruthWhereNothingIsAskedFor)
     for (int i = 0; i < 100; ++i) {
         truth.position = Vec(i, 2.0 * i, 30.0);
         estimate.step(truth);
-        ASSERT_EQ(estimate.told().position, truth.position);
+        ASSERT_EQ(estimate.reported().position, truth.position);
     }
 }
 
@@ -34,7 +34,7 @@ TEST(OwnEstimate, IsAsOldAsTheLatency)
         truth.position.x() = 5.0 * to_seconds(i * kStep);
         estimate.step(truth);
     }
-    EXPECT_NEAR(truth.position.x() - estimate.told().position.x(), 1.0, 1e-9);
+    EXPECT_NEAR(truth.position.x() - estimate.reported().position.x(), 1.0, 1e-9);
 }
 
 TEST(OwnEstimate, BiasHasItsSizeAndItsCorrelationTime)

@@ -21,7 +21,7 @@ Scenario with_standing_threat(double seen_within)
     s.start_velocity = Vec(5, 0, 0);
     s.traffic.latency = 0.0;
     Threat threat;
-    threat.name = "ball";
+    threat.name = "sphere";
     threat.radius = 2.0;
     threat.position = threat.collision_point = Vec(40, 0, 30);
     threat.sensed_by = SensedBy::point;
@@ -57,13 +57,13 @@ TEST(Report, AThreatToldOfTooLateIsNoFailureToAvoid)
         s.threats[0].appears_at = appears;
         const ReportedFlight flight = report_on(s, fly_in_process(s), true);
         ASSERT_LT(flight.record.closest.surface, s.promise);
-        EXPECT_TRUE(flight.told_too_late);
+        EXPECT_TRUE(flight.reported_too_late);
         EXPECT_FALSE(flight.failed_avoidable);
     }
     s.threats[0].appears_at = 7.2;  // 4 m before its centre
     const ReportedFlight late = report_on(s, fly_in_process(s), true);
     ASSERT_LT(late.record.closest.surface, s.promise);
-    EXPECT_FALSE(late.told_too_late);
+    EXPECT_FALSE(late.reported_too_late);
     EXPECT_EQ(late.last_chance.tried, 721U);
     EXPECT_FALSE(late.failed_avoidable);
     EXPECT_EQ(late.late_chance.tried, 721U);

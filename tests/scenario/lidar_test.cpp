@@ -30,7 +30,7 @@ Vec draw_vec(Random& random, double size)
 Threat draw_body(Random& random)
 {
     Threat body;
-    body.form = std::array{Form::ball, Form::cylinder, Form::box}[random.below(3)];
+    body.form = std::array{Form::sphere, Form::cylinder, Form::box}[random.below(3)];
     body.radius = draw(random, 0.2, 2.0);
     body.half_height = body.form == Form::cylinder || random.below(2) == 0 ? draw(random, 0.2, 4.0) : 0.0;
     body.half_extents = Vec::Constant(2.2) + draw_vec(random, 2.0);
@@ -56,7 +56,7 @@ bool is_inside(const Threat& body, const Vec& gap)
     switch (body.form) {
     case Form::box: return (gap.cwiseAbs().array() <= body.half_extents.array()).all();
     case Form::cylinder: return in_height && gap.head<2>().squaredNorm() <= body.radius * body.radius;
-    case Form::ball: break;
+    case Form::sphere: break;
     }
     const Vec cap(gap.x(), gap.y(), in_height ? 0.0 : std::abs(gap.z()) - body.half_height);
     return cap.squaredNorm() <= body.radius * body.radius;
@@ -72,8 +72,8 @@ TEST(Lidar, RangesAreThoseOfAWalkAlongTheRay)
         const Vec from = draw_vec(random, 9.0);
         const Vec aim = centre + draw_vec(random, 3.0) - from;
         const Vec direction = (k % 7 == 0 ? Vec(aim.x(), 0.0, 0.0) : aim).normalized();
-        constexpr double kMost = 30.0;
-        const double walked = walk(body, centre, from, direction, kMost);
+        constexpr double kMax = 30.0;
+        const double walked = walk(body, centre, from, direction, kMax);
         const double range = ray_range(body, centre, from, direction);
         if (walked >= 0.0) {
             ++hits;
@@ -99,7 +99,7 @@ TEST(Threat, DistancesOfCylindersAndBoxesAreThoseToTheNearestPointInside)
         double least = 1e9;
         const Vec half = body.form == Form::box ? body.half_extents
                                                 : Vec(body.radius, body.radius,
-                                                      body.half_height + (body.form == Form::ball ? body.radius : 0.0));
+                                                      body.half_height + (body.form == Form::sphere ? body.radius : 0.0));
         constexpr int kParts = 40;
         for (int i = 0; i <= kParts * kParts * kParts; ++i) {
             const Vec share(i % kParts, i / kParts % kParts, i / kParts / kParts);
@@ -288,7 +288,7 @@ TEST(ScenarioFile, FormsThatCannotBeAreRefused)
     EXPECT_TRUE(says(refused("half_extents: [1, 1, 1], sensed_by: lidar"), "a box, and nothing else"));
     EXPECT_TRUE(says(refused("form: box, radius: 2, half_extents: [1, 2, 3], sensed_by: lidar"), "neither 'radius'"));
     EXPECT_TRUE(says(refused("form: cylinder, sensed_by: lidar"), "missing key 'threats[0].half_height'"));
-    EXPECT_TRUE(says(refused("form: cylinder, half_height: 3, sensed_by: scan"), "only a lidar sees what is no ball"));
+    EXPECT_TRUE(says(refused("form: cylinder, half_height: 3, sensed_by: scan"), "only a lidar sees what is no sphere"));
     EXPECT_TRUE(says(refused("sensed_by: lidar", "seed: 1"), "there is no 'lidar'"));
     EXPECT_TRUE(says(refused("sensed_by: lidar, scatter: {count: 200, half: [9, 9, 0], apart: 5}"), "do not fit"));
 }

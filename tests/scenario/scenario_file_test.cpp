@@ -9,7 +9,7 @@
 namespace jink::sim {
 namespace {
 
-const std::string kLeast = "mission: [[0, 0, 30], [100, 0, 30]]\nexpect: {outcome: clear}\n";
+const std::string kMin = "mission: [[0, 0, 30], [100, 0, 30]]\nexpect: {outcome: clear}\n";
 
 std::string refusal(const std::string& text)
 {
@@ -100,7 +100,7 @@ expect: {outcome: [avoided, braked], given_back: true, final_mode: hold, flips_a
 
 TEST(ScenarioFile, TheVehicleStartsAtCruiseOnItsLeg)
 {
-    const Scenario s = parse_scenario(kLeast, "some.yaml");
+    const Scenario s = parse_scenario(kMin, "some.yaml");
     EXPECT_EQ(s.start_position, Vec(0, 0, 30));
     EXPECT_EQ(s.start_velocity, Vec(5, 0, 0));
     EXPECT_EQ(s.parameters, (std::map<std::string, double>{{"TRK_SIGMA_P", 0.5}})) << "the noise of its sensors";
@@ -108,14 +108,14 @@ TEST(ScenarioFile, TheVehicleStartsAtCruiseOnItsLeg)
 
 TEST(ScenarioFile, RefusalsNameThePlaceAndTheReason)
 {
-    EXPECT_EQ(refusal(kLeast), "accepted");
-    EXPECT_EQ(refusal(kLeast + "colour: red\n"), "folder/some.yaml:3:1: unknown key 'colour'");
-    EXPECT_EQ(refusal(kLeast + "vehicle: {wings: 2}\n"), "folder/some.yaml:3:11: unknown key 'vehicle.wings'");
-    EXPECT_EQ(refusal(kLeast + "\nstack: betaflight\n"),
+    EXPECT_EQ(refusal(kMin), "accepted");
+    EXPECT_EQ(refusal(kMin + "colour: red\n"), "folder/some.yaml:3:1: unknown key 'colour'");
+    EXPECT_EQ(refusal(kMin + "vehicle: {wings: 2}\n"), "folder/some.yaml:3:11: unknown key 'vehicle.wings'");
+    EXPECT_EQ(refusal(kMin + "\nstack: betaflight\n"),
               "folder/some.yaml:4:8: stack: 'betaflight' is none of: ardupilot, px4");
-    EXPECT_EQ(refusal(kLeast + "duration: long\n"), "folder/some.yaml:3:11: duration: 'long' is not a number");
-    EXPECT_EQ(refusal(kLeast + "duration: 0.5\n"), "folder/some.yaml:3:11: duration: '0.5' is out of range: 1 to 600");
-    EXPECT_EQ(refusal(kLeast + "seed: -1\n"),
+    EXPECT_EQ(refusal(kMin + "duration: long\n"), "folder/some.yaml:3:11: duration: 'long' is not a number");
+    EXPECT_EQ(refusal(kMin + "duration: 0.5\n"), "folder/some.yaml:3:11: duration: '0.5' is out of range: 1 to 600");
+    EXPECT_EQ(refusal(kMin + "seed: -1\n"),
               "folder/some.yaml:3:7: seed: '-1' is not a whole number from 0 to 18446744073709551615");
     EXPECT_EQ(refusal("expect: {outcome: clear}\n"), "folder/some.yaml:1:1: missing key 'mission'");
     EXPECT_EQ(refusal("mission: [[0, 0, 30], [1, 0, 30]]\n"), "folder/some.yaml:1:1: missing key 'expect'");
@@ -179,7 +179,7 @@ TEST(ScenarioFile, NumbersAreKeptInDouble)
 
 TEST(ScenarioFile, ThreatsThatCannotBeAreRefused)
 {
-    const auto threat = [](const std::string& text) { return refusal(kLeast + "threats:\n  - " + text + "\n"); };
+    const auto threat = [](const std::string& text) { return refusal(kMin + "threats:\n  - " + text + "\n"); };
     const std::string at = "folder/some.yaml:4:";
     EXPECT_EQ(threat("{position: [1, 2, 3]}"), "accepted");
     EXPECT_EQ(threat("{radius: 1}"), at + "5: threats[0].position: a threat has either 'position' or 'passes'");
@@ -205,9 +205,9 @@ TEST(ScenarioFile, ThreatsThatCannotBeAreRefused)
 
 TEST(ScenarioFile, ParametersMustExist)
 {
-    EXPECT_EQ(refusal(kLeast + "parameters:\n  JNK_SETTEL: 1\n"),
+    EXPECT_EQ(refusal(kMin + "parameters:\n  JNK_SETTEL: 1\n"),
               "folder/some.yaml:4:3: unknown key 'parameters.JNK_SETTEL'; did you mean 'JNK_SETTLE'?");
-    EXPECT_EQ(refusal(kLeast + "parameters:\n  JNK_SETTLE: soon\n"),
+    EXPECT_EQ(refusal(kMin + "parameters:\n  JNK_SETTLE: soon\n"),
               "folder/some.yaml:4:15: parameters.JNK_SETTLE: 'soon' is not a number");
 }
 

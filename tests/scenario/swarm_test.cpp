@@ -81,13 +81,13 @@ TEST(Swarm, ChangesPlacesAcrossTheCircle)
             EXPECT_NEAR((s.mission[1] + s.mission[0] - 2.0 * home).norm(), 0.0, std::sqrt(3.0) * setup.spread + 1e-9);
             EXPECT_EQ(s.threats.size(), setup.obstacles);
             for (std::size_t k = 0; k < s.threats.size(); ++k) {
-                const Threat& ball = s.threats[k];
-                EXPECT_GT((ball.position - s.start_position).norm(), 2.5) << "room to begin";
-                EXPECT_LE(ball.velocity.norm(), 0.6 * setup.cruise) << "slower than any vehicle";
-                EXPECT_EQ(ball.velocity.z(), 0.0);
+                const Threat& sphere = s.threats[k];
+                EXPECT_GT((sphere.position - s.start_position).norm(), 2.5) << "room to begin";
+                EXPECT_LE(sphere.velocity.norm(), 0.6 * setup.cruise) << "slower than any vehicle";
+                EXPECT_EQ(sphere.velocity.z(), 0.0);
                 if (i > 0) {
-                    EXPECT_EQ(ball.position, obstacles[k].position) << "the same for everybody";
-                    EXPECT_EQ(ball.velocity, obstacles[k].velocity);
+                    EXPECT_EQ(sphere.position, obstacles[k].position) << "the same for everybody";
+                    EXPECT_EQ(sphere.velocity, obstacles[k].velocity);
                 }
             }
             obstacles = s.threats;

@@ -152,12 +152,12 @@ TEST(Threat, NearestInStepIsThatOfBruteForce)
 
 TEST(Threat, BoxAndCapsuleDistances)
 {
-    Threat ball;
-    ball.radius = 1.0;
-    EXPECT_NEAR(box_distance(ball, Vec(5, 0, 0), Vec::Zero(), Vec::Ones()), 3.0, 1e-12);
-    EXPECT_NEAR(box_distance(ball, Vec(4, 4, 0), Vec::Zero(), Vec::Ones()), std::sqrt(18.0) - 1.0, 1e-12);
-    EXPECT_EQ(box_distance(ball, Vec(1.5, 0, 0), Vec::Zero(), Vec::Ones()), 0.0);
-    Threat pillar = ball;
+    Threat sphere;
+    sphere.radius = 1.0;
+    EXPECT_NEAR(box_distance(sphere, Vec(5, 0, 0), Vec::Zero(), Vec::Ones()), 3.0, 1e-12);
+    EXPECT_NEAR(box_distance(sphere, Vec(4, 4, 0), Vec::Zero(), Vec::Ones()), std::sqrt(18.0) - 1.0, 1e-12);
+    EXPECT_EQ(box_distance(sphere, Vec(1.5, 0, 0), Vec::Zero(), Vec::Ones()), 0.0);
+    Threat pillar = sphere;
     pillar.half_height = 4.0;
     EXPECT_NEAR(surface_distance(pillar, Vec::Zero(), Vec(3, 0, 3.5)), 2.0, 1e-12);
     EXPECT_NEAR(surface_distance(pillar, Vec::Zero(), Vec(0, 0, 7.0)), 2.0, 1e-12);

@@ -305,11 +305,11 @@ void UnitProbe::program(WorkBudget& budget) noexcept
         plane.offset = -random_.uniform(-1.0F, far);
         plane.level = static_cast<orca::Level>(i * orca::kLevels / size);
     }
-    const std::array<orca::Ball, 2> balls{{{Vec3::Zero(), 5.0F}, {within(2.0F), random_.uniform(0.1F, 3.0F)}}};
+    const std::array<orca::Sphere, 2> spheres{{{Vec3::Zero(), 5.0F}, {within(2.0F), random_.uniform(0.1F, 3.0F)}}};
     const Vec3 preferred = within(5.0F);
     jink_window_begin();
     sink_ =
-        orca::solve({{planes_.data(), size}, balls, preferred, balls[1].centre}, scratch_.view(), budget).velocity.x();
+        orca::solve({{planes_.data(), size}, spheres, preferred, spheres[1].centre}, scratch_.view(), budget).velocity.x();
     jink_window_end();
 }
 

@@ -29,7 +29,7 @@ constexpr std::array<Rival, 6> kSphere{
     {{10, 0.44, 3.00}, {20, 0.69, 3.00}, {50, 1.00, 2.97}, {100, 1.15, 2.96}, {500, 2.8, 2.79}, {812, 3.7, 2.81}}};
 constexpr Rival kDense{100, 17.0, 0.0};  // 15 - 19 us
 constexpr int kRuns = 3;
-constexpr long kMostSteps = 8000;
+constexpr long kMaxSteps = 8000;
 
 double processor_time()
 {
@@ -38,7 +38,7 @@ double processor_time()
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Mean time of a vehicle's step [s]; all arrive, or kMostSteps.
+/// Mean time of a vehicle's step [s]; all arrive, or kMaxSteps.
 double mean_time(std::size_t count, const SwarmSettings& settings, long& steps)
 {
     double best = 1e9;
@@ -46,7 +46,7 @@ double mean_time(std::size_t count, const SwarmSettings& settings, long& steps)
         Swarm swarm(count, settings);
         steps = 0;
         const double start = processor_time();
-        while (!swarm.arrived() && steps < kMostSteps) {
+        while (!swarm.arrived() && steps < kMaxSteps) {
             swarm.step();
             ++steps;
         }
@@ -107,7 +107,7 @@ void fly(benchmark::State& state, std::size_t count, const SwarmSettings& settin
         } else {
             std::snprintf(text, sizeof text, "public library: %.0f us", rival.mean);
         }
-        state.SetLabel(steps < kMostSteps ? text : "NOT ARRIVED");
+        state.SetLabel(steps < kMaxSteps ? text : "NOT ARRIVED");
     }
 }
 
@@ -130,7 +130,7 @@ int main(int argc, char** argv)
     SwarmSettings dense = sphere;
     dense.sphere = 20.0F;
     dense.range = 1000.0F;
-    dense.most = NearestPoints::kMost - 1;
+    dense.most = NearestPoints::kMax - 1;
     for (const Rival& rival : kSphere) {
         report("sphere", rival.count, sphere, rival);
     }

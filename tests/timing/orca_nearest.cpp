@@ -11,7 +11,7 @@ namespace jink::orca {
 namespace {
 
 /// Keeps the `keep` nearest, nearest first. @return the distance beyond which nothing more is kept
-float insert(std::array<NearestPoints::Found, NearestPoints::kMost>& found, std::size_t& count, std::size_t keep,
+float insert(std::array<NearestPoints::Found, NearestPoints::kMax>& found, std::size_t& count, std::size_t keep,
              float bound, const NearestPoints::Found& point)
 {
     std::size_t place = count < keep ? count++ : keep - 1;
@@ -25,7 +25,7 @@ float insert(std::array<NearestPoints::Found, NearestPoints::kMost>& found, std:
 }  // namespace
 
 NearestPoints::NearestPoints(std::size_t points, std::size_t most, float range)
-    : most_(most), wide_(std::min(3 * most + 4, kMost)), range_(range), nodes_(2 * points + 2), order_(points),
+    : most_(most), wide_(std::min(3 * most + 4, kMax)), range_(range), nodes_(2 * points + 2), order_(points),
       near_(points)
 {
     std::iota(order_.begin(), order_.end(), 0U);
@@ -91,7 +91,7 @@ void NearestPoints::look_up(std::size_t self, float wide, Near& near)
         build();
     }
     const Vec3 centre = (*points_)[self];
-    std::array<Found, kMost> found;
+    std::array<Found, kMax> found;
     float bound = wide * wide;
     std::size_t count = 0;
     const auto away = [&](const Node& node) {
@@ -142,7 +142,7 @@ void NearestPoints::look_up(std::size_t self, float wide, Near& near)
     }
 }
 
-std::size_t NearestPoints::query(std::size_t self, std::array<Found, kMost>& found)
+std::size_t NearestPoints::query(std::size_t self, std::array<Found, kMax>& found)
 {
     Near& near = near_[self];
     const Vec3 centre = (*points_)[self];

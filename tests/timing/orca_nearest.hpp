@@ -15,20 +15,20 @@ namespace jink::orca {
 class NearestPoints {
 public:
     /// Points kept at most of one query.
-    static constexpr std::size_t kMost = 128;
+    static constexpr std::size_t kMax = 128;
     struct Found {
         float distance2 = 0.0F;
         std::uint32_t index = 0;
     };
 
-    /// @param most   asked for by each query, < kMost
+    /// @param most   asked for by each query, < kMax
     /// @param range  [m] search range
     NearestPoints(std::size_t points, std::size_t most, float range);
 
     /// The points have moved, each by `moved` [m] at most.
     void move(const std::vector<Vec3>& points, float moved);
     /// The `most` nearest within range of points[self], but for itself, nearest first, and one more if there is one.
-    std::size_t query(std::size_t self, std::array<Found, kMost>& found);
+    std::size_t query(std::size_t self, std::array<Found, kMax>& found);
 
 private:
     static constexpr std::uint32_t kLeaf = 8;
@@ -39,7 +39,7 @@ private:
     };
     /// Neighbours of a point at the last tree query.
     struct Near {
-        std::array<std::uint32_t, kMost> index{};
+        std::array<std::uint32_t, kMax> index{};
         std::size_t count = 0;
         float outside = 0.0F;  ///< all others were at least this far
         float moved = -1e9F;   ///< moved_ then

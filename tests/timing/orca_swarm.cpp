@@ -132,10 +132,10 @@ void Swarm::decide(std::size_t self)
             planes[conflicts + warnings++] = pair_plane(pair, settings_.pair);
         }
     }
-    const Ball ball{Vec3::Zero(), cap};
+    const Sphere sphere{Vec3::Zero(), cap};
     WorkBudget budget(1'000'000);
     const Solution solution =
-        solve({{planes_.data(), first + conflicts + warnings}, {&ball, 1}, preferred(self), velocities_[self]},
+        solve({{planes_.data(), first + conflicts + warnings}, {&sphere, 1}, preferred(self), velocities_[self]},
               scratch_.view(), budget);
     ++counts_.solved;
     counts_.planes += first + conflicts + warnings;

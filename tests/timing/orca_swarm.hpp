@@ -91,14 +91,14 @@ private:
     SwarmSettings settings_;
     std::vector<Vec3> positions_, velocities_, goals_, next_;
     NearestPoints nearest_;
-    static constexpr std::size_t kMostPlanes = 2 * NearestPoints::kMost + kMaxObstaclePlanes;
-    Scratch<kMostPlanes> scratch_;
-    std::array<HalfSpace, kMostPlanes> planes_;
+    static constexpr std::size_t kMaxPlanes = 2 * NearestPoints::kMax + kMaxObstaclePlanes;
+    Scratch<kMaxPlanes> scratch_;
+    std::array<HalfSpace, kMaxPlanes> planes_;
     geometry::MeshMap map_;
     world::ObstacleTable table_;
     ObstacleSettings obstacle_settings_;
     bool is_among_obstacles_ = false;
-    std::array<NearestPoints::Found, NearestPoints::kMost> found_;
+    std::array<NearestPoints::Found, NearestPoints::kMax> found_;
     std::uint64_t steps_ = 0;
     Counts counts_;
 };

@@ -94,10 +94,10 @@ TEST(NearestPoints, AreThoseOfALookAtAll)
         points[i] = 12.0F * Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
         velocities[i] = Vec3(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
     }
-    constexpr std::size_t kMost = 10;
+    constexpr std::size_t kMax = 10;
     constexpr float kRange = 6.0F;
-    NearestPoints nearest(points.size(), kMost, kRange);
-    std::array<NearestPoints::Found, NearestPoints::kMost> found;
+    NearestPoints nearest(points.size(), kMax, kRange);
+    std::array<NearestPoints::Found, NearestPoints::kMax> found;
     for (int step = 0; step < 40; ++step) {
         nearest.move(points, 0.2F * 1.7321F);
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -110,7 +110,7 @@ TEST(NearestPoints, AreThoseOfALookAtAll)
             }
             std::sort(all.begin(), all.end());
             const std::size_t count = nearest.query(i, found);
-            ASSERT_EQ(count, std::min(all.size(), kMost + 1));
+            ASSERT_EQ(count, std::min(all.size(), kMax + 1));
             for (std::size_t k = 0; k < count; ++k) {
                 ASSERT_FLOAT_EQ(found[k].distance2, all[k]) << "step " << step << ", point " << i;
             }

@@ -188,7 +188,7 @@ StudyBlock fly_study_block(std::size_t index, bool with_rows)
     const vehicle::Airframe airframe;
     const Main threat = main_threat_of(index);
     StudyBlock block;
-    if (std::hypot(threat.distance, threat.elevation) < geometric::kLeastDistanceInRadii * threat.radius) {
+    if (std::hypot(threat.distance, threat.elevation) < geometric::kMinDistanceInRadii * threat.radius) {
         block.environments_skipped = kStudyEnvironments;
         return block;
     }

@@ -54,14 +54,14 @@ void run_campaign(const CampaignOptions& options)
     }
     const bool watched = isatty(STDERR_FILENO) != 0;
     const auto began = std::chrono::steady_clock::now();
-    std::size_t told = 0;
+    std::size_t reported = 0;
     const auto progress = [&](std::size_t done, std::size_t all) {
         // On a terminal one line that is rewritten, elsewhere one line per tenth.
         if (watched) {
             std::fprintf(stderr, "\r%zu of %zu environments", done, all);
             std::fputs(done == all ? "\n" : "", stderr);
-        } else if (done * 10 / all != told) {
-            told = done * 10 / all;
+        } else if (done * 10 / all != reported) {
+            reported = done * 10 / all;
             std::fprintf(stderr, "%zu of %zu environments\n", done, all);
         }
     };

@@ -73,7 +73,7 @@ std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
     }
     case PlanStatus::too_close:
         return format("Stop: the main threat is %.2f m away, nearer than 2.5 of its radii (%.2f m).",
-                      as_double(file.distance), as_double(geometric::kLeastDistanceInRadii * file.main_radius));
+                      as_double(file.distance), as_double(geometric::kMinDistanceInRadii * file.main_radius));
     case PlanStatus::none_available: return "Stop: no candidate is available.";
     case PlanStatus::budget_spent: return "Stop: the work budget ran out before an answer.";
     case PlanStatus::no_conflict: return "Nothing to avoid.";
@@ -95,7 +95,7 @@ ordered_json json_of(const ProblemFile& file, const world::ThreatRef& hit)
     if (hit.kind == world::ThreatKind::none) {
         return nullptr;
     }
-    constexpr std::array kKinds{"none", "threat", "obstacle", "floor", "ceiling", "keep_in", "barrel"};
+    constexpr std::array kKinds{"none", "threat", "obstacle", "floor", "ceiling", "keep_in", "cylinder"};
     return {{"kind", kKinds[static_cast<std::size_t>(hit.kind)]}, {"index", hit.index}, {"name", hit_name(file, hit)}};
 }
 
@@ -186,7 +186,7 @@ std::string hit_name(const ProblemFile& file, const world::ThreatRef& hit)
     case world::ThreatKind::floor: return "floor";
     case world::ThreatKind::ceiling: return "ceiling";
     case world::ThreatKind::keep_in: return "keep-in distance";
-    case world::ThreatKind::barrel: return "closed area";
+    case world::ThreatKind::cylinder: return "closed area";
     case world::ThreatKind::none: break;
     }
     return {};

@@ -98,9 +98,9 @@ void read_frame(YamlMap& root, ProblemFile& out)
     if (!across) {
         return;
     }
-    constexpr float kLeast = 1e-3F;
+    constexpr float kMin = 1e-3F;
     const Vec3 y = *across - across->dot(out.direction) * out.direction;
-    if (!(y.norm() >= kLeast)) {
+    if (!(y.norm() >= kMin)) {
         root.complain("frame_y", "lies along the way: planes cannot be counted from it");
         return;
     }

@@ -68,7 +68,7 @@ void append_segments(std::string& out, const reach::build::BuiltVehicle& built)
         separators.push_back(in_braces({literal(pair[0]), literal(pair[1])}));
     }
     append_array_of(out, "std::array<float, 2>", "kPitchSeparators", separators);
-    append_array(out, "float", "kMostPitch", built.most_pitch);
+    append_array(out, "float", "kMaxPitch", built.most_pitch);
     std::vector<std::string> segments;
     for (const reach::build::BuiltVehicle::Segment& s : built.segments) {
         const std::string navigation = std::string("&kSet").append(std::to_string(s.navigation));
@@ -103,7 +103,7 @@ std::string reach_sets_header(const reach::build::BuiltVehicle& built)
     out.append(list_of({literal(sets.period), literal(sets.max_acceleration), literal(sets.max_vertical_acceleration),
                         literal(sets.max_climb), literal(sets.max_descent), literal(sets.cruise_speed)}));
     out.append(",\n    ").append(space).append("::kSpeeds, ").append(literal(sets.most_speed)).append(", ");
-    out.append(list_of({space + "::kPitchSeparators", space + "::kMostPitch", space + "::kSegments"}));
+    out.append(list_of({space + "::kPitchSeparators", space + "::kMaxPitch", space + "::kSegments"}));
     out.append(", ").append(hexadecimal(sets.checksum)).append("};\n");
     return out.append("\n}  // namespace jink::reach\n");
 }

@@ -276,9 +276,9 @@ std::optional<Hull> hull_of(const std::vector<Vec3d>& points)
             std::swap(corners[1], corners[2]);
         }
         out.triangles.push_back({corners[0], corners[1], corners[2]});
-        const bool told = std::any_of(out.planes.begin(), out.planes.end(),
+        const bool reported = std::any_of(out.planes.begin(), out.planes.end(),
                                       [&](const auto& plane) { return plane.first.dot(normal) > 1.0 - 1e-12; });
-        if (!told) {
+        if (!reported) {
             out.planes.emplace_back(normal, 0.0);
         }
     }

@@ -16,7 +16,7 @@ namespace {
 
 using Cluster = std::vector<std::size_t>;
 
-constexpr std::size_t kMostTriangles = 50'000;
+constexpr std::size_t kMaxTriangles = 50'000;
 /// HACD measures concavity in thousandths of an object's diagonal.
 constexpr double kHacdUnits = 1000.0;
 
@@ -176,9 +176,9 @@ std::vector<Piece> pieces_of(const TriangleMesh& mesh, const Recipe& recipe)
     if (!(recipe.concavity > 0.0)) {
         throw CannotBuild("a concavity has to be above 0");
     }
-    if (mesh.triangles.size() > kMostTriangles) {
+    if (mesh.triangles.size() > kMaxTriangles) {
         throw CannotBuild(std::to_string(mesh.triangles.size()) + " triangles are more than the " +
-                          std::to_string(kMostTriangles) + " that are decomposed");
+                          std::to_string(kMaxTriangles) + " that are decomposed");
     }
     std::vector<Piece> pieces;
     for (const Cluster& object : objects_of(mesh)) {

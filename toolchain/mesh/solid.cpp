@@ -17,7 +17,7 @@ using Corners = std::array<Vec3d, 3>;
 
 constexpr std::size_t kLeaf = 4;  ///< largest number of triangles in a leaf box
 /// Largest number of parts of a piece's surface that are checked; the result then stays an upper bound.
-constexpr std::size_t kMostParts = 10'000;
+constexpr std::size_t kMaxParts = 10'000;
 
 double distance_from_segment(const Vec3d& p, const Vec3d& a, const Vec3d& b)
 {
@@ -216,7 +216,7 @@ double excess_of(const Piece& piece, const Solid& solid, double tolerance)
         if (part.bound <= known + tolerance) {
             break;
         }
-        if (count == kMostParts) {
+        if (count == kMaxParts) {
             return part.bound;
         }
         parts.pop();

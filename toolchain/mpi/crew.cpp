@@ -12,11 +12,11 @@ namespace jink::mpi {
 namespace {
 
 /// Largest size of a message [bytes].
-constexpr std::size_t kMost = std::numeric_limits<int>::max();
+constexpr std::size_t kMax = std::numeric_limits<int>::max();
 
 int length_of(const std::string& piece)
 {
-    if (piece.size() > kMost) {
+    if (piece.size() > kMax) {
         throw std::length_error("a piece of more than 2 GiB");
     }
     return static_cast<int>(piece.size());
@@ -67,8 +67,8 @@ void Crew::share(std::vector<std::uint64_t>& values) const
     std::uint64_t count = values.size();
     MPI_Bcast(&count, 1, MPI_UINT64_T, 0, MPI_COMM_WORLD);
     values.resize(count);
-    for (std::size_t at = 0; at < values.size(); at += kMost) {
-        const std::size_t n = std::min(kMost, values.size() - at);
+    for (std::size_t at = 0; at < values.size(); at += kMax) {
+        const std::size_t n = std::min(kMax, values.size() - at);
         MPI_Bcast(values.data() + at, static_cast<int>(n), MPI_UINT64_T, 0, MPI_COMM_WORLD);
     }
 }

@@ -61,7 +61,7 @@ Make navigation_of(Profile profile)
     return [rule](const Settings& settings) { return best_paths(settings, rule); };
 }
 
-Make emergency_of(Profile profile, const Rung& rung)
+Make emergency_of(Profile profile, const Asked& rung)
 {
     if (profile == Profile::reduced) {
         return [rung](const Settings& settings) {
@@ -78,20 +78,20 @@ Make emergency_of(Profile profile, const Rung& rung)
 
 /// The size variants of a profile, largest first. Spreads are reduced before exits at the sides: the emergency set
 /// exists for side escapes, and one per cell is the minimum.
-std::vector<Rung> ladder_of(Profile profile)
+std::vector<Asked> order_of(Profile profile)
 {
-    std::vector<Rung> rungs;
+    std::vector<Asked> asked_situations;
     if (profile == Profile::full) {
         for (const std::size_t spread : {8U, 7U, 6U, 5U, 4U, 3U, 2U}) {
-            rungs.push_back({spread, 2});
-            rungs.push_back({spread, 1});
+            asked_situations.push_back({spread, 2});
+            asked_situations.push_back({spread, 1});
         }
     } else {
         for (const std::size_t spread : {9U, 8U, 7U, 6U, 5U, 4U, 3U, 2U, 1U}) {
-            rungs.push_back({spread, 1});
+            asked_situations.push_back({spread, 1});
         }
     }
-    return rungs;
+    return asked_situations;
 }
 
 constexpr std::array<std::string_view, kPitchSegments> kPitchNames{"descending", "level", "climbing"};
@@ -103,7 +103,7 @@ using Known = std::map<std::string, Set>;
 
 class Builder {
 public:
-    Builder(const std::string& name, const vehicle::VehicleLimits& limits, const Recipe& recipe, const Rung& rung,
+    Builder(const std::string& name, const vehicle::VehicleLimits& limits, const Recipe& recipe, const Asked& rung,
             Known& known)
         : known_(known)
     {
@@ -233,7 +233,7 @@ BuiltVehicle build_vehicle(const std::string& name, const vehicle::VehicleLimits
     const std::size_t most_nodes = most_nodes_of(recipe.profile);
     Known known;
     std::optional<BuiltVehicle> built;
-    for (const Rung& rung : ladder_of(recipe.profile)) {
+    for (const Asked& rung : order_of(recipe.profile)) {
         try {
             built = Builder(name, limits, recipe, rung, known).run();
         } catch (const std::length_error&) {

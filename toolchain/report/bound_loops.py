@@ -29,7 +29,7 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
     parts = early * math.ceil(step / 0.1) + (steps - early) * math.ceil(step / 0.25)
     return {"candidates": candidates, "tracks": tracks, "obstacles": obstacles, "attempts": attempts, "waypoints": waypoints,
             "points": points, "steps": steps, "flight parts": parts,
-            # Where the escape rule shrinks a ball: pieces of 0.05 s (half of 0.05 m at 0.5 m/s), spread over as many
+            # Where the escape rule shrinks a sphere: pieces of 0.05 s (half of 0.05 m at 0.5 m/s), spread over as many
             # segments as any curve is taken to have.
             "escape parts": math.ceil(longest / 0.05 / (points - 1)) + 1,
             # Conflict search computes the separation of one track from a path of two pieces, in 480 parts at most.
@@ -83,7 +83,7 @@ RULES = [
     (r"(solve\.cpp|choose\.cpp|generate\.cpp|run\.hpp):.*(candidates|order_?\.empty|planes|offset|evaluate\()|offsets\.cpp", "each", lambda p: p["candidates"]),
     (r"(solve|choose|generate)\.cpp:.*Family", "each", lambda p: 4),
     (r"curve\.cpp|^core/cost/|(solve|choose|generate)\.cpp:.*(max_element|closeness_nearest)", "each", lambda p: max(p["waypoints"], p["tracks"])),
-    (r"clearance(_airspace|_balls)?\.cpp", "each", lambda p: p["points"] - 1),
+    (r"clearance(_airspace|_spheres)?\.cpp", "each", lambda p: p["points"] - 1),
     (r"memcpy|memset|memmove", "each", lambda p: 128),
 ]
 # With time-aware security, one leg, default weights and without solids; the predicted flight instead of the check of accelerations. Angles are below

@@ -29,18 +29,18 @@ ENTRIES = [("image: the program", r"^jink_main$"), ("image: deepest interrupt", 
            ("orca::Planner::plan", r"N4jink4orca7Planner4planE")]
 # Capacities of the formula, another value for each, and a set to try the formula on.
 BASE = {"JINK_MAX_TRACKS": 32, "JINK_MAX_OBSTACLES": 96, "JINK_MAX_PATH_POINTS": 64, "JINK_MAX_CANDIDATES": 32,
-        "JINK_MAX_HULL_VERTICES": 16, "JINK_MAX_REACH_NODES": 2560, "JINK_MAX_REACH_CELLS": 350, "JINK_MAX_BARRELS": 2, "JINK_MAX_MISSION_ITEMS": 16}
+        "JINK_MAX_HULL_VERTICES": 16, "JINK_MAX_REACH_NODES": 2560, "JINK_MAX_REACH_CELLS": 350, "JINK_MAX_CYLINDERS": 2, "JINK_MAX_MISSION_ITEMS": 16}
 TRIED = {"JINK_MAX_TRACKS": 64, "JINK_MAX_OBSTACLES": 192, "JINK_MAX_PATH_POINTS": 128, "JINK_MAX_CANDIDATES": 512,
-         "JINK_MAX_HULL_VERTICES": 64, "JINK_MAX_REACH_NODES": 4096, "JINK_MAX_REACH_CELLS": 512, "JINK_MAX_BARRELS": 32, "JINK_MAX_MISSION_ITEMS": 64}
+         "JINK_MAX_HULL_VERTICES": 64, "JINK_MAX_REACH_NODES": 4096, "JINK_MAX_REACH_CELLS": 512, "JINK_MAX_CYLINDERS": 32, "JINK_MAX_MISSION_ITEMS": 64}
 PROOF = {"JINK_MAX_TRACKS": 16, "JINK_MAX_OBSTACLES": 40, "JINK_MAX_PATH_POINTS": 96, "JINK_MAX_CANDIDATES": 128,
-         "JINK_MAX_HULL_VERTICES": 32, "JINK_MAX_REACH_NODES": 3072, "JINK_MAX_REACH_CELLS": 400, "JINK_MAX_BARRELS": 8, "JINK_MAX_MISSION_ITEMS": 32}
+         "JINK_MAX_HULL_VERTICES": 32, "JINK_MAX_REACH_NODES": 3072, "JINK_MAX_REACH_CELLS": 400, "JINK_MAX_CYLINDERS": 8, "JINK_MAX_MISSION_ITEMS": 32}
 # Images with fewer methods (toolchain/cmake/JinkImage.cmake), of the board with the least memory: their names, and the
 # modules whose code they must not contain.
 FEWER_ON = "stm32f405"
 FEWER = {"geometric_reach": ("without the reciprocal method", ["orca"]), "geometric_orca": ("without reach sets", ["reach"]),
          "geometric": ("geometric alone", ["orca", "reach"])}
 # Of core/reach, and in every image: the closed areas are merged by them (firmware/app/constraints.cpp).
-SHARED = re.compile(r"jink::reach::(BarrelTable::|around\(|merged\()")
+SHARED = re.compile(r"jink::reach::(CylinderTable::|around\(|merged\()")
 TOP = pathlib.Path(__file__).resolve().parents[2]
 
 
@@ -220,7 +220,7 @@ def bits_of_cells(name, capacities):
     """The part not linear in the capacities: a bit per threat and reach planner cell, in 32-bit words [bytes]."""
     if name not in ("ReachPlanner", "Coprocessor"):
         return 0
-    threats = sum(capacities[f"JINK_MAX_{what}"] for what in ("TRACKS", "OBSTACLES", "BARRELS"))
+    threats = sum(capacities[f"JINK_MAX_{what}"] for what in ("TRACKS", "OBSTACLES", "CYLINDERS"))
     return 4 * ((threats + 31) // 32) * (capacities["JINK_MAX_REACH_CELLS"] + 1)  # and for the root
 
 

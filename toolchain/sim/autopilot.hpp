@@ -99,7 +99,7 @@ public:
     [[nodiscard]] Micros parameters_verified() const noexcept { return parameters_verified_; }
     [[nodiscard]] std::vector<std::string> parameters_missing() const;
     /// Time at which the first message that reports a threat was sent [us]; -1: not yet. Scan messages do not count.
-    [[nodiscard]] Micros told(std::size_t threat) const { return told_[threat]; }
+    [[nodiscard]] Micros reported(std::size_t threat) const { return reported_[threat]; }
 
 private:
     struct Wanted {
@@ -170,7 +170,7 @@ private:
     Heard heard_;
     std::vector<Wanted> wanted_;
     Micros parameters_verified_ = -1;
-    std::vector<Micros> told_;
+    std::vector<Micros> reported_;
 
     Mode mode_ = Mode::mission;
     Micros mode_since_ = 0;
@@ -186,10 +186,10 @@ private:
     Vec command_ = Vec::Zero();
     Vec hold_at_ = Vec::Zero();
     bool holding_ = false;
-    bool told_origin_ = false;  ///< since the boot
+    bool reported_origin_ = false;  ///< since the boot
     bool uploaded_ = false;     ///< the ground station's mission has come
     bool sent_to_mission_ = false;
-    std::uint16_t told_sequence_ = 0;
+    std::uint16_t reported_sequence_ = 0;
 };
 
 }  // namespace jink::sim

@@ -128,9 +128,9 @@ std::vector<MissionItemInt> Autopilot::mission_items() const
 void Autopilot::send_mission_state()
 {
     const bool px4 = scenario_.stack == Stack::px4;
-    const bool moved_on = sequence() != told_sequence_;
-    if (moved_on && told_sequence_ > 0) {
-        writer_.write(MissionItemReached{told_sequence_});
+    const bool moved_on = sequence() != reported_sequence_;
+    if (moved_on && reported_sequence_ > 0) {
+        writer_.write(MissionItemReached{reported_sequence_});
     }
     // PX4 reports a new current item at once.
     if (often(px4 ? 1 : 2) || (px4 && moved_on)) {
@@ -143,7 +143,7 @@ void Autopilot::send_mission_state()
         current.mission_id = mission_id();
         writer_.write(current);
     }
-    told_sequence_ = sequence();
+    reported_sequence_ = sequence();
 }
 
 }  // namespace jink::sim

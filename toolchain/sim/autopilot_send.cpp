@@ -85,7 +85,7 @@ void Autopilot::send_heartbeat() { writer_.write(heartbeat()); }
 void Autopilot::send_own_state()
 {
     const bool px4 = scenario_.stack == Stack::px4;
-    const Truth& own = estimate_.told();
+    const Truth& own = estimate_.reported();
     const Vec& p = own.position;
     const Vec& v = own.velocity;
     const double heading = compass(own.yaw);
@@ -119,7 +119,7 @@ void Autopilot::send_own_state()
 
 void Autopilot::send_odometry()
 {
-    const Truth& own = estimate_.told();
+    const Truth& own = estimate_.reported();
     const double half = 0.5 * compass(own.yaw);
     Odometry m;
     m.time_usec = static_cast<std::uint64_t>(boot_us());
@@ -144,7 +144,7 @@ void Autopilot::send_odometry()
 
 GlobalPositionInt Autopilot::global_position() const
 {
-    const Truth& own = estimate_.told();
+    const Truth& own = estimate_.reported();
     const Vec& v = own.velocity;
     const GlobalPosition global = to_global(own.position, scenario_.stack);
     return {boot_ms(),
@@ -208,9 +208,9 @@ void Autopilot::send_slow()
         writer_.write(Timesync{0, boot_us() * 1000, 0, 0});
     }
     // PX4 reports the origin once; ArduPilot as often as home, because the co-processor requested both.
-    if (px4 ? !told_origin_ : due(5 * kSecond)) {
+    if (px4 ? !reported_origin_ : due(5 * kSecond)) {
         static_cast<void>(send_message(static_cast<int>(GpsGlobalOrigin::kInfo.id)));
-        told_origin_ = true;
+        reported_origin_ = true;
     }
     if (due(px4 ? 2 * kSecond : 5 * kSecond)) {
         static_cast<void>(send_message(static_cast<int>(HomePosition::kInfo.id)));
@@ -230,7 +230,7 @@ void Autopilot::send_target()
     target.time_boot_ms = boot_ms();
     target.coordinate_frame = kLocalNed;
     Vec velocity = command_;
-    Vec place = estimate_.told().position + kPlaceAhead * command_;
+    Vec place = estimate_.reported().position + kPlaceAhead * command_;
     if (mode_ == Mode::external) {
         velocity = setpoint_;
         target.type_mask = px4 ? kPositionIgnored : kArdupilotVelocityTarget;
@@ -295,7 +295,7 @@ void Autopilot::send_traffic()
         vehicle.ver_velocity = centi(seen.velocity.z());
         // PX4 forwards the ground station's reports under its own id.
         writer_.write(vehicle, scenario_.stack == Stack::px4 ? kAutopilot : kAdsbReceiver);
-        told_[seen.threat] = told_[seen.threat] < 0 ? world_.now() : told_[seen.threat];
+        reported_[seen.threat] = reported_[seen.threat] < 0 ? world_.now() : reported_[seen.threat];
     }
 }
 

@@ -24,11 +24,11 @@ std::vector<app::Constraint> constraints_of(const std::vector<ClosedArea>& areas
     std::vector<app::Constraint> constraints;
     for (const ClosedArea& area : areas) {
         app::Constraint constraint;
-        constraint.barrel.circle = {area.centre.head<2>().cast<float>(), static_cast<float>(area.radius)};
-        constraint.barrel.velocity = area.velocity.head<2>().cast<float>();
-        constraint.barrel.bottom = static_cast<float>(area.bottom);
-        constraint.barrel.top = static_cast<float>(area.top);
-        constraint.barrel.margin = static_cast<float>(area.margin);
+        constraint.cylinder.circle = {area.centre.head<2>().cast<float>(), static_cast<float>(area.radius)};
+        constraint.cylinder.velocity = area.velocity.head<2>().cast<float>();
+        constraint.cylinder.bottom = static_cast<float>(area.bottom);
+        constraint.cylinder.top = static_cast<float>(area.top);
+        constraint.cylinder.margin = static_cast<float>(area.margin);
         constraint.stamp = start;
         constraints.push_back(constraint);
     }

@@ -39,7 +39,7 @@ void fly_on_time(Plant& plant, PseudoTerminal& line, Child& child, Record& notes
         const auto late = Clock::now() - next;
         notes.late_steps += late > kLate ? 1U : 0U;
         notes.latest_step = std::max(notes.latest_step, std::chrono::duration<double>(late).count());
-        if (plant.now() % to_micros(HoldUp::kLookEvery) == 0) {
+        if (plant.now() % to_micros(HoldUp::kCheckEvery) == 0) {
             const double wall = std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
             notes.latest_step = std::max(notes.latest_step, hold_up.look(HoldUp::sample(child, wall)));
         }

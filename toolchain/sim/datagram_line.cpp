@@ -17,7 +17,7 @@ namespace jink::sim {
 namespace {
 
 /// Seven datagrams of a millisecond each, as the kernel counts their memory [B].
-constexpr std::uint64_t kMostWaiting = 7 * 768;
+constexpr std::uint64_t kMaxWaiting = 7 * 768;
 
 sockaddr_in local(std::uint16_t port)
 {
@@ -129,7 +129,7 @@ DatagramLine::State DatagramLine::state_of(std::uint16_t port) const
     throw std::runtime_error("the line of datagrams is gone");
 }
 
-bool DatagramLine::may_send() const { return state_of(other_port_).waiting < kMostWaiting; }
+bool DatagramLine::may_send() const { return state_of(other_port_).waiting < kMaxWaiting; }
 
 void DatagramLine::send(std::span<const std::byte> bytes)
 {

@@ -11,7 +11,7 @@ constexpr double kFeet = 0.3048;  // [m]
 /// Heights for which the low-altitude model holds [ft].
 constexpr double kLowest = 10.0;
 constexpr double kHighest = 1000.0;
-constexpr double kLeastSpeed = 1.0;  // [m/s]
+constexpr double kMinSpeed = 1.0;  // [m/s]
 
 double gauss(Random& random) { return static_cast<double>(random.normal()); }
 
@@ -39,8 +39,8 @@ void OwnEstimate::step(const Truth& truth)
     while (past_.size() > steps + 1) {
         past_.pop_front();
     }
-    told_ = past_.front();
-    told_.position += bias_;
+    reported_ = past_.front();
+    reported_.position += bias_;
 }
 
 Gusts::Gusts(const Wind& wind, std::uint64_t seed) : wind_(wind), random_(seed * 69621U + 7U) {}
@@ -65,7 +65,7 @@ void Gusts::step(double height, double airspeed)
     const double vertical_scale = h * kFeet;
     const double vertical_sigma = 0.1 * wind_.at_20_ft;
     const double level_sigma = vertical_sigma / std::pow(shape, 0.4);
-    const double speed = std::max(kLeastSpeed, airspeed);
+    const double speed = std::max(kMinSpeed, airspeed);
     const double keep = std::exp(-speed * dt / level_scale);
     const double white = 1.0 / std::sqrt(dt);
     along_ = keep * along_ + std::sqrt(1.0 - keep * keep) * level_sigma * gauss(random_);

@@ -30,7 +30,7 @@ public:
 
     /// Advances by one kStep. O(1).
     void step(const Truth& truth);
-    [[nodiscard]] const Truth& told() const noexcept { return told_; }
+    [[nodiscard]] const Truth& reported() const noexcept { return reported_; }
     [[nodiscard]] const Vec& bias() const noexcept { return bias_; }
 
 private:
@@ -38,7 +38,7 @@ private:
     Random random_;
     Vec bias_ = Vec::Zero();
     std::deque<Truth> past_;
-    Truth told_;
+    Truth reported_;
 };
 
 /// Gust velocities along the axes of the flight: along, across, up. Spectra: u of first order, v and w of second.

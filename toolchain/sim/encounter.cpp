@@ -30,7 +30,7 @@ void each_column(Result& r, Visit&& visit)
     visit("separation", r.separation);
     visit("at", r.at);
     visit("nearest", r.nearest);
-    visit("told", r.told);
+    visit("told", r.reported);
     visit("alone", r.alone);
     visit("duration", r.duration);
     visit("takeovers", r.takeovers);
@@ -49,7 +49,7 @@ void each_column(Result& r, Visit&& visit)
     visit("faults", r.faults);
     visit("conflict", r.conflict);
     visit("keep", r.keep);
-    visit("told_too_late", r.told_too_late);
+    visit("reported_too_late", r.reported_too_late);
     visit("failed_avoidable", r.failed_avoidable);
     visit("last_keep", r.last_keep);
     visit("late_keep", r.late_keep);
@@ -166,7 +166,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.separation = record.closest.surface;
     r.at = record.closest.time;
     r.nearest = static_cast<unsigned>(record.closest.threat);
-    r.told = record.told[record.closest.threat];
+    r.reported = record.reported[record.closest.threat];
     r.alone = flight.alone;
     r.duration = record.duration;
     r.takeovers = record.takeovers;
@@ -177,7 +177,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.faults = static_cast<unsigned>(record.faults.size());
     r.conflict = flight.verdict.conflict;
     r.keep = flight.verdict.keep;
-    r.told_too_late = flight.told_too_late;
+    r.reported_too_late = flight.reported_too_late;
     r.failed_avoidable = flight.failed_avoidable;
     r.last_keep = flight.last_chance.keep;
     r.late_keep = flight.late_chance.keep;

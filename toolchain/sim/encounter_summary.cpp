@@ -19,7 +19,7 @@ using Test = std::function<bool(const EncounterResult&)>;
 using Value = std::function<double(const EncounterResult&)>;
 
 constexpr std::size_t kWorst = 10;
-constexpr unsigned kMostIntruders = 8;
+constexpr unsigned kMaxIntruders = 8;
 
 template <class... Values>
 void line(std::string& text, const char* format, Values... values)
@@ -88,12 +88,12 @@ void put_promises(std::string& text, const Results& results)
               count_if(results,
                        [](const EncounterResult& r) { return r.failed_avoidable && r.noiseless < Scenario{}.promise; }),
               all);
-    put_share(text, "... told of too late", count_if(results, [](const EncounterResult& r) { return r.told_too_late; }),
+    put_share(text, "... detected too late", count_if(results, [](const EncounterResult& r) { return r.reported_too_late; }),
               all);
     put_share(
-        text, "... told of in time, but none of the judge's ways kept it",
+        text, "... detected in time, but none of the judge's ways kept it",
         count_if(results,
-                 [](const EncounterResult& r) { return broke_promise(r) && !r.failed_avoidable && !r.told_too_late; }),
+                 [](const EncounterResult& r) { return broke_promise(r) && !r.failed_avoidable && !r.reported_too_late; }),
         all);
     const std::size_t conflicts = count_if(results, [](const EncounterResult& r) { return r.conflict; });
     put_share(text, "mission in conflict, once somebody had been told", conflicts, all);
@@ -168,7 +168,7 @@ void put_intruders(std::string& text, const Results& results)
     line(text, "\n%9s %8s %7s %9s %7s %10s %9s %9s %10s %10s %10s %10s %10s", "Intruders", "flights", "braked",
          "breaches", "hits", "avoidable", "too late", "failed", "least [m]", "5 % [m]", "50 % [m]", "same pict.",
          "changed p.");
-    for (unsigned intruders = 1; intruders <= kMostIntruders; ++intruders) {
+    for (unsigned intruders = 1; intruders <= kMaxIntruders; ++intruders) {
         Results some;
         std::vector<double> separations;
         for (const EncounterResult& r : results) {
@@ -186,7 +186,7 @@ void put_intruders(std::string& text, const Results& results)
         };
         line(text, "%9u %8zu %7zu %9zu %7zu %10zu %9zu %9zu %10.2f %10.2f %10.2f %10.0f %10.0f", intruders, some.size(),
              with(Outcome::braked), with(Outcome::breach), with(Outcome::collision), count_avoidable(some),
-             count_if(some, [](const EncounterResult& r) { return r.told_too_late; }), with(Outcome::failed),
+             count_if(some, [](const EncounterResult& r) { return r.reported_too_late; }), with(Outcome::failed),
              separations.front(), quantile(separations, 0.05), quantile(separations, 0.5),
              sum_of(some, [](const EncounterResult& r) { return r.sides.same_picture; }),
              sum_of(some, [](const EncounterResult& r) { return r.sides.changed_picture; }));
@@ -198,7 +198,7 @@ const char* verdict_of(const EncounterResult& r)
     if (!broke_promise(r)) {
         return r.outcome == Outcome::failed ? "a rule broken" : "promise kept";
     }
-    return r.failed_avoidable ? "avoidable" : r.told_too_late ? "told of too late" : "no way out was found";
+    return r.failed_avoidable ? "avoidable" : r.reported_too_late ? "detected too late" : "no way out was found";
 }
 
 void put_list(std::string& text, const char* title, const Results& results)
@@ -209,7 +209,7 @@ void put_list(std::string& text, const char* title, const Results& results)
     for (const EncounterResult& r : results) {
         line(text, "  %20llu %9u %-10s %10.3f %8.2f %8.2f %6u %6u %6.2f %6u %6u %5u  %s",
              static_cast<unsigned long long>(r.seed), r.intruders, std::string(to_string(r.outcome)).c_str(),
-             r.separation, r.at, r.told, broke_promise(r) ? r.last_keep : r.keep,
+             r.separation, r.at, r.reported, broke_promise(r) ? r.last_keep : r.keep,
              broke_promise(r) ? r.late_keep : r.keep, r.noiseless, r.sides.same_picture, r.sides.changed_picture,
              r.takeovers, verdict_of(r));
     }

@@ -16,9 +16,9 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     CLI::App* command = cli.add_subcommand(
         "encounters", "many random encounters of one to eight intruders, flown block by block into a folder; "
                       "exit status 1 when a promise was broken that could have been kept, or a rule");
-    constexpr std::uint64_t kMostSeed = 1'000'000'000'000'000U;
+    constexpr std::uint64_t kMaxSeed = 1'000'000'000'000'000U;
     CLI::Option* const from = command->add_option("--from", options.from, "the first seed, default 1")
-                                  ->check(CLI::Range(std::uint64_t{0}, kMostSeed));
+                                  ->check(CLI::Range(std::uint64_t{0}, kMaxSeed));
     CLI::Option* const count = command->add_option("--count", options.count, "how many, default 1000")
                                    ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
     CLI::Option* const seeds = command->add_option("--seed-file", options.seed_file, "or these seeds, one to a line")

@@ -30,7 +30,7 @@ HoldUp::Sample HoldUp::sample(const Child& child, double wall) { return {wall, s
 
 void HoldUp::watch(const Child& child, double wall)
 {
-    if (first_ || wall >= last_.wall + kLookEvery) {
+    if (first_ || wall >= last_.wall + kCheckEvery) {
         static_cast<void>(look(sample(child, wall)));
     }
 }
@@ -40,7 +40,7 @@ double HoldUp::look(const Sample& now)
     double held = 0.0;
     if (!first_) {
         const double gap = now.wall - last_.wall;
-        held = std::max(gap > 2.0 * kLookEvery ? gap : 0.0, now.stolen - last_.stolen);
+        held = std::max(gap > 2.0 * kCheckEvery ? gap : 0.0, now.stolen - last_.stolen);
     }
     for (const auto& [id, thread] : now.threads) {
         const auto before = last_.threads.find(id);

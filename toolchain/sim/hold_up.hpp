@@ -22,7 +22,7 @@ public:
     /// sample. Counted are: a runnable thread of the program waiting for a processor, time stolen from the host's
     /// processors, and a missing sample.
     double look(const Sample& now);
-    /// Takes a sample if the last sample is kLookEvery old; for loops with a shorter period.
+    /// Takes a sample if the last sample is kCheckEvery old; for loops with a shorter period.
     void watch(const Child& child, double wall);
     /// The longest delay of all samples [s].
     [[nodiscard]] double longest() const noexcept { return longest_; }
@@ -31,7 +31,7 @@ public:
     [[nodiscard]] static Sample sample(const Child& child, double wall);
 
     /// Interval between samples [s].
-    static constexpr double kLookEvery = 0.02;
+    static constexpr double kCheckEvery = 0.02;
     /// A longer delay is a stall of the host: an emulator's clock jumps, and the flight is inconclusive [s].
     static constexpr double kStall = 0.1;
 

@@ -143,7 +143,7 @@ int finish(const Options& options, const std::vector<ReportedFlight>& flights)
         if (f.judged && f.record.closest.surface < f.record.promise) {
             std::cout << f.record.name << ": " << f.record.closest.surface << " m from " << f.record.closest_threat
                       << " at " << f.record.closest.time << " s; ";
-            if (f.told_too_late) {
+            if (f.reported_too_late) {
                 std::cout << "nobody was told of it before\n";
             } else {
                 std::cout << f.last_chance.keep << " of " << f.last_chance.tried << " manoeuvres from "

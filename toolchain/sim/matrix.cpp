@@ -16,17 +16,17 @@ constexpr double kBeyond = 3.0;
 /// Whether a judge's manoeuvre keeps the promise from the vehicle's state at the first sighting.
 bool is_avoidable(const Scenario& scenario, const Record& record)
 {
-    const double told = record.told.front();
+    const double reported = record.reported.front();
     const auto sample =
-        std::find_if(record.samples.begin(), record.samples.end(), [&](const Sample& s) { return s.time >= told; });
-    if (told < 0.0 || sample == record.samples.end() || record.closest.time <= told) {
+        std::find_if(record.samples.begin(), record.samples.end(), [&](const Sample& s) { return s.time >= reported; });
+    if (reported < 0.0 || sample == record.samples.end() || record.closest.time <= reported) {
         return false;
     }
     Truth truth;
     truth.position = sample->position;
     truth.velocity = sample->velocity;
     truth.acceleration = sample->acceleration;
-    const double horizon = record.closest.time - told + kBeyond;
+    const double horizon = record.closest.time - reported + kBeyond;
     return judge_from(scenario, truth, sample->time, horizon, Trials::until_broken).avoidable;
 }
 

@@ -161,10 +161,10 @@ Record Plant::record() const
     record.threats = scenario_.threats;
     for (std::size_t i = 0; i < scenario_.threats.size(); ++i) {
         record.appeared.push_back(world_.appeared(i) < 0 ? -1.0 : to_seconds(world_.appeared(i)));
-        record.told.push_back(autopilot_.told(i) < 0 ? -1.0 : to_seconds(autopilot_.told(i)));
+        record.reported.push_back(autopilot_.reported(i) < 0 ? -1.0 : to_seconds(autopilot_.reported(i)));
     }
-    record.sides = sides_.counts(record.told);
-    record.chosen_sides = sides_.chosen(record.told);
+    record.sides = sides_.counts(record.reported);
+    record.chosen_sides = sides_.chosen(record.reported);
     record.samples = samples_;
     for (const std::string& name : autopilot_.parameters_missing()) {
         record.faults.push_back("parameter " + name + " was not taken");

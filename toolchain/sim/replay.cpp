@@ -118,7 +118,7 @@ void Replay::hear(Micros time, const link::mavlink::Frame& frame)
         const std::int64_t received = clock_start_ + time;
         const std::int64_t sent = sync.ts1 / 1000;
         if (sent <= received && received - sent < kSecond) {
-            told_clock_ = ToldClock{frame.header, sync.tc1 / 1000, sent + (received - sent) / 2};
+            reported_clock_ = ReportedClock{frame.header, sync.tc1 / 1000, sent + (received - sent) / 2};
         }
     }
 }
@@ -126,13 +126,13 @@ void Replay::hear(Micros time, const link::mavlink::Frame& frame)
 /// Called between frames: the line carries whole frames.
 void Replay::answer_timesync(Micros now)
 {
-    if (!told_clock_ || port_->asked() == 0 || parser_.pending() != 0) {
+    if (!reported_clock_ || port_->asked() == 0 || parser_.pending() != 0) {
         return;
     }
     const std::int64_t asked = port_->asked() / 1000;
     const std::int64_t middle = asked + (clock_start_ + now - asked) / 2;
-    bring(link::mavlink::Timesync{(told_clock_->remote + middle - told_clock_->at) * 1000, port_->asked(), 0, 0});
-    told_clock_.reset();
+    bring(link::mavlink::Timesync{(reported_clock_->remote + middle - reported_clock_->at) * 1000, port_->asked(), 0, 0});
+    reported_clock_.reset();
 }
 
 /// Feeds a message in the name of the recorded autopilot.

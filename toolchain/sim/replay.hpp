@@ -86,7 +86,7 @@ private:
     class Port;
 
     /// The autopilot's clock from a recorded answer.
-    struct ToldClock {
+    struct ReportedClock {
         link::mavlink::Header from;
         std::int64_t remote = 0;  ///< [us]
         std::int64_t at = 0;      ///< on our clock [us]
@@ -107,7 +107,7 @@ private:
     app::StepReport report_;
     link::mavlink::Parser parser_;  ///< decodes messages that the endpoint does not report
     std::optional<unsigned> vehicle_;
-    std::optional<ToldClock> told_clock_;
+    std::optional<ReportedClock> reported_clock_;
 };
 
 /// Time on the recorded jinkd's clock at the start of the recording [us], from its first TIMESYNC request. The

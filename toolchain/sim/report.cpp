@@ -239,12 +239,12 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
     flight.verdict = judge(scenario, kJudged, trials);
     const Record& r = flight.record;
     if (r.closest.surface < scenario.promise) {
-        const double told = r.told[r.closest.threat];  // jitter and dropouts included: the threat is unknown before
-        flight.told_too_late = told < 0.0 || r.closest.time <= told;
-        if (flight.told_too_late) {
+        const double reported = r.reported[r.closest.threat];  // jitter and dropouts included: the threat is unknown before
+        flight.reported_too_late = reported < 0.0 || r.closest.time <= reported;
+        if (flight.reported_too_late) {
             return flight;
         }
-        const double in_sight = std::max(told, flight.verdict.conflict ? flight.verdict.detected : 0.0);
+        const double in_sight = std::max(reported, flight.verdict.conflict ? flight.verdict.detected : 0.0);
         const auto judge_at = [&](double time) {
             const Sample& then =
                 *std::find_if(r.samples.begin(), r.samples.end() - 1, [&](const Sample& s) { return s.time >= time; });

@@ -26,7 +26,7 @@ struct ReportedFlight {
     /// The promise was broken, and one of the judge's manoeuvres would have kept it from the vehicle's state when the
     /// first sighting of the threat arrived (or when the first conflict became detectable, if later).
     bool failed_avoidable = false;
-    bool told_too_late = false;  ///< detected too late: the promise was broken, and worst, before the threat was
+    bool reported_too_late = false;  ///< detected too late: the promise was broken, and worst, before the threat was
                                  ///< reported
     Verdict last_chance;         ///< verdict at that instant, if the promise was broken afterwards
     Verdict late_chance;         ///< verdict kReaction later: an avoidable break is then a fault of the choice alone

@@ -7,8 +7,8 @@
 namespace jink::sim::detail {
 namespace {
 
-constexpr int kMostInGrid = 64;
-constexpr int kMostScattered = 256;
+constexpr int kMaxInGrid = 64;
+constexpr int kMaxScattered = 256;
 constexpr int kScatterTries = 100'000;
 
 /// Reads threats; holds their common data.
@@ -71,15 +71,15 @@ void read_grid(YamlMap& map, const Threat& first, std::vector<Threat>& threats)
     if (!grid) {
         return;
     }
-    constexpr Range kCount{1.0F, static_cast<float>(kMostInGrid)};
+    constexpr Range kCount{1.0F, static_cast<float>(kMaxInGrid)};
     const auto across = static_cast<int>(grid->whole("across", kCount, kNeed).value_or(1.0F));
     const auto up = static_cast<int>(grid->whole("up", kCount, kNeed).value_or(1.0F));
     double step = 0.0;
     Vec direction = Vec::Zero();
     number(*grid, "step", step, {0.0F, 1e4F}, kNeed);
     vector(*grid, "direction", direction, kPlace, kNeed);
-    if (across * up > kMostInGrid) {
-        map.complain("grid", "has more than " + std::to_string(kMostInGrid) + " threats");
+    if (across * up > kMaxInGrid) {
+        map.complain("grid", "has more than " + std::to_string(kMaxInGrid) + " threats");
         return;
     }
     if (grid->has("direction") && direction.norm() == 0.0) {
@@ -106,7 +106,7 @@ void read_scatter(YamlMap& map, const Threat& first, std::uint64_t seed, std::ve
         return;
     }
     const auto count = static_cast<std::size_t>(
-        scatter->whole("count", {1.0F, static_cast<float>(kMostScattered)}, kNeed).value_or(1.0F));
+        scatter->whole("count", {1.0F, static_cast<float>(kMaxScattered)}, kNeed).value_or(1.0F));
     if (const auto own = scatter->whole("seed", {0.0F, 1e6F})) {
         seed = static_cast<std::uint64_t>(*own);
     }
@@ -149,8 +149,8 @@ void read_sensing(YamlMap& map, Threat& threat)
     if (threat.half_height > 0.0 && !is_seen) {
         map.complain("half_height", "only a scan sees something tall; traffic and points are spheres");
     }
-    if (threat.form != Form::ball && threat.sensed_by != SensedBy::lidar) {
-        map.complain("form", "only a lidar sees what is no ball");
+    if (threat.form != Form::sphere && threat.sensed_by != SensedBy::lidar) {
+        map.complain("form", "only a lidar sees what is no sphere");
     }
     number(map, "appears_at", threat.appears_at, kAnyTime);
     number(map, "appears_when_own_within", threat.appears_when_own_within, {0.0F, 1e4F});
@@ -167,7 +167,7 @@ void read_threat(Threats& reader, const YAML::Node& node, std::size_t index)
     }
     Threat threat;
     threat.name = map.text("name").value_or("threat_" + std::to_string(reader.out.size() + 1));
-    threat.form = one_of(map, "form", std::array{Form::ball, Form::cylinder, Form::box}).value_or(threat.form);
+    threat.form = one_of(map, "form", std::array{Form::sphere, Form::cylinder, Form::box}).value_or(threat.form);
     const bool is_box = threat.form == Form::box;
     if (is_box != map.has("half_extents")) {
         map.complain(is_box ? "form" : "half_extents", "a box, and nothing else, has 'half_extents'");

@@ -47,7 +47,7 @@ void SideLog::choose(double time, unsigned takeover, const Vec& side)
     chosen_side_ = side;
 }
 
-SideCounts SideLog::count(const std::vector<Taken>& taken, const std::vector<double>& told)
+SideCounts SideLog::count(const std::vector<Taken>& taken, const std::vector<double>& reported)
 {
     SideCounts counts;
     unsigned same = 0;
@@ -61,7 +61,7 @@ SideCounts SideLog::count(const std::vector<Taken>& taken, const std::vector<dou
             end_conflict();
             continue;
         }
-        const bool changed = std::any_of(told.begin(), told.end(),
+        const bool changed = std::any_of(reported.begin(), reported.end(),
                                          [&](double at) { return at > taken[i - 1].time && at <= taken[i].time; });
         (changed ? counts.changed_picture : counts.same_picture) += 1;
         same += changed ? 0U : 1U;
@@ -70,16 +70,16 @@ SideCounts SideLog::count(const std::vector<Taken>& taken, const std::vector<dou
     return counts;
 }
 
-SideCounts SideLog::counts(const std::vector<double>& told) const
+SideCounts SideLog::counts(const std::vector<double>& reported) const
 {
-    SideCounts counts = count(taken_, told);
+    SideCounts counts = count(taken_, reported);
     counts.conflicts = conflicts_;
     return counts;
 }
 
-SideCounts SideLog::chosen(const std::vector<double>& told) const
+SideCounts SideLog::chosen(const std::vector<double>& reported) const
 {
-    SideCounts counts = count(chosen_, told);
+    SideCounts counts = count(chosen_, reported);
     for (std::size_t i = 0; i < chosen_.size(); ++i) {
         counts.conflicts += i == 0 || chosen_[i].takeover != chosen_[i - 1].takeover ? 1U : 0U;
     }

@@ -47,9 +47,9 @@ public:
 
     /// Counts of the flown side. @param told  time at which each threat became known [s]; negative: never. O(changes *
     /// threats).
-    [[nodiscard]] SideCounts counts(const std::vector<double>& told) const;
+    [[nodiscard]] SideCounts counts(const std::vector<double>& reported) const;
     /// Counts of the chosen side; `conflicts`: intervals with a chosen side.
-    [[nodiscard]] SideCounts chosen(const std::vector<double>& told) const;
+    [[nodiscard]] SideCounts chosen(const std::vector<double>& reported) const;
 
 private:
     /// A side that was taken, the first of its interval or a change.
@@ -58,7 +58,7 @@ private:
         unsigned takeover = 0;
     };
 
-    [[nodiscard]] static SideCounts count(const std::vector<Taken>& taken, const std::vector<double>& told);
+    [[nodiscard]] static SideCounts count(const std::vector<Taken>& taken, const std::vector<double>& reported);
 
     Vec start_;
     Vec forward_;

@@ -24,7 +24,7 @@ struct SwarmSetup {
     double cruise = 1.0;      ///< [m/s]
     double spread = 0.1;      ///< largest start offset from the vehicle's place, per axis [m]
     bool back = false;        ///< the vehicles return to their starts
-    unsigned obstacles = 0;   ///< balls that fly straight through the circle, slower than the vehicles
+    unsigned obstacles = 0;   ///< spheres that fly straight through the circle, slower than the vehicles
     double body = 0.25;       ///< radius of vehicles and obstacles [m]
     double level = 0.7;       ///< required level separation of two vehicles' centres, or
     double vertical = 0.5;    ///< required vertical separation instead [m]

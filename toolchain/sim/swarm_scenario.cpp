@@ -29,18 +29,18 @@ Vec on_circle(const SwarmSetup& setup, unsigned index)
 /// An obstacle that flies from outside across the inner part of the circle.
 Threat obstacle(const SwarmSetup& setup, Random& random, unsigned number)
 {
-    Threat ball;
-    ball.name = "obstacle_" + std::to_string(number + 1);
-    ball.radius = setup.body;
+    Threat sphere;
+    sphere.name = "obstacle_" + std::to_string(number + 1);
+    sphere.radius = setup.body;
     const double from = drawn(random, -std::numbers::pi, std::numbers::pi);
     const double distance = setup.circle + kClearStart + drawn(random, 0.0, setup.circle);
-    ball.position = distance * Vec(std::cos(from), std::sin(from), 0.0);
+    sphere.position = distance * Vec(std::cos(from), std::sin(from), 0.0);
     const double to = drawn(random, -std::numbers::pi, std::numbers::pi);
     const double aside = drawn(random, 0.0, 0.7 * setup.circle);
     const Vec aim = aside * Vec(std::cos(to), std::sin(to), 0.0);
-    ball.velocity = (aim - ball.position).normalized() * drawn(random, kSlowest, kFastest) * setup.cruise;
-    ball.position.z() = setup.height + drawn(random, -1.0, 1.0);
-    return ball;
+    sphere.velocity = (aim - sphere.position).normalized() * drawn(random, kSlowest, kFastest) * setup.cruise;
+    sphere.position.z() = setup.height + drawn(random, -1.0, 1.0);
+    return sphere;
 }
 
 void small_and_slow(Scenario& s, double cruise)

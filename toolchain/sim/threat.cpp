@@ -40,9 +40,9 @@ std::string_view to_string(Form form) noexcept
     switch (form) {
     case Form::cylinder: return "cylinder";
     case Form::box: return "box";
-    case Form::ball: break;
+    case Form::sphere: break;
     }
-    return "ball";
+    return "sphere";
 }
 
 Vec Threat::position_at(double t) const noexcept
@@ -85,7 +85,7 @@ double surface_distance(const Threat& threat, const Vec& centre, const Vec& poin
     switch (threat.form) {
     case Form::box: return beyond_faces<3>(gap - threat.half_extents);
     case Form::cylinder: return beyond_faces<2>({gap.head<2>().norm() - threat.radius, gap.z() - threat.half_height});
-    case Form::ball: break;
+    case Form::sphere: break;
     }
     return from_axis(threat, centre, point).norm() - threat.radius;
 }
@@ -110,7 +110,7 @@ Nearest nearest_in_step(const Threat& threat, const Vec& centre_from, const Vec&
     const double at_start = surface_distance(threat, centre_from, from);
     const double at_end = surface_distance(threat, centre_to, to);
     Nearest nearest = at_end < at_start ? Nearest{at_end, 1.0} : Nearest{at_start, 0.0};
-    if (threat.form != Form::ball || threat.half_height > 0.0) {
+    if (threat.form != Form::sphere || threat.half_height > 0.0) {
         return nearest;
     }
     const Vec gap = from - centre_from;

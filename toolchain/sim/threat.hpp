@@ -18,9 +18,9 @@ enum class SensedBy : std::uint8_t {
     lidar,    ///< point clouds in compact frames, in process only (lidar.hpp)
 };
 
-/// Bodies. All but the ball are static.
+/// Bodies. All but the sphere are static.
 enum class Form : std::uint8_t {
-    ball,      ///< `radius`; with `half_height` an upright capsule with an axis of this half length
+    sphere,      ///< `radius`; with `half_height` an upright capsule with an axis of this half length
     cylinder,  ///< upright: `radius`, `half_height`
     box,       ///< `half_extents`, along the axes of the world
 };
@@ -37,7 +37,7 @@ struct Turn {
 /// A body that flies straight between turns, or is static.
 struct Threat {
     std::string name;
-    Form form = Form::ball;
+    Form form = Form::sphere;
     double radius = 1.0;             ///< of the body [m]
     double half_height = 0.0;        ///< of the upright axis of a capsule or a cylinder [m]
     Vec half_extents = Vec::Zero();  ///< of a box [m]

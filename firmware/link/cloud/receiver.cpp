@@ -15,7 +15,7 @@ constexpr Seconds kFutureSlack = 0.03F;
 constexpr int kFramesOvertaken = 64;
 constexpr int kScansOvertaken = 8;
 /// Numbers that step forward by more than this are a restart of the sender.
-constexpr int kMostMissed = 1000;
+constexpr int kMaxMissed = 1000;
 
 [[nodiscard]] int step_between(std::uint16_t from, std::uint16_t to) noexcept
 {
@@ -151,7 +151,7 @@ void Receiver::follow_sequence(std::uint16_t sequence) noexcept
         diagnostics_.reordered += step < 0 ? 1U : 0U;
         return;
     }
-    if (step < 0 || step > kMostMissed) {
+    if (step < 0 || step > kMaxMissed) {
         ++diagnostics_.restarts;
     } else {
         diagnostics_.frames_missed += static_cast<std::uint32_t>(step - 1);
@@ -238,7 +238,7 @@ bool Receiver::begin_scan(const Part& part, TimePoint now, CloudSink& sink) noex
     if (open_) {
         end_scan(sink);
     }
-    diagnostics_.scans_missed += step > 1 && step <= kMostMissed ? static_cast<std::uint32_t>(step - 1) : 0U;
+    diagnostics_.scans_missed += step > 1 && step <= kMaxMissed ? static_cast<std::uint32_t>(step - 1) : 0U;
     ++diagnostics_.scans;
     has_scan_ = true;
     open_ = true;

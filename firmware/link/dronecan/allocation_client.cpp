@@ -12,7 +12,7 @@ std::optional<Allocation> AllocationClient::poll(TimePoint now) noexcept
     }
     if (!started_) {
         started_ = true;
-        wait(now, kLeastPeriod);
+        wait(now, kMinPeriod);
     }
     if (now < due_) {
         return std::nullopt;
@@ -25,7 +25,7 @@ std::optional<Allocation> AllocationClient::poll(TimePoint now) noexcept
     }
     // Without an answer the exchange starts again.
     confirmed_ = 0;
-    wait(now, kLeastPeriod);
+    wait(now, kMinPeriod);
     return request;
 }
 
@@ -35,7 +35,7 @@ void AllocationClient::receive(const Allocation& message, std::uint8_t source, T
         return;
     }
     started_ = true;
-    wait(now, kLeastPeriod);
+    wait(now, kMinPeriod);
     confirmed_ = 0;
     const bool ours = source != kAnonymous && !message.unique_id.empty() &&
                       std::equal(message.unique_id.begin(), message.unique_id.end(), unique_id_.begin());

@@ -17,7 +17,7 @@ namespace jink::link::dronecan {
 /// the wait. A message that does not continue our own id restarts the exchange. O(1).
 class AllocationClient {
 public:
-    static constexpr Seconds kLeastPeriod = 0.6F;
+    static constexpr Seconds kMinPeriod = 0.6F;
     static constexpr Seconds kSpread = 0.4F;
     static constexpr std::size_t kPart = 6;  ///< bytes of the unique id in one anonymous frame
 

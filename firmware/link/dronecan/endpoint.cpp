@@ -24,7 +24,7 @@ constexpr Seconds kSourceSilence = 1.0F;
 constexpr Seconds kFutureSlack = 0.05F;
 /// Assumed beam width of a sensor that does not give its own: half angle [rad].
 constexpr float kDefaultHalfAngle = 0.1F;
-constexpr float kLeastFieldOfView = 1e-3F;
+constexpr float kMinFieldOfView = 1e-3F;
 constexpr float kDegree = kPi / 180.0F;
 /// Noise of a velocity with unknown vertical component, as on the MAVLink side [m/s].
 constexpr float kUnknownClimb = 5.0F;
@@ -273,7 +273,7 @@ void Endpoint::on_measurement(const Context& c) noexcept
     reading.range = m.reading == Reading::too_far ? RangeScan::kNothing : said;
     reading.max_range = said;
     reading.half_angle =
-        m.field_of_view >= kLeastFieldOfView ? std::min(0.5F * m.field_of_view, 0.5F * kPi) : kDefaultHalfAngle;
+        m.field_of_view >= kMinFieldOfView ? std::min(0.5F * m.field_of_view, 0.5F * kPi) : kDefaultHalfAngle;
     constexpr float kStep = kPi / 15.0F;  // CoarseOrientation.ANGLE_MULTIPLIER = 4.7746: 15 steps are half a turn
     const Vec3 body = beam_of_angles(static_cast<float>(m.roll_pitch_yaw[1]) * kStep,
                                      static_cast<float>(m.roll_pitch_yaw[2]) * kStep);

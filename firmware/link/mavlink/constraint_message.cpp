@@ -93,25 +93,25 @@ bool read_constraint(const Tunnel& message, TimePoint now, ConstraintPart& part)
     if (area.ends > 0) {
         constraint.ends = {constraint.stamp.us + std::int64_t{area.ends} * kMicrosPerSecond};
     }
-    world::Barrel& barrel = constraint.barrel;
+    world::Cylinder& cylinder = constraint.cylinder;
     if (global) {
         constraint.about = GlobalPosition{area.north, area.east, 0};
     } else {
-        barrel.circle.centre = {static_cast<float>(area.east) / kMillimetres,
+        cylinder.circle.centre = {static_cast<float>(area.east) / kMillimetres,
                                 static_cast<float>(area.north) / kMillimetres};
     }
-    barrel.circle.radius = area.radius;
-    barrel.velocity = {area.velocity_east, area.velocity_north};
-    barrel.bottom = area.bottom;
-    barrel.top = area.top;
-    barrel.margin = area.margin;
+    cylinder.circle.radius = area.radius;
+    cylinder.velocity = {area.velocity_east, area.velocity_north};
+    cylinder.bottom = area.bottom;
+    cylinder.top = area.top;
+    cylinder.margin = area.margin;
     return true;
 }
 
 Tunnel constraint_message(const ConstraintPart& part, TimePoint now) noexcept
 {
     const Constraint& constraint = part.constraint;
-    const world::Barrel& barrel = constraint.barrel;
+    const world::Cylinder& cylinder = constraint.cylinder;
     AreaPayload area;
     area.set = part.set;
     area.index = part.index;
@@ -126,15 +126,15 @@ Tunnel constraint_message(const ConstraintPart& part, TimePoint now) noexcept
         area.north = constraint.about->lat;
         area.east = constraint.about->lon;
     } else {
-        area.north = static_cast<std::int32_t>(std::lround(kMillimetres * barrel.circle.centre.y()));
-        area.east = static_cast<std::int32_t>(std::lround(kMillimetres * barrel.circle.centre.x()));
+        area.north = static_cast<std::int32_t>(std::lround(kMillimetres * cylinder.circle.centre.y()));
+        area.east = static_cast<std::int32_t>(std::lround(kMillimetres * cylinder.circle.centre.x()));
     }
-    area.bottom = barrel.bottom;
-    area.top = barrel.top;
-    area.radius = barrel.circle.radius;
-    area.margin = barrel.margin;
-    area.velocity_north = barrel.velocity.y();
-    area.velocity_east = barrel.velocity.x();
+    area.bottom = cylinder.bottom;
+    area.top = cylinder.top;
+    area.radius = cylinder.circle.radius;
+    area.margin = cylinder.margin;
+    area.velocity_north = cylinder.velocity.y();
+    area.velocity_east = cylinder.velocity.x();
     std::array<std::byte, kMaxPayload> bytes{};
     pack(reinterpret_cast<const std::byte*>(&area), kAreaFields, bytes);
     Tunnel message;

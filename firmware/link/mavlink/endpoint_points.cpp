@@ -52,14 +52,14 @@ void Endpoint::on_point(const Context& c) noexcept
 /// False if attitude or own position are too old.
 bool Endpoint::make_level(const ObstacleDistance3d& m, TimePoint now, Vec3& point) noexcept
 {
-    const Vec3 told(m.x, m.y, m.z);
+    const Vec3 reported(m.x, m.y, m.z);
     if (m.frame == kFrameBodyFrd) {
-        point = level_of_frd(roll_, pitch_) * told;
+        point = level_of_frd(roll_, pitch_) * reported;
         return has_yaw_ && now - yaw_heard_ <= kTiltFresh;
     }
     // Extrapolates the own position: the vehicle has moved since the stamp.
     const Vec3 own = own_.position + own_.velocity * (now - own_.stamp);
-    const Vec3 offset = swap_ned_enu(told) - own;
+    const Vec3 offset = swap_ned_enu(reported) - own;
     const float c = std::cos(own_.yaw);
     const float s = std::sin(own_.yaw);
     point = Vec3(c * offset.x() + s * offset.y(), c * offset.y() - s * offset.x(), offset.z());

@@ -21,7 +21,7 @@ constexpr std::uint8_t kLastProximityId = 19;
 /// A sector of that library: half angle [rad].
 constexpr float kProximityHalfAngle = kPi / 8.0F;
 /// A field of view below this counts as not given [rad].
-constexpr float kLeastFieldOfView = 1e-3F;
+constexpr float kMinFieldOfView = 1e-3F;
 
 }  // namespace
 
@@ -150,7 +150,7 @@ void Endpoint::on_distance_sensor(const Context& c) noexcept
     // For level beams the vertical width is irrelevant; straight up or down, the wider of both counts.
     const float fov = level ? m.horizontal_fov : std::max(m.horizontal_fov, m.vertical_fov);
     const float unsaid = proximity && level ? kProximityHalfAngle : kDefaultHalfAngle;
-    reading.half_angle = fov >= kLeastFieldOfView ? std::min(0.5F * fov, 0.5F * kPi) : unsaid;
+    reading.half_angle = fov >= kMinFieldOfView ? std::min(0.5F * fov, 0.5F * kPi) : unsaid;
     if (level) {
         const float yaw = own_.yaw - static_cast<float>(m.orientation) * 45.0F * kDegree;
         reading.direction = Vec3(std::cos(yaw), std::sin(yaw), 0.0F);

@@ -49,8 +49,8 @@ constexpr Seconds kPressureFresh = 10.0F;
 /// The air pressure at sea level stays within 60 hPa of the standard; a larger difference is implausible [m].
 constexpr float kLargestPressureError = 600.0F;
 /// Plausible pressures of a barometer in the air [hPa].
-constexpr float kLeastPressure = 100.0F;
-constexpr float kMostPressure = 1200.0F;
+constexpr float kMinPressure = 100.0F;
+constexpr float kMaxPressure = 1200.0F;
 
 constexpr float kMillimetre = 1e-3F;
 constexpr float kCentimetrePerSecond = 0.01F;
@@ -155,7 +155,7 @@ void Endpoint::on_pressure(const Context& c) noexcept
         ++diagnostics_.not_finite;
         return;
     }
-    if (m.press_abs < kLeastPressure || m.press_abs > kMostPressure) {
+    if (m.press_abs < kMinPressure || m.press_abs > kMaxPressure) {
         ++diagnostics_.out_of_range;
         return;
     }

@@ -22,15 +22,15 @@ std::optional<Vec3> PlaneSteering::next(const Vec3& command, const Vec3& positio
     sent_ = now;
     course_ = course;
     climb_ = command.z();
-    const float ahead = std::max(share_ * std::max(kAhead * speed, kLeastAhead), kNearest);
-    const float rise = std::clamp(kClimbTime * climb_, -kMostClimb, kMostClimb);
+    const float ahead = std::max(share_ * std::max(kAhead * speed, kMinAhead), kNearest);
+    const float rise = std::clamp(kClimbTime * climb_, -kMaxClimb, kMaxClimb);
     return position + ahead * course + Vec3(0.0F, 0.0F, rise);
 }
 
 void PlaneSteering::note_refusal() noexcept
 {
-    constexpr float kLeastShare = 1.0F / 16.0F;
-    share_ = std::max(0.5F * share_, kLeastShare);
+    constexpr float kMinShare = 1.0F / 16.0F;
+    share_ = std::max(0.5F * share_, kMinShare);
     has_sent_ = false;
 }
 

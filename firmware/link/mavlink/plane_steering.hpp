@@ -13,8 +13,8 @@ namespace jink::link::mavlink {
 ///
 /// Course: ArduPlane heads straight for a guided point while the point is well outside of the loiter circle about it
 /// (AP_L1_Control::update_loiter, capture). The point lies kAhead seconds of flight ahead on the commanded course,
-/// kLeastAhead at least, and is renewed long before it is reached.
-/// Height: own height plus kClimbTime of the commanded climb, kMostClimb at most. ArduPlane flies to a height that near
+/// kMinAhead at least, and is renewed long before it is reached.
+/// Height: own height plus kClimbTime of the commanded climb, kMaxClimb at most. ArduPlane flies to a height that near
 /// as fast as its energy control allows, in both directions. A larger descent would be stretched over the whole
 /// distance (ALT_SLOPE_MIN, 15 m). If jink falls silent the plane levels off there. Speed is left to the autopilot,
 /// which keeps its own airspeed limits.
@@ -41,10 +41,10 @@ public:
     static constexpr Seconds kPeriod = 0.5F;
     static constexpr Seconds kRefresh = 1.0F;
     static constexpr Seconds kAhead = 25.0F;
-    static constexpr float kLeastAhead = 400.0F;  ///< [m]
+    static constexpr float kMinAhead = 400.0F;  ///< [m]
     static constexpr float kNearest = 150.0F;     ///< after refusals [m]
     static constexpr Seconds kClimbTime = 4.0F;
-    static constexpr float kMostClimb = 14.0F;     ///< [m]
+    static constexpr float kMaxClimb = 14.0F;     ///< [m]
     static constexpr float kTurned = 0.035F;       ///< course [rad]
     static constexpr float kClimbChanged = 0.25F;  ///< [m/s]
     static constexpr float kNoCourse = 1.0F;       ///< [m/s]

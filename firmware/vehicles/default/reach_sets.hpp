@@ -7366,7 +7366,7 @@ inline constexpr std::array<float, 2> kSpeeds{
 inline constexpr std::array<std::array<float, 2>, 2> kPitchSeparators{{
     {-0.1308997F, 0.1308997F}, {-0.0875F, 0.0875F},
 }};
-inline constexpr std::array<float, 2> kMostPitch{
+inline constexpr std::array<float, 2> kMaxPitch{
     0.3926991F, 0.2625F,
 };
 inline constexpr std::array<SegmentSets, 6> kSegments{{
@@ -7378,6 +7378,6 @@ inline constexpr std::array<SegmentSets, 6> kSegments{{
 
 inline constexpr VehicleSets kDefaultSets{
     "default", 0.5F, 5.0F, 3.0F, 3.0F, 3.0F, 5.0F,
-    setsOfDefault::kSpeeds, 1.2F, setsOfDefault::kPitchSeparators, setsOfDefault::kMostPitch, setsOfDefault::kSegments, 0x29CE9F23U};
+    setsOfDefault::kSpeeds, 1.2F, setsOfDefault::kPitchSeparators, setsOfDefault::kMaxPitch, setsOfDefault::kSegments, 0x29CE9F23U};
 
 }  // namespace jink::reach

@@ -2748,7 +2748,7 @@ inline constexpr std::array<float, 2> kSpeeds{
 inline constexpr std::array<std::array<float, 2>, 2> kPitchSeparators{{
     {-0.1308997F, 0.1308997F}, {-0.0875F, 0.0875F},
 }};
-inline constexpr std::array<float, 2> kMostPitch{
+inline constexpr std::array<float, 2> kMaxPitch{
     0.3926991F, 0.2625F,
 };
 inline constexpr std::array<SegmentSets, 6> kSegments{{
@@ -2760,6 +2760,6 @@ inline constexpr std::array<SegmentSets, 6> kSegments{{
 
 inline constexpr VehicleSets kDefaultReducedSets{
     "default", 0.5F, 5.0F, 3.0F, 3.0F, 3.0F, 5.0F,
-    setsOfDefaultReduced::kSpeeds, 1.2F, setsOfDefaultReduced::kPitchSeparators, setsOfDefaultReduced::kMostPitch, setsOfDefaultReduced::kSegments, 0xF4CB445FU};
+    setsOfDefaultReduced::kSpeeds, 1.2F, setsOfDefaultReduced::kPitchSeparators, setsOfDefaultReduced::kMaxPitch, setsOfDefaultReduced::kSegments, 0xF4CB445FU};
 
 }  // namespace jink::reach

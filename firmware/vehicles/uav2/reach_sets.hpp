@@ -7274,7 +7274,7 @@ inline constexpr std::array<float, 2> kSpeeds{
 inline constexpr std::array<std::array<float, 2>, 2> kPitchSeparators{{
     {-0.05F, 0.05F}, {-0.029166667F, 0.029166667F},
 }};
-inline constexpr std::array<float, 2> kMostPitch{
+inline constexpr std::array<float, 2> kMaxPitch{
     0.15F, 0.0875F,
 };
 inline constexpr std::array<SegmentSets, 6> kSegments{{
@@ -7286,6 +7286,6 @@ inline constexpr std::array<SegmentSets, 6> kSegments{{
 
 inline constexpr VehicleSets kUav2Sets{
     "uav2", 0.5F, 5.0F, 3.0F, 8.0F, 8.0F, 15.0F,
-    setsOfUav2::kSpeeds, 1.2F, setsOfUav2::kPitchSeparators, setsOfUav2::kMostPitch, setsOfUav2::kSegments, 0xB816FB09U};
+    setsOfUav2::kSpeeds, 1.2F, setsOfUav2::kPitchSeparators, setsOfUav2::kMaxPitch, setsOfUav2::kSegments, 0xB816FB09U};
 
 }  // namespace jink::reach

@@ -232,19 +232,19 @@ TEST(FollowCheckLaw, APlaneThatRollsInAndTurnsIsNeverAccused)
         const vehicle::VehicleLimits limits = wing_limits(random.uniform(3.0F, 6.0F));
         double wanted = wing.course;
         double rate = 0.0;
-        float told = 18.0F, climb = 0.0F;
+        float reported = 18.0F, climb = 0.0F;
         FollowCheck check;
         for (int tick = 0; tick < 600; ++tick) {
             if (tick % 250 == 10) {
                 const bool circles = random.below(3) == 0;
                 wanted += circles ? 0.0 : static_cast<double>(random.uniform(-1.5F, 1.5F));
                 rate = circles ? static_cast<double>(random.uniform(-0.17F, 0.17F)) : 0.0;
-                told = random.uniform(12.0F, 24.0F);
+                reported = random.uniform(12.0F, 24.0F);
                 climb = random.uniform(-2.0F, 2.0F);
             }
             wanted += rate * 0.02;
             wing.step(wanted, static_cast<double>(climb), 0.02 * tick);
-            const Vec3 command(told * static_cast<float>(std::cos(wanted)), told * static_cast<float>(std::sin(wanted)),
+            const Vec3 command(reported * static_cast<float>(std::cos(wanted)), reported * static_cast<float>(std::sin(wanted)),
                                climb);
             ASSERT_FALSE(check.update(command, wing.seen(), limits, {1'000'000 + tick * 20'000LL}))
                 << "at " << 0.02 * tick << " s; JINK_CASES=1 JINK_SEED=" << seed + i;
@@ -259,8 +259,8 @@ TEST(FollowCheckLaw, APlaneThatFliesStraightOnIsFoundWithinThreeSeconds)
     for (std::uint64_t i = 0; i < cases; ++i) {
         Random random(seed + i);
         const float turn = random.uniform(0.4F, 2.7F) * (random.below(2) == 0 ? 1.0F : -1.0F);
-        const float told = random.uniform(12.0F, 24.0F);
-        const Vec3 command(told * std::cos(turn), told * std::sin(turn), 0.0F);
+        const float reported = random.uniform(12.0F, 24.0F);
+        const Vec3 command(reported * std::cos(turn), reported * std::sin(turn), 0.0F);
         const vehicle::VehicleLimits limits = wing_limits(random.uniform(3.0F, 6.0F));
         FollowCheck check;
         float found = -1.0F;

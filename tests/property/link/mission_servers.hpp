@@ -124,8 +124,8 @@ protected:
     LossyLine& line_;
     Random& random_;
     std::uint8_t sequence_ = 0;
-    double told_ = -10.0;
-    int told_current_ = -1;
+    double reported_ = -10.0;
+    int reported_current_ = -1;
 };
 
 /// PX4's messages to its pilot.
@@ -184,9 +184,9 @@ public:
             sends_ = false;
             ++texts.timeout;
         }
-        if (now - told_ >= 1.0 || told_current_ != current) {
-            told_ = now;
-            told_current_ = current;
+        if (now - reported_ >= 1.0 || reported_current_ != current) {
+            reported_ = now;
+            reported_current_ = current;
             MissionCurrent m;
             m.seq = current;
             m.total = static_cast<std::uint16_t>(mission.size());
@@ -301,8 +301,8 @@ public:
     }
     void tick(double now) override
     {
-        if (now - told_ >= 0.5) {
-            told_ = now;
+        if (now - reported_ >= 0.5) {
+            reported_ = now;
             MissionCurrent m;
             m.seq = current;
             m.total = static_cast<std::uint16_t>(mission.empty() ? 0 : mission.size() - 1);

@@ -34,7 +34,7 @@ struct Broadcast {
 struct AgeRules {
     Seconds stale = 1.0F;         ///< older: the neighbour counts as not cooperative
     Seconds lost = 3.0F;          ///< older: the neighbour is static at its position predicted for this age, and its
-                                  ///< ball grows
+                                  ///< sphere grows
     float velocity_error = 0.1F;  ///< of the broadcast velocity [m/s], >= 0
     float most = 3.0F;            ///< bound of the inflation until lost [m]
 };
@@ -42,8 +42,8 @@ struct AgeRules {
 enum class Freshness : std::uint8_t {
     fresh,  ///< cooperative if the broadcast says so
     stale,  ///< avoid it alone: a reaction weight of 1 (NEIGHBOUR_STALE)
-    lost,   ///< also may be anywhere within its ball
-    gone,   ///< to be dropped and reported (NEIGHBOUR_LOST): its ball exceeds the checked range
+    lost,   ///< also may be anywhere within its sphere
+    gone,   ///< to be dropped and reported (NEIGHBOUR_LOST): its sphere exceeds the checked range
 };
 
 struct PredictedNeighbour {
@@ -58,7 +58,7 @@ struct PredictedNeighbour {
 [[nodiscard]] float inflation_of(Seconds age, float max_speed, float max_acceleration, const AgeRules& rules) noexcept;
 
 /// A neighbour at time `at`. A lost neighbour is static at its predicted position of age rules.lost. Because the
-/// inflation is bounded, its ball is then smaller than its reachable set.
+/// inflation is bounded, its sphere is then smaller than its reachable set.
 ///
 /// @param reach  within which neighbours matter [m]: required distance + horizon * both greatest speeds (G-ORCA 3.8)
 /// O(kMaxBroadcastCommands).

@@ -114,20 +114,20 @@ TEST(LostNeighbours, TheBoundHoldsUntilItIsLostAndItsSpeedFromThenOn)
     EXPECT_EQ(inflation_of(-1.0F, 1.5F, 2.0F, rules), 0.0F);
 }
 
-TEST(LostNeighbours, OneIsGoneWhenItsBallIsLargerThanAllThatIsLookedAt)
+TEST(LostNeighbours, OneIsGoneWhenItsSphereIsLargerThanAllThatIsLookedAt)
 {
     Broadcast heard;
     heard.state.stamp = {0};
     const AgeRules rules;
     const TimePoint at{10'000'000};
-    const float ball = inflation_of(10.0F, heard.max_speed, heard.max_acceleration, rules);
-    EXPECT_EQ(predict_neighbour(heard, at, rules, ball).freshness, Freshness::lost);
-    EXPECT_EQ(predict_neighbour(heard, at, rules, std::nextafter(ball, 0.0F)).freshness, Freshness::gone);
+    const float sphere = inflation_of(10.0F, heard.max_speed, heard.max_acceleration, rules);
+    EXPECT_EQ(predict_neighbour(heard, at, rules, sphere).freshness, Freshness::lost);
+    EXPECT_EQ(predict_neighbour(heard, at, rules, std::nextafter(sphere, 0.0F)).freshness, Freshness::gone);
     EXPECT_EQ(predict_neighbour(heard, {3'000'000}, rules, 0.0F).freshness, Freshness::stale) << "lost is older";
     EXPECT_EQ(predict_neighbour(heard, {1'000'000}, rules, 0.0F).freshness, Freshness::fresh) << "stale is older";
 }
 
-/// The ball grows about the last position until it exceeds the reach; then the neighbour is gone (G-ORCA 11.4).
+/// The sphere grows about the last position until it exceeds the reach; then the neighbour is gone (G-ORCA 11.4).
 TEST(LostNeighbours, ALostNeighbourIsKeptClearOfUntilItIsGone)
 {
     Broadcast heard;
@@ -159,11 +159,11 @@ TEST(LostNeighbours, ALostNeighbourIsKeptClearOfUntilItIsGone)
             expect_near(decision.command, {1, 0, 0}, 1e-5F);
         }
     }
-    EXPECT_LT(slowest, 0.0F);  // backs away from the growing ball
+    EXPECT_LT(slowest, 0.0F);  // backs away from the growing sphere
 }
 
-/// A lost neighbour's ball only grows, and contains every position it can reach until the limit of 3 m.
-TEST(LostNeighbours, TheInflatedBallHoldsANeighbourThatManoeuvres)
+/// A lost neighbour's sphere only grows, and contains every position it can reach until the limit of 3 m.
+TEST(LostNeighbours, TheInflatedSphereHoldsANeighbourThatManoeuvres)
 {
     for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
         Random random(seed);

@@ -35,17 +35,17 @@ TEST(HorizonSearch, FindsTheLongestThatLeavesAVelocity)
 {
     // Each leaves half of 1 m / horizon - 0.25 m/s towards it: both leave something until 4 s.
     Between build;
-    const std::array<Ball, 1> ball{{{Vec3::Zero(), 1.0F}}};
+    const std::array<Sphere, 1> sphere{{{Vec3::Zero(), 1.0F}}};
     Scratch<8> scratch;
     WorkBudget budget(100'000);
     const HorizonFound found =
-        longest_horizon(build, {{}, ball, {0.5F, 0, 0}, Vec3::Zero()}, 0.5F, 10.0F, scratch.view(), budget);
+        longest_horizon(build, {{}, sphere, {0.5F, 0, 0}, Vec3::Zero()}, 0.5F, 10.0F, scratch.view(), budget);
     EXPECT_NEAR(found.horizon, 4.0F, 9.5F / 256.0F);
     EXPECT_LE(found.horizon, 4.0F + 1e-3F);
     EXPECT_EQ(found.solution.status, 0U);
     EXPECT_NEAR(found.solution.velocity.x(), 0.5F * (1.0F / found.horizon - 0.25F), 1e-5F);
     // Yielding half-spaces report the violation instead: x >= 0.05 and x <= -0.05 with 5 s, without cooperation.
-    const Solution relaxed = solve({build(5.0F), ball, {0.5F, 0, 0}, Vec3::Zero()}, scratch.view(), budget);
+    const Solution relaxed = solve({build(5.0F), sphere, {0.5F, 0, 0}, Vec3::Zero()}, scratch.view(), budget);
     EXPECT_EQ(relaxed.status, kRelaxedWarning);
     EXPECT_NEAR(relaxed.broken[3], 0.05F, 1e-5F);
 }
@@ -53,10 +53,10 @@ TEST(HorizonSearch, FindsTheLongestThatLeavesAVelocity)
 TEST(HorizonSearch, TheLongestWhereItDoesAndNoneWhereNoneDoes)
 {
     Between build;
-    const std::array<Ball, 1> ball{{{Vec3::Zero(), 1.0F}}};
+    const std::array<Sphere, 1> sphere{{{Vec3::Zero(), 1.0F}}};
     Scratch<8> scratch;
     WorkBudget budget(100'000);
-    const Problem problem{{}, ball, {0.5F, 0, 0}, Vec3::Zero()};
+    const Problem problem{{}, sphere, {0.5F, 0, 0}, Vec3::Zero()};
     EXPECT_EQ(longest_horizon(build, problem, 0.5F, 3.0F, scratch.view(), budget).horizon, 3.0F);
     const HorizonFound none = longest_horizon(build, problem, 5.0F, 10.0F, scratch.view(), budget);
     EXPECT_EQ(none.horizon, 0.0F);

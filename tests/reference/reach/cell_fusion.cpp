@@ -77,7 +77,7 @@ bool CellFusion::find_times(const Placed& placed, WorkBudget& budget) noexcept
 }
 
 void CellFusion::rate_track(const world::Situation& situation, const world::Threat& track, const Placed& placed,
-                            const CellBalls& balls, Seconds lead, std::span<Level> blocks) const noexcept
+                            const CellSpheres& spheres, Seconds lead, std::span<Level> blocks) const noexcept
 {
     const ReachSet& set = *placed.set;
     const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
@@ -94,9 +94,9 @@ void CellFusion::rate_track(const world::Situation& situation, const world::Thre
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const auto cell = static_cast<CellIndex>(i);
         const CellPlace place = set.grid.place(cell);
-        const CellBall ball{balls.centre(place), balls.radius(place.layer, place.row)};
+        const CellSphere sphere{spheres.centre(place), spheres.radius(place.layer, place.row)};
         const std::optional<Stay> vehicle = is_never(times_[i]) ? std::nullopt : std::optional(times_[i]);
-        if (vehicle && model.in(cell, ball, vehicle).rate >= kThreshold) {
+        if (vehicle && model.in(cell, sphere, vehicle).rate >= kThreshold) {
             lower(blocks[i], AvoidanceRun::intruders);
         }
     }
@@ -122,7 +122,7 @@ void CellFusion::rate_obstacle(const world::Situation& situation, const world::T
     }
 }
 
-void CellFusion::rate_airspace(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+void CellFusion::rate_airspace(const world::Situation& situation, const Placed& placed, const CellSpheres& spheres,
                                std::span<Level> blocks) noexcept
 {
     const Vec3& half = situation.limits.half_extents;
@@ -132,8 +132,8 @@ void CellFusion::rate_airspace(const world::Situation& situation, const Placed& 
         const Heights heights = heights_of(grid, place);
         const float bottom = placed.unit * (placed.upside_down ? -heights.top : heights.bottom) + placed.origin.z();
         const float top = placed.unit * (placed.upside_down ? -heights.bottom : heights.top) + placed.origin.z();
-        const Vec3 centre = placed.to_world(balls.centre(place));
-        const float reach = placed.unit * balls.radius(place.layer, place.row);
+        const Vec3 centre = placed.to_world(spheres.centre(place));
+        const float reach = placed.unit * spheres.radius(place.layer, place.row);
         const auto passes = [&](const world::Threat& bound) {
             const float extra = bound.growth.radius;
             switch (bound.form) {
@@ -151,7 +151,7 @@ void CellFusion::rate_airspace(const world::Situation& situation, const Placed& 
     }
 }
 
-RateStatus CellFusion::rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+RateStatus CellFusion::rate(const world::Situation& situation, const Placed& placed, const CellSpheres& spheres,
                             Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept
 {
     const auto cells = static_cast<std::uint32_t>(blocks.size());
@@ -163,12 +163,12 @@ RateStatus CellFusion::rate(const world::Situation& situation, const Placed& pla
         return RateStatus::budget_spent;
     }
     for (const world::Threat& track : tracks) {
-        rate_track(situation, track, placed, balls, lead, blocks);
+        rate_track(situation, track, placed, spheres, lead, blocks);
     }
     for (const world::Threat& obstacle : obstacles) {
         rate_obstacle(situation, obstacle, placed, blocks);
     }
-    rate_airspace(situation, placed, balls, blocks);
+    rate_airspace(situation, placed, spheres, blocks);
     return RateStatus::rated;
 }
 

@@ -31,22 +31,22 @@ public:
     /// Lowers the levels of cells: obstacles where an obstacle may be, intruders where a track may be at a time at
     /// which some trajectory is in the cell, hard constraints where a bound of the airspace is passed, soft constraints
     /// within the buffer about obstacles. Tracks have their size at the time of the longest trajectory; all bodies are
-    /// enlarged by a ball about the own box.
+    /// enlarged by a sphere about the own box.
     ///
     /// Conservative, except for the stays as described in `meeting.hpp`. Rates more cells than the rating of nodes:
-    /// uses the hull of all trajectories' times, and cells as balls and boxes. If the set differs from the set rated
+    /// uses the hull of all trajectories' times, and cells as spheres and boxes. If the set differs from the set rated
     /// last, its times are recomputed from samples of each node, too expensive for a microcontroller's tick. O(cells *
     /// (tracks + obstacles)), and nodes * samples for another set.
-    [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+    [[nodiscard]] RateStatus rate(const world::Situation& situation, const Placed& placed, const CellSpheres& spheres,
                                   Seconds lead, std::span<Level> blocks, WorkBudget& budget) noexcept override;
 
 private:
     [[nodiscard]] bool find_times(const Placed& placed, WorkBudget& budget) noexcept;
     void rate_track(const world::Situation& situation, const world::Threat& track, const Placed& placed,
-                    const CellBalls& balls, Seconds lead, std::span<Level> blocks) const noexcept;
+                    const CellSpheres& spheres, Seconds lead, std::span<Level> blocks) const noexcept;
     void rate_obstacle(const world::Situation& situation, const world::Threat& obstacle, const Placed& placed,
                        std::span<Level> blocks) const noexcept;
-    static void rate_airspace(const world::Situation& situation, const Placed& placed, const CellBalls& balls,
+    static void rate_airspace(const world::Situation& situation, const Placed& placed, const CellSpheres& spheres,
                               std::span<Level> blocks) noexcept;
 
     FusionRule rule_;
@@ -55,7 +55,7 @@ private:
     std::array<Stay, kMaxReachCells> times_{};
 };
 
-/// A solid at rest as a placed set sees it: the box or the ball about it, enlarged by `about` [m]. O(1), O(vertices)
+/// A solid at rest as a placed set sees it: the box or the sphere about it, enlarged by `about` [m]. O(1), O(vertices)
 /// for a hull.
 [[nodiscard]] MapBody body_of(const world::Threat& obstacle, const Placed& placed, float about, float margin) noexcept;
 

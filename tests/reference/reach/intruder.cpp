@@ -17,7 +17,7 @@ constexpr float kForEver = std::numeric_limits<float>::infinity();
 /// Rounding error of an intruder's line, relative to its distance.
 constexpr float kFarSlack = 1e-6F;
 
-using Times = StaticVector<float, kMostCrossings>;
+using Times = StaticVector<float, kMaxCrossings>;
 
 void add(Times& times, float t) noexcept
 {
@@ -77,10 +77,10 @@ struct Axes {
 
 }  // namespace
 
-CellBall ball_of(const Grid<float>& grid, const CellPlace& place) noexcept
+CellSphere sphere_of(const Grid<float>& grid, const CellPlace& place) noexcept
 {
-    CellBall ball;
-    ball.centre = grid.centre(place);
+    CellSphere sphere;
+    sphere.centre = grid.centre(place);
     // The farthest point of a cell from any point in it is a corner, or on the middle of an outer edge at most as far:
     // the arcs between corners bulge outwards, which the middle of each outer edge takes in.
     const std::array distances{grid.layer_start(place.layer), grid.layer_end(place.layer)};
@@ -90,11 +90,11 @@ CellBall ball_of(const Grid<float>& grid, const CellPlace& place) noexcept
         for (const float horizontal : {horizontals[0], (horizontals[0] + horizontals[1]) / 2.0F, horizontals[1]}) {
             for (const float vertical : {verticals[0], (verticals[0] + verticals[1]) / 2.0F, verticals[1]}) {
                 const Vec3 point = from_polar(Polar<float>{distance, horizontal, vertical});
-                ball.radius = std::max(ball.radius, (point - ball.centre).norm());
+                sphere.radius = std::max(sphere.radius, (point - sphere.centre).norm());
             }
         }
     }
-    return ball;
+    return sphere;
 }
 
 void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, CrossedCells& out) noexcept
@@ -124,7 +124,7 @@ void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, 
     }
 }
 
-std::optional<Stay> body_in(const CellBall& cell, const Intruder& intruder) noexcept
+std::optional<Stay> body_in(const CellSphere& cell, const Intruder& intruder) noexcept
 {
     const float reach = intruder.radius + cell.radius;
     const Vec3 from = intruder.position - cell.centre;
@@ -144,7 +144,7 @@ std::optional<Stay> body_in(const CellBall& cell, const Intruder& intruder) noex
     return last < 0.0F ? std::nullopt : std::optional(Stay{std::max(0.0F, (-b - root) / a), last});
 }
 
-std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) noexcept
+std::optional<Stay> spread_in(const CellSphere& cell, const Intruder& intruder) noexcept
 {
     const float speed = intruder.velocity.norm();
     if (speed < kStandsBelow) {
@@ -161,8 +161,8 @@ std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) no
     if (ahead < 0.0F) {
         return std::nullopt;
     }
-    const float a = std::tan(std::min(intruder.horizontal, kMostSpread)) * ahead;
-    const float b = std::tan(std::min(intruder.vertical, kMostSpread)) * ahead;
+    const float a = std::tan(std::min(intruder.horizontal, kMaxSpread)) * ahead;
+    const float b = std::tan(std::min(intruder.vertical, kMaxSpread)) * ahead;
     const float left = std::abs(to.dot(axes.left));
     const float up = std::abs(to.dot(axes.up));
     if (left > a + reach || up > b + reach) {
@@ -226,12 +226,12 @@ CombinedModel::CombinedModel(const Grid<float>& grid, const Intruder& intruder, 
     cross(grid, intruder.position, intruder.velocity, crossed_);
     const Located at = grid.locate(intruder.position);
     if (intruder.velocity.norm() < kStandsBelow && at.status == LocateStatus::inside) {
-        // The capacity suffices: between kMostCrossings times there is one stay less.
+        // The capacity suffices: between kMaxCrossings times there is one stay less.
         crossed_.unchecked_push_back({grid.index(at.place), {0.0F, kForEver}});
     }
 }
 
-Meeting CombinedModel::in(CellIndex cell, const CellBall& ball, const std::optional<Stay>& vehicle) const noexcept
+Meeting CombinedModel::in(CellIndex cell, const CellSphere& sphere, const std::optional<Stay>& vehicle) const noexcept
 {
     Meeting meeting;
     const auto add = [&](const std::optional<Stay>& touched, float by) {
@@ -252,10 +252,10 @@ Meeting CombinedModel::in(CellIndex cell, const CellBall& ball, const std::optio
         }
     }
     if (models_.body) {
-        add(body_in(ball, intruder_), clock_);
+        add(body_in(sphere, intruder_), clock_);
     }
     if (models_.spread) {
-        add(spread_in(ball, intruder_), clock_);
+        add(spread_in(sphere, intruder_), clock_);
     }
     return meeting;
 }

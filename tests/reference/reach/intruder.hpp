@@ -18,12 +18,12 @@ struct Intruder {
     Vec3 position = Vec3::Zero();  ///< at time 0
     Vec3 velocity = Vec3::Zero();
     float radius = 0.0F;       ///< of its body, plus the required clearance
-    float horizontal = 0.0F;   ///< largest turn to either side [rad], 0 to kMostSpread
+    float horizontal = 0.0F;   ///< largest turn to either side [rad], 0 to kMaxSpread
     float vertical = 0.0F;     ///< largest turn up or down [rad]
     float speed_share = 0.1F;  ///< relative error of its speed, below 1
 };
 /// Greatest spread: 75 degrees; beyond, the tangent is of no use.
-inline constexpr float kMostSpread = 1.3089969F;
+inline constexpr float kMaxSpread = 1.3089969F;
 /// Intruders below this speed [grid's unit/s] may be static or may continue: cells that they overlap now stay occupied
 /// for ever.
 inline constexpr float kStandsBelow = 0.1F;
@@ -38,28 +38,28 @@ struct CellStay {
     Stay stay;
 };
 
-/// Bounding ball of a cell: about the middle of its ranges, through its farthest corner or edge.
-struct CellBall {
+/// Bounding sphere of a cell: about the middle of its ranges, through its farthest corner or edge.
+struct CellSphere {
     Vec3 centre = Vec3::Zero();
     float radius = 0.0F;
 };
 /// O(1).
-[[nodiscard]] CellBall ball_of(const Grid<float>& grid, const CellPlace& place) noexcept;
+[[nodiscard]] CellSphere sphere_of(const Grid<float>& grid, const CellPlace& place) noexcept;
 
 /// Cells on a straight line, in the order of flight: for small intruders.
-inline constexpr std::size_t kMostCrossings = 2 * (kMaxLayers + 1) + (kMaxColumns + 1) + 2 * (kMaxRows + 1) + 1;
-using CrossedCells = StaticVector<CellStay, kMostCrossings>;
+inline constexpr std::size_t kMaxCrossings = 2 * (kMaxLayers + 1) + (kMaxColumns + 1) + 2 * (kMaxRows + 1) + 1;
+using CrossedCells = StaticVector<CellStay, kMaxCrossings>;
 /// Exact: intersections of the line with the spheres, planes and cones between cells. A velocity of zero gives none.
 /// Near a cell's corner, where the line is in the cell for less than rounding resolves, the result may be a neighbour.
 /// O(n log n) for n = 2 (layers + rows + 2) + columns + 2.
 void cross(const Grid<float>& grid, const Vec3& position, const Vec3& velocity, CrossedCells& out) noexcept;
 
-/// When the body, flying straight, may overlap the cell. Conservative: uses the cell's ball. O(1).
-[[nodiscard]] std::optional<Stay> body_in(const CellBall& cell, const Intruder& intruder) noexcept;
+/// When the body, flying straight, may overlap the cell. Conservative: uses the cell's sphere. O(1).
+[[nodiscard]] std::optional<Stay> body_in(const CellSphere& cell, const Intruder& intruder) noexcept;
 
 /// When the body may overlap the cell if the intruder deviates from its line within its spread: an elliptic cone.
-/// Conservative: uses the cell's ball. O(1).
-[[nodiscard]] std::optional<Stay> spread_in(const CellBall& cell, const Intruder& intruder) noexcept;
+/// Conservative: uses the cell's sphere. O(1).
+[[nodiscard]] std::optional<Stay> spread_in(const CellSphere& cell, const Intruder& intruder) noexcept;
 
 /// Share of the vehicle's stay in a cell during which the intruder is there too (Gomola eq. 6.119): 0 to 1. Stays with
 /// a single common instant count as 2e-7, above the threshold of a threat, so that an intruder present for an instant
@@ -111,8 +111,8 @@ public:
     [[nodiscard]] ModelStatus status() const noexcept { return status_; }
     /// The greatest of the models' rates: 1 where a model overlaps the cell, and when timed, 1 times the share of
     /// `vehicle` in that model's own times. Timed without a vehicle in the cell: 0.
-    /// @param vehicle  its stay in the cell; none: never in the cell O(kMostCrossings).
-    [[nodiscard]] Meeting in(CellIndex cell, const CellBall& ball, const std::optional<Stay>& vehicle) const noexcept;
+    /// @param vehicle  its stay in the cell; none: never in the cell O(kMaxCrossings).
+    [[nodiscard]] Meeting in(CellIndex cell, const CellSphere& sphere, const std::optional<Stay>& vehicle) const noexcept;
 
 private:
     Intruder intruder_;

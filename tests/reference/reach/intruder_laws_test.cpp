@@ -65,9 +65,9 @@ TEST(IntruderLaws, ConesMissNothing)
     constexpr std::uint64_t kSeed = 3;
     Random random(kSeed);
     const Grid<float> grid;
-    std::vector<CellBall> balls;
+    std::vector<CellSphere> spheres;
     for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
-        balls.push_back(ball_of(grid, grid.place(cell)));
+        spheres.push_back(sphere_of(grid, grid.place(cell)));
     }
     int inside = 0;
     for (int i = 0; inside < 100000; ++i) {
@@ -76,8 +76,8 @@ TEST(IntruderLaws, ConesMissNothing)
         intruder.velocity =
             random.uniform(0.2F, 8.0F) * (i % 10 == 0 ? Vec3(0, 0, i % 20 == 0 ? 1.0F : -1.0F) : any_direction(random));
         intruder.radius = random.uniform(0.0F, 1.5F);
-        intruder.horizontal = i % 7 == 0 ? 0.0F : random.uniform(0.0F, kMostSpread);
-        intruder.vertical = i % 5 == 0 ? 0.0F : random.uniform(0.0F, kMostSpread);
+        intruder.horizontal = i % 7 == 0 ? 0.0F : random.uniform(0.0F, kMaxSpread);
+        intruder.vertical = i % 5 == 0 ? 0.0F : random.uniform(0.0F, kMaxSpread);
         intruder.speed_share = random.uniform(0.0F, 0.5F);
         const Vec3 target = random.uniform(0.5F, 10.0F) *
                             Vec3(1.0F, random.uniform(-0.9F, 0.9F), random.uniform(-0.5F, 0.5F)).normalized();
@@ -100,7 +100,7 @@ TEST(IntruderLaws, ConesMissNothing)
                 continue;
             }
             ++inside;
-            const std::optional<Stay> stay = spread_in(balls[grid.index(at.place)], intruder);
+            const std::optional<Stay> stay = spread_in(spheres[grid.index(at.place)], intruder);
             ASSERT_TRUE(stay) << "seed " << kSeed << ", case " << i << ", sample " << k;
             // The straight path to the centre, at any possible speed.
             const float way = (centre - intruder.position).norm();
@@ -136,15 +136,15 @@ TEST(IntruderLaws, BodiesMissNothing)
                 continue;
             }
             ++inside;
-            const std::optional<Stay> stay = body_in(ball_of(grid, at.place), intruder);
+            const std::optional<Stay> stay = body_in(sphere_of(grid, at.place), intruder);
             ASSERT_TRUE(stay && stay->from <= t + 1e-3F && stay->to >= t - 1e-3F)
                 << "seed " << kSeed << ", case " << i << ", sample " << k;
         }
     }
 }
 
-/// The ball of a cell contains the whole cell.
-TEST(IntruderLaws, BallsHoldTheirCells)
+/// The sphere of a cell contains the whole cell.
+TEST(IntruderLaws, SpheresHoldTheirCells)
 {
     Random random(8);
     const Grid<float> grids[] = {Grid<float>(), Grid<float>(4, 3, 3, 8.0F, 1.4F, 0.9F)};
@@ -155,8 +155,8 @@ TEST(IntruderLaws, BallsHoldTheirCells)
                                                        random.uniform(-grid.vertical(), grid.vertical())});
             const Located at = grid.locate(point);
             if (at.status == LocateStatus::inside) {
-                const CellBall ball = ball_of(grid, at.place);
-                ASSERT_LE((point - ball.centre).norm(), ball.radius + 1e-4F);
+                const CellSphere sphere = sphere_of(grid, at.place);
+                ASSERT_LE((point - sphere.centre).norm(), sphere.radius + 1e-4F);
             }
         }
     }

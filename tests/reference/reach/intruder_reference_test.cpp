@@ -15,13 +15,13 @@ namespace {
 
 using reference::P;
 
-std::vector<CellBall> balls_of(const Grid<float>& grid)
+std::vector<CellSphere> spheres_of(const Grid<float>& grid)
 {
-    std::vector<CellBall> balls;
+    std::vector<CellSphere> spheres;
     for (CellIndex cell = 0; cell < grid.cells(); ++cell) {
-        balls.push_back(ball_of(grid, grid.place(cell)));
+        spheres.push_back(sphere_of(grid, grid.place(cell)));
     }
-    return balls;
+    return spheres;
 }
 
 Intruder random_intruder(Random& random)
@@ -59,50 +59,50 @@ TEST(IntruderReference, SixtyConesTimes350CellsMissNothing)
     Random random(kSeed);
     const Grid<float> grid;
     const Grid<double> exact_grid;
-    const std::vector<CellBall> balls = balls_of(grid);
+    const std::vector<CellSphere> spheres = spheres_of(grid);
     Count count;
     for (int i = 0; i < 60; ++i) {
         const Intruder intruder = random_intruder(random);
         const auto law = i % 4 == 0 ? reference::SpreadLaw::sine : reference::SpreadLaw::tangent;
         const reference::SpreadResult cloud = reference::spread(exact_grid, exact(intruder), 0.15, law);
         for (const auto& [cell, touch] : cloud.cells) {
-            const std::optional<Stay> stay = spread_in(balls[cell], intruder);
+            const std::optional<Stay> stay = spread_in(spheres[cell], intruder);
             ASSERT_TRUE(stay) << "seed " << kSeed << ", cone " << i << ", cell " << cell;
             ASSERT_LE(static_cast<double>(stay->from), touch.from + 1e-4);
             ASSERT_GE(static_cast<double>(stay->to), touch.to - 1e-4);
         }
         count.touched += cloud.cells.size();
-        for (const CellBall& ball : balls) {
-            count.named += spread_in(ball, intruder) ? 1U : 0U;
+        for (const CellSphere& sphere : spheres) {
+            count.named += spread_in(sphere, intruder) ? 1U : 0U;
         }
     }
     EXPECT_GT(count.touched, 2000U);
-    // The price of the cells' balls and the intruder's: its body is not in the clouds.
+    // The price of the cells' spheres and the intruder's: its body is not in the clouds.
     EXPECT_LT(count.named, 6 * count.touched);
     RecordProperty("named_per_touched_percent", static_cast<int>(100 * count.named / count.touched));
 }
 
-/// 40 bodies as clouds of points, whose times are the ball's middle's: 0 cells missed, 0 times outside.
+/// 40 bodies as clouds of points, whose times are the sphere's middle's: 0 cells missed, 0 times outside.
 TEST(IntruderReference, BodiesMissNothing)
 {
     constexpr std::uint64_t kSeed = 21;
     Random random(kSeed);
     const Grid<float> grid;
     const Grid<double> exact_grid;
-    const std::vector<CellBall> balls = balls_of(grid);
+    const std::vector<CellSphere> spheres = spheres_of(grid);
     Count count;
     for (int i = 0; i < 40; ++i) {
         const Intruder intruder = random_intruder(random);
         const reference::Touched cloud = reference::body(exact_grid, exact(intruder), 0.2);
         for (const auto& [cell, touch] : cloud) {
-            const std::optional<Stay> stay = body_in(balls[cell], intruder);
+            const std::optional<Stay> stay = body_in(spheres[cell], intruder);
             ASSERT_TRUE(stay) << "seed " << kSeed << ", body " << i << ", cell " << cell;
             ASSERT_LE(static_cast<double>(stay->from), touch.from + 1e-4);
             ASSERT_GE(static_cast<double>(stay->to), touch.to - 1e-4);
         }
         count.touched += cloud.size();
-        for (const CellBall& ball : balls) {
-            count.named += body_in(ball, intruder) ? 1U : 0U;
+        for (const CellSphere& sphere : spheres) {
+            count.named += body_in(sphere, intruder) ? 1U : 0U;
         }
     }
     EXPECT_GT(count.touched, 500U);

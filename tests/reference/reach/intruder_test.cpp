@@ -70,9 +70,9 @@ TEST(Intruders, TheBodyTakesTheTimesOfTheCheckValues)
     const float radii[] = {0.512F, 0.566F, 0.882F, 1.574F};
     const std::uint8_t layers[] = {0, 1, 4, 9};
     for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_NEAR(ball_of(grid, {layers[i], 3, 2}).radius, radii[i], 1e-3F) << i;
+        EXPECT_NEAR(sphere_of(grid, {layers[i], 3, 2}).radius, radii[i], 1e-3F) << i;
     }
-    const CellBall cell = ball_of(grid, {7, 4, 2});
+    const CellSphere cell = sphere_of(grid, {7, 4, 2});
     EXPECT_NEAR((cell.centre - Vec3(7.3120F, 1.6689F, 0.0F)).norm(), 0.0F, 1e-3F);
     EXPECT_NEAR(cell.radius, 1.2875F, 1e-3F);
     Intruder intruder;

@@ -18,7 +18,7 @@ constexpr float kTouchSlack = 1e-5F;
 Vec3 half_of(const MapObstacle& obstacle) noexcept
 {
     switch (obstacle.shape) {
-    case MapShape::ball: return Vec3::Zero();
+    case MapShape::sphere: return Vec3::Zero();
     case MapShape::line: return 0.5F * Vec3(obstacle.length, 0.0F, 0.0F);
     case MapShape::plane: return 0.5F * Vec3(obstacle.length, obstacle.width, 0.0F);
     case MapShape::cuboid: return 0.5F * Vec3(obstacle.length, obstacle.width, obstacle.depth);
@@ -28,7 +28,7 @@ Vec3 half_of(const MapObstacle& obstacle) noexcept
 
 float rounding_of(const MapObstacle& obstacle) noexcept
 {
-    return obstacle.shape == MapShape::ball ? obstacle.radius : 0.0F;
+    return obstacle.shape == MapShape::sphere ? obstacle.radius : 0.0F;
 }
 
 /// A range of numbers.
@@ -117,8 +117,8 @@ bool is_beyond_walls(const Grid<float>& grid, const CellPlace& place, const MapB
 /// Points on one axis of a box: from its middle, `spacing` apart, as many as are within `half`.
 std::size_t points_on(float half, float spacing) noexcept
 {
-    constexpr float kMost = 1e6F;
-    return 2U * static_cast<std::size_t>(std::min(half / spacing + kTouchSlack, kMost)) + 1U;
+    constexpr float kMax = 1e6F;
+    return 2U * static_cast<std::size_t>(std::min(half / spacing + kTouchSlack, kMax)) + 1U;
 }
 
 /// The lattice about a body that holds its margin too, coarse enough.
@@ -130,8 +130,8 @@ Lattice lattice_of(const Vec3& half, float spacing) noexcept
 {
     Lattice lattice;
     lattice.spacing = spacing;
-    constexpr int kMostSteps = 256;  // 1.1^256 is more than any two lengths are apart
-    for (int step = 0; step < kMostSteps; ++step) {
+    constexpr int kMaxSteps = 256;  // 1.1^256 is more than any two lengths are apart
+    for (int step = 0; step < kMaxSteps; ++step) {
         float points = 1.0F;
         for (Eigen::Index i = 0; i < 3; ++i) {
             std::size_t& count = lattice.count[static_cast<std::size_t>(i)];
@@ -192,7 +192,7 @@ MapStatus check(const MapObstacle& o) noexcept
     if (!is_positive(o.margin)) {
         return MapStatus::bad_margin;
     }
-    const bool good = o.shape == MapShape::ball
+    const bool good = o.shape == MapShape::sphere
                           ? is_not_negative(o.radius)
                           : is_positive(o.length) && (o.shape == MapShape::line || is_positive(o.width)) &&
                                 (o.shape != MapShape::cuboid || is_positive(o.depth));

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "core/reach/grid.hpp"
-#include "tests/reference/reach/barrel_closure.hpp"
+#include "tests/reference/reach/cylinder_closure.hpp"
 #include "tests/reference/reach/fusion.hpp"
 
 // Obstacles of a map: surveyed bodies in few numbers each, and their cells (Gomola 6.5.2). No cloud of points is
@@ -14,12 +14,12 @@
 
 namespace jink::reach {
 
-enum class MapShape : std::uint8_t { ball, line, plane, cuboid };
+enum class MapShape : std::uint8_t { sphere, line, plane, cuboid };
 
 /// One entry of a map, in the world frame. The local x axis is the main axis; lengths that a shape does not list are
 /// ignored.
 struct MapObstacle {
-    MapShape shape = MapShape::ball;
+    MapShape shape = MapShape::sphere;
     Vec3 position = Vec3::Zero();  ///< of the middle [m]
     float roll = 0.0F;             ///< [rad], turned first
     float pitch = 0.0F;            ///< [rad], main axis down, turned second
@@ -28,7 +28,7 @@ struct MapObstacle {
     float length = 0.0F;           ///< along x [m]: line, plane, cuboid
     float width = 0.0F;            ///< along y [m]: plane, cuboid
     float depth = 0.0F;            ///< along z [m]: cuboid
-    float radius = 0.0F;           ///< of a ball's body [m]: Gomola has a point, 0
+    float radius = 0.0F;           ///< of a sphere's body [m]: Gomola has a point, 0
 };
 
 enum class MapStatus : std::uint8_t { good, not_a_number, bad_margin, bad_size };
@@ -42,7 +42,7 @@ struct MapBody {
     Vec3 centre = Vec3::Zero();
     Mat3 axes = Mat3::Identity();  ///< columns
     Vec3 half = Vec3::Zero();      ///< extents from the centre along the axes
-    float rounding = 0.0F;         ///< of the body about the box: a ball's radius
+    float rounding = 0.0F;         ///< of the body about the box: a sphere's radius
     float margin = 0.0F;           ///< about the body
 };
 /// Once per obstacle and frame. O(1).

@@ -40,7 +40,7 @@ Place random_point(Random& random, const MapObstacle& o, bool of_body)
     Place p = Place::Zero();
     double about = of_body ? 0.0 : static_cast<double>(o.margin);
     switch (o.shape) {
-    case MapShape::ball: about += static_cast<double>(o.radius); break;
+    case MapShape::sphere: about += static_cast<double>(o.radius); break;
     case MapShape::line: p = Place(within(o.length), 0, 0); break;
     case MapShape::plane: p = Place(within(o.length), within(o.width), 0); break;
     case MapShape::cuboid: p = Place(within(o.length), within(o.width), within(o.depth)); break;

@@ -81,20 +81,20 @@ TEST(MapObstacles, Figure613ChartedAndHidden)
 TEST(MapObstacles, BodiesAreHardAndMarginsSoft)
 {
     const Grid<float> grid;
-    MapObstacle ball;
-    ball.position = Vec3(5.5F, 0, 0);
-    ball.margin = 1.0F;
-    ball.radius = 0.2F;
-    EXPECT_EQ(look(grid, {5, 3, 2}, ball), Closure::hard);
-    EXPECT_EQ(look(grid, {4, 3, 2}, ball), Closure::soft) << "0.5 away, 0.2 of which are body";
-    EXPECT_EQ(look(grid, {6, 3, 2}, ball), Closure::soft);
-    EXPECT_EQ(look(grid, {5, 4, 2}, ball), Closure::soft);
-    EXPECT_EQ(look(grid, {3, 3, 2}, ball), Closure::none);
-    EXPECT_EQ(look(grid, {7, 3, 2}, ball), Closure::none);
-    EXPECT_EQ(look(grid, {5, 6, 2}, ball), Closure::none);
+    MapObstacle sphere;
+    sphere.position = Vec3(5.5F, 0, 0);
+    sphere.margin = 1.0F;
+    sphere.radius = 0.2F;
+    EXPECT_EQ(look(grid, {5, 3, 2}, sphere), Closure::hard);
+    EXPECT_EQ(look(grid, {4, 3, 2}, sphere), Closure::soft) << "0.5 away, 0.2 of which are body";
+    EXPECT_EQ(look(grid, {6, 3, 2}, sphere), Closure::soft);
+    EXPECT_EQ(look(grid, {5, 4, 2}, sphere), Closure::soft);
+    EXPECT_EQ(look(grid, {3, 3, 2}, sphere), Closure::none);
+    EXPECT_EQ(look(grid, {7, 3, 2}, sphere), Closure::none);
+    EXPECT_EQ(look(grid, {5, 6, 2}, sphere), Closure::none);
     std::vector<float> bodies(grid.cells());
     std::vector<float> margins(grid.cells());
-    const CloudReport report = rate_by_cloud(grid, in_grid(ball, {}), {0.2F, 0.0F}, bodies, margins);
+    const CloudReport report = rate_by_cloud(grid, in_grid(sphere, {}), {0.2F, 0.0F}, bodies, margins);
     EXPECT_FALSE(report.coarsened);
     EXPECT_EQ(bodies[grid.index({5, 3, 2})], 1.0F);
     EXPECT_EQ(bodies[grid.index({4, 3, 2})], 0.0F);
@@ -160,13 +160,13 @@ TEST(MapObstacles, SelectionIsByTheOutermostPoint)
     EXPECT_TRUE(is_near(box, Vec3::Zero(), 100.0F));
     box.position.x() += 1e-3F;
     EXPECT_FALSE(is_near(box, Vec3::Zero(), 100.0F));
-    MapObstacle ball;
-    ball.radius = 3.0F;
-    ball.margin = 1.0F;
-    ball.position = Vec3(0, 104.0F, 0);
-    EXPECT_TRUE(is_near(ball, Vec3::Zero(), 100.0F));
-    ball.position = Vec3(0, 104.01F, 0);
-    EXPECT_FALSE(is_near(ball, Vec3::Zero(), 100.0F));
+    MapObstacle sphere;
+    sphere.radius = 3.0F;
+    sphere.margin = 1.0F;
+    sphere.position = Vec3(0, 104.0F, 0);
+    EXPECT_TRUE(is_near(sphere, Vec3::Zero(), 100.0F));
+    sphere.position = Vec3(0, 104.01F, 0);
+    EXPECT_FALSE(is_near(sphere, Vec3::Zero(), 100.0F));
 }
 
 TEST(MapObstacles, EntriesAreRefusedByTheirCause)

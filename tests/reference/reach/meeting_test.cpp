@@ -64,7 +64,7 @@ struct Example {
     Grid<float> grid;
     Intruder intruder;
     CellPlace place{7, 4, 2};
-    CellBall ball = ball_of(grid, place);
+    CellSphere sphere = sphere_of(grid, place);
     CellIndex cell = grid.index(place);
 
     Example()
@@ -77,7 +77,7 @@ struct Example {
     }
     [[nodiscard]] Meeting with(const Models& models, const std::optional<Stay>& vehicle) const
     {
-        return CombinedModel(grid, intruder, models, 0.0F).in(cell, ball, vehicle);
+        return CombinedModel(grid, intruder, models, 0.0F).in(cell, sphere, vehicle);
     }
 };
 
@@ -122,7 +122,7 @@ TEST(CombinedModels, NoModelIsAnErrorAndTakenAsAll)
     const Example e;
     const CombinedModel model(e.grid, e.intruder, {false, false, false, true}, 0.0F);
     EXPECT_EQ(model.status(), ModelStatus::bad_intruder_model);
-    EXPECT_EQ(model.in(e.cell, e.ball, Stay{100.0F, 101.0F}).rate, 1.0F);
+    EXPECT_EQ(model.in(e.cell, e.sphere, Stay{100.0F, 101.0F}).rate, 1.0F);
     EXPECT_EQ(CombinedModel(e.grid, e.intruder, {true, false, false, true}, 0.0F).status(), ModelStatus::good);
 }
 
@@ -130,7 +130,7 @@ TEST(CombinedModels, NoModelIsAnErrorAndTakenAsAll)
 TEST(CombinedModels, WhatStandsIsThereForEver)
 {
     Example e;
-    e.intruder.position = e.ball.centre;
+    e.intruder.position = e.sphere.centre;
     for (const float speed : {0.0F, 0.05F}) {
         e.intruder.velocity = Vec3(0, speed, 0);
         for (int model = 0; model < 3; ++model) {
@@ -141,8 +141,8 @@ TEST(CombinedModels, WhatStandsIsThereForEver)
     // A slow intruder does move on: 20 s at 0.09 are 1.8.
     e.intruder.radius = 0.1F;
     e.intruder.velocity = Vec3(0, 0.09F, 0);
-    e.intruder.position = e.ball.centre - Vec3(0, e.ball.radius + 0.11F + 1.0F, 0);
-    const std::optional<Stay> later = body_in(e.ball, e.intruder);
+    e.intruder.position = e.sphere.centre - Vec3(0, e.sphere.radius + 0.11F + 1.0F, 0);
+    const std::optional<Stay> later = body_in(e.sphere, e.intruder);
     ASSERT_TRUE(later);
     EXPECT_NEAR(later->from, 1.01F / 0.09F, 0.05F);
 }
@@ -151,7 +151,7 @@ TEST(CombinedModels, WhatStandsIsThereForEver)
 TEST(CombinedModels, ABodyFromAfarIsNotLost)
 {
     const Grid<float> grid;
-    const CellBall ball = ball_of(grid, {5, 3, 2});
+    const CellSphere sphere = sphere_of(grid, {5, 3, 2});
     Intruder intruder;
     intruder.radius = 1.0F;
     int seen = 0;
@@ -162,9 +162,9 @@ TEST(CombinedModels, ABodyFromAfarIsNotLost)
             const Vec3 aside(-towards.y(), towards.x(), 0.0F);
             intruder.velocity = 20.0F * towards;
             // Closer than contact by the rounding of the position.
-            const float beside = (ball.radius + 1.0F) * (1.0F - 1e-6F) - 2e-7F * far;
-            intruder.position = ball.centre + beside * aside - far * towards;
-            seen += body_in(ball, intruder) ? 1 : 0;
+            const float beside = (sphere.radius + 1.0F) * (1.0F - 1e-6F) - 2e-7F * far;
+            intruder.position = sphere.centre + beside * aside - far * towards;
+            seen += body_in(sphere, intruder) ? 1 : 0;
         }
     }
     EXPECT_EQ(seen, 3 * 360);

@@ -154,27 +154,27 @@ inline SpreadResult spread(const Grid<double>& grid, const Intruder& intruder, d
     return result;
 }
 
-/// The body model, equations 6.125 to 6.128: a ball full of points no farther than `thickness` from the next one, moved
-/// along the line; every point has the time of the ball's middle.
+/// The body model, equations 6.125 to 6.128: a sphere full of points no farther than `thickness` from the next one, moved
+/// along the line; every point has the time of the sphere's middle.
 inline Touched body(const Grid<double>& grid, const Intruder& intruder, double thickness)
 {
     Touched cells;
     const double speed = intruder.velocity.norm();
     const int count = static_cast<int>(intruder.radius / thickness);
-    std::vector<P> ball;
+    std::vector<P> sphere;
     for (int i = -count; i <= count; ++i) {
         for (int j = -count; j <= count; ++j) {
             for (int k = -count; k <= count; ++k) {
                 const P p = thickness * P(i, j, k);
                 if (p.norm() <= intruder.radius) {
-                    ball.push_back(p);
+                    sphere.push_back(p);
                 }
             }
         }
     }
     const double most = (grid.distance() + intruder.position.norm() + intruder.radius) / speed;
     for (double t = 0.0; t <= most; t += thickness / speed) {
-        for (const P& p : ball) {
+        for (const P& p : sphere) {
             const Located in = grid.locate(P(intruder.position + t * intruder.velocity + p));
             if (in.status == LocateStatus::inside) {
                 Touch& touch = cells[grid.index(in.place)];

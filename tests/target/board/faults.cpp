@@ -220,9 +220,9 @@ int run_fault(Board& board, const Case& c)
     const std::size_t first = board.heard().size();
     board.execute(c.instructions, place);
     const double then = board.seconds();
-    const bool told = board.fly_until([&] { return test.heard_text(first, "jink: exc "); }, then + 5.0);
+    const bool reported = board.fly_until([&] { return test.heard_text(first, "jink: exc "); }, then + 5.0);
     check_words(board, test, first, c.in_control);
-    test.expect(told &&
+    test.expect(reported &&
                     test.heard_text(first, "jink: restart 1 by " + c.story + (c.knows_pc ? " at " + hex(place) : "")),
                 "tells of it after the restart: " + test.text_of(test.find_text(first, "jink: restart")));
     test.expect(test.heard_text(first, "jink: " + c.details),
@@ -237,8 +237,8 @@ int run_early(Board& board)
     Test test(board, "start_up");
     test.expect(board.run_to(board.symbol("jink_main"), kLimit), "comes to jink_main");
     board.execute({kUndefined}, board.symbol("_bss_end"));
-    const bool told = board.fly_until([&] { return test.heard_text(0, "jink: exc 3"); }, 5.0);
-    test.expect(told && test.heard_text(0, "jink: restart 1 by usage fault"), "starts anew and tells");
+    const bool reported = board.fly_until([&] { return test.heard_text(0, "jink: exc 3"); }, 5.0);
+    test.expect(reported && test.heard_text(0, "jink: restart 1 by usage fault"), "starts anew and tells");
     test.expect(!test.heard_text(0, "jink: processor fault"), "had nothing to say before");
     const bool taken = board.fly_until([&] { return test.mode() == sim::Mode::external; }, kLimit);
     test.expect(taken, "serves: takes over");
@@ -264,10 +264,10 @@ int run_nested(Board& board)
     const std::uint32_t handler = board.symbol("jink_fault_handler");
     board.debugger().jump(handler);
     board.debugger().go();
-    const bool told =
+    const bool reported =
         board.fly_until([&] { return test.heard_text(first, "jink: restart 1 by usage fault at " + hex(place)); },
                         board.seconds() + 5.0);
-    test.expect(told, "resets at once and tells of the first fault");
+    test.expect(reported, "resets at once and tells of the first fault");
     test.expect(!test.heard_text(first, "jink: processor fault"), "does not try its last words again");
     check_service(board, test);
     return test.failures();
@@ -291,9 +291,9 @@ int run_loop(Board& board)
     };
     for (int i = 1; i <= 3; ++i) {
         crash();
-        const std::string told = std::string("jink: restart ").append(1, static_cast<char>('0' + i));
-        test.expect(board.fly_until([&] { return test.heard_text(first, told); }, board.seconds() + 5.0),
-                    "tells: " + told);
+        const std::string reported = std::string("jink: restart ").append(1, static_cast<char>('0' + i));
+        test.expect(board.fly_until([&] { return test.heard_text(first, reported); }, board.seconds() + 5.0),
+                    "tells: " + reported);
     }
     test.expect(board.fly_until([&] { return test.heard_text(first, "jink: 3 faults in a row, passive"); },
                                 board.seconds() + 1.0),

@@ -18,7 +18,7 @@ namespace jink::target {
 inline constexpr std::uint32_t kLineBytesPerSecond = 92'160;
 
 /// Largest number of bytes in transit or unread: 33 ms of the line.
-inline constexpr std::uint64_t kMostUnread = 3'000;
+inline constexpr std::uint64_t kMaxUnread = 3'000;
 /// Each of our TIMESYNC requests carries this plus the number of preceding bytes. The answer returns it.
 inline constexpr std::int64_t kPlaceMark = std::int64_t{1} << 62;
 
@@ -30,7 +30,7 @@ inline constexpr std::int64_t kPlaceMark = std::int64_t{1} << 62;
 /// per sender without a gap.
 ///
 /// Its time is that of the bytes on the line, so the board's load per step does not depend on the host's load. The
-/// rates leave space in the board's inbox for a step that reads kMostUnread bytes at once.
+/// rates leave space in the board's inbox for a step that reads kMaxUnread bytes at once.
 class FullLine {
 public:
     struct Requests {

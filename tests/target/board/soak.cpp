@@ -134,30 +134,30 @@ private:
 
     /// By the board's own clock, which each answer to TIMESYNC tells: an emulator keeps no pace with that of the wall.
     /// Within a step the bytes are spread over its 20 ms. Where the machine holds the emulator up while the board
-    /// waits, the board's clock jumps; then kMostUnread holds, and the rest follows. A board that is too slow for the
+    /// waits, the board's clock jumps; then kMaxUnread holds, and the rest follows. A board that is too slow for the
     /// line holds it up for good, and the line was not full.
     void send_all()
     {
         constexpr double kAhead = 0.005;
-        constexpr std::uint64_t kMostInSlice = 200;
+        constexpr std::uint64_t kMaxInSlice = 200;
         const auto total = static_cast<std::uint64_t>(options_.seconds * kLineBytesPerSecond);
         const Clock::time_point start = Clock::now();
-        Clock::time_point told_at = start;
-        double told = -1.0;
+        Clock::time_point reported_at = start;
+        double reported = -1.0;
         while (sent_ < total) {
             pause();
-            if (ear_.clock != told) {
-                told = ear_.clock;
-                told_at = Clock::now();
-                first_ = first_ < 0.0 ? told : first_;
+            if (ear_.clock != reported) {
+                reported = ear_.clock;
+                reported_at = Clock::now();
+                first_ = first_ < 0.0 ? reported : first_;
             }
             // Until its clock is known, enough to be answered.
-            const double time = told < 0.0 ? kAhead : told - first_ + kAhead + std::min(since(told_at), kStep);
+            const double time = reported < 0.0 ? kAhead : reported - first_ + kAhead + std::min(since(reported_at), kStep);
             const double owed = time * kLineBytesPerSecond - static_cast<double>(sent_);
             longest_lag_ = std::max(longest_lag_, owed / kLineBytesPerSecond);
-            const std::uint64_t room = kMostUnread - std::min(kMostUnread, sent_ - std::min(sent_, ear_.read));
+            const std::uint64_t room = kMaxUnread - std::min(kMaxUnread, sent_ - std::min(sent_, ear_.read));
             const std::uint64_t now =
-                std::min({static_cast<std::uint64_t>(std::max(owed, 0.0)), room, kMostInSlice, total - sent_});
+                std::min({static_cast<std::uint64_t>(std::max(owed, 0.0)), room, kMaxInSlice, total - sent_});
             if (now > 0 && wire_.may_send()) {
                 // Whole frames: a delay of the host never leaves the board within a frame.
                 send(line_.ahead(now).size());

@@ -19,14 +19,14 @@ namespace {
 using link::ConstraintPart;
 using link::ConstraintResult;
 
-constexpr TimePoint kTold{500'000'000};
+constexpr TimePoint kReported{500'000'000};
 constexpr link::GlobalPosition kArea{473977420, 85465940, 400'000};
 
 Constraint closed_at(float east, float north, float radius = 10.0F, const world::Vec2& velocity = world::Vec2::Zero())
 {
     Constraint constraint;
-    constraint.barrel = {{{east, north}, radius}, velocity, 20.0F, 100.0F, 5.0F};
-    constraint.stamp = kTold;
+    constraint.cylinder = {{{east, north}, radius}, velocity, 20.0F, 100.0F, 5.0F};
+    constraint.stamp = kReported;
     return constraint;
 }
 
@@ -35,7 +35,7 @@ protected:
     void tell(const std::vector<Constraint>& constraints, const std::optional<link::GlobalPosition>& origin = {},
               const Vec3& own = Vec3::Zero())
     {
-        table.tell(constraints, origin, own, kTold);
+        table.tell(constraints, origin, own, kReported);
     }
     ConstraintTable table;
 };
@@ -43,33 +43,33 @@ protected:
 TEST_F(ClosedAreas, AStampMayLieHalfASecondAhead)
 {
     Constraint c = closed_at(0, 0);
-    c.stamp = {kTold.us + 500'000};
-    EXPECT_TRUE(ConstraintTable::accepts(c, kTold));
+    c.stamp = {kReported.us + 500'000};
+    EXPECT_TRUE(ConstraintTable::accepts(c, kReported));
     c.stamp.us += 1;
-    EXPECT_FALSE(ConstraintTable::accepts(c, kTold));
-    c.stamp = kTold;
-    c.barrel.circle.radius = 0.0F;
-    EXPECT_FALSE(ConstraintTable::accepts(c, kTold));
+    EXPECT_FALSE(ConstraintTable::accepts(c, kReported));
+    c.stamp = kReported;
+    c.cylinder.circle.radius = 0.0F;
+    EXPECT_FALSE(ConstraintTable::accepts(c, kReported));
 }
 
 TEST_F(ClosedAreas, OneStampedAheadIsNotMovedBack)
 {
     Constraint c = closed_at(0, 0, 10.0F, {100.0F, 0.0F});
-    c.stamp = {kTold.us + 500'000};
+    c.stamp = {kReported.us + 500'000};
     tell({c});
-    ASSERT_EQ(table.barrels().size(), 1U);
-    EXPECT_EQ(table.barrels()[0].circle.centre.x(), 0.0F);
+    ASSERT_EQ(table.cylinders().size(), 1U);
+    EXPECT_EQ(table.cylinders()[0].circle.centre.x(), 0.0F);
 }
 
 TEST_F(ClosedAreas, CountsToTheMicrosecondOfItsEnd)
 {
     Constraint c = closed_at(0, 0);
-    c.ends = {kTold.us + 1'000'000};
+    c.ends = {kReported.us + 1'000'000};
     tell({c});
-    table.place({}, {kTold.us + 1'000'000});
-    EXPECT_EQ(table.barrels().size(), 1U);
-    table.place({}, {kTold.us + 1'000'001});
-    EXPECT_TRUE(table.barrels().empty());
+    table.place({}, {kReported.us + 1'000'000});
+    EXPECT_EQ(table.cylinders().size(), 1U);
+    table.place({}, {kReported.us + 1'000'001});
+    EXPECT_TRUE(table.cylinders().empty());
     EXPECT_FALSE(table.empty()) << "told, and over";
 }
 
@@ -77,7 +77,7 @@ TEST_F(ClosedAreas, AllOfItsBodyStaysAsTold)
 {
     for (const std::optional<link::GlobalPosition>& origin : {std::optional<link::GlobalPosition>(), {kArea}}) {
         tell({closed_at(30, -40)}, origin);
-        const world::Barrel& b = table.barrels()[0];
+        const world::Cylinder& b = table.cylinders()[0];
         EXPECT_EQ(b.circle.centre, world::Vec2(30, -40)) << "in the local frame, wherever that lies";
         EXPECT_EQ(b.circle.radius, 10.0F);
         EXPECT_EQ(b.bottom, 20.0F);
@@ -95,21 +95,21 @@ TEST_F(ClosedAreas, OnTheGlobeItIsPlacedAboutTheOrigin)
     origin.lat -= 10'000;
     origin.alt -= 30'000;
     tell({c}, origin);
-    ASSERT_EQ(table.barrels().size(), 1U);
-    const world::Barrel& b = table.barrels()[0];
+    ASSERT_EQ(table.cylinders().size(), 1U);
+    const world::Cylinder& b = table.cylinders()[0];
     EXPECT_NEAR(b.circle.centre.x(), 3.0F, 1e-3F);
     EXPECT_NEAR(b.circle.centre.y(), 111.319F + 4.0F, 1e-2F);
     EXPECT_NEAR(b.bottom, 50.0F, 1e-3F);
     EXPECT_NEAR(b.top, 130.0F, 1e-3F);
     EXPECT_NEAR(b.circle.radius, 50.0F + 1.5e-3F * 111.319F, 1e-3F);
     EXPECT_FALSE(table.lacks_origin());
-    table.place({}, kTold);
+    table.place({}, kReported);
     EXPECT_TRUE(table.lacks_origin());
-    EXPECT_TRUE(table.barrels().empty());
+    EXPECT_TRUE(table.cylinders().empty());
     // One in the local frame needs none.
     tell({closed_at(0, 0)});
     EXPECT_FALSE(table.lacks_origin());
-    EXPECT_EQ(table.barrels().size(), 1U);
+    EXPECT_EQ(table.cylinders().size(), 1U);
 }
 
 TEST_F(ClosedAreas, OneWithoutAnOriginDoesNotHideTheOthers)
@@ -117,10 +117,10 @@ TEST_F(ClosedAreas, OneWithoutAnOriginDoesNotHideTheOthers)
     Constraint c = closed_at(3, 4);
     c.about = kArea;
     tell({c, closed_at(7, 8)});
-    ASSERT_EQ(table.barrels().size(), 1U);
-    EXPECT_EQ(table.barrels()[0].circle.centre.x(), 7.0F);
+    ASSERT_EQ(table.cylinders().size(), 1U);
+    EXPECT_EQ(table.cylinders()[0].circle.centre.x(), 7.0F);
     EXPECT_TRUE(table.lacks_origin());
-    c.ends = kTold - 1.0F;
+    c.ends = kReported - 1.0F;
     tell({c});
     EXPECT_FALSE(table.lacks_origin()) << "one that is over needs none";
 }
@@ -130,8 +130,8 @@ TEST_F(ClosedAreas, GrowsFromItsAgeOnAndNotBefore)
 {
     tell({closed_at(0, 0, 10.0F, {0.0F, 2.0F})});
     const auto radius_at = [&](Seconds age) {
-        table.place({}, kTold + age);
-        return table.barrels()[0].circle.radius;
+        table.place({}, kReported + age);
+        return table.cylinders()[0].circle.radius;
     };
     EXPECT_EQ(radius_at(0.0F), 10.0F);
     EXPECT_EQ(radius_at(49.0F), 10.0F);
@@ -142,58 +142,58 @@ TEST_F(ClosedAreas, GrowsFromItsAgeOnAndNotBefore)
 
 TEST_F(ClosedAreas, WhatIsRefusedIsNoReasonToMerge)
 {
-    std::vector<Constraint> told(kMaxBarrels, closed_at(0, 0));
-    for (std::size_t i = 0; i < told.size(); ++i) {
-        told[i].barrel.circle.centre.x() = 100.0F * static_cast<float>(i);
+    std::vector<Constraint> reported(kMaxCylinders, closed_at(0, 0));
+    for (std::size_t i = 0; i < reported.size(); ++i) {
+        reported[i].cylinder.circle.centre.x() = 100.0F * static_cast<float>(i);
     }
-    told.push_back(closed_at(0, 0, -1.0F));
-    tell(told);
+    reported.push_back(closed_at(0, 0, -1.0F));
+    tell(reported);
     EXPECT_EQ(table.diagnostics().merged, 0U);
     EXPECT_EQ(table.diagnostics().refused, 1U);
-    EXPECT_EQ(table.barrels().size(), kMaxBarrels);
-    told.front().barrel.circle.radius = kNan;  // the first is invalid: the merged area is placed about the next
-    told.back() = closed_at(5000, 0);
-    told.push_back(closed_at(5050, 0));
-    tell(told);
+    EXPECT_EQ(table.cylinders().size(), kMaxCylinders);
+    reported.front().cylinder.circle.radius = kNan;  // the first is invalid: the merged area is placed about the next
+    reported.back() = closed_at(5000, 0);
+    reported.push_back(closed_at(5050, 0));
+    tell(reported);
     EXPECT_EQ(table.diagnostics().merged, 1U);
     EXPECT_EQ(table.diagnostics().refused, 2U);
-    EXPECT_EQ(table.barrels().size(), kMaxBarrels);
+    EXPECT_EQ(table.cylinders().size(), kMaxCylinders);
 }
 
 /// Areas far from the vehicle are merged first; isolated areas are kept.
 TEST_F(ClosedAreas, WhatIsFarFromTheVehicleIsMerged)
 {
-    enum class Told : std::uint8_t { locally, locally_with_an_origin, on_the_globe };
-    for (const Told how : {Told::locally, Told::locally_with_an_origin, Told::on_the_globe}) {
+    enum class Reported : std::uint8_t { locally, locally_with_an_origin, on_the_globe };
+    for (const Reported how : {Reported::locally, Reported::locally_with_an_origin, Reported::on_the_globe}) {
         SCOPED_TRACE(static_cast<int>(how));
-        std::vector<Constraint> told;
-        for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
-            told.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F));
+        std::vector<Constraint> reported;
+        for (std::size_t i = 0; i < kMaxCylinders + 1; ++i) {
+            reported.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F));
         }
         std::optional<link::GlobalPosition> origin;
         float south = 0.0F;
-        if (how == Told::locally_with_an_origin) {
+        if (how == Reported::locally_with_an_origin) {
             origin = kArea;
-        } else if (how == Told::on_the_globe) {
+        } else if (how == Reported::on_the_globe) {
             origin = kArea;
             origin->lat -= 50'000;  // 557 m
             south = 556.6F;
-            for (Constraint& c : told) {
+            for (Constraint& c : reported) {
                 c.about = kArea;
             }
         }
-        const float last = 200.0F * static_cast<float>(kMaxBarrels);
+        const float last = 200.0F * static_cast<float>(kMaxCylinders);
         const auto holds = [&](float east, float radius) {
-            const auto barrels = table.barrels();
-            return std::any_of(barrels.begin(), barrels.end(), [&](const world::Barrel& b) {
+            const auto cylinders = table.cylinders();
+            return std::any_of(cylinders.begin(), cylinders.end(), [&](const world::Cylinder& b) {
                 return std::abs(b.circle.centre.x() - east) < 1.0F && std::abs(b.circle.radius - radius) < 2.0F;
             });
         };
-        tell(told, origin, Vec3(0.0F, south, 0.0F));
-        EXPECT_EQ(table.barrels().size(), kMaxBarrels);
+        tell(reported, origin, Vec3(0.0F, south, 0.0F));
+        EXPECT_EQ(table.cylinders().size(), kMaxCylinders);
         EXPECT_TRUE(holds(0.0F, 10.0F)) << "near the vehicle";
         EXPECT_FALSE(holds(last, 10.0F));
-        tell(told, origin, Vec3(last, south, 0.0F));
+        tell(reported, origin, Vec3(last, south, 0.0F));
         EXPECT_TRUE(holds(last, 10.0F));
         EXPECT_FALSE(holds(0.0F, 10.0F));
     }
@@ -201,32 +201,32 @@ TEST_F(ClosedAreas, WhatIsFarFromTheVehicleIsMerged)
 
 TEST_F(ClosedAreas, TooManyOnTheGlobeWaitForAnOriginToo)
 {
-    std::vector<Constraint> told;
-    for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
-        told.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F));
-        told.back().about = kArea;
+    std::vector<Constraint> reported;
+    for (std::size_t i = 0; i < kMaxCylinders + 1; ++i) {
+        reported.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F));
+        reported.back().about = kArea;
     }
-    tell(told);
+    tell(reported);
     EXPECT_TRUE(table.lacks_origin());
-    EXPECT_TRUE(table.barrels().empty());
-    table.place(kArea, kTold);
-    EXPECT_EQ(table.barrels().size(), kMaxBarrels);
+    EXPECT_TRUE(table.cylinders().empty());
+    table.place(kArea, kReported);
+    EXPECT_EQ(table.cylinders().size(), kMaxCylinders);
     EXPECT_EQ(table.diagnostics().merged, 1U);
 }
 
 /// One stamped ahead of us is neither moved back nor made smaller before it is merged.
 TEST_F(ClosedAreas, WhatIsMergedIsNoYoungerThanNow)
 {
-    std::vector<Constraint> told;
-    for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
-        told.push_back(closed_at(2000.0F * static_cast<float>(i), 0.0F, 30.0F, {0.0F, 50.0F}));
-        told.back().stamp = kTold + 0.4F;
+    std::vector<Constraint> reported;
+    for (std::size_t i = 0; i < kMaxCylinders + 1; ++i) {
+        reported.push_back(closed_at(2000.0F * static_cast<float>(i), 0.0F, 30.0F, {0.0F, 50.0F}));
+        reported.back().stamp = kReported + 0.4F;
     }
-    tell(told);
-    const auto barrels = table.barrels();
-    const auto first = std::find_if(barrels.begin(), barrels.end(),
-                                    [](const world::Barrel& b) { return std::abs(b.circle.centre.x()) < 1.0F; });
-    ASSERT_NE(first, barrels.end());
+    tell(reported);
+    const auto cylinders = table.cylinders();
+    const auto first = std::find_if(cylinders.begin(), cylinders.end(),
+                                    [](const world::Cylinder& b) { return std::abs(b.circle.centre.x()) < 1.0F; });
+    ASSERT_NE(first, cylinders.end());
     // Static from now on, and contains its present and its later positions.
     EXPECT_LE((first->circle.centre - world::Vec2(0, 0)).norm() + 30.0F, first->circle.radius + 0.1F);
 }
@@ -234,17 +234,17 @@ TEST_F(ClosedAreas, WhatIsMergedIsNoYoungerThanNow)
 /// A merged area ends with the last of its parts, and grows at twice the greatest speed once outdated.
 TEST_F(ClosedAreas, TheMergedEndWithTheLastAndGrowTwiceAsFastAsTheFastest)
 {
-    std::vector<Constraint> told;
-    for (std::size_t i = 0; i < kMaxBarrels + 1; ++i) {
-        told.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F, 10.0F, {0.0F, i == 3 ? 3.0F : 1.0F}));
-        told.back().ends = kTold + (i == 5 ? 90.0F : 80.0F);
+    std::vector<Constraint> reported;
+    for (std::size_t i = 0; i < kMaxCylinders + 1; ++i) {
+        reported.push_back(closed_at(200.0F * static_cast<float>(i), 0.0F, 10.0F, {0.0F, i == 3 ? 3.0F : 1.0F}));
+        reported.back().ends = kReported + (i == 5 ? 90.0F : 80.0F);
     }
-    tell(told);
-    ASSERT_EQ(table.barrels().size(), kMaxBarrels);
+    tell(reported);
+    ASSERT_EQ(table.cylinders().size(), kMaxCylinders);
     const auto radius_of_the_first_at = [&](Seconds age) {
-        table.place({}, kTold + age);
+        table.place({}, kReported + age);
         float radius = -1.0F;
-        for (const world::Barrel& b : table.barrels()) {
+        for (const world::Cylinder& b : table.cylinders()) {
             radius = std::abs(b.circle.centre.x()) < 1.0F ? b.circle.radius : radius;
         }
         return radius;
@@ -253,8 +253,8 @@ TEST_F(ClosedAreas, TheMergedEndWithTheLastAndGrowTwiceAsFastAsTheFastest)
     EXPECT_NEAR(radius_of_the_first_at(49.9F), fresh, 1e-3F);
     EXPECT_NEAR(radius_of_the_first_at(60.0F), fresh + 6.0F * 10.0F, 0.1F);
     EXPECT_GT(radius_of_the_first_at(90.0F), 0.0F);
-    table.place({}, kTold + 90.1F);
-    EXPECT_TRUE(table.barrels().empty());
+    table.place({}, kReported + 90.1F);
+    EXPECT_TRUE(table.cylinders().empty());
 }
 
 /// A part of set 1, which has two.
@@ -262,7 +262,7 @@ ConstraintPart half_of_it(std::uint8_t index)
 {
     ConstraintPart part;
     part.constraint = closed_at(100.0F * static_cast<float>(index), 0.0F, 10.0F, {1.0F, 2.0F});
-    part.constraint.ends = kTold + 60.0F;
+    part.constraint.ends = kReported + 60.0F;
     part.constraint.about = kArea;
     part.set = 1;
     part.index = index;
@@ -275,14 +275,14 @@ ConstraintPart half_of_it(std::uint8_t index)
 TEST(ClosedAreaUpload, EachValueTellsASetFromTheOneInForce)
 {
     const std::vector<std::function<void(Constraint&)>> others{
-        [](Constraint& c) { c.barrel.circle.centre.x() += 1.0F; },
-        [](Constraint& c) { c.barrel.circle.centre.y() += 1.0F; },
-        [](Constraint& c) { c.barrel.circle.radius += 1.0F; },
-        [](Constraint& c) { c.barrel.velocity.x() += 1.0F; },
-        [](Constraint& c) { c.barrel.velocity.y() += 1.0F; },
-        [](Constraint& c) { c.barrel.bottom -= 1.0F; },
-        [](Constraint& c) { c.barrel.top += 1.0F; },
-        [](Constraint& c) { c.barrel.margin += 1.0F; },
+        [](Constraint& c) { c.cylinder.circle.centre.x() += 1.0F; },
+        [](Constraint& c) { c.cylinder.circle.centre.y() += 1.0F; },
+        [](Constraint& c) { c.cylinder.circle.radius += 1.0F; },
+        [](Constraint& c) { c.cylinder.velocity.x() += 1.0F; },
+        [](Constraint& c) { c.cylinder.velocity.y() += 1.0F; },
+        [](Constraint& c) { c.cylinder.bottom -= 1.0F; },
+        [](Constraint& c) { c.cylinder.top += 1.0F; },
+        [](Constraint& c) { c.cylinder.margin += 1.0F; },
         [](Constraint& c) { c.ends.us += 1; },
         [](Constraint& c) { c.ends = Constraint{}.ends; },
         [](Constraint& c) { c.stamp.us -= 1; },  // it ends later after it
@@ -292,19 +292,19 @@ TEST(ClosedAreaUpload, EachValueTellsASetFromTheOneInForce)
     for (std::size_t i = 0; i < others.size(); ++i) {
         SCOPED_TRACE(i);
         ConstraintUpload upload;
-        static_cast<void>(upload.take(half_of_it(0), kTold));
-        ASSERT_EQ(upload.take(half_of_it(1), kTold), ConstraintResult::in_force);
+        static_cast<void>(upload.take(half_of_it(0), kReported));
+        ASSERT_EQ(upload.take(half_of_it(1), kReported), ConstraintResult::in_force);
         ConstraintPart part = half_of_it(1);
         others[i](part.constraint);
-        EXPECT_EQ(upload.take(part, kTold), ConstraintResult::kept);
+        EXPECT_EQ(upload.take(part, kReported), ConstraintResult::kept);
         EXPECT_EQ(upload.diagnostics().abandoned, 0U) << "the one in force was complete";
         // And the former end that had none.
         ConstraintUpload endless;
         ConstraintPart never = half_of_it(1);
         never.constraint.ends = Constraint{}.ends;
-        static_cast<void>(endless.take(half_of_it(0), kTold));
-        ASSERT_EQ(endless.take(never, kTold), ConstraintResult::in_force);
-        EXPECT_EQ(endless.take(half_of_it(1), kTold), ConstraintResult::kept);
+        static_cast<void>(endless.take(half_of_it(0), kReported));
+        ASSERT_EQ(endless.take(never, kReported), ConstraintResult::in_force);
+        EXPECT_EQ(endless.take(half_of_it(1), kReported), ConstraintResult::kept);
     }
 }
 
@@ -315,25 +315,25 @@ TEST(ClosedAreaUpload, AnEndlessAreaToldAgainIsTheSame)
     ConstraintPart part = half_of_it(0);
     part.constraint.ends = Constraint{}.ends;
     part.count = 1;
-    ASSERT_EQ(upload.take(part, kTold), ConstraintResult::in_force);
+    ASSERT_EQ(upload.take(part, kReported), ConstraintResult::in_force);
     upload.mark_in_force();
     part.constraint.stamp.us += 5'000'000;
-    EXPECT_EQ(upload.take(part, kTold + 5.0F), ConstraintResult::in_force);
+    EXPECT_EQ(upload.take(part, kReported + 5.0F), ConstraintResult::in_force);
     EXPECT_EQ(upload.diagnostics().sets, 1U) << "no other set";
     EXPECT_TRUE(upload.is_new()) << "with its new stamp";
-    EXPECT_EQ(upload.set()[0].stamp.us, kTold.us + 5'000'000);
+    EXPECT_EQ(upload.set()[0].stamp.us, kReported.us + 5'000'000);
 }
 
 TEST(ClosedAreaUpload, TheIncompleteSetTakesTheLaterValueOfAPart)
 {
     ConstraintUpload upload;
-    EXPECT_EQ(upload.take(half_of_it(0), kTold), ConstraintResult::kept);
+    EXPECT_EQ(upload.take(half_of_it(0), kReported), ConstraintResult::kept);
     ConstraintPart moved = half_of_it(0);
-    moved.constraint.barrel.circle.centre.x() = -70.0F;
-    EXPECT_EQ(upload.take(moved, kTold), ConstraintResult::kept);
-    EXPECT_EQ(upload.take(half_of_it(1), kTold), ConstraintResult::in_force);
+    moved.constraint.cylinder.circle.centre.x() = -70.0F;
+    EXPECT_EQ(upload.take(moved, kReported), ConstraintResult::kept);
+    EXPECT_EQ(upload.take(half_of_it(1), kReported), ConstraintResult::in_force);
     ASSERT_EQ(upload.set().size(), 2U);
-    EXPECT_EQ(upload.set()[0].barrel.circle.centre.x(), -70.0F);
+    EXPECT_EQ(upload.set()[0].cylinder.circle.centre.x(), -70.0F);
     EXPECT_EQ(upload.diagnostics().abandoned, 0U);
     EXPECT_EQ(upload.diagnostics().sets, 1U);
 }
@@ -344,13 +344,13 @@ TEST(ClosedAreaUpload, ALargestSetAndNoLarger)
     for (std::uint8_t i = 0; i < link::kMaxReportedConstraints; ++i) {
         ConstraintPart part = half_of_it(i);
         part.count = link::kMaxReportedConstraints;
-        EXPECT_EQ(upload.take(part, kTold),
+        EXPECT_EQ(upload.take(part, kReported),
                   i + 1U < link::kMaxReportedConstraints ? ConstraintResult::kept : ConstraintResult::in_force);
     }
     EXPECT_EQ(upload.set().size(), link::kMaxReportedConstraints);
     ConstraintPart more = half_of_it(0);
     more.count = link::kMaxReportedConstraints + 1;
-    EXPECT_EQ(upload.take(more, kTold), ConstraintResult::too_many);
+    EXPECT_EQ(upload.take(more, kReported), ConstraintResult::too_many);
     EXPECT_EQ(upload.set().size(), link::kMaxReportedConstraints) << "changes nothing";
 }
 
@@ -359,19 +359,19 @@ TEST(ClosedAreaUpload, AnEmptySetAgainIsTheSame)
     ConstraintUpload upload;
     ConstraintPart none;
     none.set = 4;
-    none.constraint.barrel.circle.radius = -1.0F;  // invalid
-    EXPECT_EQ(upload.take(none, kTold), ConstraintResult::in_force);
+    none.constraint.cylinder.circle.radius = -1.0F;  // invalid
+    EXPECT_EQ(upload.take(none, kReported), ConstraintResult::in_force);
     upload.mark_in_force();
-    EXPECT_EQ(upload.take(none, kTold), ConstraintResult::in_force);
+    EXPECT_EQ(upload.take(none, kReported), ConstraintResult::in_force);
     EXPECT_EQ(upload.diagnostics().sets, 1U);
     none.set = 5;
-    EXPECT_EQ(upload.take(none, kTold), ConstraintResult::in_force);
+    EXPECT_EQ(upload.take(none, kReported), ConstraintResult::in_force);
     EXPECT_EQ(upload.diagnostics().sets, 2U);
     EXPECT_EQ(upload.diagnostics().abandoned, 0U);
     EXPECT_EQ(upload.diagnostics().refused, 0U);
     ConstraintPart first = half_of_it(0);
     first.set = 5;
-    EXPECT_EQ(upload.take(first, kTold), ConstraintResult::kept) << "of the same number, and another count";
+    EXPECT_EQ(upload.take(first, kReported), ConstraintResult::kept) << "of the same number, and another count";
     EXPECT_FALSE(upload.is_new());
 }
 
@@ -382,7 +382,7 @@ TEST(ClosedAreaUpload, ThePoleIsOnTheEarthAndWhatLiesBeyondIsNot)
         ConstraintPart part = half_of_it(0);
         part.count = 1;
         part.constraint.about = link::GlobalPosition{lat, lon, 0};
-        return upload.take(part, kTold);
+        return upload.take(part, kReported);
     };
     EXPECT_EQ(result_at(900'000'000, 1'800'000'000), ConstraintResult::in_force);
     EXPECT_EQ(result_at(-900'000'001, 0), ConstraintResult::out_of_range);

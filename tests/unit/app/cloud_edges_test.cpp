@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/cloud.hpp"
-#include "firmware/app/echo.hpp"
+#include "firmware/app/range_return.hpp"
 #include "tests/numbers.hpp"
 #include "tests/unit/app/cloud_image_bench.hpp"
 
@@ -101,7 +101,7 @@ TEST_F(CloudEdges, ASphereIsAsWideAsWhatWasSeenInItsBin)
         }
         return obstacles().empty() ? 0.0F : obstacles()[0].shape.radius;
     };
-    EXPECT_EQ(radius_of({at(5, 8, range)}), kLeastEchoRadius);
+    EXPECT_EQ(radius_of({at(5, 8, range)}), kMinReturnRadius);
     // 6 degrees at 40 m are 4.19 m: half of that, and rounding by a 255th of the bin.
     EXPECT_NEAR(radius_of({at(2, 8, range), at(8, 8, range)}), 2.09F, 0.06F);
     EXPECT_NEAR(radius_of({at(8, 8, range), at(2, 8, range)}), 2.09F, 0.06F);
@@ -142,7 +142,7 @@ TEST_F(CloudEdges, IsTurnedByTheYawAboutTheVehicle)
     ASSERT_EQ(obstacles().size(), 1U);
     EXPECT_TRUE(is_covered(world));
     EXPECT_LT((obstacles()[0].shape.centre - world).norm(), 0.05F);
-    EXPECT_EQ(obstacles()[0].shape.radius, kLeastEchoRadius);
+    EXPECT_EQ(obstacles()[0].shape.radius, kMinReturnRadius);
 }
 
 TEST_F(CloudEdges, AViewHoldsForScansThatBeginAfterIt)

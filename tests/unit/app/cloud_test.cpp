@@ -7,7 +7,7 @@
 #include <set>
 
 #include "firmware/app/cloud.hpp"
-#include "firmware/app/echo.hpp"
+#include "firmware/app/range_return.hpp"
 #include "tests/unit/app/cloud_image_bench.hpp"
 
 namespace jink::app {
@@ -30,7 +30,7 @@ TEST_F(CloudImage, OneHitIsASmallSphereThere)
     scan({Vec3(20, 1, 2)});
     ASSERT_EQ(obstacles().size(), 1U);
     EXPECT_EQ(obstacles()[0].shape.kind, geometry::ShapeKind::sphere);
-    EXPECT_EQ(obstacles()[0].shape.radius, kLeastEchoRadius);
+    EXPECT_EQ(obstacles()[0].shape.radius, kMinReturnRadius);
     EXPECT_LT((obstacles()[0].shape.centre - Vec3(120, 201, 52)).norm(), 0.05F);
     EXPECT_EQ(count().obstacles, 1U);
 }

@@ -21,7 +21,7 @@ constexpr TimePoint kAt{50'000'000};
 ConstraintPart part_of(std::uint8_t set, std::uint8_t index, std::uint8_t count, float east = 100.0F)
 {
     ConstraintPart part;
-    part.constraint.barrel = {{{east, 0.0F}, 10.0F}, {0.0F, 0.0F}, 0.0F, 100.0F, 0.0F};
+    part.constraint.cylinder = {{{east, 0.0F}, 10.0F}, {0.0F, 0.0F}, 0.0F, 100.0F, 0.0F};
     part.constraint.stamp = kAt;
     part.set = set;
     part.index = index;
@@ -41,8 +41,8 @@ TEST(ConstraintUpload, ASetCountsOnceAllItsPartsHaveCome)
     EXPECT_EQ(upload.take(part_of(1, 1, 3, 20.0F), kAt), ConstraintResult::in_force);
     ASSERT_TRUE(upload.is_new());
     ASSERT_EQ(upload.set().size(), 3U);
-    EXPECT_EQ(upload.set()[0].barrel.circle.centre.x(), 11.0F) << "the later value";
-    EXPECT_EQ(upload.set()[2].barrel.circle.centre.x(), 30.0F);
+    EXPECT_EQ(upload.set()[0].cylinder.circle.centre.x(), 11.0F) << "the later value";
+    EXPECT_EQ(upload.set()[2].cylinder.circle.centre.x(), 30.0F);
     upload.mark_in_force();
     EXPECT_FALSE(upload.is_new());
     EXPECT_EQ(upload.diagnostics().sets, 1U);
@@ -57,7 +57,7 @@ TEST(ConstraintUpload, ThePartOfACompleteSetReplacesTheFormer)
     upload.mark_in_force();
     EXPECT_EQ(upload.take(part_of(1, 0, 1, 500.0F), kAt), ConstraintResult::in_force);
     ASSERT_TRUE(upload.is_new());
-    EXPECT_EQ(upload.set()[0].barrel.circle.centre.x(), 500.0F);
+    EXPECT_EQ(upload.set()[0].cylinder.circle.centre.x(), 500.0F);
 }
 
 /// With two areas that change places, a mixture of both sets would leave one of them open.
@@ -71,8 +71,8 @@ TEST(ConstraintUpload, ASetWithTheNumberOfTheOneInForceReplacesItAsAWhole)
     EXPECT_FALSE(upload.is_new());
     EXPECT_EQ(upload.take(part_of(1, 1, 2, 10.0F), kAt), ConstraintResult::in_force);
     ASSERT_TRUE(upload.is_new());
-    EXPECT_EQ(upload.set()[0].barrel.circle.centre.x(), 500.0F);
-    EXPECT_EQ(upload.set()[1].barrel.circle.centre.x(), 10.0F);
+    EXPECT_EQ(upload.set()[0].cylinder.circle.centre.x(), 500.0F);
+    EXPECT_EQ(upload.set()[1].cylinder.circle.centre.x(), 10.0F);
     EXPECT_EQ(upload.diagnostics().sets, 2U);
     EXPECT_EQ(upload.diagnostics().abandoned, 0U);
 }
@@ -90,12 +90,12 @@ TEST(ConstraintUpload, EachValueThatDiffersFromTheSetInForceBeginsAnother)
     EXPECT_EQ(result_after([](link::Constraint&) {}), ConstraintResult::in_force) << "its answer was lost";
     EXPECT_EQ(result_after([](link::Constraint& c) { c.stamp = {kAt.us - 3000}; }), ConstraintResult::in_force)
         << "the line's delay varies";
-    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.circle.centre.y() = 1.0F; }), ConstraintResult::kept);
-    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.circle.radius = 11.0F; }), ConstraintResult::kept);
-    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.velocity.x() = 1.0F; }), ConstraintResult::kept);
-    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.bottom = 1.0F; }), ConstraintResult::kept);
-    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.top = 99.0F; }), ConstraintResult::kept);
-    EXPECT_EQ(result_after([](link::Constraint& c) { c.barrel.margin = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.cylinder.circle.centre.y() = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.cylinder.circle.radius = 11.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.cylinder.velocity.x() = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.cylinder.bottom = 1.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.cylinder.top = 99.0F; }), ConstraintResult::kept);
+    EXPECT_EQ(result_after([](link::Constraint& c) { c.cylinder.margin = 1.0F; }), ConstraintResult::kept);
     EXPECT_EQ(result_after([](link::Constraint& c) { c.ends = kAt + 60.0F; }), ConstraintResult::kept);
     EXPECT_EQ(result_after([](link::Constraint& c) {
                   c.about = link::GlobalPosition{1, 2, 0};
@@ -155,12 +155,12 @@ TEST(ConstraintUpload, WhatIsWrongIsRefusedAndChangesNothing)
         EXPECT_EQ(upload.take(part, kAt), ConstraintResult::out_of_range);
         EXPECT_EQ(upload.diagnostics().refused, ++refused);
     };
-    refuse([](link::Constraint& c) { c.barrel.circle.radius = 0.0F; });
-    refuse([](link::Constraint& c) { c.barrel.circle.radius = kNan; });
-    refuse([](link::Constraint& c) { c.barrel.top = -1.0F; });
-    refuse([](link::Constraint& c) { c.barrel.bottom = -kInfinity; });
-    refuse([](link::Constraint& c) { c.barrel.velocity.x() = 1e6F; });
-    refuse([](link::Constraint& c) { c.barrel.margin = -1.0F; });
+    refuse([](link::Constraint& c) { c.cylinder.circle.radius = 0.0F; });
+    refuse([](link::Constraint& c) { c.cylinder.circle.radius = kNan; });
+    refuse([](link::Constraint& c) { c.cylinder.top = -1.0F; });
+    refuse([](link::Constraint& c) { c.cylinder.bottom = -kInfinity; });
+    refuse([](link::Constraint& c) { c.cylinder.velocity.x() = 1e6F; });
+    refuse([](link::Constraint& c) { c.cylinder.margin = -1.0F; });
     refuse([](link::Constraint& c) { c.stamp = kAt + 1.0F; });
     refuse([](link::Constraint& c) { c.about = link::GlobalPosition{900000001, 0, 0}; });
     EXPECT_EQ(upload.diagnostics().abandoned, 0U) << "a refused part of another set abandons nothing";
@@ -199,18 +199,18 @@ TEST_F(CoprocessorConstraintUpload, TheFormerSetCountsUntilTheNextIsWhole)
 {
     EXPECT_EQ(report(area(1, 0, 1)), ConstraintResult::in_force);
     f->fly(1);
-    EXPECT_EQ(f->last.barrels, 1U);
+    EXPECT_EQ(f->last.cylinders, 1U);
     EXPECT_EQ(report(area(2, 0, 2)), ConstraintResult::kept);
     f->fly(1);
-    EXPECT_EQ(f->last.barrels, 1U);
+    EXPECT_EQ(f->last.cylinders, 1U);
     EXPECT_EQ(report(area(2, 1, 2)), ConstraintResult::in_force);
     f->fly(1);
-    EXPECT_EQ(f->last.barrels, 2U);
+    EXPECT_EQ(f->last.cylinders, 2U);
     ConstraintPart none;
     none.set = 3;
     EXPECT_EQ(report(none), ConstraintResult::in_force);
     f->fly(1);
-    EXPECT_EQ(f->last.barrels, 0U);
+    EXPECT_EQ(f->last.cylinders, 0U);
     EXPECT_EQ(f->coprocessor.constraint_upload_diagnostics().sets, 3U);
 }
 
@@ -218,10 +218,10 @@ TEST_F(CoprocessorConstraintUpload, ARefusalLeavesWhatIsInForce)
 {
     EXPECT_EQ(report(area(1, 0, 1)), ConstraintResult::in_force);
     ConstraintPart bad = area(2, 0, 1);
-    bad.constraint.barrel.circle.radius = -1.0F;
+    bad.constraint.cylinder.circle.radius = -1.0F;
     EXPECT_EQ(report(bad), ConstraintResult::out_of_range);
     f->fly(1);
-    EXPECT_EQ(f->last.barrels, 1U);
+    EXPECT_EQ(f->last.cylinders, 1U);
     EXPECT_EQ(f->coprocessor.constraint_upload_diagnostics().refused, 1U);
 }
 

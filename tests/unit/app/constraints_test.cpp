@@ -19,7 +19,7 @@ constexpr TimePoint kNow{500'000'000};
 Constraint area(float east, float north, float radius, const world::Vec2& velocity = world::Vec2::Zero())
 {
     Constraint constraint;
-    constraint.barrel = {{{east, north}, radius}, velocity, 0.0F, 100.0F, 5.0F};
+    constraint.cylinder = {{{east, north}, radius}, velocity, 0.0F, 100.0F, 5.0F};
     constraint.stamp = kNow;
     return constraint;
 }
@@ -27,76 +27,76 @@ Constraint area(float east, float north, float radius, const world::Vec2& veloci
 TEST(Constraints, WhatIsWrongIsRefusedAndTheRestCounts)
 {
     ConstraintTable table;
-    std::vector<Constraint> told(6, area(0, 0, 10));
-    told[0].barrel.circle.radius = 0.0F;
-    told[1].barrel.top = -1.0F;
-    told[2].barrel.circle.centre.x() = std::numeric_limits<float>::quiet_NaN();
-    told[3].barrel.velocity.y() = std::numeric_limits<float>::infinity();
-    told[4].stamp = kNow + 2.0F;
-    table.tell(told, std::nullopt, Vec3::Zero(), kNow);
-    EXPECT_EQ(table.diagnostics().told, 6U);
+    std::vector<Constraint> reported(6, area(0, 0, 10));
+    reported[0].cylinder.circle.radius = 0.0F;
+    reported[1].cylinder.top = -1.0F;
+    reported[2].cylinder.circle.centre.x() = std::numeric_limits<float>::quiet_NaN();
+    reported[3].cylinder.velocity.y() = std::numeric_limits<float>::infinity();
+    reported[4].stamp = kNow + 2.0F;
+    table.tell(reported, std::nullopt, Vec3::Zero(), kNow);
+    EXPECT_EQ(table.diagnostics().reported, 6U);
     EXPECT_EQ(table.diagnostics().refused, 5U);
-    EXPECT_EQ(table.barrels().size(), 1U);
+    EXPECT_EQ(table.cylinders().size(), 1U);
     table.tell({}, std::nullopt, Vec3::Zero(), kNow);
-    EXPECT_TRUE(table.barrels().empty()) << "a new set replaces the one before";
+    EXPECT_TRUE(table.cylinders().empty()) << "a new set replaces the one before";
 }
 
 TEST(Constraints, MoveOnFromTheirStamp)
 {
     ConstraintTable table;
-    std::vector<Constraint> told{area(10, 20, 5, {3, -1}), area(50, 0, 5)};
-    told[0].stamp = kNow - 4.0F;
-    table.tell(told, std::nullopt, Vec3::Zero(), kNow);
+    std::vector<Constraint> reported{area(10, 20, 5, {3, -1}), area(50, 0, 5)};
+    reported[0].stamp = kNow - 4.0F;
+    table.tell(reported, std::nullopt, Vec3::Zero(), kNow);
     table.place(std::nullopt, kNow + 6.0F);
-    ASSERT_EQ(table.barrels().size(), 2U);
-    EXPECT_NEAR(table.barrels()[0].circle.centre.x(), 40.0F, 1e-3F);
-    EXPECT_NEAR(table.barrels()[0].circle.centre.y(), 10.0F, 1e-3F);
-    EXPECT_EQ(table.barrels()[0].circle.radius, 5.0F);
-    EXPECT_EQ(table.barrels()[1].circle.centre, world::Vec2(50, 0));
+    ASSERT_EQ(table.cylinders().size(), 2U);
+    EXPECT_NEAR(table.cylinders()[0].circle.centre.x(), 40.0F, 1e-3F);
+    EXPECT_NEAR(table.cylinders()[0].circle.centre.y(), 10.0F, 1e-3F);
+    EXPECT_EQ(table.cylinders()[0].circle.radius, 5.0F);
+    EXPECT_EQ(table.cylinders()[1].circle.centre, world::Vec2(50, 0));
 }
 
 TEST(Constraints, WhatMovesAndIsOldGrowsAndWhatStandsDoesNot)
 {
     ConstraintTable table;
-    const std::vector<Constraint> told{area(0, 0, 5, {3, 4}), area(0, 0, 5)};
-    table.tell(told, std::nullopt, Vec3::Zero(), kNow);
+    const std::vector<Constraint> reported{area(0, 0, 5, {3, 4}), area(0, 0, 5)};
+    table.tell(reported, std::nullopt, Vec3::Zero(), kNow);
     table.place(std::nullopt, kNow + (ConstraintTable::kFresh - ConstraintTable::kAhead));
-    EXPECT_NEAR(table.barrels()[0].circle.radius, 5.0F, 1e-2F) << "nothing leaps";
+    EXPECT_NEAR(table.cylinders()[0].circle.radius, 5.0F, 1e-2F) << "nothing leaps";
     EXPECT_EQ(table.diagnostics().grown, 0U);
     table.place(std::nullopt, kNow + ConstraintTable::kFresh + 20.0F);
-    EXPECT_NEAR(table.barrels()[0].circle.radius, 5.0F + 5.0F * (20.0F + ConstraintTable::kAhead), 1e-2F);
-    EXPECT_EQ(table.barrels()[1].circle.radius, 5.0F);
+    EXPECT_NEAR(table.cylinders()[0].circle.radius, 5.0F + 5.0F * (20.0F + ConstraintTable::kAhead), 1e-2F);
+    EXPECT_EQ(table.cylinders()[1].circle.radius, 5.0F);
     EXPECT_EQ(table.diagnostics().grown, 1U);
 }
 
 TEST(Constraints, EndWhenTheyEnd)
 {
     ConstraintTable table;
-    std::vector<Constraint> told{area(0, 0, 5)};
-    told[0].ends = kNow + 10.0F;
-    table.tell(told, std::nullopt, Vec3::Zero(), kNow);
+    std::vector<Constraint> reported{area(0, 0, 5)};
+    reported[0].ends = kNow + 10.0F;
+    table.tell(reported, std::nullopt, Vec3::Zero(), kNow);
     table.place(std::nullopt, kNow + 9.9F);
-    EXPECT_EQ(table.barrels().size(), 1U);
+    EXPECT_EQ(table.cylinders().size(), 1U);
     table.place(std::nullopt, kNow + 10.1F);
-    EXPECT_TRUE(table.barrels().empty());
+    EXPECT_TRUE(table.cylinders().empty());
 }
 
 TEST(Constraints, OnTheGlobeTheyWaitForAnOriginAndFollowIt)
 {
     ConstraintTable table;
-    std::vector<Constraint> told{area(0, 0, 50)};
-    told[0].about = link::GlobalPosition{473977420, 85465940, 0};
-    table.tell(told, std::nullopt, Vec3::Zero(), kNow);
+    std::vector<Constraint> reported{area(0, 0, 50)};
+    reported[0].about = link::GlobalPosition{473977420, 85465940, 0};
+    table.tell(reported, std::nullopt, Vec3::Zero(), kNow);
     EXPECT_TRUE(table.lacks_origin());
-    EXPECT_TRUE(table.barrels().empty());
+    EXPECT_TRUE(table.cylinders().empty());
     const link::GlobalPosition origin{473977420 - 9000, 85465940, 400'000};  // 100 m south of it, 400 m high
     table.place(origin, kNow);
-    ASSERT_EQ(table.barrels().size(), 1U);
+    ASSERT_EQ(table.cylinders().size(), 1U);
     EXPECT_FALSE(table.lacks_origin());
-    EXPECT_NEAR(table.barrels()[0].circle.centre.y(), 100.2F, 0.3F);
-    EXPECT_NEAR(table.barrels()[0].circle.centre.x(), 0.0F, 0.1F);
-    EXPECT_NEAR(table.barrels()[0].bottom, -400.0F, 1e-2F);
-    EXPECT_GE(table.barrels()[0].circle.radius, 50.0F + 1e-3F * 100.0F) << "maps differ by 0.11 %";
+    EXPECT_NEAR(table.cylinders()[0].circle.centre.y(), 100.2F, 0.3F);
+    EXPECT_NEAR(table.cylinders()[0].circle.centre.x(), 0.0F, 0.1F);
+    EXPECT_NEAR(table.cylinders()[0].bottom, -400.0F, 1e-2F);
+    EXPECT_GE(table.cylinders()[0].circle.radius, 50.0F + 1e-3F * 100.0F) << "maps differ by 0.11 %";
 }
 
 /// After any merge: every reported area stays closed, now and later.
@@ -104,33 +104,33 @@ TEST(Constraints, TooManyAreMergedAndNothingIsLost)
 {
     Random random(11);
     for (int round = 0; round < 60; ++round) {
-        std::vector<Constraint> told;
-        for (std::size_t i = 0, n = kMaxBarrels + 1 + random.below(12); i < n; ++i) {
+        std::vector<Constraint> reported;
+        for (std::size_t i = 0, n = kMaxCylinders + 1 + random.below(12); i < n; ++i) {
             Constraint one =
                 area(random.uniform(-900.0F, 900.0F), random.uniform(-900.0F, 900.0F), random.uniform(1.0F, 60.0F),
                      {random.uniform(-9.0F, 9.0F), random.uniform(-9.0F, 9.0F)});
             one.stamp = kNow - random.uniform(0.0F, 80.0F);
-            told.push_back(one);
+            reported.push_back(one);
         }
         ConstraintTable table;
-        table.tell(told, std::nullopt, Vec3(10, 20, 30), kNow);
-        EXPECT_EQ(table.diagnostics().merged, told.size() - kMaxBarrels);
-        ASSERT_EQ(table.barrels().size(), kMaxBarrels);
+        table.tell(reported, std::nullopt, Vec3(10, 20, 30), kNow);
+        EXPECT_EQ(table.diagnostics().merged, reported.size() - kMaxCylinders);
+        ASSERT_EQ(table.cylinders().size(), kMaxCylinders);
         for (int sample = 0; sample < 200; ++sample) {
-            const Constraint& one = told[random.below(told.size())];
+            const Constraint& one = reported[random.below(reported.size())];
             const Seconds later = random.uniform(0.0F, 150.0F);
             ConstraintTable alone;
             alone.tell({&one, 1}, std::nullopt, Vec3::Zero(), kNow);
             alone.place(std::nullopt, kNow + later);
-            const world::Barrel& body = alone.barrels()[0];
+            const world::Cylinder& body = alone.cylinders()[0];
             const float angle = random.uniform(-kPi, kPi);
             const world::Vec2 point = body.circle.centre + body.circle.radius * random.uniform(0.0F, 0.999F) *
                                                                world::Vec2(std::cos(angle), std::sin(angle));
             table.place(std::nullopt, kNow + later);
-            const auto barrels = table.barrels();
-            ASSERT_TRUE(std::any_of(barrels.begin(), barrels.end(),
-                                    [&](const world::Barrel& barrel) {
-                                        return (point - barrel.circle.centre).norm() <= barrel.circle.radius;
+            const auto cylinders = table.cylinders();
+            ASSERT_TRUE(std::any_of(cylinders.begin(), cylinders.end(),
+                                    [&](const world::Cylinder& cylinder) {
+                                        return (point - cylinder.circle.centre).norm() <= cylinder.circle.radius;
                                     }))
                 << "round " << round << ", " << later << " s later";
         }
@@ -148,7 +148,7 @@ protected:
     Constraint cell(float ahead, float radius, const world::Vec2& velocity = world::Vec2::Zero())
     {
         Constraint one;
-        one.barrel = {{{f.position.x(), f.position.y() + ahead}, radius}, velocity, 0.0F, 500.0F, 0.0F};
+        one.cylinder = {{{f.position.x(), f.position.y() + ahead}, radius}, velocity, 0.0F, 500.0F, 0.0F};
         one.stamp = f.now;
         return one;
     }
@@ -159,8 +159,8 @@ protected:
         for (int i = 0; i < ticks; ++i) {
             f.fly(1);
             const Seconds t = f.now - one.stamp;
-            const world::Vec2 centre = one.barrel.circle.centre + t * one.barrel.velocity;
-            least = std::min(least, (f.position.head<2>() - centre).norm() - one.barrel.circle.radius);
+            const world::Vec2 centre = one.cylinder.circle.centre + t * one.cylinder.velocity;
+            least = std::min(least, (f.position.head<2>() - centre).norm() - one.cylinder.circle.radius);
         }
         return least;
     }
@@ -174,7 +174,7 @@ TEST_F(CoprocessorConstraints, KeepsOutOfOneThatStandsAndOneThatComes)
         const Constraint one = cell(60.0F, 10.0F, velocity);
         f.coprocessor.set_constraints({&one, 1}, f.now);
         EXPECT_GT(fly_past(one, 1500), 0.7F);
-        EXPECT_EQ(f.last.barrels, 1U);
+        EXPECT_EQ(f.last.cylinders, 1U);
         EXPECT_EQ(f.last.faults, 0U);
     }
     EXPECT_GT(f.setpoints, 0);
@@ -197,13 +197,13 @@ TEST_F(CoprocessorConstraints, WarnsOfAClosedArea)
 TEST_F(CoprocessorConstraints, OnTheGlobeIsPlacedByTheLinksOrigin)
 {
     Constraint one = cell(0.0F, 100.0F);
-    one.barrel.circle.centre.setZero();
+    one.cylinder.circle.centre.setZero();
     one.about = f.endpoint.origin();
     ASSERT_TRUE(one.about);
     one.about->lat += 9000;
     f.coprocessor.set_constraints({&one, 1}, f.now);
     f.fly(2);
-    EXPECT_EQ(f.last.barrels, 1U);
+    EXPECT_EQ(f.last.cylinders, 1U);
     EXPECT_EQ(f.last.faults, 0U);
 }
 

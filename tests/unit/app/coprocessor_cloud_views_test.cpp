@@ -24,10 +24,10 @@ public:
     void give_to(world::ObstacleTable& obstacles) noexcept override { table = &obstacles; }
     link::CloudSink& link_points() noexcept override { return points; }
     void forward_to(link::CloudSink& sink) noexcept override { forwarded = &sink; }
-    void serve(TimePoint now, const CloudView& told) noexcept override
+    void serve(TimePoint now, const CloudView& reported) noexcept override
     {
         served = now;
-        view = told;
+        view = reported;
         ++times;
     }
 
@@ -156,7 +156,7 @@ TEST_F(CloudViews, ReachPictureIsForwardedToAndLooksFromTheSamePlace)
         const world::Reference reference;
         const world::FlightRules rules;
         const world::Situation now{t->now, t->own, limits, airframe, reference, rules};
-        ASSERT_EQ(picture.picture().rate(now, placed, reach::CellBalls(placed.set->grid), 0.0F, levels, budget),
+        ASSERT_EQ(picture.picture().rate(now, placed, reach::CellSpheres(placed.set->grid), 0.0F, levels, budget),
                   reach::RateStatus::rated);
         const bool any = std::any_of(levels.begin(), levels.end(), [](reach::Level l) { return l != reach::kFree; });
         EXPECT_EQ(any, blocks);

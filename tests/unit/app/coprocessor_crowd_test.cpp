@@ -160,7 +160,7 @@ TEST(CoprocessorCrowd, AFloodDoesNotHideARealThreatAndIsToldOnce)
     int hits = 0;
     for (int k = 0; k < kEncounters; k += 5) {
         Encounter e(k);
-        int told = 0;
+        int reported = 0;
         const float least = e.fly([&](int i) {
             // 16 of them in each of four ticks, once a second.
             for (std::uint32_t n = 0; i % 50 < 4 && n < kMaxTracks / 4; ++n) {
@@ -174,11 +174,11 @@ TEST(CoprocessorCrowd, AFloodDoesNotHideARealThreatAndIsToldOnce)
                 e.f->feed(seen_at(7, e.where, e.velocity), 156);
             }
             for (const Statustext& m : e.f->said_of<Statustext>()) {
-                told += std::string_view(m.text.data(), m.text.size()).starts_with("jink: too much traffic") ? 1 : 0;
+                reported += std::string_view(m.text.data(), m.text.size()).starts_with("jink: too much traffic") ? 1 : 0;
             }
         });
         hits += least < kHit ? 1 : 0;
-        EXPECT_EQ(told, 1);
+        EXPECT_EQ(reported, 1);
     }
     EXPECT_EQ(hits, 0);
 }

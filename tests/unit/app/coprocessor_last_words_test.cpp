@@ -74,13 +74,13 @@ TEST_F(LastWordsFlight, NoticesWaitForTheAutopilotAndAreToldOnce)
     EXPECT_FALSE(f->coprocessor.tell_when_heard(link::Severity::critical, text));
     f->heartbeats = false;
     f->fly(100);
-    std::size_t told = 0;
+    std::size_t reported = 0;
     f->heartbeats = true;
     for (int i = 0; i < 200; ++i) {
         f->fly(1);
-        told += texts("jink: restart 1");
+        reported += texts("jink: restart 1");
     }
-    EXPECT_EQ(told, 3U);
+    EXPECT_EQ(reported, 3U);
 }
 
 TEST_F(LastWordsFlight, PassiveItSaysCriticalAndAsksForNothing)

@@ -20,7 +20,7 @@ struct Passed {
     std::uint8_t by = 0;  ///< MethodTraits::id
     float nearest = 1e9F;
     bool warned = false;  ///< that the sets do not suit
-    int told = 0;         ///< that they are damaged
+    int reported = 0;         ///< that they are damaged
 };
 
 Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_out = false)
@@ -37,7 +37,7 @@ Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_ou
     const auto listen = [&] {
         for (const Statustext& m : f->said_of<Statustext>()) {
             const std::string text(m.text.data(), m.text.size());
-            passed.told += text.find("damaged") != std::string::npos ? 1 : 0;
+            passed.reported += text.find("damaged") != std::string::npos ? 1 : 0;
             passed.warned = passed.warned || text.find("do not suit") != std::string::npos;
         }
     };
@@ -128,7 +128,7 @@ TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
 {
     const Passed passed = pass({{Param::methods, 3.0F}}, true);
     EXPECT_EQ(passed.by, kGeometric);
-    EXPECT_EQ(passed.told, 1);
+    EXPECT_EQ(passed.reported, 1);
     EXPECT_GT(passed.nearest, 2.0F);
 }
 

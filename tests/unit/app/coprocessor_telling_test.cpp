@@ -57,8 +57,8 @@ TEST(TellingState, OwnStateThatNeverCameAndAirspaceWithoutAPlaceAreWaitedFor)
     EXPECT_EQ(t->last.state, SystemState::boot);
     t->own_state = true;
     link::Constraint closed;
-    closed.barrel.circle.radius = 10.0F;
-    closed.barrel.top = 100.0F;
+    closed.cylinder.circle.radius = 10.0F;
+    closed.cylinder.top = 100.0F;
     closed.about = link::GlobalPosition{473977420, 85455940, 488000};
     t->coprocessor.set_constraints({&closed, 1}, t->now);
     t->step();

@@ -188,10 +188,10 @@ TEST(CoprocessorTraffic, AnotherSystemInTheWayIsAConflictToldByItsId)
         f.fly(1);
     }
     ASSERT_TRUE(f.last.guidance.conflict.has_value());
-    const auto told = f.said_of<Collision>();
-    ASSERT_EQ(told.size(), 1U);
-    EXPECT_EQ(told[0].src, 1);
-    EXPECT_EQ(told[0].id, kOther);
+    const auto reported = f.said_of<Collision>();
+    ASSERT_EQ(reported.size(), 1U);
+    EXPECT_EQ(reported[0].src, 1);
+    EXPECT_EQ(reported[0].id, kOther);
 }
 
 TEST(CoprocessorTraffic, OwnTransponderHeardBackIsNoTraffic)

@@ -119,14 +119,14 @@ TEST(Warnings, OfAClosedAreaCarryItsPlaceAmongThem)
     const auto t = advising();
     std::array<link::Constraint, 2> closed;
     for (std::size_t i = 0; i < 2; ++i) {
-        closed[i].barrel.circle.centre = world::Vec2(t->own.position.x() + 45.0F, i == 0 ? 500.0F : 0.0F);
-        closed[i].barrel.circle.radius = 10.0F;
-        closed[i].barrel.bottom = 0.0F;
-        closed[i].barrel.top = 100.0F;
+        closed[i].cylinder.circle.centre = world::Vec2(t->own.position.x() + 45.0F, i == 0 ? 500.0F : 0.0F);
+        closed[i].cylinder.circle.radius = 10.0F;
+        closed[i].cylinder.bottom = 0.0F;
+        closed[i].cylinder.top = 100.0F;
     }
     t->coprocessor.set_constraints(closed, t->now);
     ASSERT_TRUE(t->until([](const StepReport& r) { return r.guidance.conflict.has_value(); }));
-    ASSERT_EQ(t->last.guidance.conflict->threat.kind, world::ThreatKind::barrel);
+    ASSERT_EQ(t->last.guidance.conflict->threat.kind, world::ThreatKind::cylinder);
     ASSERT_EQ(t->link.warnings.size(), 1U);
     EXPECT_EQ(t->link.warnings[0].id, 0x04000000U + t->last.guidance.conflict->threat.index);
     EXPECT_EQ(t->last.guidance.conflict->threat.index, 1U);

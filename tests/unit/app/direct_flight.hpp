@@ -191,8 +191,8 @@ private:
         in.own_state.state = state;
         in.own_state.state.stamp = now;
         in.own_state.has_yaw = true;
-        if (ticks_ % 50 == 1 || mode != told_mode_) {
-            told_mode_ = mode;
+        if (ticks_ % 50 == 1 || mode != reported_mode_) {
+            reported_mode_ = mode;
             in.has_autopilot = true;
             in.autopilot.stamp = now;
             in.autopilot.stack = link::AutopilotStack::ardupilot;
@@ -247,7 +247,7 @@ private:
     vehicle::VehicleLimits limits_;
     SilentPort port_;
     IdleWatchdog watchdog_;
-    link::FlightMode told_mode_ = link::FlightMode::unknown;
+    link::FlightMode reported_mode_ = link::FlightMode::unknown;
     Seconds mission_time_ = 0.0F;
     int ticks_ = 0;
     bool was_ours_ = false;

@@ -96,8 +96,8 @@ public:
         now.us += kTickUs;
         boot_us += kTickUs;
         move();
-        if (heartbeats && (ticks % 50 == 0 || mode != told_mode_)) {
-            told_mode_ = mode;
+        if (heartbeats && (ticks % 50 == 0 || mode != reported_mode_)) {
+            reported_mode_ = mode;
             feed(wire::heartbeat(mode, armed, px4 ? 12 : 3, mav_type));
         }
         if (ticks % 50 == 0) {
@@ -317,7 +317,7 @@ private:
     Vec3 command_ = Vec3::Zero();
     TimePoint last_heard_;  ///< set-point
     TimePoint stream_since_;
-    std::uint32_t told_mode_ = 0xFFFFFFFF;
+    std::uint32_t reported_mode_ = 0xFFFFFFFF;
     std::uint8_t sequence_ = 0;
     Parser parser_;
 };

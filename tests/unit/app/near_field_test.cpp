@@ -99,15 +99,15 @@ TEST(NearField, EachSectorTellsItsNearestAndNothingElse)
         }
         std::vector<double> expected;
         std::copy_if(nearest.begin(), nearest.end(), std::back_inserter(expected), [](double d) { return d < 50.0; });
-        std::vector<double> told;
+        std::vector<double> reported;
         for (const link::NearObject& object : find_near(own, tracks, {}, k)) {
-            told.push_back(static_cast<double>(object.distance));
+            reported.push_back(static_cast<double>(object.distance));
         }
         std::sort(expected.begin(), expected.end());
-        std::sort(told.begin(), told.end());
-        ASSERT_EQ(told.size(), expected.size());
-        for (std::size_t n = 0; n < told.size(); ++n) {
-            ASSERT_NEAR(told[n], expected[n], 1e-3);
+        std::sort(reported.begin(), reported.end());
+        ASSERT_EQ(reported.size(), expected.size());
+        for (std::size_t n = 0; n < reported.size(); ++n) {
+            ASSERT_NEAR(reported[n], expected[n], 1e-3);
         }
     }
 }
@@ -217,15 +217,15 @@ TEST(NearField, NearestOfTracksAndObstaclesOfASectorIsTold)
 TEST(NearField, ReachEndsAtItsBoundAndTheLeastIsTold)
 {
     vehicle::VehicleState own;
-    const auto told = [&](float surface) {
+    const auto reported = [&](float surface) {
         const world::Obstacle o{1, geometry::make_sphere({surface + 1.0F, 0.0F, 0.0F}, 1.0F)};
         const NearObjects found = find_near(own, {}, {&o, 1}, 3.0F);
         return found.empty() ? -1.0F : found[0].distance;
     };
-    EXPECT_EQ(told(kNearReach), -1.0F);
-    EXPECT_NEAR(told(kNearReach - 0.01F), kNearReach - 0.01F, 1e-4F);
-    EXPECT_EQ(told(0.05F), kNearLeast);
-    EXPECT_NEAR(told(0.15F), 0.15F, 1e-5F);
+    EXPECT_EQ(reported(kNearReach), -1.0F);
+    EXPECT_NEAR(reported(kNearReach - 0.01F), kNearReach - 0.01F, 1e-4F);
+    EXPECT_EQ(reported(0.05F), kNearLeast);
+    EXPECT_NEAR(reported(0.15F), 0.15F, 1e-5F);
 }
 
 TEST(NearField, PointOnTheSurfaceOrWithinIsNearestToItself)

@@ -56,7 +56,7 @@ struct Flying {
         const world::Reference reference;
         const world::FlightRules rules;
         const world::Situation now{scan.stamp, own, limits, airframe, reference, rules};
-        return picture.picture().rate(now, placed, reach::CellBalls(placed.set->grid), 0.0F, blocks, budget) ==
+        return picture.picture().rate(now, placed, reach::CellSpheres(placed.set->grid), 0.0F, blocks, budget) ==
                reach::RateStatus::rated;
     }
 
@@ -234,7 +234,7 @@ TEST(ReachPictures, GridIsThatOfTheSetsThatReachWidest)
         const world::Reference reference;
         const world::FlightRules rules;
         const world::Situation now{f.scan.stamp, own, limits, airframe, reference, rules};
-        ASSERT_EQ(picture.picture().rate(now, placed, reach::CellBalls(wide.grid), 0.0F, blocks, budget),
+        ASSERT_EQ(picture.picture().rate(now, placed, reach::CellSpheres(wide.grid), 0.0F, blocks, budget),
                   reach::RateStatus::rated);
         EXPECT_GT(std::count_if(blocks.begin(), blocks.end(), [](reach::Level b) { return b != reach::kFree; }), 0);
     }

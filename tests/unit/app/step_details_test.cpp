@@ -99,9 +99,9 @@ TEST(StepDetails, TrafficStampedInTheFutureIsRefused)
 link::ConstraintPart closed_part(std::uint8_t set, std::uint8_t index, std::uint8_t count, float north)
 {
     link::ConstraintPart part;
-    part.constraint.barrel.circle = {{0.0F, north}, 5.0F};
-    part.constraint.barrel.bottom = 0.0F;
-    part.constraint.barrel.top = 100.0F;
+    part.constraint.cylinder.circle = {{0.0F, north}, 5.0F};
+    part.constraint.cylinder.bottom = 0.0F;
+    part.constraint.cylinder.top = 100.0F;
     part.set = set;
     part.index = index;
     part.count = count;
@@ -119,19 +119,19 @@ TEST(StepDetails, AnIncompleteSetOfClosedAreasOpensNothing)
     b.wire.in.constraints.unchecked_push_back(closed_part(2, 0, 2, -500.0F));
     b.fly(1);
     EXPECT_EQ(b.wire.constraints.back(), link::ConstraintResult::kept);
-    EXPECT_EQ(b.last.barrels, 1U);
+    EXPECT_EQ(b.last.cylinders, 1U);
     EXPECT_TRUE(b.last.guidance.conflict.has_value()) << "the area that is in force";
-    const std::uint32_t told = b.coprocessor.constraint_diagnostics().told;
+    const std::uint32_t reported = b.coprocessor.constraint_diagnostics().reported;
     b.wire.in.constraints.unchecked_push_back(closed_part(2, 1, 2, -600.0F));
     b.fly(1);
-    EXPECT_EQ(b.last.barrels, 2U);
+    EXPECT_EQ(b.last.cylinders, 2U);
     EXPECT_FALSE(b.last.guidance.conflict.has_value());
-    EXPECT_EQ(b.coprocessor.constraint_diagnostics().told, told + 2);
+    EXPECT_EQ(b.coprocessor.constraint_diagnostics().reported, reported + 2);
     link::ConstraintPart wrong = closed_part(3, 0, 1, 0.0F);
-    wrong.constraint.barrel.circle.radius = -1.0F;
+    wrong.constraint.cylinder.circle.radius = -1.0F;
     b.wire.in.constraints.unchecked_push_back(wrong);
     b.fly(1);
-    EXPECT_EQ(b.coprocessor.constraint_diagnostics().told, told + 2) << "nothing new";
+    EXPECT_EQ(b.coprocessor.constraint_diagnostics().reported, reported + 2) << "nothing new";
 }
 
 TEST(StepDetails, WithoutAnAutopilotThereIsNoCeilingAndNoHomeToKeepNearTo)

@@ -65,9 +65,9 @@ TEST(StepHold, InFrontOfAClosedAreaItStopsWhateverOtherTrafficDoes)
     f.intruder = f.position + Vec3(0.0F, -40.0F, 0.0F);
     f.intruder_velocity = f.velocity;
     link::Constraint area;
-    area.barrel.circle = {{f.position.x(), f.position.y() + 75.0F}, 10.0F};
-    area.barrel.bottom = 0.0F;
-    area.barrel.top = 500.0F;
+    area.cylinder.circle = {{f.position.x(), f.position.y() + 75.0F}, 10.0F};
+    area.cylinder.bottom = 0.0F;
+    area.cylinder.top = 500.0F;
     f.coprocessor.set_constraints({&area, 1}, f.now);
     ASSERT_TRUE(refuse(f));
     bool held = false;

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/clouds.hpp"
-#include "firmware/app/echo.hpp"
+#include "firmware/app/range_return.hpp"
 #include "firmware/app/near_field.hpp"
 #include "tests/unit/app/step_bench.hpp"
 
@@ -148,7 +148,7 @@ TEST_F(StepRanges, ASectorIsHalfACircleAtMost)
 {
     static_cast<void>(scan({20.0F}, 0.0F, 5.0F));
     bench->fly(1);
-    ASSERT_EQ(obstacles().size(), kMaxEchoParts);
+    ASSERT_EQ(obstacles().size(), kMaxReturnParts);
     for (float yaw = -0.5F * kPi + 0.01F; yaw < 0.5F * kPi; yaw += 0.05F) {
         EXPECT_TRUE(covered(level(yaw, 20.0F))) << yaw;
         EXPECT_FALSE(covered(level(yaw + kPi, 20.0F))) << yaw;
@@ -257,7 +257,7 @@ TEST_F(StepRanges, ALevelReadingLooksWhereItSaysAndAsWideAsItSays)
     static_cast<void>(reading(Vec3(0.6F, -0.8F, 0.0F), 20.0F, 5.0F));
     bench->fly(1);
     const float yaw = std::atan2(-0.8F, 0.6F);
-    ASSERT_EQ(obstacles().size(), kMaxEchoParts) << "half a circle at most";
+    ASSERT_EQ(obstacles().size(), kMaxReturnParts) << "half a circle at most";
     for (float aside = -0.5F * kPi + 0.01F; aside < 0.5F * kPi; aside += 0.1F) {
         EXPECT_TRUE(covered(level(yaw + aside, 20.0F))) << aside;
         EXPECT_FALSE(covered(level(yaw + aside + kPi, 20.0F))) << aside;

@@ -235,9 +235,9 @@ TEST(StepCommands, OnlyTheHeartbeatIsSentOnRequest)
 link::Constraint area_at(float north, std::optional<link::GlobalPosition> about = {})
 {
     link::Constraint c;
-    c.barrel.circle = {{0.0F, north}, 5.0F};
-    c.barrel.bottom = 0.0F;
-    c.barrel.top = 100.0F;
+    c.cylinder.circle = {{0.0F, north}, 5.0F};
+    c.cylinder.bottom = 0.0F;
+    c.cylinder.top = 100.0F;
     c.about = about;
     return c;
 }
@@ -250,14 +250,14 @@ TEST(StepConstraints, AClosedAreaCountsFromTheStepInWhichItIsTold)
     b.fly(1);
     ASSERT_EQ(b.wire.constraints.size(), 1U);
     EXPECT_EQ(b.wire.constraints[0], link::ConstraintResult::in_force);
-    EXPECT_EQ(b.last.barrels, 1U);
+    EXPECT_EQ(b.last.cylinders, 1U);
     ASSERT_TRUE(b.last.guidance.conflict.has_value());
-    EXPECT_EQ(b.last.guidance.conflict->threat.kind, world::ThreatKind::barrel);
+    EXPECT_EQ(b.last.guidance.conflict->threat.kind, world::ThreatKind::cylinder);
     EXPECT_NEAR(b.last.guidance.conflict->time_to_loss, (40.0F - 5.0F - 1.0F) / 5.0F, 0.02F);
     b.wire.in.constraints.unchecked_push_back({{}, 2, 0, 0, 9, 9});
     b.fly(1);
     EXPECT_EQ(b.wire.constraints.back(), link::ConstraintResult::in_force) << "an empty set opens all";
-    EXPECT_EQ(b.last.barrels, 0U);
+    EXPECT_EQ(b.last.cylinders, 0U);
 }
 
 TEST(StepConstraints, WithoutAnOriginAnAreaOnTheGlobeIsAFault)
@@ -271,11 +271,11 @@ TEST(StepConstraints, WithoutAnOriginAnAreaOnTheGlobeIsAFault)
     b.fly(1);
     EXPECT_EQ(b.last.faults, bit(Fault::airspace_unplaced));
     EXPECT_EQ(b.last.state, link::SystemState::boot) << "waits for it";
-    EXPECT_EQ(b.last.barrels, 0U);
+    EXPECT_EQ(b.last.cylinders, 0U);
     b.wire.where = link::GlobalPosition{473977420, 85455940, 488000};
     b.fly(1);
     EXPECT_EQ(b.last.faults, 0U);
-    EXPECT_EQ(b.last.barrels, 1U);
+    EXPECT_EQ(b.last.cylinders, 1U);
 }
 
 TEST(StepConstraints, InABussOwnFrameThereAreNone)
@@ -286,10 +286,10 @@ TEST(StepConstraints, InABussOwnFrameThereAreNone)
     b.hear_bus_own();
     b.step();
     ASSERT_EQ(b.last.own_source, OwnSource::bus);
-    EXPECT_EQ(b.last.barrels, 0U);
+    EXPECT_EQ(b.last.cylinders, 0U);
     EXPECT_FALSE(b.last.guidance.conflict.has_value());
     b.fly(2);
-    EXPECT_EQ(b.last.barrels, 1U);
+    EXPECT_EQ(b.last.cylinders, 1U);
     EXPECT_TRUE(b.last.guidance.conflict.has_value());
 }
 
@@ -301,13 +301,13 @@ TEST(StepNear, WhatIsNearIsToldFiveTimesASecond)
     b.fly(1);
     ASSERT_EQ(b.bus.near.size(), 1U);
     EXPECT_NEAR(b.bus.near[0].distance, 20.0F - 1.0F - 2.0F * 0.5F, 0.02F);
-    EXPECT_EQ(b.counted().near_told, 1U);
+    EXPECT_EQ(b.counted().near_reported, 1U);
     b.fly(9);
     EXPECT_EQ(b.bus.near.size(), 1U);
     b.bus.takes_near = false;
     b.fly(1);
     EXPECT_EQ(b.bus.near.size(), 2U) << "0.2 s later";
-    EXPECT_EQ(b.counted().near_told, 1U) << "but not taken";
+    EXPECT_EQ(b.counted().near_reported, 1U) << "but not taken";
 }
 
 TEST(StepNear, ItIsToldFromWhereTheVehicleIsNow)

@@ -52,14 +52,14 @@ TEST(LastWords, TheNewestCountAndAHalfWrittenDraftDoesNot)
         std::copy(half.begin(), half.end(), words.draft().begin());
         EXPECT_EQ(valid(words), bytes_of(i % 2 == 0 ? "even" : "odd words"));
     }
-    words.publish(LastWords::kMost + 1);  // invalid size: the older words stay
+    words.publish(LastWords::kMax + 1);  // invalid size: the older words stay
     EXPECT_EQ(valid(words), bytes_of("even"));
 }
 
 TEST(LastWords, NoChangeOfAByteGoesUnnoticed)
 {
     Random random(5);
-    for (std::size_t size : {std::size_t{1}, std::size_t{63}, LastWords::kMost}) {
+    for (std::size_t size : {std::size_t{1}, std::size_t{63}, LastWords::kMax}) {
         LastWords words;
         words.clear();
         Bytes said(size);

@@ -79,12 +79,12 @@ TEST_F(MavlinkConstraints, AnAreaOfTheLocalFrameIsReadByteByByte)
     EXPECT_FALSE(c.about);
     EXPECT_EQ(c.stamp.us, now.us - 1'000'000);
     EXPECT_EQ(c.ends.us, now.us + 59'000'000);
-    EXPECT_EQ(c.barrel.circle.centre, world::Vec2(-20.0F, 10.0F)) << "east, north";
-    EXPECT_EQ(c.barrel.velocity, world::Vec2(-1.0F, 3.0F));
-    EXPECT_EQ(c.barrel.bottom, 5.0F);
-    EXPECT_EQ(c.barrel.top, 120.0F);
-    EXPECT_EQ(c.barrel.circle.radius, 12.0F);
-    EXPECT_EQ(c.barrel.margin, 6.0F);
+    EXPECT_EQ(c.cylinder.circle.centre, world::Vec2(-20.0F, 10.0F)) << "east, north";
+    EXPECT_EQ(c.cylinder.velocity, world::Vec2(-1.0F, 3.0F));
+    EXPECT_EQ(c.cylinder.bottom, 5.0F);
+    EXPECT_EQ(c.cylinder.top, 120.0F);
+    EXPECT_EQ(c.cylinder.circle.radius, 12.0F);
+    EXPECT_EQ(c.cylinder.margin, 6.0F);
     EXPECT_TRUE(sent().empty()) << "the application answers";
 }
 
@@ -98,14 +98,14 @@ TEST_F(MavlinkConstraints, AnAreaOnTheGlobeKeepsItsPlace)
     const Constraint& c = inbox->constraints[0].constraint;
     ASSERT_TRUE(c.about);
     EXPECT_EQ(*c.about, (GlobalPosition{10000, -20000, 0}));
-    EXPECT_EQ(c.barrel.circle.centre, world::Vec2(0.0F, 0.0F));
+    EXPECT_EQ(c.cylinder.circle.centre, world::Vec2(0.0F, 0.0F));
     EXPECT_EQ(c.ends, Constraint{}.ends) << "closed until another set comes";
 }
 
 TEST_F(MavlinkConstraints, WhatIsWrittenIsReadAgain)
 {
     ConstraintPart part;
-    part.constraint.barrel = {{{-20.5F, 10.25F}, 12.0F}, {1.0F, 2.0F}, 3.0F, 4.0F, 5.0F};
+    part.constraint.cylinder = {{{-20.5F, 10.25F}, 12.0F}, {1.0F, 2.0F}, 3.0F, 4.0F, 5.0F};
     part.constraint.stamp = {now.us - 500'000};
     part.constraint.ends = {now.us + 9'500'000};
     part.set = 250;
@@ -113,8 +113,8 @@ TEST_F(MavlinkConstraints, WhatIsWrittenIsReadAgain)
     part.count = 8;
     ConstraintPart read;
     ASSERT_TRUE(read_constraint(constraint_message(part, now), now, read));
-    EXPECT_EQ(read.constraint.barrel.circle.centre, part.constraint.barrel.circle.centre);
-    EXPECT_EQ(read.constraint.barrel.velocity, part.constraint.barrel.velocity);
+    EXPECT_EQ(read.constraint.cylinder.circle.centre, part.constraint.cylinder.circle.centre);
+    EXPECT_EQ(read.constraint.cylinder.velocity, part.constraint.cylinder.velocity);
     EXPECT_EQ(read.constraint.stamp, part.constraint.stamp);
     EXPECT_EQ(read.constraint.ends, part.constraint.ends);
     EXPECT_EQ(read.set, part.set);

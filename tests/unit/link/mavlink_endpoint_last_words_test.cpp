@@ -11,7 +11,7 @@ namespace {
 
 class EndpointLastWords : public EndpointTest {
 protected:
-    std::vector<Received> words(bool hold, std::string_view text, std::size_t room = hal::LastWords::kMost)
+    std::vector<Received> words(bool hold, std::string_view text, std::size_t room = hal::LastWords::kMax)
     {
         Bytes out(room);
         const std::size_t n = endpoint->compose_last_words(out, hold, text);
@@ -99,7 +99,7 @@ TEST_F(EndpointLastWords, WithoutAnAutopilotThereIsNobodyToAsk)
 TEST_F(EndpointLastWords, NoRoomMeansNoWordsRatherThanHalfOfThem)
 {
     heartbeat(3, 4);
-    Bytes all(hal::LastWords::kMost);
+    Bytes all(hal::LastWords::kMax);
     const std::size_t size = endpoint->compose_last_words(all, true, "0123456789");
     for (std::size_t room = 0; room < size; ++room) {
         Bytes out(room);
@@ -129,7 +129,7 @@ TEST(MavlinkLastWordsSigned, AreAcceptedAfterEverythingThatWasSentBefore)
             endpoint->send_text(Severity::info, "of this step");
         }
         // Composed before the step's frames are sent, and sent after all of them.
-        Bytes words(hal::LastWords::kMost);
+        Bytes words(hal::LastWords::kMax);
         const std::size_t n =
             endpoint->compose_last_words(words, true, "12345678901234567890123456789012345678901234567890");
         ASSERT_GT(n, 0U) << "the longest words there are fit";

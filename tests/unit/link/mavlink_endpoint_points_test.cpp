@@ -80,8 +80,8 @@ TEST_F(EndpointPoints, RollAndPitchOfEveryAttitudeMessageLevelIt)
     // A quaternion of roll 0.2, pitch -0.4, heading 1.1 turns body to NED: take the heading off and change the axes.
     const Eigen::Quaternionf q = Eigen::AngleAxisf(1.1F, Vec3::UnitZ()) * Eigen::AngleAxisf(-0.4F, Vec3::UnitY()) *
                                  Eigen::AngleAxisf(0.2F, Vec3::UnitX());
-    const Vec3 told(5, -3, 2);
-    const Vec3 north_east_down = q * told;
+    const Vec3 reported(5, -3, 2);
+    const Vec3 north_east_down = q * reported;
     const Vec3 unturned = Eigen::AngleAxisf(-1.1F, Vec3::UnitZ()) * north_east_down;
     const Vec3 expected(unturned.x(), -unturned.y(), -unturned.z());
     attitude_of(0, 0, 0);

@@ -235,7 +235,7 @@ double placed(const Margin& margin_at, double wanted)
 }
 
 /// A track, a sphere or a pillar whose surface the flight passes at `wanted` at some instant.
-inline void place_ball(Random& random, Drawn& d, const DenseFlight& flight, double wanted, bool moves)
+inline void place_sphere(Random& random, Drawn& d, const DenseFlight& flight, double wanted, bool moves)
 {
     Scene& s = d.scene;
     const double t = double(random.uniform()) * flight.end();
@@ -273,34 +273,34 @@ inline void place_ball(Random& random, Drawn& d, const DenseFlight& flight, doub
     }
 }
 
-inline void place_barrel(Random& random, Drawn& d, const DenseFlight& flight, double wanted)
+inline void place_cylinder(Random& random, Drawn& d, const DenseFlight& flight, double wanted)
 {
     Scene& s = d.scene;
     const double t = double(random.uniform()) * flight.end();
     const Vec3d own = flight.at(t).position;
     const float course = random.uniform(-kPi, kPi);
     const Eigen::Vector2d direction(std::cos(double(course)), std::sin(double(course)));
-    world::Barrel barrel;
-    barrel.circle.radius = random.uniform(0.5F, 20.0F);
-    barrel.velocity = random.below(2) == 0 ? world::Vec2(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F))
+    world::Cylinder cylinder;
+    cylinder.circle.radius = random.uniform(0.5F, 20.0F);
+    cylinder.velocity = random.below(2) == 0 ? world::Vec2(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F))
                                            : world::Vec2(world::Vec2::Zero());
     const bool beside = random.below(3) != 0;
     const float below = beside ? 10.0F : float(wanted) + s.limits.half_extents.z() + s.rules.k_sigma * s.own.sigma_position;
-    barrel.top = beside ? float(own.z()) + below : float(own.z()) - below;
-    barrel.bottom = barrel.top - 20.0F;
+    cylinder.top = beside ? float(own.z()) + below : float(own.z()) - below;
+    cylinder.bottom = cylinder.top - 20.0F;
     const auto put = [&](double x) {
-        barrel.circle.centre =
-            (own.head<2>() + direction * x - barrel.velocity.cast<double>() * t).template cast<float>();
+        cylinder.circle.centre =
+            (own.head<2>() + direction * x - cylinder.velocity.cast<double>() * t).template cast<float>();
     };
     put(beside ? placed(
                      [&](double x) {
                          put(x);
-                         return world::oracle::barrel_margin_at(s, own, barrel, t);
+                         return world::oracle::cylinder_margin_at(s, own, cylinder, t);
                      },
                      wanted)
                : 0.0);
-    s.barrels.push_back(barrel);
-    s.airspace.barrels = s.barrels;
+    s.cylinders.push_back(cylinder);
+    s.airspace.cylinders = s.cylinders;
 }
 
 inline void place_bound(Random& random, Drawn& d, const DenseFlight& flight, double wanted)
@@ -361,9 +361,9 @@ inline void place_threats(Random& random, Drawn& d, const DenseFlight& flight, b
     for (std::size_t n = 1 + random.below(2); n > 0; --n) {
         switch (solids ? 5 : random.below(5)) {
         case 0:
-        case 1: place_ball(random, d, flight, wanted(), true); break;
-        case 2: place_ball(random, d, flight, wanted(), false); break;
-        case 3: place_barrel(random, d, flight, wanted()); break;
+        case 1: place_sphere(random, d, flight, wanted(), true); break;
+        case 2: place_sphere(random, d, flight, wanted(), false); break;
+        case 3: place_cylinder(random, d, flight, wanted()); break;
         case 4: place_bound(random, d, flight, wanted()); break;
         default: place_solid(random, d, flight, wanted()); break;
         }

@@ -39,7 +39,7 @@ double stated_accuracy(const DenseFlight& flight)
 }
 
 /// The reported margin. `direction`: turn direction of a fallback; 0 for a command, stored in `d`.
-float told_of(Drawn& d, float& direction)
+float reported_of(Drawn& d, float& direction)
 {
     WorkBudget budget(kAmple);
     const world::Situation situation = d.scene.situation();
@@ -106,26 +106,26 @@ Counts compare(std::uint64_t default_seed, std::size_t cases, bool solids)
             continue;
         }
         float direction = 1.0F;
-        const float told = told_of(d, direction);
+        const float reported = reported_of(d, direction);
         const DenseFlight flight = dense::fly(d, direction);
         const double accuracy = stated_accuracy(flight);
-        const double floor = double(told) - accuracy;
+        const double floor = double(reported) - accuracy;
         ++counts.checked;
-        counts.clear += told >= 0.0F ? 1 : 0;
+        counts.clear += reported >= 0.0F ? 1 : 0;
         counts.clear_of[static_cast<std::size_t>(d.flying)][static_cast<std::size_t>(d.scene.limits.kind)] +=
-            told >= 0.0F ? 1 : 0;
+            reported >= 0.0F ? 1 : 0;
         // Margins saturate at the cap.
         const double truth = std::max(true_margin(d, flight, floor), -double(world::kSeparationCap));
         if (truth < floor) {
-            counts.worst = std::max(counts.worst, double(told) - truth);
+            counts.worst = std::max(counts.worst, double(reported) - truth);
             if (counts.above++ < 5) {
                 ADD_FAILURE() << "seed " << seed << " case " << i << " of kind " << static_cast<int>(d.flying)
-                              << ": told " << told << " m, flown " << truth << " m";
+                              << ": told " << reported << " m, flown " << truth << " m";
             }
-        } else if (told >= 0.0F && told < 5.0F) {
-            counts.below += truth - double(told);
+        } else if (reported >= 0.0F && reported < 5.0F) {
+            counts.below += truth - double(reported);
         }
-        if (told >= 0.0F && truth < -accuracy) {
+        if (reported >= 0.0F && truth < -accuracy) {
             ++counts.entered;
             counts.deepest = std::max(counts.deepest, -truth);
         }

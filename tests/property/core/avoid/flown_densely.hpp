@@ -218,11 +218,11 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
         };
         least = std::min(least, least_margin(margin, until, rate, scene.rules.escape, floor));
     }
-    for (const world::Barrel& barrel : scene.airspace.barrels) {
+    for (const world::Cylinder& cylinder : scene.airspace.cylinders) {
         const auto margin = [&](double t) {
-            return world::oracle::barrel_margin_at(scene, flight.at(t).position, barrel, t);
+            return world::oracle::cylinder_margin_at(scene, flight.at(t).position, cylinder, t);
         };
-        const double rate = own_rate + double(barrel.velocity.norm());
+        const double rate = own_rate + double(cylinder.velocity.norm());
         least = std::min(least, least_margin(margin, end, rate, scene.rules.escape, floor));
     }
     const auto bound = [&](bool active, world::ThreatKind kind) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves and balls in contact by less than any bound leaves for rounding, against distances in double: no quick reject
-// skips these contacts, for any distance and flight time of the ball.
+// Curves and spheres in contact by less than any bound leaves for rounding, against distances in double: no quick reject
+// skips these contacts, for any distance and flight time of the sphere.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,7 +13,7 @@
 namespace jink::geometric {
 namespace {
 
-/// A short curve, from the origin on or far out, and a ball: static, or moving in a plane of two of the world's axes or
+/// A short curve, from the origin on or far out, and a sphere: static, or moving in a plane of two of the world's axes or
 /// anywhere, and near some point of the curve at that point's time.
 struct Encounter {
     CurveBench bench;
@@ -70,7 +70,7 @@ struct Encounter {
                   double(reach.low.cwiseAbs().sum() + reach.high.cwiseAbs().sum()) + 10.0 +
                   double(curve.duration()) * double(threat.motion.velocity.cwiseAbs().sum());
     }
-    [[nodiscard]] oracle::Moving ball() const
+    [[nodiscard]] oracle::Moving sphere() const
     {
         return {oracle::to_double(bench.threats[0].motion.position),
                 oracle::to_double(bench.threats[0].motion.velocity), 0.0};
@@ -82,7 +82,7 @@ struct Encounter {
     }
 };
 
-TEST(CurveContact, ABallIsMetWhereItTouchesByAHair)
+TEST(CurveContact, ASphereIsMetWhereItTouchesByAHair)
 {
     Random random(831);
     const oracle::Box box{{0.5, 0.5, 0.5}};
@@ -90,7 +90,7 @@ TEST(CurveContact, ABallIsMetWhereItTouchesByAHair)
     for (std::size_t i = 0; i < case_count(3'000); ++i) {
         Encounter encounter(random);
         const bool moves = detail::is_moving(encounter.bench.threats[0].threat(0));
-        const double distance = oracle::margin(encounter.flight, encounter.ball(), box);
+        const double distance = oracle::margin(encounter.flight, encounter.sphere(), box);
         const double hair = 1e-6 * (encounter.lengths + 2.0 * distance);  // twice the error bound of the exact test
         if (distance > 4.0 * hair) {
             ASSERT_EQ(encounter.status(distance - 4.0 * hair), CandidateStatus::available) << i;
@@ -113,7 +113,7 @@ TEST(CurveContact, AVolumeIsMetWhereItTouches)
         encounter.bench.settings.security = SecurityMode::swept;
         const bool moves = detail::is_moving(encounter.bench.threats[0].threat(0));
         const double end = double(encounter.bench.curve.duration());
-        const double distance = oracle::swept_margin(encounter.flight, encounter.ball(), end, box);
+        const double distance = oracle::swept_margin(encounter.flight, encounter.sphere(), end, box);
         // Contact counts, to the last bit of the radius.
         const float radius = std::nextafter(static_cast<float>(distance), std::numeric_limits<float>::infinity());
         if (moves) {
@@ -130,7 +130,7 @@ TEST(CurveContact, AVolumeIsMetWhereItTouches)
 
 /// Signed distance of a box about `own` from an upright cylinder, in double precision: inside negative, to the nearest
 /// surface.
-double cylinder_distance(const world::Barrel& body, double t, const Eigen::Vector3d& own, double half)
+double cylinder_distance(const world::Cylinder& body, double t, const Eigen::Vector3d& own, double half)
 {
     const Eigen::Vector2d centre = body.circle.centre.cast<double>() + t * body.velocity.cast<double>();
     const Eigen::Vector2d to = centre - own.head<2>();
@@ -156,15 +156,15 @@ TEST(CurveContact, ACylinderIsTouchedWhereItIsWhenTheCurveIsThere)
         const float before = bench.problem.lead + bench.problem.begins;
         const std::size_t met = random.below(curve.points);
         const Vec3 place = curve.position(met) + RandomProblem::vector(random, 8.0F);
-        world::Barrel body;
+        world::Cylinder body;
         body.circle.radius = random.uniform(0.5F, 6.0F);
         body.velocity = random.below(3) == 0 ? world::Vec2(world::Vec2::Zero())
                                              : world::Vec2(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F));
         body.circle.centre = place.head<2>() - (curve.t[met] + before) * body.velocity;
         body.bottom = place.z() - random.uniform(0.0F, 6.0F);
         body.top = place.z() + random.uniform(0.0F, 6.0F);
-        const std::array barrels{body};
-        bench.airspace.barrels = barrels;
+        const std::array cylinders{body};
+        bench.airspace.cylinders = cylinders;
         double least = 1e9;
         for (std::size_t k = 0; k + 1 < curve.points; ++k) {
             for (int part = 0; part <= 400; ++part) {
@@ -192,14 +192,14 @@ TEST(CurveContact, ACylinderIsTouchedWhereItIsWhenTheCurveIsThere)
 
 TEST(CurveContact, OutOfACylinderTheWayOutIsClearAndTheWayThroughIsNot)
 {
-    world::Barrel body;
+    world::Cylinder body;
     body.circle = {world::Vec2(-1.9F, 0.0F), 2.0F};
     body.bottom = -10.0F;
     body.top = 10.0F;
-    const std::array barrels{body};
+    const std::array cylinders{body};
     for (const float way : {-4.0F, 4.0F}) {
         CurveBench bench({{Vec3::Zero(), 0.0F}, {Vec3(way, 0.0F, 0.0F), 2.0F}});
-        bench.airspace.barrels = barrels;
+        bench.airspace.cylinders = cylinders;
         EXPECT_EQ(bench.status(), CandidateStatus::hits_airspace) << "inside of it, without the escape rule";
         bench.settings.escape_from_margin = true;
         EXPECT_EQ(bench.status(), way > 0.0F ? CandidateStatus::available : CandidateStatus::hits_airspace) << way;

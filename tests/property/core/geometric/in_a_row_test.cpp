@@ -16,7 +16,7 @@ namespace {
 using geometry::oracle::seed_of;
 using world::PlanStatus;
 
-/// Up to four balls near the leg behind the main threat, some of which move or grow.
+/// Up to four spheres near the leg behind the main threat, some of which move or grow.
 void fill(InARow& scene, Random& random)
 {
     const Vec3 direction(random.uniform(-1.0F, 1.0F), random.uniform(-1.0F, 1.0F), random.uniform(-0.5F, 0.5F));

@@ -12,7 +12,7 @@
 #include "core/geometry/sweep.hpp"
 #include "core/path/flight.hpp"
 
-// `solve` without its optimisations: every candidate against every ball on every segment by contact_interval, every
+// `solve` without its optimisations: every candidate against every sphere on every segment by contact_interval, every
 // flight flown by `follow` and `advance`, then checked. Time-aware, threats and airspace, the start of the manoeuvre in
 // the world's origin. The list of candidates is that of `solve`.
 
@@ -100,7 +100,7 @@ private:
 
     std::vector<path::PathPoint> flown(const path::TimedPath& path) const
     {
-        constexpr float kLeast = 1e-3F;
+        constexpr float kMin = 1e-3F;
         std::vector<path::PathPoint> out{{Vec3::Zero(), problem_.start_velocity, 0.0F}};
         vehicle::VehicleState state;
         state.velocity = problem_.start_velocity;
@@ -113,9 +113,9 @@ private:
             out.back().velocity = (state.position - out.back().position) / (t - out.back().time);
             out.push_back({state.position, out.back().velocity, t});
         };
-        for (int k = 1; length - out.back().time > kLeast * dt; ++k) {
+        for (int k = 1; length - out.back().time > kMin * dt; ++k) {
             const float from = out.back().time;
-            const float to = length - static_cast<float>(k) * dt > kLeast * dt ? static_cast<float>(k) * dt : length;
+            const float to = length - static_cast<float>(k) * dt > kMin * dt ? static_cast<float>(k) * dt : length;
             const int parts = parts_of(dt, from >= 3.0F ? 0.25F : path::kFollowerPeriod);
             // Whole steps have the same length, independent of the rounding of their ends.
             const float part = (to == length ? to - from : dt) / static_cast<float>(parts);

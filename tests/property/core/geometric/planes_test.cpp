@@ -91,7 +91,7 @@ TEST(PlanesLaw, NothingIsToldThatIsNotSo)
 TEST(PlanesLaw, AHairIsNeverTakenForRoom)
 {
     Random random(seed_of(812));
-    unsigned told = 0;
+    unsigned reported = 0;
     for (std::size_t i = 0; i < case_count(20'000); ++i) {
         const Vec3 centre = in_cube(random, random.below(2) == 0 ? 3.0F : 300.0F);
         const Vec3 size(random.uniform(0.5F, 20.0F), random.uniform(0.5F, 20.0F), random.uniform(0.5F, 20.0F));
@@ -109,7 +109,7 @@ TEST(PlanesLaw, AHairIsNeverTakenForRoom)
         const double gap = std::abs(double(a[axis]) - double(centre[axis])) - double(size[axis]) - double(half[axis]);
         const detail::Planes planes(shape, shape.centre);
         const bool parted = planes.part(a, b, half, 0.0F);
-        told += parted ? 1U : 0U;
+        reported += parted ? 1U : 0U;
         ASSERT_TRUE(!parted || gap > 0.0) << i << ": " << gap;
         const detail::Curve curve = curve_of(a, b);
         const bool all = planes.part(detail::view_of(curve), half, 0.0F);
@@ -118,7 +118,7 @@ TEST(PlanesLaw, AHairIsNeverTakenForRoom)
         const bool touched = planes.touch(a, half, 0.0F);
         ASSERT_TRUE(!touched || gap < 0.0) << i << ": " << gap;
     }
-    EXPECT_GT(told, case_count(20'000) / 4) << "a hair that rounding cannot reach is seen";
+    EXPECT_GT(reported, case_count(20'000) / 4) << "a hair that rounding cannot reach is seen";
 }
 
 /// One end of the path barely in contact, with large terms in the slack: distant, wide and long bodies. For any order
@@ -127,7 +127,7 @@ TEST(PlanesLaw, AHairIsNeverTakenForRoomOfWhatIsLarge)
 {
     Random random(seed_of(813));
     const std::size_t count = case_count(10'000);
-    unsigned told = 0;
+    unsigned reported = 0;
     for (std::size_t i = 0; i < count; ++i) {
         const auto length = [&] { return std::pow(10.0F, random.uniform(-1.0F, 2.5F)); };
         const Vec3 size(length(), length(), length());
@@ -148,9 +148,9 @@ TEST(PlanesLaw, AHairIsNeverTakenForRoomOfWhatIsLarge)
         ASSERT_TRUE(!parted || gap > 0.0) << i << ": " << gap;
         const detail::Curve curve = curve_of(a, b);
         ASSERT_TRUE(!planes.part(detail::view_of(curve), half, 0.0F) || gap > 0.0) << i << ": " << gap;
-        told += parted ? 1U : 0U;
+        reported += parted ? 1U : 0U;
     }
-    EXPECT_GT(told, count / 20) << "some hairs are longer than rounding";
+    EXPECT_GT(reported, count / 20) << "some hairs are longer than rounding";
 }
 
 /// A path that stays beyond one face of a box, or one flat end of a round body, is always separated from it.
@@ -180,7 +180,7 @@ TEST(PlanesLaw, WhatStaysBeyondAFaceIsParted)
     }
 }
 
-/// At rest beside something round, wherever along it, or anywhere about a ball.
+/// At rest beside something round, wherever along it, or anywhere about a sphere.
 TEST(PlanesLaw, WhatRestsBesideSomethingRoundIsParted)
 {
     Random random(seed_of(815));
@@ -200,7 +200,7 @@ TEST(PlanesLaw, WhatRestsBesideSomethingRoundIsParted)
     }
 }
 
-/// Deep overlap with a solid is detected if the ball in the box or the box's corner shows it.
+/// Deep overlap with a solid is detected if the sphere in the box or the box's corner shows it.
 TEST(PlanesLaw, WhatIsInASolidByFarIsSeenToBe)
 {
     const Vec3 half = Vec3::Constant(0.5F);
@@ -222,7 +222,7 @@ TEST(PlanesLaw, WhatIsInASolidByFarIsSeenToBe)
         EXPECT_FALSE(touches(drum, Vec3(3.0F, 2.0F, side * 2.1F), half, 1.0F));
         EXPECT_TRUE(touches(pole, Vec3(0.0F, 0.0F, side * 22.4F), half, 0.0F));
         EXPECT_FALSE(touches(pole, Vec3(0.0F, 0.0F, side * 22.6F), half, 0.0F));
-        // A box with long arms: an arm reaches into the wall, the ball in the box does not.
+        // A box with long arms: an arm reaches into the wall, the sphere in the box does not.
         EXPECT_TRUE(touches(wall, Vec3(side * 4.0F, 3.0F, 4.0F), Vec3(4.0F, 0.1F, 0.1F), 0.0F));
         EXPECT_FALSE(touches(wall, Vec3(side * 4.6F, 3.0F, 4.0F), Vec3(4.0F, 0.1F, 0.1F), 0.0F));
     }
@@ -269,7 +269,7 @@ TEST(PlanesLaw, AtTheRoomLeftForRoundingNothingIsTold)
         EXPECT_FALSE(touch(detail::kExtentRounding)) << int(shape.kind);
         EXPECT_TRUE(touch(next(detail::kExtentRounding))) << int(shape.kind);
     }
-    // A corner that is inside by just that much, the ball in its box by less.
+    // A corner that is inside by just that much, the sphere in its box by less.
     const float size = 1.5F * detail::kExtentRounding;
     const geometry::Shape box = geometry::make_box(zero, Vec3::Constant(size));
     const float corner = size - detail::kExtentRounding * (1.0F + geometry::bounding_radius(box));

@@ -63,7 +63,7 @@ inline Vec3d exact_support(const Shape& shape, const Vec3d& direction)
 }
 
 /// Capacity of the point set. Four points span a simplex; affinely dependent points may stay for some iterations.
-inline constexpr int kMostPoints = 16;
+inline constexpr int kMaxPoints = 16;
 
 /// Least-norm point of the affine hull of `points`, as weights.
 std::vector<double> affine_weights(const std::vector<Vec3d>& points);
@@ -90,7 +90,7 @@ Bounds distance_from_origin(const Support& reach, double tolerance)
         if (bounds.upper - bounds.lower <= tolerance) {
             return bounds;
         }
-        if (points.size() > kMostPoints) {
+        if (points.size() > kMaxPoints) {
             return bounds;
         }
         points.push_back(next);

@@ -52,7 +52,7 @@ double sphere_distance(const PeerCase& c)
 struct SweptCube {
     const PeerCase& c;
 };
-struct Ball {
+struct Sphere {
     const PeerCase& c;
 };
 
@@ -74,17 +74,17 @@ void swept_cube_centre(const void* object, ccd_vec3_t* out)
         out->v[i] = 0.5 * (double(c.from[i]) + double(c.to[i]));
     }
 }
-void ball_support(const void* object, const ccd_vec3_t* d, ccd_vec3_t* out)
+void sphere_support(const void* object, const ccd_vec3_t* d, ccd_vec3_t* out)
 {
-    const PeerCase& c = static_cast<const Ball*>(object)->c;
+    const PeerCase& c = static_cast<const Sphere*>(object)->c;
     const double length = std::sqrt(ccdVec3Dot(d, d));
     for (int i = 0; i < 3; ++i) {
         out->v[i] = double(c.a[i]) + (length > 0 ? double(c.radius) * d->v[i] / length : 0.0);
     }
 }
-void ball_centre(const void* object, ccd_vec3_t* out)
+void sphere_centre(const void* object, ccd_vec3_t* out)
 {
-    const PeerCase& c = static_cast<const Ball*>(object)->c;
+    const PeerCase& c = static_cast<const Sphere*>(object)->c;
     ccdVec3Set(out, double(c.a.x()), double(c.a.y()), double(c.a.z()));
 }
 
@@ -93,9 +93,9 @@ ccd_t plain_libccd()
     ccd_t ccd;
     CCD_INIT(&ccd);
     ccd.support1 = swept_cube_support;
-    ccd.support2 = ball_support;
+    ccd.support2 = sphere_support;
     ccd.center1 = swept_cube_centre;
-    ccd.center2 = ball_centre;
+    ccd.center2 = sphere_centre;
     ccd.max_iterations = 1000;
     return ccd;
 }
@@ -152,9 +152,9 @@ TEST_F(ConvexPeers, SweptCubeAgainstSphere)
         const Contact contact = swept_box_contact(c.half, c.from, c.to, make_hull(centre, c.a), c.radius, budget);
         convex.judge(gap, contact != Contact::clear);
         const SweptCube cube{c};
-        const Ball ball{c};
-        gjk.judge(gap, ccdGJKIntersect(&cube, &ball, &ccd) != 0);
-        mpr.judge(gap, ccdMPRIntersect(&cube, &ball, &ccd) != 0);
+        const Sphere sphere{c};
+        gjk.judge(gap, ccdGJKIntersect(&cube, &sphere, &ccd) != 0);
+        mpr.judge(gap, ccdMPRIntersect(&cube, &sphere, &ccd) != 0);
     }
     std::cout << "swept cube/sphere, " << hits << " hits of " << oracle::case_count(200'000)
               << ", half of them grazing:\n";

@@ -132,7 +132,7 @@ TEST(PointHullDistance, AgreesWithWolfesMethodAndItsPlaneHolds)
         ASSERT_FALSE(HasFatalFailure()) << "case " << n;
     }
     print("point to hull", tally);
-    EXPECT_LT(tally.most_turns, kMostDistanceTurns);
+    EXPECT_LT(tally.most_turns, kMaxDistanceTurns);
     EXPECT_GT(tally.touching, oracle::case_count(20'000) / 50);
 }
 
@@ -168,7 +168,7 @@ TEST(PointHullDistance, OfTrianglesThinOnesTooAgreesWithWolfesMethod)
         ASSERT_FALSE(HasFatalFailure()) << "case " << n;
     }
     print("point to triangle", tally);
-    EXPECT_LT(tally.most_turns, kMostDistanceTurns);
+    EXPECT_LT(tally.most_turns, kMaxDistanceTurns);
     EXPECT_GT(tally.touching, oracle::case_count(20'000) / 200);
 }
 
@@ -193,7 +193,7 @@ TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
             query.stretch = any_stretch(random);
             WorkBudget budget(1'000'000);
             const Separation found = point_shape_distance(point, shape, query, budget);
-            // A ball of the shape's radius is part of the support here: the oracle's own form leaves it out.
+            // A sphere of the shape's radius is part of the support here: the oracle's own form leaves it out.
             const auto support = [&](const Vec3d& direction) -> Vec3d {
                 const Vec3d unstretched(direction.x(), direction.y(), double(query.stretch) * direction.z());
                 Vec3d best = oracle::exact_support(shape, unstretched);

@@ -11,7 +11,7 @@
 
 #include "core/base/random.hpp"
 #include "core/geometry/convex.hpp"
-#include "core/geometry/glance.hpp"
+#include "core/geometry/quick_reject.hpp"
 #include "core/geometry/sweep.hpp"
 
 namespace jink::geometry {
@@ -111,7 +111,7 @@ TEST(Touching, OfAPointIsContactForTheClosedForms)
         ASSERT_TRUE(contact_interval(scene.half, own, still, radius, 1.0F)) << "seed " << seed;
         ASSERT_TRUE(contact_interval(scene.half, {}, {centre - scene.from, scene.from - scene.to}, radius, 1.0F))
             << "seed " << seed;
-        ASSERT_NE(glance(scene.half, centre - scene.from, centre - scene.to, radius), Glance::apart) << "seed " << seed;
+        ASSERT_NE(quick_reject(scene.half, centre - scene.from, centre - scene.to, radius), QuickReject::apart) << "seed " << seed;
         const float size =
             (centre - scene.from).cwiseAbs().sum() + (scene.to - scene.from).cwiseAbs().sum() + scene.half.sum();
         ASSERT_NEAR(least_distance(scene.half, own, still, 1.0F).distance, radius, 5e-7F * size) << "seed " << seed;
@@ -120,7 +120,7 @@ TEST(Touching, OfAPointIsContactForTheClosedForms)
     }
 }
 
-TEST(Touching, AGlanceAtLongWaysPastLargeBoxesIsNotDeceived)
+TEST(Touching, AQuickRejectAtLongWaysPastLargeBoxesIsNotDeceived)
 {
     // Along a face, exactly at its radius, with one end of the path much farther out than the other.
     for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {
@@ -138,7 +138,7 @@ TEST(Touching, AGlanceAtLongWaysPastLargeBoxesIsNotDeceived)
         if (random.below(2) == 0) {
             std::swap(from, to);
         }
-        ASSERT_NE(glance(half, from, to, radius), Glance::apart) << "seed " << seed;
+        ASSERT_NE(quick_reject(half, from, to, radius), QuickReject::apart) << "seed " << seed;
     }
 }
 

@@ -75,7 +75,7 @@ TEST(AgentPlaneLaws, TheExitIsOnTheBoundaryAndTheNearest)
         // A change of the velocity by s changes the distance at t by s t: compared at the time that matters, in m/s.
         ASSERT_GT(clear(boundary + 2e-5 * scale * n), 0.0) << where;
         ASSERT_LT(clear(boundary - 2e-5 * scale * n), 0.0) << where;
-        // No boundary point is nearer: a ball of less than |depth| about v holds no change of side.
+        // No boundary point is nearer: a sphere of less than |depth| about v holds no change of side.
         const bool inside = clear(v) < 0.0;
         ASSERT_TRUE(inside == (exit.depth > 0.0F) || std::fabs(exit.depth) < 2e-5 * scale) << where;
         for (int k = 0; k < 8; ++k) {

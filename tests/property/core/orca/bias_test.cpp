@@ -17,8 +17,8 @@ using Vector = Eigen::Vector3d;
 
 constexpr double kPeriod = 0.025;
 constexpr double kHorizon = 5.0;
-constexpr double kMostSpeed = 1.5;
-constexpr double kMostChange = 2.0 * kPeriod;
+constexpr double kMaxSpeed = 1.5;
+constexpr double kMaxChange = 2.0 * kPeriod;
 constexpr double kCruise = 0.6;
 // S1: warning 1.0 / 0.64 m, conflict 0.7 / 0.45 m, between centres.
 constexpr double kWarning = 1.0;
@@ -62,7 +62,7 @@ Plane plane_of(const Vector& p, const Vector& v, const Vector& own, double radiu
     return {normal, normal.dot(own + 0.5 * u.cwiseQuotient(stretch))};
 }
 
-Vector into_ball(const Vector& x, const Vector& centre, double radius)
+Vector into_sphere(const Vector& x, const Vector& centre, double radius)
 {
     const Vector from = x - centre;
     return from.norm() > radius ? Vector(centre + from * (radius / from.norm())) : x;
@@ -84,7 +84,7 @@ struct BoxScene {
     }
 };
 
-/// Nearest velocity to `wanted` in all planes and both balls; in the balls in any case.
+/// Nearest velocity to `wanted` in all planes and both spheres; in the spheres in any case.
 Vector nearest(const Vector& wanted, const std::vector<Plane>& planes, const Vector& before)
 {
     const std::size_t n = planes.size();
@@ -93,7 +93,7 @@ Vector nearest(const Vector& wanted, const std::vector<Plane>& planes, const Vec
             const double missing = planes[set].offset - planes[set].normal.dot(x);
             return missing > 0.0 ? Vector(x + missing * planes[set].normal) : x;
         }
-        return set == n ? into_ball(x, Vector::Zero(), kMostSpeed) : into_ball(x, before, kMostChange);
+        return set == n ? into_sphere(x, Vector::Zero(), kMaxSpeed) : into_sphere(x, before, kMaxChange);
     };
     std::vector<Vector> corrections(n + 2, Vector::Zero());
     Vector x = wanted;

@@ -94,7 +94,7 @@ private:
         }
     }
     /// As reported: delayed, with noise.
-    [[nodiscard]] State told(const Vehicle& v)
+    [[nodiscard]] State reported(const Vehicle& v)
     {
         State out = v.past.back();
         const auto noise = float(scene_.plant.noise);
@@ -115,9 +115,9 @@ private:
     /// The others' prediction of vehicle `j`, with all reports delayed by `age`.
     [[nodiscard]] Predicted seen_of(std::size_t j, double age)
     {
-        const State seen = told(vehicles_[j]);
+        const State seen = reported(vehicles_[j]);
         const double ahead = scene_.knows_delay ? age + scene_.plant.act : 0.0;
-        if (!scene_.knows_delay || scene_.told == Told::velocity) {
+        if (!scene_.knows_delay || scene_.reported == Reported::velocity) {
             return {(seen.at + ahead * seen.velocity).cast<float>(), seen.velocity.cast<float>(), false};
         }
         Broadcast heard;
@@ -128,11 +128,11 @@ private:
         // Commands in transit at the time of the state; each represents as many as must share its slot.
         const Vehicle& v = vehicles_[j];
         const auto tick = std::llround(now_ / scene_.plant.period);
-        const auto told_at = tick - std::llround(age / scene_.plant.period);
+        const auto reported_at = tick - std::llround(age / scene_.plant.period);
         const auto on_their_way = std::llround(scene_.plant.act / scene_.plant.period) + 1;
         const auto share = std::max<long long>(1, (on_their_way + 7) / 8);
         const auto issued = static_cast<long long>(v.issued);
-        for (auto k = told_at - share * 7; k <= told_at; k += share) {
+        for (auto k = reported_at - share * 7; k <= reported_at; k += share) {
             const auto back = issued - 1 - k;
             if (k >= 0 && back >= 0 && back < static_cast<long long>(v.commands.size())) {
                 const Vec3d& command = v.commands[static_cast<std::size_t>(back)];
@@ -151,7 +151,7 @@ private:
         VelocityFilter& filter = filters_[i];
         const TimePoint now = stamp(now_);
         const double age = double(v.past.size() - 1) * scene_.plant.period;
-        const State own = told(v);
+        const State own = reported(v);
         vehicle::VehicleState measured;
         measured.stamp = scene_.knows_delay ? stamp(now_ - age) : now;
         measured.position = own.at.cast<float>();

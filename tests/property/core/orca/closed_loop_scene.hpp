@@ -120,7 +120,7 @@ struct Outcome {
 };
 
 /// Kind of reports about other vehicles.
-enum class Told : std::uint8_t {
+enum class Reported : std::uint8_t {
     velocity,  ///< velocity, predicted constant (CONST_VEL of G-ORCA 11.4)
     commands,  ///< velocity and the last commands, eight at most (BROADCAST)
 };
@@ -145,7 +145,7 @@ struct Scene {
     double e_xy = 0.7;        ///< judged conflict regions [m]
     double e_z = 0.45;
     bool knows_delay = true;  ///< accounts for own commands in transit, and the others' velocities
-    Told told = Told::velocity;
+    Reported reported = Reported::velocity;
     bool there_and_back = false;
     bool swaps = false;  ///< once all are at their goals, each gets the start of another one for its next
     std::function<void(const Watched&)> watch{};

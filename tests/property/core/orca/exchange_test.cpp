@@ -78,7 +78,7 @@ TYPED_TEST(ExchangeLaws, AnExchangeEndsAtTheLeastViolation)
         WorkBudget budget(kEnoughWork);
         Corner<TypeParam> corner;
         corner.rows = c.start;
-        const std::vector<Ball> wide{{Vec3::Zero(), 100.0F}};
+        const std::vector<Sphere> wide{{Vec3::Zero(), 100.0F}};
         const Tolerance<TypeParam> tolerance(4.0F);
         if (!exchange<TypeParam>(c.rows, c.yields, c.soft, wide, tolerance, budget, corner)) {
             continue;
@@ -110,13 +110,13 @@ TYPED_TEST(ExchangeLaws, AnExchangeEndsAtTheLeastViolation)
         ASSERT_LE(sum.norm(), 1e-3 * most) << i;
         ASSERT_NEAR(yields, 1.0, 1e-3) << i;
         ASSERT_TRUE(corner.is_alone || !is_clear) << "seed " << kOptimumSeed << ", case " << i;
-        // Nothing is known where a ball decides too, or no work may be done.
+        // Nothing is known where a sphere decides too, or no work may be done.
         const float reach = corner.x.template cast<float>().norm();
         Corner<TypeParam> again = corner;
-        const std::vector<Ball> holds{{Vec3::Zero(), 1.01F * reach + 0.01F}};
+        const std::vector<Sphere> holds{{Vec3::Zero(), 1.01F * reach + 0.01F}};
         ASSERT_TRUE(exchange<TypeParam>(c.rows, c.yields, c.soft, holds, tolerance, budget, again)) << i;
         again = corner;
-        const std::vector<Ball> decides{{Vec3::Zero(), 100.0F}, {Vec3::Zero(), 0.99F * reach - 0.01F}};
+        const std::vector<Sphere> decides{{Vec3::Zero(), 100.0F}, {Vec3::Zero(), 0.99F * reach - 0.01F}};
         if (decides[1].radius > 0.0F) {
             ASSERT_FALSE(exchange<TypeParam>(c.rows, c.yields, c.soft, decides, tolerance, budget, again)) << i;
         }
@@ -138,13 +138,13 @@ TYPED_TEST(ExchangeLaws, AnExchangeEndsAtTheLeastViolation)
 
 TYPED_TEST(ExchangeLaws, WhatIsNoCornerIsSaid)
 {
-    const std::vector<Ball> balls{{Vec3::Zero(), 10.0F}};
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 10.0F}};
     const std::vector<float> yields(5, 1.0F);
     const auto ends = [&](const std::vector<Row>& rows, std::size_t soft) {
         WorkBudget budget(kEnoughWork);
         Corner<TypeParam> corner;
         corner.rows = {0, 1, 2, 3};
-        return exchange<TypeParam>(rows, std::span(yields).first(rows.size()), soft, balls, Tolerance<TypeParam>(2.0F),
+        return exchange<TypeParam>(rows, std::span(yields).first(rows.size()), soft, spheres, Tolerance<TypeParam>(2.0F),
                                    budget, corner);
     };
     const float s = 1.0F / std::sqrt(3.0F);

@@ -15,20 +15,20 @@ namespace {
 
 using namespace precision;
 
-/// Half-spaces and balls about a point that is inside all of them by `room`.
+/// Half-spaces and spheres about a point that is inside all of them by `room`.
 struct Roomy {
     Vec3 inside = Vec3::Zero();
     std::vector<Row> rows;
-    std::vector<Ball> balls;
+    std::vector<Sphere> spheres;
     Vec3 goal = Vec3::Zero();
     bool farthest = false;
 
     explicit Roomy(Random& random, float room)
     {
         inside = unit_vector(random) * random.uniform(0.0F, 1.0F);
-        balls.push_back({inside + unit_vector(random) * random.uniform(0.0F, 0.9F), 1.0F + room});
+        spheres.push_back({inside + unit_vector(random) * random.uniform(0.0F, 0.9F), 1.0F + room});
         if (random.below(2) == 0) {
-            balls.push_back({inside + unit_vector(random) * random.uniform(0.0F, 1.9F), 2.0F + room});
+            spheres.push_back({inside + unit_vector(random) * random.uniform(0.0F, 1.9F), 2.0F + room});
         }
         for (std::uint64_t n = random.below(8); n > 0; --n) {
             const Vec3 normal = unit_vector(random);
@@ -43,7 +43,7 @@ struct Roomy {
         const Eigen::Vector3d g = goal.cast<double>();
         return farthest ? -g.dot(x) : (x - g).norm();
     }
-    /// Beyond the worst row or ball.
+    /// Beyond the worst row or sphere.
     [[nodiscard]] double outside(const Eigen::Vector3d& x, std::ptrdiff_t on = -1) const
     {
         double worst = -1e9;
@@ -51,8 +51,8 @@ struct Roomy {
             const double by = static_cast<double>(rows[i].offset) - rows[i].normal.cast<double>().dot(x);
             worst = std::max(worst, static_cast<std::ptrdiff_t>(i) == on ? std::fabs(by) : by);
         }
-        for (const Ball& ball : balls) {
-            worst = std::max(worst, (x - ball.centre.cast<double>()).norm() - static_cast<double>(ball.radius));
+        for (const Sphere& sphere : spheres) {
+            worst = std::max(worst, (x - sphere.centre.cast<double>()).norm() - static_cast<double>(sphere.radius));
         }
         return worst;
     }
@@ -108,7 +108,7 @@ TYPED_TEST(OptimumLaws, TheOptimumIsFeasibleAndNothingNearItIsBetter)
         WorkBudget budget(kEnoughWork);
         const GoalOf<TypeParam> goal{c.goal.template cast<TypeParam>(), c.farthest};
         const std::vector<RowOf<TypeParam>> rows = rows_as<TypeParam>(c.rows);
-        const Optimum<TypeParam> found = optimum<TypeParam>(rows, c.balls, goal, Tolerance<TypeParam>(4.0F), budget);
+        const Optimum<TypeParam> found = optimum<TypeParam>(rows, c.spheres, goal, Tolerance<TypeParam>(4.0F), budget);
         ASSERT_EQ(found.found, Found::optimum) << "seed " << kOptimumSeed << ", case " << i;
         ASSERT_EQ(found.satisfied, rows.size());
         const Eigen::Vector3d x = as_double<TypeParam>(found.x);
@@ -123,7 +123,7 @@ TYPED_TEST(OptimumLaws, TheOptimumIsFeasibleAndNothingNearItIsBetter)
             ASSERT_LE(std::fabs(as_double(alone.back().violation(found.x))), TestFixture::kOutside)
                 << "it lies on it, case " << i;
         }
-        const Optimum<TypeParam> again = optimum<TypeParam>(alone, c.balls, goal, Tolerance<TypeParam>(4.0F), budget);
+        const Optimum<TypeParam> again = optimum<TypeParam>(alone, c.spheres, goal, Tolerance<TypeParam>(4.0F), budget);
         ASSERT_EQ(again.found, Found::optimum);
         differ += std::fabs(c.objective(as_double<TypeParam>(again.x)) - c.objective(x)) > TestFixture::kWorse ? 1 : 0;
         held += found.basis.size > 0 ? 1 : 0;
@@ -148,7 +148,7 @@ TYPED_TEST(OptimumLaws, OnAPlaneTheOptimumLiesOnIt)
         const std::vector<RowOf<TypeParam>> rows = rows_as<TypeParam>(c.rows);
         Vec3Of<TypeParam> found;
         Basis basis;
-        ASSERT_EQ(optimum_on_plane<TypeParam>(rows, on, on, c.balls, {c.goal.template cast<TypeParam>(), c.farthest},
+        ASSERT_EQ(optimum_on_plane<TypeParam>(rows, on, on, c.spheres, {c.goal.template cast<TypeParam>(), c.farthest},
                                               Tolerance<TypeParam>(4.0F), budget, found, basis),
                   Found::optimum)
             << "seed " << kOptimumSeed << ", case " << i;
@@ -178,9 +178,9 @@ TYPED_TEST(OptimumLaws, WhatContradictsItselfHasNoOptimum)
             c.rows.push_back({-normal, -normal.dot(c.inside) + gap});
             break;
         }
-        case 1: {  // beyond the first ball
+        case 1: {  // beyond the first sphere
             const Vec3 normal = unit_vector(random);
-            c.rows.push_back({normal, normal.dot(c.balls[0].centre) + c.balls[0].radius + gap});
+            c.rows.push_back({normal, normal.dot(c.spheres[0].centre) + c.spheres[0].radius + gap});
             break;
         }
         case 2: {  // three that leave nothing, their normals in a plane
@@ -191,14 +191,14 @@ TYPED_TEST(OptimumLaws, WhatContradictsItselfHasNoOptimum)
             }
             break;
         }
-        default:  // balls apart
-            c.balls = {{c.inside, 1.0F}, {c.inside + (2.0F + gap) * unit_vector(random), 1.0F}};
+        default:  // spheres apart
+            c.spheres = {{c.inside, 1.0F}, {c.inside + (2.0F + gap) * unit_vector(random), 1.0F}};
             break;
         }
         WorkBudget budget(kEnoughWork);
         const std::vector<RowOf<TypeParam>> rows = rows_as<TypeParam>(c.rows);
         const Optimum<TypeParam> found = optimum<TypeParam>(
-            rows, c.balls, {c.goal.template cast<TypeParam>(), c.farthest}, Tolerance<TypeParam>(4.0F), budget);
+            rows, c.spheres, {c.goal.template cast<TypeParam>(), c.farthest}, Tolerance<TypeParam>(4.0F), budget);
         ASSERT_EQ(found.found, Found::nothing) << "seed " << kOptimumSeed << ", case " << i;
         if (i % 4 != 3) {
             ASSERT_GE(found.satisfied, kept) << "rows that hold are satisfied, case " << i;
@@ -207,17 +207,17 @@ TYPED_TEST(OptimumLaws, WhatContradictsItselfHasNoOptimum)
     }
 }
 
-/// Two balls, and a goal on the line through their centres: any point of the circle where they cut.
+/// Two spheres, and a goal on the line through their centres: any point of the circle where they cut.
 TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
 {
     for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(0.6F, 0.8F, 0)}) {
-        const std::vector<Ball> balls{{Vec3::Zero(), 1.0F}, {1.2F * axis, 1.0F}};
-        // The nearest point of a ball to a goal on the axis lies in the other one; farthest across it does not.
+        const std::vector<Sphere> spheres{{Vec3::Zero(), 1.0F}, {1.2F * axis, 1.0F}};
+        // The nearest point of a sphere to a goal on the axis lies in the other one; farthest across it does not.
         for (const bool farthest : {false, true}) {
             const Vec3 across = axis.cross(Vec3(0.3F, -0.5F, 0.81F)).normalized();
             const Vec3 goal = farthest ? across : Vec3(0.6F * axis + 5.0F * across);
             Vec3Of<TypeParam> x;
-            ASSERT_TRUE(optimum_in_balls<TypeParam>(balls, {goal.template cast<TypeParam>(), farthest},
+            ASSERT_TRUE(optimum_in_spheres<TypeParam>(spheres, {goal.template cast<TypeParam>(), farthest},
                                                     Tolerance<TypeParam>(2.0F), x));
             const Eigen::Vector3d got = as_double<TypeParam>(x);
             const Eigen::Vector3d wanted = (0.6F * axis + 0.8F * across).template cast<double>();
@@ -228,7 +228,7 @@ TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
         WorkBudget budget(kEnoughWork);
         Vec3Of<TypeParam> x;
         Basis basis;
-        ASSERT_EQ(optimum_on_plane<TypeParam>(rows, 0, 0, balls, {axis.template cast<TypeParam>(), true},
+        ASSERT_EQ(optimum_on_plane<TypeParam>(rows, 0, 0, spheres, {axis.template cast<TypeParam>(), true},
                                               Tolerance<TypeParam>(2.0F), budget, x, basis),
                   Found::optimum);
         const Eigen::Vector3d got = as_double<TypeParam>(x);
@@ -236,7 +236,7 @@ TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
         EXPECT_LE(got.norm(), 1.0 + 2e-6);
     }
     // Discs of one plane that overlap only beside both centres: the middle of their overlap.
-    const std::vector<Ball> beside{{Vec3(-1, 0, 0), 1.2F}, {Vec3(1.5F, 0, 0), 1.7F}};
+    const std::vector<Sphere> beside{{Vec3(-1, 0, 0), 1.2F}, {Vec3(1.5F, 0, 0), 1.7F}};
     const std::vector<RowOf<TypeParam>> level = rows_as<TypeParam>({{Vec3::UnitZ(), 0.0F}});
     WorkBudget budget(kEnoughWork);
     Vec3Of<TypeParam> x;
@@ -245,7 +245,7 @@ TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
                                           Tolerance<TypeParam>(2.0F), budget, x, basis),
               Found::optimum);
     EXPECT_LT((as_double<TypeParam>(x) - Eigen::Vector3d(0.0, 0, 0)).norm(), 2e-6) << "between -0.2 and 0.2";
-    const std::vector<Ball> apart{{Vec3(-1, 0, 0), 1.2F}, {Vec3(1.5F, 0, 0), 1.2F}};
+    const std::vector<Sphere> apart{{Vec3(-1, 0, 0), 1.2F}, {Vec3(1.5F, 0, 0), 1.2F}};
     EXPECT_EQ(optimum_on_plane<TypeParam>(level, 0, 0, apart, {Vec3(Vec3::UnitZ()).template cast<TypeParam>(), true},
                                           Tolerance<TypeParam>(2.0F), budget, x, basis),
               Found::nothing);

@@ -45,9 +45,9 @@ Eigen::Vector3d as_double(const Vec3Of<Real>& v)
 template <class Real>
 struct Precision : public ::testing::Test {
     static constexpr bool kIsSingle = std::is_same_v<Real, float>;
-    static constexpr double kOutside = kIsSingle ? 5e-5 : 1e-6;  ///< [m/s] a half-space or a ball
+    static constexpr double kOutside = kIsSingle ? 5e-5 : 1e-6;  ///< [m/s] a half-space or a sphere
     static constexpr double kWorse = kIsSingle ? 3e-4 : 2e-5;    ///< [m/s] than the best
 };
-using Precisions = ::testing::Types<float, Wide>;
+using Precisions = ::testing::Types<float, DoubleFloat>;
 
 }  // namespace jink::orca::precision

@@ -33,7 +33,7 @@ Vec3 direction(Random& random)
 
 struct Case {
     std::vector<HalfSpace> planes;
-    std::vector<Ball> balls;
+    std::vector<Sphere> spheres;
     Vec3 preferred;
 };
 
@@ -45,12 +45,12 @@ Case random_case(Random& random, int family)
 {
     Case out;
     const float speed = random.uniform(0.5F, 4.0F);
-    out.balls.push_back({Vec3::Zero(), speed});
+    out.spheres.push_back({Vec3::Zero(), speed});
     if (random.below(2) == 0) {
-        out.balls.push_back({direction(random) * random.uniform(0.0F, speed), random.uniform(0.05F, 1.0F) * speed});
+        out.spheres.push_back({direction(random) * random.uniform(0.0F, speed), random.uniform(0.05F, 1.0F) * speed});
     }
     const Vec3 centre =
-        out.balls.back().centre + direction(random) * random.uniform(0.0F, 0.7F * out.balls.back().radius);
+        out.spheres.back().centre + direction(random) * random.uniform(0.0F, 0.7F * out.spheres.back().radius);
     out.preferred = direction(random) * random.uniform(0.0F, 1.5F * speed);
     const std::size_t count = 1 + random.below(family == 4 ? 10 : 54);
     const float room = random.uniform(-0.6F, family == 1 ? 0.0F : 0.2F) * speed;
@@ -90,9 +90,9 @@ oracle::Question question_of(const Case& c)
         q.planes.push_back(
             {{n.x(), n.y(), n.z()}, static_cast<double>(plane.offset), static_cast<double>(plane.yield)});
     }
-    for (const Ball& ball : c.balls) {
-        const Eigen::Vector3d p = ball.centre.cast<double>();
-        q.balls.push_back({{p.x(), p.y(), p.z()}, static_cast<double>(ball.radius), 0.0});
+    for (const Sphere& sphere : c.spheres) {
+        const Eigen::Vector3d p = sphere.centre.cast<double>();
+        q.spheres.push_back({{p.x(), p.y(), p.z()}, static_cast<double>(sphere.radius), 0.0});
     }
     const Eigen::Vector3d g = c.preferred.cast<double>();
     q.goal = {g.x(), g.y(), g.z()};
@@ -127,7 +127,7 @@ constexpr double kEdge = 1e-5;  // [m/s] of slack or contradiction, within which
 oracle::Question moved(const Case& c, oracle::Question q, double sign)
 {
     for (oracle::Plane& plane : q.planes) {
-        plane.b += sign * 2e-6 * static_cast<double>(c.balls[0].radius + 1.0F);
+        plane.b += sign * 2e-6 * static_cast<double>(c.spheres[0].radius + 1.0F);
     }
     return q;
 }
@@ -162,15 +162,15 @@ void compare(const Case& c, Tally& tally, const std::string& where)
 {
     Scratch<54> scratch;
     WorkBudget budget(10'000'000);
-    const Solution solution = solve({c.planes, c.balls, c.preferred, Vec3::Zero()}, scratch.view(), budget);
+    const Solution solution = solve({c.planes, c.spheres, c.preferred, Vec3::Zero()}, scratch.view(), budget);
     ++tally.cases;
     ASSERT_TRUE(is_finite(solution.velocity)) << where;
-    for (const Ball& ball : c.balls) {
-        ASSERT_LE((solution.velocity - ball.centre).norm(), ball.radius * (1.0F + 1e-6F) + 1e-6F) << where;
+    for (const Sphere& sphere : c.spheres) {
+        ASSERT_LE((solution.velocity - sphere.centre).norm(), sphere.radius * (1.0F + 1e-6F) + 1e-6F) << where;
     }
     double scale = 1.0;
-    for (const Ball& ball : c.balls) {
-        scale = std::max(scale, static_cast<double>(ball.centre.norm() + ball.radius));
+    for (const Sphere& sphere : c.spheres) {
+        scale = std::max(scale, static_cast<double>(sphere.centre.norm() + sphere.radius));
     }
     for (const HalfSpace& plane : c.planes) {
         const float allowed = solution.broken[static_cast<std::size_t>(plane.level)];
@@ -187,7 +187,7 @@ void compare(const Case& c, Tally& tally, const std::string& where)
     first.planes.resize(hard);
     const oracle::Least hards = hard > 0 ? oracle::least_violation(first, 0) : oracle::Least{true, -1.0, {}};
     if (!hards.hard_hold) {
-        ++tally.on_edge;  // the balls have a single common point
+        ++tally.on_edge;  // the spheres have a single common point
         return;
     }
     if (std::fabs(hards.d) < kEdge) {
@@ -242,7 +242,7 @@ TEST(ProgramLaws, AsAnInteriorPointMethodHasIt)
     }
 }
 
-/// With any budget: a finite velocity within the balls, the usual result or kWorkLimit, no more spent than given, and
+/// With any budget: a finite velocity within the spheres, the usual result or kWorkLimit, no more spent than given, and
 /// every violated half-space reported.
 TEST(ProgramLaws, WhateverTheBudget)
 {
@@ -252,7 +252,7 @@ TEST(ProgramLaws, WhateverTheBudget)
     int limited = 0;
     for (int i = 0; i < 20'000; ++i) {
         const Case c = random_case(random, i % kFamilies);
-        const Problem problem{c.planes, c.balls, c.preferred, c.balls.back().centre};
+        const Problem problem{c.planes, c.spheres, c.preferred, c.spheres.back().centre};
         Scratch<54> scratch;
         WorkBudget plenty(10'000'000);
         const Solution whole = solve(problem, scratch.view(), plenty);
@@ -263,8 +263,8 @@ TEST(ProgramLaws, WhateverTheBudget)
         const std::string where = "JINK_SEED=" + std::to_string(seed) + " case " + std::to_string(i);
         ASSERT_LE(budget.spent(), units) << where;
         ASSERT_TRUE(is_finite(solution.velocity)) << where;
-        for (const Ball& ball : c.balls) {
-            ASSERT_LE((solution.velocity - ball.centre).norm(), ball.radius * (1.0F + 1e-6F) + 1e-6F) << where;
+        for (const Sphere& sphere : c.spheres) {
+            ASSERT_LE((solution.velocity - sphere.centre).norm(), sphere.radius * (1.0F + 1e-6F) + 1e-6F) << where;
         }
         if ((solution.status & kWorkLimit) == 0) {
             ASSERT_EQ(solution.velocity, whole.velocity) << where;
@@ -300,7 +300,7 @@ TEST(ProgramLaws, SameAndOppositeHalfSpaces)
         }
         Scratch<54> scratch;
         WorkBudget budget(10'000'000);
-        const Solution solution = solve({c.planes, c.balls, c.preferred, Vec3::Zero()}, scratch.view(), budget);
+        const Solution solution = solve({c.planes, c.spheres, c.preferred, Vec3::Zero()}, scratch.view(), budget);
         ASSERT_TRUE(is_finite(solution.velocity)) << i;
         ASSERT_EQ(solution.status & (kWorkLimit | kBadInput | kInfeasibleDynamics), 0U) << i;
         for (const HalfSpace& plane : c.planes) {

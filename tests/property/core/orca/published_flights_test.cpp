@@ -49,7 +49,7 @@ Scene flight(Parameters which)
     scene.plant.act = 0.3;
     scene.plant.natural = 6.0;
     scene.plant.noise = 0.01;
-    scene.told = Told::commands;
+    scene.reported = Reported::commands;
     scene.until = 90.0;
     scene.e_xy = 1.2;
     scene.e_z = 0.6;

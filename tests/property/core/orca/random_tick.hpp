@@ -17,7 +17,7 @@
 
 namespace jink::orca::random_tick {
 
-inline Vec3 in_ball(Random& random, float radius)
+inline Vec3 in_sphere(Random& random, float radius)
 {
     Vec3 out;
     do {
@@ -30,7 +30,7 @@ inline Vec3 direction(Random& random)
 {
     Vec3 out;
     do {
-        out = in_ball(random, 1.0F);
+        out = in_sphere(random, 1.0F);
     } while (out.squaredNorm() < 0.01F);
     return out.normalized();
 }
@@ -106,14 +106,14 @@ inline Seen random_seen(Random& random, std::size_t crowd)
     out.settings = random_settings(random);
     const MotionLimits& limits = out.settings.limits;
     out.input.own.position = geometry::oracle::in_cube(random, 5.0F);
-    out.input.own.velocity = clamped(limits, in_ball(random, limits.max_speed));
-    out.input.preferred = in_ball(random, 1.2F * limits.max_speed);
+    out.input.own.velocity = clamped(limits, in_sphere(random, limits.max_speed));
+    out.input.preferred = in_sphere(random, 1.2F * limits.max_speed);
     const float room = random.uniform(2.0F, 20.0F);
     for (std::size_t i = random.below(crowd + 1); i > 0; --i) {
         Neighbour n;
-        n.position = in_ball(random, room);
+        n.position = in_sphere(random, room);
         n.max_speed = random.uniform(0.5F, 5.0F);
-        n.velocity = in_ball(random, n.max_speed);
+        n.velocity = in_sphere(random, n.max_speed);
         n.half_width = random.uniform(0.2F, 1.0F);
         // The pair's region within the accepted stretch.
         n.half_height = n.half_width * random.uniform(0.4F, 1.5F);
@@ -125,7 +125,7 @@ inline Seen random_seen(Random& random, std::size_t crowd)
     const float near = random.uniform(2.0F, 10.0F);
     for (std::size_t i = random.below(crowd / 2 + 1); i > 0; --i) {
         const Vec3 half(random.uniform(0.1F, 1.0F), random.uniform(0.1F, 1.0F), random.uniform(0.1F, 1.0F));
-        out.boxes.push_back({out.input.own.position + in_ball(random, near), half});
+        out.boxes.push_back({out.input.own.position + in_sphere(random, near), half});
     }
     for (std::size_t i = random.below(4) == 0 ? random.below(kMaxBounds + 1) : 0; i > 0; --i) {
         out.bounds.push_back({direction(random), random.uniform(-0.5F, 8.0F), random.uniform(-0.2F, 0.2F)});

@@ -73,7 +73,7 @@ TEST(CommandFilterLaws, KeepsTheSlewLimitThatTheCommandsKeep)
     for (std::uint64_t seed = 1; seed <= 200; ++seed) {
         Random random(seed);
         const float slew = random.uniform(0.01F, 0.5F);
-        CommandFilter filter(1 + random.below(CommandFilter::kMost));
+        CommandFilter filter(1 + random.below(CommandFilter::kMax));
         Vec3 command = random_velocity(random, 3.0F);
         Vec3 before = filter.add(command);
         for (int i = 0; i < 500; ++i) {
@@ -89,7 +89,7 @@ TEST(CommandFilterLaws, KeepsTheSlewLimitThatTheCommandsKeep)
 /// Measured on a ramp, once it is warm: (N - 1) / 3 periods late, to the rounding.
 TEST(CommandFilterLaws, ARampComesAThirdOfTheLengthLate)
 {
-    for (std::size_t length = 1; length <= CommandFilter::kMost; ++length) {
+    for (std::size_t length = 1; length <= CommandFilter::kMax; ++length) {
         CommandFilter filter(length);
         for (int i = 0; i < 100; ++i) {
             const float value = 0.01F * static_cast<float>(i);

@@ -77,8 +77,8 @@ TEST(VelocityFilterFaultLaws, NumbersThatAreNoneDoNotGetThrough)
         const Decision decision = decide(filter, tick);
         ASSERT_TRUE(is_flyable(decision, tick.settings.limits, before)) << "case " << i << ", " << value;
         if (!std::isfinite(value)) {
-            const std::uint32_t told = std::uint32_t{kBadInput} | kNeighbourRefused | kOwnStale;
-            ASSERT_NE(decision.status & told, 0U) << "case " << i << ", " << value;
+            const std::uint32_t reported = std::uint32_t{kBadInput} | kNeighbourRefused | kOwnStale;
+            ASSERT_NE(decision.status & reported, 0U) << "case " << i << ", " << value;
         }
     }
 }

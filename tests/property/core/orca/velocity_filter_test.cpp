@@ -109,13 +109,13 @@ TEST(VelocityFilterLaws, WhatKeepsToEverythingIsLeftAlone)
         tick.settings.bias.sideways = tick.settings.bias.vertical = 0.0F;
         tick.settings.slows_down = false;
         const MotionLimits& limits = tick.settings.limits;
-        const Vec3 change = in_ball(random, 0.999F * limits.acceleration * limits.period);
+        const Vec3 change = in_sphere(random, 0.999F * limits.acceleration * limits.period);
         tick.input.preferred = clamped(limits, tick.input.own.velocity + change);
         const LimitSet set = limit_set(limits, tick.input.own.velocity);
         std::vector<HalfSpace> planes = planes_of(tick);
         planes.insert(planes.end(), set.half_spaces().begin(), set.half_spaces().end());
         const bool keeps = tick.input.preferred.norm() < 0.9999F * limits.max_speed &&
-                           (tick.input.preferred - set.reference).norm() < set.balls[1].radius &&
+                           (tick.input.preferred - set.reference).norm() < set.spheres[1].radius &&
                            std::all_of(planes.begin(), planes.end(),
                                        [&](const HalfSpace& p) { return p.violation(tick.input.preferred) < 0.0F; }) &&
                            std::all_of(tick.boxes.begin(), tick.boxes.end(), [&](const Box& b) {
@@ -285,12 +285,12 @@ TEST(VelocityFilterLaws, APairDoesOppositeThings)
         b.settings.own_id = 2;
         VelocityFilter first(a.settings);
         VelocityFilter second(b.settings);
-        const Vec3 half = i % 4 == 0 ? Vec3(0, 0, 2) : in_ball(random, 3.0F);
+        const Vec3 half = i % 4 == 0 ? Vec3(0, 0, 2) : in_sphere(random, 3.0F);
         Neighbour other;
         other.half_width = a.settings.half_width;
         other.half_height = a.settings.half_height;
         other.max_speed = a.settings.limits.max_speed;
-        a.input.preferred = i % 3 == 0 ? Vec3(half.normalized() * 0.5F) : in_ball(random, other.max_speed);
+        a.input.preferred = i % 3 == 0 ? Vec3(half.normalized() * 0.5F) : in_sphere(random, other.max_speed);
         b.input.preferred = -a.input.preferred;
         Vec3 apart = 2.0F * half;
         for (int t = 0; t < 200; ++t) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/base/random.hpp"
-#include "core/reach/cell_balls.hpp"
+#include "core/reach/cell_spheres.hpp"
 #include "tests/reference/reach/intruder.hpp"
 
 namespace jink::reach {
@@ -37,7 +37,7 @@ struct GridAlone {
         const world::Reference reference;
         const world::FlightRules rules;
         const world::Situation now{TimePoint{1'000'000}, own, limits, airframe, reference, rules};
-        return picture.rate(now, placed, CellBalls(set.grid), 0.0F, blocks, budget) == RateStatus::rated;
+        return picture.rate(now, placed, CellSpheres(set.grid), 0.0F, blocks, budget) == RateStatus::rated;
     }
     [[nodiscard]] Level level(std::uint8_t layer, std::uint8_t column, std::uint8_t row) const
     {
@@ -201,9 +201,9 @@ TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
         if (well_inside) {
             ++hits;
             // All that is blocked lies about the cell that was hit, which holds the point.
-            const CellBall hit = ball_of(grid.set.grid, at.place);
+            const CellSphere hit = sphere_of(grid.set.grid, at.place);
             for (std::size_t i = 0; i < grid.blocks.size(); ++i) {
-                const CellBall other = ball_of(grid.set.grid, grid.set.grid.place(static_cast<CellIndex>(i)));
+                const CellSphere other = sphere_of(grid.set.grid, grid.set.grid.place(static_cast<CellIndex>(i)));
                 ASSERT_TRUE(grid.blocks[i] == kFree ||
                             (hit.centre - other.centre).norm() <= 2.5F * (hit.radius + other.radius))
                     << "seed " << seed;
@@ -213,21 +213,21 @@ TEST(ScanPictureLaw, HitsStayWhereTheyAreWhenTheGridMoves)
     EXPECT_GT(hits, 1500U);
 }
 
-TEST(CellBallsLaw, AreThoseOfTheCells)
+TEST(CellSpheresLaw, AreThoseOfTheCells)
 {
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         Random random(seed);
         const Grid<float> grid(1 + random.below(16), 1 + random.below(8), 1 + random.below(8),
                                random.uniform(1.0F, 20.0F), random.uniform(0.2F, 1.5F), random.uniform(0.2F, 1.2F));
-        ASSERT_TRUE(CellBalls::serves(grid));
-        const CellBalls balls(grid);
+        ASSERT_TRUE(CellSpheres::serves(grid));
+        const CellSpheres spheres(grid);
         for (std::size_t i = 0; i < grid.cells(); ++i) {
             const CellPlace place = grid.place(static_cast<CellIndex>(i));
-            const CellBall ball = ball_of(grid, place);
-            const Vec3 centre = balls.distance(place.layer) * balls.direction(place.column, place.row);
-            ASSERT_LT((centre - ball.centre).norm(), 1e-5F * grid.distance()) << "seed " << seed;
-            ASSERT_NEAR(balls.radius(place.layer, place.row), ball.radius, 3e-5F * grid.distance()) << "seed " << seed;
-            ASSERT_GE(balls.radius(place.layer, place.row), ball.radius - 1e-6F * grid.distance()) << "seed " << seed;
+            const CellSphere sphere = sphere_of(grid, place);
+            const Vec3 centre = spheres.distance(place.layer) * spheres.direction(place.column, place.row);
+            ASSERT_LT((centre - sphere.centre).norm(), 1e-5F * grid.distance()) << "seed " << seed;
+            ASSERT_NEAR(spheres.radius(place.layer, place.row), sphere.radius, 3e-5F * grid.distance()) << "seed " << seed;
+            ASSERT_GE(spheres.radius(place.layer, place.row), sphere.radius - 1e-6F * grid.distance()) << "seed " << seed;
         }
     }
 }

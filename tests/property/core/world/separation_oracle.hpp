@@ -109,7 +109,7 @@ inline double track_margin(const Scene& scene, const path::TimedPath& path, std:
 
 /// Sphere or capsule, any direction: the nearest point of its axis by golden section (the distance is convex along the
 /// axis).
-inline double ball_margin_at(const Scene& scene, const path::TimedPath& path, const geometry::Shape& shape, double t)
+inline double sphere_margin_at(const Scene& scene, const path::TimedPath& path, const geometry::Shape& shape, double t)
 {
     const Vec3d own = position_at(path, t);
     const Vec3d half = scene.limits.half_extents.cast<double>();
@@ -144,15 +144,15 @@ inline double solid_distance(const Scene& scene, const path::TimedPath& path, co
     return best;
 }
 
-/// Signed distance from a barrel's body at one instant: outside by the level and vertical excess, inside to the nearest
+/// Signed distance from a cylinder's body at one instant: outside by the level and vertical excess, inside to the nearest
 /// surface.
-inline double barrel_margin_at(const Scene& scene, const Vec3d& own, const Barrel& barrel, double t)
+inline double cylinder_margin_at(const Scene& scene, const Vec3d& own, const Cylinder& cylinder, double t)
 {
     const Vec3d half = scene.limits.half_extents.cast<double>();
-    const Eigen::Vector2d centre = barrel.circle.centre.cast<double>() + barrel.velocity.cast<double>() * t;
+    const Eigen::Vector2d centre = cylinder.circle.centre.cast<double>() + cylinder.velocity.cast<double>() * t;
     const Vec3d level(centre.x() - own.x(), centre.y() - own.y(), 0.0);
-    const double beside = point_box(level, half) - double(barrel.circle.radius);
-    const double beyond = std::max(double(barrel.bottom) - own.z() - half.z(), own.z() - half.z() - double(barrel.top));
+    const double beside = point_box(level, half) - double(cylinder.circle.radius);
+    const double beyond = std::max(double(cylinder.bottom) - own.z() - half.z(), own.z() - half.z() - double(cylinder.top));
     const double distance = beside <= 0.0 && beyond <= 0.0 ? std::max(beside, beyond)
                                                            : std::hypot(std::max(beside, 0.0), std::max(beyond, 0.0));
     return distance - double(scene.rules.k_sigma) * double(scene.own.sigma_position);

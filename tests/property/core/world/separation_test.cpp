@@ -97,7 +97,7 @@ Case any_case(Random& random, bool with_solids)
     return c;
 }
 
-bool is_ball(const geometry::Shape& shape)
+bool is_sphere(const geometry::Shape& shape)
 {
     Vec3 half;
     float radius = 0.0F;
@@ -141,8 +141,8 @@ Expected expect(const Case& c, const EscapeRule& escape)
              pessimism(c.scene, c.scene.tracks[i], end, escape, inside));
     }
     for (const Obstacle& o : c.scene.obstacles) {
-        if (is_ball(o.shape)) {
-            const auto at = [&](double t) { return oracle::ball_margin_at(c.scene, c.path, o.shape, t); };
+        if (is_sphere(o.shape)) {
+            const auto at = [&](double t) { return oracle::sphere_margin_at(c.scene, c.path, o.shape, t); };
             take(oracle::least(at, end, escape), 2e-3 + (at(0.0) < 0.0 ? escape_pessimism(escape) : 0.0));
         } else {
             const double extra = double(c.scene.rules.k_sigma) * double(c.scene.own.sigma_position);
@@ -206,7 +206,7 @@ void compare(bool with_solids, std::uint64_t default_seed, std::size_t cases)
     testing::Test::RecordProperty("most_pessimistic_mm", static_cast<int>(most_pessimistic * 1000));
 }
 
-TEST(LeastSeparation, NeverOptimisticAgainstTracksBallsAndBounds) { compare(false, 20260711, case_count(10000)); }
+TEST(LeastSeparation, NeverOptimisticAgainstTracksSpheresAndBounds) { compare(false, 20260711, case_count(10000)); }
 TEST(LeastSeparation, NeverOptimisticAgainstSolids) { compare(true, 20260712, case_count(3000)); }
 
 /// Far threats are passed over by bounding boxes: the answer must be that of each threat on its own.
@@ -288,9 +288,9 @@ TEST(SeparationAt, IsThePlainMarginOfThatInstant)
         bool overlaps = false;
         const double extra = double(c.scene.rules.k_sigma) * double(c.scene.own.sigma_position);
         for (const Obstacle& o : c.scene.obstacles) {
-            const double margin = oracle::ball_margin_at(c.scene, hover, o.shape, 0.0);
+            const double margin = oracle::sphere_margin_at(c.scene, hover, o.shape, 0.0);
             least = std::min(least, margin);
-            if (!is_ball(o.shape)) {
+            if (!is_sphere(o.shape)) {
                 capped = std::min(capped, double(kObstacleReach) - extra);
                 overlaps = overlaps || margin + extra <= 0.0;
             }

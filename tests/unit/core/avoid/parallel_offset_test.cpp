@@ -105,9 +105,9 @@ TEST(ParallelOffset, IsNotFlownPastABoundOrTheEndOfTheLeg)
 TEST(ParallelOffset, MethodsAreToldTheSideThatIsFlown)
 {
     Flight f;
-    Vec3 told = Vec3::Zero();
+    Vec3 reported = Vec3::Zero();
     FakeMethod method{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
-        told = s.flying != nullptr ? s.flying->side : Vec3(Vec3::Zero());
+        reported = s.flying != nullptr ? s.flying->side : Vec3(Vec3::Zero());
         out = detour(s, kLeft, 6.0F, 60.0F);
         return PlanStatus::found;
     }};
@@ -117,7 +117,7 @@ TEST(ParallelOffset, MethodsAreToldTheSideThatIsFlown)
     f.scene.own.position += Vec3(0, -3, 0);  // blown over
     f.scene.track(f.scene.own.position + Vec3(25, 4, 0), Vec3::Zero(), 6.0F);
     static_cast<void>(f.update(supervisor, true));
-    EXPECT_LT(told.y(), -0.99F);
+    EXPECT_LT(reported.y(), -0.99F);
 }
 
 /// A crawl of 1.5 m/s around a threat that stays on the path; later a manoeuvre with `speed` is found, to `side`.

@@ -13,7 +13,7 @@ namespace {
 
 using world::PlanStatus;
 
-/// Nothing is ever available: a ball round all that can be flown.
+/// Nothing is ever available: a sphere round all that can be flown.
 struct Hopeless : Scene {
     Workspace workspace;
     std::size_t attempts = 0;
@@ -138,7 +138,7 @@ TEST(Attempts, BadSettingsAreRefusedHoweverOftenTheyAreTried)
 
 TEST(Attempts, OneThatWasCutShortIsToldWhateverComesAfterIt)
 {
-    std::size_t told = 0;
+    std::size_t reported = 0;
     for (std::uint32_t units = 0; units < 4'000; units += 100) {
         bool cut = false;
         for (std::size_t retries = 0; retries < kAttempts.size(); ++retries) {
@@ -150,10 +150,10 @@ TEST(Attempts, OneThatWasCutShortIsToldWhateverComesAfterIt)
             ASSERT_TRUE(scene.result.cut_short || !cut) << units << " units, " << retries << " retries";
             cut = scene.result.cut_short;
         }
-        told += cut ? 1U : 0U;
+        reported += cut ? 1U : 0U;
     }
-    EXPECT_GT(told, 0U);
-    EXPECT_LT(told, 40U) << "some of them are enough";
+    EXPECT_GT(reported, 0U);
+    EXPECT_LT(reported, 40U) << "some of them are enough";
 }
 
 /// Manoeuvres of two parts are for straight legs and threats that are where they are, when.

@@ -78,7 +78,7 @@ TEST(ChoiceBorder, EnergyIsToldWhereItIsAskedFor)
 
 TEST(ChoiceBorder, WhatIsNotLookedAtIsNotCalledAvailable)
 {
-    // Without evaluate_all no candidate more expensive than the chosen one is checked: a ball in contact only with
+    // Without evaluate_all no candidate more expensive than the chosen one is checked: a sphere in contact only with
     // those stays unfound.
     Scene scene;
     scene.settings.evaluate_all = false;

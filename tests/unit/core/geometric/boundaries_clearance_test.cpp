@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One curve against what stands or moves about it: the queried parts, balls as small as a point, growing solids, bounds
+// One curve against what stands or moves about it: the queried parts, spheres as small as a point, growing solids, bounds
 // with zero margin, and the cost of each check.
 #include <gtest/gtest.h>
 
@@ -28,7 +28,7 @@ std::vector<CurvePoint> straight_way()
     return points;
 }
 
-/// A ball that stays about `place` and counts as moving.
+/// A sphere that stays about `place` and counts as moving.
 /// So slow that a solid stays where it is, and counts as moving.
 const Vec3 kHardly(0.0F, 0.0F, 1e-4F);
 
@@ -76,19 +76,19 @@ TEST(ClearanceBorder, SolidsAreWhatNoClosedFormKnowsAtRestOrMoving)
         return bench.counted_solids;
     };
     const Vec3 up(0.0F, 0.0F, 1.0F);
-    const geometry::Shape ball = geometry::make_sphere(kOnTheWay, 0.5F);
+    const geometry::Shape sphere = geometry::make_sphere(kOnTheWay, 0.5F);
     const geometry::Shape mast = geometry::make_capsule(kOnTheWay - up, kOnTheWay + up, 0.5F);
     const geometry::Shape box = geometry::make_box(kOnTheWay, Vec3::Ones());
     const geometry::Shape drum = geometry::make_cylinder(kOnTheWay - up, kOnTheWay + up, 0.5F);
     EXPECT_EQ(count({}, 0), 0U);
-    EXPECT_EQ(count({ball, mast}, 0), 0U);
-    EXPECT_EQ(count({ball, box, drum}, 0), 2U);
+    EXPECT_EQ(count({sphere, mast}, 0), 0U);
+    EXPECT_EQ(count({sphere, box, drum}, 0), 2U);
     EXPECT_EQ(count({}, 2), 2U);
     EXPECT_EQ(count({box, mast}, 1), 2U);
     EXPECT_EQ(count({geometry::make_box(Vec3(5.0F, 9.0F, 0.0F), Vec3::Ones())}, 0), 0U) << "and within reach";
 }
 
-TEST(ClearanceBorder, AnObstacleThatIsABallCostsWhatAThreatAtRestCosts)
+TEST(ClearanceBorder, AnObstacleThatIsASphereCostsWhatAThreatAtRestCosts)
 {
     for (const Vec3& place : {kOnTheWay, Vec3(9.0F, 1.2F, 0.0F), kBeside}) {
         CurveBench bench(straight_way());
@@ -114,13 +114,13 @@ TEST(ClearanceBorder, AMovingSolidIsToldOfBehindTheObstacles)
     EXPECT_EQ(verdict.hit.index, 4U);
 }
 
-TEST(ClearanceBorder, AMovingSolidIsInTheWayHoweverManyBallsAreNot)
+TEST(ClearanceBorder, AMovingSolidIsInTheWayHoweverManySpheresAreNot)
 {
-    for (std::size_t balls = 0; balls <= 8; ++balls) {
+    for (std::size_t spheres = 0; spheres <= 8; ++spheres) {
         CurveBench bench(straight_way());
-        bench.threats.assign(balls, Scene::still(kBeside, 0.5F));
+        bench.threats.assign(spheres, Scene::still(kBeside, 0.5F));
         bench.solids = {{geometry::make_box(kOnTheWay, Vec3::Constant(0.5F)), kHardly}};
-        EXPECT_EQ(bench.check(Part::all, {kBeside}).status, CandidateStatus::hits_moving) << balls;
+        EXPECT_EQ(bench.check(Part::all, {kBeside}).status, CandidateStatus::hits_moving) << spheres;
     }
 }
 
@@ -186,45 +186,45 @@ TEST(ClearanceBorder, APointIsInTheWayToo)
     }
 }
 
-TEST(ClearanceBorder, AnExactTestOfABallIsPaidFor)
+TEST(ClearanceBorder, AnExactTestOfASphereIsPaidFor)
 {
     CurveBench bench = segment(Vec3(3.0F, 0.0F, 0.0F), 1.0F);
     bench.threats = {Scene::still(Vec3(-0.75F, 0.0F, 0.0F), 0.5F)};
     ASSERT_EQ(bench.status(), CandidateStatus::hits_static);
-    EXPECT_EQ(bench.spent, units::kItem + units::kBallLook + units::kBallLookPart + units::kBallContact);
+    EXPECT_EQ(bench.spent, units::kItem + units::kSphereCheck + units::kSphereCheckPart + units::kSphereContact);
     bench.settings.security = SecurityMode::swept;
     bench.threats[0].motion.velocity = Vec3(0.0F, 1e-3F, 0.0F);
     ASSERT_EQ(bench.status(), CandidateStatus::hits_moving);
-    EXPECT_EQ(bench.spent, units::kItem + units::kBallLookPart + units::kCapsuleQuery);
+    EXPECT_EQ(bench.spent, units::kItem + units::kSphereCheckPart + units::kCapsuleQuery);
 }
 
-TEST(ClearanceBorder, WhoLeavesAMarginStraightAwayIsSeenToAtAGlance)
+TEST(ClearanceBorder, WhoLeavesAMarginStraightAwayIsSeenToAtAQuickReject)
 {
-    // An eighth of a metre inside; the ball grows back half its slack in each of 16 parts.
+    // An eighth of a metre inside; the sphere grows back half its slack in each of 16 parts.
     CurveBench bench = segment(Vec3(2.0F, 0.0F, 0.0F), 1.0F);
     bench.problem.rules.escape_from_margin = true;
     bench.problem.rules.escape = {0.0625F, 0.5F};
     bench.threats = {Scene::still(Vec3(-2.0F, 0.0F, 0.0F), 1.625F)};
     ASSERT_EQ(bench.status(), CandidateStatus::available);
-    EXPECT_EQ(bench.spent, units::kItem + units::kBallLook + 16 * units::kBallLookPart);
+    EXPECT_EQ(bench.spent, units::kItem + units::kSphereCheck + 16 * units::kSphereCheckPart);
 }
 
 TEST(ClearanceBorder, AMarginThatGrowsBackAsSlowlyAsNumbersAllowIsLookedAtAllTheSame)
 {
     // A quarter of a metre inside: one direction leads out, the other deeper, by far more than the slack.
     for (const float speed : {0.0F, 1e-44F, 1e-20F, 0.5F}) {
-        for (const bool ball : {true, false}) {
+        for (const bool sphere : {true, false}) {
             for (const float way : {-1.0F, 1.0F}) {
                 CurveBench bench = segment(Vec3(way, 0.0F, 0.0F), 1.0F);
                 bench.problem.rules.escape_from_margin = true;
                 bench.problem.rules.escape.speed = speed;
-                if (ball) {
+                if (sphere) {
                     bench.threats = {Scene::still(Vec3(-2.25F, 0.0F, 0.0F), 2.0F)};
                 } else {
                     bench.obstacles = {{1, geometry::make_box(Vec3(-2.25F, 0.0F, 0.0F), Vec3::Constant(2.0F))}};
                 }
                 EXPECT_EQ(bench.status(), way > 0.0F ? CandidateStatus::available : CandidateStatus::hits_static)
-                    << speed << " " << ball;
+                    << speed << " " << sphere;
             }
         }
     }
@@ -232,17 +232,17 @@ TEST(ClearanceBorder, AMarginThatGrowsBackAsSlowlyAsNumbersAllowIsLookedAtAllThe
 
 TEST(ClearanceBorder, WhereThereWasNoRoomTheNextSegmentIsLookedAtItself)
 {
-    // A ball beside the start; away from it in one second, and on from there.
+    // A sphere beside the start; away from it in one second, and on from there.
     CurveBench bench({{Vec3::Zero(), 0.0F},
                       {Vec3(8.0F, 0.0F, 0.0F), 1.0F},
                       {Vec3(8.0F, 1.0F, 0.0F), 2.0F},
                       {Vec3(8.0F, 2.0F, 0.0F), 3.0F}});
     bench.threats = {Scene::still(Vec3(-3.0F, 0.0F, 0.0F), 0.5F)};
     ASSERT_EQ(bench.check(Part::all, {Vec3(-3.0F, 0.0F, 0.0F)}).status, CandidateStatus::available);
-    EXPECT_EQ(bench.spent, units::kItem + 2 * units::kBallLook) << "and room is looked for again after that";
+    EXPECT_EQ(bench.spent, units::kItem + 2 * units::kSphereCheck) << "and room is looked for again after that";
 }
 
-TEST(ClearanceBorder, WhoStandsStillFarFromABallIsFarUntilTheEnd)
+TEST(ClearanceBorder, WhoStandsStillFarFromASphereIsFarUntilTheEnd)
 {
     CurveBench bench({{Vec3::Zero(), 0.0F}, {Vec3::Zero(), 1.0F}, {Vec3::Zero(), 2.0F}});
     bench.threats = {Scene::still(Vec3(-3.0F, 0.0F, 0.0F), 0.5F)};

@@ -51,8 +51,8 @@ struct StraightScene : Scene {
     std::size_t chosen = 0;
 };
 
-/// Balls far beside the end, within reach of the candidates' common bounds or not: only their number matters.
-void add_far_balls(StraightScene& scene, const Vec3& end, std::size_t count)
+/// Spheres far beside the end, within reach of the candidates' common bounds or not: only their number matters.
+void add_far_spheres(StraightScene& scene, const Vec3& end, std::size_t count)
 {
     for (std::size_t i = 0; i < count; ++i) {
         scene.threats.push_back(Scene::still(end + 1.05F * end + Vec3::Constant(0.5F), 0.1F));
@@ -61,7 +61,7 @@ void add_far_balls(StraightScene& scene, const Vec3& end, std::size_t count)
 
 TEST(ContactBorder, WhatIsTouchedByAHairAheadIsHit)
 {
-    // A ball behind the end of the path, a tenth of a millimetre within the box's reach: no bound on the sum of all
+    // A sphere behind the end of the path, a tenth of a millimetre within the box's reach: no bound on the sum of all
     // lengths may skip it, for any direction of the leg and any number of other threats.
     for (const Vec3& direction : kDirections) {
         for (const std::size_t others : {std::size_t{0}, std::size_t{6}}) {
@@ -69,7 +69,7 @@ TEST(ContactBorder, WhatIsTouchedByAHairAheadIsHit)
                 StraightScene scene(direction);
                 scene.settings.security = security;
                 const Vec3 end = scene.end();
-                add_far_balls(scene, end, others);
+                add_far_spheres(scene, end, others);
                 ASSERT_EQ(scene.status(), CandidateStatus::chosen) << others;
                 scene.threats.push_back(Scene::still(end + (1.5F - 1e-4F) * direction, 0.5F));
                 EXPECT_EQ(scene.status(), CandidateStatus::hits_static) << others;
@@ -208,10 +208,10 @@ TEST(ContactBorder, TheMainThreatsVolumeEndsAtTheCollisionPointAndNotBeyondTheLo
 
 TEST(ContactBorder, ALookAtWhatIsFarCostsTheSameForEach)
 {
-    // Up to four balls are checked singly, more of them first as a group.
-    const auto spent = [](std::size_t balls) {
+    // Up to four spheres are checked singly, more of them first as a group.
+    const auto spent = [](std::size_t spheres) {
         Scene scene = two_level_candidates(6.0F);
-        for (std::size_t i = 0; i < balls; ++i) {
+        for (std::size_t i = 0; i < spheres; ++i) {
             scene.threats.push_back(Scene::still(Vec3(60.0F, 0.0F, 50.0F + 18.0F), 0.5F));
         }
         EXPECT_EQ(scene.run(), PlanStatus::found);

@@ -174,7 +174,7 @@ TEST(FlightBorder, ASlowStartIsNotMovedTooNearEither)
 TEST(FlightBorder, ASmallBodyIsPlannedForAsTheLeastOne)
 {
     Leg leg;
-    leg.add(Vec3(30.0F, 0.0F, 50.0F), Planner::kLeastMainRadius);
+    leg.add(Vec3(30.0F, 0.0F, 50.0F), Planner::kMinMainRadius);
     const std::vector<float> least = leg.offsets();
     ASSERT_FALSE(least.empty());
     for (const float radius : {0.3F, 0.1F, 0.0F}) {

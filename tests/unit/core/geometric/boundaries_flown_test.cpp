@@ -76,15 +76,15 @@ std::uint32_t added_units(FlightBench& bench)
     return with.spent() - without.spent();
 }
 
-TEST(FlownBorder, WhatIsInTheWayAtAGlanceIsNotLookedAtCloser)
+TEST(FlownBorder, WhatIsInTheWayAtAQuickRejectIsNotLookedAtCloser)
 {
     FlightBench bench(30.0F);
     bench.threats = {Scene::still(Vec3(1.0F, 0.0F, 50.0F), 0.5F)};
     ASSERT_EQ(bench.status(), CandidateStatus::hits_static);
-    EXPECT_EQ(added_units(bench), units::kCollected + units::kItem + units::kBallLook);
+    EXPECT_EQ(added_units(bench), units::kCollected + units::kItem + units::kSphereCheck);
 }
 
-TEST(FlownBorder, WhatIsPassedAtAGlanceIsNotLookedAtCloser)
+TEST(FlownBorder, WhatIsPassedAtAQuickRejectIsNotLookedAtCloser)
 {
     // As large as the leg is long, a tenth of a metre beside all of it: each segment is checked once.
     FlightBench bench(60.0F, Vec3(1.0F, 1.0F, 0.0F));
@@ -92,8 +92,8 @@ TEST(FlownBorder, WhatIsPassedAtAGlanceIsNotLookedAtCloser)
     bench.threats = {Scene::still(Vec3(0.0F, 0.0F, 50.0F) + axes * Vec3(30.0F, 202.5F, 0.0F), 200.0F)};
     ASSERT_EQ(bench.status(), CandidateStatus::available);
     const std::uint32_t added = added_units(bench);
-    EXPECT_GT(added, units::kCollected + units::kItem + units::kBallLook * 3 * kMaxPathPoints / 4) << "almost all";
-    EXPECT_LT(added, units::kCollected + units::kItem + units::kBallLook * kMaxPathPoints);
+    EXPECT_GT(added, units::kCollected + units::kItem + units::kSphereCheck * 3 * kMaxPathPoints / 4) << "almost all";
+    EXPECT_LT(added, units::kCollected + units::kItem + units::kSphereCheck * kMaxPathPoints);
 }
 
 TEST(FlownBorder, VolumesLastAsLongAsTheFlight)
@@ -151,7 +151,7 @@ TEST(FlownBorder, WhatTouchesAtTheStartIsNoMarginToEscapeFrom)
 {
     FlightBench bench(30.0F);
     bench.settings.escape_from_margin = true;
-    // The box extends 1 m; 1e-3 m inside, the escape rule shrinks the ball; in exact contact it does not.
+    // The box extends 1 m; 1e-3 m inside, the escape rule shrinks the sphere; in exact contact it does not.
     bench.threats = {Scene::still(Vec3(-3.0F, 0.0F, 50.0F), 2.001F)};
     EXPECT_EQ(bench.status(), CandidateStatus::available);
     bench.threats[0].radius = 2.0F;

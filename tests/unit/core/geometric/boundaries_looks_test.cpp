@@ -17,14 +17,14 @@ namespace {
 using detail::Extent;
 using detail::kExtentRounding;
 using detail::kStraight;
-using detail::Room;
+using detail::MotionBound;
 
 /// Tolerance of exact contact tests, as a share of the largest coordinates involved: 5e-7 of their sums
 /// (core/geometry/sweep.hpp).
 constexpr double kExactRounding = 1e-6;
 
 struct Passing {
-    float fastest = 1.0F, ball_fastest = 0.0F, largest = 1.0F;
+    float fastest = 1.0F, sphere_fastest = 0.0F, largest = 1.0F;
     Seconds duration = 10.0F;
     Vec3 apart, half;
 };
@@ -32,7 +32,7 @@ struct Passing {
 /// Duration without possible contact, by the check at the beginning; verified to the last instant.
 Seconds expect_room_is_left(const Passing& p)
 {
-    Room room(p.fastest, p.ball_fastest, p.largest, p.duration);
+    MotionBound room(p.fastest, p.sphere_fastest, p.largest, p.duration);
     room.look(p.apart, p.half, 0.0F);
     Seconds lasts = 0.0F;
     Seconds ends = p.duration;
@@ -48,7 +48,7 @@ Seconds expect_room_is_left(const Passing& p)
     }
     const Eigen::Vector3d apart = p.apart.cast<double>().cwiseAbs();
     const Eigen::Vector3d half = p.half.cast<double>();
-    const double closing = double(p.fastest) + double(p.ball_fastest);
+    const double closing = double(p.fastest) + double(p.sphere_fastest);
     const double gap = (apart - half).maxCoeff() - double(p.largest) - closing * double(lasts);
     const double lengths = apart.maxCoeff() + half.maxCoeff() + double(p.largest) + closing * double(p.duration);
     // A hundred times that is promised; this sum is rounded otherwise.
@@ -57,7 +57,7 @@ Seconds expect_room_is_left(const Passing& p)
     return lasts;
 }
 
-TEST(LookBorder, TheRoomBeforeABallOutlastsRoundingOfEveryLength)
+TEST(LookBorder, TheRoomBeforeASphereOutlastsRoundingOfEveryLength)
 {
     // Each length by itself a thousand times all others.
     const Vec3 near(0.0F, 3.0F, 0.5F);
@@ -70,7 +70,7 @@ TEST(LookBorder, TheRoomBeforeABallOutlastsRoundingOfEveryLength)
     EXPECT_GT(expect_room_is_left({1000.0F, 0.0F, 1.0F, 1.0F, Vec3(0.0F, 900.0F, 0.5F), half}), 0.5F);
 }
 
-TEST(LookBorder, TheRoomBeforeABallOutlastsRoundingOfAnything)
+TEST(LookBorder, TheRoomBeforeASphereOutlastsRoundingOfAnything)
 {
     Random random(71);
     const auto length = [&] { return std::pow(10.0F, random.uniform(-1.0F, 3.0F)); };
@@ -82,7 +82,7 @@ TEST(LookBorder, TheRoomBeforeABallOutlastsRoundingOfAnything)
                   length(),
                   Vec3(length(), length(), length()),
                   Vec3(length(), length(), length())};
-        p.duration /= p.fastest + p.ball_fastest;
+        p.duration /= p.fastest + p.sphere_fastest;
         p.apart[static_cast<int>(random.below(3))] += p.largest + p.half.maxCoeff();
         seen += expect_room_is_left(p) > 0.0F ? 1U : 0U;
     }
@@ -92,7 +92,7 @@ TEST(LookBorder, TheRoomBeforeABallOutlastsRoundingOfAnything)
 TEST(LookBorder, NothingIsPassedOverBeforeTheFirstLook)
 {
     for (const float speed : {0.0F, 1.0F}) {
-        const Room room(speed, 0.0F, 0.0F, 1.0F);
+        const MotionBound room(speed, 0.0F, 0.0F, 1.0F);
         EXPECT_FALSE(room.lasts_until(0.0F));
         EXPECT_FALSE(room.lasts_until(1.0F));
     }
@@ -106,7 +106,7 @@ TEST(LookBorder, RoomThatIsRoundingAloneLastsForNoTime)
         room = 1e-4F * (1.0F + room);
     }
     for (const float way : {0.0F, 1.0F}) {
-        Room look(0.0F, 0.0F, 0.0F, 1.0F);
+        MotionBound look(0.0F, 0.0F, 0.0F, 1.0F);
         look.look(Vec3(0.0F, std::nextafter(room, way), 0.0F), Vec3::Zero(), 0.0F);
         EXPECT_EQ(look.lasts_until(1.0F), way > 0.0F);
         look.look(Vec3(0.0F, room, 0.0F), Vec3::Zero(), 0.0F);

@@ -272,7 +272,7 @@ TEST(OffsetBorder, AnOffsetAtTheDropLimitIsKept)
     EXPECT_EQ(dropped.size(), kept.size() - 2);
 }
 
-TEST(OffsetBorder, ABallsWidthDoesNotDependOnHowFarAheadItIsNearest)
+TEST(OffsetBorder, ASpheresWidthDoesNotDependOnHowFarAheadItIsNearest)
 {
     const Vec3 half(0.4F, 0.4F, 0.2F);
     for (const Family family : {Family::simple, Family::symmetric, Family::smooth}) {

@@ -68,7 +68,7 @@ TEST(PlanBorder, ASmallBodyIsTheLeastOneHoweverUncertain)
         return all;
     };
     // Both are 0.6 m large including their uncertainty; the offsets extend to 3.2 times the body.
-    const std::vector<float> least = offsets(Planner::kLeastMainRadius, 0.1F / 3.0F);
+    const std::vector<float> least = offsets(Planner::kMinMainRadius, 0.1F / 3.0F);
     const std::vector<float> small = offsets(0.1F, 0.5F / 3.0F);
     ASSERT_EQ(small.size(), least.size());
     for (std::size_t i = 0; i < small.size(); ++i) {

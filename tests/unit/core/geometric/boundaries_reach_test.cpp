@@ -90,7 +90,7 @@ TEST(ReachBorder, TheWidestCandidateIsWatchedOnWhicheverSideItIs)
             for (const Candidate& other : c) {
                 ASSERT_LE(std::abs(other.shape.offset), std::abs(c[i].shape.offset));
             }
-            // A ball beyond its apex that reaches into its box by a centimetre.
+            // A sphere beyond its apex that reaches into its box by a centimetre.
             const Vec3 apex(20.0F, c[i].shape.offset + 1.49F * side, 50.0F);
             scene.threats = {Scene::still(apex, 0.5F)};
             static_cast<void>(scene.run());

@@ -54,7 +54,7 @@ Scene flat()
     return scene;
 }
 
-TEST(WorkBorder, BallsThatStandInTheWay)
+TEST(WorkBorder, SpheresThatStandInTheWay)
 {
     for (const bool verify : {false, true}) {
         Scene scene = flat();
@@ -69,7 +69,7 @@ TEST(WorkBorder, BallsThatStandInTheWay)
     }
 }
 
-TEST(WorkBorder, BallsThatCross)
+TEST(WorkBorder, SpheresThatCross)
 {
     for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
         for (const bool verify : {false, true}) {
@@ -131,28 +131,28 @@ TEST(WorkBorder, ASolidCostsWhatItsPlaceSays)
     // Out of reach, detected by a quick reject.
     EXPECT_EQ(more(Vec3(60.0F, 100.0F, 50.0F), true), units::kCollected);
     // Within the common reach of all candidates, but far from each, and from the start: one check each.
-    const std::uint32_t beside = units::kCollected + 2 * units::kSolidLook;
+    const std::uint32_t beside = units::kCollected + 2 * units::kSolidCheck;
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), true), beside);
     EXPECT_EQ(more(Vec3(60.0F, 0.0F, 59.0F), false), beside);
     // Beside the start: the escape rule asks how near.
     EXPECT_GT(more(Vec3(-2.6F, 0.0F, 50.0F), true), more(Vec3(-2.6F, 0.0F, 50.0F), false));
 }
 
-TEST(WorkBorder, ManyBallsOutOfACurvesReachCostALookEach)
+TEST(WorkBorder, ManySpheresOutOfACurvesReachCostALookEach)
 {
-    constexpr std::uint32_t kBalls = 7;
+    constexpr std::uint32_t kSpheres = 7;
     const auto spent = [](SecurityMode security, const Vec3& velocity) {
         Scene scene = two_level_candidates(3.0F);
         scene.settings.escape_from_margin = false;
         scene.settings.security = security;
         scene.settings.closeness_nearest = 1;
         // Within the common reach of both level candidates, and far above either.
-        scene.threats.assign(kBalls, {{Vec3(60.0F, 0.0F, 59.0F), velocity}, 0.1F});
+        scene.threats.assign(kSpheres, {{Vec3(60.0F, 0.0F, 59.0F), velocity}, 0.1F});
         EXPECT_EQ(scene.run(), PlanStatus::found);
         return scene.budget.spent();
     };
     const std::uint32_t none = spent_on({}, false);
-    constexpr std::uint32_t kPassed = kBalls * (units::kCollected + 2 * units::kFarItem);
+    constexpr std::uint32_t kPassed = kSpheres * (units::kCollected + 2 * units::kFarItem);
     for (const SecurityMode security : {SecurityMode::time_aware, SecurityMode::swept}) {
         EXPECT_EQ(spent(security, Vec3::Zero()), none + kPassed);
     }

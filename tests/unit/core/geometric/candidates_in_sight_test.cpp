@@ -136,7 +136,7 @@ TEST(InSight, OfMovingSolidsTheNearestSurfaceCountsFirst)
         return s;
     };
     const MovingSolid small = solid(Vec3(0.0F, 30.0F, 50.0F), 0.3F, 0.0F);
-    // Farther away, but each within 20 m of the start with its bounding ball, with its stated clearance.
+    // Farther away, but each within 20 m of the start with its bounding sphere, with its stated clearance.
     for (const MovingSolid& large :
          {solid(Vec3(0.0F, -40.0F, 50.0F), 11.5F, 0.0F), solid(Vec3(0.0F, -40.0F, 50.0F), 6.0F, 10.0F)}) {
         const auto closeness = [](const std::vector<MovingSolid>& solids) {
@@ -169,16 +169,16 @@ TEST(InSight, TermsAreToldWhereTheyCountOrAreAskedFor)
         scene.settings.all_terms = c.all_terms;
         scene.settings.weights = {0.3F, 0.2F, 0.5F - c.passing - c.beyond, c.passing, c.beyond};
         ASSERT_EQ(scene.run(), PlanStatus::found);
-        std::size_t told = 0;
+        std::size_t reported = 0;
         for (const Candidate& candidate : scene.result.candidates) {
             if (candidate.status != CandidateStatus::available && candidate.status != CandidateStatus::chosen) {
                 continue;
             }
-            ++told;
+            ++reported;
             EXPECT_EQ(candidate.terms.passing > 0.0F, c.all_terms || c.passing > 0.0F);
             EXPECT_EQ(candidate.terms.beyond > 0.0F, c.all_terms || c.beyond > 0.0F);
         }
-        EXPECT_GT(told, 0U);
+        EXPECT_GT(reported, 0U);
     }
 }
 

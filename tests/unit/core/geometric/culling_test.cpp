@@ -91,7 +91,7 @@ std::uint32_t units_of(Scene scene)
 }
 
 /// How often threats are collected: once for all curves and once for each flight.
-constexpr std::uint32_t kMostCollections = 1 + 32;
+constexpr std::uint32_t kMaxCollections = 1 + 32;
 
 TEST(Culling, WhatIsFarCostsItsBoundingTest)
 {
@@ -108,15 +108,15 @@ TEST(Culling, WhatIsFarCostsItsBoundingTest)
     }
     const std::uint32_t with_obstacles = units_of(scene);
     EXPECT_GT(with_obstacles, alone);
-    EXPECT_LE(with_obstacles, alone + kMostCollections * units::kCollected * kMaxObstacles);
+    EXPECT_LE(with_obstacles, alone + kMaxCollections * units::kCollected * kMaxObstacles);
     const std::size_t still = kMaxTracks - scene.threats.size();
     for (std::size_t i = 0; i < still; ++i) {
         scene.threats.push_back(Scene::still(Vec3(20.0F, 500.0F + static_cast<float>(i), 50.0F), 1.0F));
     }
-    EXPECT_LE(units_of(scene), with_obstacles + kMostCollections * units::kCollected * still);
+    EXPECT_LE(units_of(scene), with_obstacles + kMaxCollections * units::kCollected * still);
 }
 
-/// A long wall beside the leg, within reach of the candidates by its bounding ball, is rejected as far by its faces.
+/// A long wall beside the leg, within reach of the candidates by its bounding sphere, is rejected as far by its faces.
 TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
 {
     for (const float yaw : {0.0F, 0.4F, 2.0F}) {
@@ -135,7 +135,7 @@ TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
             static_cast<std::uint32_t>(scene.result.candidates.size() - scene.count(CandidateStatus::not_evaluated));
         // Each as a curve and in flight: two checks and all points once.
         const std::uint32_t each =
-            units::kCollected + 4 * units::kSolidLook + units::points_units(25) + units::points_units(kMaxPathPoints);
+            units::kCollected + 4 * units::kSolidCheck + units::points_units(25) + units::points_units(kMaxPathPoints);
         EXPECT_LE(with_wall, alone + units::kCollected + looked_at * each) << yaw;
     }
 }
@@ -168,7 +168,7 @@ TEST(Culling, AStraightCandidateTakesOneQueryForASolid)
 }
 
 /// Within the common reach of the level candidates, and above each single one: many are rejected by a quick check.
-TEST(Culling, OfManyBallsThoseFarFromACurveCostALook)
+TEST(Culling, OfManySpheresThoseFarFromACurveCostALook)
 {
     constexpr std::uint32_t kMore = 6;
     for (const Vec3& velocity : {Vec3(0.0F, 0.0F, 0.0F), Vec3(0.0F, 0.01F, 0.0F)}) {

@@ -78,12 +78,12 @@ struct Met {
 
 inline double gap(const Vec3d& half, const Vec3d& apart) { return (apart.cwiseAbs() - half).cwiseMax(0.0).norm(); }
 
-/// `met`, or this ball if the contact is earlier; `at_end`: its size at the end.
-inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, double duration, const Met& ball,
+/// `met`, or this sphere if the contact is earlier; `at_end`: its size at the end.
+inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, double duration, const Met& sphere,
                  Met& met)
 {
     const auto distance = [&](double t) {
-        return gap(half, ball.position + t * ball.velocity - from - t * velocity) - ball.at_end;
+        return gap(half, sphere.position + t * sphere.velocity - from - t * velocity) - sphere.at_end;
     };
     constexpr int kSteps = 4000;
     int i = 0;
@@ -100,7 +100,7 @@ inline void look(const Vec3d& half, const Vec3d& from, const Vec3d& velocity, do
         (distance(middle) > 0.0 ? outside : touching) = middle;
     }
     if (!met.any || touching < met.first) {
-        met = ball;
+        met = sphere;
         met.any = true;
         met.first = touching;
     }
@@ -183,7 +183,7 @@ inline bool second_problem(const InARow& scene, const Result& first, Problem& ou
         out.distance = static_cast<float>(distance);
         out.apex_share = static_cast<float>(0.5 * way.norm() / distance);
         out.main_radius = static_cast<float>(radius);
-        out.body_radius = static_cast<float>(std::min(radius, 0.99 * distance / double(kLeastDistanceInRadii)));
+        out.body_radius = static_cast<float>(std::min(radius, 0.99 * distance / double(kMinDistanceInRadii)));
         out.main_centre_offset = apart(when).cast<float>();
         const double squared = 4.0 * distance * distance - aside * aside;
         back = squared > 0.0 ? std::max(std::sqrt(squared), 0.5 * top) : top;

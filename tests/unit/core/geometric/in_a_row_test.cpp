@@ -69,7 +69,7 @@ TEST(InARowSecond, GoesRoundWhatIsNearerThanTwoAndAHalfRadii)
     scene.threats.push_back(Scene::still(on_way_back(scene, 0.25F), 2.2F));
     Problem second;
     expect_second_part(scene, "5 m after the first", &second);
-    EXPECT_LT(second.distance, kLeastDistanceInRadii * second.main_radius);
+    EXPECT_LT(second.distance, kMinDistanceInRadii * second.main_radius);
 }
 
 TEST(InARowSecond, EndsHalfAsFarOnAsTheMainThreatAtLeast)

@@ -18,7 +18,7 @@ namespace {
 using world::PlanStatus;
 using world::ThreatKind;
 
-constexpr float kLeast = std::numeric_limits<float>::denorm_min();
+constexpr float kMin = std::numeric_limits<float>::denorm_min();
 
 float limit_above(float x) { return std::nextafter(x, kInfinity); }
 float limit_below(float x) { return std::nextafter(x, -kInfinity); }
@@ -80,7 +80,7 @@ TEST(SettingsLimits, AmountsAreZeroOrMoreAndFinite)
 {
     const auto each = [](auto change) {
         expect_settings<float>(true, change, {0.0F, 1.0F});
-        expect_settings<float>(false, change, {-kLeast, -1.0F, kInfinity, -kInfinity, kNan});
+        expect_settings<float>(false, change, {-kMin, -1.0F, kInfinity, -kInfinity, kNan});
     };
     each([](Settings& s, float x) { s.source_drop_margin = x; });
     each([](Settings& s, float x) { s.rotation_penalty = x; });
@@ -90,7 +90,7 @@ TEST(SettingsLimits, AmountsAreZeroOrMoreAndFinite)
 TEST(SettingsLimits, CostAndWeightsHaveTheirRanges)
 {
     const auto cost = [](Settings& s, float x) { s.max_cost = x; };
-    expect_settings<float>(true, cost, {kLeast, 1.0F});
+    expect_settings<float>(true, cost, {kMin, 1.0F});
     expect_settings<float>(false, cost, {0.0F, -1.0F, limit_above(1.0F), kInfinity, kNan});
     const auto weight = [](Settings& s, float x) { s.weights.time = x; };
     expect_settings<float>(false, weight, {kNan});
@@ -144,7 +144,7 @@ TEST(ProblemLimits, MovingSolidsAreAsManyAsFitAndSolids)
     EXPECT_EQ(status_with(kMaxMovingSolids + 1, far), PlanStatus::bad_input);
     for (float MovingSolid::*amount :
          {&MovingSolid::uncertainty, &MovingSolid::radius_rate, &MovingSolid::radius_acceleration}) {
-        for (const float bad : {-kLeast, kInfinity, kNan}) {
+        for (const float bad : {-kMin, kInfinity, kNan}) {
             MovingSolid solid = far;
             solid.*amount = bad;
             EXPECT_EQ(status_with(1, solid), PlanStatus::bad_input) << bad;
@@ -159,7 +159,7 @@ TEST(ProblemLimits, AmountsAreZeroOrMoreAndFinite)
 {
     const auto each = [](auto change) {
         expect_problem<float>(true, change, {0.0F, 1.0F});
-        expect_problem<float>(false, change, {-kLeast, -1.0F, kInfinity, kNan});
+        expect_problem<float>(false, change, {-kMin, -1.0F, kInfinity, kNan});
     };
     each([](Scene& s, float x) { s.uncertainty = x; });
     each([](Scene& s, float x) { s.problem.body_radius = x; });

@@ -120,9 +120,9 @@ TEST(PlannerStatus, NoneAvailable)
 }
 
 /// A closed area of 2 m radius on the leg, from the ground to 100 m.
-world::Barrel closed_area_ahead()
+world::Cylinder closed_area_ahead()
 {
-    world::Barrel area;
+    world::Cylinder area;
     area.circle = {{30.0F, 0.5F}, 2.0F};
     area.top = 100.0F;
     return area;
@@ -132,20 +132,20 @@ world::Barrel closed_area_ahead()
 TEST(PlannerStatus, ClosedAreaAheadIsLeftToOtherMethods)
 {
     Flight flight;
-    const world::Barrel area = closed_area_ahead();
-    flight.airspace.barrels = {&area, 1};
+    const world::Cylinder area = closed_area_ahead();
+    flight.airspace.cylinders = {&area, 1};
     EXPECT_EQ(flight.plan(), PlanStatus::none_available);
     EXPECT_TRUE(flight.out.path.points.empty());
 }
 
 TEST(PlannerStatus, BudgetSpentAtAClosedAreaIsSaid)
 {
-    const world::Barrel area = closed_area_ahead();
+    const world::Cylinder area = closed_area_ahead();
     std::uint32_t spent = 0;
     PlanStatus status = PlanStatus::budget_spent;
     for (std::uint32_t units = 1; status == PlanStatus::budget_spent && units < 1000; ++units) {
         Flight flight;
-        flight.airspace.barrels = {&area, 1};
+        flight.airspace.cylinders = {&area, 1};
         flight.budget = WorkBudget{units};
         status = flight.plan();
         spent += status == PlanStatus::budget_spent ? 1U : 0U;
@@ -205,7 +205,7 @@ TEST(Planner, KeepsToTheSideBeingFlown)
     }
 }
 
-TEST(PlannerRetry, AWallOfBalloonsHasItsGapFurtherOut)
+TEST(PlannerRetry, AWallOfSphereoonsHasItsGapFurtherOut)
 {
     Flight flight;
     for (int y = -2; y <= 2; ++y) {

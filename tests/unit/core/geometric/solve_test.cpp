@@ -134,7 +134,7 @@ TEST(SolveStatus, TooClose)
     EXPECT_TRUE(scene.result.candidates.empty());
 }
 
-TEST(SolveStatus, NoneAvailableInABallTooLarge)
+TEST(SolveStatus, NoneAvailableInASphereTooLarge)
 {
     Scene scene;
     scene.threats.push_back(Scene::still(Vec3(25.0F, 0.0F, 50.0F), 20.0F));

@@ -11,7 +11,7 @@
 #include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
-#include "core/geometry/glance.hpp"
+#include "core/geometry/quick_reject.hpp"
 #include "core/geometry/sweep.hpp"
 #include "core/geometry/swept_box.hpp"
 
@@ -111,19 +111,19 @@ TEST(SweepBorder, TheBoxDistanceKnowsEverySide)
     }
 }
 
-TEST(SweepBorder, TheGlanceKeepsOffTheBorderByItsShareOfAllLengths)
+TEST(SweepBorder, TheQuickRejectKeepsOffTheBorderByItsShareOfAllLengths)
 {
     // 1e-5 of both places, the box and the radius together. A static point above the box.
     const auto at_gap = [](const Vec3& half, float radius, float share) {
         const float most = half.z() + radius;
         const float sizes = 2.0F * most + half.sum() + radius;
         const Vec3 place(0.0F, 0.0F, most + share * 1e-5F * sizes);
-        return glance(half, place, place, radius);
+        return quick_reject(half, place, place, radius);
     };
     for (const Vec3& half : {kOrigin, Vec3(0.0F, 0.0F, 1.0F), Vec3(5.0F, 1.0F, 0.5F)}) {
         for (const float radius : {0.5F, 8.0F}) {
-            EXPECT_EQ(at_gap(half, radius, 0.9F), Glance::unclear);
-            EXPECT_EQ(at_gap(half, radius, 1.1F), Glance::apart);
+            EXPECT_EQ(at_gap(half, radius, 0.9F), QuickReject::unclear);
+            EXPECT_EQ(at_gap(half, radius, 1.1F), QuickReject::apart);
         }
     }
 }

@@ -10,7 +10,7 @@
 
 #include "core/base/work_units.hpp"
 #include "core/geometry/convex.hpp"
-#include "core/geometry/glance.hpp"
+#include "core/geometry/quick_reject.hpp"
 #include "core/geometry/sweep.hpp"
 
 namespace jink::geometry {
@@ -30,7 +30,7 @@ TEST(Border, PointsAtOnePlaceAreInContactForAsLongAsTheyStay)
     const auto of_sphere = contact_interval({}, {}, 0.0F, 5.0F);
     ASSERT_TRUE(of_sphere);
     EXPECT_EQ(of_sphere->last, 5.0F);
-    EXPECT_EQ(glance(kNoSize, kNoSize, kNoSize, 0.0F), Glance::touches);
+    EXPECT_EQ(quick_reject(kNoSize, kNoSize, kNoSize, 0.0F), QuickReject::touches);
     EXPECT_EQ(swept_distance(kNoSize, kNoSize, kNoSize, kNoSize, kNoSize), 0.0F);
     EXPECT_EQ(point_segment_distance(kNoSize, kNoSize, kNoSize), 0.0F);
     for (const Shape& shape : {make_sphere(kNoSize, 0.0F), make_capsule(kNoSize, kNoSize, 0.0F),
@@ -150,15 +150,15 @@ TEST(Border, APlaneFoundAtOnceCostsOneTurn)
     EXPECT_EQ(budget.spent(), units::kSolidQuery + units::kSearchTurn);
 }
 
-TEST(Border, TheGlanceLeavesTouchingToTheExactTest)
+TEST(Border, TheQuickRejectLeavesTouchingToTheExactTest)
 {
     const Vec3 beside(0.0F, 3.0F, 0.0F);
     const Vec3 way(4.0F, 0.0F, 0.0F);
-    EXPECT_EQ(glance(Vec3::Ones(), beside - way, beside + way, 2.0F), Glance::unclear);
-    EXPECT_EQ(glance(Vec3::Ones(), beside - way, beside + way, 1.999F), Glance::apart);
-    EXPECT_EQ(glance(Vec3::Ones(), beside - way, beside + way, 2.01F), Glance::touches);
+    EXPECT_EQ(quick_reject(Vec3::Ones(), beside - way, beside + way, 2.0F), QuickReject::unclear);
+    EXPECT_EQ(quick_reject(Vec3::Ones(), beside - way, beside + way, 1.999F), QuickReject::apart);
+    EXPECT_EQ(quick_reject(Vec3::Ones(), beside - way, beside + way, 2.01F), QuickReject::touches);
     // On the face itself, without a radius.
-    EXPECT_EQ(glance(Vec3::Ones(), Vec3::UnitY() - way, Vec3::UnitY() + way, 0.0F), Glance::touches);
+    EXPECT_EQ(quick_reject(Vec3::Ones(), Vec3::UnitY() - way, Vec3::UnitY() + way, 0.0F), QuickReject::touches);
 }
 
 TEST(Border, EverySolidIsTouchedAtItsClearance)

@@ -68,11 +68,11 @@ TEST(Shape, SupportNeverLosesToASampleOfTheSolid)
         const Vec3 direction = any(1.0F);
         const float along = random.uniform();
         const Vec3 axis_point = a + along * (b - a);
-        const Vec3 ball = radius * any(1.0F).normalized();
-        ASSERT_LE(direction.dot(axis_point + ball),
+        const Vec3 sphere = radius * any(1.0F).normalized();
+        ASSERT_LE(direction.dot(axis_point + sphere),
                   direction.dot(support(make_capsule(a, b, radius), direction)) + 1e-5F);
         const Vec3 axis = (b - a).normalized();
-        const Vec3 flat = ball - axis * axis.dot(ball);
+        const Vec3 flat = sphere - axis * axis.dot(sphere);
         ASSERT_LE(direction.dot(axis_point + flat),
                   direction.dot(support(make_cylinder(a, b, radius), direction)) + 1e-5F);
     }

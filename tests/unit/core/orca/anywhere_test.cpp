@@ -21,7 +21,7 @@ using world::PlanStatus;
 /// The scene of one thing that binds, moved by `by` and turned by quarters, and the command turned back.
 class OrcaAnywhere : public OrcaInput {
 protected:
-    enum Thing { barrel, fence, floor, ceiling, box, hull, track, leg, kThings };
+    enum Thing { cylinder, fence, floor, ceiling, box, hull, track, leg, kThings };
 
     [[nodiscard]] static Vec3 quarter(const Vec3& v, int quarters)
     {
@@ -43,10 +43,10 @@ protected:
         std::vector<Vec3> corners;
         const Vec3 middle = placed(Vec3(13, 7, 0));
         switch (thing) {
-        case barrel:
-            scene.barrel(middle.head<2>(), 10.0F, quarter(Vec3(-0.3F, 0.2F, 0), quarters).head<2>());
-            scene.barrels[0].bottom = by.z() - 20.0F;
-            scene.barrels[0].top = by.z() + 60.0F;
+        case cylinder:
+            scene.cylinder(middle.head<2>(), 10.0F, quarter(Vec3(-0.3F, 0.2F, 0), quarters).head<2>());
+            scene.cylinders[0].bottom = by.z() - 20.0F;
+            scene.cylinders[0].top = by.z() + 60.0F;
             break;
         case fence:
             scene.airspace.has_keep_in = true;

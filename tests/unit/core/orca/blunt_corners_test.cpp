@@ -27,7 +27,7 @@ protected:
     {
         Scratch<16> scratch;
         WorkBudget budget(1'000'000);
-        solution = solve({planes, balls, preferred, Vec3::Zero()}, scratch.view(), budget);
+        solution = solve({planes, spheres, preferred, Vec3::Zero()}, scratch.view(), budget);
         EXPECT_EQ(solution.status & (kBadInput | kWorkLimit | kInfeasibleDynamics), 0U);
         return budget.spent();
     }
@@ -35,7 +35,7 @@ protected:
     bool refined() { return work() > 100U; }
 
     std::vector<HalfSpace> planes;
-    std::vector<Ball> balls{{Vec3::Zero(), 20.0F}};
+    std::vector<Sphere> spheres{{Vec3::Zero(), 20.0F}};
     Vec3 preferred = Vec3(5, 0, 0);
     Solution solution;
 };
@@ -52,15 +52,15 @@ TEST_F(BluntCorners, PlainAnswersAreNot)
     preferred = {5, 5, 5};
     EXPECT_FALSE(refined()) << work();
     EXPECT_EQ(solution.actives, 3U);
-    balls = {{Vec3::Zero(), 1.5F}};
+    spheres = {{Vec3::Zero(), 1.5F}};
     preferred = {5, 0, 0};
-    EXPECT_FALSE(refined()) << "a half-space and a ball beyond it " << work();
-    balls = {{Vec3::Zero(), 0.9F}};
-    EXPECT_FALSE(refined()) << "a ball alone " << work();
-    balls = {{Vec3::Zero(), 2.0F}, {{1, 0, 0}, 1.5F}};
+    EXPECT_FALSE(refined()) << "a half-space and a sphere beyond it " << work();
+    spheres = {{Vec3::Zero(), 0.9F}};
+    EXPECT_FALSE(refined()) << "a sphere alone " << work();
+    spheres = {{Vec3::Zero(), 2.0F}, {{1, 0, 0}, 1.5F}};
     planes.clear();
     preferred = {1, 9, 0};
-    EXPECT_FALSE(refined()) << "two balls " << work();
+    EXPECT_FALSE(refined()) << "two spheres " << work();
 }
 
 TEST_F(BluntCorners, SmallAnglesAre)
@@ -75,12 +75,12 @@ TEST_F(BluntCorners, SmallAnglesAre)
         planes = {below(turned(0.5F * angle), 1.0F), below(-turned(-0.5F * angle), -1.0F + 1e-7F)};
         preferred = {1, 9, 0};
         EXPECT_EQ(refined(), angle < 0.1F) << "opposite " << work();
-        // A half-space and a ball.
+        // A half-space and a sphere.
         planes = {below(turned(angle), std::cos(angle) * 2.0F)};
-        balls = {{Vec3::Zero(), 2.0F}};
+        spheres = {{Vec3::Zero(), 2.0F}};
         preferred = turned(-0.0F) * 9.0F + Vec3(0, 0.2F, 0);
-        EXPECT_EQ(refined(), angle < 0.1F) << "ball " << work();
-        balls = {{Vec3::Zero(), 20.0F}};
+        EXPECT_EQ(refined(), angle < 0.1F) << "sphere " << work();
+        spheres = {{Vec3::Zero(), 20.0F}};
     }
 }
 
@@ -94,7 +94,7 @@ TEST_F(BluntCorners, FlatCornersOfThreeAre)
             planes.push_back(below(side + height * Vec3::UnitZ(), 1.0F));
         }
         preferred = {0, 0, 500};
-        balls = {{Vec3::Zero(), 1000.0F}};
+        spheres = {{Vec3::Zero(), 1000.0F}};
         EXPECT_EQ(refined(), height < 0.1F) << work();
         EXPECT_EQ(solution.actives, 3U);
     }
@@ -110,21 +110,21 @@ TEST_F(BluntCorners, MoreThanThreeAre)
     EXPECT_TRUE(refined()) << work();
     EXPECT_LT((solution.velocity - Vec3(std::sqrt(2.0F), 0, 0)).norm(), 1e-4F);
     planes.pop_back();
-    balls = {{Vec3::Zero(), std::sqrt(2.0F)}};
-    EXPECT_GT(work(), 32U) << "a ball beside three: one turn, which finds nothing better";
+    spheres = {{Vec3::Zero(), std::sqrt(2.0F)}};
+    EXPECT_GT(work(), 32U) << "a sphere beside three: one turn, which finds nothing better";
     planes.pop_back();
-    balls.push_back({{1, 0, 0}, std::sqrt(2.0F) - 1.0F});
-    EXPECT_GT(work(), 32U) << "two balls beside two";
+    spheres.push_back({{1, 0, 0}, std::sqrt(2.0F) - 1.0F});
+    EXPECT_GT(work(), 32U) << "two spheres beside two";
     // A plane off by 0.01 m/s is not active.
     planes = {below({1, 1, 0}, 1.0F), below({1, -1, 0}, 1.0F), below({1, 0, 1}, 1.0F), below({1, 0, -1}, 1.01F)};
-    balls = {{Vec3::Zero(), 20.0F}};
+    spheres = {{Vec3::Zero(), 20.0F}};
     EXPECT_FALSE(refined()) << work();
 }
 
-/// A ball that is a point holds everything.
-TEST_F(BluntCorners, ABallThatIsAPointAndAHalfSpaceThroughItAre)
+/// A sphere that is a point holds everything.
+TEST_F(BluntCorners, ASphereThatIsAPointAndAHalfSpaceThroughItAre)
 {
-    balls = {{Vec3::Zero(), 20.0F}, {{1, 0, 0}, 0.0F}};
+    spheres = {{Vec3::Zero(), 20.0F}, {{1, 0, 0}, 0.0F}};
     EXPECT_FALSE(refined()) << work();
     EXPECT_LT((solution.velocity - Vec3(1, 0, 0)).norm(), 1e-6F);
     planes = {below({0, 1, 0}, 0.0F)};
@@ -172,10 +172,10 @@ TEST_F(BluntCorners, SmallContradictionsAre)
     }
 }
 
-/// A ball that is a point counts as one more that holds it.
-TEST_F(BluntCorners, ABallThatIsAPointBesideTwoIs)
+/// A sphere that is a point counts as one more that holds it.
+TEST_F(BluntCorners, ASphereThatIsAPointBesideTwoIs)
 {
-    balls = {{Vec3::Zero(), 20.0F}, {{1, 0, 0}, 0.0F}};
+    spheres = {{Vec3::Zero(), 20.0F}, {{1, 0, 0}, 0.0F}};
     planes = {below({1, 0, 0}, 1.0F)};
     EXPECT_LE(work(), 32U);
     planes.push_back(below({0, 1, 0}, 0.0F));

@@ -11,7 +11,7 @@
 #include "core/orca/half_space.hpp"
 
 // Small velocity programs solved by enumeration of every set of half-spaces that may be active, in doubles. Independent
-// of the solver: no order, no search, no balls.
+// of the solver: no order, no search, no spheres.
 
 namespace jink::orca::enumerated {
 

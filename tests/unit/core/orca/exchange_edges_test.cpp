@@ -56,7 +56,7 @@ protected:
     bool exchanged(std::size_t soft, std::uint32_t units = 10'000)
     {
         WorkBudget budget(units);
-        return exchange<Real>(rows, yields, soft, balls, Tolerance<Real>(test::exact_scale<Real>()), budget, corner);
+        return exchange<Real>(rows, yields, soft, spheres, Tolerance<Real>(test::exact_scale<Real>()), budget, corner);
     }
     [[nodiscard]] float d() const { return static_cast<float>(corner.d); }
     [[nodiscard]] Vec3 x() const { return corner.x.template cast<float>(); }
@@ -67,10 +67,10 @@ protected:
 
     std::vector<Row> rows;
     std::vector<float> yields;
-    std::vector<Ball> balls{{Vec3::Zero(), 1000.0F}};
+    std::vector<Sphere> spheres{{Vec3::Zero(), 1000.0F}};
     Corner<Real> corner;
 };
-using ExchangePrecisions = ::testing::Types<float, Wide>;
+using ExchangePrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(ExchangeEdges, ExchangePrecisions);
 
 TYPED_TEST(ExchangeEdges, OppositeOnesAreACornerBesideTwoThatHoldNothing)
@@ -195,14 +195,14 @@ TYPED_TEST(ExchangeEdges, NormalsThatNearlyLieInAPlaneAreTooBlunt)
     EXPECT_FALSE(this->found());
 }
 
-/// A ball decides too where the answer lies outside of it.
-TYPED_TEST(ExchangeEdges, AnAnswerOutsideOfABallIsUnknown)
+/// A sphere decides too where the answer lies outside of it.
+TYPED_TEST(ExchangeEdges, AnAnswerOutsideOfASphereIsUnknown)
 {
     this->add_opposites();
     this->rows[2].offset = this->rows[3].offset = 0.5F;
-    this->balls = {{Vec3::Zero(), 1.0F}, {{1.25F, 0, 0}, 1.0F}};
+    this->spheres = {{Vec3::Zero(), 1.0F}, {{1.25F, 0, 0}, 1.0F}};
     EXPECT_TRUE(this->found()) << "at the rim of the second one";
-    this->balls[1].radius = 0.99F;
+    this->spheres[1].radius = 0.99F;
     EXPECT_FALSE(this->found());
 }
 

@@ -16,7 +16,7 @@ namespace jink::orca::flown {
 
 inline constexpr std::uint32_t kPlenty = 1'000'000;
 
-/// A perfectly followed filter; checks that each command is finite, and within both balls of the limits.
+/// A perfectly followed filter; checks that each command is finite, and within both spheres of the limits.
 class Flown {
 public:
     explicit Flown(const FilterSettings& settings = {}, const Vec3& velocity = Vec3::Zero())

@@ -92,16 +92,16 @@ TEST(LimitEdges, ACapThatIsJustReachedIsReached)
 {
     LimitSet hovers = limit_set({}, Vec3::Zero());
     EXPECT_TRUE(cap_speed(hovers, 0.0F));
-    EXPECT_EQ(hovers.balls[0].radius, 0.0F);
+    EXPECT_EQ(hovers.spheres[0].radius, 0.0F);
     LimitSet fast = limit_set({}, {1, 0, 0});
     const float least = 1.0F - 0.99F * 0.05F;
     EXPECT_FALSE(cap_speed(fast, 0.5F));
-    EXPECT_NEAR(fast.balls[0].radius, least, 1e-6F) << "what one period of braking leaves";
+    EXPECT_NEAR(fast.spheres[0].radius, least, 1e-6F) << "what one period of braking leaves";
     EXPECT_TRUE(cap_speed(fast, kEndless)) << "a cap never raises what is capped";
-    EXPECT_NEAR(fast.balls[0].radius, least, 1e-6F);
+    EXPECT_NEAR(fast.spheres[0].radius, least, 1e-6F);
     LimitSet slow = limit_set({}, {0.5F, 0, 0});
     EXPECT_TRUE(cap_speed(slow, 0.75F));
-    EXPECT_EQ(slow.balls[0].radius, 0.75F);
+    EXPECT_EQ(slow.spheres[0].radius, 0.75F);
 }
 
 TEST(LimitEdges, RegionsAndShapesThatAreNoneAreRefused)

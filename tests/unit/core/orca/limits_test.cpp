@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limits of flight as balls and half-spaces (G-ORCA specification, section 5), and settings that are refused.
+// Limits of flight as spheres and half-spaces (G-ORCA specification, section 5), and settings that are refused.
 #include "core/orca/limits.hpp"
 
 #include <algorithm>
@@ -15,8 +15,8 @@ bool lets_pass(const LimitSet& set, const Vec3& v)
 {
     const auto planes = set.half_spaces();
     return std::all_of(planes.begin(), planes.end(), [&](const HalfSpace& p) { return p.violation(v) <= 1e-5F; }) &&
-           std::all_of(set.balls.begin(), set.balls.end(),
-                       [&](const Ball& b) { return (v - b.centre).norm() <= b.radius + 1e-5F; });
+           std::all_of(set.spheres.begin(), set.spheres.end(),
+                       [&](const Sphere& b) { return (v - b.centre).norm() <= b.radius + 1e-5F; });
 }
 
 TEST(Limits, SpeedAndAcceleration)
@@ -27,8 +27,8 @@ TEST(Limits, SpeedAndAcceleration)
     limits.period = 0.1F;
     const LimitSet set = limit_set(limits, {1, 0, 0});
     EXPECT_EQ(set.size, 0U);
-    EXPECT_EQ(set.balls[0].radius, 2.0F);
-    EXPECT_NEAR(set.balls[1].radius, 0.4F, 1e-6F);
+    EXPECT_EQ(set.spheres[0].radius, 2.0F);
+    EXPECT_NEAR(set.spheres[1].radius, 0.4F, 1e-6F);
     EXPECT_TRUE(lets_pass(set, {1.4F, 0, 0}));
     EXPECT_FALSE(lets_pass(set, {1.41F, 0, 0}));
     // A reference beyond the limits is brought within.
@@ -108,12 +108,12 @@ TEST(Limits, ACapGoesAsFarAsBrakingDoes)
     limits.period = 0.1F;
     LimitSet set = limit_set(limits, {1, 0, 0});
     EXPECT_TRUE(cap_speed(set, std::numeric_limits<float>::infinity()));
-    EXPECT_EQ(set.balls[0].radius, 2.0F);
+    EXPECT_EQ(set.spheres[0].radius, 2.0F);
     EXPECT_TRUE(cap_speed(set, 0.8F));
-    EXPECT_EQ(set.balls[0].radius, 0.8F);
+    EXPECT_EQ(set.spheres[0].radius, 0.8F);
     EXPECT_FALSE(cap_speed(set, 0.1F));
-    EXPECT_GT(set.balls[0].radius, 0.6F);  // the rest after a period of braking
-    EXPECT_LT(set.balls[0].radius, 0.61F);
+    EXPECT_GT(set.spheres[0].radius, 0.6F);  // the rest after a period of braking
+    EXPECT_LT(set.spheres[0].radius, 0.61F);
 }
 
 TEST(Limits, ReferenceIsTheLastCommandUnlessItIsFarOff)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Intersection of two planes of nearly equal or opposite directions; and containment in a ball to the bit.
+// Intersection of two planes of nearly equal or opposite directions; and containment in a sphere to the bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,12 +44,12 @@ TEST(WherePlanesMeet, TheLineLiesInBothPlanes)
     }
 }
 
-TEST(WithinABall, ThatIsToTheTolerance)
+TEST(WithinASphere, ThatIsToTheTolerance)
 {
-    const Ball ball{Vec3::Zero(), 1.0F};
+    const Sphere sphere{Vec3::Zero(), 1.0F};
     const float tolerance = test::kTolerance<float>;
-    EXPECT_TRUE(within<float>(ball, {1.0F + tolerance, 0, 0}, tolerance));
-    EXPECT_FALSE(within<float>(ball, {test::above(1.0F + tolerance), 0, 0}, tolerance));
+    EXPECT_TRUE(within<float>(sphere, {1.0F + tolerance, 0, 0}, tolerance));
+    EXPECT_FALSE(within<float>(sphere, {test::above(1.0F + tolerance), 0, 0}, tolerance));
 }
 
 }  // namespace

@@ -125,7 +125,7 @@ TEST(Neighbours, StaleOnesAreWiderAndPassedAlone)
     EXPECT_EQ(pair.weights.react, 0.5F);
     n.age = 2.5F;
     pair = pair_of(settings, {1, 0, 0}, n, 3);
-    EXPECT_EQ(pair.across, 1.0F + kMostAgeing);
+    EXPECT_EQ(pair.across, 1.0F + kMaxAgeing);
     EXPECT_EQ(pair.weights.react, 1.0F);
     EXPECT_EQ(selected(settings, {n}).stale, 1);
     settings.own_id = 8;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A gap of exactly the tolerance to a ball, a plane or a line counts as contact; one bit more does not. In both
+// A gap of exactly the tolerance to a sphere, a plane or a line counts as contact; one bit more does not. In both
 // precisions.
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ protected:
     Found all(const Vec3& goal)
     {
         WorkBudget budget(100'000);
-        const Optimum<Real> out = optimum<Real>(std::span<const RowOf<Real>>(rows), balls, {goal.cast<Real>(), false},
+        const Optimum<Real> out = optimum<Real>(std::span<const RowOf<Real>>(rows), spheres, {goal.cast<Real>(), false},
                                                 Tolerance<Real>(test::exact_scale<Real>()), budget);
         x = out.x.template cast<float>();
         basis = out.basis;
@@ -34,18 +34,18 @@ protected:
         Vec3Of<Real> at = Vec3Of<Real>::Zero();
         const std::size_t on = rows.size() - 1;
         const Found found =
-            optimum_on_plane<Real>(std::span<const RowOf<Real>>(rows), on, on, balls, {goal.cast<Real>(), farthest},
+            optimum_on_plane<Real>(std::span<const RowOf<Real>>(rows), on, on, spheres, {goal.cast<Real>(), farthest},
                                    Tolerance<Real>(test::exact_scale<Real>()), budget, at, basis);
         x = at.template cast<float>();
         return found;
     }
 
     std::vector<RowOf<Real>> rows;
-    std::vector<Ball> balls{{Vec3::Zero(), 1.0F}};
+    std::vector<Sphere> spheres{{Vec3::Zero(), 1.0F}};
     Vec3 x = Vec3::Zero();
     Basis basis;
 };
-using BoundPrecisions = ::testing::Types<float, Wide>;
+using BoundPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(OptimumBounds, BoundPrecisions);
 
 TYPED_TEST(OptimumBounds, ARowThatIsBrokenByTheToleranceHoldsNothing)
@@ -64,7 +64,7 @@ TYPED_TEST(OptimumBounds, ARowThatIsBrokenByTheToleranceHoldsNothing)
     }
 }
 
-TYPED_TEST(OptimumBounds, APlaneBesideABall)
+TYPED_TEST(OptimumBounds, APlaneBesideASphere)
 {
     const TypeParam rim = TypeParam(1.0F) + TypeParam(this->kOutside);
     this->add(Vec3::UnitX(), rim);
@@ -74,7 +74,7 @@ TYPED_TEST(OptimumBounds, APlaneBesideABall)
     EXPECT_EQ(this->all({0, 2, 0}), Found::nothing);
 }
 
-TYPED_TEST(OptimumBounds, ALineBesideABall)
+TYPED_TEST(OptimumBounds, ALineBesideASphere)
 {
     const TypeParam rim = TypeParam(1.0F) + TypeParam(this->kOutside);
     this->add(Vec3::UnitX(), rim);
@@ -93,10 +93,10 @@ TYPED_TEST(OptimumBounds, ADiscBesideADisc)
     const float apart = std::is_same_v<TypeParam, float> ? 2.0F + 2.0F * this->kOutside : 2.0F;
     for (const bool farthest : {false, true}) {
         const Vec3 goal = farthest ? Vec3(Vec3::UnitZ()) : Vec3(1, 9, 0);
-        this->balls = {{Vec3::Zero(), 1.0F}, {{apart, 0, 0}, 1.0F}};
+        this->spheres = {{Vec3::Zero(), 1.0F}, {{apart, 0, 0}, 1.0F}};
         EXPECT_EQ(this->on_last(goal, farthest), Found::optimum) << farthest;
         EXPECT_LT((this->x - Vec3::UnitX()).norm(), 1e-5F);
-        this->balls[1].centre.x() = test::above(apart);
+        this->spheres[1].centre.x() = test::above(apart);
         EXPECT_EQ(this->on_last(goal, farthest), Found::nothing) << farthest;
     }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Optima within balls and half-spaces, in both precisions: within all of them, and no feasible direction leads nearer
+// Optima within spheres and half-spaces, in both precisions: within all of them, and no feasible direction leads nearer
 // to the goal. Checked by the conditions of optimality, in doubles.
 #include <gtest/gtest.h>
 
@@ -17,24 +17,24 @@ namespace {
 using enumerated::unit;
 using enumerated::Vec3d;
 
-constexpr std::uint64_t kBallSeed = 20261128;
+constexpr std::uint64_t kSphereSeed = 20261128;
 constexpr std::uint32_t kAllTheWork = 10'000'000;
 
-/// Half-spaces and one or two balls, each of which leaves a point free by 0.05 m/s at least.
+/// Half-spaces and one or two spheres, each of which leaves a point free by 0.05 m/s at least.
 struct Constrained {
     Vec3 inside;
     std::vector<Row> rows;
-    std::vector<Ball> balls;
+    std::vector<Sphere> spheres;
     Vec3 goal;
     bool farthest;
 
     Constrained(Random& random, std::uint64_t most_rows)
     {
         inside = random.uniform(0.0F, 1.0F) * unit(random);
-        balls.push_back({inside + random.uniform(0.0F, 0.95F) * unit(random), 1.05F});
+        spheres.push_back({inside + random.uniform(0.0F, 0.95F) * unit(random), 1.05F});
         if (random.below(2) == 0) {
             const float radius = random.uniform(0.3F, 2.0F);
-            balls.push_back({inside + random.uniform(0.5F, 0.95F) * radius * unit(random), radius + 0.05F});
+            spheres.push_back({inside + random.uniform(0.5F, 0.95F) * radius * unit(random), radius + 0.05F});
         }
         for (std::uint64_t n = random.below(most_rows + 1); n > 0; --n) {
             const Vec3 normal = unit(random);
@@ -72,9 +72,9 @@ struct Constrained {
                 look_at(-normal, beyond);
             }
         }
-        for (const Ball& ball : balls) {
-            const Vec3d away = x - ball.centre.cast<double>();
-            look_at(away.normalized(), away.norm() - static_cast<double>(ball.radius));
+        for (const Sphere& sphere : spheres) {
+            const Vec3d away = x - sphere.centre.cast<double>();
+            look_at(away.normalized(), away.norm() - static_cast<double>(sphere.radius));
         }
         const Vec3d way = farthest ? goal.cast<double>() : Vec3d(goal.cast<double>() - x);
         out.unheld = way.norm();
@@ -117,7 +117,7 @@ Vec3d in_doubles(const Vec3Of<Real>& v)
     if constexpr (std::is_same_v<Real, float>) {
         return v.template cast<double>();
     } else {
-        const auto value = [](const Wide& w) { return static_cast<double>(w.hi) + static_cast<double>(w.lo); };
+        const auto value = [](const DoubleFloat& w) { return static_cast<double>(w.hi) + static_cast<double>(w.lo); };
         return {value(v.x()), value(v.y()), value(v.z())};
     }
 }
@@ -136,25 +136,25 @@ template <class Real>
 struct UnitPrecision : public ::testing::Test {
     static constexpr double kExact = std::is_same_v<Real, float> ? 1e-4 : 1e-6;
 };
-using UnitPrecisions = ::testing::Types<float, Wide>;
+using UnitPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(UnitPrecision, UnitPrecisions);
 
 TYPED_TEST(UnitPrecision, AnOptimumIsHeldByWhatItReaches)
 {
-    Random random(kBallSeed);
+    Random random(kSphereSeed);
     std::array<int, 4> held{};
     for (int i = 0; i < 700; ++i) {
         const Constrained c(random, 7);
         const std::vector<RowOf<TypeParam>> rows = in_precision<TypeParam>(c.rows);
         const GoalOf<TypeParam> goal{c.goal.template cast<TypeParam>(), c.farthest};
         WorkBudget budget(kAllTheWork);
-        const Optimum<TypeParam> found = optimum<TypeParam>(rows, c.balls, goal, Tolerance<TypeParam>(4.0F), budget);
-        ASSERT_EQ(found.found, Found::optimum) << "seed " << kBallSeed << ", case " << i;
+        const Optimum<TypeParam> found = optimum<TypeParam>(rows, c.spheres, goal, Tolerance<TypeParam>(4.0F), budget);
+        ASSERT_EQ(found.found, Found::optimum) << "seed " << kSphereSeed << ", case " << i;
         ASSERT_EQ(found.satisfied, rows.size());
         const auto judged = c.judge(in_doubles<TypeParam>(found.x), TestFixture::kExact);
-        ASSERT_LE(judged.outside, 0.3 * TestFixture::kExact) << "seed " << kBallSeed << ", case " << i;
+        ASSERT_LE(judged.outside, 0.3 * TestFixture::kExact) << "seed " << kSphereSeed << ", case " << i;
         if (!judged.is_blunt) {
-            ASSERT_LE(judged.unheld, 20.0 * TestFixture::kExact) << "seed " << kBallSeed << ", case " << i;
+            ASSERT_LE(judged.unheld, 20.0 * TestFixture::kExact) << "seed " << kSphereSeed << ", case " << i;
         }
         ++held[found.basis.size];
         for (std::size_t k = 0; k < found.basis.size; ++k) {
@@ -170,7 +170,7 @@ TYPED_TEST(UnitPrecision, AnOptimumIsHeldByWhatItReaches)
 
 TYPED_TEST(UnitPrecision, OnAPlaneItIsHeldByWhatItReachesThere)
 {
-    Random random(kBallSeed + 1);
+    Random random(kSphereSeed + 1);
     for (int i = 0; i < 700; ++i) {
         Constrained c(random, 5);
         const Vec3 normal = unit(random);
@@ -180,14 +180,14 @@ TYPED_TEST(UnitPrecision, OnAPlaneItIsHeldByWhatItReachesThere)
         WorkBudget budget(kAllTheWork);
         Vec3Of<TypeParam> found;
         Basis basis;
-        ASSERT_EQ(optimum_on_plane<TypeParam>(rows, on, on, c.balls, {c.goal.template cast<TypeParam>(), c.farthest},
+        ASSERT_EQ(optimum_on_plane<TypeParam>(rows, on, on, c.spheres, {c.goal.template cast<TypeParam>(), c.farthest},
                                               Tolerance<TypeParam>(4.0F), budget, found, basis),
                   Found::optimum)
             << i;
         const auto judged = c.judge(in_doubles<TypeParam>(found), TestFixture::kExact, static_cast<std::ptrdiff_t>(on));
-        ASSERT_LE(judged.outside, 0.3 * TestFixture::kExact) << "seed " << kBallSeed << ", case " << i;
+        ASSERT_LE(judged.outside, 0.3 * TestFixture::kExact) << "seed " << kSphereSeed << ", case " << i;
         if (!judged.is_blunt) {
-            ASSERT_LE(judged.unheld, 20.0 * TestFixture::kExact) << "seed " << kBallSeed << ", case " << i;
+            ASSERT_LE(judged.unheld, 20.0 * TestFixture::kExact) << "seed " << kSphereSeed << ", case " << i;
         }
         ASSERT_GE(basis.size, 1U);
         ASSERT_EQ(basis.rows[0], on);
@@ -197,7 +197,7 @@ TYPED_TEST(UnitPrecision, OnAPlaneItIsHeldByWhatItReachesThere)
 /// An infeasible constraint gives no optimum, and the earlier constraints are satisfied.
 TYPED_TEST(UnitPrecision, WhatLeavesNothingIsSaid)
 {
-    Random random(kBallSeed + 2);
+    Random random(kSphereSeed + 2);
     for (int i = 0; i < 400; ++i) {
         Constrained c(random, 4);
         const float gap = std::pow(10.0F, random.uniform(-3.0F, -0.5F));
@@ -207,16 +207,16 @@ TYPED_TEST(UnitPrecision, WhatLeavesNothingIsSaid)
             c.rows.push_back({normal, normal.dot(c.inside)});
             c.rows.push_back({-normal, -normal.dot(c.inside) + gap});
         } else if (i % 3 == 1) {
-            const Ball& ball = c.balls.back();
-            c.rows.push_back({normal, normal.dot(ball.centre) + ball.radius + gap});
+            const Sphere& sphere = c.spheres.back();
+            c.rows.push_back({normal, normal.dot(sphere.centre) + sphere.radius + gap});
         } else {
-            c.balls = {{c.inside, 0.5F}, {c.inside + (1.0F + gap) * normal, 0.5F}};
+            c.spheres = {{c.inside, 0.5F}, {c.inside + (1.0F + gap) * normal, 0.5F}};
         }
         const std::vector<RowOf<TypeParam>> rows = in_precision<TypeParam>(c.rows);
         WorkBudget budget(kAllTheWork);
         const Optimum<TypeParam> found = optimum<TypeParam>(
-            rows, c.balls, {c.goal.template cast<TypeParam>(), c.farthest}, Tolerance<TypeParam>(4.0F), budget);
-        ASSERT_EQ(found.found, Found::nothing) << "seed " << kBallSeed << ", case " << i;
+            rows, c.spheres, {c.goal.template cast<TypeParam>(), c.farthest}, Tolerance<TypeParam>(4.0F), budget);
+        ASSERT_EQ(found.found, Found::nothing) << "seed " << kSphereSeed << ", case " << i;
         if (i % 3 != 2) {
             ASSERT_GE(found.satisfied, kept);
             ASSERT_LT(found.satisfied, rows.size());
@@ -227,12 +227,12 @@ TYPED_TEST(UnitPrecision, WhatLeavesNothingIsSaid)
 /// If the budget runs out anywhere, this is reported; with exactly the needed budget the answer is the same.
 TYPED_TEST(UnitPrecision, ABudgetThatRunsOutIsSaid)
 {
-    Random random(kBallSeed + 3);
+    Random random(kSphereSeed + 3);
     for (int i = 0; i < 40; ++i) {
         const Constrained c(random, 7);
         const std::vector<RowOf<TypeParam>> rows = in_precision<TypeParam>(c.rows);
         const auto run = [&](WorkBudget& budget) {
-            return optimum<TypeParam>(rows, c.balls, {c.goal.template cast<TypeParam>(), c.farthest},
+            return optimum<TypeParam>(rows, c.spheres, {c.goal.template cast<TypeParam>(), c.farthest},
                                       Tolerance<TypeParam>(4.0F), budget);
         };
         WorkBudget plenty(kAllTheWork);
@@ -248,10 +248,10 @@ TYPED_TEST(UnitPrecision, ABudgetThatRunsOutIsSaid)
     }
 }
 
-/// The whole solver within one or two balls, by the same conditions: a few half-spaces, most of the time by its search.
-TEST(SolverInBalls, WhatIsFoundIsHeldByWhatItReaches)
+/// The whole solver within one or two spheres, by the same conditions: a few half-spaces, most of the time by its search.
+TEST(SolverInSpheres, WhatIsFoundIsHeldByWhatItReaches)
 {
-    Random random(kBallSeed + 4);
+    Random random(kSphereSeed + 4);
     for (int i = 0; i < 700; ++i) {
         Constrained c(random, 9);
         c.farthest = false;
@@ -262,20 +262,20 @@ TEST(SolverInBalls, WhatIsFoundIsHeldByWhatItReaches)
         }
         Scratch<16> scratch;
         WorkBudget budget(kAllTheWork);
-        const Solution solution = solve({planes, c.balls, c.goal, c.inside}, scratch.view(), budget);
-        ASSERT_EQ(solution.status, 0U) << "seed " << kBallSeed << ", case " << i;
+        const Solution solution = solve({planes, c.spheres, c.goal, c.inside}, scratch.view(), budget);
+        ASSERT_EQ(solution.status, 0U) << "seed " << kSphereSeed << ", case " << i;
         const auto judged = c.judge(solution.velocity.cast<double>(), 1e-4);
-        ASSERT_LE(judged.outside, 1.2e-5) << "seed " << kBallSeed << ", case " << i;
+        ASSERT_LE(judged.outside, 1.2e-5) << "seed " << kSphereSeed << ", case " << i;
         if (!judged.is_blunt) {
-            ASSERT_LE(judged.unheld, 2e-3) << "seed " << kBallSeed << ", case " << i;
+            ASSERT_LE(judged.unheld, 2e-3) << "seed " << kSphereSeed << ", case " << i;
         }
     }
 }
 
-/// With any budget: the usual result, or reported as limited with the best of a few points within the balls.
-TEST(SolverInBalls, AnyBudgetIsEnoughOrSaid)
+/// With any budget: the usual result, or reported as limited with the best of a few points within the spheres.
+TEST(SolverInSpheres, AnyBudgetIsEnoughOrSaid)
 {
-    Random random(kBallSeed + 5);
+    Random random(kSphereSeed + 5);
     for (int i = 0; i < 60; ++i) {
         const Constrained c(random, 9);
         std::vector<HalfSpace> planes;
@@ -285,7 +285,7 @@ TEST(SolverInBalls, AnyBudgetIsEnoughOrSaid)
         Scratch<16> scratch;
         const auto with = [&](std::uint32_t units, std::uint32_t& spent) {
             WorkBudget budget(units);
-            const Solution out = solve({planes, c.balls, c.goal, c.inside}, scratch.view(), budget);
+            const Solution out = solve({planes, c.spheres, c.goal, c.inside}, scratch.view(), budget);
             spent = budget.spent();
             return out;
         };
@@ -297,8 +297,8 @@ TEST(SolverInBalls, AnyBudgetIsEnoughOrSaid)
             const Solution some = with(units, spent);
             ASSERT_NE(some.status & kWorkLimit, 0U) << units << " of " << needed << ", case " << i;
             ASSERT_LE(spent, units);
-            for (const Ball& ball : c.balls) {
-                ASSERT_LE((some.velocity - ball.centre).norm(), ball.radius * 1.000001F);
+            for (const Sphere& sphere : c.spheres) {
+                ASSERT_LE((some.velocity - sphere.centre).norm(), sphere.radius * 1.000001F);
             }
             for (const HalfSpace& plane : planes) {
                 ASSERT_LE(plane.violation(some.velocity), some.broken[2] + 1e-5F);
@@ -313,21 +313,21 @@ TEST(SolverInBalls, AnyBudgetIsEnoughOrSaid)
 /// Numbers of twice the precision, each operation to 2^-43 of its result.
 TEST(WideNumbers, EachOperationIsExact)
 {
-    Random random(kBallSeed + 6);
-    const auto value = [](const Wide& w) { return static_cast<double>(w.hi) + static_cast<double>(w.lo); };
+    Random random(kSphereSeed + 6);
+    const auto value = [](const DoubleFloat& w) { return static_cast<double>(w.hi) + static_cast<double>(w.lo); };
     const auto any = [&] {
         const float high = random.uniform(-1.0F, 1.0F) * std::pow(10.0F, random.uniform(-4.0F, 4.0F));
-        return Wide(high) + Wide(high * random.uniform(-1.0F, 1.0F) * 0x1p-24F);
+        return DoubleFloat(high) + DoubleFloat(high * random.uniform(-1.0F, 1.0F) * 0x1p-24F);
     };
-    const auto expect_exact = [&](const Wide& found, double exact) {
+    const auto expect_exact = [&](const DoubleFloat& found, double exact) {
         ASSERT_LE(std::fabs(value(found) - exact), 0x1p-43 * std::fabs(exact));
         ASSERT_EQ(found.hi, static_cast<float>(value(found)));
     };
     for (int i = 0; i < 3000; ++i) {
-        const Wide a = any();
-        Wide b = any();
+        const DoubleFloat a = any();
+        DoubleFloat b = any();
         if (i % 3 == 0) {
-            b = Wide(a.hi * (1.0F + random.uniform(-1.0F, 1.0F) * 1e-6F)) + Wide(a.lo);
+            b = DoubleFloat(a.hi * (1.0F + random.uniform(-1.0F, 1.0F) * 1e-6F)) + DoubleFloat(a.lo);
             b = i % 2 == 0 ? -b : b;
         }
         expect_exact(a + b, value(a) + value(b));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Balls, half-spaces and lines with a single common point, or apart by less than the tolerance: the point is found, and
+// Spheres, half-spaces and lines with a single common point, or apart by less than the tolerance: the point is found, and
 // is finite. In both precisions.
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ protected:
     Found solved(const Vec3& goal, bool farthest = false)
     {
         WorkBudget budget(1'000'000);
-        const Optimum<Real> found = optimum<Real>(std::span<const RowOf<Real>>(rows), balls,
+        const Optimum<Real> found = optimum<Real>(std::span<const RowOf<Real>>(rows), spheres,
                                                   {goal.cast<Real>(), farthest}, Tolerance<Real>(1.0F), budget);
         x = found.x.template cast<float>();
         return found.found;
@@ -33,7 +33,7 @@ protected:
         Basis basis;
         const std::size_t on = rows.size() - 1;
         const Found found =
-            optimum_on_plane<Real>(std::span<const RowOf<Real>>(rows), on, on, balls, {goal.cast<Real>(), farthest},
+            optimum_on_plane<Real>(std::span<const RowOf<Real>>(rows), on, on, spheres, {goal.cast<Real>(), farthest},
                                    Tolerance<Real>(1.0F), budget, at, basis);
         x = at.template cast<float>();
         return found;
@@ -41,16 +41,16 @@ protected:
     [[nodiscard]] bool is_at(const Vec3& wanted, float within = 2e-3F) const { return (x - wanted).norm() <= within; }
 
     std::vector<RowOf<Real>> rows;
-    std::vector<Ball> balls{{Vec3::Zero(), 1.0F}};
+    std::vector<Sphere> spheres{{Vec3::Zero(), 1.0F}};
     Vec3 x = Vec3::Zero();
 };
-using TouchPrecisions = ::testing::Types<float, Wide>;
+using TouchPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(OptimumTouch, TouchPrecisions);
 
 /// By how much of the tolerance things miss each other: not at all, and by so little that it is rounding.
 constexpr float kMisses[] = {0.0F, 0.6F};
 
-TYPED_TEST(OptimumTouch, AHalfSpaceAndABall)
+TYPED_TEST(OptimumTouch, AHalfSpaceAndASphere)
 {
     for (const float miss : kMisses) {
         this->rows = {this->row(Vec3::UnitX(), TypeParam(1.0F) + TypeParam(miss * this->kTolerance))};
@@ -63,10 +63,10 @@ TYPED_TEST(OptimumTouch, AHalfSpaceAndABall)
     EXPECT_EQ(this->solved({0, 2, 0}), Found::nothing) << "three times the tolerance is none";
 }
 
-TYPED_TEST(OptimumTouch, ALineAndABall)
+TYPED_TEST(OptimumTouch, ALineAndASphere)
 {
     for (const float miss : kMisses) {
-        // Both planes intersect in a vertical line, which contacts the ball at 45 degrees.
+        // Both planes intersect in a vertical line, which contacts the sphere at 45 degrees.
         using std::sqrt;
         const TypeParam half = sqrt(TypeParam(0.5F)) * (TypeParam(1.0F) + TypeParam(miss * this->kTolerance));
         this->rows = {this->row(Vec3::UnitX(), half), this->row(Vec3::UnitY(), half)};
@@ -75,11 +75,11 @@ TYPED_TEST(OptimumTouch, ALineAndABall)
     }
 }
 
-TYPED_TEST(OptimumTouch, TwoBalls)
+TYPED_TEST(OptimumTouch, TwoSpheres)
 {
     // 2 m apart; smaller by a thousandth of a thousandth, as far as a float can say it.
     for (const float miss : {0.0F, std::is_same_v<TypeParam, float> ? 1.8e-7F : 0.0F}) {
-        this->balls = {{Vec3::Zero(), 1.0F - miss}, {{2, 0, 0}, 1.0F - miss}};
+        this->spheres = {{Vec3::Zero(), 1.0F - miss}, {{2, 0, 0}, 1.0F - miss}};
         this->rows.clear();
         EXPECT_EQ(this->solved({1, 9, 0}), Found::optimum) << miss;
         EXPECT_TRUE(this->is_at(Vec3::UnitX()));
@@ -91,15 +91,15 @@ TYPED_TEST(OptimumTouch, TwoBalls)
             << "every point is as good, there is one " << miss;
         EXPECT_TRUE(this->is_at(Vec3::UnitX()));
     }
-    this->balls[1].centre.x() = 2.1F;
+    this->spheres[1].centre.x() = 2.1F;
     this->rows.clear();
     EXPECT_EQ(this->solved({1, 9, 0}), Found::nothing);
 }
 
-/// The same ball twice is one.
-TYPED_TEST(OptimumTouch, TheSameBallTwice)
+/// The same sphere twice is one.
+TYPED_TEST(OptimumTouch, TheSameSphereTwice)
 {
-    this->balls = {{{0.25F, 0, 0}, 1.0F}, {{0.25F, 0, 0}, 1.0F}};
+    this->spheres = {{{0.25F, 0, 0}, 1.0F}, {{0.25F, 0, 0}, 1.0F}};
     EXPECT_EQ(this->solved({0.25F, 3, 0}), Found::optimum);
     EXPECT_TRUE(this->is_at({0.25F, 1, 0}, 1e-5F));
     this->rows = {this->row(Vec3::UnitZ(), TypeParam(0.6F))};
@@ -112,11 +112,11 @@ TYPED_TEST(OptimumTouch, TheSameBallTwice)
 /// The preferred velocity 0 is a point like any other.
 TYPED_TEST(OptimumTouch, TheNearestToZeroIsThat)
 {
-    this->balls = {{{0.5F, 0, 0}, 1.0F}, {{-0.2F, 0, 0}, 1.0F}};
+    this->spheres = {{{0.5F, 0, 0}, 1.0F}, {{-0.2F, 0, 0}, 1.0F}};
     this->rows = {this->row(Vec3::UnitZ(), TypeParam(0.0F))};
     EXPECT_EQ(this->on_plane(Vec3::Zero()), Found::optimum);
     EXPECT_TRUE(this->is_at(Vec3::Zero(), 1e-6F));
-    this->balls = {{{0.5F, 0, 0}, 1.0F}, {{1.2F, 0, 0}, 1.0F}};
+    this->spheres = {{{0.5F, 0, 0}, 1.0F}, {{1.2F, 0, 0}, 1.0F}};
     EXPECT_EQ(this->on_plane(Vec3::Zero()), Found::optimum);
     EXPECT_TRUE(this->is_at({0.2F, 0, 0}, 1e-5F)) << "the second one begins there ";
 }
@@ -125,10 +125,10 @@ TYPED_TEST(OptimumTouch, TheNearestToZeroIsThat)
 TYPED_TEST(OptimumTouch, ADiscWithinAnother)
 {
     this->rows = {this->row(Vec3::UnitZ(), TypeParam(0.0F))};
-    const Ball small{{0.1F, 0, 0}, 0.5F};
-    const Ball large{{0, 0, 0}, 2.0F};
-    for (const auto& both : {std::vector<Ball>{small, large}, {large, small}}) {
-        this->balls = both;
+    const Sphere small{{0.1F, 0, 0}, 0.5F};
+    const Sphere large{{0, 0, 0}, 2.0F};
+    for (const auto& both : {std::vector<Sphere>{small, large}, {large, small}}) {
+        this->spheres = both;
         EXPECT_EQ(this->on_plane(Vec3::UnitZ(), true), Found::optimum);
         EXPECT_LE((this->x - small.centre).norm(), 0.5F);
         EXPECT_EQ(this->on_plane({5, 0, 0}), Found::optimum);
@@ -167,7 +167,7 @@ TYPED_TEST(OptimumTouch, AShortfallIsSharedByTheSlopes)
     WorkBudget budget(1'000'000);
     Vec3Of<TypeParam> at = Vec3Of<TypeParam>::Zero();
     Basis basis;
-    ASSERT_EQ(optimum_on_plane<TypeParam>(std::span<const RowOf<TypeParam>>(this->rows), 3, 3, this->balls,
+    ASSERT_EQ(optimum_on_plane<TypeParam>(std::span<const RowOf<TypeParam>>(this->rows), 3, 3, this->spheres,
                                           {Vec3(0, 0, -1).cast<TypeParam>(), false}, Tolerance<TypeParam>(1.0F), budget,
                                           at, basis),
               Found::optimum);

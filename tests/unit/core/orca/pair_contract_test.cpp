@@ -17,22 +17,22 @@ constexpr float kNotFinite[] = {std::numeric_limits<float>::quiet_NaN(), std::nu
 
 // --- velocity obstacles ---
 
-/// Beside the cut-off ball's cap the cone is left, not the ball.
+/// Beside the cut-off sphere's cap the cone is left, not the sphere.
 TEST(PairContract, BesideTheCapTheConeIsLeft)
 {
     const Vec3 position(10, 0, 0);
     const float slope = std::sqrt(99.0F);  // of a tangent: 1 m at 10 m
     for (const float side : {-1.0F, 1.0F}) {
-        // Behind the ball's centre at the horizon, and far to its side.
+        // Behind the sphere's centre at the horizon, and far to its side.
         const Exit exit = nearest_exit(position, {0.99F, side * 0.5F, 0}, 1.0F, 10.0F);
         EXPECT_LT((exit.normal - Vec3(-0.1F, side * slope / 10.0F, 0)).norm(), 1e-5F);
         EXPECT_NEAR(exit.depth, 0.099F - 0.5F * slope / 10.0F, 1e-5F);
     }
-    // On its cap the ball is left.
+    // On its cap the sphere is left.
     const Exit cap = nearest_exit(position, {0.5F, 0.02F, 0}, 1.0F, 10.0F);
-    const Vec3 from_ball(-0.5F, 0.02F, 0);
-    EXPECT_LT((cap.normal - from_ball.normalized()).norm(), 1e-5F);
-    EXPECT_NEAR(cap.depth, 0.1F - from_ball.norm(), 1e-5F);
+    const Vec3 from_sphere(-0.5F, 0.02F, 0);
+    EXPECT_LT((cap.normal - from_sphere.normalized()).norm(), 1e-5F);
+    EXPECT_NEAR(cap.depth, 0.1F - from_sphere.norm(), 1e-5F);
 }
 
 /// The same velocity near the axis, over four decades of the offset: side and depth are unchanged.

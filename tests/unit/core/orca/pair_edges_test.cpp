@@ -145,7 +145,7 @@ TEST(NeighbourEdges, WhatAnAgeAddsIsBounded)
     EXPECT_EQ(pair.own_velocity, Vec3(1, 2, 3));
     EXPECT_EQ(pair.source, 9U);
     n.age = 100.0F;
-    EXPECT_FLOAT_EQ(pair_of(settings, Vec3::Zero(), n, 0).across, 1.0F + kMostAgeing);
+    EXPECT_FLOAT_EQ(pair_of(settings, Vec3::Zero(), n, 0).across, 1.0F + kMaxAgeing);
     settings.own_id = 5;
     EXPECT_TRUE(pair_of(settings, Vec3::Zero(), n, 0).above);
     n.id = 6;

@@ -77,9 +77,9 @@ TEST_F(OrcaInput, EveryEndOfTheSettingsIsTakenAndNothingBeyond)
     ends(&Settings::reach, 0.1F, 5.0F);
     ends(&Settings::stale, 0.01F, 60.0F);
     using Length = std::uint16_t;
-    EXPECT_TRUE(takes(&Settings::smoothing, Length{1}) && takes(&Settings::smoothing, Length{CommandFilter::kMost}));
+    EXPECT_TRUE(takes(&Settings::smoothing, Length{1}) && takes(&Settings::smoothing, Length{CommandFilter::kMax}));
     EXPECT_FALSE(takes(&Settings::smoothing, Length{0}));
-    EXPECT_FALSE(takes(&Settings::smoothing, Length{CommandFilter::kMost + 1}));
+    EXPECT_FALSE(takes(&Settings::smoothing, Length{CommandFilter::kMax + 1}));
     Settings good;
     good.stale = 11.0F;
     EXPECT_TRUE(planner.configure(good));
@@ -123,7 +123,7 @@ TEST_F(OrcaInput, AnOwnStateOfHalfASecondIsUsedAndNoOlderOne)
 TEST_F(OrcaInput, ABudgetThatRunsOutIsNoAnswer)
 {
     scene.track(Vec3(40, 0.5F, 30), Vec3(-5, 0, 0));
-    scene.barrel(world::Vec2(60, 0), 5.0F);
+    scene.cylinder(world::Vec2(60, 0), 5.0F);
     ASSERT_EQ(plan(), PlanStatus::found);
     const std::uint32_t needed = spent;
     for (std::uint32_t units = 0; units < needed; ++units) {
@@ -133,7 +133,7 @@ TEST_F(OrcaInput, ABudgetThatRunsOutIsNoAnswer)
     }
     planner = Planner(settings);
     EXPECT_EQ(plan(needed), PlanStatus::found);
-    // Each track and barrel costs work units before its check.
+    // Each track and cylinder costs work units before its check.
     planner = Planner(settings);
     ASSERT_EQ(plan(45), PlanStatus::budget_spent);
     EXPECT_EQ(planner.last().status, 0U) << "no decision was made";

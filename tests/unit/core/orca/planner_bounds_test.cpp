@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Of many barrels the nearest ones, tracks that fly off, time between plans, and long horizons of the ORCA planner.
+// Of many cylinders the nearest ones, tracks that fly off, time between plans, and long horizons of the ORCA planner.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,9 +14,9 @@ namespace {
 using test::OrcaInput;
 using world::PlanStatus;
 
-/// Seven barrels about it at gaps from 1.0 m to 1.6 m, and capacity for five beside the airspace's own bounds: the
+/// Seven cylinders about it at gaps from 1.0 m to 1.6 m, and capacity for five beside the airspace's own bounds: the
 /// nearest five are kept, in any order.
-TEST_F(OrcaInput, TheNearestBarrelsAreKeptInWhicheverOrderTheyCome)
+TEST_F(OrcaInput, TheNearestCylindersAreKeptInWhicheverOrderTheyCome)
 {
     scene.airspace.has_floor = scene.airspace.has_ceiling = scene.airspace.has_keep_in = true;
     scene.airspace.floor = -500.0F;
@@ -31,10 +31,10 @@ TEST_F(OrcaInput, TheNearestBarrelsAreKeptInWhicheverOrderTheyCome)
     const std::vector<std::vector<int>> orders{{0, 1, 2, 3, 4, 5, 6}, {6, 5, 4, 3, 2, 1, 0}, {3, 6, 0, 5, 1, 4, 2},
                                                {5, 6, 4, 3, 0, 2, 1}, {2, 4, 1, 5, 0, 6, 3}, {0, 6, 1, 5, 2, 4, 3}};
     for (const std::vector<int>& order : orders) {
-        scene.barrels.clear();
+        scene.cylinders.clear();
         for (const int k : order) {
             const Vec3 centre = (10.0F + kHalfWidth + gap(k)) * direction(k);
-            scene.barrel(world::Vec2(centre.x(), centre.y()), 10.0F).top = 60.0F;
+            scene.cylinder(world::Vec2(centre.x(), centre.y()), 10.0F).top = 60.0F;
         }
         for (int k = 0; k < 7; ++k) {
             towards(direction(k));
@@ -118,13 +118,13 @@ TEST_F(OrcaInput, OfOldTracksNothingIsExpected)
     EXPECT_NEAR(command().y(), alone, 1e-3F);
 }
 
-/// Each plan is of its own situation: tracks, barrels and obstacles of the one before are gone.
+/// Each plan is of its own situation: tracks, cylinders and obstacles of the one before are gone.
 TEST_F(OrcaInput, NothingOfTheSituationBeforeIsLeft)
 {
     ASSERT_EQ(plan(), PlanStatus::found);
     const Vec3 free = out.command;
     scene.track(Vec3(4, 0, 30), Vec3::Zero());
-    scene.barrel(world::Vec2(0, 14), 10.0F).top = 60.0F;
+    scene.cylinder(world::Vec2(0, 14), 10.0F).top = 60.0F;
     scene.obstacle(geometry::make_box(Vec3(5, -3, 30), Vec3(1, 1, 9)));
     scene.airspace.has_floor = true;
     scene.airspace.floor = 29.5F;
@@ -132,7 +132,7 @@ TEST_F(OrcaInput, NothingOfTheSituationBeforeIsLeft)
     EXPECT_GT((out.command - free).norm(), 0.5F);
     EXPECT_TRUE(std::isfinite(planner.last().nearest) && std::isfinite(planner.last().margin));
     scene.tracks.clear();
-    scene.barrels.clear();
+    scene.cylinders.clear();
     scene.obstacles.clear();
     scene.airspace = {};
     planner.reset();

@@ -42,10 +42,10 @@ TEST_F(OrcaInput, TheCylinderHoldsTheCornersOfALongBox)
 {
     for (const Vec3& half : {Vec3(1.2F, 0.5F, 1.0F), Vec3(0.5F, 1.2F, 1.0F)}) {
         scene.limits.half_extents = half;  // its corners are 1.3 m off
-        scene.barrel(world::Vec2(10.0F + 1.3F + 1.2F, 0), 10.0F).top = 60.0F;
+        scene.cylinder(world::Vec2(10.0F + 1.3F + 1.2F, 0), 10.0F).top = 60.0F;
         EXPECT_NEAR(command().x(), 1.2F, 1e-3F);
-        scene.barrels.clear();
-        scene.airspace.barrels = {};
+        scene.cylinders.clear();
+        scene.airspace.cylinders = {};
         scene.obstacle(geometry::make_box(Vec3(5, 0, 30), Vec3(1, 50, 50)));
         static_cast<void>(command());
         EXPECT_NEAR(planner.last().margin, 4.0F - 1.41421356F * 1.3F, 1e-3F);
@@ -86,36 +86,36 @@ TEST_F(OrcaInput, ABoundIsMetNoSoonerThanBrakingAndTheDelayNeed)
     EXPECT_NEAR(command().z(), -0.4F / (2.72F * 1.25F), 1e-3F);
 }
 
-TEST_F(OrcaInput, ABarrelThatMovesIsMetInItsOwnDirection)
+TEST_F(OrcaInput, ACylinderThatMovesIsMetInItsOwnDirection)
 {
-    scene.barrel(0.8F * world::Vec2(12, 9), 10.0F).top = 60.0F;  // 12 m off
-    scene.barrels[0].velocity = world::Vec2(-0.4F, -0.3F);
+    scene.cylinder(0.8F * world::Vec2(12, 9), 10.0F).top = 60.0F;  // 12 m off
+    scene.cylinders[0].velocity = world::Vec2(-0.4F, -0.3F);
     towards(Vec3(0.8F, 0.6F, 0));
     const float gap = 12.0F - 0.05F - 10.0F - kHalfWidth;
     EXPECT_NEAR(command().norm(), gap - 0.5F, 1e-3F);
-    scene.barrels[0].velocity = world::Vec2(0, -0.5F);
+    scene.cylinders[0].velocity = world::Vec2(0, -0.5F);
     // Its centre is at (9.6, 7.15) when the command acts.
     const float off = std::hypot(9.6F, 7.15F);
     const float closing = 0.5F * 7.15F / off;
     EXPECT_NEAR(command().dot(Vec3(9.6F, 7.15F, 0)) / off, off - 10.0F - kHalfWidth - closing, 1e-3F);
-    scene.barrels[0].velocity = world::Vec2(0.3F, -0.4F);
+    scene.cylinders[0].velocity = world::Vec2(0.3F, -0.4F);
     EXPECT_NEAR(command().norm(), 12.0F - 10.0F - kHalfWidth, 2e-2F) << "sideways it comes no nearer";
 }
 
-/// Beside a barrel's edge above it or below it, the face counts that is farther off.
-TEST_F(OrcaInput, OfABarrelTheFaceAboveOrBelowCountsBySide)
+/// Beside a cylinder's edge above it or below it, the face counts that is farther off.
+TEST_F(OrcaInput, OfACylinderTheFaceAboveOrBelowCountsBySide)
 {
-    scene.barrel(world::Vec2(0, 0), 50.0F);
-    scene.barrels[0].bottom = 30.0F + 1.0F + 0.6F;
-    scene.barrels[0].top = 31.8F;  // above() is far below zero
+    scene.cylinder(world::Vec2(0, 0), 50.0F);
+    scene.cylinders[0].bottom = 30.0F + 1.0F + 0.6F;
+    scene.cylinders[0].top = 31.8F;  // above() is far below zero
     towards(Vec3(0, 0, 1), 2.0F);
     EXPECT_NEAR(command().z(), 0.6F, 1e-3F);
-    scene.barrels[0].top = 30.0F - 1.0F - 0.6F;
-    scene.barrels[0].bottom = 28.2F;
+    scene.cylinders[0].top = 30.0F - 1.0F - 0.6F;
+    scene.cylinders[0].bottom = 28.2F;
     towards(Vec3(0, 0, -1), 2.0F);
     EXPECT_NEAR(command().z(), -0.6F, 1e-3F);
     // The motion of the vertical side does not affect the level faces.
-    scene.barrels[0].velocity = world::Vec2(20, 0);
+    scene.cylinders[0].velocity = world::Vec2(20, 0);
     EXPECT_NEAR(command().z(), -0.6F, 1e-3F);
 }
 

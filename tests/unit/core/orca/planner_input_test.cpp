@@ -78,39 +78,39 @@ TEST_F(OrcaInput, BoundsThatAreNotThereBindNothing)
     EXPECT_EQ(planner.last().status & kBoundsOverlap, 0U);
 }
 
-TEST_F(OrcaInput, ABarrelIsKeptFromItsNearestSide)
+TEST_F(OrcaInput, ACylinderIsKeptFromItsNearestSide)
 {
-    scene.barrel(world::Vec2(10.0F + kHalfWidth + 1.2F, 0), 10.0F).top = 60.0F;
+    scene.cylinder(world::Vec2(10.0F + kHalfWidth + 1.2F, 0), 10.0F).top = 60.0F;
     EXPECT_NEAR(command().x(), 1.2F, 1e-3F);
     scene.own.sigma_position = 0.1F;
     EXPECT_NEAR(command().x(), 0.9F, 1e-3F);
     scene.own.sigma_position = 0.0F;
-    scene.barrels[0].velocity = world::Vec2(-0.5F, 0);
+    scene.cylinders[0].velocity = world::Vec2(-0.5F, 0);
     EXPECT_NEAR(command().x(), 1.2F - 0.05F - 0.5F, 1e-3F) << "it comes nearer, and has when the command acts";
-    scene.barrels[0].velocity = world::Vec2(0.5F, 3.0F);
+    scene.cylinders[0].velocity = world::Vec2(0.5F, 3.0F);
     EXPECT_GT(command().x(), 1.2F + 0.04F) << "it goes away";
     // Above it: down to its top.
-    scene.barrels[0] = {{world::Vec2(3, 0), 10.0F}, world::Vec2(0, 0), 0.0F, 30.0F - 1.0F - 0.5F, 0.0F};
+    scene.cylinders[0] = {{world::Vec2(3, 0), 10.0F}, world::Vec2(0, 0), 0.0F, 30.0F - 1.0F - 0.5F, 0.0F};
     towards(Vec3(0, 0, -1), 2.0F);
     EXPECT_NEAR(command().z(), -0.5F, 1e-3F);
     // Below it: up to its bottom.
-    scene.barrels[0] = {{world::Vec2(3, 0), 10.0F}, world::Vec2(0, 0), 30.0F + 1.0F + 0.6F, 100.0F, 0.0F};
+    scene.cylinders[0] = {{world::Vec2(3, 0), 10.0F}, world::Vec2(0, 0), 30.0F + 1.0F + 0.6F, 100.0F, 0.0F};
     towards(Vec3(0, 0, 1), 2.0F);
     EXPECT_NEAR(command().z(), 0.6F, 1e-3F);
     // The side that is farther off counts: beside it by 2 m and above it by 0.5 m.
-    scene.barrels[0] = {{world::Vec2(10.0F + kHalfWidth + 2.0F, 0), 10.0F}, world::Vec2(0, 0), 0.0F, 28.5F, 0.0F};
+    scene.cylinders[0] = {{world::Vec2(10.0F + kHalfWidth + 2.0F, 0), 10.0F}, world::Vec2(0, 0), 0.0F, 28.5F, 0.0F};
     towards(Vec3(0.6F, 0, -0.8F), 2.0F);
     EXPECT_NEAR(command().z(), -1.5F, 2e-3F) << "down is free but for its acceleration";
     EXPECT_LE(command().x(), 2.0F);
     // In its axis it is left to any side.
-    scene.barrels[0] = {{world::Vec2(0, 0), 10.0F}, world::Vec2(0, 0), 0.0F, 60.0F, 0.0F};
+    scene.cylinders[0] = {{world::Vec2(0, 0), 10.0F}, world::Vec2(0, 0), 0.0F, 60.0F, 0.0F};
     towards(Vec3(1, 0, 0));
     EXPECT_NEAR(command().x(), -0.3F, 1e-3F);
     EXPECT_NE(planner.last().status & kBoundsOverlap, 0U);
 }
 
-/// Bounds come before barrels; of barrels the nearest are used, in any order.
-TEST_F(OrcaInput, OfManyBarrelsTheNearestAreTaken)
+/// Bounds come before cylinders; of cylinders the nearest are used, in any order.
+TEST_F(OrcaInput, OfManyCylindersTheNearestAreTaken)
 {
     scene.airspace.has_floor = scene.airspace.has_ceiling = scene.airspace.has_keep_in = true;
     scene.airspace.floor = -500.0F;
@@ -118,10 +118,10 @@ TEST_F(OrcaInput, OfManyBarrelsTheNearestAreTaken)
     scene.airspace.home = Vec3(1, 0, 0);
     scene.airspace.keep_in_radius = 5000.0F;
     for (int near = 0; near < 8; ++near) {
-        scene.barrels.clear();
+        scene.cylinders.clear();
         for (int i = 0; i < 8; ++i) {
             const float x = i == near ? 10.0F + kHalfWidth + 1.0F : 300.0F + 30.0F * static_cast<float>((5 * i) % 8);
-            scene.barrel(world::Vec2(x, 0), 10.0F).top = 60.0F;
+            scene.cylinder(world::Vec2(x, 0), 10.0F).top = 60.0F;
         }
         ASSERT_NEAR(command().x(), 1.0F, 1e-3F) << near;
         ASSERT_EQ(planner.last().status & kBadInput, 0U);

@@ -110,12 +110,12 @@ TEST(OrcaPlanner, BoundsOfTheAirspaceAreKept)
     EXPECT_LE(found(inside).command.x(), 5.0F - 2.4F);
 }
 
-TEST(OrcaPlanner, BarrelsAreFlownAround)
+TEST(OrcaPlanner, CylindersAreFlownAround)
 {
     Scene scene = eastward();
-    scene.barrel(world::Vec2(20, 1), 10.0F);
-    scene.airspace.barrels = scene.barrels;
-    scene.barrels.front().top = 60.0F;
+    scene.cylinder(world::Vec2(20, 1), 10.0F);
+    scene.airspace.cylinders = scene.cylinders;
+    scene.cylinders.front().top = 60.0F;
     const Vec3 command = found(scene).command;
     EXPECT_LE(command.x(), 5.0F);
     EXPECT_LT(command.x(), 9.0F);
@@ -126,21 +126,21 @@ TEST(OrcaPlanner, BarrelsAreFlownAround)
         vehicle::advance(scene.own, out.command, scene.limits, 0.05F);
         scene.now = scene.now + 0.05F;
         scene.own.stamp = scene.now;
-        ASSERT_GE(world::barrel_distance(scene.limits.half_extents, scene.own.position, scene.barrels.front(), 0.0F),
+        ASSERT_GE(world::cylinder_distance(scene.limits.half_extents, scene.own.position, scene.cylinders.front(), 0.0F),
                   0.0F)
             << i;
     }
 }
 
-TEST(OrcaPlanner, MoreBarrelsThanRoomKeepsTheNearest)
+TEST(OrcaPlanner, MoreCylindersThanRoomKeepsTheNearest)
 {
     Scene scene = eastward();
     for (int i = 0; i < 30; ++i) {
-        scene.barrel(world::Vec2(300.0F + 30.0F * static_cast<float>(i), 0), 5.0F);
+        scene.cylinder(world::Vec2(300.0F + 30.0F * static_cast<float>(i), 0), 5.0F);
     }
-    scene.barrel(world::Vec2(8, 0), 5.0F);  // 1.6 m from the box
-    scene.barrels.back().top = 60.0F;
-    scene.airspace.barrels = scene.barrels;
+    scene.cylinder(world::Vec2(8, 0), 5.0F);  // 1.6 m from the box
+    scene.cylinders.back().top = 60.0F;
+    scene.airspace.cylinders = scene.cylinders;
     EXPECT_LE(found(scene).command.x(), 2.6F);
 }
 
@@ -168,7 +168,7 @@ TEST(OrcaPlanner, SettingsOutOfRangeChangeNothing)
     EXPECT_TRUE(refused([](Settings& s) { s.reach = std::numeric_limits<float>::quiet_NaN(); }));
     EXPECT_TRUE(refused([](Settings& s) { s.stale = 0.0F; }));
     EXPECT_TRUE(refused([](Settings& s) { s.smoothing = 0; }));
-    EXPECT_TRUE(refused([](Settings& s) { s.smoothing = CommandFilter::kMost + 1; }));
+    EXPECT_TRUE(refused([](Settings& s) { s.smoothing = CommandFilter::kMax + 1; }));
     EXPECT_EQ(planner.settings().smoothing, Settings{}.smoothing);
 }
 
@@ -221,7 +221,7 @@ TEST(OrcaPlanner, AnyVehicleHasSettings)
         scene.track(Vec3(random.uniform(20, 80), random.uniform(-9, 9), 30), Vec3(random.uniform(-9, 9), 0, 0));
         Settings settings;
         scene.rules.latency = random.uniform(0.0F, 1.0F);
-        settings.smoothing = static_cast<std::uint16_t>(1 + random.below(CommandFilter::kMost));
+        settings.smoothing = static_cast<std::uint16_t>(1 + random.below(CommandFilter::kMax));
         Planner planner(settings);
         world::Manoeuvre out;
         const PlanStatus status = plan(planner, scene, out);

@@ -16,21 +16,21 @@ namespace {
 using test::above;
 using test::at_least;
 
-Solution solved(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
+Solution solved(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& preferred,
                 std::uint32_t units = 10'000'000)
 {
     Scratch<24> scratch;
     WorkBudget budget(units);
-    return solve({planes, balls, preferred, Vec3::Zero()}, scratch.view(), budget);
+    return solve({planes, spheres, preferred, Vec3::Zero()}, scratch.view(), budget);
 }
 
 /// A point that comes to lie on a rim to the bit is not moved again.
 TEST(ProgramBounds, APointOnTheRimStaysThere)
 {
-    const std::vector<Ball> balls{{Vec3::Zero(), 2.0F}, {Vec3::UnitX(), 1.0F}};
-    EXPECT_EQ(into_balls(balls, {5, 0, 0}), Vec3(2, 0, 0));
-    EXPECT_EQ(into_balls({balls.data(), 1}, {0, -7, 0}), Vec3(0, -2, 0));
-    EXPECT_EQ(into_balls(balls, {2, 0, 0}), Vec3(2, 0, 0));
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 2.0F}, {Vec3::UnitX(), 1.0F}};
+    EXPECT_EQ(into_spheres(spheres, {5, 0, 0}), Vec3(2, 0, 0));
+    EXPECT_EQ(into_spheres({spheres.data(), 1}, {0, -7, 0}), Vec3(0, -2, 0));
+    EXPECT_EQ(into_spheres(spheres, {2, 0, 0}), Vec3(2, 0, 0));
 }
 
 /// Without a budget the velocity is the reference; violations within rounding are not reported.

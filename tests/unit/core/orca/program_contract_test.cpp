@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Inputs of a program, projection into the balls, and levels that yield while balls are active.
+// Inputs of a program, projection into the spheres, and levels that yield while spheres are active.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,41 +15,41 @@ namespace {
 
 using test::at_least;
 
-Solution solution_of(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
+Solution solution_of(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& preferred,
                      const Vec3& reference, std::uint32_t units = 1'000'000)
 {
     Scratch<24> scratch;
     WorkBudget budget(units);
-    return solve({planes, balls, preferred, reference}, scratch.view(), budget);
+    return solve({planes, spheres, preferred, reference}, scratch.view(), budget);
 }
 
-/// Any point, one ball or two: within both, to the bit of a float, and no farther off than it has to be.
-TEST(ProgramContract, IntoTheBallsIsWithinThem)
+/// Any point, one sphere or two: within both, to the bit of a float, and no farther off than it has to be.
+TEST(ProgramContract, IntoTheSpheresIsWithinThem)
 {
     Random random(20261129);
     for (int i = 0; i < 3000; ++i) {
-        std::vector<Ball> balls{{random.uniform(0.0F, 2.0F) * enumerated::unit(random), random.uniform(0.5F, 9.0F)}};
+        std::vector<Sphere> spheres{{random.uniform(0.0F, 2.0F) * enumerated::unit(random), random.uniform(0.5F, 9.0F)}};
         if (i % 2 == 0) {
             const float radius = random.uniform(0.1F, 3.0F);
             // Its centre lies within the first one.
-            balls.push_back(
-                {balls[0].centre + random.uniform(0.0F, 1.0F) * balls[0].radius * enumerated::unit(random), radius});
+            spheres.push_back(
+                {spheres[0].centre + random.uniform(0.0F, 1.0F) * spheres[0].radius * enumerated::unit(random), radius});
         }
         const Vec3 point = random.uniform(0.0F, 12.0F) * enumerated::unit(random);
-        const Vec3 in = into_balls(balls, point);
+        const Vec3 in = into_spheres(spheres, point);
         float most = 0.0F;
-        for (const Ball& ball : balls) {
-            const double from = (in.cast<double>() - ball.centre.cast<double>()).norm();
+        for (const Sphere& sphere : spheres) {
+            const double from = (in.cast<double>() - sphere.centre.cast<double>()).norm();
             // Its coordinates are rounded.
             ASSERT_LE(from,
-                      static_cast<double>(ball.radius) + 1.2e-7 * static_cast<double>(ball.centre.norm() + ball.radius))
+                      static_cast<double>(sphere.radius) + 1.2e-7 * static_cast<double>(sphere.centre.norm() + sphere.radius))
                 << i;
-            most = std::max(most, (point - ball.centre).norm() - ball.radius);
+            most = std::max(most, (point - sphere.centre).norm() - sphere.radius);
         }
         if (most <= 0.0F) {
             ASSERT_EQ(in, point) << i;
         }
-        if (balls.size() == 1 && most > 0.0F) {
+        if (spheres.size() == 1 && most > 0.0F) {
             ASSERT_NEAR((in - point).norm(), most, 2e-5F) << i;
         }
     }
@@ -64,8 +64,8 @@ TEST(ProgramContract, SpeedsThatOverflowTogetherAreRefused)
     EXPECT_EQ(solution_of({}, {{Vec3::Zero(), 2.0F}}, {1e10F, 0, 0}, Vec3::Zero()).status, 0U);
 }
 
-/// A level that a ball contradicts: the point of the ball that breaks it least.
-TEST(ProgramContract, WhereABallHoldsALevelGivesWayToIt)
+/// A level that a sphere contradicts: the point of the sphere that breaks it least.
+TEST(ProgramContract, WhereASphereHoldsALevelGivesWayToIt)
 {
     for (const Level level : {Level::obstacles, Level::conflict, Level::warning}) {
         const Vec3 normal(0.6F, 0, 0.8F);
@@ -73,7 +73,7 @@ TEST(ProgramContract, WhereABallHoldsALevelGivesWayToIt)
         const Solution solution = solution_of(planes, {{Vec3::Zero(), 2.0F}}, {0, 1, 0}, Vec3::Zero());
         EXPECT_EQ(solution.level, level);
         EXPECT_NEAR(solution.broken[static_cast<std::size_t>(level)], 1.0F, 1e-4F);
-        // It yields by 1e-4 m/s more, and within the remaining part of the ball it moves towards the preferred
+        // It yields by 1e-4 m/s more, and within the remaining part of the sphere it moves towards the preferred
         // velocity.
         EXPECT_LT((solution.velocity - 2.0F * normal).norm(), 0.03F);
         EXPECT_LE(planes[0].violation(solution.velocity), 1.0F + 2.1e-4F);
@@ -150,8 +150,8 @@ TEST(ProgramContract, WithoutABudgetTheReferenceIsKept)
 {
     const std::vector<HalfSpace> planes{at_least({1, 0, 0}, -3.0F, Level::obstacles)};
     const Vec3 reference(0.5F, 0.1F, 0);
-    const std::vector<Ball> balls{{Vec3::Zero(), 4.0F}, {reference, 0.5F}};
-    const Solution solution = solution_of(planes, balls, {0.8F, 0.1F, 0}, reference, 0);
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 4.0F}, {reference, 0.5F}};
+    const Solution solution = solution_of(planes, spheres, {0.8F, 0.1F, 0}, reference, 0);
     EXPECT_EQ(solution.status, kWorkLimit);
     EXPECT_EQ(solution.velocity, reference);
 }

@@ -24,16 +24,16 @@ HalfSpace beyond(const Vec3& normal, float offset, Level level = Level::obstacle
 /// Within 10 m/s, and half a metre per second from the reference.
 struct Asked {
     std::vector<HalfSpace> planes;
-    std::vector<Ball> balls;
+    std::vector<Sphere> spheres;
     Vec3 preferred = Vec3::Zero();
     Vec3 reference = Vec3::Zero();
 
-    explicit Asked(const Vec3& from) : balls{{Vec3::Zero(), 10.0F}, {from, 0.5F}}, preferred(from), reference(from) {}
+    explicit Asked(const Vec3& from) : spheres{{Vec3::Zero(), 10.0F}, {from, 0.5F}}, preferred(from), reference(from) {}
     [[nodiscard]] Solution solved(std::uint32_t units = 1'000'000) const
     {
         Scratch<8> scratch;
         WorkBudget budget(units);
-        return solve({planes, balls, preferred, reference}, scratch.view(), budget);
+        return solve({planes, spheres, preferred, reference}, scratch.view(), budget);
     }
 };
 
@@ -43,31 +43,31 @@ void expect_velocity(const Solution& solution, const Vec3& wanted, float toleran
         << solution.velocity.x() << " " << solution.velocity.y() << " " << solution.velocity.z();
 }
 
-TEST(ProgramEdges, OneOrTwoBallsAndNoOthers)
+TEST(ProgramEdges, OneOrTwoSpheresAndNoOthers)
 {
     Asked asked({1, 0, 0});
     EXPECT_EQ(asked.solved().status, 0U);
-    asked.balls.push_back({Vec3::Zero(), 20.0F});
+    asked.spheres.push_back({Vec3::Zero(), 20.0F});
     EXPECT_EQ(asked.solved().status, kBadInput) << "three";
-    asked.balls.clear();
+    asked.spheres.clear();
     EXPECT_EQ(asked.solved().status, kBadInput);
     expect_velocity(asked.solved(), {1, 0, 0}, 0.0F);
     asked.reference.x() = kNoSpeed;
     expect_velocity(asked.solved(), Vec3::Zero(), 0.0F);
     asked = Asked({1, 0, 0});
-    asked.balls.pop_back();
+    asked.spheres.pop_back();
     EXPECT_EQ(asked.solved().status, 0U);
 }
 
-TEST(ProgramEdges, ABallMayBeAPointAndNoLess)
+TEST(ProgramEdges, ASphereMayBeAPointAndNoLess)
 {
     Asked asked({1, 0, 0});
-    asked.balls[1].radius = 0.0F;
+    asked.spheres[1].radius = 0.0F;
     asked.preferred = {3, 0, 0};
     EXPECT_EQ(asked.solved().status & kBadInput, 0U);
     expect_velocity(asked.solved(), {1, 0, 0});
     for (const float bad : {-0.1F, kNoSpeed, std::numeric_limits<float>::infinity()}) {
-        asked.balls[1].radius = bad;
+        asked.spheres[1].radius = bad;
         EXPECT_EQ(asked.solved().status, kBadInput) << bad;
         expect_velocity(asked.solved(), asked.reference, 0.0F);
         asked.reference.y() = kNoSpeed;
@@ -120,7 +120,7 @@ TEST(ProgramEdges, SpeedsThatAreNoNumbersAreRefused)
         const Solution solution = asked.solved();
         EXPECT_EQ(solution.status, kBadInput);
         EXPECT_TRUE(is_finite(solution.velocity));
-        EXPECT_LE((solution.velocity - Vec3(1, 0, 0)).norm(), 0.5F) << "within the balls all the same";
+        EXPECT_LE((solution.velocity - Vec3(1, 0, 0)).norm(), 0.5F) << "within the spheres all the same";
     }
 }
 
@@ -186,16 +186,16 @@ TEST(ProgramEdges, WithoutTimeItBrakesWhereThatBreaksLeast)
     EXPECT_EQ(keeps.solved(0).status, kWorkLimit);
 }
 
-TEST(ProgramEdges, IntoTheBallsIsTheNearestPointOfThem)
+TEST(ProgramEdges, IntoTheSpheresIsTheNearestPointOfThem)
 {
-    const std::vector<Ball> balls{{Vec3::Zero(), 2.0F}, {{2, 0, 0}, 1.0F}};
-    EXPECT_EQ(into_balls(balls, {1.5F, 0.1F, 0}), Vec3(1.5F, 0.1F, 0)) << "within";
-    EXPECT_LT((into_balls(balls, {5, 0, 0}) - Vec3(2, 0, 0)).norm(), 1e-5F);
-    EXPECT_LT((into_balls(balls, {-5, 0, 0}) - Vec3(1, 0, 0)).norm(), 1e-5F);
-    const Vec3 corner = into_balls(balls, {2, 9, 0});
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 2.0F}, {{2, 0, 0}, 1.0F}};
+    EXPECT_EQ(into_spheres(spheres, {1.5F, 0.1F, 0}), Vec3(1.5F, 0.1F, 0)) << "within";
+    EXPECT_LT((into_spheres(spheres, {5, 0, 0}) - Vec3(2, 0, 0)).norm(), 1e-5F);
+    EXPECT_LT((into_spheres(spheres, {-5, 0, 0}) - Vec3(1, 0, 0)).norm(), 1e-5F);
+    const Vec3 corner = into_spheres(spheres, {2, 9, 0});
     EXPECT_LT((corner - Vec3(1.75F, std::sqrt(4.0F - 1.75F * 1.75F), 0)).norm(), 1e-4F);
     for (const Vec3& point : {Vec3(5, 1, 2), Vec3(-3, 0, 4), Vec3(2, 9, 0), Vec3(kNoSpeed, 0, 0)}) {
-        const Vec3 in = into_balls(balls, point);
+        const Vec3 in = into_spheres(spheres, point);
         EXPECT_LE(in.norm(), 2.0F);
         EXPECT_LE((in - Vec3(2, 0, 0)).norm(), 1.0F);
     }

@@ -31,34 +31,34 @@ HalfSpace plane(const Vec3& q, const Vec3& normal, Level level = Level::warning)
     return out;
 }
 
-Solution solve_for(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
+Solution solve_for(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& preferred,
                    std::uint32_t units = kProgramPlenty)
 {
     Scratch<64> scratch;
     WorkBudget budget(units);
-    return solve({planes, balls, preferred, Vec3::Zero()}, scratch.view(), budget);
+    return solve({planes, spheres, preferred, Vec3::Zero()}, scratch.view(), budget);
 }
 
-const std::vector<Ball> kTwo{{Vec3::Zero(), 2.0F}};
+const std::vector<Sphere> kTwo{{Vec3::Zero(), 2.0F}};
 
 /// The program as in Alejo, row by row.
-Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred)
+Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& preferred)
 {
     std::vector<Row> rows;
     for (const HalfSpace& p : planes) {
         rows.push_back({p.normal, p.offset});
     }
     WorkBudget budget(kProgramPlenty);
-    return optimum<float>(rows, balls, {preferred, false}, Tolerance<float>(2.0F), budget);
+    return optimum<float>(rows, spheres, {preferred, false}, Tolerance<float>(2.0F), budget);
 }
 
-void expect_solved(const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& preferred,
+void expect_solved(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& preferred,
                    const Vec3& expected, float tolerance = kProgramExact)
 {
-    const Solution solution = solve_for(planes, balls, preferred);
+    const Solution solution = solve_for(planes, spheres, preferred);
     EXPECT_EQ(solution.status, 0U);
     expect_vector_near(solution.velocity, expected, tolerance);
-    const Optimum<float> incremental = row_by_row(planes, balls, preferred);
+    const Optimum<float> incremental = row_by_row(planes, spheres, preferred);
     EXPECT_EQ(incremental.found, Found::optimum);
     EXPECT_EQ(incremental.satisfied, planes.size());
     expect_vector_near(incremental.x, expected, tolerance);
@@ -68,7 +68,7 @@ const HalfSpace kG2a = plane({0, 0.3F, 0}, {0, 1, 0});
 const HalfSpace kG2b = plane({0.5F, 0, 0}, {-1, 0, 0});
 const HalfSpace kG4a = plane({0, 1, 0}, {0, 1, 0});
 const HalfSpace kG4b = plane({0, -1, 0}, {0, -1, 0});
-const std::vector<Ball> kG6{{Vec3::Zero(), 1.5F}, {{1.4F, 0, 0}, 0.2F}};
+const std::vector<Sphere> kG6{{Vec3::Zero(), 1.5F}, {{1.4F, 0, 0}, 0.2F}};
 
 TEST(OrcaCheckVectors, G1) { expect_solved({plane(Vec3::Zero(), {0, 1, 0})}, kTwo, {1, -0.5F, 0}, {1, 0, 0}); }
 TEST(OrcaCheckVectors, G2) { expect_solved({kG2a, kG2b}, kTwo, {1, -0.5F, 0.2F}, {0.5F, 0.3F, 0.2F}); }
@@ -173,9 +173,9 @@ TEST(Program, WhatYieldsFasterGivesWayFarther)
     EXPECT_NEAR(solution.velocity.y(), -0.5F, 3e-4F);
 }
 
-TEST(Program, BallsThatDoNotMeetAreDynamicsThatContradict)
+TEST(Program, SpheresThatDoNotMeetAreDynamicsThatContradict)
 {
-    const std::vector<Ball> apart{{Vec3::Zero(), 1.0F}, {{3, 0, 0}, 1.0F}};
+    const std::vector<Sphere> apart{{Vec3::Zero(), 1.0F}, {{3, 0, 0}, 1.0F}};
     Scratch<8> scratch;
     WorkBudget budget(kProgramPlenty);
     const Solution solution = solve({{}, apart, {1, 0, 0}, {2.5F, 0, 0}}, scratch.view(), budget);
@@ -189,10 +189,10 @@ TEST(Program, RefusesWhatIsNoNumber)
     const float inf = std::numeric_limits<float>::infinity();
     const Vec3 reference(0.4F, 0.1F, 0);
     Scratch<8> scratch;
-    const auto refused = [&](const std::vector<HalfSpace>& planes, const std::vector<Ball>& balls, const Vec3& wanted,
+    const auto refused = [&](const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& wanted,
                              const Vec3& last) {
         WorkBudget budget(kProgramPlenty);
-        const Solution solution = solve({planes, balls, wanted, last}, scratch.view(), budget);
+        const Solution solution = solve({planes, spheres, wanted, last}, scratch.view(), budget);
         EXPECT_EQ(solution.status, kBadInput);
         EXPECT_TRUE(is_finite(solution.velocity));
         return solution.velocity;
@@ -227,11 +227,11 @@ TEST(Program, OutOfWorkItTakesTheBestOfAFew)
     const std::vector<HalfSpace> planes{plane({0.1F, 0, 0}, {-1, 0, 0}, Level::obstacles),
                                         plane({0, 0.5F, 0}, {0, 1, 0}, Level::conflict),
                                         plane({0, 0, 0.2F}, {0, 0, 1}, Level::warning)};
-    const std::vector<Ball> balls{{Vec3::Zero(), 2.0F}, {{1, 0, 0}, 1.1F}};
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 2.0F}, {{1, 0, 0}, 1.1F}};
     Scratch<8> scratch;
     for (const std::uint32_t units : {0U, 1U, 5U, 10U}) {
         WorkBudget budget(units);
-        const Solution solution = solve({planes, balls, {1.5F, 0, 0}, {1, 0, 0}}, scratch.view(), budget);
+        const Solution solution = solve({planes, spheres, {1.5F, 0, 0}, {1, 0, 0}}, scratch.view(), budget);
         EXPECT_EQ(solution.status, kWorkLimit | kRelaxedConflict | kRelaxedWarning) << units;
         EXPECT_EQ(solution.level, Level::conflict);
         EXPECT_EQ(solution.broken[1], 0.0F) << units;
@@ -242,7 +242,7 @@ TEST(Program, OutOfWorkItTakesTheBestOfAFew)
         EXPECT_LE(budget.spent(), units);
     }
     WorkBudget budget(kProgramPlenty);
-    EXPECT_EQ(solve({planes, balls, {1.5F, 0, 0}, {1, 0, 0}}, scratch.view(), budget).status, 0U);
+    EXPECT_EQ(solve({planes, spheres, {1.5F, 0, 0}, {1, 0, 0}}, scratch.view(), budget).status, 0U);
 }
 
 /// A known answer among many more half-spaces than hold it, in any order.
@@ -275,17 +275,17 @@ TEST(Program, StandsStillWhereThatIsAll)
     expect_vector_near(solution.velocity, Vec3::Zero());
 }
 
-TEST(Program, IntoBallsIsAlwaysWithin)
+TEST(Program, IntoSpheresIsAlwaysWithin)
 {
-    const std::vector<Ball> lens{{Vec3::Zero(), 1.0F}, {{1.9F, 0, 0}, 1.0F}};
+    const std::vector<Sphere> lens{{Vec3::Zero(), 1.0F}, {{1.9F, 0, 0}, 1.0F}};
     for (const Vec3& point : {Vec3(9, 9, 9), Vec3(-3, 0, 0), Vec3(0.95F, 0, 0), Vec3(1, 5, 0)}) {
-        const Vec3 x = into_balls(lens, point);
-        for (const Ball& ball : lens) {
-            EXPECT_LE((x - ball.centre).norm(), ball.radius + 1e-6F);
+        const Vec3 x = into_spheres(lens, point);
+        for (const Sphere& sphere : lens) {
+            EXPECT_LE((x - sphere.centre).norm(), sphere.radius + 1e-6F);
         }
     }
-    EXPECT_TRUE(is_finite(into_balls(lens, {std::nanf(""), 0, 0})));
-    EXPECT_EQ(into_balls(kTwo, {0.1F, 0.2F, 0.3F}), Vec3(0.1F, 0.2F, 0.3F));
+    EXPECT_TRUE(is_finite(into_spheres(lens, {std::nanf(""), 0, 0})));
+    EXPECT_EQ(into_spheres(kTwo, {0.1F, 0.2F, 0.3F}), Vec3(0.1F, 0.2F, 0.3F));
 }
 
 }  // namespace

@@ -42,10 +42,10 @@ protected:
     }
     [[nodiscard]] float rounding() const { return 4.0F * Tolerance<float>(scale).outside; }
 };
-using ContractPrecisions = ::testing::Types<float, Wide>;
+using ContractPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(SearchContract, ContractPrecisions);
 using SearchOfFloats = SearchContract<float>;
-using SearchOfWides = SearchContract<Wide>;
+using SearchOfWides = SearchContract<DoubleFloat>;
 
 // --- rounding makes it go round: the whole program once, in the given order ---
 
@@ -120,7 +120,7 @@ TEST_F(GoingRound, TheNearestPointIsFoundAllTheSame)
         ASSERT_EQ(s.nearest(rows.size()), Found::optimum);
         EXPECT_LE(outside(rows.size(), s.x()), rounding());
         shifted = rows;
-        Search<Wide> exact(balls, given.goal, {shifted, derived, yields, held}, scale, budget);
+        Search<DoubleFloat> exact(spheres, given.goal, {shifted, derived, yields, held}, scale, budget);
         if (exact.nearest(rows.size()) != Found::optimum) {
             continue;  // it holds by rounding alone
         }
@@ -209,7 +209,7 @@ TEST_F(SearchOfWides, GoingRoundIsNoContradiction)
 
 // --- many turns ---
 
-/// Planes about a ball of 1 m/s, all within `width` of the direction to the goal.
+/// Planes about a sphere of 1 m/s, all within `width` of the direction to the goal.
 template <class Test>
 Vec3 add_about(Test& test, Random& random, std::size_t count, float width)
 {

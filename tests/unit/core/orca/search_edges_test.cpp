@@ -14,7 +14,7 @@ namespace {
 using test::above;
 using test::below;
 
-/// Rows and balls that are searched with a tolerance of kTolerance.
+/// Rows and spheres that are searched with a tolerance of kTolerance.
 template <class Real>
 class SearchEdges : public ::testing::Test {
 protected:
@@ -38,7 +38,7 @@ protected:
         const std::size_t n = rows.size();
         derived.resize(n);
         held.resize(n + 8);
-        return Search<Real>(balls, goal, {rows, derived, yields, held}, scale, budget);
+        return Search<Real>(spheres, goal, {rows, derived, yields, held}, scale, budget);
     }
     /// Whether the active set of the point nearest to `goal` is reported as blunt.
     bool blunt(const Vec3& goal)
@@ -54,10 +54,10 @@ protected:
     std::vector<Row> derived;
     std::vector<float> yields;
     std::vector<std::uint16_t> held;
-    std::vector<Ball> balls{{Vec3::Zero(), 16.0F}};
+    std::vector<Sphere> spheres{{Vec3::Zero(), 16.0F}};
     WorkBudget budget{1'000'000};
 };
-using SearchPrecisions = ::testing::Types<float, Wide>;
+using SearchPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(SearchEdges, SearchPrecisions);
 
 TYPED_TEST(SearchEdges, ARowThatIsBrokenByTheToleranceHoldsNothing)
@@ -80,9 +80,9 @@ TEST(SearchInTwiceThePrecision, ARowThatIsBrokenByAMillionthHolds)
     std::vector<Row> derived(2);
     std::vector<float> yields(2, 1.0F);
     std::vector<std::uint16_t> held(8);
-    const std::vector<Ball> balls{{Vec3::Zero(), 1.0F}};
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 1.0F}};
     WorkBudget budget(10'000);
-    Search<Wide> s(balls, Vec3::Zero(), {rows, derived, yields, held}, 1.0F, budget);
+    Search<DoubleFloat> s(spheres, Vec3::Zero(), {rows, derived, yields, held}, 1.0F, budget);
     ASSERT_EQ(s.nearest(2), Found::optimum);
     EXPECT_NEAR(s.x().x(), 1e-6F, 1e-9F);
     EXPECT_EQ(s.basis().size, 1U);
@@ -104,24 +104,24 @@ TEST_F(BluntEdges, ARowIsNearWithinRounding)
     }
 }
 
-TEST_F(BluntEdges, ABallIsNearWithinRounding)
+TEST_F(BluntEdges, ASphereIsNearWithinRounding)
 {
     const float far = 1.0F + rounding();
     for (const float radius : {far, below(far)}) {
         clear();
         add_below(Vec3::UnitX(), 1.0F);
-        balls = {{Vec3::Zero(), 16.0F}, {Vec3::Zero(), radius}};
+        spheres = {{Vec3::Zero(), 16.0F}, {Vec3::Zero(), radius}};
         EXPECT_EQ(blunt({1, 0, 0}), radius < far);
     }
 }
 
-/// A ball no larger than rounding holds its centre from all sides.
-TEST_F(BluntEdges, ABallOfTheSizeOfRoundingHoldsItsCentre)
+/// A sphere no larger than rounding holds its centre from all sides.
+TEST_F(BluntEdges, ASphereOfTheSizeOfRoundingHoldsItsCentre)
 {
     add_below(Vec3::UnitX(), 1.0F);
     add_below(Vec3::UnitY(), 0.0F);
     for (const float radius : {rounding(), above(rounding())}) {
-        balls = {{Vec3::Zero(), 16.0F}, {Vec3::UnitX(), radius}};
+        spheres = {{Vec3::Zero(), 16.0F}, {Vec3::UnitX(), radius}};
         EXPECT_EQ(blunt({1, 0, 0}), radius == rounding());
     }
 }
@@ -166,19 +166,19 @@ TEST_F(BluntEdges, MoreThanThreeThroughOnePointAreBlunt)
     add_below({0.6F, -0.8F, 0}, 0.2F);
     const Vec3 at(1.0F, 0.5F, 0);
     EXPECT_FALSE(blunt(at));
-    balls = {{Vec3::Zero(), 16.0F}, {at - Vec3::UnitZ(), 1.0F}};
-    EXPECT_FALSE(blunt(at)) << "two planes and a ball";
+    spheres = {{Vec3::Zero(), 16.0F}, {at - Vec3::UnitZ(), 1.0F}};
+    EXPECT_FALSE(blunt(at)) << "two planes and a sphere";
     add_below({0, 0.6F, 0.8F}, 0.3F);
-    EXPECT_TRUE(blunt(at)) << "three planes and a ball";
-    balls.pop_back();
+    EXPECT_TRUE(blunt(at)) << "three planes and a sphere";
+    spheres.pop_back();
     EXPECT_FALSE(blunt(at)) << "three planes";
     add_below({0, 0.6F, -0.8F}, 0.3F);
     EXPECT_TRUE(blunt(at)) << "four planes";
     rows.pop_back();
     rows.pop_back();
     rows.pop_back();
-    balls = {{at - 16.0F * Vec3::UnitZ(), 16.0F}, {at + Vec3::UnitY(), 1.0F}};
-    EXPECT_FALSE(blunt(at)) << "a plane and two balls";
+    spheres = {{at - 16.0F * Vec3::UnitZ(), 16.0F}, {at + Vec3::UnitY(), 1.0F}};
+    EXPECT_FALSE(blunt(at)) << "a plane and two spheres";
 }
 
 // --- four that contradict each other ---
@@ -236,8 +236,8 @@ TYPED_TEST(SearchEdges, ACornerAfterABluntAnswerIsBlunt)
         this->add_below(-Vec3::UnitZ(), -1.0F);
         this->add_below(-Vec3::UnitX(), -0.25F);
         this->add_below(Vec3::UnitX(), -0.25F);
-        // The second ball contacts the first from inside, or is inside it.
-        this->balls = {{Vec3::Zero(), 16.0F}, {Vec3::UnitX(), inner}};
+        // The second sphere contacts the first from inside, or is inside it.
+        this->spheres = {{Vec3::Zero(), 16.0F}, {Vec3::UnitX(), inner}};
         Search<TypeParam> s = this->search({20, 0, 0});
         ASSERT_EQ(s.nearest(0), Found::optimum);
         s.judge(0);

@@ -63,7 +63,7 @@ protected:
         derived.resize(n);
         held.resize(n);
         WorkBudget budget(units);
-        Search<Real> search(balls, c.goal, {rows, derived, yields, held}, 4.0F, budget);
+        Search<Real> search(spheres, c.goal, {rows, derived, yields, held}, 4.0F, budget);
         stage = 0;
         Found found = search.nearest(n);
         if (found == Found::nothing) {
@@ -86,7 +86,7 @@ protected:
         return found;
     }
 
-    std::vector<Ball> balls{{Vec3::Zero(), 60.0F}};
+    std::vector<Sphere> spheres{{Vec3::Zero(), 60.0F}};
     std::vector<Row> rows;
     std::vector<Row> derived;
     std::vector<float> yields;
@@ -97,7 +97,7 @@ protected:
     std::uint32_t spent = 0;
     int stage = 0;
 };
-using RelaxPrecisions = ::testing::Types<float, Wide>;
+using RelaxPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(SearchRelax, RelaxPrecisions);
 
 TYPED_TEST(SearchRelax, TheLeastViolationAndTheNearestPointForIt)
@@ -113,7 +113,7 @@ TYPED_TEST(SearchRelax, TheLeastViolationAndTheNearestPointForIt)
         }
         ASSERT_EQ(found, Found::optimum) << "seed " << kRelaxSeed << ", case " << i;
         if (this->least.norm() > 50.0F || this->x.norm() > 50.0F) {
-            continue;  // the ball decides too
+            continue;  // the sphere decides too
         }
         ++relaxed;
         const auto all = enumerated::least_violation(planes);

@@ -14,7 +14,7 @@ namespace jink::orca::test {
 /// Rows for velocities of about 4 m/s, with the other inputs of a search. Each search begins with the rows as given.
 class SearchRows : public ::testing::Test {
 protected:
-    explicit SearchRows(float radius) : balls{{Vec3::Zero(), radius}} {}
+    explicit SearchRows(float radius) : spheres{{Vec3::Zero(), radius}} {}
 
     void add(const Vec3& normal, float offset, float yield = 1.0F)
     {
@@ -32,7 +32,7 @@ protected:
         shifted = rows;
         derived.resize(rows.size());
         held.resize(rows.size() + 8);
-        return Search<Real>(balls, goal, {shifted, derived, yields, held}, scale, budget);
+        return Search<Real>(spheres, goal, {shifted, derived, yields, held}, scale, budget);
     }
     /// Largest violation of the first `count` rows at `x`.
     [[nodiscard]] float outside(std::size_t count, const Vec3& x) const
@@ -59,7 +59,7 @@ protected:
     std::vector<Row> derived;
     std::vector<float> yields;
     std::vector<std::uint16_t> held;
-    std::vector<Ball> balls;
+    std::vector<Sphere> spheres;
 };
 
 }  // namespace jink::orca::test

@@ -59,10 +59,10 @@ protected:
     std::size_t hards = 0;
     Vec3 goal = Vec3::Zero();
 };
-using YieldPrecisions = ::testing::Types<float, Wide>;
+using YieldPrecisions = ::testing::Types<float, DoubleFloat>;
 TYPED_TEST_SUITE(SearchYield, YieldPrecisions);
 using YieldOfFloats = SearchYield<float>;
-using YieldOfWides = SearchYield<Wide>;
+using YieldOfWides = SearchYield<DoubleFloat>;
 
 /// The reported violation is complete: at the found point no row is violated by more, not even by rounding.
 TEST_F(YieldOfFloats, WhatIsBrokenIsSaidInFull)
@@ -87,7 +87,7 @@ TYPED_TEST(SearchYield, WhereRoundingLeavesNoPointRowsGiveWayFurther)
 {
     Random random(20270104);
     this->scale = 20'000.0F;
-    this->balls = {{Vec3::Zero(), 100'000.0F}};
+    this->spheres = {{Vec3::Zero(), 100'000.0F}};
     int relaxed = 0;
     for (int i = 0; i < 300; ++i) {
         this->some_rows(random, 5000.0F);
@@ -129,7 +129,7 @@ protected:
         this->add({-part, -0.6F, -0.8F}, 0.25F);
         this->goal = {1, 0, 0};
         // Without the first one the others intersect far off.
-        this->balls = {{Vec3::Zero(), 10'000.0F}};
+        this->spheres = {{Vec3::Zero(), 10'000.0F}};
     }
 };
 TYPED_TEST_SUITE(CornerYield, YieldPrecisions);
@@ -203,7 +203,7 @@ TYPED_TEST(CornerYield, RowsOfAnEarlierSearchMakeNoCorner)
 
 // --- more rows than there is room for in twice the precision ---
 
-/// Planes about a ball of 1 m/s within decades of angles to `axis`: each that is taken leaves another one broken.
+/// Planes about a sphere of 1 m/s within decades of angles to `axis`: each that is taken leaves another one broken.
 class ManyYield : public YieldOfWides {
 protected:
     Vec3 tangent(Random& random, const Vec3& axis)
@@ -243,7 +243,7 @@ protected:
     bool gives_way_by_the_least()
     {
         WorkBudget budget(2'000'000'000);
-        Search<Wide> s = search(budget);
+        Search<DoubleFloat> s = search(budget);
         EXPECT_TRUE(relaxes(s));
         float broken = 0.0F;
         const Found found = s.relax(hards, rows.size(), broken);

@@ -67,7 +67,7 @@ TEST(CommandFilter, OfLengthOneItPassesEverything)
 TEST(CommandFilter, LengthsOutsideAreTheNearerEnd)
 {
     EXPECT_EQ(CommandFilter(0).length(), 1U);
-    EXPECT_EQ(CommandFilter(33).length(), CommandFilter::kMost);
+    EXPECT_EQ(CommandFilter(33).length(), CommandFilter::kMax);
 }
 
 }  // namespace

@@ -44,10 +44,10 @@ std::vector<HalfSpace> about(Random& random, const Vec3& point, int family, floa
 Solution solved(const std::vector<HalfSpace>& planes, const Vec3& preferred, float radius = 50.0F,
                 std::uint32_t units = kWorkEnough)
 {
-    const std::array<Ball, 1> ball{{{Vec3::Zero(), radius}}};
+    const std::array<Sphere, 1> sphere{{{Vec3::Zero(), radius}}};
     Scratch<24> scratch;
     WorkBudget budget(units);
-    return solve({planes, ball, preferred, Vec3::Zero()}, scratch.view(), budget);
+    return solve({planes, sphere, preferred, Vec3::Zero()}, scratch.view(), budget);
 }
 
 /// Feasible programs: no level yields, and the nearest point is found to 1e-4 m/s, in any order of the half-spaces.
@@ -164,14 +164,14 @@ template <class Real>
 struct Cornered {
     std::vector<Row> rows;
     std::vector<float> yields;
-    std::array<Ball, 1> balls{{{Vec3::Zero(), 100.0F}}};
+    std::array<Sphere, 1> spheres{{{Vec3::Zero(), 100.0F}}};
     Corner<Real> corner;
 
     bool ends(std::size_t soft, std::uint32_t units = kWorkEnough)
     {
         WorkBudget budget(units);
         corner.rows = {0, 1, 2, 3};
-        return exchange<Real>(rows, yields, soft, balls, Tolerance<Real>(4.0F), budget, corner);
+        return exchange<Real>(rows, yields, soft, spheres, Tolerance<Real>(4.0F), budget, corner);
     }
 };
 
@@ -237,9 +237,9 @@ void expect_least_of_all(double tolerance)
 }
 
 TEST(SolverLaws, AnExchangeEndsAtTheLeastViolationOfAll) { expect_least_of_all<float>(1e-4); }
-TEST(SolverLaws, AnExchangeInTwiceThePrecisionDoesTheSame) { expect_least_of_all<Wide>(2e-6); }
+TEST(SolverLaws, AnExchangeInTwiceThePrecisionDoesTheSame) { expect_least_of_all<DoubleFloat>(2e-6); }
 
-/// A regular corner, each violated by 0.5 m/s: non-corners, corners limited by a ball, and corners with further rows.
+/// A regular corner, each violated by 0.5 m/s: non-corners, corners limited by a sphere, and corners with further rows.
 TEST(SolverLaws, WhatIsNoCornerIsRefused)
 {
     const float s = 1.0F / std::sqrt(3.0F);
@@ -270,17 +270,17 @@ TEST(SolverLaws, WhatIsNoCornerIsRefused)
     const auto from_one = [&] {
         WorkBudget budget(kWorkEnough);
         c.corner.rows = {1, 2, 3, 4};
-        return exchange<float>(c.rows, c.yields, 1, c.balls, Tolerance<float>(4.0F), budget, c.corner);
+        return exchange<float>(c.rows, c.yields, 1, c.spheres, Tolerance<float>(4.0F), budget, c.corner);
     };
     ASSERT_TRUE(from_one());
     EXPECT_FALSE(c.corner.is_alone) << "it holds the point as well";
     c.rows[0].offset = -0.1F;
     ASSERT_TRUE(from_one());
     EXPECT_TRUE(c.corner.is_alone);
-    // Outside of a ball nothing is known.
-    c.balls[0] = {{3, 0, 0}, 2.0F};
+    // Outside of a sphere nothing is known.
+    c.spheres[0] = {{3, 0, 0}, 2.0F};
     EXPECT_FALSE(from_one());
-    c.balls[0].radius = 3.1F;
+    c.spheres[0].radius = 3.1F;
     EXPECT_TRUE(from_one());
 }
 

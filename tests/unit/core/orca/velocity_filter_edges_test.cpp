@@ -25,7 +25,7 @@ TEST(VelocityFilterEdges, SettingsAtTheirEndsAreTaken)
     EXPECT_TRUE(takes([](FilterSettings& s) { s.cover = kLargestCover; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 0.999F; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.cover = 3.001F; }));
-    EXPECT_TRUE(takes([](FilterSettings& s) { s.smoothing = CommandFilter::kMost; }));
+    EXPECT_TRUE(takes([](FilterSettings& s) { s.smoothing = CommandFilter::kMax; }));
     EXPECT_TRUE(takes([](FilterSettings& s) { s.tick = 0.0F; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.tick = -0.1F; }));
     EXPECT_FALSE(takes([](FilterSettings& s) { s.tick = kNan; }));

@@ -163,7 +163,7 @@ TEST(VelocityFilterFaults, NumbersThatAreNoneAreRefused)
             EXPECT_EQ(filter.configure(s), Unsafe::not_positive) << "field " << field << ", " << bad;
         }
     }
-    for (const std::size_t length : {std::size_t{0}, CommandFilter::kMost + 1}) {
+    for (const std::size_t length : {std::size_t{0}, CommandFilter::kMax + 1}) {
         FilterSettings s;
         s.smoothing = length;
         VelocityFilter filter;

@@ -80,10 +80,10 @@ void between(std::vector<HalfSpace>& planes, const Vec3& axis, float low, float 
 
 Solution levels_solved(const std::vector<HalfSpace>& planes, const Vec3& preferred)
 {
-    const std::vector<Ball> balls{{Vec3::Zero(), 5.0F}};
+    const std::vector<Sphere> spheres{{Vec3::Zero(), 5.0F}};
     Scratch<16> scratch;
     WorkBudget budget(1'000'000);
-    return solve({planes, balls, preferred, Vec3::Zero()}, scratch.view(), budget);
+    return solve({planes, spheres, preferred, Vec3::Zero()}, scratch.view(), budget);
 }
 
 TEST(LevelsGiveWay, EachForThoseBeforeItAndAllAreSaid)

@@ -20,13 +20,13 @@ inline void evaluate(const ReachSet& set, std::span<const Level> blocks, std::sp
 inline Choice find_best_path(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
                              const Vec3& goal, AvoidanceRun run, const ChoiceRule& rule = {})
 {
-    return find_best_path(set, CellBalls(set.grid), nodes, cells, goal, run, rule);
+    return find_best_path(set, CellSpheres(set.grid), nodes, cells, goal, run, rule);
 }
 
 inline Choice find_best_path_of_all(const ReachSet& set, std::span<const Level> nodes, std::span<const Level> cells,
                                     const Vec3& goal, AvoidanceRun loosest, const ChoiceRule& rule = {})
 {
-    return find_best_path_of_all(set, CellBalls(set.grid), nodes, cells, goal, loosest, rule);
+    return find_best_path_of_all(set, CellSpheres(set.grid), nodes, cells, goal, loosest, rule);
 }
 
 }  // namespace jink::reach

@@ -305,7 +305,7 @@ TEST_F(EvaluationTest, TheStrictestRunThatLeavesAWayIsTakenDownToTheLoosest)
     EXPECT_EQ(none.run, kHardRun);
     nodes[left] = nodes[one] = 3;
     cells[tree.end(left)] = cells[tree.end(one)] = 3;
-    const Choice some = find_best_path_of_all(set, CellBalls(set.grid), nodes, cells, goal, kObstacleRun, {true, 0});
+    const Choice some = find_best_path_of_all(set, CellSpheres(set.grid), nodes, cells, goal, kObstacleRun, {true, 0});
     EXPECT_EQ(some.run, kIntruderRun) << "the goal or nothing, in each run";
     EXPECT_EQ(some.node, three);
     EXPECT_EQ(find_best_path_of_all(set, nodes, cells, goal, kObstacleRun).run, kHardRun);

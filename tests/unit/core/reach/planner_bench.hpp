@@ -172,14 +172,14 @@ public:
     std::size_t cells = 0;
     std::size_t free = 0;  ///< cells that were free before
 
-    RateStatus rate(const world::Situation&, const Placed& placed, const CellBalls& balls, Seconds at,
+    RateStatus rate(const world::Situation&, const Placed& placed, const CellSpheres& spheres, Seconds at,
                     std::span<Level> blocks, WorkBudget&) noexcept override
     {
         ++calls;
         lead = at;
         origin = placed.origin;
         set = placed.set;
-        cells = balls.are_of(placed.set->grid) ? blocks.size() : 0;
+        cells = spheres.are_of(placed.set->grid) ? blocks.size() : 0;
         free = static_cast<std::size_t>(std::count(blocks.begin(), blocks.end(), kFree));
         for (const CellIndex cell : blocked) {
             blocks[cell] = std::min(blocks[cell], level);

@@ -162,17 +162,17 @@ TEST_F(PlannerChoice, AClosedVolumeIsNeverEnteredAndItsMarginLast)
     test::SmallTree alone(kGrid);
     alone.chain(Movement::straight, 1, 1024);
     only(alone);
-    world::Barrel barrel;
-    barrel.circle = {world::Vec2(3.0F, 2.0F), 1.0F};
-    barrel.bottom = 0.0F;
-    barrel.top = 100.0F;
-    barrel.margin = 2.0F;
-    airspace.barrels = {&barrel, 1};
+    world::Cylinder cylinder;
+    cylinder.circle = {world::Vec2(3.0F, 2.0F), 1.0F};
+    cylinder.bottom = 0.0F;
+    cylinder.top = 100.0F;
+    cylinder.margin = 2.0F;
+    airspace.cylinders = {&cylinder, 1};
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_EQ(report().run, AvoidanceRun::hard_constraints) << "through the margin";
-    barrel.circle.centre.y() = 1.4F;
+    cylinder.circle.centre.y() = 1.4F;
     EXPECT_EQ(plan(), PlanStatus::none_available) << "its body";
-    barrel.circle.centre.y() = 5.0F;
+    cylinder.circle.centre.y() = 5.0F;
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_EQ(report().run, AvoidanceRun::soft_constraints);
 }

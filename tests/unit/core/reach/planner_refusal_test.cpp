@@ -41,18 +41,18 @@ TEST_F(PlannerRefusal, WhatItIsNotForIsBadInputAndWritesNothing)
     add_box(Vec3(-1000, 0, 30), Vec3::Ones());
     EXPECT_EQ(plan(), PlanStatus::bad_input);
     obstacles.clear();
-    std::vector<world::Barrel> barrels(kMaxBarrels);
-    for (world::Barrel& barrel : barrels) {
-        barrel.circle = {world::Vec2(-1000, 0), 1.0F};
-        barrel.top = 10.0F;
+    std::vector<world::Cylinder> cylinders(kMaxCylinders);
+    for (world::Cylinder& cylinder : cylinders) {
+        cylinder.circle = {world::Vec2(-1000, 0), 1.0F};
+        cylinder.top = 10.0F;
     }
-    airspace.barrels = barrels;
+    airspace.cylinders = cylinders;
     EXPECT_EQ(plan(), PlanStatus::found);
-    barrels.push_back(barrels.front());
-    airspace.barrels = barrels;
+    cylinders.push_back(cylinders.front());
+    airspace.cylinders = cylinders;
     EXPECT_EQ(plan(), PlanStatus::bad_input);
     Planner without{Settings{}};
-    airspace.barrels = {};
+    airspace.cylinders = {};
     WorkBudget budget(kAllTheWork);
     EXPECT_EQ(without.plan(view(), budget, out), PlanStatus::bad_input) << "no sets";
 }

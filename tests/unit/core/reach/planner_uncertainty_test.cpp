@@ -69,16 +69,16 @@ TEST_F(PlannerUncertainty, TheFence)
 
 TEST_F(PlannerUncertainty, AClosedVolume)
 {
-    world::Barrel barrel;
-    barrel.circle = {world::Vec2(8.0F, 3.0F), 2.2F};  // 0.3 m beside the box
-    barrel.top = 100.0F;
-    airspace.barrels = {&barrel, 1};
+    world::Cylinder cylinder;
+    cylinder.circle = {world::Vec2(8.0F, 3.0F), 2.2F};  // 0.3 m beside the box
+    cylinder.top = 100.0F;
+    airspace.cylinders = {&cylinder, 1};
     expect_own_uncertainty_counts();
-    barrel.circle.radius = 2.5F;
+    cylinder.circle.radius = 2.5F;
     EXPECT_NE(way(), Way::straight);
     // Below the box by 0.3 m.
-    barrel.circle.radius = 5.0F;
-    barrel.top = 29.2F;
+    cylinder.circle.radius = 5.0F;
+    cylinder.top = 29.2F;
     expect_own_uncertainty_counts();
 }
 

@@ -34,7 +34,7 @@ TEST(Consider, KeepsTheLeastAndIsBoundedBelow)
     detail::consider(best, 4.0F, 2.0F, {ThreatKind::ceiling, 0});
     EXPECT_EQ(best.margin, 3.0F);
     EXPECT_EQ(best.against.kind, ThreatKind::floor);
-    detail::consider(best, -kInfinity, 5.0F, {ThreatKind::barrel, 1});
+    detail::consider(best, -kInfinity, 5.0F, {ThreatKind::cylinder, 1});
     EXPECT_EQ(best.margin, -kSeparationCap);
     EXPECT_EQ(best.when, 5.0F);
 }
@@ -123,15 +123,15 @@ const OneBadNumber kBadNumbers[] = {
     {ThreatKind::obstacle, [](Scene& s) { s.own.sigma_position = kNan; }},
     {ThreatKind::obstacle, [](Scene& s) { s.own.sigma_position = kInfinity; }},
     {ThreatKind::obstacle, [](Scene& s) { s.rules.k_sigma = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].circle.centre.y() = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].circle.radius = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].velocity.x() = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].velocity.y() = kInfinity; }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].bottom = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrels[0].top = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.limits.half_extents.x() = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.own.sigma_position = kNan; }},
-    {ThreatKind::barrel, [](Scene& s) { s.rules.k_sigma = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinders[0].circle.centre.y() = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinders[0].circle.radius = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinders[0].velocity.x() = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinders[0].velocity.y() = kInfinity; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinders[0].bottom = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinders[0].top = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.limits.half_extents.x() = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.own.sigma_position = kNan; }},
+    {ThreatKind::cylinder, [](Scene& s) { s.rules.k_sigma = kNan; }},
 };
 
 struct BesideTheWay : testing::TestWithParam<OneBadNumber> {
@@ -140,7 +140,7 @@ struct BesideTheWay : testing::TestWithParam<OneBadNumber> {
         scene.leg(Vec3::Zero(), Vec3(100, 0, 0), 5.0F);
         switch (GetParam().kind) {
         case ThreatKind::track: scene.track(Vec3(20, 31, 0), Vec3::Zero(), 1.0F); break;
-        case ThreatKind::barrel: scene.barrel(Vec2(20, 31), 1.0F); break;
+        case ThreatKind::cylinder: scene.cylinder(Vec2(20, 31), 1.0F); break;
         default: scene.obstacle(geometry::make_sphere(Vec3(20, 31, 0), 1.0F)); break;
         }
     }
@@ -179,12 +179,12 @@ INSTANTIATE_TEST_SUITE_P(BadNumbers, BesideTheWay, testing::ValuesIn(kBadNumbers
 /// The own place, and each place and velocity of a flight before its end.
 TEST(BadFlights, AreContactWithWhateverThereIs)
 {
-    for (const ThreatKind kind : {ThreatKind::track, ThreatKind::obstacle, ThreatKind::barrel}) {
+    for (const ThreatKind kind : {ThreatKind::track, ThreatKind::obstacle, ThreatKind::cylinder}) {
         Scene scene;
         if (kind == ThreatKind::track) {
             scene.track(Vec3(20, 31, 0), Vec3::Zero(), 1.0F);
-        } else if (kind == ThreatKind::barrel) {
-            scene.barrel(Vec2(20, 31), 1.0F);
+        } else if (kind == ThreatKind::cylinder) {
+            scene.cylinder(Vec2(20, 31), 1.0F);
         } else {
             scene.obstacle(geometry::make_sphere(Vec3(20, 31, 0), 1.0F));
         }

@@ -90,7 +90,7 @@ TEST_F(ConflictEdges, AQuarterOfAMetreIsOnTheLeg)
 TEST_F(ConflictEdges, WhateverIsLeftOfTheBudgetWhatIsNotLookedAtIsMetNow)
 {
     scene.track(Vec3(300, 0, 0), Vec3::Zero(), 1.0F);
-    scene.barrel(Vec2(300, 0), 3.0F);
+    scene.cylinder(Vec2(300, 0), 3.0F);
     scene.obstacle(geometry::make_sphere(Vec3(300, 0, 0), 1.0F));
     scene.obstacle(geometry::make_box(Vec3(300, 0, 0), Vec3::Ones()));
     ASSERT_FALSE(meets());

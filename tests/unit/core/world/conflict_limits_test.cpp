@@ -78,7 +78,7 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
     const auto beside = [&](float y, float z) {
         scene.tracks.clear();
         scene.obstacles.clear();
-        scene.barrels.clear();
+        scene.cylinders.clear();
         scene.track(Vec3(30, y, z), Vec3::Zero(), 1.0F);
         const bool track = meets();
         scene.tracks.clear();
@@ -89,9 +89,9 @@ TEST_P(ConflictLimits, WhatIsJustBesideTheUncertainBoxIsNone)
         EXPECT_EQ(meets(), track) << y << ' ' << z;
         scene.obstacles.clear();
         if (z == 0.0F) {
-            scene.barrel(Vec2(30, y), 1.0F);
+            scene.cylinder(Vec2(30, y), 1.0F);
             EXPECT_EQ(meets(), track) << y << ' ' << z;
-            scene.airspace.barrels = {};
+            scene.airspace.cylinders = {};
         }
         return track;
     };
@@ -141,7 +141,7 @@ TEST_P(ConflictLimits, DrawingApartIsJudgedForEachByItself)
     EXPECT_GT(found.time_to_loss, 6.0F);
 }
 
-/// Tracks, barrels, obstacles: of two conflicts at the same time with the same margin the first in that order.
+/// Tracks, cylinders, obstacles: of two conflicts at the same time with the same margin the first in that order.
 TEST_P(ConflictLimits, TiesGoByKindAndIndex)
 {
     scene.own.sigma_position = 0.0F;
@@ -162,10 +162,10 @@ TEST_P(ConflictLimits, TiesGoByKindAndIndex)
     ASSERT_TRUE(meets());
     EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::obstacle, 1}));
     scene.obstacles.clear();
-    scene.barrels.assign(2, {{{40, 0}, 3.0F}, Vec2::Zero(), -20.0F, 20.0F, 0.0F});
-    scene.airspace.barrels = scene.barrels;
+    scene.cylinders.assign(2, {{{40, 0}, 3.0F}, Vec2::Zero(), -20.0F, 20.0F, 0.0F});
+    scene.airspace.cylinders = scene.cylinders;
     ASSERT_TRUE(meets());
-    EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0}));
+    EXPECT_EQ(found.threat, (ThreatRef{ThreatKind::cylinder, 0}));
 }
 
 /// Of equally near instants the first is reported: without relative motion, now.
@@ -232,12 +232,12 @@ TEST_P(ConflictLimits, ASpentBudgetNamesTheThreatThatItRanOutAt)
     };
     const std::uint32_t none = cost_until([] {});
     const std::uint32_t track = cost_until([&] { scene.track(Vec3(20, 60, 0), Vec3::Zero(), 1.0F); });
-    const std::uint32_t barrel = cost_until([&] { scene.barrel(Vec2(20, 60), 1.0F); });
+    const std::uint32_t cylinder = cost_until([&] { scene.cylinder(Vec2(20, 60), 1.0F); });
     const std::uint32_t obstacle = cost_until([&] { scene.obstacle(geometry::make_sphere(Vec3(20, 60, 0), 1.0F)); });
     for (std::uint32_t n = none; n < obstacle; ++n) {
         ASSERT_TRUE(meets(10.0F, n)) << n;
         const ThreatKind expected = n < track    ? ThreatKind::track
-                                    : n < barrel ? ThreatKind::barrel
+                                    : n < cylinder ? ThreatKind::cylinder
                                                  : ThreatKind::obstacle;
         ASSERT_EQ(found.threat, (ThreatRef{expected, 0})) << n;
         ASSERT_EQ(found.time_to_loss, 0.0F) << n;

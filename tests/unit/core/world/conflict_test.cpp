@@ -242,7 +242,7 @@ TEST_F(Conflicts, InsideWithTheCentresDrawingApartAndTheBoxComingNearerIsOne)
     ASSERT_TRUE(predict());
 }
 
-TEST_F(Conflicts, BallOnTheWay)
+TEST_F(Conflicts, SphereOnTheWay)
 {
     scene.obstacle(geometry::make_sphere(Vec3(20, 1, 0), 2.0F));
     ASSERT_TRUE(find());
@@ -322,7 +322,7 @@ TEST_F(Conflicts, WhereTheBudgetRunsOutThereIsOneNow)
     scene.obstacle(geometry::make_box(Vec3(-20, 3, 0), Vec3(40, 0.5F, 1)));
     WorkBudget ample(kPlenty);
     ASSERT_FALSE(main_conflict(scene.situation(), way_of(scene.situation()), kAhead, ample, conflict));
-    ASSERT_GE(ample.spent(), 4 * (units::kConflict + units::kConflictBall) + units::kConflictSolid);
+    ASSERT_GE(ample.spent(), 4 * (units::kConflict + units::kConflictSphere) + units::kConflictSolid);
     for (std::uint32_t n = 0; n < ample.spent(); ++n) {
         ASSERT_TRUE(find(n)) << n;
         ASSERT_EQ(conflict.time_to_loss, 0.0F) << n;
@@ -356,7 +356,7 @@ TEST_F(Conflicts, DrawingApartIsPaidForAndNotBelievedWithout)
     ASSERT_FALSE(predict());
     WorkBudget ample(kPlenty);
     static_cast<void>(test::predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, ample, conflict));
-    ASSERT_GE(ample.spent(), units::kConflict + units::kConflictPart + units::kBallPart);
+    ASSERT_GE(ample.spent(), units::kConflict + units::kConflictPart + units::kSpherePart);
     for (std::uint32_t n = 0; n < ample.spent(); ++n) {
         ASSERT_TRUE(predict(kAhead, n)) << n;
         ASSERT_EQ(conflict.time_to_loss, 0.0F);

@@ -74,10 +74,10 @@ TEST_P(ConflictTies, WithoutTimeAheadNothingIsMet)
     EXPECT_FALSE(meets(0.0F));
     EXPECT_EQ(spent, before() + units::kConflict);
     scene.tracks.clear();
-    scene.barrel(Vec2(1, 0), 4.0F);
+    scene.cylinder(Vec2(1, 0), 4.0F);
     EXPECT_FALSE(meets(0.0F));
     EXPECT_EQ(spent, before());
-    scene.airspace.barrels = {};
+    scene.airspace.cylinders = {};
     scene.obstacle(geometry::make_sphere(Vec3(1, 0, 0), 1.0F));
     EXPECT_FALSE(meets(0.0F));
     EXPECT_EQ(spent, before());
@@ -93,16 +93,16 @@ TEST_P(ConflictTies, AtItsEndInsideASphereThereIsNoConflict)
     EXPECT_EQ(spent, before());
 }
 
-/// Beside the path a barrel in exact contact with the box counts, like an entered one.
-TEST_P(ConflictTies, ABarrelThatTouchesExactlyIsMet)
+/// Beside the path a cylinder in exact contact with the box counts, like an entered one.
+TEST_P(ConflictTies, ACylinderThatTouchesExactlyIsMet)
 {
-    scene.barrel(Vec2(30, 6), 4.5F);
+    scene.cylinder(Vec2(30, 6), 4.5F);
     scene.rules.k_sigma = 1.0F;
     float& clearance = scene.own.sigma_position;
     const auto distance = [&] {
         WorkBudget budget(kPlenty);
         const geometry::Motion own{Vec3::Zero(), Vec3(5, 0, 0)};
-        const detail::BarrelApproach approach(Vec3::Ones(), own, scene.barrels[0], 0.0F, clearance, 0.0F);
+        const detail::CylinderApproach approach(Vec3::Ones(), own, scene.cylinders[0], 0.0F, clearance, 0.0F);
         return approach.least(10.0F, 0.0F, budget).distance;
     };
     clearance = 0.4999F;
@@ -112,7 +112,7 @@ TEST_P(ConflictTies, ABarrelThatTouchesExactlyIsMet)
     }
     ASSERT_EQ(distance(), 0.0F);
     EXPECT_TRUE(meets());
-    EXPECT_EQ(found.threat.kind, ThreatKind::barrel);
+    EXPECT_EQ(found.threat.kind, ThreatKind::cylinder);
     EXPECT_GT(found.time_to_loss, 0.0F);
 }
 
@@ -121,7 +121,7 @@ TEST_P(ConflictTies, BeforeAnythingIsLookedAtTheConflictIsNow)
 {
     scene.obstacle(geometry::make_sphere(Vec3(40, 0, 0), 1.0F));
     scene.obstacle(geometry::make_box(Vec3(50, 0, 0), Vec3::Ones()));
-    for (std::uint32_t n = 0; n < before() + units::kConflictBall; ++n) {
+    for (std::uint32_t n = 0; n < before() + units::kConflictSphere; ++n) {
         ASSERT_TRUE(meets(10.0F, n)) << n;
         ASSERT_EQ(found.time_to_loss, 0.0F) << n;
         ASSERT_EQ(found.margin, -kSeparationCap) << n;
@@ -130,13 +130,13 @@ TEST_P(ConflictTies, BeforeAnythingIsLookedAtTheConflictIsNow)
     }
 }
 
-/// If the budget runs out during a barrel's check, only the barrel is reported, without a place.
-TEST_P(ConflictTies, ABarrelThatIsNotPaidForHasNoPlace)
+/// If the budget runs out during a cylinder's check, only the cylinder is reported, without a place.
+TEST_P(ConflictTies, ACylinderThatIsNotPaidForHasNoPlace)
 {
-    scene.barrel(Vec2(30, 0), 4.0F);
-    for (std::uint32_t n = before(); n < before() + units::kConflictBarrel + units::kBarrelPart; ++n) {
+    scene.cylinder(Vec2(30, 0), 4.0F);
+    for (std::uint32_t n = before(); n < before() + units::kConflictCylinder + units::kCylinderPart; ++n) {
         ASSERT_TRUE(meets(10.0F, n)) << n;
-        ASSERT_EQ(found.threat, (ThreatRef{ThreatKind::barrel, 0})) << n;
+        ASSERT_EQ(found.threat, (ThreatRef{ThreatKind::cylinder, 0})) << n;
         ASSERT_EQ(found.time_to_loss, 0.0F) << n;
         ASSERT_EQ(found.miss_distance, 0.0F) << n;
         ASSERT_EQ(found.radius_at_closest, 0.0F) << n;
@@ -241,13 +241,13 @@ TEST_P(ConflictTies, TheClosestApproachIsOnTheWayThatIsFlown)
 }
 
 /// Flown through at 1 s, and again while hovering, a metre less deep: the first time is reported, at its cost.
-TEST_P(ConflictTies, ABarrelIsToldWhereItIsDeepest)
+TEST_P(ConflictTies, ACylinderIsToldWhereItIsDeepest)
 {
     way_to(Vec3(10, 0, 0));
-    scene.barrel(Vec2(4, 1.5F), 6.0F, Vec2(1, 0.2F));
-    scene.barrels[0].bottom = -100.0F;
-    scene.barrels[0].top = 100.0F;
-    scene.airspace.barrels = scene.barrels;
+    scene.cylinder(Vec2(4, 1.5F), 6.0F, Vec2(1, 0.2F));
+    scene.cylinders[0].bottom = -100.0F;
+    scene.cylinders[0].top = 100.0F;
+    scene.airspace.cylinders = scene.cylinders;
     scene.own.position = Vec3(-20, 0, 0);
     scene.leg(Vec3(-20, 0, 0), Vec3(10, 0, 0), 30.0F);
     route = path::Route();
@@ -260,14 +260,14 @@ TEST_P(ConflictTies, ABarrelIsToldWhereItIsDeepest)
     EXPECT_LT(found.time_to_closest, 1.0F);
     EXPECT_NEAR(found.margin, 0.7F - 6.0F, 0.2F);
     WorkBudget budget(kPlenty);
-    const detail::BarrelApproach flown(Vec3::Ones(), {Vec3(-20, 0, 0), Vec3(30, 0, 0)}, scene.barrels[0], 0.0F, 0.0F,
+    const detail::CylinderApproach flown(Vec3::Ones(), {Vec3(-20, 0, 0), Vec3(30, 0, 0)}, scene.cylinders[0], 0.0F, 0.0F,
                                        0.0F);
     const geometry::Approach near = flown.least(1.0F, 0.0F, budget);
     static_cast<void>(flown.first_contact(near.when, budget));
-    const detail::BarrelApproach hovered(Vec3::Ones(), {Vec3(10, 0, 0), Vec3::Zero()}, scene.barrels[0], 1.0F, 0.0F,
+    const detail::CylinderApproach hovered(Vec3::Ones(), {Vec3(10, 0, 0), Vec3::Zero()}, scene.cylinders[0], 1.0F, 0.0F,
                                          0.0F);
     static_cast<void>(hovered.least(9.0F, near.distance, budget));
-    EXPECT_EQ(spent, before() + budget.spent() + 2 * units::kConflictBarrel);
+    EXPECT_EQ(spent, before() + budget.spent() + 2 * units::kConflictCylinder);
 }
 
 /// Beyond the second corner nothing is nearer: an obstacle in conflict before it is nearest at the corner.

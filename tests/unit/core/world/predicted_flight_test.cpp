@@ -47,7 +47,7 @@ const std::pair<ThreatKind, Place> kBesideTheFourth[] = {
      [](Scene& s) { s.track(Vec3(3.5F, 4.0F, 0), Vec3::Zero(), 1.0F).sigma_velocity = 1e-7F; }},  // in parts
     {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_sphere(Vec3(3.5F, 4, 0), 1.0F)); }},
     {ThreatKind::obstacle, [](Scene& s) { s.obstacle(geometry::make_box(Vec3(3.5F, 5, 0), Vec3(0.02F, 2, 0.02F))); }},
-    {ThreatKind::barrel, [](Scene& s) { s.barrel(Vec2(3.5F, 4), 1.0F); }},
+    {ThreatKind::cylinder, [](Scene& s) { s.cylinder(Vec2(3.5F, 4), 1.0F); }},
 };
 
 TEST(PredictedFlights, AreMetAsMuchEarlierAsTheyLeaveTheirChord)
@@ -70,7 +70,7 @@ TEST(PredictedFlights, AreNotPassedOverBecauseOfAnotherThreat)
 {
     for (const auto& [kind, place] : kBesideTheFourth) {
         Scene scene;
-        if (kind == ThreatKind::track || kind == ThreatKind::barrel) {
+        if (kind == ThreatKind::track || kind == ThreatKind::cylinder) {
             scene.track(Vec3(12, 3.9F, 0), Vec3::Zero(), 1.0F);  // 1.9 m
             place(scene);
         } else {
@@ -127,12 +127,12 @@ TEST(SeparationCosts, PiecesThatStayBeyondAreNotLookedAt)
     scene.track(Vec3(4, 3.0F, 0), Vec3::Zero(), 1.0F);  // 1 m from the pieces at its side
     const std::uint32_t base =
         1 + 9 * units::kPathPiece + units::kThreat + units::kThreatChunk + 8 * units::kThreatPiece;
-    const std::uint32_t looks = (cost(scene, eastwards()) - base) / units::kBallPart;
-    EXPECT_EQ((cost(scene, eastwards()) - base) % units::kBallPart, 0U);
+    const std::uint32_t looks = (cost(scene, eastwards()) - base) / units::kSpherePart;
+    EXPECT_EQ((cost(scene, eastwards()) - base) % units::kSpherePart, 0U);
     EXPECT_GE(looks, 2U);
     EXPECT_LT(looks, 8U) << "not those that are farther than the best";
     scene.tracks[0].max_acceleration = 1e-6F;  // grows: four parts of each piece
-    const std::uint32_t parts = (cost(scene, eastwards()) - base) / units::kBallPart;
+    const std::uint32_t parts = (cost(scene, eastwards()) - base) / units::kSpherePart;
     EXPECT_GE(parts, 2 * looks);
     EXPECT_LE(parts, 4 * looks);
     Scene solid;
@@ -181,7 +181,7 @@ TEST(SeparationCosts, AnEscapeIsLookedAtInPiecesOfItsSlack)
     const path::TimedPath out = flight({Vec3::Zero(), Vec3(-1, 0, 0)}, 1.0F);
     const std::uint32_t base = 1 + 2 * units::kPathPiece + units::kThreat + units::kThreatChunk + units::kThreatPiece;
     const auto parts = [&](float slack, float speed) {
-        return (cost(scene, out, {slack, speed}) - base) / units::kBallPart;
+        return (cost(scene, out, {slack, speed}) - base) / units::kSpherePart;
     };
     EXPECT_EQ(parts(0.05F, 0.5F), 20U) << "0.05 s each";
     EXPECT_EQ(parts(0.1F, 0.5F), 10U);
@@ -210,7 +210,7 @@ TEST(SeparationCosts, ACutOffEndsTheLook)
     const std::uint32_t until = cost(scene, path, {}, {0.0F, kSeparationCap, {ThreatKind::track, 10}});
     EXPECT_EQ(until, cost(scene, path, {}, {0.0F, kSeparationCap, {}})) << "no such track";
     EXPECT_LT(until, whole);
-    scene.barrel(Vec2(4, 30), 1.0F);
+    scene.cylinder(Vec2(4, 30), 1.0F);
     scene.obstacle(geometry::make_box(Vec3(4, 3, 0), Vec3::Ones()));
     EXPECT_EQ(cost(scene, path, {}, {0.0F, kSeparationCap, {ThreatKind::track, 7}}), one) << "nor any other kind";
     EXPECT_GT(cost(scene, path, {}, {-5.0F, kSeparationCap, {ThreatKind::track, 7}}), one) << "not below that";

@@ -303,7 +303,7 @@ TEST_F(OnRoute, OfSeveralTheFirstOneIsTheMainThreat)
 TEST_F(OnRoute, WhereTheBudgetRunsOutThereIsAConflictNow)
 {
     scene.track(Vec3(400, 4, 0), Vec3::Zero(), 1.0F);
-    scene.barrel(Vec2(500, 0), 3.0F);
+    scene.cylinder(Vec2(500, 0), 3.0F);
     scene.obstacle(geometry::make_sphere(Vec3(300, 8, 0), 1.0F));
     scene.obstacle(geometry::make_box(Vec3(30, 12, 0), Vec3::Ones()));
     ASSERT_TRUE(meets(found));

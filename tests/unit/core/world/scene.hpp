@@ -19,7 +19,7 @@ struct Scene {
     Reference reference;
     std::vector<Track> tracks;
     std::vector<Obstacle> obstacles;
-    std::vector<Barrel> barrels;
+    std::vector<Cylinder> cylinders;
     Airspace airspace;
     const Manoeuvre* flying = nullptr;
     FlightRules rules;
@@ -54,11 +54,11 @@ struct Scene {
         return tracks.emplace_back(t);
     }
     /// Body alone, from 20 m below to 20 m above the origin. Do not copy the scene afterwards.
-    Barrel& barrel(const Vec2& centre, float radius, const Vec2& velocity = Vec2::Zero())
+    Cylinder& cylinder(const Vec2& centre, float radius, const Vec2& velocity = Vec2::Zero())
     {
-        barrels.push_back({{centre, radius}, velocity, -20.0F, 20.0F, 0.0F});
-        airspace.barrels = barrels;
-        return barrels.back();
+        cylinders.push_back({{centre, radius}, velocity, -20.0F, 20.0F, 0.0F});
+        airspace.cylinders = cylinders;
+        return cylinders.back();
     }
     void obstacle(const geometry::Shape& shape)
     {

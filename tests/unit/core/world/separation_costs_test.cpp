@@ -94,41 +94,41 @@ TEST_F(ExactCosts, AShrunkSphereIsSmallerNotLarger)
     EXPECT_EQ(cost(east(1)) - first, near(1));
 }
 
-/// Barrels: both ends of a piece once; an instant once.
-TEST_F(ExactCosts, ABarrelOnceForEachPieceThatDoesNotEscape)
+/// Cylinders: both ends of a piece once; an instant once.
+TEST_F(ExactCosts, ACylinderOnceForEachPieceThatDoesNotEscape)
 {
-    scene.barrel(Vec2(-10, 0), 3.0F);
-    EXPECT_EQ(cost(east(1)), near(1) + units::kBarrelPart) << "it is left behind: nearest at the start";
-    EXPECT_EQ(cost(east(3)), near(3) + 3 * units::kBarrelPart);
-    EXPECT_EQ(cost(flight({Vec3::Zero()}, 1.0F)), near(1) + units::kBarrelPart) << "standing";
+    scene.cylinder(Vec2(-10, 0), 3.0F);
+    EXPECT_EQ(cost(east(1)), near(1) + units::kCylinderPart) << "it is left behind: nearest at the start";
+    EXPECT_EQ(cost(east(3)), near(3) + 3 * units::kCylinderPart);
+    EXPECT_EQ(cost(flight({Vec3::Zero()}, 1.0F)), near(1) + units::kCylinderPart) << "standing";
 }
 
-/// Inside a barrel: until the surface has grown back, then the whole of it.
-TEST_F(ExactCosts, ABarrelTwiceInThePieceInWhichAnEscapeEnds)
+/// Inside a cylinder: until the surface has grown back, then the whole of it.
+TEST_F(ExactCosts, ACylinderTwiceInThePieceInWhichAnEscapeEnds)
 {
-    scene.barrel(Vec2(-3.5F, 0), 3.0F);  // half a metre inside: 0.55 m at 0.5 m/s
-    EXPECT_EQ(cost(east(1)), near(1) + units::kBarrelPart);
-    EXPECT_EQ(cost(east(2)), near(2) + 3 * units::kBarrelPart);
-    EXPECT_EQ(cost(east(3)), near(3) + 4 * units::kBarrelPart);
-    EXPECT_EQ(cost(east(3), {0.05F, 0.0F}), near(3) + 3 * units::kBarrelPart) << "one that does not grow back";
-    EXPECT_EQ(cost(flight({Vec3::Zero()}, 1.0F)), near(1) + units::kBarrelPart);
+    scene.cylinder(Vec2(-3.5F, 0), 3.0F);  // half a metre inside: 0.55 m at 0.5 m/s
+    EXPECT_EQ(cost(east(1)), near(1) + units::kCylinderPart);
+    EXPECT_EQ(cost(east(2)), near(2) + 3 * units::kCylinderPart);
+    EXPECT_EQ(cost(east(3)), near(3) + 4 * units::kCylinderPart);
+    EXPECT_EQ(cost(east(3), {0.05F, 0.0F}), near(3) + 3 * units::kCylinderPart) << "one that does not grow back";
+    EXPECT_EQ(cost(flight({Vec3::Zero()}, 1.0F)), near(1) + units::kCylinderPart);
 }
 
 /// No rule, no parts.
 TEST_F(ExactCosts, WhatDoesNotGrowBackIsLookedAtAsAWhole)
 {
     scene.track(Vec3(-3.5F, 0, 0), Vec3::Zero(), 3.0F);
-    EXPECT_EQ(cost(east(1), {0.0F, 0.0F}), near(1) + units::kBallPart);
-    EXPECT_EQ(cost(east(1), {0.05F, 0.0F}), near(1) + units::kBallPart);
+    EXPECT_EQ(cost(east(1), {0.0F, 0.0F}), near(1) + units::kSpherePart);
+    EXPECT_EQ(cost(east(1), {0.05F, 0.0F}), near(1) + units::kSpherePart);
 }
 
-/// Exactly at a barrel's clearance a flight starts outside of it: no credit to go in.
-TEST(BarrelStarts, ExactlyOutsideHaveNoCredit)
+/// Exactly at a cylinder's clearance a flight starts outside of it: no credit to go in.
+TEST(CylinderStarts, ExactlyOutsideHaveNoCredit)
 {
     Scene scene;
-    scene.barrel(Vec2(5, 0), 3.0F);
+    scene.cylinder(Vec2(5, 0), 3.0F);
     scene.rules.k_sigma = 1.0F;
-    scene.own.sigma_position = barrel_distance(Vec3::Ones(), Vec3::Zero(), scene.barrels[0], 0.0F);
+    scene.own.sigma_position = cylinder_distance(Vec3::Ones(), Vec3::Zero(), scene.cylinders[0], 0.0F);
     EXPECT_NEAR(separation(scene, flight({Vec3::Zero(), Vec3(0.04F, 0, 0)}, 0.01F)).margin, -0.04F, 1e-5F);
     scene.own.sigma_position += 1e-4F;
     EXPECT_GT(separation(scene, flight({Vec3::Zero(), Vec3(0.04F, 0, 0)}, 0.01F)).margin, 0.0F) << "inside";

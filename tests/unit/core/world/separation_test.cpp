@@ -71,10 +71,10 @@ TEST(LeastSeparation, EachLoopIsPaidFor)
     spent += 3 * (units::kThreat + units::kThreatChunk);
     EXPECT_EQ(spent_on(scene, path), spent) << "far away";
     scene.track(Vec3(1, 5, 0), Vec3::Zero());
-    spent += units::kThreat + units::kThreatChunk + 2 * units::kThreatPiece + 2 * units::kBallPart;
+    spent += units::kThreat + units::kThreatChunk + 2 * units::kThreatPiece + 2 * units::kSpherePart;
     EXPECT_EQ(spent_on(scene, path), spent) << "two pieces near";
     scene.tracks.back().sigma_velocity = 0.1F;
-    EXPECT_EQ(spent_on(scene, path), spent + 6 * units::kBallPart) << "four parts of each, while it grows";
+    EXPECT_EQ(spent_on(scene, path), spent + 6 * units::kSpherePart) << "four parts of each, while it grows";
 }
 
 TEST(LeastSeparation, LooksAtNothingWithoutABudget)
@@ -199,7 +199,7 @@ const Margin kMargins[] = {
     {"growing track", [](Scene& s) { s.track(Vec3(3.5F, 0, 0), Vec3::Zero(), 2.9F).sigma_velocity = 0.05F; },
      Vec3(-1, 0, 0), 0.75F, 0.4F},
     {"moving track", [](Scene& s) { s.track(Vec3(3.5F, 0, 0), Vec3(-2, 0, 0), 3.0F); }, Vec3(-1, 0, 0), 2.55F, 2.4F},
-    {"ball", [](Scene& s) { s.obstacle(geometry::make_sphere(Vec3(3.5F, 0, 0), 3.0F)); }, Vec3(-1, 0, 0), 0.55F, 0.4F},
+    {"sphere", [](Scene& s) { s.obstacle(geometry::make_sphere(Vec3(3.5F, 0, 0), 3.0F)); }, Vec3(-1, 0, 0), 0.55F, 0.4F},
     {"upright capsule", [](Scene& s) { s.obstacle(geometry::make_capsule(Vec3(3.5F, 0, -5), Vec3(3.5F, 0, 5), 3.0F)); },
      Vec3(-1, 0, 0), 0.55F, 0.4F},
     {"box", [](Scene& s) { s.obstacle(geometry::make_box(Vec3(2.5F, 0, 0), Vec3(2, 2, 2))); }, Vec3(-1, 0, 0), 0.6F,

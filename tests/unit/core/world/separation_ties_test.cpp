@@ -49,9 +49,9 @@ TEST_F(TiedCosts, AThreatThatIsNoNearerIsPassedOver)
     scene.track(Vec3(6, 0, 0), Vec3::Zero(), 1.0F);
     EXPECT_EQ(cost(path), first + kFar);
     scene.tracks.pop_back();
-    scene.barrel(Vec2(-5, 0), 2.0F);  // 2 m at the start
+    scene.cylinder(Vec2(-5, 0), 2.0F);  // 2 m at the start
     EXPECT_EQ(cost(path), first + kFar);
-    scene.airspace.barrels = {};
+    scene.airspace.cylinders = {};
     scene.obstacle(geometry::make_box(Vec3(0, 20, 0), Vec3(3, 3, 3)));
     const float bound = 19.0F - geometry::bounding_radius(scene.obstacles[0].shape);
     scene.tracks.clear();
@@ -60,17 +60,17 @@ TEST_F(TiedCosts, AThreatThatIsNoNearerIsPassedOver)
     EXPECT_EQ(empty, cost(path) + kFar);
 }
 
-/// A barrel in contact with the flight's bounding box may have any depth, and is checked.
-TEST_F(TiedCosts, ABarrelThatTouchesTheFlightsBoxIsLookedAt)
+/// A cylinder in contact with the flight's bounding box may have any depth, and is checked.
+TEST_F(TiedCosts, ACylinderThatTouchesTheFlightsBoxIsLookedAt)
 {
     const path::TimedPath path = east(2);
     scene.track(Vec3(1, 0, 0), Vec3::Zero(), 0.5F);
     ASSERT_LT(separation(scene, path).margin, 0.0F);
     const std::uint32_t first = cost(path);
-    scene.barrel(Vec2(6, 0), 3.0F);
-    EXPECT_EQ(cost(path), first + kFar + 2 * units::kThreatPiece + 2 * units::kBarrelPart);
-    scene.barrels[0].circle.radius = 2.99F;
-    scene.airspace.barrels = scene.barrels;
+    scene.cylinder(Vec2(6, 0), 3.0F);
+    EXPECT_EQ(cost(path), first + kFar + 2 * units::kThreatPiece + 2 * units::kCylinderPart);
+    scene.cylinders[0].circle.radius = 2.99F;
+    scene.airspace.cylinders = scene.cylinders;
     EXPECT_EQ(cost(path), first + kFar);
 }
 
@@ -82,7 +82,7 @@ TEST_F(TiedCosts, ASphereOfExactlyTheDepthSoFarIsLookedAt)
     ASSERT_EQ(separation(scene, path).margin, -1.0F);
     const std::uint32_t first = cost(path);
     scene.track(Vec3(20, 0, 0), Vec3(-20, 0, 0), 0.5F).max_acceleration = 1.0F;  // a radius of a metre after a second
-    EXPECT_EQ(cost(path), first + kFar + 2 * units::kThreatPiece + 2 * 4 * units::kBallPart);
+    EXPECT_EQ(cost(path), first + kFar + 2 * units::kThreatPiece + 2 * 4 * units::kSpherePart);
 }
 
 /// Now: an obstacle that cannot be nearer than the margin so far costs no query, also where it may be as near.
@@ -160,9 +160,9 @@ TEST(CrossingThreats, CountOnAllOfTheirWay)
         Scene track;
         track.track(-100.0F * along, 100.0F * along, 1.0F);
         EXPECT_NEAR(separation(track, path).margin, -1.0F, 1e-3F);
-        Scene barrel;
-        barrel.barrel(-100.0F * along.head<2>(), 3.0F, 100.0F * along.head<2>());
-        EXPECT_NEAR(separation(barrel, path).margin, -3.0F, 1e-2F);
+        Scene cylinder;
+        cylinder.cylinder(-100.0F * along.head<2>(), 3.0F, 100.0F * along.head<2>());
+        EXPECT_NEAR(separation(cylinder, path).margin, -3.0F, 1e-2F);
     }
 }
 
@@ -195,7 +195,7 @@ TEST(GrowingThreats, CountAsTheyAreAtTheEndOfAPart)
     const path::TimedPath stay = flight({Vec3::Zero(), Vec3::Zero()}, 1.0F);
     EXPECT_NEAR(separation(inside, stay).margin, -0.45F, 1e-4F);
     inside.tracks.clear();
-    inside.barrel(Vec2(4.5F, 0), 4.0F);
+    inside.cylinder(Vec2(4.5F, 0), 4.0F);
     EXPECT_NEAR(separation(inside, stay).margin, -0.45F, 1e-3F);
 }
 
@@ -223,18 +223,18 @@ TEST(UncertainPlaces, ThreatsThatAreNearerByTheUncertaintyCount)
     solid.obstacle(geometry::make_capsule(Vec3(6, 0, 0), Vec3(6.02F, 0, 0), 1.0F));  // 3 m, less 1.5 m
     EXPECT_NEAR(separation(solid, path).margin, 1.5F, kObstacleResolution + 1e-3F);
     EXPECT_EQ(separation(solid, path).against.kind, ThreatKind::obstacle);
-    Scene barrel = scene_with(2.0F);
-    barrel.barrel(Vec2(6, 0), 1.0F);
-    EXPECT_NEAR(separation(barrel, path).margin, 1.5F, 1e-3F);
-    EXPECT_EQ(separation_at(barrel.situation(), Vec3(1, 0, 0), 0.0F, budget).against.kind, ThreatKind::barrel);
-    EXPECT_NEAR(separation_at(barrel.situation(), Vec3(1, 0, 0), 0.0F, budget).margin, 1.5F, 1e-3F);
+    Scene cylinder = scene_with(2.0F);
+    cylinder.cylinder(Vec2(6, 0), 1.0F);
+    EXPECT_NEAR(separation(cylinder, path).margin, 1.5F, 1e-3F);
+    EXPECT_EQ(separation_at(cylinder.situation(), Vec3(1, 0, 0), 0.0F, budget).against.kind, ThreatKind::cylinder);
+    EXPECT_NEAR(separation_at(cylinder.situation(), Vec3(1, 0, 0), 0.0F, budget).margin, 1.5F, 1e-3F);
     Scene sphere = scene_with(5.0F);
     sphere.obstacle(geometry::make_sphere(Vec3(9, 0, 0), 4.0F));  // 4 m, less 1.5 m
     EXPECT_EQ(separation_at(sphere.situation(), Vec3::Zero(), 0.0F, budget).against.kind, ThreatKind::obstacle);
     EXPECT_NEAR(separation_at(sphere.situation(), Vec3::Zero(), 0.0F, budget).margin, 2.5F, 1e-4F);
 }
 
-/// Out of a solid and out of a barrel: for any remaining budget, unchecked parts are contact, from the first unchecked
+/// Out of a solid and out of a cylinder: for any remaining budget, unchecked parts are contact, from the first unchecked
 /// instant.
 TEST(SpentBudgets, AreContactAlsoDuringAnEscape)
 {
@@ -250,23 +250,23 @@ TEST(SpentBudgets, AreContactAlsoDuringAnEscape)
     Scene solid;
     solid.obstacle(geometry::make_box(Vec3(3, 0, 0), Vec3(2.5F, 2, 2)));
     all_fail(solid);
-    Scene barrel;
-    barrel.barrel(Vec2(4.5F, 0), 4.0F);
-    all_fail(barrel);
+    Scene cylinder;
+    cylinder.cylinder(Vec2(4.5F, 0), 4.0F);
+    all_fail(cylinder);
     const std::uint32_t before = 1 + 3 * units::kPathPiece + units::kThreat + units::kThreatChunk;
     WorkBudget budget(before + 2 * units::kThreatPiece);
-    EXPECT_EQ(least_separation(barrel.situation(), path, 100.0F, budget).when, 0.0F);
+    EXPECT_EQ(least_separation(cylinder.situation(), path, 100.0F, budget).when, 0.0F);
     // In one piece, in the middle of which the surface is back at its size.
     WorkBudget one(before - units::kPathPiece + units::kThreatPiece);
     const path::TimedPath slow = flight({Vec3::Zero(), Vec3(-6, 0, 0)}, 2.0F);
-    EXPECT_EQ(least_separation(barrel.situation(), slow, 100.0F, one).when, 0.0F);
+    EXPECT_EQ(least_separation(cylinder.situation(), slow, 100.0F, one).when, 0.0F);
 }
 
-/// A turn back to where it came from: a barrel's surface that is back at its size counts for a piece's own time alone.
-TEST(BarrelEscapes, AreJudgedInThePieceInWhichTheCreditEnds)
+/// A turn back to where it came from: a cylinder's surface that is back at its size counts for a piece's own time alone.
+TEST(CylinderEscapes, AreJudgedInThePieceInWhichTheCreditEnds)
 {
     Scene scene;
-    scene.barrel(Vec2(4.5F, 0), 4.0F);  // half a metre inside: credit until 1.1 s
+    scene.cylinder(Vec2(4.5F, 0), 4.0F);  // half a metre inside: credit until 1.1 s
     // Out by 6 m in a second, 3 m back until 2 s, away again: not nearer than 2 m afterwards.
     path::TimedPath path =
         flight({Vec3::Zero(), Vec3(-6, 0, 0), Vec3(-6, 0, 0), Vec3(-3, 0, 0), Vec3(-15, 0, 0)}, 1.0F);

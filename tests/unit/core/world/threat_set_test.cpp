@@ -25,7 +25,7 @@ struct OfEachKind : testing::Test {
         scene.track(Vec3(50, 1, 2), Vec3(-3, 0, 1), 1.5F).half_height = 4.0F;
         scene.tracks[0].cooperative = true;
         scene.track(Vec3(60, 0, 0), Vec3::Zero(), 1.0F).sigma_velocity = 0.2F;
-        scene.barrel({30, 5}, 2.0F, {1, -1});
+        scene.cylinder({30, 5}, 2.0F, {1, -1});
         scene.obstacle(geometry::make_box(Vec3(9, 9, 9), Vec3::Ones()));
         scene.obstacle(geometry::make_capsule(Vec3(20, 0, -5), Vec3(20, 0, 5), 0.5F));
     }
@@ -37,7 +37,7 @@ TEST_F(OfEachKind, StandsInTheStatedOrder)
     const Situation s = scene.situation();
     ASSERT_EQ(s.threats.size(), 8U);
     constexpr ThreatKind kKinds[] = {ThreatKind::floor,    ThreatKind::ceiling, ThreatKind::keep_in,
-                                     ThreatKind::track,    ThreatKind::track,   ThreatKind::barrel,
+                                     ThreatKind::track,    ThreatKind::track,   ThreatKind::cylinder,
                                      ThreatKind::obstacle, ThreatKind::obstacle};
     constexpr std::uint16_t kIndices[] = {0, 0, 0, 0, 1, 0, 0, 1};
     for (std::size_t i = 0; i < s.threats.size(); ++i) {
@@ -106,11 +106,11 @@ TEST_F(OfEachKind, WithoutASetEverythingIsContact)
     EXPECT_EQ(scene.situation().threats.data(), nullptr);
     scene.tracks.resize(kMaxTracks);
     EXPECT_EQ(scene.situation().threats.size(), kMaxTracks + 6);
-    scene.barrels.resize(kMaxBarrels + 1);
-    scene.airspace.barrels = scene.barrels;
+    scene.cylinders.resize(kMaxCylinders + 1);
+    scene.airspace.cylinders = scene.cylinders;
     EXPECT_FALSE(set.collect(scene.situation(), scene.around()));
     EXPECT_EQ(set.all().data(), nullptr);
-    scene.airspace.barrels = {};
+    scene.airspace.cylinders = {};
     EXPECT_TRUE(set.collect(scene.situation(), scene.around()));
     scene.obstacles.resize(kMaxObstacles + 1);
     EXPECT_FALSE(set.collect(scene.situation(), scene.around()));
