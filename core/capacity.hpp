@@ -57,12 +57,13 @@
 #define JINK_CAPACITY(name) "_" JINK_TEXT_OF(name)
 /// Name of the symbol that core defines, and every unit that includes this header asks for.
 #define JINK_CAPACITIES_SYMBOL                                                                                         \
-    "jink_capacities" JINK_CAPACITY(JINK_MAX_TRACKS) JINK_CAPACITY(JINK_MAX_OBSTACLES) JINK_CAPACITY(JINK_MAX_CYLINDERS) \
-        JINK_CAPACITY(JINK_MAX_PATH_POINTS) JINK_CAPACITY(JINK_MAX_ROUTE_SEGMENTS) JINK_CAPACITY(JINK_MAX_CANDIDATES)  \
-            JINK_CAPACITY(JINK_MAX_HULL_VERTICES) JINK_CAPACITY(JINK_MAX_REACH_NODES)                                  \
-                JINK_CAPACITY(JINK_MAX_REACH_CELLS) JINK_CAPACITY(JINK_MAX_COMMANDS)                                   \
-                    JINK_CAPACITY(JINK_MAX_OBSTACLE_PLANES) JINK_CAPACITY(JINK_MAX_ORCA_PLANES)                        \
-                        JINK_CAPACITY(JINK_MAX_ORCA_NEIGHBOURS) JINK_CAPACITY(JINK_MAX_MISSION_ITEMS)
+    "jink_capacities" JINK_CAPACITY(JINK_MAX_TRACKS) JINK_CAPACITY(JINK_MAX_OBSTACLES)                                 \
+        JINK_CAPACITY(JINK_MAX_CYLINDERS) JINK_CAPACITY(JINK_MAX_PATH_POINTS) JINK_CAPACITY(JINK_MAX_ROUTE_SEGMENTS)   \
+            JINK_CAPACITY(JINK_MAX_CANDIDATES) JINK_CAPACITY(JINK_MAX_HULL_VERTICES)                                   \
+                JINK_CAPACITY(JINK_MAX_REACH_NODES) JINK_CAPACITY(JINK_MAX_REACH_CELLS)                                \
+                    JINK_CAPACITY(JINK_MAX_COMMANDS) JINK_CAPACITY(JINK_MAX_OBSTACLE_PLANES)                           \
+                        JINK_CAPACITY(JINK_MAX_ORCA_PLANES) JINK_CAPACITY(JINK_MAX_ORCA_NEIGHBOURS)                    \
+                            JINK_CAPACITY(JINK_MAX_MISSION_ITEMS)
 // 4 bytes of flash in all: equal references are one group. Kept by the linker (R) whatever else it leaves out.
 asm(".pushsection .jink_capacities, \"aGR\", %progbits, " JINK_CAPACITIES_SYMBOL "_asked, comdat\n\t.balign 4\n"
     "\t.4byte " JINK_CAPACITIES_SYMBOL " - .\n\t.popsection");

@@ -54,8 +54,9 @@ bool StateMachine::may_give_back(Tick& tick) noexcept
     }
     world::Conflict conflict;
     const world::Way nominal = world::way_of(*tick.other);
-    tick.out.other_conflict = world::main_conflict(*tick.other, nominal, tick.s.rules.lookahead, tick.budget, conflict) &&
-                              counts(tick, conflict);
+    tick.out.other_conflict =
+        world::main_conflict(*tick.other, nominal, tick.s.rules.lookahead, tick.budget, conflict) &&
+        counts(tick, conflict);
     diagnostics_.kept_control += tick.out.other_conflict ? 1U : 0U;
     return !tick.out.other_conflict;
 }

@@ -61,8 +61,8 @@ struct Settings {
     MethodOrder order_in_clutter;  ///< in place of `order` in clutter; empty: no change
     /// Clutter: so many tracks and obstacles within `clutter_radius`; 0: never.
     std::uint16_t clutter = 0;
-    float clutter_radius = 20.0F;  ///< 1..200 [m]
-    Seconds commit = 5.0F;         ///< a loss of separation nearer than this is planned around, 0.5..60 [s]
+    float clutter_radius = 20.0F;     ///< 1..200 [m]
+    Seconds commit = 5.0F;            ///< a loss of separation nearer than this is planned around, 0.5..60 [s]
     Seconds prediction_step = 0.2F;   ///< of the predicted flight, 0.02..0.5 [s]
     Seconds fallback_horizon = 4.0F;  ///< over which fallbacks are compared, 1..20 [s]
     Seconds reserve = 0.75F;          ///< on top of the stopping time, before which nothing is forced, 0..5 [s]

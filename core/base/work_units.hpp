@@ -34,21 +34,21 @@ constexpr std::uint32_t hull_units(std::size_t vertices) noexcept
 }
 
 // --- separation along a path (core/world/separation) ---
-inline constexpr std::uint32_t kPathPiece = 2;    ///< of a path that is checked
-inline constexpr std::uint32_t kBoundPiece = 1;   ///< and each bound of the airspace
-inline constexpr std::uint32_t kThreat = 3;       ///< track or obstacle
-inline constexpr std::uint32_t kThreatChunk = 2;  ///< and eight pieces at once
-inline constexpr std::uint32_t kThreatPiece = 3;  ///< and one piece of eight that may be near
-inline constexpr std::uint32_t kSpherePart = 8;     ///< and part of a piece, where the threat is a sphere
-inline constexpr std::uint32_t kCylinderPart = 6;   ///< or a cylinder: both ends of it
-inline constexpr std::uint32_t kCylinderTurn = 3;   ///< and each instant between them that is checked
+inline constexpr std::uint32_t kPathPiece = 2;     ///< of a path that is checked
+inline constexpr std::uint32_t kBoundPiece = 1;    ///< and each bound of the airspace
+inline constexpr std::uint32_t kThreat = 3;        ///< track or obstacle
+inline constexpr std::uint32_t kThreatChunk = 2;   ///< and eight pieces at once
+inline constexpr std::uint32_t kThreatPiece = 3;   ///< and one piece of eight that may be near
+inline constexpr std::uint32_t kSpherePart = 8;    ///< and part of a piece, where the threat is a sphere
+inline constexpr std::uint32_t kCylinderPart = 6;  ///< or a cylinder: both ends of it
+inline constexpr std::uint32_t kCylinderTurn = 3;  ///< and each instant between them that is checked
 
 // --- conflicts (core/world/conflict) ---
-inline constexpr std::uint32_t kConflict = 16;       ///< of the nominal path with a track
-inline constexpr std::uint32_t kConflictPart = 8;    ///< and each half second in which it grows
+inline constexpr std::uint32_t kConflict = 16;         ///< of the nominal path with a track
+inline constexpr std::uint32_t kConflictPart = 8;      ///< and each half second in which it grows
 inline constexpr std::uint32_t kConflictSphere = 9;    ///< of the nominal path with a sphere or an upright capsule
-inline constexpr std::uint32_t kConflictMet = 24;    ///< and the details of a conflict that is found
-inline constexpr std::uint32_t kConflictSolid = 10;  ///< with any other obstacle, but for its queries
+inline constexpr std::uint32_t kConflictMet = 24;      ///< and the details of a conflict that is found
+inline constexpr std::uint32_t kConflictSolid = 10;    ///< with any other obstacle, but for its queries
 inline constexpr std::uint32_t kConflictCylinder = 8;  ///< with a cylinder, but for the instants that are checked
 
 // --- flights predicted by the supervisor (core/avoid) ---
@@ -66,17 +66,17 @@ constexpr std::uint32_t closeness_units(std::size_t points, std::size_t moving) 
 {
     return static_cast<std::uint32_t>(points * moving + 2) / 3;
 }
-inline constexpr std::uint32_t kTableLookUp = 8;   ///< length, duration and smoothness of a curve out of the tables
-inline constexpr std::uint32_t kTableEnergy = 24;  ///< its energy, with the limits binding on all of it
-inline constexpr std::uint32_t kCollected = 1;     ///< threat or obstacle whose distance from the reach is checked
-inline constexpr std::uint32_t kItem = 4;          ///< sphere that a curve is checked against, all of it far
-inline constexpr std::uint32_t kFarItem = 2;       ///< and one whose bounds are out of reach of the whole curve
+inline constexpr std::uint32_t kTableLookUp = 8;      ///< length, duration and smoothness of a curve out of the tables
+inline constexpr std::uint32_t kTableEnergy = 24;     ///< its energy, with the limits binding on all of it
+inline constexpr std::uint32_t kCollected = 1;        ///< threat or obstacle whose distance from the reach is checked
+inline constexpr std::uint32_t kItem = 4;             ///< sphere that a curve is checked against, all of it far
+inline constexpr std::uint32_t kFarItem = 2;          ///< and one whose bounds are out of reach of the whole curve
 inline constexpr std::uint32_t kSphereCheck = 2;      ///< a closer check of a segment against a sphere
 inline constexpr std::uint32_t kSphereCheckPart = 1;  ///< and each part of a segment that is checked by itself
-inline constexpr std::uint32_t kSphereContact = 7;   ///< and an exact contact test
-inline constexpr std::uint32_t kSolidCheck = 3;     ///< solid that a curve is checked against, all of it far
-inline constexpr std::uint32_t kSolidSegment = 1;  ///< and each segment of one that may be near
-inline constexpr std::uint32_t kSolidPlanes = 3;   ///< and a closer check of such a segment, before any query
+inline constexpr std::uint32_t kSphereContact = 7;    ///< and an exact contact test
+inline constexpr std::uint32_t kSolidCheck = 3;       ///< solid that a curve is checked against, all of it far
+inline constexpr std::uint32_t kSolidSegment = 1;     ///< and each segment of one that may be near
+inline constexpr std::uint32_t kSolidPlanes = 3;      ///< and a closer check of such a segment, before any query
 /// All points of a curve against a solid's planes.
 constexpr std::uint32_t points_units(std::size_t points) noexcept { return static_cast<std::uint32_t>(points / 3 + 1); }
 /// Factor by which a solid lengthens the checks of an attempt: the same number of turns on every target.
@@ -85,28 +85,28 @@ inline constexpr std::uint32_t kCandidatePart = 3;  ///< part of a candidate's f
 inline constexpr std::uint32_t kCandidateStep = 1;  ///< and each of its points
 
 // --- reach sets (core/reach) ---
-inline constexpr std::uint32_t kReachMark = 150;     ///< a set that is placed: its cells' spheres
-inline constexpr std::uint32_t kReachDepths = 2;     ///< and sixteen of its nodes
-inline constexpr std::uint32_t kReachCells = 2;      ///< and four of its cells and a threat that may come near to them
-inline constexpr std::uint32_t kReachNode = 1;       ///< node that is checked
-inline constexpr std::uint32_t kReachQuickRejects = 1;    ///< and three threats that may come near, each a quick reject
-inline constexpr std::uint32_t kReachCheck = 2;       ///< and a sphere near it
-inline constexpr std::uint32_t kReachSolid = 6;      ///< or any other solid
-inline constexpr std::uint32_t kReachEntries = 2;    ///< eight entries of footprints, when trajectories are chosen
-inline constexpr std::uint32_t kReachPath = 30;      ///< trajectory that is made a path, with a stop at its end
-inline constexpr std::uint32_t kReachScanCell = 20;  ///< cell of a set or of a scan, when one is laid over the other
+inline constexpr std::uint32_t kReachMark = 150;  ///< a set that is placed: its cells' spheres
+inline constexpr std::uint32_t kReachDepths = 2;  ///< and sixteen of its nodes
+inline constexpr std::uint32_t kReachCells = 2;   ///< and four of its cells and a threat that may come near to them
+inline constexpr std::uint32_t kReachNode = 1;    ///< node that is checked
+inline constexpr std::uint32_t kReachQuickRejects = 1;  ///< and three threats that may come near, each a quick reject
+inline constexpr std::uint32_t kReachCheck = 2;         ///< and a sphere near it
+inline constexpr std::uint32_t kReachSolid = 6;         ///< or any other solid
+inline constexpr std::uint32_t kReachEntries = 2;       ///< eight entries of footprints, when trajectories are chosen
+inline constexpr std::uint32_t kReachPath = 30;         ///< trajectory that is made a path, with a stop at its end
+inline constexpr std::uint32_t kReachScanCell = 20;     ///< cell of a set or of a scan, when one is laid over the other
 
 // --- maps of convex pieces (core/geometry/mesh_map) ---
 inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is checked: both its children's boxes
 
 // --- orca ---
-inline constexpr std::uint32_t kOrcaPair = 4;      ///< another vehicle's half-spaces
-inline constexpr std::uint32_t kOrcaSelect = 4;    ///< another vehicle that is kept or left out
-inline constexpr std::uint32_t kOrcaPlane = 4;     ///< a plane that is searched for its best point
-inline constexpr std::uint32_t kOrcaLine = 4;      ///< and a line
-inline constexpr std::uint32_t kOrcaTurn = 2;      ///< a turn of the search, but for these
-inline constexpr std::uint32_t kOrcaExchange = 8;  ///< a turn of the search among four half-spaces
-inline constexpr std::uint32_t kOrcaDoubleFloat = 16;     ///< each of these in double-float numbers
+inline constexpr std::uint32_t kOrcaPair = 4;          ///< another vehicle's half-spaces
+inline constexpr std::uint32_t kOrcaSelect = 4;        ///< another vehicle that is kept or left out
+inline constexpr std::uint32_t kOrcaPlane = 4;         ///< a plane that is searched for its best point
+inline constexpr std::uint32_t kOrcaLine = 4;          ///< and a line
+inline constexpr std::uint32_t kOrcaTurn = 2;          ///< a turn of the search, but for these
+inline constexpr std::uint32_t kOrcaExchange = 8;      ///< a turn of the search among four half-spaces
+inline constexpr std::uint32_t kOrcaDoubleFloat = 16;  ///< each of these in double-float numbers
 /// Half-spaces checked.
 constexpr std::uint32_t orca_rows(std::size_t rows) noexcept { return static_cast<std::uint32_t>(rows + 3) / 4; }
 

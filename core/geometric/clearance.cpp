@@ -85,8 +85,9 @@ float Clearance::shrink_to_clear(float start_margin) const noexcept
 int Clearance::escape_parts(Seconds duration) const noexcept
 {
     constexpr Seconds kMin = 0.02F;
-    const Seconds longest =
-        problem_.rules.escape.speed > 0.0F ? 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed : duration;
+    const Seconds longest = problem_.rules.escape.speed > 0.0F
+                                ? 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed
+                                : duration;
     return std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, kMin))));
 }
 
@@ -232,7 +233,8 @@ Verdict Clearance::check(const Curve& curve, WorkBudget& budget, Part part) cons
                 continue;
             }
         }
-        const bool hit = budget.spend(is_solid(item) ? units::kSolidCheck : units::kItem) && touches(view, item, budget);
+        const bool hit =
+            budget.spend(is_solid(item) ? units::kSolidCheck : units::kItem) && touches(view, item, budget);
         if (budget.exhausted()) {
             return {CandidateStatus::not_evaluated, {}};
         }

@@ -164,12 +164,13 @@ private:
     [[nodiscard]] static Bounds bounds_of(const Problem& problem, const Vec3& half) noexcept;
     [[nodiscard]] Verdict verdict_of(const Item& item) const noexcept;
     [[nodiscard]] bool is_sphere_out_of(const Extent& extent, const Item& item, Seconds duration) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk, const Vec3& before,
-                               const Vec3& after, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk,
+                               const Vec3& before, const Vec3& after, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_in_parts(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk,
                                         const Vec3& before, const Vec3& after, int parts,
                                         WorkBudget& budget) const noexcept;
-    [[nodiscard]] bool touches(const Curve& curve, const Sphere& sphere, float shrunk, WorkBudget& budget) const noexcept;
+    [[nodiscard]] bool touches(const Curve& curve, const Sphere& sphere, float shrunk,
+                               WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches_swept(const Curve& curve, const Extent& extent, const Sphere& sphere, Seconds end,
                                      WorkBudget& budget) const noexcept;
     [[nodiscard]] bool touches(const View& view, const Solid& solid, WorkBudget& budget) const noexcept;

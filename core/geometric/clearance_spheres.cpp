@@ -15,7 +15,8 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Sphere& sphere,
                         const Vec3& after, WorkBudget& budget) const noexcept
 {
     // At its end and not shrunk the sphere is at its largest.
-    const geometry::QuickReject whole = geometry::quick_reject(sphere.half, before, after, sphere.growth.at(curve.t[i + 1]));
+    const geometry::QuickReject whole =
+        geometry::quick_reject(sphere.half, before, after, sphere.growth.at(curve.t[i + 1]));
     if (whole == geometry::QuickReject::apart) {
         return false;
     }
@@ -25,8 +26,8 @@ bool Clearance::touches(const Curve& curve, std::size_t i, const Sphere& sphere,
                             shrinks ? escape_parts(curve.t[i + 1] - curve.t[i]) : 1, budget);
 }
 
-bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk, const Vec3& before,
-                                 const Vec3& after, int parts, WorkBudget& budget) const noexcept
+bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Sphere& sphere, float shrunk,
+                                 const Vec3& before, const Vec3& after, int parts, WorkBudget& budget) const noexcept
 {
     Vec3 from = before;
     for (int part = 1; part <= parts; ++part) {
@@ -50,7 +51,8 @@ bool Clearance::touches_in_parts(const Curve& curve, std::size_t i, const Sphere
 
 bool Clearance::touches(const Curve& curve, const Sphere& sphere, float shrunk, WorkBudget& budget) const noexcept
 {
-    MotionBound room(curve.fastest, sphere.velocity.cwiseAbs().maxCoeff(), sphere.growth.at(curve.duration()), curve.duration());
+    MotionBound room(curve.fastest, sphere.velocity.cwiseAbs().maxCoeff(), sphere.growth.at(curve.duration()),
+                     curve.duration());
     std::size_t i = 0;
     Vec3 before = sphere.apart(curve, 0);
     bool near = false;

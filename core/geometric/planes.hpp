@@ -80,8 +80,8 @@ public:
         return false;
     }
 
-    /// The box (half extents [m]) at `point` surely comes within `clearance` [m]: seen by the sphere in it, and of a box
-    /// by the corner that is deepest beyond its nearest face. Cheaper than a search. Never of a hull.
+    /// The box (half extents [m]) at `point` surely comes within `clearance` [m]: seen by the sphere in it, and of a
+    /// box by the corner that is deepest beyond its nearest face. Cheaper than a search. Never of a hull.
     [[nodiscard]] bool touch(const Vec3& point, const Vec3& half, float clearance) const noexcept
     {
         using Kind = geometry::ShapeKind;

@@ -184,7 +184,7 @@ struct Problem {
 [[nodiscard]] inline Vec3 collision_point(const Problem& problem) noexcept
 {
     return problem.ahead.route.empty() ? problem.frame.origin + problem.distance * problem.frame.axes.col(0)
-                                          : collision_point_along(problem);
+                                       : collision_point_along(problem);
 }
 
 /// What curves scale with [m].
@@ -228,8 +228,8 @@ private:
 /// may be chosen: up to half of it, Settings::check_units at most, is kept for that.
 ///
 /// @return found; too_close (D < 2.5 R); none_available; budget_spent (nothing available until then); bad_input
-///         (settings, limits, rules or problem not finite or out of range). `result.candidates` is filled as far as evaluated
-///         on every status but bad_input and too_close.
+///         (settings, limits, rules or problem not finite or out of range). `result.candidates` is filled as far as
+///         evaluated on every status but bad_input and too_close.
 /// O(candidates * waypoints * threats); with verify_flight that once more in the worst case.
 [[nodiscard]] world::PlanStatus solve(const Problem& problem, const Settings& settings,
                                       const vehicle::VehicleLimits& limits, const vehicle::Airframe& airframe,
@@ -258,8 +258,8 @@ private:
 /// Memory: sizeof(Result), about kMaxCandidates * 100 bytes, and a Workspace. Reads the conflict with the leg out of
 /// the Situation (collision point = own position on the leg at the closest approach of the main threat, R = its grown
 /// radius then, at least kMinMainRadius), solves, and returns the chosen path as a follow_path manoeuvre. It begins
-/// with what the vehicle flies during FlightRules::latency, so that it is joined without a jump; threats are met where and
-/// as large as they are from then on. The start is not moved where that would bring the collision point nearer than
+/// with what the vehicle flies during FlightRules::latency, so that it is joined without a jump; threats are met where
+/// and as large as they are from then on. The start is not moved where that would bring the collision point nearer than
 /// kMinLeadRatio times that way or the 2.5 R, nor from inside a margin, nor with kMaxPathPoints waypoints.
 ///
 /// When nothing is available it tries again as kAttempts says (source offsets: other speeds and ends only).

@@ -28,8 +28,8 @@ struct Progress {
 
 /// A query in units of its own size, so that libccd's absolute tolerances (1.5e-8 on lengths) are relative ones.
 ///
-/// The own solid is the sum of a segment (+-sweep), a box (+-half) and a sphere (`rounding`), centred on the origin; the
-/// other one is `core` moved by `offset`.
+/// The own solid is the sum of a segment (+-sweep), a box (+-half) and a sphere (`rounding`), centred on the origin;
+/// the other one is `core` moved by `offset`.
 struct Query {
     ccd_vec3_t sweep{};
     ccd_vec3_t half{};

@@ -72,8 +72,8 @@ private:
 /// cannot take its half because of an obstacle gets time. Never scale the solution: an escape must not be slowed.
 class SlowDown {
 public:
-    static constexpr float kMin = 0.2F;  ///< it goes on, and so ends
-    static constexpr float kRate = 1.0F;   ///< change of the factor [1/s]
+    static constexpr float kMin = 0.2F;   ///< it goes on, and so ends
+    static constexpr float kRate = 1.0F;  ///< change of the factor [1/s]
 
     /// @param nearest  least scaled distance over required one, rho / R_c, of all neighbours; 1 or more where no
     ///                 conflict regions overlap, infinite where there is nobody

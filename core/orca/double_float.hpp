@@ -19,8 +19,9 @@ struct DoubleFloat {
 
     constexpr DoubleFloat() noexcept = default;
     // As any float is one, it converts without a word.
-    constexpr DoubleFloat(float value) noexcept : hi(value) {}                    // NOLINT(google-explicit-constructor)
-    constexpr DoubleFloat(int value) noexcept : hi(static_cast<float>(value)) {}  // NOLINT(google-explicit-constructor): Eigen
+    constexpr DoubleFloat(float value) noexcept : hi(value) {}  // NOLINT(google-explicit-constructor)
+    constexpr DoubleFloat(int value) noexcept
+        : hi(static_cast<float>(value)) {}  // NOLINT(google-explicit-constructor): Eigen
     constexpr DoubleFloat(float high, float low) noexcept : hi(high), lo(low) {}
     [[nodiscard]] explicit constexpr operator float() const noexcept { return hi; }
 
@@ -45,7 +46,10 @@ struct DoubleFloat {
         return a.hi < b.hi || (a.hi == b.hi && a.lo <= b.lo);
     }
     [[nodiscard]] friend constexpr bool operator>=(DoubleFloat a, DoubleFloat b) noexcept { return b <= a; }
-    [[nodiscard]] friend constexpr bool operator==(DoubleFloat a, DoubleFloat b) noexcept { return a.hi == b.hi && a.lo == b.lo; }
+    [[nodiscard]] friend constexpr bool operator==(DoubleFloat a, DoubleFloat b) noexcept
+    {
+        return a.hi == b.hi && a.lo == b.lo;
+    }
     [[nodiscard]] friend constexpr bool operator!=(DoubleFloat a, DoubleFloat b) noexcept { return !(a == b); }
 
     [[nodiscard]] friend constexpr DoubleFloat fabs(DoubleFloat a) noexcept { return a.hi < 0.0F ? -a : a; }

@@ -142,9 +142,9 @@ bool exchange(std::span<const Row> rows, std::span<const float> yields, std::siz
     return false;
 }
 
-template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Spheres, Tolerance<float>, WorkBudget&,
-                       Corner<float>&) noexcept;
-template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Spheres, Tolerance<DoubleFloat>, WorkBudget&,
-                       Corner<DoubleFloat>&) noexcept;
+template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Spheres, Tolerance<float>,
+                       WorkBudget&, Corner<float>&) noexcept;
+template bool exchange(std::span<const Row>, std::span<const float>, std::size_t, Spheres, Tolerance<DoubleFloat>,
+                       WorkBudget&, Corner<DoubleFloat>&) noexcept;
 
 }  // namespace jink::orca

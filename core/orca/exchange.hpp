@@ -27,7 +27,8 @@ struct Corner {
 /// The least d for which all rows from `soft` on, each shifted by d * yield, and all rows before hold together.
 ///
 /// @param corner  in: rows that contradict each other, any order; out: those that decide, and the answer
-/// @return false where it does not end at four rows (a sphere decides too, normals lie in a plane, all four are hard) or
+/// @return false where it does not end at four rows (a sphere decides too, normals lie in a plane, all four are hard)
+/// or
 ///         the answer is not within the spheres: then nothing is known. True: `corner.x` keeps to all that has to hold,
 ///         and d is the least.
 ///

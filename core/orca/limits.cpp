@@ -114,7 +114,8 @@ bool cap_speed(LimitSet& set, float cap) noexcept
     if (cap >= radius) {
         return true;
     }
-    // What is left of the speed after a period of braking, and a little, so that the two spheres have more than a point.
+    // What is left of the speed after a period of braking, and a little, so that the two spheres have more than a
+    // point.
     constexpr float kBrake = 0.99F;
     const float least = std::max(set.reference.norm() - kBrake * set.spheres[1].radius, 0.0F);
     radius = std::min(radius, std::max(cap, least));

@@ -10,8 +10,8 @@
 #include "core/orca/agent_plane.hpp"
 #include "core/orca/half_space.hpp"
 
-// What a vehicle can fly within one period, as spheres and half-spaces of velocities (Alejo 7.2.1), and whether settings
-// fit to what it can fly.
+// What a vehicle can fly within one period, as spheres and half-spaces of velocities (Alejo 7.2.1), and whether
+// settings fit to what it can fly.
 
 namespace jink::orca {
 

@@ -17,8 +17,8 @@
 namespace jink::orca {
 
 /// Another vehicle at the planning instant, relative to the own one, in the world frame. The Planner makes one of each
-/// track's world::Threat and keeps them for one plan. Not a Threat itself: swarms and the exchange make them of what the
-/// others broadcast (age, top speed, share of the reaction), and its size is that at the closest approach.
+/// track's world::Threat and keeps them for one plan. Not a Threat itself: swarms and the exchange make them of what
+/// the others broadcast (age, top speed, share of the reaction), and its size is that at the closest approach.
 struct Neighbour {
     Vec3 position = Vec3::Zero();  ///< of its centre, less the own one's [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]

@@ -132,10 +132,9 @@ void add_obstacles(const detail::ObstacleView& view, const OwnMotion& own, float
 bool is_valid(const ObstacleSettings& s) noexcept
 {
     const float stretch = s.horizontal / s.vertical;
-    return is_positive(s.horizontal) && is_positive(s.vertical) && stretch >= kMinStretch &&
-           stretch <= kMaxStretch && is_positive(s.horizon) && is_not_negative(s.recovery_speed) &&
-           is_positive(s.recovery_time) && is_not_negative(s.braking) && is_not_negative(s.delay) &&
-           is_positive(s.resolution);
+    return is_positive(s.horizontal) && is_positive(s.vertical) && stretch >= kMinStretch && stretch <= kMaxStretch &&
+           is_positive(s.horizon) && is_not_negative(s.recovery_speed) && is_positive(s.recovery_time) &&
+           is_not_negative(s.braking) && is_not_negative(s.delay) && is_positive(s.resolution);
 }
 
 Envelope envelope_of(const ObstacleSettings& settings) noexcept

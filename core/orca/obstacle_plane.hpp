@@ -43,8 +43,8 @@ struct Envelope {
 };
 [[nodiscard]] Envelope envelope_of(const ObstacleSettings& settings) noexcept;
 
-/// Obstacles at rest, by their `solid`, which may be in the way. What is not known of the own place is in the envelope. The
-/// `source` of what comes from an obstacle is its place among them.
+/// Obstacles at rest, by their `solid`, which may be in the way. What is not known of the own place is in the envelope.
+/// The `source` of what comes from an obstacle is its place among them.
 using Obstacles = std::span<const world::Threat>;
 
 /// The vehicle at the planning instant.

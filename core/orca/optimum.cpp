@@ -219,7 +219,7 @@ struct Piece {
 /// What the spheres leave of the line from + t * along.
 template <class Real>
 bool piece_in_spheres(Spheres spheres, const Vec3Of<Real>& from, const Vec3Of<Real>& along, float tolerance,
-                    Piece<Real>& piece) noexcept
+                      Piece<Real>& piece) noexcept
 {
     for (const Sphere& given : spheres) {
         const auto sphere = whole_of<Real>(given);
@@ -261,8 +261,8 @@ void cut_by(const RowOf<Real>& row, std::size_t j, const Vec3Of<Real>& from, con
 /// On the line, within rows[0 .. before) and the spheres. `end` is the row that holds the optimum, or kNoRow.
 template <class Real>
 bool optimum_on_line(std::span<const RowOf<Real>> rows, std::size_t before, const Vec3Of<Real>& from,
-                     const Vec3Of<Real>& along, Spheres spheres, const GoalOf<Real>& goal, float tolerance, Vec3Of<Real>& x,
-                     std::uint16_t& end) noexcept
+                     const Vec3Of<Real>& along, Spheres spheres, const GoalOf<Real>& goal, float tolerance,
+                     Vec3Of<Real>& x, std::uint16_t& end) noexcept
 {
     Piece<Real> piece;
     if (!piece_in_spheres(spheres, from, along, tolerance, piece)) {
@@ -372,14 +372,16 @@ Optimum<Real> optimum(std::span<const RowOf<Real>> rows, Spheres spheres, const 
 }
 
 template bool optimum_in_spheres(Spheres, const GoalOf<float>&, Tolerance<float>, Vec3Of<float>&) noexcept;
-template bool optimum_in_spheres(Spheres, const GoalOf<DoubleFloat>&, Tolerance<DoubleFloat>, Vec3Of<DoubleFloat>&) noexcept;
+template bool optimum_in_spheres(Spheres, const GoalOf<DoubleFloat>&, Tolerance<DoubleFloat>,
+                                 Vec3Of<DoubleFloat>&) noexcept;
 template Found optimum_on_plane(std::span<const RowOf<float>>, std::size_t, std::size_t, Spheres, const GoalOf<float>&,
                                 Tolerance<float>, WorkBudget&, Vec3Of<float>&, Basis&) noexcept;
-template Found optimum_on_plane(std::span<const RowOf<DoubleFloat>>, std::size_t, std::size_t, Spheres, const GoalOf<DoubleFloat>&,
-                                Tolerance<DoubleFloat>, WorkBudget&, Vec3Of<DoubleFloat>&, Basis&) noexcept;
+template Found optimum_on_plane(std::span<const RowOf<DoubleFloat>>, std::size_t, std::size_t, Spheres,
+                                const GoalOf<DoubleFloat>&, Tolerance<DoubleFloat>, WorkBudget&, Vec3Of<DoubleFloat>&,
+                                Basis&) noexcept;
 template Optimum<float> optimum(std::span<const RowOf<float>>, Spheres, const GoalOf<float>&, Tolerance<float>,
                                 WorkBudget&) noexcept;
-template Optimum<DoubleFloat> optimum(std::span<const RowOf<DoubleFloat>>, Spheres, const GoalOf<DoubleFloat>&, Tolerance<DoubleFloat>,
-                               WorkBudget&) noexcept;
+template Optimum<DoubleFloat> optimum(std::span<const RowOf<DoubleFloat>>, Spheres, const GoalOf<DoubleFloat>&,
+                                      Tolerance<DoubleFloat>, WorkBudget&) noexcept;
 
 }  // namespace jink::orca

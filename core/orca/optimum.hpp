@@ -10,12 +10,12 @@
 #include "core/base/vec3.hpp"
 #include "core/base/work_budget.hpp"
 #include "core/base/work_units.hpp"
-#include "core/orca/half_space.hpp"
 #include "core/orca/double_float.hpp"
+#include "core/orca/half_space.hpp"
 
 // The best velocity within spheres and half-spaces: the incremental programs of van den Berg et al., one dimension at a
-// time, with one or two spheres in each (Alejo 7.16 and 7.17 hold together). Points are velocities [m/s]; what is said of
-// "within" holds but for Tolerance::outside.
+// time, with one or two spheres in each (Alejo 7.16 and 7.17 hold together). Points are velocities [m/s]; what is said
+// of "within" holds but for Tolerance::outside.
 
 namespace jink::orca {
 
@@ -95,14 +95,14 @@ enum class Found : std::uint8_t {
 /// Within the spheres alone. False where they do not meet. O(1).
 template <class Real>
 [[nodiscard]] bool optimum_in_spheres(Spheres spheres, const GoalOf<Real>& goal, Tolerance<Real> tolerance,
-                                    Vec3Of<Real>& x) noexcept;
+                                      Vec3Of<Real>& x) noexcept;
 
-/// On the plane of rows[on], within rows[0 .. before) and the spheres. False, with `x` as it was, where there is no such
-/// point. O(before^2), of which one look at each row and one line for each row that turns out to be violated.
+/// On the plane of rows[on], within rows[0 .. before) and the spheres. False, with `x` as it was, where there is no
+/// such point. O(before^2), of which one look at each row and one line for each row that turns out to be violated.
 template <class Real>
-[[nodiscard]] Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before, Spheres spheres,
-                                     const GoalOf<Real>& goal, Tolerance<Real> tolerance, WorkBudget& budget,
-                                     Vec3Of<Real>& x, Basis& basis) noexcept;
+[[nodiscard]] Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before,
+                                     Spheres spheres, const GoalOf<Real>& goal, Tolerance<Real> tolerance,
+                                     WorkBudget& budget, Vec3Of<Real>& x, Basis& basis) noexcept;
 
 /// Within rows and spheres, row by row; the rows' order is the order of priority. `x` is the optimum, or where there is
 /// none (nothing) the optimum of the first `satisfied` rows. O(n^3), expected O(n) in a good order.

@@ -17,7 +17,7 @@ constexpr float kDelayMargin = 2.72F;   ///< e: horizons and times in delays, ag
 constexpr Seconds kPathStep = 0.2F;     ///< of the predicted flight
 constexpr Seconds kLongestTick = 0.5F;  ///< a pause counts as this for what is timed
 constexpr Seconds kUsualTick = 0.02F;   ///< before there were two plans
-constexpr float kMinSpeed = 0.05F;    ///< [m/s] of a leg
+constexpr float kMinSpeed = 0.05F;      ///< [m/s] of a leg
 constexpr float kNearEnd = 1.0F;        ///< [1/s] the last metres of a reference are flown at so much of what is left
 constexpr float kFlattest = kMaxStretch * 0.99F;
 constexpr float kTallest = kMinStretch * 1.01F;
@@ -150,9 +150,8 @@ Vec3 preferred_velocity(const world::Situation& s) noexcept
 bool is_valid(const Settings& s) noexcept
 {
     const auto within = [](float value, float low, float high) { return value >= low && value <= high; };
-    return within(s.conflict_ratio, 0.5F, 0.95F) &&
-           within(s.reach, 0.1F, 5.0F) && within(s.stale, 0.01F, 60.0F) && s.smoothing >= 1 &&
-           s.smoothing <= CommandFilter::kMax;
+    return within(s.conflict_ratio, 0.5F, 0.95F) && within(s.reach, 0.1F, 5.0F) && within(s.stale, 0.01F, 60.0F) &&
+           s.smoothing >= 1 && s.smoothing <= CommandFilter::kMax;
 }
 
 bool Planner::configure(const Settings& settings) noexcept
@@ -228,8 +227,9 @@ world::PlanStatus Planner::plan(const world::Situation& s, WorkBudget& budget, w
         return world::PlanStatus::bad_input;
     }
     const std::span tracks = world::of_kind(s.threats, world::ThreatKind::track);
-    if (!budget.spend(kPlanUnits +
-                      kThreatUnits * static_cast<std::uint32_t>(tracks.size() + world::of_kind(s.threats, world::ThreatKind::cylinder).size()))) {
+    if (!budget.spend(kPlanUnits + kThreatUnits * static_cast<std::uint32_t>(
+                                                      tracks.size() +
+                                                      world::of_kind(s.threats, world::ThreatKind::cylinder).size()))) {
         return world::PlanStatus::budget_spent;
     }
     take_command(s);

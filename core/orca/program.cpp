@@ -50,7 +50,9 @@ float read(const Problem& problem, ScratchView scratch) noexcept
 /// The reference, within the spheres where these are sound.
 Vec3 last_command(const Problem& problem) noexcept
 {
-    const auto is_sound = [](const Sphere& sphere) { return is_finite(sphere.centre) && is_not_negative(sphere.radius); };
+    const auto is_sound = [](const Sphere& sphere) {
+        return is_finite(sphere.centre) && is_not_negative(sphere.radius);
+    };
     if (!problem.spheres.empty() && std::all_of(problem.spheres.begin(), problem.spheres.end(), is_sound)) {
         return into_spheres(problem.spheres, problem.reference);
     }
@@ -246,7 +248,9 @@ Vec3 into_spheres(Spheres spheres, const Vec3& point) noexcept
 {
     constexpr float kUlps = 3e-7F;
     Vec3 out = is_finite(point) ? point : spheres.back().centre;
-    const auto in = [&](const Sphere& sphere) { return (out - sphere.centre).squaredNorm() <= sphere.radius * sphere.radius; };
+    const auto in = [&](const Sphere& sphere) {
+        return (out - sphere.centre).squaredNorm() <= sphere.radius * sphere.radius;
+    };
     if (std::all_of(spheres.begin(), spheres.end(), in)) {
         return out;
     }

@@ -32,7 +32,7 @@ inline constexpr std::size_t kLevels = 4;
 
 struct Problem {
     std::span<const HalfSpace> planes;  ///< by level, the strongest first; within a level in any order
-    Spheres spheres;                        ///< one or two: what the vehicle can fly; the last one is what it can reach
+    Spheres spheres;                    ///< one or two: what the vehicle can fly; the last one is what it can reach
     Vec3 preferred = Vec3::Zero();      ///< [m/s]
     Vec3 reference = Vec3::Zero();      ///< the last command [m/s]: what is flown where nothing can be said
 };
@@ -59,8 +59,8 @@ struct Solution {
 /// each turn, so it ends; should rounding make it go round, the whole program is run once in the given order.
 ///
 /// With planes.size() > the scratch's size (a caller's mistake) or a yield <= 0: kBadInput. Where the budget runs out:
-/// of the best point so far, the reference, all braking that the last sphere allows, and all acceleration along the most
-/// violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
+/// of the best point so far, the reference, all braking that the last sphere allows, and all acceleration along the
+/// most violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
 /// order; what it breaks is said as for any other. Five looks at each half-space beyond the budget.
 ///
 /// In single precision first. Where what holds the answer meets in angles below 0.1, or in more half-spaces than three,
@@ -72,12 +72,12 @@ struct Solution {
 /// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum
 /// and the least violation are exact to 1e-4 m/s for speeds up to some m/s, also among half-spaces within 1e-4 of each
 /// other's direction or of its opposite; whether a level has to give way at all is open within 1e-5 m/s. O(n) per turn,
-/// usually 2 - 6 turns; each turn is counted, those in twice the precision sixteen times (units::kOrcaDoubleFloat), and n^3
-/// bounds them all. Four more looks at each half-space are not counted. Allocates nothing.
+/// usually 2 - 6 turns; each turn is counted, those in twice the precision sixteen times (units::kOrcaDoubleFloat), and
+/// n^3 bounds them all. Four more looks at each half-space are not counted. Allocates nothing.
 [[nodiscard]] Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept;
 
-/// The point nearest to `point` that is within all spheres, as near as rounding lets it be. Finite where the spheres are,
-/// whatever the point is.
+/// The point nearest to `point` that is within all spheres, as near as rounding lets it be. Finite where the spheres
+/// are, whatever the point is.
 [[nodiscard]] Vec3 into_spheres(Spheres spheres, const Vec3& point) noexcept;
 
 }  // namespace jink::orca

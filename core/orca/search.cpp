@@ -16,7 +16,7 @@ using std::sqrt;
 
 namespace {
 
-constexpr int kMaxShifts = 2;  // times that a level gives way ten times as far, before what was found is taken
+constexpr int kMaxShifts = 2;   // times that a level gives way ten times as far, before what was found is taken
 constexpr float kFirm = 1e-3F;  // least share of a corner that is a point and no edge
 
 // From when on single precision is not enough for 1e-4 of the speed: sine of an angle, and sum of a corner's shares.

@@ -155,7 +155,8 @@ void VelocityFilter::add_obstacles(Tick& tick, WorkBudget& budget) const noexcep
     OwnMotion own;
     own.position = tick.input.own.position;
     own.velocity = tick.input.own.velocity;
-    own.reach_speed = std::min(tick.limits.spheres[0].radius, tick.limits.reference.norm() + tick.limits.spheres[1].radius);
+    own.reach_speed =
+        std::min(tick.limits.spheres[0].radius, tick.limits.reference.norm() + tick.limits.spheres[1].radius);
     const ObstaclePlanes found = obstacle_planes(tick.input.obstacles, own, settings_.obstacles, budget);
     for (const HalfSpace& plane : found.planes) {
         tick.add(plane);

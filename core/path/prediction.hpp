@@ -39,7 +39,7 @@ public:
         : limits_(limits), out_(out), fading_(limits.velocity_lag),
           // Without a lag each velocity error decays at the acceleration limit.
           per_squared_lag_(limits.velocity_lag > kMinLag ? 1.0F / (limits.velocity_lag * limits.velocity_lag)
-                                                           : 1.0F / (kMinLag * kMinLag))
+                                                         : 1.0F / (kMinLag * kMinLag))
     {
         if (!out.path.points.empty()) {
             position_ = out.path.points.back().position;

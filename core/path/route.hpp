@@ -83,7 +83,7 @@ class Route {
 public:
     static constexpr float kShortest = 0.01F;       ///< segment [m]
     static constexpr float kFarthest = 100'000.0F;  ///< coordinate [m]
-    static constexpr float kMinRadius = 0.5F;     ///< of an arc [m]
+    static constexpr float kMinRadius = 0.5F;       ///< of an arc [m]
     static constexpr float kLargestRadius = 10'000.0F;
     /// A segment may begin this far from the end of the previous segment, and an arc this far from the plane of its
     /// circle; the segment is moved to the exact start [m].

@@ -71,10 +71,9 @@ struct Planner::Start {
 
 bool is_valid(const Settings& s) noexcept
 {
-    return s.sets != nullptr && s.tries >= 1 &&
-           s.tries <= 64 && std::all_of(s.sets->segments.begin(), s.sets->segments.end(), [](const SegmentSets& sets) {
-               return fits(sets.navigation) && fits(sets.emergency);
-           });
+    return s.sets != nullptr && s.tries >= 1 && s.tries <= 64 &&
+           std::all_of(s.sets->segments.begin(), s.sets->segments.end(),
+                       [](const SegmentSets& sets) { return fits(sets.navigation) && fits(sets.emergency); });
 }
 
 bool suits(const VehicleSets& sets, const vehicle::VehicleLimits& limits) noexcept
@@ -220,8 +219,9 @@ PlanStatus Planner::look(const Situation& situation, const Placed& placed, const
     const std::span<Level> blocks(blocks_.data(), grid.cells());
     std::fill(blocks.begin(), blocks.end(), kFree);
     for (CellSource* source : {picture_, fusion_}) {
-        const RateStatus status =
-            source != nullptr ? source->rate(situation, placed, spheres_, start.lead, blocks, budget) : RateStatus::rated;
+        const RateStatus status = source != nullptr
+                                      ? source->rate(situation, placed, spheres_, start.lead, blocks, budget)
+                                      : RateStatus::rated;
         if (status == RateStatus::blind || status == RateStatus::budget_spent) {
             return status == RateStatus::blind ? PlanStatus::none_available : PlanStatus::budget_spent;
         }

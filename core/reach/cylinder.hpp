@@ -10,8 +10,8 @@
 
 namespace jink::reach {
 
-using world::Cylinder;
 using world::Circle;
+using world::Cylinder;
 using world::Vec2;
 
 /// Corners of one polygon. A polygon with more corners is refused.

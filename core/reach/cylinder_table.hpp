@@ -13,8 +13,9 @@
 
 namespace jink::reach {
 
-/// Whether the cylinder, with its margin, may come within the range of the vehicle's grid in the next `horizon` seconds,
-/// from its own time `since` on: level distance and heights. Conservative: always true when the cylinder does. O(1).
+/// Whether the cylinder, with its margin, may come within the range of the vehicle's grid in the next `horizon`
+/// seconds, from its own time `since` on: level distance and heights. Conservative: always true when the cylinder does.
+/// O(1).
 /// @param range  of the grid, to all sides [m]
 /// @param since  now, less the time of the cylinder's position [s]
 [[nodiscard]] bool may_matter(const Cylinder& cylinder, const Vec3& vehicle, float range, float since,
@@ -29,8 +30,8 @@ namespace jink::reach {
 
 enum class AddStatus : std::uint8_t { added, constraint_merged };
 
-/// All cylinders use the same time. When the table is full, the two farthest cylinders are merged. Memory: kMaxCylinders
-/// cylinders.
+/// All cylinders use the same time. When the table is full, the two farthest cylinders are merged. Memory:
+/// kMaxCylinders cylinders.
 class CylinderTable {
 public:
     /// @param vehicle   [m], in the world: cylinders far from it are merged first
@@ -39,7 +40,10 @@ public:
     /// O(kMaxCylinders).
     AddStatus add(const Cylinder& cylinder) noexcept;
 
-    [[nodiscard]] std::span<const Cylinder> cylinders() const noexcept { return {cylinders_.data(), cylinders_.size()}; }
+    [[nodiscard]] std::span<const Cylinder> cylinders() const noexcept
+    {
+        return {cylinders_.data(), cylinders_.size()};
+    }
     /// Cylinders merged into another since begin().
     [[nodiscard]] std::size_t merged() const noexcept { return merged_; }
 

@@ -85,8 +85,8 @@ struct ChoiceRule {
                                     const ChoiceRule& rule) noexcept;
 
 /// The same in the strictest run that leaves a trajectory, from soft constraints down to `loosest`.
-[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellSpheres& spheres, std::span<const Level> nodes,
-                                           std::span<const Level> cells, const Vec3& goal, AvoidanceRun loosest,
-                                           const ChoiceRule& rule) noexcept;
+[[nodiscard]] Choice find_best_path_of_all(const ReachSet& set, const CellSpheres& spheres,
+                                           std::span<const Level> nodes, std::span<const Level> cells, const Vec3& goal,
+                                           AvoidanceRun loosest, const ChoiceRule& rule) noexcept;
 
 }  // namespace jink::reach

@@ -29,14 +29,15 @@ struct ThreatBits {
 /// One threat to the own box, from the start of the path on.
 struct NearThreat {
     const geometry::Shape* shape = nullptr;  ///< of a solid other than a sphere; null for spheres, static or moving
-    Vec3 half = Vec3::Zero();  ///< sphere: of the own box, taller for upright capsules. solid: its own, grown by the box
+    Vec3 half =
+        Vec3::Zero();  ///< sphere: of the own box, taller for upright capsules. solid: its own, grown by the box
     Vec3 position = Vec3::Zero();  ///< centre [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     world::Growth growth;          ///< of the sphere, or of what a solid is grown by
     float shrunk = 0.0F;           ///< reduction by the escape rule, at time 0 [m]
-    float body = 0.0F;     ///< sphere: what the own box adds to its radius, at most; of a tall one in the level plane [m]
-    float far = 0.0F;      ///< sphere: farther apart than this halfway through a movement: apart all through it [m]
-    float room = 0.0F;     ///< nearer than this is better avoided; of a cylinder level, its margin if that is more [m]
+    float body = 0.0F;  ///< sphere: what the own box adds to its radius, at most; of a tall one in the level plane [m]
+    float far = 0.0F;   ///< sphere: farther apart than this halfway through a movement: apart all through it [m]
+    float room = 0.0F;  ///< nearer than this is better avoided; of a cylinder level, its margin if that is more [m]
     bool is_tall = false;  ///< sphere: an upright capsule or a cylinder, whose heights are checked by `half` alone
     bool is_track = false;
     bool is_cylinder = false;  ///< flat-ended: the radius is level alone

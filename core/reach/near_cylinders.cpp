@@ -12,7 +12,8 @@ namespace {
 /// Whether the own box's level rectangle comes within `radius` of a cylinder's axis while its middle is within `height`
 /// of the cylinder's. The axis moves straight from `first` to `last` relative to the own box. Exact but for rounding,
 /// which works to the safe side; touching counts as contact.
-bool touches_between(const NearThreat& cylinder, const Vec3& first, const Vec3& last, float radius, float height) noexcept
+bool touches_between(const NearThreat& cylinder, const Vec3& first, const Vec3& last, float radius,
+                     float height) noexcept
 {
     constexpr float kSlack = 1e-5F;  // of the heights
     const float reach = height + kSlack * (height + std::abs(first.z()) + std::abs(last.z()));

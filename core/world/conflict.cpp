@@ -27,8 +27,7 @@ bool comes_first(const Conflict& a, const Conflict& b) noexcept
 
 namespace detail {
 
-bool Course::meets_sphere(const WayPiece& piece, const Threat& threat, WorkBudget& budget,
-                          Conflict& out) const noexcept
+bool Course::meets_sphere(const WayPiece& piece, const Threat& threat, WorkBudget& budget, Conflict& out) const noexcept
 {
     if (!budget.spend(units::kConflictSphere)) {
         return met_now(out);
@@ -88,8 +87,8 @@ bool Course::meets_at_rest(const Threat& threat, WorkBudget& budget, Conflict& o
         bool met = threat.form == ThreatForm::point ? meets_sphere(piece, threat, budget, out)
                                                     : meets_solid(piece, threat, budget, out);
         if (met && !(out.time_to_loss > 0.0F)) {
-            const std::array<path::PathPoint, 2> points{{{piece.own.position, piece.own.velocity, 0.0F},
-                                                         {piece.last(), piece.own.velocity, piece.span()}}};
+            const std::array<path::PathPoint, 2> points{
+                {{piece.own.position, piece.own.velocity, 0.0F}, {piece.last(), piece.own.velocity, piece.span()}}};
             met = !draws_apart(threat, points, budget);
         }
         if (budget.exhausted()) {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/geometry/sweep.hpp"
-#include "core/world/cylinder.hpp"
 #include "core/world/conflict_parts.hpp"
+#include "core/world/cylinder.hpp"
 
 // Conflicts of the nominal path with tracks and moving cylinders, hovering at its end included.
 

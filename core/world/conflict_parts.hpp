@@ -49,7 +49,8 @@ private:
         const float on = std::min(pieces_.way_at(t), way_.length);
         return path::point_of(way_.ahead, way_.origin, way_.direction, on).position;
     }
-    /// The way starts inside a margin and draws apart from this one threat for good: nothing on it could mend the start.
+    /// The way starts inside a margin and draws apart from this one threat for good: nothing on it could mend the
+    /// start.
     [[nodiscard]] bool draws_apart(const Threat& threat, WorkBudget& budget) const noexcept;
     [[nodiscard]] bool draws_apart(const Threat& threat, std::span<const path::PathPoint> points,
                                    WorkBudget& budget) const noexcept;

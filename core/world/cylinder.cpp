@@ -40,17 +40,17 @@ float cylinder_distance(const Vec3& half, const Vec3& position, const Cylinder& 
 
 namespace detail {
 
-CylinderApproach::CylinderApproach(const Vec3& half, const geometry::Motion& own, const Cylinder& cylinder, Seconds start,
-                               float outset, float growth) noexcept
+CylinderApproach::CylinderApproach(const Vec3& half, const geometry::Motion& own, const Cylinder& cylinder,
+                                   Seconds start, float outset, float growth) noexcept
     : half_(half), gap_(cylinder.circle.centre + cylinder.velocity * start - own.position.head<2>()),
       closing_(cylinder.velocity - own.velocity.head<2>()), radius_(cylinder.circle.radius), height_(own.position.z()),
       climb_(own.velocity.z()), bottom_(cylinder.bottom - half.z()), top_(cylinder.top + half.z()), outset_(outset),
       growth_(growth)
 {
     const Vec2 way = cylinder.velocity * start;
-    outset_ +=
-        kCylinderRounding * (level_size(cylinder.circle.centre) + level_size(way) + own.position.cwiseAbs().sum() +
-                           half.sum() + radius_ + std::abs(cylinder.bottom) + std::abs(cylinder.top) + std::abs(outset));
+    outset_ += kCylinderRounding *
+               (level_size(cylinder.circle.centre) + level_size(way) + own.position.cwiseAbs().sum() + half.sum() +
+                radius_ + std::abs(cylinder.bottom) + std::abs(cylinder.top) + std::abs(outset));
 }
 
 CylinderApproach::Look CylinderApproach::look(Seconds t) const noexcept
@@ -122,7 +122,8 @@ geometry::Approach CylinderApproach::least(Seconds span, float enough, WorkBudge
 
 Seconds CylinderApproach::first_contact(Seconds until, WorkBudget& budget) const noexcept
 {
-    if (!budget.spend(units::kCylinderTurn * static_cast<std::uint32_t>(kContactTurns + 1)) || look(0.0F).value <= 0.0F) {
+    if (!budget.spend(units::kCylinderTurn * static_cast<std::uint32_t>(kContactTurns + 1)) ||
+        look(0.0F).value <= 0.0F) {
         return 0.0F;
     }
     Seconds clear = 0.0F;

@@ -35,14 +35,15 @@ struct Cylinder {
 /// Distance of a box of half extents `half` [m] about `position` from a cylinder's body, `t` seconds on [m]. Below 0
 /// where they overlap: minus what separates them at least, up or down or sideways, the box counting as its centre line
 /// does (the level depth is never above the radius). Never above the truth; below it by 1e-6 of the coordinates. O(1).
-[[nodiscard]] float cylinder_distance(const Vec3& half, const Vec3& position, const Cylinder& cylinder, Seconds t) noexcept;
+[[nodiscard]] float cylinder_distance(const Vec3& half, const Vec3& position, const Cylinder& cylinder,
+                                      Seconds t) noexcept;
 
 namespace detail {
 
-/// A box and a cylinder in straight motion. Their distance (cylinder_distance) is a convex function of time, because the
-/// level distance and the height above or below are, and a distance rises with both; and so it is with something taken
-/// off that grows evenly. Its least value is closed in between the tangents at two instants, and their crossing is
-/// never above it.
+/// A box and a cylinder in straight motion. Their distance (cylinder_distance) is a convex function of time, because
+/// the level distance and the height above or below are, and a distance rises with both; and so it is with something
+/// taken off that grows evenly. Its least value is closed in between the tangents at two instants, and their crossing
+/// is never above it.
 class CylinderApproach {
 public:
     /// @param half    of the own box [m]
@@ -50,8 +51,8 @@ public:
     /// @param cylinder  where it is `start` seconds before the beginning
     /// @param outset  by so much the body is larger at the beginning [m], below 0: smaller; and it grows by
     /// @param growth  so much [m/s]
-    CylinderApproach(const Vec3& half, const geometry::Motion& own, const Cylinder& cylinder, Seconds start, float outset,
-                   float growth) noexcept;
+    CylinderApproach(const Vec3& half, const geometry::Motion& own, const Cylinder& cylinder, Seconds start,
+                     float outset, float growth) noexcept;
 
     /// Distance and its slope [m/s] `t` seconds after the beginning.
     struct Look {

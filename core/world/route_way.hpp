@@ -23,7 +23,7 @@ struct WayPiece {
     geometry::Motion own;  ///< position at `start`
     Seconds start = 0.0F;
     Seconds end = 0.0F;
-    float way = 0.0F;     ///< along the way until `start` [m]
+    float way = 0.0F;      ///< along the way until `start` [m]
     Seconds whole = 0.0F;  ///< it would take so long without the look-ahead's end
 
     [[nodiscard]] Seconds span() const noexcept { return end - start; }

@@ -57,7 +57,7 @@ struct CylinderCheck {
             }
             const float outset = extra + p.sagitta.any - shrink_at(shrunk, escape, from);
             const CylinderApproach approach(half, {p.from + p.velocity * (from - p.start), p.velocity}, cylinder, from,
-                                          outset, escapes ? escape.speed : 0.0F);
+                                            outset, escapes ? escape.speed : 0.0F);
             const geometry::Approach near = approach.least(span, best.margin, budget);
             consider(best, near.distance, from + near.when, ref);
             if (budget.exhausted()) {

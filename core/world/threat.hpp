@@ -65,7 +65,7 @@ struct Threat {
     union {                        ///< by `form`; a point is an obstacle's or a track's, by `ref.kind`
         const geometry::Shape* solid = nullptr;
         const Cylinder* cylinder;  ///< where it is at time 0
-        const Track* track;      ///< of a ThreatSet; null where a point is made without one
+        const Track* track;        ///< of a ThreatSet; null where a point is made without one
     };
 
     /// By how much the shape has grown at time `t` >= 0 [m].

@@ -125,8 +125,8 @@ bool ThreatSet::collect(const Situation& s, const Surroundings& around) noexcept
 {
     const Airspace& air = around.airspace;
     threats_.clear();
-    collected_ =
-        around.tracks.size() <= kMaxTracks && around.obstacles.size() <= kMaxObstacles && air.cylinders.size() <= kMaxCylinders;
+    collected_ = around.tracks.size() <= kMaxTracks && around.obstacles.size() <= kMaxObstacles &&
+                 air.cylinders.size() <= kMaxCylinders;
     if (!collected_) {
         return false;
     }

@@ -21,9 +21,9 @@ link::CollisionWarning warning_of(const avoid::Guidance& guidance, const Picture
     const bool is_track = c.threat.kind == world::ThreatKind::track;
     const bool is_cylinder = c.threat.kind == world::ThreatKind::cylinder;
     link::CollisionWarning warning;
-    warning.id = is_track    ? picture.track_table().id_in_snapshot(c.threat.index)
+    warning.id = is_track      ? picture.track_table().id_in_snapshot(c.threat.index)
                  : is_cylinder ? kCylinderIds + c.threat.index
-                             : picture.obstacles()[c.threat.index].id;
+                               : picture.obstacles()[c.threat.index].id;
     warning.time_to_closest = c.time_to_closest;
     warning.horizontal_miss = miss.head<2>().norm();
     warning.vertical_miss = std::abs(miss.z());
@@ -44,9 +44,9 @@ Text text_of(const world::Conflict& conflict) noexcept
     const bool is_track = conflict.threat.kind == world::ThreatKind::track;
     const bool is_cylinder = conflict.threat.kind == world::ThreatKind::cylinder;
     Text text;
-    text << (is_track    ? "jink: conflict, traffic in "
+    text << (is_track      ? "jink: conflict, traffic in "
              : is_cylinder ? "jink: conflict, closed area in "
-                         : "jink: conflict, obstacle in ")
+                           : "jink: conflict, obstacle in ")
          << conflict.time_to_loss << " s";
     return text;
 }

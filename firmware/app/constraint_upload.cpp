@@ -15,7 +15,8 @@ bool is_repetition(const link::Constraint& a, const link::Constraint& b) noexcep
         a.ends == never || b.ends == never ? a.ends == b.ends : a.ends.us - a.stamp.us == b.ends.us - b.stamp.us;
     return same_end && a.about == b.about && a.cylinder.circle.centre == b.cylinder.circle.centre &&
            a.cylinder.circle.radius == b.cylinder.circle.radius && a.cylinder.velocity == b.cylinder.velocity &&
-           a.cylinder.bottom == b.cylinder.bottom && a.cylinder.top == b.cylinder.top && a.cylinder.margin == b.cylinder.margin;
+           a.cylinder.bottom == b.cylinder.bottom && a.cylinder.top == b.cylinder.top &&
+           a.cylinder.margin == b.cylinder.margin;
 }
 
 }  // namespace

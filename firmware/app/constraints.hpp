@@ -49,7 +49,10 @@ public:
     void place(const std::optional<link::GlobalPosition>& origin, TimePoint now) noexcept;
 
     /// As placed last. What could not be placed is not in it: lacks_origin().
-    [[nodiscard]] std::span<const world::Cylinder> cylinders() const noexcept { return {placed_.data(), placed_.size()}; }
+    [[nodiscard]] std::span<const world::Cylinder> cylinders() const noexcept
+    {
+        return {placed_.data(), placed_.size()};
+    }
     /// Something closed is known by its place on the globe alone, and the origin of the local frame is not.
     [[nodiscard]] bool lacks_origin() const noexcept { return lacks_origin_; }
     [[nodiscard]] bool empty() const noexcept { return entries_.empty(); }

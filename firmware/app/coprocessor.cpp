@@ -136,8 +136,13 @@ avoid::Guidance Coprocessor::decide(TimePoint now, const vehicle::VehicleState& 
     report.obstacles = static_cast<std::uint16_t>(picture_.obstacles().size());
     report.map_pieces = static_cast<std::uint16_t>(picture_.obstacles().size() - picture_.sensed().size());
     report.cylinders = static_cast<std::uint16_t>(air.cylinders.size());
-    return decision_.update({now, own_.measured(), own, autopilot_.flown_leg(takeover.streaming()),
-                             takeover.in_control(), {tracks, picture_.obstacles(), air}, link_.own_track()},
+    return decision_.update({now,
+                             own_.measured(),
+                             own,
+                             autopilot_.flown_leg(takeover.streaming()),
+                             takeover.in_control(),
+                             {tracks, picture_.obstacles(), air},
+                             link_.own_track()},
                             c);
 }
 

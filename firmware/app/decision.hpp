@@ -17,7 +17,7 @@ struct DecisionInput {
     const world::Leg* leg;                  ///< AutopilotState::flown_leg
     bool in_control;                        ///< the autopilot follows our commands
     world::Surroundings around;             ///< at now
-    world::TrackId own_track;  ///< Link::own_track
+    world::TrackId own_track;               ///< Link::own_track
 };
 
 /// What is flown, or advised: nominal paths, methods and the supervisor, set as the parameters say.

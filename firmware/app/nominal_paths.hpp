@@ -37,7 +37,7 @@ public:
     static constexpr Seconds kContradicted = 1.5F;  ///< [s]
     static constexpr Seconds kAgreed = 1.0F;        ///< [s]
     static constexpr Seconds kCornerTime = 2.0F;    ///< of flight before the end of the leg [s]
-    static constexpr float kMinTurn = 0.06F;      ///< a slower turn is noise: 3 m off after 5 s at 5 m/s [rad/s]
+    static constexpr float kMinTurn = 0.06F;        ///< a slower turn is noise: 3 m off after 5 s at 5 m/s [rad/s]
     static constexpr Seconds kWindow = 1.0F;        ///< of the turn rate and of what is steady [s]
     static constexpr Seconds kAhead = 60.0F;        ///< the measured motion goes on for so long [s]
 

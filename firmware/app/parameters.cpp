@@ -179,9 +179,8 @@ bool fits_together(const Configuration& c) noexcept
 {
     const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
     return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && world::is_valid(c.rules) &&
-           avoid::is_valid(c.supervisor) &&
-           vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) && geometric::is_valid(c.planner) &&
-           (!kHasReach || reach::is_valid(c.reach));
+           avoid::is_valid(c.supervisor) && vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) &&
+           geometric::is_valid(c.planner) && (!kHasReach || reach::is_valid(c.reach));
 }
 
 ParamStatus check_one(std::size_t index, float value) noexcept

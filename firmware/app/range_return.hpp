@@ -33,7 +33,7 @@ inline constexpr float kWidestSteep = kPi / 3.0F;
 /// Covers the arc of the part at `range` and the origin's height. Nearest surface, level: at least
 /// range * (cos(half_angle) - sin(half_angle) / 2), so 0.953 of the range at worst. O(1).
 [[nodiscard]] geometry::Shape level_return(const Vec3& origin, float yaw, float range, float half_angle,
-                                         float half_height) noexcept;
+                                           float half_height) noexcept;
 
 /// A slanted beam: a sphere over the cap of the beam at `range`.
 ///
@@ -41,7 +41,7 @@ inline constexpr float kWidestSteep = kPi / 3.0F;
 /// @param half_angle  [rad], at most kWidestSteep
 /// Nearest surface: at least range * (cos(half_angle) - 0.27 * sin(half_angle)). O(1).
 [[nodiscard]] geometry::Shape slanted_return(const Vec3& origin, const Vec3& direction, float range,
-                                           float half_angle) noexcept;
+                                             float half_angle) noexcept;
 
 /// A beam straight up: a ceiling, a level slab of `half_width` to each side and as thick as it is wide, since an upward
 /// reading says nothing of what is beside it. Its lower face lies at range * cos(half_angle), so that the edge of the
@@ -49,6 +49,6 @@ inline constexpr float kWidestSteep = kPi / 3.0F;
 ///
 /// @param half_angle  [rad], at most kWidestSteep
 [[nodiscard]] geometry::Shape ceiling_return(const Vec3& origin, float range, float half_angle,
-                                           float half_width) noexcept;
+                                             float half_width) noexcept;
 
 }  // namespace jink::app

@@ -47,7 +47,7 @@ struct StepReport {
     std::uint16_t uncertain_heights = 0;  ///< tracks with a Track::half_height
     std::uint16_t obstacles = 0;
     std::uint16_t map_pieces = 0;  ///< obstacles among them that are a piece of the map, or several
-    std::uint16_t cylinders = 0;     ///< closed volumes and storm cells that are known
+    std::uint16_t cylinders = 0;   ///< closed volumes and storm cells that are known
     Control control = Control::autopilot;
     OwnSource own_source = OwnSource::none;
     avoid::Guidance guidance;

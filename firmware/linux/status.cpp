@@ -274,8 +274,8 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
         "\"near_reported\": %u,\n",
         d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_reported);
     const app::ConstraintDiagnostics& a = coprocessor.constraint_diagnostics();
-    std::fprintf(f, "  \"areas_reported\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n", a.reported,
-                 a.refused, a.merged, a.grown);
+    std::fprintf(f, "  \"areas_reported\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n",
+                 a.reported, a.refused, a.merged, a.grown);
     const app::ConstraintUploadDiagnostics& u = coprocessor.constraint_upload_diagnostics();
     std::fprintf(f, "  \"area_sets\": %u, \"area_sets_abandoned\": %u, \"area_parts_refused\": %u,\n", u.sets,
                  u.abandoned, u.refused);

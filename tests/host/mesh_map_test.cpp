@@ -83,7 +83,7 @@ std::vector<Named> shapes()
         v = by * v + Vec3d(300.1, -200.7, 55.3);
     }
     return {{"box", box(1, 2, 3)}, {"corner", corner()},       {"gate", gate()},
-            {"sphere", sphere(6)},     {"turned and far", turned}, {"two", both(sphere(5), moved(gate(), {5, 0, 0}))}};
+            {"sphere", sphere(6)}, {"turned and far", turned}, {"two", both(sphere(5), moved(gate(), {5, 0, 0}))}};
 }
 
 TEST(MeshPieces, EveryPointOfTheMeshLiesInAPieceWhateverTheMethod)

@@ -49,7 +49,8 @@ struct Barrier {
     [[nodiscard]] bool is_inside(const Vec4& z) const
     {
         const auto positive = [&](const auto& c) { return margin(c, z) > 0.0; };
-        return std::all_of(planes.begin(), planes.end(), positive) && std::all_of(spheres.begin(), spheres.end(), positive);
+        return std::all_of(planes.begin(), planes.end(), positive) &&
+               std::all_of(spheres.begin(), spheres.end(), positive);
     }
 
     /// Barrier's value at weight t; infinite outside.

@@ -31,7 +31,8 @@ struct RandomSituation {
         const float heading = random.uniform(-kPi, kPi);
         const Vec3 along(std::cos(heading), std::sin(heading), random.uniform(-0.3F, 0.3F));
         limits.max_acceleration = random.uniform(3.0F, 8.0F);
-        reference = world::Reference({own.position - 20.0F * along, own.position + 150.0F * along, random.uniform(3.0F, 8.0F)});
+        reference =
+            world::Reference({own.position - 20.0F * along, own.position + 150.0F * along, random.uniform(3.0F, 8.0F)});
         own.velocity = reference.speed * along.normalized();
         airspace.has_floor = true;
         airspace.floor = 2.0F;

@@ -107,7 +107,8 @@ TEST(CellFusionLaws, NoCellThatIsToldFreeHoldsAnythingOfASolid)
         CellFusion fusion{FusionRule{}};
         std::vector<Level> blocks(placed.set->grid.cells(), kFree);
         WorkBudget budget(kFusionPlenty);
-        ASSERT_EQ(fusion.rate(s.view(), placed, CellSpheres(placed.set->grid), 0.0F, blocks, budget), RateStatus::rated);
+        ASSERT_EQ(fusion.rate(s.view(), placed, CellSpheres(placed.set->grid), 0.0F, blocks, budget),
+                  RateStatus::rated);
         for (int i = 0; i < 2000; ++i) {
             const Vec3 direction = Vec3(random.normal(), random.normal(), random.normal()).normalized();
             const Vec3 surface = geometry::support(s.obstacles[0].shape, direction);
@@ -142,7 +143,8 @@ TEST(CellFusion, BoundsOfTheAirspaceAreHardConstraints)
         CellFusion fusion{FusionRule{}};
         std::vector<Level> blocks(placed.set->grid.cells(), kFree);
         WorkBudget budget(kFusionPlenty);
-        ASSERT_EQ(fusion.rate(s.view(), placed, CellSpheres(placed.set->grid), 0.0F, blocks, budget), RateStatus::rated);
+        ASSERT_EQ(fusion.rate(s.view(), placed, CellSpheres(placed.set->grid), 0.0F, blocks, budget),
+                  RateStatus::rated);
         const auto level = [&](std::uint8_t layer, std::uint8_t row) {
             return blocks[placed.set->grid.index({layer, 3, row})];
         };

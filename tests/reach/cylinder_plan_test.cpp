@@ -88,10 +88,10 @@ TEST(CylinderPlans, WhatIsFoundKeepsOutOfBodies)
         for (float t = s.rules.latency; t < manoeuvre.path.duration(); t += 0.05F) {
             for (Cylinder cylinder : s.cylinders) {
                 cylinder.circle.radius += cylinder.margin;
-                ASSERT_GE(
-                    world::cylinder_distance(s.limits.half_extents, path::sample(manoeuvre.path, t).position, cylinder, t) -
-                        extra,
-                    -2e-3F)
+                ASSERT_GE(world::cylinder_distance(s.limits.half_extents, path::sample(manoeuvre.path, t).position,
+                                                   cylinder, t) -
+                              extra,
+                          -2e-3F)
                     << "seed " << seed << " at " << t;
             }
         }

@@ -40,10 +40,10 @@ struct Crowd : RandomSituation {
             const float middle = at.z() + random.uniform(-4.0F, 4.0F);
             const float tall = random.uniform(0.1F, 5.0F);
             cylinders.push_back({{at.head<2>(), random.uniform(0.2F, 3.0F)},
-                               {random.uniform(-4.0F, 4.0F), random.uniform(-4.0F, 4.0F)},
-                               middle - tall,
-                               middle + tall,
-                               random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 4.0F)});
+                                 {random.uniform(-4.0F, 4.0F), random.uniform(-4.0F, 4.0F)},
+                                 middle - tall,
+                                 middle + tall,
+                                 random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 4.0F)});
         }
         airspace.cylinders = cylinders;
         airspace.has_ceiling = airspace.has_keep_in = true;
@@ -117,8 +117,8 @@ TEST(NearThreatsLaw, CellsLoseNothing)
     EXPECT_LT(met * 10, nodes * 9);
 }
 
-/// Cylinders alone, so that they set a movement's level: along its arc a free movement enters no margin, a movement short
-/// of clearance enters no body; and bodies do close movements.
+/// Cylinders alone, so that they set a movement's level: along its arc a free movement enters no margin, a movement
+/// short of clearance enters no body; and bodies do close movements.
 TEST(NearThreatsLaw, CylindersCloseBodiesAndTellMargins)
 {
     constexpr int kSamples = 16;

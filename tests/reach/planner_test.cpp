@@ -265,9 +265,9 @@ TEST(ReachPlanner, RefusesWhatItIsNotFor)
     Planner without{Settings{}};
     WorkBudget budget(kPlannerPlenty);
     EXPECT_EQ(without.plan(Case().view(), budget, m), PlanStatus::bad_input);
-    for (const auto& spoil : std::vector<void (*)(Settings&)>{
-             [](Settings& s) { s.sets = nullptr; }, [](Settings& s) { s.tries = 0; },
-             [](Settings& s) { s.tries = 65; }}) {
+    for (const auto& spoil :
+         std::vector<void (*)(Settings&)>{[](Settings& s) { s.sets = nullptr; }, [](Settings& s) { s.tries = 0; },
+                                          [](Settings& s) { s.tries = 65; }}) {
         Settings bad = unit_settings();
         spoil(bad);
         EXPECT_FALSE(is_valid(bad));

@@ -97,9 +97,10 @@ TEST(Threat, DistancesOfCylindersAndBoxesAreThoseToTheNearestPointInside)
         const double distance = surface_distance(body, Vec::Zero(), point);
         ASSERT_EQ(distance <= 0.0, is_inside(body, point)) << k;
         double least = 1e9;
-        const Vec half = body.form == Form::box ? body.half_extents
-                                                : Vec(body.radius, body.radius,
-                                                      body.half_height + (body.form == Form::sphere ? body.radius : 0.0));
+        const Vec half =
+            body.form == Form::box
+                ? body.half_extents
+                : Vec(body.radius, body.radius, body.half_height + (body.form == Form::sphere ? body.radius : 0.0));
         constexpr int kParts = 40;
         for (int i = 0; i <= kParts * kParts * kParts; ++i) {
             const Vec share(i % kParts, i / kParts % kParts, i / kParts / kParts);
@@ -288,7 +289,8 @@ TEST(ScenarioFile, FormsThatCannotBeAreRefused)
     EXPECT_TRUE(says(refused("half_extents: [1, 1, 1], sensed_by: lidar"), "a box, and nothing else"));
     EXPECT_TRUE(says(refused("form: box, radius: 2, half_extents: [1, 2, 3], sensed_by: lidar"), "neither 'radius'"));
     EXPECT_TRUE(says(refused("form: cylinder, sensed_by: lidar"), "missing key 'threats[0].half_height'"));
-    EXPECT_TRUE(says(refused("form: cylinder, half_height: 3, sensed_by: scan"), "only a lidar sees what is no sphere"));
+    EXPECT_TRUE(
+        says(refused("form: cylinder, half_height: 3, sensed_by: scan"), "only a lidar sees what is no sphere"));
     EXPECT_TRUE(says(refused("sensed_by: lidar", "seed: 1"), "there is no 'lidar'"));
     EXPECT_TRUE(says(refused("sensed_by: lidar, scatter: {count: 200, half: [9, 9, 0], apart: 5}"), "do not fit"));
 }

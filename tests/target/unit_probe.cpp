@@ -109,12 +109,7 @@ private:
     void path() noexcept;
     [[nodiscard]] world::Situation situation() const noexcept
     {
-        return {{},
-                own_,
-                limits_,
-                airframe_,
-                reference_,
-                rules_};
+        return {{}, own_, limits_, airframe_, reference_, rules_};
     }
     void geometry(Work work, WorkBudget& budget) noexcept;
     void curve(Work work, WorkBudget& budget) noexcept;
@@ -308,8 +303,8 @@ void UnitProbe::program(WorkBudget& budget) noexcept
     const std::array<orca::Sphere, 2> spheres{{{Vec3::Zero(), 5.0F}, {within(2.0F), random_.uniform(0.1F, 3.0F)}}};
     const Vec3 preferred = within(5.0F);
     jink_window_begin();
-    sink_ =
-        orca::solve({{planes_.data(), size}, spheres, preferred, spheres[1].centre}, scratch_.view(), budget).velocity.x();
+    sink_ = orca::solve({{planes_.data(), size}, spheres, preferred, spheres[1].centre}, scratch_.view(), budget)
+                .velocity.x();
     jink_window_end();
 }
 
@@ -332,7 +327,8 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     }
     scene(work);
     world::Situation s = situation();
-    static_cast<void>(threats_.collect(s, {{tracks_.data(), tracks_.size()}, {obstacles_.data(), obstacles_.size()}, airspace_}));
+    static_cast<void>(
+        threats_.collect(s, {{tracks_.data(), tracks_.size()}, {obstacles_.data(), obstacles_.size()}, airspace_}));
     s.threats = threats_.all();
     const avoid::Settings settings;
     const world::Way way = world::way_of(s);

@@ -20,9 +20,8 @@ struct CampaignFigure {
     std::string unit;
     double published = 0.0;
     double ours = 0.0;
-    bool expected_to_agree =
-        false;  ///< must be within kCampaignTolerance; the other figures belong to a set-up that Pinheiro's text does
-                ///< not give
+    bool expected_to_agree = false;  ///< must be within kCampaignTolerance; the other figures belong to a set-up that
+                                     ///< Pinheiro's text does not give
 
     [[nodiscard]] double deviation() const { return published != 0.0 ? ours / published - 1.0 : 0.0; }
 };

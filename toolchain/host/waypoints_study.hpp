@@ -35,11 +35,10 @@ struct WaypointErrors {
 struct WaypointPlans {
     std::size_t problems = 0;
     std::size_t found = 0;
-    std::size_t same_choice =
-        0;                      ///< family, plane and offset number equal those with kMaxPathPoints waypoints (or
-                                ///< neither finds a plan)
-    double units = 0.0;         ///< mean work of a plan
-    double microseconds = 0.0;  ///< CPU time on this host: least of nine means over the problems
+    std::size_t same_choice = 0;  ///< family, plane and offset number equal those with kMaxPathPoints waypoints (or
+                                  ///< neither finds a plan)
+    double units = 0.0;           ///< mean work of a plan
+    double microseconds = 0.0;    ///< CPU time on this host: least of nine means over the problems
 };
 
 [[nodiscard]] WaypointErrors waypoint_errors(const files::Vehicle& vehicle, std::size_t waypoints);

@@ -277,7 +277,7 @@ std::optional<Hull> hull_of(const std::vector<Vec3d>& points)
         }
         out.triangles.push_back({corners[0], corners[1], corners[2]});
         const bool reported = std::any_of(out.planes.begin(), out.planes.end(),
-                                      [&](const auto& plane) { return plane.first.dot(normal) > 1.0 - 1e-12; });
+                                          [&](const auto& plane) { return plane.first.dot(normal) > 1.0 - 1e-12; });
         if (!reported) {
             out.planes.emplace_back(normal, 0.0);
         }

@@ -187,7 +187,7 @@ private:
     Vec hold_at_ = Vec::Zero();
     bool holding_ = false;
     bool reported_origin_ = false;  ///< since the boot
-    bool uploaded_ = false;     ///< the ground station's mission has come
+    bool uploaded_ = false;         ///< the ground station's mission has come
     bool sent_to_mission_ = false;
     std::uint16_t reported_sequence_ = 0;
 };

@@ -22,7 +22,7 @@ struct EncounterResult {
     double separation = 0.0;  ///< least, centre to surface [m]
     double at = 0.0;          ///< time of `separation` [s]
     unsigned nearest = 0;     ///< index of the threat at `separation`
-    double reported = -1.0;       ///< time of the first message that reports that threat; negative: never [s]
+    double reported = -1.0;   ///< time of the first message that reports that threat; negative: never [s]
     double alone = 0.0;       ///< least separation of the same mission without a co-processor [m]
     double duration = 0.0;    ///< of the flight [s]
     unsigned takeovers = 0;
@@ -34,17 +34,17 @@ struct EncounterResult {
     bool conflict = false;    ///< the mission, if continued, breaks the promise towards a reported threat
     unsigned keep = 0;        ///< judge's manoeuvres that keep the promise from the detection of `conflict` on; 0:
                               ///< none, or no conflict
-    bool reported_too_late = false;     ///< the promise was broken, and worst, before the threat was detected (report.hpp)
-    bool failed_avoidable = false;  ///< the promise was broken, and a judge's manoeuvre would have kept it
-    unsigned last_keep = 0;         ///< number that keep it from the first sighting or the first conflict on
-    unsigned late_keep = 0;         ///< number that keep it kReaction later (report.hpp)
-    double noiseless = 0.0;         ///< failed_avoidable: least separation of the same encounter with exact sensors
-                                    ///< [m]; 0 otherwise
-    double deviation_most = 0.0;    ///< greatest distance from the line of the leg [m]
-    double deviation_rms = 0.0;     ///< over the flight [m]
-    double acceleration = 0.0;      ///< integral of the squared acceleration [m2/s3]
-    double jerk = 0.0;              ///< integral of the squared jerk, from differences of 20 ms [m2/s5]
-    double away = 0.0;              ///< time under the co-processor's control [s]
+    bool reported_too_late = false;  ///< the promise was broken, and worst, before the threat was detected (report.hpp)
+    bool failed_avoidable = false;   ///< the promise was broken, and a judge's manoeuvre would have kept it
+    unsigned last_keep = 0;          ///< number that keep it from the first sighting or the first conflict on
+    unsigned late_keep = 0;          ///< number that keep it kReaction later (report.hpp)
+    double noiseless = 0.0;          ///< failed_avoidable: least separation of the same encounter with exact sensors
+                                     ///< [m]; 0 otherwise
+    double deviation_most = 0.0;     ///< greatest distance from the line of the leg [m]
+    double deviation_rms = 0.0;      ///< over the flight [m]
+    double acceleration = 0.0;       ///< integral of the squared acceleration [m2/s3]
+    double jerk = 0.0;               ///< integral of the squared jerk, from differences of 20 ms [m2/s5]
+    double away = 0.0;               ///< time under the co-processor's control [s]
 };
 
 /// Configuration of the co-processor that flies an encounter.

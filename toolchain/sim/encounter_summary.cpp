@@ -88,13 +88,14 @@ void put_promises(std::string& text, const Results& results)
               count_if(results,
                        [](const EncounterResult& r) { return r.failed_avoidable && r.noiseless < Scenario{}.promise; }),
               all);
-    put_share(text, "... detected too late", count_if(results, [](const EncounterResult& r) { return r.reported_too_late; }),
+    put_share(text, "... detected too late",
+              count_if(results, [](const EncounterResult& r) { return r.reported_too_late; }), all);
+    put_share(text, "... detected in time, but none of the judge's ways kept it",
+              count_if(results,
+                       [](const EncounterResult& r) {
+                           return broke_promise(r) && !r.failed_avoidable && !r.reported_too_late;
+                       }),
               all);
-    put_share(
-        text, "... detected in time, but none of the judge's ways kept it",
-        count_if(results,
-                 [](const EncounterResult& r) { return broke_promise(r) && !r.failed_avoidable && !r.reported_too_late; }),
-        all);
     const std::size_t conflicts = count_if(results, [](const EncounterResult& r) { return r.conflict; });
     put_share(text, "mission in conflict, once somebody had been told", conflicts, all);
     put_share(text, "... avoidable at that instant",

@@ -80,17 +80,17 @@ struct Cell {
     Behaviour behaviour = Behaviour::leg;
     Meeting meeting = Meeting::head_on;
     unsigned flights = 0;
-    unsigned hits = 0;            ///< flights with a separation below the promise
-    unsigned avoidable = 0;       ///< hits in the mission mode for which the judge has a manoeuvre at the first
-                                  ///< sighting
-    unsigned unwarned = 0;        ///< hits without a preceding COLLISION
-    unsigned taken_over = 0;      ///< flights with a take-over
-    unsigned given_back = 0;      ///< take-overs with control given back
-    unsigned finished = 0;        ///< missions
-    unsigned critical_texts = 0;  ///< of the autopilot, caused by the co-processor
-    unsigned own_critical = 0;    ///< flights with a text of severity CRITICAL or worse of the co-processor
-    unsigned broken_rules = 0;    ///< flights with a broken rule (Record::faults)
-    double least = 1e9;           ///< least distance between centres [m]
+    unsigned hits = 0;               ///< flights with a separation below the promise
+    unsigned avoidable = 0;          ///< hits in the mission mode for which the judge has a manoeuvre at the first
+                                     ///< sighting
+    unsigned unwarned = 0;           ///< hits without a preceding COLLISION
+    unsigned taken_over = 0;         ///< flights with a take-over
+    unsigned given_back = 0;         ///< take-overs with control given back
+    unsigned finished = 0;           ///< missions
+    unsigned critical_texts = 0;     ///< of the autopilot, caused by the co-processor
+    unsigned own_critical = 0;       ///< flights with a text of severity CRITICAL or worse of the co-processor
+    unsigned broken_rules = 0;       ///< flights with a broken rule (Record::faults)
+    double least = 1e9;              ///< least distance between centres [m]
     std::vector<std::uint64_t> bad;  ///< seeds with an avoidable hit, a broken rule or an unfinished mission
 };
 

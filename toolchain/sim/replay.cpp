@@ -131,7 +131,8 @@ void Replay::answer_timesync(Micros now)
     }
     const std::int64_t asked = port_->asked() / 1000;
     const std::int64_t middle = asked + (clock_start_ + now - asked) / 2;
-    bring(link::mavlink::Timesync{(reported_clock_->remote + middle - reported_clock_->at) * 1000, port_->asked(), 0, 0});
+    bring(
+        link::mavlink::Timesync{(reported_clock_->remote + middle - reported_clock_->at) * 1000, port_->asked(), 0, 0});
     reported_clock_.reset();
 }
 

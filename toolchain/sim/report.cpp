@@ -239,7 +239,8 @@ ReportedFlight report_on(const Scenario& scenario, Record record, bool with_judg
     flight.verdict = judge(scenario, kJudged, trials);
     const Record& r = flight.record;
     if (r.closest.surface < scenario.promise) {
-        const double reported = r.reported[r.closest.threat];  // jitter and dropouts included: the threat is unknown before
+        const double reported =
+            r.reported[r.closest.threat];  // jitter and dropouts included: the threat is unknown before
         flight.reported_too_late = reported < 0.0 || r.closest.time <= reported;
         if (flight.reported_too_late) {
             return flight;

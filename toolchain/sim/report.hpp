@@ -27,9 +27,9 @@ struct ReportedFlight {
     /// first sighting of the threat arrived (or when the first conflict became detectable, if later).
     bool failed_avoidable = false;
     bool reported_too_late = false;  ///< detected too late: the promise was broken, and worst, before the threat was
-                                 ///< reported
-    Verdict last_chance;         ///< verdict at that instant, if the promise was broken afterwards
-    Verdict late_chance;         ///< verdict kReaction later: an avoidable break is then a fault of the choice alone
+                                     ///< reported
+    Verdict last_chance;             ///< verdict at that instant, if the promise was broken afterwards
+    Verdict late_chance;  ///< verdict kReaction later: an avoidable break is then a fault of the choice alone
 };
 
 /// Adds the results that follow a flight: unmet expectations, the flight alone and, if `with_judge`, the verdict.

@@ -20,7 +20,7 @@ enum class SensedBy : std::uint8_t {
 
 /// Bodies. All but the sphere are static.
 enum class Form : std::uint8_t {
-    sphere,      ///< `radius`; with `half_height` an upright capsule with an axis of this half length
+    sphere,    ///< `radius`; with `half_height` an upright capsule with an axis of this half length
     cylinder,  ///< upright: `radius`, `half_height`
     box,       ///< `half_extents`, along the axes of the world
 };

@@ -98,7 +98,7 @@ bool read_constraint(const Tunnel& message, TimePoint now, ConstraintPart& part)
         constraint.about = GlobalPosition{area.north, area.east, 0};
     } else {
         cylinder.circle.centre = {static_cast<float>(area.east) / kMillimetres,
-                                static_cast<float>(area.north) / kMillimetres};
+                                  static_cast<float>(area.north) / kMillimetres};
     }
     cylinder.circle.radius = area.radius;
     cylinder.velocity = {area.velocity_east, area.velocity_north};

@@ -42,9 +42,9 @@ public:
     static constexpr Seconds kRefresh = 1.0F;
     static constexpr Seconds kAhead = 25.0F;
     static constexpr float kMinAhead = 400.0F;  ///< [m]
-    static constexpr float kNearest = 150.0F;     ///< after refusals [m]
+    static constexpr float kNearest = 150.0F;   ///< after refusals [m]
     static constexpr Seconds kClimbTime = 4.0F;
-    static constexpr float kMaxClimb = 14.0F;     ///< [m]
+    static constexpr float kMaxClimb = 14.0F;      ///< [m]
     static constexpr float kTurned = 0.035F;       ///< course [rad]
     static constexpr float kClimbChanged = 0.25F;  ///< [m/s]
     static constexpr float kNoCourse = 1.0F;       ///< [m/s]

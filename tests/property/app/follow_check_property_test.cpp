@@ -244,8 +244,8 @@ TEST(FollowCheckLaw, APlaneThatRollsInAndTurnsIsNeverAccused)
             }
             wanted += rate * 0.02;
             wing.step(wanted, static_cast<double>(climb), 0.02 * tick);
-            const Vec3 command(reported * static_cast<float>(std::cos(wanted)), reported * static_cast<float>(std::sin(wanted)),
-                               climb);
+            const Vec3 command(reported * static_cast<float>(std::cos(wanted)),
+                               reported * static_cast<float>(std::sin(wanted)), climb);
             ASSERT_FALSE(check.update(command, wing.seen(), limits, {1'000'000 + tick * 20'000LL}))
                 << "at " << 0.02 * tick << " s; JINK_CASES=1 JINK_SEED=" << seed + i;
         }

@@ -82,11 +82,9 @@ void CellFusion::rate_track(const world::Situation& situation, const world::Thre
     const ReachSet& set = *placed.set;
     const Seconds longest = placed.period * static_cast<float>(kMaxDepth);
     Intruder intruder;
-    intruder.position =
-        placed.to_set(track.nearest_in_height(lead, placed.origin.z()));
+    intruder.position = placed.to_set(track.nearest_in_height(lead, placed.origin.z()));
     intruder.velocity = turned(placed, track.velocity) / placed.unit;
-    intruder.radius =
-        (track.growth_from(lead).at(longest) + situation.limits.half_extents.norm()) / placed.unit;
+    intruder.radius = (track.growth_from(lead).at(longest) + situation.limits.half_extents.norm()) / placed.unit;
     intruder.horizontal = rule_.horizontal;
     intruder.vertical = rule_.vertical;
     intruder.speed_share = 0.0F;  // its growth has the error of its speed

@@ -80,7 +80,8 @@ TEST(CylinderClosureLaws, NothingWithinIsMissed)
         const float from = random.uniform(0.0F, 5.0F);
         const float to = from + random.uniform(0.0F, 3.0F);
         const float when = random.uniform(from, to);
-        cylinder.circle.centre = point.head<2>() + away * Vec2(std::cos(angle), std::sin(angle)) - when * cylinder.velocity;
+        cylinder.circle.centre =
+            point.head<2>() + away * Vec2(std::cos(angle), std::sin(angle)) - when * cylinder.velocity;
         cylinder.bottom = point.z() - random.uniform(0.0F, 40.0F);
         cylinder.top = point.z() + random.uniform(0.0F, 40.0F);
         const Closure closure = closure_of(grid, place, pose, cylinder, from, to);

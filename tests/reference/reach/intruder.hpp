@@ -112,7 +112,8 @@ public:
     /// The greatest of the models' rates: 1 where a model overlaps the cell, and when timed, 1 times the share of
     /// `vehicle` in that model's own times. Timed without a vehicle in the cell: 0.
     /// @param vehicle  its stay in the cell; none: never in the cell O(kMaxCrossings).
-    [[nodiscard]] Meeting in(CellIndex cell, const CellSphere& sphere, const std::optional<Stay>& vehicle) const noexcept;
+    [[nodiscard]] Meeting in(CellIndex cell, const CellSphere& sphere,
+                             const std::optional<Stay>& vehicle) const noexcept;
 
 private:
     Intruder intruder_;

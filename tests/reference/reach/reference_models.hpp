@@ -154,8 +154,8 @@ inline SpreadResult spread(const Grid<double>& grid, const Intruder& intruder, d
     return result;
 }
 
-/// The body model, equations 6.125 to 6.128: a sphere full of points no farther than `thickness` from the next one, moved
-/// along the line; every point has the time of the sphere's middle.
+/// The body model, equations 6.125 to 6.128: a sphere full of points no farther than `thickness` from the next one,
+/// moved along the line; every point has the time of the sphere's middle.
 inline Touched body(const Grid<double>& grid, const Intruder& intruder, double thickness)
 {
     Touched cells;

@@ -152,7 +152,8 @@ private:
                 first_ = first_ < 0.0 ? reported : first_;
             }
             // Until its clock is known, enough to be answered.
-            const double time = reported < 0.0 ? kAhead : reported - first_ + kAhead + std::min(since(reported_at), kStep);
+            const double time =
+                reported < 0.0 ? kAhead : reported - first_ + kAhead + std::min(since(reported_at), kStep);
             const double owed = time * kLineBytesPerSecond - static_cast<double>(sent_);
             longest_lag_ = std::max(longest_lag_, owed / kLineBytesPerSecond);
             const std::uint64_t room = kMaxUnread - std::min(kMaxUnread, sent_ - std::min(sent_, ear_.read));

@@ -174,7 +174,8 @@ TEST(CoprocessorCrowd, AFloodDoesNotHideARealThreatAndIsToldOnce)
                 e.f->feed(seen_at(7, e.where, e.velocity), 156);
             }
             for (const Statustext& m : e.f->said_of<Statustext>()) {
-                reported += std::string_view(m.text.data(), m.text.size()).starts_with("jink: too much traffic") ? 1 : 0;
+                reported +=
+                    std::string_view(m.text.data(), m.text.size()).starts_with("jink: too much traffic") ? 1 : 0;
             }
         });
         hits += least < kHit ? 1 : 0;

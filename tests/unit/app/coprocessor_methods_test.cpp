@@ -20,7 +20,7 @@ struct Passed {
     std::uint8_t by = 0;  ///< MethodTraits::id
     float nearest = 1e9F;
     bool warned = false;  ///< that the sets do not suit
-    int reported = 0;         ///< that they are damaged
+    int reported = 0;     ///< that they are damaged
 };
 
 Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_out = false)

@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/clouds.hpp"
-#include "firmware/app/range_return.hpp"
 #include "firmware/app/near_field.hpp"
+#include "firmware/app/range_return.hpp"
 #include "tests/unit/app/step_bench.hpp"
 
 namespace jink::app::test {

@@ -283,9 +283,10 @@ inline void place_cylinder(Random& random, Drawn& d, const DenseFlight& flight, 
     world::Cylinder cylinder;
     cylinder.circle.radius = random.uniform(0.5F, 20.0F);
     cylinder.velocity = random.below(2) == 0 ? world::Vec2(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F))
-                                           : world::Vec2(world::Vec2::Zero());
+                                             : world::Vec2(world::Vec2::Zero());
     const bool beside = random.below(3) != 0;
-    const float below = beside ? 10.0F : float(wanted) + s.limits.half_extents.z() + s.rules.k_sigma * s.own.sigma_position;
+    const float below =
+        beside ? 10.0F : float(wanted) + s.limits.half_extents.z() + s.rules.k_sigma * s.own.sigma_position;
     cylinder.top = beside ? float(own.z()) + below : float(own.z()) - below;
     cylinder.bottom = cylinder.top - 20.0F;
     const auto put = [&](double x) {

@@ -66,9 +66,9 @@ double true_margin(const Drawn& d, const DenseFlight& flight, double floor)
         const auto margin = [&](double t) {
             return dense::obstacle_margin_at(d.scene, o.shape, flight.at(t).position);
         };
-        least = std::min(least,
-                         dense::least_margin(margin, flight.end(), flight.fastest() + double(d.scene.rules.escape.speed),
-                                             d.scene.rules.escape, floor));
+        least = std::min(least, dense::least_margin(margin, flight.end(),
+                                                    flight.fastest() + double(d.scene.rules.escape.speed),
+                                                    d.scene.rules.escape, floor));
     }
     return least;
 }

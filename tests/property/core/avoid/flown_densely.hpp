@@ -209,7 +209,8 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, const 
         const double until = track.cooperative ? std::min(end, shared) : end;
         const double age = std::max(0.0, double(scene.now - track.stamp)) + until;
         const double rate = own_rate + double(track.velocity.norm()) +
-                            double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
+                            double(scene.rules.k_sigma) * double(track.sigma_velocity) +
+                            double(track.max_acceleration) * age;
         const auto margin = [&](double t) {
             Vec3d gap = track.position.cast<double>() + track.velocity.cast<double>() * t - flight.at(t).position;
             // The nearest of its possible heights.

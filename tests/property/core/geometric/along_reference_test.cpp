@@ -270,8 +270,7 @@ TEST(AlongReference, WhatIsFoundPassesTheFinalCheck)
         const world::Airspace airspace;
         const vehicle::Airframe airframe;
         const world::FlightRules rules{.lookahead = 10.0F};
-        const world::Situation empty{
-            TimePoint{50'000'000}, own, limits, airframe, reference, rules};
+        const world::Situation empty{TimePoint{50'000'000}, own, limits, airframe, reference, rules};
         const world::Way way = world::way_of(empty);
         for (world::Track& track : tracks) {
             track.stamp = empty.now;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curves and spheres in contact by less than any bound leaves for rounding, against distances in double: no quick reject
-// skips these contacts, for any distance and flight time of the sphere.
+// Curves and spheres in contact by less than any bound leaves for rounding, against distances in double: no quick
+// reject skips these contacts, for any distance and flight time of the sphere.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -13,8 +13,8 @@
 namespace jink::geometric {
 namespace {
 
-/// A short curve, from the origin on or far out, and a sphere: static, or moving in a plane of two of the world's axes or
-/// anywhere, and near some point of the curve at that point's time.
+/// A short curve, from the origin on or far out, and a sphere: static, or moving in a plane of two of the world's axes
+/// or anywhere, and near some point of the curve at that point's time.
 struct Encounter {
     CurveBench bench;
     oracle::Flight flight;

@@ -197,9 +197,10 @@ private:
             const float start = points[i].time;
             const float duration = points[i + 1].time - start;
             const Vec3 after = points[i + 1].position - (t.motion.position + t.motion.velocity * points[i + 1].time);
-            const float longest = problem_.rules.escape.speed > 0.0F
-                                      ? std::max(0.02F, 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed)
-                                      : duration;
+            const float longest =
+                problem_.rules.escape.speed > 0.0F
+                    ? std::max(0.02F, 0.5F * problem_.rules.escape.slack / problem_.rules.escape.speed)
+                    : duration;
             const int parts = shrunk_at(shrunk, start) > 0.0F
                                   ? std::max(1, static_cast<int>(std::ceil(duration / std::max(longest, 0.02F))))
                                   : 1;

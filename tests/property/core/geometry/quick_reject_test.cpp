@@ -51,7 +51,8 @@ TEST(QuickReject, EdgeCases)
 {
     const Vec3 half = Vec3::Ones();
     EXPECT_EQ(quick_reject(half, Vec3(3, 0, 0), Vec3(3, 0, 0), 1.0F), QuickReject::apart);
-    EXPECT_EQ(quick_reject(half, Vec3(2, 0, 0), Vec3(2, 0, 0), 1.0F), QuickReject::unclear);  // contact is left to the exact test
+    EXPECT_EQ(quick_reject(half, Vec3(2, 0, 0), Vec3(2, 0, 0), 1.0F),
+              QuickReject::unclear);  // contact is left to the exact test
     EXPECT_EQ(quick_reject(half, Vec3(0, 0, 0), Vec3(0, 0, 0), 0.0F), QuickReject::touches);  // inside
     EXPECT_EQ(quick_reject(half, Vec3(-5, 0, 0), Vec3(5, 0, 0), 0.0F), QuickReject::touches);
     EXPECT_EQ(quick_reject(half, Vec3(-9, 3, 0), Vec3(9, 3, 0), 1.0F), QuickReject::apart);  // along a face

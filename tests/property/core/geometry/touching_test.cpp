@@ -111,7 +111,8 @@ TEST(Touching, OfAPointIsContactForTheClosedForms)
         ASSERT_TRUE(contact_interval(scene.half, own, still, radius, 1.0F)) << "seed " << seed;
         ASSERT_TRUE(contact_interval(scene.half, {}, {centre - scene.from, scene.from - scene.to}, radius, 1.0F))
             << "seed " << seed;
-        ASSERT_NE(quick_reject(scene.half, centre - scene.from, centre - scene.to, radius), QuickReject::apart) << "seed " << seed;
+        ASSERT_NE(quick_reject(scene.half, centre - scene.from, centre - scene.to, radius), QuickReject::apart)
+            << "seed " << seed;
         const float size =
             (centre - scene.from).cwiseAbs().sum() + (scene.to - scene.from).cwiseAbs().sum() + scene.half.sum();
         ASSERT_NEAR(least_distance(scene.half, own, still, 1.0F).distance, radius, 5e-7F * size) << "seed " << seed;

@@ -144,8 +144,8 @@ TYPED_TEST(ExchangeLaws, WhatIsNoCornerIsSaid)
         WorkBudget budget(kEnoughWork);
         Corner<TypeParam> corner;
         corner.rows = {0, 1, 2, 3};
-        return exchange<TypeParam>(rows, std::span(yields).first(rows.size()), soft, spheres, Tolerance<TypeParam>(2.0F),
-                                   budget, corner);
+        return exchange<TypeParam>(rows, std::span(yields).first(rows.size()), soft, spheres,
+                                   Tolerance<TypeParam>(2.0F), budget, corner);
     };
     const float s = 1.0F / std::sqrt(3.0F);
     const std::vector<Row> corners{{{s, s, s}, 0.5F}, {{s, -s, -s}, 0.5F}, {{-s, s, -s}, 0.5F}, {{-s, -s, s}, 0.5F}};

@@ -218,7 +218,7 @@ TYPED_TEST(OptimumLaws, WhereAllDirectionsAreAsGoodOneIsTaken)
             const Vec3 goal = farthest ? across : Vec3(0.6F * axis + 5.0F * across);
             Vec3Of<TypeParam> x;
             ASSERT_TRUE(optimum_in_spheres<TypeParam>(spheres, {goal.template cast<TypeParam>(), farthest},
-                                                    Tolerance<TypeParam>(2.0F), x));
+                                                      Tolerance<TypeParam>(2.0F), x));
             const Eigen::Vector3d got = as_double<TypeParam>(x);
             const Eigen::Vector3d wanted = (0.6F * axis + 0.8F * across).template cast<double>();
             EXPECT_LT((got - wanted).norm(), 2e-6) << farthest;

@@ -17,7 +17,7 @@ Cylinder random_cylinder(Random& random)
 {
     Cylinder cylinder;
     cylinder.circle = {Vec2(random.uniform(-300.0F, 300.0F), random.uniform(-300.0F, 300.0F)),
-                     random.uniform(0.0F, 60.0F)};
+                       random.uniform(0.0F, 60.0F)};
     cylinder.velocity =
         random.below(3) == 0 ? Vec2(Vec2::Zero()) : Vec2(random.uniform(-15.0F, 15.0F), random.uniform(-15.0F, 15.0F));
     cylinder.bottom = random.uniform(0.0F, 80.0F);
@@ -30,16 +30,16 @@ Cylinder random_cylinder(Random& random)
 enum class Part : std::uint8_t { outside, margin, body };
 Part part_at(const Cylinder& cylinder, double x, double y, double z, double t)
 {
-    const double apart =
-        std::hypot(x - static_cast<double>(cylinder.circle.centre.x()) - t * static_cast<double>(cylinder.velocity.x()),
-                   y - static_cast<double>(cylinder.circle.centre.y()) - t * static_cast<double>(cylinder.velocity.y()));
+    const double apart = std::hypot(
+        x - static_cast<double>(cylinder.circle.centre.x()) - t * static_cast<double>(cylinder.velocity.x()),
+        y - static_cast<double>(cylinder.circle.centre.y()) - t * static_cast<double>(cylinder.velocity.y()));
     if (z < static_cast<double>(cylinder.bottom) || z > static_cast<double>(cylinder.top)) {
         return Part::outside;
     }
     const auto radius = static_cast<double>(cylinder.circle.radius);
-    return apart <= radius                                        ? Part::body
+    return apart <= radius                                          ? Part::body
            : apart <= radius + static_cast<double>(cylinder.margin) ? Part::margin
-                                                                  : Part::outside;
+                                                                    : Part::outside;
 }
 
 TEST(CylinderTableLaws, NothingIsLostInAMerge)

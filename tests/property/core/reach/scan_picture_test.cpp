@@ -226,8 +226,10 @@ TEST(CellSpheresLaw, AreThoseOfTheCells)
             const CellSphere sphere = sphere_of(grid, place);
             const Vec3 centre = spheres.distance(place.layer) * spheres.direction(place.column, place.row);
             ASSERT_LT((centre - sphere.centre).norm(), 1e-5F * grid.distance()) << "seed " << seed;
-            ASSERT_NEAR(spheres.radius(place.layer, place.row), sphere.radius, 3e-5F * grid.distance()) << "seed " << seed;
-            ASSERT_GE(spheres.radius(place.layer, place.row), sphere.radius - 1e-6F * grid.distance()) << "seed " << seed;
+            ASSERT_NEAR(spheres.radius(place.layer, place.row), sphere.radius, 3e-5F * grid.distance())
+                << "seed " << seed;
+            ASSERT_GE(spheres.radius(place.layer, place.row), sphere.radius - 1e-6F * grid.distance())
+                << "seed " << seed;
         }
     }
 }

@@ -53,7 +53,8 @@ Scene any_scene(Random& random)
     // Aimed near some point of the nominal path.
     const Way way = way_of(scene.situation());
     const Seconds meet = random.uniform(0.0F, 9.0F);
-    track.position = place_on_way(scene, way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
+    track.position =
+        place_on_way(scene, way, double(meet)).cast<float>() - track.velocity * meet + in_cube(random, 3.0F);
     track.sigma_position = random.uniform(0.0F, 0.3F);
     track.sigma_velocity = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 0.5F);
     track.max_acceleration = random.below(3) == 0 ? random.uniform(0.0F, 0.5F) : 0.0F;
@@ -117,7 +118,8 @@ TEST(PredictConflict, FindsEachLossAndNeverTooLate)
         if (conflict.time_to_closest > conflict.time_to_loss) {
             for (double t = 0; t <= lookahead; t += 0.01) {
                 const double distance =
-                    (place_on_way(scene, way, t) - track.position.cast<double>() - track.velocity.cast<double>() * t).norm();
+                    (place_on_way(scene, way, t) - track.position.cast<double>() - track.velocity.cast<double>() * t)
+                        .norm();
                 ASSERT_GE(distance, double(conflict.miss_distance) - 1e-3) << "case " << i << " at " << t;
             }
         }
@@ -182,8 +184,8 @@ TEST(MainConflict, SolidsAreFoundInTime)
             const Vec3 joint = way.origin + way.direction * std::min(way.ahead.straight, way.speed * float(t));
             const Vec3& half = scene.limits.half_extents;
             auto bounds = geometry::oracle::swept_box_bounds(half, way.origin, joint, shape, 1e-4);
-            const auto rest = geometry::oracle::swept_box_bounds(
-                half, joint, place_on_way(scene, way, t).cast<float>(), shape, 1e-4);
+            const auto rest =
+                geometry::oracle::swept_box_bounds(half, joint, place_on_way(scene, way, t).cast<float>(), shape, 1e-4);
             bounds.lower = std::min(bounds.lower, rest.lower);
             bounds.upper = std::min(bounds.upper, rest.upper);
             return bounds;

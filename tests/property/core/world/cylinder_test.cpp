@@ -145,8 +145,8 @@ TEST(CylinderSeparation, AtOneInstantIsTheDefinition)
         const Seconds t = random.uniform(0.0F, 10.0F);
         WorkBudget budget(kPlenty);
         const float found = separation_at(scene.situation(), own, t, budget).margin;
-        const double truth =
-            std::clamp(oracle::cylinder_margin_at(scene, own.cast<double>(), scene.cylinders[0], double(t)), -50.0, 50.0);
+        const double truth = std::clamp(
+            oracle::cylinder_margin_at(scene, own.cast<double>(), scene.cylinders[0], double(t)), -50.0, 50.0);
         ASSERT_LE(double(found), truth + 1e-5) << "case " << i;
         ASSERT_GE(double(found), truth - 1e-3) << "case " << i;
     }

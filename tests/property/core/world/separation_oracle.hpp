@@ -40,7 +40,7 @@ inline double radius_of(const Scene& scene, const Track& track, double t)
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6 + t);
     return double(track.radius) +
            double(scene.rules.k_sigma) * (std::hypot(double(scene.own.sigma_position), double(track.sigma_position)) +
-                                    double(track.sigma_velocity) * age) +
+                                          double(track.sigma_velocity) * age) +
            0.5 * double(track.max_acceleration) * age * age;
 }
 
@@ -144,15 +144,16 @@ inline double solid_distance(const Scene& scene, const path::TimedPath& path, co
     return best;
 }
 
-/// Signed distance from a cylinder's body at one instant: outside by the level and vertical excess, inside to the nearest
-/// surface.
+/// Signed distance from a cylinder's body at one instant: outside by the level and vertical excess, inside to the
+/// nearest surface.
 inline double cylinder_margin_at(const Scene& scene, const Vec3d& own, const Cylinder& cylinder, double t)
 {
     const Vec3d half = scene.limits.half_extents.cast<double>();
     const Eigen::Vector2d centre = cylinder.circle.centre.cast<double>() + cylinder.velocity.cast<double>() * t;
     const Vec3d level(centre.x() - own.x(), centre.y() - own.y(), 0.0);
     const double beside = point_box(level, half) - double(cylinder.circle.radius);
-    const double beyond = std::max(double(cylinder.bottom) - own.z() - half.z(), own.z() - half.z() - double(cylinder.top));
+    const double beyond =
+        std::max(double(cylinder.bottom) - own.z() - half.z(), own.z() - half.z() - double(cylinder.top));
     const double distance = beside <= 0.0 && beyond <= 0.0 ? std::max(beside, beyond)
                                                            : std::hypot(std::max(beside, 0.0), std::max(beyond, 0.0));
     return distance - double(scene.rules.k_sigma) * double(scene.own.sigma_position);

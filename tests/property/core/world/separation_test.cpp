@@ -113,7 +113,8 @@ double escape_pessimism(const EscapeRule& escape)
 double pessimism(const Scene& scene, const Track& track, double end, const EscapeRule& escape, bool inside)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6) + end;
-    const double rate = double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
+    const double rate =
+        double(scene.rules.k_sigma) * double(track.sigma_velocity) + double(track.max_acceleration) * age;
     return 2e-3 + 0.25 * rate + (inside ? escape_pessimism(escape) : 0.0);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One curve against what stands or moves about it: the queried parts, spheres as small as a point, growing solids, bounds
-// with zero margin, and the cost of each check.
+// One curve against what stands or moves about it: the queried parts, spheres as small as a point, growing solids,
+// bounds with zero margin, and the cost of each check.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -79,8 +79,8 @@ PlanStatus plan(const std::vector<world::Track>& tracks, WorkBudget& budget, Pla
     const world::Airspace airspace;
     const world::FlightRules rules;
     world::Manoeuvre out;
-    const oracle::Collected situation(
-        world::Situation{now, own, limits, airframe, reference, rules}, {tracks, {}, airspace});
+    const oracle::Collected situation(world::Situation{now, own, limits, airframe, reference, rules},
+                                      {tracks, {}, airspace});
     return planner.plan(situation, budget, out);
 }
 

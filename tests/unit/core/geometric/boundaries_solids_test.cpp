@@ -156,7 +156,8 @@ TEST(SolidBorder, WhatIsFarFromACurveCostsALook)
         EXPECT_EQ(bench.counted_solids, 1U);
         return bench.spent;
     };
-    // The sphere about it is, though no face of it lies between; a face does, though the sphere about it reaches farther.
+    // The sphere about it is, though no face of it lies between; a face does, though the sphere about it reaches
+    // farther.
     EXPECT_EQ(spent_on(geometry::make_box(Vec3(0.0F, 6.0F, 0.0F), Vec3::Ones(), turned)), units::kSolidCheck);
     EXPECT_EQ(spent_on(geometry::make_box(Vec3(0.0F, 6.0F, 0.0F), Vec3(30.0F, 1.0F, 1.0F))), units::kSolidCheck);
 }

@@ -248,7 +248,8 @@ TYPED_TEST(UnitPrecision, ABudgetThatRunsOutIsSaid)
     }
 }
 
-/// The whole solver within one or two spheres, by the same conditions: a few half-spaces, most of the time by its search.
+/// The whole solver within one or two spheres, by the same conditions: a few half-spaces, most of the time by its
+/// search.
 TEST(SolverInSpheres, WhatIsFoundIsHeldByWhatItReaches)
 {
     Random random(kSphereSeed + 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, half-spaces and lines with a single common point, or apart by less than the tolerance: the point is found, and
-// is finite. In both precisions.
+// Spheres, half-spaces and lines with a single common point, or apart by less than the tolerance: the point is found,
+// and is finite. In both precisions.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -126,8 +126,9 @@ TEST(OrcaPlanner, CylindersAreFlownAround)
         vehicle::advance(scene.own, out.command, scene.limits, 0.05F);
         scene.now = scene.now + 0.05F;
         scene.own.stamp = scene.now;
-        ASSERT_GE(world::cylinder_distance(scene.limits.half_extents, scene.own.position, scene.cylinders.front(), 0.0F),
-                  0.0F)
+        ASSERT_GE(
+            world::cylinder_distance(scene.limits.half_extents, scene.own.position, scene.cylinders.front(), 0.0F),
+            0.0F)
             << i;
     }
 }

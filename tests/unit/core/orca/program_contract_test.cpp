@@ -28,12 +28,14 @@ TEST(ProgramContract, IntoTheSpheresIsWithinThem)
 {
     Random random(20261129);
     for (int i = 0; i < 3000; ++i) {
-        std::vector<Sphere> spheres{{random.uniform(0.0F, 2.0F) * enumerated::unit(random), random.uniform(0.5F, 9.0F)}};
+        std::vector<Sphere> spheres{
+            {random.uniform(0.0F, 2.0F) * enumerated::unit(random), random.uniform(0.5F, 9.0F)}};
         if (i % 2 == 0) {
             const float radius = random.uniform(0.1F, 3.0F);
             // Its centre lies within the first one.
             spheres.push_back(
-                {spheres[0].centre + random.uniform(0.0F, 1.0F) * spheres[0].radius * enumerated::unit(random), radius});
+                {spheres[0].centre + random.uniform(0.0F, 1.0F) * spheres[0].radius * enumerated::unit(random),
+                 radius});
         }
         const Vec3 point = random.uniform(0.0F, 12.0F) * enumerated::unit(random);
         const Vec3 in = into_spheres(spheres, point);
@@ -41,8 +43,8 @@ TEST(ProgramContract, IntoTheSpheresIsWithinThem)
         for (const Sphere& sphere : spheres) {
             const double from = (in.cast<double>() - sphere.centre.cast<double>()).norm();
             // Its coordinates are rounded.
-            ASSERT_LE(from,
-                      static_cast<double>(sphere.radius) + 1.2e-7 * static_cast<double>(sphere.centre.norm() + sphere.radius))
+            ASSERT_LE(from, static_cast<double>(sphere.radius) +
+                                1.2e-7 * static_cast<double>(sphere.centre.norm() + sphere.radius))
                 << i;
             most = std::max(most, (point - sphere.centre).norm() - sphere.radius);
         }

@@ -42,7 +42,8 @@ Solution solve_for(const std::vector<HalfSpace>& planes, const std::vector<Spher
 const std::vector<Sphere> kTwo{{Vec3::Zero(), 2.0F}};
 
 /// The program as in Alejo, row by row.
-Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& preferred)
+Optimum<float> row_by_row(const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres,
+                          const Vec3& preferred)
 {
     std::vector<Row> rows;
     for (const HalfSpace& p : planes) {
@@ -189,8 +190,8 @@ TEST(Program, RefusesWhatIsNoNumber)
     const float inf = std::numeric_limits<float>::infinity();
     const Vec3 reference(0.4F, 0.1F, 0);
     Scratch<8> scratch;
-    const auto refused = [&](const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres, const Vec3& wanted,
-                             const Vec3& last) {
+    const auto refused = [&](const std::vector<HalfSpace>& planes, const std::vector<Sphere>& spheres,
+                             const Vec3& wanted, const Vec3& last) {
         WorkBudget budget(kProgramPlenty);
         const Solution solution = solve({planes, spheres, wanted, last}, scratch.view(), budget);
         EXPECT_EQ(solution.status, kBadInput);

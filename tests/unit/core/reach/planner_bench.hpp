@@ -68,12 +68,8 @@ struct PlannerBench {
 
     [[nodiscard]] world::Situation view() const
     {
-        world::Situation s{.now = now,
-                           .own = own,
-                           .limits = limits,
-                           .airframe = airframe,
-                           .reference = reference,
-                           .rules = rules};
+        world::Situation s{
+            .now = now, .own = own, .limits = limits, .airframe = airframe, .reference = reference, .rules = rules};
         static_cast<void>(threats.collect(s, {tracks, obstacles, airspace}));
         s.threats = threats.all();
         return s;

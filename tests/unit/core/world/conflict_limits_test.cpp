@@ -236,9 +236,9 @@ TEST_P(ConflictLimits, ASpentBudgetNamesTheThreatThatItRanOutAt)
     const std::uint32_t obstacle = cost_until([&] { scene.obstacle(geometry::make_sphere(Vec3(20, 60, 0), 1.0F)); });
     for (std::uint32_t n = none; n < obstacle; ++n) {
         ASSERT_TRUE(meets(10.0F, n)) << n;
-        const ThreatKind expected = n < track    ? ThreatKind::track
+        const ThreatKind expected = n < track      ? ThreatKind::track
                                     : n < cylinder ? ThreatKind::cylinder
-                                                 : ThreatKind::obstacle;
+                                                   : ThreatKind::obstacle;
         ASSERT_EQ(found.threat, (ThreatRef{expected, 0})) << n;
         ASSERT_EQ(found.time_to_loss, 0.0F) << n;
     }

@@ -260,12 +260,12 @@ TEST_P(ConflictTies, ACylinderIsToldWhereItIsDeepest)
     EXPECT_LT(found.time_to_closest, 1.0F);
     EXPECT_NEAR(found.margin, 0.7F - 6.0F, 0.2F);
     WorkBudget budget(kPlenty);
-    const detail::CylinderApproach flown(Vec3::Ones(), {Vec3(-20, 0, 0), Vec3(30, 0, 0)}, scene.cylinders[0], 0.0F, 0.0F,
-                                       0.0F);
+    const detail::CylinderApproach flown(Vec3::Ones(), {Vec3(-20, 0, 0), Vec3(30, 0, 0)}, scene.cylinders[0], 0.0F,
+                                         0.0F, 0.0F);
     const geometry::Approach near = flown.least(1.0F, 0.0F, budget);
     static_cast<void>(flown.first_contact(near.when, budget));
     const detail::CylinderApproach hovered(Vec3::Ones(), {Vec3(10, 0, 0), Vec3::Zero()}, scene.cylinders[0], 1.0F, 0.0F,
-                                         0.0F);
+                                           0.0F);
     static_cast<void>(hovered.least(9.0F, near.distance, budget));
     EXPECT_EQ(spent, before() + budget.spent() + 2 * units::kConflictCylinder);
 }

@@ -73,7 +73,7 @@ TEST(CylinderEdges, RoundingIsOnTheSafeSideAtLargeCoordinates)
             return random.below(2) == 0 ? size : -size;
         };
         Cylinder b = body(Vec2(sized(5e4F), sized(5e4F)), std::abs(sized(5e3F)) + 0.1F, sized(1e4F), 0.0F,
-                        Vec2(sized(300.0F), sized(300.0F)));
+                          Vec2(sized(300.0F), sized(300.0F)));
         b.top = b.bottom + std::abs(sized(1e4F));
         const Vec3 half(random.uniform(0.2F, 3.0F), random.uniform(0.2F, 3.0F), random.uniform(0.2F, 3.0F));
         const Seconds t = random.below(2) == 0 ? 0.0F : random.uniform(0.0F, 60.0F);
@@ -98,7 +98,7 @@ struct Approaching {
           own{Vec3(random.uniform(-40, 40), random.uniform(-40, 40), random.uniform(-20, 20)),
               Vec3(random.uniform(-9, 9), random.uniform(-9, 9), random.uniform(-3, 3))},
           cylinder(body(Vec2(random.uniform(-9, 9), random.uniform(-9, 9)), random.uniform(0.5F, 20.0F), -5.0F,
-                      random.uniform(-4.0F, 9.0F), Vec2(random.uniform(-6, 6), random.uniform(-6, 6)))),
+                        random.uniform(-4.0F, 9.0F), Vec2(random.uniform(-6, 6), random.uniform(-6, 6)))),
           outset(random.uniform(-0.5F, 0.9F)), growth(random.below(2) == 0 ? 0.0F : random.uniform(0.1F, 0.8F))
     {
     }
@@ -215,7 +215,7 @@ TEST(CylinderApproach, TheLeastIsFoundWhereItIs)
 
 /// An approach that is nearest in the middle of its time.
 const CylinderApproach kPassing(Vec3::Ones(), {Vec3(-20, 8, 0), Vec3(5, 0, 0)},
-                              {{Vec2::Zero(), 3.0F}, Vec2::Zero(), -10.0F, 10.0F, 0.0F}, 0.0F, 0.0F, 0.0F);
+                                {{Vec2::Zero(), 3.0F}, Vec2::Zero(), -10.0F, 10.0F, 0.0F}, 0.0F, 0.0F, 0.0F);
 
 TEST(CylinderApproach, WithoutABudgetThereIsContact)
 {
@@ -241,7 +241,7 @@ TEST(CylinderApproach, AtAnInstantItIsWhatItIsThere)
 TEST(CylinderApproach, TheFirstContactIsNotLate)
 {
     const CylinderApproach approach(Vec3::Ones(), {Vec3(-20, 0, 0), Vec3(5, 0, 0)},
-                                  body(Vec2::Zero(), 3.0F, -10.0F, 10.0F), 0.0F, 0.0F, 0.0F);
+                                    body(Vec2::Zero(), 3.0F, -10.0F, 10.0F), 0.0F, 0.0F, 0.0F);
     WorkBudget budget(kPlenty);
     const Seconds first = approach.first_contact(4.0F, budget);
     EXPECT_LE(first, 16.0F / 5.0F);

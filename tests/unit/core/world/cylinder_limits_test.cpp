@@ -28,7 +28,8 @@ TEST(CylinderRounding, OneLargeNumberIsEnough)
         p.half = Vec3(random.uniform(0.1F, 3.0F), random.uniform(0.1F, 3.0F), random.uniform(0.1F, 3.0F));
         p.own = Vec3(small(), small(), small());
         p.velocity = Vec3::Zero();
-        p.cylinder = {{Vec2(small(), small()), random.uniform(0.1F, 3.0F)}, Vec2(small(), small()), small(), 0.0F, 0.0F};
+        p.cylinder = {
+            {Vec2(small(), small()), random.uniform(0.1F, 3.0F)}, Vec2(small(), small()), small(), 0.0F, 0.0F};
         p.cylinder.top = p.cylinder.bottom + random.uniform(0.0F, 3.0F);
         p.start = random.uniform(0.0F, 3.0F);
         p.outset = small();

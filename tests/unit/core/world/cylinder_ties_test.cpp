@@ -103,8 +103,8 @@ TEST(CylinderLeast, OfEqualEndsTheFirstIsTold)
     EXPECT_EQ(least(p, span - 0.01F, -1e8F).when, span - 0.01F);
 }
 
-/// Sinking through the middle of a wide cylinder: as far as the end of the time the distance falls evenly, and just there
-/// it turns. The tangents cross within the time: never below the first one at the end.
+/// Sinking through the middle of a wide cylinder: as far as the end of the time the distance falls evenly, and just
+/// there it turns. The tangents cross within the time: never below the first one at the end.
 TEST(CylinderLeast, IsNotBelowTheFirstTangentAtTheEnd)
 {
     Random random(20261222);

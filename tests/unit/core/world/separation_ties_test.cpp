@@ -234,8 +234,8 @@ TEST(UncertainPlaces, ThreatsThatAreNearerByTheUncertaintyCount)
     EXPECT_NEAR(separation_at(sphere.situation(), Vec3::Zero(), 0.0F, budget).margin, 2.5F, 1e-4F);
 }
 
-/// Out of a solid and out of a cylinder: for any remaining budget, unchecked parts are contact, from the first unchecked
-/// instant.
+/// Out of a solid and out of a cylinder: for any remaining budget, unchecked parts are contact, from the first
+/// unchecked instant.
 TEST(SpentBudgets, AreContactAlsoDuringAnEscape)
 {
     const path::TimedPath path = flight({Vec3::Zero(), Vec3(-3, 0, 0), Vec3(-6, 0, 0)}, 1.0F);
@@ -262,7 +262,8 @@ TEST(SpentBudgets, AreContactAlsoDuringAnEscape)
     EXPECT_EQ(least_separation(cylinder.situation(), slow, 100.0F, one).when, 0.0F);
 }
 
-/// A turn back to where it came from: a cylinder's surface that is back at its size counts for a piece's own time alone.
+/// A turn back to where it came from: a cylinder's surface that is back at its size counts for a piece's own time
+/// alone.
 TEST(CylinderEscapes, AreJudgedInThePieceInWhichTheCreditEnds)
 {
     Scene scene;
