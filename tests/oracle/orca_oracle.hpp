@@ -20,7 +20,7 @@ struct Constraint {
     Vec4 a{};
     double b = 0.0;
 };
-/// radius^2 + slack * d >= |x - centre|^2; slack 1 where the ball gives way too
+/// radius^2 + slack * d >= |x - centre|^2; slack 1 if the ball yields too
 struct BallConstraint {
     std::array<double, 3> centre{};
     double radius = 0.0;

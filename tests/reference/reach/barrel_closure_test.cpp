@@ -41,7 +41,7 @@ protected:
 TEST_F(MovingConstraint, CheckValueOfTheShiftedCentre)
 {
     EXPECT_EQ(kSince, 13.0F);
-    // Around the shifted body and nothing else: a table of one that has become a standing one.
+    // Only around the shifted body: a table of one constraint that has become static.
     const Barrel still = merged(barrel, barrel, kSince, kSince);
     EXPECT_NEAR(still.circle.centre.x(), 35.0F, 1e-3F);
     EXPECT_NEAR(still.circle.centre.y(), 76.0F, 1e-3F);

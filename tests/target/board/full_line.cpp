@@ -18,8 +18,7 @@ using namespace link::mavlink;
 namespace {
 
 constexpr std::uint8_t kJink = 196;
-// Per second; kMostUnread bytes bring at most 11 of the 16 parameters that a step has room for, 6 of 8 commands, one
-// scan.
+// Per second; kMostUnread bytes contain at most 11 parameters (a step's capacity: 16), 6 commands (8), one scan.
 constexpr double kParams = 300.0;
 constexpr double kCommands = 130.0;
 constexpr double kTimesyncs = 900.0;
@@ -70,7 +69,7 @@ bool FullLine::due(double rate, std::uint32_t sent) const noexcept
     return static_cast<double>(sent) < rate * time;
 }
 
-/// Numbers it and closes it with the checksum of what it says then.
+/// Sets the sequence number and then the checksum.
 void FullLine::add(std::span<const std::byte> frame)
 {
     std::vector<std::byte> numbered(frame.begin(), frame.end());
