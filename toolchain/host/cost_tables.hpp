@@ -41,10 +41,9 @@ struct MadeTables {
 
 /// How densely the domain is sampled.
 struct Density {
-    std::size_t per_step = 20;    ///< ratios in each step of the bend table
-    std::size_t elevations = 13;  ///< of the leg, -90 to 90 degrees
-    std::size_t planes = 13;      ///< about the leg, -90 to 90 degrees; planes beyond are equal to these with the
-                                  ///< opposite sign of offset
+    std::size_t per_step = 20;     ///< ratios in each step of the bend table
+    std::size_t elevations = 13;   ///< of the leg, -90 to 90 degrees
+    std::size_t planes = 13;       ///< about the leg, -90 to 90 degrees; beyond: the same with opposite offsets
     std::size_t energy_every = 8;  ///< energy is checked at every n-th ratio
 };
 /// kMeasuring: for the bounds. The second density is twice as fine, so that points between are sampled, with no angle
