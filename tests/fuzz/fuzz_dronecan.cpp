@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A DroneCAN endpoint with its tunnel on arbitrary frames and on whole transfers with a right checksum. Checked: every
-// number that reaches the inbox is finite, directions are unit vectors, queues keep their bounds, frames are accounted
-// for, and the answers that go out can be read back.
+// A DroneCAN endpoint with its tunnel on arbitrary frames and on whole transfers with a correct checksum. Checked:
+// every number that reaches the inbox is finite, directions are unit vectors, queues keep their bounds, frames are
+// accounted for, and the answers that go out can be read back.
 //
 // Input: records of an operation and its operands. 0 a frame as it stands (flags, id 4, length, data 8), 1 a transfer
 // (type, source, transfer id, length, payload), 2 time passes (units of 10 ms), 3 a step of the node, and the tunnel

@@ -5,8 +5,8 @@
 // which, the other five an argument:
 //   0 raw [length][bytes]   1 ticks (argument + 1)   2 autopilot [bits]   3 line [room]   4 traffic
 //   [x][y][z][vx][vy][bits] 5 parameter [index][float]   6 no step for argument * 0.1 s   7 range [range][bits]
-// Checked after each step: set-points are finite, within the vehicle's limits, young, and never sent in a fault; output
-// is whole frames; bytes are bounded; counters only grow.
+// Checked after each step: set-points are finite, within the vehicle's limits, recent, and never sent in a fault;
+// output is whole frames; bytes are bounded; counters only grow.
 #include <algorithm>
 #include <array>
 #include <bit>

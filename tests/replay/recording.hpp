@@ -21,7 +21,7 @@ struct RawFrame {
     std::uint8_t component = 0;
     std::uint32_t message = 0;
     std::vector<std::byte> bytes;             ///< all of the frame
-    std::array<std::uint8_t, 255> payload{};  ///< zeros behind what was sent
+    std::array<std::uint8_t, 255> payload{};  ///< zeros behind the sent bytes
 };
 
 /// Frames of the autopilot's direction in their order. Bytes between frames are left out.

@@ -188,7 +188,7 @@ TEST(SimAutopilot, ThePilotsChoiceIsNoticedInWhatIsSentAfterwards)
     line.run(1.01, true);
     EXPECT_EQ(line.autopilot.mode(), Mode::home);
     line.run(0.15, true);
-    EXPECT_EQ(line.autopilot.heard().setpoints_overruled, 0U);  // under way
+    EXPECT_EQ(line.autopilot.heard().setpoints_overruled, 0U);  // in transit
     line.run(0.3, true);
     EXPECT_GT(line.autopilot.heard().setpoints_overruled, 0U);
 }

@@ -58,7 +58,7 @@ TEST(BoardClock, LetGoItWaitsForANewLife)
     BoardClock clock;
     clock.tell(5'000 * kMs, 1'000 * kMs, 1.0);
     clock.let_go(1'000 * kMs, 1.0);
-    clock.tell(5'020 * kMs, 1'010 * kMs, 1.01);  // was under way
+    clock.tell(5'020 * kMs, 1'010 * kMs, 1.01);  // was in transit
     EXPECT_TRUE(clock.is_free());
     clock.tell(300 * kMs, 1'400 * kMs, 1.4);
     EXPECT_FALSE(clock.is_free());

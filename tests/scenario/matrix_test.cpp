@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The matrix itself: every behaviour is flown to its end when nobody is in the way, and every intruder would hit.
+// The matrix itself: every behaviour is flown to its end without an intruder, and every intruder would hit.
 #include "toolchain/sim/matrix.hpp"
 
 #include <algorithm>

@@ -66,7 +66,7 @@ SwarmSetup small()
 TEST(Swarm, ChangesPlacesAcrossTheCircle)
 {
     SwarmSetup setup = small();
-    setup.vehicles = 5;  // an odd number: opposite is where nobody starts
+    setup.vehicles = 5;  // an odd number: no vehicle starts at the opposite place
     setup.obstacles = 25;
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         std::vector<Threat> obstacles;

@@ -21,7 +21,7 @@ namespace cloud = link::cloud;
 constexpr std::size_t kPoints = 100'000;
 constexpr std::size_t kStepsPerScan = 5;
 
-/// Serves what is there, and forgets it.
+/// Serves the pending bytes, and drops them.
 class BenchPort final : public hal::SerialPort {
 public:
     std::size_t read(std::span<std::byte> into) noexcept override

@@ -66,7 +66,7 @@ TEST(OrcaSphere, HoweverCrowdedItIs)
 {
     SwarmSettings settings;
     settings.sphere = 15.0F;
-    settings.most = 6;  // fewer than touch each other
+    settings.most = 6;  // fewer than the neighbours in contact
     Swarm swarm(120, settings);
     const Flown flown = fly(swarm, 1500);
     EXPECT_GE(flown.least, kApart);
@@ -75,8 +75,8 @@ TEST(OrcaSphere, HoweverCrowdedItIs)
     EXPECT_GT(swarm.counts().truncated, 0U);
 }
 
-/// What the two regions are for: with one that gives way the distance does, too. Without this the test above would not
-/// be able to fail.
+/// Purpose of the two regions: with one yielding region the distance is lost, too. This shows that the test above can
+/// fail.
 TEST(OrcaSphere, OneRegionThatGivesWayIsNotEnough)
 {
     SwarmSettings settings;

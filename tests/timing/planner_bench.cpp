@@ -32,8 +32,8 @@ std::vector<world::Threat> threats(std::size_t count)
     return all;
 }
 
-/// Main threat standing on the leg `ahead` metres ahead; two more about the leg, 0.5 to `largest` m large and growing,
-/// three in ten of them standing.
+/// Static main threat on the leg `ahead` metres ahead; two more about the leg, 0.5 to `largest` m large and growing,
+/// three in ten of them static.
 std::vector<world::Threat> random_threats(std::uint64_t seed, float ahead = kNear, float largest = 8.0F)
 {
     Random random(seed);

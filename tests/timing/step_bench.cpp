@@ -18,7 +18,7 @@ namespace {
 using namespace jink;
 using namespace jink::link::mavlink;
 
-/// Serves prepared bytes and swallows what is written.
+/// Serves prepared bytes and discards output.
 class BenchPort final : public hal::SerialPort {
 public:
     std::size_t read(std::span<std::byte> into) noexcept override

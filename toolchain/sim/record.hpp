@@ -68,7 +68,7 @@ struct Record {
     double closest_area = 1e9;  ///< least signed distance, centre to the body of a closed area, negative inside [m]
     unsigned takeovers = 0;
     int flips = 0;              ///< side changes of the commanded track about the leg
-    double longest_hold = 0.0;  ///< standing still by command [s]
+    double longest_hold = 0.0;  ///< longest commanded stop [s]
     bool given_back = false;
     Mode final_mode = Mode::mission;
     double cross_track = 0.0;  ///< at the end [m]

@@ -165,7 +165,7 @@ TEST(FollowCheckLaw, AVehicleThatIgnoresItsCommandsIsFoundWithinASecondAndAHalf)
         }
         const float along = command.norm() > 1.0F ? velocity.dot(command.normalized()) / command.norm() : 0.0F;
         if (along >= 0.45F) {
-            continue;  // flies that way anyhow, only more slowly
+            continue;  // flies in that direction anyway, only more slowly
         }
         const float sigma = random.uniform(0.0F, 0.1F);
         FollowCheck check;

@@ -87,7 +87,7 @@ struct World {
     int period = kSecond;  ///< of HEARTBEATs [ticks]
     int latency = 1;       ///< least [ticks]
     int jitter = 0;        ///< on top [ticks]
-    float loss = 0.0F;     ///< of a frame, either way
+    float loss = 0.0F;     ///< of a frame, in either direction
     int proof = 0;         ///< least age of the set-point stream for which a PX4 grants the external mode [ticks]
     int phase = 0;
 
@@ -206,7 +206,7 @@ struct Witness {
     bool effect_seen = false;       ///< another mode since the last request
     std::uint32_t number_then = 0;  ///< shown when it was made
     std::uint32_t left = 0;         ///< mission shown at the last request of the external mode
-    bool claim = false;             ///< an external mode seen may be due to us
+    bool claim = false;             ///< an observed external mode may be caused by us
     bool seen_external = false;
     bool hands_off = false;
     bool sticks = false;

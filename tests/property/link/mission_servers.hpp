@@ -310,7 +310,7 @@ public:
         }
     }
 
-    double receiving_until = 0.0;  ///< somebody uploads on another line
+    double receiving_until = 0.0;  ///< an upload on another line is in progress
 };
 
 }  // namespace jink::link::mavlink::test

@@ -94,7 +94,7 @@ TEST(SpaceSetsOfCells, AreThoseOfTheSource)
     EXPECT_FALSE(space_of(mapped).free);
 }
 
-/// Free is what no run blocks, over all combinations of what may be said of a cell.
+/// A cell is free if no run blocks it, over all combinations of its ratings.
 TEST(SpaceSetsOfCells, FreeIsFreeInEveryRun)
 {
     const float ratings[] = {0.0F, 0.5F * kThreshold, kThreshold, 0.4F, 1.0F};

@@ -231,8 +231,8 @@ CellBox box_of(const Grid<float>& grid, const CellPlace& place) noexcept
     const float elevation = 0.5F * (low + high);
     const float aside = grid.column_start(place.column + 1U) - azimuth;
 
-    // Along the middle direction, aside and up, of a direction in the cell: its azimuth from the middle one is turned
-    // by 0 to `aside` either way, and each is linear in the cosine of that, so both ends are looked at.
+    // Along the middle direction, aside and up, of a direction in the cell: its azimuth differs from the middle one by
+    // 0 to `aside` on either side, and each is linear in the cosine of the difference, so both ends are checked.
     Between along;
     Between up;
     for (const float turned : {0.0F, aside}) {

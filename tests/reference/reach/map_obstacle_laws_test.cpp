@@ -33,7 +33,7 @@ MapObstacle random_obstacle(Random& random)
     return o;
 }
 
-/// A random point of the body or of what is within its margin, in double and with rotations written out.
+/// A random point of the body or of its margin, in double and with explicit rotations.
 Place random_point(Random& random, const MapObstacle& o, bool of_body)
 {
     const auto within = [&](float size) { return 0.5 * static_cast<double>(size * random.uniform(-1.0F, 1.0F)); };

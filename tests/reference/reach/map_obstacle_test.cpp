@@ -100,7 +100,7 @@ TEST(MapObstacles, BodiesAreHardAndMarginsSoft)
     EXPECT_EQ(bodies[grid.index({4, 3, 2})], 0.0F);
     EXPECT_EQ(margins[grid.index({4, 3, 2})], 1.0F);
     EXPECT_EQ(margins[grid.index({3, 3, 2})], 0.0F);
-    // A margin is a soft constraint, where nobody sees.
+    // A margin is a soft constraint where no sensor covers the cell.
     CellRating cell;
     cell.add_sensor(0.5F, 0.0F);
     add_map_obstacle(cell, Closure::soft);

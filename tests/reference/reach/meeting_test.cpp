@@ -202,8 +202,8 @@ struct SmallSet {
     }
 };
 
-/// Section 2.1: the hull over all trajectories, by the parts of a movement before and after what is seen; no
-/// trajectory, no time, not 0.
+/// Section 2.1: the hull over all trajectories, by the parts of a movement before and after each sample; without a
+/// trajectory no time, not 0.
 TEST(CellTimes, AreTheHullOfAllTrajectories)
 {
     const SmallSet small;

@@ -116,7 +116,7 @@ PredictStatus predict(const AutomatonSettings& settings, const Segments& segment
         if (out.legs.full()) {
             return PredictStatus::truncated;
         }
-        // What precedes an order that is refused is flown as planned, with that order to follow.
+        // Orders before a refused order are flown as planned, as if the refused order followed.
         Leg leg;
         bool outside = false;
         if (!build_leg(settings, segments, state, exit, order, out.end(), out.not_emitted == 1, leg, outside)) {

@@ -108,7 +108,7 @@ TEST(PredictorLaws, TrajectoriesObeyTheEquationsOfMotion)
             FlightState state;
             ASSERT_TRUE(project(t, std::min(static_cast<float>(seconds), t.end()), state));
             const Point<double> at = state.pose.position.cast<double>();
-            // What a time that is rounded makes of the place, and the rule's own error.
+            // Position error of a rounded time, and the rule's own error.
             ASSERT_NEAR((at - Point<double>(truth.x, truth.y, truth.z)).norm(), 0.0,
                         1e-5 * length + 2e-6 * seconds * 15)
                 << "seed " << kSeed << ", case " << i << ", order " << n;

@@ -105,7 +105,7 @@ TEST(Predictor, TheBuilderPutsInTheChanges)
     EXPECT_EQ(state.speed, 3.0F);
 }
 
-/// Equation 6.7 with the maximum of the sum over what may come before and after.
+/// Equation 6.7 with the maximum of the sum over possible transitions before and after.
 TEST(Predictor, TheLeastDurationHasRoomForAllChanges)
 {
     AutomatonSettings settings;
@@ -170,7 +170,7 @@ TEST(Predictor, TheSegmentIsThatOfTheStateBefore)
     EXPECT_EQ(t.outside, 2U) << "beyond the envelope, and said so";
 }
 
-/// Section 7: n + 1 samples, or n M + 1; more orders than there is room for are counted.
+/// Section 7: n + 1 samples, or n M + 1; orders beyond the capacity are counted.
 TEST(Predictor, SamplesHaveTheStartAndEveryEnd)
 {
     Trajectory t;

@@ -32,7 +32,7 @@ expect: {outcome: avoided}
 
 constexpr std::uint16_t kUndefined = 0xDE00;
 constexpr std::uint16_t kForEver = 0xE7FE;
-constexpr double kQuiet = 2.5;   // [s] heard, nothing in the way
+constexpr double kQuiet = 2.5;   // [s] with reception, without a threat
 constexpr double kLimit = 60.0;  // [s]
 
 struct Case {
@@ -113,7 +113,7 @@ public:
         }
         return n;
     }
-    /// Index of the first text from `from` on that begins so; the end where there is none.
+    /// Index of the first text from `from` on that begins with `begin`; the end if there is none.
     [[nodiscard]] std::size_t find_text(std::size_t from, const std::string& begin) const
     {
         std::size_t i = from;
@@ -245,7 +245,7 @@ int run_early(Board& board)
     return test.failures();
 }
 
-/// A fault in the fault handler that does not lock up: the watchdog's NMI while the last words are on their way.
+/// A fault in the fault handler that does not lock up: the watchdog's NMI while the last words are being sent.
 int run_nested(Board& board)
 {
     Test test(board, "in_handler");
@@ -275,7 +275,7 @@ int run_nested(Board& board)
 
 int run_loop(Board& board)
 {
-    // The image tells what it has to once it hears the autopilot, which beats each second.
+    // The image sends its reports once it receives the autopilot's HEARTBEAT, one per second.
     constexpr double kHeartbeats = 1.5;
     Test test(board, "crash_loop");
     board.debugger().go();

@@ -70,7 +70,7 @@ bool FullLine::due(double rate, std::uint32_t sent) const noexcept
     return static_cast<double>(sent) < rate * time;
 }
 
-/// Numbers it and closes it with the checksum of what it says then.
+/// Sets the sequence number and then the checksum.
 void FullLine::add(std::span<const std::byte> frame)
 {
     std::vector<std::byte> numbered(frame.begin(), frame.end());

@@ -42,8 +42,8 @@ struct Options {
     std::string image, machine, layout;
     double seconds = 60.0;
     std::optional<std::uint64_t> drop;
-    /// An instruction takes 2^shift ns of the board's time, 125 million a second; while it waits, time goes on as ours.
-    /// Without that the board's time is ours, and a step that is held up by the machine is late.
+    /// An instruction takes 2^shift ns of the board's time, 125 million per second; while the board waits, its clock
+    /// follows wall time. Without this the board's time is wall time, and a step delayed by the host is late.
     unsigned shift = 3;
 };
 
@@ -184,7 +184,7 @@ private:
         sent_ += n;
     }
 
-    /// Stops the processor where nothing is on its way out.
+    /// Stops the processor when no output is in transit.
     Counters read_counters()
     {
         for (int i = 0;; ++i) {
@@ -211,7 +211,7 @@ private:
 
     int judge(const Counters& c)
     {
-        // From the step before the first that told its time to the last that did.
+        // From the step before the first reported time to the last report.
         const double took = ear_.clock - first_ + kStep;
         const double in = static_cast<double>(sent_) / took;
         const double out = static_cast<double>(ear_.bytes) / took;

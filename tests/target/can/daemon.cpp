@@ -55,7 +55,7 @@ public:
         answers_.set_node(kUs);
     }
 
-    /// One tick: what came is kept, an autopilot's telemetry goes out.
+    /// One tick: records received transfers, sends an autopilot's telemetry.
     void tick()
     {
         const TimePoint now{now_us()};
@@ -202,7 +202,7 @@ void try_node(Peer& peer)
     EXPECT(peer.until([&] { return !peer.statuses.empty(); }));
     peer.statuses.clear();
     peer.tick_for(200);
-    // At least four seconds: one each, whatever the machine's load makes of them, and one more for a change of state.
+    // At least four seconds: one status each, for any load of the host, and one more for a change of state.
     EXPECT(peer.statuses.size() >= 3);
     bool quick = false;
     for (std::size_t i = 2; i < peer.statuses.size(); ++i) {

@@ -87,7 +87,7 @@ bool receive_soon(SocketCanPort& port, CanFrame& f)
     return false;
 }
 
-/// A plain socket that can say what the port must not: error frames.
+/// A plain socket that can send error frames, which the port must not.
 int raw_socket(const char* interface)
 {
     const int s = ::socket(PF_CAN, SOCK_RAW, CAN_RAW);
@@ -294,7 +294,7 @@ void try_refusals(Netlink& links)
     EXPECT(a.health().state == CanState::closed);
 }
 
-/// Two kvaser_pci cards on one emulated bus: the way through a real driver and controller (SJA1000).
+/// Two kvaser_pci cards on one emulated bus: tests a real driver and controller (SJA1000).
 void try_controllers(Netlink& links)
 {
     std::printf("two controllers on one bus\n");

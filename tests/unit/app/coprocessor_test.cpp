@@ -63,7 +63,7 @@ TEST(CoprocessorFault, StaleOwnStateIsToldCriticalAndSilencesTheStream)
         f->fly(1);
         ++waited;
     }
-    // OWN_AGE 0.5 s is 25 ticks; one more to notice, one for what the stamp was old already.
+    // OWN_AGE 0.5 s is 25 ticks; one more to detect the age, one for the initial age of the stamp.
     EXPECT_LE(waited, 27);
     EXPECT_GE(waited, 23);
     EXPECT_TRUE(has(f->last, Fault::own_state_stale));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a take-over ends: by the pilot's mode or sticks, by commands that are not followed, by a fault; and what is
-// found.
+// How a take-over ends: by the pilot's mode or sticks, by commands that are not followed, by a fault; and the reported
+// finding.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/takeover_bench.hpp"

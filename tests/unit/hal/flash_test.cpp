@@ -23,7 +23,7 @@ struct ControllerModel {
     std::uint32_t access = 0x705, status = 0, control = 1U << 31U;
     std::vector<std::uint32_t> words = std::vector<std::uint32_t>(2 * kSector / 4, kErased);
     std::map<std::uint32_t, std::uint32_t> cache;
-    std::vector<bool> erasing;  ///< what the driver announced
+    std::vector<bool> erasing;  ///< announcements of the driver
     int keys = 0;
     int writes = 0;       ///< to the controller
     int word_writes = 0;  ///< to the flash

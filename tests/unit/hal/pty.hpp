@@ -47,7 +47,7 @@ public:
         return put > 0 ? static_cast<std::size_t>(put) : 0;
     }
 
-    /// Whatever has arrived; waits up to `wait_ms` for the first byte.
+    /// Received bytes; waits up to `wait_ms` for the first byte.
     [[nodiscard]] std::vector<std::byte> read(std::size_t at_most, int wait_ms) const
     {
         std::vector<std::byte> got(at_most);

@@ -113,7 +113,7 @@ TEST_F(DronecanAllocation, OthersStartTheWaitAnewAndTheirIdsAreNotOurs)
     other.unique_id[15] ^= 1U;
     give(node, other);
     EXPECT_EQ(node.id(), kAnonymous);
-    give(node, confirmed(16, 0));  // an answer without a node id is none
+    give(node, confirmed(16, 0));  // an answer without a node id is ignored
     EXPECT_EQ(node.id(), kAnonymous);
     give(node, Allocation{});
     EXPECT_EQ(node.id(), kAnonymous);

@@ -16,7 +16,7 @@ TEST_F(DronecanEndpoint, ProximityLooksWhereTheBodyDoes)
     give(proximity(0.0F, 5.0F));
     give(proximity(90.0F, 6.0F));        // right of the nose: south
     give(proximity(0.0F, 7.0F, 90.0F));  // up
-    give(proximity(-90.0F, 0.0F));       // touching
+    give(proximity(-90.0F, 0.0F));       // contact
     ASSERT_EQ(inbox.readings.size(), 4U);
     expect_near(inbox.readings[0].direction, {1.0F, 0.0F, 0.0F}, 2e-3F);
     EXPECT_EQ(inbox.readings[0].range, 5.0F);

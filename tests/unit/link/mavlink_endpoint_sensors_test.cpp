@@ -189,7 +189,7 @@ TEST_F(MavlinkEndpointSensors, NorthUpScansDoNotTurn)
 TEST_F(MavlinkEndpointSensors, DistancesAtTheEdges)
 {
     ObstacleDistance m = scan();
-    m.distances[0] = 0;   // touching
+    m.distances[0] = 0;   // contact
     m.distances[1] = 19;  // nearer than the sensor can measure
     m.distances[2] = 20;
     m.distances[3] = 4000;

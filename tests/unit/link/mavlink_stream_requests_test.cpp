@@ -80,7 +80,7 @@ TEST(MavlinkStreamRequests, RefusedTrafficIsNotAskedForAgainButPositionIs)
 TEST(MavlinkStreamRequests, TooSeldomIsAskedForToo)
 {
     auto rates = kAll;
-    rates[32] = 4.0F;  // ArduPilot's SRx_POSITION as it often stands
+    rates[32] = 4.0F;  // a common value of ArduPilot's SRx_POSITION
     StreamRequests streams;
     const Asked asked = run(streams, 10.0F, rates);
     EXPECT_EQ(asked.at.size(), 1U);

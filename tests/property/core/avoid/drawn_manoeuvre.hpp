@@ -23,7 +23,7 @@ inline constexpr std::uint32_t kAmple = 50'000'000;
 
 enum class Flying { path, velocity, brake, turn, planned, reciprocal, held, fallback_turn, count };
 
-/// A situation, what is flown in it, and how.
+/// A situation, its manoeuvre, and the state of the flight.
 struct Drawn {
     Scene scene;
     Settings settings;
@@ -197,7 +197,7 @@ inline void hold_as_wing(const Drawn& d, DenseFlight& flight)
     }
 }
 
-/// `direction`: of a turn; 0: what is held is a command.
+/// `direction`: of a turn; 0: a held command.
 inline DenseFlight fly(const Drawn& d, float direction)
 {
     if (d.flying != Flying::held && d.flying != Flying::fallback_turn) {

@@ -207,7 +207,7 @@ TEST(VelocityFilterLaws, TheOrderOfNeighboursChangesNothing)
     apart.check("another order", count);
 }
 
-/// Both vehicles of a pair do the opposite: everything mirrored at a point, ids the other way round.
+/// Both vehicles of a pair do the opposite: everything mirrored at a point, ids exchanged.
 void mirror(Seen& tick)
 {
     const Vec3 own = tick.input.own.position;

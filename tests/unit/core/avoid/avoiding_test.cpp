@@ -82,7 +82,7 @@ TEST(Avoiding, TheOtherSideIsTakenWhenTimeIsUpAndCounted)
     Supervisor supervisor(quick(), method);
     Guidance g = avoid_head_on(f, supervisor);
     f.pass(g.velocity, 0.1F);
-    f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // met in 6 s, on the detour and beside the leg
+    f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // contact in 6 s, on the detour and on the parallel offset
     side = -kLeft;
     g = f.update(supervisor, true);
     EXPECT_EQ(supervisor.diagnostics().flips, 0U) << "there is time";
@@ -192,7 +192,7 @@ TEST(Avoiding, UnsafeWithoutAnotherPlanItFliesOnUntilItMustBrake)
     Guidance g = avoid_head_on(f, supervisor);
     finds = false;
     f.pass(g.velocity, 0.1F);
-    f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // met in 6 s, on the detour and beside the leg
+    f.scene.track(Vec3(33, 5, 30), Vec3::Zero(), 4.0F);  // contact in 6 s, on the detour and on the parallel offset
     g = f.update(supervisor, true);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_LT(g.margin, 0.0F) << "and says so";

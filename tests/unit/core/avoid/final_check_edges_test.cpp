@@ -231,7 +231,7 @@ TEST(FinalCheck, IsCutOffAsAsked)
     EXPECT_LT(checked(f, m, {}, kInfinity, {0.0F, 3.0F, {}}).margin, 0.0F);
 }
 
-// --- what a check costs: every set-point, every chord of the stop, every piece ---
+// --- cost of a check: every set-point, every chord of the stop, every piece ---
 
 std::uint32_t cost_of(const Flight& f, const Manoeuvre& m, const Settings& settings = {})
 {

@@ -221,7 +221,7 @@ TEST(GivingUp, NotWhileTrafficComes)
     EXPECT_TRUE(blocked(1000.0F, 0.0F));
 }
 
-// --- what control is kept for ---
+// --- reasons to keep control ---
 
 /// In control, clear path: control is returned after the least time, and once.
 struct GivenBack : Waiting {

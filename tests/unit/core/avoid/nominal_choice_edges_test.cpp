@@ -175,7 +175,7 @@ TEST(OtherPath, IsShownToMethodsWhereItCounts)
     EXPECT_EQ(ends, (std::vector<float>{300.0F, 300.0F, 0.0F, 0.0F})) << "for a wider vehicle, then as it is";
 }
 
-// --- what methods see ---
+// --- inputs of methods ---
 
 struct Shown {
     bool flies = false;

@@ -23,7 +23,7 @@ struct Outside : Scripted {
         EXPECT_EQ(f.update(supervisor, true).state, State::avoiding);
         f.scene.tracks.clear();
         f.scene.own.position = Vec3(0, 0, 34);
-        f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);  // where the way back meets the leg
+        f.scene.track(Vec3(12, 0, 30), Vec3::Zero(), 1.5F);  // where the path back joins the leg
     }
     Supervisor<FakeMethod> supervisor;
 };
@@ -98,7 +98,7 @@ Flight along_side(float y, float gap)
 {
     Flight f;
     f.scene.own.position = Vec3(20, y, 30);
-    f.scene.track(Vec3(32, 0, 30), Vec3::Zero(), 1.0F);  // where the way back meets the leg
+    f.scene.track(Vec3(32, 0, 30), Vec3::Zero(), 1.0F);  // where the path back joins the leg
     f.scene.track(Vec3(40, y + 2.0F + gap, 30), Vec3::Zero(), 1.0F);
     return f;
 }

@@ -199,7 +199,7 @@ TEST(ChoiceBorder, NoMoreIsKeptForCheckingThanItMayTake)
 
 TEST(ChoiceBorder, TheLargestShareOfWorkIsNoLessThanASmallerOne)
 {
-    // One solid doubles it, past what its counter holds.
+    // One solid doubles the cost, beyond the range of its counter.
     Scene scene;
     scene.settings.evaluate_all = false;
     scene.settings.check_units = 0x80000000U;

@@ -55,7 +55,7 @@ private:
 std::vector<Wait> waits()
 {
     return {{30.0F, 5.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // slows down, waits, continues
-            {30.0F, 5.0F, 5.0F, 0.0F, 6.0F, 3.5F},   // stands
+            {30.0F, 5.0F, 5.0F, 0.0F, 6.0F, 3.5F},   // static
             {30.0F, 0.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // speeds up to less than it will
             {30.0F, 0.0F, 5.0F, 0.0F, 4.0F, 3.5F},   // static from the beginning
             {30.0F, 3.0F, 5.0F, 0.6F, 4.0F, 3.5F},   // is as slow already

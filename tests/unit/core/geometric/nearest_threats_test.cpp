@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Settings::moving_nearest: which moving threats are the nearest, case by case. Only those count for closeness, so that
-// each candidate's closeness is what it is with them alone.
+// each candidate's closeness equals the value with them alone.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ std::vector<float> closeness_of(const std::vector<Sphere>& threats)
     return alone.closeness();
 }
 
-/// `threats`, with the `nearest` first one of them to count, and the other way round.
+/// `threats` with `nearest` first, and in the reverse order.
 void expect_nearest(const Sphere& nearest, const Sphere& other, const std::string& what)
 {
     const std::vector<float> expected = closeness_of({nearest});

@@ -133,7 +133,7 @@ TEST_F(BluntCorners, ASphereThatIsAPointAndAHalfSpaceThroughItAre)
     EXPECT_EQ(solution.status, 0U);
 }
 
-// --- where levels give way ---
+// --- yielding levels ---
 
 TEST_F(BluntCorners, AFifthAsFarBrokenIs)
 {

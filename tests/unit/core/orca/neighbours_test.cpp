@@ -64,7 +64,7 @@ TEST(Neighbours, TheSeventeenthCapsTheSpeed)
     // 12 m of gap in 10 s less its 2 m/s is nothing: half of the gap, as it does itself.
     const float gap = 5.0F + 0.5F * static_cast<float>(kMaxOrcaNeighbours) - 1.0F;
     EXPECT_NEAR(out.speed_cap, gap / 20.0F, 1e-5F);
-    // Slow: what it leaves.
+    // Slow: the remaining speed.
     all[0].max_speed = 0.5F;
     EXPECT_NEAR(selected(settings, all).speed_cap, gap / 10.0F - 0.5F, 1e-5F);
     // The order of the input changes nothing.

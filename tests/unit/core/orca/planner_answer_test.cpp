@@ -140,7 +140,7 @@ TEST_F(OrcaInput, ABudgetThatRunsOutIsNoAnswer)
     EXPECT_EQ(spent, 45U);
 }
 
-// --- what was flown before ---
+// --- previous commands ---
 
 TEST_F(OrcaInput, WhatWasSentSinceTheLastPlanIsFlownFirst)
 {

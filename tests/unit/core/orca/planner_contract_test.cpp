@@ -233,7 +233,7 @@ TEST_F(OrcaInput, TheBiasIsThatOfTheSettings)
     EXPECT_NEAR(command().y(), -0.5F, 5e-3F);
 }
 
-// --- what was flown before ---
+// --- previous commands ---
 
 /// Commands act after the latency and are followed with the lag of the velocity loop.
 TEST_F(OrcaInput, CommandsOnTheirWayAreFollowedWithTheLoopsLag)

@@ -163,7 +163,7 @@ TEST(ProgramEdges, WithoutTimeItAcceleratesAwayFromTheWorstConflictWhereObstacle
     EXPECT_EQ(solution.status, kWorkLimit | kRelaxedConflict | kRelaxedWarning);
     EXPECT_EQ(solution.level, Level::conflict);
     expect_velocity(solution, {1, 0.5F, 0});
-    // No obstacle is met for its sake: with a bound at y = 0.2 it stays where it is, or brakes.
+    // It never causes contact with an obstacle: with a bound at y = 0.2 it stays or brakes.
     asked.planes[0] = beyond({0, -1, 0}, -0.2F);
     EXPECT_EQ(asked.solved(0).broken[1], 0.0F);
     EXPECT_LT(asked.solved(0).velocity.y(), 0.2F);

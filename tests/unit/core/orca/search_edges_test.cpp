@@ -88,7 +88,7 @@ TEST(SearchInTwiceThePrecision, ARowThatIsBrokenByAMillionthHolds)
     EXPECT_EQ(s.basis().size, 1U);
 }
 
-// --- what is near, and in too small an angle: asked of single precision ---
+// --- near rows at too small an angle: tested in single precision ---
 
 class BluntEdges : public SearchEdges<float> {};
 

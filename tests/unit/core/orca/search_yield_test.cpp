@@ -201,7 +201,7 @@ TYPED_TEST(CornerYield, RowsOfAnEarlierSearchMakeNoCorner)
     EXPECT_EQ(d, 7.0F);
 }
 
-// --- more rows than there is room for in twice the precision ---
+// --- more rows than the capacity of double-float ---
 
 /// Planes about a sphere of 1 m/s within decades of angles to `axis`: each that is taken leaves another one broken.
 class ManyYield : public YieldOfWides {

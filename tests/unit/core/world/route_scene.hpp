@@ -32,7 +32,7 @@ struct RoutePiecesTest : testing::Test {
     {
         return detail::RoutePieces(scene.situation(), of, lookahead);
     }
-    /// One after the other, each with a duration, until the look-ahead.
+    /// Consecutive pieces, each with a duration, until the look-ahead.
     static void follow_on(const detail::RoutePieces& all, Seconds lookahead)
     {
         ASSERT_GT(all.size(), 0U);
