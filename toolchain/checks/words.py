@@ -20,9 +20,9 @@ import pages  # noqa: E402
 
 SOURCES = (".hpp", ".cpp", ".h", ".c")
 # Parts of names, with the part to use: of CamelCase and of snake_case.
-NAMES = {"sphere": "sphere", "spheres": "spheres", "cylinder": "cylinder", "cylinders": "cylinders", "quick_reject": "quick reject", "quick_rejects": "quick rejects",
+NAMES = {"ball": "sphere", "balls": "spheres", "barrel": "cylinder", "barrels": "cylinders", "glance": "quick reject", "glances": "quick rejects",
          "rung": "method", "rungs": "methods", "ladder": "order", "told": "reported", "echo": "return", "dear": "expensive", "dearest": "most expensive"}
-PREFIXES = {"kMax": "kMax", "kMin": "kMin"}
+PREFIXES = {"kMost": "kMax", "kLeast": "kMin"}
 # (files, word): why the word is right there.
 EXCUSED = {}
 PART = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
