@@ -95,7 +95,7 @@ inline constexpr std::size_t kMaxMapObstacles = kMaxObstacles < 4 ? 1 : kMaxObst
 inline constexpr std::size_t kMaxCylinders = JINK_MAX_CYLINDERS;
 static_assert(kMaxCylinders >= 2 && kMaxCylinders <= 256);
 
-/// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave room for a tail.
+/// Points of a timed path. 57 reproduce the geometric planner's distribution study, 64 leave space for a tail.
 inline constexpr std::size_t kMaxPathPoints = JINK_MAX_PATH_POINTS;
 static_assert(kMaxPathPoints >= 34 && kMaxPathPoints <= 1024);
 

@@ -15,7 +15,7 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Upper bound of along_z^2 + side_z^2, with the rounding of a path frame.
 constexpr float kUnitTolerance = 1.01F;
 
-/// Position in a row and interpolation weights.
+/// Position within a row of the table, and interpolation weights.
 struct Reader {
     std::size_t first = 0;
     std::array<float, 4> weight{};

@@ -18,7 +18,7 @@ namespace {
 
 /// A joint whose tangents differ by less is none [-].
 constexpr float kNoCorner = 1e-4F;
-/// What follows a joint is looked at this far past it, so that rounding does not find what comes before it [m].
+/// The part after a joint is sampled this far past it, so that rounding does not find the part before it [m].
 constexpr float kPastJoint = 1e-3F;
 /// No chord takes less, however short it is: times rise strictly and velocities are numbers [s].
 constexpr Seconds kMinDuration = 1e-3F;

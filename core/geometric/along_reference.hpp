@@ -6,7 +6,7 @@
 #include "core/geometric/planner.hpp"
 #include "core/world/conflict.hpp"
 
-// Candidates along a reference that is not straight. Private to this room.
+// Candidates along a reference that is not straight. Private to this module.
 //
 // With b the reference ahead by arc length, its corners rounded, and n a side that is carried along it without twist, a
 // candidate is p(s) = b(s) + w f(s / D) n(s): the family's curve as it is along a straight leg, f being 0 at both ends.
@@ -20,7 +20,7 @@ inline constexpr float kCornerShare = 0.5F;
 /// The reference ahead of a manoeuvre that ends `end` [m] along it, about its start. Corners before the end are rounded
 /// by parabolas (linear segments with parabolic blends: R. P. Paul, Robot Manipulators, MIT Press 1981, ch. 5), which
 /// begin and end as far along from the corner as the speed asks for, but neither before the start nor past the end:
-/// where there is no room, the turn is too sharp and the candidate not flyable. 24 bytes per corner.
+/// where there is no space, the turn is too sharp and the candidate not flyable. 24 bytes per corner.
 class ReferenceAhead {
 public:
     ReferenceAhead(const Problem& problem, const vehicle::VehicleLimits& limits, float end) noexcept;

@@ -15,7 +15,7 @@
 
 namespace jink::geometric {
 
-/// simple, symmetric: the source's. smooth: the quintic of least jerk, out and back (T. Flash, N. Hogan, J. Neurosci. 5
+/// simple, symmetric: Pinheiro's. smooth: the quintic of least jerk, out and back (T. Flash, N. Hogan, J. Neurosci. 5
 /// (1985), 1688-1703): it leaves the leg and meets it again along it and without curvature, so that acceleration has no
 /// jump anywhere. plateau: the same, but out within kPlateauRise of D and as far from the leg until as much before its
 /// end: climb (or step aside) first, then pass. wait: stays on the leg, slows down or stands until something has

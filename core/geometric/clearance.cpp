@@ -162,7 +162,7 @@ void Clearance::add_solid(const world::Threat& threat, WorkBudget& budget) noexc
         const Vec3& start = problem_.frame.origin;
         item.shrunk =
             shrink_to_clear(world::obstacle_margin(half_, start, start, solid.shape, budget, solid.growth.radius));
-        // Distances from solids are told apart no finer than this.
+        // Distances from solids are resolved no finer than this.
         item.shrunk += item.shrunk > 0.0F ? world::kObstacleResolution : 0.0F;
     }
     items_.unchecked_push_back(item);

@@ -9,7 +9,7 @@
 #include "core/geometric/extent.hpp"
 #include "core/geometric/planner.hpp"
 
-// What a curve touches. Private to this room.
+// Contacts of a curve. Private to this module.
 
 namespace jink::geometric::detail {
 
@@ -23,7 +23,7 @@ struct AtStart {
 [[nodiscard]] AtStart at_start(const Problem& problem, const world::Threat& threat) noexcept;
 
 /// How far a curve and a sphere are from meeting, by bounds on their speeds: segments are passed over while nothing can
-/// happen. Never hides what the exact test would find: the bounds leave more room than that test's rounding takes.
+/// happen. Never hides what the exact test would find: the bounds leave more clearance than that test's rounding takes.
 class MotionBound {
 public:
     /// Of a curve whose coordinates change no faster than `fastest` [m/s] and that lasts `duration`, and a sphere whose
@@ -33,7 +33,7 @@ public:
     {
     }
 
-    /// Looks at where the sphere's centre is from the curve, at `t`.
+    /// Samples where the sphere's centre is from the curve, at `t`.
     void look(const Vec3& apart, const Vec3& half, Seconds t) noexcept
     {
         const Vec3 size = apart.cwiseAbs();
@@ -77,7 +77,7 @@ public:
     /// O(threats + obstacles).
     void collect(const Extent& reach, Seconds longest, WorkBudget& budget) noexcept;
 
-    /// Moving threats, by index, that are looked at apart from the others: see `check`. None until this is called.
+    /// Moving threats, by index, that are checked apart from the others: see `check`. None until this is called.
     void defer(const Selection& threats) noexcept { deferred_ = threats; }
 
     /// Volumes that moving threats sweep end at this time: the longest candidate's duration (swept mode).

@@ -57,7 +57,7 @@ bool Clearance::touches(const Curve& curve, const Sphere& sphere, float shrunk, 
     Vec3 before = sphere.apart(curve, 0);
     bool near = false;
     while (i + 1 < curve.points) {
-        // Where there was no room a segment before there will hardly be any.
+        // Where a segment before had no clearance to skip by, this one hardly has any.
         if (!near) {
             room.look(before, sphere.half, curve.t[i]);
             std::size_t next = i;

@@ -8,7 +8,7 @@
 #include "core/path/timed_path.hpp"
 
 // One candidate as numbers: waypoints with times, coordinate by coordinate, about the start of the manoeuvre (so that
-// far from the world's origin nothing is lost). Private to this room.
+// far from the world's origin nothing is lost). Private to this module.
 
 namespace jink::geometric::detail {
 

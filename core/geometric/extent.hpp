@@ -6,11 +6,11 @@
 
 #include "core/geometric/curve.hpp"
 
-// Boxes about curves: cheap looks before exact tests. Private to this room.
+// Boxes about curves: quick rejects before exact tests. Private to this module.
 
 namespace jink::geometric::detail {
 
-/// Share of all lengths by which cheap looks leave room, so that rounding never passes over a contact.
+/// Share of all lengths that quick rejects leave as clearance, so that rounding never passes over a contact.
 inline constexpr float kExtentRounding = 1e-5F;
 
 /// Axis-aligned box about the start of the manoeuvre [m].

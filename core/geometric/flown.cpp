@@ -90,7 +90,7 @@ void Flown::brake(WorkBudget& budget) noexcept
     const Seconds start = flight_.t[last];
     const Seconds span = std::max(vehicle::stopping_time(velocity.norm(), limits_), kFlightStep);
     const path::detail::Steps steps(span, span / static_cast<float>(kTailPoints - 1), kTailPoints - 1);
-    assert(flight_.points + steps.count <= kMaxPathPoints);  // the flight's own step leaves room for them
+    assert(flight_.points + steps.count <= kMaxPathPoints);  // the flight's own step leaves space for them
     Seconds from = 0.0F;
     for (std::size_t i = 1; i <= steps.count; ++i) {
         static_cast<void>(budget.spend(units::kCandidatePart));

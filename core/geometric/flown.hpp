@@ -6,7 +6,7 @@
 #include "core/geometric/clearance.hpp"
 #include "core/vehicle/motion.hpp"
 
-// A candidate as the vehicle would fly it. Private to this room.
+// A candidate as the vehicle would fly it. Private to this module.
 
 namespace jink::geometric::detail {
 

@@ -17,7 +17,7 @@ using world::PlanStatus;
 
 /// First parts that are tried: the cheapest, and the cheapest on another side.
 constexpr int kFirstParts = 2;
-/// No candidate on the other side is dearer than one on this side by that.
+/// No candidate on the other side is more expensive than one on this side by that.
 constexpr float kOtherSide = 10.0F;
 
 /// A share of all there is, so that rounding takes nothing over the limit.
@@ -158,7 +158,7 @@ bool join_parts(const Problem& problem, const Settings& settings, const vehicle:
     for (path::PathPoint point : result.path.points) {
         point.position -= problem.frame.origin;
         point.time += first.duration;
-        whole.path.points.unchecked_push_back(point);  // parts_of has seen to the room
+        whole.path.points.unchecked_push_back(point);  // parts_of has seen to the space
     }
     if (!budget.spend(units::kCandidatePoint * static_cast<std::uint32_t>(whole.path.points.size()))) {
         return false;

@@ -8,7 +8,7 @@
 namespace jink::geometric::detail {
 namespace {
 
-/// Half width of the source's fan of offsets in radii of the main threat (Pinheiro eq. 3.6).
+/// Half width of Pinheiro's fan of offsets in radii of the main threat (Pinheiro eq. 3.6).
 constexpr float kFan = 3.2F;
 /// Offsets within rounding of the drop limit are kept.
 constexpr float kKeep = 1.0F - 1e-5F;

@@ -4,7 +4,7 @@
 #include "core/base/static_vector.hpp"
 #include "core/geometric/planner.hpp"
 
-// Offsets of the candidates of one plane. Private to this room.
+// Offsets of the candidates of one plane. Private to this module.
 
 namespace jink::geometric::detail {
 
@@ -24,7 +24,7 @@ void offsets_of_plane(const Problem& problem, const Settings& settings, Family f
 [[nodiscard]] float smallest_clearing_offset(const Problem& problem, const Settings& settings, Family family,
                                              const Vec3& half_extents, const Vec3& side) noexcept;
 
-/// Offsets beyond this share of the distance are left out: the source's go no further (3.2 R at D = 2.5 R).
+/// Offsets beyond this share of the distance are left out: Pinheiro's go no further (3.2 R at D = 2.5 R).
 inline constexpr float kLargestRatio = 1.2801F;
 /// An offset below this is no way round anything [m].
 inline constexpr float kMinOffset = 0.3F;

@@ -76,7 +76,7 @@ void join(const Vec3& from, const Vec3& velocity, Seconds lead, const path::Time
     }
     for (path::PathPoint point : path.points) {
         point.time += lead;
-        out.points.unchecked_push_back(point);  // move_start has looked for room for one more
+        out.points.unchecked_push_back(point);  // move_start has checked the space for one more
     }
 }
 
@@ -103,7 +103,7 @@ bool apply(const Attempt& attempt, vehicle::VehicleKind kind, Settings& settings
         settings.extra_planes = waits ? 0 : settings.extra_planes;
     }
     if (attempt.kind == Kind::more_planes) {
-        // As many candidates as before: where there is one offset a side already, one of the source's families.
+        // As many candidates as before: where there is one offset a side already, one of Pinheiro's families.
         settings.simple = settings.simple && (settings.offsets > 2 || !settings.symmetric);
         settings.extra_planes = static_cast<std::uint16_t>(2U * settings.extra_planes + 1U);
         settings.offsets = static_cast<std::uint16_t>(std::max(settings.offsets / 4 * 2, 2));

@@ -44,7 +44,7 @@ struct Attempt {
 /// What the Planner tries, in this order, until something is available: slower flight asks for less acceleration and
 /// lets crossing traffic pass; an end point further out makes curves gentler; a wall of threats has its gap further
 /// out, or is climbed over at once; what only passes is waited for. A fixed wing does not fly slower, nor wait. How
-/// many of random situations each one solves is told by tests/property/core/geometric (WhatEachAttemptAdds).
+/// many of random situations each one solves is printed by tests/property/core/geometric (WhatEachAttemptAdds).
 inline constexpr std::array<Attempt, 10> kAttempts{{
     {},
     {.speed_share = 0.6F},
@@ -93,7 +93,8 @@ struct Settings {
     /// end), or else the next cheapest is tried; off in source mode.
     bool verify_flight = true;
     /// Every candidate is checked as a curve before the first is flown, so that Result says of each what it touches.
-    /// Otherwise costs come first, and no candidate dearer than the chosen one is looked at: the choice is the same.
+    /// Otherwise costs come first, and no candidate more expensive than the chosen one is checked: the choice is the
+    /// same.
     bool evaluate_all = false;
     /// Work that one attempt may spend on checking candidates, cheapest first, as curves (but with evaluate_all) and in
     /// flight; as much again for each solid within reach that no closed form knows, and along a route. Those that it
@@ -105,7 +106,7 @@ struct Settings {
     const cost::tables::Tables* tables = nullptr;
     cost::ClosenessMethod closeness = cost::ClosenessMethod::time_aware;
     float rotation_penalty = 1.0F;  ///< k_p
-    /// Energy and hover power of each candidate too, which are told but do not count; 0 otherwise.
+    /// Energy and hover power of each candidate too, which are reported but do not count; 0 otherwise.
     bool all_terms = false;
     cost::Weights weights;
     cost::Caps caps;
@@ -113,7 +114,7 @@ struct Settings {
     std::uint16_t closeness_nearest =
         0;  ///< only the k moving threats nearest to the start count for closeness; 0: all
     /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
-    /// candidates are looked at against those first: the others are looked at once, for the candidate that would be
+    /// candidates are checked against those first: the others are checked once, for the candidate that would be
     /// taken, so that what is found is clear of all (as avoid/final_check.hpp sees to once more). The main threat is
     /// among them. 0: all.
     std::uint16_t moving_nearest = 0;
@@ -125,7 +126,7 @@ struct Settings {
     bool starts_after_latency = true;
     std::uint8_t retries = 9;  ///< Planner: further attempts when nothing is available, 0..9
 };
-/// The source's planner: swept security ending at the collision point, source offsets, no feasibility, swept closeness.
+/// Pinheiro's planner: swept security ending at the collision point, source offsets, no feasibility, swept closeness.
 [[nodiscard]] Settings source_settings() noexcept;
 /// Which member says whether a family is used.
 [[nodiscard]] bool Settings::*flag_of(Family family) noexcept;
@@ -151,7 +152,7 @@ struct Problem {
     /// which it ends. Outlives the solving.
     path::RouteAhead ahead;
     float distance = 0.0F;     ///< D: along the leg, or the reference, from the start to the collision point [m]
-    float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales the source's offsets [m]
+    float main_radius = 0.0F;  ///< R that has to be cleared, uncertainty included; scales Pinheiro's offsets [m]
     float body_radius = 0.0F;  ///< of the main threat without its uncertainty: scales the clearing fan and the 2.5 R
                                ///< rule [m]; 0: main_radius
     std::size_t main = kNoThreat;  ///< index of the main threat among the tracks of `threats`, or kNoThreat
@@ -199,13 +200,13 @@ struct Problem {
 struct Result {
     StaticVector<Candidate, kMaxCandidates> candidates;  ///< in the order of generation
     std::size_t chosen = 0;                              ///< index, valid on PlanStatus::found
-    bool cut_short = false;    ///< work has ended before a candidate that was found to do, or before all were looked at
+    bool cut_short = false;    ///< work has ended before a candidate that was found to do, or before all were checked
     std::size_t attempt = 0;   ///< solve_with_retries: the last one made, an index of kAttempts
     path::TimedPath path;      ///< of the chosen one
     Vec3 side = Vec3::Zero();  ///< unit vector from the leg to its apex
 };
 
-/// Working memory of one `solve`, to be kept where there is room for it: a microcontroller's stack is no such place.
+/// Working memory of one `solve`, to be kept where there is space for it: a microcontroller's stack has none.
 /// Holds nothing from one call to the next. kBytes, about 18 KiB with the default capacities.
 class Workspace {
 public:

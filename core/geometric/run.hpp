@@ -14,7 +14,7 @@
 #include "core/geometric/flown.hpp"
 #include "core/geometric/planner.hpp"
 
-// Private to this room.
+// Private to this module.
 
 namespace jink::geometric::detail {
 
@@ -58,7 +58,7 @@ private:
     [[nodiscard]] std::uint32_t units_of_checks() const noexcept
     {
         constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
-        // Curves along a route are dearer: one share more.
+        // Curves along a route are more expensive: one share more.
         const std::uint64_t shares =
             (!problem_.ahead.route.empty() ? 2U : 1U) + std::uint64_t{units::kSolidShares} * clearance_.solids();
         return static_cast<std::uint32_t>(std::min(kMax, settings_.check_units * shares));
@@ -112,7 +112,7 @@ private:
     WorkBudget& budget_;
     Result& result_;
     const Vec3 along_;
-    bool spent_ = false;                          ///< the budget has ended before all candidates were looked at
+    bool spent_ = false;                          ///< the budget has ended before all candidates were checked
     Seconds longest_ = 0.0F;                      ///< duration of any candidate, where threats sweep volumes
     std::array<UnitCurve, kCurves.size()> unit_;  ///< by family
     std::array<Vec3, kMaxPlanes> sides_;

@@ -90,7 +90,7 @@ enum class MapStatus : std::uint8_t {
     wrong_version,   ///< stored in another format
     wrong_units,     ///< not metres
     wrong_origin,    ///< not on the globe, or too near to a pole
-    too_large,       ///< more pieces or vertices than there is room for, or a deeper tree
+    too_large,       ///< more pieces or vertices than the capacity, or a deeper tree
     sizes_differ,    ///< the tables do not belong together
     bad_coordinate,  ///< not finite, or beyond kMaxMeshCoordinate
     bad_bounds,      ///< a box that does not hold what it should

@@ -125,7 +125,7 @@ struct PairPlanes {
 }
 
 /// The horizon [s] that is left where vehicles beyond `limit` [m] of the stretched space are left out all the same
-/// (the source's neighbour distance, 7.3.2). At most `horizon`.
+/// (Alejo's neighbour distance, 7.3.2). At most `horizon`.
 [[nodiscard]] float effective_horizon(float limit, float radius, float horizon, float own_speed, float other_speed,
                                       float stretch) noexcept;
 

@@ -8,7 +8,7 @@
 #include "core/base/vec3.hpp"
 
 // What is done to the preferred velocity before it is made safe: an exactly symmetric encounter is a fixed point of
-// reciprocal avoidance, in which everybody brakes for ever (G-ORCA 10; the source shows deadlocks of 10 s and has no
+// reciprocal avoidance, in which everybody brakes for ever (G-ORCA 10; Alejo shows deadlocks of 10 s and has no
 // rule). Deterministic, and antisymmetric: each of two vehicles decides for the other side without a word between them.
 
 namespace jink::orca {

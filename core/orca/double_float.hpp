@@ -11,8 +11,9 @@
 namespace jink::orca {
 
 /// hi + lo, |lo| <= half a unit in the last place of hi: 48 bits. Finite numbers below 1e30 only, and what is
-/// below 1e-30 is not told from 0. Each operation is exact to 2^-43 of its result (Dekker; Knuth's sum), 10 to 60
-/// operations of single precision. The same bits with and without a fused multiply-add: the rest of a product is exact.
+/// below 1e-30 is not distinguished from 0. Each operation is exact to 2^-43 of its result (Dekker; Knuth's sum), 10 to
+/// 60 operations of single precision. The same bits with and without a fused multiply-add: the rest of a product is
+/// exact.
 struct DoubleFloat {
     float hi = 0.0F;
     float lo = 0.0F;

@@ -32,8 +32,8 @@ struct Corner {
 ///         the answer is not within the spheres: then nothing is known. True: `corner.x` keeps to all that has to hold,
 ///         and d is the least.
 ///
-/// With all shares well above 0 that point is the only one. A turn is a look at each row and at four corners; it ends
-/// after a few, each with a larger d, and gives up after kMaxTurns. There is one for float and one for Wide.
+/// With all shares well above 0 that point is the only one. A turn checks each row and four corners; the search ends
+/// after a few turns, each with a larger d, and gives up after kMaxTurns. There is one for float and one for Wide.
 template <class Real>
 [[nodiscard]] bool exchange(std::span<const Row> rows, std::span<const float> yields, std::size_t soft, Spheres spheres,
                             Tolerance<Real> tolerance, WorkBudget& budget, Corner<Real>& corner) noexcept;

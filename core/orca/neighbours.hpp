@@ -38,7 +38,7 @@ struct NeighbourSettings {
     float max_speed = 2.0F;    ///< own, [m/s]
     float horizon = 10.0F;     ///< [s]
     float cover = 1.0F;        ///< kCylinderCover to keep the cylinder of the same widths
-    /// [m] in the stretched space beyond which nobody is looked at (the source's neighbour distance, 7.3.2); infinite:
+    /// [m] in the stretched space beyond which no vehicle is checked (Alejo's neighbour distance, 7.3.2); infinite:
     /// everybody who can be met within the horizon.
     float range = std::numeric_limits<float>::infinity();
     /// [s] that a neighbour which is left out must not be met within: the horizon, or PairSettings::brake with
@@ -65,10 +65,10 @@ struct Selection {
     /// [m/s] for the own speed: those left out can not be met within the cap horizon. Infinite where nobody is.
     float speed_cap = std::numeric_limits<float>::infinity();
     float horizon = 0.0F;         ///< [s] that is left where `range` leaves somebody out
-    std::uint16_t truncated = 0;  ///< within reach, but no room
+    std::uint16_t truncated = 0;  ///< within reach, but beyond capacity
     std::uint16_t stale = 0;      ///< among the chosen
     std::uint16_t refused = 0;    ///< not finite, or sizes and speeds that are none
-    bool exhausted = false;       ///< the budget ran out before all were looked at: speed_cap is 0
+    bool exhausted = false;       ///< the budget ran out before all were checked: speed_cap is 0
 };
 
 /// Chooses among `all`, tracked ones in any order; the same set whatever the order, ties by id.

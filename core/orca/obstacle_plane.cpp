@@ -58,7 +58,7 @@ public:
     {
     }
 
-    /// Something not looked at that may be `distance` away.
+    /// An unchecked obstacle or part that may be `distance` away.
     void drop(float distance) noexcept { dropped_ = std::min(dropped_, distance - envelope_.radius); }
     [[nodiscard]] float dropped() const noexcept { return dropped_; }
 

@@ -80,8 +80,8 @@ struct ObstaclePlanes {
 [[nodiscard]] HalfSpace obstacle_half_space(float distance, const Vec3& direction, const Envelope& envelope,
                                             const OwnMotion& own, const ObstacleSettings& settings) noexcept;
 
-/// How far obstacles are looked at, in the stretched space [m]: none beyond gives a half-space that any velocity within
-/// `own.reach_speed` could violate.
+/// How far away obstacles are checked, in the stretched space [m]: none beyond gives a half-space that any velocity
+/// within `own.reach_speed` could violate.
 [[nodiscard]] float obstacle_reach(const Envelope& envelope, const OwnMotion& own,
                                    const ObstacleSettings& settings) noexcept;
 

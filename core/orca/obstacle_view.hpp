@@ -3,7 +3,7 @@
 
 #include "core/orca/obstacle_plane.hpp"
 
-// Where single obstacles lie. Shared by the half-spaces and by the check along a way; not meant for other rooms.
+// Where single obstacles lie. Shared by the half-spaces and by the check along a way; not meant for other modules.
 
 namespace jink::orca::detail {
 

@@ -98,7 +98,7 @@ template <class Real>
                                       Vec3Of<Real>& x) noexcept;
 
 /// On the plane of rows[on], within rows[0 .. before) and the spheres. False, with `x` as it was, where there is no
-/// such point. O(before^2), of which one look at each row and one line for each row that turns out to be violated.
+/// such point. O(before^2), of which one check of each row and one line for each row that turns out to be violated.
 template <class Real>
 [[nodiscard]] Found optimum_on_plane(std::span<const RowOf<Real>> rows, std::size_t on, std::size_t before,
                                      Spheres spheres, const GoalOf<Real>& goal, Tolerance<Real> tolerance,

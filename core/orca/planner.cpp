@@ -22,7 +22,7 @@ constexpr float kNearEnd = 1.0F;        ///< [1/s] the last metres of a referenc
 constexpr float kFlattest = kMaxStretch * 0.99F;
 constexpr float kTallest = kMinStretch * 1.01F;
 
-/// Units of what the filter does not count itself: settings and reference; a track or cylinder looked at.
+/// Units of what the filter does not count itself: settings and reference; each track or cylinder checked.
 constexpr std::uint32_t kPlanUnits = 40;
 constexpr std::uint32_t kThreatUnits = 3;
 
@@ -103,7 +103,7 @@ Bound bound_of(const world::Cylinder& cylinder, const Vec3& position, const Cyli
     return level;
 }
 
-/// The nearest cylinders, as many as there is room for behind the airspace's bounds; what is left out the final check
+/// The nearest cylinders, as many as fit behind the airspace's bounds; what is left out the final check
 /// sees.
 void add_cylinder(const Bound& bound, std::size_t first, Bounds& out) noexcept
 {

@@ -31,8 +31,8 @@ struct Settings {
 /// * An uncertain height (Track::half_height): the region is at most twice as high as wide, about the point of the
 ///   capsule's axis that is nearest in height. So a command may lead over or under the rest of a taller capsule. The
 ///   final check counts the whole capsule and refuses such a command.
-/// * Tracks that share the reaction (Track::cooperative, not stale) are left half of it, all others none. Of two such
-///   vehicles neither closes in faster than both can undo (Conflict::at_rest), and the final check looks at them as far
+/// * Cooperative tracks (Track::cooperative, not stale) are left half of the reaction, all others none. Of two such
+///   vehicles neither closes in faster than both can undo (Conflict::at_rest), and the final check covers them as far
 ///   ahead as the vehicle needs to stop (Situation::shared_horizon), at all others to the path's end.
 /// * Horizons are as long as braking and the delay need at least (check()).
 ///

@@ -29,7 +29,7 @@ struct Predicted {
 /// * Past the last command that one holds on.
 /// * `at` before the stamp: back along the measured velocity.
 ///
-/// @param measured  stamp, position, velocity, finite; the rest is not looked at
+/// @param measured  stamp, position, velocity, finite; the rest is not used
 /// @param issued    in the order of their times
 /// Accuracy: exact for a vehicle that is as `loop` says; rounding below 1e-4 m within 100 m and 2 s (property tests).
 /// O(commands).

@@ -86,8 +86,8 @@ std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Ve
 constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
                                                       kRelaxedWarning};
 
-/// What is said to be broken is what is: the last look at each velocity, however it was found. To twice the shift where
-/// a level gives way, to rounding where it does not.
+/// The levels that the velocity breaks are reported: its last check, however the velocity was found. To twice the shift
+/// where a level gives way, to rounding where it does not.
 void report(std::span<const HalfSpace> planes, float scale, Solution& out) noexcept
 {
     const float unsaid = 4.0F * Tolerance<float>(scale).outside;

@@ -13,7 +13,7 @@
 #include "core/orca/search.hpp"
 
 // The velocity that keeps to all half-spaces and is nearest to the preferred one; where none keeps to all, the one that
-// breaks the weakest level least (Alejo 7.1, van den Berg et al.; what the source leaves open is said here).
+// breaks the weakest level least (Alejo 7.1, van den Berg et al.; what Alejo leaves open is said here).
 
 namespace jink::orca {
 
@@ -61,7 +61,7 @@ struct Solution {
 /// With planes.size() > the scratch's size (a caller's mistake) or a yield <= 0: kBadInput. Where the budget runs out:
 /// of the best point so far, the reference, all braking that the last sphere allows, and all acceleration along the
 /// most violated obstacle and conflict half-spaces, the one that breaks obstacles, conflict and warning least, in this
-/// order; what it breaks is said as for any other. Five looks at each half-space beyond the budget.
+/// order; what it breaks is said as for any other. Five checks of each half-space beyond the budget.
 ///
 /// In single precision first. Where what holds the answer meets in angles below 0.1, or in more half-spaces than three,
 /// or half-spaces that may not give way hold those that do by more than twenty times their part, rounding may leave it
@@ -69,11 +69,11 @@ struct Solution {
 /// many times as long, and is seldom asked for. Should its few places not do, what single precision has found stands.
 ///
 /// Rounding: where a level is not said to be broken, none of it is by more than 2e-6 of the largest speed, and where it
-/// is, by no more than is said and 2e-4 m/s: each velocity is looked at once more before it is returned. The optimum
+/// is, by no more than is said and 2e-4 m/s: each velocity is checked once more before it is returned. The optimum
 /// and the least violation are exact to 1e-4 m/s for speeds up to some m/s, also among half-spaces within 1e-4 of each
 /// other's direction or of its opposite; whether a level has to give way at all is open within 1e-5 m/s. O(n) per turn,
 /// usually 2 - 6 turns; each turn is counted, those in twice the precision sixteen times (units::kOrcaDoubleFloat), and
-/// n^3 bounds them all. Four more looks at each half-space are not counted. Allocates nothing.
+/// n^3 bounds them all. Four more checks of each half-space are not counted. Allocates nothing.
 [[nodiscard]] Solution solve(const Problem& problem, ScratchView scratch, WorkBudget& budget) noexcept;
 
 /// The point nearest to `point` that is within all spheres, as near as rounding lets it be. Finite where the spheres

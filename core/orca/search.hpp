@@ -64,7 +64,7 @@ public:
 
     [[nodiscard]] Vec3 x() const noexcept { return x_.template cast<float>(); }
     [[nodiscard]] const Basis& basis() const noexcept { return basis_; }
-    /// Looks at what holds the nearest point that nearest(count) has found, for is_blunt(). O(count).
+    /// Checks what holds the nearest point that nearest(count) has found, for is_blunt(). O(count).
     void judge(std::size_t count) noexcept;
     /// Whether rounding may have left the answer open: what holds it meets in too small an angle.
     [[nodiscard]] bool is_blunt() const noexcept { return blunt_; }

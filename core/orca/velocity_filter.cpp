@@ -35,7 +35,7 @@ bool has_good_bias(const BiasSettings& s) noexcept
            is_not_negative(s.stalled_below) && is_not_negative(s.stall) && is_positive(s.blocked);
 }
 
-/// What check() does not look at, or lets studies choose.
+/// Settings that check() does not cover, or lets studies choose.
 bool has_good_numbers(const FilterSettings& s) noexcept
 {
     return is_valid(s.obstacles) && has_good_bias(s.bias) && is_positive(s.pair.conflict_ratio) &&

@@ -125,7 +125,7 @@ struct Decision {
 /// sent. Answers depend on nothing but the calls so far.
 ///
 /// Memory: about 6 KiB with the default capacities. decide() is bounded by its budget; when that is spent the command
-/// is the best of a few, as solve() says, and kWorkLimit is told.
+/// is the best of a few, as solve() says, and kWorkLimit is reported.
 class VelocityFilter {
 public:
     explicit VelocityFilter(const FilterSettings& settings = {}) noexcept { static_cast<void>(configure(settings)); }

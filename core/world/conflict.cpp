@@ -11,8 +11,8 @@
 namespace jink::world {
 namespace {
 
-/// Largest R handed on for shapes whose extent is not a radius: the source studied threats up to 3 m (Pinheiro
-/// tab. 4.1).
+/// Largest R handed on for shapes whose extent is not a radius: Pinheiro studied threats up to 3 m
+/// (tab. 4.1).
 constexpr float kLargestRadius = 3.0F;
 
 bool comes_first(const Conflict& a, const Conflict& b) noexcept
@@ -163,7 +163,7 @@ bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead
         return detail::met_now(out);
     }
     const detail::Course course(situation, way, lookahead);
-    // Two pieces are what each look at a threat pays for.
+    // Each check of a threat pays for two pieces by itself.
     static_cast<void>(budget.spend(units::kConflict * static_cast<std::uint32_t>((course.pieces() - 1) / 2)));
     bool found = false;
     Conflict conflict;

@@ -13,7 +13,7 @@ namespace {
 
 /// Pieces in which a growing threat is compared with its size at the piece's end [s].
 constexpr Seconds kGrowthPiece = 0.5F;
-/// Pieces that one track is looked at in, inside a margin: 60 s of them at a quarter of a second, twice. Spent is a
+/// Pieces in which one track is checked, inside a margin: 60 s of them at a quarter of a second, twice. Spent is a
 /// conflict.
 constexpr std::uint32_t kDrawingApartBudget = 480 * units::kSpherePart;
 

@@ -62,8 +62,8 @@ public:
     [[nodiscard]] Look look(Seconds t) const noexcept;
 
     /// Least distance within [0, span], never above the truth (see cylinder_distance), below it by 2e-4 m where fewer
-    /// than kTurns instants do, which they do but for distances of kilometres. What is not below `enough` is not told
-    /// apart. A budget that runs out: -kNoBudget. O(kTurns).
+    /// than kTurns instants do, which they do but for distances of kilometres. Distances not below `enough` are not
+    /// distinguished. A budget that runs out: -kNoBudget. O(kTurns).
     [[nodiscard]] geometry::Approach least(Seconds span, float enough, WorkBudget& budget) const noexcept;
     static constexpr float kNoBudget = 1e9F;
     static constexpr int kTurns = 24;

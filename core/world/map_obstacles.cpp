@@ -141,7 +141,7 @@ MapSelection append_map(const MeshMap& map, const MapPlace& place, const Vec3& p
     out.exact_within = std::min(std::max(parts.nearest_closed() - larger, 0.0F), reach);
     for (const Part& part : parts.in_order()) {
         if (!table.append(obstacle_of(map, place, part))) {
-            // No place: the table was not told to keep any. Then nothing is known.
+            // No place: the table was not set to keep any. Then nothing is known.
             out.exact_within = 0.0F;
             return out;
         }

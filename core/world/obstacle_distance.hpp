@@ -6,7 +6,7 @@
 
 namespace jink::world {
 
-/// Separations from general convex obstacles are told apart up to here, and no finer than the resolution [m].
+/// Separations from general convex obstacles are resolved up to here, and no finer than the resolution [m].
 inline constexpr float kObstacleReach = 8.0F;
 inline constexpr float kObstacleResolution = 0.05F;
 /// And overlaps no finer than this share of the largest half extent.

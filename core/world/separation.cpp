@@ -22,11 +22,11 @@ using geometry::Motion;
 
 /// No shorter, however small the slack [s].
 constexpr Seconds kMinEscapePiece = 0.02F;
-/// A growing threat is looked at in pieces no longer than this, each with the size at its end [s].
+/// A growing threat is checked in pieces no longer than this, each with the size at its end [s].
 constexpr Seconds kGrowthPiece = 0.25F;
 constexpr Seconds kSolidEscapePiece = 0.2F;
 
-/// While a shrunk surface grows back it is looked at in pieces so short that it takes half the slack at most in each,
+/// While a shrunk surface grows back it is checked in pieces so short that it takes half the slack at most in each,
 /// so that its size at their end may stand for it.
 Seconds escape_piece(const EscapeRule& escape) noexcept
 {
@@ -106,7 +106,7 @@ void against_sphere(const Vec3& half_extents, const Flight& flight, const Threat
     }
 }
 
-/// Margins of solids are told apart no finer than kObstacleResolution, and one query costs hundreds of support calls:
+/// Margins of solids are resolved no finer than kObstacleResolution, and one query costs hundreds of support calls:
 /// the shrunk surface clears the start by that much more, and grows back in coarser pieces.
 // NOLINTNEXTLINE(readability-function-cognitive-complexity): as above
 void against_solid(const Vec3& half, const Flight& flight, const Threat& threat, const EscapeRule& escape,
@@ -209,7 +209,7 @@ void against(const Vec3& half, const Flight& flight, const Threat& threat, const
     }
 }
 
-/// Place of what is looked at before all others, or `threats`.size().
+/// Index of the threat that is checked before all others, or `threats`.size().
 std::size_t place_of_first(std::span<const Threat> threats, std::size_t bounds, ThreatRef first) noexcept
 {
     const std::size_t place = bounds + first.index;
@@ -239,7 +239,7 @@ Separation separation_of(const Situation& situation, std::span<const path::PathP
         return best;
     }
     const Flight flight(points, sagittas, horizon);
-    // What is looked at of those that share the reaction.
+    // The part of the flight that is checked against cooperative tracks.
     std::optional<Flight> shared;
     if (situation.shared_horizon < horizon) {
         shared.emplace(points, sagittas, situation.shared_horizon);

@@ -7,7 +7,7 @@
 
 namespace jink::world {
 
-/// Separations beyond this, either way, are not told apart [m].
+/// Separations beyond this, either way, are not distinguished [m].
 inline constexpr float kSeparationCap = 50.0F;
 
 struct Separation {
@@ -16,11 +16,11 @@ struct Separation {
     ThreatRef against;
 };
 
-/// How closely a flight has to be looked at.
+/// How closely a flight has to be checked.
 struct Cutoff {
-    float below = -kSeparationCap;  ///< a margin below this ends the look: it is no better than what a search has [m]
-    float above = kSeparationCap;   ///< margins from here on are not told apart: this is the answer [m]
-    ThreatRef first;                ///< looked at before all others: what was nearest on the flight before
+    float below = -kSeparationCap;  ///< a margin below this ends the check: it is no better than what a search has [m]
+    float above = kSeparationCap;   ///< the margin saturates at this value [m]
+    ThreatRef first;                ///< checked before all others: what was nearest on the flight before
 };
 
 /// Least separation along a timed path, from path time 0 (= Situation::now) to min(path end, `horizon`):
@@ -30,12 +30,12 @@ struct Cutoff {
 /// count), airspace bounds by their planes. All of them are met k_sigma * sigma_position of the own position early.
 ///
 /// A flight that starts inside a margin is judged by `escape`: its margin is then measured to the shrunk surface, which
-/// is looked at in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
+/// is checked in pieces in which it grows by half the slack at most. For solids other than spheres the slack is 0.15
 /// m more (kObstacleResolution, and pieces of 0.2 s). A margin that is no number is contact.
 ///
 /// Situation::threats is what is kept clear of; where it was never collected, the answer is contact.
 ///
-/// Tracks that share the reaction are looked at until Situation::shared_horizon at most.
+/// Cooperative tracks are checked until Situation::shared_horizon at most.
 ///
 /// Never above the truth by more than 1e-3 m within 100 m of the origin; below it by no more than what a track grows in
 /// 0.25 s, half the slack inside a margin, kObstacleResolution for solids. Cut off, the margin is below

@@ -7,8 +7,8 @@
 #include "core/base/work_units.hpp"
 #include "core/world/separation.hpp"
 
-// What the looks at a flight for its least separation share: the flight in pieces, the best so far, what is paid.
-// Private to this room.
+// Shared by the checks of a flight for its least separation: the flight in pieces, the best so far, what is paid.
+// Private to this module.
 
 namespace jink::world::detail {
 

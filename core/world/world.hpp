@@ -33,7 +33,7 @@ enum class TrackSource : std::uint8_t {
 /// A moving threat: a sphere with a straight motion and its uncertainty. Where `half_height` is above 0 the height of
 /// its centre is uncertain by that much either way: the threat is an upright capsule.
 struct Track {
-    TrackId id = 0;                 ///< as reported; two aircraft under one id are told apart by `instance`
+    TrackId id = 0;                 ///< as reported; two aircraft under one id differ in `instance`
     TimePoint stamp{};              ///< of the newest measurement in it
     Vec3 position = Vec3::Zero();   ///< [m]; in a Situation: at Situation::now
     Vec3 velocity = Vec3::Zero();   ///< [m/s]
@@ -120,7 +120,7 @@ struct Manoeuvre {
     path::TimedPath path;
 };
 
-/// A velocity that the vehicle was told to fly.
+/// A velocity that the vehicle was commanded to fly.
 struct Commanded {
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     TimePoint at;
@@ -141,8 +141,8 @@ struct Situation {
     /// By which the others of the same link know us (TrackSource::datalink); 0: not known. Says nothing beside the id
     /// of a track of another source: that is of another scheme, and they may know us by another too.
     TrackId own_id = 0;
-    const Commanded* commanded = nullptr;  ///< what it was told last, while it is steered from here
-    /// Tracks that share the reaction are looked at so far ahead in separations, and not beyond [s]: what they do then
+    const Commanded* commanded = nullptr;  ///< the last command, while the vehicle is steered from here
+    /// Cooperative tracks are checked so far ahead in separations, and not beyond [s]: what they do then
     /// depends on both. Conflicts are not bounded by it.
     Seconds shared_horizon = std::numeric_limits<Seconds>::infinity();
 };

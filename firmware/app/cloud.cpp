@@ -199,7 +199,7 @@ void CloudObstacles::end_scan(std::uint32_t points_lost) noexcept
     if (table_ == nullptr || !view_.is_placed) {
         return;
     }
-    // Those that give way first, so that there is room for those that come.
+    // First the obstacles that go, so that there is space for those that come.
     for (std::size_t i = 0; points_lost == 0 && i < kBins; ++i) {
         if (bins_[i].nearest == kEmpty) {
             static_cast<void>(table_->remove(id_of(i)));

@@ -14,8 +14,8 @@ namespace jink::app {
 
 /// Obstacles that one scan gives to the world, the nearest. Half the table: a level scan of 72 sectors keeps two thirds
 /// of its own beside them, and a ring that is closed all around and a cloud that is full in every direction at once
-/// leave the nearest 96 of 120, for the table lets the farthest go, and counts it. What a cloud has no room for,
-/// CloudDiagnostics::no_room counts.
+/// leave the nearest 96 of 120, for the table lets the farthest go, and counts it. Obstacles of a cloud that do not
+/// fit, CloudDiagnostics::no_room counts.
 inline constexpr std::size_t kMaxCloudObstacles = 48;
 static_assert(kMaxCloudObstacles <= 1024);
 
@@ -42,9 +42,9 @@ struct CloudDiagnostics {
 /// A bin is a direction: kColumns azimuths by kRows elevations between -45 and 45 degrees, the outermost rows reaching
 /// to the poles. It keeps the nearest hit and the extent, in angle and range, of the hits from there to patch_depth()
 /// behind. At the end of a scan each of the kMaxCloudObstacles nearest becomes a sphere that holds all of that extent,
-/// and so every such hit of the bin. What lies farther behind in the same direction is not told until the nearer one is
-/// gone. A bin that was seen to be empty gives its former obstacle up; one of which rays are missing, or that the own
-/// body hides, leaves it to expire.
+/// and so every such hit of the bin. What lies farther behind in the same direction is not reported until the nearer
+/// one is gone. A bin that was seen to be empty gives its former obstacle up; one of which rays are missing, or that
+/// the own body hides, leaves it to expire.
 ///
 /// Hits are placed by the own position at the scan's stamp, flown on or back from the newest one, and by the own yaw as
 /// known when the scan began. The sensor counts as the vehicle's centre.

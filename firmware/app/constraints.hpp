@@ -17,31 +17,31 @@ struct ConstraintDiagnostics {
     std::uint32_t reported = 0;
     std::uint32_t refused = 0;  ///< not finite, no radius, upside down, beyond 100 km, stamped in the future
     std::uint32_t merged = 0;   ///< became part of another: there were more than kMaxCylinders
-    std::uint32_t grown = 0;    ///< placings of a moving one that was told long ago and has grown
+    std::uint32_t grown = 0;    ///< placings of a moving one that was reported long ago and has grown
 };
 
-/// What is closed, as long as nothing else is told: a set that is told replaces the one before.
+/// Closed areas, valid until the next set is received: each set replaces the one before.
 ///
-/// A moving one goes straight on from its stamp. Told longer ago than kFresh it grows at its own speed to all sides
-/// besides, so that it is held where it may be if it has turned, stopped or doubled its pace since then. Nothing that
-/// stands grows old, and nothing is forgotten before its end.
+/// A moving one goes straight on from its stamp. If received longer ago than kFresh, it grows at its own speed to all
+/// sides besides, so that it is held where it may be if it has turned, stopped or doubled its pace since then. Nothing
+/// that stands grows old, and nothing is forgotten before its end.
 ///
 /// More than kMaxCylinders: the two farthest of the vehicle become one standing one that holds both for kFresh; after
-/// that it grows at twice the greatest speed of all that were told, so that it still does.
+/// that it grows at twice the greatest speed of all that were received, so that it still does.
 ///
 /// Memory: 72 bytes for each of kMaxCylinders, and 32 for its place at an instant.
 class ConstraintTable {
 public:
-    /// A moving constraint should be told anew at least this often [s].
+    /// A moving constraint should be sent anew at least this often [s].
     static constexpr Seconds kFresh = 60.0F;
-    /// Growth is taken this far ahead, because a way is looked at into the future [s].
+    /// Growth is taken this far ahead, because a nominal path is checked into the future [s].
     static constexpr Seconds kAhead = 10.0F;
     /// A map's lengths are off by this share of the distance from the origin at most: PX4's sphere is 0.11 % smaller.
     static constexpr float kMapError = 1.5e-3F;
 
     /// Replaces everything. What is wrong is refused, by itself, and counted.
     /// @param own  the vehicle's place in the local frame [m], as far as it is known: what is far of it is merged first
-    /// O(told * kMaxCylinders).
+    /// O(constraints * kMaxCylinders).
     void tell(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,
               const Vec3& own, TimePoint now) noexcept;
 

@@ -29,8 +29,8 @@ namespace jink::app {
 /// * From the first HEARTBEAT on there is one frame, the autopilot's. The bus places by the origin that the link knows,
 ///   and nothing while it knows none; what was known in the bus's own frame is forgotten.
 /// * Another origin (of a better source, or moved by the autopilot) moves the tracks by as much within the step: they
-///   are known by their place on the globe. Own state, home, echoes and ground were told in the local frame itself and
-///   stay; a frame that jumps under them is told as an estimator's reset. The link places the leg anew.
+///   are known by their place on the globe. Own state, home, returns and ground were reported in the local frame itself
+///   and stay; a frame that jumps under them is reported as an estimator's reset. The link places the leg anew.
 /// * Own state is the autopilot's while that is fresh (OWN_AGE). Otherwise the bus's, for advice alone: faults are
 ///   about the autopilot's, and in a fault nothing is steered.
 ///
@@ -73,7 +73,7 @@ public:
     /// Listens and says CRITICAL, but plans nothing and asks for nothing: after faults that will not end.
     void stay_passive() noexcept { passive_ = true; }
     /// The geometric planner alone, whatever the parameters say: an image whose reach sets fail their check at its
-    /// start calls this, and the autopilot is told.
+    /// start calls this, and the autopilot gets a report.
     void leave_out_reach_sets() noexcept { decision_.leave_out_reach_sets(params_.configuration()); }
     /// A text that waits until an autopilot is heard. @return false: Outbox::kMaxNotices wait already
     [[nodiscard]] bool tell_when_heard(link::Severity severity, const Text& text) noexcept

@@ -25,8 +25,8 @@ namespace jink::app {
 /// command. No alarm for a vehicle that answers with 2.5 m/s2 and a lag of 0.6 s after a dead time of 0.3 s, in gusts
 /// (tests/property/app/follow_check_property_test.cpp).
 ///
-/// A fixed wing is commanded course and climb alone, so its speed is not compared. It has to be told first and then to
-/// roll in: kWingPatience seconds' worth may be missing.
+/// A fixed wing is commanded course and climb alone, so its speed is not compared. It needs the command first and then
+/// time to roll in: kWingPatience seconds' worth may be missing.
 ///
 /// Pure, O(1).
 class FollowCheck {

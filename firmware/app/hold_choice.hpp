@@ -10,10 +10,10 @@ namespace jink::app {
 /// Whether an autopilot that does not give control had better stop than fly on. Asked once there is just the time to
 /// stop before the conflict.
 ///
-/// In front of what stands, or flies slower than kHoldStands: always. Traffic flies on: stopping helps where the
-/// vehicle stays farther from it than on its own path, by kHoldBetter at least, while it brakes and at rest, for
-/// kHoldAhead. A crossing is such a case. An intruder from ahead or behind is not: it would hit a vehicle that brakes
-/// or stands.
+/// In front of a static obstacle, or of a threat slower than kHoldStands: always. Traffic flies on: stopping helps
+/// where the vehicle stays farther from it than on its own path, by kHoldBetter at least, while it brakes and at rest,
+/// for kHoldAhead. A crossing is such a case. An intruder from ahead or behind is not: it would hit a vehicle that
+/// brakes or stands.
 ///
 /// @param track  the threat as in the situation of `own`; nullptr: an obstacle or closed area
 [[nodiscard]] bool is_stopping_safer(const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,

@@ -10,7 +10,7 @@
 namespace jink::app {
 
 /// Sectors of the horizon, as ArduPilot's proximity boundary has them, centred on the nose: the nearest in each is
-/// told.
+/// reported.
 inline constexpr std::size_t kNearSectors = 8;
 /// What is farther is nobody's business yet [m]: the reach of a good range finder.
 inline constexpr float kNearReach = 50.0F;

@@ -106,7 +106,7 @@ enum class ParamStatus : std::uint8_t {
     inconsistent,  ///< alone in range, but not together with the others
 };
 
-/// Everything that parameters decide, as the rooms of core want it.
+/// Everything that parameters decide, as the modules of core want it.
 struct Configuration {
     ActMode mode = ActMode::act;
     world::FlightRules rules;  ///< of the supervisor and all methods
@@ -127,7 +127,7 @@ struct Configuration {
     float sigma_baro = 30.0F;     ///< of the height of traffic that is a pressure altitude [m]
     float sigma_compared = 5.0F;  ///< of a difference of two pressure altitudes [m]
     float scan_height = 10.0F;    ///< half height given to what a level scan sees [m]
-    bool coop_systems = true, coop_utm = true, coop_unmanned = true, coop_all = false;  ///< who shares the reaction
+    bool coop_systems = true, coop_utm = true, coop_unmanned = true, coop_all = false;  ///< who is cooperative
     std::uint32_t own_address = 0;                                                      ///< 24 bits; 0: not known
     Seconds scan_keep = 1.0F;
     Seconds own_age = 0.5F, heartbeat_age = 4.5F;  ///< older is a fault [s]

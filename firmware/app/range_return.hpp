@@ -11,7 +11,7 @@ namespace jink::app {
 // is: the solid has to cover every point at that distance within the beam. A convex solid that does so reaches nearer
 // than the range; by how little is said with each.
 
-/// Least radius of an echo [m].
+/// Least radius of a return [m].
 inline constexpr float kMinReturnRadius = 0.25F;
 /// Beams wider than this are cut into parts of equal width, level [rad].
 inline constexpr float kWidestPart = 10.0F * kPi / 180.0F;

@@ -44,7 +44,7 @@ void ReachPicture::add(link::Ray ray, const Vec3& point) noexcept
     }
 }
 
-/// What is lost is not told apart from what was not fired: it is missing where it should be.
+/// What is lost is not distinguished from what was not fired: it is missing where it should be.
 void ReachPicture::end_scan(std::uint32_t /*points_lost*/) noexcept { picture_.end(); }
 
 }  // namespace jink::app

@@ -3,8 +3,8 @@
 
 #include "core/capacity.hpp"
 
-// The reach sets that this build flies: the default vehicle's, or where there is room for fewer nodes its reduced ones.
-// JINK_REACH_SETS names another generated header, and JINK_REACH_SETS_OF its sets.
+// The reach sets that this build flies: the default vehicle's, or where there is space for fewer nodes its reduced
+// ones. JINK_REACH_SETS names another generated header, and JINK_REACH_SETS_OF its sets.
 
 #if defined(JINK_REACH_SETS)
 #include JINK_REACH_SETS

@@ -11,7 +11,7 @@ namespace jink::app {
 /// Notices that the pilot moved the sticks since the take-over began.
 ///
 /// Each source has its own rest position: the newest report before streaming began, or the first one after. A stick
-/// that is away from there by the threshold or more in kReports reports of one source in a row has moved. Where the
+/// that is away from there by the threshold or more in kReports consecutive reports of one source has moved. Where the
 /// sticks rest does not matter: a throttle stick may lie anywhere. Reports that are not valid do not arrive here
 /// (link::SticksReport).
 ///
@@ -32,7 +32,7 @@ private:
     struct Source {
         bool known = false;
         std::array<float, 4> rest{};
-        int away = 0;  ///< reports in a row
+        int away = 0;  ///< consecutive reports
     };
     std::array<Source, 2> sources_{};
     bool moved_ = false;

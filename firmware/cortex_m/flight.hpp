@@ -33,13 +33,13 @@ struct FaultStory {
 void settle_reach_sets(app::Coprocessor& coprocessor) noexcept;
 
 /// Takes the map that the image is built with, if any (built_map.hpp). With a damaged one the image stays passive, and
-/// the autopilot is told: without its map nothing would be in the way. Reads all of its tables bit by bit, so before
-/// the watchdog is started.
+/// the autopilot gets a report: without its map nothing would be in the way. Reads all of its tables bit by bit, so
+/// before the watchdog is started.
 void settle_map(app::Coprocessor& coprocessor) noexcept;
 
-/// Reads the record of the fault before this start and has it told: each of the first kFaultsInARow, then those whose
-/// count is a power of two. True where this start is to be passive; then it returns after kPassiveWait only. For the
-/// time before the watchdog is started.
+/// Reads the record of the fault before this start and has it reported: each of the first kFaultsInARow, then those
+/// whose count is a power of two. True where this start is to be passive; then it returns after kPassiveWait only. For
+/// the time before the watchdog is started.
 [[nodiscard]] bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept;
 
 /// Steps for ever; `before_step` services the ports once per tick.

@@ -83,7 +83,7 @@ public:
         text_.remove_prefix(length);
         return out;
     }
-    /// A count of things of `bytes` each, which the rest of the file has room for.
+    /// A count of things of `bytes` each, which the rest of the file can hold.
     std::size_t count(std::size_t bytes)
     {
         const std::size_t out = u32();

@@ -3,7 +3,7 @@
 // tunnel or over a serial line. First byte: 1 MAVLink through the tunnel, 2 near objects are reported. Then records,
 // the first byte modulo 6 saying which:
 //   0 raw frame [flags][id 4][length][data 8]   1 transfer [type][source][id][length][payload]   2 ticks [n]
-//   3 controller [state][room]   4 no step for [n] * 10 ms   5 an autopilot speaks [bits]
+//   3 controller [state][space]   4 no step for [n] * 10 ms   5 an autopilot speaks [bits]
 // Checked after each step: nothing is steered in a fault or without an autopilot, own state is finite, output is valid,
 // and set-points are recent; the work of a step is bounded and counters only grow.
 #include <array>

@@ -3,7 +3,7 @@
 // the wire, so that conflicts, take-overs and faults are reachable. First byte: 1 repair checksums, 2 raw frames claim
 // to be the autopilot's, 4 a PX4, 8 requests are acknowledged. Then records, the first byte's low three bits saying
 // which, the other five an argument:
-//   0 raw [length][bytes]   1 ticks (argument + 1)   2 autopilot [bits]   3 line [room]   4 traffic
+//   0 raw [length][bytes]   1 ticks (argument + 1)   2 autopilot [bits]   3 line [space]   4 traffic
 //   [x][y][z][vx][vy][bits] 5 parameter [index][float]   6 no step for argument * 0.1 s   7 range [range][bits]
 // Checked after each step: set-points are finite, within the vehicle's limits, recent, and never sent in a fault;
 // output is whole frames; bytes are bounded; counters only grow.

@@ -57,7 +57,7 @@ TEST(SigningStore, KeyFilesHoldHexadecimalDigitsOrAPassphrase)
 {
     EXPECT_EQ(key_in(kHexKey), counting_key());
     EXPECT_EQ(key_in(std::string("# of 2026\n\n") + kHexKey + "\r\n"), counting_key());
-    // echo -n secret | sha256sum
+    // `echo -n secret | sha256sum`
     EXPECT_EQ(key_in("passphrase secret\n"),
               key_in("2bb80d537b1da3e38bd30361aa855686bde0eacd7162fef6a25fe97bf527a25b"));
     for (const std::string& bad :

@@ -10,7 +10,7 @@
 
 namespace jink::oracle {
 
-/// A vehicle on its leg with one to five tracks that come near, and up to three pillars and houses beside the leg.
+/// A vehicle on its leg with one to five tracks that come near, and up to three pillars and houses off the leg.
 struct RandomSituation {
     TimePoint now{50'000'000};
     vehicle::VehicleState own;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A closed area beside the leg and head-on traffic on it, each method alone: the manoeuvre around the traffic must not
+// A closed area off the leg and head-on traffic on it, each method alone: the manoeuvre around the traffic must not
 // lead into the closed area.
 #include <gtest/gtest.h>
 

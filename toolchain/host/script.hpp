@@ -6,8 +6,8 @@
 
 namespace jink::host {
 
-/// A Python script of the reports: installed beside the program (bin/jink, share/jink/report), or in the source tree of
-/// the build.
+/// A Python script of the reports: installed beside the program (bin/jink, share/jink/report), or in the tree of
+/// sources of the build.
 [[nodiscard]] std::filesystem::path find_report_script(const std::string& name);
 
 /// Replaces this program by a report script. The script reads `input` from its standard input and writes to `folder`;

@@ -45,8 +45,8 @@ public:
     /// A manoeuvre is chosen under control. @param side  of the manoeuvre, 0: none
     void choose(double time, unsigned takeover, const Vec& side);
 
-    /// Counts of the flown side. @param told  time at which each threat became known [s]; negative: never. O(changes *
-    /// threats).
+    /// Counts of the flown side. @param reported  time at which each threat became known [s]; negative: never.
+    /// O(changes * threats).
     [[nodiscard]] SideCounts counts(const std::vector<double>& reported) const;
     /// Counts of the chosen side; `conflicts`: intervals with a chosen side.
     [[nodiscard]] SideCounts chosen(const std::vector<double>& reported) const;

@@ -18,7 +18,7 @@ using namespace link::mavlink;
 namespace {
 
 constexpr std::uint8_t kJink = 196;
-// Per second; kMaxUnread bytes bring at most 11 of the 16 parameters that a step has room for, 6 of 8 commands, one
+// Per second; kMaxUnread bytes bring at most 11 of the 16 parameters that fit into a step, 6 of 8 commands, one
 // scan.
 constexpr double kParams = 300.0;
 constexpr double kCommands = 130.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coprocessor with a DroneCAN bus beside its link: the source of own state, the frame of placed objects, output to the
-// bus, parameters. The sent Proximity shows where an object was placed.
+// Coprocessor with a DroneCAN bus beside its link: where own state comes from, the frame of placed objects, output to
+// the bus, parameters. The sent Proximity shows where an object was placed.
 #include <gtest/gtest.h>
 
 #include "tests/unit/app/bus_bench.hpp"

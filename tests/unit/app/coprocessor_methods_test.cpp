@@ -74,7 +74,7 @@ TEST(CoprocessorMethods, PlanAsTheParameterSays)
 TEST(CoprocessorMethods, InClutterReachSetsComeFirst)
 {
     EXPECT_EQ(pass({{Param::clutter, 1.0F}}).by, kGeometric) << "farther off than 20 m is no clutter";
-    // A static threat beside the leg is within 20 m of the vehicle when a plan is needed.
+    // A static threat off the leg is within 20 m of the vehicle when a plan is needed.
     const auto f = std::make_unique<Flight>([] {
         Parameters p;
         EXPECT_EQ(p.set(Param::clutter, 2.0F), ParamStatus::ok);

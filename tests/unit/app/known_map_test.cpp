@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map of known surroundings around Coprocessor::step: what stands in it is kept clear of by every method, wherever
-// the local frame begins, and what it cannot say is told.
+// A map of known surroundings around Coprocessor::step: every method keeps clear of its solids, wherever
+// the local frame begins, and what the map cannot say is reported.
 #include "firmware/app/known_map.hpp"
 
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@ TimePoint moment(Seconds time, std::int64_t later_us = 0)
     return {kFirstHeard.us + std::llround(static_cast<double>(time) * 1e6) + later_us};
 }
 
-/// The autopilot's own HEARTBEATs with these intervals; the last is received at moment(sum).
+/// The autopilot's own HEARTBEATs with these intervals; the last is received at `moment(sum)`.
 ModeEvidence heard_in_gaps(std::initializer_list<Seconds> gaps)
 {
     ModeEvidence evidence;

@@ -172,8 +172,8 @@ TEST(PointHullDistance, OfTrianglesThinOnesTooAgreesWithWolfesMethod)
     EXPECT_GT(tally.touching, oracle::case_count(20'000) / 200);
 }
 
-/// Shapes have curved sides, on which the search closes in without end: what is told is never above the truth, and not
-/// far below it.
+/// Shapes have curved sides, on which the search closes in without end: the reported distance is never above the truth,
+/// and not far below it.
 TEST(PointShapeDistance, IsBelowTheTruthAndCloseToIt)
 {
     Random random(oracle::seed_of(13));

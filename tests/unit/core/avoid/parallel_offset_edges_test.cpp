@@ -93,7 +93,7 @@ TEST(ParallelOffsetWhileAvoiding, IsNotTakenWhereWhatIsFlownIsExactlyClear)
     EXPECT_EQ(supervisor.diagnostics().replans, 0U);
 }
 
-/// `y` metres beside the leg, with a threat on the path back and one `gap` metres beside the flight along the leg.
+/// `y` metres off the leg, with a threat on the path back and one `gap` metres beside the flight along the leg.
 Flight along_side(float y, float gap)
 {
     Flight f;

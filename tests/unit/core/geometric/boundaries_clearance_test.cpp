@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One curve against what stands or moves about it: the queried parts, spheres as small as a point, growing solids,
+// One curve against static and moving threats: the queried parts, spheres as small as a point, growing solids,
 // bounds with zero margin, and the cost of each check.
 #include <gtest/gtest.h>
 

@@ -188,7 +188,7 @@ TEST(ContactBorder, AStartOutsideOfTheAirspaceHasAWayIn)
 
 TEST(ContactBorder, TheMainThreatsVolumeEndsAtTheCollisionPointAndNotBeyondTheLongestCandidate)
 {
-    // Pinheiro's planner; symmetric candidates 1.6 m beside the leg, level.
+    // Pinheiro's planner; symmetric candidates 1.6 m off the leg, level.
     const auto free = [](const Vec3& position, const Vec3& velocity) {
         Scene scene;
         scene.settings = source_settings();

@@ -116,7 +116,7 @@ TEST(Culling, WhatIsFarCostsItsBoundingTest)
     EXPECT_LE(units_of(scene), with_obstacles + kMaxCollections * units::kCollected * still);
 }
 
-/// A long wall beside the leg, within reach of the candidates by its bounding sphere, is rejected as far by its faces.
+/// A long wall off the leg, within reach of the candidates by its bounding sphere, is rejected as far by its faces.
 TEST(Culling, ALongWallBesideTheLegCostsNoQuery)
 {
     for (const float yaw : {0.0F, 0.4F, 2.0F}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The source of cell ratings of the reach planner: times of its calls, and effects of its answers.
+// The supplier of the reach planner's cell ratings: times of its calls, and effects of its answers.
 #include <gtest/gtest.h>
 
 #include "core/reach/planner.hpp"

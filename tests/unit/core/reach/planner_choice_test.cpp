@@ -16,7 +16,7 @@ using world::PlanStatus;
 TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
 {
     EXPECT_EQ(way(), Way::straight);
-    // Beside the leg, the path back to it.
+    // Off the leg: the path back to it.
     leg(Vec3(-20.0F, 4.0F, 30.0F), Vec3(500.0F, 4.0F, 30.0F));
     EXPECT_EQ(way(), Way::left);
     leg(Vec3(-20.0F, -4.0F, 30.0F), Vec3(500.0F, -4.0F, 30.0F));
@@ -30,7 +30,7 @@ TEST_F(PlannerChoice, TheGoalIsThePointOfTheLegAheadOfTheVehicle)
 
 TEST_F(PlannerChoice, TheGoalLiesOnTheLegNotOnTheWayBackToIt)
 {
-    // 1.2 m beside the leg: its point 10.2 m ahead is 7.1 degrees to the left, the path there 5.7.
+    // 1.2 m off the leg: its point 10.2 m ahead is 7.1 degrees to the left, the path there 5.7.
     leg(Vec3(-20.0F, 1.2F, 30.0F), Vec3(500.0F, 1.2F, 30.0F));
     EXPECT_EQ(way(), Way::left);
 }

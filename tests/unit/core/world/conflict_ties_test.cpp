@@ -304,7 +304,7 @@ TEST(ConflictBehindCorners, AnObstacleBeyondACornerIsNearestAtTheCorner)
     EXPECT_NEAR(found.way_at_closest, 30.0F, 1e-2F);
 }
 
-/// A way without a speed is a place: nothing on it could mend what is there, and nothing is looked at.
+/// A nominal path without a speed is a place: nothing on it could mend what is there, and nothing is checked.
 TEST(PlaceAsAWay, HasNoConflictWithWhatItIsInside)
 {
     Scene scene;

@@ -162,7 +162,7 @@ TEST_F(RoutePiecesTest, APartWithoutExtentIsPassed)
     leg(Vec3(x, 0, 0), Vec3(x + 20.0F, 0, 0));
     leg(Vec3(x + 20.0F, 0, 0), Vec3(x + 20.0F + 0.015625F, 0, 0));
     leg(Vec3(x + 20.0F + 0.015625F, 0, 0), Vec3(x + 20.0F + 0.015625F, 30, 0));
-    // Half a metre and more beside the leg: it aims twice that ahead, 1.5 mm before the end of the second leg.
+    // Half a metre and more off the leg: it aims twice that ahead, 1.5 mm before the end of the second leg.
     const float ahead = 2.0F + 0.015625F - 0.0015F;
     scene.own.position = Vec3(x + 18.0F, 0.5F * ahead, 0);
     const Way w = way();
