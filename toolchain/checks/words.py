@@ -24,7 +24,15 @@ NAMES = {"ball": "sphere", "balls": "spheres", "barrel": "cylinder", "barrels": 
          "rung": "method", "rungs": "methods", "ladder": "order", "told": "reported", "echo": "return", "dear": "expensive", "dearest": "most expensive"}
 PREFIXES = {"kMost": "kMax", "kLeast": "kMin"}
 # (files, word): why the word is right there.
-EXCUSED = {}
+EXCUSED = {
+    ("firmware/linux/read_ahead.hpp", "room"): "the name of a parameter: free space of a queue",
+    ("hal/stm32f4/clock_tree.hpp", "room"): "room temperature",
+    ("tests/property/core/orca/published_rooms_test.cpp", "room"): "the buildings that Alejo draws",
+    ("tests/property/core/orca/published_rooms_test.cpp", "rooms"): "the buildings that Alejo draws",
+    ("tests/target/board/counters.cpp", "guard"): "the C++ ABI's guard variable",
+    ("tests/target/can/guest.cpp", "echo"): "a CAN controller's echo of its own frames",
+    ("tests/unit/hal/termios_serial_port_test.cpp", "echo"): "a terminal's echo",
+}
 PART = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 NAME = re.compile(r"\b[A-Za-z_]\w*\b")
 TOKEN = re.compile(r'//[^\n]*|/\*.*?\*/|R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.S)
