@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/avoid/settings.hpp"
+#include "core/world/separation.hpp"
 
 namespace jink::avoid {
 

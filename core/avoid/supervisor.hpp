@@ -16,9 +16,11 @@ namespace jink::avoid {
 ///
 /// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does
 /// not, nothing is held on to: the answer is made anew from the present state every tick, on the side chosen before
-/// where that is about as good. Settings::order says which methods are asked, and in which order. A method that keeps
-/// clearance by itself (MethodTraits) is asked once a plan; others are asked for an inflated vehicle first. Methods are
-/// owned by the caller and outlive the supervisor. Same situations in the same order give the same guidance.
+/// where that is about as good. Situation::threats is collected by the caller (world::ThreatSet); without threats, or
+/// with flight rules out of range, everything counts as contact. Settings::order says which methods are asked, and in
+/// which order. A method that keeps clearance by itself (MethodTraits) is asked once a plan; others are asked for an
+/// inflated vehicle first. Methods are owned by the caller and outlive the supervisor. Same situations in the same
+/// order give the same guidance.
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:

@@ -66,13 +66,6 @@ struct Caps {
 /// Pinheiro's upper bound of the normalised time is the cap times this factor (4.2.2.1).
 inline constexpr float kTimeHeadroom = 1.15F;
 
-/// A moving threat in the closeness term.
-struct MovingThreat {
-    geometry::Motion motion;
-    float radius = 0.0F;
-    Seconds duration = 0.0F;  ///< swept: time over which its path counts [s]
-};
-
 /// Waypoints of a path, coordinate by coordinate [m], and their arrival times [s]: equal lengths, not empty.
 struct Waypoints {
     std::span<const float> x, y, z, t;
@@ -98,10 +91,12 @@ struct Waypoints {
 
 /// f of one threat (Pinheiro eq. 4.11): 1 / (0.5 mean + 0.5 min) of the distances between the waypoints and the
 /// threat's centre less its radius. Infinity when the denominator is <= 0. swept: distance to the threat's whole path
-/// from 0 to `duration`. Path not empty. O(points).
-[[nodiscard]] float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
+/// from 0 to `swept_for`, which the other method does not read. Path not empty. O(points).
+[[nodiscard]] float closeness(const path::TimedPath& path, const geometry::Motion& threat, float radius,
+                              ClosenessMethod method, Seconds swept_for = 0.0F) noexcept;
 /// The same result to the bit.
-[[nodiscard]] float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept;
+[[nodiscard]] float closeness(const Waypoints& path, const geometry::Motion& threat, float radius,
+                              ClosenessMethod method, Seconds swept_for = 0.0F) noexcept;
 /// M over threats (eq. 4.12): half the greatest plus half the mean; 0 for none.
 [[nodiscard]] float combined_closeness(std::span<const float> per_threat) noexcept;
 
@@ -116,7 +111,7 @@ struct Passing {
     float gap = 0.0F;  ///< from the threat's surface there [m]; not above 0 on contact
 };
 /// Path not empty. One half where threat and vehicle are at one point, or the threat is static. O(points).
-[[nodiscard]] Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept;
+[[nodiscard]] Passing passing(const Waypoints& path, const geometry::Motion& threat, float radius) noexcept;
 /// Mean over threats, weighted by 1 / gap, gaps of at least kMinGap; 0 for none.
 class PassingMean {
 public:

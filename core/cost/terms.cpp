@@ -123,24 +123,24 @@ float mean_second_derivative(std::span<const float> x, std::span<const float> y)
 /// Accumulates the terms of `closeness` over points.
 class Closeness {
 public:
-    Closeness(const MovingThreat& threat, ClosenessMethod method) noexcept : threat_(threat), method_(method)
+    Closeness(const geometry::Motion& threat, float radius, ClosenessMethod method, Seconds swept_for) noexcept
+        : threat_(threat), radius_(radius), method_(method), swept_for_(swept_for)
     {
         // Along the threat's path the nearest point lies at the time t where (p - position - velocity t) is
         // perpendicular to the velocity.
-        const float speed_squared = threat.motion.velocity.squaredNorm();
+        const float speed_squared = threat.velocity.squaredNorm();
         per_speed_ = speed_squared > 0.0F ? 1.0F / speed_squared : 0.0F;
     }
 
     [[nodiscard]] float distance_squared(float x, float y, float z, Seconds time) const noexcept
     {
-        const Vec3& position = threat_.motion.position;
-        const Vec3& velocity = threat_.motion.velocity;
+        const Vec3& position = threat_.position;
+        const Vec3& velocity = threat_.velocity;
         const float from_x = x - position.x();
         const float from_y = y - position.y();
         const float from_z = z - position.z();
         const float along = (from_x * velocity.x() + (from_y * velocity.y() + from_z * velocity.z())) * per_speed_;
-        const Seconds t =
-            method_ == ClosenessMethod::time_aware ? time : std::min(std::max(along, 0.0F), threat_.duration);
+        const Seconds t = method_ == ClosenessMethod::time_aware ? time : std::min(std::max(along, 0.0F), swept_for_);
         const float apart_x = from_x - t * velocity.x();
         const float apart_y = from_y - t * velocity.y();
         const float apart_z = from_z - t * velocity.z();
@@ -154,13 +154,15 @@ public:
     [[nodiscard]] float of(std::size_t count) const noexcept
     {
         const float mean = sum_ / static_cast<float>(count);
-        const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared_) - threat_.radius;
+        const float bracket = 0.5F * mean + 0.5F * std::sqrt(least_squared_) - radius_;
         return bracket > 0.0F ? 1.0F / bracket : std::numeric_limits<float>::infinity();
     }
 
 private:
-    const MovingThreat& threat_;
+    const geometry::Motion& threat_;
+    float radius_;
     ClosenessMethod method_;
+    Seconds swept_for_;
     float per_speed_;
     float least_squared_ = std::numeric_limits<float>::infinity();
     float sum_ = 0.0F;
@@ -195,9 +197,10 @@ float penalised_smoothness(float smoothness, float sin_alpha, float penalty) noe
     return smoothness * (1.0F + penalty * std::abs(sin_alpha));
 }
 
-float closeness(const path::TimedPath& path, const MovingThreat& threat, ClosenessMethod method) noexcept
+float closeness(const path::TimedPath& path, const geometry::Motion& threat, float radius, ClosenessMethod method,
+                Seconds swept_for) noexcept
 {
-    Closeness closeness(threat, method);
+    Closeness closeness(threat, radius, method, swept_for);
     for (const auto& point : path.points) {
         const Vec3& p = point.position;
         const float squared = closeness.distance_squared(p.x(), p.y(), p.z(), point.time);
@@ -206,11 +209,12 @@ float closeness(const path::TimedPath& path, const MovingThreat& threat, Closene
     return closeness.of(path.points.size());
 }
 
-float closeness(const Waypoints& path, const MovingThreat& threat, ClosenessMethod method) noexcept
+float closeness(const Waypoints& path, const geometry::Motion& threat, float radius, ClosenessMethod method,
+                Seconds swept_for) noexcept
 {
     // Roots are computed in groups, for targets with vector registers; the sum keeps its order.
     constexpr std::size_t kAtOnce = 8;
-    Closeness closeness(threat, method);
+    Closeness closeness(threat, radius, method, swept_for);
     const std::size_t count = path.t.size();
     std::size_t i = 0;
     for (; i + kAtOnce <= count; i += kAtOnce) {
@@ -245,11 +249,11 @@ float combined_closeness(std::span<const float> per_threat) noexcept
     return 0.5F * greatest + 0.5F * sum / static_cast<float>(per_threat.size());
 }
 
-Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept
+Passing passing(const Waypoints& path, const geometry::Motion& threat, float radius) noexcept
 {
-    const Vec3 velocity = threat.motion.velocity;
+    const Vec3 velocity = threat.velocity;
     const auto apart_at = [&](std::size_t i) {
-        return Vec3(Vec3(path.x[i], path.y[i], path.z[i]) - threat.motion.position - path.t[i] * velocity);
+        return Vec3(Vec3(path.x[i], path.y[i], path.z[i]) - threat.position - path.t[i] * velocity);
     };
     std::size_t nearest = 0;
     float least_squared = std::numeric_limits<float>::infinity();
@@ -263,7 +267,7 @@ Passing passing(const Waypoints& path, const MovingThreat& threat) noexcept
     const float distance = std::sqrt(least_squared);
     const float lengths = distance * velocity.norm();
     const float cosine = lengths > 0.0F ? apart_at(nearest).dot(velocity) / lengths : 0.0F;
-    return {0.5F + 0.5F * std::clamp(cosine, -1.0F, 1.0F), distance - threat.radius};
+    return {0.5F + 0.5F * std::clamp(cosine, -1.0F, 1.0F), distance - radius};
 }
 
 float time_beyond(const Waypoints& path, const Vec3& along, float distance) noexcept

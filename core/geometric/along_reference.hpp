@@ -78,7 +78,13 @@ void bend_along(const ReferenceAhead& ahead, Curve& curve) noexcept;
 void reach_along(const Problem& problem, float length, float widest, float slowest, Extent& reach,
                  Seconds& longest) noexcept;
 
-/// Makes `problem`, of a straight way, one along the way's route, unless any manoeuvre ends before the way bends.
+/// A route of one straight segment.
+[[nodiscard]] inline bool is_leg(const path::RouteView& route) noexcept
+{
+    return route.segments().size() == 1 && !route.segments().front().is_arc();
+}
+/// Makes `problem`, of a straight way, one along the way's route, unless any manoeuvre ends before the way bends. To a
+/// conflict on a leg that the way leads back to, the curves are about the straight line from the start.
 void follow_route(const world::Situation& situation, const world::Way& way, const world::Conflict& conflict,
                   Problem& problem) noexcept;
 /// Moves the start of a problem along a route by `by`, if it is left with `least` > 0 to the collision point [m].

@@ -78,7 +78,11 @@ float Run::closeness() const noexcept
 {
     std::array<float, kMaxMoving> per_threat{};
     for (std::size_t i = 0; i < moving_.size(); ++i) {
-        per_threat[i] = cost::closeness(waypoints(), moving_[i], settings_.closeness);
+        const world::Threat& threat = problem_.threats[moving_[i]];
+        const AtStart start = about_start(threat);
+        const bool is_solid = threat.form == world::ThreatForm::solid;
+        per_threat[i] = cost::closeness(waypoints(), start.motion, start.growth.radius, settings_.closeness,
+                                        is_solid ? longest_ : clearance_.sweep_end(threat));
     }
     return cost::combined_closeness({per_threat.data(), moving_.size()});
 }
@@ -86,8 +90,9 @@ float Run::closeness() const noexcept
 float Run::passing() const noexcept
 {
     cost::PassingMean mean;
-    for (const cost::MovingThreat& threat : moving_) {
-        mean.add(cost::passing(waypoints(), threat));
+    for (const std::uint16_t index : moving_) {
+        const AtStart start = about_start(problem_.threats[index]);
+        mean.add(cost::passing(waypoints(), start.motion, start.growth.radius));
     }
     return mean.value();
 }

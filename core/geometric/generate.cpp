@@ -145,25 +145,28 @@ void Run::prepare() noexcept
     list_moving();
 }
 
+/// Motion about the start, and size there; a solid as the sphere about it, which does not grow.
+AtStart Run::about_start(const world::Threat& threat) const noexcept
+{
+    AtStart start = at_start(problem_, threat);
+    start.motion.position -= problem_.frame.origin;
+    if (threat.form == world::ThreatForm::solid) {
+        start.growth.radius = geometry::bounding_radius(*threat.solid) + threat.growth.radius;
+    }
+    return start;
+}
+
 void Run::list_moving() noexcept
 {
     std::array<float, kMaxMoving> distance{};
-    const auto list = [&](const AtStart& threat, float radius, Seconds duration) {
-        const Vec3 position = threat.motion.position - problem_.frame.origin;
-        distance[moving_.size()] = position.norm() - radius;
-        moving_.unchecked_push_back({{position, threat.motion.velocity}, radius, duration});
-    };
     for (std::size_t i = 0; i < problem_.threats.size(); ++i) {
         const world::Threat& threat = problem_.threats[i];
-        const bool is_track = threat.ref.kind == world::ThreatKind::track;
-        if (is_track && threat.velocity.squaredNorm() > 0.0F && !far_[i]) {
-            const AtStart start = at_start(problem_, threat);
-            list(start, start.growth.radius, clearance_.sweep_end(threat));
-        }
-    }
-    for (const world::Threat& solid : world::of_kind(problem_.threats, world::ThreatKind::obstacle)) {
-        if (is_moving(solid)) {
-            list(at_start(problem_, solid), geometry::bounding_radius(*solid.solid) + solid.growth.radius, longest_);
+        const bool is_near_track = threat.ref.kind == world::ThreatKind::track && !far_[i];
+        const bool is_solid = threat.ref.kind == world::ThreatKind::obstacle;
+        if ((is_near_track && threat.velocity.squaredNorm() > 0.0F) || (is_solid && is_moving(threat))) {
+            const AtStart start = about_start(threat);
+            distance[moving_.size()] = start.motion.position.norm() - start.growth.radius;
+            moving_.unchecked_push_back(static_cast<std::uint16_t>(i));
         }
     }
     while (settings_.closeness_nearest > 0 && moving_.size() > settings_.closeness_nearest) {

@@ -27,6 +27,10 @@ void follow_route(const world::Situation& situation, const world::Way& way, cons
         problem.straight = way.ahead.straight;
         return;
     }
+    if (is_leg(way.ahead.route)) {
+        problem.frame = make_path_frame(way.origin, conflict.own_at_closest - way.origin);
+        return;
+    }
     problem.ahead = way.ahead;
     problem.distance = conflict.way_at_closest;
     problem.speed = situation.reference.speed;

@@ -42,6 +42,23 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     return problem;
 }
 
+/// The conflict to plan for, and the way that it is on. Off a leg, curves about the line on which the vehicle comes
+/// back to it are clear more often than curves that bend where the way does: conflicts on that line, taken beyond the
+/// leg, are planned for first.
+bool find_conflict(const Situation& situation, Seconds lookahead, WorkBudget& budget, world::Way& way,
+                   world::Conflict& conflict) noexcept
+{
+    const path::RouteAhead ahead = way.ahead;
+    if (detail::is_leg(ahead.route) && ahead.joined_at < ahead.route.length()) {
+        way.ahead = {ahead.route, way.length, ahead.route.length()};
+        if (world::main_conflict(situation, way, lookahead, budget, conflict)) {
+            return true;
+        }
+        way.ahead = ahead;
+    }
+    return world::main_conflict(situation, way, lookahead, budget, conflict);
+}
+
 /// Moves the start to where the vehicle is when it answers. How long that takes, 0 where it is not moved [s].
 Seconds move_start(const Situation& situation, const Vec3& collision_point, const Settings& settings, Problem& problem,
                    WorkBudget& budget) noexcept
@@ -163,9 +180,9 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     if (!world::is_complete(situation) || !is_valid(settings_)) {
         return PlanStatus::bad_input;
     }
-    const world::Way way = world::way_of(situation);
+    world::Way way = world::way_of(situation);
     world::Conflict conflict;
-    if (!world::main_conflict(situation, way, situation.rules.lookahead, budget, conflict)) {
+    if (!find_conflict(situation, situation.rules.lookahead, budget, way, conflict)) {
         return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
     }
     if (conflict.threat.kind != world::ThreatKind::track && conflict.threat.kind != world::ThreatKind::obstacle) {

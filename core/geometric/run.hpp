@@ -79,6 +79,7 @@ private:
     [[nodiscard]] float closeness() const noexcept;
     [[nodiscard]] float passing() const noexcept;
     void list_moving() noexcept;
+    [[nodiscard]] AtStart about_start(const world::Threat& threat) const noexcept;
     [[nodiscard]] Selection far_threats(Seconds longest) noexcept;
     void build(const CandidateShape& shape) noexcept;
     void build_along(const CandidateShape& shape) noexcept;
@@ -123,9 +124,9 @@ private:
     BaseCurve base_;        ///< with a route
     Curve curve_;           ///< of the candidate at hand
     path::TimedPath path_;  ///< the same, about the start
-    /// Threats and solids, about the start; a solid as the sphere about it.
+    /// Tracks and solids that count for closeness and passing, by their index in Problem::threats.
     static constexpr std::size_t kMaxMoving = kMaxTracks + kMaxMovingSolids;
-    StaticVector<cost::MovingThreat, kMaxMoving> moving_;
+    StaticVector<std::uint16_t, kMaxMoving> moving_;
 };
 
 }  // namespace jink::geometric::detail

@@ -23,8 +23,8 @@ struct FlightRules {
     float k_sigma = 3.0F;  ///< standard deviations that count as possible, 0..6
     /// Plans keep this much more than the margin, so that noise does not undo them, 0..10 [m].
     float clearance = 0.4F;
-    EscapeRule escape;
-    path::FollowerGains gains;  ///< of the follower, 0..10 each
+    EscapeRule escape{};
+    path::FollowerGains gains{};  ///< of the follower, 0..10 each
 };
 
 /// Whether every rule is finite and within its range. O(1).

@@ -60,8 +60,9 @@ public:
         return true;
     }
 
-    /// Distance of the nearest node that is not opened; the reach without any [m].
-    [[nodiscard]] float nearest_closed() const noexcept { return closed_ > 0 ? parts_[0].distance : reach_; }
+    [[nodiscard]] bool has_closed() const noexcept { return closed_ > 0; }
+    /// Distance of the nearest node that is not opened [m]; there is one.
+    [[nodiscard]] float nearest_closed() const noexcept { return parts_[0].distance; }
 
     /// All of them, in the order of their nodes. No part can be opened any more.
     [[nodiscard]] std::span<const Part> in_order() noexcept
@@ -138,7 +139,7 @@ MapSelection append_map(const MeshMap& map, const MapPlace& place, const Vec3& p
     while (budget.spend(units::kMeshNode) && parts.open_nearest()) {
     }
     MapSelection out;
-    out.exact_within = std::min(std::max(parts.nearest_closed() - larger, 0.0F), reach);
+    out.exact_within = parts.has_closed() ? std::clamp(parts.nearest_closed() - larger, 0.0F, reach) : reach;
     for (const Part& part : parts.in_order()) {
         if (!table.append(obstacle_of(map, place, part))) {
             // No place: the table was not set to keep any. Then nothing is known.

@@ -23,7 +23,12 @@ int main()
 
     geometric::Planner planner{geometric::Settings{}};
     avoid::Supervisor supervisor{avoid::Settings{}, planner};
-    const world::Situation now{{}, own, limits, airframe, way, {&intruder, 1}, {}, airspace};
+    const world::FlightRules rules;  // 8 s of look-ahead, 3 standard deviations
+    static world::ThreatSet threats;
+    world::Situation now{{}, own, limits, airframe, way, rules};
+    if (threats.collect(now, {{&intruder, 1}, {}, airspace})) {
+        now.threats = threats.all();  // else everything counts as contact
+    }
     const avoid::Guidance guidance = supervisor.update(now, true);  // once per tick, with the vehicle under our control
     std::printf("conflict in %.1f s, fly (%.2f, %.2f, %.2f) m/s\n",
                 double(guidance.conflict ? guidance.conflict->time_to_loss : 0.0F), double(guidance.velocity.x()),

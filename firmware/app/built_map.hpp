@@ -8,18 +8,11 @@
 
 #if defined(JINK_MAP)
 #include JINK_MAP
-#endif
 
 namespace jink::app {
 
-/// Null: the image has no map.
-[[nodiscard]] constexpr const geometry::MeshMap* built_map() noexcept
-{
-#if defined(JINK_MAP)
-    return &JINK_MAP_OF;
-#else
-    return nullptr;
-#endif
-}
+/// Only where there is one.
+[[nodiscard]] constexpr const geometry::MeshMap& built_map() noexcept { return JINK_MAP_OF; }
 
 }  // namespace jink::app
+#endif

@@ -54,20 +54,18 @@ void settle_reach_sets(app::Coprocessor& coprocessor) noexcept
     }
 }
 
-void settle_map(app::Coprocessor& coprocessor) noexcept
+void settle_map([[maybe_unused]] app::Coprocessor& coprocessor) noexcept
 {
-    const geometry::MeshMap* const map = app::built_map();
-    if (map == nullptr) {
-        return;
-    }
-    if (geometry::check(*map) == geometry::MapStatus::good) {
-        coprocessor.use_map(*map);
+#if defined(JINK_MAP)
+    if (geometry::check(app::built_map()) == geometry::MapStatus::good) {
+        coprocessor.use_map(app::built_map());
         return;
     }
     app::Text text;
     text << "jink: map damaged, passive";
     static_cast<void>(coprocessor.tell_when_heard(link::Severity::critical, text));
     coprocessor.stay_passive();
+#endif
 }
 
 bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept

@@ -38,7 +38,8 @@ constexpr float kCruise = 5.0F;
 
 struct Environment {
     geometric::Problem problem;
-    cost::MovingThreat moving;
+    geometry::Motion moving;
+    float moving_radius = 0.0F;
 };
 
 Environment make_environment(float distance, float elevation, float radius, const Vec3& moving, float moving_radius)
@@ -52,8 +53,8 @@ Environment make_environment(float distance, float elevation, float radius, cons
     // Pinheiro does not give the moving threat's motion; here it flies at the main threat at cruise speed. Only
     // closeness depends on this motion.
     const Vec3 towards = main - moving;
-    e.moving.motion = {moving, towards.norm() > 0.0F ? Vec3(towards.normalized() * kCruise) : Vec3(Vec3::Zero())};
-    e.moving.radius = moving_radius;
+    e.moving = {moving, towards.norm() > 0.0F ? Vec3(towards.normalized() * kCruise) : Vec3(Vec3::Zero())};
+    e.moving_radius = moving_radius;
     return e;
 }
 
@@ -72,11 +73,10 @@ void fly(const Environment& e, const vehicle::VehicleLimits& limits, const vehic
                 if (!geometric::make_candidate_path(e.problem, shape, kWaypoints, limits, path)) {
                     continue;
                 }
-                cost::MovingThreat threat = e.moving;
-                threat.duration = path.duration();
                 block.times.push_back(cost::flight_time(path));
                 block.energies.push_back(cost::energy(path, airframe));
-                block.closeness.push_back(cost::closeness(path, threat, cost::ClosenessMethod::swept));
+                block.closeness.push_back(
+                    cost::closeness(path, e.moving, e.moving_radius, cost::ClosenessMethod::swept, path.duration()));
                 if (rows != nullptr) {
                     *rows << e.problem.distance << ',' << e.problem.main_radius << ','
                           << (family == geometric::Family::simple ? "simple" : "symmetric") << ',' << 15 * plane << ','

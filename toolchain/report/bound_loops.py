@@ -38,9 +38,11 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
 
 
 RULES = [
-    # The images fly by one leg: no routes; nothing is closed. Weights as they are by default, without that of passing. No solids.
+    # The images fly along one leg, a route of one segment: at most three pieces of way. Nothing is closed. Weights as they are by default, without that of passing. No solids.
     (r"[bB]arrel|_cylinder", "each", lambda p: 0),  # no closed areas
-    (r"core/path/route|route_way\.cpp|along_reference|plan_along|RoutePieces|WayPiece", "each", lambda p: 0),
+    (r"along_reference|plan_along", "each", lambda p: 0),
+    (r"core/path/route|route_way\.cpp:.*segment", "each", lambda p: 1),
+    (r"route_way\.cpp|RoutePieces|WayPiece", "each", lambda p: 3),
     (r"Run::passing|moving_solids|solid\.shape|clearance_solids\.cpp|geometric/extent\.hpp", "each", lambda p: 0),
     (r"solve_with_retries", "each", lambda p: p["attempts"]),
     (r"in_a_row\.cpp:.*(kFirstParts|look < 2)", "each", lambda p: 2),
@@ -49,11 +51,12 @@ RULES = [
     (r"in_a_row\.cpp:.*obstacle", "each", lambda p: p["obstacles"]),
     (r"in_a_row\.cpp:.*[pP]oint", "each", lambda p: p["points"]),
     (r"nearest\.cpp", "each", lambda p: p["tracks"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*situation\.threats|conflict_with", "each", lambda p: p["threats"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*touching", "each", lambda p: 8),
+    (r"conflict(_moving)?\.cpp:.*situation\.threats|conflict_with", "each", lambda p: p["threats"]),
+    (r"conflict\.cpp:.*touching", "each", lambda p: 8),
     (r"threat_set\.cpp|of_kind|world::Threat const\*|solve\.cpp:.*p\.threats", "each", lambda p: p["threats"]),
     (r"separation(_parts\.hpp|\.cpp):.*part < parts", "in all", lambda p: p["paid parts"]),
-    (r"shape\.vertices|Matrix<float, 3, 1, 0, 3, 1> const\*, std::span", "each", lambda p: 0),  # no hulls
+    (r"shape\.vertices|jink::Point3 const\*, std::span", "each", lambda p: 0),  # no hulls
+    (r"map_obstacles", "each", lambda p: 0),  # no map
     (r"next \+ 1 < curve\.points", "in all", lambda p: p["points"]),
     (r"next \+ 1 < path\.points", "in all", lambda p: p["flight parts"] + p["points"]),
     (r"flown\.cpp:.*fly.*flight\.ended|flight\.hpp:.*early", "in all", lambda p: p["steps"] + 1),
@@ -61,8 +64,9 @@ RULES = [
     (r"flown\.cpp:.*kTailPoints|flown\.cpp:.*brake", "in all", lambda p: 12),
     (r"flight\.hpp:.*(count < most|Steps::Steps)", "each", lambda p: 3),
     (r"touches_in_parts|Clearance::leaves", "each", lambda p: p["escape parts"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*pieces", "each", lambda p: p["pieces"]),
-    (r"conflict(_parts\.hpp|_along\.cpp|\.cpp):.*i < 8", "each", lambda p: 8),
+    (r"conflict_moving\.cpp:.*i < parts", "each", lambda p: p["pieces"]),
+    (r"conflict(_moving)?\.cpp:.*pieces_", "each", lambda p: 3),
+    (r"conflict\.cpp:.*i < 8", "each", lambda p: 8),
     (r"separation(_parts\.hpp|\.cpp):.*situation\.threats", "each", lambda p: p["threats"]),
     (r"separation(_parts\.hpp|\.cpp):.*(threats\.size|threats\.first)", "each", lambda p: p["checked tracks"]),
     (r"separation(_parts\.hpp|\.cpp):.*(chunks\(\)|first < count_|first \+= kChunk)", "each", lambda p: p["chunks"]),
@@ -90,8 +94,8 @@ RULES = [
 # 2 pi, far from where newlib's reduction of large ones begins.
 NEVER = [r"touches_swept", r"is_flyable", r"Clearance6leaves", r"Clearance7touchesERKNS1_5CurveERKNS1_6ExtentERKNS_8geometry5Shape",
          r"Clearance7touchesERKNS1_4View", r"4cost7passing", r"11time_beyond", r"make_base", r"make_curve_along", r"bend_along", r"seen_at_collision",
-         r"reach_along", r"ReferenceAhead", r"follow_route", r"move_start_along", r"build_along", r"is_flyable_along", r"collision_point_along",
-         r"4path5Route", r"RoutePieces", r"way_along",
+         r"reach_along", r"ReferenceAhead", r"move_start_along", r"build_along", r"is_flyable_along", r"collision_point_along",
+         r"4path5Route",
          r"swept_box_(contact|distance)", r"obstacle_margin", r"meets_solid", r"13local_support", r"__kernel_rem_pio2f", r"__assert", r"abort"]
 
 # libgcc's software doubles, which share code between functions: an allowance per call, far above their cost.

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/avoid/fallback.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "tests/property/core/avoid/flown_densely.hpp"
@@ -201,7 +202,7 @@ inline void hold_as_wing(const Drawn& d, DenseFlight& flight)
 inline DenseFlight fly(const Drawn& d, float direction)
 {
     if (d.flying != Flying::held && d.flying != Flying::fallback_turn) {
-        return fly_densely(d.scene, d.manoeuvre, d.settings, kPeriod);
+        return fly_densely(d.scene, d.manoeuvre, kPeriod);
     }
     DenseFlight flight(d.scene.own, d.scene.limits);
     const bool held = d.flying == Flying::held || direction == 0.0F;

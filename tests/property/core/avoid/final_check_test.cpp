@@ -61,7 +61,7 @@ double true_margin(const Drawn& d, const DenseFlight& flight, double floor)
     const double shared = d.manoeuvre.kind == world::ManoeuvreKind::velocity && d.flying != Flying::held
                               ? double(time_to_stop(d.scene.situation(), d.settings))
                               : 1e9;
-    double least = dense::least_of_all(d.scene, flight, d.settings, shared, floor);
+    double least = dense::least_of_all(d.scene, flight, shared, floor);
     for (const world::Obstacle& o : d.scene.obstacles) {
         const auto margin = [&](double t) {
             return dense::obstacle_margin_at(d.scene, o.shape, flight.at(t).position);

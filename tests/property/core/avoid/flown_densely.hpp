@@ -141,7 +141,7 @@ inline void fly_on(const vehicle::VehicleLimits& limits, DenseFlight& flight)
 }
 
 /// The rest of a manoeuvre with a set-point every `period`, and the flight after it.
-inline DenseFlight fly_densely(const Scene& scene, const world::Manoeuvre& m, const Settings& settings, float period)
+inline DenseFlight fly_densely(const Scene& scene, const world::Manoeuvre& m, float period)
 {
     DenseFlight flight(scene.own, scene.limits);
     const float start = std::max(0.0F, scene.now - m.start);
@@ -198,8 +198,7 @@ double least_margin(const Margin& margin, double end, double rate, const world::
 }
 
 /// Least margin over all threats that are not solids, and its threat.
-inline double least_of_all(const Scene& scene, const DenseFlight& flight, const Settings& settings, double shared,
-                           double floor)
+inline double least_of_all(const Scene& scene, const DenseFlight& flight, double shared, double floor)
 {
     const double end = flight.end();
     const double own_rate = flight.fastest() + double(scene.rules.escape.speed);

@@ -47,7 +47,7 @@ struct Outcome {
 void judge(const dense::Scene& s, const dense::DenseFlight& flight, float stated, Outcome& out)
 {
     const double floor = double(stated) - kAccuracy;
-    const double truth = dense::least_of_all(s, flight, Settings{}, 1e9, floor);
+    const double truth = dense::least_of_all(s, flight, 1e9, floor);
     ++out.found;
     out.clear += stated >= 0.0F ? 1 : 0;
     out.too_near += stated >= 0.0F && truth < -kAccuracy ? 1 : 0;
@@ -68,7 +68,7 @@ Outcome fly_with(Method& method)
             continue;
         }
         const float stated = check_manoeuvre(s.situation(), m, Settings{}, budget).margin;
-        judge(s, dense::fly_densely(s, m, Settings{}, dense::kPeriod), stated, out);
+        judge(s, dense::fly_densely(s, m, dense::kPeriod), stated, out);
     }
     std::printf("[ measured ] %d plans of %d, %d stated clear, %d of these enter the capsule, %d above the truth\n",
                 out.found, kCourses, out.clear, out.too_near, out.above);

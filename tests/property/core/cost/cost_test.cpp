@@ -97,27 +97,27 @@ TEST(CostLaws, ClosenessAgreesWithTheFormulaInDouble)
     for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
         Random random(seed);
         const Drawn d = draw(random);
-        MovingThreat threat{{d.path.points[0].position + random_vector(random, 30.0F), random_vector(random, 5.0F)},
-                            random.uniform(0.0F, 4.0F),
-                            random.uniform(0.5F, 20.0F)};
+        geometry::Motion threat{d.path.points[0].position + random_vector(random, 30.0F), random_vector(random, 5.0F)};
+        const float radius = random.uniform(0.0F, 4.0F);
+        Seconds swept_for = random.uniform(0.5F, 20.0F);
         if (random.uniform() < 0.1F) {
-            threat.motion.velocity.setZero();
+            threat.velocity.setZero();
         }
-        const oracle::Moving moving{oracle::to_double(threat.motion.position),
-                                    oracle::to_double(threat.motion.velocity), static_cast<double>(threat.radius)};
+        const oracle::Moving moving{oracle::to_double(threat.position), oracle::to_double(threat.velocity),
+                                    static_cast<double>(radius)};
         for (const auto method : {ClosenessMethod::swept, ClosenessMethod::time_aware}) {
-            const double swept_for = method == ClosenessMethod::swept ? static_cast<double>(threat.duration) : -1.0;
+            const double swept_for = method == ClosenessMethod::swept ? static_cast<double>(swept_for) : -1.0;
             const double expected = 1.0 / oracle::closeness(d.flight, moving, swept_for);
             if (std::abs(expected) < 1e-3) {
                 continue;  // on the very edge of contact
             }
-            const double got = 1.0 / static_cast<double>(closeness(d.path, threat, method));
+            const double got = 1.0 / static_cast<double>(closeness(d.path, threat, radius, method, swept_for));
             ASSERT_NEAR(got, expected, 2e-3 * (1.0 + expected)) << "seed " << seed;
         }
         // The nearest point of its path is never farther than where it is at one instant of the flight.
-        threat.duration = std::max(threat.duration, d.path.duration());
-        ASSERT_GE(closeness(d.path, threat, ClosenessMethod::swept),
-                  closeness(d.path, threat, ClosenessMethod::time_aware) * 0.9999F)
+        swept_for = std::max(swept_for, d.path.duration());
+        ASSERT_GE(closeness(d.path, threat, radius, ClosenessMethod::swept, swept_for),
+                  closeness(d.path, threat, radius, ClosenessMethod::time_aware) * 0.9999F)
             << "seed " << seed;
     }
 }

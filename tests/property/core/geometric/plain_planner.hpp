@@ -86,7 +86,7 @@ private:
         std::vector<float> closeness;
         for (const Sphere& t : world_.threats) {
             if (t.motion.velocity.squaredNorm() > 0.0F) {
-                closeness.push_back(cost::closeness(path, {t.motion, t.radius, 0.0F}, settings_.closeness));
+                closeness.push_back(cost::closeness(path, t.motion, t.radius, settings_.closeness));
             }
         }
         cost::Terms terms;

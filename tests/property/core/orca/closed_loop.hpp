@@ -38,7 +38,7 @@ public:
         for (const Body& body : scene.bodies) {
             obstacles_.push_back({static_cast<world::ObstacleId>(obstacles_.size()), body.shape()});
         }
-        threats_ = oracle::threats_of(obstacles_);
+        threats_ = jink::oracle::threats_of(obstacles_);
         out_.waits.resize(scene.agents.size(), 0.0);
     }
 

@@ -92,7 +92,7 @@ struct Seen {
                 {static_cast<world::ObstacleId>(obstacles.size()), geometry::make_box(box.centre, box.half)});
         }
         input.neighbours = neighbours;
-        threats = oracle::threats_of(obstacles);
+        threats = jink::oracle::threats_of(obstacles);
         input.scene.obstacles = threats;
         input.bounds = bounds;
         return input;

@@ -134,31 +134,29 @@ TEST(PenalisedSmoothness, NothingLevelTwiceUpright)
 TEST(Closeness, ThreatAtRestByHand)
 {
     // Waypoints at x = 0, 5, 10, 15, 20; threat 3 m to the side of the middle one.
-    const MovingThreat threat{{Vec3(10.0F, 3.0F, 0.0F), Vec3::Zero()}, 1.0F, 4.0F};
+    const geometry::Motion threat{Vec3(10.0F, 3.0F, 0.0F), Vec3::Zero()};
     const float mean = (2.0F * std::hypot(10.0F, 3.0F) + 2.0F * std::hypot(5.0F, 3.0F) + 3.0F) / 5.0F;
     const float expected = 1.0F / (0.5F * (mean - 1.0F) + 0.5F * 2.0F);
-    EXPECT_FLOAT_EQ(closeness(level(20.0F), threat, ClosenessMethod::swept), expected);
-    EXPECT_FLOAT_EQ(closeness(level(20.0F), threat, ClosenessMethod::time_aware), expected);
+    EXPECT_FLOAT_EQ(closeness(level(20.0F), threat, 1.0F, ClosenessMethod::swept, 4.0F), expected);
+    EXPECT_FLOAT_EQ(closeness(level(20.0F), threat, 1.0F, ClosenessMethod::time_aware), expected);
 }
 
 TEST(Closeness, SweptSeesThePathTimeAwareTheInstant)
 {
     // A threat that crosses the path at x = 10 after 8 s, when the vehicle is gone.
-    const MovingThreat late{{Vec3(10.0F, -8.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F)}, 1.0F, 10.0F};
-    EXPECT_GT(closeness(level(20.0F), late, ClosenessMethod::swept),
-              closeness(level(20.0F), late, ClosenessMethod::time_aware));
+    const geometry::Motion late{Vec3(10.0F, -8.0F, 0.0F), Vec3(0.0F, 1.0F, 0.0F)};
+    EXPECT_GT(closeness(level(20.0F), late, 1.0F, ClosenessMethod::swept, 10.0F),
+              closeness(level(20.0F), late, 1.0F, ClosenessMethod::time_aware));
     // Swept for 4 s only, its path ends 4 m short.
-    MovingThreat brief = late;
-    brief.duration = 4.0F;
-    EXPECT_LT(closeness(level(20.0F), brief, ClosenessMethod::swept),
-              closeness(level(20.0F), late, ClosenessMethod::swept));
+    EXPECT_LT(closeness(level(20.0F), late, 1.0F, ClosenessMethod::swept, 4.0F),
+              closeness(level(20.0F), late, 1.0F, ClosenessMethod::swept, 10.0F));
 }
 
 TEST(Closeness, ContactIsInfinity)
 {
-    const MovingThreat large{{Vec3(10.0F, 0.0F, 0.0F), Vec3::Zero()}, 12.0F, 4.0F};
-    EXPECT_EQ(closeness(level(20.0F), large, ClosenessMethod::swept), kInfinity);
-    EXPECT_EQ(closeness(level(20.0F), large, ClosenessMethod::time_aware), kInfinity);
+    const geometry::Motion large{Vec3(10.0F, 0.0F, 0.0F), Vec3::Zero()};
+    EXPECT_EQ(closeness(level(20.0F), large, 12.0F, ClosenessMethod::swept, 4.0F), kInfinity);
+    EXPECT_EQ(closeness(level(20.0F), large, 12.0F, ClosenessMethod::time_aware), kInfinity);
 }
 
 TEST(CombinedCloseness, HalfGreatestHalfMean)

@@ -26,28 +26,28 @@ struct AlongX {
     [[nodiscard]] Waypoints view() const { return {x, y, z, t}; }
 };
 
-/// A threat at 5 m/s on `course` (0: same direction, 180: head-on) that is at `at` after 4 s.
-MovingThreat threat_on(float course_degrees, const Vec3& at)
+/// A threat of 1 m at 5 m/s on `course` (0: same direction, 180: head-on) that is at `at` after 4 s.
+geometry::Motion threat_on(float course_degrees, const Vec3& at)
 {
     const float course = course_degrees * kPi / 180.0F;
     const Vec3 velocity(5.0F * std::cos(course), 5.0F * std::sin(course), 0.0F);
-    return {{at - 4.0F * velocity, velocity}, 1.0F};
+    return {at - 4.0F * velocity, velocity};
 }
 
 TEST(Passing, InFrontOfWhatCrossesCostsAndBehindItDoesNot)
 {
     const AlongX path;
     // It crosses from right to left and is late: the vehicle is in front of it; then early.
-    const Passing front = passing(path.view(), threat_on(90.0F, Vec3(0.0F, -4.0F, 0.0F)));
+    const Passing front = passing(path.view(), threat_on(90.0F, Vec3(0.0F, -4.0F, 0.0F)), 1.0F);
     EXPECT_NEAR(front.share, 0.5F + 0.5F * std::sqrt(0.5F), 0.02F) << "at right angles: 45 degrees off its course";
     EXPECT_NEAR(front.gap, std::sqrt(8.0F) - 1.0F, 0.05F);
-    const Passing behind = passing(path.view(), threat_on(90.0F, Vec3(0.0F, 4.0F, 0.0F)));
+    const Passing behind = passing(path.view(), threat_on(90.0F, Vec3(0.0F, 4.0F, 0.0F)), 1.0F);
     EXPECT_NEAR(behind.share, 0.5F - 0.5F * std::sqrt(0.5F), 0.02F);
     // Over it, beside it head-on and beside it overtaking: no side is better.
-    EXPECT_NEAR(passing(path.view(), threat_on(90.0F, Vec3(0.0F, 0.0F, -3.0F))).share, 0.5F, 0.02F);
-    EXPECT_NEAR(passing(path.view(), threat_on(180.0F, Vec3(0.0F, 3.0F, 0.0F))).share, 0.5F, 0.1F);
+    EXPECT_NEAR(passing(path.view(), threat_on(90.0F, Vec3(0.0F, 0.0F, -3.0F)), 1.0F).share, 0.5F, 0.02F);
+    EXPECT_NEAR(passing(path.view(), threat_on(180.0F, Vec3(0.0F, 3.0F, 0.0F)), 1.0F).share, 0.5F, 0.1F);
     // Turned against it by more, there is less to choose: the offset is square to the relative velocity.
-    const float sharp = passing(path.view(), threat_on(150.0F, Vec3(0.0F, -4.0F, 0.0F))).share;
+    const float sharp = passing(path.view(), threat_on(150.0F, Vec3(0.0F, -4.0F, 0.0F)), 1.0F).share;
     EXPECT_GT(sharp, 0.5F);
     EXPECT_LT(sharp, front.share);
 }
@@ -55,7 +55,7 @@ TEST(Passing, InFrontOfWhatCrossesCostsAndBehindItDoesNot)
 TEST(Passing, NothingToTellIsOneHalfAndNothingThereIsNothing)
 {
     const AlongX path;
-    EXPECT_EQ(passing(path.view(), {{Vec3(3.0F, 2.0F, 0.0F), Vec3::Zero()}, 1.0F}).share, 0.5F);
+    EXPECT_EQ(passing(path.view(), {Vec3(3.0F, 2.0F, 0.0F), Vec3::Zero()}, 1.0F).share, 0.5F);
     EXPECT_EQ(PassingMean{}.value(), 0.0F);
     PassingMean mean;
     mean.add({1.0F, 1.0F});

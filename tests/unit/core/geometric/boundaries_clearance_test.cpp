@@ -202,7 +202,7 @@ TEST(ClearanceBorder, WhoLeavesAMarginStraightAwayIsSeenToAtAQuickReject)
 {
     // An eighth of a metre inside; the sphere grows back half its slack in each of 16 parts.
     CurveBench bench = segment(Vec3(2.0F, 0.0F, 0.0F), 1.0F);
-    bench.problem.rules.escape_from_margin = true;
+    bench.settings.escape_from_margin = true;
     bench.problem.rules.escape = {0.0625F, 0.5F};
     bench.threats = {Scene::still(Vec3(-2.0F, 0.0F, 0.0F), 1.625F)};
     ASSERT_EQ(bench.status(), CandidateStatus::available);
@@ -216,7 +216,7 @@ TEST(ClearanceBorder, AMarginThatGrowsBackAsSlowlyAsNumbersAllowIsLookedAtAllThe
         for (const bool sphere : {true, false}) {
             for (const float way : {-1.0F, 1.0F}) {
                 CurveBench bench = segment(Vec3(way, 0.0F, 0.0F), 1.0F);
-                bench.problem.rules.escape_from_margin = true;
+                bench.settings.escape_from_margin = true;
                 bench.problem.rules.escape.speed = speed;
                 if (sphere) {
                     bench.threats = {Scene::still(Vec3(-2.25F, 0.0F, 0.0F), 2.0F)};

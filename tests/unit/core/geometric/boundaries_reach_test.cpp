@@ -124,8 +124,8 @@ TEST(ReachBorder, VolumesLastAsLongAsTheLongestCandidate)
                 for (path::PathPoint& point : path.points) {
                     point.position -= scene.problem.frame.origin;
                 }
-                const cost::MovingThreat threat{{Vec3(20.0F, 0.0F, 25.0F), Vec3(4.0F, 0.0F, 0.0F)}, 1.0F, longest};
-                const std::array<float, 1> one{cost::closeness(path, threat, closeness)};
+                const geometry::Motion threat{Vec3(20.0F, 0.0F, 25.0F), Vec3(4.0F, 0.0F, 0.0F)};
+                const std::array<float, 1> one{cost::closeness(path, threat, 1.0F, closeness, longest)};
                 ASSERT_FLOAT_EQ(scene.result.candidates[i].terms.closeness, cost::combined_closeness(one));
             }
             // It crosses the leg after 3 s, behind the vehicle: its swept volume blocks, the threat itself does not.

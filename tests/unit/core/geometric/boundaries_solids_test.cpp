@@ -56,7 +56,7 @@ TEST(SolidBorder, ARunThatIsStraightBarAHairIsHitByThatHair)
 CurveBench escaping(const std::vector<CurvePoint>& points, float slack, float speed)
 {
     CurveBench bench(points);
-    bench.problem.rules.escape_from_margin = true;
+    bench.settings.escape_from_margin = true;
     bench.problem.rules.escape = {slack, speed};
     return bench;
 }

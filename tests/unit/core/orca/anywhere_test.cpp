@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_view.hpp"
 #include "core/orca/smoothing.hpp"

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_view.hpp"
 #include "tests/oracle/obstacle_threats.hpp"

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "core/orca/obstacle_way.hpp"
 #include "tests/oracle/obstacle_threats.hpp"
 #include "tests/oracle/points.hpp"
