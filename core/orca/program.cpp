@@ -149,7 +149,7 @@ void choose(const Problem& problem, const Vec3& so_far, float scale, Solution& o
 
 /// Level by level: each gives way for those before it.
 template <class Real>
-Found ladder(const Problem& problem, Search<Real>& search, Solution& out, Vec3& best) noexcept
+Found order(const Problem& problem, Search<Real>& search, Solution& out, Vec3& best) noexcept
 {
     std::size_t before = 0;
     for (std::size_t level = 0; level < kLevels; ++level) {
@@ -212,7 +212,7 @@ Found attempt(const Problem& problem, ScratchView scratch, float scale, WorkBudg
         } else {
             best = problem.reference;
             out.broken = {};
-            found = ladder(problem, search, out, best);
+            found = order(problem, search, out, best);
             is_blunt = out.status == 0;  // it is not sure what it found first
         }
     }

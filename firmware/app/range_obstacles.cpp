@@ -34,8 +34,8 @@ void place_level(const LevelBeam& beam, const Vec3& own, float half_height, Time
     const float part = beam.half_angle / static_cast<float>(parts);
     for (std::size_t k = 0; k < parts; ++k) {
         const float aside = static_cast<float>(2 * k + 1) * part - beam.half_angle;
-        const geometry::Shape echo = level_return(own, beam.yaw + aside, beam.range, part, half_height);
-        static_cast<void>(table.update({beam.first_id + static_cast<std::uint32_t>(k), echo}, expires, own));
+        const geometry::Shape body = level_return(own, beam.yaw + aside, beam.range, part, half_height);
+        static_cast<void>(table.update({beam.first_id + static_cast<std::uint32_t>(k), body}, expires, own));
     }
 }
 
@@ -94,10 +94,10 @@ bool place_reading(const link::RangeReading& reading, const Vec3& own, const Con
     } else if (reading.half_angle > kWidestSteep) {
         return false;
     } else {
-        const geometry::Shape echo = steepness > kUpwards
+        const geometry::Shape body = steepness > kUpwards
                                          ? overhead_return(reading, own, c.scan_height)
                                          : slanted_return(own, reading.direction, reading.range, reading.half_angle);
-        static_cast<void>(table.update({first, echo}, expires, own));
+        static_cast<void>(table.update({first, body}, expires, own));
     }
     return true;
 }

@@ -31,7 +31,7 @@ TEST(SideLog, CountsAChangeOnlyBeyondTheDeadBand)
     EXPECT_EQ(flight.log.counts({0.5}).broken, 0U);
 }
 
-TEST(SideLog, APictureChangesWhenSomebodyNewIsToldOfSinceTheSideBefore)
+TEST(SideLog, APictureChangesWhenSomebodyNewIsReportedOfSinceTheSideBefore)
 {
     Flight flight;
     flight.side(2.0, 2.0);

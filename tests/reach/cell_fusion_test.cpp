@@ -77,7 +77,7 @@ TEST(CellFusionLaws, WhatIsFoundByCellsIsClear)
 }
 
 /// A placed set whose grid holds solids of every kind: no point of a solid is in a cell reported free of it.
-TEST(CellFusionLaws, NoCellThatIsToldFreeHoldsAnythingOfASolid)
+TEST(CellFusionLaws, NoCellThatIsReportedFreeHoldsAnythingOfASolid)
 {
     std::size_t points = 0;
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {

@@ -166,7 +166,7 @@ TEST(NearThreatsLaw, CylindersCloseBodiesAndTellMargins)
 }
 
 /// Along the arc itself, at the true times: movements reported free or short of clearance have no contact.
-TEST(NearThreatsLaw, NoNodeThatIsToldFreeTouchesAnything)
+TEST(NearThreatsLaw, NoNodeThatIsReportedFreeTouchesAnything)
 {
     constexpr int kSamples = 24;
     std::size_t looked_at = 0;

@@ -194,8 +194,8 @@ TEST(VehicleBuild, LessRoomFewerTrajectories)
     EXPECT_LE(small.bytes(), 60'000U);
     recipe.most_bytes = 0;
     const BuiltVehicle large = build_vehicle("test", vehicle::VehicleLimits{}, recipe);
-    EXPECT_LT(small.rung.spread, large.rung.spread);
-    EXPECT_EQ(small.rung.most_lateral, large.rung.most_lateral) << "ways out at the sides are kept longest";
+    EXPECT_LT(small.density.spread, large.density.spread);
+    EXPECT_EQ(small.density.most_lateral, large.density.most_lateral) << "ways out at the sides are kept longest";
     recipe.most_bytes = 20'000;
     EXPECT_NE(why(vehicle::VehicleLimits{}, recipe).find("more than 20000 bytes"), std::string::npos);
 }

@@ -247,7 +247,7 @@ TEST(SimAutopilot, ParametersAreSetUntilTheyAreVerified)
     EXPECT_EQ(line.count<ParamSet>(), 0);
 }
 
-TEST(SimAutopilot, TrafficIsToldWithItsSpeedAndPointsAsObstacles)
+TEST(SimAutopilot, TrafficIsReportedWithItsSpeedAndPointsAsObstacles)
 {
     Scenario s = kPx4Flight;
     Threat flies;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr Micros kMs = 1000;
 
-TEST(BoardClock, GoesByTheWallUntilItIsTold)
+TEST(BoardClock, GoesByTheWallUntilItIsReported)
 {
     BoardClock clock;
     EXPECT_EQ(clock.due(0, 100.0), 0);

@@ -48,7 +48,7 @@ TEST(Judge, FindsAWayWhenThereIsRoomAndNoneWhenThereIsNot)
 
 /// If the least separation precedes the report of the threat, the failure is unavoidable, independent of later
 /// manoeuvres.
-TEST(Report, AThreatToldOfTooLateIsNoFailureToAvoid)
+TEST(Report, AThreatReportedOfTooLateIsNoFailureToAvoid)
 {
     Scenario s = with_standing_threat(30.0);
     s.duration = 20.0;
@@ -80,7 +80,7 @@ TEST(Judge, SeesNoConflictBesideTheWay)
     EXPECT_TRUE(judge(s).conflict);
 }
 
-TEST(Judge, ThreatsNotYetToldOfAreNoConflictButCountAgainstEveryManoeuvre)
+TEST(Judge, ThreatsNotYetReportedOfAreNoConflictButCountAgainstEveryManoeuvre)
 {
     Scenario s = with_standing_threat(30.0);
     s.threats[0].appears_when_own_within.reset();

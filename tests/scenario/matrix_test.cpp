@@ -57,7 +57,7 @@ TEST(Matrix, LoiterTurnsAreCirclesOfTheirRadius)
     EXPECT_NEAR(on_circle / 50.0, 50.0, 8.0);
 }
 
-TEST(Matrix, AReplacedMissionIsFlownAndTold)
+TEST(Matrix, AReplacedMissionIsFlownAndReported)
 {
     Nominal nominal = nominal_flight(Flyer::px4, Behaviour::upload, 2);
     const Record record = fly_alone(nominal.scenario);

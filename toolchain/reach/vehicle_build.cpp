@@ -61,56 +61,56 @@ Make navigation_of(Profile profile)
     return [rule](const Settings& settings) { return best_paths(settings, rule); };
 }
 
-Make emergency_of(Profile profile, const Asked& rung)
+Make emergency_of(Profile profile, const Density& density)
 {
     if (profile == Profile::reduced) {
-        return [rung](const Settings& settings) {
-            return kept(grow(settings, acas(settings, kAllSeparations, rung.spread)), kFromAcas);
+        return [density](const Settings& settings) {
+            return kept(grow(settings, acas(settings, kAllSeparations, density.spread)), kFromAcas);
         };
     }
-    return [rung](const Settings& settings) {
+    return [density](const Settings& settings) {
         Settings front_alone = settings;
         front_alone.keep_lateral = false;
-        return merged(kept(grow(settings, chaotic(settings, rung.spread, 3)), kFromChaotic),
+        return merged(kept(grow(settings, chaotic(settings, density.spread, 3)), kFromChaotic),
                       kept(grow(front_alone, harmonic(front_alone, 1)), kFromHarmonic));
     };
 }
 
 /// The size variants of a profile, largest first. Spreads are reduced before exits at the sides: the emergency set
 /// exists for side escapes, and one per cell is the minimum.
-std::vector<Asked> order_of(Profile profile)
+std::vector<Density> densities_of(Profile profile)
 {
-    std::vector<Asked> asked_situations;
+    std::vector<Density> densities;
     if (profile == Profile::full) {
         for (const std::size_t spread : {8U, 7U, 6U, 5U, 4U, 3U, 2U}) {
-            asked_situations.push_back({spread, 2});
-            asked_situations.push_back({spread, 1});
+            densities.push_back({spread, 2});
+            densities.push_back({spread, 1});
         }
     } else {
         for (const std::size_t spread : {9U, 8U, 7U, 6U, 5U, 4U, 3U, 2U, 1U}) {
-            asked_situations.push_back({spread, 1});
+            densities.push_back({spread, 1});
         }
     }
-    return asked_situations;
+    return densities;
 }
 
 constexpr std::array<std::string_view, kPitchSegments> kPitchNames{"descending", "level", "climbing"};
 constexpr std::array<std::int8_t, kPitchSegments> kRootPitch{1, 0, -1};
 
 /// Navigation sets are the same in every size variant: cached by their names.
-enum class Lasts : std::uint8_t { on_this_rung, on_every_rung };
+enum class Lasts : std::uint8_t { with_this_density, with_every_density };
 using Known = std::map<std::string, Set>;
 
 class Builder {
 public:
-    Builder(const std::string& name, const vehicle::VehicleLimits& limits, const Recipe& recipe, const Asked& rung,
+    Builder(const std::string& name, const vehicle::VehicleLimits& limits, const Recipe& recipe, const Density& density,
             Known& known)
         : known_(known)
     {
         built_.vehicle = name;
         built_.limits = limits;
         built_.recipe = recipe;
-        built_.rung = rung;
+        built_.density = density;
     }
 
     BuiltVehicle run()
@@ -147,13 +147,13 @@ private:
         const std::string name = built_.vehicle + " " + speed + " " + std::string(kPitchNames[pitch]);
         BuiltVehicle::Segment segment;
         segment.navigation =
-            add(name + " navigation", settings, navigation_of(built_.recipe.profile), {}, Lasts::on_every_rung);
+            add(name + " navigation", settings, navigation_of(built_.recipe.profile), {}, Lasts::with_every_density);
         settings.keep_lateral = true;
-        settings.most_lateral = built_.rung.most_lateral;
+        settings.most_lateral = built_.density.most_lateral;
         CostRule cost;
         cost.by_smoothness = true;
-        segment.emergency = add(name + " emergency", settings, emergency_of(built_.recipe.profile, built_.rung), cost,
-                                Lasts::on_this_rung);
+        segment.emergency = add(name + " emergency", settings, emergency_of(built_.recipe.profile, built_.density), cost,
+                                Lasts::with_this_density);
         built_.segments.push_back(segment);
     }
 
@@ -162,7 +162,7 @@ private:
     {
         const auto known = known_.find(name);
         Set set = known != known_.end() ? known->second : make(settings);
-        if (lasts == Lasts::on_every_rung) {
+        if (lasts == Lasts::with_every_density) {
             known_.try_emplace(name, set);
         }
         StoredSet stored(name, settings, set, cost);
@@ -233,9 +233,9 @@ BuiltVehicle build_vehicle(const std::string& name, const vehicle::VehicleLimits
     const std::size_t most_nodes = most_nodes_of(recipe.profile);
     Known known;
     std::optional<BuiltVehicle> built;
-    for (const Asked& rung : order_of(recipe.profile)) {
+    for (const Density& density : densities_of(recipe.profile)) {
         try {
-            built = Builder(name, limits, recipe, rung, known).run();
+            built = Builder(name, limits, recipe, density, known).run();
         } catch (const std::length_error&) {
             continue;  // one set alone is too large
         }

@@ -51,7 +51,7 @@ public:
 [[nodiscard]] Settings settings_at(const vehicle::VehicleLimits& limits, double speed, double period);
 
 /// Size parameters of a build. Variants are tried from largest to smallest; the first that fits is used.
-struct Asked {
+struct Density {
     std::size_t spread = 8;        ///< spread of the chaotic set, or of the plane sets
     std::size_t most_lateral = 1;  ///< per cell at a side
 };
@@ -73,7 +73,7 @@ struct BuiltVehicle {
     std::string vehicle;
     vehicle::VehicleLimits limits;
     Recipe recipe;
-    Asked rung;
+    Density density;
     std::vector<BuiltSet> sets;  ///< each once
     std::vector<Segment> segments;
     std::vector<float> speeds;

@@ -73,7 +73,7 @@ TEST_F(ClosedAreas, CountsToTheMicrosecondOfItsEnd)
     EXPECT_FALSE(table.empty()) << "told, and over";
 }
 
-TEST_F(ClosedAreas, AllOfItsBodyStaysAsTold)
+TEST_F(ClosedAreas, AllOfItsBodyStaysAsReported)
 {
     for (const std::optional<link::GlobalPosition>& origin : {std::optional<link::GlobalPosition>(), {kArea}}) {
         tell({closed_at(30, -40)}, origin);
@@ -309,7 +309,7 @@ TEST(ClosedAreaUpload, EachValueTellsASetFromTheOneInForce)
 }
 
 /// Without an end the stamp is irrelevant: the same area, reported again later.
-TEST(ClosedAreaUpload, AnEndlessAreaToldAgainIsTheSame)
+TEST(ClosedAreaUpload, AnEndlessAreaReportedAgainIsTheSame)
 {
     ConstraintUpload upload;
     ConstraintPart part = half_of_it(0);

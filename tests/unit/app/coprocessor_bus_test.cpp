@@ -426,7 +426,7 @@ TEST(CoprocessorBus, EraseBringsBackTheInitialValuesNotThoseThatWereStored)
     EXPECT_EQ(b->f.coprocessor.parameters().get(Param::lookahead), 9.0F);
 }
 
-TEST(CoprocessorBus, WhatIsNearIsToldOnlyWhenAskedForAndPlaced)
+TEST(CoprocessorBus, WhatIsNearIsReportedOnlyWhenAskedForAndPlaced)
 {
     for (const bool on : {false, true}) {
         for (const bool heading : {false, true}) {

@@ -155,7 +155,7 @@ TEST(CoprocessorCrowd, HeightsOfSatellitesStillSeparate)
 }
 
 /// As many spoofed aircraft as the table holds, aimed at us from 3 km; the real one comes later.
-TEST(CoprocessorCrowd, AFloodDoesNotHideARealThreatAndIsToldOnce)
+TEST(CoprocessorCrowd, AFloodDoesNotHideARealThreatAndIsReportedOnce)
 {
     int hits = 0;
     for (int k = 0; k < kEncounters; k += 5) {

@@ -64,7 +64,7 @@ TEST_F(LastWordsFlight, AskForAHoldExactlyWhileInControl)
     EXPECT_EQ(all_of<Statustext>(said()).size(), 1U);
 }
 
-TEST_F(LastWordsFlight, NoticesWaitForTheAutopilotAndAreToldOnce)
+TEST_F(LastWordsFlight, NoticesWaitForTheAutopilotAndAreReportedOnce)
 {
     Text text;
     text << "jink: restart 1";

@@ -132,7 +132,7 @@ TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
     EXPECT_GT(passed.nearest, 2.0F);
 }
 
-TEST(CoprocessorMethods, SetsThatDoNotSuitTheVehicleAreLeftOutAndItIsTold)
+TEST(CoprocessorMethods, SetsThatDoNotSuitTheVehicleAreLeftOutAndItIsReported)
 {
     const Passed passed = pass({{Param::methods, 3.0F}, {Param::acceleration, 4.0F}});
     EXPECT_EQ(passed.by, kGeometric);

@@ -217,7 +217,7 @@ TEST_F(CoprocessorRequests, SetTakesEffectInThePlannerAtOnce)
     EXPECT_EQ(f.last.state, link::SystemState::standby);
 }
 
-TEST_F(CoprocessorRequests, AsksForRatesUntilToldNotTo)
+TEST_F(CoprocessorRequests, AsksForRatesUntilReportedNotTo)
 {
     const auto asked = [&] {
         std::size_t n = 0;

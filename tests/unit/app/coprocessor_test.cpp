@@ -53,7 +53,7 @@ void take_over(Flight& f)
     ASSERT_EQ(f.last.guidance.state, avoid::State::avoiding);
 }
 
-TEST(CoprocessorFault, StaleOwnStateIsToldCriticalAndSilencesTheStream)
+TEST(CoprocessorFault, StaleOwnStateIsReportedCriticalAndSilencesTheStream)
 {
     const auto f = make_flight();
     ASSERT_NO_FATAL_FAILURE(take_over(*f));
@@ -85,7 +85,7 @@ TEST(CoprocessorFault, StaleOwnStateIsToldCriticalAndSilencesTheStream)
     EXPECT_EQ(f->last.state, link::SystemState::active);
 }
 
-TEST(CoprocessorFault, SilentAutopilotIsToldCriticalAndSilencesTheStream)
+TEST(CoprocessorFault, SilentAutopilotIsReportedCriticalAndSilencesTheStream)
 {
     const auto f = make_flight({{Param::heartbeat_age, 1.5F}});
     ASSERT_NO_FATAL_FAILURE(take_over(*f));
@@ -97,7 +97,7 @@ TEST(CoprocessorFault, SilentAutopilotIsToldCriticalAndSilencesTheStream)
     EXPECT_EQ(f->setpoints, before);
 }
 
-TEST(CoprocessorFault, NothingHeardYetIsNoFaultToldButBoot)
+TEST(CoprocessorFault, NothingHeardYetIsNoFaultReportedButBoot)
 {
     const auto f = make_flight();
     f->heartbeats = f->own_state = false;

@@ -179,7 +179,7 @@ TEST(CoprocessorTraffic, WhoeverSaysThatHeWillNotDoesNotShareTheReaction)
     EXPECT_TRUE(shares()) << "the newest word counts";
 }
 
-TEST(CoprocessorTraffic, AnotherSystemInTheWayIsAConflictToldByItsId)
+TEST(CoprocessorTraffic, AnotherSystemInTheWayIsAConflictReportedByItsId)
 {
     Flight f;
     f.fly(60);

@@ -59,7 +59,7 @@ protected:
     std::string said;
 };
 
-TEST_F(CoprocessorVehicle, RoverIsAdvisedOnlyAndToldSoOnce)
+TEST_F(CoprocessorVehicle, RoverIsAdvisedOnlyAndReportedSoOnce)
 {
     f->mav_type = 10;
     begin();
@@ -215,7 +215,7 @@ TEST_F(CoprocessorVehicle, SticksAreNotWatchedWhereTheParameterSaysSo)
     EXPECT_EQ(f->last.control, Control::ours);
 }
 
-TEST_F(CoprocessorVehicle, LineThatComesBackIsToldWhyTheVehicleHolds)
+TEST_F(CoprocessorVehicle, LineThatComesBackIsReportedWhyTheVehicleHolds)
 {
     begin();
     ASSERT_TRUE(until(has_it));

@@ -200,7 +200,7 @@ TEST(NearField, ObstacleThatHoldsTheVehicleLiesWhereItsCentreIs)
     }
 }
 
-TEST(NearField, NearestOfTracksAndObstaclesOfASectorIsTold)
+TEST(NearField, NearestOfTracksAndObstaclesOfASectorIsReported)
 {
     vehicle::VehicleState own;
     world::Track track;
@@ -214,7 +214,7 @@ TEST(NearField, NearestOfTracksAndObstaclesOfASectorIsTold)
     }
 }
 
-TEST(NearField, ReachEndsAtItsBoundAndTheLeastIsTold)
+TEST(NearField, ReachEndsAtItsBoundAndTheLeastIsReported)
 {
     vehicle::VehicleState own;
     const auto reported = [&](float surface) {
@@ -274,7 +274,7 @@ TEST(NearField, PointOfNoSizeIsItself)
     EXPECT_EQ(nearest_point(geometry::make_sphere(at, 0.0F), Vec3::Zero()), at);
 }
 
-TEST(NearField, WallIsToldWhereItIsNearestNotWhereItsCentreIs)
+TEST(NearField, WallIsReportedWhereItIsNearestNotWhereItsCentreIs)
 {
     vehicle::VehicleState own;
     const world::Obstacle wall{1, geometry::make_box({10.0F, 40.0F, 0.0F}, {1.0F, 50.0F, 5.0F})};

@@ -202,7 +202,7 @@ TEST(ParamKeeper, AFailureIsNotTriedAgainBeforeItsTime)
 }
 
 /// Answer to "save" on the bus: whether a restart would restore the present values.
-TEST(ParamKeeper, TheBusIsToldWhetherARestartBringsThePresentValues)
+TEST(ParamKeeper, TheBusIsReportedWhetherARestartBringsThePresentValues)
 {
     Store flash;
     ParamFlash store(flash);

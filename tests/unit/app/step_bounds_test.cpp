@@ -81,7 +81,7 @@ void set_by_wire(StepBench& b, std::string_view name, float value)
 }
 
 /// 60 m at 5 m/s are 12 s.
-TEST(StepChanges, TheSupervisorLooksAsFarAheadAsItIsToldFromTheSameStepOn)
+TEST(StepChanges, TheSupervisorLooksAsFarAheadAsItIsReportedFromTheSameStepOn)
 {
     StepBench b({{Param::mode, 1.0F}, {Param::k_sigma, 0.0F}});
     b.velocity = Vec3::Zero();

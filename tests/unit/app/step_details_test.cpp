@@ -192,7 +192,7 @@ TEST(StepDetails, AdvisingAloneIsSaidOnceAndNeverBesideAnAutopilot)
     EXPECT_FALSE(b.bus.statuses.back().advising_only);
 }
 
-TEST(StepDetails, NothingNearIsToldFromAPlaceThatIsOld)
+TEST(StepDetails, NothingNearIsReportedFromAPlaceThatIsOld)
 {
     StepBench b({{Param::tell_near, 1.0F}, {Param::own_age, 0.1F}}, StepBench::Bus::there);
     b.fly(1);

@@ -242,7 +242,7 @@ link::Constraint area_at(float north, std::optional<link::GlobalPosition> about 
     return c;
 }
 
-TEST(StepConstraints, AClosedAreaCountsFromTheStepInWhichItIsTold)
+TEST(StepConstraints, AClosedAreaCountsFromTheStepInWhichItIsReported)
 {
     StepBench b({{Param::mode, 1.0F}, {Param::k_sigma, 0.0F}, {Param::lookahead, 20.0F}});
     b.fly(1);
@@ -293,7 +293,7 @@ TEST(StepConstraints, InABussOwnFrameThereAreNone)
     EXPECT_TRUE(b.last.guidance.conflict.has_value());
 }
 
-TEST(StepNear, WhatIsNearIsToldFiveTimesASecond)
+TEST(StepNear, WhatIsNearIsReportedFiveTimesASecond)
 {
     StepBench b({{Param::tell_near, 1.0F}, {Param::k_sigma, 2.0F}, {Param::mode, 1.0F}}, Bus::there);
     b.velocity = Vec3::Zero();
@@ -310,7 +310,7 @@ TEST(StepNear, WhatIsNearIsToldFiveTimesASecond)
     EXPECT_EQ(b.counted().near_reported, 1U) << "but not taken";
 }
 
-TEST(StepNear, ItIsToldFromWhereTheVehicleIsNow)
+TEST(StepNear, ItIsReportedFromWhereTheVehicleIsNow)
 {
     StepBench b({{Param::tell_near, 1.0F}, {Param::k_sigma, 0.0F}}, Bus::there);
     b.fly(1);
@@ -322,7 +322,7 @@ TEST(StepNear, ItIsToldFromWhereTheVehicleIsNow)
     EXPECT_NEAR(b.bus.near[0].distance, 20.0F - 1.0F - 1.5F, 0.02F);
 }
 
-TEST(StepNear, NothingIsToldUnplacedPassiveOrUnasked)
+TEST(StepNear, NothingIsReportedUnplacedPassiveOrUnasked)
 {
     for (int without = 0; without < 5; ++without) {
         SCOPED_TRACE(without);

@@ -38,7 +38,7 @@ TEST(SystemClock, NeverRunsBackwardsAndAgreesWithTheKernel)
     EXPECT_LE(now, after.tv_sec * 1'000'000 + after.tv_nsec / 1'000);
 }
 
-TEST(ManualClock, MovesOnlyWhenTold)
+TEST(ManualClock, MovesOnlyWhenReported)
 {
     ManualClock clock(-7);
     EXPECT_EQ(clock.now_us(), -7);

@@ -150,7 +150,7 @@ struct ResetCauseModel {
     }
 };
 
-TEST(ResetCause, EachIsToldOnce)
+TEST(ResetCause, EachIsReportedOnce)
 {
     using stm32f4::ResetCause;
     const auto cause_of = [](std::uint32_t flags) {

@@ -292,7 +292,7 @@ TEST_F(SocketCan, EachErrorOfTheBusCountsOnce)
     EXPECT_EQ(port.health().overruns, 0U);
 }
 
-TEST_F(SocketCan, StatesOfTheControllerAreToldApart)
+TEST_F(SocketCan, StatesOfTheControllerAreReportedApart)
 {
     open();
     for (const std::uint8_t passive : {CAN_ERR_CRTL_RX_PASSIVE, CAN_ERR_CRTL_TX_PASSIVE}) {

@@ -104,7 +104,7 @@ TEST_F(CloudReceiver, AnyOrderOfParts)
     EXPECT_EQ(count().reordered, 4U);
 }
 
-TEST_F(CloudReceiver, LostPartIsToldByTheNextScan)
+TEST_F(CloudReceiver, LostPartIsReportedByTheNextScan)
 {
     std::vector<Bytes> all = frames(600);
     all.erase(all.begin() + 2);
@@ -119,7 +119,7 @@ TEST_F(CloudReceiver, LostPartIsToldByTheNextScan)
     EXPECT_EQ(count().scans_complete, 1U);
 }
 
-TEST_F(CloudReceiver, LostPartIsToldByAPause)
+TEST_F(CloudReceiver, LostPartIsReportedByAPause)
 {
     std::vector<Bytes> all = frames(250);
     all.pop_back();

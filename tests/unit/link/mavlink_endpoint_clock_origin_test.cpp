@@ -36,7 +36,7 @@ TEST_F(MavlinkEndpointClockAndOrigin, OldAndFutureStampsAreRefused)
     EXPECT_EQ(count().clock_relocks, 0U);
 }
 
-TEST_F(MavlinkEndpointClockAndOrigin, ARestartOfTheAutopilotIsToldAndForgetsItsFrame)
+TEST_F(MavlinkEndpointClockAndOrigin, ARestartOfTheAutopilotIsReportedAndForgetsItsFrame)
 {
     heartbeat();
     origin();

@@ -180,7 +180,7 @@ TEST_F(MavlinkEndpointLegs, AnAltitudeOfZeroIsThePresentOneToArduPilotAlone)
     expect_leg({0, 0, 30}, {0, 300, 0});
 }
 
-TEST_F(MavlinkEndpointLegs, TheMissionsSpeedIsTold)
+TEST_F(MavlinkEndpointLegs, TheMissionsSpeedIsReported)
 {
     MissionItemInt speed = item_of(178, 0, 0, 0, 2);
     speed.param1 = 1.0F;

@@ -57,7 +57,7 @@ TEST_F(MavlinkEndpointRequests, ModesAreRequestedAsTheStackWantsThem)
     EXPECT_EQ(m.param3, 4.0F);
 }
 
-TEST_F(MavlinkEndpointRequests, AnswersToModeRequestsAreTold)
+TEST_F(MavlinkEndpointRequests, AnswersToModeRequestsAreReported)
 {
     CommandAck ack;
     ack.command = kDoSetMode;
@@ -210,7 +210,7 @@ TEST_F(MavlinkEndpointRequests, ParametersOfOthersAreNotOurs)
     EXPECT_EQ(count().inbox_full, 1U);
 }
 
-TEST_F(MavlinkEndpointRequests, TimeIsAskedForOnceASecondAndToldWhenAsked)
+TEST_F(MavlinkEndpointRequests, TimeIsAskedForOnceASecondAndReportedWhenAsked)
 {
     const auto requests = only<Timesync>(serve(5.0F));
     EXPECT_GE(requests.size(), 5U);
@@ -260,7 +260,7 @@ TEST_F(MavlinkEndpointRequests, OnlyTheAnswerToOurNewestRequestMovesTheClock)
     EXPECT_NEAR(static_cast<double>(inbox->own_state.state.stamp.us), 100'010'000.0, 2.0);
 }
 
-TEST_F(MavlinkEndpointRequests, SendsWhatItIsTold)
+TEST_F(MavlinkEndpointRequests, SendsWhatItIsReported)
 {
     endpoint->send_heartbeat(SystemState::critical);
     const Heartbeat heart = sent_one<Heartbeat>();

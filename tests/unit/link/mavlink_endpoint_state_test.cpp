@@ -196,7 +196,7 @@ TEST_F(MavlinkEndpointState, OdometryVelocityKeepsItsLengthWhateverTheScaleOfQ)
     EXPECT_EQ(inbox->own_state.state.stamp, now);
 }
 
-TEST_F(MavlinkEndpointState, ResetCounterIsToldOnceAndKeptUntilTheInboxIsEmptied)
+TEST_F(MavlinkEndpointState, ResetCounterIsReportedOnceAndKeptUntilTheInboxIsEmptied)
 {
     heartbeat();
     Odometry m;

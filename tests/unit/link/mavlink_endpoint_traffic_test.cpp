@@ -279,7 +279,7 @@ TEST_F(MavlinkEndpointTraffic, TheOriginMovesWhatWaits)
     }
 }
 
-TEST_F(MavlinkEndpointTraffic, AConflictWithASystemIsToldByItsId)
+TEST_F(MavlinkEndpointTraffic, AConflictWithASystemIsReportedByItsId)
 {
     CollisionWarning warning;
     warning.id = track_of_system(kOther);

@@ -107,7 +107,7 @@ TEST(MavlinkStreamRequests, ComingStopsTheAskingAndARestartBeginsItAnew)
     EXPECT_EQ(run(streams, 8.0F, {}, 140.0F).at.at(32).size(), 5U);
 }
 
-TEST(MavlinkStreamRequests, EndpointAsksOnlyWhenToldToAndAKnownAutopilotIsThere)
+TEST(MavlinkStreamRequests, EndpointAsksOnlyWhenReportedToAndAKnownAutopilotIsThere)
 {
     Wire wire;
     const auto asks = [&] {

@@ -139,7 +139,7 @@ Counts compare(std::uint64_t default_seed, std::size_t cases, bool solids)
     return counts;
 }
 
-TEST(FinalCheckLaws, WhatIsToldClearStaysOutOfTheBoxWhenFlownDensely)
+TEST(FinalCheckLaws, WhatIsReportedClearStaysOutOfTheBoxWhenFlownDensely)
 {
     const Counts counts = compare(20261124, case_count(4000), false);
     EXPECT_EQ(counts.entered, 0);

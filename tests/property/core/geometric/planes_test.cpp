@@ -43,7 +43,7 @@ detail::Curve curve_of(const Vec3& a, const Vec3& b)
     return curve;
 }
 
-TEST(PlanesLaw, NothingIsToldThatIsNotSo)
+TEST(PlanesLaw, NothingIsReportedThatIsNotSo)
 {
     Random random(seed_of(811));
     std::array<Seen, kKinds.size()> seen{};
@@ -242,7 +242,7 @@ TEST(PlanesLaw, ABoxIsPartedByItsFacesAlone)
 
 /// Solids and boxes of zero size, so that only the rounding allowance remains, to the bit: up to it no decision,
 /// slightly beyond it a decision.
-TEST(PlanesLaw, AtTheRoomLeftForRoundingNothingIsTold)
+TEST(PlanesLaw, AtTheRoomLeftForRoundingNothingIsReported)
 {
     const Vec3 zero = Vec3::Zero();
     const auto next = [](float x) { return std::nextafter(x, 1.0F); };

@@ -242,7 +242,7 @@ TEST(Answers, ThatAreExactlyClearAreTaken)
     EXPECT_EQ(g.margin, 0.0F);
 }
 
-TEST(Answers, AreToldWithTheirMargin)
+TEST(Answers, AreReportedWithTheirMargin)
 {
     Flight f;
     head_on(f);

@@ -97,7 +97,7 @@ TEST_P(BadAnswers, TheNextMethodIsAsked)
 INSTANTIATE_TEST_SUITE_P(Of, BadAnswers, testing::ValuesIn(kBadAnswers),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(MethodOrders, TheFirstGoodAnswerWinsAndEachStatusIsTold)
+TEST(MethodOrders, TheFirstGoodAnswerWinsAndEachStatusIsReported)
 {
     for (const PlanStatus status : {PlanStatus::no_conflict, PlanStatus::too_close, PlanStatus::none_available,
                                     PlanStatus::budget_spent, PlanStatus::bad_input}) {

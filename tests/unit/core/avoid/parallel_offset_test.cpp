@@ -102,7 +102,7 @@ TEST(ParallelOffset, IsNotFlownPastABoundOrTheEndOfTheLeg)
 }
 
 /// The side passed to methods is the vehicle's present side, not the side of an earlier manoeuvre.
-TEST(ParallelOffset, MethodsAreToldTheSideThatIsFlown)
+TEST(ParallelOffset, MethodsAreReportedTheSideThatIsFlown)
 {
     Flight f;
     Vec3 reported = Vec3::Zero();

@@ -153,7 +153,7 @@ TEST(ReactiveMethods, PlansOfOthersDoNotCountOnAnybody)
 }
 
 /// Methods receive the last sent command, and none while the autopilot flies.
-TEST(ReactiveMethods, AreToldTheLastCommand)
+TEST(ReactiveMethods, AreReportedTheLastCommand)
 {
     Flight f;
     head_on(f, 30.0F);

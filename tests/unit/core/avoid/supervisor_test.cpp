@@ -13,7 +13,7 @@ namespace {
 using namespace test;
 using world::ManoeuvreKind;
 
-TEST(Supervisors, TheWorkOfEachUpdateIsTold)
+TEST(Supervisors, TheWorkOfEachUpdateIsReported)
 {
     Flight f;
     FakeMethod method{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {

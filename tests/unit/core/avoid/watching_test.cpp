@@ -26,7 +26,7 @@ TEST(Watching, NothingToDoWithoutAConflict)
     EXPECT_EQ(supervisor.flying(), nullptr);
 }
 
-TEST(Watching, AConflictFarAheadIsToldButNotPlannedFor)
+TEST(Watching, AConflictFarAheadIsReportedButNotPlannedFor)
 {
     Flight f;
     head_on(f, 72.0F);  // loss in 7 s

@@ -113,7 +113,7 @@ TEST(Attempts, HalfOfTwoOffsetsAreTwo)
     EXPECT_EQ(scene.result.candidates.size(), 8U * 2U);
 }
 
-TEST(Attempts, AnyThatWasCutShortIsTold)
+TEST(Attempts, AnyThatWasCutShortIsReported)
 {
     Hopeless scene;
     scene.threats.pop_back();
@@ -136,7 +136,7 @@ TEST(Attempts, BadSettingsAreRefusedHoweverOftenTheyAreTried)
     }
 }
 
-TEST(Attempts, OneThatWasCutShortIsToldWhateverComesAfterIt)
+TEST(Attempts, OneThatWasCutShortIsReportedWhateverComesAfterIt)
 {
     std::size_t reported = 0;
     for (std::uint32_t units = 0; units < 4'000; units += 100) {

@@ -27,7 +27,7 @@ TEST(ChoiceBorder, ALegAlmostVerticalHasItsNormalUpToTheLimit)
     EXPECT_NEAR(normal_of(0.99e-4F).y(), 1.0F, 1e-3F);
 }
 
-TEST(ChoiceBorder, TheDearestCostThatIsTakenIsTheLimitItself)
+TEST(ChoiceBorder, TheGreatestCostThatIsTakenIsTheLimitItself)
 {
     for (const bool all : {false, true}) {
         Scene scene;
@@ -61,7 +61,7 @@ TEST(ChoiceBorder, APlaneAlmostSquareToWhatIsFlownIsOnNeitherSide)
     EXPECT_EQ(penalised(1.0F), 0U);
 }
 
-TEST(ChoiceBorder, EnergyIsToldWhereItIsAskedFor)
+TEST(ChoiceBorder, EnergyIsReportedWhereItIsAskedFor)
 {
     Scene scene;
     scene.settings.all_terms = false;
@@ -170,7 +170,7 @@ void expect_true_to_every_budget(const Settings& settings)
     EXPECT_GT(ended, 0U);
 }
 
-TEST(ChoiceBorder, ABudgetThatEndsIsToldAndNeverOverdrawn)
+TEST(ChoiceBorder, ABudgetThatEndsIsReportedAndNeverOverdrawn)
 {
     Settings settings = every_candidate();
     expect_true_to_every_budget(settings);

@@ -102,7 +102,7 @@ TEST(ClearanceBorder, AnObstacleThatIsASphereCostsWhatAThreatAtRestCosts)
     }
 }
 
-TEST(ClearanceBorder, AMovingSolidIsToldOfBehindTheObstacles)
+TEST(ClearanceBorder, AMovingSolidIsReportedOfBehindTheObstacles)
 {
     CurveBench bench(straight_way());
     const geometry::Shape box = geometry::make_box(kOnTheWay, Vec3::Constant(0.5F));

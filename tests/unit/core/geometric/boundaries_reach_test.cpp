@@ -137,7 +137,7 @@ TEST(ReachBorder, VolumesLastAsLongAsTheLongestCandidate)
     }
 }
 
-TEST(ReachBorder, ThePlanesAngleToTheGroundIsToldOfAnyLeg)
+TEST(ReachBorder, ThePlanesAngleToTheGroundIsReportedOfAnyLeg)
 {
     for (const Vec3& direction : {Vec3(1.0F, 0.0F, 0.0F), Vec3(2.0F, 1.0F, 1.0F), Vec3(1.0F, 0.0F, -2.0F)}) {
         for (const float scale : {1.0F, 1.0004F}) {

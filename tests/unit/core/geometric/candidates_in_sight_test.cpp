@@ -156,7 +156,7 @@ TEST(InSight, OfMovingSolidsTheNearestSurfaceCountsFirst)
     }
 }
 
-TEST(InSight, TermsAreToldWhereTheyCountOrAreAskedFor)
+TEST(InSight, TermsAreReportedWhereTheyCountOrAreAskedFor)
 {
     struct Case {
         bool all_terms;

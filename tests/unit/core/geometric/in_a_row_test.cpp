@@ -80,7 +80,7 @@ TEST(InARowSecond, EndsHalfAsFarOnAsTheMainThreatAtLeast)
     EXPECT_NEAR(scene.result.path.points.back().position.x(), 30.0F, 1e-3F);
 }
 
-TEST(InARowSecond, WhatIsMetFirstCountsInWhateverOrderItIsTold)
+TEST(InARowSecond, WhatIsMetFirstCountsInWhateverOrderItIsReported)
 {
     InARow probe;
     const Sphere near = Scene::still(on_way_back(probe, 0.5F), 0.5F);

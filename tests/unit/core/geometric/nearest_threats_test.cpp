@@ -131,7 +131,7 @@ TEST(NearestThreats, OfEquallyNearOnesTheFirstIsNearer)
 
 /// A threat that is checked later is reported later only if it is checked separately: with every candidate evaluated
 /// the first cause by index is reported, near or far.
-TEST(NearestThreats, TheFirstCauseIsToldWhereEveryCandidateIsEvaluated)
+TEST(NearestThreats, TheFirstCauseIsReportedWhereEveryCandidateIsEvaluated)
 {
     Scene scene;
     scene.settings.check_acceleration = scene.settings.verify_flight = false;

@@ -64,7 +64,7 @@ TEST(SweepBorder, PointsWhoseWaysCrossTouch)
               2.0F);
 }
 
-TEST(SweepBorder, TheFirstOfManyInstantsThatAreEquallyNearIsTold)
+TEST(SweepBorder, TheFirstOfManyInstantsThatAreEquallyNearIsReported)
 {
     // Straight through the box: nearest from where it enters to where it leaves.
     for (std::uint64_t seed = 1; seed <= 20'000; ++seed) {

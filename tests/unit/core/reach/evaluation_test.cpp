@@ -135,10 +135,10 @@ TEST_F(EvaluationTest, OwnLevelsAreAskedForOnceParentsFirstAndNotBehindWhatIsBlo
 
 TEST_F(EvaluationTest, TheGoalsCellIsTakenByTheCheapestThatEndsThere)
 {
-    const NodeIndex dear = tree.add(two, Movement::straight, 500);
+    const NodeIndex expensive = tree.add(two, Movement::straight, 500);
     const NodeIndex cheap = tree.add(two, Movement::straight, 280);
     const NodeIndex as_cheap = tree.add(two, Movement::straight, 280);
-    static_cast<void>(dear);
+    static_cast<void>(expensive);
     static_cast<void>(as_cheap);
     set = tree.view();
     nodes.resize(set.nodes());

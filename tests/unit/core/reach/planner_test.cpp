@@ -269,11 +269,11 @@ TEST_F(PlannerTest, WhereNavigationHasNoWayTheEmergencySetIsFlown)
 
 TEST_F(PlannerTest, CostsStayWithinAShare)
 {
-    test::SmallTree dear(kGrid);
-    dear.chain(Movement::straight, 4, 5000);
+    test::SmallTree expensive(kGrid);
+    expensive.chain(Movement::straight, 4, 5000);
     test::SmallTree cheap(kGrid);
     cheap.chain(Movement::straight, 4, 500);
-    only(dear);
+    only(expensive);
     ASSERT_EQ(plan(), PlanStatus::found);
     EXPECT_EQ(out.cost, 1.0F);
     only(cheap);

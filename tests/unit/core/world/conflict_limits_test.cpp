@@ -169,7 +169,7 @@ TEST_P(ConflictLimits, TiesGoByKindAndIndex)
 }
 
 /// Of equally near instants the first is reported: without relative motion, now.
-TEST_P(ConflictLimits, OfEquallyNearInstantsTheFirstIsTold)
+TEST_P(ConflictLimits, OfEquallyNearInstantsTheFirstIsReported)
 {
     scene.own.sigma_position = 0.0F;
     scene.track(Vec3(0, 2.5F, 0), Vec3(5, 0, 0), 1.0F);
@@ -269,7 +269,7 @@ TEST_P(ConflictLimits, InsideAMarginAShortWayIsJudgedToItsEnd)
 }
 
 /// Around two corners: the first approach counts, also where a later one would be nearer.
-TEST(ConflictAroundCorners, TheFirstApproachToAnObstacleIsTold)
+TEST(ConflictAroundCorners, TheFirstApproachToAnObstacleIsReported)
 {
     Scene scene;
     path::Route route;

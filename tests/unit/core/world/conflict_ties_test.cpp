@@ -241,7 +241,7 @@ TEST_P(ConflictTies, TheClosestApproachIsOnTheWayThatIsFlown)
 }
 
 /// Flown through at 1 s, and again while hovering, a metre less deep: the first time is reported, at its cost.
-TEST_P(ConflictTies, ACylinderIsToldWhereItIsDeepest)
+TEST_P(ConflictTies, ACylinderIsReportedWhereItIsDeepest)
 {
     way_to(Vec3(10, 0, 0));
     scene.cylinder(Vec2(4, 1.5F), 6.0F, Vec2(1, 0.2F));

@@ -26,7 +26,7 @@ struct CylinderOnTheWay : testing::Test {
     Conflict found;
 };
 
-TEST_F(CylinderOnTheWay, IsToldAsTheBodyIsMet)
+TEST_F(CylinderOnTheWay, IsReportedAsTheBodyIsMet)
 {
     scene.cylinder(Vec2(30, 2), 4.0F, Vec2(0, -0.5F));
     ASSERT_TRUE(meets(found));
@@ -41,7 +41,7 @@ TEST_F(CylinderOnTheWay, IsToldAsTheBodyIsMet)
 }
 
 /// The cylinder's centre is reported at the own height, or at the nearest height of the cylinder.
-TEST_F(CylinderOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
+TEST_F(CylinderOnTheWay, IsReportedAtTheOwnHeightWithinItsOwn)
 {
     scene.cylinder(Vec2(30, 0), 4.0F);
     const auto height = [&](float bottom, float top) {
@@ -57,7 +57,7 @@ TEST_F(CylinderOnTheWay, IsToldAtTheOwnHeightWithinItsOwn)
 }
 
 /// Contact at the path's end, long after the arrival.
-TEST_F(CylinderOnTheWay, AStormOverTheEndIsToldWhenItComes)
+TEST_F(CylinderOnTheWay, AStormOverTheEndIsReportedWhenItComes)
 {
     scene.leg(Vec3(0, 0, 0), Vec3(10, 0, 0), 5.0F);
     scene.cylinder(Vec2(10, 30), 4.0F, Vec2(0, -3));

@@ -105,7 +105,7 @@ TEST(CylinderLooks, ByHand)
 }
 
 /// A constant distance is reported for the beginning.
-TEST(CylinderLeast, OfADistanceThatDoesNotChangeTheBeginningIsTold)
+TEST(CylinderLeast, OfADistanceThatDoesNotChangeTheBeginningIsReported)
 {
     for (const Vec2& velocity : {Vec2(0, 0), Vec2(3, -2)}) {
         Pair p;

@@ -90,7 +90,7 @@ TEST(CylinderLeast, IsAsExactInsideAsOutside)
 }
 
 /// With equal distance at both ends, the beginning is reported.
-TEST(CylinderLeast, OfEqualEndsTheFirstIsTold)
+TEST(CylinderLeast, OfEqualEndsTheFirstIsReported)
 {
     const Pair p;
     Seconds span = 7.99F;
