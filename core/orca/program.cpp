@@ -86,7 +86,7 @@ std::array<float, kLevels> broken_by(std::span<const HalfSpace> planes, const Ve
 constexpr std::array<std::uint32_t, kLevels> kRelaxed{kInfeasibleDynamics, kRelaxedObstacle, kRelaxedConflict,
                                                       kRelaxedWarning};
 
-/// The levels that the velocity breaks are reported: its last check, however the velocity was found. To twice the shift
+/// Last check of each velocity, however it was found: reports the levels that it breaks. Accurate to twice the shift
 /// where a level gives way, to rounding where it does not.
 void report(std::span<const HalfSpace> planes, float scale, Solution& out) noexcept
 {

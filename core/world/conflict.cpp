@@ -11,8 +11,7 @@
 namespace jink::world {
 namespace {
 
-/// Largest R handed on for shapes whose extent is not a radius: Pinheiro studied threats up to 3 m
-/// (tab. 4.1).
+/// Largest R handed on for shapes whose extent is not a radius: Pinheiro studied threats up to 3 m (tab. 4.1).
 constexpr float kLargestRadius = 3.0F;
 
 bool comes_first(const Conflict& a, const Conflict& b) noexcept

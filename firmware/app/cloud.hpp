@@ -14,8 +14,8 @@ namespace jink::app {
 
 /// Obstacles that one scan gives to the world, the nearest. Half the table: a level scan of 72 sectors keeps two thirds
 /// of its own beside them, and a ring that is closed all around and a cloud that is full in every direction at once
-/// leave the nearest 96 of 120, for the table lets the farthest go, and counts it. Obstacles of a cloud that do not
-/// fit, CloudDiagnostics::no_room counts.
+/// leave the nearest 96 of 120, for the table lets the farthest go, and counts it. CloudDiagnostics::no_room
+/// counts the obstacles of a cloud that do not fit.
 inline constexpr std::size_t kMaxCloudObstacles = 48;
 static_assert(kMaxCloudObstacles <= 1024);
 
