@@ -47,8 +47,8 @@ void build_reach(const ReachOptions& options)
     const rb::BuiltVehicle built = build_from(kBuildReach, options);
     const char* const of = built.recipe.profile == rb::Profile::reduced ? "planes" : "chaotic";
     std::printf("%s: %zu bytes in %zu sets, profile %s: %s with spread %zu, up to %zu ways out at each side cell\n",
-                built.vehicle.c_str(), built.bytes(), built.sets.size(), options.profile.c_str(), of, built.density.spread,
-                built.density.most_lateral);
+                built.vehicle.c_str(), built.bytes(), built.sets.size(), options.profile.c_str(), of,
+                built.density.spread, built.density.most_lateral);
     for (const rb::BuiltSet& set : built.sets) {
         const reach::ReachSet view = set.stored.view();
         std::printf("  %-40s %5zu nodes %6zu bytes  checksum %08X\n", std::string(view.name).c_str(), view.nodes(),

@@ -152,8 +152,8 @@ private:
         settings.most_lateral = built_.density.most_lateral;
         CostRule cost;
         cost.by_smoothness = true;
-        segment.emergency = add(name + " emergency", settings, emergency_of(built_.recipe.profile, built_.density), cost,
-                                Lasts::with_this_density);
+        segment.emergency = add(name + " emergency", settings, emergency_of(built_.recipe.profile, built_.density),
+                                cost, Lasts::with_this_density);
         built_.segments.push_back(segment);
     }
 
