@@ -51,6 +51,8 @@ struct PlannerBench {
     PlannerBench(const PlannerBench&) = delete;
     PlannerBench& operator=(const PlannerBench&) = delete;
 
+    void leg(const Vec3& start, const Vec3& to) { reference = world::Reference({start, to, 5.0F}); }
+
     /// Tables with a stable address.
     const ReachSet* keep(const SmallTree& tree)
     {
@@ -152,7 +154,6 @@ protected:
                : std::abs(y + 2.5F * 0.9066F) < 0.01F ? Way::right
                                                       : Way::other;
     }
-    void leg(const Vec3& start, const Vec3& to) { reference = world::Reference({start, to, 5.0F}); }
 };
 
 /// Rates cells as configured, and records its calls.
