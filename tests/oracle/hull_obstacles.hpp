@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/world/world.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/oracle/points.hpp"
 
 namespace jink::oracle {
@@ -21,15 +21,19 @@ public:
             obstacles_.push_back({static_cast<world::ObstacleId>(obstacles_.size()),
                                   geometry::make_hull(points, Vec3::Zero()), uncertainty});
         }
+        threats_ = threats_of(obstacles_);
     }
     HullObstacles(const HullObstacles&) = delete;
     HullObstacles& operator=(const HullObstacles&) = delete;
 
     [[nodiscard]] std::span<const world::Obstacle> all() const { return obstacles_; }
+    /// The same as threats; the own place is exact.
+    [[nodiscard]] std::span<const world::Threat> threats() const { return threats_; }
 
 private:
     std::vector<std::vector<Point3>> points_;
     std::vector<world::Obstacle> obstacles_;
+    std::vector<world::Threat> threats_;
 };
 
 }  // namespace jink::oracle

@@ -109,7 +109,7 @@ struct LegScene {
     {
         own.position = {0, 0, 50};
         own.velocity = {5, 0, 0};
-        reference = {true, {{0, 0, 50}, {300, 0, 50}, 5.0F}};
+        reference = world::Reference({{0, 0, 50}, {300, 0, 50}, 5.0F});
         cylinders.push_back({{{30.0F + radius, 0.0F}, radius}, {0, 0}, 50.0F - half_height, 50.0F + half_height, 2.0F});
         airspace.cylinders = cylinders;
     }

@@ -16,6 +16,7 @@
 
 #include "core/base/random.hpp"
 #include "core/orca/velocity_filter.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 
 namespace {
 
@@ -108,6 +109,7 @@ void fly_room(std::size_t vehicles, Times& times)
 {
     const std::array<world::Obstacle, 2> pipes{{{0, geometry::make_capsule({-2, -1, 1.0F}, {2, -1, 1.0F}, 0.15F)},
                                                 {1, geometry::make_capsule({-2, 1, 1.8F}, {2, 1, 1.8F}, 0.15F)}}};
+    const std::vector<world::Threat> pipe_threats = oracle::threats_of(pipes);
     std::vector<Flyer> all;
     for (std::size_t i = 0; i < vehicles; ++i) {
         const float angle = 6.2831853F * static_cast<float>(i) / static_cast<float>(vehicles);
@@ -132,7 +134,7 @@ void fly_room(std::size_t vehicles, Times& times)
             input.own = {own.at, own.velocity, false};
             input.preferred = way.norm() > 0.6F ? Vec3(0.6F * way.normalized()) : way;
             input.neighbours = others;
-            input.obstacles = pipes;
+            input.obstacles = pipe_threats;
             WorkBudget budget(kPlenty);
             commands[i] = times.time([&] { return own.filter.decide(input, budget); }).command;
         }
@@ -180,7 +182,8 @@ void crowd(std::size_t ticks, Times& times)
             hulls.push_back({static_cast<world::ObstacleId>(k), geometry::make_hull(vertices, at)});
         }
         input.neighbours = others;
-        input.obstacles = hulls;
+        const std::vector<world::Threat> hull_threats = oracle::threats_of(hulls);
+        input.obstacles = hull_threats;
         WorkBudget budget(kPlenty);
         static_cast<void>(times.time([&] { return filter.decide(input, budget); }));
     }

@@ -13,6 +13,7 @@
 #include "core/base/random.hpp"
 #include "core/orca/obstacle_plane.hpp"
 #include "core/orca/obstacle_way.hpp"
+#include "tests/oracle/obstacle_threats.hpp"
 #include "tests/timing/orca_swarm.hpp"
 #include "toolchain/mesh/decompose.hpp"
 
@@ -111,6 +112,15 @@ std::vector<jink::world::ObstacleTable> obstacles_of(const jink::geometry::MeshM
     return tables;
 }
 
+std::vector<std::vector<jink::world::Threat>> threats_of(const std::vector<jink::world::ObstacleTable>& tables)
+{
+    std::vector<std::vector<jink::world::Threat>> threats;
+    for (const jink::world::ObstacleTable& table : tables) {
+        threats.push_back(jink::oracle::threats_of(table.obstacles()));
+    }
+    return threats;
+}
+
 /// All agents in each turn; `work(agent's number, budget)` of each alone is timed for the worst of them, the least time
 /// of all turns standing for an agent.
 template <class Work>
@@ -161,11 +171,11 @@ void planes(benchmark::State& state, mesh::Method method)
 {
     const orca::ObstacleSettings settings;
     const auto tables = obstacles_of(map_of(method).view());
+    const auto threats = threats_of(tables);
     std::size_t most = 0;
     std::size_t truncated = 0;
     run(state, method, [&](std::size_t i, WorkBudget& budget) {
-        const orca::ObstaclePlanes found =
-            orca::obstacle_planes(tables[i].obstacles(), swarm().agents[i], settings, budget);
+        const orca::ObstaclePlanes found = orca::obstacle_planes(threats[i], swarm().agents[i], settings, budget);
         most = std::max(most, found.planes.size());
         truncated += found.truncated ? 1 : 0;
         benchmark::DoNotOptimize(found.margin);
@@ -178,10 +188,11 @@ void way(benchmark::State& state, mesh::Method method)
 {
     const orca::ObstacleSettings settings;
     const auto tables = obstacles_of(map_of(method).view());
+    const auto threats = threats_of(tables);
     run(state, method, [&](std::size_t i, WorkBudget& budget) {
         const orca::OwnMotion& own = swarm().agents[i];
-        const orca::WayClearance found = orca::clearance_along(tables[i].obstacles(), own.position, own.velocity,
-                                                               settings.horizon, settings, budget);
+        const orca::WayClearance found =
+            orca::clearance_along(threats[i], own.position, own.velocity, settings.horizon, settings, budget);
         benchmark::DoNotOptimize(found.clear_until);
     });
 }
@@ -201,7 +212,8 @@ std::vector<Vec3> free_places()
         WorkBudget budget(1'000'000);
         const bool is_near = std::any_of(out.begin(), out.end(), [&](const Vec3& p) { return (p - at).norm() < 3.0F; });
         static_cast<void>(orca::choose_obstacles(map, own, {}, budget, table));
-        if (!is_near && orca::obstacle_planes(table.obstacles(), own, {}, budget).margin > 0.5F) {
+        if (!is_near &&
+            orca::obstacle_planes(jink::oracle::threats_of(table.obstacles()), own, {}, budget).margin > 0.5F) {
             out.push_back(at);
         }
     }

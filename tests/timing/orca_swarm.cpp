@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "tests/oracle/obstacle_threats.hpp"
+
 namespace jink::orca {
 
 namespace {
@@ -69,7 +71,8 @@ std::size_t Swarm::add_obstacles(std::size_t self, float& cap)
     WorkBudget budget(1'000'000);
     const OwnMotion own{positions_[self], velocities_[self], settings_.max_speed};
     static_cast<void>(choose_obstacles(map_, own, obstacle_settings_, budget, table_));
-    const ObstaclePlanes found = obstacle_planes(table_.obstacles(), own, obstacle_settings_, budget);
+    const std::vector<world::Threat> threats = oracle::threats_of(table_.obstacles());
+    const ObstaclePlanes found = obstacle_planes(threats, own, obstacle_settings_, budget);
     cap = std::min(cap, found.speed_cap);
     counts_.penetrating += found.penetrating ? 1U : 0U;
     counts_.beside_obstacles += found.planes.size();

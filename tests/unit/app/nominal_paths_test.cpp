@@ -73,7 +73,7 @@ TEST_F(NominalPathsTest, StandingItStays)
     update();
     ASSERT_NE(paths.other(), nullptr);
     EXPECT_EQ(end_of(*paths.other()), own.position);
-    EXPECT_EQ(paths.other()->route, nullptr);
+    EXPECT_EQ(paths.other()->route().segments().size(), 1U);
     EXPECT_EQ(paths.primary().speed, limits.cruise_speed) << "from rest by the parameter";
 }
 
@@ -252,7 +252,7 @@ TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
     Random random(5);
     const auto sign = [&random] { return random.below(2) == 0 ? -1.0F : 1.0F; };
     const vehicle::Airframe airframe{};
-    const world::Airspace open;
+    const world::FlightRules rules;
     for (int i = 0; i < 100; ++i) {
         paths.reset();
         now = now + 5.0F;
@@ -264,7 +264,7 @@ TEST_F(NominalPathsTest, AKeptTurnIsFlownToItsEnd)
         own.position += Vec3(random.uniform(-15, 15), random.uniform(-15, 15), random.uniform(-5, 5));
         for (Seconds t = 0.0F; t < 30.0F; t += 0.02F) {
             update(true);
-            const world::Way way = world::way_of({now, own, limits, airframe, paths.primary(), {}, {}, open});
+            const world::Way way = world::way_of({now, own, limits, airframe, paths.primary(), rules});
             own.velocity += 0.05F * (way.speed * way.direction - own.velocity);
             own.position += 0.02F * own.velocity;
             now = now + 0.02F;

@@ -247,14 +247,14 @@ TEST(Availability, ObstaclesAreNeverTouched)
 }
 
 /// 60 points on a sphere, evenly spread: a hull inside of it.
-std::vector<Vec3> sphere_vertices(float radius)
+std::vector<Point3> sphere_vertices(float radius)
 {
-    std::vector<Vec3> vertices;
+    std::vector<Point3> vertices;
     for (int i = 0; i < 60; ++i) {
         const float z = 1.0F - 2.0F * (static_cast<float>(i) + 0.5F) / 60.0F;
         const float angle = 2.39996323F * static_cast<float>(i);
         const float r = std::sqrt(1.0F - z * z);
-        vertices.emplace_back(radius * r * std::cos(angle), radius * r * std::sin(angle), radius * z);
+        vertices.push_back({radius * r * std::cos(angle), radius * r * std::sin(angle), radius * z});
     }
     return vertices;
 }
@@ -274,8 +274,8 @@ TEST(Availability, LibccdAndTheClosedFormBracketEachOther)
         const Vec3 centre = p.problem.frame.origin + p.problem.distance * p.problem.frame.axes.col(0) +
                             RandomProblem::vector(random, 4.0F);
         const float radius = random.uniform(0.5F, 3.0F);
-        const std::vector<Vec3> inner = sphere_vertices(radius);
-        const std::vector<Vec3> outer = sphere_vertices(1.3F * radius);
+        const std::vector<Point3> inner = sphere_vertices(radius);
+        const std::vector<Point3> outer = sphere_vertices(1.3F * radius);
         const auto solve_with = [&](std::vector<Sphere> threats, std::vector<world::Obstacle> obstacles,
                                     Result& result) {
             p.threats = std::move(threats);

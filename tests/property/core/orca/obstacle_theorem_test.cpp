@@ -131,7 +131,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
         own.velocity = go::in_cube(random, 2.0F);
         own.reach_speed = random.uniform(0.1F, 5.0F);
         WorkBudget budget(random.below(4) == 0 ? static_cast<std::uint32_t>(random.below(500)) : 1'000'000);
-        const ObstaclePlanes planes = obstacle_planes(solids.all(), own, settings, budget);
+        const ObstaclePlanes planes = obstacle_planes(solids.threats(), own, settings, budget);
         truncated += planes.truncated ? 1 : 0;
         const double stretch = double(envelope.stretch);
         if (true_distance(hulls, own.position.cast<double>(), stretch, 1e9) < double(envelope.radius)) {
@@ -154,7 +154,7 @@ TEST_P(Theorem, T4AdmittedVelocitiesMeetNothingWithinTheHorizon)
         // The check along the path agrees.
         WorkBudget plenty(10'000'000);
         const WayClearance way =
-            clearance_along(solids.all(), own.position, 0.999F * velocity, settings.horizon, settings, plenty);
+            clearance_along(solids.threats(), own.position, 0.999F * velocity, settings.horizon, settings, plenty);
         ASSERT_TRUE(way.clear || way.clear_until > 0.99F * settings.horizon) << "case " << n;
     }
     std::cout << flown << " velocities flown, " << border << " to the border, " << truncated << " with a speed cap\n";
@@ -181,7 +181,7 @@ TEST(Theorem, OneHalfSpaceIsTangentToWhatIsForbidden)
         own.position = go::in_cube(random, 4.0F);
         own.reach_speed = 20.0F;
         WorkBudget budget(1'000'000);
-        const ObstaclePlanes planes = obstacle_planes(solids.all(), own, settings, budget);
+        const ObstaclePlanes planes = obstacle_planes(solids.threats(), own, settings, budget);
         const double stretch = double(envelope.stretch);
         const double distance = true_distance(hulls, own.position.cast<double>(), stretch, 1e9);
         if (distance < double(envelope.radius) + 1e-3 || planes.planes.empty()) {
@@ -216,7 +216,8 @@ TEST(ClearanceAlong, EndsAtTheFirstContact)
             continue;
         }
         WorkBudget budget(1'000'000);
-        const WayClearance way = clearance_along(solids.all(), position, velocity, settings.horizon, settings, budget);
+        const WayClearance way =
+            clearance_along(solids.threats(), position, velocity, settings.horizon, settings, budget);
         constexpr int kSamples = 300;
         double contact = 1e300;
         for (int i = 0; i <= kSamples && contact > 1e299; ++i) {
@@ -262,7 +263,7 @@ TEST(Theorem, RecoveryLeadsAway)
             continue;
         }
         WorkBudget budget(1'000'000);
-        const ObstaclePlanes planes = obstacle_planes(solids.all(), own, settings, budget);
+        const ObstaclePlanes planes = obstacle_planes(solids.threats(), own, settings, budget);
         ASSERT_TRUE(planes.penetrating) << "case " << n;
         ASSERT_EQ(planes.planes.size(), 1U);
         ASSERT_GT(planes.planes[0].offset, 0.0F);

@@ -93,7 +93,7 @@ struct Seen {
         }
         input.neighbours = neighbours;
         threats = jink::oracle::threats_of(obstacles);
-        input.scene.obstacles = threats;
+        input.obstacles = threats;
         input.bounds = bounds;
         return input;
     }

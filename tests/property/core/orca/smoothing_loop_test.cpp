@@ -27,7 +27,7 @@ public:
         const std::uint32_t status = tick.decision.status;
         const ObstacleSettings& kept = seen.settings.obstacles;
         WorkBudget budget(1'000'000);
-        const WayClearance way = clearance_along(tick.input.scene, tick.input.own.position, tick.decision.command,
+        const WayClearance way = clearance_along(tick.input.obstacles, tick.input.own.position, tick.decision.command,
                                                  kept.horizon, kept, budget);
         ASSERT_EQ(tick.decision.clear_until, way.clear_until);
         ASSERT_EQ((status & kObstacleAhead) == 0, way.clear);
@@ -45,7 +45,7 @@ public:
         own.position = tick.input.own.position;
         own.velocity = tick.input.own.velocity;
         own.reach_speed = seen.settings.limits.max_speed;
-        for (const HalfSpace& plane : obstacle_planes(tick.input.scene, own, kept, budget).planes) {
+        for (const HalfSpace& plane : obstacle_planes(tick.input.obstacles, own, kept, budget).planes) {
             check(plane, tick.decision.command);
         }
         // The conflict half-spaces alone: warnings may be broken by the mean.

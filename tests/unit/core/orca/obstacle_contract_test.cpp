@@ -220,6 +220,7 @@ TEST_F(ObstacleContract, UncertaintyMakesObstaclesLarger)
     for (const std::size_t i : {0U, 1U}) {
         obstacles[i].uncertainty = 0.25F;
         for (const float stretch : {0.5F, 1.0F, 2.0F}) {
+            const std::vector<world::Threat> threats = oracle::threats_of(obstacles);
             const detail::ObstacleView view{threats, {stretch, 1.0F}, 1e-4F};
             const float grown = 0.25F * std::max(1.0F, stretch);
             WorkBudget budget(kUnlimited);

@@ -184,7 +184,7 @@ TEST(ObstacleEdges, MoreThanThereIsRoomForLeaveTheNearest)
     // Hulls are chosen in the same way.
     const oracle::HullObstacles solids(hulls);
     WorkBudget budget(kAllWork);
-    const ObstaclePlanes found = obstacle_planes(solids.all(), own, settings, budget);
+    const ObstaclePlanes found = obstacle_planes(solids.threats(), own, settings, budget);
     ASSERT_EQ(found.planes.size(), kMaxObstaclePlanes);
     for (std::size_t k = 0; k < found.planes.size(); ++k) {
         EXPECT_EQ(found.planes[k].source, k);
@@ -276,7 +276,7 @@ TEST(ObstacleSight, WithinAnObstacleTheWayOutIsSeen)
     }
     const oracle::HullObstacles hull({corners});
     const detail::Sighting piece =
-        detail::ObstacleView{hull.all(), {1.0F, 1.0F}, 1e-4F}.obstacle(0, {0, -4.5F, 0}, 100.0F, budget);
+        detail::ObstacleView{hull.threats(), {1.0F, 1.0F}, 1e-4F}.obstacle(0, {0, -4.5F, 0}, 100.0F, budget);
     EXPECT_NEAR(piece.distance, -0.5F, 1e-3F);
     EXPECT_EQ(piece.upper, 0.0F);
     EXPECT_NEAR((piece.direction - Vec3(0, 1, 0)).norm(), 0.0F, 1e-3F);
