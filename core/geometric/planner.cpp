@@ -182,13 +182,16 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     }
     world::Way way = world::way_of(situation);
     world::Conflict conflict;
-    if (!find_conflict(situation, situation.rules.lookahead, budget, way, conflict)) {
-        return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::no_conflict;
+    const bool found = find_conflict(situation, situation.rules.lookahead, budget, way, conflict);
+    if (budget.exhausted()) {
+        return PlanStatus::budget_spent;
+    }
+    if (!found) {
+        return PlanStatus::no_conflict;
     }
     if (conflict.threat.kind != world::ThreatKind::track && conflict.threat.kind != world::ThreatKind::obstacle) {
-        // Curves of a few main radii do not lead around a closed area of hundreds of metres; and where the search for
-        // conflicts ran out of budget, there may be no threat to lead around.
-        return budget.exhausted() ? PlanStatus::budget_spent : PlanStatus::none_available;
+        // Curves of a few main radii do not lead around a closed area of hundreds of metres.
+        return PlanStatus::none_available;
     }
     Problem problem = problem_of(situation, way, conflict);
     if (problem.distance < kMinDistanceInRadii * scale_radius(problem)) {

@@ -106,8 +106,8 @@ TEST(CostLaws, ClosenessAgreesWithTheFormulaInDouble)
         const oracle::Moving moving{oracle::to_double(threat.position), oracle::to_double(threat.velocity),
                                     static_cast<double>(radius)};
         for (const auto method : {ClosenessMethod::swept, ClosenessMethod::time_aware}) {
-            const double swept_for = method == ClosenessMethod::swept ? static_cast<double>(swept_for) : -1.0;
-            const double expected = 1.0 / oracle::closeness(d.flight, moving, swept_for);
+            const double span = method == ClosenessMethod::swept ? static_cast<double>(swept_for) : -1.0;
+            const double expected = 1.0 / oracle::closeness(d.flight, moving, span);
             if (std::abs(expected) < 1e-3) {
                 continue;  // on the very edge of contact
             }
