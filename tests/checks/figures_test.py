@@ -276,7 +276,7 @@ class Parts(unittest.TestCase):
             self.assertNotEqual(plain(one), plain(two), (one, two))
 
     def test_dated_is_for_long_commands_that_name_their_commit(self):
-        for entry in ({"minutes": 5, "commit": "abc"}, {"minutes": 50}, {"minutes": 50, "commit": "abc", "kind": "quick"}):
+        for entry in ({"minutes": 2, "commit": "abc"}, {"minutes": 50}, {"minutes": 50, "commit": "abc", "kind": "quick"}):
             with self.assertRaises(figures_registry.Wrong):
                 figures_registry.Command("name", {"kind": "long", "dated": True, "sources": ["core/**"], **entry}, {})
 
