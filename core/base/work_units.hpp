@@ -5,7 +5,7 @@
 #include <cstdint>
 
 // Cost of each kind of work, in the units of WorkBudget: about 100 instructions of a Cortex-M7 each, and never more
-// than 160. A weight is the cost of the most expensive path through its code, not of the usual one.
+// than 170. A weight is the cost of the most expensive path through its code, not of the usual one.
 // toolchain/report/units measures the weights again.
 
 namespace jink::units {

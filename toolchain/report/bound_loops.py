@@ -39,7 +39,7 @@ def parameters(candidates, tracks, obstacles, attempts, waypoints=25, points=64,
 
 RULES = [
     # The images fly along one leg, a route of one segment: at most three pieces of way. Nothing is closed. Weights as they are by default, without that of passing. No solids.
-    (r"[bB]arrel|_cylinder", "each", lambda p: 0),  # no closed areas
+    (r"[cC]ylinder", "each", lambda p: 0),  # no closed areas
     (r"along_reference|plan_along", "each", lambda p: 0),
     (r"core/path/route|route_way\.cpp:.*segment", "each", lambda p: 1),
     (r"route_way\.cpp|RoutePieces|WayPiece", "each", lambda p: 3),
@@ -55,7 +55,7 @@ RULES = [
     (r"conflict\.cpp:.*touching", "each", lambda p: 8),
     (r"threat_set\.cpp|of_kind|world::Threat const\*|solve\.cpp:.*p\.threats", "each", lambda p: p["threats"]),
     (r"separation(_parts\.hpp|\.cpp):.*part < parts", "in all", lambda p: p["paid parts"]),
-    (r"shape\.vertices|jink::Point3 const\*, std::span", "each", lambda p: 0),  # no hulls
+    (r"shape\.vertices|jink::Point3 const\*, std::span|const Point3& p", "each", lambda p: 0),  # no hulls
     (r"map_obstacles", "each", lambda p: 0),  # no map
     (r"next \+ 1 < curve\.points", "in all", lambda p: p["points"]),
     (r"next \+ 1 < path\.points", "in all", lambda p: p["flight parts"] + p["points"]),
