@@ -184,6 +184,7 @@ PlanStatus Planner::plan(const Situation& situation, WorkBudget& budget, world::
     world::Conflict conflict;
     const bool found = find_conflict(situation, situation.rules.lookahead, budget, way, conflict);
     if (budget.exhausted()) {
+        result_.cut_short = true;
         return PlanStatus::budget_spent;
     }
     if (!found) {

@@ -16,6 +16,10 @@
 
 namespace jink::link {
 
+/// Places farther from the origin are implausible [m], and so are speeds above this [m/s]: refused and counted.
+inline constexpr float kLargestPosition = 200000.0F;
+inline constexpr float kLargestSpeed = 400.0F;
+
 /// Autopilot stack behind the link; decides how modes are requested.
 enum class AutopilotStack : std::uint8_t { unknown, ardupilot, px4 };
 

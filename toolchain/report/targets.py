@@ -132,6 +132,12 @@ def is_there(target, build, kind=Probe):
     return os.sep in target or program_of(target, build, kind.PROGRAM).exists()
 
 
+def bring_up_to_date(names, build):
+    """Builds the presets `names` in their folders of `build`: what is recorded is what the present sources give."""
+    for name in names:
+        subprocess.run(["cmake", "--build", str(pathlib.Path(build) / name)], check=True, stdout=subprocess.DEVNULL)
+
+
 def open_probe(target, build, plugin=None, stages=None, kind=Probe):
     """`target`: a preset's name, or a program's path; `build`: the folder that holds the presets' builds."""
     if os.sep in target:  # a program of this machine

@@ -7,6 +7,9 @@
 
 namespace jink::link::dronecan {
 
+/// Bytes of a transfer's checksum on the bus.
+inline constexpr std::size_t kCrcBytes = 2;
+
 /// CRC-16/CCITT-FALSE (polynomial 0x1021, initial value 0xFFFF, not reflected, no final xor). DroneCAN includes the
 /// eight bytes of a data type's signature first. No table.
 class Checksum {

@@ -11,9 +11,6 @@
 namespace jink::link::dronecan {
 namespace {
 
-/// Own positions and speeds beyond these are implausible [m, m/s].
-constexpr float kLargestPosition = 200000.0F;
-constexpr float kLargestSpeed = 400.0F;
 /// Heights that an int32 of millimetres holds, even as a difference of two [m].
 constexpr float kLargestHeight = 1e6F;
 /// Ranges in the body frame need an attitude no older than this [s].

@@ -6,7 +6,6 @@
 namespace jink::link::dronecan {
 namespace {
 
-constexpr std::size_t kCrcBytes = 2;
 constexpr std::uint32_t kHighestId = 0x1FFFFFFF;
 
 [[nodiscard]] constexpr std::uint32_t key_of(const FrameId& id) noexcept

@@ -10,7 +10,6 @@ namespace jink::link::dronecan {
 namespace {
 
 constexpr std::size_t kPayloadOfFrame = Frame::kBytes - 1;
-constexpr std::size_t kCrcBytes = 2;
 
 [[nodiscard]] std::uint32_t id_of(const TransferHead& head, std::span<const std::byte> payload) noexcept
 {

@@ -14,8 +14,6 @@ namespace jink::link::mavlink {
 namespace {
 
 constexpr std::uint8_t kFrameBodyNed = 8;
-/// Own speeds beyond this are implausible [m/s].
-constexpr float kLargestSpeed = 400.0F;
 /// LOCAL_POSITION_NED is ignored while ODOMETRY, which holds more, is younger than this [s].
 constexpr Seconds kOdometryFresh = 1.0F;
 /// Own global and local position this close in time give an origin [s].

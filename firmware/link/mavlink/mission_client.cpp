@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "firmware/link/messages.hpp"
+
 namespace jink::link::mavlink {
 namespace {
 
@@ -23,7 +25,6 @@ constexpr Seconds kEndPeriod = 0.5F;
 /// Pause after another system's transfer, and after its end [s].
 constexpr Seconds kOthersTime = 9.0F;
 constexpr Seconds kOthersEnded = 1.0F;
-constexpr float kLargestSpeed = 400.0F;
 
 constexpr std::uint8_t kDenied = 14;           // MAV_MISSION_DENIED
 constexpr std::uint16_t kLastNavigation = 95;  // MAV_CMD_NAV_LAST

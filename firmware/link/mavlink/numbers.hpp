@@ -24,7 +24,4 @@ inline constexpr std::uint8_t kFrameLocalNed = 1;
 inline constexpr std::uint8_t kFrameGlobalInt = 5;
 inline constexpr std::uint8_t kFrameBodyFrd = 12;
 
-/// Places farther from the origin are implausible [m].
-inline constexpr float kLargestPosition = 200000.0F;
-
 }  // namespace jink::link::mavlink
