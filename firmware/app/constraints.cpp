@@ -11,7 +11,7 @@ namespace jink::app {
 namespace {
 
 /// A stamp may lie so far ahead of our clock [s].
-constexpr Seconds kFutureSlack = 0.5F;
+constexpr Seconds kConstraintSlack = 0.5F;
 
 /// A constraint `age` seconds after its stamp, about another point of the globe.
 world::Cylinder moved(const Constraint& constraint, Seconds age, const std::optional<link::GlobalPosition>& to)
@@ -32,7 +32,7 @@ world::Cylinder moved(const Constraint& constraint, Seconds age, const std::opti
 
 bool ConstraintTable::accepts(const Constraint& constraint, TimePoint now) noexcept
 {
-    return world::is_valid(constraint.cylinder) && constraint.stamp <= now + kFutureSlack;
+    return world::is_valid(constraint.cylinder) && constraint.stamp <= now + kConstraintSlack;
 }
 
 void ConstraintTable::tell(std::span<const Constraint> constraints, const std::optional<link::GlobalPosition>& origin,

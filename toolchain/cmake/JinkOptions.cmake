@@ -56,16 +56,30 @@ endif()
 set(JINK_FLASHED_HEADERS <algorithm> <array> <cmath> <cstddef> <cstdint> <optional> <span> <Eigen/Core> <Eigen/Geometry>)
 set(JINK_HOST_HEADERS ${JINK_FLASHED_HEADERS} <filesystem> <map> <memory> <string> <vector>)
 
-# jink_joined(target [BATCH n]): sources compiled n at a time as one text, on hosts: headers are read and their inline
-# functions made once for all of them. Names in unnamed namespaces are unique within a folder for this; preset clang and
-# JINK_JOINED=OFF compile each source by itself, so that an include that is missing shows. What is flashed is never
-# joined when it is built for a target: its instructions are counted.
-option(JINK_JOINED "Compile sources of tests and tools several at a time" ON)
+# jink_joined(target BATCH n | BY_FOLDER): sources compiled n at a time, or all of a folder, as one text: headers are read
+# and their inline functions made once for all of them. By folder, objects are named after it (memory report). Names in
+# unnamed namespaces are unique within a folder for this; preset clang and JINK_JOINED=OFF compile each source by itself,
+# so that an include that is missing shows.
+option(JINK_JOINED "Compile sources several at a time" ON)
 function(jink_joined target)
-  cmake_parse_arguments(arg "" "BATCH" "" ${ARGN})
-  if(JINK_JOINED AND NOT CMAKE_CROSSCOMPILING)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE "${arg_BATCH}")
+  cmake_parse_arguments(arg "BY_FOLDER" "BATCH" "" ${ARGN})
+  if(NOT JINK_JOINED)
+    return()
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON)
+  if(NOT arg_BY_FOLDER)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE "${arg_BATCH}")
+    return()
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "^/.*\\.cpp$")
+  foreach(source ${sources})
+    cmake_path(GET source PARENT_PATH folder)
+    cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${PROJECT_SOURCE_DIR})
+    string(REPLACE "/" "-" folder ${folder})
+    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+  endforeach()
 endfunction()
 
 # jink_command_lines(target): for command-line parsing. CLI11 is header-only: optimizing it takes longer than all code

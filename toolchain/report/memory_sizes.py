@@ -62,7 +62,8 @@ def by_room(build, target):
     for place, prefix in (("core", "core"), ("firmware", "firmware"), ("hal", "hal")):
         for obj in folder.glob(f"{place}/CMakeFiles/*.dir/**/*.obj"):
             inside = obj.relative_to(folder / place / "CMakeFiles").as_posix().split("/")
-            rooms.setdefault(obj.name, set()).add("/".join([prefix, *inside[1:-1]]))
+            folder_of = re.fullmatch(r"unity_([\w-]+)_cxx\.cxx\.obj", obj.name)  # of sources joined by folder (jink_joined)
+            rooms.setdefault(obj.name, set()).add(folder_of[1].replace("-", "/") if folder_of else "/".join([prefix, *inside[1:-1]]))
     text = (folder / "firmware" / target / f"{target}.map").read_text(encoding="utf-8").split("Linker script and memory map")[1]
     out = {}
     pattern = re.compile(r"^ (\.?[\w.$*-]+)?\s+0x([0-9a-f]+)\s+0x([0-9a-f]+) (\S.*)$")

@@ -13,7 +13,6 @@ namespace {
 
 // MAV_FRAME
 constexpr std::uint8_t kFrameGlobalRelative = 3;
-constexpr std::uint8_t kFrameGlobalInt = 5;
 constexpr std::uint8_t kFrameGlobalRelativeInt = 6;
 /// Not a MAV_FRAME: an item without a height cannot be placed.
 constexpr std::uint8_t kNoFrame = 255;

@@ -15,7 +15,7 @@ constexpr int kTries = 3;
 constexpr Seconds kRest = 3.0F;
 constexpr Seconds kDeniedRest = 1.0F;
 /// A restart takes longer than this [s].
-constexpr Seconds kSilence = 2.0F;
+constexpr Seconds kTransferSilence = 2.0F;
 /// Answers delayed by a stalled line have arrived by then: they must not count for the next transfer [s].
 constexpr Seconds kLateness = 2.0F;
 constexpr Seconds kCheckPeriod = 5.0F;
@@ -75,7 +75,7 @@ void MissionClient::find_goal() noexcept
 
 void MissionClient::heard(TimePoint now) noexcept
 {
-    if (heard_.us != 0 && now - heard_ > kSilence) {
+    if (heard_.us != 0 && now - heard_ > kTransferSilence) {
         stale_ = stale_ || (state_ != State::idle && !checks_);
         check_due_ = true;
         state_ = State::idle;
