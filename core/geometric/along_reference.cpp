@@ -149,6 +149,18 @@ void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& 
     }
 }
 
+void make_candidate(const UnitCurve& unit, const Problem& problem, const vehicle::VehicleLimits& limits,
+                    const Vec3& side, float offset, BaseCurve& base, Curve& out) noexcept
+{
+    if (problem.ahead.route.empty()) {
+        base.rejoin = problem.frame.axes.col(0);
+        make_curve(unit, base.rejoin, side, scale_of(problem), offset, problem.speed, limits, out);
+    } else {
+        make_base(unit, problem, limits, base);
+        make_curve_along(unit, base, side, offset, problem.speed, limits, out);
+    }
+}
+
 void bend_along(const ReferenceAhead& ahead, Curve& curve) noexcept
 {
     for (std::size_t i = 0; i < curve.points; ++i) {

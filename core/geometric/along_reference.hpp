@@ -47,7 +47,7 @@ private:
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): as in UnitCurve
 struct BaseCurve {
     float end = 0.0F;  ///< of the reference ahead [m]; 0: not made
-    Vec3 rejoin;       ///< unit tangent there
+    Vec3 rejoin;       ///< unit tangent there, or of the leg
     Coordinates x, y, z;
     Coordinates half_x, half_y, half_z;  ///< half way from the tangent before to the one here, as long as sqrt(2)
 
@@ -66,6 +66,11 @@ void make_base(const UnitCurve& unit, const Problem& problem, const vehicle::Veh
 /// make_curve about `base`, with the side at its start. O(waypoints).
 void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& side, float offset, float speed,
                       const vehicle::VehicleLimits& limits, Curve& out) noexcept;
+
+/// The curve of a candidate: about the straight leg, or about `base` along the route, which is made where it is not yet.
+/// `base.rejoin` is where both lead back. O(waypoints), the first along a route O(waypoints * segments).
+void make_candidate(const UnitCurve& unit, const Problem& problem, const vehicle::VehicleLimits& limits,
+                    const Vec3& side, float offset, BaseCurve& base, Curve& out) noexcept;
 
 /// Bends a curve that was made along the x axis to follow the reference ahead. O(points * segments).
 void bend_along(const ReferenceAhead& ahead, Curve& curve) noexcept;

@@ -12,11 +12,9 @@ using world::PlanStatus;
 
 bool Run::can_be_flown(const CandidateShape& shape) const noexcept
 {
-    if (!problem_.ahead.route.empty()) {
-        return is_flyable_along(shape);
-    }
-    return shape.family == Family::wait ||  // it is made of what the vehicle can do
-           is_flyable(curve_, vehicle::clamped_velocity(along_, problem_.speed, limits_), along_, limits_);
+    return shape.family == Family::wait
+               ? is_wait_flyable(shape)
+               : is_flyable(curve_, vehicle::clamped_velocity(along_, problem_.speed, limits_), base_.rejoin, limits_);
 }
 
 bool Run::evaluate(Candidate& candidate, WorkBudget& budget) noexcept

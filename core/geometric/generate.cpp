@@ -32,16 +32,17 @@ Wait Run::waiting(float share, Seconds until) const noexcept
 
 void Run::build(const CandidateShape& shape) noexcept
 {
-    if (!problem_.ahead.route.empty()) {
-        build_along(shape);
+    if (shape.family != Family::wait) {
+        make_candidate(unit_[static_cast<std::size_t>(shape.family)], problem_, limits_, side_of(shape), shape.offset,
+                       base_, curve_);
         return;
     }
-    if (shape.family == Family::wait) {
-        make_waiting_curve(waiting(shape.share, shape.until), along_, settings_.waypoints, curve_);
-        return;
+    const bool is_straight = problem_.ahead.route.empty();
+    const Wait wait = waiting(shape.share, shape.until);
+    make_waiting_curve(wait, is_straight ? along_ : Vec3(Vec3::UnitX()), settings_.waypoints, curve_);
+    if (!is_straight) {
+        bend_along(ReferenceAhead(problem_, limits_, wait.length), curve_);
     }
-    make_curve(unit_[static_cast<std::size_t>(shape.family)], along_, side_of(shape), scale_of(problem_), shape.offset,
-               problem_.speed, limits_, curve_);
 }
 
 /// `seen`: the problem itself, or what it looks like at the collision point.

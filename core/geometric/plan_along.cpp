@@ -55,24 +55,11 @@ bool move_start_along(const world::Situation& situation, const Vec3& by, float l
     return true;
 }
 
-void Run::build_along(const CandidateShape& shape) noexcept
-{
-    if (shape.family == Family::wait) {
-        const Wait wait = waiting(shape.share, shape.until);
-        make_waiting_curve(wait, Vec3::UnitX(), settings_.waypoints, curve_);
-        bend_along(ReferenceAhead(problem_, limits_, wait.length), curve_);
-        return;
-    }
-    const UnitCurve& unit = unit_[static_cast<std::size_t>(shape.family)];
-    make_base(unit, problem_, limits_, base_);
-    make_curve_along(unit, base_, side_of(shape), shape.offset, problem_.speed, limits_, curve_);
-}
-
 /// A wait along a bend turns while it slows down, and may climb where the way does not at its start.
-bool Run::is_flyable_along(const CandidateShape& shape) const noexcept
+bool Run::is_wait_flyable(const CandidateShape& shape) const noexcept
 {
-    if (shape.family != Family::wait) {
-        return is_flyable(curve_, vehicle::clamped_velocity(along_, problem_.speed, limits_), base_.rejoin, limits_);
+    if (problem_.ahead.route.empty()) {
+        return true;  // it is made of what the vehicle can do
     }
     constexpr float kRounding = 1.01F;
     for (std::size_t i = 0; i + 1 < curve_.points; ++i) {

@@ -82,9 +82,8 @@ private:
     [[nodiscard]] AtStart about_start(const world::Threat& threat) const noexcept;
     [[nodiscard]] Selection far_threats(Seconds longest) noexcept;
     void build(const CandidateShape& shape) noexcept;
-    void build_along(const CandidateShape& shape) noexcept;
     [[nodiscard]] bool can_be_flown(const CandidateShape& shape) const noexcept;
-    [[nodiscard]] bool is_flyable_along(const CandidateShape& shape) const noexcept;
+    [[nodiscard]] bool is_wait_flyable(const CandidateShape& shape) const noexcept;
     /// Of a curve.
     [[nodiscard]] const Vec3& side_of(const CandidateShape& shape) const noexcept
     {
@@ -121,7 +120,7 @@ private:
     Flown flown_;
     Selection far_{};  ///< moving threats beyond Settings::moving_nearest
     Order order_;
-    BaseCurve base_;        ///< with a route
+    BaseCurve base_;        ///< of the candidate at hand: with a route all of it, else its end
     Curve curve_;           ///< of the candidate at hand
     path::TimedPath path_;  ///< the same, about the start
     /// Tracks and solids that count for closeness and passing, by their index in Problem::threats.

@@ -105,15 +105,9 @@ bool make_candidate_path(const Problem& problem, const CandidateShape& shape, st
     }
     Curve curve;
     const detail::UnitCurve unit = detail::make_unit_curve(shape.family, waypoints);
-    const Vec3 along = problem.frame.axes.col(0);
-    const Vec3 side = detail::plane_direction(problem.frame, shape.plane);
-    if (problem.ahead.route.empty()) {
-        detail::make_curve(unit, along, side, scale_of(problem), shape.offset, problem.speed, limits, curve);
-    } else {
-        detail::BaseCurve base;
-        detail::make_base(unit, problem, limits, base);
-        detail::make_curve_along(unit, base, side, shape.offset, problem.speed, limits, curve);
-    }
+    detail::BaseCurve base;
+    detail::make_candidate(unit, problem, limits, detail::plane_direction(problem.frame, shape.plane), shape.offset,
+                           base, curve);
     detail::to_timed_path(curve, problem.frame.origin, out);
     return true;
 }
