@@ -10,13 +10,14 @@ namespace jink::app {
 namespace {
 
 /// Level motion may climb by so much: an arc lies level [m/s].
-constexpr float kLevel = 0.3F;
+constexpr float kMaxLevelClimb = 0.3F;
 /// Ends of the legs of a turn that climbs: after 60, 120 and 180 degrees.
 constexpr std::array<SineCosine, 3> kTurnLegs = {{{0.866025404F, 0.5F}, {0.866025404F, -0.5F}, {0.0F, -1.0F}}};
 
 }  // namespace
 
-/// A turn from where the vehicle is: an arc, or legs where it climbs or descends; then straight on.
+/// A turn from where the vehicle is: an arc, or legs where it climbs or descends; then straight on. False where there
+/// is none, or where a route has too few segments (kMaxRouteSegments).
 bool MotionPath::add_turn(const vehicle::VehicleState& own, float turn_rate) noexcept
 {
     const Vec3 level(own.velocity.x(), own.velocity.y(), 0.0F);
@@ -29,7 +30,7 @@ bool MotionPath::add_turn(const vehicle::VehicleState& own, float turn_rate) noe
     const Vec3 left = Vec3(-level.y(), level.x(), 0.0F) / speed;
     const Vec3 centre = own.position + sense * radius * left;
     const float climb = own.velocity.z();
-    if (std::abs(climb) <= kLevel) {
+    if (std::abs(climb) <= kMaxLevelClimb) {
         if (route_.add_arc(own.position, centre, Vec3::UnitZ(), sense * kPi) != path::RouteStatus::ok) {
             return false;
         }
