@@ -121,7 +121,7 @@ struct Configuration {
     geometric::Settings planner;
     reach::Settings reach;
     orca::Settings orca;
-    /// The reach sets do not suit the vehicle's limits: they are not asked, whatever the order.
+    /// The reach sets do not suit the vehicle's limits, or the capacities: they are not asked, whatever the order.
     bool reach_unsuited = false;
     bool blocks_unseen = true;  ///< by reach sets, where a point cloud does not see
     vehicle::VehicleLimits limits;
