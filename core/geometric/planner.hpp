@@ -207,12 +207,12 @@ struct Result {
 };
 
 /// Working memory of one `solve`, to be kept where there is space for it: a microcontroller's stack has none.
-/// Holds nothing from one call to the next. kBytes, about 17 KiB with the default capacities.
+/// Holds nothing from one call to the next. kBytes, about 12 KiB with the default capacities.
 class Workspace {
 public:
-    static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 2 * 16) +
+    static constexpr std::size_t kBytes = kMaxPathPoints * (24 + 28 + 3 * 16) +
                                           16 * (kMaxTracks + kMaxObstacles + kMaxCylinders) + 3 * kMaxProblemThreats +
-                                          18 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 1280;
+                                          2 * kMaxTracks + 2 * kMaxCandidates + 12 * kMaxPlanes + 768;
     // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): `solve` fills what it reads, zeroing all of it costs
     Workspace() noexcept {}
     [[nodiscard]] void* bytes() noexcept { return bytes_.data(); }

@@ -23,14 +23,15 @@ float level_size(const Vec2& v) noexcept { return std::abs(v.x()) + std::abs(v.y
 
 }  // namespace
 
-bool is_valid(const Cylinder& b) noexcept
+bool is_valid(const Cylinder& cylinder) noexcept
 {
+    const auto& [circle, velocity, bottom, top, margin] = cylinder;
     const auto within = [](float value, float most) { return std::abs(value) <= most; };  // no for what is no number
-    return within(b.circle.centre.x(), kMaxCylinderExtent) && within(b.circle.centre.y(), kMaxCylinderExtent) &&
-           b.circle.radius > 0.0F && within(b.circle.radius, kMaxCylinderExtent) &&
-           within(b.velocity.x(), kMaxCylinderSpeed) && within(b.velocity.y(), kMaxCylinderSpeed) &&
-           within(b.bottom, kMaxCylinderExtent) && within(b.top, kMaxCylinderExtent) && b.top >= b.bottom &&
-           b.margin >= 0.0F && within(b.margin, kMaxCylinderExtent);
+    return within(circle.centre.x(), kMaxCylinderExtent) && within(circle.centre.y(), kMaxCylinderExtent) &&
+           circle.radius > 0.0F && within(circle.radius, kMaxCylinderExtent) &&
+           within(velocity.x(), kMaxCylinderSpeed) && within(velocity.y(), kMaxCylinderSpeed) &&
+           within(bottom, kMaxCylinderExtent) && within(top, kMaxCylinderExtent) && top >= bottom && margin >= 0.0F &&
+           within(margin, kMaxCylinderExtent);
 }
 
 float cylinder_distance(const Vec3& half, const Vec3& position, const Cylinder& cylinder, Seconds t) noexcept

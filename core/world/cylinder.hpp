@@ -30,7 +30,6 @@ struct Cylinder {
 };
 
 /// Finite, radius and speed within 100 km and 500 m/s, radius > 0, top >= bottom, margin >= 0. O(1).
-// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): one letter in the definition's long conditions
 [[nodiscard]] bool is_valid(const Cylinder& cylinder) noexcept;
 
 /// Distance of a box of half extents `half` [m] about `position` from a cylinder's body, `t` seconds on [m]. Below 0

@@ -70,12 +70,11 @@ public:
         if (size() < parts_.size()) {  // leaves lie at the far end
             std::copy(parts_.end() - static_cast<std::ptrdiff_t>(leaves_), parts_.end(), heap_end());
         }
-        // NOLINTNEXTLINE(readability-qualified-auto): an array's iterator need not be a pointer
-        const auto end = parts_.begin() + static_cast<std::ptrdiff_t>(size());
+        const std::span<Part> all(parts_.data(), size());
         const auto by_node = [](const Part& a, const Part& b) { return a.node < b.node; };
-        std::make_heap(parts_.begin(), end, by_node);
-        std::sort_heap(parts_.begin(), end, by_node);
-        return {parts_.data(), size()};
+        std::make_heap(all.begin(), all.end(), by_node);
+        std::sort_heap(all.begin(), all.end(), by_node);
+        return all;
     }
 
 private:

@@ -47,8 +47,8 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"VEH_MASS", 3, 0.05F, 5000, false, "mass [kg]"},
     {"VEH_DRAG", 0.5F, 0.01F, 5, false, "drag coefficient"},
     {"VEH_AREA", 2.5F, 0.001F, 500, false, "effective area [m2]"},
-    {"GEO_OFFSETS", 4, 2, 64, true, "candidates per plane and family, even"},
-    {"GEO_PLANES", 3, 0, 31, true, "planes beyond the first"},
+    {"GEO_OFFSETS", kInitialOffsets, 2, 64, true, "candidates per plane and family, even"},
+    {"GEO_PLANES", kInitialPlanes, 0, 31, true, "planes beyond the first"},
     {"GEO_FAMILIES", 3, 1, 31, true, "sum of: 1 simple, 2 symmetric, 4 smooth, 8 plateau, 16 wait"},
     {"GEO_WAYPOINTS", 25, 8, static_cast<float>(kMaxPathPoints - 1), true, "points per candidate"},
     {"GEO_SWEPT", 0, 0, 1, true, "0 time-aware security, 1 swept as the source"},
@@ -166,7 +166,8 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
     if constexpr (kHasReach) {
         c.reach.sets = &reach_sets();
-        c.reach_unsuited = !reach::suits(reach_sets(), c.limits);
+        // Sets of more nodes or cells than the capacities are not flown.
+        c.reach_unsuited = !reach::is_valid(c.reach) || !reach::suits(reach_sets(), c.limits);
     }
     c.blocks_unseen = whole(Param::unseen) == 1;
     c.orca.gives_up_blocked = methods.order.ids().back() != kOrca;
@@ -180,7 +181,7 @@ bool fits_together(const Configuration& c) noexcept
     const bool bounds = !(c.floor_on && c.ceiling_on) || c.ceiling - c.floor >= 4.0F * c.limits.half_extents.z();
     return bounds && c.planner.caps.time_high * 1.15F > c.planner.caps.time_low && world::is_valid(c.rules) &&
            avoid::is_valid(c.supervisor) && vehicle::is_valid(c.limits) && vehicle::is_valid(c.airframe) &&
-           geometric::is_valid(c.planner) && (!kHasReach || reach::is_valid(c.reach));
+           geometric::is_valid(c.planner);
 }
 
 ParamStatus check_one(std::size_t index, float value) noexcept

@@ -84,6 +84,13 @@ enum class Param : std::uint8_t {
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);
+
+/// GEO_OFFSETS and GEO_PLANES where nothing is set: 32 candidates in two families, fewer where the capacity is less.
+inline constexpr bool kHas16Candidates = kMaxCandidates >= 16;
+inline constexpr bool kHas32Candidates = kMaxCandidates >= 32;
+inline constexpr std::size_t kInitialOffsets = kHas32Candidates ? 4 : 2;
+inline constexpr std::size_t kInitialPlanes = kHas16Candidates ? 3 : 1;
+static_assert(2 * kInitialOffsets * (kInitialPlanes + 1) <= kMaxCandidates);
 using ParamValues = std::array<float, kParamCount>;
 
 struct ParamInfo {
@@ -114,7 +121,7 @@ struct Configuration {
     geometric::Settings planner;
     reach::Settings reach;
     orca::Settings orca;
-    /// The reach sets do not suit the vehicle's limits: they are not asked, whatever the order.
+    /// The reach sets do not suit the vehicle's limits, or the capacities: they are not asked, whatever the order.
     bool reach_unsuited = false;
     bool blocks_unseen = true;  ///< by reach sets, where a point cloud does not see
     vehicle::VehicleLimits limits;

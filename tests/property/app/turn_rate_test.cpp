@@ -80,9 +80,9 @@ TEST(TurnRate, IsTheSlopeOfTheHeadings)
     for (std::size_t i = 0; i < case_count(20'000); ++i) {
         const Turning flight(random);
         const double exact = fitted_rate(flight.velocities);
-        if (std::abs(exact) < double(NominalPaths::kMinTurn) - 1e-5) {
+        if (std::abs(exact) < double(MotionEstimate::kMinTurn) - 1e-5) {
             ASSERT_EQ(flight.paths.turn_rate(), 0.0F) << "case " << i;
-        } else if (std::abs(exact) > double(NominalPaths::kMinTurn) + 1e-5) {
+        } else if (std::abs(exact) > double(MotionEstimate::kMinTurn) + 1e-5) {
             ASSERT_NEAR(double(flight.paths.turn_rate()), exact, 1e-5) << "case " << i;
             ++turning;
         }

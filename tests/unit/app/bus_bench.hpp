@@ -172,4 +172,11 @@ inline Parameters with(std::initializer_list<std::pair<Param, float>> changes)
     return parameters;
 }
 
+/// Defaults but for `changes`; `tunnel`: the autopilot's link runs through the bus.
+inline std::unique_ptr<BusBench> bus_bench(std::initializer_list<std::pair<Param, float>> changes = {},
+                                           bool tunnel = false)
+{
+    return std::make_unique<BusBench>(with(changes), tunnel);
+}
+
 }  // namespace jink::app::test

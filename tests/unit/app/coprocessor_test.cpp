@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::uint8_t kCritical = 5;
 
-bool has(const StepReport& report, Fault fault) { return (report.faults & static_cast<std::uint16_t>(fault)) != 0; }
 bool controls(const StepReport& report) { return report.control == Control::ours; }
 bool healthy(const StepReport& report) { return report.faults == 0; }
 

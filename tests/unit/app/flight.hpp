@@ -73,6 +73,8 @@ private:
     std::size_t out_size_ = 0;
 };
 
+inline bool has(const StepReport& report, Fault fault) { return (report.faults & bit(fault)) != 0; }
+
 class CountingWatchdog final : public hal::Watchdog {
 public:
     void feed() noexcept override { ++fed; }

@@ -116,7 +116,7 @@ TEST_F(NominalEdges, SlowMotionContradictsNothingAndInterruptsWhatDoes)
     EXPECT_EQ(ticks_until_doubted(Vec3(0, 0.99F, 0)), 100);
     hold(Vec3(0, 5, 0), 23);
     hold(Vec3(0, 0.99F, 0), 1);
-    EXPECT_EQ(ticks_until_doubted(Vec3(0, NominalPaths::kMoving, 0)), 24);
+    EXPECT_EQ(ticks_until_doubted(Vec3(0, MotionEstimate::kMoving, 0)), 24);
 }
 
 TEST_F(NominalEdges, DirectionsOnTheLeg)
@@ -249,8 +249,8 @@ TEST_F(NominalEdges, StandingIsSlowerThanItsBound)
     hold(Vec3(0.499F, 0, 0), 1);
     EXPECT_EQ(end_of(paths.primary()), own.position);
     EXPECT_EQ(paths.primary().speed, limits.cruise_speed);
-    hold(Vec3(NominalPaths::kStanding, 0, 0), 1);
-    EXPECT_EQ(paths.primary().speed, NominalPaths::kStanding);
+    hold(Vec3(MotionPath::kStanding, 0, 0), 1);
+    EXPECT_EQ(paths.primary().speed, MotionPath::kStanding);
     EXPECT_NEAR(end_of(paths.primary()).x() - own.position.x(), 30.0F, 1e-3F) << "kAhead";
     hold(Vec3(3.0F, -4.0F, 1.0F), 1);
     EXPECT_LT((end_of(paths.primary()) - own.position - 60.0F * own.velocity).norm(), 1e-3F);

@@ -106,7 +106,7 @@ TEST_F(NominalReset, OfATurnThatHasBecomeSlowThePlaceIsKept)
 
 TEST_F(NominalReset, MotionAtTheBoundIsKeptAsAPath)
 {
-    fly(Vec3(NominalPaths::kMoving, 0, 0), 100);
+    fly(Vec3(MotionEstimate::kMoving, 0, 0), 100);
     fly(Vec3(0, 3, 0), 10, true);
     EXPECT_NEAR(end_of(paths.primary()).x() - start_of(paths.primary()).x(), 60.0F, 0.1F) << "it is not slower";
 }
@@ -114,15 +114,15 @@ TEST_F(NominalReset, MotionAtTheBoundIsKeptAsAPath)
 /// Of a ground speed that does not stay above kMoving the turn rate is 0.
 TEST_F(NominalReset, AtTheBoundOfMotionThereIsNoTurnRate)
 {
-    for (const float speed : {NominalPaths::kMoving, 1.001F * NominalPaths::kMoving}) {
+    for (const float speed : {MotionEstimate::kMoving, 1.001F * MotionEstimate::kMoving}) {
         paths.reset();
         for (int i = 0; i < 12; ++i) {
             own.velocity = i < 6 ? Vec3(speed, 0.0F, 0.0F) : Vec3(0.0F, speed, 0.0F);
             now.us += 100'000;
             show();
         }
-        EXPECT_EQ(paths.turn_rate() > 0.5F, speed > NominalPaths::kMoving);
-        EXPECT_EQ(paths.turn_rate() == 0.0F, speed <= NominalPaths::kMoving);
+        EXPECT_EQ(paths.turn_rate() > 0.5F, speed > MotionEstimate::kMoving);
+        EXPECT_EQ(paths.turn_rate() == 0.0F, speed <= MotionEstimate::kMoving);
     }
 }
 

@@ -75,7 +75,7 @@ TEST(StepNominal, ALegIsDoubtedAsSoonWhereTheOwnStateComesSeldom)
         b.position += 0.02F * b.velocity;
         ++steps;
     }
-    EXPECT_NEAR(0.02F * static_cast<float>(steps), NominalPaths::kContradicted, 0.45F);
+    EXPECT_NEAR(0.02F * static_cast<float>(steps), ReportedLeg::kContradicted, 0.45F);
 }
 
 TEST(StepNominal, TheMotionBeginsWhereTheVehicleIsNow)

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::world {
@@ -12,6 +14,105 @@ namespace {
 using namespace test;
 
 constexpr std::uint32_t kPlenty = 1'000'000;
+
+TEST(WayToALeg, OnTheLegAimsAtItsEnd)
+{
+    Scene scene;
+    scene.leg(Vec3::Zero(), Vec3(100, 0, 0), 5.0F);
+    scene.own.position = Vec3(20, 0.2F, 0);
+    const Way way = way_of(scene.situation());
+    EXPECT_EQ(way.origin, scene.own.position);
+    EXPECT_NEAR(way.direction.x(), 1.0F, 1e-5F);
+    EXPECT_NEAR(way.length, 80.0F, 1e-3F);
+    EXPECT_FLOAT_EQ(way.speed, 5.0F);
+}
+
+TEST(WayToALeg, OffTheLegAimsAheadOnIt)
+{
+    Scene scene;
+    scene.leg(Vec3::Zero(), Vec3(100, 0, 0), 5.0F);
+    scene.own.position = Vec3(20, 12, 0);
+    const Way way = way_of(scene.situation());
+    EXPECT_NEAR((way.direction - Vec3(12, -12, 0).normalized()).norm(), 0.0F, 1e-5F);
+    EXPECT_NEAR(way.length, 12.0F * std::sqrt(2.0F) + 68.0F, 1e-3F);
+}
+
+TEST(WayToALeg, AFixedWingComesBackGentlyAndWithinItsClimb)
+{
+    Scene scene;
+    scene.limits.kind = vehicle::VehicleKind::fixed_wing;
+    scene.limits.cruise_speed = 18.0F;
+    scene.limits.max_climb = scene.limits.max_descent = 2.0F;
+    scene.leg(Vec3::Zero(), Vec3(900, 0, 0), 18.0F);
+    scene.own.position = Vec3(20, 20, 0);
+    EXPECT_NEAR((way_of(scene.situation()).direction - Vec3(72, -20, 0).normalized()).norm(), 0.0F, 1e-5F)
+        << "4 s of flight";
+    for (const float height : {-20.0F, 20.0F}) {
+        scene.own.position = Vec3(20, 0, height);
+        const Way way = way_of(scene.situation());
+        EXPECT_LE(std::abs(way.direction.z()) * 18.0F, 2.001F) << "as steep as it climbs";
+        EXPECT_NEAR(way.speed, 18.0F, 0.1F) << "it does not fly slower";
+    }
+}
+
+TEST(WayToALeg, NearItsEndAimsAtTheEndFromTheSide)
+{
+    Scene scene;
+    scene.leg(Vec3::Zero(), Vec3(100, 0, 0), 5.0F);
+    scene.own.position = Vec3(97, 4, 0);
+    const Way way = way_of(scene.situation());
+    EXPECT_NEAR((way.direction - Vec3(3, -4, 0) / 5.0F).norm(), 0.0F, 1e-5F);
+    EXPECT_NEAR(way.length, 5.0F, 1e-4F);
+}
+
+TEST(WayToALeg, BehindItsStartAndBeyondItsEnd)
+{
+    Scene scene;
+    scene.leg(Vec3::Zero(), Vec3(100, 0, 0), 5.0F);
+    scene.own.position = Vec3(-30, 0, 0);
+    EXPECT_NEAR(way_of(scene.situation()).direction.x(), 1.0F, 1e-6F);
+    scene.own.position = Vec3(110, 0, 0);
+    const Way back = way_of(scene.situation());
+    EXPECT_NEAR(back.direction.x(), -1.0F, 1e-6F);
+    EXPECT_NEAR(back.length, 10.0F, 1e-4F);
+}
+
+TEST(WayToALeg, AtTheEndKeepsTheLegsDirection)
+{
+    Scene scene;
+    scene.leg(Vec3::Zero(), Vec3(0, 50, 0), 5.0F);
+    scene.own.position = Vec3(0, 50, 0);
+    const Way way = way_of(scene.situation());
+    EXPECT_EQ(way.length, 0.0F);
+    EXPECT_NEAR((way.direction - Vec3(0, 1, 0)).norm(), 0.0F, 1e-6F);
+}
+
+TEST(WayToALeg, AVerticalLegIsClimbedAtTheClimbLimit)
+{
+    Scene scene;
+    scene.limits.max_climb = 2.0F;
+    scene.limits.max_descent = 1.0F;
+    scene.leg(Vec3::Zero(), Vec3(0, 0, 40), 5.0F);
+    scene.own.position = Vec3(0, 0, 10);
+    EXPECT_FLOAT_EQ(way_of(scene.situation()).speed, 2.0F);
+    EXPECT_NEAR(way_of(scene.situation()).length, 30.0F, 1e-4F);
+    scene.leg(Vec3(0, 0, 40), Vec3::Zero(), 5.0F);
+    EXPECT_FLOAT_EQ(way_of(scene.situation()).speed, 1.0F);
+    EXPECT_NEAR(way_of(scene.situation()).direction.z(), -1.0F, 1e-6F);
+}
+
+TEST(WayToALeg, ALegWithoutLengthIsAPlaceToGo)
+{
+    Scene scene;
+    scene.leg(Vec3(5, 5, 5), Vec3(5, 5, 5), 5.0F);
+    scene.own.position = Vec3(5, 5, 5);
+    EXPECT_EQ(way_of(scene.situation()).length, 0.0F);
+    EXPECT_NEAR(way_of(scene.situation()).direction.norm(), 1.0F, 1e-6F);
+    scene.own.position = Vec3(5, 0, 5);
+    const Way way = way_of(scene.situation());
+    EXPECT_NEAR((way.direction - Vec3(0, 1, 0)).norm(), 0.0F, 1e-6F);
+    EXPECT_NEAR(way.length, 5.0F, 1e-5F);
+}
 
 /// Before its start a leg is joined ahead of the start, not before it.
 TEST(WayToALeg, BeforeItsStartAimsAheadOfTheStart)
