@@ -67,8 +67,8 @@ void make_base(const UnitCurve& unit, const Problem& problem, const vehicle::Veh
 void make_curve_along(const UnitCurve& unit, const BaseCurve& base, const Vec3& side, float offset, float speed,
                       const vehicle::VehicleLimits& limits, Curve& out) noexcept;
 
-/// The curve of a candidate: about the straight leg, or about `base` along the route, which is made where it is not yet.
-/// `base.rejoin` is where both lead back. O(waypoints), the first along a route O(waypoints * segments).
+/// The curve of a candidate: about the straight leg, or about `base` along the route, which is made where it is not
+/// yet. `base.rejoin` is where both lead back. O(waypoints), the first along a route O(waypoints * segments).
 void make_candidate(const UnitCurve& unit, const Problem& problem, const vehicle::VehicleLimits& limits,
                     const Vec3& side, float offset, BaseCurve& base, Curve& out) noexcept;
 
