@@ -21,11 +21,11 @@ LIBRARY = 200
 INDIRECT = [
     (r"12StateMachine4plan", [r"10Supervisor.*10ask_in_order"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
-    (r"3app(11Coprocessor|6Intake|6Outbox|7Picture|16AutopilotControl|13ParamExchange|9Telemetry)",
+    (r"3app(11Coprocessor|6Intake|8OwnState|6Outbox|7Picture|16AutopilotControl|13ParamExchange|9Telemetry)",
      [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # consumers of points: none on an image
-    (r"3app10ParamFlash", [r"7stm32f45FlashI"]),
+    (r"3app(10ParamFlash|11ParamKeeper)", [r"7stm32f45FlashI"]),
     (r"5reach7Planner(4look|7try_set)", []),  # raters of cells: none on an image
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
