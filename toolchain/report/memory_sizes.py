@@ -61,8 +61,11 @@ def by_room(build, target):
     folder = pathlib.Path(build) / target
     rooms = {}
     for place, prefix in (("core", "core"), ("firmware", "firmware"), ("hal", "hal")):
-        for obj in folder.glob(f"{place}/CMakeFiles/*.dir/**/*.obj"):
-            inside = obj.relative_to(folder / place / "CMakeFiles").as_posix().split("/")
+        for obj in stack.objects(folder):
+            made = folder.resolve() / place / "CMakeFiles"
+            if not obj.is_relative_to(made):
+                continue
+            inside = obj.relative_to(made).as_posix().split("/")
             folder_of = re.fullmatch(r"unity_([\w-]+)_cxx\.cxx\.obj", obj.name)  # of sources joined by folder (jink_joined)
             rooms.setdefault(obj.name, set()).add(folder_of[1].replace("-", "/") if folder_of else "/".join([prefix, *inside[1:-1]]))
     text = (folder / "firmware" / target / f"{target}.map").read_text(encoding="utf-8").split("Linker script and memory map")[1]

@@ -8,6 +8,7 @@ the C library have no figure of their own and count LIBRARY bytes each.
 """
 import pathlib
 import re
+import subprocess
 import sys
 
 NODE = re.compile(r'node: \{ title: "([^"]+)" label: "([^"]*)"')
@@ -25,7 +26,7 @@ INDIRECT = [
      [r"link7mavlink8Endpoint", r"9CmsdkUartI", r"5UsartI", r"13CmsdkWatchdogI", r"19IndependentWatchdogI", r"15GuardedWatchdogI", r"3app6CanBus"]),
     (r"3app6CanBus", [r"5BxCanI"]),
     (r"link7mavlink8Endpoint", []),  # consumers of points: none on an image
-    (r"3app(10ParamFlash|11ParamKeeper)", [r"7stm32f45FlashI"]),
+    (r"3app10ParamFlash", [r"7stm32f45FlashI"]),
     (r"5reach7Planner(4look|7try_set)", []),  # raters of cells: none on an image
     (r"8dronecan4Node", [r"12ParamService"]),
     (r"jink_reset_handler", [r"_GLOBAL__sub_I"]),
@@ -33,16 +34,22 @@ INDIRECT = [
 ]
 
 
+def objects(build):
+    """The objects that the image of a build is made of: none of other images, none that an earlier set-up has left."""
+    folder = pathlib.Path(build).resolve()
+    image = f"firmware/{folder.name}/{folder.name}.elf"
+    made_of = subprocess.run(["ninja", "-C", str(folder), "-t", "inputs", image], check=True, capture_output=True, text=True).stdout
+    return sorted(folder / line for line in made_of.splitlines() if line.endswith(".obj"))
+
+
 class Graph:
     def __init__(self, build, skip="tests/"):
         self.frames = {}
         self.calls = {}
         self.names = {}
-        self.problems = [f"{file}: no call graph beside it" for file in sorted(pathlib.Path(build).rglob("*.obj"))
-                         if not file.relative_to(build).as_posix().startswith(skip) and not file.with_suffix(".ci").exists()]
-        for file in sorted(pathlib.Path(build).rglob("*.ci")):
-            if file.relative_to(build).as_posix().startswith(skip):
-                continue
+        mine = [file for file in objects(build) if not file.relative_to(pathlib.Path(build).resolve()).as_posix().startswith(skip)]
+        self.problems = [f"{file}: no call graph beside it" for file in mine if not file.with_suffix(".ci").exists()]
+        for file in (file.with_suffix(".ci") for file in mine if file.with_suffix(".ci").exists()):
             text = file.read_text(encoding="utf-8")
             for title, label in NODE.findall(text):
                 title = self.unique(title)
