@@ -119,18 +119,6 @@ JINK_INLINE HalfSpace rest_plane(const Vec3& position, float distance, const Pai
 
 }  // namespace
 
-Vec3 side(const Vec3& position) noexcept
-{
-    const float level2 = position.x() * position.x() + position.y() * position.y();
-    const float height2 = position.z() * position.z();
-    constexpr float kUpright2 = 1e-6F;  // of the length squared, below which it points straight up or down
-    if (level2 < kUpright2 * (level2 + height2)) {
-        // position x (1, 0, 0)
-        return Vec3(0.0F, position.z(), -position.y()) / std::sqrt(height2 + position.y() * position.y());
-    }
-    return Vec3(position.y(), -position.x(), 0.0F) / std::sqrt(level2);  // position x (0, 0, 1)
-}
-
 Exit nearest_exit(const Vec3& position, const Vec3& velocity, float radius, float horizon) noexcept
 {
     return exit_of(position, velocity, radius, horizon);
