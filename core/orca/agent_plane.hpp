@@ -92,6 +92,9 @@ struct Pair {
     float upright = 1.0F;                ///< sum of both half heights [m], > 0
     Weights weights = kShared;
     bool above = false;        ///< the own id is the larger one
+    /// Counts with the relative velocity where the side of the way out is chosen, and nowhere else [m/s]: towards the
+    /// side on which both pass, as large as what an old report hides. The other one's is the opposite.
+    Vec3 lean = Vec3::Zero();
     std::uint16_t source = 0;  ///< handed on to the half-spaces
 };
 
