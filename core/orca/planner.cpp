@@ -212,6 +212,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     out.loop = {s.rules.latency, limits.velocity_lag};
     out.most_apart = 0.5F * motion.max_speed + 0.5F;
     out.own_stale = kLongestTick;
+    out.stale = settings_.stale;
     out.smoothing = settings_.smoothing;
     return out;
 }
