@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Flying a checked manoeuvre: how long it is kept, and what replaces it.
 #include "core/avoid/tick.hpp"
+#include "core/world/passing_side.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 namespace {
@@ -19,6 +21,15 @@ float mean_speed(const world::Manoeuvre& manoeuvre) noexcept
 {
     const Seconds duration = manoeuvre.path.duration();
     return duration > 0.0F ? path::arc_length(manoeuvre.path) / duration : 0.0F;
+}
+
+/// Whether a manoeuvre leads to the side on which both vehicles pass.
+bool passes_by_rule(const world::Situation& s, const world::ThreatRef& against,
+                    const world::Manoeuvre& manoeuvre) noexcept
+{
+    const std::span tracks = world::of_kind(s.threats, world::ThreatKind::track);
+    return against.kind == world::ThreatKind::track && against.index < tracks.size() &&
+           world::passing_side(s, tracks[against.index]).dot(manoeuvre.side) > -kOppositeSide;
 }
 
 }  // namespace
@@ -95,17 +106,18 @@ bool StateMachine::find_faster(Tick& tick) noexcept
     return false;
 }
 
-/// The flown manoeuvre is not clear to its end. An answer on its side is taken at once. An answer on the other side, of
-/// what was chosen or of where the vehicle is, counts as noise as long as there is time. That answer, or else the
-/// fallback, is taken when the margin would be entered before the latest manoeuvre time; its worst instant may lie far
-/// behind that.
-void StateMachine::replace(Tick& tick) noexcept
+/// The flown manoeuvre is not clear to its end. An answer on its side is taken at once; so is one that goes over to the
+/// side on which two vehicles pass that avoid each other: of two that have chosen the same side, one has to go over.
+/// Any other answer on the other side, of what was chosen or of where the vehicle is, counts as noise as long as there
+/// is time. That answer, or else the fallback, is taken when the margin would be entered before the latest manoeuvre
+/// time; its worst instant may lie far behind that.
+void StateMachine::replace(Tick& tick, const world::ThreatRef& against) noexcept
 {
     const float margin = tick.out.margin;
     const bool found = plan(tick);
     const bool turns_over =
         found && (flying_->side.dot(answer_.side) < kOppositeSide || chosen_side_.dot(answer_.side) < kOppositeSide);
-    if (found && !turns_over) {
+    if (found && (!turns_over || passes_by_rule(tick.s, against, answer_))) {
         take(tick);
         return;
     }
@@ -140,7 +152,7 @@ void StateMachine::avoid(Tick& tick) noexcept
         return;
     }
     if (ahead.margin < 0.0F) {
-        replace(tick);
+        replace(tick, ahead.against);
         return;
     }
     if (find_faster(tick)) {

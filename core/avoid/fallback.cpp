@@ -8,6 +8,8 @@
 #include "core/avoid/prediction_units.hpp"
 #include "core/base/work_units.hpp"
 #include "core/path/prediction.hpp"
+#include "core/world/passing_side.hpp"
+#include "core/world/threat_set.hpp"
 
 namespace jink::avoid {
 namespace {
@@ -18,6 +20,11 @@ using path::Prediction;
 constexpr int kCourses = 8;
 /// Repetitions with finer steps about the best of them: to 6 degrees, and an eighth of the climb.
 constexpr int kRefinements = 3;
+
+/// Share of the other one's radius that a command to its side has to be better by.
+constexpr float kOtherSide = 0.5F;
+/// Sine of the angle within which a command leads to neither side.
+constexpr float kAside = 0.1F;
 
 /// A slanted command climbs as fast as the vehicle can, where that leaves at least as much for the level part.
 float slant(float limit, const vehicle::VehicleLimits& limits) noexcept
@@ -52,11 +59,29 @@ public:
         return least.margin;
     }
 
+    /// From now on commands to the side on which the other one of two vehicles passes count as worse. Of the threat
+    /// that was met last.
+    void pass_by_rule() noexcept
+    {
+        const std::span tracks = world::of_kind(s_.threats, world::ThreatKind::track);
+        if (nearest_.kind == world::ThreatKind::track && nearest_.index < tracks.size()) {
+            side_ = world::passing_side(s_, tracks[nearest_.index]);
+            handicap_ = kOtherSide * tracks[nearest_.index].radius_at(0.0F);
+        }
+    }
+    /// What a command's margin counts as less.
+    [[nodiscard]] float handicap_of(const Vec3& command) const noexcept
+    {
+        return command.dot(side_) < -kAside * command.norm() ? handicap_ : 0.0F;
+    }
+
     /// True when it is the best now.
     bool attempt(const Vec3& command, Fallback& best) noexcept
     {
-        const float margin = margin_of(command, best.margin);
-        if (margin > best.margin) {
+        const float handicap = handicap_of(command);
+        const float least = best.margin - handicap_of(best.command) + handicap;
+        const float margin = margin_of(command, least);
+        if (margin > least) {
             best = {world::ManoeuvreKind::velocity, command, margin};
             return true;
         }
@@ -71,6 +96,8 @@ private:
     Seconds step_;
     Seconds later_step_ = 0.0F;
     world::ThreatRef nearest_;
+    Vec3 side_ = Vec3::Zero();
+    float handicap_ = 0.0F;
     Prediction flight_;
 };
 
@@ -156,8 +183,12 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
             return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
         }
     }
+    search.pass_by_rule();
     search_escapes(s, way, search, best);
-    const bool as_good = best.margin < 0.0F && kept_margin + detail::kFallbackHysteresis >= best.margin;
+    const float behind = kept_margin > -world::kSeparationCap
+                             ? search.handicap_of(previous->command) - search.handicap_of(best.command)
+                             : 0.0F;
+    const bool as_good = best.margin < 0.0F && kept_margin + detail::kFallbackHysteresis >= best.margin + behind;
     if (as_good && kept_margin > -world::kSeparationCap) {
         return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
     }

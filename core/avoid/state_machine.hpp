@@ -67,7 +67,7 @@ private:
     void take(Tick& tick) noexcept;
     void fly(const world::Manoeuvre& manoeuvre, Tick& tick) const noexcept;
     [[nodiscard]] bool renew(Tick& tick) noexcept;
-    void replace(Tick& tick) noexcept;
+    void replace(Tick& tick, const world::ThreatRef& against) noexcept;
     [[nodiscard]] bool find_faster(Tick& tick) noexcept;
     // braking.cpp
     void brake(Tick& tick) noexcept;

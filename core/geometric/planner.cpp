@@ -6,6 +6,7 @@
 #include "core/geometric/along_reference.hpp"
 #include "core/geometric/in_a_row.hpp"
 #include "core/world/conflict.hpp"
+#include "core/world/passing_side.hpp"
 #include "core/world/threat_set.hpp"
 
 namespace jink::geometric {
@@ -30,7 +31,11 @@ Problem problem_of(const Situation& situation, const world::Way& way, const worl
     problem.rules = situation.rules;
     problem.start_velocity = situation.own.velocity;
     problem.speed = way.speed;
-    problem.preferred_side = situation.flying != nullptr ? situation.flying->side : Vec3(Vec3::Zero());
+    // Where both give way, a side that both know comes before the side that is flown.
+    problem.preferred_side = world::passing_side(situation, main);
+    if (problem.preferred_side == Vec3::Zero() && situation.flying != nullptr) {
+        problem.preferred_side = situation.flying->side;
+    }
     problem.main_centre_offset = conflict.threat_at_closest - conflict.own_at_closest;
     if (conflict.threat.kind == world::ThreatKind::track) {
         problem.main = conflict.threat.index;

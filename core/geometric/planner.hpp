@@ -110,7 +110,7 @@ struct Settings {
     bool all_terms = false;
     cost::Weights weights;
     cost::Caps caps;
-    float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of what is being flown
+    float flip_penalty = 0.15F;  ///< added to the total of candidates on the other side of Problem::preferred_side
     std::uint16_t closeness_nearest =
         0;  ///< only the k moving threats nearest to the start count for closeness; 0: all
     /// Only the k moving threats that come nearest to a straight flight along the leg count for closeness, and
@@ -163,7 +163,7 @@ struct Problem {
     world::FlightRules rules;                ///< escape rule, and gains for Settings::verify_flight
     Vec3 start_velocity = Vec3::Zero();      ///< own velocity at the start, for verify_flight [m/s]
     float speed = 5.0F;                      ///< cruise speed along the candidates [m/s]
-    Vec3 preferred_side = Vec3::Zero();      ///< of what is being flown; zero for none
+    Vec3 preferred_side = Vec3::Zero();      ///< world::passing_side, or of what is being flown; zero for none
     Vec3 main_centre_offset = Vec3::Zero();  ///< main threat's centre at the collision time minus the collision point
                                              ///< [m]; clearing offsets account for it
     const geometry::Shape* main_shape =

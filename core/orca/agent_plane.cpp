@@ -18,7 +18,8 @@ constexpr float kCoincident = 1e-6F;  // [m] between centres that have no direct
 /// Stretches heights by `by`.
 JINK_INLINE Vec3 stretched(const Vec3& v, float by) noexcept { return {v.x(), v.y(), v.z() * by}; }
 
-JINK_INLINE Exit exit_of(const Vec3& position, const Vec3& velocity, float radius, float horizon) noexcept
+JINK_INLINE Exit exit_of(const Vec3& position, const Vec3& velocity, const Vec3& lean, float radius,
+                         float horizon) noexcept
 {
     const float rate = 1.0F / horizon;
     const Vec3 from_sphere = velocity - position * rate;
@@ -32,9 +33,10 @@ JINK_INLINE Exit exit_of(const Vec3& position, const Vec3& velocity, float radiu
     const float distance2 = position.squaredNorm();
     const float distance = std::sqrt(distance2);
     const float cosine_length = std::sqrt((distance - radius) * (distance + radius));  // no cancellation near contact
-    Vec3 across = velocity - position * (velocity.dot(position) / distance2);
+    const Vec3 leaning = velocity + lean;
+    Vec3 across = leaning - position * (leaning.dot(position) / distance2);
     constexpr float kNearAxis = 1e-4F;  // of the speed squared: what is left of the difference is rounding in part
-    if (across.squaredNorm() < kNearAxis * velocity.squaredNorm()) {
+    if (across.squaredNorm() < kNearAxis * leaning.squaredNorm()) {
         across -= position * (across.dot(position) / distance2);
     }
     const float across_length = across.norm();
@@ -76,7 +78,7 @@ JINK_INLINE Exit warning_exit(const Vec3& position, float distance, const Vec3& 
 {
     const float outer = pair.across;
     if (distance > outer) {
-        return exit_of(position, velocity, outer, settings.horizon);
+        return exit_of(position, velocity, stretched(pair.lean, pair.across / pair.upright), outer, settings.horizon);
     }
     const float inner = outer * settings.conflict_ratio;
     const float part = std::min((outer - distance) / (outer - inner), 1.0F);
@@ -95,7 +97,7 @@ JINK_INLINE Exit conflict_exit(const Vec3& position, float distance, const Vec3&
                                float inner, const PairSettings& settings) noexcept
 {
     if (distance > inner) {
-        return exit_of(position, velocity, inner, settings.horizon);
+        return exit_of(position, velocity, stretched(pair.lean, pair.across / pair.upright), inner, settings.horizon);
     }
     const float speed = std::min(settings.recovery_speed, (inner - distance) / settings.recovery_time);
     return apart(position, distance, velocity, speed, pair.above);
@@ -119,21 +121,9 @@ JINK_INLINE HalfSpace rest_plane(const Vec3& position, float distance, const Pai
 
 }  // namespace
 
-Vec3 side(const Vec3& position) noexcept
-{
-    const float level2 = position.x() * position.x() + position.y() * position.y();
-    const float height2 = position.z() * position.z();
-    constexpr float kUpright2 = 1e-6F;  // of the length squared, below which it points straight up or down
-    if (level2 < kUpright2 * (level2 + height2)) {
-        // position x (1, 0, 0)
-        return Vec3(0.0F, position.z(), -position.y()) / std::sqrt(height2 + position.y() * position.y());
-    }
-    return Vec3(position.y(), -position.x(), 0.0F) / std::sqrt(level2);  // position x (0, 0, 1)
-}
-
 Exit nearest_exit(const Vec3& position, const Vec3& velocity, float radius, float horizon) noexcept
 {
-    return exit_of(position, velocity, radius, horizon);
+    return exit_of(position, velocity, Vec3::Zero(), radius, horizon);
 }
 
 Exit original_exit(const Vec3& position, const Vec3& velocity, float radius, float period) noexcept

@@ -5,6 +5,7 @@
 
 #include "core/base/vec3.hpp"
 #include "core/orca/half_space.hpp"
+#include "core/world/passing_side.hpp"
 
 // What another vehicle leaves of the own velocities: half-spaces by optimal reciprocal collision avoidance (van den
 // Berg, Guy, Lin, Manocha, "Reciprocal n-body collision avoidance"; Alejo 7.1), for ellipsoids (7.2.3) and with two
@@ -40,9 +41,7 @@ struct Exit {
 [[nodiscard]] Exit separating(const Vec3& position, float distance, const Vec3& velocity, float speed,
                               bool above) noexcept;
 
-/// Where a vehicle goes whose way leads straight into another one: to its right, and where the other is above or below
-/// to its left along y. Unit length; side(-p) = -side(p), so both go to opposite sides without a word. |position| > 0.
-[[nodiscard]] Vec3 side(const Vec3& position) noexcept;
+using world::side;
 
 /// The own share of a change of the relative velocity. Where the partner's is not known their sum has to be 1 at least
 /// while somebody has to give way, and 1 at most while both use up what is left between them (from Alejo 7.8).
@@ -92,7 +91,10 @@ struct Pair {
     float across = 1.0F;                 ///< sum of both half widths [m], > 0: the warning region's radius
     float upright = 1.0F;                ///< sum of both half heights [m], > 0
     Weights weights = kShared;
-    bool above = false;        ///< the own id is the larger one
+    bool above = false;  ///< the own id is the larger one
+    /// Counts with the relative velocity where the side of the way out is chosen, and nowhere else [m/s]: towards the
+    /// side on which both pass, as large as what an old report hides. The other one's is the opposite.
+    Vec3 lean = Vec3::Zero();
     std::uint16_t source = 0;  ///< handed on to the half-spaces
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/world/passing_side.hpp"
+
 namespace jink::orca {
 namespace {
 
@@ -42,7 +44,7 @@ Biased Bias::apply(std::uint32_t own, const Vec3& preferred, const Vec3& velocit
     if (stalled_ > settings_.stall) {
         const float risen = std::min(1.0F, (stalled_ - settings_.stall) / kVerticalRise);
         const float climb = settings_.vertical * risen * speed;
-        biased.preferred.z() += own < neighbour->id ? climb : -climb;
+        biased.preferred.z() += world::climbs(own, neighbour->id) ? climb : -climb;
     }
     return biased;
 }

@@ -81,6 +81,13 @@ Pair pair_of(const NeighbourSettings& settings, const Vec3& own_velocity, const 
     pair.weights = gives_way(settings, other) ? kShared : kAlone;
     pair.above = settings.own_id > other.id;
     pair.source = source;
+    // Each of both may have changed its velocity by so much since the other heard of it. A stale one too still passes
+    // on its side.
+    constexpr float kBoth = 2.0F;
+    constexpr float kCoincident2 = 1e-12F;  // [m2], below which there is no side
+    if (other.position.squaredNorm() > kCoincident2) {
+        pair.lean = kBoth * other.acceleration * other.age * side(other.position);
+    }
     return pair;
 }
 

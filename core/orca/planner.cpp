@@ -63,6 +63,11 @@ Neighbour neighbour_of(const world::Situation& s, const world::Threat& threat, c
     out.half_height = std::max(radius, std::min(radius + threat.half_height, radius / kTallest));
     out.max_speed = std::max(settings.limits.max_speed, threat.velocity.norm());
     out.acceleration = threat.track->max_acceleration;
+    if (threat.reciprocal) {
+        // It changes its velocity as much as the own vehicle does, and that since its report.
+        out.acceleration = std::max(out.acceleration, s.limits.max_acceleration);
+        out.age = std::max(s.now - threat.track->stamp, 0.0F);
+    }
     out.id = threat.track->id;
     out.cooperative = threat.reciprocal && s.now - threat.track->stamp <= stale;
     return out;
@@ -207,6 +212,7 @@ FilterSettings Planner::filter_settings(const world::Situation& s, Seconds tick)
     out.loop = {s.rules.latency, limits.velocity_lag};
     out.most_apart = 0.5F * motion.max_speed + 0.5F;
     out.own_stale = kLongestTick;
+    out.stale = settings_.stale;
     out.smoothing = settings_.smoothing;
     return out;
 }

@@ -145,6 +145,31 @@ TEST(Swarm, OfFourChangesPlacesOverAPoorRadioBitByBitTheSame)
     }
 }
 
+/// Two head-on and crossing that hear of each other late: seeds in which both once chose the same side.
+TEST(Swarm, OfTwoPassesOnItsSidesHoweverOldTheReports)
+{
+    SwarmSetup setup;
+    setup.vehicles = 2;
+    setup.circle = 25.0;
+    setup.level = 2.5;
+    setup.vertical = 2.0;
+    setup.body = 0.5;
+    setup.cruise = 5.0;
+    for (const double sector : {360.0, 180.0}) {
+        setup.sector = sector;
+        for (const double delay : {0.3, 0.5, 1.0}) {
+            setup.delay = delay;
+            for (const std::uint64_t seed : {950000U, 950013U, 950158U}) {
+                for (const double methods : {1.0, 5.0}) {
+                    setup.others = {{"JNK_METHODS", methods}};  // beside one that has the delivered methods
+                    const SwarmResult result = fly_swarm(setup, seed, {});
+                    EXPECT_TRUE(result.good()) << sector << " " << delay << " " << methods << " " << to_line(result);
+                }
+            }
+        }
+    }
+}
+
 TEST(Swarm, AndBackAgain)
 {
     SwarmSetup setup = small();

@@ -231,11 +231,11 @@ void Swarm::write_tracks(const std::filesystem::path& file) const
 
 SwarmResult fly_swarm(const SwarmSetup& setup, std::uint64_t seed, const std::filesystem::path& tracks)
 {
-    const app::Parameters parameters = swarm_parameters(setup);
     Swarm swarm(setup, seed);
     std::vector<std::unique_ptr<Station>> stations;
     std::vector<bool> overflowed(swarm.size(), false);
     for (std::size_t i = 0; i < swarm.size(); ++i) {
+        const app::Parameters parameters = swarm_parameters(setup, static_cast<unsigned>(i));
         stations.push_back(std::make_unique<Station>(setup, seed, i, parameters));
     }
     std::array<std::byte, 4096> buffer{};

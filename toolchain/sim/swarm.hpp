@@ -20,8 +20,10 @@ namespace jink::sim {
 struct SwarmSetup {
     unsigned vehicles = 20;   ///< 2 to 64
     double circle = 10.0;     ///< its radius [m]
+    double sector = 360.0;    ///< of the circle on which the vehicles start, evenly spread [deg]
     double height = 20.0;     ///< above home [m]
     double cruise = 1.0;      ///< [m/s]
+    double slow = 1.0;        ///< share of it that every second vehicle flies at
     double spread = 0.1;      ///< largest start offset from the vehicle's place, per axis [m]
     bool back = false;        ///< the vehicles return to their starts
     unsigned obstacles = 0;   ///< spheres that fly straight through the circle, slower than the vehicles
@@ -34,11 +36,13 @@ struct SwarmSetup {
     double duration = 180.0;  ///< at most [s]
     Stack stack = Stack::ardupilot;
     std::map<std::string, double> parameters;  ///< of the co-processors, in addition to `swarm_parameters`
+    std::map<std::string, double> others;      ///< of every second vehicle's, in addition to these
 };
 
-/// The co-processors' parameters: for small slow vehicles, their separations and the delay; then those of the setup.
+/// Parameters of the co-processor of vehicle `index`: for small slow vehicles, their separations and the delay; then
+/// those of the setup.
 /// @throws std::runtime_error for an unknown name or a refused value
-[[nodiscard]] app::Parameters swarm_parameters(const SwarmSetup& setup);
+[[nodiscard]] app::Parameters swarm_parameters(const SwarmSetup& setup, unsigned index = 0);
 
 /// Vehicle `index` of the swarm of a seed, and the obstacles, equal for all vehicles. The same seed gives the same
 /// scenario on every machine.

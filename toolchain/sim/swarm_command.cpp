@@ -40,7 +40,16 @@ SwarmSetup setup_of(const SwarmOptions& options)
         const auto [name, value] = parse_parameter(text);
         setup.parameters[name] = value;
     }
-    static_cast<void>(swarm_parameters(setup));  // refuses invalid parameters before the first flight
+    for (const std::string& text : options.others) {
+        const auto [name, value] = parse_parameter(text);
+        setup.others[name] = value;
+    }
+    if (options.daemon && (!setup.others.empty() || setup.slow != 1.0)) {
+        throw std::runtime_error("--daemon flies vehicles that are all alike");
+    }
+    for (const unsigned index : {0U, 1U}) {
+        static_cast<void>(swarm_parameters(setup, index));  // refuses invalid parameters before the first flight
+    }
     return setup;
 }
 
@@ -110,6 +119,11 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
                  "touched, a goal was missed or a rule of the protocol was broken");
     command->add_option("--vehicles", s.vehicles, "how many, default 20")->check(CLI::Range(2U, 64U));
     command->add_option("--circle", s.circle, "its radius, default 10 [m]")->check(CLI::Range(1.0, 1000.0));
+    command->add_option("--sector", s.sector, "of the circle over which they start, default 360 [deg]")
+        ->check(CLI::Range(1.0, 360.0));
+    command->add_option("--slow", s.slow, "share of the cruise speed of every second vehicle, default 1")
+        ->check(CLI::Range(0.1, 1.0));
+    command->add_option("--others", options.others, "NAME=VALUE of every second co-processor, any number of them");
     command->add_option("--cruise", s.cruise, "cruise speed, default 1 [m/s]")->check(CLI::Range(0.5, 20.0));
     command->add_option("--spread", s.spread, "of the starting places, default 0.1 [m]")->check(CLI::Range(0.0, 1.0));
     command->add_flag("--back", s.back, "and back again");

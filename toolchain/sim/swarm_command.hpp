@@ -22,6 +22,7 @@ struct SwarmOptions {
     unsigned threads = 0;  ///< 0: number of cores
     std::string stack = "ardupilot";
     std::vector<std::string> parameters;  ///< NAME=VALUE
+    std::vector<std::string> others;      ///< NAME=VALUE of every second vehicle
     std::string out;
     bool daemon = false;
     std::string program;  ///< jinkd; empty: beside this program

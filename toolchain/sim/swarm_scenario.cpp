@@ -22,7 +22,8 @@ double drawn(Random& random, double low, double high)
 
 Vec on_circle(const SwarmSetup& setup, unsigned index)
 {
-    const double angle = 2.0 * std::numbers::pi * index / setup.vehicles;
+    constexpr double kHalfTurn = 180.0;  // [deg]
+    const double angle = std::numbers::pi * setup.sector / kHalfTurn * index / setup.vehicles;
     return {setup.circle * std::cos(angle), setup.circle * std::sin(angle), setup.height};
 }
 
@@ -41,6 +42,11 @@ Threat obstacle(const SwarmSetup& setup, Random& random, unsigned number)
     sphere.velocity = (aim - sphere.position).normalized() * drawn(random, kSlowest, kFastest) * setup.cruise;
     sphere.position.z() = setup.height + drawn(random, -1.0, 1.0);
     return sphere;
+}
+
+double cruise_of(const SwarmSetup& setup, unsigned index)
+{
+    return index % 2 == 0 ? setup.cruise : setup.slow * setup.cruise;
 }
 
 void small_and_slow(Scenario& s, double cruise)
@@ -72,7 +78,7 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     s.to_goal = true;
     s.body_radius = setup.body;
     s.promise = setup.body;
-    small_and_slow(s, setup.cruise);
+    small_and_slow(s, cruise_of(setup, index));
     Vec off = off_place();
     for (unsigned i = 0; i < index; ++i) {
         off = off_place();  // draws of the vehicles before this one
@@ -92,13 +98,14 @@ Scenario swarm_scenario(const SwarmSetup& setup, std::uint64_t seed, unsigned in
     return s;
 }
 
-app::Parameters swarm_parameters(const SwarmSetup& setup)
+app::Parameters swarm_parameters(const SwarmSetup& setup, unsigned index)
 {
     const double half = 0.5 * setup.vertical;
+    const double cruise = cruise_of(setup, index);
     std::map<std::string, double> wanted{
-        {"VEH_CRUISE", setup.cruise},
-        {"VEH_CLIMB", setup.cruise},
-        {"VEH_DESCENT", setup.cruise},
+        {"VEH_CRUISE", cruise},
+        {"VEH_CLIMB", cruise},
+        {"VEH_DESCENT", cruise},
         {"VEH_ACC", 2.0},
         {"VEH_ACC_Z", 2.0},
         // The other vehicle's sphere and the own box add up to the separations.
@@ -114,14 +121,19 @@ app::Parameters swarm_parameters(const SwarmSetup& setup)
     for (const auto& [name, value] : setup.parameters) {
         wanted[name] = value;
     }
+    if (index % 2 != 0) {
+        for (const auto& [name, value] : setup.others) {
+            wanted[name] = value;
+        }
+    }
     app::Parameters parameters;
     std::array<float, app::kParamCount> values = parameters.values();
     for (const auto& [name, value] : wanted) {
-        const std::size_t index = app::Parameters::find(name);
-        if (index == app::kParamCount) {
+        const std::size_t place = app::Parameters::find(name);
+        if (place == app::kParamCount) {
             throw std::runtime_error(name + " is no parameter");
         }
-        values[index] = static_cast<float>(value);
+        values[place] = static_cast<float>(value);
     }
     if (parameters.set_all(values) != app::ParamStatus::ok) {
         throw std::runtime_error("the co-processor refuses these parameters");

@@ -37,6 +37,30 @@ TEST(ChooseFallback, BrakesWhereThatIsClear)
     EXPECT_EQ(chosen.margin, margin_of(f, Vec3::Zero()));
 }
 
+/// Two that stand and are closed in on by each other, exactly head-on: each goes to its right, one up and one down.
+TEST(ChooseFallback, GoesToTheSideOnWhichBothPass)
+{
+    Vec3 commands[2];
+    for (const int i : {0, 1}) {
+        const float ahead = i == 0 ? 1.0F : -1.0F;
+        Flight f;
+        f.scene.leg(Vec3(0, 0, 30), Vec3(100.0F * ahead, 0, 30), 5.0F);
+        f.scene.own.position = Vec3(-4.0F * ahead, 0, 30);
+        f.scene.own.velocity = Vec3(3.0F * ahead, 0, 0);
+        f.scene.own_id = static_cast<world::TrackId>(7 + i);
+        world::Track& track = f.scene.track(Vec3(4.0F * ahead, 0, 30), Vec3(-3.0F * ahead, 0, 0), 1.0F);
+        track.id = static_cast<world::TrackId>(8 - i);
+        track.source = world::TrackSource::datalink;
+        track.cooperative = true;
+        const Fallback chosen = fallback(f);
+        ASSERT_EQ(chosen.kind, ManoeuvreKind::velocity);
+        commands[i] = chosen.command;
+    }
+    EXPECT_LT(commands[0].tail<2>().dot(commands[1].tail<2>()), 0.0F);
+    EXPECT_LE(commands[0].y(), 0.1F);
+    EXPECT_GE(commands[1].y(), -0.1F);
+}
+
 TEST(ChooseFallback, PrefersABrakeThatIsClearToWhatWasFlown)
 {
     Flight f;
