@@ -21,6 +21,13 @@ constexpr int kCourses = 8;
 /// Repetitions with finer steps about the best of them: to 6 degrees, and an eighth of the climb.
 constexpr int kRefinements = 3;
 
+/// Where nothing is clear of all that is possible, threats as large as is likely decide: so many standard deviations.
+constexpr float kLikely = 1.0F;
+/// A command that is no farther from being clear is refined [m].
+constexpr float kNearlyClear = 0.5F;
+/// What is flown then stays unless another command is better by this much [m].
+constexpr float kHoldOn = 0.02F;
+
 /// Share of the other one's radius that a command to its side has to be better by.
 constexpr float kOtherSide = 0.5F;
 /// Sine of the angle within which a command leads to neither side.
@@ -54,10 +61,13 @@ public:
         }
         path::predict_velocity_command(s_.own, command, horizon_, later_step_, s_.limits, flight_);
         const world::Separation least = world::least_separation(s_, flight_, horizon_, budget_, s_.rules.escape,
-                                                                {cut, world::kSeparationCap, nearest_});
+                                                                {cut, world::kSeparationCap, nearest_, uncertainty_});
         nearest_ = least.margin < cut || nearest_.kind == world::ThreatKind::none ? least.against : nearest_;
         return least.margin;
     }
+
+    /// From now on this share of the uncertainty counts.
+    void count(float uncertainty) noexcept { uncertainty_ = uncertainty; }
 
     /// From now on commands to the side on which the other one of two vehicles passes count as worse. Of the threat
     /// that was met last.
@@ -88,6 +98,16 @@ public:
         return false;
     }
 
+    /// `other` is the best where no command is better than it by more than `by` [m].
+    void hold_on(const Fallback& other, float by, Fallback& best) noexcept
+    {
+        const float least = best.margin - by - handicap_of(best.command) + handicap_of(other.command);
+        const float margin = margin_of(other.command, least);
+        if (margin >= least && margin > -world::kSeparationCap) {
+            best = {other.kind, other.command, margin};
+        }
+    }
+
 private:
     const world::Situation& s_;
     const Settings& settings_;
@@ -96,6 +116,7 @@ private:
     Seconds step_;
     Seconds later_step_ = 0.0F;
     world::ThreatRef nearest_;
+    float uncertainty_ = 1.0F;
     Vec3 side_ = Vec3::Zero();
     float handicap_ = 0.0F;
     Prediction flight_;
@@ -149,6 +170,19 @@ void search_escapes(const world::Situation& s, const world::Way& way, MaxClearan
     }
 }
 
+/// Of all that is possible: `likely`, or else the best of all that are clear; below 0 where none is.
+Fallback search_clear(const world::Situation& s, const world::Way& way, MaxClearance& search,
+                      const Fallback& likely) noexcept
+{
+    const float margin = search.margin_of(likely.command, 0.0F);
+    if (margin >= 0.0F) {
+        return {likely.kind, likely.command, margin};
+    }
+    Fallback clear{world::ManoeuvreKind::brake, Vec3::Zero(), -kNearlyClear};
+    search_escapes(s, way, search, clear);
+    return clear;
+}
+
 }  // namespace
 
 float command_margin(const world::Situation& s, const Vec3& command, Seconds horizon, const Settings& settings,
@@ -172,25 +206,37 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
         return detail::wing_fallback(s, previous, settings, budget);
     }
     MaxClearance search(s, settings, settings.fallback_horizon, budget);
-    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
-    if (best.margin >= 0.0F) {
-        return best;
+    const Fallback brake{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
+    if (brake.margin >= 0.0F) {
+        return brake;
     }
-    float kept_margin = -world::kSeparationCap;
-    if (previous != nullptr && previous->kind == world::ManoeuvreKind::velocity) {
-        kept_margin = search.margin_of(previous->command);
-        if (kept_margin >= 0.0F) {
-            return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
+    const bool escaped = previous != nullptr && previous->kind == world::ManoeuvreKind::velocity;
+    if (escaped) {
+        const float margin = search.margin_of(previous->command);
+        if (margin >= 0.0F) {
+            return {world::ManoeuvreKind::velocity, previous->command, margin};
         }
     }
     search.pass_by_rule();
+    const float likely = s.rules.k_sigma > kLikely ? kLikely / s.rules.k_sigma : 1.0F;
+    search.count(likely);
+    Fallback best{world::ManoeuvreKind::brake, Vec3::Zero(), -world::kSeparationCap};
     search_escapes(s, way, search, best);
-    const float behind = kept_margin > -world::kSeparationCap
-                             ? search.handicap_of(previous->command) - search.handicap_of(best.command)
-                             : 0.0F;
-    const bool as_good = best.margin < 0.0F && kept_margin + detail::kFallbackHysteresis >= best.margin + behind;
-    if (as_good && kept_margin > -world::kSeparationCap) {
-        return {world::ManoeuvreKind::velocity, previous->command, kept_margin};
+    search.hold_on(brake, 0.0F, best);
+    if (best.margin >= 0.0F) {
+        search.count(1.0F);
+        const Fallback clear = search_clear(s, way, search, best);
+        if (clear.margin >= 0.0F) {
+            return clear;
+        }
+        search.count(likely);
+    }
+    if (escaped) {
+        search.hold_on(*previous, kHoldOn, best);
+    }
+    if (best.margin >= 0.0F) {
+        search.count(1.0F);
+        best.margin = search.margin_of(best.command, 0.0F);
     }
     return best;
 }

@@ -11,19 +11,21 @@ struct Fallback {
     /// brake, hold_turn, or velocity: the max-clearance escape, where braking or turning does not stay clear.
     world::ManoeuvreKind kind = world::ManoeuvreKind::brake;
     Vec3 command = Vec3::Zero();  ///< [m/s]; of hold_turn the sense of the turn in z
-    float margin = 0.0F;          ///< least predicted over the horizon [m]
+    float margin = 0.0F;          ///< least predicted over the horizon, of all that is possible [m]
 };
 
 /// Of a fixed wing: the better one of a level turn to either side. Where neither is clear, the one with the greatest
 /// least margin of both and of 15 commands: on, and 0.5 and 1 rad to either side, level, climbing and descending. The
 /// previous fallback stays unless another is 0.1 m better. O(17 * setpoints + 17 * points * threats).
 ///
-/// Of a multirotor: brake when that is clear. Else the one with the greatest least margin of brake and 26 commands at
-/// cruise speed (8 courses level, climbing and descending; straight up and down), refined three times by steps of
-/// course and of climb to all sides. `previous` (may be null) stays while it is clear, and where nothing is clear
-/// unless another is 0.1 m better. The check of a command ends once it is no better than the best so far. Without
-/// `budget` it counts as the worst. O(40 * points * threats). Against 721 commands in 600 random close calls, 419 of
-/// which need an escape: 2 mm behind on average, 0.31 m at most (tests/property/core/avoid/fallback_test.cpp).
+/// Of a multirotor: brake when that is clear, else `previous` (may be null) when that is. Else of brake and 26 commands
+/// at cruise speed (8 courses level, climbing and descending; straight up and down), refined three times by steps of
+/// course and of climb to all sides, the clear one of greatest least margin. Where none is clear: the one of greatest
+/// least margin to threats within one standard deviation in place of FlightRules::k_sigma; `previous` then, unless
+/// another is 0.02 m better. What is surely in contact says nothing of which way is the better one: threats that are
+/// grown by all that is possible overlap. The check of a command ends once it is no better than the best so far.
+/// Without `budget` it counts as the worst. O(80 * points * threats). Against 721 commands in 600 random close calls: 2
+/// mm behind on average, 0.31 m at most (tests/property/core/avoid/fallback_test.cpp).
 [[nodiscard]] Fallback choose_fallback(const world::Situation& situation, const world::Way& way,
                                        const Fallback* previous, const Settings& settings, WorkBudget& budget) noexcept;
 

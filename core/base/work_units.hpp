@@ -44,6 +44,7 @@ inline constexpr std::uint32_t kCylinderPart = 6;  ///< or a cylinder: both ends
 inline constexpr std::uint32_t kCylinderTurn = 3;  ///< and each instant between them that is checked
 
 // --- conflicts (core/world/conflict) ---
+inline constexpr std::uint32_t kConflictLook = 5;      ///< pieces of the nominal path, before any threat
 inline constexpr std::uint32_t kConflict = 16;         ///< of the nominal path with a track
 inline constexpr std::uint32_t kConflictPart = 8;      ///< and each half second in which it grows
 inline constexpr std::uint32_t kConflictSphere = 9;    ///< of the nominal path with a sphere or an upright capsule

@@ -161,6 +161,7 @@ bool main_conflict(const Situation& situation, const Way& way, Seconds lookahead
         out = {};
         return detail::met_now(out);
     }
+    static_cast<void>(budget.spend(units::kConflictLook));
     const detail::Course course(situation, way, lookahead);
     // Each check of a threat pays for two pieces by itself.
     static_cast<void>(budget.spend(units::kConflict * static_cast<std::uint32_t>((course.pieces() - 1) / 2)));

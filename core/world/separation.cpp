@@ -209,6 +209,18 @@ void against(const Vec3& half, const Flight& flight, const Threat& threat, const
     }
 }
 
+/// The threat with a share of its uncertainty. Of an obstacle the own vehicle's stays whole.
+Threat with_share(const Threat& threat, float share) noexcept
+{
+    const bool is_track = threat.ref.kind == ThreatKind::track && threat.track != nullptr;
+    const float uncertain = is_track ? threat.growth.radius - threat.track->radius : threat.slack;
+    Threat likely = threat;
+    likely.growth.radius -= (1.0F - share) * uncertain;
+    likely.growth.rate *= share;
+    likely.growth.acceleration *= share;
+    return likely;
+}
+
 /// Index of the threat that is checked before all others, or `threats`.size().
 std::size_t place_of_first(std::span<const Threat> threats, std::size_t bounds, ThreatRef first) noexcept
 {
@@ -245,7 +257,12 @@ Separation separation_of(const Situation& situation, std::span<const path::PathP
         shared.emplace(points, sagittas, situation.shared_horizon);
     }
     const auto check = [&](const Threat& threat) noexcept {
-        against(half, shared && threat.reciprocal ? *shared : flight, threat, escape, budget, best);
+        const Flight& part = shared && threat.reciprocal ? *shared : flight;
+        if (cutoff.uncertainty < 1.0F) {
+            against(half, part, with_share(threat, cutoff.uncertainty), escape, budget, best);
+        } else {
+            against(half, part, threat, escape, budget, best);
+        }
     };
     for (const Threat& bound : threats.first(bounds)) {
         check(bound);

@@ -21,6 +21,7 @@ struct Cutoff {
     float below = -kSeparationCap;  ///< a margin below this ends the check: it is no better than what a search has [m]
     float above = kSeparationCap;   ///< the margin saturates at this value [m]
     ThreatRef first;                ///< checked before all others: what was nearest on the flight before
+    float uncertainty = 1.0F;       ///< share of the uncertainty of tracks and obstacles that counts, 0..1
 };
 
 /// Least separation along a timed path, from path time 0 (= Situation::now) to min(path end, `horizon`):

@@ -101,5 +101,49 @@ TEST(FallbackAgainstAFineSearch, FindsAWayOutWhereThereIsOne)
     EXPECT_LT(sum / tried, 0.005) << "mean [m]";
 }
 
+/// Threats that are known badly, so that nothing is clear: the way that is best for what is likely is taken.
+TEST(FallbackAgainstAFineSearch, WhereNothingIsClearWhatIsLikelyDecides)
+{
+    constexpr std::uint64_t kSeed = 20261126;
+    Random random(kSeed);
+    int tried = 0;
+    int differ = 0;
+    double sum = 0.0;
+    for (int i = 0; i < 600; ++i) {
+        Flight f = close_call(random);
+        for (world::Track& track : f.scene.tracks) {
+            track.sigma_position = random.uniform(0.2F, 1.0F);
+            track.sigma_velocity = random.uniform(0.0F, 0.6F);
+        }
+        Vec3 command = Vec3::Zero();
+        const Situation s = f.scene.situation();
+        WorkBudget budget(kPlenty);
+        const Fallback chosen = choose_fallback(s, world::way_of(s), nullptr, Settings{}, budget);
+        const float whole = command_margin(s, chosen.command, Settings{}, budget);
+        EXPECT_EQ(chosen.margin >= 0.0F, whole >= 0.0F) << i << ": clear is told where it is, and there alone";
+        if (chosen.margin >= 0.0F) {
+            continue;
+        }
+        EXPECT_LT(best_of_721(s, command), 0.1F) << "seed " << kSeed << ", case " << i << ": something is clear";
+        const Vec3 of_all = command;
+        f.scene.rules.k_sigma = 1.0F;
+        const Situation likely = f.scene.situation();
+        const float fine = best_of_721(likely, command);
+        const auto likely_margin = [&](const Vec3& c) { return command_margin(likely, c, Settings{}, budget); };
+        const float behind = fine - likely_margin(chosen.command);
+        EXPECT_LT(behind, 0.4F) << "seed " << kSeed << ", case " << i;
+        differ += likely_margin(of_all) < fine - 0.1F ? 1 : 0;
+        sum += std::max(behind, 0.0F);
+        ++tried;
+    }
+    std::printf(
+        "[ measured ] %d calls without a way out: %.4f m behind on average; in %d the way of greatest margin to "
+        "all that is possible is another\n",
+        tried, sum / tried, differ);
+    EXPECT_GT(tried, 100);
+    EXPECT_GT(differ, 10);
+    EXPECT_LT(sum / tried, 0.02) << "mean [m]";
+}
+
 }  // namespace
 }  // namespace jink::avoid

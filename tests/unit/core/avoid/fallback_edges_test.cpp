@@ -82,8 +82,9 @@ Flight engulfed()
     return f;
 }
 
-TEST(FallbackEdges, WhereNothingIsClearTheFormerOneStaysUnlessAnotherIsATenthBetter)
+TEST(FallbackEdges, WhereNothingIsClearTheFormerOneStaysUnlessAnotherIsBetter)
 {
+    constexpr float kHoldOn = 0.02F;
     const Flight f = engulfed();
     const Fallback first = chosen_for(f);
     ASSERT_LT(first.margin, -0.3F);
@@ -93,16 +94,16 @@ TEST(FallbackEdges, WhereNothingIsClearTheFormerOneStaysUnlessAnotherIsATenthBet
     int stays = 0;
     int changes = 0;
     for (int i = 1; i <= 90; ++i) {
-        const float turned = course + 0.02F * static_cast<float>(i);
+        const float turned = course + 0.01F * static_cast<float>(i);
         Fallback before{ManoeuvreKind::velocity,
                         Vec3(level * std::cos(turned), level * std::sin(turned), first.command.z()), 0.0F};
         before.margin = margin_under(f, before.command);
         const float better = first.margin - before.margin;
-        if (std::abs(better - 0.1F) < 1e-3F || better <= 0.0F) {
+        if (std::abs(better - kHoldOn) < 1e-3F || better <= 0.0F) {
             continue;
         }
         const Fallback chosen = chosen_for(f, &before);
-        if (better < 0.1F) {
+        if (better < kHoldOn) {
             EXPECT_EQ(chosen.command, before.command) << better;
             EXPECT_EQ(chosen.margin, before.margin) << better;
             ++stays;

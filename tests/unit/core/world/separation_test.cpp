@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "tests/unit/core/world/scene.hpp"
@@ -147,6 +148,55 @@ TEST(LeastSeparation, OwnUncertaintyCountsTowardsEverything)
         EXPECT_NEAR(there, separation_at(scene.situation(), end, 2.0F, budget).margin - 1.5F,
                     2.0F * kObstacleResolution)
             << static_cast<int>(kind);
+    }
+}
+
+/// A share of the uncertainty is the same as that share of the standard deviations, but for the own vehicle's towards
+/// obstacles.
+TEST(LeastSeparation, AShareOfTheUncertaintyIsThatShareOfTheDeviations)
+{
+    Random random(20261126);
+    int apart = 0;
+    for (int i = 0; i < 500; ++i) {
+        Scene scene;
+        scene.rules.k_sigma = 3.0F;
+        const Vec3 velocity(random.uniform(-6.0F, 6.0F), random.uniform(-6.0F, 6.0F), random.uniform(-2.0F, 2.0F));
+        const Vec3 meets(random.uniform(0.0F, 20.0F), random.uniform(-4.0F, 4.0F), random.uniform(-4.0F, 4.0F));
+        Track& track = scene.track(meets - 2.0F * velocity, velocity, random.uniform(0.3F, 2.0F));
+        track.sigma_position = random.uniform(0.0F, 1.0F);
+        track.sigma_velocity = random.uniform(0.0F, 0.5F);
+        track.half_height = random.below(2) == 0 ? 0.0F : 1.0F;
+        const path::TimedPath path = flight({Vec3::Zero(), Vec3(10, 1, 0), Vec3(20, 0, 1)}, 2.0F);
+        const float share = random.uniform(0.0F, 1.0F);
+        const Cutoff cutoff{-kSeparationCap, kSeparationCap, {}, share};
+        WorkBudget budget(kPlenty);
+        const EscapeRule escape{};
+        const float shared = least_separation(scene.situation(), path, 10.0F, budget, escape, cutoff).margin;
+        const float whole = least_separation(scene.situation(), path, 10.0F, budget, escape).margin;
+        scene.rules.k_sigma *= share;
+        const float fewer = least_separation(scene.situation(), path, 10.0F, budget, escape).margin;
+        EXPECT_NEAR(shared, fewer, 1e-4F) << i;
+        EXPECT_GE(shared, whole - 1e-4F) << i;
+        apart += shared > whole + 0.1F ? 1 : 0;
+    }
+    EXPECT_GT(apart, 100);
+}
+
+/// Of an obstacle its own uncertainty counts by its share, and the own vehicle's as it is.
+TEST(LeastSeparation, AShareOfAnObstaclesUncertainty)
+{
+    for (const bool is_box : {false, true}) {
+        Scene scene;
+        scene.obstacle(is_box ? geometry::make_box(Vec3(5, 9, 0), Vec3(2, 2, 2))
+                              : geometry::make_sphere(Vec3(5, 9, 0), 2.0F));
+        const path::TimedPath path = flight({Vec3::Zero(), Vec3(10, 0, 0)}, 2.0F);
+        const float sure = separation(scene, path).margin;
+        scene.obstacles.back().uncertainty = 2.0F;
+        scene.own.sigma_position = 0.5F;
+        WorkBudget budget(kPlenty);
+        const Cutoff half{-kSeparationCap, kSeparationCap, {}, 0.5F};
+        const float shared = least_separation(scene.situation(), path, 2.0F, budget, {}, half).margin;
+        EXPECT_NEAR(shared, sure - 1.0F - 1.5F, 2.0F * kObstacleResolution) << is_box;
     }
 }
 
