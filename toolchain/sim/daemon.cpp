@@ -192,9 +192,8 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Co
     // The longest first: none of them begins when the others are about to end.
     std::vector<std::size_t> order(scenarios.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return scenarios[a].duration > scenarios[b].duration;
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return scenarios[a].duration > scenarios[b].duration; });
     std::vector<Record> records(scenarios.size());
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> pilots;

@@ -11,7 +11,8 @@
 #include "core/orca/half_space.hpp"
 
 // Small velocity programs solved by enumeration of every set of half-spaces that may be active, in doubles. Independent
-// of the solver: no order, no search, no spheres. Eigen's decompositions are in the source: many tests include this.
+// of the solver: no order, no search, no spheres. Eigen's decompositions are in enumerated.cpp: many tests include
+// this.
 
 namespace jink::orca::enumerated {
 
