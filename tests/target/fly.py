@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""All scenarios against an image on an emulated board: each ends as its file expects, and within the envelope of the
-same flights in process with many phases of ticks and line (toolchain/sim/envelope.hpp).
+"""Scenarios against an image on an emulated board: each ends as its file expects, and within the envelope of the same
+flights in process with many phases of ticks and line (toolchain/sim/envelope.hpp).
 
-Usage: fly.py JINK_SIM BUILD_FOLDER IMAGE
+Usage: fly.py JINK_SIM BUILD_FOLDER IMAGE [all]
+
+The scenarios of BOTH_BOARDS fly on every board, each other scenario on one of the boards, in turn. With `all`: all
+scenarios. same_flight.py compares the decisions of all scenarios on all boards.
 
 Exit status 77 (skipped) if the image or the emulator is missing.
 """
@@ -17,16 +20,27 @@ import tempfile
 MACHINES = {"mps2_an500": "mps2-an500", "stm32f405": "netduinoplus2"}
 # Scenarios that need an input which images lack.
 NO_INPUT = re.compile(r"^lidar:", re.M)
-AT_ONCE = 6  # each board takes a quarter of a processor
+# Where boards differ: clock, line and restart, reduced reach sets, scans; and the most threats at once.
+BOTH_BOARDS = ("autopilot_reboots", "cable_pulled", "clock_jumps", "four_converging", "head_on", "reach_sets_head_on",
+               "scan_wall")
+AT_ONCE = 8  # each board takes a quarter of a processor
 
 
-def main(sim, build, image):
+def flown_by(image, names):
+    """Those of all scenarios' names that fly on this image."""
+    alone = [name for name in names if name not in BOTH_BOARDS]
+    own = set(alone[sorted(MACHINES).index(image)::len(MACHINES)])
+    return [name for name in names if name in own or name in BOTH_BOARDS]
+
+
+def main(sim, build, image, extent=""):
     elf = pathlib.Path(build) / "firmware" / image / f"{image}.elf"
     if not elf.exists() or not shutil.which("qemu-system-arm"):
         print(f"{elf} or qemu-system-arm is missing: skipped")
         return 77
-    files = sorted(str(f) for f in pathlib.Path(__file__).resolve().parents[1].joinpath("scenario").glob("*.yaml")
-                   if not NO_INPUT.search(f.read_text(encoding="utf-8")))
+    folder = pathlib.Path(__file__).resolve().parents[1] / "scenario"
+    names = sorted(f.stem for f in folder.glob("*.yaml") if not NO_INPUT.search(f.read_text(encoding="utf-8")))
+    files = [str(folder / f"{name}.yaml") for name in (names if extent == "all" else flown_by(image, names))]
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([sim, "fly", *files, "--image", str(elf), "--machine", MACHINES[image], "--at-once", str(AT_ONCE),
                               "--within-phases", "--out", folder, "--quiet"], check=False)
@@ -41,7 +55,7 @@ def main(sim, build, image):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 4:
+    if len(sys.argv) not in (4, 5) or sys.argv[4:] not in ([], ["all"]):
         print(__doc__, file=sys.stderr)
         sys.exit(2)
     sys.exit(main(*sys.argv[1:]))

@@ -32,7 +32,7 @@ def main(program, build, image):
         print(f"{image}: {name}: {' '.join(run.stdout.split())}")
         return int(found[1]) if found and run.returncode == 0 else None
 
-    with concurrent.futures.ThreadPoolExecutor(3) as pool:
+    with concurrent.futures.ThreadPoolExecutor(len(SCENARIOS)) as pool:
         measured = list(pool.map(used, SCENARIOS))
     bound = image_check.stack_bound(build)
     if None in measured:

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <fstream>
+#include <numeric>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -188,12 +189,18 @@ std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Co
             throw std::runtime_error(scenario.name + ": " + reason);
         }
     }
+    // The longest first: none of them begins when the others are about to end.
+    std::vector<std::size_t> order(scenarios.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return scenarios[a].duration > scenarios[b].duration; });
     std::vector<Record> records(scenarios.size());
     std::atomic<std::size_t> next{0};
     std::vector<std::thread> pilots;
-    for (unsigned i = 0; i < at_once; ++i) {
+    for (unsigned pilot = 0; pilot < at_once; ++pilot) {
         pilots.emplace_back([&] {
-            for (std::size_t k = next++; k < scenarios.size(); k = next++) {
+            for (std::size_t i = next++; i < order.size(); i = next++) {
+                const std::size_t k = order[i];
                 try {
                     records[k] = fly_daemon(scenarios[k], computer, folder);
                 } catch (const std::exception& e) {

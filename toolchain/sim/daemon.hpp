@@ -35,7 +35,7 @@ struct Computer {
 [[nodiscard]] Record fly_daemon(const Scenario& scenario, const Computer& computer,
                                 const std::filesystem::path& folder);
 
-/// Several flights, `at_once` in parallel. Records are in the order of the scenarios.
+/// Several flights, `at_once` in parallel, the longest first. Records are in the order of the scenarios.
 /// @throws std::runtime_error before any flight when no_input_for() a scenario is not empty
 [[nodiscard]] std::vector<Record> fly_daemons(const std::vector<Scenario>& scenarios, const Computer& computer,
                                               const std::filesystem::path& folder, unsigned at_once);

@@ -8,8 +8,6 @@
 namespace jink::sim {
 namespace {
 
-constexpr unsigned kAtOnce = 20;
-
 template <class T, class Name>
 void check(const std::set<T>& seen, const T& value, const char* what, Name name, std::vector<std::string>& wrong)
 {
@@ -71,7 +69,7 @@ std::vector<std::string> outside_phases(const Scenario& scenario, const Record& 
     Envelope envelope;
     std::vector<std::string> wrong = outside(envelope, record);
     while (!wrong.empty() && envelope.flights < kEnvelopePhases) {
-        for (const Record& inside : fly_phases(scenario, envelope.flights + 1, kAtOnce, kRealTime)) {
+        for (const Record& inside : fly_phases(scenario, envelope.flights + 1, 1, kRealTime)) {
             envelope.add(inside);
         }
         wrong = outside(envelope, record);

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "core/orca/optimum.hpp"
 #include "core/orca/program.hpp"
 #include "tests/unit/core/orca/enumerated.hpp"
@@ -79,7 +81,7 @@ struct Constrained {
         const Vec3d way = farthest ? goal.cast<double>() : Vec3d(goal.cast<double>() - x);
         out.unheld = way.norm();
         const auto take = [&](const Eigen::Matrix<double, 3, Eigen::Dynamic>& normals) {
-            const Eigen::VectorXd shares = (normals.transpose() * normals).ldlt().solve(normals.transpose() * way);
+            const Eigen::VectorXd shares = enumerated::shares_of(normals, way);
             if (shares.minCoeff() >= -1e-9) {
                 out.unheld = std::min(out.unheld, (way - normals * shares).norm());
             }

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include "tests/unit/core/orca/enumerated.hpp"
 #include "tests/unit/core/orca/search_rows.hpp"
@@ -36,7 +36,7 @@ protected:
             normals.col(k) = rows[found.basis().rows[static_cast<std::size_t>(k)]].normal.template cast<double>();
         }
         const Eigen::Vector3d way = (found.x() - goal).template cast<double>();
-        const Eigen::VectorXd shares = normals.colPivHouseholderQr().solve(way);
+        const Eigen::VectorXd shares = enumerated::shares_of(normals, way);
         EXPECT_GE(shares.minCoeff(), -1e-4 * shares.norm());
         EXPECT_LE((normals * shares - way).norm(), 1e-4 * way.norm());
     }
