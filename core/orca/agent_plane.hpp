@@ -91,7 +91,7 @@ struct Pair {
     float across = 1.0F;                 ///< sum of both half widths [m], > 0: the warning region's radius
     float upright = 1.0F;                ///< sum of both half heights [m], > 0
     Weights weights = kShared;
-    bool above = false;  ///< the own id is the larger one
+    bool above = false;  ///< the own vehicle is the one to climb (world::climbs)
     /// Counts with the relative velocity where the side of the way out is chosen, and nowhere else [m/s]: towards the
     /// side on which both pass, as large as what an old report hides. The other one's is the opposite.
     Vec3 lean = Vec3::Zero();

@@ -70,16 +70,14 @@ bool weigh(const NeighbourSettings& settings, const Neighbour& n, Candidate& out
 Pair pair_of(const NeighbourSettings& settings, const Vec3& own_velocity, const Neighbour& other,
              std::uint16_t source) noexcept
 {
-    const float ageing =
-        std::min(settings.velocity_error * other.age + 0.5F * other.acceleration * other.age * other.age, kMaxAgeing);
     Pair pair;
     pair.position = other.position;
     pair.own_velocity = own_velocity;
     pair.other_velocity = other.velocity;
-    pair.across = settings.cover * (settings.half_width + other.half_width) + ageing;
-    pair.upright = settings.cover * (settings.half_height + other.half_height) + ageing;
+    pair.across = settings.cover * (settings.half_width + other.half_width);
+    pair.upright = settings.cover * (settings.half_height + other.half_height);
     pair.weights = gives_way(settings, other) ? kShared : kAlone;
-    pair.above = settings.own_id > other.id;
+    pair.above = world::climbs(settings.own_id, other.id);
     pair.source = source;
     // Each of both may have changed its velocity by so much since the other heard of it. A stale one too still passes
     // on its side.

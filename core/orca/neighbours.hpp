@@ -46,16 +46,12 @@ struct NeighbourSettings {
     float cap_horizon = 10.0F;
     /// Of the distance to be kept: what the cap keeps clear. PairSettings::conflict_ratio with Conflict::at_rest.
     float cap_ratio = 1.0F;
-    float velocity_error = 0.1F;  ///< [m/s] of what is broadcast, for ages
-    float stale = 1.0F;           ///< [s] of age after which nothing is expected of it
+    float stale = 1.0F;  ///< [s] of age after which nothing is expected of it
     std::uint32_t own_id = 0;
 };
 
-/// Most that an age adds to the distance kept [m].
-inline constexpr float kMaxAgeing = 3.0F;
-
-/// The pair of the own vehicle and `other`: distances with what its age adds, a share of 1 where it does not give way
-/// or is stale.
+/// The pair of the own vehicle and `other`: a share of 1 where it does not give way or is stale. What its age adds to
+/// the distance is part of its widths (world::threat_radius).
 [[nodiscard]] Pair pair_of(const NeighbourSettings& settings, const Vec3& own_velocity, const Neighbour& other,
                            std::uint16_t source) noexcept;
 

@@ -23,7 +23,6 @@ NeighbourSettings neighbour_settings(const FilterSettings& s) noexcept
     const bool at_rest = s.pair.conflict == Conflict::at_rest;
     out.cap_horizon = at_rest ? s.pair.brake : s.pair.horizon;
     out.cap_ratio = at_rest ? s.pair.conflict_ratio : 1.0F;
-    out.velocity_error = s.velocity_error;
     out.stale = s.stale;
     out.own_id = s.own_id;
     return out;
@@ -41,8 +40,8 @@ bool has_good_numbers(const FilterSettings& s) noexcept
     return is_valid(s.obstacles) && has_good_bias(s.bias) && is_positive(s.pair.conflict_ratio) &&
            is_positive(s.half_width) && is_positive(s.half_height) && s.cover >= 1.0F && s.cover <= kLargestCover &&
            is_positive(s.most_apart) && is_positive(s.own_stale) && is_not_negative(s.stale) &&
-           is_not_negative(s.tick) && is_not_negative(s.velocity_error) && is_not_negative(s.loop.act) &&
-           is_not_negative(s.loop.lag) && s.smoothing >= 1 && s.smoothing <= CommandFilter::kMax;
+           is_not_negative(s.tick) && is_not_negative(s.loop.act) && is_not_negative(s.loop.lag) && s.smoothing >= 1 &&
+           s.smoothing <= CommandFilter::kMax;
 }
 
 Unsafe check_filter(const FilterSettings& s) noexcept

@@ -56,8 +56,7 @@ struct FilterSettings {
     float half_height = 0.3F;  ///< [m], > 0
     float cover = 1.0F;        ///< in [1, kLargestCover]; kCylinderCover to keep the cylinder of the same widths
     std::uint32_t own_id = 0;
-    Seconds stale = 1.0F;         ///< of a neighbour's age, after which nothing is expected of it
-    float velocity_error = 0.1F;  ///< [m/s] of what is heard, for ages
+    Seconds stale = 1.0F;  ///< of a neighbour's age, after which nothing is expected of it
     ObstacleSettings obstacles;
     BiasSettings bias;
     VelocityLoop loop;            ///< of the own vehicle

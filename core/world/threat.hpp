@@ -55,14 +55,21 @@ struct Threat {
     ThreatForm form = ThreatForm::point;
     bool grows = false;       ///< with time
     bool reciprocal = false;  ///< it does half of the avoidance
+    bool doubted = false;     ///< its velocity may have changed since it was reported: `doubt`
     float half_height = 0.0F;
     Vec3 position = Vec3::Zero();  ///< at time 0 [m]
     Vec3 velocity = Vec3::Zero();  ///< [m/s]
     Growth growth;                 ///< own uncertainty of position included
     Seconds growth_begins = 0.0F;  ///< a stamp ahead of now: the threat grows from there on
-    float level_radius = 0.0F;     ///< of keep_in [m]
-    float slack = 0.0F;            ///< of an obstacle: what `growth` holds beside its shape and the own uncertainty [m]
-    union {                        ///< by `form`; a point is an obstacle's or a track's, by `ref.kind`
+    union {
+        float level_radius = 0.0F;  ///< of keep_in [m]
+        float doubt;                ///< where `doubted`: its velocity may be off by so much [m/s], >= 0
+    };
+    union {
+        float slack = 0.0F;  ///< of an obstacle: what `growth` holds beside its shape and the own uncertainty [m]
+        Seconds doubt_ends;  ///< where `doubted`: from then on what it does depends on both, >= 0
+    };
+    union {  ///< by `form`; a point is an obstacle's or a track's, by `ref.kind`
         const geometry::Shape* solid = nullptr;
         const Cylinder* cylinder;  ///< where it is at time 0
         const Track* track;        ///< of a ThreatSet; null where a point is made without one
@@ -71,9 +78,14 @@ struct Threat {
     /// By how much the shape has grown at time `t` >= 0 [m].
     [[nodiscard]] float radius_at(Seconds t) const noexcept
     {
-        return grows ? growth.at(std::max(t - growth_begins, 0.0F)) : growth.radius;
+        if (!grows) {
+            return growth.radius;
+        }
+        const float grown = growth.at(std::max(t - growth_begins, 0.0F));
+        return doubted ? grown + doubt * std::min(t, doubt_ends) : grown;
     }
-    /// Its growth from time `lead` >= 0 on; never below `radius_at` where the threat grows only later.
+    /// Its growth from time `lead` >= 0 on, without its doubt; else never below `radius_at` where the threat grows only
+    /// later. The final check counts the doubt.
     [[nodiscard]] Growth growth_from(Seconds lead) const noexcept
     {
         return grows ? growth.from(std::max(lead - growth_begins, 0.0F)) : growth;

@@ -8,13 +8,31 @@
 
 namespace jink::world {
 
+Doubt doubt_of(const Situation& situation, const Track& track) noexcept
+{
+    /// As long as the supervisor waits on top of the stopping time before it forces anything [s].
+    constexpr Seconds kReserve = 0.75F;
+    const float own = situation.limits.max_acceleration;
+    const float hidden = own - track.max_acceleration;  // the rest is in the track's own growth
+    if (!track.cooperative || !(hidden > 0.0F)) {
+        return {};
+    }
+    const Seconds age = std::max(situation.now - track.stamp - kFreshReport, 0.0F);
+    return {0.5F * hidden * age * age, hidden * age, situation.own.velocity.norm() / own + kReserve};
+}
+
 float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept
 {
     const Seconds age = std::max(0.0F, (situation.now - track.stamp) + t);
     const float own = situation.own.sigma_position;
     const float places = std::sqrt(own * own + track.sigma_position * track.sigma_position);
-    return track.radius + situation.rules.k_sigma * (places + track.sigma_velocity * age) +
-           0.5F * track.max_acceleration * age * age;
+    const float radius = track.radius + situation.rules.k_sigma * (places + track.sigma_velocity * age) +
+                         0.5F * track.max_acceleration * age * age;
+    if (!track.cooperative) {
+        return radius;
+    }
+    const Doubt doubt = doubt_of(situation, track);
+    return radius + doubt.position + doubt.velocity * std::min(std::max(t, 0.0F), doubt.ends);
 }
 
 Growth growth_of(const Situation& situation, const Track& track) noexcept

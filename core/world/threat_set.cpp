@@ -25,6 +25,13 @@ Threat threat_of(const Situation& situation, const Track& track, std::size_t ind
     threat.growth_begins = std::max(track.stamp - situation.now, 0.0F);
     threat.grows = !(track.sigma_velocity <= 0.0F && track.max_acceleration <= 0.0F);  // non-finite ones too
     threat.reciprocal = track.cooperative;
+    if (threat.reciprocal) {
+        const Doubt doubt = doubt_of(situation, track);
+        threat.doubted = doubt.velocity > 0.0F;
+        threat.grows = threat.grows || threat.doubted;
+        threat.doubt = doubt.velocity;
+        threat.doubt_ends = doubt.ends;
+    }
     threat.track = &track;
     return threat;
 }

@@ -187,11 +187,25 @@ enum class PlanStatus : std::uint8_t {
     return situation.rules.k_sigma * situation.own.sigma_position;
 }
 
+/// What a vehicle that avoids us too may have done since its report and did not announce: it flies by the same rules,
+/// so it changes its velocity no faster than the own vehicle does. Zero for tracks that are not cooperative.
+struct Doubt {
+    float position = 0.0F;  ///< its place may be off by so much [m]
+    float velocity = 0.0F;  ///< and its velocity [m/s]
+    Seconds ends = 0.0F;    ///< until the own vehicle can stand: what the other one does then depends on both
+};
+/// Age of a report up to which nothing is doubted: both vehicles react to what it hides. What is older counts from here
+/// on [s].
+inline constexpr Seconds kFreshReport = 0.3F;
+/// O(1).
+[[nodiscard]] Doubt doubt_of(const Situation& situation, const Track& track) noexcept;
+
 /// Radius of a track's sphere at `t` seconds after Situation::now: body, k_sigma standard deviations of the distance
 /// between the two, and half its acceleration bound times its age squared. The errors of the own position and of the
 /// track's position come from different sensors, so their variances add. The velocity's standard deviation times the
 /// age adds linearly, because its error and the position's are correlated. For a sensor of the vehicle's own, the own
-/// error cancels: conservative. The only place where threats grow. O(1).
+/// error cancels: conservative. For cooperative tracks the doubt is added, its velocity over `t`, until it ends. The
+/// only place where threats grow. O(1).
 [[nodiscard]] float threat_radius(const Situation& situation, const Track& track, Seconds t) noexcept;
 
 /// The point of a track's upright axis that is nearest in height to `height`, its centre being at `centre`. O(1).
@@ -200,7 +214,8 @@ enum class PlanStatus : std::uint8_t {
     return {centre.x(), centre.y(), std::clamp(height, centre.z() - track.half_height, centre.z() + track.half_height)};
 }
 
-/// `threat_radius` from Situation::now on; never below it where the track's stamp lies ahead of now. O(1).
+/// `threat_radius` from Situation::now on, without the doubt of the velocity (Threat::doubt); never below it where the
+/// track's stamp lies ahead of now. O(1).
 [[nodiscard]] Growth growth_of(const Situation& situation, const Track& track) noexcept;
 
 }  // namespace jink::world

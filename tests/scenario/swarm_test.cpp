@@ -170,6 +170,33 @@ TEST(Swarm, OfTwoPassesOnItsSidesHoweverOldTheReports)
     }
 }
 
+/// Two whose ways cross while both gain speed: reports a second old show each of them far behind where it is. Seeds in
+/// which both once came to the crossing together.
+TEST(Swarm, OfTwoThatCrossWhileTheyGainSpeedKeepsItsSeparations)
+{
+    SwarmSetup setup;
+    setup.vehicles = 2;
+    setup.circle = 25.0;
+    setup.level = 2.5;
+    setup.vertical = 2.0;
+    setup.body = 0.5;
+    setup.cruise = 10.0;
+    setup.delay = 1.0;
+    setup.loss = 0.5;
+    setup.parameters = {{"JNK_METHODS", 1.0}};
+    for (const double sector : {180.0, 90.0}) {
+        setup.sector = sector;
+        for (const std::uint64_t seed : {960010U, 960017U, 960022U, 960029U}) {
+            for (const double methods : {1.0, 4.0, 5.0}) {
+                setup.others = {{"JNK_METHODS", methods}};
+                const SwarmResult result = fly_swarm(setup, seed, {});
+                EXPECT_TRUE(result.good()) << sector << " " << methods << " " << to_line(result);
+                EXPECT_GE(result.margin, 1.0) << sector << " " << methods << " " << to_line(result);
+            }
+        }
+    }
+}
+
 TEST(Swarm, AndBackAgain)
 {
     SwarmSetup setup = small();

@@ -209,7 +209,7 @@ inline double least_of_all(const Scene& scene, const DenseFlight& flight, double
         const double age = std::max(0.0, double(scene.now - track.stamp)) + until;
         const double rate = own_rate + double(track.velocity.norm()) +
                             double(scene.rules.k_sigma) * double(track.sigma_velocity) +
-                            double(track.max_acceleration) * age;
+                            double(track.max_acceleration) * age + world::oracle::hidden_speed(scene, track);
         const auto margin = [&](double t) {
             Vec3d gap = track.position.cast<double>() + track.velocity.cast<double>() * t - flight.at(t).position;
             // The nearest of its possible heights.

@@ -181,7 +181,6 @@ inline std::vector<HalfSpace> planes_of(Seen& tick)
     own.max_speed = s.limits.max_speed;
     own.horizon = s.pair.horizon;
     own.cover = s.cover;
-    own.velocity_error = s.velocity_error;
     own.stale = s.stale;
     own.own_id = s.own_id;
     WorkBudget budget(1'000'000);

@@ -35,13 +35,29 @@ inline double point_box(const Vec3d& point, const Vec3d& half)
     return (point.cwiseAbs() - half).cwiseMax(0.0).norm();
 }
 
+/// Speed by which a cooperative vehicle may have changed its velocity since its report, but for the last 0.3 s [m/s].
+inline double hidden_speed(const Scene& scene, const Track& track)
+{
+    const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6 - 0.3);
+    const double hidden = double(scene.limits.max_acceleration) - double(track.max_acceleration);
+    return track.cooperative ? std::max(0.0, hidden) * age : 0.0;
+}
+
+/// By how much its motion differs for that, until the own vehicle stands and 0.75 s [m].
+inline double hidden_motion(const Scene& scene, const Track& track, double t)
+{
+    const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6 - 0.3);
+    const double stands = double(scene.own.velocity.norm()) / double(scene.limits.max_acceleration) + 0.75;
+    return hidden_speed(scene, track) * (0.5 * age + std::min(t, stands));
+}
+
 inline double radius_of(const Scene& scene, const Track& track, double t)
 {
     const double age = std::max(0.0, double(scene.now.us - track.stamp.us) * 1e-6 + t);
     return double(track.radius) +
            double(scene.rules.k_sigma) * (std::hypot(double(scene.own.sigma_position), double(track.sigma_position)) +
                                           double(track.sigma_velocity) * age) +
-           0.5 * double(track.max_acceleration) * age * age;
+           0.5 * double(track.max_acceleration) * age * age + hidden_motion(scene, track, t);
 }
 
 /// Minimum of margin(t) + the escape rule's reduction of the surface, over [0, end], by samples and refinement around

@@ -108,28 +108,26 @@ TEST(Neighbours, WhoDoesNotGiveWayComesFirst)
     EXPECT_EQ(selected(settings, all).speed_cap, 0.0F);
 }
 
-TEST(Neighbours, StaleOnesAreWiderAndPassedAlone)
+TEST(Neighbours, StaleOnesArePassedAlone)
 {
     NeighbourSettings settings;
     Neighbour n = at(10.0F, 7);
-    n.acceleration = 2.0F;
     Pair pair = pair_of(settings, {1, 0, 0}, n, 3);
     EXPECT_EQ(pair.across, 1.0F);
     EXPECT_EQ(pair.weights.react, 0.5F);
     EXPECT_EQ(pair.source, 3);
-    EXPECT_FALSE(pair.above);
-    n.age = 0.5F;  // 0.1 * 0.5 + 0.5 * 2 * 0.25
+    EXPECT_TRUE(pair.above) << "the smaller id climbs";
+    n.age = 0.5F;
     pair = pair_of(settings, {1, 0, 0}, n, 3);
-    EXPECT_NEAR(pair.across, 1.3F, 1e-6F);
-    EXPECT_NEAR(pair.upright, 1.3F, 1e-6F);
+    EXPECT_EQ(pair.across, 1.0F) << "what its age adds is part of its widths";
+    EXPECT_EQ(pair.upright, 1.0F);
     EXPECT_EQ(pair.weights.react, 0.5F);
     n.age = 2.5F;
     pair = pair_of(settings, {1, 0, 0}, n, 3);
-    EXPECT_EQ(pair.across, 1.0F + kMaxAgeing);
     EXPECT_EQ(pair.weights.react, 1.0F);
     EXPECT_EQ(selected(settings, {n}).stale, 1);
     settings.own_id = 8;
-    EXPECT_TRUE(pair_of(settings, {1, 0, 0}, n, 3).above);
+    EXPECT_FALSE(pair_of(settings, {1, 0, 0}, n, 3).above);
     settings.cover = kCylinderCover;
     n.age = 0.0F;
     EXPECT_NEAR(pair_of(settings, {1, 0, 0}, n, 3).across, std::sqrt(2.0F), 1e-6F);

@@ -133,23 +133,23 @@ TEST(NeighbourEdges, AnAgeOfJustTheLimitIsFresh)
     EXPECT_EQ(selected({n}).stale, 1U);
 }
 
-TEST(NeighbourEdges, WhatAnAgeAddsIsBounded)
+TEST(NeighbourEdges, AnAgeIsPartOfTheWidths)
 {
     NeighbourSettings settings;
     Neighbour n = at_distance(10.0F);
     n.age = 0.5F;
     n.acceleration = 1.0F;
     const Pair pair = pair_of(settings, {1, 2, 3}, n, 9);
-    EXPECT_FLOAT_EQ(pair.across, 1.0F + 0.1F * 0.5F + 0.125F);
-    EXPECT_FLOAT_EQ(pair.upright, 1.0F + 0.1F * 0.5F + 0.125F);
+    EXPECT_EQ(pair.across, 1.0F);
+    EXPECT_EQ(pair.upright, 1.0F);
     EXPECT_EQ(pair.own_velocity, Vec3(1, 2, 3));
     EXPECT_EQ(pair.source, 9U);
     n.age = 100.0F;
-    EXPECT_FLOAT_EQ(pair_of(settings, Vec3::Zero(), n, 0).across, 1.0F + kMaxAgeing);
+    EXPECT_EQ(pair_of(settings, Vec3::Zero(), n, 0).across, 1.0F);
     settings.own_id = 5;
-    EXPECT_TRUE(pair_of(settings, Vec3::Zero(), n, 0).above);
-    n.id = 6;
     EXPECT_FALSE(pair_of(settings, Vec3::Zero(), n, 0).above);
+    n.id = 6;
+    EXPECT_TRUE(pair_of(settings, Vec3::Zero(), n, 0).above);
 }
 
 TEST(NeighbourEdges, TheMostUrgentComesFirstAndTiesGoById)

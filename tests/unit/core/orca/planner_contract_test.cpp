@@ -215,9 +215,9 @@ TEST_F(OrcaHover, CoincidentVehiclesPartByTheirIds)
 {
     scene.track(scene.own.position, Vec3::Zero());  // id 1
     scene.own_id = 7;
-    EXPECT_GT(command().z(), 0.1F);
-    scene.own_id = 0;
     EXPECT_LT(command().z(), -0.1F);
+    scene.own_id = 0;
+    EXPECT_GT(command().z(), 0.1F) << "the smaller id climbs";
 }
 
 TEST_F(OrcaInput, TheBiasIsThatOfTheSettings)

@@ -52,7 +52,7 @@ TEST(VelocityFilterContract, NewSettingsAreUsedAtOnce)
     flown.neighbours = {other({0, 0, 0}, {1, 0, 0}, 5)};
     s.own_id = 9;
     ASSERT_EQ(flown.filter.configure(s), Unsafe::none);
-    EXPECT_GT(flown.tick().command.z(), 0.01F);
+    EXPECT_LT(flown.tick().command.z(), -0.01F);
     s.half_width = 1.2F;
     s.half_height = 0.6F;
     ASSERT_EQ(flown.filter.configure(s), Unsafe::none);

@@ -93,6 +93,73 @@ TEST_F(Growing, AtManyInstantsItIsTheSameRadius)
     }
 }
 
+/// What a cooperative vehicle may have done since its report: it accelerates as the own vehicle does, 2 m/s2 of which
+/// 0.4 are its own bound, and its velocity counts until the own one can stand.
+struct Doubted : Growing {
+    Doubted()
+    {
+        scene.limits.max_acceleration = 2.0F;
+        scene.own.velocity = Vec3(0, 6, 8);
+        track->cooperative = true;
+    }
+    static constexpr float kEnds = 10.0F / 2.0F + 0.75F;
+};
+
+TEST_F(Doubted, AnOldReportHidesAPlaceAndAVelocityUntilTheOwnVehicleCanStand)
+{
+    for (const float age : {0.0F, 0.2F, 0.3F, 0.5F, 1.5F}) {
+        track->stamp = scene.now - age;
+        const float beyond = std::max(age - 0.3F, 0.0F);
+        const float off = 0.5F * 1.6F * beyond * beyond;
+        const float speed = 1.6F * beyond;
+        const Situation s = scene.situation();
+        for (const float t : {0.0F, 1.0F, kEnds, 8.0F}) {
+            const float expected = radius(age + t) + off + speed * std::min(t, kEnds);
+            EXPECT_NEAR(threat_radius(s, *track, t), expected, 1e-4F) << age << ' ' << t;
+            EXPECT_NEAR(s.threats[0].radius_at(t), expected, 1e-4F) << age << ' ' << t;
+        }
+    }
+}
+
+/// But for what it does within kFreshReport.
+TEST_F(Doubted, TheRealMotionOfTheOtherStaysWithinIt)
+{
+    track->radius = track->sigma_position = track->sigma_velocity = track->max_acceleration = 0.0F;
+    scene.own.sigma_position = 0.0F;
+    Random random(5);
+    const auto direction = [&random] { return Vec3(random.normal(), random.normal(), random.normal()).normalized(); };
+    for (int i = 0; i < 2000; ++i) {
+        const float age = kFreshReport + 2.0F * random.uniform();
+        const Vec3 heard = 5.0F * direction();
+        const Vec3 pushed = 2.0F * direction();  // since the report, then as it flies
+        const Vec3 at_now = heard * age + 0.5F * age * age * pushed;
+        const Vec3 now_flown = heard + age * pushed;
+        track->stamp = scene.now - age;
+        track->velocity = heard;
+        const Situation s = scene.situation();
+        for (const float t : {0.0F, 0.5F, 2.0F, kEnds}) {
+            const float off = (at_now + t * now_flown - heard * (age + t)).norm();
+            const float fresh = 2.0F * kFreshReport * (age - 0.5F * kFreshReport + t);
+            EXPECT_LE(off, s.threats[0].radius_at(t) + fresh + 1e-4F) << i << ' ' << t;
+        }
+    }
+}
+
+TEST_F(Doubted, WhoDoesNotAvoidUsAndAStampAheadAreNotDoubted)
+{
+    track->stamp = scene.now + 0.05F;
+    EXPECT_FALSE(scene.situation().threats[0].doubted);
+    track->stamp = scene.now - 1.0F;
+    EXPECT_TRUE(scene.situation().threats[0].doubted);
+    track->max_acceleration = 3.0F;
+    EXPECT_FALSE(scene.situation().threats[0].doubted) << "its own growth covers more";
+    track->max_acceleration = 0.4F;
+    track->cooperative = false;
+    const Situation s = scene.situation();
+    EXPECT_FALSE(s.threats[0].doubted);
+    EXPECT_NEAR(threat_radius(s, *track, 2.0F), radius(3.0F), 1e-5F);
+}
+
 TEST_F(Growing, NumbersByHand)
 {
     const Growth growth{2.0F, 3.0F, 4.0F};
