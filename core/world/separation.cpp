@@ -218,6 +218,9 @@ Threat with_share(const Threat& threat, float share) noexcept
     likely.growth.radius -= (1.0F - share) * uncertain;
     likely.growth.rate *= share;
     likely.growth.acceleration *= share;
+    if (likely.doubted) {
+        likely.doubt *= share;
+    }
     return likely;
 }
 
