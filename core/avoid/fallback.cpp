@@ -54,7 +54,7 @@ public:
     }
 
     /// Margin of a command; below `cut` where it is less than that, and then perhaps not the least.
-    float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
+    [[gnu::noinline]] float margin_of(const Vec3& command, float cut = -world::kSeparationCap) noexcept
     {
         if (!is_finite(command) || !budget_.spend(detail::prediction_units(horizon_, step_, units::kCommandStep))) {
             return -world::kSeparationCap;
