@@ -108,14 +108,14 @@ TEST_F(ConflictEdges, OnlyWhatGrowsIsLookedAtInHalfSeconds)
 {
     scene.track(Vec3(30, 0, 0), Vec3::Zero(), 1.0F);
     ASSERT_TRUE(meets());
-    EXPECT_EQ(spent, units::kConflict + units::kConflictPart);
+    EXPECT_EQ(spent, units::kConflictLook + units::kConflict + units::kConflictPart);
     EXPECT_NEAR(found.time_to_loss, (30.0F - 2.3F) / 5.0F, 1e-3F);
     for (float Track::*growth : {&Track::sigma_velocity, &Track::max_acceleration}) {
         scene.tracks[0] = scene.track(Vec3(30, 0, 0), Vec3::Zero(), 1.0F);
         scene.tracks.resize(1);
         scene.tracks[0].*growth = 1e-6F;
         ASSERT_TRUE(meets());
-        EXPECT_EQ(spent, units::kConflict + 12 * units::kConflictPart) << "met in the twelfth";
+        EXPECT_EQ(spent, units::kConflictLook + units::kConflict + 12 * units::kConflictPart) << "met in the twelfth";
         EXPECT_NEAR(found.time_to_loss, (30.0F - 2.3F) / 5.0F, 1e-3F);
     }
 }

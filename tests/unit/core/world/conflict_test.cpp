@@ -222,8 +222,9 @@ TEST_F(Conflicts, WhereTheBudgetRunsOutThereIsOneNow)
         ASSERT_TRUE(find(n)) << n;
         ASSERT_EQ(conflict.time_to_loss, 0.0F) << n;
         ASSERT_LT(conflict.margin, 0.0F) << n;
-        if (n < 4 * units::kConflict) {
-            ASSERT_EQ(conflict.threat.index, n / units::kConflict);
+        const std::uint32_t on_threats = n > units::kConflictLook ? n - units::kConflictLook : 0;
+        if (on_threats < 4 * units::kConflict) {
+            ASSERT_EQ(conflict.threat.index, on_threats / units::kConflict);
             ASSERT_EQ(conflict.threat.kind, ThreatKind::track);
         }
     }
@@ -238,10 +239,11 @@ TEST_F(Conflicts, ALaterConflictThatWasFoundHidesNothing)
     scene.track(Vec3(200, 0, 0), Vec3::Zero(), 1.0F);
     WorkBudget first(kPlenty);
     ASSERT_TRUE(test::predict_conflict(scene.situation(), way_of(scene.situation()), 0, kAhead, first, conflict));
-    ASSERT_TRUE(find(first.spent() + units::kConflict - 1));
+    const std::uint32_t until_second = units::kConflictLook + first.spent();
+    ASSERT_TRUE(find(until_second + units::kConflict - 1));
     EXPECT_EQ(conflict.time_to_loss, 0.0F);
     EXPECT_EQ(conflict.threat.index, 1);
-    ASSERT_TRUE(find(first.spent() + units::kConflict));
+    ASSERT_TRUE(find(until_second + units::kConflict));
     EXPECT_EQ(conflict.threat.index, 0);
 }
 

@@ -311,11 +311,11 @@ TEST(PlaceAsAWay, HasNoConflictWithWhatItIsInside)
     const Way place{Vec3(1, 2, 3), Vec3::UnitX(), 0.0F, 0.0F, {}};
     scene.obstacle(geometry::make_box(Vec3(1, 2, 3), Vec3::Ones()));
     Conflict found;
-    WorkBudget none(0);
+    WorkBudget no_more(units::kConflictLook);  // nothing for any threat
     const Situation s = scene.situation();
-    EXPECT_FALSE(main_conflict(s, place, 10.0F, none, found));
-    EXPECT_FALSE(conflict_with(s, place, s.threats.front(), 10.0F, none, found));
-    EXPECT_FALSE(none.exhausted());
+    EXPECT_FALSE(main_conflict(s, place, 10.0F, no_more, found));
+    EXPECT_FALSE(conflict_with(s, place, s.threats.front(), 10.0F, no_more, found));
+    EXPECT_FALSE(no_more.exhausted());
 }
 
 /// Of a box with unequal sides the share that overlaps is one of the largest half extent.
