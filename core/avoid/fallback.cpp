@@ -208,6 +208,7 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
     MaxClearance search(s, settings, settings.fallback_horizon, budget);
     const Fallback brake{world::ManoeuvreKind::brake, Vec3::Zero(), search.margin_of(Vec3::Zero())};
     if (brake.margin >= 0.0F) {
+        // NOLINTNEXTLINE(performance-no-automatic-move): numbers alone, which are copied either way
         return brake;
     }
     const bool escaped = previous != nullptr && previous->kind == world::ManoeuvreKind::velocity;
@@ -227,6 +228,7 @@ Fallback choose_fallback(const world::Situation& s, const world::Way& way, const
         search.count(1.0F);
         const Fallback clear = search_clear(s, way, search, best);
         if (clear.margin >= 0.0F) {
+            // NOLINTNEXTLINE(performance-no-automatic-move): numbers alone, which are copied either way
             return clear;
         }
         search.count(likely);

@@ -37,6 +37,7 @@ Vec3 passing_side(const Situation& s, const Threat& threat) noexcept
     }
     const Vec3 right = side(offset);
     if (s.own_id == 0 || threat.track == nullptr || threat.track->source != TrackSource::datalink) {
+        // NOLINTNEXTLINE(performance-no-automatic-move): numbers alone, which are copied either way
         return right;
     }
     const float up = climbs(s.own_id, threat.track->id) ? kUprightPart : -kUprightPart;
