@@ -11,7 +11,9 @@ struct Fallback {
     /// brake, hold_turn, or velocity: the max-clearance escape, where braking or turning does not stay clear.
     world::ManoeuvreKind kind = world::ManoeuvreKind::brake;
     Vec3 command = Vec3::Zero();  ///< [m/s]; of hold_turn the sense of the turn in z
-    float margin = 0.0F;          ///< least predicted over the horizon, of all that is possible [m]
+    /// Least predicted over the horizon [m]; >= 0: clear of all that is possible. Below 0: not clear, and how far tells
+    /// little (of what is likely alone, or cut off).
+    float margin = 0.0F;
 };
 
 /// Of a fixed wing: the better one of a level turn to either side. Where neither is clear, the one with the greatest
