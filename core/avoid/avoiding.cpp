@@ -91,10 +91,15 @@ bool StateMachine::renew(Tick& tick) noexcept
 /// A manoeuvre that was slow, because nothing faster was clear then, is not flown to its end when something faster is.
 bool StateMachine::find_faster(Tick& tick) noexcept
 {
-    if (!faster_sought_at_ || !tick.out.conflict || tick.s.now - *faster_sought_at_ < kSeekAgain) {
+    if (!faster_sought_at_ || !tick.out.conflict) {
         return false;
     }
-    faster_sought_at_ = tick.s.now;
+    if (!plan_runs()) {
+        if (tick.s.now - *faster_sought_at_ < kSeekAgain) {
+            return false;
+        }
+        faster_sought_at_ = tick.s.now;
+    }
     const float margin = tick.out.margin;
     const Vec3& side = flying_->side;
     if (plan(tick) && mean_speed(answer_) > kFaster * mean_speed(*flying_) &&

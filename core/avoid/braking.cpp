@@ -14,6 +14,10 @@ constexpr float kStanding = 0.3F;
 constexpr float kNarrowPatience = 3.0F;
 /// A vehicle that stays within this distance makes no progress: more than it backs off and comes forward again [m].
 constexpr float kNoProgress = 15.0F;
+/// Kept back from a fallback for what is checked after it (backing off, traffic that comes), at most a quarter of what
+/// is left: of one prediction, and of each track against it [work units].
+constexpr std::uint32_t kAfterwards = 400;
+constexpr std::uint32_t kAfterwardsPerTrack = 100;
 
 /// Whether the conflict is with traffic: traffic that stands may move on.
 bool is_traffic(const world::Conflict& conflict) noexcept { return conflict.threat.kind == world::ThreatKind::track; }
@@ -35,8 +39,12 @@ bool traffic_comes(const world::Situation& s, const Settings& settings, WorkBudg
 
 void StateMachine::fall_back(Tick& tick) noexcept
 {
-    const Fallback chosen =
-        choose_fallback(tick.s, tick.nominal, fallback_ ? &*fallback_ : nullptr, settings_, tick.budget);
+    const auto tracks = static_cast<std::uint32_t>(world::of_kind(tick.s.threats, world::ThreatKind::track).size());
+    const std::uint32_t left = tick.budget.left();
+    WorkBudget budget = tick.budget.part(left - std::min(left / 4, kAfterwards + kAfterwardsPerTrack * tracks));
+    const Fallback chosen = choose_fallback(tick.s, tick.nominal, fallback_ ? &*fallback_ : nullptr, settings_, budget);
+    tick.budget.charge(budget);
+    tick.ran_out = tick.ran_out || budget.exhausted();
     if (tick.in_control) {
         diagnostics_.brakes += phase_ != Phase::braking ? 1U : 0U;
         const bool moves = chosen.kind == world::ManoeuvreKind::velocity;

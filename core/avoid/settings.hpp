@@ -53,6 +53,24 @@ private:
     std::array<std::uint8_t, kMaxMethods> ids_{};
 };
 
+/// Work units of one update. Its mandatory part (conflicts, the check of what is flown, the fallback) has all but those
+/// of the slice; planning has the slice, and what the mandatory part does not need.
+struct WorkPerUpdate {
+    /// The largest piece of work that is paid for at once has to fit into a slice: a set of the reach sets that is
+    /// placed, or a turn of libccd's loops in software doubles (core/base/work_units.hpp).
+    static constexpr std::uint32_t kLeastSlice = 1000;
+    static constexpr std::uint32_t kLeastMandatory = 1000;
+
+    std::uint32_t all = 60000;    ///< at least `slice` + kLeastMandatory
+    std::uint32_t slice = 22000;  ///< kLeastSlice at least
+    friend constexpr bool operator==(const WorkPerUpdate&, const WorkPerUpdate&) noexcept = default;
+};
+[[nodiscard]] constexpr bool is_valid(const WorkPerUpdate& work) noexcept
+{
+    return work.slice >= WorkPerUpdate::kLeastSlice && work.all >= WorkPerUpdate::kLeastMandatory &&
+           work.all - WorkPerUpdate::kLeastMandatory >= work.slice;
+}
+
 /// Of the supervisor alone; what it shares with the methods is in world::FlightRules.
 struct Settings {
     /// The methods that are asked. Empty: all of the supervisor's, in its own order. Ids of methods that the supervisor
@@ -78,11 +96,10 @@ struct Settings {
     /// A vehicle that static threats block for this long, without getting anywhere, gives up control and asks for a
     /// hold; 0: never [s].
     Seconds patience = 20.0F;
-    /// Of `budget` at most for the plans of one update, so that checks and fallbacks have theirs [work units].
-    std::uint32_t plan_budget = 20000;
+    std::uint32_t plan_budget = 20000;  ///< of one plan, whatever updates it takes [work units]
     /// Of `plan_budget` kept back for each method that is asked after another one [work units].
     std::uint32_t kept_for_next = 8000;
-    std::uint32_t budget = 60000;  ///< per update [work units]: what bounds a step's time on every target
+    WorkPerUpdate work;  ///< what bounds a step's time on every target
 };
 /// Whether every setting lies within its range. O(1).
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;

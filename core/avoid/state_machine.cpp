@@ -10,6 +10,10 @@ namespace {
 constexpr float kCreeping = 1.5F;
 /// Share of the fallback horizon that is left for getting out of traffic's way: sooner, the fallback sees no need to.
 constexpr float kGetGoing = 0.75F;
+/// What is expected of the check of an answer, and of the search for a fallback where one is near [work units].
+constexpr std::uint32_t kCheckUnits = 600;
+constexpr std::uint32_t kFallbackUnits = 8000;
+constexpr std::uint32_t kUnitsPerThreat = 500;
 
 }  // namespace
 
@@ -19,11 +23,13 @@ bool StateMachine::configure(const Settings& settings) noexcept
         return false;
     }
     settings_ = settings;
+    drop_plan();
     return true;
 }
 
 void StateMachine::reset() noexcept
 {
+    drop_plan();
     enter(Phase::watching);
     control_since_.reset();
     clear_since_.reset();
@@ -119,22 +125,86 @@ bool StateMachine::is_urgent(const Tick& tick, Seconds time_to_loss) const noexc
     return time_to_loss <= latest_manoeuvre_time(tick);
 }
 
+/// What planning may spend in this update: its slice, and of the mandatory units what a check and a fallback are not
+/// expected to need.
+std::uint32_t StateMachine::units_for_planning(const Tick& tick) const noexcept
+{
+    const bool near =
+        phase_ == Phase::braking || (tick.out.conflict && is_urgent(tick, tick.out.conflict->time_to_loss));
+    const auto threats = static_cast<std::uint32_t>(tick.s.threats.size());
+    const std::uint32_t kept = (near ? kFallbackUnits : kCheckUnits) + kUnitsPerThreat * threats;
+    return tick.slice + (tick.budget.left() > kept ? tick.budget.left() - kept : 0);
+}
+
+/// Takes what planning has spent, out of its slice first.
+void StateMachine::charge_planning(Tick& tick, std::uint32_t units) noexcept
+{
+    const std::uint32_t of_slice = std::min(units, tick.slice);
+    tick.slice -= of_slice;
+    static_cast<void>(tick.budget.spend(units - of_slice));  // never more than was left
+}
+
+world::PlanStatus StateMachine::plan_at_once(Tick& tick, float& margin) noexcept
+{
+    const Inflated inflated(tick.s, tick.s.rules.clearance);
+    WorkBudget budget(std::min(settings_.plan_budget, units_for_planning(tick)));
+    const world::PlanStatus status = tick.planning.plan(tick.planning.self, {inflated.situation, tick.s}, settings_,
+                                                        budget, diagnostics_, answer_, margin);
+    tick.ran_out = tick.ran_out || budget.exhausted();
+    charge_planning(tick, budget.spent());
+    return status;
+}
+
+/// Goes on with the plan that has begun, or begins one: once an update. An answer was checked against what was known
+/// when its plan began, and counts once it is checked against what is known now.
+world::PlanStatus StateMachine::plan_a_slice(Tick& tick, float& margin) noexcept
+{
+    if (tick.sliced) {
+        margin = tick.out.margin;
+        return tick.out.plan_status;
+    }
+    tick.sliced = true;
+    const bool begins = !sliced_->runs();
+    if (begins) {
+        sliced_->begin(tick.s, tick.planning, settings_, diagnostics_);
+    }
+    const bool ended = sliced_->advance(units_for_planning(tick));
+    charge_planning(tick, sliced_->spent());
+    if (!ended) {
+        return world::PlanStatus::running;
+    }
+    tick.ran_out = tick.ran_out || sliced_->ran_out();
+    if (sliced_->status() != world::PlanStatus::found) {
+        return sliced_->status();
+    }
+    answer_ = sliced_->answer();
+    margin = begins ? sliced_->margin() : check_manoeuvre(tick.s, answer_, settings_, tick.budget).margin;
+    if (!(margin >= 0.0F)) {
+        ++diagnostics_.answers_rejected;
+        return world::PlanStatus::none_available;
+    }
+    return world::PlanStatus::found;
+}
+
 /// Asks the methods for an answer.
 bool StateMachine::plan(Tick& tick) noexcept
 {
-    const Inflated inflated(tick.s, tick.s.rules.clearance);
-    WorkBudget budget(std::min(settings_.plan_budget, tick.budget.left()));
     float margin = 0.0F;
-    tick.out.plan_status = tick.planning.plan(tick.planning.self, {inflated.situation, tick.s}, settings_, budget,
-                                              diagnostics_, answer_, margin);
+    tick.out.plan_status = sliced_ != nullptr ? plan_a_slice(tick, margin) : plan_at_once(tick, margin);
+    tick.planned = true;
     const bool found = tick.out.plan_status == world::PlanStatus::found;
     if (found) {
         ++diagnostics_.plans_found;
         tick.out.margin = margin;
     }
-    tick.ran_out = tick.ran_out || budget.exhausted();
-    static_cast<void>(tick.budget.spend(budget.spent()));  // never more than was left
     return found;
+}
+
+void StateMachine::drop_plan() noexcept
+{
+    if (sliced_ != nullptr) {
+        sliced_->drop();
+    }
 }
 
 void StateMachine::watch(Tick& tick) noexcept
@@ -207,10 +277,23 @@ Guidance StateMachine::update(const world::Situation& given, const world::Refere
     first.commanded = in_control && commanded_ ? &*commanded_ : nullptr;
     const world::Situation second = world::with_reference(first, other != nullptr ? *other : given.reference);
     const world::Situation* const with_other = other != nullptr ? &second : nullptr;
-    Tick both{first, with_other, in_control, planning, WorkBudget(settings_.budget), world::way_of(first), {}};
+    Tick both{first,
+              with_other,
+              in_control,
+              planning,
+              WorkBudget(settings_.work.all - settings_.work.slice),
+              settings_.work.slice,
+              world::way_of(first),
+              {}};
     choose_nominal(both);
-    Tick tick{
-        both.out.on_other ? second : first, with_other, in_control, planning, both.budget, both.nominal, both.out};
+    Tick tick{both.out.on_other ? second : first,
+              with_other,
+              in_control,
+              planning,
+              both.budget,
+              both.slice,
+              both.nominal,
+              both.out};
     if (flying_) {
         const Vec3 off = parallel_offset(tick.s).off;
         const float far = off.norm();
@@ -222,16 +305,19 @@ Guidance StateMachine::update(const world::Situation& given, const world::Refere
     update_clearness(tick);
     run_phase(tick);
     give_up_when_blocked(tick);
+    if (!tick.planned) {
+        drop_plan();
+    }
     tick.out.state = state();
     tick.out.transitions = transitions_;
-    tick.out.work = tick.budget.spent();
+    tick.out.work = tick.budget.spent() + settings_.work.slice - tick.slice;
     last_update_ = given.now;
     commanded_.reset();
     if (in_control && tick.out.wants_control) {
         commanded_ = {tick.out.velocity, given.now};
     }
     diagnostics_.budget_spent += tick.budget.exhausted() || tick.ran_out ? 1U : 0U;
-    diagnostics_.most_work = std::max(diagnostics_.most_work, tick.budget.spent());
+    diagnostics_.most_work = std::max(diagnostics_.most_work, tick.out.work);
     return tick.out;
 }
 

@@ -6,22 +6,9 @@
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
 #include "core/avoid/phase.hpp"
-#include "core/world/method.hpp"
+#include "core/avoid/sliced_plan.hpp"
 
 namespace jink::avoid {
-
-/// The two situations that a method may be asked in.
-struct Situations {
-    const world::Situation& inflated;  ///< for a vehicle larger by FlightRules::clearance to every side
-    const world::Situation& plain;     ///< for the vehicle as it is
-};
-
-/// The methods as the state machine sees them: one function that plans, and gives checked answers only.
-struct Planning {
-    void* self = nullptr;
-    world::PlanStatus (*plan)(void* self, const Situations&, const Settings&, WorkBudget&, Diagnostics&,
-                              world::Manoeuvre&, float& margin) noexcept = nullptr;
-};
 
 /// The state machine of the supervisor, free of the methods' types. See Supervisor, and phase.hpp for its transitions.
 ///
@@ -34,6 +21,17 @@ public:
 
     Guidance update(const world::Situation& given, const world::Reference* other, bool in_control,
                     const Planning& planning) noexcept;
+
+    /// From now on a plan goes on over several updates. It outlives this.
+    void plan_in_slices(SlicedPlan& plan) noexcept { sliced_ = &plan; }
+    /// From now on a plan is made in one update, as at first.
+    void plan_in_whole() noexcept
+    {
+        drop_plan();
+        sliced_ = nullptr;
+    }
+    /// Drops what is planned at present: something that it goes by has changed.
+    void drop_plan() noexcept;
 
     /// Forgets what is flown: after a pilot took over, after the estimator was reset. Diagnostics stay.
     void reset() noexcept;
@@ -58,6 +56,11 @@ private:
     void run_phase(Tick& tick) noexcept;
     void watch(Tick& tick) noexcept;
     [[nodiscard]] bool plan(Tick& tick) noexcept;
+    [[nodiscard]] bool plan_runs() const noexcept { return sliced_ != nullptr && sliced_->runs(); }
+    [[nodiscard]] std::uint32_t units_for_planning(const Tick& tick) const noexcept;
+    static void charge_planning(Tick& tick, std::uint32_t units) noexcept;
+    [[nodiscard]] world::PlanStatus plan_at_once(Tick& tick, float& margin) noexcept;
+    [[nodiscard]] world::PlanStatus plan_a_slice(Tick& tick, float& margin) noexcept;
     [[nodiscard]] bool is_due(const Tick& tick, Seconds time_to_loss) const noexcept;
     [[nodiscard]] Seconds latest_manoeuvre_time(const Tick& tick) const noexcept;
     [[nodiscard]] bool is_urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
@@ -106,6 +109,7 @@ private:
     Vec3 block_at_ = Vec3::Zero();  ///< where the vehicle is since block_since_, more or less
     TimePoint block_since_;
     world::Manoeuvre answer_;  ///< of the last plan
+    SlicedPlan* sliced_ = nullptr;
 };
 
 }  // namespace jink::avoid

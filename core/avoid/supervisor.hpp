@@ -40,6 +40,12 @@ public:
     }
 
     void reset() noexcept { machine_.reset(); }
+    /// From now on a plan goes on over several updates (WorkPerUpdate). It outlives this.
+    void plan_in_slices(SlicedPlan& plan) noexcept { machine_.plan_in_slices(plan); }
+    /// From now on a plan is made in one update, as at first.
+    void plan_in_whole() noexcept { machine_.plan_in_whole(); }
+    /// Drops what is planned at present: before a method is configured anew.
+    void drop_plan() noexcept { machine_.drop_plan(); }
     /// Refused (false, nothing changed) when out of range.
     [[nodiscard]] bool configure(const Settings& settings) noexcept { return machine_.configure(settings); }
     [[nodiscard]] const Settings& settings() const noexcept { return machine_.settings(); }
@@ -115,7 +121,7 @@ private:
         for (const std::uint8_t id : order.ids()) {
             --after;
             const auto kept = static_cast<std::uint32_t>(after * settings.kept_for_next);
-            WorkBudget share(budget.left() > kept ? budget.left() - kept : 0);
+            WorkBudget share = budget.part(budget.left() > kept ? budget.left() - kept : 0);
             const bool found = std::apply(
                 [&](Methods&... method) {
                     return ((id == Methods::kTraits.id &&
@@ -124,7 +130,10 @@ private:
                 },
                 static_cast<Supervisor*>(self)->methods_);
             // What ends the last method's work ends that of the plan, and is reported.
-            static_cast<void>(budget.spend(after == 0 && share.exhausted() ? budget.left() + 1 : share.spent()));
+            budget.charge(share);
+            if (after == 0 && share.exhausted()) {
+                budget.exhaust();
+            }
             if (found) {
                 diagnostics.found_by_next += after + 1 < order.size() ? 1U : 0U;
                 return status;

@@ -26,19 +26,6 @@ struct ParallelOffset {
 [[nodiscard]] bool is_held_by_bounds(const world::Situation& situation, const Vec3& removed, const Vec3& left,
                                      float on_leg) noexcept;
 
-/// The same situation for a vehicle with `extra` [m] more to every side.
-struct Inflated {
-    vehicle::VehicleLimits limits;
-    world::Situation situation;
-
-    Inflated(const world::Situation& s, float extra) noexcept
-        : limits(vehicle::widened(s.limits, extra)), situation(world::with_limits(s, limits))
-    {
-    }
-    Inflated(const Inflated&) = delete;
-    Inflated& operator=(const Inflated&) = delete;
-};
-
 /// Only the sign of a margin is asked for.
 inline constexpr world::Cutoff kSignAlone{0.0F, 0.0F, {}};
 
@@ -47,11 +34,14 @@ struct StateMachine::Tick {
     const world::Situation* other = nullptr;  ///< with the other nominal path; null without one
     bool in_control = false;
     const Planning& planning;
-    WorkBudget budget;
+    WorkBudget budget;        ///< of the mandatory part
+    std::uint32_t slice = 0;  ///< left for planning [work units]
     world::Way nominal;
     Guidance out;
     Vec3 removed = Vec3::Zero();  ///< off the velocity back to the leg, by bounds of the airspace [m/s]
     bool ran_out = false;         ///< of work units, planning or altogether
+    bool planned = false;         ///< a plan was asked for
+    bool sliced = false;          ///< a slice of it has been made
 };
 
 }  // namespace jink::avoid

@@ -152,10 +152,10 @@ PlanStatus Run::choose() noexcept
         }
     }
     std::make_heap(order_.begin(), order_.end(), by_cost());
-    WorkBudget checks(std::min(units_of_checks(), budget_.left()));
+    WorkBudget checks = budget_.part(units_of_checks());
     const bool is_short = checks.left() < units_of_checks();
     const bool found = try_in_turn(checks);
-    static_cast<void>(budget_.spend(checks.spent()));  // never more than was left
+    budget_.charge(checks);
     result_.cut_short = spent_ || checks.exhausted();
     if (found) {
         return PlanStatus::found;

@@ -163,12 +163,12 @@ bool join_parts(const Problem& problem, const Settings& settings, const vehicle:
     if (!budget.spend(units::kCandidatePoint * static_cast<std::uint32_t>(whole.path.points.size()))) {
         return false;
     }
-    WorkBudget checks(std::min(settings.check_units, budget.left()));
+    WorkBudget checks = budget.part(settings.check_units);
     const bool is_short = checks.left() < settings.check_units;
     const bool clear = whole.flown.judge(whole.path, 0.0F, checks).status == CandidateStatus::available;
-    static_cast<void>(budget.spend(checks.spent()));  // never more than was left
+    budget.charge(checks);
     if (checks.exhausted() && is_short) {
-        static_cast<void>(budget.spend());  // refused: it was the budget that did not do
+        budget.exhaust();  // it was the budget that did not do
     }
     result.cut_short = result.cut_short || checks.exhausted();
     if (!clear) {

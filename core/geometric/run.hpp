@@ -35,13 +35,13 @@ public:
         prepare();
         // What has been found must not be left unchecked.
         const std::uint32_t kept = std::min(units_of_checks(), budget_.left() / 2);
-        WorkBudget curves(budget_.left() - kept);
+        WorkBudget curves = budget_.part(budget_.left() - kept);
         for (Candidate& candidate : result_.candidates) {
             if (!evaluate(candidate, curves)) {
                 break;
             }
         }
-        static_cast<void>(budget_.spend(curves.spent()));  // never more than was left
+        budget_.charge(curves);
         spent_ = curves.exhausted();
         return choose();
     }

@@ -91,9 +91,9 @@ bool Course::meets_point(const Threat& threat, WorkBudget& budget, Conflict& out
     }
     const Seconds closest = closest_time(threat);
     if (loss <= 0.0F) {
-        WorkBudget apart(std::min(kDrawingApartBudget, budget.left()));
+        WorkBudget apart = budget.part(kDrawingApartBudget);
         const bool leaves = draws_apart(threat, apart);
-        static_cast<void>(budget.spend(apart.spent()));  // never more than was left
+        budget.charge(apart);
         if (leaves) {
             return false;
         }

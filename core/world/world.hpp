@@ -96,6 +96,16 @@ public:
         return route_ != nullptr ? path::RouteView(*route_) : path::RouteView({&leg_, 1});
     }
     path::RouteView route() const&& = delete;
+    /// The same on a copy of its route, which is put into `copy`; a leg needs none.
+    [[nodiscard]] Reference moved_to(path::Route& copy) const noexcept
+    {
+        Reference moved = *this;
+        if (route_ != nullptr) {
+            copy = *route_;
+            moved.route_ = &copy;
+        }
+        return moved;
+    }
 
     bool valid = false;
     float speed = 5.0F;       ///< along the route [m/s], > 0
@@ -172,6 +182,7 @@ enum class PlanStatus : std::uint8_t {
     none_available,  ///< every candidate touches something or cannot be flown
     budget_spent,    ///< the work budget ran out before an answer that may be trusted
     bad_input,       ///< no reference, or settings out of range
+    running,         ///< it goes on in the next update
 };
 
 /// Whether a method can plan in it: a reference, flight rules within their ranges, threats collected. O(1).

@@ -16,6 +16,7 @@ constexpr auto kScanUnits =
 avoid::Settings Decision::supervisor_settings(const Configuration& c) const noexcept
 {
     avoid::Settings settings = c.supervisor;
+    settings.work = work_;
     if (leaves_reach_out_ || c.reach_unsuited) {
         settings.order = without_sets(settings.order);
         settings.order_in_clutter = {};
@@ -26,7 +27,8 @@ avoid::Settings Decision::supervisor_settings(const Configuration& c) const noex
         const std::uint32_t more = kScanUnits + settings.plan_budget;
         settings.plan_budget += more;
         settings.kept_for_next = settings.plan_budget / 2;  // whichever of both is asked first
-        settings.budget += more;
+        settings.work.slice += more;
+        settings.work.all += more;
     }
     return settings;
 }
@@ -52,7 +54,16 @@ void Decision::reset() noexcept
 
 void Decision::configure(const Configuration& c) noexcept
 {
+    supervisor_.drop_plan();
     methods_.configure(c);
+    static_cast<void>(supervisor_.configure(supervisor_settings(c)));
+}
+
+void Decision::plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work,
+                              const Configuration& c) noexcept
+{
+    work_ = work;
+    supervisor_.plan_in_slices(plan);
     static_cast<void>(supervisor_.configure(supervisor_settings(c)));
 }
 

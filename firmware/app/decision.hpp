@@ -42,6 +42,10 @@ public:
     /// From now on reach sets plan by these cells, and every plan may spend more work units. It outlives this.
     void let_reach_sets_see(reach::CellSource& cells, const Configuration& c) noexcept;
 
+    /// From now on plans go on over several updates, in `plan`, and an update does as much as `work` says. It outlives
+    /// this.
+    void plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work, const Configuration& c) noexcept;
+
     [[nodiscard]] bool leaves_out_reach_sets() const noexcept { return leaves_reach_out_; }
     [[nodiscard]] const NominalPaths& nominal_paths() const noexcept { return nominal_; }
     [[nodiscard]] const avoid::Diagnostics& diagnostics() const noexcept { return supervisor_.diagnostics(); }
@@ -52,7 +56,8 @@ public:
 private:
     [[nodiscard]] avoid::Settings supervisor_settings(const Configuration& c) const noexcept;
 
-    // The supervisor's settings depend on these two: they come before it.
+    // The supervisor's settings depend on these: they come before it.
+    avoid::WorkPerUpdate work_;
     bool leaves_reach_out_ = false;
     bool reach_sees_scans_ = false;
     Methods methods_;

@@ -22,8 +22,10 @@
 #include "firmware/app/can_bus.hpp"
 #include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/plan_memory.hpp"
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/app/reach_sets.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/background.hpp"
 #include "firmware/linux/housekeeping.hpp"
@@ -68,6 +70,7 @@ struct Options {
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;
+    unsigned clock = 0;  ///< of the processor [MHz]; 0: not said
     int system_id = 0;
     int node_id = 0;
     int realtime = 0;
@@ -210,6 +213,10 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     if (!options.state_file.empty()) {
         coprocessor->note_stored(coprocessor->parameters().generation());
     }
+    const std::unique_ptr<app::PlanMemory> plans = options.clock != 0 ? std::make_unique<app::PlanMemory>() : nullptr;
+    if (plans) {
+        coprocessor->plan_in_slices(plans->plan, app::WorkRate::of_megahertz(options.clock).work());
+    }
     coprocessor->use_clouds(*clouds);
     if (map != nullptr) {
         coprocessor->use_map(*map);
@@ -292,8 +299,9 @@ int main(int argc, char** argv)
     cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
         ->check(CLI::Range(0, 127))
         ->needs(can);
-    cli.add_option("--cloud", options.cloud,
-                   "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
+    CLI::Option* const cloud = cli.add_option(
+        "--cloud", options.cloud,
+        "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
     cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
     cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
     cli.add_option("--state", options.state_file,
@@ -314,6 +322,11 @@ int main(int argc, char** argv)
         ->check(CLI::Range(0.0, 3600.0));
     cli.add_option("--summary", options.summary, "write counters and step times to this file (JSON) at the end");
     cli.add_option("--watchdog", options.watchdog, "watchdog device to feed, e.g. /dev/watchdog0");
+    cli.add_option("--clock", options.clock,
+                   "the processor's clock [MHz]: a step does the work that fits there, and plans go on over several "
+                   "steps. Without: work for 1000 MHz and more, a plan in one step")
+        ->check(CLI::Range(app::WorkRate::kLeastMegahertz, app::WorkRate::kMostMegahertz))
+        ->excludes(cloud);
     cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
         ->check(CLI::Range(0, 99));
     cli.add_flag("--quiet", options.quiet, "errors only");

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // jink on the MPS2 board with the AN500 image: Cortex-M7, 25 MHz, MAVLink on UART0.
+#include <new>
+
+#include "firmware/app/plan_memory.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cmsdk/cmsdk_uart.hpp"
@@ -25,6 +29,9 @@ constexpr unsigned kUartTransmit = 1;
 constexpr unsigned kUartOverrun = 12;
 
 constexpr std::uint32_t kBaud = 921600;
+/// Work of a step. The emulated board's clock says nothing; this image stands for a Cortex-M7 from 216 MHz on.
+constexpr app::WorkRate kRate(216'000'000);
+static_assert(kRate.has_time_for(kRate.work()) && avoid::is_valid(kRate.work()));
 /// A step that is this late has failed.
 constexpr std::uint32_t kWatchdogTicks = kClockHz / 4;
 
@@ -35,6 +42,9 @@ Uart& uart() noexcept
     static Uart port(MappedRegisters{kUart}, hal::cortex_m::Pend(kUartTransmit));
     return port;
 }
+
+/// At the start of a memory of its own, which start-up does not clear.
+alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory[sizeof(app::PlanMemory)];
 
 void start_timer() noexcept
 {
@@ -89,6 +99,9 @@ extern "C" void hal::cortex_m::jink_main()
         hal::cortex_m::enable_interrupt(irq);
     }
     hal::cortex_m::start_systick(kClockHz / 1000U);
+    app::PlanMemory& plans = *new (plan_memory) app::PlanMemory;
+    hal::cortex_m::note_second_stack(plans.stack);
+    coprocessor.plan_in_slices(plans.plan, kRate.work());
     firmware::settle_reach_sets(coprocessor);
     firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);

@@ -5,6 +5,8 @@
 
 #include "firmware/app/can_bus.hpp"
 #include "firmware/app/param_keeper.hpp"
+#include "firmware/app/plan_memory.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "firmware/cortex_m/flight.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cortex_m/cortex_m.hpp"
@@ -43,6 +45,9 @@ constexpr unsigned kCan1StatusInterrupt = 22;
 constexpr unsigned kUsart1Interrupt = 37;
 
 constexpr std::uint32_t kBaud = 921600;
+/// Work of a step. Without its crystal the processor runs at the same clock (clock_tree.hpp).
+constexpr app::WorkRate kRate(168'000'000);
+static_assert(kRate.has_time_for(kRate.work()) && avoid::is_valid(kRate.work()));
 constexpr std::uint32_t kCanBitRate = 1'000'000;
 /// A step that is this late has failed.
 constexpr std::uint32_t kWatchdogMilliseconds = 250;
@@ -81,6 +86,17 @@ using Can = hal::stm32f4::BxCan<MappedRegisters, hal::cortex_m::Pend>;
 alignas(Can) __attribute__((section(".ccm"))) std::byte can_memory[sizeof(Can)];
 alignas(app::CanBus) __attribute__((section(".ccm"))) std::byte bus_memory[sizeof(app::CanBus)];
 Can* can = nullptr;  ///< nullptr: no CAN
+
+/// Likewise; at the start of the core-coupled memory. An emulator has none, and as much behind the RAM.
+alignas(app::PlanMemory) __attribute__((section(".plan"))) std::byte plan_memory[sizeof(app::PlanMemory)];
+alignas(app::PlanMemory)
+    __attribute__((section(".plan_emulated"))) std::byte plan_memory_emulated[sizeof(app::PlanMemory)];
+
+app::PlanMemory& make_plan_memory(const hal::stm32f4::Clocks& clocks) noexcept
+{
+    const bool emulated = clocks.source == hal::stm32f4::ClockSource::emulator;
+    return *new (emulated ? plan_memory_emulated : plan_memory) app::PlanMemory;
+}
 
 /// Two neighbouring pins for a peripheral.
 struct PinPair {
@@ -247,6 +263,9 @@ extern "C" void hal::cortex_m::jink_main()
         }
     }
     keeper.start(coprocessor);
+    app::PlanMemory& plans = make_plan_memory(clocks);
+    hal::cortex_m::note_second_stack(plans.stack);
+    coprocessor.plan_in_slices(plans.plan, kRate.work());
     firmware::settle_reach_sets(coprocessor);
     firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);

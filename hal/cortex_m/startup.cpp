@@ -42,6 +42,10 @@ constexpr std::uint32_t kMagic = 0x4A494E4B;
 
 __attribute__((section(".noinit"))) FaultRecord kept;
 
+/// note_second_stack; empty without one.
+__attribute__((section(".noinit"))) const std::uint32_t* second_bottom;
+__attribute__((section(".noinit"))) const std::uint32_t* second_top;
+
 /// Progress of this start. Not cleared by start-up: a fault may come before that.
 enum Stage : std::uint32_t { kStarting = 0, kReady = 0x52454459, kFaulting = 0x46415554 };
 __attribute__((section(".noinit"))) volatile std::uint32_t stage;
@@ -117,6 +121,12 @@ void forgive_faults() noexcept
 
 void forget_faults() noexcept { kept = {}; }
 
+void note_second_stack(std::span<std::byte> stack) noexcept
+{
+    second_bottom = reinterpret_cast<const std::uint32_t*>(stack.data());
+    second_top = second_bottom + stack.size() / sizeof(std::uint32_t);
+}
+
 void let_faults_speak() noexcept { stage = kReady; }
 
 std::size_t stack_used() noexcept
@@ -166,7 +176,9 @@ extern "C" [[noreturn]] void jink_note_fault(const std::uint32_t* frame)
     at(kConfigurationControl) = at(kConfigurationControl) | kIgnoreBusFaults;
     std::uint32_t exception = 0;
     __asm volatile("mrs %0, ipsr" : "=r"(exception));
-    const bool in_stack = frame >= &_stack_bottom && frame + 8 <= &_stack_top;  // false if the stack itself overflowed
+    // False if a stack itself overflowed.
+    const bool in_stack =
+        (frame >= &_stack_bottom && frame + 8 <= &_stack_top) || (frame >= second_bottom && frame + 8 <= second_top);
     begin_record(exception & 0x1FFU);
     kept.pc = in_stack ? frame[6] : 0;
     kept.lr = in_stack ? frame[5] : 0;
@@ -208,6 +220,7 @@ __attribute__((naked)) void jink_guard_handler()
 extern "C" void jink_reset_handler()
 {
     stage = kStarting;
+    second_bottom = second_top = nullptr;
     constexpr std::uint32_t kFpuOn = 0xFU << 20U;
     at(kCoprocessors) = at(kCoprocessors) | kFpuOn;
     __asm volatile("dsb\nisb" ::: "memory");

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 // Start-up from reset to jink_main(), and the record kept when the processor faults. Memory comes from the image's
 // linker script: _stack_bottom, _stack_top, _data_load, _data_start, _data_end, _bss_start, _bss_end,
@@ -39,6 +40,9 @@ void forget_faults() noexcept;
 
 /// From here on, until the next start, a fault calls jink_on_fault: the data it needs are ready.
 void let_faults_speak() noexcept;
+
+/// A stack beside the program's, aligned to a word: what is kept of a fault on it has its program counter too.
+void note_second_stack(std::span<std::byte> stack) noexcept;
 
 /// Most bytes of stack used so far, by the pattern that start-up wrote to it. O(stack).
 [[nodiscard]] std::size_t stack_used() noexcept;

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/target/probe.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/app/parameters.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
 
 namespace jink::target {
 namespace {
+
+constexpr std::uint32_t kMostUpdates = 100;
 
 Vec3 vec(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
@@ -115,7 +120,7 @@ struct Probe::World {
 
 Probe::Probe() noexcept
     : planner_(geometric::Settings{}), reach_(reach::Settings{}),
-      supervisor_(avoid::Settings{}, planner_, reach_, orca_)
+      supervisor_(avoid::Settings{}, planner_, reach_, orca_), memory_(fresh_plan_memory())
 {
 }
 
@@ -157,11 +162,26 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
                                                    world.airspace}));
     situation.threats = threats_.all();
     if (!planner_.configure(world.configuration.planner) || !reach_.configure(world.configuration.reach) ||
-        !orca_.configure(world.configuration.orca) || !supervisor_.configure(world.configuration.supervisor)) {
+        !orca_.configure(world.configuration.orca)) {
+        return;
+    }
+    avoid::Settings settings = world.configuration.supervisor;
+    constexpr std::array kIds{geometric::Planner::kTraits.id, reach::Planner::kTraits.id, orca::Planner::kTraits.id};
+    for (std::size_t i = 0; i < kIds.size(); ++i) {
+        static_cast<void>((record.methods >> i & 1U) != 0 && settings.order.try_add(kIds[i]));
+    }
+    if (record.clock >= app::WorkRate::kLeastMegahertz) {
+        settings.work = app::WorkRate::of_megahertz(record.clock).work();
+        supervisor_.plan_in_slices(memory_.plan);
+    } else {
+        supervisor_.plan_in_whole();
+    }
+    if (!supervisor_.configure(settings)) {
         return;
     }
     supervisor_.reset();
     out.magic = kProbeMagic;
+    bool ran_out = false;
     const bool reciprocal = record.kind == ProbeKind::reciprocal;
     if (record.kind == ProbeKind::plan || record.kind == ProbeKind::reach || reciprocal) {
         orca_.reset();
@@ -177,9 +197,15 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
             std::copy_n(v.data(), 3, out.velocity);
         }
     } else if (record.kind == ProbeKind::update) {
+        for (std::uint32_t i = 1; i < std::min(record.updates, kMostUpdates); ++i) {
+            static_cast<void>(supervisor_.update(situation, false));
+            situation.now.us += 20'000;
+        }
+        const std::uint32_t spent = supervisor_.diagnostics().budget_spent;
         jink_window_begin();
         const avoid::Guidance guidance = supervisor_.update(situation, false);
         jink_window_end();
+        ran_out = supervisor_.diagnostics().budget_spent != spent;
         out.status = static_cast<std::uint32_t>(guidance.plan_status);
         out.work = guidance.work;
         out.state = static_cast<std::uint32_t>(guidance.kind);
@@ -193,7 +219,7 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     out.candidates = static_cast<std::uint32_t>(result.candidates.size());
     out.chosen =
         is_by_reach(record, out) ? kReachChose + reach_.last().node : static_cast<std::uint32_t>(result.chosen);
-    out.cut_short = result.cut_short ? 1U : 0U;
+    out.cut_short = result.cut_short || ran_out ? 1U : 0U;
     out.stack_used = stack_used();
 }
 

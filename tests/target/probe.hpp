@@ -6,6 +6,7 @@
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
 #include "core/world/threat_set.hpp"
+#include "tests/target/plan_bytes.hpp"
 #include "tests/target/probe_record.hpp"
 
 namespace jink::target {
@@ -32,6 +33,7 @@ private:
     reach::Planner reach_;
     orca::Planner orca_;
     avoid::Supervisor<geometric::Planner, reach::Planner, orca::Planner> supervisor_;
+    app::PlanMemory& memory_;
     world::ThreatSet threats_;
     world::Manoeuvre manoeuvre_;
 };

@@ -12,7 +12,7 @@
 
 namespace jink::target {
 
-inline constexpr std::uint32_t kProbeMagic = 0x4A504204;  // "JPB", layout 4
+inline constexpr std::uint32_t kProbeMagic = 0x4A504205;  // "JPB", layout 5
 inline constexpr std::size_t kProbeTracks = 32;
 inline constexpr std::size_t kProbeObstacles = 96;
 
@@ -57,6 +57,9 @@ struct ProbeRecord {
     std::uint32_t bounds;        ///< 1 floor, 2 ceiling, 4 keep-in
     std::uint32_t reduced_sets;  ///< 0 the build's own reach sets, 1 the default vehicle's reduced ones
     std::uint32_t shared;        ///< bit i: track i is cooperative
+    std::uint32_t clock;         ///< of `update`: its work is for this clock [MHz], in slices; 0: the default, at once
+    std::uint32_t updates;       ///< of `update`: how many, 20 ms apart; the last one is counted
+    std::uint32_t methods;       ///< of `update`: sum of 1 geometric, 2 reach sets, 4 reciprocal; 0: all
     float own_position[3];
     float own_velocity[3];
     float own_sigma;
@@ -84,7 +87,7 @@ struct ProbeRecord {
 };
 static_assert(std::is_trivially_copyable_v<ProbeRecord>);
 static_assert(sizeof(ProbeTrack) == 40 && sizeof(ProbeObstacle) == 36);
-static_assert(sizeof(ProbeRecord) == 10 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
+static_assert(sizeof(ProbeRecord) == 13 * 4 + 20 * 4 + 10 * 4 + 2 * 4 + kProbeTracks * 40 + kProbeObstacles * 36);
 
 struct ProbeAnswer {
     std::uint32_t magic;
@@ -98,7 +101,8 @@ struct ProbeAnswer {
     float cost;
     float velocity[3];        ///< command, of `update` and `reciprocal`; else first velocity of the path
     float margin;             ///< of `update`
-    std::uint32_t cut_short;  ///< 1: the work units ran out before all candidates of the last plan were checked
+    std::uint32_t cut_short;  ///< 1: the work units ran out: before all candidates of the last plan were checked, or in
+                              ///< the update
 };
 static_assert(std::is_trivially_copyable_v<ProbeAnswer> && sizeof(ProbeAnswer) == 14 * 4);
 

@@ -27,6 +27,7 @@ THROUGH_LIBCCD = (1, 2, 3)
 KINDS = ("plan", "plan", "reach", "plan", "update", "reciprocal")
 SAME_VELOCITY = 1e-3  # [m/s], of a decision that is a velocity
 REDUCED_ONLY = ("stm32f405",)
+CLOCK = 168  # of every second update [MHz]: the work of the slowest board, in slices, on every target
 DISTURBED = 32
 ROUNDINGS = 4 * 2.0**-24
 SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/settings.hpp"
@@ -44,6 +45,7 @@ def case_of(seed):
     case = cases.random_case(seed, kind, tracks=1 + seed % 6, obstacles=(seed // 6) % 4, offsets=2 + 2 * (seed % 2))
     if kind == "reciprocal":
         case.shared = random.Random(seed).getrandbits(6)
+    case.clock = CLOCK if kind == "update" and seed // len(KINDS) % 2 else 0
     case.reduced_sets = int(seed // len(KINDS) % 2 == 0)
     return case
 

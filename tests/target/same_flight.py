@@ -30,6 +30,7 @@ TOLERANCE = 1e-3  # [m/s], [m]
 TIE = 1e-4  # of costs, as for same_choice.py
 WITHOUT_REACH_SETS = ("stm32f405",)
 SAME_BYTES = ("armhf", "aarch64")
+CLOCK = 168  # of the slowest board [MHz]: a step does as much work on every target, and plans go on over several steps
 FOUND = targets.STATUS.index("found")
 
 
@@ -66,7 +67,7 @@ class Comparison:
 def record(sim, folder):
     files = sorted(str(f) for f in pathlib.Path(__file__).resolve().parents[1].joinpath("scenario").glob("*.yaml")
                    if not NO_INPUT.search(f.read_text(encoding="utf-8")))
-    subprocess.run([sim, "fly", *files, "--record-steps", folder, "--quiet"], check=True)
+    subprocess.run([sim, "fly", *files, "--clock", str(CLOCK), "--record-steps", folder, "--quiet"], check=True)
     return {path.stem: flights.read(path) for path in sorted(pathlib.Path(folder).glob("*.steps"))}
 
 
@@ -86,7 +87,7 @@ def main(sim, build, names):
         reference = None
         for i, step in enumerate(flight):
             where = f"{name}, step {i}"
-            plain = dataclasses.replace(step, start=2 if step.start else 0)
+            plain = dataclasses.replace(step, start=step.start & -flights.CLOCK | flights.WITHOUT_REACH_SETS if step.start else 0)
             reference, *answers = [probe.ask(plain if probe.name in WITHOUT_REACH_SETS else step) for probe in probes]
             without = bare.ask(plain)
             if reference.bytes_out != step.bytes_out:

@@ -8,7 +8,9 @@
 #include <optional>
 
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
+#include "tests/target/plan_bytes.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
 #include "toolchain/sim/step_record.hpp"
@@ -64,11 +66,18 @@ public:
     void feed() noexcept override {}
 };
 
-constexpr std::uint32_t kWithoutReachSets = 2;
-
 /// Everything that a start creates.
 struct Device {
-    explicit Device(hal::SerialPort& port) noexcept : coprocessor(endpoint, port, watchdog, app::Parameters()) {}
+    Device(hal::SerialPort& port, std::uint32_t start) noexcept
+        : coprocessor(endpoint, port, watchdog, app::Parameters())
+    {
+        if (const unsigned clock = start / sim::kStepClock; clock >= app::WorkRate::kLeastMegahertz) {
+            coprocessor.plan_in_slices(fresh_plan_memory().plan, app::WorkRate::of_megahertz(clock).work());
+        }
+        if (start % sim::kStepClock == sim::kStartsWithoutReachSets) {
+            coprocessor.leave_out_reach_sets();
+        }
+    }
 
     link::mavlink::Endpoint endpoint;
     IgnoredWatchdog watchdog;
@@ -119,10 +128,7 @@ void serve() noexcept
             return;
         }
         if (record.start != 0) {
-            device.emplace(line);
-            if (record.start == kWithoutReachSets) {
-                device->coprocessor.leave_out_reach_sets();
-            }
+            device.emplace(line, record.start);
         }
         if (!line.bring(record.bytes_in)) {
             return;

@@ -17,7 +17,7 @@ struct PlanOptions {
     std::string mode;
     bool source = false;
     bool points = false;
-    std::uint32_t budget = avoid::Settings{}.budget;
+    std::uint32_t budget = avoid::WorkPerUpdate{}.all;
 };
 
 /// Replaces the file's settings by Pinheiro's; counts, weights and smoothness methods stay.

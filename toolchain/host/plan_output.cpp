@@ -77,6 +77,7 @@ std::string verdict(const ProblemFile& file, const PlanOutcome& outcome)
     case PlanStatus::none_available: return "Stop: no candidate is available.";
     case PlanStatus::budget_spent: return "Stop: the work budget ran out before an answer.";
     case PlanStatus::no_conflict: return "Nothing to avoid.";
+    case PlanStatus::running:  // never at the end of a plan
     case PlanStatus::bad_input: break;
     }
     return "The planner refuses the problem.";
@@ -154,6 +155,7 @@ std::string_view name_of(world::PlanStatus status)
     case PlanStatus::none_available: return "none_available";
     case PlanStatus::budget_spent: return "budget_spent";
     case PlanStatus::bad_input: return "bad_input";
+    case PlanStatus::running: return "running";
     }
     return "?";
 }

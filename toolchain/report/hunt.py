@@ -9,6 +9,7 @@ import os
 import random
 import time
 
+import records
 import scenes
 import targets
 
@@ -31,13 +32,14 @@ class Counter:
     """Instructions of one case on one target."""
 
     def __init__(self, target, build, plugin):
+        self.target = target
         self.probe = targets.open_probe(target, build, plugin)
         self.evaluations = 0
 
     def __call__(self, case):
         self.evaluations += 1
         case.seed = self.evaluations & 0xFFFFFFFF
-        answer = self.probe.ask(case)
+        answer = self.probe.ask(records.on_board(case, self.target))
         return answer.instructions if answer.status != "bad_input" else 0
 
 

@@ -20,6 +20,9 @@ COMPILERS = {"mps2_an500": "arm-none-eabi-g++", "stm32f405": "arm-none-eabi-g++"
 STAGED = "mps2_an500"  # counted per stage; the other targets in total, which takes half the time
 # core/base/work_budget.hpp: largest number of instructions per work unit.
 MOST_PER_UNIT = 170
+# The boards' clocks [MHz]: firmware/*/main.cpp (kRate). Their updates and steps are counted with the work of these.
+CLOCKS = {"mps2_an500": 216, "stm32f405": 168}
+FASTER = 480  # of another Cortex-M7, which the same image runs on [MHz]
 PER_DECADE = 20  # bins of a histogram; from 10^4 instructions on
 DECADES = 4
 
@@ -36,6 +39,11 @@ def short(x):
         if struct.unpack("<f", struct.pack("<f", float(text)))[0] == exact:
             return float(text)
     return exact
+
+
+def on_board(case, target):
+    """The case as the target's image does it: an update has the board's work, and plans go on over several updates."""
+    return dataclasses.replace(case, clock=CLOCKS.get(target, 0)) if case.kind == "update" else case
 
 
 def write_case(path, scene, found, how):
@@ -112,7 +120,7 @@ class Bench:
     def one(self, target, case, stage_file=None):
         """Always in a fresh probe: counts must not depend on earlier counts."""
         probe = targets.open_probe(target, self.build, self.plugin, stage_file)
-        answer = probe.ask(case)
+        answer = probe.ask(on_board(case, target))
         probe.close()
         return answer
 
@@ -124,14 +132,15 @@ class Bench:
         probe.close()
         return answer
 
-    def fly(self, folder, crowds=()):
-        """Flies the flights whose steps are counted, in process, and writes the line's traffic to `folder`."""
+    def fly(self, folder, target, crowds=()):
+        """Flies the flights whose steps are counted, in process with the work of a target, and writes the line's traffic to `folder`."""
+        clock = ["--clock", str(CLOCKS[target])] if target in CLOCKS else []
         scenario = pathlib.Path(__file__).resolve().parents[2] / "tests/scenario"
         files = [str(scenario / f"{name}.yaml") for name in scenes.FLIGHTS]
-        subprocess.run([self.sim, "fly", *files, "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([self.sim, "fly", *files, *clock, "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
         for seed in crowds:
             # The ending of a crowd is irrelevant here.
-            subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", "--record-steps", folder, "--quiet"], check=False,
+            subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", *clock, "--record-steps", folder, "--quiet"], check=False,
                            stdout=subprocess.DEVNULL)
 
     def crowds(self):
@@ -162,9 +171,10 @@ class Bench:
         sums = [sum(c) for c in zip(*(a.by_stage for a in answers))]
         result["typical_stages"][name] = {n: round(c / counts) for n, c in zip(stages.NAMES, sums) if c >= counts}
 
-    def of_target(self, target, flown):
+    def of_target(self, target):
         result = {"records": {}, "stages": {}, "typical": {}, "typical_stages": {}}
-        with tempfile.TemporaryDirectory() as folder:
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryDirectory() as flown:
+            self.fly(flown, target, self.crowds())
             stage_files = [str(pathlib.Path(folder) / name) for name in ("plan", "step")]
             if target == STAGED:
                 stages.write(targets.program_of(target, self.build), target, stage_files[0])
@@ -174,7 +184,7 @@ class Bench:
             self._records(target, result, stage_files, flown)
             for name, (_, count, case_of) in scenes.SAMPLES.items():
                 probe = targets.open_probe(target, self.build, self.plugin, stage_files[0])
-                self._sample(name, [probe.ask(case_of(seed)) for seed in range(count)], result)
+                self._sample(name, [probe.ask(on_board(case_of(seed), target)) for seed in range(count)], result)
                 probe.close()
             probe = targets.open_probe(target, self.build, self.plugin, stage_files[1], kind=flights.StepProbe)
             steps = {"step_flights": scenes.FLIGHTS, "step_crowd": [f"crowd_{seed}" for seed in self.crowds()[:1]]}
@@ -186,16 +196,21 @@ class Bench:
         return result
 
     def all(self, names):
-        with tempfile.TemporaryDirectory() as flown, concurrent.futures.ThreadPoolExecutor(2) as pool:
-            self.fly(flown, self.crowds())
-            return dict(zip(names, pool.map(lambda t: self.of_target(t, flown), names)))
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            return dict(zip(names, pool.map(self.of_target, names)))
+
+    def rates(self):
+        """{clock [MHz]: instructions of a tick, work units of a step, and of those of its slice} (firmware/app/work_rate.hpp)."""
+        clocks = sorted({*CLOCKS.values(), FASTER})
+        lines = subprocess.run([self.sim, "rates", *map(str, clocks)], check=True, capture_output=True, text=True).stdout.splitlines()
+        return {line.split()[0]: dict(zip(("instructions", "units", "slice"), map(int, line.split()[1:]))) for line in lines}
 
     def hunt_steps(self, target, seed, count, report):
         """The most expensive step of `count` crowds: (instructions, crowd, step)."""
         worst = (0, 0, 0)
         for crowd in range(seed, seed + count):
             with tempfile.TemporaryDirectory() as folder:
-                self.fly(folder, [crowd])
+                self.fly(folder, target, [crowd])
                 probe = targets.open_probe(target, self.build, self.plugin, kind=flights.StepProbe)
                 answers = [probe.ask(step) for step in flights.read(pathlib.Path(folder) / f"crowd_{crowd}.steps")]
                 probe.close()

@@ -61,7 +61,7 @@ class Scene:
 
     @property
     def moves(self):
-        return MOVES + ([_share] * 2 if self.kind == "reciprocal" else []) + ([_more, _fewer] if self.threats[0] != self.threats[1] or self.obstacles[1] else []) + (
+        return MOVES + ([_share] * 2 if self.kind == "reciprocal" else []) + ([_course] * 2 if self.kind == "update" else []) + ([_more, _fewer] if self.threats[0] != self.threats[1] or self.obstacles[1] else []) + (
             [lambda c, r, s, scene: _parameter(c, r, s)] * 3 if self.free else [])
 
     def cross(self, a, b, r):
@@ -194,6 +194,14 @@ def _fewer(case, r, size, scene):
         case.obstacles.pop(r.randrange(len(case.obstacles)))
 
 
+def _course(case, r, size, scene):
+    """Of an update: which one of a row, so that a plan has begun before it, and the methods."""
+    if r.random() < 0.6:
+        case.updates = r.choice((1, 2, 3, case.updates + 1, max(1, case.updates - 1)))
+    else:
+        case.methods = r.randrange(8)
+
+
 def _parameter(case, r, size):
     """One of the co-processor's parameters, within its range (firmware/app/parameters.cpp), or near its default."""
     what = r.randrange(6)
@@ -285,6 +293,8 @@ def _sample(scene, seed, tracks, obstacles, offsets, retries):
     case = cases.random_case(seed, SCENES[scene].kind, tracks, obstacles, offsets, retries)
     if SCENES[scene].kind == "reciprocal":
         case.shared = random.Random(seed).getrandbits(32)
+    if SCENES[scene].kind == "update":
+        case.updates = 1 + seed % 4
     return tidy(case, SCENES[scene])
 
 
@@ -293,7 +303,7 @@ SAMPLES = {
     "plan_16_3": ("plan, 16 candidates, 3 threats", 800, lambda seed: _sample("plan_16_3", seed, 3, 0, 2, 0)),
     "plan_typical": ("plan, 32 candidates, 1 to 6 tracks, up to 3 obstacles, up to 9 further attempts", 300,
                      lambda seed: _sample("plan_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
-    "update_typical": ("update, the same", 300, lambda seed: _sample("update_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
+    "update_typical": ("update, the same; the first to fourth of a row", 300, lambda seed: _sample("update_full", seed, 1 + seed % 6, seed // 6 % 4, 4, 8)),
     "plan_full": ("plan, 32 candidates, 32 tracks, 96 obstacles", 80, lambda seed: _sample("plan_full", seed, 32, 96, 4, 8)),
     "reach_typical": ("decision with reach sets, 1 to 6 tracks, up to 3 obstacles", 300,
                       lambda seed: _sample("reach_full", seed, 1 + seed % 6, seed // 6 % 4, 2, 0)),
@@ -301,7 +311,7 @@ SAMPLES = {
     "orca_typical": ("reciprocal decision, 1 to 6 tracks, up to 3 obstacles", 300,
                      lambda seed: _sample("orca_full", seed, 1 + seed % 6, seed // 6 % 4, 2, 0)),
     "orca_16_16": ("reciprocal decision, 16 tracks and 16 obstacles", 300, lambda seed: _sample("orca_16_16", seed, 16, 16, 2, 0)),
-    "update_full": ("update, the same", 80, lambda seed: _sample("update_full", seed, 32, 96, 4, 8)),
+    "update_full": ("update, the same; the first to fourth of a row", 80, lambda seed: _sample("update_full", seed, 32, 96, 4, 8)),
 }
 
 # Scenarios whose flown steps are counted.

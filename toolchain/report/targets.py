@@ -7,15 +7,15 @@ import struct
 import subprocess
 import tempfile
 
-MAGIC = 0x4A504204
+MAGIC = 0x4A504205
 TRACKS = 32
 OBSTACLES = 96
-HEADER = struct.Struct("<10I20f2I8f2I")
+HEADER = struct.Struct("<13I20f2I8f2I")
 TRACK = struct.Struct("<10f")
 OBSTACLE = struct.Struct("<I8f")
 ANSWER = struct.Struct("<8I5fI")
 KINDS = {"plan": 0, "update": 1, "info": 2, "reach": 3, "reciprocal": 4}
-STATUS = ["found", "no_conflict", "too_close", "none_available", "budget_spent", "bad_input"]
+STATUS = ["found", "no_conflict", "too_close", "none_available", "budget_spent", "bad_input", "running"]
 
 
 @dataclasses.dataclass
@@ -31,6 +31,9 @@ class Case:
     bounds: int = 0
     reduced_sets: int = 0
     shared: int = 0  # bit i: track i is cooperative
+    clock: int = 0  # of an update: its work is for this clock [MHz], in slices; 0: the default, at once
+    updates: int = 1  # of an update: how many, 20 ms apart; the last one is counted
+    methods: int = 0  # of an update: sum of 1 geometric, 2 reach sets, 4 reciprocal; 0: all
     own_position: tuple = (0.0, 0.0, 30.0)
     own_velocity: tuple = (5.0, 0.0, 0.0)
     own_sigma: float = 0.1
@@ -51,7 +54,7 @@ class Case:
 
     def pack(self):
         out = HEADER.pack(MAGIC, self.seed, KINDS[self.kind], self.offsets, self.extra_planes, self.families, self.retries,
-                          self.bounds, self.reduced_sets, self.shared, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
+                          self.bounds, self.reduced_sets, self.shared, self.clock, self.updates, self.methods, *self.own_position, *self.own_velocity, self.own_sigma, *self.leg_start,
                           *self.leg_end, self.leg_speed, *self.half, self.floor, self.ceiling, self.keep_in,
                           self.waypoints, self.swept, self.lookahead, self.k_sigma, *self.limits, len(self.tracks), len(self.obstacles))
         for position, velocity, *rest in self.tracks:

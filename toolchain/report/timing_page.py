@@ -15,10 +15,14 @@ CYCLES = 1.5
 # From avoid::Settings; margin for cases that the hunt has not found, on instructions outside the work units; the
 # watchdog that ends a hanging step, and its time-out [ms].
 SETTINGS = pathlib.Path(__file__).resolve().parents[2] / "core/avoid/settings.hpp"
-UNITS = int(re.search(r"\bbudget = (\d+);", SETTINGS.read_text(encoding="utf-8"))[1])
+UNITS = int(re.search(r"\ball = (\d+);", SETTINGS.read_text(encoding="utf-8"))[1])  # where no clock is known
+# firmware/app/work_rate.hpp
+RATE = pathlib.Path(__file__).resolve().parents[2] / "firmware/app/work_rate.hpp"
+UNCOUNTED, SHARE, MANDATORY = (int(re.search(rf"\b{name} =\s+([\d']+);", RATE.read_text(encoding="utf-8"))[1].replace("'", ""))
+                               for name in ("kUncounted", "kSharePercent", "kMandatoryPercent"))
 MARGIN = 2
 ENDS = {"mps2_an500": ("watchdog", 250), "stm32f405": ("step guard", 150)}
-CLOCKS = {"mps2_an500": (216, 480), "stm32f405": (168,)}
+CLOCKS = {target: (clock, *([records.FASTER] if target == "mps2_an500" else [])) for target, clock in records.CLOCKS.items()}
 
 
 def number(n):
@@ -102,27 +106,59 @@ def plan_bound(of, scene):
     return round(plan_units(scene) * most + MARGIN * fixed)
 
 
+def units_of(kept, target):
+    """Work units of an update or step: all, and of those of planning alone."""
+    rate = kept["rates"].get(str(records.CLOCKS.get(target)))
+    return (rate["units"], rate["slice"]) if rate else (UNITS, 0)
+
+
 def composed(kept, target):
-    """Budgeted work units of an update or step, most instructions per unit, and instructions outside the units."""
+    """The most instructions of an update or step, the same of its mandatory part, most instructions per unit found, and the most
+    instructions found outside the units."""
     of, typical = kept["targets"][target]["records"], kept["targets"][target]["typical"]
     most = records.MOST_PER_UNIT
     counted = {n: v for n, v in of.items() if n.split("_")[0] in ("update", "step")}
     per_unit = max((v["instructions"] / v["work"] for v in counted.values() if v["work"] >= 1000), default=0.0)
     steps = [v.get("uncounted", 0) for n, v in typical.items() if n.startswith(("update", "step"))]
     fixed = max([0, *steps, *(v["instructions"] - most * v["work"] for v in counted.values() if v["work"] < 1000)])
-    return round(UNITS * max(most, per_unit) + MARGIN * fixed), per_unit, fixed
+    units, planning = units_of(kept, target)
+    each, beside = max(most, per_unit), max(UNCOUNTED, MARGIN * fixed)
+    return round(units * each + beside), round((units - planning) * each + beside), per_unit, fixed
+
+
+def worst_steps(kept, target):
+    """The most expensive step and update found, in flights and crowds and by hunts."""
+    typical = kept["targets"][target]["typical"]
+    found = [worst_of(kept, s, target)[1]["instructions"] for s in ("step_full", "update_full", "update_solids") if worst_of(kept, s, target)[0]]
+    return max(found + [v["most"] for n, v in typical.items() if n.startswith(("step", "update"))])
+
+
+def _table_verdict(kept):
+    yield row("board", "clock", "instructions in a tick of 20 ms", "work units of a step, of those for planning", "bound of a step", "of the tick", "its mandatory part",
+              "of the tick", "worst step found", "of the tick", f"verdict: {SHARE} % and {MANDATORY} % of the tick are the limits")
+    yield row(*["---"] * 11)
+    for target in records.CLOCKS:
+        step, mandatory, _, _ = composed(kept, target)
+        units, planning = units_of(kept, target)
+        worst = worst_steps(kept, target)
+        for clock in CLOCKS[target]:
+            tick = kept["rates"][str(clock)]["instructions"]
+            share = [100 * n / tick for n in (step, mandatory, worst)]
+            fits = share[0] <= SHARE and share[1] <= MANDATORY
+            yield row(target, f"{clock} MHz", number(tick), f"{number(units)}, {number(planning)}", number(step), f"{share[0]:.1f} %", number(mandatory), f"{share[1]:.1f} %",
+                      number(worst), f"{share[2]:.1f} %", "fits" if fits else "**does not fit**")
 
 
 def _table_composed(kept):
-    yield row("update and step", "most instructions per unit found", "most that no unit counts", "composed bound", "worst step found", "worst update found",
-              "as time, estimated", "ended after")
+    yield row("update and step", "work units", "most instructions per unit found", "most that no unit counts", "composed bound", "worst step found", "worst update found",
+              "ended after")
     yield row(*["---"] * 8)
     for target in records.TARGETS:
-        most, per_unit, fixed = composed(kept, target)
-        clock, end = CLOCKS.get(target, (None,))[0], ENDS.get(target)
-        yield row(target, number(round(per_unit)), number(fixed), number(most),
+        most, _, per_unit, fixed = composed(kept, target)
+        end = ENDS.get(target)
+        yield row(target, number(units_of(kept, target)[0]), number(round(per_unit)), number(fixed), number(most),
                   *(number(worst_of(kept, s, target)[1]["instructions"]) for s in ("step_full", "update_full")),
-                  f"{most * CYCLES / clock / 1000:.0f} ms at {clock} MHz" if clock else "", f"{end[1]} ms, by the {end[0]}" if end else "")
+                  f"{end[1]} ms, by the {end[0]}" if end else "")
 
 
 def _goals(kept):
@@ -161,11 +197,13 @@ def _on_host():
 
 
 def generated(kept):
-    lines = [BEGIN, "", "## Worst found", "", *_table_worst(kept), "", *_goals(kept), "",
+    lines = [BEGIN, "", "## Does a step fit into its tick?", "", *_table_verdict(kept), "",
+             f"At {CYCLES} cycles an instruction, which is assumed: no board has been timed. Interrupts are not in it.", "", "## Worst found", "", *_table_worst(kept), "", *_goals(kept), "",
              "![distribution](plan_16_3.svg)", "", "## The bound above", "", *_table_bound(kept), "",
-             f"A step is bounded by its work alone. What its budget allows, composed of what is counted: {number(UNITS)} units (avoid::Settings::budget) at {records.MOST_PER_UNIT} "
-             f"instructions each, or at the most that was found in any record of an update or a step where that is more; and {MARGIN} times the most that any counted "
-             f"update or step took beyond {records.MOST_PER_UNIT} a unit, which is what no unit counts: the link, the tables, the flight of the tick.", "",
+             f"A step is bounded by its work alone: its units at {records.MOST_PER_UNIT} instructions each, or at the most that was found in any record of an update or a step "
+             f"where that is more; and {number(UNCOUNTED)} instructions for what no unit counts (the link, the tables, the snapshot of a plan, the flight of the tick), or {MARGIN} times "
+             f"the most that was found of that where that is more. The images' units come from their clocks (firmware/app/work_rate.hpp). ARM Linux has {number(UNITS)} where jinkd "
+             "is told no clock.", "",
              *_table_composed(kept), "", "## Where they go", "", "![stages of the worst](stages_worst.svg)", "",
              "Of the random problems, on average:", "", "![stages of random problems](stages_typical.svg)", "", "## Typical, and full capacity at random", "",
              *_table_typical(kept), "", "![distribution](update_typical.svg)", "", "## As time: an estimate", "",

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "firmware/app/reach_sets.hpp"
+#include "firmware/app/work_rate.hpp"
 #include "toolchain/sim/fan.hpp"
 
 namespace jink::sim {
@@ -25,6 +26,13 @@ Bench::Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& s
       coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, setup.parameters, setup.bus)),
       planner_(setup.planner)
 {
+    if (setup.clock != 0) {
+        if (setup.cloud != nullptr) {
+            throw std::runtime_error("reach sets see a LiDAR's points, which change while a plan goes on: no clock");
+        }
+        plan_memory_ = std::make_unique<app::PlanMemory>();
+        coprocessor_->plan_in_slices(plan_memory_->plan, app::WorkRate::of_megahertz(setup.clock).work());
+    }
     if (setup.cloud != nullptr) {
         clouds_ = std::make_unique<app::CloudInput>(setup.cloud);
         picture_ = std::make_unique<app::ReachPicture>(app::reach_sets());

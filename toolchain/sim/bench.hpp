@@ -9,6 +9,7 @@
 
 #include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
+#include "firmware/app/plan_memory.hpp"
 #include "firmware/app/reach_picture.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "toolchain/sim/record.hpp"
@@ -41,6 +42,7 @@ struct BenchSetup {
     std::uint8_t system = 0;           ///< system id of its autopilot; 0: the first autopilot received
     link::SensorBus* bus = nullptr;    ///< outlives the bench
     hal::SerialPort* cloud = nullptr;  ///< a LiDAR's line; outlives the bench
+    unsigned clock = 0;                ///< Scenario::clock
 };
 
 /// The co-processor in this process, with a stopwatch.
@@ -71,6 +73,7 @@ private:
     link::mavlink::Endpoint endpoint_;
     std::unique_ptr<app::CloudInput> clouds_;
     std::unique_ptr<app::ReachPicture> picture_;
+    std::unique_ptr<app::PlanMemory> plan_memory_;
     std::unique_ptr<app::Coprocessor> coprocessor_;
     PlannerKind planner_;
     std::uint32_t generation_ = 0;

@@ -148,6 +148,7 @@ Scenario encounter_scenario(std::uint64_t seed, const Variant& variant)
 {
     Scenario scenario = open_encounter(seed);
     scenario.planner = variant.planner;
+    scenario.clock = variant.clock;
     for (const auto& [name, value] : variant.parameters) {
         scenario.parameters[name] = value;
     }

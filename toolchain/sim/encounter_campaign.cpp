@@ -126,8 +126,10 @@ std::pair<std::string, double> parse_parameter(const std::string& text)
 std::string EncounterSetup::manifest() const
 {
     std::ostringstream text;
-    text << kKind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << "\nseeds "
-         << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources " << source_digest() << "\n";
+    const std::string clock = variant.clock == 0 ? "" : "\nclock " + number(variant.clock);
+    text << kKind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << clock
+         << "\nseeds " << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources "
+         << source_digest() << "\n";
     return text.str();
 }
 
@@ -170,6 +172,7 @@ FolderSetup read_setup(const BlockFolder& folder)
         throw BadFolder(folder.path().string() + " is no folder of encounters");
     }
     setup.variant.planner = values["planner"] == "product" ? PlannerKind::product : PlannerKind::source;
+    static_cast<void>(values.count("clock") == 0 || read(values["clock"], setup.variant.clock));
     std::istringstream parameters(values["set"]);
     for (std::string word; parameters >> word;) {
         const auto [name, value] = parse_parameter(word);

@@ -233,8 +233,10 @@ Results worst_of(Results results)
 std::string summary_text(const FolderSetup& setup, const Results& results)
 {
     std::string text;
-    line(text, "%zu encounters, seeds %s, planner %s%s\n", results.size(), setup.seeds_text.c_str(),
-         std::string(to_string(setup.variant.planner)).c_str(), parameters_text(setup.variant).c_str());
+    const std::string clock =
+        setup.variant.clock == 0 ? "" : ", work of a step for " + std::to_string(setup.variant.clock) + " MHz";
+    line(text, "%zu encounters, seeds %s, planner %s%s%s\n", results.size(), setup.seeds_text.c_str(),
+         std::string(to_string(setup.variant.planner)).c_str(), parameters_text(setup.variant).c_str(), clock.c_str());
     if (results.empty()) {
         return text;
     }

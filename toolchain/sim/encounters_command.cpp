@@ -9,7 +9,17 @@
 
 #include <CLI/CLI.hpp>
 
+#include "firmware/app/work_rate.hpp"
+
 namespace jink::sim {
+
+CLI::Option* add_clock(CLI::App& command, unsigned& clock)
+{
+    return command
+        .add_option("--clock", clock,
+                    "work of a step for a processor with this clock, plans going on over several steps [MHz]")
+        ->check(CLI::Range(app::WorkRate::kLeastMegahertz, app::WorkRate::kMostMegahertz));
+}
 
 CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads)
 {
@@ -32,12 +42,13 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
             ->check(CLI::IsMember({"product", "source"}));
     CLI::Option* const set = command->add_option("--set", options.parameters,
                                                  "NAME=VALUE: a parameter of the co-processor, any number of them");
+    CLI::Option* const clock = add_clock(*command, options.clock);
     CLI::Option* const out =
         command->add_option("--out", options.out, "folder of the blocks; what is finished there stays as it is");
     CLI::Option* const summary =
         command->add_option("--summary", options.summary, "flies nothing: summarises the blocks of this folder anew")
             ->check(CLI::ExistingDirectory);
-    for (CLI::Option* const other : {from, count, seeds, block, planner, set, out}) {
+    for (CLI::Option* const other : {from, count, seeds, block, planner, set, clock, out}) {
         summary->excludes(other);
     }
     if (with_threads) {
@@ -57,6 +68,7 @@ EncounterSetup setup_of(const EncountersOptions& options)
     EncounterSetup setup =
         options.seed_file.empty() ? consecutive_setup(options.from, options.count) : listed_setup(options.seed_file);
     setup.block = options.block;
+    setup.variant.clock = options.clock;
     setup.variant.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
     for (const std::string& text : options.parameters) {
         const auto [name, value] = parse_parameter(text);

@@ -10,7 +10,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace jink::sim {
 
@@ -21,12 +22,16 @@ struct EncountersOptions {
     std::size_t block = 100;
     std::string seed_file;
     std::string planner = "product";
+    unsigned clock = 0;                   ///< Scenario::clock
     std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;
     std::string summary;   ///< folder to summarise; nothing is flown
     unsigned threads = 0;  ///< 0: number of cores
     bool quiet = false;
 };
+
+/// Adds a command's option --clock: Scenario::clock.
+CLI::Option* add_clock(CLI::App& command, unsigned& clock);
 
 /// Adds the command's options. @param with_threads  false where processes share the work
 CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads);

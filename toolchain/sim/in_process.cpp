@@ -22,7 +22,10 @@ constexpr std::int64_t kClockStart = 1'234'567'890;
 /// Records the bytes that each step reads and writes on a line.
 class Tap final : public hal::SerialPort {
 public:
-    Tap(hal::SerialPort& line, std::ostream* steps) : line_(line), steps_(steps) {}
+    Tap(hal::SerialPort& line, std::ostream* steps, unsigned clock)
+        : line_(line), steps_(steps), start_(kStartsAnew | clock * kStepClock)
+    {
+    }
 
     [[nodiscard]] std::size_t read(std::span<std::byte> into) noexcept override
     {
@@ -42,7 +45,7 @@ public:
     void note(TimePoint now)
     {
         if (steps_ != nullptr) {
-            const StepRecord record{kStepMagic, first_ ? 1U : 0U, now.us, static_cast<std::uint32_t>(in_.size()),
+            const StepRecord record{kStepMagic, first_ ? start_ : 0U, now.us, static_cast<std::uint32_t>(in_.size()),
                                     static_cast<std::uint32_t>(out_.size())};
             steps_->write(reinterpret_cast<const char*>(&record), sizeof record);
             steps_->write(reinterpret_cast<const char*>(in_.data()), static_cast<std::streamsize>(in_.size()));
@@ -56,6 +59,7 @@ public:
 private:
     hal::SerialPort& line_;
     std::ostream* steps_;
+    std::uint32_t start_;
     bool first_ = true;
     std::vector<std::byte> in_;
     std::vector<std::byte> out_;
@@ -115,9 +119,10 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
     hal::ManualClock clock(kClockStart);
     hal::CountingWatchdog watchdog;
     const auto cable = std::make_unique<Cable>(clock, scenario.seed, timing);
-    Tap tap(cable->port(), steps);
+    Tap tap(cable->port(), steps, scenario.clock);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
-    Bench bench(tap, watchdog, {.planner = scenario.planner, .parameters = {}, .cloud = lidar.get()});
+    Bench bench(tap, watchdog,
+                {.planner = scenario.planner, .parameters = {}, .cloud = lidar.get(), .clock = scenario.clock});
     return fly(scenario, timing, clock, *cable, bench, tap, lidar.get());
 }
 
@@ -131,10 +136,14 @@ Record fly_through_tunnel(const Scenario& scenario)
     hal::ManualClock clock(kClockStart);
     hal::CountingWatchdog watchdog;
     const auto line = std::make_unique<TunnelLine>(clock, scenario.seed);
-    Tap tap(line->bus().serial(), nullptr);
+    Tap tap(line->bus().serial(), nullptr, scenario.clock);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
     Bench bench(tap, watchdog,
-                {.planner = scenario.planner, .parameters = {}, .bus = &line->bus(), .cloud = lidar.get()});
+                {.planner = scenario.planner,
+                 .parameters = {},
+                 .bus = &line->bus(),
+                 .cloud = lidar.get(),
+                 .clock = scenario.clock});
     Record record = fly(scenario, Timing{}, clock, *line, bench, tap, lidar.get());
     record.transport = "tunnel";
     return record;

@@ -10,6 +10,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "firmware/app/work_rate.hpp"
 #include "toolchain/sim/daemon.hpp"
 #include "toolchain/sim/encounters_command.hpp"
 #include "toolchain/sim/envelope.hpp"
@@ -43,6 +44,7 @@ struct Options {
     unsigned count = 50;
     std::uint64_t seed = 1;
     unsigned at_once = 24;
+    unsigned clock = 0;  ///< Scenario::clock
     bool quiet = false;
     bool judge = false;
     bool within_phases = false;
@@ -60,11 +62,12 @@ fs::path find_daemon()
     throw std::runtime_error("jinkd is not where this program is; say where with --daemon");
 }
 
-std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_time)
+std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_time, unsigned clock)
 {
     std::vector<Scenario> scenarios;
     for (const std::string& file : files) {
         scenarios.push_back(load_scenario(file));
+        scenarios.back().clock = clock;
         if (const std::string reason = no_input_for(scenarios.back()); real_time && !reason.empty()) {
             std::cout << scenarios.back().name << ": left out, " << reason << "\n";
             scenarios.pop_back();
@@ -189,7 +192,7 @@ int fly(const Options& options)
 {
     std::vector<ReportedFlight> flights;
     const bool in_process = options.daemon.empty() && options.image.empty();
-    const std::vector<Scenario> scenarios = load_all(options.files, !in_process);
+    const std::vector<Scenario> scenarios = load_all(options.files, !in_process, options.clock);
     const bool tunnel = options.link == "tunnel";
     if (in_process) {
         for (const Scenario& scenario : scenarios) {
@@ -218,7 +221,7 @@ int demo(const Options& options)
     for (const fs::path& file : scenario_files(options.scenarios)) {
         files.push_back(file.string());
     }
-    const std::vector<Scenario> scenarios = load_all(files, true);
+    const std::vector<Scenario> scenarios = load_all(files, true, 0);
     std::cout << scenarios.size() << " scenarios in real time against " << computer.program.filename().string() << ", "
               << options.at_once << " at once ..." << std::endl;
     std::vector<Record> records = fly_daemons(scenarios, computer, log_folder(options), options.at_once);
@@ -245,11 +248,22 @@ int demo(const Options& options)
 
 int random(const Options& options) { return finish(options, fly_random(options.seed, options.count, 2)); }
 
+/// Of each clock [MHz]: instructions of a tick, work units of a step, and of those of its slice.
+int rates(const std::vector<unsigned>& clocks)
+{
+    for (const unsigned clock : clocks) {
+        const jink::app::WorkRate rate = jink::app::WorkRate::of_megahertz(clock);
+        std::cout << clock << ' ' << rate.instructions() << ' ' << rate.work().all << ' ' << rate.work().slice << '\n';
+    }
+    return EXIT_SUCCESS;
+}
+
 int crowd(const Options& options)
 {
     std::vector<ReportedFlight> flights;
     for (unsigned i = 0; i < options.count; ++i) {
-        const Scenario scenario = crowded_scenario(options.seed + i);
+        Scenario scenario = crowded_scenario(options.seed + i);
+        scenario.clock = options.clock;
         flights.push_back(report_on(scenario, fly_recorded(scenario, options.steps), false));
     }
     return finish(options, flights);
@@ -281,6 +295,7 @@ int main(int argc, char** argv)
     for (CLI::App* command : {fly_command, crowd_command}) {
         command->add_option("--record-steps", options.steps,
                             "in process: folder for NAME.steps, what each step read and wrote");
+        add_clock(*command, options.clock);
     }
     for (CLI::App* command : {fly_command, demo_command}) {
         CLI::Option* const daemon =
@@ -315,6 +330,13 @@ int main(int argc, char** argv)
         command->add_option("--out", options.out, "folder for run.json and the daemon's logs");
         command->add_flag("--quiet", options.quiet, "no table");
     }
+    std::vector<unsigned> clocks;
+    CLI::App* const rates_command = cli.add_subcommand(
+        "rates", "the work of a step for processors with these clocks: each clock [MHz], instructions "
+                 "of a tick, work units of a step, and of those of its slice");
+    rates_command->add_option("clocks", clocks)
+        ->required()
+        ->check(CLI::Range(jink::app::WorkRate::kLeastMegahertz, jink::app::WorkRate::kMostMegahertz));
     EncountersOptions encounters;
     const CLI::App& encounters_command = add_encounters(cli, encounters, true);
     SwarmOptions swarm;
@@ -337,6 +359,9 @@ int main(int argc, char** argv)
         }
         if (swarm_command.parsed()) {
             return run_swarm(swarm);
+        }
+        if (rates_command->parsed()) {
+            return rates(clocks);
         }
         if (replay_command.parsed()) {
             return run_replay(recording, std::cout, std::cerr);

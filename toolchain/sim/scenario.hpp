@@ -125,6 +125,9 @@ struct Scenario {
     Wind wind;
     std::optional<LidarSensor> lidar;
     std::map<std::string, double> parameters;  ///< set at the start, verified
+    /// The co-processor's clock [MHz]: its steps do as much work as fits into a tick there (app::WorkRate), and plans
+    /// go on over several steps; 0: as the program jinkd does.
+    unsigned clock = 0;
     Faults faults;
     Expectation expect;
 };

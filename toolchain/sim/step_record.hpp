@@ -15,9 +15,15 @@ inline constexpr std::uint32_t kStepMagic = 0x4A535201;  // "JSR", layout 1
 /// Largest number of bytes per step and direction: the read limit of one step, and the size of the transmit buffer.
 inline constexpr std::uint32_t kStepBytes = 4096;
 
+inline constexpr std::uint32_t kStartsAnew = 1;
+inline constexpr std::uint32_t kStartsWithoutReachSets = 2;
+inline constexpr std::uint32_t kStepClock = 0x10000;
+
 struct StepRecord {
     std::uint32_t magic;
-    std::uint32_t start;      ///< 1: the co-processor restarts before this step; 2: restarts without reach sets
+    /// Not 0: the co-processor starts anew before this step; the sum of kStartsAnew or kStartsWithoutReachSets, and its
+    /// clock (Scenario::clock) times kStepClock.
+    std::uint32_t start;
     std::int64_t now_us;      ///< the step's time
     std::uint32_t bytes_in;   ///< bytes that the step reads
     std::uint32_t bytes_out;  ///< bytes that the step wrote in the recorded flight

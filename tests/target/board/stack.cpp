@@ -4,7 +4,7 @@
 //
 //   jink_board_stack IMAGE MACHINE SCENARIO
 //
-// Prints "stack BYTES", and the takeovers of the flight.
+// Prints "stack BYTES", "plan stack BYTES", and the takeovers of the flight.
 #include <algorithm>
 #include <cstdio>
 
@@ -21,6 +21,8 @@ int main(int argc, char** argv)
         return 2;
     }
     constexpr std::uint8_t kPaint = 0xC5;
+    constexpr std::uint8_t kPlanPaint = 0xA5;         // hal::Fiber
+    constexpr std::uint32_t kPlanStack = 8U * 1024U;  // app::PlanMemory
     std::string folder_name = "/tmp/jink_board_XXXXXX";
     const std::filesystem::path folder = ::mkdtemp(folder_name.data());
     int status = 1;
@@ -33,7 +35,10 @@ int main(int argc, char** argv)
         const std::uint32_t bottom = board.symbol("_stack_bottom");
         const auto bytes = board.debugger().read(bottom, board.symbol("_stack_top") - bottom);
         const auto touched = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t b) { return b != kPaint; });
-        std::printf("stack %td\ntakeovers %u\n", bytes.end() - touched, board.plant().autopilot().takeovers());
+        const auto plan = board.debugger().read(board.symbol("_plan_bottom_emulated"), kPlanStack);
+        const auto planned = std::find_if(plan.begin(), plan.end(), [](std::uint8_t b) { return b != kPlanPaint; });
+        std::printf("stack %td\nplan stack %td\ntakeovers %u\n", bytes.end() - touched, plan.end() - planned,
+                    board.plant().autopilot().takeovers());
         status = touched == bytes.end() ? 1 : 0;  // nothing used: not a valid flight
     } catch (const std::exception& e) {
         std::printf("%s: %s\n", argv[3], e.what());

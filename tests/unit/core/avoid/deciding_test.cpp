@@ -134,12 +134,12 @@ TEST(LatestManoeuvreTime, IsNeverLaterThanTheStop)
 
 // --- work ---
 
-TEST(PlanBudget, IsWhatIsLeftWhereThatIsLess)
+TEST(PlanBudget, IsTheSliceAndWhatIsNotKeptForAFallback)
 {
     Flight f;
     head_on(f);
     Settings settings = quick();
-    settings.budget = settings.plan_budget = 1000;
+    settings.work = {4000, 1000};
     settings.kept_for_next = 0;
     std::vector<std::uint32_t> had;
     FakeMethod method{[&](const Situation&, WorkBudget& budget, Manoeuvre&) {
@@ -148,8 +148,12 @@ TEST(PlanBudget, IsWhatIsLeftWhereThatIsLess)
     }};
     const Guidance g = once(f, settings, method);
     ASSERT_EQ(had.size(), 2U) << "for a wider vehicle, then as it is";
-    EXPECT_EQ(had[0], 1000U - g.work) << "the search for conflicts took its share";
-    EXPECT_LE(g.work, 1000U);
+    constexpr std::uint32_t kKept = 600 + 500;  // one threat
+    EXPECT_EQ(had[0], 4000U - kKept - g.work) << "the search for conflicts took its share";
+    settings.work = {2000, 1000};
+    had.clear();
+    static_cast<void>(once(f, settings, method));
+    EXPECT_EQ(had[0], 1000U) << "the slice alone";
 }
 
 TEST(PlanBudget, ExhaustedByTheFirstOfTwoPlansIsCounted)
@@ -193,15 +197,16 @@ TEST(Budget, ExhaustedByAFallbackIsCounted)
         f.scene.track(Vec3(9, 0.2F * static_cast<float>(i % 5), 30), Vec3(-3, 0, 0), 1.0F);
     }
     Settings settings = quick();
-    settings.budget = 3000;
+    settings.work = {4000, 1000};
     settings.plan_budget = settings.kept_for_next = 100;
     FakeMethod method = never();
     Supervisor supervisor(settings, method);
     const Guidance g = f.update(supervisor, true);
     EXPECT_EQ(g.state, State::braking);
-    EXPECT_EQ(g.work, 3000U);
+    EXPECT_GT(g.work, 2000U);
+    EXPECT_LT(g.work, 3000U) << "the rest is kept for what is checked after a fallback";
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 1U);
-    EXPECT_EQ(supervisor.diagnostics().most_work, 3000U);
+    EXPECT_EQ(supervisor.diagnostics().most_work, g.work);
     f.scene.tracks.clear();
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 1U);

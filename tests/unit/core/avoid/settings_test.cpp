@@ -63,59 +63,22 @@ INSTANTIATE_TEST_SUITE_P(Of, SettingsRanges, testing::ValuesIn(kRanges),
 
 TEST(SettingsOfBudgets, HoldTheirEnds)
 {
-    const auto takes = [](std::uint32_t budget, std::uint32_t plan, std::uint32_t kept) {
+    const auto takes = [](WorkPerUpdate work, std::uint32_t plan, std::uint32_t kept) {
         Settings s;
-        s.budget = budget;
+        s.work = work;
         s.plan_budget = plan;
         s.kept_for_next = kept;
         return is_valid(s);
     };
-    EXPECT_TRUE(takes(1000, 1000, 1000)) << "a plan may have all of it, and keep all of that back";
-    EXPECT_TRUE(takes(1000, 100, 100));
-    EXPECT_FALSE(takes(999, 100, 100));
-    EXPECT_FALSE(takes(1000, 99, 0));
-    EXPECT_FALSE(takes(1000, 1001, 0));
-    EXPECT_FALSE(takes(1000, 500, 501));
-}
-
-TEST(MethodOrder, HoldsEachIdOnceAndNeverZero)
-{
-    MethodOrder order;
-    EXPECT_TRUE(order.empty());
-    EXPECT_EQ(order.size(), 0U);
-    EXPECT_FALSE(order.contains(0)) << "0 is the end of it";
-    EXPECT_FALSE(order.try_add(0));
-    for (std::uint8_t id = 1; id <= kMaxMethods; ++id) {
-        EXPECT_TRUE(order.try_add(id));
-        EXPECT_FALSE(order.try_add(id)) << "again";
-        EXPECT_EQ(order.size(), id);
-        EXPECT_TRUE(order.contains(id));
-    }
-    EXPECT_FALSE(order.try_add(kMaxMethods + 1)) << "full";
-    EXPECT_EQ(order.ids().size(), kMaxMethods);
-    EXPECT_EQ(order.ids().back(), kMaxMethods);
-    const std::uint8_t one = 1;
-    const std::uint8_t two = 2;
-    EXPECT_EQ(MethodOrder(two, one, two), MethodOrder(two, one)) << "an id that comes again counts once";
-    EXPECT_NE(MethodOrder(two, one), MethodOrder(one, two));
-}
-
-TEST(Settings, ThatAreRefusedChangeNothing)
-{
-    FakeMethod method = never();
-    Settings first;
-    first.commit = 11.0F;
-    Supervisor supervisor(first, method);
-    Settings bad;
-    bad.commit = 12.0F;
-    bad.clear_extra = -1.0F;
-    EXPECT_FALSE(supervisor.configure(bad));
-    EXPECT_EQ(supervisor.settings().commit, 11.0F);
-    EXPECT_EQ(supervisor.settings().clear_extra, first.clear_extra);
-    bad.clear_extra = 1.0F;
-    EXPECT_TRUE(supervisor.configure(bad));
-    EXPECT_EQ(supervisor.settings().commit, 12.0F);
-    EXPECT_EQ(supervisor.settings().clear_extra, 1.0F);
+    EXPECT_TRUE(takes({2000, 1000}, 1000, 1000)) << "a method may keep all of a plan back for the next";
+    EXPECT_TRUE(takes({2000, 1000}, 100, 100));
+    EXPECT_TRUE(takes({2000, 1000}, 50'000, 100)) << "a plan may take many updates";
+    EXPECT_FALSE(takes({2000, 999}, 100, 100)) << "a slice has to hold the largest piece of work";
+    EXPECT_FALSE(takes({1999, 1000}, 100, 100)) << "the mandatory part needs its own";
+    EXPECT_FALSE(takes({0, 1000}, 100, 100));
+    EXPECT_FALSE(takes({0xFFFFFFFF, 0xFFFFFFFF}, 100, 100));
+    EXPECT_FALSE(takes({2000, 1000}, 99, 0));
+    EXPECT_FALSE(takes({2000, 1000}, 500, 501));
 }
 
 }  // namespace

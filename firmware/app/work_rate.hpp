@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+#include "core/avoid/settings.hpp"
+#include "firmware/app/autopilot_control.hpp"
+
+namespace jink::app {
+
+/// From a processor's clock to the work units of a step: the one place where they are derived. toolchain/report/timing
+/// prints what follows for each board, and fails where what it counts is more than what is assumed here.
+///
+/// instructions = clock * tick / kCyclesPerInstruction; of those kShare for a step, of those kUncounted for what no
+/// unit counts, and kInstructionsPerUnit for each unit. The mandatory part of a step has kMandatoryShare at most.
+class WorkRate {
+public:
+    /// Assumed, on average, with caches cold and flash that waits: no board has been timed.
+    static constexpr std::uint64_t kCyclesPerInstructionBy10 = 15;
+    static constexpr std::uint64_t kSharePercent = 80;  ///< the rest: interrupts, and what the assumption misses
+    static constexpr std::uint64_t kMandatoryPercent = 50;
+    static constexpr std::uint64_t kInstructionsPerUnit = 170;  ///< at most (WorkBudget)
+    static constexpr std::uint64_t kUncounted =
+        130'000;  ///< link, tables, the flight of the tick: twice the most found
+
+    /// `clock` [Hz].
+    explicit constexpr WorkRate(std::uint32_t clock) noexcept
+        : instructions_(clock / 1000U * 10U * kTickMilliseconds / kCyclesPerInstructionBy10)
+    {
+    }
+
+    [[nodiscard]] static constexpr WorkRate of_megahertz(unsigned clock) noexcept
+    {
+        return WorkRate(clock * 1'000'000U);
+    }
+    /// The least clock [MHz] that leaves time for anything.
+    static constexpr unsigned kLeastMegahertz = 100;
+    static constexpr unsigned kMostMegahertz = 4000;  ///< what 32 bits hold [Hz]
+
+    /// Instructions that fit into a tick.
+    [[nodiscard]] constexpr std::uint64_t instructions() const noexcept { return instructions_; }
+    [[nodiscard]] constexpr avoid::WorkPerUpdate work() const noexcept
+    {
+        const std::uint32_t all = units(kSharePercent);
+        return {all, all - units(kMandatoryPercent)};
+    }
+    /// Most instructions of a step that spends all of `work`.
+    [[nodiscard]] static constexpr std::uint64_t most(const avoid::WorkPerUpdate& work) noexcept
+    {
+        return work.all * kInstructionsPerUnit + kUncounted;
+    }
+    /// Whether a step, and its mandatory part alone, keep within their shares of the tick.
+    [[nodiscard]] constexpr bool has_time_for(const avoid::WorkPerUpdate& work) const noexcept
+    {
+        const avoid::WorkPerUpdate mandatory{work.all - work.slice, 0};
+        return most(work) <= instructions_ * kSharePercent / 100 &&
+               most(mandatory) <= instructions_ * kMandatoryPercent / 100;
+    }
+
+private:
+    static constexpr std::uint64_t kTickMilliseconds =
+        static_cast<std::uint64_t>(AutopilotControl::kTick * 1000.0F + 0.5F);
+
+    [[nodiscard]] constexpr std::uint32_t units(std::uint64_t percent) const noexcept
+    {
+        const std::uint64_t share = instructions_ * percent / 100;
+        return share > kUncounted ? static_cast<std::uint32_t>((share - kUncounted) / kInstructionsPerUnit) : 0;
+    }
+
+    std::uint64_t instructions_;
+};
+
+static_assert(avoid::is_valid(WorkRate::of_megahertz(WorkRate::kLeastMegahertz).work()));
+/// What is done where nothing else is said is for processors from this clock on [Hz].
+inline constexpr std::uint32_t kLeastClockOfDefault = 1'000'000'000;
+static_assert(WorkRate(kLeastClockOfDefault).has_time_for(avoid::WorkPerUpdate{}));
+
+}  // namespace jink::app
