@@ -87,11 +87,10 @@ world::Separation check_manoeuvre(const world::Situation& situation, const world
         }
         path::predict_velocity_command(s.own, manoeuvre.command, rest, step, s.limits, flight);
     } else {
-        if (!budget.spend(detail::prediction_units(rest, path::kSetpointPeriod, units::kFlightPart))) {
+        if (!path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, s.rules.gains,
+                                  kFlightPoints, budget, flight)) {
             return contact;
         }
-        path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, s.rules.gains,
-                             kFlightPoints, flight);
     }
     if (!predict_tail(s, settings, budget, flight)) {
         return contact;

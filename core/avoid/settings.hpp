@@ -9,6 +9,8 @@
 #include <span>
 
 #include "core/base/time.hpp"
+#include "core/base/work_units.hpp"
+#include "core/capacity.hpp"
 
 namespace jink::avoid {
 
@@ -56,19 +58,21 @@ private:
 /// Work units of one update. Its mandatory part (conflicts, the check of what is flown, the fallback) has all but those
 /// of the slice; planning has the slice, and what the mandatory part does not need.
 struct WorkPerUpdate {
-    /// The largest piece of work that is paid for at once has to fit into a slice: a set of the reach sets that is
-    /// placed, or a turn of libccd's loops in software doubles (core/base/work_units.hpp).
-    static constexpr std::uint32_t kLeastSlice = 1000;
-    static constexpr std::uint32_t kLeastMandatory = 1000;
+    /// The largest piece of work that is paid for at once fits into a slice: the costs of a candidate with all threats
+    /// moving, or the choice among a reach set's trajectories. Checked by tests/property/app/sliced_plan_test.cpp.
+    static constexpr std::uint32_t kMinSlice =
+        std::max<std::uint32_t>(1000, 2U * units::kCostPoint * static_cast<std::uint32_t>(kMaxPathPoints) +
+                                          units::closeness_units(kMaxPathPoints, 2 * kMaxTracks));
+    static constexpr std::uint32_t kMinMandatory = 1000;
 
-    std::uint32_t all = 60000;    ///< at least `slice` + kLeastMandatory
-    std::uint32_t slice = 22000;  ///< kLeastSlice at least
+    std::uint32_t all = 60000;    ///< at least `slice` + kMinMandatory
+    std::uint32_t slice = 22000;  ///< kMinSlice at least
     friend constexpr bool operator==(const WorkPerUpdate&, const WorkPerUpdate&) noexcept = default;
 };
 [[nodiscard]] constexpr bool is_valid(const WorkPerUpdate& work) noexcept
 {
-    return work.slice >= WorkPerUpdate::kLeastSlice && work.all >= WorkPerUpdate::kLeastMandatory &&
-           work.all - WorkPerUpdate::kLeastMandatory >= work.slice;
+    return work.slice >= WorkPerUpdate::kMinSlice && work.all >= WorkPerUpdate::kMinMandatory &&
+           work.all - WorkPerUpdate::kMinMandatory >= work.slice;
 }
 
 /// Of the supervisor alone; what it shares with the methods is in world::FlightRules.

@@ -27,6 +27,8 @@ public:
 
     [[nodiscard]] bool runs() const noexcept { return flow_.runs(); }
     [[nodiscard]] std::uint32_t spent() const noexcept { return spent_; }
+    /// The largest piece of work so far [work units].
+    [[nodiscard]] std::uint32_t largest_piece() const noexcept { return slice_.largest(); }
     // Of the last plan that has ended.
     [[nodiscard]] world::PlanStatus status() const noexcept { return status_; }
     [[nodiscard]] bool ran_out() const noexcept { return ran_out_; }

@@ -4,7 +4,7 @@
 namespace jink {
 
 /// A flow of control of its own for work that goes on over several steps: it runs when it is resumed, until it pauses
-/// or ends. Cooperative: the order of all work is the same in every run. hal::Fiber is one.
+/// or ends. Cooperative: the order of all work is the same in every run. app::FiberFlow is one.
 class Flow {
 public:
     using Run = void (*)(void* argument) noexcept;

@@ -14,26 +14,25 @@ public:
     }
 
     constexpr void begin(std::uint32_t units) noexcept { left_ = units; }
-    /// Takes `units` out of one slice: waits for the next one where fewer are left, and for as many as pay for it where
-    /// it is more than a slice.
+    /// Takes `units` out of one slice: waits for the next one where fewer are left, and takes all of that where it is
+    /// less.
     [[gnu::noinline]] constexpr void take(std::uint32_t units) noexcept
     {
         if (units > left_) {
             wait_(context_);
         }
-        while (units > left_) {
-            units -= left_;
-            left_ = 0;
-            wait_(context_);
-        }
-        left_ -= units;
+        left_ -= units < left_ ? units : left_;
+        largest_ = units > largest_ ? units : largest_;
     }
+    /// Most units that were taken at once: a slice that is no less is never exceeded.
+    [[nodiscard]] constexpr std::uint32_t largest() const noexcept { return largest_; }
     [[nodiscard]] constexpr std::uint32_t left() const noexcept { return left_; }
 
 private:
     void (*wait_)(void* context) noexcept;
     void* context_;
     std::uint32_t left_ = 0;
+    std::uint32_t largest_ = 0;
 };
 
 /// Work units that a computation may still spend.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/work_units.hpp"
 #include "core/path/flight.hpp"
 
 namespace jink::path {
@@ -47,13 +48,17 @@ std::uint32_t setpoints_of(Seconds rest) noexcept
     return count < static_cast<float>(kMaxSetpoints) ? static_cast<std::uint32_t>(count) : kMaxSetpoints;
 }
 
-void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds step,
+bool predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds step,
                     const vehicle::VehicleLimits& limits, const FollowerGains& gains, std::size_t most,
-                    Prediction& out) noexcept
+                    WorkBudget& budget, Prediction& out) noexcept
 {
     ChordWriter writer(limits, out);
     writer.begin(state);
     const std::uint32_t setpoints = setpoints_of(path.duration() - start);
+    if (setpoints == kMaxSetpoints) {
+        budget.exhaust();
+        return false;
+    }
     const std::uint32_t length = chord_length(setpoints, step, most);
     std::size_t next = 1;
     std::size_t next_ahead = 1;
@@ -63,6 +68,9 @@ void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, S
         if (i == end) {
             end = std::min(i + (chord < std::size(kFirstChords) ? kFirstChords[chord] : length), setpoints);
             ++chord;
+            if (!budget.spend((end - i) * units::kFlightPart)) {
+                return false;
+            }
         }
         const Seconds t = start + static_cast<float>(i) * kSetpointPeriod;
         const Seconds ahead = t + limits.velocity_lag;
@@ -74,6 +82,7 @@ void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, S
             writer.end_chord(static_cast<float>(end) * kSetpointPeriod);
         }
     }
+    return true;
 }
 
 void extend_by_velocity_command(const Vec3& command, Seconds horizon, Seconds step,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/base/work_budget.hpp"
 #include "core/path/follower.hpp"
 #include "core/vehicle/motion.hpp"
 
@@ -104,12 +105,13 @@ private:
 /// Chords are whole periods long: one, two, then `step` (at least one period), longer where the flight would have more
 /// than `most` points (4..kMaxPathPoints). The first two are short because accuracy matters most where a threat is
 /// already near. out.path.points[0] is the present position at time 0. If nothing of the path is left, one point
-/// remains. Path not empty, with setpoints_of(rest) less than kMaxSetpoints.
+/// remains. Path not empty. Each chord is paid for before it is flown (units::kFlightPart a period); false, and what is
+/// in `out` of no use, where the budget ends; at once, with nothing left, where kMaxSetpoints are ahead.
 ///
 /// Exact but for rounding: 1e-4 m within 100 m of the origin. O(rest / kSetpointPeriod).
-void predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start, Seconds step,
-                    const vehicle::VehicleLimits& limits, const FollowerGains& gains, std::size_t most,
-                    Prediction& out) noexcept;
+[[nodiscard]] bool predict_flight(const vehicle::VehicleState& state, const TimedPath& path, Seconds start,
+                                  Seconds step, const vehicle::VehicleLimits& limits, const FollowerGains& gains,
+                                  std::size_t most, WorkBudget& budget, Prediction& out) noexcept;
 
 /// Set-points before the end of a path of which `rest` [s] is left; kMaxSetpoints at most.
 inline constexpr std::uint32_t kMaxSetpoints = 1'000'000;

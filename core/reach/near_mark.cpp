@@ -90,15 +90,29 @@ struct NearThreats::LayerCells {
 bool NearThreats::mark(const Placed& placed, const CellSpheres& spheres, WorkBudget& budget) noexcept
 {
     const ReachSet& set = *placed.set;
-    if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths +
-                                                 set.grid.cells() * (1 + near_.size()) / 4 * units::kReachCells))) {
+    if (!budget.spend(static_cast<std::uint32_t>(units::kReachMark + set.nodes() / 16 * units::kReachDepths))) {
         return false;
     }
     const Depths depths(set);
     std::fill_n(of_cell_.begin(), set.grid.cells(), ThreatBits{});
+    // The cells are paid for threat by threat, layer by layer: no piece of work is large.
+    const std::size_t all = set.grid.cells() * (1 + near_.size()) / 4 * units::kReachCells;
+    const std::size_t parts = set.grid.layers() * (1 + near_.size());
+    std::size_t part = 0;
+    const auto pay = [&]() noexcept {
+        const std::size_t before = all * part / parts;
+        ++part;
+        return budget.spend(static_cast<std::uint32_t>(all * part / parts - before));
+    };
     for (std::size_t layer = 0; layer < set.grid.layers(); ++layer) {
+        if (!pay()) {
+            return false;
+        }
         const LayerCells cells(placed, spheres, layer, depths);
         for (std::size_t i = 0; i < near_.size(); ++i) {
+            if (!pay()) {
+                return false;
+            }
             mark_layer(placed, cells, i);
         }
     }

@@ -61,10 +61,11 @@ public:
     /// this.
     void let_reach_sets_see(ReachPicture& picture) noexcept;
     /// From here on plans go on over several steps, in `plan`, and a step does as much as `work` says (WorkRate); until
-    /// then a plan is made in one step. Before the first step; it outlives this.
-    void plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work) noexcept
+    /// then a plan is made in one step. Before the first step; it outlives this. False, and nothing changed, where the
+    /// work is too little (avoid::is_valid).
+    [[nodiscard]] bool plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work) noexcept
     {
-        decision_.plan_in_slices(plan, work, params_.configuration());
+        return decision_.plan_in_slices(plan, work, params_.configuration());
     }
     /// What is closed from now on, in place of all that was set before, here or over the link: kept clear of like every
     /// other threat, by all methods and the final check. Constraints in the local frame are the autopilot's. What is

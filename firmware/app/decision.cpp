@@ -59,12 +59,15 @@ void Decision::configure(const Configuration& c) noexcept
     static_cast<void>(supervisor_.configure(supervisor_settings(c)));
 }
 
-void Decision::plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work,
+bool Decision::plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work,
                               const Configuration& c) noexcept
 {
+    if (!avoid::is_valid(work)) {
+        return false;
+    }
     work_ = work;
     supervisor_.plan_in_slices(plan);
-    static_cast<void>(supervisor_.configure(supervisor_settings(c)));
+    return supervisor_.configure(supervisor_settings(c));
 }
 
 void Decision::leave_out_reach_sets(const Configuration& c) noexcept

@@ -43,8 +43,9 @@ public:
     void let_reach_sets_see(reach::CellSource& cells, const Configuration& c) noexcept;
 
     /// From now on plans go on over several updates, in `plan`, and an update does as much as `work` says. It outlives
-    /// this.
-    void plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work, const Configuration& c) noexcept;
+    /// this. False, and nothing changed, where the work is too little (avoid::is_valid).
+    [[nodiscard]] bool plan_in_slices(avoid::SlicedPlan& plan, const avoid::WorkPerUpdate& work,
+                                      const Configuration& c) noexcept;
 
     [[nodiscard]] bool leaves_out_reach_sets() const noexcept { return leaves_reach_out_; }
     [[nodiscard]] const NominalPaths& nominal_paths() const noexcept { return nominal_; }

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "core/avoid/sliced_plan.hpp"
-#include "hal/fiber/fiber.hpp"
+#include "firmware/app/fiber_flow.hpp"
 
 namespace jink::app {
 
@@ -20,8 +20,8 @@ struct PlanMemory {
 #endif
 
     alignas(16) std::array<std::byte, kStack> stack;
-    hal::Fiber fiber{stack};
-    avoid::SlicedPlan plan{fiber};
+    FiberFlow flow{stack};
+    avoid::SlicedPlan plan{flow};
 };
 
 }  // namespace jink::app

@@ -33,9 +33,9 @@ public:
     {
         return WorkRate(clock * 1'000'000U);
     }
-    /// The least clock [MHz] that leaves time for anything.
-    static constexpr unsigned kLeastMegahertz = 100;
-    static constexpr unsigned kMostMegahertz = 4000;  ///< what 32 bits hold [Hz]
+    /// Below this clock [MHz] the least slice does not fit, with the default capacities.
+    static constexpr unsigned kMinMegahertz = 125;
+    static constexpr unsigned kMaxMegahertz = 4000;  ///< what 32 bits hold [Hz]
 
     /// Instructions that fit into a tick.
     [[nodiscard]] constexpr std::uint64_t instructions() const noexcept { return instructions_; }
@@ -70,9 +70,8 @@ private:
     std::uint64_t instructions_;
 };
 
-static_assert(avoid::is_valid(WorkRate::of_megahertz(WorkRate::kLeastMegahertz).work()));
 /// What is done where nothing else is said is for processors from this clock on [Hz].
-inline constexpr std::uint32_t kLeastClockOfDefault = 1'000'000'000;
-static_assert(WorkRate(kLeastClockOfDefault).has_time_for(avoid::WorkPerUpdate{}));
+inline constexpr std::uint32_t kMinClockOfDefault = 1'000'000'000;
+static_assert(WorkRate(kMinClockOfDefault).has_time_for(avoid::WorkPerUpdate{}));
 
 }  // namespace jink::app

@@ -214,8 +214,9 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         coprocessor->note_stored(coprocessor->parameters().generation());
     }
     const std::unique_ptr<app::PlanMemory> plans = options.clock != 0 ? std::make_unique<app::PlanMemory>() : nullptr;
-    if (plans) {
-        coprocessor->plan_in_slices(plans->plan, app::WorkRate::of_megahertz(options.clock).work());
+    if (plans && !coprocessor->plan_in_slices(plans->plan, app::WorkRate::of_megahertz(options.clock).work())) {
+        complain_now("--clock: a step at this clock has no time for a plan");
+        return EXIT_FAILURE;
     }
     coprocessor->use_clouds(*clouds);
     if (map != nullptr) {
@@ -325,7 +326,7 @@ int main(int argc, char** argv)
     cli.add_option("--clock", options.clock,
                    "the processor's clock [MHz]: a step does the work that fits there, and plans go on over several "
                    "steps. Without: work for 1000 MHz and more, a plan in one step")
-        ->check(CLI::Range(app::WorkRate::kLeastMegahertz, app::WorkRate::kMostMegahertz))
+        ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz))
         ->excludes(cloud);
     cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
         ->check(CLI::Range(0, 99));

@@ -101,7 +101,7 @@ extern "C" void hal::cortex_m::jink_main()
     hal::cortex_m::start_systick(kClockHz / 1000U);
     app::PlanMemory& plans = *new (plan_memory) app::PlanMemory;
     hal::cortex_m::note_second_stack(plans.stack);
-    coprocessor.plan_in_slices(plans.plan, kRate.work());
+    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
     firmware::settle_reach_sets(coprocessor);
     firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);

@@ -265,7 +265,7 @@ extern "C" void hal::cortex_m::jink_main()
     keeper.start(coprocessor);
     app::PlanMemory& plans = make_plan_memory(clocks);
     hal::cortex_m::note_second_stack(plans.stack);
-    coprocessor.plan_in_slices(plans.plan, kRate.work());
+    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));  // valid, as asserted above
     firmware::settle_reach_sets(coprocessor);
     firmware::settle_map(coprocessor);
     const bool passive = firmware::settle_faults(coprocessor, clock);

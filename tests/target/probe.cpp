@@ -14,7 +14,7 @@
 namespace jink::target {
 namespace {
 
-constexpr std::uint32_t kMostUpdates = 100;
+constexpr std::uint32_t kMaxUpdates = 100;
 
 Vec3 vec(const float (&v)[3]) noexcept { return {v[0], v[1], v[2]}; }
 
@@ -170,7 +170,7 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     for (std::size_t i = 0; i < kIds.size(); ++i) {
         static_cast<void>((record.methods >> i & 1U) != 0 && settings.order.try_add(kIds[i]));
     }
-    if (record.clock >= app::WorkRate::kLeastMegahertz) {
+    if (record.clock >= app::WorkRate::kMinMegahertz) {
         settings.work = app::WorkRate::of_megahertz(record.clock).work();
         supervisor_.plan_in_slices(memory_.plan);
     } else {
@@ -197,7 +197,7 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
             std::copy_n(v.data(), 3, out.velocity);
         }
     } else if (record.kind == ProbeKind::update) {
-        for (std::uint32_t i = 1; i < std::min(record.updates, kMostUpdates); ++i) {
+        for (std::uint32_t i = 1; i < std::min(record.updates, kMaxUpdates); ++i) {
             static_cast<void>(supervisor_.update(situation, false));
             situation.now.us += 20'000;
         }

@@ -71,8 +71,9 @@ struct Device {
     Device(hal::SerialPort& port, std::uint32_t start) noexcept
         : coprocessor(endpoint, port, watchdog, app::Parameters())
     {
-        if (const unsigned clock = start / sim::kStepClock; clock >= app::WorkRate::kLeastMegahertz) {
-            coprocessor.plan_in_slices(fresh_plan_memory().plan, app::WorkRate::of_megahertz(clock).work());
+        if (const unsigned clock = start / sim::kStepClock; clock >= app::WorkRate::kMinMegahertz) {
+            static_cast<void>(
+                coprocessor.plan_in_slices(fresh_plan_memory().plan, app::WorkRate::of_megahertz(clock).work()));
         }
         if (start % sim::kStepClock == sim::kStartsWithoutReachSets) {
             coprocessor.leave_out_reach_sets();

@@ -133,20 +133,27 @@ def worst_steps(kept, target):
     return max(found + [v["most"] for n, v in typical.items() if n.startswith(("step", "update"))])
 
 
+def verdict(kept):
+    """{board: {clock: what a step takes of its tick}}: bounds and the worst found, in instructions and in percent of the tick."""
+    out = {}
+    for target in records.CLOCKS:
+        step, mandatory, _, _ = composed(kept, target)
+        most = {"step": step, "mandatory": mandatory, "worst": worst_steps(kept, target)}
+        ticks = {str(clock): kept["rates"][str(clock)]["instructions"] for clock in CLOCKS[target]}
+        out[target] = {clock: {"tick": tick, **most, **{f"{name}_percent": round(100 * n / tick, 1) for name, n in most.items()}} for clock, tick in ticks.items()}
+    return out
+
+
 def _table_verdict(kept):
     yield row("board", "clock", "instructions in a tick of 20 ms", "work units of a step, of those for planning", "bound of a step", "of the tick", "its mandatory part",
               "of the tick", "worst step found", "of the tick", f"verdict: {SHARE} % and {MANDATORY} % of the tick are the limits")
     yield row(*["---"] * 11)
-    for target in records.CLOCKS:
-        step, mandatory, _, _ = composed(kept, target)
+    for target, clocks in verdict(kept).items():
         units, planning = units_of(kept, target)
-        worst = worst_steps(kept, target)
-        for clock in CLOCKS[target]:
-            tick = kept["rates"][str(clock)]["instructions"]
-            share = [100 * n / tick for n in (step, mandatory, worst)]
-            fits = share[0] <= SHARE and share[1] <= MANDATORY
-            yield row(target, f"{clock} MHz", number(tick), f"{number(units)}, {number(planning)}", number(step), f"{share[0]:.1f} %", number(mandatory), f"{share[1]:.1f} %",
-                      number(worst), f"{share[2]:.1f} %", "fits" if fits else "**does not fit**")
+        for clock, v in clocks.items():
+            fits = 100 * v["step"] <= SHARE * v["tick"] and 100 * v["mandatory"] <= MANDATORY * v["tick"]
+            yield row(target, f"{clock} MHz", number(v["tick"]), f"{number(units)}, {number(planning)}",
+                      *(cell for n in ("step", "mandatory", "worst") for cell in (number(v[n]), f"{v[n + '_percent']:.1f} %")), "fits" if fits else "**does not fit**")
 
 
 def _table_composed(kept):

@@ -31,7 +31,9 @@ Bench::Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& s
             throw std::runtime_error("reach sets see a LiDAR's points, which change while a plan goes on: no clock");
         }
         plan_memory_ = std::make_unique<app::PlanMemory>();
-        coprocessor_->plan_in_slices(plan_memory_->plan, app::WorkRate::of_megahertz(setup.clock).work());
+        if (!coprocessor_->plan_in_slices(plan_memory_->plan, app::WorkRate::of_megahertz(setup.clock).work())) {
+            throw std::runtime_error("a step at this clock has no time for a plan");
+        }
     }
     if (setup.cloud != nullptr) {
         clouds_ = std::make_unique<app::CloudInput>(setup.cloud);

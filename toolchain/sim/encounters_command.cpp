@@ -18,7 +18,7 @@ CLI::Option* add_clock(CLI::App& command, unsigned& clock)
     return command
         .add_option("--clock", clock,
                     "work of a step for a processor with this clock, plans going on over several steps [MHz]")
-        ->check(CLI::Range(app::WorkRate::kLeastMegahertz, app::WorkRate::kMostMegahertz));
+        ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz));
 }
 
 CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads)

@@ -336,7 +336,7 @@ int main(int argc, char** argv)
                  "of a tick, work units of a step, and of those of its slice");
     rates_command->add_option("clocks", clocks)
         ->required()
-        ->check(CLI::Range(jink::app::WorkRate::kLeastMegahertz, jink::app::WorkRate::kMostMegahertz));
+        ->check(CLI::Range(jink::app::WorkRate::kMinMegahertz, jink::app::WorkRate::kMaxMegahertz));
     EncountersOptions encounters;
     const CLI::App& encounters_command = add_encounters(cli, encounters, true);
     SwarmOptions swarm;

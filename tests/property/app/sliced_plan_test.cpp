@@ -16,8 +16,8 @@
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
+#include "firmware/app/fiber_flow.hpp"
 #include "firmware/app/parameters.hpp"
-#include "hal/fiber/fiber.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::avoid {
@@ -38,7 +38,8 @@ void draw(Random& random, Scene& scene)
     scene.own.position = Vec3(0, random.uniform(-1.0F, 1.0F), 30.0F);
     scene.own.velocity = Vec3(5, 0, 0);
     scene.own.sigma_position = random.below(2) == 0 ? 0.0F : 0.2F;
-    const std::uint32_t tracks = random.below(8);
+    const bool crowded = random.below(10) == 0;
+    const std::uint32_t tracks = crowded ? static_cast<std::uint32_t>(kMaxTracks) : random.below(8);
     for (std::uint32_t i = 0; i < tracks; ++i) {
         const float meets = random.uniform(1.5F, 8.0F);
         const Vec3 velocity(random.uniform(-8.0F, 8.0F), random.uniform(-8.0F, 8.0F), random.uniform(-1.0F, 1.0F));
@@ -49,7 +50,7 @@ void draw(Random& random, Scene& scene)
         track.sigma_velocity = random.uniform(0.0F, 0.2F);
         track.cooperative = random.below(3) == 0;
     }
-    const std::uint32_t obstacles = random.below(6);
+    const std::uint32_t obstacles = crowded ? static_cast<std::uint32_t>(kMaxObstacles) : random.below(6);
     for (std::uint32_t i = 0; i < obstacles; ++i) {
         const Vec3 at(random.uniform(10.0F, 60.0F), random.uniform(-10.0F, 10.0F), 30.0F);
         scene.obstacle(random.below(4) == 0 ? geometry::make_box(at, Vec3(2, 1, 8)) : geometry::make_sphere(at, 2.0F));
@@ -102,7 +103,7 @@ TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
     constexpr std::uint64_t kSeed = 20261127;
     Random random(kSeed);
     const auto stack = std::make_unique<std::array<std::byte, 512 * 1024>>();
-    hal::Fiber fiber(*stack);
+    app::FiberFlow fiber(*stack);
     const auto sliced = std::make_unique<SlicedPlan>(fiber);
     const auto methods = std::make_unique<Methods>();
     Settings settings;
@@ -155,8 +156,10 @@ TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
         }
     }
     std::printf("[ measured ] %d plans found of %d; %d slices, %d of one plan at most; %zu bytes of stack\n", found,
-                4 * cases(), slices, most, fiber.deepest());
+                4 * cases(), slices, most, fiber.fiber().deepest());
     EXPECT_GT(found, cases() / 4);
+    std::printf("[ measured ] the largest piece of work: %u units\n", sliced->largest_piece());
+    EXPECT_LE(sliced->largest_piece(), WorkPerUpdate::kMinSlice);
     EXPECT_GT(most, 1000);
 }
 

@@ -11,7 +11,7 @@ double share(unsigned megahertz, double percent) { return megahertz * 1e6 * 0.02
 
 TEST(WorkRates, FillTheirSharesOfTheTickAndNoMore)
 {
-    for (unsigned clock = WorkRate::kLeastMegahertz; clock <= 4000; ++clock) {
+    for (unsigned clock = 150; clock <= 4000; ++clock) {
         const WorkRate rate = WorkRate::of_megahertz(clock);
         const avoid::WorkPerUpdate work = rate.work();
         ASSERT_TRUE(avoid::is_valid(work)) << clock;

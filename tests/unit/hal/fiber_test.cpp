@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "hal/fiber/fiber.hpp"
+#include "hal/fiber.hpp"
 
 #include <array>
 #include <cmath>

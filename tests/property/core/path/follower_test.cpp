@@ -74,7 +74,8 @@ Worst worst_tracking(float share_of_cruise)
         state.position = path.points.front().position;
         state.velocity = speed * Vec3(std::cos(heading), std::sin(heading), 0.0F);
         Prediction flight;
-        predict_flight(state, path, 0.0F, 0.1F, limits, {}, kMaxPathPoints, flight);
+        WorkBudget budget(1'000'000);
+        EXPECT_TRUE(predict_flight(state, path, 0.0F, 0.1F, limits, {}, kMaxPathPoints, budget, flight));
         EXPECT_GE(flight.path.duration(), path.duration() - 1e-3F) << "seed " << seed;
         flight.path.points.pop_back();  // beyond the end of the path
         for (const PathPoint& point : flight.path.points) {
@@ -118,7 +119,8 @@ TEST(FollowerLaws, APositionErrorDiesAway)
         state.position = Vec3(random.uniform(-3.0F, 3.0F), random.uniform(-3.0F, 3.0F), random.uniform(-3.0F, 3.0F));
         state.velocity = Vec3(random.uniform(0.0F, 6.0F), random.uniform(-3.0F, 3.0F), random.uniform(-2.0F, 2.0F));
         Prediction flight;
-        predict_flight(state, path, 0.0F, 0.4F, limits, {}, kMaxPathPoints, flight);
+        WorkBudget budget(1'000'000);
+        EXPECT_TRUE(predict_flight(state, path, 0.0F, 0.4F, limits, {}, kMaxPathPoints, budget, flight));
         const PathPoint& end = flight.path.points.back();
         const Vec3 error = end.position - sample(path, end.time).position;
         if (at_cruise) {

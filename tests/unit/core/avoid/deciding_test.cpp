@@ -139,7 +139,7 @@ TEST(PlanBudget, IsTheSliceAndWhatIsNotKeptForAFallback)
     Flight f;
     head_on(f);
     Settings settings = quick();
-    settings.work = {4000, 1000};
+    settings.work = {6000, 3000};
     settings.kept_for_next = 0;
     std::vector<std::uint32_t> had;
     FakeMethod method{[&](const Situation&, WorkBudget& budget, Manoeuvre&) {
@@ -149,11 +149,11 @@ TEST(PlanBudget, IsTheSliceAndWhatIsNotKeptForAFallback)
     const Guidance g = once(f, settings, method);
     ASSERT_EQ(had.size(), 2U) << "for a wider vehicle, then as it is";
     constexpr std::uint32_t kKept = 600 + 500;  // one threat
-    EXPECT_EQ(had[0], 4000U - kKept - g.work) << "the search for conflicts took its share";
-    settings.work = {2000, 1000};
+    EXPECT_EQ(had[0], 6000U - kKept - g.work) << "the search for conflicts took its share";
+    settings.work = {4000, 3000};
     had.clear();
     static_cast<void>(once(f, settings, method));
-    EXPECT_EQ(had[0], 1000U) << "the slice alone";
+    EXPECT_EQ(had[0], 3000U) << "the slice alone";
 }
 
 TEST(PlanBudget, ExhaustedByTheFirstOfTwoPlansIsCounted)
@@ -197,7 +197,7 @@ TEST(Budget, ExhaustedByAFallbackIsCounted)
         f.scene.track(Vec3(9, 0.2F * static_cast<float>(i % 5), 30), Vec3(-3, 0, 0), 1.0F);
     }
     Settings settings = quick();
-    settings.work = {4000, 1000};
+    settings.work = {6000, 3000};
     settings.plan_budget = settings.kept_for_next = 100;
     FakeMethod method = never();
     Supervisor supervisor(settings, method);

@@ -63,6 +63,7 @@ INSTANTIATE_TEST_SUITE_P(Of, SettingsRanges, testing::ValuesIn(kRanges),
 
 TEST(SettingsOfBudgets, HoldTheirEnds)
 {
+    constexpr std::uint32_t kSlice = WorkPerUpdate::kMinSlice;
     const auto takes = [](WorkPerUpdate work, std::uint32_t plan, std::uint32_t kept) {
         Settings s;
         s.work = work;
@@ -70,15 +71,15 @@ TEST(SettingsOfBudgets, HoldTheirEnds)
         s.kept_for_next = kept;
         return is_valid(s);
     };
-    EXPECT_TRUE(takes({2000, 1000}, 1000, 1000)) << "a method may keep all of a plan back for the next";
-    EXPECT_TRUE(takes({2000, 1000}, 100, 100));
-    EXPECT_TRUE(takes({2000, 1000}, 50'000, 100)) << "a plan may take many updates";
-    EXPECT_FALSE(takes({2000, 999}, 100, 100)) << "a slice has to hold the largest piece of work";
-    EXPECT_FALSE(takes({1999, 1000}, 100, 100)) << "the mandatory part needs its own";
-    EXPECT_FALSE(takes({0, 1000}, 100, 100));
+    EXPECT_TRUE(takes({kSlice + 1000, kSlice}, 1000, 1000)) << "a method may keep all of a plan back for the next";
+    EXPECT_TRUE(takes({kSlice + 1000, kSlice}, 100, 100));
+    EXPECT_TRUE(takes({kSlice + 1000, kSlice}, 50'000, 100)) << "a plan may take many updates";
+    EXPECT_FALSE(takes({kSlice + 1000, kSlice - 1}, 100, 100)) << "a slice has to hold the largest piece of work";
+    EXPECT_FALSE(takes({kSlice + 999, kSlice}, 100, 100)) << "the mandatory part needs its own";
+    EXPECT_FALSE(takes({0, kSlice}, 100, 100));
     EXPECT_FALSE(takes({0xFFFFFFFF, 0xFFFFFFFF}, 100, 100));
-    EXPECT_FALSE(takes({2000, 1000}, 99, 0));
-    EXPECT_FALSE(takes({2000, 1000}, 500, 501));
+    EXPECT_FALSE(takes({kSlice + 1000, kSlice}, 99, 0));
+    EXPECT_FALSE(takes({kSlice + 1000, kSlice}, 500, 501));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "hal/fiber/fiber.hpp"
+#include "firmware/app/fiber_flow.hpp"
 #include "tests/unit/core/avoid/fakes.hpp"
 
 namespace jink::avoid {
@@ -31,7 +31,7 @@ FakeMethod takes(std::uint32_t units, float height = 6.0F)
 Settings in_slices()
 {
     Settings settings = quick();
-    settings.work = {3000, 1000};
+    settings.work = {6000, 3000};
     return settings;
 }
 
@@ -60,14 +60,16 @@ TEST(WorkSlices, APieceOfWorkIsPaidOutOfOneSlice)
     EXPECT_EQ(budget.spent(), 21U);
 }
 
-TEST(WorkSlices, APieceThatNoSliceHoldsIsPaidOutOfSeveral)
+TEST(WorkSlices, APieceThatNoSliceHoldsTakesAWholeOne)
 {
-    TurnedSlices waiting{{5, 5, 5}};
-    WorkBudget budget(100, waiting.slice);
-    waiting.slice.begin(3);
+    TurnedSlices turned{{5}};
+    WorkBudget budget(100, turned.slice);
+    turned.slice.begin(3);
     EXPECT_TRUE(budget.spend(12));
-    EXPECT_TRUE(waiting.coming.empty());
-    EXPECT_EQ(waiting.slice.left(), 3U);
+    EXPECT_TRUE(turned.coming.empty());
+    EXPECT_EQ(turned.slice.left(), 0U);
+    EXPECT_EQ(turned.slice.largest(), 12U) << "and is told";
+    EXPECT_EQ(budget.spent(), 12U);
 }
 
 TEST(WorkSlices, APartSpendsOfItsBudgetsSlice)
@@ -93,7 +95,7 @@ struct Sliced {
         supervisor.plan_in_slices(*plan);
     }
     std::unique_ptr<std::array<std::byte, 512 * 1024>> stack = std::make_unique<std::array<std::byte, 512 * 1024>>();
-    hal::Fiber fiber{*stack};
+    app::FiberFlow fiber{*stack};
     std::unique_ptr<SlicedPlan> plan = std::make_unique<SlicedPlan>(fiber);
     Supervisor<FakeMethod> supervisor;
 };
@@ -109,11 +111,11 @@ TEST(Slices, APlanGoesOnOverUpdatesAndIsFlownWhereItEnds)
     do {
         g = f.update(sliced.supervisor, true);
         statuses.push_back(g.plan_status);
-        EXPECT_LE(g.work, 3000U);
+        EXPECT_LE(g.work, 6000U);
         EXPECT_EQ(method.asked, 1);
     } while (statuses.size() < 20 && g.plan_status == PlanStatus::running);
-    // 1000 of the slice, and what the mandatory part leaves of its 2000 beside 1100 for a fallback.
-    EXPECT_EQ(statuses.size(), 4U);
+    // 3000 of the slice, and what the mandatory part leaves of its 3000 beside 1100 for a fallback.
+    EXPECT_EQ(statuses.size(), 2U);
     EXPECT_EQ(g.plan_status, PlanStatus::found);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(sliced.supervisor.diagnostics().plans_found, 1U);
@@ -202,7 +204,7 @@ TEST(Slices, AFallbackDoesNotWaitForAPlan)
     EXPECT_EQ(g.plan_status, PlanStatus::running);
     EXPECT_EQ(g.state, State::braking);
     EXPECT_TRUE(sliced.plan->runs());
-    EXPECT_LE(g.work, 3000U);
+    EXPECT_LE(g.work, 6000U);
 }
 
 TEST(Slices, OfAFullWorldNoUpdateDoesMoreThanItMay)
@@ -216,9 +218,9 @@ TEST(Slices, OfAFullWorldNoUpdateDoesMoreThanItMay)
     settings.plan_budget = 60'000;
     Sliced sliced(method, settings);
     for (int i = 0; i < 30; ++i) {
-        EXPECT_LE(f.update(sliced.supervisor, true).work, 3000U);
+        EXPECT_LE(f.update(sliced.supervisor, true).work, 6000U);
     }
-    EXPECT_LE(sliced.supervisor.diagnostics().most_work, 3000U);
+    EXPECT_LE(sliced.supervisor.diagnostics().most_work, 6000U);
 }
 
 }  // namespace

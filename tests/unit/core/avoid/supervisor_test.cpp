@@ -137,7 +137,7 @@ TEST(Supervisors, SettingsOutOfRangeAreRefused)
         EXPECT_TRUE(refused([&](Settings& s) { s.back_off_limit = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.clutter_radius = bad; }));
     }
-    EXPECT_TRUE(refused([](Settings& s) { s.work.slice = 999; }));
+    EXPECT_TRUE(refused([](Settings& s) { s.work.slice = WorkPerUpdate::kMinSlice - 1; }));
     EXPECT_TRUE(refused([](Settings& s) { s.plan_budget = 99; }));
     EXPECT_TRUE(refused([](Settings& s) { s.work.all = s.work.slice; }));
     EXPECT_TRUE(refused([](Settings& s) { s.kept_for_next = s.plan_budget + 1; }));

@@ -5,6 +5,8 @@
 
 #include <vector>
 
+#include "core/base/work_units.hpp"
+
 namespace jink::path {
 namespace {
 
@@ -20,7 +22,9 @@ Prediction predicted(const TimedPath& path, const vehicle::VehicleState& state, 
                      Seconds step = 0.2F, std::size_t most = kMaxPathPoints)
 {
     Prediction flight;
-    predict_flight(state, path, start, step, {}, {}, most, flight);
+    WorkBudget budget(1'000'000);
+    EXPECT_TRUE(predict_flight(state, path, start, step, {}, {}, most, budget, flight));
+    EXPECT_EQ(budget.spent(), units::kFlightPart * setpoints_of(path.duration() - start));
     return flight;
 }
 

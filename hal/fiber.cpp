@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "hal/fiber/fiber.hpp"
+#include "hal/fiber.hpp"
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
 
 #if defined(__SANITIZE_ADDRESS__)
-#include <sanitizer/common_interface_defs.h>
 #define JINK_FIBER_ASAN 1
 #elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
-#include <sanitizer/common_interface_defs.h>
 #define JINK_FIBER_ASAN 1
 #endif
+#endif
+
+#if defined(JINK_FIBER_ASAN)
+// Of AddressSanitizer's interface (sanitizer/common_interface_defs.h).
+extern "C" {
+void __sanitizer_start_switch_fiber(void** fake, const void* bottom, std::size_t size);
+void __sanitizer_finish_switch_fiber(void* fake, const void** bottom, std::size_t* size);
+}
 #endif
 
 // jink_switch_stack(save, load): saves the registers that a callee has to keep on the stack, the stack pointer in
