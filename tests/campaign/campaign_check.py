@@ -12,6 +12,7 @@ import hashlib
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -256,7 +257,20 @@ def thousand(programs, top):
     check("0 broken rules" in text, "a rule was broken")
 
 
-CASES = {case.__name__: case for case in (restart, refusals, replay, mpi_identity, mpi_killed_rank, mpi_study, thousand)}
+def board(programs, top):
+    """With the work of the slowest board, plans going on over several steps: avoided as without; another clock is another set-up."""
+    slow = [programs.sim, "encounters", "--from", 1, "--count", 100, "--block", 50, "--out", top / "board", "--clock"]
+    text = run([*slow, 168])
+    print(text)
+    check("work of a step for 168 MHz" in text, "the summary does not say the clock")
+    avoided = int(re.search(r"^ +avoided +(\d+) of", text, re.M)[1])
+    check(avoided >= 97, f"{avoided} of 100 avoided")
+    check("0 broken rules" in text, "a rule was broken")
+    run([*slow, 216], status=2)
+    run([programs.sim, "encounters", "--from", 1, "--count", 1, "--out", top / "stopped", "--clock", 20], status=2)
+
+
+CASES = {case.__name__: case for case in (board, restart, refusals, replay, mpi_identity, mpi_killed_rank, mpi_study, thousand)}
 
 
 def main():

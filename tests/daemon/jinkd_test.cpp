@@ -13,7 +13,7 @@ TEST(Jinkd, HelpNamesEveryOptionOfTheReadme)
     EXPECT_EQ(daemon.wait(kPatience), 0);
     const std::string help = text_of(scratch / "out");
     for (const char* option : {"--serial", "--can", "--node-id", "--vehicle", "--params", "--summary", "--watchdog",
-                               "--system-id", "--cloud", "--map"}) {
+                               "--system-id", "--cloud", "--map", "--clock"}) {
         EXPECT_NE(help.find(option), std::string::npos) << option;
     }
 }
@@ -36,6 +36,8 @@ TEST(Jinkd, RefusesWhatItCannotUse)
         {"--serial", "/dev/ptmx", "--system-id", "256"},
         {"--serial", "/dev/ptmx", "--cloud", "/dev/null:0"},
         {"--serial", "/dev/ptmx", "--cloud", file},
+        {"--serial", "/dev/ptmx", "--clock", "20"},
+        {"--serial", "/dev/ptmx", "--clock", "500", "--cloud", "/dev/ptmx"},
         {"--can", ""},
         {"--can", "a_name_that_no_interface_can_have"},
         {"--node-id", "42"},
@@ -172,6 +174,16 @@ TEST(Jinkd, TakesPointCloudsOnALineOfTheirOwn)
               std::string::npos)
         << summary;
     EXPECT_NE(summary.find("\"hits\": 2280"), std::string::npos) << summary;
+}
+
+TEST(Jinkd, RunsWithTheWorkOfAClock)
+{
+    Scratch scratch;
+    Cable cable;
+    Daemon daemon({"--serial", cable.path(), "--clock", "600", "--quiet"}, scratch / "out");
+    EXPECT_TRUE(cable.heartbeat(kPatience));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(kPatience), 0);
 }
 
 TEST(Jinkd, TakesTheSystemIdOfTheAutopilotItHears)
