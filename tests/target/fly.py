@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Scenarios against an image on an emulated board: each ends as its file expects, and within the envelope of the same
-flights in process with many phases of ticks and line (toolchain/sim/envelope.hpp).
+flights in process with the board's work and many phases of ticks and line (toolchain/sim/envelope.hpp).
 
 Usage: fly.py JINK_SIM BUILD_FOLDER IMAGE [all]
 
@@ -16,6 +16,9 @@ import shutil
 import subprocess
 import sys
 import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "toolchain" / "report"))
+import records  # noqa: E402
 
 MACHINES = {"mps2_an500": "mps2-an500", "stm32f405": "netduinoplus2"}
 # Scenarios that need an input which images lack.
@@ -43,7 +46,7 @@ def main(sim, build, image, extent=""):
     files = [str(folder / f"{name}.yaml") for name in (names if extent == "all" else flown_by(image, names))]
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([sim, "fly", *files, "--image", str(elf), "--machine", MACHINES[image], "--at-once", str(AT_ONCE),
-                              "--within-phases", "--out", folder, "--quiet"], check=False)
+                              "--within-phases", "--clock", str(records.CLOCKS[image]), "--out", folder, "--quiet"], check=False)
         with open(pathlib.Path(folder) / "run.json", encoding="utf-8") as file:
             flights = json.load(file)["flights"]
     for flight in flights:
