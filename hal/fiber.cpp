@@ -18,6 +18,7 @@
 extern "C" {
 void __sanitizer_start_switch_fiber(void** fake, const void* bottom, std::size_t size);
 void __sanitizer_finish_switch_fiber(void* fake, const void** bottom, std::size_t* size);
+void __asan_unpoison_memory_region(const volatile void* begin, std::size_t size);
 }
 #endif
 
@@ -151,7 +152,10 @@ void arrive(void* fake, const void** bottom, std::size_t* size) noexcept
 {
     __sanitizer_finish_switch_fiber(fake, bottom, size);
 }
+/// Frames that were dropped have left their marks.
+void forget_marks(std::span<std::byte> stack) noexcept { __asan_unpoison_memory_region(stack.data(), stack.size()); }
 #else
+void forget_marks(std::span<std::byte>) noexcept {}
 void leave(void**, const void*, std::size_t) noexcept {}
 void arrive(void*, const void**, std::size_t*) noexcept {}
 #endif
@@ -177,12 +181,17 @@ constexpr std::size_t kReturnAt = 9;
 
 }  // namespace
 
-Fiber::Fiber(std::span<std::byte> stack) noexcept : stack_(stack) { std::fill(stack_.begin(), stack_.end(), kPaint); }
+Fiber::Fiber(std::span<std::byte> stack) noexcept : stack_(stack)
+{
+    forget_marks(stack_);
+    std::fill(stack_.begin(), stack_.end(), kPaint);
+}
 
 void Fiber::begin(Run run, void* argument) noexcept
 {
     run_ = run;
     argument_ = argument;
+    forget_marks(stack_);
     constexpr std::uintptr_t kAligned = 16;
     const auto top = reinterpret_cast<std::uintptr_t>(stack_.data() + stack_.size()) / kAligned * kAligned;
     auto* const frame = reinterpret_cast<std::uintptr_t*>(top) - kWords;

@@ -335,22 +335,33 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     const Vec3 command = within(3.0F);
     world::Conflict conflict;
     orca_.reset();
-    jink_window_begin();
+    // What is counted is the work alone, without its choice.
+    const auto counted = [](const auto& done) noexcept {
+        jink_window_begin();
+        const auto result = done();
+        jink_window_end();
+        return result;
+    };
     switch (work) {
     case Work::conflict_tracks:
     case Work::conflict_spheres:
     case Work::conflict_solids:
-        sink_ = world::main_conflict(s, way, rules_.lookahead, budget, conflict) ? 1.0F : 0.0F;
+        sink_ = counted([&] { return world::main_conflict(s, way, rules_.lookahead, budget, conflict); }) ? 1.0F : 0.0F;
         break;
-    case Work::check: sink_ = avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; break;
-    case Work::command: sink_ = avoid::command_margin(s, command, settings, budget); break;
+    case Work::check:
+        sink_ = counted([&] { return avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; });
+        break;
+    case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:
     case Work::orca_spheres:
-    case Work::orca_solids: sink_ = orca_.plan(s, budget, manoeuvre_) == world::PlanStatus::found ? 1.0F : 0.0F; break;
-    case Work::fallback: sink_ = avoid::choose_fallback(s, way, nullptr, settings, budget).margin; break;
-    default: sink_ = world::least_separation(s, manoeuvre_.path, 40.0F, budget).margin; break;
+    case Work::orca_solids:
+        sink_ = counted([&] { return orca_.plan(s, budget, manoeuvre_); }) == world::PlanStatus::found ? 1.0F : 0.0F;
+        break;
+    case Work::fallback:
+        sink_ = counted([&] { return avoid::choose_fallback(s, way, nullptr, settings, budget).margin; });
+        break;
+    default: sink_ = counted([&] { return world::least_separation(s, manoeuvre_.path, 40.0F, budget).margin; }); break;
     }
-    jink_window_end();
     return budget.spent();
 }
 
