@@ -2,8 +2,6 @@
 // The co-processor on a custom board: a port, a clock, a watchdog, and one call per tick. The board is the MPS2 with
 // the AN500 image, because qemu supports it.
 #include "firmware/app/coprocessor.hpp"
-#include "firmware/app/plan_memory.hpp"
-#include "firmware/app/work_rate.hpp"
 #include "firmware/link/mavlink/endpoint.hpp"
 #include "hal/cmsdk/cmsdk_uart.hpp"
 #include "hal/cmsdk/cmsdk_watchdog.hpp"
@@ -54,12 +52,6 @@ extern "C" void hal::cortex_m::jink_main()
     static hal::CmsdkWatchdog watchdog{MappedRegisters(kWatchdog)};
     static link::mavlink::Endpoint link;
     static app::Coprocessor coprocessor(link, uart(), watchdog, app::Parameters());
-    // A step does what fits into a tick of a Cortex-M7 at 216 MHz, and plans go on over several steps.
-    constexpr app::WorkRate kRate(216'000'000);
-    static_assert(avoid::is_valid(kRate.work()));
-    static app::PlanMemory plans;
-    hal::cortex_m::note_second_stack(plans.stack);
-    static_cast<void>(coprocessor.plan_in_slices(plans.plan, kRate.work()));
     static_cast<void>(uart().start(kClockHz, 921600));
     for (const unsigned irq : {kReceive, kTransmit, kOverrun}) {
         hal::cortex_m::enable_interrupt(irq);
