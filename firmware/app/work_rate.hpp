@@ -11,8 +11,9 @@ namespace jink::app {
 /// From a processor's clock to the work units of a step: the one place where they are derived. toolchain/report/timing
 /// prints what follows for each board, and fails where what it counts is more than what is assumed here.
 ///
-/// instructions = clock * tick / kCyclesPerInstruction; of those kShare for a step, of those kUncounted for what no
-/// unit counts, and kInstructionsPerUnit for each unit. The mandatory part of a step has kMandatoryShare at most.
+/// instructions = clock * tick / cycles per instruction (kCyclesPerInstructionBy10 / 10). A step has kSharePercent of
+/// them: kUncounted for what no unit counts, and kInstructionsPerUnit for each unit. Its mandatory part has
+/// kMandatoryPercent at most.
 class WorkRate {
 public:
     /// Assumed, on average, with caches cold and flash that waits: no board has been timed.
