@@ -49,6 +49,7 @@ void StateMachine::take(Tick& tick) noexcept
     }
     flying_ = answer_;
     chosen_side_ = answer_.side;
+    all_asked_at_ = tick.s.now;
     faster_sought_at_.reset();
     if (answer_.kind != world::ManoeuvreKind::velocity && mean_speed(answer_) < kSlow * tick.nominal.speed) {
         faster_sought_at_ = tick.s.now;
@@ -62,17 +63,28 @@ void StateMachine::fly(const world::Manoeuvre& manoeuvre, Tick& tick) const noex
 {
     tick.out.wants_control = true;
     tick.out.kind = manoeuvre.kind;
+    tick.out.by = manoeuvre.by;
     tick.out.velocity = manoeuvre.kind == world::ManoeuvreKind::velocity
                             ? manoeuvre.command
                             : path::follow(manoeuvre.path, tick.s.now - manoeuvre.start, tick.s.own.position,
                                            tick.s.limits, tick.s.rules.gains);
 }
 
-/// A velocity is good for one update: the methods are asked again. False where they have no answer: then the flown
-/// velocity is checked.
+/// A velocity is good for one update: its method is asked again, and now and then all of them. False where there is no
+/// answer: then the flown velocity is checked, and all are asked next.
 bool StateMachine::renew(Tick& tick) noexcept
 {
-    if (flying_->kind != world::ManoeuvreKind::velocity || !plan(tick)) {
+    if (flying_->kind != world::ManoeuvreKind::velocity) {
+        return false;
+    }
+    const bool alone = all_asked_at_ && tick.s.now - *all_asked_at_ < kSeekAgain;
+    if (!alone && !plan_runs()) {
+        all_asked_at_ = tick.s.now;
+    }
+    if (!plan(tick, false, alone ? flying_->by : 0)) {
+        if (tick.out.plan_status != world::PlanStatus::running) {
+            all_asked_at_.reset();
+        }
         return false;
     }
     if (answer_.kind != world::ManoeuvreKind::velocity) {
@@ -102,7 +114,7 @@ bool StateMachine::find_faster(Tick& tick) noexcept
     }
     const float margin = tick.out.margin;
     const Vec3& side = flying_->side;
-    if (plan(tick) && mean_speed(answer_) > kFaster * mean_speed(*flying_) &&
+    if (plan(tick, false) && mean_speed(answer_) > kFaster * mean_speed(*flying_) &&
         (side == Vec3::Zero() || side.dot(answer_.side) >= kSameSide)) {
         take(tick);
         return true;
@@ -119,7 +131,7 @@ bool StateMachine::find_faster(Tick& tick) noexcept
 void StateMachine::replace(Tick& tick, const world::ThreatRef& against) noexcept
 {
     const float margin = tick.out.margin;
-    const bool found = plan(tick);
+    const bool found = plan(tick, true);
     const bool turns_over =
         found && (flying_->side.dot(answer_.side) < kOppositeSide || chosen_side_.dot(answer_.side) < kOppositeSide);
     if (found && (!turns_over || passes_by_rule(tick.s, against, answer_))) {

@@ -91,7 +91,7 @@ void StateMachine::brake(Tick& tick) noexcept
         rejoin(tick);
         return;
     }
-    if (tick.out.conflict && plan(tick)) {
+    if (tick.out.conflict && plan(tick, true)) {
         take(tick);
         return;
     }

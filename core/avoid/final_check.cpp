@@ -17,6 +17,7 @@ using path::Prediction;
 /// Points kept free for the braking tail; it takes those that the flight leaves too.
 constexpr std::size_t kTailPoints = std::min<std::size_t>(12, kMaxPathPoints / 4);
 constexpr std::size_t kFlightPoints = kMaxPathPoints - kTailPoints;
+constexpr world::Separation kContact{-world::kSeparationCap, 0.0F, {}};
 
 /// Until the vehicle stands, level and vertically.
 Seconds time_to_stand(const Vec3& velocity, const vehicle::VehicleLimits& limits) noexcept
@@ -57,6 +58,43 @@ bool is_well_formed(const world::Manoeuvre& manoeuvre, TimePoint now) noexcept
     return !manoeuvre.path.points.empty() && manoeuvre.path.points.front().time >= 0.0F && manoeuvre.start <= now;
 }
 
+/// The flight until the manoeuvre's end. False where it is not well formed or the budget ends.
+bool predict_manoeuvre(const world::Situation& s, const world::Manoeuvre& manoeuvre, const Settings& settings,
+                       WorkBudget& budget, Prediction& flight) noexcept
+{
+    if (!is_well_formed(manoeuvre, s.now)) {
+        return false;
+    }
+    const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
+    const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
+    if (manoeuvre.kind != world::ManoeuvreKind::velocity || !(rest > 0.0F)) {
+        return path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, s.rules.gains,
+                                    kFlightPoints, budget, flight);
+    }
+    const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 4));
+    if (!budget.spend(kFlightPoints * units::kCommandStep)) {
+        return false;
+    }
+    path::predict_velocity_command(s.own, manoeuvre.command, rest, step, s.limits, flight);
+    return true;
+}
+
+/// Least separation of a flight that is predicted to its manoeuvre's end, and of what follows.
+world::Separation separation_of(const world::Situation& situation, world::ManoeuvreKind kind, const Settings& settings,
+                                Seconds horizon, const world::Cutoff& cutoff, WorkBudget& budget,
+                                Prediction& flight) noexcept
+{
+    if (!predict_tail(situation, settings, budget, flight)) {
+        return kContact;
+    }
+    world::Situation s = situation;
+    if (kind == world::ManoeuvreKind::velocity) {
+        s.shared_horizon = time_to_stop(s, settings);
+    }
+    return world::least_separation(s, flight, std::min(flight.path.duration(), horizon), budget, s.rules.escape,
+                                   cutoff);
+}
+
 }  // namespace
 
 Seconds time_to_stop(const world::Situation& s, const Settings& settings) noexcept
@@ -68,35 +106,31 @@ world::Separation check_manoeuvre(const world::Situation& situation, const world
                                   const Settings& settings, WorkBudget& budget, Seconds horizon,
                                   const world::Cutoff& cutoff) noexcept
 {
-    if (!is_well_formed(manoeuvre, situation.now)) {
-        return {-world::kSeparationCap, 0.0F, {}};
-    }
-    world::Situation s = situation;
-    const bool is_command = manoeuvre.kind == world::ManoeuvreKind::velocity;
-    if (is_command) {
-        s.shared_horizon = time_to_stop(s, settings);
-    }
-    const world::Separation contact{-world::kSeparationCap, 0.0F, {}};
-    const Seconds start = std::max(0.0F, s.now - manoeuvre.start);
-    const Seconds rest = std::max(0.0F, manoeuvre.path.duration() - start);
     Prediction flight;
-    if (is_command && rest > 0.0F) {
-        const Seconds step = std::max(settings.prediction_step, rest / static_cast<float>(kFlightPoints - 4));
-        if (!budget.spend(kFlightPoints * units::kCommandStep)) {
-            return contact;
-        }
-        path::predict_velocity_command(s.own, manoeuvre.command, rest, step, s.limits, flight);
-    } else {
-        if (!path::predict_flight(s.own, manoeuvre.path, start, settings.prediction_step, s.limits, s.rules.gains,
-                                  kFlightPoints, budget, flight)) {
-            return contact;
-        }
+    return predict_manoeuvre(situation, manoeuvre, settings, budget, flight)
+               ? separation_of(situation, manoeuvre.kind, settings, horizon, cutoff, budget, flight)
+               : kContact;
+}
+
+Assessment assess(const world::Situation& situation, const world::Manoeuvre& manoeuvre, const Settings& settings,
+                  float kept, WorkBudget& budget) noexcept
+{
+    constexpr world::Cutoff kClearOrNot{0.0F, world::kSeparationCap, {}};
+    constexpr Seconds kAllOfIt = std::numeric_limits<Seconds>::infinity();
+    Prediction flight;
+    Assessment out;
+    if (!predict_manoeuvre(situation, manoeuvre, settings, budget, flight)) {
+        return out;
     }
-    if (!predict_tail(s, settings, budget, flight)) {
-        return contact;
+    const std::size_t points = flight.path.points.size();
+    world::Separation separation =
+        separation_of(situation, manoeuvre.kind, settings, kAllOfIt, kClearOrNot, budget, flight);
+    out.margin = separation.margin;
+    if (out.margin >= 0.0F) {
+        separation.margin += kept;
+        out.cost = cost_of(situation, manoeuvre, {flight.path.points.data(), points}, separation, budget);
     }
-    return world::least_separation(s, flight, std::min(flight.path.duration(), horizon), budget, s.rules.escape,
-                                   cutoff);
+    return out;
 }
 
 }  // namespace jink::avoid

@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "core/avoid/objective.hpp"
 #include "core/avoid/settings.hpp"
 #include "core/world/separation.hpp"
 
@@ -29,5 +30,16 @@ namespace jink::avoid {
                                                 const Settings& settings, WorkBudget& budget,
                                                 Seconds horizon = std::numeric_limits<Seconds>::infinity(),
                                                 const world::Cutoff& cutoff = {}) noexcept;
+
+/// An answer that is compared with others.
+struct Assessment {
+    float margin = -world::kSeparationCap;  ///< as check_manoeuvre says
+    ManoeuvreCost cost;                     ///< where the margin is not below 0
+};
+
+/// check_manoeuvre to the manoeuvre's end, and what the flight costs that it predicts. `kept`: by so much the
+/// situation's vehicle is larger than the real one [m]. Complexity: both together.
+[[nodiscard]] Assessment assess(const world::Situation& situation, const world::Manoeuvre& manoeuvre,
+                                const Settings& settings, float kept, WorkBudget& budget) noexcept;
 
 }  // namespace jink::avoid

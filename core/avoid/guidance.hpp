@@ -29,6 +29,9 @@ struct Guidance {
     world::PlanStatus plan_status =
         world::PlanStatus::no_conflict;  ///< of this tick's plan, no_conflict when none was made
     bool new_manoeuvre = false;
+    std::uint8_t by = 0;            ///< MethodTraits::id of the method whose answer is flown or offered; 0: none
+    std::uint8_t answers = 0;       ///< in this tick's plan: checked ones, of which the least costly one counts
+    Seconds cost = 0.0F;            ///< and that one's (objective.hpp)
     std::uint32_t transitions = 0;  ///< bit i: this update made transition i of kTransitions (phase.hpp)
     std::uint32_t work = 0;         ///< of this update [work units]
 };

@@ -14,11 +14,18 @@ struct Situations {
     const world::Situation& plain;     ///< for the vehicle as it is
 };
 
+/// How an answer was chosen.
+struct Choice {
+    float margin = 0.0F;       ///< of the answer; least predicted one, as it was asked for [m]
+    Seconds cost = 0.0F;       ///< ManoeuvreCost::total
+    std::uint8_t answers = 0;  ///< checked ones that it is the best of
+};
+
 /// The methods as the state machine sees them: one function that plans, and gives checked answers only.
 struct Planning {
     void* self = nullptr;
     world::PlanStatus (*plan)(void* self, const Situations&, const Settings&, WorkBudget&, Diagnostics&,
-                              world::Manoeuvre&, float& margin) noexcept = nullptr;
+                              world::Manoeuvre&, Choice&) noexcept = nullptr;
 };
 
 /// The same situation for a vehicle with `extra` [m] more to every side.

@@ -160,11 +160,12 @@ void StateMachine::rejoin(Tick& tick) noexcept
     }
     enter(Phase::rejoining);
     if (tick.out.conflict) {
-        if (is_due(tick, tick.out.conflict->time_to_loss) && plan(tick)) {
+        const bool urgent = is_urgent(tick, tick.out.conflict->time_to_loss);
+        if (is_due(tick, tick.out.conflict->time_to_loss) && plan(tick, urgent)) {
             take(tick);
             return;
         }
-        if (is_urgent(tick, tick.out.conflict->time_to_loss)) {
+        if (urgent) {
             fall_back(tick);
             return;
         }

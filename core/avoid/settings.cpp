@@ -11,8 +11,8 @@ bool is_valid(const Settings& s) noexcept
            within(s.clear_extra, 0.0F, 10.0F) && within(s.on_leg, 0.05F, 50.0F) &&
            within(s.blocked_patience, 0.0F, 600.0F) && within(s.back_off_speed, 0.0F, 5.0F) &&
            within(s.back_off_limit, 0.0F, 600.0F) && within(s.least_control, 0.0F, 60.0F) &&
-           within(s.patience, 0.0F, 600.0F) && within(s.clutter_radius, 1.0F, 200.0F) && s.plan_budget >= 100 &&
-           s.kept_for_next <= s.plan_budget && is_valid(s.work);
+           within(s.patience, 0.0F, 600.0F) && s.plan_budget >= 100 && s.kept_for_next <= s.plan_budget &&
+           s.kept_for_reactive <= s.plan_budget && is_valid(s.work);
 }
 
 }  // namespace jink::avoid

@@ -77,13 +77,10 @@ struct WorkPerUpdate {
 
 /// Of the supervisor alone; what it shares with the methods is in world::FlightRules.
 struct Settings {
-    /// The methods that are asked. Empty: all of the supervisor's, in its own order. Ids of methods that the supervisor
+    /// The methods that are asked, all of them: the answer that costs least is flown (objective.hpp), the first of
+    /// those that cost the same. Empty: all of the supervisor's, in its own order. Ids of methods that the supervisor
     /// does not have are skipped.
     MethodOrder order;
-    MethodOrder order_in_clutter;  ///< in place of `order` in clutter; empty: no change
-    /// Clutter: so many tracks and obstacles within `clutter_radius`; 0: never.
-    std::uint16_t clutter = 0;
-    float clutter_radius = 20.0F;     ///< 1..200 [m]
     Seconds commit = 5.0F;            ///< a loss of separation nearer than this is planned around, 0.5..60 [s]
     Seconds prediction_step = 0.2F;   ///< of the predicted flight, 0.02..0.5 [s]
     Seconds fallback_horizon = 4.0F;  ///< over which fallbacks are compared, 1..20 [s]
@@ -100,10 +97,11 @@ struct Settings {
     /// A vehicle that static threats block for this long, without getting anywhere, gives up control and asks for a
     /// hold; 0: never [s].
     Seconds patience = 20.0F;
-    std::uint32_t plan_budget = 20000;  ///< of one plan, whatever updates it takes [work units]
-    /// Of `plan_budget` kept back for each method that is asked after another one [work units].
+    std::uint32_t plan_budget = 23000;  ///< of one plan, whatever updates it takes [work units]
+    // Of `plan_budget` kept back for each method that is asked after another one [work units].
     std::uint32_t kept_for_next = 8000;
-    WorkPerUpdate work;  ///< what bounds a step's time on every target
+    std::uint32_t kept_for_reactive = 3000;  ///< where that decides anew at every update
+    WorkPerUpdate work;                      ///< what bounds a step's time on every target
 };
 /// Whether every setting lies within its range. O(1).
 [[nodiscard]] bool is_valid(const Settings& settings) noexcept;

@@ -10,6 +10,7 @@ void SlicedPlan::begin(const world::Situation& situation, const Planning& planni
     planning_ = planning;
     settings_ = settings;
     diagnostics_ = &diagnostics;
+    choice_ = {};
     flow_.begin(&SlicedPlan::run, this);
 }
 
@@ -28,9 +29,9 @@ void SlicedPlan::run(void* self) noexcept
     const world::Situation situation = plan.snapshot_.situation();
     const Inflated inflated(situation, situation.rules.clearance);
     WorkBudget budget(plan.settings_.plan_budget, plan.slice_);
-    plan.margin_ = 0.0F;
+    plan.choice_ = {};
     plan.status_ = plan.planning_.plan(plan.planning_.self, {inflated.situation, situation}, plan.settings_, budget,
-                                       *plan.diagnostics_, plan.answer_, plan.margin_);
+                                       *plan.diagnostics_, plan.answer_, plan.choice_);
     plan.ran_out_ = budget.exhausted();
 }
 

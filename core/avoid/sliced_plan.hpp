@@ -32,9 +32,9 @@ public:
     // Of the last plan that has ended.
     [[nodiscard]] world::PlanStatus status() const noexcept { return status_; }
     [[nodiscard]] bool ran_out() const noexcept { return ran_out_; }
-    /// After PlanStatus::found; the margin is that in the snapshot.
+    /// After PlanStatus::found; chosen by what is in the snapshot.
     [[nodiscard]] const world::Manoeuvre& answer() const noexcept { return answer_; }
-    [[nodiscard]] float margin() const noexcept { return margin_; }
+    [[nodiscard]] const Choice& choice() const noexcept { return choice_; }
 
 private:
     static void wait(void* self) noexcept { static_cast<SlicedPlan*>(self)->flow_.pause(); }
@@ -47,7 +47,7 @@ private:
     Settings settings_;
     Diagnostics* diagnostics_ = nullptr;
     world::Manoeuvre answer_;
-    float margin_ = 0.0F;
+    Choice choice_;
     world::PlanStatus status_ = world::PlanStatus::none_available;
     std::uint32_t spent_ = 0;  ///< of the slices until now [work units]
     bool ran_out_ = false;

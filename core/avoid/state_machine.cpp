@@ -144,58 +144,74 @@ void StateMachine::charge_planning(Tick& tick, std::uint32_t units) noexcept
     static_cast<void>(tick.budget.spend(units - of_slice));  // never more than was left
 }
 
-world::PlanStatus StateMachine::plan_at_once(Tick& tick, float& margin) noexcept
+world::PlanStatus StateMachine::plan_at_once(Tick& tick, const Settings& settings, Choice& choice) noexcept
 {
     const Inflated inflated(tick.s, tick.s.rules.clearance);
-    WorkBudget budget(std::min(settings_.plan_budget, units_for_planning(tick)));
-    const world::PlanStatus status = tick.planning.plan(tick.planning.self, {inflated.situation, tick.s}, settings_,
-                                                        budget, diagnostics_, answer_, margin);
+    WorkBudget budget(std::min(settings.plan_budget, units_for_planning(tick)));
+    const world::PlanStatus status = tick.planning.plan(tick.planning.self, {inflated.situation, tick.s}, settings,
+                                                        budget, diagnostics_, answer_, choice);
     tick.ran_out = tick.ran_out || budget.exhausted();
     charge_planning(tick, budget.spent());
     return status;
 }
 
-/// Goes on with the plan that has begun, or begins one: once an update. An answer was checked against what was known
-/// when its plan began, and counts once it is checked against what is known now.
-world::PlanStatus StateMachine::plan_a_slice(Tick& tick, float& margin) noexcept
+/// Goes on with the plan that has begun, or begins one: once an update. Who is in a hurry takes the best answer that
+/// there is so far. An answer was checked against what was known when its plan began, and counts once it is checked
+/// against what is known now.
+world::PlanStatus StateMachine::plan_a_slice(Tick& tick, const Settings& settings, bool hurries,
+                                             Choice& choice) noexcept
 {
-    if (tick.sliced) {
-        margin = tick.out.margin;
+    const bool begins = !tick.sliced && !sliced_->runs();
+    if (tick.sliced && tick.out.plan_status != world::PlanStatus::running) {
+        choice = {tick.out.margin, tick.out.cost, tick.out.answers};
         return tick.out.plan_status;
     }
-    tick.sliced = true;
-    const bool begins = !sliced_->runs();
     if (begins) {
-        sliced_->begin(tick.s, tick.planning, settings_, diagnostics_);
+        sliced_->begin(tick.s, tick.planning, settings, diagnostics_);
     }
-    const bool ended = sliced_->advance(units_for_planning(tick));
-    charge_planning(tick, sliced_->spent());
-    if (!ended) {
-        return world::PlanStatus::running;
+    if (!tick.sliced) {
+        tick.sliced = true;
+        static_cast<void>(sliced_->advance(units_for_planning(tick)));
+        charge_planning(tick, sliced_->spent());
     }
-    tick.ran_out = tick.ran_out || sliced_->ran_out();
-    if (sliced_->status() != world::PlanStatus::found) {
-        return sliced_->status();
+    if (sliced_->runs()) {
+        if (!hurries || sliced_->choice().answers == 0) {
+            return world::PlanStatus::running;
+        }
+        sliced_->drop();
+    } else {
+        tick.ran_out = tick.ran_out || sliced_->ran_out();
+        if (sliced_->status() != world::PlanStatus::found) {
+            return sliced_->status();
+        }
     }
     answer_ = sliced_->answer();
-    margin = begins ? sliced_->margin() : check_manoeuvre(tick.s, answer_, settings_, tick.budget).margin;
-    if (!(margin >= 0.0F)) {
+    choice = sliced_->choice();
+    choice.margin = begins ? choice.margin : check_manoeuvre(tick.s, answer_, settings_, tick.budget).margin;
+    if (!(choice.margin >= 0.0F)) {
         ++diagnostics_.answers_rejected;
         return world::PlanStatus::none_available;
     }
     return world::PlanStatus::found;
 }
 
-/// Asks the methods for an answer.
-bool StateMachine::plan(Tick& tick) noexcept
+/// Asks the methods for an answer; or one of them alone. `hurries`: any answer is better than none.
+bool StateMachine::plan(Tick& tick, bool hurries, std::uint8_t only) noexcept
 {
-    float margin = 0.0F;
-    tick.out.plan_status = sliced_ != nullptr ? plan_a_slice(tick, margin) : plan_at_once(tick, margin);
+    Settings settings = settings_;
+    if (only != 0) {
+        settings.order = MethodOrder(only);
+    }
+    Choice choice;
+    tick.out.plan_status =
+        sliced_ != nullptr ? plan_a_slice(tick, settings, hurries, choice) : plan_at_once(tick, settings, choice);
     tick.planned = true;
     const bool found = tick.out.plan_status == world::PlanStatus::found;
     if (found) {
         ++diagnostics_.plans_found;
-        tick.out.margin = margin;
+        tick.out.margin = choice.margin;
+        tick.out.answers = choice.answers;
+        tick.out.cost = choice.cost;
     }
     return found;
 }
@@ -243,7 +259,7 @@ void StateMachine::watch(Tick& tick) noexcept
         return;
     }
     const Seconds left = tick.out.conflict->time_to_loss;
-    if (is_due(tick, left) && plan(tick)) {
+    if (is_due(tick, left) && plan(tick, is_urgent(tick, left))) {
         take(tick);
     } else if (is_urgent(tick, left)) {
         fall_back(tick);
@@ -309,6 +325,7 @@ Guidance StateMachine::update(const world::Situation& given, const world::Refere
         drop_plan();
     }
     tick.out.state = state();
+    tick.out.by = phase_ == Phase::avoiding || phase_ == Phase::watching ? tick.out.by : 0;
     tick.out.transitions = transitions_;
     tick.out.work = tick.budget.spent() + settings_.work.slice - tick.slice;
     last_update_ = given.now;

@@ -55,12 +55,13 @@ private:
     void update_clearness(Tick& tick) noexcept;
     void run_phase(Tick& tick) noexcept;
     void watch(Tick& tick) noexcept;
-    [[nodiscard]] bool plan(Tick& tick) noexcept;
+    [[nodiscard]] bool plan(Tick& tick, bool hurries, std::uint8_t only = 0) noexcept;
     [[nodiscard]] bool plan_runs() const noexcept { return sliced_ != nullptr && sliced_->runs(); }
     [[nodiscard]] std::uint32_t units_for_planning(const Tick& tick) const noexcept;
     static void charge_planning(Tick& tick, std::uint32_t units) noexcept;
-    [[nodiscard]] world::PlanStatus plan_at_once(Tick& tick, float& margin) noexcept;
-    [[nodiscard]] world::PlanStatus plan_a_slice(Tick& tick, float& margin) noexcept;
+    [[nodiscard]] world::PlanStatus plan_at_once(Tick& tick, const Settings& settings, Choice& choice) noexcept;
+    [[nodiscard]] world::PlanStatus plan_a_slice(Tick& tick, const Settings& settings, bool hurries,
+                                                 Choice& choice) noexcept;
     [[nodiscard]] bool is_due(const Tick& tick, Seconds time_to_loss) const noexcept;
     [[nodiscard]] Seconds latest_manoeuvre_time(const Tick& tick) const noexcept;
     [[nodiscard]] bool is_urgent(const Tick& tick, Seconds time_to_loss) const noexcept;
@@ -98,6 +99,7 @@ private:
     std::optional<TimePoint> clear_since_;     ///< the nominal path, by Settings::clear_extra; empty while it is not
     std::optional<TimePoint> free_since_;      ///< the nominal path, of conflicts; empty while it is not
     std::optional<TimePoint> standing_since_;  ///< braking in front of something
+    std::optional<TimePoint> all_asked_at_;    ///< last time all methods were asked, while a velocity is flown
     std::optional<TimePoint>
         faster_sought_at_;  ///< last search for a faster manoeuvre; empty unless a slow one is flown
     std::optional<world::Commanded> commanded_;  ///< by the last update; empty unless in control

@@ -2,25 +2,25 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <tuple>
 
-#include "core/avoid/method_order.hpp"
+#include "core/avoid/final_check.hpp"
 #include "core/avoid/state_machine.hpp"
 
 namespace jink::avoid {
 
-/// Decides, once per tick, what is flown: predicts conflicts of the nominal path, asks the methods in order, checks
-/// each answer once more as it will really be flown, holds on to a chosen manoeuvre while it stays safe, replans when
-/// it does not, returns to the leg, and brakes (or takes the max-clearance escape) when nothing is safe.
+/// Decides, once per tick, what is flown: predicts conflicts of the nominal path, asks the methods, checks each answer
+/// once more as it will really be flown, takes the one that costs least (objective.hpp), holds on to it while it stays
+/// safe, replans when it does not, returns to the leg, and brakes (or takes the max-clearance escape) when nothing is
+/// safe.
 ///
 /// `update(situation, in_control)`: `in_control` says whether the vehicle follows our command at present. While it does
 /// not, nothing is held on to: the answer is made anew from the present state every tick, on the side chosen before
 /// where that is about as good. Situation::threats is collected by the caller (world::ThreatSet); without threats, or
-/// with flight rules out of range, everything counts as contact. Settings::order says which methods are asked, and in
-/// which order. A method that keeps clearance by itself (MethodTraits) is asked once a plan; others are asked for an
-/// inflated vehicle first. Methods are owned by the caller and outlive the supervisor. Same situations in the same
-/// order give the same guidance.
+/// with flight rules out of range, everything counts as contact. Settings::order says which methods are asked. A method
+/// that keeps clearance by itself (MethodTraits) is asked once a plan; others are asked for an inflated vehicle first.
+/// Methods are owned by the caller and outlive the supervisor. Same situations in the same order give the same
+/// guidance.
 template <world::AvoidanceMethod... Methods>
 class Supervisor {
 public:
@@ -36,8 +36,11 @@ public:
     Guidance update(const world::Situation& situation, bool in_control,
                     const world::Reference* other = nullptr) noexcept
     {
-        return machine_.update(situation, other, in_control, {this, &Supervisor::ask_in_order});
+        return machine_.update(situation, other, in_control, planning());
     }
+
+    /// How a plan is made: by all methods of the order, the answer that costs least.
+    [[nodiscard]] Planning planning() noexcept { return {this, &Supervisor::ask_all}; }
 
     void reset() noexcept { machine_.reset(); }
     /// From now on a plan goes on over several updates (WorkPerUpdate). It outlives this.
@@ -72,78 +75,108 @@ private:
         return here;
     }
 
+    /// What one of the methods answers.
+    struct Answer {
+        world::Manoeuvre& manoeuvre;
+        Assessment assessment;
+        world::PlanStatus status = world::PlanStatus::none_available;
+    };
+
     /// One method: for the inflated vehicle, then for the vehicle as it is. A method that keeps clearance by itself, as
     /// far as it can, is asked once.
     template <class Method>
     static bool ask(Method& method, const Situations& situations, const Settings& settings, WorkBudget& budget,
-                    Diagnostics& diagnostics, world::Manoeuvre& out, float& margin, world::PlanStatus& status) noexcept
+                    Diagnostics& diagnostics, Answer& out) noexcept
     {
         if constexpr (!Method::kTraits.keeps_clearance) {
-            if (ask_in(method, situations.inflated, settings, budget, diagnostics, out, margin, status)) {
+            const float kept = situations.plain.rules.clearance;
+            if (ask_in(method, situations.inflated, kept, settings, budget, diagnostics, out)) {
                 return true;
             }
             if (budget.exhausted()) {
                 return false;
             }
         }
-        return ask_in(method, situations.plain, settings, budget, diagnostics, out, margin, status);
+        return ask_in(method, situations.plain, 0.0F, settings, budget, diagnostics, out);
     }
 
     template <class Method>
-    static bool ask_in(Method& method, const world::Situation& situation, const Settings& settings, WorkBudget& budget,
-                       Diagnostics& diagnostics, world::Manoeuvre& out, float& margin,
-                       world::PlanStatus& status) noexcept
+    static bool ask_in(Method& method, const world::Situation& situation, float kept, const Settings& settings,
+                       WorkBudget& budget, Diagnostics& diagnostics, Answer& out) noexcept
     {
         ++diagnostics.plans;
-        status = method.plan(situation, budget, out);
-        if (status != world::PlanStatus::found) {
+        out.status = method.plan(situation, budget, out.manoeuvre);
+        if (out.status != world::PlanStatus::found) {
             return false;
         }
-        out.by = Method::kTraits.id;
-        constexpr world::Cutoff kClearOrNot{0.0F, world::kSeparationCap, {}};
-        constexpr Seconds kAllOfIt = std::numeric_limits<Seconds>::infinity();
-        margin = check_manoeuvre(situation, out, settings, budget, kAllOfIt, kClearOrNot).margin;
-        if (!(margin >= 0.0F)) {
+        out.manoeuvre.by = Method::kTraits.id;
+        out.assessment = assess(situation, out.manoeuvre, settings, kept, budget);
+        if (out.manoeuvre.kind == world::ManoeuvreKind::velocity) {
+            out.manoeuvre.side = out.assessment.cost.side;
+        }
+        if (!(out.assessment.margin >= 0.0F)) {
             ++diagnostics.answers_rejected;
-            status = world::PlanStatus::none_available;
+            out.status = world::PlanStatus::none_available;
             return false;
         }
         return true;
     }
 
-    static world::PlanStatus ask_in_order(void* self, const Situations& situations, const Settings& settings,
-                                          WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
-                                          float& margin) noexcept
+    /// What is kept of a plan's units for a method that is asked after others.
+    static std::uint32_t kept_for(std::uint8_t id, const Settings& settings) noexcept
     {
-        world::PlanStatus status = world::PlanStatus::none_available;
-        const MethodOrder order = present(order_for(situations.plain, settings));
-        std::size_t after = order.size();
+        const bool reactive = ((id == Methods::kTraits.id && Methods::kTraits.reactive) || ...);
+        return reactive ? settings.kept_for_reactive : settings.kept_for_next;
+    }
+
+    static world::PlanStatus ask_all(void* self, const Situations& situations, const Settings& settings,
+                                     WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
+                                     Choice& choice) noexcept
+    {
+        Supervisor& own = *static_cast<Supervisor*>(self);
+        const MethodOrder order = present(settings.order);
+        std::uint32_t kept = 0;
         for (const std::uint8_t id : order.ids()) {
-            --after;
-            const auto kept = static_cast<std::uint32_t>(after * settings.kept_for_next);
+            kept += kept_for(id, settings);
+        }
+        world::PlanStatus status = world::PlanStatus::none_available;
+        for (const std::uint8_t id : order.ids()) {
+            const bool last = id == order.ids().back();
+            kept -= kept_for(id, settings);
             WorkBudget share = budget.part(budget.left() > kept ? budget.left() - kept : 0);
+            Answer answer{own.answer_, {}};
             const bool found = std::apply(
                 [&](Methods&... method) {
-                    return ((id == Methods::kTraits.id &&
-                             ask(method, situations, settings, share, diagnostics, out, margin, status)) ||
-                            ...);
+                    return (
+                        (id == Methods::kTraits.id && ask(method, situations, settings, share, diagnostics, answer)) ||
+                        ...);
                 },
-                static_cast<Supervisor*>(self)->methods_);
+                own.methods_);
             // What ends the last method's work ends that of the plan, and is reported.
             budget.charge(share);
-            if (after == 0 && share.exhausted()) {
+            if (last && share.exhausted()) {
                 budget.exhaust();
             }
-            if (found) {
-                diagnostics.found_by_next += after + 1 < order.size() ? 1U : 0U;
-                return status;
+            if (!found) {
+                status = choice.answers > 0 ? status : answer.status;
+                continue;
+            }
+            status = world::PlanStatus::found;
+            ++choice.answers;
+            const Seconds cost = answer.assessment.cost.total();
+            if (choice.answers == 1 || cost < choice.cost) {
+                out = answer.manoeuvre;
+                choice.margin = answer.assessment.margin;
+                choice.cost = cost;
             }
         }
+        diagnostics.found_by_next += status == world::PlanStatus::found && out.by != order.ids().front() ? 1U : 0U;
         return status;
     }
 
     StateMachine machine_;
     std::tuple<Methods&...> methods_;
+    world::Manoeuvre answer_;  ///< of the method that is asked at present
 };
 
 }  // namespace jink::avoid

@@ -53,9 +53,10 @@ inline constexpr std::uint32_t kConflictSolid = 10;    ///< with any other obsta
 inline constexpr std::uint32_t kConflictCylinder = 8;  ///< with a cylinder, but for the instants that are checked
 
 // --- flights predicted by the supervisor (core/avoid) ---
-inline constexpr std::uint32_t kFlightPart = 4;   ///< a tenth of a second along a path
-inline constexpr std::uint32_t kCommandStep = 3;  ///< a step under a constant command
-inline constexpr std::uint32_t kTurnStep = 8;     ///< a step of a turn
+inline constexpr std::uint32_t kFlightPart = 4;      ///< a tenth of a second along a path
+inline constexpr std::uint32_t kCommandStep = 3;     ///< a step under a constant command
+inline constexpr std::uint32_t kTurnStep = 8;        ///< a step of a turn
+inline constexpr std::uint32_t kObjectivePoint = 1;  ///< point of a flight that is costed, and each route segment
 
 // --- candidates (core/geometric) ---
 inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is made, each waypoint

@@ -125,8 +125,10 @@ struct Manoeuvre {
     TimePoint start;      ///< path time 0
     TimePoint valid_until;
     Vec3 command = Vec3::Zero();  ///< `velocity`: [m/s]
-    Vec3 side = Vec3::Zero();     ///< unit vector from the leg towards the farthest point of the path; zero for none
-    float cost = 0.0F;            ///< [0, 1], as the method counts it
+    /// Unit vector from the leg towards the farthest point of the path; zero for none. Of a `velocity` set by the
+    /// supervisor.
+    Vec3 side = Vec3::Zero();
+    float cost = 0.0F;  ///< [0, 1], as the method counts it among its own
     path::TimedPath path;
 };
 

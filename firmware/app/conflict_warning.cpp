@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "firmware/app/method_orders.hpp"
+
 namespace jink::app {
 namespace {
 
@@ -48,6 +50,16 @@ Text text_of(const world::Conflict& conflict) noexcept
              : is_cylinder ? "jink: conflict, closed area in "
                            : "jink: conflict, obstacle in ")
          << conflict.time_to_loss << " s";
+    return text;
+}
+
+Text text_of_choice(const avoid::Guidance& guidance) noexcept
+{
+    Text text;
+    text << "jink: by " << method_name(guidance.by);
+    if (guidance.answers > 1) {
+        text << ", best of " << static_cast<std::uint32_t>(guidance.answers) << ", costs " << guidance.cost << " s";
+    }
     return text;
 }
 

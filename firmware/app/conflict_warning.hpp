@@ -17,4 +17,8 @@ namespace jink::app {
 /// The text of a new conflict.
 [[nodiscard]] Text text_of(const world::Conflict& conflict) noexcept;
 
+/// Which method's answer is flown or offered, of how many checked ones it is the best, and what it costs (new in this
+/// guidance).
+[[nodiscard]] Text text_of_choice(const avoid::Guidance& guidance) noexcept;
+
 }  // namespace jink::app

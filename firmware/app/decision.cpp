@@ -19,14 +19,13 @@ avoid::Settings Decision::supervisor_settings(const Configuration& c) const noex
     settings.work = work_;
     if (leaves_reach_out_ || c.reach_unsuited) {
         settings.order = without_sets(settings.order);
-        settings.order_in_clutter = {};
     }
     if (reach_sees_scans_) {
         // Laying a scan over a set would take most of what a plan may, and a way through clutter takes more than the
-        // rest: each of two methods has nearly a whole plan's units, and the checks and fallbacks keep theirs.
+        // rest: reach sets have a whole plan's units to themselves, and the checks and fallbacks keep theirs.
         const std::uint32_t more = kScanUnits + settings.plan_budget;
+        settings.kept_for_next = more;
         settings.plan_budget += more;
-        settings.kept_for_next = settings.plan_budget / 2;  // whichever of both is asked first
         settings.work.slice += more;
         settings.work.all += more;
     }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string_view>
 
 #include "core/avoid/settings.hpp"
 #include "core/geometric/planner.hpp"
@@ -9,69 +10,76 @@
 #include "core/reach/planner.hpp"
 #include "firmware/app/built_methods.hpp"
 
-// The methods of the co-processor, and the orders that JNK_METHODS names.
+// The methods of the co-processor, and the sets of them that JNK_METHODS names.
 
 namespace jink::app {
 
 inline constexpr std::uint8_t kGeometric = geometric::Planner::kTraits.id;
 inline constexpr std::uint8_t kReach = reach::Planner::kTraits.id;
 inline constexpr std::uint8_t kOrca = orca::Planner::kTraits.id;
+/// In the order in which they are asked.
 inline constexpr std::array kMethods{geometric::Planner::kTraits, reach::Planner::kTraits, orca::Planner::kTraits};
 
-/// An order, and the one in clutter (empty: the same).
-struct MethodOrders {
+/// For people, at most 10 characters. O(1).
+[[nodiscard]] constexpr std::string_view method_name(std::uint8_t id) noexcept
+{
+    return id == kGeometric ? "geometric" : id == kReach ? "reach sets" : id == kOrca ? "reciprocal" : "none";
+}
+
+/// The methods that a value of JNK_METHODS names: the sum of 1 geometric, 2 reach sets, 4 reciprocal. O(methods).
+[[nodiscard]] constexpr avoid::MethodOrder methods_of(unsigned value) noexcept
+{
     avoid::MethodOrder order;
-    avoid::MethodOrder in_clutter{};
-};
-
-/// By the value of JNK_METHODS.
-inline constexpr std::array kMethodOrders{
-    MethodOrders{avoid::MethodOrder(kGeometric)},
-    MethodOrders{avoid::MethodOrder(kGeometric, kReach), avoid::MethodOrder(kReach, kGeometric)},
-    MethodOrders{avoid::MethodOrder(kReach, kGeometric)},
-    MethodOrders{avoid::MethodOrder(kReach)},
-    MethodOrders{avoid::MethodOrder(kOrca)},
-    MethodOrders{avoid::MethodOrder(kOrca, kGeometric, kReach), avoid::MethodOrder(kOrca, kReach, kGeometric)},
-};
-
-/// Whether this image has a method. O(1).
-[[nodiscard]] constexpr bool is_built(std::uint8_t method) noexcept
-{
-    return method == kGeometric ? kHasGeometric : method == kReach ? kHasReach : method == kOrca && kHasReciprocal;
+    for (std::size_t i = 0; i < kMethods.size(); ++i) {
+        static_cast<void>((value >> i & 1U) != 0 && order.try_add(kMethods[i].id));
+    }
+    return order;
 }
-/// Whether this image has all methods that a value of JNK_METHODS names. O(methods).
-[[nodiscard]] constexpr bool is_built(const MethodOrders& orders) noexcept
+/// The largest value, of all methods.
+inline constexpr unsigned kAllMethods = (1U << kMethods.size()) - 1;
+/// Of the methods that this image has: the initial value.
+inline constexpr unsigned kBuiltMethods =
+    (kHasGeometric ? 1U : 0U) + (kHasReach ? 2U : 0U) + (kHasReciprocal ? 4U : 0U);
+
+/// Whether this image has all methods that a value names. O(1).
+[[nodiscard]] constexpr bool is_built(unsigned value) noexcept { return (value & ~kBuiltMethods) == 0; }
+
+/// Those of an order for which `holds`. O(methods).
+template <class Predicate>
+[[nodiscard]] constexpr avoid::MethodOrder those_of(const avoid::MethodOrder& order, Predicate holds) noexcept
 {
-    const auto ids = orders.order.ids();
-    return std::all_of(ids.begin(), ids.end(), [](std::uint8_t id) { return is_built(id); });
+    avoid::MethodOrder left;
+    for (const world::MethodTraits& method : kMethods) {
+        static_cast<void>(order.contains(method.id) && holds(method) && left.try_add(method.id));
+    }
+    return left;
 }
-/// Initial JNK_METHODS: geometric then reach sets, or what is there of it, or the reciprocal method.
-inline constexpr std::size_t kInitialMethods = kHasGeometric ? (kHasReach ? 1 : 0) : kHasReach ? 3 : 4;
 
 /// Whether an order names a method that decides anew at every update. O(methods).
 [[nodiscard]] constexpr bool is_reactive(const avoid::MethodOrder& order) noexcept
 {
-    return std::any_of(kMethods.begin(), kMethods.end(),
-                       [&](const world::MethodTraits& method) { return method.reactive && order.contains(method.id); });
+    return !those_of(order, [](const world::MethodTraits& method) { return method.reactive; }).empty();
 }
 /// Whether an order names a method that needs reach sets. O(methods).
 [[nodiscard]] constexpr bool needs_sets(const avoid::MethodOrder& order) noexcept
 {
-    return std::any_of(kMethods.begin(), kMethods.end(), [&](const world::MethodTraits& method) {
-        return method.needs_sets && order.contains(method.id);
-    });
+    return !those_of(order, [](const world::MethodTraits& method) { return method.needs_sets; }).empty();
+}
+
+/// A plane keeps its own speed and cannot fly what a reactive method asks for: the others, where there are any.
+/// O(methods).
+[[nodiscard]] constexpr avoid::MethodOrder for_wings(const avoid::MethodOrder& order) noexcept
+{
+    const avoid::MethodOrder left = those_of(order, [](const world::MethodTraits& method) { return !method.reactive; });
+    return left.empty() ? order : left;
 }
 
 /// The order without the methods that need reach sets. Where none is left, the first other method of this image takes
 /// their place: an empty order would name all. O(methods).
 [[nodiscard]] constexpr avoid::MethodOrder without_sets(const avoid::MethodOrder& order) noexcept
 {
-    avoid::MethodOrder left;
-    for (const std::uint8_t id : order.ids()) {
-        if (!needs_sets(avoid::MethodOrder(id))) {
-            static_cast<void>(left.try_add(id));
-        }
-    }
+    const avoid::MethodOrder left =
+        those_of(order, [](const world::MethodTraits& method) { return !method.needs_sets; });
     return left.empty() ? avoid::MethodOrder(kHasGeometric ? kGeometric : kOrca) : left;
 }
 

@@ -67,11 +67,8 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_STANDBY", 0, 0, 1, true, "1: slow stream of set-points to a PX4 on a mission, before they are needed"},
     {"JNK_ASK_RATES", 1, 0, 1, true, "1: ask the autopilot for messages that come too seldom"},
     {"JNK_TELL_NEAR", 0, 0, 1, true, "1: tell the CAN bus what is near (Proximity)"},
-    {"JNK_METHODS", kInitialMethods, 0, kMethodOrders.size() - 1, true,
-     "0 geometric, 1 geometric then reach sets, 2 reach sets then geometric, 3 reach sets, 4 reciprocal, 5 reciprocal "
-     "then as 1"},
-    {"JNK_CLUTTER", 0, 0, 128, true,
-     "of JNK_METHODS 1: from so many threats within 20 m reach sets come first; 0 never"},
+    {"JNK_METHODS", kBuiltMethods, 1, kAllMethods, true,
+     "methods that are asked, sum of: 1 geometric, 2 reach sets, 4 reciprocal; the best answer of all is flown"},
     {"RCH_UNSEEN", 1, 0, 1, true, "1: reach sets do not go where a point cloud does not see"},
     {"JNK_COOP", 7, 0, 15, true,
      "who shares the reaction, sum of: 1 systems of the link, 2 UTM, 4 UAVs of ADS-B, 8 all of it"},
@@ -160,17 +157,17 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
     g.flip_penalty = at(Param::flip_penalty);
     g.moving_nearest = static_cast<std::uint16_t>(whole(Param::nearest));
     g.max_cost = at(Param::max_cost);
-    const MethodOrders& methods = kMethodOrders[whole(Param::methods)];
-    c.supervisor.order = methods.order;
-    c.supervisor.order_in_clutter = methods.in_clutter;
-    c.supervisor.clutter = static_cast<std::uint16_t>(whole(Param::clutter));
+    c.supervisor.order = methods_of(whole(Param::methods));
+    if (c.limits.kind == vehicle::VehicleKind::fixed_wing) {
+        c.supervisor.order = for_wings(c.supervisor.order);
+    }
     if constexpr (kHasReach) {
         c.reach.sets = &reach_sets();
         // Sets of more nodes or cells than the capacities are not flown.
         c.reach_unsuited = !reach::is_valid(c.reach) || !reach::suits(reach_sets(), c.limits);
     }
     c.blocks_unseen = whole(Param::unseen) == 1;
-    c.orca.gives_up_blocked = methods.order.ids().back() != kOrca;
+    c.orca.gives_up_blocked = c.supervisor.order != avoid::MethodOrder(kOrca);
     g.caps.time_low = at(Param::time_low);
     g.caps.time_high = at(Param::time_high);
     return c;
@@ -193,8 +190,7 @@ ParamStatus check_one(std::size_t index, float value) noexcept
     if (!(value >= info.low && value <= info.high) || (info.integer && value != std::floor(value))) {
         return ParamStatus::out_of_range;
     }
-    if (index == static_cast<std::size_t>(Param::methods) &&
-        !is_built(kMethodOrders[static_cast<std::size_t>(value)])) {
+    if (index == static_cast<std::size_t>(Param::methods) && !is_built(static_cast<unsigned>(value))) {
         return ParamStatus::not_built;
     }
     return ParamStatus::ok;

@@ -73,7 +73,6 @@ enum class Param : std::uint8_t {
     ask_rates,
     tell_near,
     methods,
-    clutter,
     unseen,
     coop,
     own_address,

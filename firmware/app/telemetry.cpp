@@ -15,6 +15,8 @@ constexpr Seconds kCollisionPeriod = 0.5F;
 constexpr Seconds kNearPeriod = 0.2F;
 /// Without a conflict for so long, the next one is another one [s].
 constexpr Seconds kConflictOver = 5.0F;
+/// Between two texts about the method.
+constexpr Seconds kChoicePeriod = 2.0F;
 /// A vehicle counts as not steerable after so many HEARTBEATs: EXTENDED_SYS_STATE and parameters may come later.
 constexpr int kUnsteerableReports = 6;
 
@@ -80,6 +82,7 @@ void Telemetry::report_to_autopilot(TimePoint now, const StepReport& report, con
         warn_of_conflict(now, report, of, outbox);
     }
     conflict_.is_reported = g.conflict.has_value();
+    report_choice(now, g, outbox);
     report_braking(now, g, outbox);
 }
 
@@ -141,6 +144,17 @@ void Telemetry::warn_of_conflict(TimePoint now, const StepReport& report, const 
     }
 }
 
+/// At the first answer in a conflict and where the method changes, now and then at most.
+void Telemetry::report_choice(TimePoint now, const avoid::Guidance& g, Outbox& outbox) noexcept
+{
+    const bool chosen = g.by != 0 && g.answers > 0 && g.by != conflict_.said_by;
+    if (chosen && (conflict_.said_by == 0 || now - conflict_.said_by_at >= kChoicePeriod)) {
+        conflict_.said_by = g.by;
+        conflict_.said_by_at = now;
+        outbox.say(link::Severity::notice, text_of_choice(g).view());
+    }
+}
+
 /// That nothing is safe is CRITICAL once in a conflict; a fallback that keeps clear is a warning, once too. A conflict
 /// that comes and goes is one.
 void Telemetry::report_braking(TimePoint now, const avoid::Guidance& g, Outbox& outbox) noexcept
@@ -148,6 +162,7 @@ void Telemetry::report_braking(TimePoint now, const avoid::Guidance& g, Outbox& 
     conflict_.last = g.conflict || g.state == avoid::State::braking ? now : conflict_.last;
     if (now - conflict_.last > kConflictOver) {
         conflict_.said_unsafe = conflict_.said_braking = false;
+        conflict_.said_by = 0;
     }
     if (g.state == avoid::State::braking && g.wants_control) {
         if (g.margin < 0.0F && !conflict_.said_unsafe) {

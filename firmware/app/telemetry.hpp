@@ -61,6 +61,7 @@ private:
     void report_causes(const Reported& of, Outbox& outbox) noexcept;
     void report_autopilot(const StepReport& report, const Reported& of, Outbox& outbox) noexcept;
     void warn_of_conflict(TimePoint now, const StepReport& report, const Reported& of, Outbox& outbox) noexcept;
+    void report_choice(TimePoint now, const avoid::Guidance& guidance, Outbox& outbox) noexcept;
     void report_braking(TimePoint now, const avoid::Guidance& guidance, Outbox& outbox) noexcept;
 
     struct Heartbeat {
@@ -83,6 +84,8 @@ private:
         TimePoint reported_at;
         bool said_unsafe = false;
         bool said_braking = false;
+        std::uint8_t said_by = 0;  ///< method; 0: none
+        TimePoint said_by_at;
         TimePoint last;
     };
 

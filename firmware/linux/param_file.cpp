@@ -96,7 +96,7 @@ std::vector<std::string> misfits(const ParamValues& values)
         out.emplace_back("GEO_OFFSETS * (GEO_PLANES + 1) candidates per family are more than " +
                          std::to_string(kMaxCandidates));
     }
-    if (!app::is_built(app::kMethodOrders[static_cast<std::size_t>(value_of(values, Param::methods))])) {
+    if (!app::is_built(static_cast<unsigned>(value_of(values, Param::methods)))) {
         out.emplace_back("JNK_METHODS names a method that this program is built without");
     }
     return out;

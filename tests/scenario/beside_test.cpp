@@ -26,8 +26,8 @@ struct Methods {
     const char* name;
     int value;  ///< of JNK_METHODS
 };
-constexpr Methods kGeometric{"geometric", 0};
-constexpr Methods kReach{"reach", 3};
+constexpr Methods kGeometric{"geometric", 1};
+constexpr Methods kReach{"reach", 2};
 constexpr Methods kReciprocal{"reciprocal", 4};
 
 class BesideTheLeg : public ::testing::TestWithParam<std::tuple<Scene, Methods>> {};

@@ -169,7 +169,7 @@ TEST(Swarm, OfTwoPassesOnItsSidesHoweverOldTheReports)
         for (const double delay : {0.3, 0.5, 1.0}) {
             setup.delay = delay;
             for (const std::uint64_t seed : {950000U, 950013U, 950158U}) {
-                for (const double methods : {1.0, 5.0}) {
+                for (const double methods : {3.0, 7.0}) {
                     setup.others = {{"JNK_METHODS", methods}};  // beside one that has the delivered methods
                     const SwarmResult result = fly_swarm(setup, seed, {});
                     EXPECT_TRUE(result.good()) << sector << " " << delay << " " << methods << " " << to_line(result);
@@ -186,11 +186,10 @@ TEST(Swarm, OfTwoThatCrossWhileTheyGainSpeedKeepsItsSeparations)
     SwarmSetup setup = two(10.0);
     setup.delay = 1.0;
     setup.loss = 0.5;
-    setup.parameters = {{"JNK_METHODS", 1.0}};
     for (const double sector : {180.0, 90.0}) {
         setup.sector = sector;
         for (const std::uint64_t seed : {960010U, 960017U, 960022U, 960029U}) {
-            for (const double methods : {1.0, 4.0, 5.0}) {
+            for (const double methods : {3.0, 4.0, 7.0}) {
                 setup.others = {{"JNK_METHODS", methods}};
                 const SwarmResult result = fly_swarm(setup, seed, {});
                 EXPECT_TRUE(result.good()) << sector << " " << methods << " " << to_line(result);

@@ -21,7 +21,7 @@ PAGES = ("README.md", "CONTRIBUTING.md", "docs/**/*.md", "tests/scenario/README.
 INDEX = "docs/README.md"
 # Words that the glossary replaces, with the word to use. Commands, options and names in `code` are not checked.
 REFUSED = {
-    r"ball(s)?": "sphere", r"barrels?": "cylinder, closed area", r"glances?": "quick reject", r"rungs?": "method, fallback", r"ladders?": "method order",
+    r"ball(s)?": "sphere", r"barrels?": "cylinder, closed area", r"glances?": "quick reject", r"rungs?": "method, fallback", r"ladders?": "methods",
     r"rooms?": "module, clearance", r"guard": "final check, fallback", r"told": "reported, received, said", r"echo(es)?": "return",
     r"dear(er|est)?": "expensive", r"least harm": "max-clearance escape", r"in a row": "two-stage, consecutive", r"held up": "delayed",
     r"gives? ground": "back off", r"beside the leg": "parallel offset", r"(share|shares|sharing) the reaction": "cooperative", r"last moment": "latest manoeuvre time",

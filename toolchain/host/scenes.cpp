@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// jink scenes: scenario files flown with each order of the avoidance methods, as a table and as plan-view pictures.
+// jink scenes: scenario files flown straight, by each avoidance method and by all, as a table and as plan-view
+// pictures.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -20,7 +21,6 @@ constexpr const char* kScenes = "scenes";
 
 struct ScenesOptions {
     std::vector<std::string> files;
-    std::vector<unsigned> clutters;
     unsigned seeds = 0;
     std::string out;
     std::string python = "/usr/bin/python3";
@@ -41,7 +41,7 @@ void run_scenes(const ScenesOptions& options)
     if (!options.out.empty() && !fs::create_directories(options.out, error) && error) {
         refuse(kScenes, options.out + " cannot be made: " + error.message());
     }
-    const std::vector<FlownBy> ways = ways_to_fly(options.clutters);
+    const std::vector<FlownBy> ways = ways_to_fly();
     std::vector<Scene> drawn;
     for (const std::string& file : options.files) {
         std::vector<Scene> scenes;
@@ -67,13 +67,10 @@ void add_scenes(CLI::App& jink)
 {
     auto options = std::make_shared<ScenesOptions>();
     CLI::App* command =
-        jink.add_subcommand("scenes", "fly scenario files straight and with each order of the avoidance methods");
+        jink.add_subcommand("scenes", "fly scenario files straight, with each avoidance method and with all of them");
     command->add_option("files", options->files, "scenario files (tests/scenario/README.md)")
         ->required()
         ->check(CLI::ExistingFile);
-    command->add_option("--clutter", options->clutters, "fly each of these JNK_CLUTTER too")
-        ->delimiter(',')
-        ->check(CLI::Range(0, 128));
     command
         ->add_option("--seeds", options->seeds, "instead of the files' own seeds 1 to so many, and a summary of them")
         ->check(CLI::Range(0, 100000));

@@ -115,19 +115,14 @@ std::string line(const char* format, const auto&... values)
 
 }  // namespace
 
-std::vector<FlownBy> ways_to_fly(const std::vector<unsigned>& clutters)
+std::vector<FlownBy> ways_to_fly()
 {
-    std::vector<FlownBy> ways{{"straight", true, {}},
-                              {"geometric", false, {{"JNK_METHODS", 0.0}}},
-                              {"geometric, reach sets", false, {{"JNK_METHODS", 1.0}}},
-                              {"reach sets, geometric", false, {{"JNK_METHODS", 2.0}}},
-                              {"reach sets", false, {{"JNK_METHODS", 3.0}}}};
-    for (const unsigned clutter : clutters) {
-        ways.push_back({"clutter " + std::to_string(clutter),
-                        false,
-                        {{"JNK_METHODS", 1.0}, {"JNK_CLUTTER", static_cast<double>(clutter)}}});
-    }
-    return ways;
+    return {{"straight", true, {}},
+            {"geometric", false, {{"JNK_METHODS", 1.0}}},
+            {"reach sets", false, {{"JNK_METHODS", 2.0}}},
+            {"reciprocal", false, {{"JNK_METHODS", 4.0}}},
+            {"geometric and reach sets", false, {{"JNK_METHODS", 3.0}}},
+            {"all", false, {{"JNK_METHODS", 7.0}}}};
 }
 
 Scene fly_scene(const sim::Scenario& scenario, const std::vector<FlownBy>& ways)

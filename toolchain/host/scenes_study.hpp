@@ -19,9 +19,8 @@ struct FlownBy {
     std::map<std::string, double> parameters;
 };
 
-/// Straight flight, and the four method orders of JNK_METHODS; then, for the order that uses JNK_CLUTTER, each of its
-/// values.
-[[nodiscard]] std::vector<FlownBy> ways_to_fly(const std::vector<unsigned>& clutters);
+/// Straight flight, each method alone, the two that plan, and all of them.
+[[nodiscard]] std::vector<FlownBy> ways_to_fly();
 
 struct SceneFlight {
     FlownBy by;

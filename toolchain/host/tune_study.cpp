@@ -99,7 +99,7 @@ sim::Variant variant_of(const cost::Weights& weights)
     sim::Variant variant;
     // The geometric planner alone: results of other methods do not depend on the weights.
     variant.parameters = {
-        {"JNK_METHODS", 0.0}, {"GEO_K_S", rounded(weights.smoothness)}, {"GEO_K_T", rounded(weights.time)}};
+        {"JNK_METHODS", 1.0}, {"GEO_K_S", rounded(weights.smoothness)}, {"GEO_K_T", rounded(weights.time)}};
     return variant;
 }
 

@@ -35,7 +35,7 @@ def items(body):
 
 def constants(top):
     """What the table may name: capacities by the default of their macro, sizes of arrays of firmware/app as NAME.size(), and whole numbers of firmware/app;
-    of a choice by the methods of an image the first one, which an image with all of them has."""
+    of a set of methods all of them."""
     text = (top / CAPACITIES).read_text(encoding="utf-8")
     macros = dict(re.findall(r"#define (JINK_MAX_\w+) (\d+)", text))
     out = {name: int(macros[macro]) for name, macro in re.findall(r"constexpr std::size_t (kMax\w+) = (JINK_MAX_\w+);", text) if macro in macros}
@@ -43,6 +43,8 @@ def constants(top):
         text = header.read_text(encoding="utf-8")
         out.update({f"{name}.size()": items(body) for name, body in re.findall(r"constexpr std::array (k\w+)\{(.*?)\};", text, re.S)})
         out.update({name: int(value) for name, value in re.findall(r"constexpr std::size_t (k\w+) = (?:\(?\w+ \? )*(\d+)\b", text)})
+        for array in re.findall(r"constexpr unsigned kAllMethods = \(1U << (\w+)\.size\(\)\) - 1;", text):
+            out["kAllMethods"] = out["kBuiltMethods"] = (1 << out[f"{array}.size()"]) - 1
     return out
 
 

@@ -68,10 +68,12 @@ struct Methods {
     geometric::Planner geometric{configuration.planner};
     reach::Planner reach{configuration.reach};
     orca::Planner orca{configuration.orca};
+    Supervisor<geometric::Planner, reach::Planner, orca::Planner> all{configuration.supervisor, geometric, reach, orca};
     int which = 0;
 
-    static world::PlanStatus plan(void* self, const Situations& situations, const Settings&, WorkBudget& budget,
-                                  Diagnostics&, world::Manoeuvre& out, float&) noexcept
+    static world::PlanStatus plan(void* self, const Situations& situations, const Settings& settings,
+                                  WorkBudget& budget, Diagnostics& diagnostics, world::Manoeuvre& out,
+                                  Choice& choice) noexcept
     {
         auto& m = *static_cast<Methods*>(self);
         const world::Situation& s = m.which == 0 ? situations.inflated : situations.plain;
@@ -79,7 +81,10 @@ struct Methods {
         case 0:
         case 1: return m.geometric.plan(s, budget, out);
         case 2: return m.reach.plan(s, budget, out);
-        default: m.orca.reset(); return m.orca.plan(s, budget, out);
+        case 3: m.orca.reset(); return m.orca.plan(s, budget, out);
+        default:
+            m.orca.reset();
+            return m.all.planning().plan(&m.all, situations, settings, budget, diagnostics, out, choice);
         }
     }
 };
@@ -115,15 +120,15 @@ TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
         Scene scene;
         draw(random, scene);
         const world::Situation s = scene.situation();
-        settings.plan_budget = random.below(3) == 0 ? 1000 + random.below(8000) : 20000;
-        for (methods->which = 0; methods->which < 4; ++methods->which) {
+        settings.plan_budget = random.below(3) == 0 ? settings.kept_for_next + random.below(8000) : 23000;
+        for (methods->which = 0; methods->which < 5; ++methods->which) {
             const Planning planning{methods.get(), &Methods::plan};
             world::Manoeuvre whole;
-            float margin = 0.0F;
+            Choice choice;
             WorkBudget budget(settings.plan_budget);
             const Inflated inflated(s, s.rules.clearance);
             const world::PlanStatus status =
-                Methods::plan(methods.get(), {inflated.situation, s}, settings, budget, diagnostics, whole, margin);
+                Methods::plan(methods.get(), {inflated.situation, s}, settings, budget, diagnostics, whole, choice);
             found += status == world::PlanStatus::found ? 1 : 0;
             for (int slicing = 0; slicing < 5; ++slicing) {
                 const std::uint32_t longest = slicing == 0 ? 1 : 1 + random.below(6000);

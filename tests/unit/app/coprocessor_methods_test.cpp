@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -61,8 +62,7 @@ Passed pass(std::initializer_list<std::pair<Param, float>> values, bool leave_ou
 
 TEST(CoprocessorMethods, PlanAsTheParameterSays)
 {
-    const std::pair<float, std::uint8_t> methods[] = {
-        {0.0F, kGeometric}, {1.0F, kGeometric}, {2.0F, kReach}, {3.0F, kReach}};
+    const std::pair<float, std::uint8_t> methods[] = {{1.0F, kGeometric}, {2.0F, kReach}, {4.0F, kOrca}};
     for (const auto& [value, by] : methods) {
         const Passed passed = pass({{Param::methods, value}});
         EXPECT_EQ(passed.by, by) << value;
@@ -71,21 +71,34 @@ TEST(CoprocessorMethods, PlanAsTheParameterSays)
     }
 }
 
-TEST(CoprocessorMethods, InClutterReachSetsComeFirst)
+/// The choice is told once, with how many answers there were.
+TEST(CoprocessorMethods, TheChosenMethodIsTold)
 {
-    EXPECT_EQ(pass({{Param::clutter, 1.0F}}).by, kGeometric) << "farther off than 20 m is no clutter";
-    // A static threat off the leg is within 20 m of the vehicle when a plan is needed.
-    const auto f = std::make_unique<Flight>([] {
-        Parameters p;
-        EXPECT_EQ(p.set(Param::clutter, 2.0F), ParamStatus::ok);
-        return p;
-    }());
-    ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults == 0; }, 200));
-    f->obstacles = {f->position + Vec3(0.4F, 24.0F, 0.0F), f->position + Vec3(8.0F, 20.0F, 0.0F),
-                    f->position + Vec3(-9.0F, 18.0F, 0.0F)};
-    ASSERT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
-    ASSERT_NE(f->coprocessor.flying(), nullptr);
-    EXPECT_EQ(f->coprocessor.flying()->by, kReach);
+    for (const float methods : {2.0F, 7.0F}) {
+        Parameters parameters;
+        ASSERT_EQ(parameters.set(Param::methods, methods), ParamStatus::ok);
+        const auto f = std::make_unique<Flight>(parameters);
+        std::vector<std::string> told;
+        const auto listen = [&] {
+            for (const Statustext& m : f->said_of<Statustext>()) {
+                const std::string text(m.text.data());
+                if (text.starts_with("jink: by ")) {
+                    told.push_back(text);
+                }
+            }
+        };
+        ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults == 0; }, 200));
+        f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
+        f->until([&](const StepReport& r) {
+            listen();
+            return r.control == Control::ours;
+        });
+        ASSERT_EQ(told.size(), 1U) << methods;
+        const world::Manoeuvre* flying = f->coprocessor.flying();
+        ASSERT_NE(flying, nullptr);
+        EXPECT_EQ(told[0].find(method_name(flying->by)), 9U) << told[0];
+        EXPECT_EQ(told[0].find(", best of ") != std::string::npos, methods == 7.0F) << told[0];
+    }
 }
 
 /// Made in memory that holds something from before.
@@ -112,7 +125,7 @@ struct OldMemory {
 TEST(CoprocessorMethods, DoNotDependOnWhatTheMemoryHeldBefore)
 {
     Parameters parameters;
-    ASSERT_EQ(parameters.set(Param::methods, 3.0F), ParamStatus::ok);
+    ASSERT_EQ(parameters.set(Param::methods, 2.0F), ParamStatus::ok);
     for (const int left : {0x00, 0x01, 0xA5, 0xFF}) {
         const OldMemory old(static_cast<std::byte>(left), parameters);
         Flight& f = *old.flight;
@@ -126,7 +139,7 @@ TEST(CoprocessorMethods, DoNotDependOnWhatTheMemoryHeldBefore)
 
 TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
 {
-    const Passed passed = pass({{Param::methods, 3.0F}}, true);
+    const Passed passed = pass({{Param::methods, 2.0F}}, true);
     EXPECT_EQ(passed.by, kGeometric);
     EXPECT_EQ(passed.reported, 1);
     EXPECT_GT(passed.nearest, 2.0F);
@@ -134,10 +147,10 @@ TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
 
 TEST(CoprocessorMethods, SetsThatDoNotSuitTheVehicleAreLeftOutAndItIsReported)
 {
-    const Passed passed = pass({{Param::methods, 3.0F}, {Param::acceleration, 4.0F}});
+    const Passed passed = pass({{Param::methods, 2.0F}, {Param::acceleration, 4.0F}});
     EXPECT_EQ(passed.by, kGeometric);
     EXPECT_TRUE(passed.warned);
-    EXPECT_FALSE(pass({{Param::methods, 0.0F}, {Param::acceleration, 4.0F}}).warned) << "nobody asked for them";
+    EXPECT_FALSE(pass({{Param::methods, 1.0F}, {Param::acceleration, 4.0F}}).warned) << "nobody asked for them";
 }
 
 }  // namespace

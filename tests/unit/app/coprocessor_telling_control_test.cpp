@@ -223,7 +223,7 @@ TEST(TellingBraking, NothingSafeIsCriticalOnceWhenTheVehicleBrakes)
 
 TEST(TellingBraking, FallbackThatKeepsClearIsAWarningOnceAndWorseIsSaidAfterIt)
 {
-    const auto t = teller({{Param::track_sigma_p, 0.5F}});
+    const auto t = teller({{Param::track_sigma_p, 0.5F}, {Param::methods, 3.0F}});
     t->own.velocity = Vec3::Zero();
     t->fly(60);
     t->put_ahead(1.0F);

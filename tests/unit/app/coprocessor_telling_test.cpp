@@ -220,7 +220,7 @@ TEST(TellingNotices, ReachSetsThatDoNotSuitTheVehicleAreSaidEachTimeThatTheyCome
     set(*t, "VEH_ACC", 5.0F);
     set(*t, "VEH_ACC", 4.0F);
     EXPECT_EQ(t->said("jink: reach sets do not"), 2);
-    set(*t, "JNK_METHODS", 0.0F);
+    set(*t, "JNK_METHODS", 1.0F);
     set(*t, "VEH_ACC", 5.0F);
     set(*t, "VEH_ACC", 4.0F);
     EXPECT_EQ(t->said("jink: reach sets do not"), 2) << "nobody asks them";

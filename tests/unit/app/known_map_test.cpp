@@ -75,10 +75,10 @@ private:
 
 const Block kWall{{-5.0F, 70.0F, 35.0F}, {4.0F, 72.0F, 65.0F}};
 
-/// Methods: all, the geometric planner alone, the reciprocal one, reach sets before the others.
+/// Each method alone, and all of them.
 TEST(KnownMap, AWallOnTheLegIsKeptClearOfByEveryMethod)
 {
-    for (const float methods : {0.0F, 1.0F, 4.0F, 5.0F}) {
+    for (const float methods : {1.0F, 2.0F, 4.0F, 7.0F}) {
         SCOPED_TRACE(methods);
         Parameters parameters;
         ASSERT_EQ(parameters.set(Param::methods, methods), ParamStatus::ok);

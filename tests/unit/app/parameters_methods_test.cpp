@@ -14,34 +14,47 @@
 namespace jink::app {
 namespace {
 
-TEST(ParamMethods, EachNumberIsAnOrderAndOneForClutter)
+using Order = avoid::MethodOrder;
+
+/// By the value of JNK_METHODS, from 1 on.
+const std::array<Order, 7> kSets{
+    Order(kGeometric),        Order(kReach),        Order(kGeometric, kReach),       Order(kOrca),
+    Order(kGeometric, kOrca), Order(kReach, kOrca), Order(kGeometric, kReach, kOrca)};
+
+TEST(ParamMethods, EachNumberIsASetOfMethods)
 {
-    using Order = avoid::MethodOrder;
-    const std::array<MethodOrders, 6> cases{{{Order(kGeometric), {}},
-                                             {Order(kGeometric, kReach), Order(kReach, kGeometric)},
-                                             {Order(kReach, kGeometric), {}},
-                                             {Order(kReach), {}},
-                                             {Order(kOrca), {}},
-                                             {Order(kOrca, kGeometric, kReach), Order(kOrca, kReach, kGeometric)}}};
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        Parameters parameters;
-        ASSERT_EQ(parameters.set(Param::methods, static_cast<float>(i)), ParamStatus::ok);
+    Parameters parameters;
+    EXPECT_EQ(parameters.configuration().supervisor.order, kSets.back()) << "as delivered: all";
+    static_assert(kSets.size() == kAllMethods && kBuiltMethods == kAllMethods);
+    for (std::size_t i = 0; i < kSets.size(); ++i) {
+        ASSERT_EQ(parameters.set(Param::methods, static_cast<float>(i + 1)), ParamStatus::ok);
         const Configuration& c = parameters.configuration();
-        EXPECT_EQ(c.supervisor.order, cases[i].order) << i;
-        EXPECT_EQ(c.supervisor.order_in_clutter, cases[i].in_clutter) << i;
-        EXPECT_EQ(c.orca.gives_up_blocked, i != 4) << "alone: no method is asked after it";
+        EXPECT_EQ(c.supervisor.order, kSets[i]) << i;
+        EXPECT_EQ(c.orca.gives_up_blocked, i + 1 != 4) << "alone: no other method is asked";
     }
+    EXPECT_EQ(parameters.set(Param::methods, 0.0F), ParamStatus::out_of_range);
+    EXPECT_EQ(parameters.set(Param::methods, 8.0F), ParamStatus::out_of_range);
 }
 
 TEST(ParamMethods, WithoutSetsTheOthersAreLeftOrTheGeometricMethod)
 {
-    const std::array<avoid::MethodOrder, 6> left{avoid::MethodOrder(kGeometric), avoid::MethodOrder(kGeometric),
-                                                 avoid::MethodOrder(kGeometric), avoid::MethodOrder(kGeometric),
-                                                 avoid::MethodOrder(kOrca),      avoid::MethodOrder(kOrca, kGeometric)};
-    static_assert(left.size() == kMethodOrders.size());
+    const std::array<Order, 7> left{Order(kGeometric),        Order(kGeometric), Order(kGeometric),       Order(kOrca),
+                                    Order(kGeometric, kOrca), Order(kOrca),      Order(kGeometric, kOrca)};
     for (std::size_t i = 0; i < left.size(); ++i) {
-        EXPECT_EQ(without_sets(kMethodOrders[i].order), left[i]) << i;
-        EXPECT_EQ(is_reactive(kMethodOrders[i].order), i >= 4) << i;
+        EXPECT_EQ(without_sets(kSets[i]), left[i]) << i;
+        EXPECT_EQ(is_reactive(kSets[i]), i + 1 >= 4) << i;
+        EXPECT_EQ(needs_sets(kSets[i]), kSets[i].contains(kReach)) << i;
+    }
+}
+
+/// A plane cannot fly what a reactive method asks for.
+TEST(ParamMethods, AWingIsNotAskedForAVelocityWhereThereIsAnotherMethod)
+{
+    Parameters parameters;
+    ASSERT_EQ(parameters.set(Param::fixed_wing, 1.0F), ParamStatus::ok);
+    for (std::size_t i = 0; i < kSets.size(); ++i) {
+        ASSERT_EQ(parameters.set(Param::methods, static_cast<float>(i + 1)), ParamStatus::ok);
+        EXPECT_EQ(is_reactive(parameters.configuration().supervisor.order), i + 1 == 4) << i;
     }
 }
 

@@ -260,7 +260,7 @@ TEST(StepDetails, ReachSetsPlanByThePictureTheyAreGiven)
     for (const bool blind : {false, true}) {
         NoClouds clouds;
         const auto picture = std::make_unique<ReachPicture>(reach_sets());
-        const auto t = teller({{Param::methods, 3.0F}, {Param::mode, 1.0F}});
+        const auto t = teller({{Param::methods, 2.0F}, {Param::mode, 1.0F}});
         t->coprocessor.use_clouds(clouds);
         t->coprocessor.let_reach_sets_see(*picture);
         t->fly(60);

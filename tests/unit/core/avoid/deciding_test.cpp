@@ -198,7 +198,7 @@ TEST(Budget, ExhaustedByAFallbackIsCounted)
     }
     Settings settings = quick();
     settings.work = {6000, 3000};
-    settings.plan_budget = settings.kept_for_next = 100;
+    settings.plan_budget = settings.kept_for_next = settings.kept_for_reactive = 100;
     FakeMethod method = never();
     Supervisor supervisor(settings, method);
     const Guidance g = f.update(supervisor, true);
@@ -261,7 +261,7 @@ TEST(Answers, AreReportedWithTheirMargin)
     EXPECT_NEAR(g.margin, margin - f.scene.rules.clearance, 0.1F) << "for the wider vehicle that was asked for first";
 }
 
-TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
+TEST(Answers, OfTheMethodThatIsAskedFirstAreNotCountedAsTheNextOnes)
 {
     Flight f;
     head_on(f);
@@ -271,56 +271,6 @@ TEST(Answers, OfTheFirstMethodAreNotCountedAsTheNextOnes)
     static_cast<void>(f.update(supervisor, true));
     EXPECT_EQ(supervisor.diagnostics().plans_found, 1U);
     EXPECT_EQ(supervisor.diagnostics().found_by_next, 0U);
-}
-
-// --- clutter ---
-
-TEST(CountNear, SurfacesWithinTheRadius)
-{
-    Flight f;
-    const Vec3& own = f.scene.own.position;
-    f.scene.own.sigma_position = 0.5F;
-    world::Track& track = f.scene.track(own + Vec3(20, 0, 0), Vec3::Zero(), 2.0F);
-    EXPECT_EQ(count_near(f.scene.situation(), 16.5F), 1U) << "2 m of body and 1.5 m of uncertainty, exactly";
-    EXPECT_EQ(count_near(f.scene.situation(), std::nextafter(16.5F, 0.0F)), 0U);
-    track.position = own + Vec3(0, 0, 20);
-    track.half_height = 4.0F;
-    EXPECT_EQ(count_near(f.scene.situation(), 12.5F), 1U) << "its lowest possible height";
-    EXPECT_EQ(count_near(f.scene.situation(), std::nextafter(12.5F, 0.0F)), 0U);
-    f.scene.tracks.clear();
-    f.scene.obstacle(geometry::make_sphere(own + Vec3(0, -10, 0), 3.0F));
-    const float about = geometry::bounding_radius(f.scene.obstacles[0].shape);
-    EXPECT_NEAR(about, 3.0F, 0.01F);
-    const float exact = 10.0F - about;
-    ASSERT_EQ(exact + about, 10.0F);
-    EXPECT_EQ(count_near(f.scene.situation(), exact), 1U);
-    EXPECT_EQ(count_near(f.scene.situation(), exact - 1e-5F), 0U);
-    f.scene.obstacle(geometry::make_capsule(own + Vec3(12, 0, -5), own + Vec3(12, 0, 5), 1.0F));
-    EXPECT_EQ(count_near(f.scene.situation(), 5.9F), 0U) << "as the sphere about it, 6 m";
-    EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 2U);
-    f.scene.track(own, Vec3::Zero());
-    EXPECT_EQ(count_near(f.scene.situation(), 7.0F), 3U) << "tracks and obstacles together";
-}
-
-TEST(OrderFor, ChangesInClutterAlone)
-{
-    Flight f;
-    f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
-    Settings settings;
-    settings.order = MethodOrder(kFirst, kSecond);
-    settings.order_in_clutter = MethodOrder(kSecond);
-    const auto order = [&] { return order_for(f.scene.situation(), settings); };
-    settings.clutter = 1;
-    EXPECT_EQ(order(), MethodOrder(kSecond));
-    settings.clutter = 2;
-    EXPECT_EQ(order(), settings.order) << "one is not two";
-    settings.clutter = 0;
-    f.scene.tracks.clear();
-    EXPECT_EQ(order(), settings.order) << "never, though none is as many as none";
-    settings.clutter = 1;
-    f.scene.track(f.scene.own.position + Vec3(5, 0, 0), Vec3::Zero());
-    settings.order_in_clutter = {};
-    EXPECT_EQ(order(), settings.order) << "empty: no change";
 }
 
 }  // namespace

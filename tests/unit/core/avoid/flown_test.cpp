@@ -196,6 +196,8 @@ TEST(Velocities, ArePassedOnToAPathAsANewManoeuvre)
     t.f.pass(Vec3(4, -3, 0), 0.05F);
     t.finds = false;
     t.plans = true;
+    EXPECT_EQ(t.f.update(t.supervisor, true).kind, ManoeuvreKind::velocity) << "still clear; all are asked next";
+    t.f.pass(Vec3(4, -3, 0), 0.02F);
     const Guidance g = t.f.update(t.supervisor, true);
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(g.kind, ManoeuvreKind::follow_path);

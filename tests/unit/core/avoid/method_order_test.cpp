@@ -97,7 +97,7 @@ TEST_P(BadAnswers, TheNextMethodIsAsked)
 INSTANTIATE_TEST_SUITE_P(Of, BadAnswers, testing::ValuesIn(kBadAnswers),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST(MethodOrders, TheFirstGoodAnswerWinsAndEachStatusIsReported)
+TEST(MethodOrders, EachStatusIsReportedAndTheFirstOfTwoEqualAnswersIsFlown)
 {
     for (const PlanStatus status : {PlanStatus::no_conflict, PlanStatus::too_close, PlanStatus::none_available,
                                     PlanStatus::budget_spent, PlanStatus::bad_input}) {
@@ -116,18 +116,71 @@ TEST(MethodOrders, TheFirstGoodAnswerWinsAndEachStatusIsReported)
     SecondFake second{always(-kLeft)};
     Supervisor supervisor(quick(), first, second);
     static_cast<void>(f.update(supervisor, true));
-    EXPECT_EQ(second.asked, 0);
+    EXPECT_EQ(second.asked, 1);
     EXPECT_EQ(supervisor.flying()->side, kLeft);
 }
 
-/// Which of three methods are asked, "1", "2" and the reactive "3", when none has an answer.
-std::string asked_in_order(const Settings& settings, const std::function<void(Flight&)>& more = {})
+/// Two detours at the same speed: the one of the method that is asked last is shorter.
+TEST(MethodOrders, TheAnswerThatCostsLeastIsFlownWhoeverIsAskedFirst)
+{
+    for (const MethodOrder& order : {MethodOrder(kFirst, kSecond), MethodOrder(kSecond, kFirst)}) {
+        Flight f;
+        head_on(f);
+        FakeMethod far = always(kLeft, 12.0F);
+        SecondFake near{always(-kLeft, 6.0F)};
+        Settings settings = quick();
+        settings.order = order;
+        Supervisor supervisor(settings, far, near);
+        const Guidance g = f.update(supervisor, true);
+        EXPECT_EQ(g.by, kSecond);
+        EXPECT_EQ(g.answers, 2);
+        EXPECT_GT(g.cost, 0.0F);
+        EXPECT_EQ(supervisor.flying()->side, -kLeft);
+        EXPECT_EQ(supervisor.diagnostics().found_by_next, order.ids().front() == kFirst ? 1U : 0U);
+    }
+}
+
+/// A refused answer is not compared, however little it costs.
+TEST(MethodOrders, WhatIsNotClearIsNotCompared)
 {
     Flight f;
     head_on(f);
-    if (more) {
-        more(f);
-    }
+    FakeMethod through = always(kLeft, 0.0F);
+    SecondFake around{always(kLeft, 6.0F)};
+    Supervisor supervisor(quick(), through, around);
+    const Guidance g = f.update(supervisor, true);
+    EXPECT_EQ(g.by, kSecond);
+    EXPECT_EQ(g.answers, 1);
+    EXPECT_EQ(supervisor.diagnostics().answers_rejected, 2U) << "for the wider vehicle, and as it is";
+}
+
+/// Offered to the left; then the right costs a little less, but not by so much as a change of sides.
+TEST(MethodOrders, TheSideThatIsFlownIsHeldOnTo)
+{
+    Flight f;
+    head_on(f, 45.0F);
+    float right = 6.0F;
+    FakeMethod both{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return PlanStatus::found;
+    }};
+    SecondFake other{{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, -kLeft, right, 60.0F);
+        return PlanStatus::found;
+    }}};
+    Supervisor supervisor(quick(), both, other);
+    ASSERT_EQ(f.update(supervisor, false).by, kFirst);
+    right = 5.0F;
+    EXPECT_EQ(f.update(supervisor, false).by, kFirst);
+    Supervisor anew(quick(), both, other);
+    EXPECT_EQ(f.update(anew, false).by, kSecond) << "without anything that is held on to";
+}
+
+/// Which of three methods are asked, "1", "2" and the reactive "3", when none has an answer.
+std::string asked_in_order(const Settings& settings)
+{
+    Flight f;
+    head_on(f);
     std::string order;
     const auto note = [&](const char* name) {
         return FakeMethod{[&order, name](const Situation&, WorkBudget&, Manoeuvre&) {
@@ -188,29 +241,6 @@ TEST(MethodOrders, TheSupervisorStampsTheMethodThatAnswered)
     EXPECT_EQ(supervisor.flying()->by, kSecond);
 }
 
-TEST(MethodOrders, InClutterTheOtherOrderCounts)
-{
-    Settings settings = quick();
-    settings.clutter = 3;
-    settings.clutter_radius = 15.0F;
-    settings.order = MethodOrder(kFirst, kSecond);
-    settings.order_in_clutter = MethodOrder(kSecond, kFirst);
-    const auto pillars = [](int n, float distance) {
-        return [=](Flight& f) {
-            for (int i = 0; i < n; ++i) {
-                const float angle = 0.5F * kPi + 0.3F * static_cast<float>(i);
-                const Vec3 at = f.scene.own.position + distance * Vec3(std::cos(angle), std::sin(angle), 0.0F);
-                f.scene.obstacle(geometry::make_capsule(at - Vec3(0, 0, 5), at + Vec3(0, 0, 5), 1.0F));
-            }
-        };
-    };
-    EXPECT_EQ(asked_in_order(settings, pillars(2, 10.0F)), "12");
-    EXPECT_EQ(asked_in_order(settings, pillars(3, 10.0F)), "21");
-    EXPECT_EQ(asked_in_order(settings, pillars(3, 25.0F)), "12") << "farther off than that is no clutter";
-    settings.clutter = 0;
-    EXPECT_EQ(asked_in_order(settings, pillars(8, 10.0F)), "12");
-}
-
 TEST(MethodOrders, WhatIsKeptForTheNextMethodIsLeftToIt)
 {
     Flight f;
@@ -239,6 +269,30 @@ TEST(MethodOrders, WhatIsKeptForTheNextMethodIsLeftToIt)
     EXPECT_EQ(g.state, State::avoiding);
     EXPECT_EQ(supervisor.diagnostics().found_by_next, 1U);
     EXPECT_EQ(supervisor.diagnostics().budget_spent, 0U) << "the plan was made";
+}
+
+/// A method that decides anew needs less.
+TEST(MethodOrders, EachKindOfMethodHasItsOwnShare)
+{
+    Flight f;
+    head_on(f);
+    Settings settings = quick();
+    settings.plan_budget = 10'000;
+    settings.kept_for_next = 4000;
+    settings.kept_for_reactive = 1500;
+    std::vector<std::uint32_t> had;
+    const auto spend_all = [&](const Situation&, WorkBudget& budget, Manoeuvre&) {
+        had.push_back(budget.left());
+        while (budget.spend(100)) {
+        }
+        return PlanStatus::budget_spent;
+    };
+    FakeMethod first{spend_all};
+    SecondFake second{{spend_all}};
+    ReactiveFake third{{spend_all}};
+    Supervisor supervisor(settings, first, second, third);
+    static_cast<void>(f.update(supervisor, true));
+    EXPECT_EQ(had, (std::vector<std::uint32_t>{4500, 4000, 1500}));
 }
 
 /// Keeps a clearance buffer by itself.

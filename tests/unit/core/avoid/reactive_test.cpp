@@ -43,7 +43,7 @@ TEST(ReactiveMethods, AreAskedOnlyWhereTheOrderNamesThem)
         Supervisor supervisor(asking(order), planning, deciding);
         static_cast<void>(f.update(supervisor, false));
         EXPECT_EQ(deciding.asked > 0, order.contains(kReacting));
-        EXPECT_EQ(planning.asked > 0, !order.contains(kReacting));
+        EXPECT_EQ(planning.asked > 0, order.contains(kFirst));
     }
 }
 
@@ -62,11 +62,12 @@ TEST(ReactiveMethods, TheNextIsAskedWhereTheyHaveNoAnswer)
     }
 }
 
-/// After a method that plans: its velocity is flown, and given up for a path as soon as there is one.
-TEST(ReactiveMethods, MayBeAskedLast)
+/// A velocity is renewed by its method alone; all methods are asked again a second later, and a path that costs less is
+/// flown then.
+TEST(ReactiveMethods, AreRenewedAloneUntilAllAreAskedAgain)
 {
     Flight f;
-    head_on(f, 30.0F);
+    head_on(f, 40.0F);
     bool plans = false;
     FakeMethod planning{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
         out = detour(s, kLeft, 6.0F, 60.0F);
@@ -77,8 +78,46 @@ TEST(ReactiveMethods, MayBeAskedLast)
     EXPECT_EQ(f.update(supervisor, true).kind, ManoeuvreKind::velocity);
     EXPECT_EQ(supervisor.flying()->by, kReacting);
     plans = true;
+    // Nothing moves: the same question at each update.
+    const auto wait = [&](Seconds dt) {
+        f.scene.now = f.scene.now + dt;
+        f.scene.own.stamp = f.scene.tracks[0].stamp = f.scene.now;
+    };
+    const int asked = planning.asked;
+    for (int i = 1; i < 50; ++i) {
+        wait(0.02F);
+        ASSERT_EQ(f.update(supervisor, true).by, kReacting) << i;
+        ASSERT_EQ(planning.asked, asked) << i;
+        ASSERT_EQ(deciding.asked, i + 1);
+    }
+    wait(0.03F);
     EXPECT_EQ(f.update(supervisor, true).kind, ManoeuvreKind::follow_path);
     EXPECT_EQ(supervisor.flying()->by, kFirst);
+}
+
+/// Without an answer of its own, nothing is waited for.
+TEST(ReactiveMethods, AllAreAskedAtOnceWhereAVelocityCannotBeRenewed)
+{
+    Flight f;
+    head_on(f, 30.0F);
+    bool decides = true;
+    FakeMethod planning{[&](const Situation& s, WorkBudget&, Manoeuvre& out) {
+        out = detour(s, kLeft, 6.0F, 60.0F);
+        return decides ? PlanStatus::none_available : PlanStatus::found;
+    }};
+    ReactiveFake deciding{{[&](const Situation& s, WorkBudget& budget, Manoeuvre& out) {
+        return decides ? holding(Vec3(4, 3, 0)).answer(s, budget, out) : PlanStatus::none_available;
+    }}};
+    Supervisor supervisor(asking(MethodOrder(kFirst, kReacting)), planning, deciding);
+    ASSERT_EQ(f.update(supervisor, true).by, kReacting);
+    decides = false;
+    // What is flown stays clear for a while; then, or before, the other method's path is flown.
+    Guidance g;
+    for (int i = 0; i < 2; ++i) {
+        f.pass(Vec3(4, 3, 0), 0.02F);
+        g = f.update(supervisor, true);
+    }
+    EXPECT_EQ(g.by, kFirst);
 }
 
 TEST(ReactiveMethods, AreAskedAtEveryUpdateAndTheirCommandIsFlownAsItIs)

@@ -22,7 +22,6 @@ struct Range {
 };
 
 const Range kRanges[] = {
-    {"clutter_radius", [](Settings& s) -> float& { return s.clutter_radius; }, 1.0F, 200.0F},
     {"commit", [](Settings& s) -> float& { return s.commit; }, 0.5F, 60.0F},
     {"prediction_step", [](Settings& s) -> float& { return s.prediction_step; }, 0.02F, 0.5F},
     {"fallback_horizon", [](Settings& s) -> float& { return s.fallback_horizon; }, 1.0F, 20.0F},
@@ -68,7 +67,7 @@ TEST(SettingsOfBudgets, HoldTheirEnds)
         Settings s;
         s.work = work;
         s.plan_budget = plan;
-        s.kept_for_next = kept;
+        s.kept_for_next = s.kept_for_reactive = kept;
         return is_valid(s);
     };
     EXPECT_TRUE(takes({kSlice + 1000, kSlice}, 1000, 1000)) << "a method may keep all of a plan back for the next";

@@ -135,12 +135,12 @@ TEST(Supervisors, SettingsOutOfRangeAreRefused)
         EXPECT_TRUE(refused([&](Settings& s) { s.blocked_patience = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.back_off_speed = bad; }));
         EXPECT_TRUE(refused([&](Settings& s) { s.back_off_limit = bad; }));
-        EXPECT_TRUE(refused([&](Settings& s) { s.clutter_radius = bad; }));
     }
     EXPECT_TRUE(refused([](Settings& s) { s.work.slice = WorkPerUpdate::kMinSlice - 1; }));
     EXPECT_TRUE(refused([](Settings& s) { s.plan_budget = 99; }));
     EXPECT_TRUE(refused([](Settings& s) { s.work.all = s.work.slice; }));
     EXPECT_TRUE(refused([](Settings& s) { s.kept_for_next = s.plan_budget + 1; }));
+    EXPECT_TRUE(refused([](Settings& s) { s.kept_for_reactive = s.plan_budget + 1; }));
     EXPECT_FALSE(refused([](Settings& s) { s.commit = 12.0F; }));
     EXPECT_EQ(supervisor.settings().commit, 12.0F);
 }

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/objective.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/work_units.hpp"
+#include "core/world/passing_side.hpp"
+#include "core/world/threat_set.hpp"
+
+namespace jink::avoid {
+namespace {
+
+constexpr float kMinSpeed = 0.5F;         ///< of a reference whose delay is counted [m/s]
+constexpr float kWayBack = 0.5F;          ///< share of the distance from the route that counts as way
+constexpr float kDeviation = 0.2F;        ///< of the seconds that the greatest distance takes
+constexpr float kMinSide = 0.3F;          ///< a flight nearer to the route than this has no side [m]
+constexpr float kWantedMargin = 1.0F;     ///< [m]
+constexpr Seconds kMethodChange = 1.0F;   ///< for a change of the method
+constexpr Seconds kSideChange = 6.0F;     ///< for a change of the side
+constexpr Seconds kAgainstRules = 6.0F;   ///< for the side on which two vehicles do not pass
+constexpr float kOppositeCosine = -0.1F;  ///< sides further apart than this (cosine) are opposite ones
+
+/// What is left of the way to the route's end, and where the vehicle is beside it.
+struct Place {
+    float left = 0.0F;        ///< [m]
+    Vec3 off = Vec3::Zero();  ///< from the route [m]
+};
+
+Place place_of(const path::RouteView& route, float length, const Vec3& position, std::size_t from) noexcept
+{
+    const path::Abeam abeam = route.abeam_of(position, from);
+    return {length - abeam.arc_length + kWayBack * abeam.off, position - abeam.point.position};
+}
+
+bool are_opposite(const Vec3& a, const Vec3& b) noexcept { return a.dot(b) < kOppositeCosine; }
+
+}  // namespace
+
+ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuvre,
+                      std::span<const path::PathPoint> flight, const world::Separation& separation,
+                      WorkBudget& budget) noexcept
+{
+    ManoeuvreCost cost;
+    const path::RouteView route = s.reference.route();
+    const auto segments = static_cast<std::uint32_t>(route.segments().size());
+    const float speed = std::max(kMinSpeed, s.reference.speed);
+    const float length = route.length();
+    Vec3 farthest = Vec3::Zero();
+    Vec3 velocity = s.own.velocity;
+    float changes = 0.0F;
+    Place first;
+    Place place;
+    for (const path::PathPoint& point : flight) {
+        if (!s.reference.valid || segments == 0 || !budget.spend(units::kObjectivePoint * (segments + 1))) {
+            cost.delay = std::numeric_limits<float>::infinity();
+            return cost;
+        }
+        place = place_of(route, length, point.position, s.reference.segment);
+        farthest = place.off.squaredNorm() > farthest.squaredNorm() ? place.off : farthest;
+        changes += (point.velocity - velocity).norm();
+        velocity = point.velocity;
+        first = &point == flight.data() ? place : first;
+    }
+    cost.delay = flight.back().time - flight.front().time + (place.left - first.left) / speed;
+    const float most = farthest.norm();
+    cost.side = most > kMinSide ? Vec3(farthest / most) : cost.side;
+    cost.deviation = kDeviation * most / speed;
+    cost.effort = changes / s.limits.max_acceleration;
+    cost.clearance = std::max(0.0F, kWantedMargin - separation.margin) / speed;
+    if (s.flying != nullptr) {
+        cost.consistency = (s.flying->by != manoeuvre.by ? kMethodChange : 0.0F) +
+                           (are_opposite(s.flying->side, cost.side) ? kSideChange : 0.0F);
+    }
+    const std::span tracks = world::of_kind(s.threats, world::ThreatKind::track);
+    if (separation.against.kind == world::ThreatKind::track && separation.against.index < tracks.size() &&
+        are_opposite(world::passing_side(s, tracks[separation.against.index]), cost.side)) {
+        cost.rules = kAgainstRules;
+    }
+    return cost;
+}
+
+}  // namespace jink::avoid
