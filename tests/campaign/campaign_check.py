@@ -238,22 +238,13 @@ def mpi_study(programs, top):
         check(digest(top / "mpi.csv") == digest(top / "one.csv"), f"{processes} processes: rows differ")
 
 
-# Broken promises of the thousand for which the judge, who reacts without delay, has a manoeuvre: known shortfalls,
-# described in docs/evidence/campaign.md. The test fails for any other broken promise, and if one of these is kept
-# again.
-KNOWN_SHORTFALLS = {519}
-
-
 def thousand(programs, top):
-    """The short form of the campaign: no promise is broken that could have been kept, but for the known shortfalls."""
-    text = run([programs.sim, "encounters", "--from", 1, "--count", 1000, "--block", 50, "--threads", 2, "--out", top / "thousand"],
-               status=1 if KNOWN_SHORTFALLS else 0)
+    """The short form of the campaign: no promise is broken that could have been kept."""
+    text = run([programs.sim, "encounters", "--from", 1, "--count", 1000, "--block", 50, "--threads", 2, "--out", top / "thousand"])
     print(text)
     broken = text.split("Promises and rules broken", 1)[1].split("The ten worst", 1)[0]
     seeds = {int(line.split()[0]) for line in broken.splitlines() if line.endswith("avoidable")}
-    check(seeds == KNOWN_SHORTFALLS, f"avoidable: {sorted(seeds)}, known: {sorted(KNOWN_SHORTFALLS)}")
-    quiet = next(line for line in text.splitlines() if "without the sensors' noise too" in line)
-    check(quiet.split("too")[1].split()[0] == "0", f"noise is not what decided: {quiet}")
+    check(not seeds, f"avoidable: {sorted(seeds)}")
     check("0 broken rules" in text, "a rule was broken")
 
 
