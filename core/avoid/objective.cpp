@@ -43,7 +43,11 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
 {
     ManoeuvreCost cost;
     const path::RouteView route = s.reference.route();
-    const auto segments = static_cast<std::uint32_t>(route.segments().size());
+    std::uint32_t point_units = units::kObjectivePoint;
+    for (const path::RouteSegment& segment : route.segments()) {
+        point_units += segment.is_arc() ? units::kObjectiveArc : units::kObjectivePoint;
+    }
+    bool paid = s.reference.valid && !flight.empty() && budget.spend(units::kObjective);
     const float speed = std::max(kMinSpeed, s.reference.speed);
     const float length = route.length();
     Vec3 farthest = Vec3::Zero();
@@ -52,7 +56,8 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     Place first;
     Place place;
     for (const path::PathPoint& point : flight) {
-        if (!s.reference.valid || segments == 0 || !budget.spend(units::kObjectivePoint * (segments + 1))) {
+        paid = paid && budget.spend(point_units);
+        if (!paid) {
             cost.delay = std::numeric_limits<float>::infinity();
             return cost;
         }

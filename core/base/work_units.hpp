@@ -56,7 +56,9 @@ inline constexpr std::uint32_t kConflictCylinder = 8;  ///< with a cylinder, but
 inline constexpr std::uint32_t kFlightPart = 4;      ///< a tenth of a second along a path
 inline constexpr std::uint32_t kCommandStep = 3;     ///< a step under a constant command
 inline constexpr std::uint32_t kTurnStep = 8;        ///< a step of a turn
-inline constexpr std::uint32_t kObjectivePoint = 1;  ///< point of a flight that is costed, and each route segment
+inline constexpr std::uint32_t kObjective = 5;       ///< of a flight that is costed
+inline constexpr std::uint32_t kObjectivePoint = 1;  ///< and each of its points, and each leg of the route there
+inline constexpr std::uint32_t kObjectiveArc = 2;    ///< or arc
 
 // --- candidates (core/geometric) ---
 inline constexpr std::uint32_t kCandidatePoint = 1;  ///< of a curve that is made, each waypoint

@@ -9,6 +9,7 @@
 
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
+#include "core/avoid/objective.hpp"
 #include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
 #include "core/cost/tables.hpp"
@@ -52,6 +53,8 @@ enum class Work : std::uint32_t {
     curve_table,
     energy_exact,
     energy_table,
+    objective_leg,
+    objective_route,
     count,
 };
 
@@ -107,6 +110,7 @@ private:
     geometry::Shape solid(const Vec3& at) noexcept;
     void scene(Work work) noexcept;
     void path() noexcept;
+    void wind() noexcept;
     [[nodiscard]] world::Situation situation() const noexcept
     {
         return {{}, own_, limits_, airframe_, reference_, rules_};
@@ -122,6 +126,7 @@ private:
     vehicle::VehicleLimits limits_;
     vehicle::Airframe airframe_;
     world::Reference reference_;
+    path::Route route_;
     world::Airspace airspace_;
     world::ThreatSet threats_;
     StaticVector<world::Track, kMaxTracks> tracks_;
@@ -189,7 +194,7 @@ void UnitProbe::scene(Work work) noexcept
     path();
 
     const bool tracks = work == Work::separation_tracks || work == Work::conflict_tracks || work == Work::fallback ||
-                        work == Work::orca_tracks;
+                        work == Work::orca_tracks || work == Work::objective_leg || work == Work::objective_route;
     const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
                          work == Work::orca_spheres;
     const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids;
@@ -308,6 +313,23 @@ void UnitProbe::program(WorkBudget& budget) noexcept
     jink_window_end();
 }
 
+/// As many legs and arcs as a route may have.
+void UnitProbe::wind() noexcept
+{
+    route_.clear();
+    Vec3 from = own_.position;
+    while (route_.segments().size() < kMaxRouteSegments) {
+        const bool arc = below(3) != 0;
+        const Vec3 aside = Vec3(random_.uniform(-1.0F, 1.0F), random_.uniform(0.2F, 1.0F), 0.0F).normalized();
+        const path::RouteStatus added = arc ? route_.add_arc(from, from + random_.uniform(2.0F, 30.0F) * aside,
+                                                             Vec3::UnitZ(), random_.uniform(-3.0F, 3.0F))
+                                            : route_.add_leg(from, from + within(30.0F));
+        if (added == path::RouteStatus::ok) {
+            from = route_.at(route_.length()).position;
+        }
+    }
+}
+
 std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
 {
     random_ = Random(seed * 977ULL + static_cast<std::uint32_t>(work));
@@ -316,7 +338,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
         geometry(work, budget);
         return budget.spent();
     }
-    if (work >= Work::curve_exact) {
+    if (work >= Work::curve_exact && work <= Work::energy_table) {
         limits_ = {};
         curve(work, budget);
         return budget.spent();
@@ -327,6 +349,10 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     }
     scene(work);
     world::Situation s = situation();
+    if (work == Work::objective_route) {
+        wind();
+        reference_ = world::Reference(route_, 5.0F);
+    }
     static_cast<void>(
         threats_.collect(s, {{tracks_.data(), tracks_.size()}, {obstacles_.data(), obstacles_.size()}, airspace_}));
     s.threats = threats_.all();
@@ -334,6 +360,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     const world::Way way = world::way_of(s);
     const Vec3 command = within(3.0F);
     world::Conflict conflict;
+    const float margin = random_.uniform(0.0F, 2.0F);
     orca_.reset();
     // What is counted is the work alone, without its choice.
     const auto counted = [](const auto& done) noexcept {
@@ -350,6 +377,14 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
         break;
     case Work::check:
         sink_ = counted([&] { return avoid::check_manoeuvre(s, manoeuvre_, settings, budget).margin; });
+        break;
+    case Work::objective_leg:
+    case Work::objective_route:
+        sink_ = counted([&] {
+            return avoid::cost_of(s, manoeuvre_, {manoeuvre_.path.points.data(), manoeuvre_.path.points.size()},
+                                  {margin, 1.0F, {world::ThreatKind::track, 0}}, budget)
+                .total();
+        });
         break;
     case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:

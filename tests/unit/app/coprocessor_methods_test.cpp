@@ -71,19 +71,19 @@ TEST(CoprocessorMethods, PlanAsTheParameterSays)
     }
 }
 
-/// The choice is told once, with how many answers there were.
-TEST(CoprocessorMethods, TheChosenMethodIsTold)
+/// The choice is reported once, with how many answers there were.
+TEST(CoprocessorMethods, TheChosenMethodIsReported)
 {
     for (const float methods : {2.0F, 7.0F}) {
         Parameters parameters;
         ASSERT_EQ(parameters.set(Param::methods, methods), ParamStatus::ok);
         const auto f = std::make_unique<Flight>(parameters);
-        std::vector<std::string> told;
+        std::vector<std::string> reported;
         const auto listen = [&] {
             for (const Statustext& m : f->said_of<Statustext>()) {
                 const std::string text(m.text.data());
                 if (text.starts_with("jink: by ")) {
-                    told.push_back(text);
+                    reported.push_back(text);
                 }
             }
         };
@@ -93,11 +93,11 @@ TEST(CoprocessorMethods, TheChosenMethodIsTold)
             listen();
             return r.control == Control::ours;
         });
-        ASSERT_EQ(told.size(), 1U) << methods;
+        ASSERT_EQ(reported.size(), 1U) << methods;
         const world::Manoeuvre* flying = f->coprocessor.flying();
         ASSERT_NE(flying, nullptr);
-        EXPECT_EQ(told[0].find(method_name(flying->by)), 9U) << told[0];
-        EXPECT_EQ(told[0].find(", best of ") != std::string::npos, methods == 7.0F) << told[0];
+        EXPECT_EQ(reported[0].find(method_name(flying->by)), 9U) << reported[0];
+        EXPECT_EQ(reported[0].find(", best of ") != std::string::npos, methods == 7.0F) << reported[0];
     }
 }
 

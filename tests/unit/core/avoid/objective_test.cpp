@@ -110,12 +110,13 @@ TEST(Objective, WithoutWorkOrARouteNothingIsCheap)
     Flight f;
     const auto aside = flight({{0, 0, 30}, {8, 1.5F, 30}, {16, 3, 30}}, 2.0F);
     const world::Situation s = f.scene.situation();
-    WorkBudget enough(6);
+    WorkBudget enough(11);
     EXPECT_TRUE(std::isfinite(avoid::cost_of(s, {}, aside, apart(1.0F), enough).total()));
-    EXPECT_EQ(enough.left(), 0U) << "two units a point, on a leg";
-    WorkBudget less(5);
+    EXPECT_EQ(enough.left(), 0U) << "five, and two a point on a leg";
+    WorkBudget less(10);
     EXPECT_TRUE(std::isinf(avoid::cost_of(s, {}, aside, apart(1.0F), less).total()));
     WorkBudget ample(1000);
+    EXPECT_TRUE(std::isinf(avoid::cost_of(s, {}, {}, apart(1.0F), ample).total())) << "no flight";
     const world::Reference none;
     EXPECT_TRUE(std::isinf(avoid::cost_of(world::with_reference(s, none), {}, aside, apart(1.0F), ample).total()));
 }
