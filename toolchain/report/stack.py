@@ -22,7 +22,7 @@ LIBRARY = 200
 INDIRECT = [
     (r"12StateMachine12plan_at_once", []),  # an image plans in slices
     (r"10SlicedPlan3run", [r"10Supervisor.*7ask_all"]),
-    (r"12StateMachine(12plan_a_slice|9plan_runs|11find_faster|9drop_plan|9configure|5reset|6update)|10SlicedPlan(5begin|7advance|4drop|4runs|4wait)", [r"N4jink3app9FiberFlow(5begin|6resume|5pause|4drop)"]),
+    (r"12StateMachine(12plan_a_slice|9plan_runs|5renew|11find_faster|9drop_plan|9configure|5reset|6update)|10SlicedPlan(5begin|7advance|4drop|4runs|4wait)", [r"N4jink3app9FiberFlow(5begin|6resume|5pause|4drop)"]),
     (r"9WorkSlice4take", [r"10SlicedPlan4wait"]),
     (r"3hal5Fiber4main|jink_fiber_main", [r"10SlicedPlan3run"]),
     (r"^(ccdGJK|ccdMPR|__ccd|discoverPortal|refinePortal|findPenetr|portal|expand|cst|simplex|doSimplex)", [r"support"]),
