@@ -2,6 +2,10 @@
 """Scenarios against an image on an emulated board: each ends as its file expects, and within the envelope of the same
 flights in process with the board's work and many phases of ticks and line (toolchain/sim/envelope.hpp).
 
+The STM32F405 flies its reduced reach sets, flights in process the full ones: another way of the same cost may lead to the
+other side. A flight that says that it is by reach sets is held to the promise there, and to all of the envelope but the
+least separation.
+
 Usage: fly.py JINK_SIM BUILD_FOLDER IMAGE [all]
 
 The scenarios of BOTH_BOARDS fly on every board, each other scenario on one of the boards, in turn. With `all`: all
@@ -27,6 +31,8 @@ NO_INPUT = re.compile(r"^lidar:", re.M)
 BOTH_BOARDS = ("autopilot_reboots", "cable_pulled", "clock_jumps", "four_converging", "head_on", "reach_sets_head_on",
                "scan_wall")
 AT_ONCE = 8  # each board takes a quarter of a processor
+REDUCED_SETS = ("stm32f405",)
+BY_REACH_SETS = "jink: by reach sets"
 
 
 def flown_by(image, names):
@@ -34,6 +40,16 @@ def flown_by(image, names):
     alone = [name for name in names if name not in BOTH_BOARDS]
     own = set(alone[sorted(MACHINES).index(image)::len(MACHINES)])
     return [name for name in names if name in own or name in BOTH_BOARDS]
+
+
+def faults_of(flight, image):
+    """What is wrong with a flight."""
+    faults = flight["unmet"] + flight["faults"]
+    by_reach_sets = any(text["text"].startswith(BY_REACH_SETS) for text in flight["link"]["texts"])
+    surface = flight["least"]["surface"]
+    if image in REDUCED_SETS and by_reach_sets and surface is not None and surface >= flight["promise"]:
+        faults = [fault for fault in faults if not fault.startswith("least separation is ")]
+    return faults
 
 
 def main(sim, build, image, extent=""):
@@ -49,12 +65,14 @@ def main(sim, build, image, extent=""):
                               "--within-phases", "--clock", str(records.CLOCKS[image]), "--out", folder, "--quiet"], check=False)
         with open(pathlib.Path(folder) / "run.json", encoding="utf-8") as file:
             flights = json.load(file)["flights"]
+    good = len(flights) == len(files) and run.returncode in (0, 1)
     for flight in flights:
-        fault = "; ".join(flight["unmet"] + flight["faults"])
+        fault = "; ".join(faults_of(flight, image))
+        good = good and not fault
         surface = flight["least"]["surface"]  # None where the only threats are closed areas: they have no surface to keep from
         least = "      -" if surface is None else f"{surface:7.2f} m"
         print(f"{flight['name']:24s} {flight['outcome']:10s} {least}{'  WRONG: ' + fault if fault else ''}")
-    return 0 if run.returncode == 0 and len(flights) == len(files) else 1
+    return 0 if good else 1
 
 
 if __name__ == "__main__":
