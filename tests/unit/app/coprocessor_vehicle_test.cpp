@@ -45,6 +45,18 @@ protected:
         }
         return false;
     }
+    /// A plane in its mission with an obstacle ahead: nothing is asked for, and that is said once.
+    void expect_plane_is_advised_only()
+    {
+        f->mav_type = 1;
+        f->mode = 10;
+        f->feed(ExtendedSysState{0, 2});
+        begin();
+        f->feed(ExtendedSysState{0, 2});
+        fly(600);
+        EXPECT_TRUE(f->requested.empty());
+        EXPECT_EQ(times("advising only"), 1);
+    }
     [[nodiscard]] int times(const std::string& text) const
     {
         int n = 0;
@@ -89,17 +101,7 @@ Parameters plane_parameters(float fixed_wing)
     return parameters;
 }
 
-TEST_F(CoprocessorVehicle, PlaneThatIsSetUpAsAMultirotorIsAdvisedOnly)
-{
-    f->mav_type = 1;
-    f->mode = 10;
-    f->feed(ExtendedSysState{0, 2});
-    begin();
-    f->feed(ExtendedSysState{0, 2});
-    fly(600);
-    EXPECT_TRUE(f->requested.empty());
-    EXPECT_EQ(times("advising only"), 1);
-}
+TEST_F(CoprocessorVehicle, PlaneThatIsSetUpAsAMultirotorIsAdvisedOnly) { expect_plane_is_advised_only(); }
 
 TEST_F(CoprocessorVehicle, PlaneUnderReciprocalAvoidanceAloneIsAdvisedOnlyBecauseItKeepsItsSpeed)
 {
@@ -107,14 +109,7 @@ TEST_F(CoprocessorVehicle, PlaneUnderReciprocalAvoidanceAloneIsAdvisedOnlyBecaus
     ASSERT_EQ(parameters.set(Param::methods, 4.0F), ParamStatus::ok);
     f = std::make_unique<Flight>(parameters);
     said.clear();
-    f->mav_type = 1;
-    f->mode = 10;
-    f->feed(ExtendedSysState{0, 2});
-    begin();
-    f->feed(ExtendedSysState{0, 2});
-    fly(600);
-    EXPECT_TRUE(f->requested.empty());
-    EXPECT_EQ(times("advising only"), 1);
+    expect_plane_is_advised_only();
 }
 
 TEST_F(CoprocessorVehicle, PlaneIsTakenOverAndGetsGuidedPointsAndNoVelocities)
