@@ -19,9 +19,6 @@ constexpr float kNoProgress = 15.0F;
 constexpr std::uint32_t kAfterwards = 400;
 constexpr std::uint32_t kAfterwardsPerTrack = 100;
 
-/// Whether the conflict is with traffic: traffic that stands may move on.
-bool is_traffic(const world::Conflict& conflict) noexcept { return conflict.threat.kind == world::ThreatKind::track; }
-
 /// Whether traffic comes too near to a vehicle that stays here. The main conflict does not say: what blocks the nominal
 /// path comes first there. Threats that were never collected count as traffic.
 bool traffic_comes(const world::Situation& s, const Settings& settings, WorkBudget& budget) noexcept

@@ -47,7 +47,7 @@ ManoeuvreCost cost_of(const world::Situation& s, const world::Manoeuvre& manoeuv
     for (const path::RouteSegment& segment : route.segments()) {
         point_units += segment.is_arc() ? units::kObjectiveArc : units::kObjectivePoint;
     }
-    bool paid = s.reference.valid && !flight.empty() && budget.spend(units::kObjective);
+    bool paid = s.reference.valid && budget.spend(units::kObjective);
     const float speed = std::max(kMinSpeed, s.reference.speed);
     const float length = route.length();
     Vec3 farthest = Vec3::Zero();

@@ -24,6 +24,8 @@ struct Choice {
 /// The methods as the state machine sees them: one function that plans, and gives checked answers only.
 struct Planning {
     void* self = nullptr;
+    MethodOrder all;       ///< the methods that are there
+    MethodOrder reactive;  ///< and those of them that answer with a velocity, which is good for one update
     world::PlanStatus (*plan)(void* self, const Situations&, const Settings&, WorkBudget&, Diagnostics&,
                               world::Manoeuvre&, Choice&) noexcept = nullptr;
 };

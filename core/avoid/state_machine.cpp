@@ -115,7 +115,7 @@ bool StateMachine::is_due(const Tick& tick, Seconds time_to_loss) const noexcept
 Seconds StateMachine::latest_manoeuvre_time(const Tick& tick) const noexcept
 {
     const bool stays = tick.nominal.length <= settings_.on_leg || tick.nominal.speed < kCreeping;
-    const bool traffic = tick.out.conflict && tick.out.conflict->threat.kind == world::ThreatKind::track;
+    const bool traffic = tick.out.conflict && is_traffic(*tick.out.conflict);
     const Seconds stop = time_to_stop(tick.s, settings_);
     return stays && traffic ? std::max(stop, kGetGoing * settings_.fallback_horizon) : stop;
 }
@@ -161,16 +161,15 @@ world::PlanStatus StateMachine::plan_at_once(Tick& tick, const Settings& setting
 world::PlanStatus StateMachine::plan_a_slice(Tick& tick, const Settings& settings, bool hurries,
                                              Choice& choice) noexcept
 {
-    const bool begins = !tick.sliced && !sliced_->runs();
-    if (tick.sliced && tick.out.plan_status != world::PlanStatus::running) {
+    const bool begins = !tick.planned && !sliced_->runs();
+    if (tick.planned && tick.out.plan_status != world::PlanStatus::running) {
         choice = {tick.out.margin, tick.out.cost, tick.out.answers};
         return tick.out.plan_status;
     }
     if (begins) {
         sliced_->begin(tick.s, tick.planning, settings, diagnostics_);
     }
-    if (!tick.sliced) {
-        tick.sliced = true;
+    if (!tick.planned) {
         static_cast<void>(sliced_->advance(units_for_planning(tick)));
         charge_planning(tick, sliced_->spent());
     }
@@ -195,11 +194,26 @@ world::PlanStatus StateMachine::plan_a_slice(Tick& tick, const Settings& setting
     return world::PlanStatus::found;
 }
 
+/// The methods that are asked for an answer here. A velocity shares the way with traffic. To something that stays it
+/// leads up and waits in front of it: there such a method is asked only where the order has no other.
+MethodOrder StateMachine::order_for(const Tick& tick) const noexcept
+{
+    const MethodOrder& order = settings_.order.empty() ? tick.planning.all : settings_.order;
+    MethodOrder planners;
+    for (const std::uint8_t id : order.ids()) {
+        static_cast<void>(tick.planning.all.contains(id) && !tick.planning.reactive.contains(id) &&
+                          planners.try_add(id));
+    }
+    const bool shares = !tick.out.conflict || is_traffic(*tick.out.conflict);
+    return shares || planners.empty() ? order : planners;
+}
+
 /// Asks the methods for an answer; or one of them alone. `hurries`: any answer is better than none.
 bool StateMachine::plan(Tick& tick, bool hurries, std::uint8_t only) noexcept
 {
     Settings settings = settings_;
-    if (only != 0) {
+    settings.order = order_for(tick);
+    if (settings.order.contains(only)) {
         settings.order = MethodOrder(only);
     }
     Choice choice;

@@ -58,6 +58,7 @@ private:
     [[nodiscard]] bool plan(Tick& tick, bool hurries, std::uint8_t only = 0) noexcept;
     [[nodiscard]] bool plan_runs() const noexcept { return sliced_ != nullptr && sliced_->runs(); }
     [[nodiscard]] std::uint32_t units_for_planning(const Tick& tick) const noexcept;
+    [[nodiscard]] MethodOrder order_for(const Tick& tick) const noexcept;
     static void charge_planning(Tick& tick, std::uint32_t units) noexcept;
     [[nodiscard]] world::PlanStatus plan_at_once(Tick& tick, const Settings& settings, Choice& choice) noexcept;
     [[nodiscard]] world::PlanStatus plan_a_slice(Tick& tick, const Settings& settings, bool hurries,

@@ -29,6 +29,12 @@ struct ParallelOffset {
 /// Only the sign of a margin is asked for.
 inline constexpr world::Cutoff kSignAlone{0.0F, 0.0F, {}};
 
+/// Whether the conflict is with traffic: traffic that stands may move on. O(1).
+[[nodiscard]] inline bool is_traffic(const world::Conflict& conflict) noexcept
+{
+    return conflict.threat.kind == world::ThreatKind::track;
+}
+
 struct StateMachine::Tick {
     const world::Situation& s;
     const world::Situation* other = nullptr;  ///< with the other nominal path; null without one
@@ -40,8 +46,7 @@ struct StateMachine::Tick {
     Guidance out;
     Vec3 removed = Vec3::Zero();  ///< off the velocity back to the leg, by bounds of the airspace [m/s]
     bool ran_out = false;         ///< of work units, planning or altogether
-    bool planned = false;         ///< a plan was asked for
-    bool sliced = false;          ///< a slice of it has been made
+    bool planned = false;         ///< a plan was asked for: in slices, this update's has been made
 };
 
 }  // namespace jink::avoid

@@ -120,6 +120,33 @@ TEST(ReactiveMethods, AllAreAskedAtOnceWhereAVelocityCannotBeRenewed)
     EXPECT_EQ(g.by, kFirst);
 }
 
+/// A velocity leads up to what stays and waits there: in front of a wall the planners are asked, and braking backs off;
+/// a velocity that is flown when the wall becomes known ends. Alone in the order, in one that is empty or beside
+/// methods that are not there, it is all there is.
+TEST(ReactiveMethods, AreNotAskedInFrontOfWhatStaysUnlessTheyAreAlone)
+{
+    for (const MethodOrder& order :
+         {MethodOrder(), MethodOrder(kReacting, kFirst), kAlone, MethodOrder(std::uint8_t{99}, kReacting)}) {
+        const bool alone = !order.empty() && !order.contains(kFirst);
+        Flight f;
+        FakeMethod planning{{[](const Situation&, WorkBudget&, Manoeuvre&) { return PlanStatus::none_available; }}};
+        ReactiveFake deciding = holding(Vec3(0, 0, 0.5F));
+        Supervisor supervisor(asking(order), planning, deciding);
+        head_on(f, 20.0F);
+        deciding = holding(Vec3(1, 4, 0));
+        EXPECT_EQ(f.update(supervisor, true).by, kReacting);
+        const int asked = deciding.asked;
+        f.scene.tracks.clear();
+        f.scene.obstacle(geometry::make_box(Vec3(6, 0, 30), Vec3(1, 200, 200)));
+        deciding = holding(Vec3(0, 0, 0.5F));
+        deciding.asked = asked;
+        const Guidance g = f.update(supervisor, true);
+        EXPECT_EQ(deciding.asked > asked, alone);
+        EXPECT_EQ(planning.asked > 1, !alone);
+        EXPECT_EQ(g.state, alone ? State::avoiding : State::braking);
+    }
+}
+
 TEST(ReactiveMethods, AreAskedAtEveryUpdateAndTheirCommandIsFlownAsItIs)
 {
     Flight f;
