@@ -79,7 +79,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"TRK_SIG_BARO_D", 5, 0, 300, false, "the same of its difference to the own pressure altitude [m]"},
 }};
 
-Configuration build(const std::array<float, kParamCount>& v) noexcept
+Configuration build(const std::array<float, kParamCount>& v, [[maybe_unused]] const reach::VehicleSets* sets) noexcept
 {
     const auto at = [&](Param p) { return v[static_cast<std::size_t>(p)]; };
     const auto whole = [&](Param p) { return static_cast<std::uint32_t>(at(p)); };
@@ -162,9 +162,9 @@ Configuration build(const std::array<float, kParamCount>& v) noexcept
         c.supervisor.order = for_wings(c.supervisor.order);
     }
     if constexpr (kHasReach) {
-        c.reach.sets = &reach_sets();
+        c.reach.sets = sets;
         // Sets of more nodes or cells than the capacities are not flown.
-        c.reach_unsuited = !reach::is_valid(c.reach) || !reach::suits(reach_sets(), c.limits);
+        c.reach_unsuited = !reach::is_valid(c.reach) || !reach::suits(*sets, c.limits);
     }
     c.blocks_unseen = whole(Param::unseen) == 1;
     c.orca.gives_up_blocked = c.supervisor.order != avoid::MethodOrder(kOrca);
@@ -205,7 +205,17 @@ Parameters::Parameters() noexcept : values_{}
     for (std::size_t i = 0; i < kParamCount; ++i) {
         values_[i] = kTable[i].initial;
     }
-    configuration_ = build(values_);
+    if constexpr (kHasReach) {
+        sets_ = &reach_sets();
+    }
+    configuration_ = build(values_, sets_);
+}
+
+void Parameters::use(const reach::VehicleSets& sets) noexcept
+{
+    sets_ = &sets;
+    configuration_ = build(values_, sets_);
+    ++generation_;
 }
 
 ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) noexcept
@@ -216,7 +226,7 @@ ParamStatus Parameters::set_all(const std::array<float, kParamCount>& values) no
             return status;
         }
     }
-    const Configuration candidate = build(values);
+    const Configuration candidate = build(values, sets_);
     if (!fits_together(candidate)) {
         return ParamStatus::inconsistent;
     }

@@ -168,12 +168,16 @@ public:
     /// Index of a name (NUL or end of view ends it); kParamCount when unknown. O(kParamCount).
     [[nodiscard]] static std::size_t find(std::string_view name) noexcept;
 
+    /// Takes other reach sets than this build's. They outlive the parameters.
+    void use(const reach::VehicleSets& sets) noexcept;
+
     [[nodiscard]] const Configuration& configuration() const noexcept { return configuration_; }
     /// Counts accepted changes, so that users of the configuration know when to take it over.
     [[nodiscard]] std::uint32_t generation() const noexcept { return generation_; }
 
 private:
     std::array<float, kParamCount> values_;
+    const reach::VehicleSets* sets_ = nullptr;
     Configuration configuration_;
     std::uint32_t generation_ = 0;
 };

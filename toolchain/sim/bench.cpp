@@ -6,6 +6,7 @@
 
 #include "firmware/app/reach_sets.hpp"
 #include "firmware/app/work_rate.hpp"
+#include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #include "toolchain/sim/fan.hpp"
 
 namespace jink::sim {
@@ -19,25 +20,39 @@ double cpu_microseconds()
     return static_cast<double>(t.tv_sec) * 1e6 + static_cast<double>(t.tv_nsec) * 1e-3;
 }
 
+const reach::VehicleSets& reach_sets_of(const Board& board)
+{
+    return board.reduced_sets ? reach::kDefaultReducedSets : app::reach_sets();
+}
+
+app::Parameters parameters_of(const BenchSetup& setup)
+{
+    app::Parameters parameters = setup.parameters;
+    if (setup.board.reduced_sets) {
+        parameters.use(reach_sets_of(setup.board));
+    }
+    return parameters;
+}
+
 }  // namespace
 
 Bench::Bench(hal::SerialPort& port, hal::Watchdog& watchdog, const BenchSetup& setup)
     : endpoint_({.system_id = setup.system}),
-      coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, setup.parameters, setup.bus)),
+      coprocessor_(std::make_unique<app::Coprocessor>(endpoint_, port, watchdog, parameters_of(setup), setup.bus)),
       planner_(setup.planner)
 {
-    if (setup.clock != 0) {
+    if (setup.board.clock != 0) {
         if (setup.cloud != nullptr) {
             throw std::runtime_error("reach sets see a LiDAR's points, which change while a plan goes on: no clock");
         }
         plan_memory_ = std::make_unique<app::PlanMemory>();
-        if (!coprocessor_->plan_in_slices(plan_memory_->plan, app::WorkRate::of_megahertz(setup.clock).work())) {
+        if (!coprocessor_->plan_in_slices(plan_memory_->plan, app::WorkRate::of_megahertz(setup.board.clock).work())) {
             throw std::runtime_error("a step at this clock has no time for a plan");
         }
     }
     if (setup.cloud != nullptr) {
         clouds_ = std::make_unique<app::CloudInput>(setup.cloud);
-        picture_ = std::make_unique<app::ReachPicture>(app::reach_sets());
+        picture_ = std::make_unique<app::ReachPicture>(reach_sets_of(setup.board));
         coprocessor_->use_clouds(*clouds_);
         coprocessor_->let_reach_sets_see(*picture_);
     }
@@ -51,6 +66,7 @@ void Bench::step(TimePoint now)
     const double began = cpu_microseconds();
     const app::StepReport report = coprocessor_->step(now);
     const double took = cpu_microseconds() - began;
+    to_answer_.note(report.guidance);
     chosen_.reset();
     if (report.guidance.new_manoeuvre && coprocessor_->flying() != nullptr) {
         chosen_ = coprocessor_->flying()->side.cast<double>();
@@ -79,6 +95,7 @@ Inside Bench::inside() const
     const auto& t = coprocessor_->track_diagnostics();
     const auto& l = endpoint_.diagnostics();
     Inside in;
+    in.to_answer = to_answer_.counted();
     in.steps = steps_.durations();
     in.plan_steps = plan_steps_.durations();
     in.conflicts = s.conflicts;

@@ -35,6 +35,29 @@ private:
     double sum_ = 0.0;
 };
 
+/// Counts StepsToAnswer.
+class AnswerCounter {
+public:
+    /// The guidance of each step.
+    void note(const avoid::Guidance& guidance)
+    {
+        const bool plans = guidance.plan_status != world::PlanStatus::no_conflict;
+        steps_ = plans ? steps_ + 1 : 0;
+        if (steps_ > 0 && (guidance.new_manoeuvre || (guidance.by != 0 && by_ == 0))) {
+            counted_.first = counted_.first == 0 ? steps_ : counted_.first;
+            counted_.slowest = std::max(counted_.slowest, steps_);
+        }
+        steps_ = guidance.plan_status == world::PlanStatus::running ? steps_ : 0;
+        by_ = guidance.by;
+    }
+    [[nodiscard]] const StepsToAnswer& counted() const noexcept { return counted_; }
+
+private:
+    StepsToAnswer counted_;
+    unsigned steps_ = 0;  ///< of the plan that goes on
+    std::uint8_t by_ = 0;
+};
+
 /// Start-up configuration of a co-processor, beside its line.
 struct BenchSetup {
     PlannerKind planner = PlannerKind::product;
@@ -42,7 +65,7 @@ struct BenchSetup {
     std::uint8_t system = 0;           ///< system id of its autopilot; 0: the first autopilot received
     link::SensorBus* bus = nullptr;    ///< outlives the bench
     hal::SerialPort* cloud = nullptr;  ///< a LiDAR's line; outlives the bench
-    unsigned clock = 0;                ///< Scenario::clock
+    Board board;
 };
 
 /// The co-processor in this process, with a stopwatch.
@@ -78,6 +101,7 @@ private:
     PlannerKind planner_;
     std::uint32_t generation_ = 0;
     unsigned foreign_plans_ = 0;
+    AnswerCounter to_answer_;
     Stopwatch steps_;
     Stopwatch plan_steps_;
     std::string first_candidate_;

@@ -59,6 +59,8 @@ void each_column(Result& r, Visit&& visit)
     visit("acceleration", r.acceleration);
     visit("jerk", r.jerk);
     visit("away", r.away);
+    visit("first_answer", r.to_answer.first);
+    visit("slowest_answer", r.to_answer.slowest);
 }
 
 std::string text_of(Stack stack) { return std::string(to_string(stack)); }
@@ -148,7 +150,7 @@ Scenario encounter_scenario(std::uint64_t seed, const Variant& variant)
 {
     Scenario scenario = open_encounter(seed);
     scenario.planner = variant.planner;
-    scenario.clock = variant.clock;
+    scenario.board = variant.board;
     for (const auto& [name, value] : variant.parameters) {
         scenario.parameters[name] = value;
     }
@@ -175,6 +177,7 @@ EncounterResult result_of(const Scenario& scenario, Record flown)
     r.chosen_sides = record.chosen_sides;
     r.brakes = record.inside ? record.inside->brakes : 0;
     r.escapes = record.inside ? record.inside->escapes : 0;
+    r.to_answer = record.inside ? record.inside->to_answer : StepsToAnswer{};
     r.faults = static_cast<unsigned>(record.faults.size());
     r.conflict = flight.verdict.conflict;
     r.keep = flight.verdict.keep;

@@ -45,6 +45,7 @@ struct EncounterResult {
     double acceleration = 0.0;       ///< integral of the squared acceleration [m2/s3]
     double jerk = 0.0;               ///< integral of the squared jerk, from differences of 20 ms [m2/s5]
     double away = 0.0;               ///< time under the co-processor's control [s]
+    StepsToAnswer to_answer;
 };
 
 /// Configuration of the co-processor that flies an encounter.
@@ -53,7 +54,7 @@ struct Variant {
     /// Co-processor parameters by name, in addition to the encounter's own. The autopilot sends them in the order of
     /// their names, and repeats each until it is accepted.
     std::map<std::string, double> parameters;
-    unsigned clock = 0;  ///< Scenario::clock
+    Board board;
 
     bool operator==(const Variant&) const = default;
 };

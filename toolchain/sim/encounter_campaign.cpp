@@ -126,8 +126,9 @@ std::pair<std::string, double> parse_parameter(const std::string& text)
 std::string EncounterSetup::manifest() const
 {
     std::ostringstream text;
-    const std::string clock = variant.clock == 0 ? "" : "\nclock " + number(variant.clock);
-    text << kKind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << clock
+    const std::string clock = variant.board.clock == 0 ? "" : "\nclock " + number(variant.board.clock);
+    const std::string sets = variant.board.reduced_sets ? "\nreach_sets reduced" : "";
+    text << kKind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << clock << sets
          << "\nseeds " << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources "
          << source_digest() << "\n";
     return text.str();
@@ -172,7 +173,8 @@ FolderSetup read_setup(const BlockFolder& folder)
         throw BadFolder(folder.path().string() + " is no folder of encounters");
     }
     setup.variant.planner = values["planner"] == "product" ? PlannerKind::product : PlannerKind::source;
-    static_cast<void>(values.count("clock") == 0 || read(values["clock"], setup.variant.clock));
+    static_cast<void>(values.count("clock") == 0 || read(values["clock"], setup.variant.board.clock));
+    setup.variant.board.reduced_sets = values["reach_sets"] == "reduced";
     std::istringstream parameters(values["set"]);
     for (std::string word; parameters >> word;) {
         const auto [name, value] = parse_parameter(word);

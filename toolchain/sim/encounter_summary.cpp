@@ -134,6 +134,15 @@ void put_measures(std::string& text, const Results& results)
     put_quantiles(text, results, "jerk^2 [m2/s5]", [](const EncounterResult& r) { return r.jerk; });
     put_quantiles(text, results, "under control [s]", [](const EncounterResult& r) { return r.away; });
     put_quantiles(text, results, "duration [s]", [](const EncounterResult& r) { return r.duration; });
+    Results answered;
+    std::copy_if(results.begin(), results.end(), std::back_inserter(answered),
+                 [](const EncounterResult& r) { return r.to_answer.first > 0; });
+    if (!answered.empty()) {
+        put_quantiles(text, answered, "first answer [steps]",
+                      [](const EncounterResult& r) { return r.to_answer.first; });
+        put_quantiles(text, answered, "slowest answer [steps]",
+                      [](const EncounterResult& r) { return r.to_answer.slowest; });
+    }
 }
 
 void put_side_counts(std::string& text, const Results& results, const char* which, SideCounts EncounterResult::*counts)
@@ -233,10 +242,11 @@ Results worst_of(Results results)
 std::string summary_text(const FolderSetup& setup, const Results& results)
 {
     std::string text;
-    const std::string clock =
-        setup.variant.clock == 0 ? "" : ", work of a step for " + std::to_string(setup.variant.clock) + " MHz";
+    const Board& board = setup.variant.board;
+    const std::string clock = board.clock == 0 ? "" : ", work of a step for " + std::to_string(board.clock) + " MHz";
+    const std::string on = clock + (board.reduced_sets ? ", reduced reach sets" : "");
     line(text, "%zu encounters, seeds %s, planner %s%s%s\n", results.size(), setup.seeds_text.c_str(),
-         std::string(to_string(setup.variant.planner)).c_str(), parameters_text(setup.variant).c_str(), clock.c_str());
+         std::string(to_string(setup.variant.planner)).c_str(), parameters_text(setup.variant).c_str(), on.c_str());
     if (results.empty()) {
         return text;
     }

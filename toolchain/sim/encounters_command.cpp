@@ -13,12 +13,14 @@
 
 namespace jink::sim {
 
-CLI::Option* add_clock(CLI::App& command, unsigned& clock)
+std::vector<CLI::Option*> add_board(CLI::App& command, Board& board)
 {
-    return command
-        .add_option("--clock", clock,
-                    "work of a step for a processor with this clock, plans going on over several steps [MHz]")
-        ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz));
+    return {command
+                .add_option("--clock", board.clock,
+                            "work of a step for a processor with this clock, plans going on over several steps [MHz]")
+                ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz)),
+            command.add_flag("--reduced-sets", board.reduced_sets,
+                             "reach sets of fewer nodes, those of images with little memory (STM32F405)")};
 }
 
 CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads)
@@ -42,13 +44,13 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
             ->check(CLI::IsMember({"product", "source"}));
     CLI::Option* const set = command->add_option("--set", options.parameters,
                                                  "NAME=VALUE: a parameter of the co-processor, any number of them");
-    CLI::Option* const clock = add_clock(*command, options.clock);
+    const std::vector<CLI::Option*> board = add_board(*command, options.board);
     CLI::Option* const out =
         command->add_option("--out", options.out, "folder of the blocks; what is finished there stays as it is");
     CLI::Option* const summary =
         command->add_option("--summary", options.summary, "flies nothing: summarises the blocks of this folder anew")
             ->check(CLI::ExistingDirectory);
-    for (CLI::Option* const other : {from, count, seeds, block, planner, set, clock, out}) {
+    for (CLI::Option* const other : {from, count, seeds, block, planner, set, out, board[0], board[1]}) {
         summary->excludes(other);
     }
     if (with_threads) {
@@ -68,7 +70,7 @@ EncounterSetup setup_of(const EncountersOptions& options)
     EncounterSetup setup =
         options.seed_file.empty() ? consecutive_setup(options.from, options.count) : listed_setup(options.seed_file);
     setup.block = options.block;
-    setup.variant.clock = options.clock;
+    setup.variant.board = options.board;
     setup.variant.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
     for (const std::string& text : options.parameters) {
         const auto [name, value] = parse_parameter(text);

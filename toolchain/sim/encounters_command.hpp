@@ -22,7 +22,7 @@ struct EncountersOptions {
     std::size_t block = 100;
     std::string seed_file;
     std::string planner = "product";
-    unsigned clock = 0;                   ///< Scenario::clock
+    Board board;
     std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;
     std::string summary;   ///< folder to summarise; nothing is flown
@@ -30,8 +30,8 @@ struct EncountersOptions {
     bool quiet = false;
 };
 
-/// Adds a command's option --clock: Scenario::clock.
-CLI::Option* add_clock(CLI::App& command, unsigned& clock);
+/// Adds a command's options of the board, --clock and --reduced-sets.
+std::vector<CLI::Option*> add_board(CLI::App& command, Board& board);
 
 /// Adds the command's options. @param with_threads  false where processes share the work
 CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_threads);

@@ -119,10 +119,10 @@ Record fly_in_process(const Scenario& given, const Timing& timing, std::ostream*
     hal::ManualClock clock(kClockStart);
     hal::CountingWatchdog watchdog;
     const auto cable = std::make_unique<Cable>(clock, scenario.seed, timing);
-    Tap tap(cable->port(), steps, scenario.clock);
+    Tap tap(cable->port(), steps, scenario.board.clock);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
     Bench bench(tap, watchdog,
-                {.planner = scenario.planner, .parameters = {}, .cloud = lidar.get(), .clock = scenario.clock});
+                {.planner = scenario.planner, .parameters = {}, .cloud = lidar.get(), .board = scenario.board});
     return fly(scenario, timing, clock, *cable, bench, tap, lidar.get());
 }
 
@@ -136,14 +136,14 @@ Record fly_through_tunnel(const Scenario& scenario)
     hal::ManualClock clock(kClockStart);
     hal::CountingWatchdog watchdog;
     const auto line = std::make_unique<TunnelLine>(clock, scenario.seed);
-    Tap tap(line->bus().serial(), nullptr, scenario.clock);
+    Tap tap(line->bus().serial(), nullptr, scenario.board.clock);
     const std::unique_ptr<Lidar> lidar = lidar_of(scenario);
     Bench bench(tap, watchdog,
                 {.planner = scenario.planner,
                  .parameters = {},
                  .bus = &line->bus(),
                  .cloud = lidar.get(),
-                 .clock = scenario.clock});
+                 .board = scenario.board});
     Record record = fly(scenario, Timing{}, clock, *line, bench, tap, lidar.get());
     record.transport = "tunnel";
     return record;

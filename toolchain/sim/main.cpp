@@ -44,7 +44,7 @@ struct Options {
     unsigned count = 50;
     std::uint64_t seed = 1;
     unsigned at_once = 24;
-    unsigned clock = 0;  ///< Scenario::clock
+    Board board;
     bool quiet = false;
     bool judge = false;
     bool within_phases = false;
@@ -62,12 +62,12 @@ fs::path find_daemon()
     throw std::runtime_error("jinkd is not where this program is; say where with --daemon");
 }
 
-std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_time, unsigned clock)
+std::vector<Scenario> load_all(const std::vector<std::string>& files, bool real_time, const Board& board)
 {
     std::vector<Scenario> scenarios;
     for (const std::string& file : files) {
         scenarios.push_back(load_scenario(file));
-        scenarios.back().clock = clock;
+        scenarios.back().board = board;
         if (const std::string reason = no_input_for(scenarios.back()); real_time && !reason.empty()) {
             std::cout << scenarios.back().name << ": left out, " << reason << "\n";
             scenarios.pop_back();
@@ -192,7 +192,7 @@ int fly(const Options& options)
 {
     std::vector<ReportedFlight> flights;
     const bool in_process = options.daemon.empty() && options.image.empty();
-    const std::vector<Scenario> scenarios = load_all(options.files, !in_process, options.clock);
+    const std::vector<Scenario> scenarios = load_all(options.files, !in_process, options.board);
     const bool tunnel = options.link == "tunnel";
     if (in_process) {
         for (const Scenario& scenario : scenarios) {
@@ -221,7 +221,7 @@ int demo(const Options& options)
     for (const fs::path& file : scenario_files(options.scenarios)) {
         files.push_back(file.string());
     }
-    const std::vector<Scenario> scenarios = load_all(files, true, 0);
+    const std::vector<Scenario> scenarios = load_all(files, true, {});
     std::cout << scenarios.size() << " scenarios in real time against " << computer.program.filename().string() << ", "
               << options.at_once << " at once ..." << std::endl;
     std::vector<Record> records = fly_daemons(scenarios, computer, log_folder(options), options.at_once);
@@ -263,7 +263,7 @@ int crowd(const Options& options)
     std::vector<ReportedFlight> flights;
     for (unsigned i = 0; i < options.count; ++i) {
         Scenario scenario = crowded_scenario(options.seed + i);
-        scenario.clock = options.clock;
+        scenario.board = options.board;
         flights.push_back(report_on(scenario, fly_recorded(scenario, options.steps), false));
     }
     return finish(options, flights);
@@ -295,7 +295,7 @@ int main(int argc, char** argv)
     for (CLI::App* command : {fly_command, crowd_command}) {
         command->add_option("--record-steps", options.steps,
                             "in process: folder for NAME.steps, what each step read and wrote");
-        add_clock(*command, options.clock);
+        static_cast<void>(add_board(*command, options.board));
     }
     for (CLI::App* command : {fly_command, demo_command}) {
         CLI::Option* const daemon =

@@ -38,8 +38,17 @@ struct Durations {
     std::vector<double> times;  ///< each duration, where they are few; from the daemon with a resolution of 10 us
 };
 
+/// Steps from the one that begins a plan to the one that first commands its answer, both counted. A frame waits for
+/// less than a tick until its step: so many ticks at most lie between its last byte and the command. Plans that end
+/// without an answer, and velocities that are renewed, do not count.
+struct StepsToAnswer {
+    unsigned first = 0;    ///< of a flight; 0: none was flown
+    unsigned slowest = 0;  ///< of all
+};
+
 /// Internals of the co-processor.
 struct Inside {
+    StepsToAnswer to_answer;
     Durations steps;       ///< Coprocessor::step
     Durations plan_steps;  ///< steps that called the planner
     unsigned conflicts = 0, plans = 0, plans_found = 0, answers_rejected = 0, manoeuvres = 0, replans = 0, flips = 0,

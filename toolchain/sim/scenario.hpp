@@ -24,6 +24,16 @@ enum class PlannerKind : std::uint8_t {
     source,   ///< geometric::source_settings(), with the co-processor's look-ahead; in process only
 };
 
+/// The processor that the co-processor runs on.
+struct Board {
+    /// [MHz]: its steps do as much work as fits into a tick there (app::WorkRate), and plans go on over several steps;
+    /// 0: as the program jinkd does.
+    unsigned clock = 0;
+    bool reduced_sets = false;  ///< the default vehicle's reduced reach sets, as where memory is small
+
+    bool operator==(const Board&) const = default;
+};
+
 enum class Outcome : std::uint8_t {
     clear,      ///< no manoeuvre needed, none flown
     avoided,    ///< control was taken and the promise kept
@@ -125,9 +135,7 @@ struct Scenario {
     Wind wind;
     std::optional<LidarSensor> lidar;
     std::map<std::string, double> parameters;  ///< set at the start, verified
-    /// The co-processor's clock [MHz]: its steps do as much work as fits into a tick there (app::WorkRate), and plans
-    /// go on over several steps; 0: as the program jinkd does.
-    unsigned clock = 0;
+    Board board;
     Faults faults;
     Expectation expect;
 };

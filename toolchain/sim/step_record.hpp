@@ -22,7 +22,7 @@ inline constexpr std::uint32_t kStepClock = 0x10000;
 struct StepRecord {
     std::uint32_t magic;
     /// Not 0: the co-processor starts anew before this step; the sum of kStartsAnew or kStartsWithoutReachSets, and its
-    /// clock (Scenario::clock) times kStepClock.
+    /// clock (Board::clock) times kStepClock.
     std::uint32_t start;
     std::int64_t now_us;      ///< the step's time
     std::uint32_t bytes_in;   ///< bytes that the step reads

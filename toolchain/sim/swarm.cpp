@@ -34,15 +34,15 @@ void mix(std::uint64_t& digest, double value)
 struct Station {
     Station(const SwarmSetup& setup, std::uint64_t seed, std::size_t index, const app::Parameters& parameters)
         : start(static_cast<std::int64_t>(1'234'567'890 + 1'000'003 * index)), clock(start),
-          cable(clock, seed, Timing{}), bench(cable.port(), watchdog, bench_setup(index, parameters, setup.clock)),
+          cable(clock, seed, Timing{}), bench(cable.port(), watchdog, bench_setup(index, parameters, setup.board)),
           ticks(timing(setup, seed, index))
     {
     }
-    static BenchSetup bench_setup(std::size_t index, const app::Parameters& parameters, unsigned clock)
+    static BenchSetup bench_setup(std::size_t index, const app::Parameters& parameters, const Board& board)
     {
         BenchSetup bench;
         bench.parameters = parameters;
-        bench.clock = clock;
+        bench.board = board;
         bench.system = static_cast<std::uint8_t>(index + 1);
         return bench;
     }

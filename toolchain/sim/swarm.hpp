@@ -34,7 +34,7 @@ struct SwarmSetup {
     double loss = 0.0;        ///< lost share of broadcasts and obstacle reports
     double delay = 0.0;       ///< delay of broadcasts and obstacle reports [s]
     double duration = 180.0;  ///< at most [s]
-    unsigned clock = 0;       ///< Scenario::clock
+    Board board;
     Stack stack = Stack::ardupilot;
     std::map<std::string, double> parameters;  ///< of the co-processors, in addition to `swarm_parameters`
     std::map<std::string, double> others;      ///< of every second vehicle's, in addition to these

@@ -137,7 +137,7 @@ CLI::App& add_swarm(CLI::App& cli, SwarmOptions& options)
     command->add_option("--loss", s.loss, "share of broadcasts lost, default 0")->check(CLI::Range(0.0, 1.0));
     command->add_option("--delay", s.delay, "of broadcasts, default 0 [s]")->check(CLI::Range(0.0, 1.9));
     command->add_option("--duration", s.duration, "at most, default 180 [s]")->check(CLI::Range(1.0, 3600.0));
-    add_clock(*command, s.clock);
+    static_cast<void>(add_board(*command, s.board));
     command->add_option("--stack", options.stack, "of the autopilots")->check(CLI::IsMember({"ardupilot", "px4"}));
     command->add_option("--parameters", options.parameters, "NAME=VALUE of the co-processors, any number of them");
     command->add_option("--seed", options.seed, "the first, default 1");

@@ -91,6 +91,23 @@ TEST(ParamMethods, TheReachSetsOnlySuitTheirVehicle)
     EXPECT_FALSE(parameters.configuration().reach_unsuited) << "the default vehicle is theirs";
 }
 
+/// Sets in place of the built ones stay when parameters change, and are judged as those are.
+TEST(ParamMethods, OtherReachSetsStayWhenAParameterChanges)
+{
+    const reach::VehicleSets others = reach_sets();
+    Parameters parameters;
+    const std::uint32_t before = parameters.generation();
+    parameters.use(others);
+    EXPECT_NE(parameters.generation(), before) << "who holds the old configuration takes the new one over";
+    ASSERT_EQ(parameters.set(Param::lookahead, 13.0F), ParamStatus::ok);
+    EXPECT_EQ(parameters.configuration().reach.sets, &others);
+    EXPECT_FALSE(parameters.configuration().reach_unsuited);
+    reach::VehicleSets unsuited = reach_sets();
+    unsuited.cruise_speed *= 0.1F;
+    parameters.use(unsuited);
+    EXPECT_TRUE(parameters.configuration().reach_unsuited);
+}
+
 /// The time of cost 1 is stretched by Pinheiro's 1.15 and must be above the time of cost 0.
 TEST(ParamMethods, TimesThatCostNothingAndAllLieApart)
 {
