@@ -54,7 +54,7 @@ struct Variant {
     /// Co-processor parameters by name, in addition to the encounter's own. The autopilot sends them in the order of
     /// their names, and repeats each until it is accepted.
     std::map<std::string, double> parameters;
-    Board board;
+    Board board{};
 
     bool operator==(const Variant&) const = default;
 };

@@ -122,7 +122,7 @@ TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
         const world::Situation s = scene.situation();
         settings.plan_budget = random.below(3) == 0 ? settings.kept_for_next + random.below(8000) : 23000;
         for (methods->which = 0; methods->which < 5; ++methods->which) {
-            const Planning planning{methods.get(), &Methods::plan};
+            const Planning planning{methods.get(), {}, {}, &Methods::plan};
             world::Manoeuvre whole;
             Choice choice;
             WorkBudget budget(settings.plan_budget);
