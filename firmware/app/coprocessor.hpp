@@ -50,6 +50,8 @@ public:
 
     StepReport step(TimePoint now) noexcept;
 
+    /// What the last step took, on a board that counts it [cycles]: the longest is reported to whoever asks for a text.
+    void note_cycles(std::uint32_t cycles) noexcept { telemetry_.note_cycles(cycles); }
     /// From here on every step prepares the texts of a fault handler, before it sends anything. They outlive this.
     void keep_last_words(hal::LastWords& words) noexcept { telemetry_.keep_last_words(words); }
     /// From here on the points of the link and of the input's own port become obstacles. It outlives this, and takes

@@ -43,13 +43,16 @@ void Telemetry::take_commands(std::span<const link::CommandRequest> commands) no
 {
     constexpr std::uint16_t kRequestMessage = 512;
     constexpr float kHeartbeat = 0.0F;
+    constexpr float kText = 253.0F;
     for (const link::CommandRequest& request : commands) {
         ++counts_.commands;
         link::CommandResult result = link::CommandResult::unsupported;
         if (request.command == kRequestMessage) {
-            const bool known = request.params[0] == kHeartbeat;
-            result = known ? link::CommandResult::accepted : link::CommandResult::denied;
-            heartbeat_.is_sent = heartbeat_.is_sent && !known;
+            const bool heartbeat = request.params[0] == kHeartbeat;
+            const bool text = request.params[0] == kText && most_cycles_ > 0;
+            result = heartbeat || text ? link::CommandResult::accepted : link::CommandResult::denied;
+            heartbeat_.is_sent = heartbeat_.is_sent && !heartbeat;
+            cycles_asked_ = cycles_asked_ || text;
         }
         counts_.commands_refused += result == link::CommandResult::accepted ? 0U : 1U;
         link_.acknowledge(request, result);
@@ -74,6 +77,12 @@ void Telemetry::report_to_autopilot(TimePoint now, const StepReport& report, con
     if (!heartbeat_.is_sent || changed || now - heartbeat_.at >= kHeartbeatPeriod) {
         link_.send_heartbeat(report.state);
         heartbeat_ = {true, now, report.state};
+        if (cycles_asked_) {
+            Text text;
+            text << "jink: longest step " << most_cycles_ << " cycles";
+            outbox.say(link::Severity::notice, text.view());
+            cycles_asked_ = false;
+        }
     }
     report_causes(of, outbox);
     report_autopilot(report, of, outbox);

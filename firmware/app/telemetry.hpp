@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <span>
 
 #include "firmware/app/autopilot_control.hpp"
@@ -38,7 +39,10 @@ public:
 
     /// From now on every step prepares the texts of a fault handler. They outlive this.
     void keep_last_words(hal::LastWords& words) noexcept { last_words_ = &words; }
-    /// Requests of messages: the HEARTBEAT is sent in this step; others are refused.
+    /// What a step took, on boards that count [cycles].
+    void note_cycles(std::uint32_t cycles) noexcept { most_cycles_ = std::max(most_cycles_, cycles); }
+    /// Requests of messages: the HEARTBEAT is sent in this step, and with the next one a text of the longest step where
+    /// a text is asked for and steps are counted; others are refused.
     void take_commands(std::span<const link::CommandRequest> commands) noexcept;
     /// What became of control in this step.
     void note(TakeoverEvent event, const StepReport& report) noexcept;
@@ -99,6 +103,8 @@ private:
     int unsteerable_reports_ = 0;  ///< HEARTBEATs one after another
     bool loss_unsaid_ = false;     ///< control was lost while the line was down
     TimePoint last_near_;
+    std::uint32_t most_cycles_ = 0;  ///< of a step
+    bool cycles_asked_ = false;
 };
 
 }  // namespace jink::app

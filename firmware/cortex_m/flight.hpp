@@ -2,6 +2,8 @@
 #pragma once
 
 #include "firmware/app/coprocessor.hpp"
+#include "hal/cortex_m/cortex_m.hpp"
+#include "hal/cortex_m/cycle_counter.hpp"
 #include "hal/cortex_m/periodic.hpp"
 #include "hal/cortex_m/startup.hpp"
 
@@ -42,14 +44,19 @@ void settle_map(app::Coprocessor& coprocessor) noexcept;
 /// the time before the watchdog is started.
 [[nodiscard]] bool settle_faults(app::Coprocessor& coprocessor, hal::Clock& clock) noexcept;
 
-/// Steps for ever; `before_step` services the ports once per tick.
+/// Steps for ever, and counts the cycles of each step; `before_step` services the ports once per tick.
 template <class Clock, class BeforeStep>
 [[noreturn]] void fly(app::Coprocessor& coprocessor, Clock& clock, bool passive, BeforeStep before_step) noexcept
 {
     const std::int64_t start = clock.now_us();
+    const hal::cortex_m::CycleCounter counter(hal::cortex_m::MappedRegisters(0xE0000000));
     hal::cortex_m::run_every(kTickMicroseconds, clock, [&, proven = passive](std::int64_t now) mutable {
         before_step();
+        const std::uint32_t began = counter.cycles();
         static_cast<void>(coprocessor.step({now}));
+        if (counter.is_there()) {
+            coprocessor.note_cycles(counter.cycles() - began);
+        }
         if (!proven && now - start >= kProvenMicroseconds) {
             proven = true;
             hal::cortex_m::forgive_faults();

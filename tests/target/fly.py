@@ -31,7 +31,6 @@ NO_INPUT = re.compile(r"^lidar:", re.M)
 BOTH_BOARDS = ("autopilot_reboots", "cable_pulled", "clock_jumps", "four_converging", "head_on", "reach_sets_head_on",
                "scan_wall")
 AT_ONCE = 8  # each board takes a quarter of a processor
-REDUCED_SETS = ("stm32f405",)  # fly the reduced reach sets: so do the flights in process that they are compared with
 
 
 def flown_by(image, names):
@@ -50,9 +49,8 @@ def main(sim, build, image, extent=""):
     names = sorted(f.stem for f in folder.glob("*.yaml") if not NO_INPUT.search(f.read_text(encoding="utf-8")))
     files = [str(folder / f"{name}.yaml") for name in (names if extent == "all" else flown_by(image, names))]
     with tempfile.TemporaryDirectory() as folder:
-        board = ["--clock", str(records.CLOCKS[image]), *(["--reduced-sets"] if image in REDUCED_SETS else [])]
         run = subprocess.run([sim, "fly", *files, "--image", str(elf), "--machine", MACHINES[image], "--at-once", str(AT_ONCE),
-                              "--within-phases", *board, "--out", folder, "--quiet"], check=False)
+                              "--within-phases", *records.board(image), "--out", folder, "--quiet"], check=False)
         with open(pathlib.Path(folder) / "run.json", encoding="utf-8") as file:
             flights = json.load(file)["flights"]
     good = len(flights) == len(files) and run.returncode in (0, 1)

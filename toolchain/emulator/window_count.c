@@ -10,7 +10,7 @@
 // Windows do not nest; one virtual processor.
 //
 // `stages` assigns code to stages: lines "FIRST LAST STAGE" (addresses in hexadecimal, LAST is one past the end; stages
-// 1..63; in ascending order). Code outside of all ranges counts for the stage that called it. The line of a window then
+// 1..8191; in ascending order). Code outside of all ranges counts for the stage that called it. The line of a window then
 // ends with the counts of stages 0 (before any), 1, ... as far as there are any.
 //
 // Debian ships no header for plugins: the declarations below follow qemu's documentation (docs/devel/tcg-plugins.rst).
@@ -46,7 +46,7 @@ uint64_t qemu_plugin_insn_vaddr(const struct qemu_plugin_insn* insn);
 EXPORT int qemu_plugin_version = 1;
 EXPORT int qemu_plugin_install(qemu_plugin_id_t id, const qemu_info_t* info, int argc, char** argv);
 
-#define MOST_STAGES 64
+#define MOST_STAGES 8192
 
 struct range {
     uint64_t first;

@@ -125,11 +125,12 @@ class Costs:
     of the component without the ways into its entries, where the loops inside are found in the same manner.
     `turns(function, places)` gives ("each", n) turns each time a loop is entered, or ("in all", n) in one call of the
     function, by the places that jump back; a turn is a body begun. Where every jump back can leave instead, the test is at
-    the end and the entry is passed once a turn, else once more for the test that fails.
+    the end and the entry is passed once a turn, else once more for the test that fails. What lies behind a place in `ends`
+    alone is never reached.
     """
 
-    def __init__(self, function, cost, turns):
-        self.function, self.cost, self.turns, self.in_all = function, cost, turns, 0
+    def __init__(self, function, cost, turns, ends=()):
+        self.function, self.cost, self.turns, self.ends, self.in_all = function, cost, turns, ends, 0
         self.before = {n: [] for n in function.addresses}
         for node, following in function.after.items():
             for n in following:
@@ -139,7 +140,8 @@ class Costs:
         entry = self.function.addresses[0]
         reached, work = {entry}, [entry]
         while work:
-            for following in self.function.after[work.pop()]:
+            node = work.pop()
+            for following in () if node in self.ends else self.function.after[node]:
                 if following not in reached:
                     reached.add(following)
                     work.append(following)
@@ -226,10 +228,12 @@ class Bound:
         self.on_way.append(name)
         try:
             function = Function(name, *self.raw[name])
-            calls = {}
+            calls, ends = {}, set()
             for address, callee in function.calls:
+                if callee is not None and any(re.search(p, callee) for p in self.never):
+                    ends.add(address)
                 calls[address] = calls.get(address, 0) + max((self.of(c) for c in self.called_from(name, callee)), default=0)
-            total = Costs(function, lambda address: 1 + calls.get(address, 0), self.turns).whole()
+            total = Costs(function, lambda address: 1 + calls.get(address, 0), self.turns, ends).whole()
         except Refused as refusal:
             self.problems.append(str(refusal))
             total = 0  # reported among the problems: there is no bound then

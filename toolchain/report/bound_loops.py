@@ -90,6 +90,12 @@ RULES = [
     (r"clearance(_airspace|_spheres)?\.cpp", "each", lambda p: p["points"] - 1),
     (r"memcpy|memset|memmove", "each", lambda p: 128),
 ]
+# Handlers of interrupts, as if one came for each byte of a serial line and for each frame of a bus: several in one take less. The
+# ports are made before the first interrupt.
+INTERRUPT_RULES = [(r"bxcan\.hpp:.*on_(receive|transmit)|us?art\.hpp:", "each", lambda p: 1)]
+ENTRY_CYCLES = 29  # Cortex-M4 and M7, with the registers of the FPU
+NEVER_INTERRUPTED = [r"^memset$"]
+INTERRUPTS = r"^jink_(usart\d|uart_(receive|transmit|overrun)|can\d_(transmit|receive|status))$"
 # With time-aware security, one leg, default weights and without solids; the predicted flight instead of the check of accelerations. Angles are below
 # 2 pi, far from where newlib's reduction of large ones begins.
 NEVER = [r"touches_swept", r"is_flyable", r"Clearance6leaves", r"Clearance7touchesERKNS1_5CurveERKNS1_6ExtentERKNS_8geometry5Shape",
@@ -105,7 +111,8 @@ LIBRARY = [(r"^__aeabi_", 1000)]
 class Turns:
     """The iterations of a loop, for bound.weights."""
 
-    def __init__(self, program, prefix, values):
+    def __init__(self, program, prefix, values, rules=RULES):
+        self.rules = rules
         self.program, self.prefix, self.values, self.lines, self.used = program, prefix, values, {}, []
 
     def places(self, addresses):
@@ -124,9 +131,9 @@ class Turns:
     def __call__(self, function, addresses):
         places = list(self.places(addresses))
         for place in places + [function.name]:
-            for pattern, how, turns in RULES:
+            for pattern, how, turns in self.rules:
                 if re.search(pattern, place):
-                    self.used.append((function.name, place, how, turns(self.values)))
+                    self.used.append((pattern, how, turns))
                     return how, turns(self.values)
         raise bound.Refused(f"{function.name}: a loop that no rule knows: {' < '.join(places)[:300]}")
 
@@ -150,6 +157,40 @@ def of_plan(program, scene):
         instructions += last.of(next(name for name in symbols if IN_A_ROW in name))
         problems = problems + last.problems
     return instructions, sorted(set(problems)), turns.used
+
+
+class _Keys(dict):
+    """Parameters that remember which of them were asked for."""
+
+    def __init__(self, values):
+        super().__init__(values)
+        self.asked = []
+
+    def __getitem__(self, key):
+        self.asked += [] if key in self.asked else [key]
+        return super().__getitem__(key)
+
+
+def loops_of_plan(program, scene):
+    """The rules that a plan's loops are bounded by: [rule, how its turns count, turns, parameters they come from]."""
+    rows = []
+    for pattern, how, turns in dict.fromkeys(of_plan(program, scene)[2]):
+        keys = _Keys(parameters(**SCENES[scene]))
+        count = turns(keys)
+        rows.append([pattern, how, count, ", ".join(keys.asked)])
+    return sorted(rows, key=lambda r: (-r[2], r[0]))
+
+
+def interrupts(program):
+    """{handler: most instructions of one interrupt, and as many again as entry and return with the registers of the FPU take cycles}"""
+    symbols = subprocess.run(["arm-none-eabi-nm", str(program)], check=True, capture_output=True, text=True).stdout.split()
+    out = {}
+    for name in sorted({s for s in symbols if re.search(INTERRUPTS, s)}):
+        of = bound.Bound(str(program), "arm-none-eabi-", Turns(str(program), "arm-none-eabi-", {}, INTERRUPT_RULES), NEVER_INTERRUPTED)
+        out[name] = of.of(name) + ENTRY_CYCLES
+        if of.problems:
+            raise bound.Refused(of.problems[0])
+    return out
 
 
 def all_plans(program_of):

@@ -4,6 +4,7 @@ import concurrent.futures
 import dataclasses
 import json
 import pathlib
+import re
 import statistics
 import struct
 import subprocess
@@ -22,6 +23,7 @@ STAGED = "mps2_an500"  # counted per stage; the other targets in total, which ta
 MOST_PER_UNIT = 170
 # The boards' clocks [MHz]: firmware/*/main.cpp (kRate). Their updates and steps are counted with the work of these.
 CLOCKS = {"mps2_an500": 216, "stm32f405": 168}
+REDUCED_SETS = ("stm32f405",)  # these fly the reduced reach sets
 FASTER = 480  # of another Cortex-M7, which the same image runs on [MHz]
 PER_DECADE = 20  # bins of a histogram; from 10^4 instructions on
 DECADES = 4
@@ -39,6 +41,11 @@ def short(x):
         if struct.unpack("<f", struct.pack("<f", float(text)))[0] == exact:
             return float(text)
     return exact
+
+
+def board(target):
+    """Options of jink-sim for flights with a board's work and reach sets."""
+    return [*(["--clock", str(CLOCKS[target])] if target in CLOCKS else []), *(["--reduced-sets"] if target in REDUCED_SETS else [])]
 
 
 def on_board(case, target):
@@ -98,6 +105,10 @@ def compiler(target):
         return "none"
 
 
+def emulator():
+    return subprocess.run(["qemu-system-arm", "--version"], check=True, capture_output=True, text=True).stdout.splitlines()[0]
+
+
 def distribution(counts):
     ordered = sorted(counts)
     bins = [0] * (PER_DECADE * DECADES)
@@ -134,13 +145,12 @@ class Bench:
 
     def fly(self, folder, target, crowds=()):
         """Flies the flights whose steps are counted, in process with the work of a target, and writes the line's traffic to `folder`."""
-        clock = ["--clock", str(CLOCKS[target])] if target in CLOCKS else []
         scenario = pathlib.Path(__file__).resolve().parents[2] / "tests/scenario"
         files = [str(scenario / f"{name}.yaml") for name in scenes.FLIGHTS]
-        subprocess.run([self.sim, "fly", *files, *clock, "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([self.sim, "fly", *files, *board(target), "--record-steps", folder, "--quiet"], check=True, stdout=subprocess.DEVNULL)
         for seed in crowds:
             # The ending of a crowd is irrelevant here.
-            subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", *clock, "--record-steps", folder, "--quiet"], check=False,
+            subprocess.run([self.sim, "crowd", "--seed", str(seed), "--count", "1", *board(target), "--record-steps", folder, "--quiet"], check=False,
                            stdout=subprocess.DEVNULL)
 
     def crowds(self):
@@ -198,6 +208,38 @@ class Bench:
     def all(self, names):
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             return dict(zip(names, pool.map(self.of_target, names)))
+
+    def by_function(self, target, name, most=15):
+        """The functions that a record executes most instructions in, their own alone: [name, instructions], and the rest."""
+        with tempfile.TemporaryDirectory() as folder:
+            file = str(pathlib.Path(folder) / "functions")
+            path = self.folder / f"{name}.json"
+            record = json.loads(path.read_text(encoding="utf-8"))
+            kind = targets.Probe if "case" in record else flights.StepProbe
+            names = stages.write_functions(targets.program_of(target, self.build, kind.PROGRAM), target, file)
+            if "case" in record:
+                answer = self.one(target, read_case(path)[1], file)
+            else:
+                self.fly(folder, target, [record["crowd"]])
+                answer = self.step(target, record, folder, file)
+        first = sorted(zip(answer.by_stage, names), reverse=True)[:most]
+        rows = [[name, count] for count, name in first if name]
+        return [*rows, ["all others", answer.instructions - sum(count for _, count in rows)]]
+
+    def flags(self, target):
+        """The compiler's options for core, without paths, warnings and what only reports."""
+        commands = json.loads((pathlib.Path(self.build) / target / "compile_commands.json").read_text(encoding="utf-8"))
+        words = next(c["command"] for c in commands if "/jink_core.dir/" in c["command"]).split()
+        kept = [w for w in words if re.match(r"-(m|f|O|std|g|DJINK|DEIGEN|DNDEBUG)", w) and not re.match(r"-f(stack-usage|callgraph)", w)]
+        return " ".join(sorted(set(kept), key=kept.index))
+
+    def sheet(self, target, worst):
+        """What the sheet of a board says beside the counts: the record `worst` by function, flags, interrupts, loops of a plan."""
+        import bound_loops
+        import memory_sizes
+        return {"record": worst, "functions": self.by_function(target, worst), "flags": self.flags(target),
+                "interrupts": bound_loops.interrupts(memory_sizes.image_of(self.build, target)),
+                "loops": bound_loops.loops_of_plan(targets.program_of(target, self.build), "plan_16_3")}
 
     def rates(self):
         """{clock [MHz]: instructions of a tick, work units of a step, and of those of its slice} (firmware/app/work_rate.hpp)."""

@@ -21,6 +21,9 @@ STAGES = [
     ("contact tests of flights", r"^core/geometric/flown\.cpp:.*judge"),
     ("choice", r"^core/geometric/solve\.cpp:(choose|next_cheapest|take|operator\(\))"),
     ("reach sets", r"^core/reach/"),
+    ("reciprocal method", r"^core/orca/"),
+    ("objective", r"^core/avoid/objective"),
+    ("picture of a plan", r"^core/(world/snapshot|avoid/sliced_plan)"),
     ("final check", r"^core/avoid/final_check\.cpp"),
     ("fallback", r"^core/avoid/fallback"),
 ]
@@ -72,6 +75,23 @@ def stage_of(chain):
             if pattern.search(place):
                 return stage
     return 0
+
+
+def write_functions(program, target, name):
+    """Every function of the program that is the project's own as a stage of its own: their names, with an empty one for the code
+    before any. What it calls of the C library counts for it."""
+    text = subprocess.run([_tools(target) + "nm", "-C", "-S", "-n", str(program)], check=True, capture_output=True, text=True).stdout
+    names, last = [""], 0
+    with open(name, "w", encoding="ascii") as file:
+        for line in text.splitlines():
+            parts = line.split(None, 3)
+            if len(parts) < 4 or parts[2] not in "tTwW" or "jink" not in parts[3] or int(parts[0], 16) & ~1 < last:
+                continue
+            first = int(parts[0], 16) & ~1
+            last = first + int(parts[1], 16)
+            names.append(parts[3])
+            file.write(f"{first:x} {last:x} {len(names) - 1}\n")
+    return names
 
 
 def write(program, target, name):

@@ -278,6 +278,42 @@ TEST_F(CoprocessorRequests, HeartbeatIsSentOnRequestAndOtherCommandsAreUnsupport
     EXPECT_EQ(counted().commands, 5U + refused);
 }
 
+/// A board's longest step, in a text with the next HEARTBEAT however often it is asked for; denied where none counts.
+TEST_F(CoprocessorRequests, TheLongestStepIsReportedOnRequest)
+{
+    CommandLong m;
+    m.command = 512;
+    m.param1 = 253.0F;
+    const auto result = [&] {
+        ask(m);
+        const auto acks = f.said_of<CommandAck>();
+        return acks.size() == 1 ? static_cast<int>(acks[0].result) : -1;
+    };
+    const auto reported = [&] {
+        int count = 0;
+        for (const Statustext& text : f.said_of<Statustext>()) {
+            count += std::string_view(text.text.data()).starts_with("jink: longest step 123456 cycles") ? 1 : 0;
+        }
+        return count;
+    };
+    EXPECT_EQ(result(), static_cast<int>(link::CommandResult::denied));
+    for (const std::uint32_t cycles : {70'000U, 123'456U, 80'000U}) {
+        f.coprocessor.note_cycles(cycles);
+    }
+    EXPECT_EQ(result(), static_cast<int>(link::CommandResult::accepted));
+    int texts = reported();
+    for (int i = 0; i < 20; ++i) {
+        EXPECT_EQ(result(), static_cast<int>(link::CommandResult::accepted));
+        texts += reported();
+    }
+    for (int i = 0; i < 60; ++i) {
+        f.fly(1);
+        texts += reported();
+    }
+    EXPECT_GE(texts, 1);
+    EXPECT_LE(texts, 2) << "22 requests within less than half a second";
+}
+
 TEST_F(CoprocessorRequests, CountsStepsOwnStatesAndRefusesOldOnes)
 {
     const Diagnostics before = counted();
