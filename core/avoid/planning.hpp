@@ -25,7 +25,7 @@ struct Choice {
 struct Planning {
     void* self = nullptr;
     MethodOrder all;       ///< the methods that are there
-    MethodOrder reactive;  ///< and those of them that answer with a velocity, which is good for one update
+    MethodOrder planners;  ///< those of them that answer with more than a velocity, which is good for one update
     world::PlanStatus (*plan)(void* self, const Situations&, const Settings&, WorkBudget&, Diagnostics&,
                               world::Manoeuvre&, Choice&) noexcept = nullptr;
 };

@@ -49,6 +49,18 @@ public:
         ids_[n] = id;
         return true;
     }
+    /// Those that are in `others` too, in this order.
+    [[nodiscard]] constexpr MethodOrder within(const MethodOrder& others) const noexcept
+    {
+        MethodOrder left;
+        std::size_t n = 0;
+        for (const std::uint8_t id : ids_) {
+            if (others.contains(id)) {
+                left.ids_[n++] = id;
+            }
+        }
+        return left;
+    }
     friend constexpr bool operator==(const MethodOrder&, const MethodOrder&) noexcept = default;
 
 private:

@@ -199,13 +199,11 @@ world::PlanStatus StateMachine::plan_a_slice(Tick& tick, const Settings& setting
 MethodOrder StateMachine::order_for(const Tick& tick) const noexcept
 {
     const MethodOrder& order = settings_.order.empty() ? tick.planning.all : settings_.order;
-    MethodOrder planners;
-    for (const std::uint8_t id : order.ids()) {
-        static_cast<void>(tick.planning.all.contains(id) && !tick.planning.reactive.contains(id) &&
-                          planners.try_add(id));
+    if (!tick.out.conflict || is_traffic(*tick.out.conflict)) {
+        return order;
     }
-    const bool shares = !tick.out.conflict || is_traffic(*tick.out.conflict);
-    return shares || planners.empty() ? order : planners;
+    const MethodOrder planners = order.within(tick.planning.planners);
+    return planners.empty() ? order : planners;
 }
 
 /// Asks the methods for an answer; or one of them alone. `hurries`: any answer is better than none.

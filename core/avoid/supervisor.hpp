@@ -40,7 +40,7 @@ public:
     }
 
     /// How a plan is made: by all methods of the order, the answer that costs least.
-    [[nodiscard]] Planning planning() noexcept { return {this, kAll, reactive(), &Supervisor::ask_all}; }
+    [[nodiscard]] Planning planning() noexcept { return {this, kAll, planners(), &Supervisor::ask_all}; }
 
     void reset() noexcept { machine_.reset(); }
     /// From now on a plan goes on over several updates (WorkPerUpdate). It outlives this.
@@ -62,25 +62,15 @@ private:
     static_assert(sizeof...(Methods) >= 1 && sizeof...(Methods) <= kMaxMethods);
     static_assert(kAll.size() == sizeof...(Methods), "ids of methods are unique and not 0");
 
-    static MethodOrder reactive() noexcept
+    static constexpr MethodOrder planners() noexcept
     {
         MethodOrder order;
-        (static_cast<void>(Methods::kTraits.reactive && order.try_add(Methods::kTraits.id)), ...);
+        (static_cast<void>(!Methods::kTraits.reactive && order.try_add(Methods::kTraits.id)), ...);
         return order;
     }
 
     /// Those of an order that are here.
-    static MethodOrder present(const MethodOrder& order) noexcept
-    {
-        if (order.empty()) {
-            return kAll;
-        }
-        MethodOrder here;
-        for (const std::uint8_t id : order.ids()) {
-            static_cast<void>(kAll.contains(id) && here.try_add(id));
-        }
-        return here;
-    }
+    static MethodOrder present(const MethodOrder& order) noexcept { return order.empty() ? kAll : order.within(kAll); }
 
     /// What one of the methods answers.
     struct Answer {

@@ -148,7 +148,7 @@ std::string refusal_of(const Variant& variant)
 
 Scenario encounter_scenario(std::uint64_t seed, const Variant& variant)
 {
-    Scenario scenario = open_encounter(seed);
+    Scenario scenario = encounter_of(variant.kind, seed);
     scenario.planner = variant.planner;
     scenario.board = variant.board;
     for (const auto& [name, value] : variant.parameters) {

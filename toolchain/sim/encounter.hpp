@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "toolchain/sim/encounter_kind.hpp"
 #include "toolchain/sim/record.hpp"
 #include "toolchain/sim/scenario.hpp"
 
@@ -48,13 +49,14 @@ struct EncounterResult {
     StepsToAnswer to_answer;
 };
 
-/// Configuration of the co-processor that flies an encounter.
+/// What is flown, and the configuration of the co-processor that flies it.
 struct Variant {
     PlannerKind planner = PlannerKind::product;
     /// Co-processor parameters by name, in addition to the encounter's own. The autopilot sends them in the order of
     /// their names, and repeats each until it is accepted.
     std::map<std::string, double> parameters;
     Board board{};
+    EncounterKind kind = EncounterKind::open;
 
     bool operator==(const Variant&) const = default;
 };

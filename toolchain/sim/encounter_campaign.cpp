@@ -128,8 +128,10 @@ std::string EncounterSetup::manifest() const
     std::ostringstream text;
     const std::string clock = variant.board.clock == 0 ? "" : "\nclock " + number(variant.board.clock);
     const std::string sets = variant.board.reduced_sets ? "\nreach_sets reduced" : "";
-    text << kKind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << clock << sets
-         << "\nseeds " << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources "
+    const std::string kind =
+        variant.kind == EncounterKind::open ? "" : "\nencounters " + std::string(to_string(variant.kind));
+    text << kKind << kind << "\nplanner " << to_string(variant.planner) << "\nset" << parameters_text(variant) << clock
+         << sets << "\nseeds " << seeds_text << "\ncount " << seeds.size() << "\nblock " << block << "\nsources "
          << source_digest() << "\n";
     return text.str();
 }
@@ -173,6 +175,9 @@ FolderSetup read_setup(const BlockFolder& folder)
         throw BadFolder(folder.path().string() + " is no folder of encounters");
     }
     setup.variant.planner = values["planner"] == "product" ? PlannerKind::product : PlannerKind::source;
+    const auto of_kind = std::find_if(kEncounterKinds.begin(), kEncounterKinds.end(),
+                                      [&](EncounterKind one) { return to_string(one) == values["encounters"]; });
+    setup.variant.kind = of_kind != kEncounterKinds.end() ? *of_kind : EncounterKind::open;
     static_cast<void>(values.count("clock") == 0 || read(values["clock"], setup.variant.board.clock));
     setup.variant.board.reduced_sets = values["reach_sets"] == "reduced";
     std::istringstream parameters(values["set"]);

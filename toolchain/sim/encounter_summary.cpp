@@ -245,7 +245,9 @@ std::string summary_text(const FolderSetup& setup, const Results& results)
     const Board& board = setup.variant.board;
     const std::string clock = board.clock == 0 ? "" : ", work of a step for " + std::to_string(board.clock) + " MHz";
     const std::string on = clock + (board.reduced_sets ? ", reduced reach sets" : "");
-    line(text, "%zu encounters, seeds %s, planner %s%s%s\n", results.size(), setup.seeds_text.c_str(),
+    const std::string kind =
+        setup.variant.kind == EncounterKind::open ? "" : std::string(to_string(setup.variant.kind)) + " ";
+    line(text, "%zu %sencounters, seeds %s, planner %s%s%s\n", results.size(), kind.c_str(), setup.seeds_text.c_str(),
          std::string(to_string(setup.variant.planner)).c_str(), parameters_text(setup.variant).c_str(), on.c_str());
     if (results.empty()) {
         return text;

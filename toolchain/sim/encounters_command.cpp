@@ -42,6 +42,12 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     CLI::Option* const planner =
         command->add_option("--planner", options.planner, "the product's, or with the settings of its source")
             ->check(CLI::IsMember({"product", "source"}));
+    std::vector<std::string> kinds;
+    for (const EncounterKind one : kEncounterKinds) {
+        kinds.emplace_back(to_string(one));
+    }
+    CLI::Option* const kind =
+        command->add_option("--kind", options.kind, "straight encounters, or harder ones")->check(CLI::IsMember(kinds));
     CLI::Option* const set = command->add_option("--set", options.parameters,
                                                  "NAME=VALUE: a parameter of the co-processor, any number of them");
     const std::vector<CLI::Option*> board = add_board(*command, options.board);
@@ -50,7 +56,7 @@ CLI::App& add_encounters(CLI::App& cli, EncountersOptions& options, bool with_th
     CLI::Option* const summary =
         command->add_option("--summary", options.summary, "flies nothing: summarises the blocks of this folder anew")
             ->check(CLI::ExistingDirectory);
-    for (CLI::Option* const other : {from, count, seeds, block, planner, set, out, board[0], board[1]}) {
+    for (CLI::Option* const other : {from, count, seeds, block, planner, kind, set, out, board[0], board[1]}) {
         summary->excludes(other);
     }
     if (with_threads) {
@@ -70,6 +76,8 @@ EncounterSetup setup_of(const EncountersOptions& options)
     EncounterSetup setup =
         options.seed_file.empty() ? consecutive_setup(options.from, options.count) : listed_setup(options.seed_file);
     setup.block = options.block;
+    setup.variant.kind = *std::find_if(kEncounterKinds.begin(), kEncounterKinds.end(),
+                                       [&](EncounterKind one) { return to_string(one) == options.kind; });
     setup.variant.board = options.board;
     setup.variant.planner = options.planner == "source" ? PlannerKind::source : PlannerKind::product;
     for (const std::string& text : options.parameters) {

@@ -22,6 +22,7 @@ struct EncountersOptions {
     std::size_t block = 100;
     std::string seed_file;
     std::string planner = "product";
+    std::string kind = "open";
     Board board;
     std::vector<std::string> parameters;  ///< NAME=VALUE
     std::string out;

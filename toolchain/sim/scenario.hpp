@@ -53,6 +53,8 @@ struct TrafficSensor {
     double rate = 5.0;            ///< [Hz]
     double sigma_position = 0.0;  ///< per axis [m]
     double sigma_velocity = 0.0;  ///< per axis [m/s]
+    double sigma_drift = 0.0;     ///< of a position's error that stays (Gauss-Markov), per axis and threat [m]
+    double drift_time = 20.0;     ///< its correlation time [s]
     double latency = 0.1;         ///< from measurement to arrival [s]
     double jitter = 0.0;          ///< additional, uniform [s]
     double dropout = 0.0;         ///< share of lost reports

@@ -43,6 +43,8 @@ void read_sensors(YamlMap& root, Scenario& s)
         number(*map, "rate", s.traffic.rate, {0.1F, 200.0F});
         number(*map, "sigma_position", s.traffic.sigma_position, {0.0F, 100.0F});
         number(*map, "sigma_velocity", s.traffic.sigma_velocity, {0.0F, 100.0F});
+        number(*map, "sigma_drift", s.traffic.sigma_drift, {0.0F, 100.0F});
+        number(*map, "drift_time", s.traffic.drift_time, {0.01F, 1000.0F});
         number(*map, "latency", s.traffic.latency, {0.0F, 5.0F});
         number(*map, "jitter", s.traffic.jitter, {0.0F, 5.0F});
         number(*map, "dropout", s.traffic.dropout, {0.0F, 1.0F});

@@ -123,6 +123,8 @@ void put_sensors(YAML::Emitter& out, const Scenario& s)
     put(out, "rate", s.traffic.rate);
     put(out, "sigma_position", s.traffic.sigma_position);
     put(out, "sigma_velocity", s.traffic.sigma_velocity);
+    put(out, "sigma_drift", s.traffic.sigma_drift);
+    put(out, "drift_time", s.traffic.drift_time);
     put(out, "latency", s.traffic.latency);
     put(out, "jitter", s.traffic.jitter);
     put(out, "dropout", s.traffic.dropout);

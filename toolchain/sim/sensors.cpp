@@ -54,8 +54,23 @@ double ray_range(const Threat& threat, const Vec& centre, const Vec& from, const
 TrafficReceiver::TrafficReceiver(const World& world) : world_(world)
 {
     for (std::size_t i = 0; i < world.scenario().threats.size(); ++i) {
-        channels_.push_back({Random(world.scenario().seed * 1000003U + i), -1, {}});
+        channels_.push_back({Random(world.scenario().seed * 1000003U + i)});
     }
+}
+
+/// The error that stays, at this sighting.
+Vec TrafficReceiver::drift_of(Channel& channel) const
+{
+    const TrafficSensor& sensor = world_.scenario().traffic;
+    if (sensor.sigma_drift <= 0.0) {
+        return Vec::Zero();
+    }
+    const double since = to_seconds(world_.now() - channel.drifted_at);
+    const double kept = channel.drift ? std::exp(-since / sensor.drift_time) : 0.0;
+    channel.drift = kept * channel.drift.value_or(Vec::Zero()) +
+                    noise(channel.random, sensor.sigma_drift * std::sqrt(1.0 - kept * kept));
+    channel.drifted_at = world_.now();
+    return *channel.drift;
 }
 
 void TrafficReceiver::sight(std::size_t i, Channel& channel)
@@ -64,13 +79,14 @@ void TrafficReceiver::sight(std::size_t i, Channel& channel)
     const Threat& threat = world_.scenario().threats[i];
     const Vec position_noise = noise(channel.random, sensor.sigma_position);
     const Vec velocity_noise = noise(channel.random, sensor.sigma_velocity);
+    const Vec drift = drift_of(channel);
     const double late = sensor.jitter * static_cast<double>(channel.random.uniform());
     const bool lost = static_cast<double>(channel.random.uniform()) < sensor.dropout;
     if (lost) {
         return;
     }
-    Sighting seen{i, world_.now() + to_micros(sensor.latency + late), world_.threat_position(i) + position_noise,
-                  Vec::Zero()};
+    Sighting seen{i, world_.now() + to_micros(sensor.latency + late),
+                  world_.threat_position(i) + position_noise + drift, Vec::Zero()};
     if (threat.sensed_by == SensedBy::traffic) {
         seen.velocity = threat.velocity_at(world_.seconds()) + velocity_noise;
     }

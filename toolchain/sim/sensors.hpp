@@ -3,6 +3,7 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "core/base/random.hpp"
@@ -33,9 +34,12 @@ private:
     struct Channel {
         Random random;
         Micros next = -1;
-        std::deque<Sighting> under_way;
+        std::deque<Sighting> under_way{};
+        std::optional<Vec> drift{};  ///< of the position, as of the last sighting
+        Micros drifted_at = 0;
     };
 
+    [[nodiscard]] Vec drift_of(Channel& channel) const;
     void sight(std::size_t i, Channel& channel);
 
     const World& world_;
