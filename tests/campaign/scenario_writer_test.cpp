@@ -61,7 +61,14 @@ TEST(ScenarioWriter, KeepsEverythingThatAFileCanSay)
     stands.appears_when_own_within = 8.0;
     stands.collision_point = Vec(4, 5, 6);
     s.threats = {flies, stands};
-    s.traffic = {4.0, 0.3, 0.2, 0.15, 0.05, 0.1, 0};
+    s.traffic = {.rate = 4.0,
+                 .sigma_position = 0.3,
+                 .sigma_velocity = 0.2,
+                 .sigma_drift = 1.5,
+                 .drift_time = 7.0,
+                 .latency = 0.15,
+                 .jitter = 0.05,
+                 .dropout = 0.1};
     s.scan = {8.0, 25.0, 0};
     s.parameters = {{"TRK_RADIUS", 1.5}, {"GEO_FLIP", 0.25}, {"TRK_SIGMA_P", 0.7}};
     s.faults.pilot_takes_over = 5.0;

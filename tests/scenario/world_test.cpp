@@ -207,7 +207,8 @@ TEST(World, ThreatsAppearByTimeAndByDistance)
 TEST(TrafficReceiver, NoiseHasTheAskedSizeAndDependsOnTheSeedAlone)
 {
     Scenario s = quiet_scenario();
-    s.traffic = {5.0, 0.3, 0.2, 0.1, 0.05, 0.1};
+    s.traffic = {
+        .rate = 5.0, .sigma_position = 0.3, .sigma_velocity = 0.2, .latency = 0.1, .jitter = 0.05, .dropout = 0.1};
     Threat threat;
     threat.velocity = Vec(1, 2, 0);
     threat.position = Vec(500, 0, 30);

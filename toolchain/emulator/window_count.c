@@ -10,8 +10,8 @@
 // Windows do not nest; one virtual processor.
 //
 // `stages` assigns code to stages: lines "FIRST LAST STAGE" (addresses in hexadecimal, LAST is one past the end; stages
-// 1..8191; in ascending order). Code outside of all ranges counts for the stage that called it. The line of a window then
-// ends with the counts of stages 0 (before any), 1, ... as far as there are any.
+// 1..8191; in ascending order). Code outside of all ranges counts for the stage that called it. The line of a window
+// then ends with the counts of stages 0 (before any), 1, ... as far as there are any.
 //
 // Debian ships no header for plugins: the declarations below follow qemu's documentation (docs/devel/tcg-plugins.rst).
 #include <inttypes.h>
