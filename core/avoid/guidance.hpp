@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/world/conflict.hpp"
+#include "core/world/well_clear.hpp"
 
 namespace jink::avoid {
 
@@ -21,6 +21,7 @@ struct Guidance {
     bool wants_control = false;               ///< the vehicle should follow `velocity`
     Vec3 velocity = Vec3::Zero();             ///< command [m/s]; valid when wants_control
     std::optional<world::Conflict> conflict;  ///< of the nominal path that counts
+    world::Alert alert = world::Alert::none;  ///< of aircraft that the nominal path comes too near to
     bool on_other = false;                    ///< that is the other nominal path, because its conflict comes first
     bool other_conflict = false;              ///< control is kept because the other nominal path is not clear
     bool blocked = false;                     ///< given up (Settings::patience): the autopilot has to hold
@@ -49,6 +50,7 @@ struct Diagnostics {
     std::uint32_t flips = 0;             ///< replaced by one on the other side of the leg
     std::uint32_t brakes = 0;            ///< fallbacks begun
     std::uint32_t escapes = 0;           ///< fallbacks that had to move
+    std::uint32_t gave_way = 0;          ///< times that giving way to aircraft began
     std::uint32_t holds = 0;             ///< parallel offsets begun, because the path back was not clear
     std::uint32_t rejoined = 0;
     std::uint32_t on_other = 0;      ///< conflicts begun on the other nominal path

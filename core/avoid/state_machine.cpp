@@ -329,9 +329,12 @@ Guidance StateMachine::update(const world::Situation& given, const world::Refere
             flying_->side = off / far;
         }
     }
+    const bool has_to_give_way = see_aircraft(tick);
     update_conflict(tick);
     update_clearness(tick);
-    run_phase(tick);
+    if (!has_to_give_way || !give_way(tick)) {
+        run_phase(tick);
+    }
     give_up_when_blocked(tick);
     if (!tick.planned) {
         drop_plan();

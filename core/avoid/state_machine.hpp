@@ -5,6 +5,7 @@
 
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
+#include "core/avoid/give_way.hpp"
 #include "core/avoid/phase.hpp"
 #include "core/avoid/sliced_plan.hpp"
 
@@ -74,6 +75,10 @@ private:
     [[nodiscard]] bool renew(Tick& tick) noexcept;
     void replace(Tick& tick, const world::ThreatRef& against) noexcept;
     [[nodiscard]] bool find_faster(Tick& tick) noexcept;
+    // giving_way.cpp
+    [[nodiscard]] bool gives_way() const noexcept { return flying_ && flying_->by == kGivesWay; }
+    [[nodiscard]] bool see_aircraft(Tick& tick) noexcept;
+    [[nodiscard]] bool give_way(Tick& tick) noexcept;
     // braking.cpp
     void brake(Tick& tick) noexcept;
     void fall_back(Tick& tick) noexcept;

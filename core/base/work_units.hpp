@@ -52,6 +52,10 @@ inline constexpr std::uint32_t kConflictMet = 24;      ///< and the details of a
 inline constexpr std::uint32_t kConflictSolid = 10;    ///< with any other obstacle, but for its queries
 inline constexpr std::uint32_t kConflictCylinder = 8;  ///< with a cylinder, but for the instants that are checked
 
+// --- aircraft that are kept well clear of (core/world/well_clear) ---
+inline constexpr std::uint32_t kAircraftLook = 14;     ///< a piece of the nominal path with one
+inline constexpr std::uint32_t kAircraftCommand = 26;  ///< a command with one
+
 // --- flights predicted by the supervisor (core/avoid) ---
 inline constexpr std::uint32_t kFlightPart = 4;      ///< a tenth of a second along a path
 inline constexpr std::uint32_t kCommandStep = 3;     ///< a step under a constant command

@@ -14,8 +14,15 @@ struct EscapeRule {
     float speed = 0.5F;   ///< the surface grows back at this speed, 0..10 [m/s]
 };
 
+/// The volume that is kept clear of aircraft with people aboard: an upright cylinder about each (ASTM F3442: 2000 ft
+/// and 250 ft).
+struct WellClear {
+    float radius = 0.0F;   ///< level [m]; 0: such aircraft are met like other traffic
+    float height = 76.2F;  ///< above and below, 1..1000 [m]
+};
+
 /// What the supervisor and all methods share: how far ahead threats count, how large they are, and how the vehicle
-/// answers. One value for all of them: what one sees as a conflict the others see too. 36 bytes.
+/// answers. One value for all of them: what one sees as a conflict the others see too. 44 bytes.
 struct FlightRules {
     Seconds lookahead = 8.0F;  ///< conflicts are predicted this far ahead, 1..60 [s]
     /// Until the vehicle answers, planning and the way to the autopilot included, it flies on as it does, 0..1 [s].
@@ -25,6 +32,7 @@ struct FlightRules {
     float clearance = 0.4F;
     EscapeRule escape{};
     path::FollowerGains gains{};  ///< of the follower, 0..10 each
+    WellClear well_clear{};
 };
 
 /// Whether every rule is finite and within its range. O(1).
@@ -34,7 +42,8 @@ struct FlightRules {
     return within(r.lookahead, 1.0F, 60.0F) && within(r.latency, 0.0F, 1.0F) && within(r.k_sigma, 0.0F, 6.0F) &&
            within(r.clearance, 0.0F, 10.0F) && within(r.escape.slack, 0.0F, 1.0F) &&
            within(r.escape.speed, 0.0F, 10.0F) && within(r.gains.position_gain, 0.0F, 10.0F) &&
-           within(r.gains.max_correction, 0.0F, 10.0F);
+           within(r.gains.max_correction, 0.0F, 10.0F) && within(r.well_clear.radius, 0.0F, 5000.0F) &&
+           within(r.well_clear.height, 1.0F, 1000.0F);
 }
 
 }  // namespace jink::world

@@ -102,7 +102,8 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
                    m.source,
                    m.cooperative,
                    0,
-                   m.half_height};
+                   m.half_height,
+                   m.manned};
     return entry;
 }
 
@@ -158,7 +159,8 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_velocity = vvv;
     e.track = {m.id,     m.stamp,        position,         velocity,
                m.radius, std::sqrt(vpp), std::sqrt(vvv),   m.max_acceleration,
-               m.source, m.cooperative,  e.track.instance, m.half_height};
+               m.source, m.cooperative,  e.track.instance, m.half_height,
+               m.manned};
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
 }
 

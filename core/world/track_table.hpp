@@ -24,6 +24,7 @@ struct TrackMeasurement {
     TrackSource source = TrackSource::adsb;
     bool cooperative = false;  ///< as in Track; the newest sighting's word counts
     float half_height = 0.0F;  ///< uncertainty of the height of `position` beside sigma_position [m], >= 0
+    bool manned = false;       ///< as in Track; the newest sighting's word counts
 };
 
 enum class TrackStatus : std::uint8_t {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/app/conflict_warning.hpp"
 
+#include <array>
 #include <cmath>
 
 #include "firmware/app/method_orders.hpp"
@@ -36,20 +37,33 @@ link::CollisionWarning warning_of(const avoid::Guidance& guidance, const Picture
                          : vertical                                   ? link::CollisionAction::ascend_or_descend
                                                                       : link::CollisionAction::move_horizontally;
     }
-    const bool near = c.time_to_loss <= vehicle::stopping_time(own.velocity.norm(), limits) + 1.0F;
+    const bool near = c.time_to_loss <= vehicle::stopping_time(own.velocity.norm(), limits) + 1.0F ||
+                      guidance.alert >= world::Alert::medium;
     warning.level = near ? link::ThreatLevel::high : link::ThreatLevel::low;
     return warning;
 }
 
-Text text_of(const world::Conflict& conflict) noexcept
+Text text_of(const avoid::Guidance& guidance) noexcept
 {
+    const world::Conflict& conflict = *guidance.conflict;
     const bool is_track = conflict.threat.kind == world::ThreatKind::track;
     const bool is_cylinder = conflict.threat.kind == world::ThreatKind::cylinder;
     Text text;
-    text << (is_track      ? "jink: conflict, traffic in "
-             : is_cylinder ? "jink: conflict, closed area in "
-                           : "jink: conflict, obstacle in ")
+    text << (guidance.by == avoid::kGivesWay ? "jink: giving way, aircraft too near in "
+             : is_track                      ? "jink: conflict, traffic in "
+             : is_cylinder                   ? "jink: conflict, closed area in "
+                                             : "jink: conflict, obstacle in ")
          << conflict.time_to_loss << " s";
+    return text;
+}
+
+Text text_of_alert(world::Alert alert) noexcept
+{
+    constexpr std::array<std::string_view, 4> kMeaning{"well clear will be lost", "near mid-air ahead",
+                                                       "well clear is lost", "near mid-air"};
+    const auto level = static_cast<std::uint32_t>(alert);
+    Text text;
+    text << "jink: aircraft " << level << "/4, " << kMeaning[level - 1];
     return text;
 }
 

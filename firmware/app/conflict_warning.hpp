@@ -14,8 +14,11 @@ namespace jink::app {
                                                 const vehicle::VehicleState& own, const vehicle::VehicleLimits& limits,
                                                 bool in_control, const world::Manoeuvre* flying) noexcept;
 
-/// The text of a new conflict.
-[[nodiscard]] Text text_of(const world::Conflict& conflict) noexcept;
+/// The text of a new conflict, which the guidance has.
+[[nodiscard]] Text text_of(const avoid::Guidance& guidance) noexcept;
+
+/// The text of an alert of aircraft, not Alert::none.
+[[nodiscard]] Text text_of_alert(world::Alert alert) noexcept;
 
 /// Which method's answer is flown or offered, of how many checked ones it is the best, and what it costs (new in this
 /// guidance).

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/avoid/settings.hpp"
+#include "core/avoid/give_way.hpp"
 #include "core/geometric/planner.hpp"
 #include "core/orca/planner.hpp"
 #include "core/reach/planner.hpp"
@@ -23,7 +23,11 @@ inline constexpr std::array kMethods{geometric::Planner::kTraits, reach::Planner
 /// For people, at most 10 characters. O(1).
 [[nodiscard]] constexpr std::string_view method_name(std::uint8_t id) noexcept
 {
-    return id == kGeometric ? "geometric" : id == kReach ? "reach sets" : id == kOrca ? "reciprocal" : "none";
+    return id == kGeometric         ? "geometric"
+           : id == kReach           ? "reach sets"
+           : id == kOrca            ? "reciprocal"
+           : id == avoid::kGivesWay ? "giving way"
+                                    : "none";
 }
 
 /// The methods that a value of JNK_METHODS names: the sum of 1 geometric, 2 reach sets, 4 reciprocal. O(methods).

@@ -77,6 +77,9 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"JNK_STICKS", 30, 0, 100, false, "sticks moved by so much end a take-over [% of half their travel]; 0 never"},
     {"TRK_SIG_BARO", 30, 0, 300, false, "noise of a traffic's pressure altitude, one standard deviation [m]"},
     {"TRK_SIG_BARO_D", 5, 0, 300, false, "the same of its difference to the own pressure altitude [m]"},
+    {"JNK_WELL_CLEAR", 0, 0, 5000, false,
+     "kept clear of manned aircraft, level [m]; ASTM F3442: 610; 0 as other traffic"},
+    {"JNK_WELL_HEIGHT", 76, 1, 1000, false, "the same above and below [m]; ASTM F3442: 76"},
 }};
 
 Configuration build(const std::array<float, kParamCount>& v, [[maybe_unused]] const reach::VehicleSets* sets) noexcept
@@ -104,6 +107,7 @@ Configuration build(const std::array<float, kParamCount>& v, [[maybe_unused]] co
     c.airframe.effective_area = at(Param::area);
     c.rules.latency = at(Param::latency);
     c.rules.k_sigma = at(Param::k_sigma);
+    c.rules.well_clear = {at(Param::well_clear), at(Param::well_clear_height)};
     c.floor_on = (whole(Param::bounds) & 1U) != 0;
     c.ceiling_on = (whole(Param::bounds) & 2U) != 0;
     c.keep_in_on = (whole(Param::bounds) & 4U) != 0;

@@ -80,6 +80,8 @@ enum class Param : std::uint8_t {
     sticks,
     sigma_baro,
     sigma_compared,
+    well_clear,
+    well_clear_height,
     count
 };
 inline constexpr std::size_t kParamCount = static_cast<std::size_t>(Param::count);

@@ -92,6 +92,7 @@ void Telemetry::report_to_autopilot(TimePoint now, const StepReport& report, con
     }
     conflict_.is_reported = g.conflict.has_value();
     report_choice(now, g, outbox);
+    report_alert(g, outbox);
     report_braking(now, g, outbox);
 }
 
@@ -149,7 +150,7 @@ void Telemetry::warn_of_conflict(TimePoint now, const StepReport& report, const 
                                     of.control.takeover().in_control(), of.decision.flying()));
     conflict_.reported_at = now;
     if (!conflict_.is_reported) {
-        outbox.say(link::Severity::warning, text_of(*report.guidance.conflict).view());
+        outbox.say(link::Severity::warning, text_of(report.guidance).view());
     }
 }
 
@@ -164,14 +165,30 @@ void Telemetry::report_choice(TimePoint now, const avoid::Guidance& g, Outbox& o
     }
 }
 
+/// Where an alert of aircraft rises.
+void Telemetry::report_alert(const avoid::Guidance& g, Outbox& outbox) noexcept
+{
+    if (g.alert > conflict_.said_alert) {
+        conflict_.said_alert = g.alert;
+        const bool ahead = g.alert < world::Alert::high;
+        const bool near = g.alert == world::Alert::critical;
+        outbox.say(near    ? link::Severity::critical
+                   : ahead ? link::Severity::notice
+                           : link::Severity::warning,
+                   text_of_alert(g.alert).view());
+    }
+}
+
 /// That nothing is safe is CRITICAL once in a conflict; a fallback that keeps clear is a warning, once too. A conflict
 /// that comes and goes is one.
 void Telemetry::report_braking(TimePoint now, const avoid::Guidance& g, Outbox& outbox) noexcept
 {
-    conflict_.last = g.conflict || g.state == avoid::State::braking ? now : conflict_.last;
+    conflict_.last =
+        g.conflict || g.alert != world::Alert::none || g.state == avoid::State::braking ? now : conflict_.last;
     if (now - conflict_.last > kConflictOver) {
         conflict_.said_unsafe = conflict_.said_braking = false;
         conflict_.said_by = 0;
+        conflict_.said_alert = world::Alert::none;
     }
     if (g.state == avoid::State::braking && g.wants_control) {
         if (g.margin < 0.0F && !conflict_.said_unsafe) {

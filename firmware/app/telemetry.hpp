@@ -66,6 +66,7 @@ private:
     void report_autopilot(const StepReport& report, const Reported& of, Outbox& outbox) noexcept;
     void warn_of_conflict(TimePoint now, const StepReport& report, const Reported& of, Outbox& outbox) noexcept;
     void report_choice(TimePoint now, const avoid::Guidance& guidance, Outbox& outbox) noexcept;
+    void report_alert(const avoid::Guidance& guidance, Outbox& outbox) noexcept;
     void report_braking(TimePoint now, const avoid::Guidance& guidance, Outbox& outbox) noexcept;
 
     struct Heartbeat {
@@ -89,6 +90,7 @@ private:
         bool said_unsafe = false;
         bool said_braking = false;
         std::uint8_t said_by = 0;  ///< method; 0: none
+        world::Alert said_alert = world::Alert::none;
         TimePoint said_by_at;
         TimePoint last;
     };

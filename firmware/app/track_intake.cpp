@@ -44,6 +44,7 @@ world::TrackMeasurement measurement_of(const link::TrackReport& report, const Co
     m.position = report.position;
     m.source = report.source;
     m.cooperative = is_cooperative(report, c);
+    m.manned = report.source == world::TrackSource::adsb && !report.unmanned && !report.at_rest;
     m.sigma_position = report.sigma_position > 0.0F ? report.sigma_position : c.track_sigma_position;
     m.half_height = half_height_of(report, c);
     if (report.at_rest) {

@@ -15,6 +15,7 @@
 #include "toolchain/sim/encounters_command.hpp"
 #include "toolchain/sim/envelope.hpp"
 #include "toolchain/sim/in_process.hpp"
+#include "toolchain/sim/manned_command.hpp"
 #include "toolchain/sim/matrix_command.hpp"
 #include "toolchain/sim/phases_command.hpp"
 #include "toolchain/sim/random_scenario.hpp"
@@ -345,6 +346,8 @@ int main(int argc, char** argv)
     const CLI::App& replay_command = add_replay(cli, recording);
     MatrixOptions matrix;
     const CLI::App& matrix_command = add_matrix(cli, matrix);
+    MannedOptions manned;
+    const CLI::App& manned_command = add_manned(cli, manned);
     RecordedOptions recorded;
     const CLI::App& recorded_command = add_recorded(cli, recorded);
     try {
@@ -368,6 +371,9 @@ int main(int argc, char** argv)
         }
         if (matrix_command.parsed()) {
             return run_matrix(matrix, std::cout);
+        }
+        if (manned_command.parsed()) {
+            return run_manned(manned, std::cout);
         }
         if (recorded_command.parsed()) {
             run_recorded(recorded, std::cout);

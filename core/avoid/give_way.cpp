@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/avoid/give_way.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/avoid/fallback_wing.hpp"
+#include "core/avoid/final_check.hpp"
+#include "core/base/work_units.hpp"
+#include "core/world/threat_set.hpp"
+
+namespace jink::avoid {
+namespace {
+
+constexpr int kWayCourses = 8;
+constexpr std::size_t kCommandsAtMost = 3 * kWayCourses + 3;
+/// Farther off than this nothing is gained [multiples of the well clear volume].
+constexpr float kEnough = 1.1F;
+/// Nor here [multiples of the volume of a near mid-air collision].
+constexpr float kFar = 5.0F;
+/// Where nothing is well clear, that counts too: few courses are looked at, and a small volume lies between them.
+constexpr float kClearShare = 3.0F;
+/// What was flown before counts better by so much.
+constexpr float kStay = 0.15F;
+/// Commands are alike where they differ by less than this share of the cruise speed.
+constexpr float kAlike = 0.2F;
+/// The manoeuvre is checked over this time at least, and the rest of a climb ends in it [s].
+constexpr Seconds kChecked = 8.0F;
+constexpr Seconds kPathStep = 0.25F;
+constexpr float kNone = -std::numeric_limits<float>::infinity();
+
+struct Rated {
+    Vec3 command = Vec3::Zero();
+    float score = kNone;
+};
+using Commands = StaticVector<Rated, kCommandsAtMost>;
+
+/// How far the vehicle can climb and descend [m].
+struct HeightLeft {
+    float up = std::numeric_limits<float>::infinity();
+    float down = std::numeric_limits<float>::infinity();
+};
+
+HeightLeft height_left(const world::Situation& s) noexcept
+{
+    HeightLeft left;
+    for (const world::Threat& bound : s.threats) {
+        if (!bound.is_bound()) {
+            break;
+        }
+        const float room = std::abs(bound.position.z() - s.own.position.z()) - s.limits.half_extents.z() -
+                           bound.growth.radius - s.rules.clearance;
+        if (bound.form == world::ThreatForm::floor) {
+            left.down = std::max(0.0F, room);
+        } else if (bound.form == world::ThreatForm::ceiling) {
+            left.up = std::max(0.0F, room);
+        }
+    }
+    return left;
+}
+
+Commands commands_of(const world::Situation& s, const Vec3& along, const HeightLeft& left) noexcept
+{
+    const vehicle::VehicleLimits& limits = s.limits;
+    constexpr float kHalfAndHalf = 0.70710678F;
+    const float slant = kHalfAndHalf * limits.cruise_speed;
+    const float up = std::min(limits.max_climb, left.up / kChecked);
+    const float down = std::min(limits.max_descent, left.down / kChecked);
+    const float length = along.head<2>().norm();
+    const Vec3 ahead = length > 1e-3F ? Vec3(along.x() / length, along.y() / length, 0.0F) : Vec3(Vec3::UnitX());
+    Commands commands;
+    for (const float climb : {0.0F, std::min(up, slant), -std::min(down, slant)}) {
+        for (int i = 0; i < kWayCourses; ++i) {
+            const float course = 2.0F * kPi * static_cast<float>(i) / static_cast<float>(kWayCourses);
+            commands.unchecked_push_back({detail::command_on(ahead, course, climb, limits), kNone});
+        }
+    }
+    if (limits.kind == vehicle::VehicleKind::multirotor) {
+        commands.unchecked_push_back({Vec3::Zero(), kNone});
+        commands.unchecked_push_back({std::min(up, limits.cruise_speed) * Vec3::UnitZ(), kNone});
+        commands.unchecked_push_back({-std::min(down, limits.cruise_speed) * Vec3::UnitZ(), kNone});
+    }
+    return commands;
+}
+
+/// Least nearness while a command is held: straight on until the height is used up, then level. The time until the
+/// command is flown moves the beginning.
+float nearness_of(const world::Situation& s, const Vec3& command, const HeightLeft& left, const Vec3& position,
+                  const Vec3& velocity, const world::Barrel& barrel, Seconds span) noexcept
+{
+    const Vec3 change = s.own.velocity - command;
+    const Seconds lost =
+        s.rules.latency + s.limits.velocity_lag + 0.5F * change.head<2>().norm() / s.limits.max_acceleration;
+    const Vec3 begin = s.own.position + change * lost;
+    const float climb = command.z();
+    const float room = climb > 0.0F ? left.up : left.down;
+    const Seconds climbs = climb != 0.0F ? std::min(span, room / std::abs(climb)) : span;
+    const Vec3 gap = position - begin;
+    const Vec3 closing = velocity - command;
+    const float first = world::nearest(gap, closing, barrel, climbs).least;
+    if (climbs >= span) {
+        return first;
+    }
+    const Vec3 level = closing + climb * Vec3::UnitZ();
+    const float rest = world::nearest(gap + closing * climbs, level, barrel, span - climbs).least;
+    return std::min(first, rest);
+}
+
+/// What counts: well clear with something to spare, then how little the command differs from the nominal velocity; well
+/// clear; far from a near mid-air collision. Each is worth more than all of the next.
+float score_of(float clear, float near_mid_air, float differs) noexcept
+{
+    if (clear >= kEnough) {
+        return 4.0F * kFar - std::min(differs, kFar);
+    }
+    return clear >= 1.0F ? 2.0F * kFar + clear : std::min(near_mid_air, kFar) + kClearShare * clear;
+}
+
+/// An aircraft and the volumes about it.
+struct Aircraft {
+    const world::Threat* threat = nullptr;
+    world::Barrel clear;
+    world::Barrel near_mid_air;
+    float nearness = 0.0F;  ///< if the vehicle flies on as it does
+};
+using AircraftList = StaticVector<Aircraft, kMaxAircraft>;
+
+AircraftList aircraft_of(const world::Situation& s, WorkBudget& budget) noexcept
+{
+    AircraftList list;
+    for (const world::Threat& threat : world::of_kind(s.threats, world::ThreatKind::track)) {
+        if (!world::is_aircraft(s, threat) || !budget.spend(units::kAircraftLook)) {
+            continue;
+        }
+        Aircraft one{&threat, world::well_clear_of(s, threat), world::near_mid_air_of(threat), 0.0F};
+        one.nearness = world::nearest(threat.position - s.own.position, threat.velocity - s.own.velocity, one.clear,
+                                      world::kAircraftAhead)
+                           .least;
+        if (!list.try_push_back(one)) {
+            Aircraft& farthest = *std::max_element(
+                list.begin(), list.end(), [](const Aircraft& a, const Aircraft& b) { return a.nearness < b.nearness; });
+            farthest = one.nearness < farthest.nearness ? one : farthest;
+        }
+    }
+    return list;
+}
+
+bool rate(const world::Situation& s, const Vec3& along, const HeightLeft& left, const Vec3* previous,
+          Commands& commands, WorkBudget& budget) noexcept
+{
+    const float cruise = s.limits.cruise_speed;
+    const AircraftList aircraft = aircraft_of(s, budget);
+    for (Rated& one : commands) {
+        if (!budget.spend(units::kAircraftCommand * static_cast<std::uint32_t>(aircraft.size()))) {
+            return false;
+        }
+        float clear = kEnough;
+        float near_mid_air = kFar;
+        for (const Aircraft& other : aircraft) {
+            for (const world::AircraftCourse& course : world::kAircraftCourses) {
+                const Vec3 velocity = course.of(other.threat->velocity);
+                const Seconds span = course.straight ? world::kAircraftAhead : world::kTurnAhead;
+                const auto nearness = [&](const world::Barrel& barrel) noexcept {
+                    return nearness_of(s, one.command, left, other.threat->position, velocity, barrel, span);
+                };
+                clear = std::min(clear, nearness(other.clear));
+                near_mid_air = std::min(near_mid_air, nearness(other.near_mid_air));
+            }
+        }
+        one.score = score_of(clear, near_mid_air, (one.command - along).norm() / cruise);
+        if (previous != nullptr && (one.command - *previous).norm() < kAlike * cruise) {
+            one.score += kStay;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+std::optional<float> choose_give_way(const world::Situation& s, const Vec3& along, const Vec3* previous,
+                                     const Settings& settings, WorkBudget& budget, world::Manoeuvre& out) noexcept
+{
+    const HeightLeft left = height_left(s);
+    Commands commands = commands_of(s, along, left);
+    if (!rate(s, along, left, previous, commands, budget)) {
+        return std::nullopt;
+    }
+    constexpr Seconds kStep = std::max(kPathStep, kChecked / static_cast<float>(kMaxPathPoints - 4));
+    constexpr auto kPathUnits = units::kCommandStep * static_cast<std::uint32_t>(kChecked / kStep + 1.0F);
+    for (int i = 0; i < kGiveWayTries; ++i) {
+        Rated& best = *std::max_element(commands.begin(), commands.end(),
+                                        [](const Rated& a, const Rated& b) { return a.score < b.score; });
+        if (!budget.spend(kPathUnits)) {
+            return std::nullopt;
+        }
+        out.kind = world::ManoeuvreKind::velocity;
+        out.by = kGivesWay;
+        out.start = s.now;
+        out.valid_until = s.now + kChecked;
+        out.command = best.command;
+        out.side = Vec3::Zero();
+        out.cost = 0.0F;
+        path::predict_velocity_command(s.own, out.command, kChecked, kStep, s.limits, out.path);
+        const float margin = check_manoeuvre(s, out, settings, budget).margin;
+        if (margin >= 0.0F) {
+            return margin;
+        }
+        best.score = kNone;
+    }
+    return std::nullopt;
+}
+
+}  // namespace jink::avoid

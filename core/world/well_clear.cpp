@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "core/world/well_clear.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/work_units.hpp"
+#include "core/world/route_way.hpp"
+#include "core/world/threat_set.hpp"
+
+namespace jink::world {
+namespace {
+
+/// An aircraft draws apart that gains so much of its volume in this time: 13 m/s level, 1.6 m/s up or down.
+constexpr Seconds kSoon = 5.0F;
+constexpr float kDrawsApart = 0.105F;
+/// Multiples of the volume that end giving way.
+constexpr float kClearAgain = 1.1F;
+
+float nearness_at(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds t) noexcept
+{
+    const Vec3 at = gap + closing * t;
+    return std::max(at.head<2>().norm() / barrel.radius, std::abs(at.z()) / barrel.height);
+}
+
+/// `volume`, larger by all that is possible of the positions of both. A track's growth holds its body too.
+Barrel grown(const Threat& aircraft, const Barrel& volume) noexcept
+{
+    const float by = aircraft.growth.radius;
+    return {volume.radius + by, volume.height + by + aircraft.half_height};
+}
+
+}  // namespace
+
+Nearness nearest(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds span) noexcept
+{
+    // Both squares are polynomials of time: level is a t^2 + 2 b t + c, height the square of (e t + f).
+    const float per_radius = 1.0F / barrel.radius;
+    const float x = gap.x() * per_radius;
+    const float y = gap.y() * per_radius;
+    const float u = closing.x() * per_radius;
+    const float v = closing.y() * per_radius;
+    const float e = closing.z() / barrel.height;
+    const float f = gap.z() / barrel.height;
+    const float a = u * u + v * v;
+    const float b = x * u + y * v;
+    constexpr float kNothing = 1e-12F;
+    Nearness best{nearness_at(gap, closing, barrel, 0.0F), 0.0F};
+    const auto consider = [&](Seconds t) noexcept {
+        if (!(t > 0.0F && t <= span)) {
+            return;
+        }
+        const float value = nearness_at(gap, closing, barrel, t);
+        if (value < best.least) {
+            best = {value, t};
+        }
+    };
+    consider(span);
+    if (a > kNothing) {
+        consider(-b / a);
+    }
+    if (e * e > kNothing) {
+        consider(-f / e);
+    }
+    // Where both are equal.
+    const float p = a - e * e;
+    const float q = b - e * f;
+    const float r = x * x + y * y - f * f;
+    const float root2 = q * q - p * r;
+    if (root2 >= 0.0F) {
+        // The stable form of both roots.
+        const float s = -(q + std::copysign(std::sqrt(root2), q));
+        if (std::abs(p) > kNothing) {
+            consider(s / p);
+        }
+        if (std::abs(s) > kNothing) {
+            consider(r / s);
+        }
+    }
+    return best;
+}
+
+Seconds first_inside(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds span) noexcept
+{
+    constexpr Seconds kNever = -1.0F;
+    Seconds from = 0.0F;
+    Seconds to = span;
+    const float a = closing.head<2>().squaredNorm();
+    const float b = gap.head<2>().dot(closing.head<2>());
+    const float c = gap.head<2>().squaredNorm() - barrel.radius * barrel.radius;
+    if (a > 0.0F) {
+        const float root2 = b * b - a * c;
+        if (!(root2 > 0.0F)) {
+            return kNever;
+        }
+        const float root = std::sqrt(root2);
+        from = std::max(from, (-b - root) / a);
+        to = std::min(to, (-b + root) / a);
+    } else if (!(c < 0.0F)) {
+        return kNever;
+    }
+    const float climb = closing.z();
+    if (climb != 0.0F) {
+        const float low = (-barrel.height - gap.z()) / climb;
+        const float high = (barrel.height - gap.z()) / climb;
+        from = std::max(from, std::min(low, high));
+        to = std::min(to, std::max(low, high));
+    } else if (!(std::abs(gap.z()) < barrel.height)) {
+        return kNever;
+    }
+    return from < to ? from : kNever;
+}
+
+bool is_aircraft(const Situation& situation, const Threat& threat) noexcept
+{
+    return situation.rules.well_clear.radius > 0.0F && threat.ref.kind == ThreatKind::track &&
+           threat.track != nullptr && threat.track->manned;
+}
+
+Barrel well_clear_of(const Situation& situation, const Threat& aircraft) noexcept
+{
+    const WellClear& rule = situation.rules.well_clear;
+    return grown(aircraft, {rule.radius, rule.height});
+}
+
+Barrel near_mid_air_of(const Threat& aircraft) noexcept { return grown(aircraft, kNearMidAir); }
+
+namespace {
+
+/// What is found of one aircraft on the way.
+struct Meeting {
+    Alert level = Alert::none;
+    Seconds loss = -1.0F;
+    Seconds closest = 0.0F;
+};
+
+Meeting meeting_with(const Situation& situation, const detail::RoutePieces& pieces, const Threat& aircraft,
+                     bool gives_way) noexcept
+{
+    const Barrel clear = well_clear_of(situation, aircraft);
+    const Barrel near_mid_air = near_mid_air_of(aircraft);
+    const Barrel larger{clear.radius * kClearAgain, clear.height * kClearAgain};
+    const Barrel& ahead = gives_way ? larger : clear;
+    const Barrel& turning = gives_way ? larger : near_mid_air;
+    Nearness least{gives_way ? kClearAgain : 1.0F, -1.0F};
+    Meeting out;
+    const auto note = [&](Seconds inside, Seconds start, Alert level) noexcept {
+        if (inside >= 0.0F) {
+            out.loss = out.loss < 0.0F ? start + inside : std::min(out.loss, start + inside);
+            out.level = std::max(out.level, level);
+        }
+    };
+    const Vec3 now = aircraft.position - situation.own.position;
+    const Vec3 change = aircraft.velocity - pieces[0].own.velocity;
+    const float present = nearness_at(now, change, clear, 0.0F);
+    for (const detail::WayPiece& piece : pieces) {
+        for (const AircraftCourse& course : kAircraftCourses) {
+            const Seconds span =
+                course.straight ? piece.span() : std::min(piece.span(), kTurnAhead - std::min(piece.start, kTurnAhead));
+            if (!(span > 0.0F)) {
+                continue;
+            }
+            const Vec3 velocity = course.of(aircraft.velocity);
+            const Vec3 gap = aircraft.position + velocity * piece.start - piece.own.position;
+            const Vec3 closing = velocity - piece.own.velocity;
+            if (!course.straight) {
+                note(first_inside(gap, closing, turning, span), piece.start, Alert::low);
+                continue;
+            }
+            const Nearness near = nearest(gap, closing, clear, span);
+            if (near.least < least.least) {
+                least = {near.least, piece.start + near.when};
+            }
+            note(first_inside(gap, closing, ahead, span), piece.start, Alert::low);
+            note(first_inside(gap, closing, near_mid_air, span), piece.start, Alert::medium);
+        }
+    }
+    // Nearest at present, it draws apart: nothing ahead could mend that. Inside the volume it has to do so clearly,
+    // because aircraft turn; a vehicle that gives way does not trust it there.
+    const bool leaves = nearness_at(now, change, clear, kSoon) - present >= kDrawsApart;
+    if (out.loss < 0.0F || (!gives_way && !(least.when > 0.0F) && (present >= 1.0F || leaves))) {
+        return {};
+    }
+    out.level = present < 1.0F ? Alert::high : out.level;
+    out.level = nearness_at(now, change, near_mid_air, 0.0F) < 1.0F ? Alert::critical : out.level;
+    out.closest = std::max(least.when, out.loss);
+    return out;
+}
+
+}  // namespace
+
+Alert aircraft_conflict(const Situation& situation, const Way& way, bool gives_way, WorkBudget& budget,
+                        Conflict& out) noexcept
+{
+    const std::span<const Threat> tracks = of_kind(situation.threats, ThreatKind::track);
+    const auto is_one = [&](const Threat& threat) noexcept { return is_aircraft(situation, threat); };
+    if (std::none_of(tracks.begin(), tracks.end(), is_one) || !budget.spend(units::kConflictLook)) {
+        return Alert::none;
+    }
+    const detail::RoutePieces pieces(situation, way, kAircraftAhead);
+    Alert alert = Alert::none;
+    for (const Threat& threat : tracks) {
+        if (!is_one(threat)) {
+            continue;
+        }
+        if (!budget.spend(units::kAircraftLook * static_cast<std::uint32_t>(pieces.size()))) {
+            return Alert::none;
+        }
+        const Meeting meeting = meeting_with(situation, pieces, threat, gives_way);
+        const bool first = alert == Alert::none || meeting.loss < out.time_to_loss;
+        alert = std::max(alert, meeting.level);
+        if (meeting.level == Alert::none || !first) {
+            continue;
+        }
+        const Barrel clear = well_clear_of(situation, threat);
+        out = {};
+        out.threat = threat.ref;
+        out.time_to_loss = meeting.loss;
+        out.time_to_closest = meeting.closest;
+        out.way_at_closest = pieces.way_at(out.time_to_closest);
+        out.own_at_closest =
+            path::point_of(way.ahead, way.origin, way.direction, std::min(out.way_at_closest, way.length)).position;
+        out.threat_at_closest = threat.nearest_in_height(out.time_to_closest, out.own_at_closest.z());
+        const Vec3 miss = out.threat_at_closest - out.own_at_closest;
+        out.miss_distance = miss.norm();
+        out.radius_at_closest = clear.radius;
+        out.margin = std::max(miss.head<2>().norm() - clear.radius, std::abs(miss.z()) - clear.height);
+    }
+    return alert;
+}
+
+}  // namespace jink::world
