@@ -19,7 +19,7 @@ constexpr std::size_t kCommandsAtMost = 3 * kWayCourses + 3;
 constexpr float kEnough = 1.1F;
 /// Nor here [multiples of the volume of a near mid-air collision].
 constexpr float kFar = 5.0F;
-/// Where nothing is well clear, that counts too: few courses are looked at, and a small volume lies between them.
+/// Where nothing is well clear, that counts too: few courses are compared, and a small volume lies between them.
 constexpr float kClearShare = 3.0F;
 /// What was flown before counts better by so much.
 constexpr float kStay = 0.15F;
@@ -87,7 +87,7 @@ Commands commands_of(const world::Situation& s, const Vec3& along, const HeightL
 /// Least nearness while a command is held: straight on until the height is used up, then level. The time until the
 /// command is flown moves the beginning.
 float nearness_of(const world::Situation& s, const Vec3& command, const HeightLeft& left, const Vec3& position,
-                  const Vec3& velocity, const world::Barrel& barrel, Seconds span) noexcept
+                  const Vec3& velocity, const world::Volume& volume, Seconds span) noexcept
 {
     const Vec3 change = s.own.velocity - command;
     const Seconds lost =
@@ -98,12 +98,12 @@ float nearness_of(const world::Situation& s, const Vec3& command, const HeightLe
     const Seconds climbs = climb != 0.0F ? std::min(span, room / std::abs(climb)) : span;
     const Vec3 gap = position - begin;
     const Vec3 closing = velocity - command;
-    const float first = world::nearest(gap, closing, barrel, climbs).least;
+    const float first = world::nearest(gap, closing, volume, climbs).least;
     if (climbs >= span) {
         return first;
     }
     const Vec3 level = closing + climb * Vec3::UnitZ();
-    const float rest = world::nearest(gap + closing * climbs, level, barrel, span - climbs).least;
+    const float rest = world::nearest(gap + closing * climbs, level, volume, span - climbs).least;
     return std::min(first, rest);
 }
 
@@ -120,8 +120,8 @@ float score_of(float clear, float near_mid_air, float differs) noexcept
 /// An aircraft and the volumes about it.
 struct Aircraft {
     const world::Threat* threat = nullptr;
-    world::Barrel clear;
-    world::Barrel near_mid_air;
+    world::Volume clear;
+    world::Volume near_mid_air;
     float nearness = 0.0F;  ///< if the vehicle flies on as it does
 };
 using AircraftList = StaticVector<Aircraft, kMaxAircraft>;
@@ -161,8 +161,8 @@ bool rate(const world::Situation& s, const Vec3& along, const HeightLeft& left, 
             for (const world::AircraftCourse& course : world::kAircraftCourses) {
                 const Vec3 velocity = course.of(other.threat->velocity);
                 const Seconds span = course.straight ? world::kAircraftAhead : world::kTurnAhead;
-                const auto nearness = [&](const world::Barrel& barrel) noexcept {
-                    return nearness_of(s, one.command, left, other.threat->position, velocity, barrel, span);
+                const auto nearness = [&](const world::Volume& volume) noexcept {
+                    return nearness_of(s, one.command, left, other.threat->position, velocity, volume, span);
                 };
                 clear = std::min(clear, nearness(other.clear));
                 near_mid_air = std::min(near_mid_air, nearness(other.near_mid_air));

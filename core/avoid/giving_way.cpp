@@ -16,7 +16,9 @@ bool StateMachine::see_aircraft(Tick& tick) noexcept
 {
     const bool gives = gives_way();
     world::Conflict conflict;
-    tick.out.alert = world::aircraft_conflict(tick.s, tick.nominal, gives, tick.budget, conflict);
+    WorkBudget budget = tick.budget.part(tick.budget.left() / 2);
+    tick.out.alert = world::aircraft_conflict(tick.s, tick.nominal, gives, budget, conflict);
+    tick.budget.charge(budget);
     const bool acts = tick.out.alert != world::Alert::none && (gives || conflict.time_to_loss <= kActBefore);
     if (acts && !tick.out.conflict) {
         tick.out.conflict = conflict;
@@ -37,7 +39,11 @@ bool StateMachine::give_way(Tick& tick) noexcept
     }
     const Vec3 along = parallel_offset(tick.s).command;
     const Vec3* const previous = gives ? &flying_->command : nullptr;
-    const std::optional<float> margin = choose_give_way(tick.s, along, previous, settings_, tick.budget, answer_);
+    const std::uint32_t left = tick.budget.left();
+    WorkBudget budget = tick.budget.part(left - left / 4);  // the rest for what is done where nothing gives way
+    const std::optional<float> margin = choose_give_way(tick.s, along, previous, settings_, budget, answer_);
+    tick.budget.charge(budget);
+    tick.ran_out = tick.ran_out || budget.exhausted();
     if (!margin) {
         return false;
     }

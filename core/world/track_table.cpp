@@ -102,8 +102,8 @@ TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
                    m.source,
                    m.cooperative,
                    0,
-                   m.half_height,
-                   m.manned};
+                   m.manned,
+                   m.half_height};
     return entry;
 }
 
@@ -157,10 +157,10 @@ void TrackTable::filter(Entry& e, const TrackMeasurement& m) noexcept
     e.variance_position = vpp;
     e.covariance = vpv;
     e.variance_velocity = vvv;
-    e.track = {m.id,     m.stamp,        position,         velocity,
-               m.radius, std::sqrt(vpp), std::sqrt(vvv),   m.max_acceleration,
-               m.source, m.cooperative,  e.track.instance, m.half_height,
-               m.manned};
+    e.track = {m.id,         m.stamp,        position,         velocity,
+               m.radius,     std::sqrt(vpp), std::sqrt(vvv),   m.max_acceleration,
+               m.source,     m.cooperative,  e.track.instance, m.manned,
+               m.half_height};
     e.sightings = static_cast<std::uint16_t>(std::min<unsigned>(e.sightings + 1U, 0xFFFFU));
 }
 

@@ -23,8 +23,8 @@ struct TrackMeasurement {
     float max_acceleration = 0.0F;  ///< [m/s2], >= 0
     TrackSource source = TrackSource::adsb;
     bool cooperative = false;  ///< as in Track; the newest sighting's word counts
+    bool manned = false;       ///< likewise
     float half_height = 0.0F;  ///< uncertainty of the height of `position` beside sigma_position [m], >= 0
-    bool manned = false;       ///< as in Track; the newest sighting's word counts
 };
 
 enum class TrackStatus : std::uint8_t {

@@ -18,14 +18,14 @@ constexpr float kDrawsApart = 0.105F;
 /// Multiples of the volume that end giving way.
 constexpr float kClearAgain = 1.1F;
 
-float nearness_at(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds t) noexcept
+float nearness_at(const Vec3& gap, const Vec3& closing, const Volume& volume, Seconds t) noexcept
 {
     const Vec3 at = gap + closing * t;
-    return std::max(at.head<2>().norm() / barrel.radius, std::abs(at.z()) / barrel.height);
+    return std::max(at.head<2>().norm() / volume.radius, std::abs(at.z()) / volume.height);
 }
 
 /// `volume`, larger by all that is possible of the positions of both. A track's growth holds its body too.
-Barrel grown(const Threat& aircraft, const Barrel& volume) noexcept
+Volume grown(const Threat& aircraft, const Volume& volume) noexcept
 {
     const float by = aircraft.growth.radius;
     return {volume.radius + by, volume.height + by + aircraft.half_height};
@@ -33,25 +33,25 @@ Barrel grown(const Threat& aircraft, const Barrel& volume) noexcept
 
 }  // namespace
 
-Nearness nearest(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds span) noexcept
+Nearness nearest(const Vec3& gap, const Vec3& closing, const Volume& volume, Seconds span) noexcept
 {
     // Both squares are polynomials of time: level is a t^2 + 2 b t + c, height the square of (e t + f).
-    const float per_radius = 1.0F / barrel.radius;
+    const float per_radius = 1.0F / volume.radius;
     const float x = gap.x() * per_radius;
     const float y = gap.y() * per_radius;
     const float u = closing.x() * per_radius;
     const float v = closing.y() * per_radius;
-    const float e = closing.z() / barrel.height;
-    const float f = gap.z() / barrel.height;
+    const float e = closing.z() / volume.height;
+    const float f = gap.z() / volume.height;
     const float a = u * u + v * v;
     const float b = x * u + y * v;
     constexpr float kNothing = 1e-12F;
-    Nearness best{nearness_at(gap, closing, barrel, 0.0F), 0.0F};
+    Nearness best{nearness_at(gap, closing, volume, 0.0F), 0.0F};
     const auto consider = [&](Seconds t) noexcept {
         if (!(t > 0.0F && t <= span)) {
             return;
         }
-        const float value = nearness_at(gap, closing, barrel, t);
+        const float value = nearness_at(gap, closing, volume, t);
         if (value < best.least) {
             best = {value, t};
         }
@@ -81,14 +81,14 @@ Nearness nearest(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Sec
     return best;
 }
 
-Seconds first_inside(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds span) noexcept
+Seconds first_inside(const Vec3& gap, const Vec3& closing, const Volume& volume, Seconds span) noexcept
 {
     constexpr Seconds kNever = -1.0F;
     Seconds from = 0.0F;
     Seconds to = span;
     const float a = closing.head<2>().squaredNorm();
     const float b = gap.head<2>().dot(closing.head<2>());
-    const float c = gap.head<2>().squaredNorm() - barrel.radius * barrel.radius;
+    const float c = gap.head<2>().squaredNorm() - volume.radius * volume.radius;
     if (a > 0.0F) {
         const float root2 = b * b - a * c;
         if (!(root2 > 0.0F)) {
@@ -102,11 +102,11 @@ Seconds first_inside(const Vec3& gap, const Vec3& closing, const Barrel& barrel,
     }
     const float climb = closing.z();
     if (climb != 0.0F) {
-        const float low = (-barrel.height - gap.z()) / climb;
-        const float high = (barrel.height - gap.z()) / climb;
+        const float low = (-volume.height - gap.z()) / climb;
+        const float high = (volume.height - gap.z()) / climb;
         from = std::max(from, std::min(low, high));
         to = std::min(to, std::max(low, high));
-    } else if (!(std::abs(gap.z()) < barrel.height)) {
+    } else if (!(std::abs(gap.z()) < volume.height)) {
         return kNever;
     }
     return from < to ? from : kNever;
@@ -118,15 +118,28 @@ bool is_aircraft(const Situation& situation, const Threat& threat) noexcept
            threat.track != nullptr && threat.track->manned;
 }
 
-Barrel well_clear_of(const Situation& situation, const Threat& aircraft) noexcept
+Volume well_clear_of(const Situation& situation, const Threat& aircraft) noexcept
 {
     const WellClear& rule = situation.rules.well_clear;
     return grown(aircraft, {rule.radius, rule.height});
 }
 
-Barrel near_mid_air_of(const Threat& aircraft) noexcept { return grown(aircraft, kNearMidAir); }
+Volume near_mid_air_of(const Threat& aircraft) noexcept { return grown(aircraft, kNearMidAir); }
 
 namespace {
+
+/// Whether even straight towards each other they do not come near within kAircraftAhead.
+bool cannot_come_near(const Situation& s, const Threat& aircraft) noexcept
+{
+    const Volume clear = well_clear_of(s, aircraft);
+    const Vec3 gap = aircraft.position - s.own.position;
+    const float own_speed = std::max(s.reference.speed, s.own.velocity.norm());
+    const float level = kAircraftAhead * (own_speed + aircraft.velocity.head<2>().norm());
+    const float own_climb = std::max(s.limits.max_climb, s.limits.max_descent);
+    const float height = kAircraftAhead * (own_climb + std::abs(aircraft.velocity.z()));
+    return gap.head<2>().norm() > kClearAgain * clear.radius + level ||
+           std::abs(gap.z()) > kClearAgain * clear.height + height;
+}
 
 /// What is found of one aircraft on the way.
 struct Meeting {
@@ -138,13 +151,14 @@ struct Meeting {
 Meeting meeting_with(const Situation& situation, const detail::RoutePieces& pieces, const Threat& aircraft,
                      bool gives_way) noexcept
 {
-    const Barrel clear = well_clear_of(situation, aircraft);
-    const Barrel near_mid_air = near_mid_air_of(aircraft);
-    const Barrel larger{clear.radius * kClearAgain, clear.height * kClearAgain};
-    const Barrel& ahead = gives_way ? larger : clear;
-    const Barrel& turning = gives_way ? larger : near_mid_air;
+    const Volume clear = well_clear_of(situation, aircraft);
+    const Volume near_mid_air = near_mid_air_of(aircraft);
+    const Volume larger{clear.radius * kClearAgain, clear.height * kClearAgain};
+    const Volume& ahead = gives_way ? larger : clear;
+    const Volume& turning = gives_way ? larger : near_mid_air;
     Nearness least{gives_way ? kClearAgain : 1.0F, -1.0F};
     Meeting out;
+    bool may_turn = false;  // into the volume
     const auto note = [&](Seconds inside, Seconds start, Alert level) noexcept {
         if (inside >= 0.0F) {
             out.loss = out.loss < 0.0F ? start + inside : std::min(out.loss, start + inside);
@@ -165,7 +179,9 @@ Meeting meeting_with(const Situation& situation, const detail::RoutePieces& piec
             const Vec3 gap = aircraft.position + velocity * piece.start - piece.own.position;
             const Vec3 closing = velocity - piece.own.velocity;
             if (!course.straight) {
-                note(first_inside(gap, closing, turning, span), piece.start, Alert::low);
+                const Seconds inside = first_inside(gap, closing, turning, span);
+                note(inside, piece.start, Alert::low);
+                may_turn = may_turn || inside >= 0.0F;
                 continue;
             }
             const Nearness near = nearest(gap, closing, clear, span);
@@ -176,10 +192,10 @@ Meeting meeting_with(const Situation& situation, const detail::RoutePieces& piec
             note(first_inside(gap, closing, near_mid_air, span), piece.start, Alert::medium);
         }
     }
-    // Nearest at present, it draws apart: nothing ahead could mend that. Inside the volume it has to do so clearly,
-    // because aircraft turn; a vehicle that gives way does not trust it there.
+    // Nearest at present, it draws apart: nothing ahead could mend that. Inside the volume it has to do so clearly; a
+    // vehicle that gives way does not trust it.
     const bool leaves = nearness_at(now, change, clear, kSoon) - present >= kDrawsApart;
-    if (out.loss < 0.0F || (!gives_way && !(least.when > 0.0F) && (present >= 1.0F || leaves))) {
+    if (out.loss < 0.0F || (!gives_way && !may_turn && !(least.when > 0.0F) && (present >= 1.0F || leaves))) {
         return {};
     }
     out.level = present < 1.0F ? Alert::high : out.level;
@@ -195,25 +211,25 @@ Alert aircraft_conflict(const Situation& situation, const Way& way, bool gives_w
 {
     const std::span<const Threat> tracks = of_kind(situation.threats, ThreatKind::track);
     const auto is_one = [&](const Threat& threat) noexcept { return is_aircraft(situation, threat); };
-    if (std::none_of(tracks.begin(), tracks.end(), is_one) || !budget.spend(units::kConflictLook)) {
+    if (std::none_of(tracks.begin(), tracks.end(), is_one)) {
         return Alert::none;
     }
+    static_cast<void>(budget.spend(units::kConflictLook));
     const detail::RoutePieces pieces(situation, way, kAircraftAhead);
     Alert alert = Alert::none;
     for (const Threat& threat : tracks) {
-        if (!is_one(threat)) {
+        if (!is_one(threat) || (budget.spend(1) && cannot_come_near(situation, threat))) {
             continue;
         }
-        if (!budget.spend(units::kAircraftLook * static_cast<std::uint32_t>(pieces.size()))) {
-            return Alert::none;
-        }
-        const Meeting meeting = meeting_with(situation, pieces, threat, gives_way);
+        const bool paid_for = budget.spend(units::kAircraftLook * static_cast<std::uint32_t>(pieces.size()));
+        const Meeting meeting = paid_for ? meeting_with(situation, pieces, threat, gives_way)
+                                         : Meeting{.level = Alert::low, .loss = 0.0F, .closest = 0.0F};
         const bool first = alert == Alert::none || meeting.loss < out.time_to_loss;
         alert = std::max(alert, meeting.level);
         if (meeting.level == Alert::none || !first) {
             continue;
         }
-        const Barrel clear = well_clear_of(situation, threat);
+        const Volume clear = well_clear_of(situation, threat);
         out = {};
         out.threat = threat.ref;
         out.time_to_loss = meeting.loss;

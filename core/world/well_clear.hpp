@@ -11,23 +11,23 @@
 namespace jink::world {
 
 /// An upright cylinder about an aircraft. Distances are counted in multiples of it: 1 on its surface, less inside.
-struct Barrel {
+struct Volume {
     float radius = 1.0F;  ///< > 0 [m]
     float height = 1.0F;  ///< above and below, > 0 [m]
 };
 /// A near mid-air collision: 500 ft level and 100 ft in height.
-inline constexpr Barrel kNearMidAir{152.4F, 30.48F};
+inline constexpr Volume kNearMidAir{152.4F, 30.48F};
 
 /// Of two in straight motion: the greater one of level distance by radius and difference in height by height.
 struct Nearness {
-    float least = 0.0F;   ///< in multiples of a barrel
+    float least = 0.0F;   ///< in multiples of a volume
     Seconds when = 0.0F;  ///< the first instant of it
 };
 /// Least within [0, span]. @param gap  from the vehicle to the aircraft [m]  @param closing  its change [m/s]
 /// In closed form: at an end, at either one's own least, or where both are equal. O(1).
-[[nodiscard]] Nearness nearest(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds span) noexcept;
-/// First instant within [0, span] inside the barrel; below 0 where there is none. O(1).
-[[nodiscard]] Seconds first_inside(const Vec3& gap, const Vec3& closing, const Barrel& barrel, Seconds span) noexcept;
+[[nodiscard]] Nearness nearest(const Vec3& gap, const Vec3& closing, const Volume& volume, Seconds span) noexcept;
+/// First instant within [0, span] inside the volume, to a thousandth of it; below 0 where there is none. O(1).
+[[nodiscard]] Seconds first_inside(const Vec3& gap, const Vec3& closing, const Volume& volume, Seconds span) noexcept;
 
 /// Levels of an alert: the volume that is entered, now or by what is predicted.
 enum class Alert : std::uint8_t {
@@ -63,13 +63,13 @@ inline constexpr Seconds kAircraftAhead = 60.0F;
 /// Whether a threat is a track that FlightRules::well_clear is kept of.
 [[nodiscard]] bool is_aircraft(const Situation& situation, const Threat& threat) noexcept;
 /// The volumes, larger by what is not known of both positions. O(1).
-[[nodiscard]] Barrel well_clear_of(const Situation& situation, const Threat& aircraft) noexcept;
-[[nodiscard]] Barrel near_mid_air_of(const Threat& aircraft) noexcept;
+[[nodiscard]] Volume well_clear_of(const Situation& situation, const Threat& aircraft) noexcept;
+[[nodiscard]] Volume near_mid_air_of(const Threat& aircraft) noexcept;
 
 /// Whether aircraft come too near to the way, and how near; `out` is the first loss of all. Too near is: straight on,
 /// within kAircraftAhead into the well clear volume, and nearer than at present; on another course, within kTurnAhead
 /// into the volume of a near mid-air collision. A vehicle that gives way goes on with it as long as any course leads
-/// into a well clear volume a tenth larger. A budget that runs out: none, and it is exhausted. O(pieces * tracks).
+/// into a well clear volume a tenth larger. A budget that runs out: the aircraft that it runs out at is too near now. O(pieces * tracks).
 [[nodiscard]] Alert aircraft_conflict(const Situation& situation, const Way& way, bool gives_way, WorkBudget& budget,
                                       Conflict& out) noexcept;
 

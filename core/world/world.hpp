@@ -44,8 +44,8 @@ struct Track {
     TrackSource source = TrackSource::adsb;
     bool cooperative = false;   ///< it takes its share in avoiding us, as we take ours; else all of it is ours
     std::uint8_t instance = 0;  ///< id and instance together are unique in a table
-    float half_height = 0.0F;   ///< uncertainty of the height, all of it, beside the sphere's growth [m]
     bool manned = false;        ///< people aboard, as far as is reported: FlightRules::well_clear
+    float half_height = 0.0F;   ///< uncertainty of the height, all of it, beside the sphere's growth [m]
 };
 
 struct Obstacle {

@@ -9,6 +9,7 @@
 
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
+#include "core/avoid/give_way.hpp"
 #include "core/avoid/objective.hpp"
 #include "core/base/random.hpp"
 #include "core/base/work_units.hpp"
@@ -55,6 +56,8 @@ enum class Work : std::uint32_t {
     energy_table,
     objective_leg,
     objective_route,
+    aircraft_look,
+    aircraft_command,
     count,
 };
 
@@ -122,7 +125,7 @@ private:
     Random random_{0};
     std::array<Point3, kMaxHullVertices> vertices_{};
     vehicle::VehicleState own_;
-    const world::FlightRules rules_;
+    world::FlightRules rules_;
     vehicle::VehicleLimits limits_;
     vehicle::Airframe airframe_;
     world::Reference reference_;
@@ -193,8 +196,11 @@ void UnitProbe::scene(Work work) noexcept
     obstacles_.clear();
     path();
 
-    const bool tracks = work == Work::separation_tracks || work == Work::conflict_tracks || work == Work::fallback ||
-                        work == Work::orca_tracks || work == Work::objective_leg || work == Work::objective_route;
+    const bool aircraft = work == Work::aircraft_look || work == Work::aircraft_command;
+    rules_.well_clear.radius = aircraft ? 610.0F : 0.0F;
+    const bool tracks = aircraft || work == Work::separation_tracks || work == Work::conflict_tracks ||
+                        work == Work::fallback || work == Work::orca_tracks || work == Work::objective_leg ||
+                        work == Work::objective_route;
     const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
                          work == Work::orca_spheres;
     const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids;
@@ -208,6 +214,11 @@ void UnitProbe::scene(Work work) noexcept
         track.sigma_velocity = below(2) == 0 ? 0.0F : 0.2F;
         track.max_acceleration = below(3) == 0 ? 0.3F : 0.0F;
         track.cooperative = below(2) == 0;
+        if (aircraft) {
+            track.manned = true;
+            track.position = own_.position + within(25.0F * spread).cwiseProduct(Vec3(1.0F, 1.0F, 0.1F));
+            track.velocity *= 10.0F;
+        }
         tracks_.unchecked_push_back(track);
     }
     for (std::size_t i = 0, n = spheres ? below(kMaxObstacles + 1) : 0; i < n; ++i) {
@@ -385,6 +396,17 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
                                   {margin, 1.0F, {world::ThreatKind::track, 0}}, budget)
                 .total();
         });
+        break;
+    case Work::aircraft_look:
+        sink_ = counted([&] { return world::aircraft_conflict(s, way, margin < 1.0F, budget, conflict); }) !=
+                        world::Alert::none
+                    ? 1.0F
+                    : 0.0F;
+        break;
+    case Work::aircraft_command:
+        sink_ = counted([&] {
+                    return avoid::choose_give_way(s, command, nullptr, settings, budget, manoeuvre_);
+                }).value_or(-1.0F);
         break;
     case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:

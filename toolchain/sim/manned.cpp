@@ -146,6 +146,12 @@ Ratio ratio_of(const std::vector<MannedResult>& results, Event&& event, Base&& b
         return sum.ratio();
     };
     Ratio out;
+    const auto events = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), event));
+    const auto bases = static_cast<std::size_t>(std::count_if(results.begin(), results.end(), base));
+    if (events == 0) {
+        out.high = bases > 0 ? std::min(1.0, 3.0 / static_cast<double>(bases)) : 1.0;
+        return out;
+    }
     out.value = counted([](std::size_t i) { return i; });
     std::array<std::vector<std::size_t>, kMannedStrata> strata;
     for (std::size_t i = 0; i < results.size(); ++i) {
@@ -259,7 +265,7 @@ MannedResult fly_manned(const EncounterModel& model, MannedSensor sensor, std::u
         },
         r.near, r.lost);
     r.took_over = record.takeovers > 0;
-    // The flight ends with the track, whoever is in control then: that is told as a fault.
+    // The flight ends with the track, whoever is in control then: that is reported as a fault.
     r.broke_rule = record.faults.size() > (record.final_mode == Mode::external ? 1U : 0U);
     return r;
 }

@@ -63,7 +63,8 @@ struct MannedResult {
 [[nodiscard]] MannedResult fly_manned(const EncounterModel& model, MannedSensor sensor, std::uint64_t seed,
                                       const std::map<std::string, double>& parameters, const Board& board);
 
-/// A ratio of weighted frequencies, with its 95 % interval by 1000 bootstrap samples within the strata (seeded).
+/// A ratio of weighted frequencies, with its 95 % interval by 1000 bootstrap samples within the strata (seeded). Where
+/// nothing happened its upper limit is 3 by the number of the events that it is a ratio to (rule of three).
 struct Ratio {
     double value = 0.0;
     double low = 0.0;

@@ -338,6 +338,8 @@ std::vector<Route> routes()
         {Param::sticks, 45, [](C c) { return c.sticks; }, 0.45F},
         same(Param::sigma_baro, 31.5F, [](C c) { return c.sigma_baro; }),
         same(Param::sigma_compared, 6.5F, [](C c) { return c.sigma_compared; }),
+        same(Param::well_clear, 610, [](C c) { return c.rules.well_clear.radius; }),
+        same(Param::well_clear_height, 77, [](C c) { return c.rules.well_clear.height; }),
     };
 }
 
