@@ -69,7 +69,7 @@ inline constexpr Seconds kAircraftAhead = 60.0F;
 /// Whether aircraft come too near to the way, and how near; `out` is the first loss of all. Too near is: straight on,
 /// within kAircraftAhead into the well clear volume, and nearer than at present; on another course, within kTurnAhead
 /// into the volume of a near mid-air collision. A vehicle that gives way goes on with it as long as any course leads
-/// into a well clear volume a tenth larger. A budget that runs out: the aircraft that it runs out at is too near now. O(pieces * tracks).
+/// into a well clear volume a tenth larger. Where the budget runs out an aircraft is too near now. O(pieces * tracks).
 [[nodiscard]] Alert aircraft_conflict(const Situation& situation, const Way& way, bool gives_way, WorkBudget& budget,
                                       Conflict& out) noexcept;
 
