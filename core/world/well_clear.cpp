@@ -146,7 +146,55 @@ struct Meeting {
     Alert level = Alert::none;
     Seconds loss = -1.0F;
     Seconds closest = 0.0F;
+
+    void note(Seconds inside, Seconds start, Alert found) noexcept
+    {
+        if (inside >= 0.0F) {
+            loss = loss < 0.0F ? start + inside : std::min(loss, start + inside);
+            level = std::max(level, found);
+        }
+    }
 };
+
+/// On the courses that are not straight on: whether one of them leads into `volume`.
+bool meets_turning(const detail::RoutePieces& pieces, const Threat& aircraft, const Volume& volume,
+                   Meeting& out) noexcept
+{
+    for (const detail::WayPiece& piece : pieces) {
+        const Seconds span = std::min(piece.end, kTurnAhead) - piece.start;
+        for (const AircraftCourse& course : kAircraftCourses) {
+            if (!course.straight && span > 0.0F) {
+                const Vec3 velocity = course.of(aircraft.velocity);
+                const Vec3 gap = aircraft.position + velocity * piece.start - piece.own.position;
+                out.note(first_inside(gap, velocity - piece.own.velocity, volume, span), piece.start, Alert::low);
+            }
+        }
+    }
+    return out.loss >= 0.0F;
+}
+
+/// Straight on: the first instant nearest of all, if it is nearer than `wanted`; its time is below 0 else.
+Nearness meets_ahead(const detail::RoutePieces& pieces, const Threat& aircraft, const Volume& clear, float wanted,
+                     Meeting& out) noexcept
+{
+    const Volume volume{clear.radius * wanted, clear.height * wanted};
+    const Volume near_mid_air = near_mid_air_of(aircraft);
+    Nearness least{wanted, -1.0F};
+    for (const detail::WayPiece& piece : pieces) {
+        if (!(piece.span() > 0.0F)) {
+            continue;
+        }
+        const Vec3 gap = aircraft.position_at(piece.start) - piece.own.position;
+        const Vec3 closing = aircraft.velocity - piece.own.velocity;
+        const Nearness near = nearest(gap, closing, clear, piece.span());
+        if (near.least < least.least) {
+            least = {near.least, piece.start + near.when};
+        }
+        out.note(first_inside(gap, closing, volume, piece.span()), piece.start, Alert::low);
+        out.note(first_inside(gap, closing, near_mid_air, piece.span()), piece.start, Alert::medium);
+    }
+    return least;
+}
 
 Meeting meeting_with(const Situation& situation, const detail::RoutePieces& pieces, const Threat& aircraft,
                      bool gives_way) noexcept
@@ -154,44 +202,12 @@ Meeting meeting_with(const Situation& situation, const detail::RoutePieces& piec
     const Volume clear = well_clear_of(situation, aircraft);
     const Volume near_mid_air = near_mid_air_of(aircraft);
     const Volume larger{clear.radius * kClearAgain, clear.height * kClearAgain};
-    const Volume& ahead = gives_way ? larger : clear;
-    const Volume& turning = gives_way ? larger : near_mid_air;
-    Nearness least{gives_way ? kClearAgain : 1.0F, -1.0F};
     Meeting out;
-    bool may_turn = false;  // into the volume
-    const auto note = [&](Seconds inside, Seconds start, Alert level) noexcept {
-        if (inside >= 0.0F) {
-            out.loss = out.loss < 0.0F ? start + inside : std::min(out.loss, start + inside);
-            out.level = std::max(out.level, level);
-        }
-    };
+    const bool may_turn = meets_turning(pieces, aircraft, gives_way ? larger : near_mid_air, out);
+    const Nearness least = meets_ahead(pieces, aircraft, clear, gives_way ? kClearAgain : 1.0F, out);
     const Vec3 now = aircraft.position - situation.own.position;
     const Vec3 change = aircraft.velocity - pieces[0].own.velocity;
     const float present = nearness_at(now, change, clear, 0.0F);
-    for (const detail::WayPiece& piece : pieces) {
-        for (const AircraftCourse& course : kAircraftCourses) {
-            const Seconds span =
-                course.straight ? piece.span() : std::min(piece.span(), kTurnAhead - std::min(piece.start, kTurnAhead));
-            if (!(span > 0.0F)) {
-                continue;
-            }
-            const Vec3 velocity = course.of(aircraft.velocity);
-            const Vec3 gap = aircraft.position + velocity * piece.start - piece.own.position;
-            const Vec3 closing = velocity - piece.own.velocity;
-            if (!course.straight) {
-                const Seconds inside = first_inside(gap, closing, turning, span);
-                note(inside, piece.start, Alert::low);
-                may_turn = may_turn || inside >= 0.0F;
-                continue;
-            }
-            const Nearness near = nearest(gap, closing, clear, span);
-            if (near.least < least.least) {
-                least = {near.least, piece.start + near.when};
-            }
-            note(first_inside(gap, closing, ahead, span), piece.start, Alert::low);
-            note(first_inside(gap, closing, near_mid_air, span), piece.start, Alert::medium);
-        }
-    }
     // Nearest at present, it draws apart: nothing ahead could mend that. Inside the volume it has to do so clearly; a
     // vehicle that gives way does not trust it.
     const bool leaves = nearness_at(now, change, clear, kSoon) - present >= kDrawsApart;
