@@ -60,6 +60,7 @@ inline constexpr std::uint32_t kAircraftCommand = 26;  ///< a command with one
 inline constexpr std::uint32_t kFlightPart = 4;      ///< a tenth of a second along a path
 inline constexpr std::uint32_t kCommandStep = 3;     ///< a step under a constant command
 inline constexpr std::uint32_t kTurnStep = 8;        ///< a step of a turn
+inline constexpr std::uint32_t kStopLook = 4;        ///< whether all can stop: a cooperative track, but for its check
 inline constexpr std::uint32_t kObjective = 5;       ///< of a flight that is costed
 inline constexpr std::uint32_t kObjectivePoint = 1;  ///< and each of its points, and each leg of the route there
 inline constexpr std::uint32_t kObjectiveArc = 2;    ///< or arc
