@@ -49,7 +49,7 @@ float braked(Seconds t, Seconds span) noexcept
 /// A cooperative track that flies on for the latency and stops then, and what else it may do.
 class OtherStop {
 public:
-    OtherStop(const world::Situation& s, const world::Threat& track) noexcept
+    [[gnu::cold, gnu::noinline]] OtherStop(const world::Situation& s, const world::Threat& track) noexcept
         : begins_(latency_of(s)), velocity_(track.velocity), braking_(track.velocity, s.limits), threat_(track)
     {
         const float acceleration = std::max(s.limits.max_acceleration, s.limits.max_vertical_acceleration);
@@ -90,7 +90,7 @@ private:
     world::Threat threat_;
 };
 
-/// The own flight: a command for the latency, then a stop.
+/// The own flight: a command for the latency, then a stop. What follows is compiled for size: it is seldom needed.
 struct OwnStop {
     StaticVector<path::PathPoint, kChords + 3> points;
     float sagitta = 0.0F;  ///< greatest [m]
@@ -108,10 +108,11 @@ public:
                                             vehicle::stopping_time(s.own.velocity.norm() + faster, s.limits));
     }
 
-    /// Until the last one stands. False where there is no such track, or no budget to look.
+    /// Until the last one stands. False where there is no such track.
     [[nodiscard]] bool has_tracks() noexcept
     {
         bool any = false;
+        static_cast<void>(tracks_.empty() || budget_.spend(units::kStopLook));
         for (const world::Threat& track : tracks_) {
             if (counts(track)) {
                 any = true;
@@ -152,9 +153,9 @@ private:
     [[nodiscard]] static bool counts(const world::Threat& t) noexcept { return t.reciprocal && t.track != nullptr; }
 
     /// What follows without budget is contact.
-    void fly(const Vec3& command, OwnStop& out) noexcept
+    [[gnu::cold, gnu::noinline]] void fly(const Vec3& command, OwnStop& out) noexcept
     {
-        static_cast<void>(budget_.spend(static_cast<std::uint32_t>(kChords + 2) * units::kCommandStep));
+        static_cast<void>(budget_.spend(units::kStopFlight));
         const Seconds latency = latency_of(s_);
         path::Prediction flight;
         path::predict_velocity_command(s_.own, command, latency, latency, s_.limits, flight);
@@ -171,7 +172,7 @@ private:
     }
 
     /// Below 0 where the track may be met.
-    [[nodiscard]] float margin_to(const world::Threat& track, const OwnStop& own) noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] float margin_to(const world::Threat& track, const OwnStop& own) noexcept
     {
         if (!budget_.spend(units::kStopLook)) {
             return -world::kSeparationCap;
@@ -204,7 +205,8 @@ private:
     }
 
     /// What one track leaves of a share; `own` flies it then, unless it is 0.
-    [[nodiscard]] float share_for(const world::Threat& track, float share, OwnStop& own) noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] float share_for(const world::Threat& track, float share,
+                                                            OwnStop& own) noexcept
     {
         if (share > 0.0F && margin_to(track, own) >= 0.0F) {
             return share;
@@ -232,12 +234,16 @@ private:
     }
 
     /// Of all tracks but those that the command leads away from.
-    [[nodiscard]] bool is_clear(const Vec3& command, const OwnStop& own, bool leaves = false) noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] bool is_clear(const Vec3& command, const OwnStop& own,
+                                                          bool leaves = false) noexcept
     {
-        return std::all_of(tracks_.begin(), tracks_.end(), [&](const world::Threat& track) {
-            return !counts(track) || (leaves && command.dot(s_.own.position - track.position) > 0.0F) ||
-                   margin_to(track, own) >= 0.0F;
-        });
+        for (const world::Threat& track : tracks_) {
+            const bool left = leaves && command.dot(s_.own.position - track.position) > 0.0F;
+            if (counts(track) && !left && margin_to(track, own) < 0.0F) {
+                return false;
+            }
+        }
+        return true;
     }
 
     /// A stop; or slowly out of the reach of the tracks that not even a stop is clear of.
@@ -253,7 +259,7 @@ private:
     }
 
     /// To all that is no such track.
-    [[nodiscard]] float margin_to_rest(const OwnStop& own) noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] float margin_to_rest(const OwnStop& own) noexcept
     {
         world::Situation rest = s_;
         rest.shared_horizon = 0.0F;
