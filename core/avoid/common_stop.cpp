@@ -237,13 +237,10 @@ private:
     [[nodiscard, gnu::cold, gnu::noinline]] bool is_clear(const Vec3& command, const OwnStop& own,
                                                           bool leaves = false) noexcept
     {
-        for (const world::Threat& track : tracks_) {
+        return std::ranges::all_of(tracks_, [&](const world::Threat& track) noexcept {
             const bool left = leaves && command.dot(s_.own.position - track.position) > 0.0F;
-            if (counts(track) && !left && margin_to(track, own) < 0.0F) {
-                return false;
-            }
-        }
-        return true;
+            return !counts(track) || left || margin_to(track, own) >= 0.0F;
+        });
     }
 
     /// A stop; or slowly out of the reach of the tracks that not even a stop is clear of.

@@ -67,7 +67,8 @@ struct Crowd {
     {
         for (Flier& hears : vehicles) {
             for (std::size_t i = 0; i < vehicles.size(); ++i) {
-                if (past.size() * kTick > delay && (random_.uniform() >= loss || hears.heard[i].stamp == TimePoint{})) {
+                if (static_cast<float>(past.size()) * kTick > delay &&
+                    (random_.uniform() >= loss || hears.heard[i].stamp == TimePoint{})) {
                     hears.heard[i] = past.front()[i];
                 }
             }
@@ -112,7 +113,7 @@ struct Crowd {
         WorkBudget budget(1'000'000);
         const world::Situation s = scene.situation();
         const Vec3& wants = vehicles[own].wants;
-        const Vec3 command = stoppable_command(s, wants, budget);
+        Vec3 command = stoppable_command(s, wants, budget);
         slowed += command != wants ? 1 : 0;
         return command;
     }
