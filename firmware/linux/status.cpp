@@ -247,8 +247,8 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
         s.conflicts, s.plans, s.plans_found, s.answers_rejected, s.manoeuvres);
     std::fprintf(f,
                  "  \"replans\": %u, \"flips\": %u, \"brakes\": %u, \"escapes\": %u, \"holds\": %u, \"rejoined\": %u, "
-                 "\"held_back\": %u, \"gave_way\": %u, \"budget_spent\": %u,\n",
-                 s.replans, s.flips, s.brakes, s.escapes, s.holds, s.rejoined, s.held_back, s.gave_way, s.budget_spent);
+                 "\"gave_way\": %u, \"budget_spent\": %u,\n",
+                 s.replans, s.flips, s.brakes, s.escapes, s.holds, s.rejoined, s.gave_way, s.budget_spent);
     std::fprintf(f, "  \"deadlines_missed\": %u, \"setpoints\": %u, \"setpoints_withheld\": %u, \"faults\": %u,\n",
                  d.deadlines_missed, d.setpoints, d.setpoints_withheld, d.faults);
     std::fprintf(f,

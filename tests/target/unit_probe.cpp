@@ -7,7 +7,6 @@
 
 #include <Eigen/Geometry>
 
-#include "core/avoid/common_stop.hpp"
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
 #include "core/avoid/give_way.hpp"
@@ -59,7 +58,6 @@ enum class Work : std::uint32_t {
     objective_route,
     aircraft_look,
     aircraft_command,
-    common_stop,
     count,
 };
 
@@ -202,7 +200,7 @@ void UnitProbe::scene(Work work) noexcept
     rules_.well_clear.radius = aircraft ? 610.0F : 0.0F;
     const bool tracks = aircraft || work == Work::separation_tracks || work == Work::conflict_tracks ||
                         work == Work::fallback || work == Work::orca_tracks || work == Work::objective_leg ||
-                        work == Work::objective_route || work == Work::common_stop;
+                        work == Work::objective_route;
     const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
                          work == Work::orca_spheres;
     const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids;
@@ -410,7 +408,6 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
                     return avoid::choose_give_way(s, command, nullptr, settings, budget, manoeuvre_);
                 }).value_or(-1.0F);
         break;
-    case Work::common_stop: sink_ = counted([&] { return avoid::stoppable_command(s, command, budget); }).x(); break;
     case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:
     case Work::orca_spheres:
