@@ -92,7 +92,7 @@ private:
 
 /// The own flight: a command for the latency, then a stop. What follows is compiled for size: it is seldom needed.
 struct OwnStop {
-    StaticVector<path::PathPoint, kChords + 3> points;
+    StaticVector<path::PathPoint, kChords + 7> points;
     float sagitta = 0.0F;  ///< greatest [m]
     float reach = 0.0F;    ///< distance from its beginning, at most [m]
 };
@@ -184,7 +184,7 @@ private:
         if (far > 0.0F) {
             return far;
         }
-        StaticVector<path::PathPoint, kChords + 3> points = own.points;
+        auto points = own.points;
         float longest = 0.0F;
         for (path::PathPoint& p : points) {
             p.position -= other.way(p.time);
