@@ -58,9 +58,7 @@ public:
         const Seconds unheard = std::max(s.now - track.track->stamp, 0.0F) + begins_;
         const Seconds changes = std::min(unheard, most / acceleration);
         const float unknown = acceleration * changes;
-        // A loop with a lag comes to a stand so much later than one at full deceleration.
-        const float lag = 0.5F * acceleration * s.limits.velocity_lag * s.limits.velocity_lag;
-        const float place = 0.5F * unknown * changes + unknown * (unheard - changes) + lag;
+        const float place = 0.5F * unknown * changes + unknown * (unheard - changes);
         threat_.velocity = Vec3::Zero();
         threat_.growth = {world::growth_of(s, *track.track).radius - world::doubt_of(s, *track.track).position + place,
                           0.0F, 0.0F};
