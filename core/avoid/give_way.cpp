@@ -49,12 +49,12 @@ HeightLeft height_left(const world::Situation& s) noexcept
         if (!bound.is_bound()) {
             break;
         }
-        const float room = std::abs(bound.position.z() - s.own.position.z()) - s.limits.half_extents.z() -
-                           bound.growth.radius - s.rules.clearance;
+        const float above = s.own.position.z() - bound.position.z();
+        const float kept = s.limits.half_extents.z() + bound.growth.radius + s.rules.clearance;
         if (bound.form == world::ThreatForm::floor) {
-            left.down = std::max(0.0F, room);
+            left.down = std::max(0.0F, above - kept);
         } else if (bound.form == world::ThreatForm::ceiling) {
-            left.up = std::max(0.0F, room);
+            left.up = std::max(0.0F, -above - kept);
         }
     }
     return left;

@@ -50,6 +50,7 @@ struct Diagnostics {
     std::uint32_t flips = 0;             ///< replaced by one on the other side of the leg
     std::uint32_t brakes = 0;            ///< fallbacks begun
     std::uint32_t escapes = 0;           ///< fallbacks that had to move
+    std::uint32_t held_back = 0;         ///< updates whose command was slowed, so that all can stop (common_stop.hpp)
     std::uint32_t gave_way = 0;          ///< times that giving way to aircraft began
     std::uint32_t holds = 0;             ///< parallel offsets begun, because the path back was not clear
     std::uint32_t rejoined = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 
+#include "core/avoid/common_stop.hpp"
 #include "core/avoid/tick.hpp"
 
 namespace jink::avoid {
@@ -291,6 +292,17 @@ void StateMachine::run_phase(Tick& tick) noexcept
     }
 }
 
+/// Two vehicles that avoid each other can always stop together: a command that would take that away is slowed down.
+void StateMachine::keep_stoppable(Tick& tick) noexcept
+{
+    if (!tick.in_control || !tick.out.wants_control) {
+        return;
+    }
+    const Vec3 command = stoppable_command(tick.s, tick.out.velocity, tick.budget);
+    diagnostics_.held_back += command != tick.out.velocity ? 1U : 0U;
+    tick.out.velocity = command;
+}
+
 Guidance StateMachine::update(const world::Situation& given, const world::Reference* other, bool in_control,
                               const Planning& planning) noexcept
 {
@@ -336,6 +348,7 @@ Guidance StateMachine::update(const world::Situation& given, const world::Refere
         run_phase(tick);
     }
     give_up_when_blocked(tick);
+    keep_stoppable(tick);
     if (!tick.planned) {
         drop_plan();
     }

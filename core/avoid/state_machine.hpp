@@ -56,6 +56,7 @@ private:
     void update_clearness(Tick& tick) noexcept;
     void run_phase(Tick& tick) noexcept;
     void watch(Tick& tick) noexcept;
+    void keep_stoppable(Tick& tick) noexcept;
     [[nodiscard]] bool plan(Tick& tick, bool hurries, std::uint8_t only = 0) noexcept;
     [[nodiscard]] bool plan_runs() const noexcept { return sliced_ != nullptr && sliced_->runs(); }
     [[nodiscard]] std::uint32_t units_for_planning(const Tick& tick) const noexcept;

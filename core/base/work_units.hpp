@@ -60,6 +60,8 @@ inline constexpr std::uint32_t kAircraftCommand = 26;  ///< a command with one
 inline constexpr std::uint32_t kFlightPart = 4;      ///< a tenth of a second along a path
 inline constexpr std::uint32_t kCommandStep = 3;     ///< a step under a constant command
 inline constexpr std::uint32_t kTurnStep = 8;        ///< a step of a turn
+inline constexpr std::uint32_t kStopFlight = 40;     ///< whether all can stop: the own flight
+inline constexpr std::uint32_t kStopLook = 8;        ///< and a cooperative track, but for its check
 inline constexpr std::uint32_t kObjective = 5;       ///< of a flight that is costed
 inline constexpr std::uint32_t kObjectivePoint = 1;  ///< and each of its points, and each leg of the route there
 inline constexpr std::uint32_t kObjectiveArc = 2;    ///< or arc
@@ -103,6 +105,9 @@ inline constexpr std::uint32_t kReachSolid = 6;         ///< or any other solid
 inline constexpr std::uint32_t kReachEntries = 2;       ///< eight entries of footprints, when trajectories are chosen
 inline constexpr std::uint32_t kReachPath = 30;         ///< trajectory that is made a path, with a stop at its end
 inline constexpr std::uint32_t kReachScanCell = 20;     ///< cell of a set or of a scan, when one is laid over the other
+
+inline constexpr std::uint32_t kTableElements = 5;  ///< sixteen numbers of a table that is checked
+inline constexpr std::uint32_t kTableNumbers = 20;  ///< and the numbers of a vehicle's sets
 
 // --- maps of convex pieces (core/geometry/mesh_map) ---
 inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is checked: both its children's boxes

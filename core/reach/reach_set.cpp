@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "core/reach/reach_set.hpp"
 
-#include "core/base/crc.hpp"
+#include <algorithm>
+#include <limits>
 
 namespace jink::reach {
 namespace {
@@ -41,47 +42,52 @@ SetStatus check_node(const ReachSet& s, std::size_t node) noexcept
 
 }  // namespace
 
-std::uint32_t checksum_of(const ReachSet& s) noexcept
+SetChecksum::SetChecksum(const ReachSet& set) noexcept : set_(&set)
 {
-    Crc crc;
-    crc.add16(static_cast<std::uint16_t>(s.grid.layers()));
-    crc.add16(static_cast<std::uint16_t>(s.grid.columns()));
-    crc.add16(static_cast<std::uint16_t>(s.grid.rows()));
-    for (const float number :
-         {s.grid.distance(), s.grid.horizontal(), s.grid.vertical(), s.step.length, s.step.pitch, s.step.yaw}) {
-        crc.add(number);
+    crc_.add16(static_cast<std::uint16_t>(set.grid.layers()));
+    crc_.add16(static_cast<std::uint16_t>(set.grid.columns()));
+    crc_.add16(static_cast<std::uint16_t>(set.grid.rows()));
+    for (const float number : {set.grid.distance(), set.grid.horizontal(), set.grid.vertical(), set.step.length,
+                               set.step.pitch, set.step.yaw}) {
+        crc_.add(number);
     }
-    crc.add(s.samples);
-    for (const NodeIndex parent : s.parent) {
-        crc.add16(parent);
-    }
-    for (const std::uint8_t movement : s.movement) {
-        crc.add(movement);
-    }
-    for (const CellIndex cell : s.end) {
-        crc.add16(cell);
-    }
-    for (const std::int16_t number : s.position) {
-        crc.add16(static_cast<std::uint16_t>(number));
-    }
-    for (const std::int8_t number : s.attitude) {
-        crc.add(static_cast<std::uint8_t>(number));
-    }
-    for (const std::uint16_t cost : s.cost) {
-        crc.add16(cost);
-    }
-    for (const std::uint8_t depth : s.depth) {
-        crc.add(depth);
-    }
-    for (const std::uint16_t first : s.first_entry) {
-        crc.add16(first);
-    }
-    for (const FootprintEntry& entry : s.entries) {
-        crc.add16(entry.cell);
-        crc.add(entry.first);
-        crc.add(entry.last);
-    }
-    return crc.value();
+    crc_.add(set.samples);
+}
+
+bool SetChecksum::advance(std::size_t elements) noexcept
+{
+    const std::size_t end = done_ + elements;
+    std::size_t first = 0;  // of a table, among the elements of all
+    const auto add_each = [&](const auto& table, auto add) noexcept {
+        const std::size_t last = std::min(end, first + table.size());
+        for (; done_ < last; ++done_) {
+            add(table[done_ - first]);
+        }
+        first += table.size();
+    };
+    const auto add8 = [this](auto number) noexcept { crc_.add(static_cast<std::uint8_t>(number)); };
+    const auto add16 = [this](auto number) noexcept { crc_.add16(static_cast<std::uint16_t>(number)); };
+    add_each(set_->parent, add16);
+    add_each(set_->movement, add8);
+    add_each(set_->end, add16);
+    add_each(set_->position, add16);
+    add_each(set_->attitude, add8);
+    add_each(set_->cost, add16);
+    add_each(set_->depth, add8);
+    add_each(set_->first_entry, add16);
+    add_each(set_->entries, [&](const FootprintEntry& entry) noexcept {
+        add16(entry.cell);
+        add8(entry.first);
+        add8(entry.last);
+    });
+    return done_ == first;
+}
+
+std::uint32_t checksum_of(const ReachSet& set) noexcept
+{
+    SetChecksum sum(set);
+    static_cast<void>(sum.advance(std::numeric_limits<std::size_t>::max()));
+    return sum.value();
 }
 
 SetStatus check(const ReachSet& s) noexcept

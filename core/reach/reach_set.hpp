@@ -5,6 +5,7 @@
 #include <span>
 #include <string_view>
 
+#include "core/base/crc.hpp"
 #include "core/reach/grid.hpp"
 #include "core/reach/movement.hpp"
 
@@ -82,6 +83,22 @@ enum class SetStatus : std::uint8_t {
     bad_entry,  ///< times out of order, or beyond the movement
     wrong_checksum,
     bad_segments,  ///< of a vehicle: numbers or sets that do not belong together (vehicle_sets.hpp)
+};
+
+/// `checksum_of` in parts.
+class SetChecksum {
+public:
+    /// The set outlives this.
+    explicit SetChecksum(const ReachSet& set) noexcept;
+    /// Goes on by so many numbers or entries of the tables; true at their end. O(elements).
+    [[nodiscard]] bool advance(std::size_t elements) noexcept;
+    /// At the end of the tables.
+    [[nodiscard]] std::uint32_t value() const noexcept { return crc_.value(); }
+
+private:
+    const ReachSet* set_;
+    Crc crc_;
+    std::size_t done_ = 0;
 };
 
 /// CRC-32 (IEEE 802.3) of the tables and of the set's numbers, in a byte order that is the same on every machine.

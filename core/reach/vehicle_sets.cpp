@@ -48,6 +48,12 @@ bool is_new(const VehicleSets& s, std::size_t segment, const ReachSet* set) noex
     return true;
 }
 
+const ReachSet* table_of(const VehicleSets& s, std::size_t table) noexcept
+{
+    const SegmentSets& segment = s.segments[table / 2];
+    return table % 2 == 0 ? segment.navigation : segment.emergency;
+}
+
 }  // namespace
 
 const SegmentSets* segment_of(const VehicleSets& sets, float speed_share, float pitch) noexcept
@@ -127,6 +133,37 @@ SetStatus check(const VehicleSets& sets) noexcept
         }
     }
     return checksum_of(sets) == sets.checksum ? SetStatus::good : SetStatus::wrong_checksum;
+}
+
+TableCheck::TableCheck(const VehicleSets& sets) noexcept : sets_(&sets), sum_(*table_of(sets, 0)) {}
+
+void TableCheck::go_to(std::size_t table) noexcept
+{
+    const std::size_t tables = 2 * sets_->segments.size();
+    while (table < tables && !is_new(*sets_, table / 2, table_of(*sets_, table))) {
+        ++table;
+    }
+    at_ = table;
+    if (table < tables) {
+        sum_ = SetChecksum(*table_of(*sets_, table));
+    }
+}
+
+Progress TableCheck::advance(WorkBudget& budget) noexcept
+{
+    const std::size_t tables = 2 * sets_->segments.size();
+    while (!failed_ && budget.spend(at_ < tables ? units::kTableElements : units::kTableNumbers)) {
+        if (at_ == tables) {
+            failed_ = checksum_of(*sets_) != sets_->checksum;
+            go_to(0);
+            return failed_ ? Progress::failed : Progress::done;
+        }
+        if (sum_.advance(kElements)) {
+            failed_ = sum_.value() != table_of(*sets_, at_)->checksum;
+            go_to(at_ + 1);
+        }
+    }
+    return failed_ ? Progress::failed : Progress::running;
 }
 
 }  // namespace jink::reach

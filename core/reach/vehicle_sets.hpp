@@ -7,6 +7,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/base/service.hpp"
+#include "core/base/work_units.hpp"
 #include "core/reach/reach_set.hpp"
 
 // The reach sets of one vehicle: one pair for each segment of its states. How sharply the vehicle turns per movement
@@ -71,6 +73,30 @@ struct VehicleSets {
 /// Checks everything that `segment_of` and the flight rely on, of the vehicle and of each of its sets; an image calls
 /// this once, when it starts. O(bytes of the tables).
 [[nodiscard]] SetStatus check(const VehicleSets& sets) noexcept;
+
+/// The checksums of a vehicle's tables, computed anew again and again while it flies: a memory cell that fails is found
+/// before long. A background service: `failed` where a table is not what it was made to be.
+class TableCheck {
+public:
+    /// What a call has to be given at least [work units], else nothing may come of it.
+    static constexpr std::uint32_t kUnits = units::kTableNumbers;
+
+    /// Good (`check`); they outlive this.
+    explicit TableCheck(const VehicleSets& sets) noexcept;
+    [[nodiscard]] Progress advance(WorkBudget& budget) noexcept;
+    [[nodiscard]] const VehicleSets& sets() const noexcept { return *sets_; }
+
+private:
+    /// Numbers or entries of a table, checked at once.
+    static constexpr std::size_t kElements = 16;
+
+    void go_to(std::size_t table) noexcept;
+
+    const VehicleSets* sets_;
+    std::size_t at_ = 0;  ///< table of all, two of each segment; behind them: the vehicle's own numbers
+    SetChecksum sum_;
+    bool failed_ = false;
+};
 
 /// A movement and a cell as they are read from tables of the mirrored root. Its own inverse.
 [[nodiscard]] constexpr Movement upside_down(Movement movement) noexcept

@@ -163,6 +163,8 @@ void Coprocessor::decide_and_control(TimePoint now, StepReport& report) noexcept
     if (event == TakeoverEvent::overruled) {
         decision_.reset_supervisor();
     }
+    const Progress background = decision_.advance_background(report.work, c);
+    diagnostics_.tables_checked += background == Progress::done ? 1U : 0U;
     telemetry_.note(event, report);
 }
 

@@ -45,6 +45,28 @@ avoid::Guidance Decision::update(const DecisionInput& input, const Configuration
     return guidance;
 }
 
+Progress Decision::advance_background(std::uint32_t spent, const Configuration& c) noexcept
+{
+    static_assert(BackgroundService<reach::TableCheck>);
+    Progress progress = Progress::running;
+    methods_.with_planner<ReachMethod>([&](const reach::Planner& planner) {
+        const reach::VehicleSets* const sets = planner.settings().sets;
+        const std::uint32_t work = supervisor_.settings().work.all;
+        if (sets == nullptr || leaves_reach_out_ || work < spent + reach::TableCheck::kUnits) {
+            return;
+        }
+        if (!tables_ || &tables_->sets() != sets) {
+            tables_.emplace(*sets);
+        }
+        WorkBudget budget(reach::TableCheck::kUnits);
+        progress = tables_->advance(budget);
+        if (progress == Progress::failed) {
+            leave_out_reach_sets(c);
+        }
+    });
+    return progress;
+}
+
 void Decision::reset() noexcept
 {
     supervisor_.reset();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <span>
 
+#include "core/reach/vehicle_sets.hpp"
 #include "firmware/app/methods.hpp"
 #include "firmware/app/nominal_paths.hpp"
 #include "firmware/app/parameters.hpp"
@@ -34,6 +36,9 @@ public:
 
     /// Another frame, or own state comes from elsewhere.
     void reset() noexcept;
+    /// The background services, with what a step has left of its units; none while it has not enough of them.
+    /// At present: the reach sets' tables (reach::TableCheck). `failed`: they are left out from now on.
+    [[nodiscard]] Progress advance_background(std::uint32_t spent, const Configuration& c) noexcept;
     /// Somebody else flies: nothing is held on to.
     void reset_supervisor() noexcept { supervisor_.reset(); }
     void configure(const Configuration& c) noexcept;
@@ -65,6 +70,7 @@ private:
     Methods::Supervisor supervisor_;
     NominalPaths nominal_;
     world::ThreatSet threats_;  ///< of one update
+    std::optional<reach::TableCheck> tables_;
 };
 
 }  // namespace jink::app

@@ -37,6 +37,7 @@ struct Diagnostics {
     std::uint32_t origin_changes = 0;       ///< a better or another origin of the link: tracks moved by as much
     std::uint32_t tracks_not_moved = 0;     ///< and were forgotten: the origin moved by more than the map reaches
     std::uint32_t near_reported = 0;        ///< NearObjects sent
+    std::uint32_t tables_checked = 0;       ///< times all tables of the reach sets were found good while flying
     std::uint32_t map_coarse =
         0;  ///< steps in which boxes stood for pieces of the map nearer than the vehicle can stop
 };

@@ -247,8 +247,8 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
         s.conflicts, s.plans, s.plans_found, s.answers_rejected, s.manoeuvres);
     std::fprintf(f,
                  "  \"replans\": %u, \"flips\": %u, \"brakes\": %u, \"escapes\": %u, \"holds\": %u, \"rejoined\": %u, "
-                 "\"gave_way\": %u, \"budget_spent\": %u,\n",
-                 s.replans, s.flips, s.brakes, s.escapes, s.holds, s.rejoined, s.gave_way, s.budget_spent);
+                 "\"held_back\": %u, \"gave_way\": %u, \"budget_spent\": %u,\n",
+                 s.replans, s.flips, s.brakes, s.escapes, s.holds, s.rejoined, s.held_back, s.gave_way, s.budget_spent);
     std::fprintf(f, "  \"deadlines_missed\": %u, \"setpoints\": %u, \"setpoints_withheld\": %u, \"faults\": %u,\n",
                  d.deadlines_missed, d.setpoints, d.setpoints_withheld, d.faults);
     std::fprintf(f,
@@ -271,8 +271,8 @@ bool StatusLog::write_summary(const std::string& path, const Watched& watched, c
     std::fprintf(
         f,
         "  \"bus_states\": %u, \"bus_states_beside\": %u, \"bus_reports_dropped\": %u, \"places_disagree\": %u, "
-        "\"near_reported\": %u,\n",
-        d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_reported);
+        "\"near_reported\": %u, \"tables_checked\": %u,\n",
+        d.bus_states, d.bus_states_beside, d.bus_reports_dropped, d.places_disagree, d.near_reported, d.tables_checked);
     const app::ConstraintDiagnostics& a = coprocessor.constraint_diagnostics();
     std::fprintf(f, "  \"areas_reported\": %u, \"areas_refused\": %u, \"areas_merged\": %u, \"areas_grown\": %u,\n",
                  a.reported, a.refused, a.merged, a.grown);

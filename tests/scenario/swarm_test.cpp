@@ -147,6 +147,27 @@ TEST(Swarm, OfFourChangesPlacesOverAPoorRadioBitByBitTheSame)
     }
 }
 
+/// Fast ones whose reports are 2 m of flight old: seeds in which bodies touched before all could stop.
+TEST(Swarm, FliesNoFasterThanAllCanStop)
+{
+    SwarmSetup setup;
+    setup.delay = 0.4;
+    struct Case {
+        unsigned vehicles;
+        double circle;
+        double cruise;
+        std::uint64_t seed;
+    };
+    for (const Case& c : {Case{13, 10.0, 5.0, 6}, {8, 10.0, 6.0, 1}, {13, 10.0, 6.0, 2}, {24, 15.0, 6.0, 2}}) {
+        setup.vehicles = c.vehicles;
+        setup.circle = c.circle;
+        setup.cruise = c.cruise;
+        const SwarmResult result = fly_swarm(setup, c.seed, {});
+        EXPECT_TRUE(result.good()) << to_line(result);
+        EXPECT_GE(result.margin, 1.0) << to_line(result);
+    }
+}
+
 /// Two with the bodies and separations of docs/evidence/swarms.md, `cruise` in m/s.
 SwarmSetup two(double cruise)
 {

@@ -16,7 +16,7 @@ import stack  # noqa: E402
 
 # With reach sets and reciprocal avoidance; the memory report has their limits and the limit of the rest
 # (toolchain/report/memory_sizes.py).
-MOST_FLASH = 680 * 1024
+MOST_FLASH = 684 * 1024
 MOST_STATIC_RAM = 112 * 1024
 MOST_COUPLED = 64 * 1024
 MOST_STACK = 12 * 1024

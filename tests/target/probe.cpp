@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/random.hpp"
 #include "firmware/app/parameters.hpp"
 #include "firmware/app/work_rate.hpp"
 #include "firmware/vehicles/default/reach_sets_reduced.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
+#include "tests/unit/core/world/same_bits.hpp"
 
 namespace jink::target {
 namespace {
@@ -133,6 +135,40 @@ world::PlanStatus Probe::plan(ProbeKind kind, const world::Situation& situation,
     }
 }
 
+std::uint32_t Probe::differing(const world::Situation& situation, const avoid::Settings& settings,
+                               std::uint32_t slicings, ProbeAnswer& out) noexcept
+{
+    static avoid::Diagnostics diagnostics;
+    Random random(out.seed);
+    const avoid::Planning planning = supervisor_.planning();
+    const avoid::Inflated inflated(situation, situation.rules.clearance);
+    avoid::Settings limited = settings;
+    if (random.below(3) == 0) {
+        limited.plan_budget = settings.kept_for_next + static_cast<std::uint32_t>(random.below(8000));
+    }
+    WorkBudget budget(limited.plan_budget);
+    avoid::Choice choice;
+    orca_.reset();
+    const world::PlanStatus status =
+        planning.plan(planning.self, {inflated.situation, situation}, limited, budget, diagnostics, manoeuvre_, choice);
+    out.status = static_cast<std::uint32_t>(status);
+    out.work = budget.spent();
+    std::uint32_t found = 0;
+    avoid::SlicedPlan& sliced = memory_.plan;
+    for (std::uint32_t i = 0; i < slicings; ++i) {
+        const std::uint64_t longest = i == 0 ? 1 : 1 + random.below(6000);
+        orca_.reset();
+        sliced.begin(situation, planning, limited, diagnostics);
+        while (!sliced.advance(static_cast<std::uint32_t>(1 + random.below(longest)))) {
+            ++out.candidates;
+        }
+        const bool same = sliced.status() == status && sliced.ran_out() == budget.exhausted() &&
+                          (status != world::PlanStatus::found || world::test::same_bits(sliced.answer(), manoeuvre_));
+        found += same ? 0U : 1U;
+    }
+    return found;
+}
+
 bool Probe::is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept
 {
     if (record.kind == ProbeKind::reach) {
@@ -181,6 +217,10 @@ void Probe::answer(const ProbeRecord& record, ProbeAnswer& out) noexcept
     }
     supervisor_.reset();
     out.magic = kProbeMagic;
+    if (record.kind == ProbeKind::slices) {
+        out.chosen = differing(situation, settings, record.updates, out);
+        return;
+    }
     bool ran_out = false;
     const bool reciprocal = record.kind == ProbeKind::reciprocal;
     if (record.kind == ProbeKind::plan || record.kind == ProbeKind::reach || reciprocal) {

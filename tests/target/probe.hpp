@@ -26,6 +26,9 @@ private:
 
     [[nodiscard]] world::PlanStatus plan(ProbeKind kind, const world::Situation& situation,
                                          WorkBudget& budget) noexcept;
+    /// How many of `slicings` ways to slice a plan do not end with the bits of `manoeuvre_`, the plan in one piece.
+    [[nodiscard]] std::uint32_t differing(const world::Situation& situation, const avoid::Settings& settings,
+                                          std::uint32_t slicings, ProbeAnswer& out) noexcept;
     /// Whether the reach sets made the choice.
     [[nodiscard]] bool is_by_reach(const ProbeRecord& record, const ProbeAnswer& answer) const noexcept;
 

@@ -24,6 +24,7 @@ enum class ProbeKind : std::uint32_t {
     info,        ///< sizes; nothing is computed
     reach,       ///< reach::Planner::plan alone
     reciprocal,  ///< orca::Planner::plan alone
+    slices,      ///< a plan by `methods` in one piece, and `updates` times in random slices
 };
 
 struct ProbeTrack {
@@ -58,8 +59,8 @@ struct ProbeRecord {
     std::uint32_t reduced_sets;  ///< 0 the build's own reach sets, 1 the default vehicle's reduced ones
     std::uint32_t shared;        ///< bit i: track i is cooperative
     std::uint32_t clock;         ///< of `update`: its work is for this clock [MHz], in slices; 0: the default, at once
-    std::uint32_t updates;       ///< of `update`: how many, 20 ms apart; the last one is counted
-    std::uint32_t methods;       ///< of `update`: sum of 1 geometric, 2 reach sets, 4 reciprocal; 0: all
+    std::uint32_t updates;       ///< of `update`: how many, 20 ms apart; the last one is counted; of `slices`: slicings
+    std::uint32_t methods;       ///< of `update` and `slices`: sum of 1 geometric, 2 reach sets, 4 reciprocal; 0: all
     float own_position[3];
     float own_velocity[3];
     float own_sigma;
@@ -94,9 +95,10 @@ struct ProbeAnswer {
     std::uint32_t seed;
     std::uint32_t status;      ///< world::PlanStatus; of `update` the one of its plan
     std::uint32_t candidates;  ///< of the last attempt
-    std::uint32_t chosen;      ///< index of the candidate; kReachChose and the node where reach sets chose
-    std::uint32_t work;        ///< work units spent
-    std::uint32_t state;       ///< avoid::State, of `update`
+    std::uint32_t chosen;  ///< index of the candidate; kReachChose and the node where reach sets chose; of `slices`:
+                           ///< how many differ from the plan in one piece
+    std::uint32_t work;    ///< work units spent
+    std::uint32_t state;   ///< avoid::State, of `update`
     std::uint32_t stack_used;  ///< [bytes] since start; 0 where unknown
     float cost;
     float velocity[3];        ///< command, of `update` and `reciprocal`; else first velocity of the path

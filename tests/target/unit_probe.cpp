@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/avoid/common_stop.hpp"
 #include "core/avoid/fallback.hpp"
 #include "core/avoid/final_check.hpp"
 #include "core/avoid/give_way.hpp"
@@ -17,8 +18,10 @@
 #include "core/geometric/curve.hpp"
 #include "core/geometry/convex.hpp"
 #include "core/orca/planner.hpp"
+#include "core/reach/vehicle_sets.hpp"
 #include "core/world/obstacle_distance.hpp"
 #include "core/world/threat_set.hpp"
+#include "firmware/app/reach_sets.hpp"
 #include "firmware/vehicles/default/cost_tables.hpp"
 #include "tests/target/probe_io.hpp"
 #include "tests/target/window.hpp"
@@ -58,6 +61,8 @@ enum class Work : std::uint32_t {
     objective_route,
     aircraft_look,
     aircraft_command,
+    common_stop,
+    table_check,
     count,
 };
 
@@ -121,6 +126,7 @@ private:
     void geometry(Work work, WorkBudget& budget) noexcept;
     void curve(Work work, WorkBudget& budget) noexcept;
     void program(WorkBudget& budget) noexcept;
+    [[nodiscard]] std::uint32_t tables(WorkBudget& budget) noexcept;
 
     Random random_{0};
     std::array<Point3, kMaxHullVertices> vertices_{};
@@ -200,7 +206,7 @@ void UnitProbe::scene(Work work) noexcept
     rules_.well_clear.radius = aircraft ? 610.0F : 0.0F;
     const bool tracks = aircraft || work == Work::separation_tracks || work == Work::conflict_tracks ||
                         work == Work::fallback || work == Work::orca_tracks || work == Work::objective_leg ||
-                        work == Work::objective_route;
+                        work == Work::objective_route || work == Work::common_stop;
     const bool spheres = work == Work::separation_spheres || work == Work::conflict_spheres || work == Work::fallback ||
                          work == Work::orca_spheres;
     const bool solids = work == Work::separation_solids || work == Work::conflict_solids || work == Work::orca_solids;
@@ -341,6 +347,20 @@ void UnitProbe::wind() noexcept
     }
 }
 
+/// From anywhere in a pass, as much as a step does.
+std::uint32_t UnitProbe::tables(WorkBudget& budget) noexcept
+{
+    reach::TableCheck check(app::reach_sets());
+    WorkBudget before(static_cast<std::uint32_t>(below(100'000)));
+    static_cast<void>(check.advance(before));
+    WorkBudget step = budget.part(reach::TableCheck::kUnits);
+    jink_window_begin();
+    const Progress progress = check.advance(step);
+    jink_window_end();
+    sink_ = static_cast<float>(progress);
+    return step.spent();
+}
+
 std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
 {
     random_ = Random(seed * 977ULL + static_cast<std::uint32_t>(work));
@@ -357,6 +377,9 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
     if (work == Work::orca_program) {
         program(budget);
         return budget.spent();
+    }
+    if (work == Work::table_check) {
+        return tables(budget);
     }
     scene(work);
     world::Situation s = situation();
@@ -408,6 +431,7 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
                     return avoid::choose_give_way(s, command, nullptr, settings, budget, manoeuvre_);
                 }).value_or(-1.0F);
         break;
+    case Work::common_stop: sink_ = counted([&] { return avoid::stoppable_command(s, command, budget); }).x(); break;
     case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:
     case Work::orca_spheres:

@@ -14,7 +14,7 @@ HEADER = struct.Struct("<13I20f2I8f2I")
 TRACK = struct.Struct("<10f")
 OBSTACLE = struct.Struct("<I8f")
 ANSWER = struct.Struct("<8I5fI")
-KINDS = {"plan": 0, "update": 1, "info": 2, "reach": 3, "reciprocal": 4}
+KINDS = {"plan": 0, "update": 1, "info": 2, "reach": 3, "reciprocal": 4, "slices": 5}
 STATUS = ["found", "no_conflict", "too_close", "none_available", "budget_spent", "bad_input", "running"]
 
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "core/reach/planner.hpp"
 #include "firmware/app/fiber_flow.hpp"
 #include "firmware/app/parameters.hpp"
+#include "tests/unit/core/world/same_bits.hpp"
 #include "tests/unit/core/world/scene.hpp"
 
 namespace jink::avoid {
@@ -29,6 +29,12 @@ int cases()
 {
     const char* const given = std::getenv("JINK_CASES");
     return given != nullptr ? std::atoi(given) : 150;
+}
+
+int slicings()
+{
+    const char* const given = std::getenv("JINK_SLICINGS");
+    return given != nullptr ? std::atoi(given) : 5;
 }
 
 /// Traffic and obstacles about a leg, some of them in the way.
@@ -89,20 +95,6 @@ struct Methods {
     }
 };
 
-bool same(const world::Manoeuvre& a, const world::Manoeuvre& b)
-{
-    const auto same_bits = [](const auto& x, const auto& y) { return std::memcmp(&x, &y, sizeof x) == 0; };
-    bool equal = a.kind == b.kind && a.start.us == b.start.us && a.valid_until.us == b.valid_until.us &&
-                 same_bits(a.command, b.command) && same_bits(a.side, b.side) && same_bits(a.cost, b.cost) &&
-                 a.path.points.size() == b.path.points.size();
-    for (std::size_t i = 0; equal && i < a.path.points.size(); ++i) {
-        equal = same_bits(a.path.points[i].position, b.path.points[i].position) &&
-                same_bits(a.path.points[i].velocity, b.path.points[i].velocity) &&
-                same_bits(a.path.points[i].time, b.path.points[i].time);
-    }
-    return equal;
-}
-
 TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
 {
     constexpr std::uint64_t kSeed = 20261127;
@@ -130,7 +122,7 @@ TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
             const world::PlanStatus status =
                 Methods::plan(methods.get(), {inflated.situation, s}, settings, budget, diagnostics, whole, choice);
             found += status == world::PlanStatus::found ? 1 : 0;
-            for (int slicing = 0; slicing < 5; ++slicing) {
+            for (int slicing = 0; slicing < slicings(); ++slicing) {
                 const std::uint32_t longest = slicing == 0 ? 1 : 1 + random.below(6000);
                 sliced->begin(s, planning, settings, diagnostics);
                 // What the situation views is gone from now on.
@@ -155,7 +147,8 @@ TEST(SlicedPlans, AreThoseInOnePieceBitForBitWhileTheTablesChange)
                 ASSERT_EQ(sliced->ran_out(), budget.exhausted()) << i;
                 ASSERT_LE(spent, settings.plan_budget) << "case " << i << ", " << methods->which;
                 if (status == world::PlanStatus::found) {
-                    ASSERT_TRUE(same(sliced->answer(), whole)) << "case " << i << ", " << methods->which;
+                    ASSERT_TRUE(world::test::same_bits(sliced->answer(), whole))
+                        << "case " << i << ", " << methods->which;
                 }
             }
         }

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "firmware/app/method_orders.hpp"
+#include "firmware/app/reach_sets.hpp"
 #include "tests/unit/app/flight.hpp"
 
 namespace jink::app::test {
@@ -143,6 +144,51 @@ TEST(CoprocessorMethods, DamagedSetsAreLeftOut)
     EXPECT_EQ(passed.by, kGeometric);
     EXPECT_EQ(passed.reported, 1);
     EXPECT_GT(passed.nearest, 2.0F);
+}
+
+/// A bit that flips in flight is found, and the flight goes on without the sets.
+TEST(CoprocessorMethods, SetsThatGetDamagedInFlightAreLeftOut)
+{
+    const reach::VehicleSets& whole = reach_sets();
+    std::vector<reach::SegmentSets> segments(whole.segments.begin(), whole.segments.end());
+    const reach::ReachSet* const last = segments.back().emergency;
+    std::vector<std::uint16_t> costs(last->cost.begin(), last->cost.end());
+    reach::ReachSet worn = *last;
+    worn.cost = costs;
+    for (reach::SegmentSets& segment : segments) {
+        segment.emergency = segment.emergency == last ? &worn : segment.emergency;
+        segment.navigation = segment.navigation == last ? &worn : segment.navigation;
+    }
+    reach::VehicleSets sets = whole;
+    sets.segments = segments;
+    Parameters parameters;
+    ASSERT_EQ(parameters.set(Param::methods, 2.0F), ParamStatus::ok);
+    parameters.use(sets);
+    const auto f = std::make_unique<Flight>(parameters);
+    const auto damaged = [&] {
+        const auto said = f->said_of<Statustext>();
+        return std::count_if(said.begin(), said.end(), [](const Statustext& m) {
+            return std::string(m.text.data(), m.text.size()).find("damaged") != std::string::npos;
+        });
+    };
+    ASSERT_TRUE(f->until([](const StepReport& r) { return r.faults == 0; }, 200));
+    ASSERT_TRUE(f->until(
+        [&](const StepReport&) { return f->coprocessor.diagnostics().tables_checked > 0 || damaged() > 0; }, 20'000));
+    ASSERT_EQ(f->coprocessor.diagnostics().tables_checked, 1U) << "good ones";
+    costs[costs.size() / 2] ^= 0x0100;
+    int found = 0;
+    f->until(
+        [&](const StepReport&) {
+            found += static_cast<int>(damaged());
+            return found > 0;
+        },
+        20'000);
+    EXPECT_EQ(found, 1);
+    EXPECT_EQ(f->coprocessor.diagnostics().tables_checked, 1U);
+    f->obstacles = {f->position + Vec3(0.4F, 40.0F, 0.0F)};
+    ASSERT_TRUE(f->until([](const StepReport& r) { return r.control == Control::ours; }));
+    ASSERT_NE(f->coprocessor.flying(), nullptr);
+    EXPECT_EQ(f->coprocessor.flying()->by, kGeometric);
 }
 
 TEST(CoprocessorMethods, SetsThatDoNotSuitTheVehicleAreLeftOutAndItIsReported)

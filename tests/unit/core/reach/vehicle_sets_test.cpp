@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "firmware/vehicles/default/reach_sets.hpp"
+
 namespace jink::reach {
 namespace {
 
@@ -218,6 +220,73 @@ TEST(UpsideDown, IsItsOwnInverseAndTurnsPitchAlone)
         const Vec3 centre = grid.centre(place);
         EXPECT_NEAR((grid.centre(mirrored) - Vec3(centre.x(), centre.y(), -centre.z())).norm(), 0.0F, 1e-5F);
     }
+}
+
+/// Calls until something other than `running` comes, with as many units each as a step gives.
+Progress pass(TableCheck& tables, std::uint32_t units = TableCheck::kUnits, int* calls = nullptr)
+{
+    for (int i = 1; i < 10'000; ++i) {
+        WorkBudget budget(units);
+        const Progress progress = tables.advance(budget);
+        if (progress != Progress::running) {
+            if (calls != nullptr) {
+                *calls = i;
+            }
+            return progress;
+        }
+    }
+    return Progress::running;
+}
+
+TEST_F(VehicleSetsTest, TablesAreCheckedAgainAndAgain)
+{
+    for (const std::uint32_t units : {20U, 23U, 37U, 1000U}) {
+        TableCheck tables(sets);
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_EQ(pass(tables, units), Progress::done) << units;
+        }
+    }
+    TableCheck starved(sets);
+    EXPECT_EQ(pass(starved, TableCheck::kUnits - 1), Progress::running);
+}
+
+TEST_F(VehicleSetsTest, EveryFlippedBitIsFoundWithinAPassAndForGood)
+{
+    const auto flip_each = [&](auto& table) {
+        const std::span<std::byte> bytes = std::as_writable_bytes(std::span(table));
+        for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+            TableCheck tables(sets);
+            ASSERT_EQ(pass(tables), Progress::done);
+            bytes[bit / 8] ^= std::byte{1} << (bit % 8);
+            EXPECT_EQ(pass(tables), Progress::failed) << bit;
+            bytes[bit / 8] ^= std::byte{1} << (bit % 8);
+            EXPECT_EQ(pass(tables), Progress::failed) << "what has failed once will fail again";
+        }
+    };
+    for (TinySet* set : {&a, &b}) {
+        flip_each(set->parent);
+        flip_each(set->movement);
+        flip_each(set->end);
+        flip_each(set->position);
+        flip_each(set->attitude);
+        flip_each(set->cost);
+        flip_each(set->depth);
+        flip_each(set->first_entry);
+        flip_each(set->entries);
+    }
+    flip_each(speeds);
+    flip_each(separators);
+    flip_each(most_pitch);
+}
+
+/// The real ones: each table once although several segments refer to it, however the work is divided.
+TEST(VehicleSets, TablesOfTheDefaultVehicleAreCheckedWithinAMinute)
+{
+    TableCheck tables(kDefaultSets);
+    int calls = 0;
+    EXPECT_EQ(pass(tables, TableCheck::kUnits, &calls), Progress::done);
+    EXPECT_LT(calls, 60 * 50) << "steps";
+    EXPECT_EQ(pass(tables, 1'000'000), Progress::done);
 }
 
 }  // namespace

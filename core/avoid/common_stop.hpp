@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "core/base/work_budget.hpp"
+#include "core/world/world.hpp"
+
+// Vehicles that avoid each other keep one way out in common: all of them stop.
+
+namespace jink::avoid {
+
+/// The command that is flown in place of `wanted`, so that the own vehicle and all cooperative tracks can still stop
+/// without contact: `wanted` where it leaves that, else so much of it, in eighths, as does; where none does, a stop.
+///
+/// The own vehicle flies a command for FlightRules::latency and stops then. A track flies on for the latency and stops
+/// then. Since its report, and until it stops, it may have changed its velocity by what the own vehicle could in that
+/// time; it flies no faster than the own cruise speed, or than it was reported to. Level and vertical deceleration by
+/// themselves, k_sigma of places and velocities and the own loop's lag included; the lag of a track's loop is left to
+/// the safety box.
+///
+/// Two vehicles that command no more than this never touch, as long as both are steered so, fly as the vehicle model
+/// says, and hear each other's reports: of their two newest commands the later one was found clear of all that the
+/// earlier one may lead to; and one who finds none that is clear stops, which the other one has counted on. So do any
+/// number of vehicles. What this assumes: docs/guides/common_stop.md.
+///
+/// A vehicle that stands where not even that is clear of a track leaves its reach at 0.3 m/s, else all would stand for
+/// ever. `wanted` where stopping is not clear of anything else and no better than `wanted` there; and for a fixed wing,
+/// which cannot stop. Without budget: a stop. O(tracks), six times for each track that slows the vehicle down.
+[[nodiscard]] Vec3 stoppable_command(const world::Situation& situation, const Vec3& wanted,
+                                     WorkBudget& budget) noexcept;
+
+}  // namespace jink::avoid
