@@ -98,8 +98,9 @@ struct OwnStop {
 
 class CommonStop {
 public:
-    CommonStop(const world::Situation& s, const Vec3& wanted, WorkBudget& budget) noexcept
-        : s_(s), wanted_(wanted), tracks_(world::of_kind(s.threats, world::ThreatKind::track)), budget_(budget),
+    CommonStop(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget) noexcept
+        : s_(s), wanted_(wanted), most_(fastest < wanted.norm() ? fastest / wanted.norm() : 1.0F),
+          tracks_(world::of_kind(s.threats, world::ThreatKind::track)), budget_(budget),
           acceleration_(std::max(s.limits.max_acceleration, s.limits.max_vertical_acceleration))
     {
         const float faster = acceleration_ * latency_of(s);
@@ -125,8 +126,8 @@ public:
     [[nodiscard]] Vec3 command() noexcept
     {
         OwnStop own;
-        fly(wanted_, own);
-        float share = 1.0F;
+        float share = most_;
+        fly(share * wanted_, own);
         for (const world::Threat& track : tracks_) {
             if (counts(track)) {
                 share = share_for(track, share, own);
@@ -268,6 +269,7 @@ private:
 
     const world::Situation& s_;
     const Vec3& wanted_;
+    float most_;  ///< share of what is wanted, at most
     std::span<const world::Threat> tracks_;
     WorkBudget& budget_;
     float acceleration_;
@@ -277,12 +279,12 @@ private:
 
 }  // namespace
 
-Vec3 stoppable_command(const world::Situation& s, const Vec3& wanted, WorkBudget& budget) noexcept
+Vec3 stoppable_command(const world::Situation& s, const Vec3& wanted, float fastest, WorkBudget& budget) noexcept
 {
     if (s.limits.kind != vehicle::VehicleKind::multirotor || s.threats.data() == nullptr || !is_finite(wanted)) {
         return wanted;
     }
-    CommonStop stop(s, wanted, budget);
+    CommonStop stop(s, wanted, fastest, budget);
     return stop.has_tracks() ? stop.command() : wanted;
 }
 

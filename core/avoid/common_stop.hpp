@@ -10,6 +10,8 @@ namespace jink::avoid {
 
 /// The command that is flown in place of `wanted`, so that the own vehicle and all cooperative tracks can still stop
 /// without contact: `wanted` where it leaves that, else so much of it, in eighths, as does; where none does, a stop.
+/// Never faster than `fastest` [m/s]: the age of reports rises and falls, and what is clear with it; a command that
+/// has been held back comes up again no faster than the vehicle can.
 ///
 /// The own vehicle flies a command for FlightRules::latency and stops then. A track flies on for the latency and stops
 /// then. Since its report, and until it stops, it may have changed its velocity by what the own vehicle could in that
@@ -25,7 +27,7 @@ namespace jink::avoid {
 /// A vehicle that stands where not even that is clear of a track leaves its reach at 0.3 m/s, else all would stand for
 /// ever. `wanted` where stopping is not clear of anything else and no better than `wanted` there; and for a fixed wing,
 /// which cannot stop. Without budget: a stop. O(tracks), six times for each track that slows the vehicle down.
-[[nodiscard]] Vec3 stoppable_command(const world::Situation& situation, const Vec3& wanted,
+[[nodiscard]] Vec3 stoppable_command(const world::Situation& situation, const Vec3& wanted, float fastest,
                                      WorkBudget& budget) noexcept;
 
 }  // namespace jink::avoid

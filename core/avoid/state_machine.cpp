@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <limits>
 
 #include "core/avoid/common_stop.hpp"
 #include "core/avoid/tick.hpp"
@@ -295,11 +296,18 @@ void StateMachine::run_phase(Tick& tick) noexcept
 /// Two vehicles that avoid each other can always stop together: a command that would take that away is slowed down.
 void StateMachine::keep_stoppable(Tick& tick) noexcept
 {
-    if (!tick.in_control || !tick.out.wants_control) {
+    const bool steers = tick.in_control && tick.out.wants_control;
+    const bool rises = held_back_ && tick.s.commanded != nullptr;
+    held_back_ = false;
+    if (!steers) {
         return;
     }
-    const Vec3 command = stoppable_command(tick.s, tick.out.velocity, tick.budget);
-    diagnostics_.held_back += command != tick.out.velocity ? 1U : 0U;
+    const float fastest =
+        rises ? tick.s.commanded->velocity.norm() + tick.s.limits.max_acceleration * (tick.s.now - tick.s.commanded->at)
+              : std::numeric_limits<float>::infinity();
+    const Vec3 command = stoppable_command(tick.s, tick.out.velocity, fastest, tick.budget);
+    held_back_ = command != tick.out.velocity;
+    diagnostics_.held_back += held_back_ ? 1U : 0U;
     tick.out.velocity = command;
 }
 

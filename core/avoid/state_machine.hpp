@@ -115,6 +115,7 @@ private:
     Vec3 chosen_side_ = Vec3::Zero();  ///< of what is flown, when it was taken; its own side follows the flight
     Seconds backed_off_ = 0.0F;        ///< in this conflict
     TimePoint last_update_;
+    bool held_back_ = false;        ///< the last command, so that all can stop
     Vec3 block_at_ = Vec3::Zero();  ///< where the vehicle is since block_since_, more or less
     TimePoint block_since_;
     world::Manoeuvre answer_;  ///< of the last plan

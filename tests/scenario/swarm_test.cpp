@@ -181,6 +181,25 @@ SwarmSetup two(double cruise)
     return setup;
 }
 
+/// The age of reports rises and falls between them. Commands that jumped with it were taken for set-points that are not
+/// followed, and the vehicle was left standing.
+TEST(Swarm, OfTwoIsHeldBackSmoothly)
+{
+    struct Case {
+        double sector;
+        double cruise;
+        std::uint64_t seed;
+    };
+    for (const Case& c :
+         {Case{360.0, 15.0, 950004}, {180.0, 8.0, 950006}, {180.0, 8.0, 950009}, {180.0, 8.0, 950019}}) {
+        SwarmSetup setup = two(c.cruise);
+        setup.sector = c.sector;
+        setup.delay = 1.0;
+        const SwarmResult result = fly_swarm(setup, c.seed, {});
+        EXPECT_TRUE(result.good()) << to_line(result);
+    }
+}
+
 /// Two head-on and crossing that hear of each other late: seeds in which both once chose the same side.
 TEST(Swarm, OfTwoPassesOnItsSidesHoweverOldTheReports)
 {

@@ -431,7 +431,9 @@ std::uint32_t UnitProbe::units_of(Work work, std::uint32_t seed) noexcept
                     return avoid::choose_give_way(s, command, nullptr, settings, budget, manoeuvre_);
                 }).value_or(-1.0F);
         break;
-    case Work::common_stop: sink_ = counted([&] { return avoid::stoppable_command(s, command, budget); }).x(); break;
+    case Work::common_stop:
+        sink_ = counted([&] { return avoid::stoppable_command(s, command, command.norm(), budget); }).x();
+        break;
     case Work::command: sink_ = counted([&] { return avoid::command_margin(s, command, settings, budget); }); break;
     case Work::orca_tracks:
     case Work::orca_spheres:

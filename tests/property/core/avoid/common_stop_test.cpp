@@ -6,6 +6,7 @@
 #include "core/avoid/common_stop.hpp"
 
 #include <deque>
+#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -22,6 +23,7 @@ using geometry::oracle::case_count;
 using geometry::oracle::seed_of;
 
 constexpr Seconds kTick = 0.02F;
+constexpr float kAny = std::numeric_limits<float>::infinity();
 
 struct Report {
     TimePoint stamp;
@@ -32,7 +34,9 @@ struct Report {
 struct Flier {
     vehicle::VehicleState state;
     Vec3 wants = Vec3::Zero();
-    Vec3 command = Vec3::Zero();
+    Vec3 said = Vec3::Zero();  ///< the newest command
+    bool is_held_back = false;
+    Vec3 command = Vec3::Zero();  ///< what the autopilot flies
     std::deque<Vec3> on_the_way;  ///< commands that the autopilot does not have yet
     std::vector<Report> heard;    ///< the last of each
 };
@@ -113,9 +117,12 @@ struct Crowd {
         WorkBudget budget(1'000'000);
         const world::Situation s = scene.situation();
         const Vec3& wants = vehicles[own].wants;
-        Vec3 command = stoppable_command(s, wants, budget);
-        slowed += command != wants ? 1 : 0;
-        return command;
+        Flier& v = vehicles[own];
+        const float fastest = v.is_held_back ? v.said.norm() + limits.max_acceleration * kTick : kAny;
+        v.said = stoppable_command(s, wants, fastest, budget);
+        v.is_held_back = v.said != wants;
+        slowed += v.is_held_back ? 1 : 0;
+        return v.said;
     }
 
     void step()
@@ -208,10 +215,10 @@ struct Pair : world::test::Scene {
         t.cooperative = true;
         return t;
     }
-    [[nodiscard]] Vec3 flown(const Vec3& wanted = {4, 0, 0}, std::uint32_t units = 100'000) const
+    [[nodiscard]] Vec3 flown(const Vec3& wanted = {4, 0, 0}, std::uint32_t units = 100'000, float fastest = kAny) const
     {
         WorkBudget budget(units);
-        return stoppable_command(situation(), wanted, budget);
+        return stoppable_command(situation(), wanted, fastest, budget);
     }
 };
 
@@ -241,6 +248,16 @@ TEST(CommonStop, SlowsDownByHowOldTheReportIs)
         before = speed;
     }
     EXPECT_EQ(before, 0.0F) << "two seconds hide 10 m";
+}
+
+TEST(CommonStop, ComesUpAgainNoFasterThanItMay)
+{
+    Pair far;
+    far.other({40, 0, 0}, {-4, 0, 0});
+    EXPECT_EQ(far.flown({4, 0, 0}, 100'000, 1.0F), Vec3(1, 0, 0));
+    EXPECT_EQ(far.flown({4, 0, 0}, 100'000, 0.0F), Vec3(0, 0, 0));
+    EXPECT_EQ(far.flown({4, 0, 0}, 100'000, 4.5F), Vec3(4, 0, 0));
+    EXPECT_EQ(far.flown({0, 0, 0}, 100'000, 0.0F), Vec3(0, 0, 0));
 }
 
 TEST(CommonStop, StopsInFrontOfOneThatComes)
