@@ -123,7 +123,7 @@ public:
     }
 
     /// See stoppable_command.
-    [[nodiscard]] Vec3 command() noexcept
+    [[nodiscard, gnu::cold, gnu::noinline]] Vec3 command() noexcept
     {
         OwnStop own;
         float share = most_;

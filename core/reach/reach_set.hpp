@@ -89,7 +89,7 @@ enum class SetStatus : std::uint8_t {
 class SetChecksum {
 public:
     /// The set outlives this.
-    explicit SetChecksum(const ReachSet& set) noexcept;
+    [[gnu::cold]] explicit SetChecksum(const ReachSet& set) noexcept;
     /// Goes on by so many numbers or entries of the tables; true at their end. O(elements).
     [[nodiscard]] bool advance(std::size_t elements) noexcept;
     /// At the end of the tables.

@@ -90,7 +90,7 @@ private:
     /// Numbers or entries of a table, checked at once.
     static constexpr std::size_t kElements = 16;
 
-    void go_to(std::size_t table) noexcept;
+    [[gnu::cold]] void go_to(std::size_t table) noexcept;
 
     const VehicleSets* sets_;
     std::size_t at_ = 0;  ///< table of all, two of each segment; behind them: the vehicle's own numbers
