@@ -106,6 +106,7 @@ inline constexpr std::uint32_t kReachEntries = 2;       ///< eight entries of fo
 inline constexpr std::uint32_t kReachPath = 30;         ///< trajectory that is made a path, with a stop at its end
 inline constexpr std::uint32_t kReachScanCell = 20;     ///< cell of a set or of a scan, when one is laid over the other
 
+// --- checks of tables in the background (core/reach/vehicle_sets) ---
 inline constexpr std::uint32_t kTableElements = 5;  ///< sixteen numbers of a table that is checked
 inline constexpr std::uint32_t kTableNumbers = 20;  ///< and the numbers of a vehicle's sets
 

@@ -64,6 +64,11 @@ float urgency(const Track& track, unsigned sightings, bool flood, const vehicle:
     return (t + miss / kMissSpeed + std::max(0.0F, age)) * newcomer * seen_here;
 }
 
+Seconds TrackTable::most_age(bool cooperative) const noexcept
+{
+    return cooperative ? std::max(settings_.max_age, settings_.cooperative_age) : settings_.max_age;
+}
+
 TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleState& own, TimePoint now) const noexcept
 {
     if (!all_finite(m)) {
@@ -82,7 +87,7 @@ TrackStatus TrackTable::admit(const TrackMeasurement& m, const vehicle::VehicleS
     if (age < -settings_.future_slack) {
         return TrackStatus::future;
     }
-    return age > settings_.max_age ? TrackStatus::stale : TrackStatus::updated;
+    return age > most_age(m.cooperative) ? TrackStatus::stale : TrackStatus::updated;
 }
 
 TrackTable::Entry TrackTable::start(const TrackMeasurement& m) const noexcept
@@ -282,7 +287,7 @@ TrackStatus TrackTable::update(const TrackMeasurement& m, const vehicle::Vehicle
 void TrackTable::expire(TimePoint now) noexcept
 {
     for (std::size_t i = 0; i < entries_.size();) {
-        if (now - entries_[i].track.stamp > settings_.max_age) {
+        if (now - entries_[i].track.stamp > most_age(entries_[i].track.cooperative)) {
             entries_.swap_erase(i);
             ++diagnostics_.expired;
         } else {

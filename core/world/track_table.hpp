@@ -34,7 +34,7 @@ enum class TrackStatus : std::uint8_t {
     not_finite,    ///< NaN or infinity
     out_of_range,  ///< farther, larger or less certain than `max_range`, faster or less certain in that than
                    ///< `max_speed`, sigmas below 0.1 mm, acceleration not in 0..1000 m/s2
-    stale,         ///< older than `max_age`, or not newer than the track that it fits
+    stale,         ///< too old to be kept, or not newer than the track that it fits
     future,        ///< stamped later than now
     full,          ///< table full, or kMaxSameId tracks of this id, and the sighting is the least urgent
 };
@@ -51,6 +51,7 @@ struct TrackDiagnostics {
 
 struct TrackTableSettings {
     Seconds max_age = 3.0F;             ///< a track not seen for longer is dropped [s]
+    Seconds cooperative_age = 10.0F;    ///< where that is longer: a cooperative one [s]
     float max_range = 20000.0F;         ///< from the vehicle [m]
     float max_speed = 400.0F;           ///< [m/s]
     float process_acceleration = 0.5F;  ///< white acceleration noise of the filter, root of its density [m/s^1.5]
@@ -84,7 +85,7 @@ public:
     /// Takes one sighting. O(kMaxTracks).
     TrackStatus update(const TrackMeasurement& measurement, const vehicle::VehicleState& own, TimePoint now) noexcept;
 
-    /// Drops tracks older than `max_age`. O(kMaxTracks).
+    /// Drops tracks that are too old. O(kMaxTracks).
     void expire(TimePoint now) noexcept;
 
     /// Tracks extrapolated to `now`, in order of id and instance (so that order of arrival changes nothing); their
@@ -118,6 +119,7 @@ private:
     };
     static constexpr std::size_t kNone = kMaxTracks;
 
+    [[nodiscard]] Seconds most_age(bool cooperative) const noexcept;
     [[nodiscard]] TrackStatus admit(const TrackMeasurement& m, const vehicle::VehicleState& own,
                                     TimePoint now) const noexcept;
     [[nodiscard]] Entry start(const TrackMeasurement& m) const noexcept;

@@ -32,7 +32,7 @@ constexpr std::array<ParamInfo, kParamCount> kTable{{
     {"TRK_SIGMA_V", 0.3F, 0.01F, 100, false, "velocity noise of traffic, one standard deviation [m/s]"},
     {"TRK_ACCEL", 0, 0, 50, false, "acceleration that traffic may show unannounced [m/s2]"},
     {"TRK_LATENCY", 0.1F, 0, 2, false, "age of a traffic report on arrival [s]"},
-    {"TRK_AGE", 3, 0.2F, 60, false, "traffic not heard for longer is dropped [s]"},
+    {"TRK_AGE", 3, 0.2F, 60, false, "traffic not heard for longer is dropped, cooperative after 10 s at least [s]"},
     {"OBS_HEIGHT", 10, 0.5F, 500, false, "half height given to what a level scan sees [m]"},
     {"OBS_KEEP", 1, 0.1F, 60, false, "what a scan saw is kept this long [s]"},
     {"OWN_AGE", 0.5F, 0.05F, 2, false, "own state older than this is a fault [s]"},

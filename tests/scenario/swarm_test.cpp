@@ -168,6 +168,22 @@ TEST(Swarm, FliesNoFasterThanAllCanStop)
     }
 }
 
+/// 97 of 100 reports are lost and the others are a second late: nothing is heard of the other one for seconds.
+TEST(Swarm, StandsStillWhereAVehicleIsNotHeardAnyMore)
+{
+    SwarmSetup setup;
+    setup.vehicles = 2;
+    setup.circle = 60.0;
+    setup.cruise = 6.0;
+    setup.loss = 0.97;
+    setup.delay = 1.0;
+    for (const std::uint64_t seed : {8U, 13U, 17U, 29U}) {
+        const SwarmResult result = fly_swarm(setup, seed, {});
+        EXPECT_TRUE(result.good()) << to_line(result);
+        EXPECT_GE(result.margin, 1.0) << to_line(result);
+    }
+}
+
 /// Two with the bodies and separations of docs/evidence/swarms.md, `cruise` in m/s.
 SwarmSetup two(double cruise)
 {

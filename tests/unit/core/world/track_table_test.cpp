@@ -159,6 +159,33 @@ TEST_F(TrackTables, StaleAndFutureStamps)
     EXPECT_EQ(sum(table.diagnostics()), 4U);
 }
 
+TEST_F(TrackTables, ACooperativeVehicleIsKeptForLonger)
+{
+    TrackTableSettings settings;
+    settings.max_age = 2.0F;
+    settings.cooperative_age = 8.0F;
+    table.configure(settings);
+    TrackMeasurement silent = sighting(1, Vec3(1, 0, 0), kTime - 5.0F);
+    EXPECT_EQ(table.update(silent, own, kTime), TrackStatus::stale);
+    silent.cooperative = true;
+    EXPECT_EQ(table.update(silent, own, kTime), TrackStatus::created);
+    EXPECT_EQ(table.update(sighting(2, Vec3(50, 0, 0), kTime - 1.5F), own, kTime), TrackStatus::created);
+    table.expire(kTime + 1.0F);
+    ASSERT_EQ(table.size(), 1U) << "of the other one nothing was heard for 2.5 s";
+    EXPECT_EQ(table.snapshot(kTime)[0].id, 1U);
+    table.expire(kTime + 2.99F);
+    EXPECT_EQ(table.size(), 1U);
+    table.expire(kTime + 3.01F);
+    EXPECT_EQ(table.size(), 0U);
+    // A longer age of all is theirs too.
+    settings.max_age = 20.0F;
+    table.configure(settings);
+    silent.stamp = kTime - 19.0F;
+    EXPECT_EQ(table.update(silent, own, kTime), TrackStatus::created);
+    table.expire(kTime);
+    EXPECT_EQ(table.size(), 1U);
+}
+
 TEST_F(TrackTables, AnOlderOrEqualStampOfAKnownTrackChangesNothing)
 {
     EXPECT_EQ(table.update(sighting(1, Vec3(5, 0, 0)), own, kTime), TrackStatus::created);
