@@ -55,7 +55,7 @@ TEST(Jinkd, RefusesWhatItCannotUse)
         EXPECT_FALSE(text_of(scratch / "out").empty()) << testing::PrintToString(arguments);
     }
     Daemon daemon({"--serial", "/dev/ptmx", "--params", bad}, scratch / "out");
-    EXPECT_EQ(daemon.wait(kPatience), 1);
+    EXPECT_EQ(daemon.wait(kPatience), 2);
     const std::string said = text_of(scratch / "out");
     EXPECT_NE(said.find("bad.param:1"), std::string::npos) << said;
     EXPECT_NE(said.find("bad.param:2"), std::string::npos) << said;
@@ -76,7 +76,7 @@ TEST(Jinkd, SaysWhatIsMissingForCan)
         daemon.signal(SIGTERM);
         EXPECT_EQ(daemon.wait(kPatience), 0);
     } else {
-        EXPECT_EQ(daemon.wait(kPatience), 1);
+        EXPECT_EQ(daemon.wait(kPatience), 2);
         EXPECT_NE(text_of(scratch / "out").find("no SocketCAN (AF_CAN)"), std::string::npos);
     }
 }

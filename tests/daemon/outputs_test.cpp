@@ -195,7 +195,7 @@ TEST_F(DaemonOutputs, AFifoInPlaceOfAFileIsRefusedAtOnce)
             given.erase(given.begin(), given.begin() + 2);
         }
         Daemon daemon(given, scratch / "out");
-        EXPECT_EQ(daemon.wait(kPatience), 1) << option << "\n" << text_of(scratch / "out");
+        EXPECT_EQ(daemon.wait(kPatience), 2) << option << "\n" << text_of(scratch / "out");
         EXPECT_NE(text_of(scratch / "out").find("fifo"), std::string::npos) << option;
     }
 }

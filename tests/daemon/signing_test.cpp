@@ -151,7 +151,7 @@ TEST_F(DaemonSigning, RefusesKeysItCannotUse)
     for (std::vector<std::string> arguments : cases) {
         arguments.insert(arguments.begin(), {"--serial", cable.path()});
         Daemon daemon(arguments, scratch / "out");
-        EXPECT_EQ(daemon.wait(kPatience), 1) << testing::PrintToString(arguments) << text_of(scratch / "out");
+        EXPECT_EQ(daemon.wait(kPatience), 2) << testing::PrintToString(arguments) << text_of(scratch / "out");
     }
 }
 

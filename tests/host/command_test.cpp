@@ -46,14 +46,14 @@ TEST(Command, PlanExitsWithZeroTwoOrOne)
     EXPECT_NE(good.out.find("Fly candidate"), std::string::npos);
     EXPECT_EQ(good.err, "");
     const Ran stop = jink(scratch, "plan stop.yaml");
-    EXPECT_EQ(stop.status, 2);
+    EXPECT_EQ(stop.status, 1);
     EXPECT_NE(stop.out.find("Stop: "), std::string::npos);
     const Ran bad = jink(scratch, "plan bad.yaml");
-    EXPECT_EQ(bad.status, 1);
+    EXPECT_EQ(bad.status, 2);
     EXPECT_EQ(bad.out, "");
     EXPECT_EQ(bad.err, "bad.yaml:4:1: unknown key 'speeed'; did you mean 'speed'?\n");
     const Ran none = jink(scratch, "plan none.yaml");
-    EXPECT_EQ(none.status, 1);
+    EXPECT_EQ(none.status, 2);
     EXPECT_EQ(none.err, "none.yaml: no such file\n");
 }
 
@@ -82,10 +82,10 @@ TEST(Command, PlanAsTheSourceOrInAnotherMode)
     EXPECT_NE(jink(scratch, "plan good.yaml --source --mode time-aware")
                   .out.find("time-aware security, offsets by the source's rule"),
               std::string::npos);
-    EXPECT_EQ(jink(scratch, "plan good.yaml --budget 1").status, 2);
+    EXPECT_EQ(jink(scratch, "plan good.yaml --budget 1").status, 1);
 }
 
-TEST(Command, WrongCommandLinesExitWithOneAndHelpWithZero)
+TEST(Command, WrongCommandLinesExitWithTwoAndHelpWithZero)
 {
     const Scratch scratch;
     static_cast<void>(scratch.write("good.yaml", kGood));
@@ -93,7 +93,7 @@ TEST(Command, WrongCommandLinesExitWithOneAndHelpWithZero)
                                   "plan good.yaml --sauce", "plan good.yaml --budget 0", "plan good.yaml --budget -5",
                                   "check", "check --as poem good.yaml", "report", "report . --run x"}) {
         const Ran ran = jink(scratch, arguments);
-        EXPECT_EQ(ran.status, 1) << arguments;
+        EXPECT_EQ(ran.status, 2) << arguments;
         EXPECT_NE(ran.err, "") << arguments;
     }
     for (const char* arguments : {"--help", "plan --help", "check --help", "report --help"}) {
@@ -122,7 +122,7 @@ TEST(Command, CheckKnowsEveryKindOfFile)
     EXPECT_EQ(good.err, "");
 
     const Ran bad = jink(scratch, "check bad.parm problem.yaml odd.parm");
-    EXPECT_EQ(bad.status, 1);
+    EXPECT_EQ(bad.status, 2);
     EXPECT_EQ(bad.out, "problem.yaml: good (problem)\n");
     EXPECT_NE(bad.err.find("bad.parm:1: unknown parameter 'JNK_MOOD'; did you mean 'JNK_MODE'?\n"), std::string::npos)
         << bad.err;
@@ -130,7 +130,7 @@ TEST(Command, CheckKnowsEveryKindOfFile)
     EXPECT_NE(bad.err.find("odd.parm: GEO_OFFSETS must be even"), std::string::npos) << bad.err;
 
     const Ran scenario = jink(scratch, "check scenario.yaml");
-    EXPECT_EQ(scenario.status, 1);
+    EXPECT_EQ(scenario.status, 2);
     EXPECT_EQ(scenario.err, "scenario.yaml:3:1: unknown key 'seeed'; did you mean 'seed'?\n");
     EXPECT_NE(jink(scratch, "check riddle.yaml").err.find("is neither a vehicle nor a problem nor a scenario"),
               std::string::npos);
@@ -256,13 +256,13 @@ TEST(Command, ReportBearsWhatIsMissingAndRefusesWhatIsNoRun)
     for (const auto& c : cases) {
         static_cast<void>(scratch.write("wrong.json", c.text));
         const Ran wrong = jink(scratch, "report --run wrong.json");
-        EXPECT_EQ(wrong.status, 1) << c.text;
+        EXPECT_EQ(wrong.status, 2) << c.text;
         EXPECT_NE(wrong.err.find(c.complaint), std::string::npos) << wrong.err;
     }
     EXPECT_NE(jink(scratch, "report --run none.json").err.find("No such file"), std::string::npos);
-    EXPECT_EQ(jink(scratch, "report --run empty.json --out /nowhere/page.html").status, 1);
+    EXPECT_EQ(jink(scratch, "report --run empty.json --out /nowhere/page.html").status, 2);
     const Ran python = jink(scratch, "report --run empty.json --python /nowhere/python3");
-    EXPECT_EQ(python.status, 1);
+    EXPECT_EQ(python.status, 2);
     EXPECT_NE(python.err.find("/nowhere/python3 cannot be started"), std::string::npos) << python.err;
 }
 
@@ -278,7 +278,7 @@ TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
     const std::string good = slurp(vehicles + "uav2/vehicle.yaml");
     const auto refused = [&](const std::string& file, const std::string& options, const std::string& why) {
         const Ran ran = jink(scratch, "tables " + file + options + " --out none.hpp");
-        EXPECT_EQ(ran.status, 1) << file << options;
+        EXPECT_EQ(ran.status, 2) << file << options;
         EXPECT_NE(ran.err.find(why), std::string::npos) << ran.err;
         EXPECT_FALSE(std::filesystem::exists(scratch.path() / "none.hpp"));
     };
@@ -295,7 +295,7 @@ TEST(Command, TablesAreWrittenAndWhatTheyComeFromIsChecked)
     refused(vehicles + "uav2/vehicle.yaml", " --waypoints 7", "waypoints");
     refused(vehicles + "uav2/vehicle.yaml", " --waypoints 65", "waypoints");
     const Ran unwritten = jink(scratch, "tables " + vehicles + "uav2/vehicle.yaml --out no_folder/a.hpp");
-    EXPECT_EQ(unwritten.status, 1);
+    EXPECT_EQ(unwritten.status, 2);
     EXPECT_NE(unwritten.err.find("cannot be written"), std::string::npos);
 }
 
@@ -306,9 +306,9 @@ TEST(Command, WaypointsPrintsARowForEachNumber)
     EXPECT_EQ(ran.status, 0) << ran.err;
     EXPECT_NE(ran.out.find("\n       12 "), std::string::npos) << ran.out;
     EXPECT_NE(ran.out.find("  default\n"), std::string::npos) << ran.out;
-    EXPECT_EQ(jink(scratch, "waypoints --waypoints 7").status, 1);
+    EXPECT_EQ(jink(scratch, "waypoints --waypoints 7").status, 2);
     const Ran none = jink(scratch, "waypoints none.yaml");
-    EXPECT_EQ(none.status, 1);
+    EXPECT_EQ(none.status, 2);
     EXPECT_EQ(none.err, "none.yaml: no such file\n");
 }
 

@@ -91,7 +91,7 @@ TEST(MeshCommand, AnOriginIsKeptInFileAndHeader)
     EXPECT_EQ(origin.longitude, 85'455'938);
     EXPECT_EQ(origin.altitude, 488'250);
     EXPECT_NE(slurp(scratch.path() / "a.hpp").find("{true, -473977421, 85455938, 488250}"), std::string::npos);
-    EXPECT_EQ(jink_mesh(scratch, "build box.obj --origin 47,8").status, 1) << "two numbers";
+    EXPECT_EQ(jink_mesh(scratch, "build box.obj --origin 47,8").status, 2) << "two numbers";
 }
 
 TEST(MeshCommand, MeasureComparesTheMethods)
@@ -140,12 +140,12 @@ TEST(MeshCommand, WhatIsWrongIsSaidInALine)
     };
     for (const auto& [arguments, complaint] : cases) {
         const Outcome bad = jink_mesh(scratch, arguments);
-        EXPECT_EQ(bad.status, 1) << arguments;
+        EXPECT_EQ(bad.status, 2) << arguments;
         EXPECT_EQ(bad.err.rfind(complaint, 0), 0U) << arguments << ": " << bad.err;
         EXPECT_EQ(std::count(bad.err.begin(), bad.err.end(), '\n'), 1) << bad.err;
     }
-    EXPECT_EQ(jink_mesh(scratch, "build box.obj --method best").status, 1);
-    EXPECT_EQ(jink_mesh(scratch, "build box.obj --concavity 0").status, 1);
+    EXPECT_EQ(jink_mesh(scratch, "build box.obj --method best").status, 2);
+    EXPECT_EQ(jink_mesh(scratch, "build box.obj --concavity 0").status, 2);
     EXPECT_EQ(jink_mesh(scratch, "build open.obj --open").status, 0);
     EXPECT_EQ(jink_mesh(scratch, "build far.obj --scale 0.001").status, 0);
 }

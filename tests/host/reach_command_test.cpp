@@ -64,16 +64,16 @@ TEST(ReachCommand, AWrongVehicleFileIsNamedByLine)
     static_cast<void>(scratch.write("bad.yaml", changed("cruise_speed: 5", "cruise_speeed: 5")));
     for (const std::string command : {"build", "measure"}) {
         const ReachOutcome bad = jink_reach(scratch, command + " bad.yaml");
-        EXPECT_EQ(bad.status, 1);
+        EXPECT_EQ(bad.status, 2);
         EXPECT_EQ(bad.out, "");
         EXPECT_NE(bad.err.find("unknown key 'cruise_speeed'; did you mean 'cruise_speed'?"), std::string::npos);
         const ReachOutcome none = jink_reach(scratch, command + " none.yaml");
-        EXPECT_EQ(none.status, 1);
+        EXPECT_EQ(none.status, 2);
         EXPECT_EQ(none.err, "none.yaml: no such file\n");
     }
     static_cast<void>(scratch.write("named.yaml", changed("name: default", "name: 3 rotors")));
     const ReachOutcome named = jink_reach(scratch, "build named.yaml");
-    EXPECT_EQ(named.status, 1);
+    EXPECT_EQ(named.status, 2);
     EXPECT_EQ(named.err, "jink reach build: named.yaml: no C++ name can be made of the vehicle's name '3 rotors'\n");
 }
 
@@ -82,7 +82,7 @@ TEST(ReachCommand, SetsThatDoNotFitAreRefusedInOneLine)
     const Scratch scratch;
     const ReachOutcome full = jink_reach(scratch, "build " + vehicle("default") +
                                                       " --profile reduced --speeds 0.5 --most-bytes 9000 --out s.hpp");
-    EXPECT_EQ(full.status, 1);
+    EXPECT_EQ(full.status, 2);
     EXPECT_EQ(full.out, "");
     EXPECT_NE(full.err.find("vehicle.yaml: the smallest sets take "), std::string::npos) << full.err;
     EXPECT_NE(full.err.find("more than 9000 bytes"), std::string::npos);
@@ -94,17 +94,17 @@ TEST(ReachCommand, AWrongRecipeIsRefusedInOneLine)
 {
     const Scratch scratch;
     const ReachOutcome period = jink_reach(scratch, "build " + vehicle("default") + " --period 0");
-    EXPECT_EQ(period.status, 1);
+    EXPECT_EQ(period.status, 2);
     EXPECT_NE(period.err.find("vehicle.yaml: a movement takes 0.05 to 5 s, not 0\n"), std::string::npos) << period.err;
     const ReachOutcome speeds = jink_reach(scratch, "measure " + vehicle("default") + " --speeds 0.7,0.2");
-    EXPECT_EQ(speeds.status, 1);
+    EXPECT_EQ(speeds.status, 2);
     EXPECT_NE(speeds.err.find("speeds ascend from above 0: 0.2 comes after 0.7\n"), std::string::npos) << speeds.err;
-    EXPECT_EQ(jink_reach(scratch, "build " + vehicle("default") + " --profile tiny").status, 1);
-    EXPECT_EQ(jink_reach(scratch, "build").status, 1);
-    EXPECT_EQ(jink_reach(scratch, "").status, 1);
+    EXPECT_EQ(jink_reach(scratch, "build " + vehicle("default") + " --profile tiny").status, 2);
+    EXPECT_EQ(jink_reach(scratch, "build").status, 2);
+    EXPECT_EQ(jink_reach(scratch, "").status, 2);
     static_cast<void>(scratch.write("slow.yaml", changed("max_acceleration: 5 ", "max_acceleration: 0.2 ")));
     const ReachOutcome slow = jink_reach(scratch, "build slow.yaml --period 0.05");
-    EXPECT_EQ(slow.status, 1);
+    EXPECT_EQ(slow.status, 2);
     EXPECT_NE(slow.err.find("degrees a movement, less than 0.25: take a longer period\n"), std::string::npos)
         << slow.err;
 }
@@ -114,16 +114,16 @@ TEST(ReachCommand, WhatCannotBeWrittenIsSaid)
     const Scratch scratch;
     const ReachOutcome built =
         jink_reach(scratch, "build " + vehicle("default") + " --profile reduced --speeds 0.5 --out nowhere/sets.hpp");
-    EXPECT_EQ(built.status, 1);
+    EXPECT_EQ(built.status, 2);
     EXPECT_EQ(built.err, "jink reach build: nowhere/sets.hpp cannot be written\n");
     static_cast<void>(scratch.write("file", "in the way"));
     const ReachOutcome drawn =
         jink_reach(scratch, "measure " + vehicle("default") + " --profile reduced --speeds 0.5 --figures file/figures");
-    EXPECT_EQ(drawn.status, 1);
+    EXPECT_EQ(drawn.status, 2);
     EXPECT_NE(drawn.err.find("jink reach measure: file/figures cannot be made: "), std::string::npos) << drawn.err;
     const ReachOutcome python = jink_reach(
         scratch, "measure " + vehicle("default") + " --profile reduced --speeds 0.5 --figures here --python ./none");
-    EXPECT_EQ(python.status, 1);
+    EXPECT_EQ(python.status, 2);
     EXPECT_NE(python.err.find("./none cannot be started: "), std::string::npos) << python.err;
 }
 
@@ -132,7 +132,7 @@ TEST(ReachCommand, MeasuresEitherAVehicleOrTheSourcesSets)
     const Scratch scratch;
     const std::string either = "jink reach measure: give either a vehicle file, or --source\n";
     const ReachOutcome none = jink_reach(scratch, "measure");
-    EXPECT_EQ(none.status, 1);
+    EXPECT_EQ(none.status, 2);
     EXPECT_EQ(none.err, either);
     EXPECT_EQ(jink_reach(scratch, "measure --source " + vehicle("default")).err, either);
     const ReachOutcome source = jink_reach(scratch, "measure --source");

@@ -79,7 +79,7 @@ CLI::App& add_campaign_options(CLI::App& cli, CampaignOptions& options)
 {
     CLI::App* command =
         cli.add_subcommand("campaign", "the distribution study of the planner's source: 16 200 environments; "
-                                       "exit status 2 when a figure that must agree does not");
+                                       "exit status 1 when a figure that must agree does not");
     command->add_option("--csv", options.csv, "write a row per candidate to this file");
     command->add_flag("--json", options.json, "print JSON instead of a table");
     return *command;

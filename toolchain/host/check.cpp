@@ -51,7 +51,7 @@ void add_check(CLI::App& jink)
 {
     auto options = std::make_shared<CheckOptions>();
     CLI::App* command =
-        jink.add_subcommand("check", "say what is wrong with files, by line; exit status 1 when something is");
+        jink.add_subcommand("check", "say what is wrong with files, by line; exit status 2 when something is");
     command->add_option("files", options->files, "vehicles, planning problems, scenarios (YAML) and parameter files")
         ->required();
     command->add_option("--as", options->as, "what the files are, where name and keys do not tell")

@@ -10,8 +10,8 @@ namespace jink::host {
 
 /// Exit statuses of every subcommand.
 inline constexpr int kExitGood = 0;
-inline constexpr int kExitBadInput = 1;  ///< invalid file or command line
-inline constexpr int kExitStop = 2;      ///< negative answer: the plan is "stop"
+inline constexpr int kExitStop = 1;      ///< negative answer: the plan is "stop"
+inline constexpr int kExitBadInput = 2;  ///< invalid file or command line
 
 void add_campaign(CLI::App& jink);
 void add_check(CLI::App& jink);

@@ -7,6 +7,7 @@
 int main(int argc, char** argv)
 {
     CLI::App app{"jink: plans, checks files, runs studies and writes reports on the host."};
+    app.set_version_flag("--version", "jink " JINK_VERSION);
     app.require_subcommand(1);
     try {
         jink::host::add_campaign(app);

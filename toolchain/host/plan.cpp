@@ -75,7 +75,7 @@ void add_plan(CLI::App& jink)
 {
     auto options = std::make_shared<PlanOptions>();
     CLI::App* command = jink.add_subcommand(
-        "plan", "solve one planning problem and show every candidate; exit status 0: found, 2: stop, 1: bad input");
+        "plan", "solve one planning problem and show every candidate; exit status 0: found, 1: stop, 2: bad input");
     command->add_option("file", options->file, "planning problem (YAML)")->required();
     command->add_option("--format", options->format, "table, csv or json")
         ->check(CLI::IsMember({"table", "csv", "json"}))

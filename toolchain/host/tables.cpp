@@ -81,7 +81,7 @@ void add_tables(CLI::App& jink)
 {
     auto options = std::make_shared<TablesOptions>();
     CLI::App* command = jink.add_subcommand(
-        "tables", "make a vehicle's cost look-up tables; exit status 2 when an error bound does not hold");
+        "tables", "make a vehicle's cost look-up tables; exit status 1 when an error bound does not hold");
     command->add_option("vehicle", options->file, "vehicle file (YAML)")->required();
     command->add_option("--out", options->out, "write the tables to this C++ header");
     command->add_option("--waypoints", options->waypoints, "points of every curve")

@@ -38,6 +38,6 @@ def main(command, figures_of):
             save(figure, folder / name)
         except OSError as error:
             print(f"{command}: {error.filename} cannot be written: {error.strerror}", file=sys.stderr)
-            return 1
+            return 2
         print(folder / name)
     return 0

@@ -30,10 +30,10 @@ def main():
         pathlib.Path(arguments.out).write_text(html, encoding="utf-8")
     except run.BadRun as error:
         print(f"jink report: {error}", file=sys.stderr)
-        return 1
+        return 2
     except OSError as error:
         print(f"jink report: {arguments.out}: {error.strerror}", file=sys.stderr)
-        return 1
+        return 2
     print(f"Written: {arguments.out}")
     return 0
 

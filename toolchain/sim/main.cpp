@@ -277,6 +277,7 @@ int main(int argc, char** argv)
     Options options;
     CLI::App cli{"jink-sim: flies encounters against the co-processor. The exit status is not 0 when one does not end "
                  "as expected."};
+    cli.set_version_flag("--version", "jink-sim " JINK_VERSION);
     cli.require_subcommand(1);
     CLI::App* fly_command = cli.add_subcommand("fly", "fly scenario files in process, or in real time against jinkd");
     fly_command->add_option("files", options.files, "scenario files (tests/scenario/README.md)")
