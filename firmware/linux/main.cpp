@@ -47,8 +47,8 @@ using namespace jink;
 using host::complain_now;
 
 constexpr std::int64_t kTickMicroseconds = 20'000;
-/// Exit status for a map that is not good.
-constexpr int kBadMap = 2;
+/// Exit status for a command line, a file or a device that cannot be used.
+constexpr int kRefused = 2;
 
 volatile std::sig_atomic_t stop_requested = 0;
 
@@ -59,6 +59,7 @@ extern "C" void request_reload(int /*signal*/) { reload_requested = 1; }
 
 struct Options {
     std::string serial;
+    std::string link;
     std::string can;
     std::string cloud;
     std::string vehicle_file;
@@ -112,7 +113,7 @@ void wait_until(std::int64_t us, hal::SystemClock& clock, host::ReadAhead* cloud
 }
 
 /// Waits until the driver has sent its bytes: closing discards them, and the last words matter most.
-void let_go_out(const hal::TermiosSerialPort& port, hal::SystemClock& clock)
+void let_go_out(const host::AutopilotLine& port, hal::SystemClock& clock)
 {
     constexpr std::int64_t kMin = 100'000;  // a pseudo-terminal gives no count, and its reader needs a little time
     constexpr std::int64_t kMax = 1'000'000;
@@ -159,27 +160,28 @@ link::dronecan::NodeOptions node_options(const Options& options)
 /// @param stored   values in force: these, and over them what was set over a link before
 /// @param map      null: none
 int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
-        const geometry::MeshMap* map, const std::string& device, std::uint32_t baud)
+        const geometry::MeshMap* map)
 {
     hal::SystemClock clock;
-    hal::TermiosSerialPort serial;
+    host::AutopilotLine autopilot;
     hal::SocketCanPort can;
     host::CanReadAhead frames(can, app::CanBus::kMaxFramesPerStep);
     std::optional<app::CanBus> bus;
     hal::LinuxWatchdog watchdog;
-    if (!device.empty() && !host::open_serial(serial, device, baud)) {
-        return EXIT_FAILURE;
+    if ((!options.serial.empty() && !autopilot.open_device(options.serial)) ||
+        (!options.link.empty() && !autopilot.open_link(options.link))) {
+        return kRefused;
     }
     if (!options.can.empty()) {
         if (!host::open_can(can, options.can)) {
-            return EXIT_FAILURE;
+            return kRefused;
         }
         bus.emplace(frames, node_options(options));
     }
-    host::ReadAhead line(serial, app::Coprocessor::kMaxBytesPerStep);
-    hal::SerialPort& port = device.empty() ? bus->serial() : line;
+    host::ReadAhead line(autopilot.port(), app::Coprocessor::kMaxBytesPerStep);
+    hal::SerialPort& port = options.serial.empty() && options.link.empty() ? bus->serial() : line;
     if (!host::open_watchdog(watchdog, options.watchdog)) {
-        return EXIT_FAILURE;
+        return kRefused;
     }
 
     hal::TermiosSerialPort cloud_port;
@@ -189,10 +191,10 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         std::uint32_t cloud_baud = 0;
         if (!host::split_device(options.cloud, cloud_device, cloud_baud)) {
             complain_now("--cloud " + options.cloud + ": expected DEV[:BAUD]");
-            return EXIT_FAILURE;
+            return kRefused;
         }
         if (!host::open_serial(cloud_port, cloud_device, cloud_baud)) {
-            return EXIT_FAILURE;
+            return kRefused;
         }
         cloud_line.emplace(cloud_port, host::ReadAhead::kCloudRoom);
     }
@@ -204,7 +206,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     link::mavlink::Signing signing;
     files::SigningState signing_state;
     if (!host::set_up_signing(options.signing, signing_state, signing)) {
-        return EXIT_FAILURE;
+        return kRefused;
     }
     link::mavlink::Endpoint endpoint(link_options, &signing);
     const auto coprocessor =
@@ -216,7 +218,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     const std::unique_ptr<app::PlanMemory> plans = options.clock != 0 ? std::make_unique<app::PlanMemory>() : nullptr;
     if (plans && !coprocessor->plan_in_slices(plans->plan, app::WorkRate::of_megahertz(options.clock).work())) {
         complain_now("--clock: a step at this clock has no time for a plan");
-        return EXIT_FAILURE;
+        return kRefused;
     }
     coprocessor->use_clouds(*clouds);
     if (map != nullptr) {
@@ -231,7 +233,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         coprocessor->leave_out_reach_sets();
     }
     if (!options.airspace_file.empty() && !host::load_airspace(options.airspace_file, clock, *coprocessor)) {
-        return EXIT_FAILURE;
+        return kRefused;
     }
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
     const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
@@ -246,7 +248,7 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         }
         std::int64_t next = clock.now_us();
         while (stop_requested == 0) {
-            serial.service(clock.now_us());
+            autopilot.service(clock.now_us());
             can.service(clock.now_us());
             cloud_port.service(clock.now_us());
             line.pump();
@@ -267,9 +269,9 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         }
         coprocessor->shut_down({clock.now_us()});
         housekeeping.store_all();
-        let_go_out(serial, clock);
+        let_go_out(autopilot, clock);
         watchdog.close();
-        serial.close();
+        autopilot.close();
         if (!options.quiet) {
             background.print(host::Stream::error, "jinkd: stopped");
         }
@@ -290,13 +292,22 @@ int main(int argc, char** argv)
     CLI::App cli{
         "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
         "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT."};
+    cli.set_version_flag("--version", "jinkd " JINK_VERSION);
     CLI::Option* const serial =
         cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given");
-    CLI::Option* const can = cli.add_option("--can", options.can,
-                                            "CAN interface with a DroneCAN bus; without --serial MAVLink goes through "
-                                            "it. Its bit rate and queue are set by\n"
-                                            "the system, not here: ip link set can0 type can bitrate 1000000 "
-                                            "restart-ms 100; ip link set can0 txqueuelen 128 up");
+    CLI::Option* const link =
+        cli.add_option("--link", options.link,
+                       "line to the autopilot: udp:[ADDRESS:]PORT listens and answers whom it hears first, "
+                       "udpout:ADDRESS:PORT sends there, tcp:ADDRESS:PORT connects; serial:DEV[:BAUD] is --serial. "
+                       "Without ADDRESS: this machine alone")
+            ->excludes(serial);
+    CLI::Option* const can =
+        cli.add_option("--can", options.can,
+                       "CAN interface with a DroneCAN bus; without --serial and --link MAVLink goes "
+                       "through "
+                       "it. Its bit rate and queue are set by\n"
+                       "the system, not here: ip link set can0 type can bitrate 1000000 "
+                       "restart-ms 100; ip link set can0 txqueuelen 128 up");
     cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
         ->check(CLI::Range(0, 127))
         ->needs(can);
@@ -331,29 +342,35 @@ int main(int argc, char** argv)
     cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
         ->check(CLI::Range(0, 99));
     cli.add_flag("--quiet", options.quiet, "errors only");
-    CLI11_PARSE(cli, argc, argv);
+    try {
+        cli.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return cli.exit(error) == 0 ? EXIT_SUCCESS : kRefused;
+    }
 
     ignore_what_outputs_raise();
     catch_signals();
-    if (serial->empty() && can->empty()) {
-        complain_now("--serial or --can is needed");
-        return EXIT_FAILURE;
+    if (serial->empty() && link->empty() && can->empty()) {
+        complain_now("--serial, --link or --can is needed");
+        return kRefused;
     }
-    std::string device;
-    std::uint32_t baud = 0;
+    if (host::is_link(options.serial)) {
+        complain_now("--serial " + options.serial + ": that is no device; --link " + options.serial);
+        return kRefused;
+    }
     if (!can->empty() && options.can.empty()) {
         complain_now("--can: the name of an interface is needed");
-        return EXIT_FAILURE;
+        return kRefused;
     }
-    if (!serial->empty() && !host::split_device(options.serial, device, baud)) {
-        complain_now("--serial " + options.serial + ": expected DEV[:BAUD]");
-        return EXIT_FAILURE;
+    if ((!serial->empty() && options.serial.empty()) || (!link->empty() && options.link.empty())) {
+        complain_now("--serial, --link: the name of a line is needed");
+        return kRefused;
     }
     files::Complaints complaints;
     auto parameters = files::load_parameters(options.vehicle_file, options.param_file, complaints);
     host::complain(complaints);
     if (!parameters) {
-        return EXIT_FAILURE;
+        return kRefused;
     }
     const app::Parameters initial = *parameters;
     if (options.state_file.empty() && !options.param_file.empty()) {
@@ -368,10 +385,10 @@ int main(int argc, char** argv)
     if (!options.map_file.empty()) {
         map = host::load_map(options.map_file);
         if (!map) {
-            return kBadMap;
+            return kRefused;
         }
     }
     host::load_state(options.state_file, *parameters);
     const geometry::MeshMap view = map ? map->view() : geometry::MeshMap{};
-    return run(options, initial, parameters->values(), map ? &view : nullptr, device, baud);
+    return run(options, initial, parameters->values(), map ? &view : nullptr);
 }

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "firmware/linux/ports.hpp"
 
+#include <algorithm>
+#include <array>
+#include <charconv>
 #include <cstdlib>
+#include <cstring>
+
+#include <arpa/inet.h>
 
 #include "firmware/linux/background.hpp"
 
@@ -24,6 +30,61 @@ const char* text_of(hal::OpenStatus status)
     case hal::OpenStatus::failed: break;
     }
     return "cannot be opened";
+}
+
+const char* text_of(hal::NetworkStatus status)
+{
+    switch (status) {
+    case hal::NetworkStatus::ok: return "open";
+    case hal::NetworkStatus::bad_address: return "neither an IPv4 nor an IPv6 address";
+    case hal::NetworkStatus::in_use: return "another program uses this address";
+    case hal::NetworkStatus::not_here: return "no interface has this address, or no way leads to it";
+    case hal::NetworkStatus::nobody: return "nobody listens there";
+    case hal::NetworkStatus::access_denied: return "no permission";
+    case hal::NetworkStatus::failed: break;
+    }
+    return "cannot be opened";
+}
+
+struct Scheme {
+    std::string_view name;
+    hal::NetworkKind kind;
+    bool serial;
+};
+constexpr std::array<Scheme, 4> kSchemes{{{"udp:", hal::NetworkKind::udp_listen, false},
+                                          {"udpout:", hal::NetworkKind::udp_send, false},
+                                          {"tcp:", hal::NetworkKind::tcp, false},
+                                          {"serial:", hal::NetworkKind::udp_listen, true}}};
+constexpr const char* kForms =
+    "expected udp:[ADDRESS:]PORT, udpout:ADDRESS:PORT, tcp:ADDRESS:PORT or serial:DEV[:BAUD]";
+
+const Scheme* scheme_of(std::string_view text)
+{
+    const auto* found =
+        std::find_if(kSchemes.begin(), kSchemes.end(), [&](const Scheme& s) { return text.starts_with(s.name); });
+    return found != kSchemes.end() ? &*found : nullptr;
+}
+
+/// False where the text is no address of numbers.
+bool to_address(const LinkName& link, hal::NetworkAddress& out)
+{
+    sockaddr_in v4{};
+    sockaddr_in6 v6{};
+    if (::inet_pton(AF_INET, link.where.c_str(), &v4.sin_addr) == 1) {
+        v4.sin_family = AF_INET;
+        v4.sin_port = htons(link.port);
+        std::memcpy(&out.storage, &v4, sizeof v4);
+        out.length = sizeof v4;
+        return true;
+    }
+    if (::inet_pton(AF_INET6, link.where.c_str(), &v6.sin6_addr) == 1) {
+        v6.sin6_family = AF_INET6;
+        v6.sin6_port = htons(link.port);
+        std::memcpy(&out.storage, &v6, sizeof v6);
+        out.length = sizeof v6;
+        return true;
+    }
+    return false;
 }
 
 const char* text_of(hal::CanOpenStatus status)
@@ -60,6 +121,99 @@ bool split_device(const std::string& text, std::string& device, std::uint32_t& b
     }
     return !device.empty();
 }
+
+bool is_link(std::string_view text) { return scheme_of(text) != nullptr; }
+
+std::optional<LinkName> split_link(std::string_view text, std::string& fault)
+{
+    const Scheme* const scheme = scheme_of(text);
+    if (scheme == nullptr) {
+        fault = kForms;
+        return std::nullopt;
+    }
+    text.remove_prefix(scheme->name.size());
+    LinkName link{scheme->serial, scheme->kind, std::string(text), 0};
+    if (link.serial) {
+        return link;
+    }
+    const std::size_t colon = text.rfind(':');
+    const std::string_view number = colon == std::string_view::npos ? text : text.substr(colon + 1);
+    std::string_view address = colon == std::string_view::npos ? "" : text.substr(0, colon);
+    const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), link.port);
+    if (error != std::errc() || end != number.data() + number.size() || link.port == 0) {
+        fault = "the port has to be a number from 1 to 65535; " + std::string(kForms);
+        return std::nullopt;
+    }
+    if (address.starts_with('[') && address.ends_with(']')) {
+        address = address.substr(1, address.size() - 2);
+    } else if (address.find(':') != std::string_view::npos) {
+        fault = "an IPv6 address has to stand in brackets; " + std::string(kForms);
+        return std::nullopt;
+    }
+    if (address.empty() && (colon != std::string_view::npos || link.kind != hal::NetworkKind::udp_listen)) {
+        fault = "an address is missing; " + std::string(kForms);
+        return std::nullopt;
+    }
+    link.where = address.empty() || address == "localhost" ? "127.0.0.1" : std::string(address);
+    return link;
+}
+
+bool AutopilotLine::open_device(const std::string& text)
+{
+    std::string device;
+    std::uint32_t baud = 0;
+    if (!split_device(text, device, baud)) {
+        complain_now("--serial " + text + ": expected DEV[:BAUD]");
+        return false;
+    }
+    return open_serial(serial_, device, baud);
+}
+
+bool AutopilotLine::open_link(const std::string& text)
+{
+    std::string fault;
+    const std::optional<LinkName> link = split_link(text, fault);
+    if (!link) {
+        complain_now("--link " + text + ": " + fault);
+        return false;
+    }
+    if (link->serial) {
+        return open_device(link->where);
+    }
+    hal::NetworkAddress address;
+    if (!to_address(*link, address)) {
+        complain_now("--link " + text + ": " + link->where + " is no address of numbers, as 127.0.0.1 or [::1]");
+        return false;
+    }
+    on_network_ = true;
+    const hal::NetworkStatus opened = network_.open(link->kind, address, kReconnectPeriod);
+    if (opened != hal::NetworkStatus::ok) {
+        complain_now(text + ": " + text_of(opened) + "; going on trying");
+    }
+    return true;
+}
+
+void AutopilotLine::close() noexcept
+{
+    serial_.close();
+    network_.close();
+}
+
+void AutopilotLine::service(std::int64_t now_us) noexcept
+{
+    if (on_network_) {
+        network_.service(now_us);
+    } else {
+        serial_.service(now_us);
+    }
+}
+
+hal::SerialPort& AutopilotLine::port() noexcept
+{
+    return on_network_ ? static_cast<hal::SerialPort&>(network_) : serial_;
+}
+
+std::size_t AutopilotLine::unsent() const noexcept { return on_network_ ? network_.unsent() : serial_.unsent(); }
 
 bool open_serial(hal::TermiosSerialPort& port, const std::string& device, std::uint32_t baud)
 {
