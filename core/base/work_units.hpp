@@ -107,8 +107,8 @@ inline constexpr std::uint32_t kReachPath = 30;         ///< trajectory that is 
 inline constexpr std::uint32_t kReachScanCell = 20;     ///< cell of a set or of a scan, when one is laid over the other
 
 // --- checks of tables in the background (core/reach/vehicle_sets) ---
-inline constexpr std::uint32_t kTableElements = 5;  ///< sixteen numbers of a table that is checked
-inline constexpr std::uint32_t kTableNumbers = 20;  ///< and the numbers of a vehicle's sets
+inline constexpr std::uint32_t kTableElements = 10;  ///< 32 numbers of a table that is checked
+inline constexpr std::uint32_t kTableNumbers = 20;   ///< and the numbers of a vehicle's sets
 
 // --- maps of convex pieces (core/geometry/mesh_map) ---
 inline constexpr std::uint32_t kMeshNode = 2;  ///< node of the tree that is checked: both its children's boxes

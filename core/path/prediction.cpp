@@ -26,6 +26,14 @@ std::uint32_t chord_length(std::uint32_t setpoints, Seconds step, std::size_t mo
 
 }  // namespace
 
+void ChordWriter::fly(const Vec3& command, Seconds dt) noexcept
+{
+    const Vec3 goal = vehicle::detail::goal_of(command, velocity_, limits_);
+    const Vec3 error = velocity_ - goal;
+    note_acceleration(error);
+    vehicle::detail::decay_to(goal, error, position_, velocity_, limits_, dt, fading_);
+}
+
 void ChordWriter::end_chord(Seconds time) noexcept
 {
     constexpr float kChord = 1.0F / 8.0F;

@@ -62,11 +62,7 @@ public:
     }
 
     /// A part of the next chord: `command` held for `dt` > 0. O(1).
-    void fly(const Vec3& command, Seconds dt) noexcept
-    {
-        note_acceleration(command);
-        vehicle::detail::move(position_, velocity_, command, limits_, dt, fading_);
-    }
+    void fly(const Vec3& command, Seconds dt) noexcept;
 
     /// Ends the chord at `time`, later than the last point. The Prediction is not full. O(1).
     void end_chord(Seconds time) noexcept;
@@ -77,9 +73,9 @@ public:
 private:
     static constexpr Seconds kMinLag = 1e-5F;
 
-    void note_acceleration(const Vec3& command) noexcept
+    /// `error`: of the velocity at the beginning of a part.
+    void note_acceleration(const Vec3& error) noexcept
     {
-        const Vec3 error = velocity_ - vehicle::detail::goal_of(command, velocity_, limits_);
         const float level = std::min((error.x() * error.x() + error.y() * error.y()) * per_squared_lag_,
                                      limits_.max_acceleration * limits_.max_acceleration);
         const float vertical = std::min(error.z() * error.z() * per_squared_lag_,

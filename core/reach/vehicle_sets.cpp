@@ -151,9 +151,8 @@ void TableCheck::go_to(std::size_t table) noexcept
 
 Progress TableCheck::advance(WorkBudget& budget) noexcept
 {
-    const std::size_t tables = 2 * sets_->segments.size();
-    while (!failed_ && budget.spend(at_ < tables ? units::kTableElements : units::kTableNumbers)) {
-        if (at_ == tables) {
+    while (!failed_ && budget.spend(units_of_next())) {
+        if (at_ == 2 * sets_->segments.size()) {
             failed_ = checksum_of(*sets_) != sets_->checksum;
             go_to(0);
             return failed_ ? Progress::failed : Progress::done;

@@ -78,17 +78,19 @@ struct VehicleSets {
 /// before long. A background service: `failed` where a table is not what it was made to be.
 class TableCheck {
 public:
-    /// What a call has to be given at least [work units], else nothing may come of it.
-    static constexpr std::uint32_t kUnits = units::kTableNumbers;
-
     /// Good (`check`); they outlive this.
     explicit TableCheck(const VehicleSets& sets) noexcept;
     [[nodiscard]] Progress advance(WorkBudget& budget) noexcept;
+    /// What the next piece takes [work units]: with less, a call does nothing.
+    [[nodiscard]] std::uint32_t units_of_next() const noexcept
+    {
+        return at_ < 2 * sets_->segments.size() ? units::kTableElements : units::kTableNumbers;
+    }
     [[nodiscard]] const VehicleSets& sets() const noexcept { return *sets_; }
 
 private:
     /// Numbers or entries of a table, checked at once.
-    static constexpr std::size_t kElements = 16;
+    static constexpr std::size_t kElements = 32;
 
     [[gnu::cold]] void go_to(std::size_t table) noexcept;
 

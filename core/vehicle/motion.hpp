@@ -94,13 +94,11 @@ inline constexpr float kNoCourse = 1.0F;
     return goal;
 }
 
-/// `advance` without its stamp. `fading`: made with limits.velocity_lag.
-inline void move(Vec3& position, Vec3& velocity, const Vec3& command, const VehicleLimits& limits, Seconds dt,
-                 Fading& fading) noexcept
+/// `move` where the velocity's goal and its `error`, velocity - goal, are known. Inline in each caller: a call would
+/// pass both through memory.
+[[gnu::always_inline]] inline void decay_to(const Vec3& goal, const Vec3& error, Vec3& position, Vec3& velocity,
+                                            const VehicleLimits& limits, Seconds dt, Fading& fading) noexcept
 {
-    const Vec3 goal = goal_of(command, velocity, limits);
-    const Vec3 error = velocity - goal;
-
     const Decay level =
         decay(error.x() * error.x() + error.y() * error.y(), limits.velocity_lag, limits.max_acceleration, dt, fading);
     const Decay vertical =
@@ -108,6 +106,14 @@ inline void move(Vec3& position, Vec3& velocity, const Vec3& command, const Vehi
 
     position += goal * dt + error.cwiseProduct(Vec3(level.integral, level.integral, vertical.integral));
     velocity = goal + error.cwiseProduct(Vec3(level.left, level.left, vertical.left));
+}
+
+/// `advance` without its stamp. `fading`: made with limits.velocity_lag.
+inline void move(Vec3& position, Vec3& velocity, const Vec3& command, const VehicleLimits& limits, Seconds dt,
+                 Fading& fading) noexcept
+{
+    const Vec3 goal = goal_of(command, velocity, limits);
+    decay_to(goal, velocity - goal, position, velocity, limits, dt, fading);
 }
 
 }  // namespace jink::vehicle::detail

@@ -51,14 +51,17 @@ Progress Decision::advance_background(std::uint32_t spent, const Configuration& 
     Progress progress = Progress::running;
     methods_.with_planner<ReachMethod>([&](const reach::Planner& planner) {
         const reach::VehicleSets* const sets = planner.settings().sets;
-        const std::uint32_t work = supervisor_.settings().work.all;
-        if (sets == nullptr || leaves_reach_out_ || work < spent + reach::TableCheck::kUnits) {
+        if (sets == nullptr || leaves_reach_out_) {
             return;
         }
         if (!tables_ || &tables_->sets() != sets) {
             tables_.emplace(*sets);
         }
-        WorkBudget budget(reach::TableCheck::kUnits);
+        const std::uint32_t units = tables_->units_of_next();
+        if (supervisor_.settings().work.all < spent + units) {
+            return;
+        }
+        WorkBudget budget(units);
         progress = tables_->advance(budget);
         if (progress == Progress::failed) {
             leave_out_reach_sets(c);

@@ -36,8 +36,8 @@ public:
 
     /// Another frame, or own state comes from elsewhere.
     void reset() noexcept;
-    /// The background services, with what a step has left of its units; none while it has not enough of them.
-    /// At present: the reach sets' tables (reach::TableCheck). `failed`: they are left out from now on.
+    /// The background services, one piece with what a step has left of its units; none while it has not enough of
+    /// them. At present: the reach sets' tables (reach::TableCheck). `failed`: they are left out from now on.
     [[nodiscard]] Progress advance_background(std::uint32_t spent, const Configuration& c) noexcept;
     /// Somebody else flies: nothing is held on to.
     void reset_supervisor() noexcept { supervisor_.reset(); }

@@ -347,13 +347,13 @@ void UnitProbe::wind() noexcept
     }
 }
 
-/// From anywhere in a pass, as much as a step does.
+/// From anywhere in a pass, one piece, as a step does.
 std::uint32_t UnitProbe::tables(WorkBudget& budget) noexcept
 {
     reach::TableCheck check(app::reach_sets());
     WorkBudget before(static_cast<std::uint32_t>(below(100'000)));
     static_cast<void>(check.advance(before));
-    WorkBudget step = budget.part(reach::TableCheck::kUnits);
+    WorkBudget step = budget.part(check.units_of_next());
     jink_window_begin();
     const Progress progress = check.advance(step);
     jink_window_end();

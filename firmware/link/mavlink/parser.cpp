@@ -2,6 +2,7 @@
 #include "firmware/link/mavlink/parser.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "firmware/link/mavlink/catalogue.hpp"
 #include "firmware/link/mavlink/checksum.hpp"
@@ -46,7 +47,10 @@ void Parser::take(std::span<const std::byte>& input) noexcept
         begin_ = 0;
     }
     const std::size_t n = std::min(input.size(), buffer_.size() - end_);
-    std::copy_n(input.begin(), n, buffer_.begin() + static_cast<std::ptrdiff_t>(end_));
+    if (n > 0) {  // an empty span may have no place
+        // Without overlap: copy_n moves single bytes where they are not aligned alike.
+        std::memcpy(buffer_.data() + end_, input.data(), n);
+    }
     end_ += n;
     input = input.subspan(n);
 }
@@ -205,9 +209,11 @@ void Parser::follow_sequence(const Header& header) noexcept
 
 Frame Parser::deliver(const Candidate& candidate) noexcept
 {
-    const auto* const from = buffer_.data() + begin_ + candidate.header_size;
-    std::copy_n(from, candidate.length, payload_.begin());
-    std::fill(payload_.begin() + static_cast<std::ptrdiff_t>(candidate.length), payload_.end(), std::byte{0});
+    std::memcpy(payload_.data(), buffer_.data() + begin_ + candidate.header_size, candidate.length);
+    if (candidate.length < payload_length_) {
+        std::memset(payload_.data() + candidate.length, 0, payload_length_ - candidate.length);
+    }
+    payload_length_ = candidate.length;
     follow_sequence(candidate.header);
     ++diagnostics_.accepted;
     return {candidate.message_id,

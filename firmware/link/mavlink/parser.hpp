@@ -133,6 +133,7 @@ private:
     std::size_t end_ = 0;
     ParserDiagnostics diagnostics_;
     StaticVector<Sender, kMaxSenders> senders_;
+    std::size_t payload_length_ = 0;  ///< behind these bytes the payload is zero
     std::array<std::byte, kMaxPayload> payload_{};
     std::array<std::byte, 2 * kMaxFrame> buffer_{};
 };

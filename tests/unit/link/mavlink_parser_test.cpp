@@ -81,6 +81,20 @@ TEST(MavlinkParser, PayloadOfAnEarlierFrameDoesNotShineThrough)
     EXPECT_EQ(frames[0].payload, Bytes(kMaxPayload, std::byte{0}));
 }
 
+TEST(MavlinkParser, PayloadsOfAnyLengthAreFollowedByZeros)
+{
+    Parser parser;
+    for (const std::size_t length : {254U, 0U, 100U, 30U, 31U, 29U, 254U, 1U}) {
+        RawFrame raw;
+        raw.id = 110;
+        raw.crc_extra = 84;
+        raw.payload = Bytes(length, std::byte{3});
+        const auto frames = parse(parser, raw.bytes());
+        ASSERT_EQ(frames.size(), 1U) << length;
+        EXPECT_EQ(frames[0].payload, raw.payload + Bytes(kMaxPayload - length, std::byte{0})) << length;
+    }
+}
+
 TEST(MavlinkParser, FramesOfMessagesNotDecodedAreSteppedOverWhole)
 {
     // A file transfer that carries a recorded telemetry log: the frame inside must not be taken for a live one.
