@@ -6,7 +6,8 @@ import re
 import subprocess
 
 TYPES = r"(?:TEXT|INT|UINT|FLOAT|BOOLEAN|ENUM)"
-OPTION = re.compile(r"  ((?:-[A-Za-z]|--[A-Za-z][\w-]*)(?:,(?:-[A-Za-z]|--[A-Za-z][\w-]*))*)(.*)")
+NAME = r"(?:-[A-Za-z]|--[A-Za-z][\w-]*(?:\{\w+\})?)"  # --no-x{false} of a flag that can be denied
+OPTION = re.compile(rf"  ({NAME}(?:,{NAME})*)(.*)")
 NAMED = re.compile(r"  (\S+)(.*)")
 COLUMN = 30  # of the texts
 
@@ -64,7 +65,7 @@ def parse(text, path):
         elif line.startswith(" " * COLUMN) and entry is not None:
             entry.text = f"{entry.text} {line.strip()}".strip()
         elif section == "Options" and (found := OPTION.fullmatch(line)):
-            entry = Option(found[1].split(","), *split_entry(found[2]))
+            entry = Option(re.sub(r"\{\w+\}", "", found[1]).split(","), *split_entry(found[2]))
             command.options.append(entry)
         elif section == "Positionals" and (found := NAMED.fullmatch(line)):
             entry = Option([found[1]], *split_entry(found[2]))
