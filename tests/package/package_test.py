@@ -62,6 +62,12 @@ def test_service(build, _):
     unit, defaults = UNIT.read_text(encoding="utf-8"), DEFAULTS.read_text(encoding="utf-8")
     priority = int(re.search(r"--realtime (\d+)", defaults)[1])
     assert priority <= int(re.search(r"^LimitRTPRIO=(\d+)", unit, re.M)[1]), "--realtime of the defaults is beyond LimitRTPRIO"
+    filtered = ["/usr/bin/python3", "-B", TOP / "tests/package/system_call_filter.py", UNIT]
+    if shutil.which("systemd-analyze"):
+        assert run(*filtered, "chrt", "--fifo", "1", "true").returncode == run("chrt", "--fifo", "1", "true").returncode
+        mapped = "import mmap; mmap.mmap(-1, 4096, prot={})"
+        assert run(*filtered, sys.executable, "-c", mapped.format(3)).returncode == 0, "memory that is written"
+        assert run(*filtered, sys.executable, "-c", mapped.format(7)).returncode != 0, "memory that is written and executed"
     with tempfile.TemporaryDirectory() as state:
         pathlib.Path(state).chmod(0o777)
         done = run(sys.executable, "-B", TOP / "tests/package/service_line.py", "--unit", UNIT, "--defaults", DEFAULTS,

@@ -5,7 +5,8 @@
     service_line.py --unit FILE --defaults FILE [--program FILE] [--root FOLDER] [--state FOLDER]
 
 As root, jinkd gets what the unit gives it: another user, no capability, and the limits of LimitRTPRIO and LimitMEMLOCK
-where the machine permits to raise them. Then --realtime of the defaults has to succeed. What systemd alone can do is not tried: sandbox and restarts.
+where the machine permits to raise them. Then --realtime of the defaults has to succeed. Outside of --root the unit's filter of system calls is in force. What
+systemd alone can do is not tried: its view of files and devices, restarts.
 """
 import argparse
 import os
@@ -14,6 +15,7 @@ import pty
 import re
 import select
 import shlex
+import shutil
 import socket
 import subprocess
 import sys
@@ -23,6 +25,7 @@ import tty
 
 COMPONENT = 196  # MAV_COMP_ID_OBSTACLE_AVOIDANCE
 HEARTBEAT_EXTRA = 50
+FILTER = pathlib.Path(__file__).resolve().with_name("system_call_filter.py")
 
 
 def setting(text, name):
@@ -63,10 +66,15 @@ def limits(unit):
     return command if subprocess.run([*command, "true"], capture_output=True).returncode == 0 else []
 
 
-def without_rights(user):
-    """Command that becomes the user and gives up all capabilities, as the unit does."""
-    return ["setpriv", f"--reuid={user}", f"--regid={user}", "--clear-groups", "--no-new-privs", "--bounding-set=-all",
-            "--inh-caps=-all"]
+def without_rights(user, *files):
+    """Command that becomes the user and gives up all capabilities, as the unit does. Root stays where the user does not
+    reach the files, as in a build folder below /root."""
+    none = ["setpriv", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
+    other = none + [f"--reuid={user}", f"--regid={user}", "--clear-groups"]
+    if all(subprocess.run([*other, "test", "-r", file]).returncode == 0 for file in files):
+        return other
+    print("the user does not reach the files: started as root without capabilities")
+    return none
 
 
 def line(unit, defaults, arguments, device, state):
@@ -110,8 +118,14 @@ def check(arguments):
     root = os.geteuid() == 0
     raised = limits(unit) if root else []
     command = line(unit, defaults, arguments, device, arguments.state)
+    files = []
+    if not arguments.root:
+        files = [command[0], arguments.unit, str(FILTER)]
+        if shutil.which("systemd-analyze"):
+            command = ["/usr/bin/python3", "-B", str(FILTER), arguments.unit, *command]
     if root:
-        command = raised + (["chroot", arguments.root] if arguments.root else []) + without_rights(arguments.user) + command
+        inside = ["chroot", arguments.root] if arguments.root else []
+        command = raised + inside + without_rights(arguments.user, *files) + command
     if not raised:
         print("the limits of the unit cannot be set here: real-time priority is not tried")
     print(shlex.join(command))
