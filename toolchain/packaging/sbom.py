@@ -13,6 +13,7 @@ import os
 import pathlib
 import re
 import subprocess
+import time
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 # What the Debian packages hold, by its place in a build folder.
@@ -149,8 +150,8 @@ def document(build, version):
                                   "relatedSpdxElement": entries[package]["SPDXID"], "comment": comment})
     packages = [own_entry(name, version) for name in targets] + [entries[name] for name in sorted(entries)]
     refs = sorted({ref for p in packages for ref in re.findall(r"LicenseRef-[A-Za-z0-9.-]+", p["licenseDeclared"])})
-    when = datetime.datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", "0")) or
-                                           int(datetime.datetime.now().timestamp()), datetime.timezone.utc)
+    seconds = int(os.environ.get("SOURCE_DATE_EPOCH", time.time()))
+    when = datetime.datetime.fromtimestamp(seconds, datetime.timezone.utc)
     return {
         "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT", "name": f"jink-{version}",
         "documentNamespace": f"https://jink.invalid/spdx/jink-{version}",
