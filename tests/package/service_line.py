@@ -1,0 +1,175 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Starts the line of jinkd.service on a pseudo-terminal and waits for READY, the watchdog's feed and a HEARTBEAT.
+
+    service_line.py --unit FILE --defaults FILE [--program FILE] [--root FOLDER] [--state FOLDER]
+
+As root, jinkd gets what the unit gives it: another user, no capability, and the limits of LimitRTPRIO and LimitMEMLOCK
+where the machine permits to raise them. Then --realtime of the defaults has to succeed. Outside of --root the unit's filter of system calls is in force. What
+systemd alone can do is not tried: its view of files and devices, restarts.
+"""
+import argparse
+import os
+import pathlib
+import pty
+import re
+import select
+import shlex
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+import tty
+
+COMPONENT = 196  # MAV_COMP_ID_OBSTACLE_AVOIDANCE
+HEARTBEAT_EXTRA = 50
+FILTER = pathlib.Path(__file__).resolve().with_name("system_call_filter.py")
+
+
+def setting(text, name):
+    """Last value of a setting of a unit, or of a variable of a file for the shell."""
+    return re.findall(rf"^{name}=(.*)$", text, re.M)[-1]
+
+
+def crc(data):
+    """CRC-16/MCRF4XX of MAVLink."""
+    value = 0xFFFF
+    for byte in data:
+        byte ^= value & 0xFF
+        byte = (byte ^ (byte << 4)) & 0xFF
+        value = (value >> 8) ^ (byte << 8) ^ (byte << 3) ^ (byte >> 4)
+    return value
+
+
+def has_heartbeat(stream):
+    """A whole HEARTBEAT frame of MAVLink 2 or 1 of the component."""
+    for start, byte in enumerate(stream):
+        if byte not in (0xFD, 0xFE) or len(stream) < start + 2:
+            continue
+        header = 10 if byte == 0xFD else 6
+        end = start + header + stream[start + 1]
+        frame = stream[start:end]
+        if len(stream) < end + 2 or frame[header - (4 if byte == 0xFD else 2)] != COMPONENT:
+            continue
+        number = int.from_bytes(frame[header - 3 : header], "little") if byte == 0xFD else frame[5]
+        if number == 0 and crc(frame[1:] + bytes([HEARTBEAT_EXTRA])) == int.from_bytes(stream[end : end + 2], "little"):
+            return True
+    return False
+
+
+def limits(unit):
+    """Command that sets the unit's two limits; empty where the machine does not let root raise limits (a container)."""
+    memory = setting(unit, "LimitMEMLOCK").replace("infinity", "unlimited")
+    command = ["prlimit", f"--rtprio={setting(unit, 'LimitRTPRIO')}", f"--memlock={memory}"]
+    return command if subprocess.run([*command, "true"], capture_output=True).returncode == 0 else []
+
+
+def without_rights(user, *files):
+    """Command that becomes the user and gives up all capabilities, as the unit does. Root stays where the user does not
+    reach the files, as in a build folder below /root."""
+    none = ["setpriv", "--no-new-privs", "--bounding-set=-all", "--inh-caps=-all"]
+    other = none + [f"--reuid={user}", f"--regid={user}", "--clear-groups"]
+    if all(subprocess.run([*other, "test", "-r", file]).returncode == 0 for file in files):
+        return other
+    print("the user does not reach the files: started as root without capabilities")
+    return none
+
+
+def line(unit, defaults, arguments, device, state):
+    """ExecStart with the variables replaced as systemd does, with the serial port `device`."""
+    words = []
+    for word in setting(unit, "ExecStart").split():
+        if word.startswith("$") and not word.startswith("${"):
+            values = {"JINKD_LINE": f"--serial {device}:921600", "JINKD_OPTIONS": shlex.split(setting(defaults, "JINKD_OPTIONS"))[0]}
+            words += values[word[1:]].split()
+        else:
+            words.append(word.replace("${STATE_DIRECTORY}", state))
+    if arguments.program:
+        words[0] = arguments.program
+    return words
+
+
+def wait_for(process, notify, port):
+    """Which of READY, WATCHDOG and HEARTBEAT came within ten seconds."""
+    missing, stream, end = {"READY=1", "WATCHDOG=1", "HEARTBEAT"}, b"", time.monotonic() + 10
+    while missing and time.monotonic() < end and process.poll() is None:
+        for ready in select.select([notify, port], [], [], 0.2)[0]:
+            if ready is notify:
+                missing -= set(notify.recv(4096).decode().split("\n"))
+            else:
+                stream += os.read(port, 4096)
+        if has_heartbeat(stream):
+            missing.discard("HEARTBEAT")
+    return missing
+
+
+def check(arguments):
+    """Errors, one text each."""
+    unit, defaults = (pathlib.Path(f).read_text(encoding="utf-8") for f in (arguments.unit, arguments.defaults))
+    port, terminal = pty.openpty()
+    tty.setraw(terminal)
+    device = os.ttyname(terminal)
+    os.chmod(device, 0o666)
+    notify = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+    name = f"jinkd-test-{os.getpid()}"
+    notify.bind("\0" + name)
+    root = os.geteuid() == 0
+    raised = limits(unit) if root else []
+    command = line(unit, defaults, arguments, device, arguments.state)
+    files = []
+    if not arguments.root:
+        files = [command[0], arguments.unit, str(FILTER)]
+        if shutil.which("systemd-analyze"):
+            command = ["/usr/bin/python3", "-B", str(FILTER), arguments.unit, *command]
+    if root:
+        inside = ["chroot", arguments.root] if arguments.root else []
+        command = raised + inside + without_rights(arguments.user, *files) + command
+    if not raised:
+        print("the limits of the unit cannot be set here: real-time priority is not tried")
+    print(shlex.join(command))
+    environment = {"PATH": "/usr/bin:/bin:/usr/sbin:/sbin", "NOTIFY_SOCKET": "@" + name}
+    errors = []
+    with tempfile.TemporaryFile() as log:
+        process = subprocess.Popen(command, env=environment, stdout=log, stderr=subprocess.STDOUT)
+        try:
+            errors += [f"no {what} within 10 s" for what in sorted(wait_for(process, notify, port))]
+            wanted = re.search(r"--realtime (\d+)", " ".join(command))
+            if raised and wanted and process.poll() is None:
+                given = os.sched_getparam(process.pid).sched_priority if os.sched_getscheduler(process.pid) == os.SCHED_FIFO else 0
+                if given != int(wanted[1]):
+                    errors.append(f"real-time priority {given} instead of {wanted[1]}")
+        finally:
+            process.terminate()
+            try:
+                status = process.wait(timeout=5)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                status = "none within 5 s"
+        if status != 0:
+            errors.append(f"exit status after SIGTERM: {status}")
+        log.seek(0)
+        said = log.read().decode(errors="replace")
+    if raised and "no real-time priority" in said:
+        errors.append("no real-time priority with the unit's limits")
+    if errors:
+        print(said)
+    return errors
+
+
+def parse(words):
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--unit", required=True)
+    parser.add_argument("--defaults", required=True)
+    parser.add_argument("--program", help="in place of the unit's")
+    parser.add_argument("--root", help="folder of another system, entered by chroot")
+    parser.add_argument("--state", default="/var/lib/jink", help="the unit's StateDirectory, writable for the user")
+    parser.add_argument("--user", default="65534", help="number of the user, default nobody's")
+    return parser.parse_args(words)
+
+
+if __name__ == "__main__":
+    found = check(parse(sys.argv[1:]))
+    print("\n".join(found) or "READY, watchdog and HEARTBEAT came")
+    sys.exit(1 if found else 0)
