@@ -19,17 +19,13 @@
 
 #include <CLI/CLI.hpp>
 
-#include "firmware/app/can_bus.hpp"
-#include "firmware/app/cloud_input.hpp"
 #include "firmware/app/coprocessor.hpp"
-#include "firmware/app/plan_memory.hpp"
-#include "firmware/app/reach_picture.hpp"
-#include "firmware/app/reach_sets.hpp"
 #include "firmware/app/work_rate.hpp"
-#include "firmware/link/mavlink/endpoint.hpp"
 #include "firmware/linux/background.hpp"
+#include "firmware/linux/flight_log/assembly.hpp"
 #include "firmware/linux/housekeeping.hpp"
 #include "firmware/linux/loading.hpp"
+#include "firmware/linux/logging.hpp"
 #include "firmware/linux/node_identity.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/param_store.hpp"
@@ -67,6 +63,7 @@ struct Options {
     std::string airspace_file;
     std::string map_file;
     host::SigningFiles signing;
+    host::LogOptions log;
     std::string watchdog;
     std::string summary;
     double status_period = 1.0;
@@ -155,9 +152,50 @@ link::dronecan::NodeOptions node_options(const Options& options)
     return node;
 }
 
+/// What decides beside the ports; the key stays in `signing`.
 /// @param initial  parameters of the files that people write
 /// @param stored   values in force: these, and over them what was set over a link before
 /// @param map      null: none
+flightlog::Setup set_up(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
+                        const geometry::MeshMap* map, const link::mavlink::Signing& signing)
+{
+    flightlog::Setup setup;
+    setup.system_id = static_cast<std::uint8_t>(options.system_id);
+    setup.clock = options.clock;
+    setup.on_bus = options.serial.empty();
+    setup.has_bus = !options.can.empty();
+    if (setup.has_bus) {
+        setup.node = node_options(options);
+    }
+    setup.has_cloud = !options.cloud.empty();
+    setup.logs_cloud = setup.has_cloud && options.log.clouds;
+    setup.keeps_state = !options.state_file.empty();
+    setup.map = map != nullptr ? std::optional(map->checksum) : std::nullopt;
+    setup.reach_sets = flightlog::reach_sets_checksum();
+    setup.has_key = signing.has_key();
+    setup.keys_can_be_set = signing.keys_can_be_set();
+    setup.signing_time = signing.time();
+    setup.unsigned_frames = options.signing.unsigned_frames;
+    setup.initial = initial.values();
+    setup.stored = stored;
+    setup.generation = initial.generation();
+    setup.version = flightlog::build_version();
+    setup.digest = flightlog::build_digest();
+    return setup;
+}
+
+/// Opens the cloud line. False, and said why, where that cannot be.
+bool open_cloud(const std::string& cloud, hal::TermiosSerialPort& port)
+{
+    std::string device;
+    std::uint32_t baud = 0;
+    if (!host::split_device(cloud, device, baud)) {
+        complain_now("--cloud " + cloud + ": expected DEV[:BAUD]");
+        return false;
+    }
+    return host::open_serial(port, device, baud);
+}
+
 int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
         const geometry::MeshMap* map, const std::string& device, std::uint32_t baud)
 {
@@ -165,82 +203,55 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
     hal::TermiosSerialPort serial;
     hal::SocketCanPort can;
     host::CanReadAhead frames(can, app::CanBus::kMaxFramesPerStep);
-    std::optional<app::CanBus> bus;
     hal::LinuxWatchdog watchdog;
-    if (!device.empty() && !host::open_serial(serial, device, baud)) {
+    if ((!device.empty() && !host::open_serial(serial, device, baud)) ||
+        (!options.can.empty() && !host::open_can(can, options.can)) ||
+        !host::open_watchdog(watchdog, options.watchdog)) {
         return EXIT_FAILURE;
-    }
-    if (!options.can.empty()) {
-        if (!host::open_can(can, options.can)) {
-            return EXIT_FAILURE;
-        }
-        bus.emplace(frames, node_options(options));
     }
     host::ReadAhead line(serial, app::Coprocessor::kMaxBytesPerStep);
-    hal::SerialPort& port = device.empty() ? bus->serial() : line;
-    if (!host::open_watchdog(watchdog, options.watchdog)) {
-        return EXIT_FAILURE;
-    }
-
     hal::TermiosSerialPort cloud_port;
     std::optional<host::ReadAhead> cloud_line;
     if (!options.cloud.empty()) {
-        std::string cloud_device;
-        std::uint32_t cloud_baud = 0;
-        if (!host::split_device(options.cloud, cloud_device, cloud_baud)) {
-            complain_now("--cloud " + options.cloud + ": expected DEV[:BAUD]");
-            return EXIT_FAILURE;
-        }
-        if (!host::open_serial(cloud_port, cloud_device, cloud_baud)) {
+        if (!open_cloud(options.cloud, cloud_port)) {
             return EXIT_FAILURE;
         }
         cloud_line.emplace(cloud_port, host::ReadAhead::kCloudRoom);
     }
-    // Single points of the link are used without a cloud port too.
-    const auto clouds = std::make_unique<app::CloudInput>(cloud_line ? &*cloud_line : nullptr);
-
-    link::mavlink::EndpointOptions link_options;
-    link_options.system_id = static_cast<std::uint8_t>(options.system_id);
     link::mavlink::Signing signing;
     files::SigningState signing_state;
     if (!host::set_up_signing(options.signing, signing_state, signing)) {
         return EXIT_FAILURE;
     }
-    link::mavlink::Endpoint endpoint(link_options, &signing);
-    const auto coprocessor =
-        std::make_unique<app::Coprocessor>(endpoint, port, watchdog, initial, bus ? &*bus : nullptr);
-    static_cast<void>(coprocessor->restore_parameters(stored));  // validated together when they were read
-    if (!options.state_file.empty()) {
-        coprocessor->note_stored(coprocessor->parameters().generation());
-    }
-    const std::unique_ptr<app::PlanMemory> plans = options.clock != 0 ? std::make_unique<app::PlanMemory>() : nullptr;
-    if (plans && !coprocessor->plan_in_slices(plans->plan, app::WorkRate::of_megahertz(options.clock).work())) {
+    const flightlog::Setup setup = set_up(options, initial, stored, map, signing);
+    host::Logging flight_log(options.log, setup);
+    const flightlog::AssemblyPorts ports{setup.on_bus ? nullptr : &flight_log.line(line),
+                                         setup.has_bus ? &flight_log.can(frames) : nullptr,
+                                         cloud_line ? &flight_log.cloud(*cloud_line) : nullptr};
+    flightlog::Assembly assembly(setup, initial, ports, watchdog, signing, map);
+    if (!assembly.has_time_for_plans()) {
         complain_now("--clock: a step at this clock has no time for a plan");
         return EXIT_FAILURE;
     }
-    coprocessor->use_clouds(*clouds);
-    if (map != nullptr) {
-        coprocessor->use_map(*map);
-    }
-    const auto picture = std::make_unique<app::ReachPicture>(app::reach_sets());
-    if (cloud_line) {
-        coprocessor->let_reach_sets_see(*picture);
-    }
-    if (app::kHasReach && reach::check(app::reach_sets()) != reach::SetStatus::good) {
+    if (assembly.are_reach_sets_damaged()) {
         complain_now("the reach sets are damaged and left out");
-        coprocessor->leave_out_reach_sets();
     }
-    if (!options.airspace_file.empty() && !host::load_airspace(options.airspace_file, clock, *coprocessor)) {
+    app::Coprocessor& coprocessor = assembly.coprocessor();
+    link::mavlink::Endpoint& endpoint = assembly.endpoint();
+    if (!options.airspace_file.empty() &&
+        !host::load_airspace(options.airspace_file, clock, coprocessor, flight_log.recorder())) {
         return EXIT_FAILURE;
     }
     host::StatusLog log(options.quiet ? 0.0 : options.status_period);
-    const host::Watched watched{*coprocessor, endpoint, port, bus ? &*bus : nullptr, *clouds};
+    const host::Watched watched{coprocessor,    endpoint,          setup.on_bus ? assembly.bus()->serial() : line,
+                                assembly.bus(), assembly.clouds(), flight_log.output()};
     host::BackgroundCounts counts;
     {
         host::Background background(
             {options.airspace_file, options.state_file, options.signing.store, initial.values()});
-        host::Housekeeping housekeeping(background, *coprocessor, endpoint, signing, signing_state.given);
+        host::Housekeeping housekeeping(background, coprocessor, endpoint, signing, signing_state.given);
         housekeeping.has_airspace(!options.airspace_file.empty());
+        housekeeping.record_to(flight_log.recorder());
         if (options.realtime > 0) {
             go_realtime(options.realtime);  // this thread alone
         }
@@ -257,15 +268,21 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
                 housekeeping.reload();
             }
             housekeeping.work({began});
-            const app::StepReport report = coprocessor->step({began});
-            if (const auto text = log.note(report, watched, began, clock.now_us() - began)) {
+            flight_log.begin({began});
+            const app::StepReport report = coprocessor.step({began});
+            const std::int64_t took = clock.now_us() - began;
+            flight_log.end(report, coprocessor, {began}, took, background);
+            if (const auto text = log.note(report, watched, began, took)) {
                 background.print(host::Stream::out, *text);
             }
             next += kTickMicroseconds;
             next = std::max(next, clock.now_us());  // after a late step: no burst of steps to catch up
             wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
         }
-        coprocessor->shut_down({clock.now_us()});
+        const TimePoint end{clock.now_us()};
+        flight_log.begin_shut_down(end);
+        coprocessor.shut_down(end);
+        flight_log.end_shut_down(end);
         housekeeping.store_all();
         let_go_out(serial, clock);
         watchdog.close();
@@ -322,6 +339,15 @@ int main(int argc, char** argv)
     cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")
         ->check(CLI::Range(0.0, 3600.0));
     cli.add_option("--summary", options.summary, "write counters and step times to this file (JSON) at the end");
+    CLI::Option* const log = cli.add_option(
+        "--log", options.log.folder, "folder for flight logs (ULog), which jink log reads and replays bit for bit");
+    cli.add_flag("--log-clouds", options.log.clouds, "log the cloud line too: up to 6 MB/s")->needs(log)->needs(cloud);
+    cli.add_option("--log-size", options.log.file_megabytes, "size of one file of the log [MB]")
+        ->check(CLI::Range(1, 100'000))
+        ->needs(log);
+    cli.add_option("--log-count", options.log.files, "files of logs that are kept; the oldest are removed")
+        ->check(CLI::Range(2, 100'000))
+        ->needs(log);
     cli.add_option("--watchdog", options.watchdog, "watchdog device to feed, e.g. /dev/watchdog0");
     cli.add_option("--clock", options.clock,
                    "the processor's clock [MHz]: a step does the work that fits there, and plans go on over several "
