@@ -20,13 +20,13 @@
 #include <CLI/CLI.hpp>
 
 #include "firmware/app/coprocessor.hpp"
-#include "firmware/app/work_rate.hpp"
 #include "firmware/linux/background.hpp"
 #include "firmware/linux/flight_log/assembly.hpp"
 #include "firmware/linux/housekeeping.hpp"
 #include "firmware/linux/loading.hpp"
 #include "firmware/linux/logging.hpp"
 #include "firmware/linux/node_identity.hpp"
+#include "firmware/linux/options.hpp"
 #include "firmware/linux/param_file.hpp"
 #include "firmware/linux/param_store.hpp"
 #include "firmware/linux/ports.hpp"
@@ -41,6 +41,7 @@ namespace {
 
 using namespace jink;
 using host::complain_now;
+using host::Options;
 
 constexpr std::int64_t kTickMicroseconds = 20'000;
 /// Exit status for a map that is not good.
@@ -52,27 +53,6 @@ volatile std::sig_atomic_t reload_requested = 0;
 
 extern "C" void request_stop(int /*signal*/) { stop_requested = 1; }
 extern "C" void request_reload(int /*signal*/) { reload_requested = 1; }
-
-struct Options {
-    std::string serial;
-    std::string can;
-    std::string cloud;
-    std::string vehicle_file;
-    std::string param_file;
-    std::string state_file;
-    std::string airspace_file;
-    std::string map_file;
-    host::SigningFiles signing;
-    host::LogOptions log;
-    std::string watchdog;
-    std::string summary;
-    double status_period = 1.0;
-    unsigned clock = 0;  ///< of the processor [MHz]; 0: not said
-    int system_id = 0;
-    int node_id = 0;
-    int realtime = 0;
-    bool quiet = false;
-};
 
 void go_realtime(int priority)
 {
@@ -303,75 +283,26 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
 
 int main(int argc, char** argv)
 {
-    Options options;
-    CLI::App cli{
-        "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
-        "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT."};
-    CLI::Option* const serial =
-        cli.add_option("--serial", options.serial, "device and baud rate, DEV[:BAUD]; 921600 where none is given");
-    CLI::Option* const can = cli.add_option("--can", options.can,
-                                            "CAN interface with a DroneCAN bus; without --serial MAVLink goes through "
-                                            "it. Its bit rate and queue are set by\n"
-                                            "the system, not here: ip link set can0 type can bitrate 1000000 "
-                                            "restart-ms 100; ip link set can0 txqueuelen 128 up");
-    cli.add_option("--node-id", options.node_id, "DroneCAN node id, 1 to 127; 0: asks the bus for one")
-        ->check(CLI::Range(0, 127))
-        ->needs(can);
-    CLI::Option* const cloud = cli.add_option(
-        "--cloud", options.cloud,
-        "device and baud rate, DEV[:BAUD], on which a LiDAR's driver sends point clouds in compact frames");
-    cli.add_option("--vehicle", options.vehicle_file, "vehicle file (YAML): limits, airframe, cost caps");
-    cli.add_option("--params", options.param_file, "parameter file, NAME,VALUE per line; wins over the vehicle file");
-    cli.add_option("--state", options.state_file,
-                   "file that keeps parameters set over MAVLink or the bus; wins over the files above. Without this "
-                   "option: the parameter file's name with .state, if there is one");
-    cli.add_option("--airspace", options.airspace_file,
-                   "airspace file (YAML): closed areas and storm cells; read anew on SIGHUP");
-    cli.add_option("--map", options.map_file,
-                   "map of known surroundings, made by jink mesh build; one that is not good ends jinkd with status 2");
-    cli.add_option("--signing-key", options.signing.key,
-                   "file with the key of MAVLink signing: 64 hexadecimal digits, or 'passphrase TEXT'. Frames are then "
-                   "signed, and unsigned ones refused");
-    cli.add_option("--unsigned", options.signing.unsigned_frames,
-                   "unsigned frames that are taken although a key is set: none, all, or message ids, as 109,246");
-    cli.add_option("--system-id", options.system_id, "MAVLink system to serve; 0: the first autopilot heard")
-        ->check(CLI::Range(0, 255));
-    cli.add_option("--status-period", options.status_period, "seconds between status lines; 0: none")
-        ->check(CLI::Range(0.0, 3600.0));
-    cli.add_option("--summary", options.summary, "write counters and step times to this file (JSON) at the end");
-    CLI::Option* const log = cli.add_option(
-        "--log", options.log.folder, "folder for flight logs (ULog), which jink log reads and replays bit for bit");
-    cli.add_flag("--log-clouds", options.log.clouds, "log the cloud line too: up to 6 MB/s")->needs(log)->needs(cloud);
-    cli.add_option("--log-size", options.log.file_megabytes, "size of one file of the log [MB]")
-        ->check(CLI::Range(1, 100'000))
-        ->needs(log);
-    cli.add_option("--log-count", options.log.files, "files of logs that are kept; the oldest are removed")
-        ->check(CLI::Range(2, 100'000))
-        ->needs(log);
-    cli.add_option("--watchdog", options.watchdog, "watchdog device to feed, e.g. /dev/watchdog0");
-    cli.add_option("--clock", options.clock,
-                   "the processor's clock [MHz]: a step does the work that fits there, and plans go on over several "
-                   "steps. Without: work for 1000 MHz and more, a plan in one step")
-        ->check(CLI::Range(app::WorkRate::kMinMegahertz, app::WorkRate::kMaxMegahertz))
-        ->excludes(cloud);
-    cli.add_option("--realtime", options.realtime, "SCHED_FIFO priority and locked memory; 0: off")
-        ->check(CLI::Range(0, 99));
-    cli.add_flag("--quiet", options.quiet, "errors only");
+    host::Options options;
+    CLI::App cli{host::kAbout};
+    host::add_options(cli, options);
     CLI11_PARSE(cli, argc, argv);
 
     ignore_what_outputs_raise();
     catch_signals();
-    if (serial->empty() && can->empty()) {
+    const bool has_serial = cli.count("--serial") > 0;
+    const bool has_can = cli.count("--can") > 0;
+    if (!has_serial && !has_can) {
         complain_now("--serial or --can is needed");
         return EXIT_FAILURE;
     }
     std::string device;
     std::uint32_t baud = 0;
-    if (!can->empty() && options.can.empty()) {
+    if (has_can && options.can.empty()) {
         complain_now("--can: the name of an interface is needed");
         return EXIT_FAILURE;
     }
-    if (!serial->empty() && !host::split_device(options.serial, device, baud)) {
+    if (has_serial && !host::split_device(options.serial, device, baud)) {
         complain_now("--serial " + options.serial + ": expected DEV[:BAUD]");
         return EXIT_FAILURE;
     }
