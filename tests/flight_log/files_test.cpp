@@ -96,7 +96,7 @@ const Flown& flown()
 {
     static const Flown flight = [] {
         sim::Scenario scenario = sim::random_scenario(5);
-        scenario.duration = 4.0;
+        scenario.duration = 12.0;
         return Flown{fly_recorded(scenario, {}).log,
                      head_of_file(definitions_of(plain_setup()), 0, "jink_test", 0).size()};
     }();

@@ -248,16 +248,28 @@ TEST(FlightReplay, AChangedByteOfTheInputOrTheOutputIsFound)
     const RecordedFlight flight = fly_recorded(short_flight(), {});
     ASSERT_TRUE(replay(flight.log).is_identical());
     std::mt19937_64 random(11);
-    int found = 0;
-    for (int i = 0; i < 60; ++i) {
-        std::string changed = flight.log;
-        // Within the record of a step: behind the head, where bytes are in use.
-        const std::size_t from = changed.find("\xFD", changed.size() / 4 + random() % (changed.size() / 2));
-        ASSERT_NE(from, std::string::npos);
-        changed[from + 12] ^= 1;
-        found += replay(changed).is_identical() ? 0 : 1;
+    std::vector<std::size_t> heartbeats;  // of ours, as written: MAVLink 2 from system 1, component 196
+    const std::string head("\xFD\x09\x00\x00", 4);
+    for (std::size_t at = 0; (at = flight.log.find(head, at)) != std::string::npos; ++at) {
+        if (static_cast<unsigned char>(flight.log[at + 6]) == 196 && flight.log[at + 7] == 0) {
+            heartbeats.push_back(at);
+        }
     }
-    EXPECT_GT(found, 30) << "bytes that nobody reads may differ";
+    ASSERT_GT(heartbeats.size(), 2U);
+    for (const std::size_t at : heartbeats) {
+        std::string changed = flight.log;
+        changed[at + 10 + random() % 9] ^= static_cast<char>(1U << random() % 8);
+        const ReplayResult result = replay(changed);
+        ASSERT_NE(result.difference.find("a write of"), std::string::npos) << result.difference << result.incomplete;
+    }
+    // HEARTBEATs of the autopilot: their checksums fail, and nobody is heard.
+    std::string changed = flight.log;
+    for (std::size_t at = 0; (at = changed.find(head, at)) != std::string::npos; ++at) {
+        if (changed[at + 6] == 1 && changed[at + 7] == 0) {
+            changed[at + 10] ^= 1;
+        }
+    }
+    EXPECT_FALSE(replay(changed).is_identical());
 }
 
 TEST(FlightReplay, AMissingMessageIsAGapAndNoDifference)

@@ -6,7 +6,6 @@
 #include <memory>
 #include <stdexcept>
 
-#include "firmware/linux/complaint.hpp"
 #include "toolchain/host/log_summary.hpp"
 
 namespace jink::host {
@@ -155,7 +154,7 @@ std::uint64_t write_log_csv(ulog::Reader& log, const std::filesystem::path& fold
             files.write(format.name, heading(format), line_of(format, content.subspan(2)));
         } else if (message->type == ulog::Type::text) {
             const std::span<const std::byte> bytes = content.subspan(9);
-            std::string text = files::printable({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+            std::string text = log_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
             for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) {
                 text.insert(at, "\"");
             }

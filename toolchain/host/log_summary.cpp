@@ -7,7 +7,6 @@
 #include <istream>
 #include <ostream>
 
-#include "firmware/linux/complaint.hpp"
 #include "firmware/linux/flight_log/topics.hpp"
 
 namespace jink::host {
@@ -63,10 +62,17 @@ void note_text(std::span<const std::byte> content, LogSummary& summary)
     }
     const std::span<const std::byte> text = content.subspan(9);
     summary.lines.push_back({seconds_at(content.subspan(1)), static_cast<char>(content[0]),
-                             files::printable({reinterpret_cast<const char*>(text.data()), text.size()})});
+                             log_text({reinterpret_cast<const char*>(text.data()), text.size()})});
 }
 
 }  // namespace
+
+std::string log_text(std::string_view text)
+{
+    std::string out(text);
+    std::replace_if(out.begin(), out.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+    return out;
+}
 
 LogSummary summarise_log(std::istream& in)
 {
@@ -86,7 +92,7 @@ LogSummary summarise_log(std::istream& in)
             break;
         case ulog::Type::parameter:
             if (const auto keyed = ulog::parse_keyed(content, message->type); keyed && !summary.topics.empty()) {
-                summary.parameters_changed.push_back(files::printable(keyed->name) + " = " +
+                summary.parameters_changed.push_back(log_text(keyed->name) + " = " +
                                                      log_value(keyed->type, keyed->value));
             }
             break;
@@ -94,7 +100,7 @@ LogSummary summarise_log(std::istream& in)
         }
     }
     for (const auto& [name, info] : log.infos()) {
-        summary.infos[name] = info.type == "char" ? files::printable(info.text()) : log_value(info.type, info.value);
+        summary.infos[name] = info.type == "char" ? log_text(info.text()) : log_value(info.type, info.value);
     }
     summary.end = log.end();
     summary.end_offset = log.offset();

@@ -42,7 +42,6 @@ struct LogSummary {
 
 /// Reads a log to its end or to its damage.
 [[nodiscard]] LogSummary summarise_log(std::istream& in);
-/// @param all_lines  also the texts of levels below "notice"
 void print_log_summary(const std::string& name, const LogSummary& summary, std::ostream& out);
 
 /// Writes one file for each topic, TOPIC.csv, into a folder: the fields' names, then a line for each message. Arrays
@@ -50,6 +49,8 @@ void print_log_summary(const std::string& name, const LogSummary& summary, std::
 /// @return lines written; throws std::runtime_error where a file cannot be written
 std::uint64_t write_log_csv(ulog::Reader& log, const std::filesystem::path& folder);
 
+/// The text with "?" for everything but printable ASCII.
+[[nodiscard]] std::string log_text(std::string_view text);
 /// Value of one element of a field, as text.
 [[nodiscard]] std::string log_value(std::string_view type, std::span<const std::byte> bytes);
 
