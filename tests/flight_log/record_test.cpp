@@ -237,7 +237,7 @@ TEST(FlightReplay, AreasAndStoredParametersAreSetAgain)
             recorder.stored(coprocessor.parameters().generation());
         }
     };
-    const RecordedFlight flight = fly_recorded(short_flight(), {}, beside);
+    const RecordedFlight flight = fly_recorded(short_flight(), {}, {.beside = beside});
     const ReplayResult result = replay(flight.log);
     EXPECT_TRUE(result.is_identical()) << result.refused << result.incomplete << result.difference;
     EXPECT_EQ(result.steps, flight.steps);

@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <ctime>
+#include <tuple>
 #include <utility>
 
 #include "firmware/linux/flight_log/topics.hpp"
@@ -164,11 +165,11 @@ void LogFiles::prune()
 {
     std::vector<std::string> logs = disk_->names_in(options_.folder);
     std::erase_if(logs, [](const std::string& name) { return !is_log(name); });
-    std::sort(logs.begin(), logs.end(), [&](const std::string& a, const std::string& b) {
-        const bool a_old = !a.starts_with(run_);
-        const bool b_old = !b.starts_with(run_);
-        return a_old != b_old ? a_old : (a.size() != b.size() ? a.size() < b.size() : a < b);
-    });
+    const auto age = [&](const std::string& name) {
+        return std::tuple(name.starts_with(run_), name.substr(0, run_.size()), name.size(), name);
+    };
+    std::sort(logs.begin(), logs.end(),
+              [&](const std::string& a, const std::string& b) { return age(a) < age(b); });
     for (std::size_t i = 0; i + options_.files < logs.size(); ++i) {
         disk_->remove(options_.folder + "/" + logs[i]);
     }
