@@ -38,15 +38,6 @@ hal::CanHealth to_can_health(const Health& n) noexcept
     return {static_cast<hal::CanState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12]};
 }
 
-void EntryWriter::count(std::uint64_t value) noexcept
-{
-    while (value >= 0x80U) {
-        put(static_cast<std::uint8_t>(value | 0x80U));
-        value >>= 7U;
-    }
-    put(static_cast<std::uint8_t>(value));
-}
-
 void EntryWriter::bytes(std::span<const std::byte> bytes) noexcept
 {
     if (bytes.size() > bytes_.size() - size_) {

@@ -58,9 +58,15 @@ public:
     }
     void entry(Entry kind, Port port = Port::line) noexcept
     {
-        put(static_cast<std::uint8_t>(static_cast<unsigned>(kind) | static_cast<unsigned>(port) << 4U));
+        byte(static_cast<unsigned>(kind) | static_cast<unsigned>(port) << 4U);
     }
-    void count(std::uint64_t value) noexcept;
+    void count(std::uint64_t value) noexcept
+    {
+        for (; value >= 0x80U; value >>= 7U) {
+            byte(static_cast<unsigned>(value & 0x7FU) | 0x80U);
+        }
+        byte(static_cast<unsigned>(value));
+    }
     void bytes(std::span<const std::byte> bytes) noexcept;
     template <class T>
     void put(T value) noexcept
@@ -81,6 +87,15 @@ public:
     [[nodiscard]] bool overflowed() const noexcept { return overflowed_; }
 
 private:
+    void byte(unsigned value) noexcept
+    {
+        if (size_ < bytes_.size()) {
+            bytes_[size_++] = static_cast<std::byte>(value);
+        } else {
+            overflowed_ = true;
+        }
+    }
+
     std::vector<std::byte> bytes_;
     std::size_t size_ = 0;
     bool overflowed_ = false;

@@ -14,7 +14,9 @@ void Queue::copy_in(std::uint64_t at, std::span<const std::byte> bytes) noexcept
     const auto from = static_cast<std::size_t>(at & (bytes_.size() - 1));
     const std::size_t first = std::min(bytes.size(), bytes_.size() - from);
     std::memcpy(bytes_.data() + from, bytes.data(), first);
-    std::memcpy(bytes_.data(), bytes.data() + first, bytes.size() - first);
+    if (first < bytes.size()) {
+        std::memcpy(bytes_.data(), bytes.data() + first, bytes.size() - first);
+    }
 }
 
 void Queue::lose(std::int64_t now_us) noexcept

@@ -68,7 +68,8 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
     if (const std::size_t rest = std::exchange(secret_, 0); rest > 0) {
         wipe(0, rest);
     }
-    for (std::size_t i = 0; i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
+    const bool may_go_on = std::memchr(tail_.data(), static_cast<int>(kMagic), kTail) != nullptr;
+    for (std::size_t i = 0; may_go_on && i + kHeader <= kTail + head; ++i) {  // frames that began in the reads before
         if (is_setup_signing(joint.data() + i)) {
             wipe(i + kHeader - kTail, static_cast<std::size_t>(joint[i + kLength]) + kChecksum);
         }
