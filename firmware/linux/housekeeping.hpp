@@ -60,8 +60,8 @@ private:
     bool reported_unchecked_ = false;
     std::uint32_t stored_params_;
     std::optional<std::uint32_t> noted_params_;  ///< generation that the co-processor knows to be stored
-    std::uint32_t stored_key_ = 0;   ///< Signing::generation() as stored
-    std::uint64_t stored_time_ = 0;  ///< Signing::time() as stored
+    std::uint32_t stored_key_ = 0;               ///< Signing::generation() as stored
+    std::uint64_t stored_time_ = 0;              ///< Signing::time() as stored
 };
 
 }  // namespace jink::host

@@ -33,10 +33,7 @@ hal::SerialPort& Logging::cloud(hal::SerialPort& port)
     return log_ && options_.clouds ? cloud_.emplace(port, log_->recorder(), flightlog::Port::cloud) : port;
 }
 
-hal::CanPort& Logging::can(hal::CanPort& port)
-{
-    return log_ ? can_.emplace(port, log_->recorder()) : port;
-}
+hal::CanPort& Logging::can(hal::CanPort& port) { return log_ ? can_.emplace(port, log_->recorder()) : port; }
 
 void Logging::begin(TimePoint began) noexcept
 {

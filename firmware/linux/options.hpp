@@ -36,7 +36,7 @@ struct Options {
 
 inline constexpr const char* kAbout =
     "jinkd: collision avoidance beside a PX4 or ArduPilot autopilot, over MAVLink on a serial line, with\n"
-        "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT.";
+    "sensors and traffic on a DroneCAN bus, or over MAVLink through that bus. Runs until SIGTERM or SIGINT.";
 void add_options(CLI::App& cli, Options& options);
 
 }  // namespace jink::host

@@ -78,7 +78,8 @@ protected:
     /// Runs `jink log`; its output is in `out`.
     int jink_log(const std::string& arguments)
     {
-        const std::string command = "'" JINK_PROGRAM "' log " + arguments + " >'" + (scratch / "out").string() + "' 2>&1";
+        const std::string command =
+            "'" JINK_PROGRAM "' log " + arguments + " >'" + (scratch / "out").string() + "' 2>&1";
         const int status = std::system(command.c_str());
         out = text_of(scratch / "out");
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -117,10 +118,12 @@ TEST_F(DaemonFlightLog, AFlightWithAManoeuvreReplaysBitForBit)
     EXPECT_EQ(number("log_files"), 1.0);
     EXPECT_EQ(jink_log("--replay" + quoted()), 0) << out;
     EXPECT_NE(out.find("bit-identical\n"), std::string::npos) << out;
-    EXPECT_NE(out.find(std::to_string(static_cast<int>(number("steps"))) + " steps replayed"), std::string::npos) << out;
+    EXPECT_NE(out.find(std::to_string(static_cast<int>(number("steps"))) + " steps replayed"), std::string::npos)
+        << out;
 
     EXPECT_EQ(jink_log(quoted()), 0) << out;
-    for (const char* part : {"jink 0.", "end: complete", "requesting -> ours", "new manoeuvre", "jink: stopped", "jink_candidate"}) {
+    for (const char* part :
+         {"jink 0.", "end: complete", "requesting -> ours", "new manoeuvre", "jink: stopped", "jink_candidate"}) {
         EXPECT_NE(out.find(part), std::string::npos) << part << "\n" << out;
     }
     EXPECT_EQ(jink_log("--csv '" + (scratch / "csv").string() + "'" + quoted()), 0) << out;

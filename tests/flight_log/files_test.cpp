@@ -86,10 +86,7 @@ private:
 struct Flown {
     std::string log;
     std::size_t head = 0;
-    [[nodiscard]] std::span<const std::byte> data() const
-    {
-        return std::as_bytes(std::span(log)).subspan(head);
-    }
+    [[nodiscard]] std::span<const std::byte> data() const { return std::as_bytes(std::span(log)).subspan(head); }
 };
 
 const Flown& flown()

@@ -40,7 +40,7 @@ std::vector<std::byte> setup_signing_frame()
     return {frame.begin(), frame.begin() + static_cast<std::ptrdiff_t>(n)};
 }
 
-/// Bytes of a key that stand in `bytes` in a row, at most.
+/// Longest part of a key that `bytes` contain.
 std::size_t longest_part(std::span<const std::byte> bytes, std::span<const std::byte> key)
 {
     std::size_t longest = 0;
@@ -282,9 +282,9 @@ TEST(FlightReplay, AMissingMessageIsAGapAndNoDifference)
     std::size_t begin = 16;
     while (const auto message = reader.next()) {
         const std::size_t size = 3 + message->content.size();
-        const bool is_record = message->type == ulog::Type::data &&
-                               reader.topic(ulog::read_number<std::uint16_t>(message->content))->name.starts_with(
-                                   "jink_hal_");
+        const bool is_record =
+            message->type == ulog::Type::data &&
+            reader.topic(ulog::read_number<std::uint16_t>(message->content))->name.starts_with("jink_hal_");
         records += is_record ? 1U : 0U;
         if (is_record && records == 100) {
             without = log.substr(0, begin) + log.substr(begin + size);

@@ -16,6 +16,7 @@
 #include "firmware/linux/flight_log/flight_log.hpp"
 #include "firmware/linux/flight_log/log_files.hpp"
 #include "firmware/linux/flight_log/replay.hpp"
+#include "hal/memory/counting_watchdog.hpp"
 #include "hal/memory/manual_clock.hpp"
 #include "toolchain/sim/cable.hpp"
 #include "toolchain/sim/lidar.hpp"
@@ -95,9 +96,8 @@ public:
         std::vector<std::byte> out;
         std::span<const std::byte> rest(bytes);
         while (const auto frame = parser_.next(rest)) {
-            out.insert(out.end(), {std::byte{0xFD}, static_cast<std::byte>(frame->length), std::byte{1},
-                                   std::byte{0}, static_cast<std::byte>(sequence_++),
-                                   static_cast<std::byte>(frame->header.system_id),
+            out.insert(out.end(), {std::byte{0xFD}, static_cast<std::byte>(frame->length), std::byte{1}, std::byte{0},
+                                   static_cast<std::byte>(sequence_++), static_cast<std::byte>(frame->header.system_id),
                                    static_cast<std::byte>(frame->header.component_id),
                                    static_cast<std::byte>(frame->message_id & 0xFFU),
                                    static_cast<std::byte>(frame->message_id >> 8U & 0xFFU),

@@ -24,7 +24,8 @@ TEST(FlightReplay, AHundredRandomFlightsAreTheSameBitForBit)
     std::uint32_t manoeuvres = 0;
     for (std::uint64_t seed = first; seed < first + 100; ++seed) {
         const sim::Scenario scenario = sim::random_scenario(seed);
-        const sim::Timing timing = seed % 2 == 0 ? sim::Timing{} : sim::timing_of(seed, sim::Spread{}, 100'000, 500'000);
+        const sim::Timing timing =
+            seed % 2 == 0 ? sim::Timing{} : sim::timing_of(seed, sim::Spread{}, 100'000, 500'000);
         const RecordedFlight flight = fly_recorded(scenario, timing);
         const flightlog::ReplayResult result = replay(flight.log);
         ASSERT_TRUE(result.is_identical()) << "JINK_LOG_SEED=" << seed << ": " << result.refused << result.incomplete

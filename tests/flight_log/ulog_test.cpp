@@ -154,10 +154,7 @@ void expect_all_before_the_cut(const std::string& log, std::size_t from, std::si
         const auto whole = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), size) - ends.begin());
         ASSERT_EQ(read.messages, whole == 0 ? 0 : whole - 1) << size;
         const bool at_an_end = whole > 0 && ends[whole - 1] == size;
-        ASSERT_EQ(read.end, size < 16   ? ulog::End::not_ulog
-                            : at_an_end ? ulog::End::complete
-                                        : ulog::End::cut)
-            << size;
+        ASSERT_EQ(read.end, size < 16 ? ulog::End::not_ulog : at_an_end ? ulog::End::complete : ulog::End::cut) << size;
     }
 }
 

@@ -160,7 +160,8 @@ void add_log(CLI::App& jink)
     log->add_option("files", command->files, "logs; of a replay the files of one run in their order")->required();
     CLI::Option* const csv = log->add_option("--csv", command->csv, "write one table (CSV) per topic to this folder");
     CLI::Option* const replay_flag =
-        log->add_flag("--replay", command->replay, "run the co-processor over the recorded input and compare its output")
+        log->add_flag("--replay", command->replay,
+                      "run the co-processor over the recorded input and compare its output")
             ->excludes(csv);
     log->add_option("--signing-key", command->key_file, "key file of a flight whose frames were signed")
         ->needs(replay_flag);

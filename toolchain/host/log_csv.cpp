@@ -159,8 +159,8 @@ std::uint64_t write_log_csv(ulog::Reader& log, const std::filesystem::path& fold
                 text.insert(at, "\"");
             }
             files.write("texts", "timestamp,level,text\n",
-                        log_value("uint64_t", content.subspan(1)) + "," + static_cast<char>(content[0]) + ",\"" +
-                            text + "\"\n");
+                        log_value("uint64_t", content.subspan(1)) + "," + static_cast<char>(content[0]) + ",\"" + text +
+                            "\"\n");
         }
     }
     return files.finish();

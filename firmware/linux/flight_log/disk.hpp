@@ -8,8 +8,8 @@
 
 namespace jink::flightlog {
 
-/// The file system as the writer of logs uses it; tests put another in its place. One file is open at a time. Errors are
-/// those of errno; 0: none.
+/// The file system as the writer of logs uses it; tests put another in its place. One file is open at a time. Errors
+/// are those of errno; 0: none.
 class Disk {
 public:
     virtual ~Disk() = default;

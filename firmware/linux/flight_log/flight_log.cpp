@@ -20,10 +20,7 @@ public:
         size_ = std::min(size_ + static_cast<std::size_t>(std::max(n, 0)), text_.size() - 1);
         return *this;
     }
-    Line& add_name(std::string_view name) noexcept
-    {
-        return add("%.*s", static_cast<int>(name.size()), name.data());
-    }
+    Line& add_name(std::string_view name) noexcept { return add("%.*s", static_cast<int>(name.size()), name.data()); }
     [[nodiscard]] std::string_view view() const noexcept { return {text_.data(), size_}; }
 
 private:
@@ -124,9 +121,9 @@ void FlightLog::put_own(const app::StepReport& report, const app::Coprocessor& c
 void FlightLog::put_tracks(app::Coprocessor& coprocessor, TimePoint now) noexcept
 {
     for (const world::Track& t : coprocessor.tracks(now)) {
-        put(TopicId::track, TrackTopic{stamp_of(now), t.id, xyz_of(t.position), xyz_of(t.velocity), t.radius,
-                                       t.half_height, now - t.stamp, t.instance, static_cast<std::uint8_t>(t.source),
-                                       t.manned, t.cooperative});
+        put(TopicId::track,
+            TrackTopic{stamp_of(now), t.id, xyz_of(t.position), xyz_of(t.velocity), t.radius, t.half_height,
+                       now - t.stamp, t.instance, static_cast<std::uint8_t>(t.source), t.manned, t.cooperative});
     }
 }
 
@@ -144,8 +141,8 @@ void FlightLog::put_counters(const app::Coprocessor& coprocessor, TimePoint now)
     }
     output_.add(message.end());
     const LogCounts counts = output_.counts();
-    put(TopicId::log, LogTopic{stamp_of(now), counts.messages, counts.dropped, counts.write_failures, counts.files,
-                               counts.peak});
+    put(TopicId::log,
+        LogTopic{stamp_of(now), counts.messages, counts.dropped, counts.write_failures, counts.files, counts.peak});
 }
 
 void FlightLog::put_candidates(const app::Coprocessor& coprocessor, TimePoint now) noexcept

@@ -27,7 +27,7 @@ public:
     struct Limits {
         /// Of one record [bytes]: 4 KiB read and 8 KiB written on the line, and 2500 closed areas of up to 61 bytes.
         std::size_t record = 192U * 1024U;
-        static constexpr std::size_t kOfBus = 96U * 1024U;     ///< 512 frames received, and as many sent
+        static constexpr std::size_t kOfBus = 96U * 1024U;      ///< 512 frames received, and as many sent
         static constexpr std::size_t kOfClouds = 192U * 1024U;  ///< app::kMaxCloudBytesPerStep
     };
 

@@ -16,16 +16,34 @@ constexpr unsigned kRateSwitch = 8U;
 
 Health to_numbers(const hal::PortHealth& h) noexcept
 {
-    return {static_cast<std::uint64_t>(h.state), h.bytes_in,     h.bytes_out,     h.bytes_refused, h.overruns,
-            h.line_errors,                       h.read_errors,  h.write_errors,  h.open_failures, h.disconnects,
+    return {static_cast<std::uint64_t>(h.state),
+            h.bytes_in,
+            h.bytes_out,
+            h.bytes_refused,
+            h.overruns,
+            h.line_errors,
+            h.read_errors,
+            h.write_errors,
+            h.open_failures,
+            h.disconnects,
             h.reconnects};
 }
 
 Health to_numbers(const hal::CanHealth& h) noexcept
 {
-    return {static_cast<std::uint64_t>(h.state), h.frames_in, h.frames_out,  h.frames_refused, h.frames_bad,
-            h.overruns,                          h.bus_errors, h.bus_offs,   h.restarts,       h.read_errors,
-            h.write_errors,                      h.downs,      h.ups};
+    return {static_cast<std::uint64_t>(h.state),
+            h.frames_in,
+            h.frames_out,
+            h.frames_refused,
+            h.frames_bad,
+            h.overruns,
+            h.bus_errors,
+            h.bus_offs,
+            h.restarts,
+            h.read_errors,
+            h.write_errors,
+            h.downs,
+            h.ups};
 }
 
 hal::PortHealth to_port_health(const Health& n) noexcept
@@ -35,7 +53,8 @@ hal::PortHealth to_port_health(const Health& n) noexcept
 
 hal::CanHealth to_can_health(const Health& n) noexcept
 {
-    return {static_cast<hal::CanState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12]};
+    return {
+        static_cast<hal::CanState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11], n[12]};
 }
 
 void EntryWriter::bytes(std::span<const std::byte> bytes) noexcept
@@ -144,8 +163,8 @@ app::Constraint EntryReader::area() noexcept
 {
     app::Constraint a;
     world::Cylinder& c = a.cylinder;
-    for (float* value : {&c.circle.centre.x(), &c.circle.centre.y(), &c.circle.radius, &c.velocity.x(),
-                         &c.velocity.y(), &c.bottom, &c.top, &c.margin}) {
+    for (float* value : {&c.circle.centre.x(), &c.circle.centre.y(), &c.circle.radius, &c.velocity.x(), &c.velocity.y(),
+                         &c.bottom, &c.top, &c.margin}) {
         *value = number<float>();
     }
     a.stamp.us = number<std::int64_t>();

@@ -114,10 +114,7 @@ LogFiles::LogFiles(FileOptions options, Definitions definitions, std::unique_ptr
     }
 }
 
-std::size_t LogFiles::room() const noexcept
-{
-    return waiting_.size() < 2 * kPiece ? kPiece : 0;
-}
+std::size_t LogFiles::room() const noexcept { return waiting_.size() < 2 * kPiece ? kPiece : 0; }
 
 void LogFiles::take(std::span<const std::byte> bytes) { waiting_.insert(waiting_.end(), bytes.begin(), bytes.end()); }
 
@@ -168,8 +165,7 @@ void LogFiles::prune()
     const auto age = [&](const std::string& name) {
         return std::tuple(name.starts_with(run_), name.substr(0, run_.size()), name.size(), name);
     };
-    std::sort(logs.begin(), logs.end(),
-              [&](const std::string& a, const std::string& b) { return age(a) < age(b); });
+    std::sort(logs.begin(), logs.end(), [&](const std::string& a, const std::string& b) { return age(a) < age(b); });
     for (std::size_t i = 0; i + options_.files < logs.size(); ++i) {
         disk_->remove(options_.folder + "/" + logs[i]);
     }

@@ -24,7 +24,7 @@ struct FileOptions {
 
 /// Definitions with which every file begins.
 struct Definitions {
-    std::vector<std::byte> before;  ///< flags, formats, information messages, default values
+    std::vector<std::byte> before;                             ///< flags, formats, information messages, default values
     std::map<std::string, std::vector<std::byte>> parameters;  ///< by name: those in force
     std::vector<std::byte> behind;                             ///< subscriptions
 };
@@ -70,8 +70,8 @@ private:
     FileOptions options_;
     Definitions definitions_;
     std::unique_ptr<Disk> disk_;
-    std::string run_;     ///< first part of the files' names
-    std::string path_;    ///< of the present file
+    std::string run_;   ///< first part of the files' names
+    std::string path_;  ///< of the present file
     std::uint32_t next_ = 0;
     bool is_open_ = false;
     bool is_dirty_ = false;

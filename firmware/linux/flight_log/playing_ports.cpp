@@ -142,8 +142,8 @@ std::size_t PlayingSerialPort::write(std::span<const std::byte> from) noexcept
         const auto at = static_cast<std::size_t>(
             std::mismatch(from.begin(), from.end(), offered.begin(), offered.end()).first - from.begin());
         tape_.differ("a write of " + std::to_string(from.size()) + " bytes on " + name_of(which_) + ", the log has " +
-                     std::to_string(offered.size()) + "; from byte " + std::to_string(at) + " on: " +
-                     hex_of(from.subspan(at)) + "in place of " + hex_of(offered.subspan(at)));
+                     std::to_string(offered.size()) + "; from byte " + std::to_string(at) +
+                     " on: " + hex_of(from.subspan(at)) + "in place of " + hex_of(offered.subspan(at)));
         return 0;
     }
     tape_.compared(from.size());
@@ -179,10 +179,11 @@ bool PlayingCanPort::send(const hal::CanFrame& frame) noexcept
     }
     const hal::CanFrame recorded = tape_.reader().frame();
     if (!same_frame(frame, recorded)) {
-        tape_.differ("another CAN frame: " + hex_of(std::span(frame.data).first(std::min<std::size_t>(
-                         frame.length, frame.data.size()))) +
-                     "in place of " + hex_of(std::span(recorded.data).first(std::min<std::size_t>(
-                         recorded.length, recorded.data.size()))));
+        tape_.differ(
+            "another CAN frame: " +
+            hex_of(std::span(frame.data).first(std::min<std::size_t>(frame.length, frame.data.size()))) +
+            "in place of " +
+            hex_of(std::span(recorded.data).first(std::min<std::size_t>(recorded.length, recorded.data.size()))));
         return false;
     }
     tape_.compared(frame.length);

@@ -54,8 +54,7 @@ bool Queue::add(std::span<const std::byte> message, std::int64_t now_us) noexcep
 std::size_t Queue::take(std::span<std::byte> into) noexcept
 {
     const std::uint64_t tail = tail_.load(std::memory_order_relaxed);
-    const std::size_t n =
-        std::min(into.size(), static_cast<std::size_t>(head_.load(std::memory_order_acquire) - tail));
+    const std::size_t n = std::min(into.size(), static_cast<std::size_t>(head_.load(std::memory_order_acquire) - tail));
     const auto from = static_cast<std::size_t>(tail & (bytes_.size() - 1));
     const std::size_t first = std::min(n, bytes_.size() - from);
     std::memcpy(into.data(), bytes_.data() + from, first);

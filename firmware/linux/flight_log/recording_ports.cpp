@@ -76,7 +76,8 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
     }
     // The first of these begin in this read.
     for (std::size_t i = 0; i + kHeader <= bytes.size();) {
-        const void* const found = std::memchr(bytes.data() + i, static_cast<int>(kMagic), bytes.size() - i - kHeader + 1);
+        const void* const found =
+            std::memchr(bytes.data() + i, static_cast<int>(kMagic), bytes.size() - i - kHeader + 1);
         if (found == nullptr) {
             break;
         }

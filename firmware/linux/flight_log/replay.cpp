@@ -11,8 +11,7 @@ namespace jink::flightlog {
 namespace {
 
 /// The first field of two topics of one format that differs.
-std::string first_difference(const ulog::Format& format, std::span<const std::byte> is,
-                             std::span<const std::byte> was)
+std::string first_difference(const ulog::Format& format, std::span<const std::byte> is, std::span<const std::byte> was)
 {
     for (const ulog::Field& field : format.fields) {
         const std::size_t size = ulog::size_of_type(field.type) * field.count;
@@ -119,9 +118,8 @@ bool FlightReplay::take(const ulog::Message& message, const ulog::Format& format
         case HalParts::Taken::part: return true;
         case HalParts::Taken::record: return step(parts_.record());
         case HalParts::Taken::gap:
-            result_.incomplete = result_.steps == 0
-                                     ? "the log does not begin with its first file"
-                                     : "the log has a gap: messages were dropped, or a file is missing";
+            result_.incomplete = result_.steps == 0 ? "the log does not begin with its first file"
+                                                    : "the log has a gap: messages were dropped, or a file is missing";
             return false;
         case HalParts::Taken::bad: result_.incomplete = "the record is damaged"; return false;
         }

@@ -13,7 +13,7 @@
 #include "firmware/linux/flight_log/playing_ports.hpp"
 #include "firmware/linux/flight_log/ulog_reader.hpp"
 #include "firmware/linux/signing_store.hpp"
-#include "hal/memory/counting_watchdog.hpp"
+#include "hal/watchdog.hpp"
 
 namespace jink::flightlog {
 
@@ -26,14 +26,14 @@ struct ReplayOptions {
 
 /// Outcome of a replay.
 struct ReplayResult {
-    std::uint64_t steps = 0;           ///< replayed and compared
-    std::uint64_t bytes = 0;           ///< of writes, compared
-    std::uint64_t reports = 0;         ///< of steps, compared
-    std::string refused;               ///< why the log cannot be replayed; empty: it can
-    std::string difference;            ///< the first one; empty: none
-    std::string incomplete;            ///< why the log cannot be replayed to its end; empty: it can
+    std::uint64_t steps = 0;    ///< replayed and compared
+    std::uint64_t bytes = 0;    ///< of writes, compared
+    std::uint64_t reports = 0;  ///< of steps, compared
+    std::string refused;        ///< why the log cannot be replayed; empty: it can
+    std::string difference;     ///< the first one; empty: none
+    std::string incomplete;     ///< why the log cannot be replayed to its end; empty: it can
     std::uint64_t difference_step = 0;
-    bool was_shut_down = false;        ///< the log ends with the end of the run
+    bool was_shut_down = false;  ///< the log ends with the end of the run
     [[nodiscard]] bool is_identical() const
     {
         return refused.empty() && difference.empty() && incomplete.empty() && steps > 0;
@@ -55,6 +55,11 @@ public:
     [[nodiscard]] Assembly* assembly() noexcept { return assembly_ ? &*assembly_ : nullptr; }
 
 private:
+    class NoWatchdog final : public hal::Watchdog {
+    public:
+        void feed() noexcept override {}
+    };
+
     [[nodiscard]] bool set_up(const ulog::Reader& log);
     [[nodiscard]] bool may_follow(const ulog::Reader& log);
     [[nodiscard]] bool take(const ulog::Message& message, const ulog::Format& format);
@@ -71,7 +76,7 @@ private:
     PlayingSerialPort line_{tape_, Port::line};
     PlayingSerialPort cloud_{tape_, Port::cloud};
     PlayingCanPort can_{tape_};
-    hal::CountingWatchdog watchdog_;
+    NoWatchdog watchdog_;
     link::mavlink::Signing signing_;
     std::optional<Assembly> assembly_;
     std::uint32_t generation_ = 0;  ///< of the initial parameters here

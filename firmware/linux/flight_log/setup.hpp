@@ -33,11 +33,11 @@ struct Setup {
     bool keys_can_be_set = false;
     std::uint64_t signing_time = 0;  ///< at the start [10 us since 2015]
     std::string unsigned_frames = "none";
-    files::ParamValues initial{};        ///< of the files that people write
-    files::ParamValues stored{};         ///< in force at the start
-    std::uint32_t generation = 0;        ///< Parameters::generation() of `initial`
-    std::string version;                 ///< of the program
-    std::string digest;                  ///< of the sources that decide (build_digest)
+    files::ParamValues initial{};  ///< of the files that people write
+    files::ParamValues stored{};   ///< in force at the start
+    std::uint32_t generation = 0;  ///< Parameters::generation() of `initial`
+    std::string version;           ///< of the program
+    std::string digest;            ///< of the sources that decide (build_digest)
 };
 
 /// SHA-256 over the sources of core, hal, link, application and flight log, the compiler and its options. Programs with

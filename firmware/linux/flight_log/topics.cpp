@@ -83,8 +83,10 @@ std::span<const Counter<avoid::Diagnostics>> avoid_counters() noexcept { return 
 
 std::vector<std::string> topic_formats()
 {
-    std::vector<std::string> formats{std::string(StepTopic::kFormat), std::string(OwnTopic::kFormat),
-                                     std::string(TrackTopic::kFormat), std::string(CandidateTopic::kFormat),
+    std::vector<std::string> formats{std::string(StepTopic::kFormat),
+                                     std::string(OwnTopic::kFormat),
+                                     std::string(TrackTopic::kFormat),
+                                     std::string(CandidateTopic::kFormat),
                                      format_of("jink_app_counters", app_counters()),
                                      format_of("jink_avoid_counters", avoid_counters()),
                                      std::string(LogTopic::kFormat)};

@@ -17,7 +17,10 @@ std::span<const std::byte> bytes_of(const T& value)
     return std::as_bytes(std::span(&value, 1));
 }
 
-std::string keyed_by(std::string_view type, std::string_view name) { return std::string(type) + " " + std::string(name); }
+std::string keyed_by(std::string_view type, std::string_view name)
+{
+    return std::string(type) + " " + std::string(name);
+}
 
 }  // namespace
 

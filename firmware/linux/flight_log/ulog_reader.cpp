@@ -200,8 +200,9 @@ bool Reader::take(const Message& message)
     case Type::format: return take_format(content);
     case Type::subscription: in_data_ = true; return take_subscription(content);
     case Type::info: return take_keyed(content, infos_);
-    case Type::parameter: return in_data_ ? parse_keyed(content, message.type).has_value() || fail(End::damaged)
-                                          : take_keyed(content, parameters_);
+    case Type::parameter:
+        return in_data_ ? parse_keyed(content, message.type).has_value() || fail(End::damaged)
+                        : take_keyed(content, parameters_);
     case Type::parameter_default: {
         const auto keyed = parse_keyed(content, message.type);
         if (keyed && defaults_.size() < kMaxDefinitions) {

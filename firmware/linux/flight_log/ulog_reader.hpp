@@ -43,7 +43,7 @@ struct Keyed {
     std::string name;
     std::vector<std::byte> value;
 
-    [[nodiscard]] std::string text() const;            ///< of char[n]
+    [[nodiscard]] std::string text() const;             ///< of char[n]
     [[nodiscard]] std::optional<float> number() const;  ///< of float or int32_t
 };
 

@@ -18,9 +18,9 @@ namespace jink::flightlog {
 /// process that is killed loses kPeriod at most, a machine that loses power about a second.
 class Writer final : public Output {
 public:
-    static constexpr std::size_t kQueueBytes = 4U << 20U;            ///< minutes of a MAVLink line
+    static constexpr std::size_t kQueueBytes = 4U << 20U;             ///< minutes of a MAVLink line
     static constexpr std::size_t kQueueBytesWithClouds = 32U << 20U;  ///< seconds of 10^6 points per second
-    static constexpr std::int64_t kPeriod = 50'000;                  ///< [us]
+    static constexpr std::int64_t kPeriod = 50'000;                   ///< [us]
 
     Writer(FileOptions options, Definitions definitions, std::unique_ptr<Disk> disk, std::size_t queue_bytes);
     /// Waits half a second at most for the thread to write everything.
