@@ -164,51 +164,120 @@ flightlog::Setup set_up(const Options& options, const app::Parameters& initial, 
     return setup;
 }
 
-/// Opens the cloud line. False, and said why, where that cannot be.
-bool open_cloud(const std::string& cloud, hal::TermiosSerialPort& port)
+/// The devices of jinkd, and what was read ahead of them.
+struct Devices {
+    hal::TermiosSerialPort serial;
+    hal::SocketCanPort can;
+    hal::TermiosSerialPort cloud_port;
+    hal::LinuxWatchdog watchdog;
+    host::ReadAhead line{serial, app::Coprocessor::kMaxBytesPerStep};
+    host::CanReadAhead frames{can, app::CanBus::kMaxFramesPerStep};
+    std::optional<host::ReadAhead> cloud;
+
+    /// False, and said why, where jinkd must not start.
+    [[nodiscard]] bool open(const Options& options, const std::string& device, std::uint32_t baud);
+    void read(hal::SystemClock& clock)
+    {
+        serial.service(clock.now_us());
+        can.service(clock.now_us());
+        cloud_port.service(clock.now_us());
+        line.pump();
+        frames.pump();
+    }
+    [[nodiscard]] host::ReadAhead* cloud_line() { return cloud ? &*cloud : nullptr; }
+};
+
+bool Devices::open(const Options& options, const std::string& device, std::uint32_t baud)
 {
-    std::string device;
-    std::uint32_t baud = 0;
-    if (!host::split_device(cloud, device, baud)) {
-        complain_now("--cloud " + cloud + ": expected DEV[:BAUD]");
+    if ((!device.empty() && !host::open_serial(serial, device, baud)) ||
+        (!options.can.empty() && !host::open_can(can, options.can)) ||
+        !host::open_watchdog(watchdog, options.watchdog)) {
         return false;
     }
-    return host::open_serial(port, device, baud);
+    if (options.cloud.empty()) {
+        return true;
+    }
+    std::string cloud_device;
+    std::uint32_t cloud_baud = 0;
+    if (!host::split_device(options.cloud, cloud_device, cloud_baud)) {
+        complain_now("--cloud " + options.cloud + ": expected DEV[:BAUD]");
+        return false;
+    }
+    cloud.emplace(cloud_port, host::ReadAhead::kCloudRoom);
+    return host::open_serial(cloud_port, cloud_device, cloud_baud);
 }
+
+/// What the loop works with.
+struct Loop {
+    const Options& options;
+    hal::SystemClock& clock;
+    Devices& devices;
+    flightlog::Assembly& assembly;
+    host::Logging& flight_log;
+    host::Housekeeping& housekeeping;
+    host::Background& background;
+    host::StatusLog& status;
+    const host::Watched& watched;
+
+    void step()
+    {
+        devices.read(clock);
+        const std::int64_t began = clock.now_us();  // read after the bytes, so that no byte is newer
+        if (reload_requested != 0) {
+            reload_requested = 0;
+            housekeeping.reload();
+        }
+        housekeeping.work({began});
+        flight_log.begin({began});
+        const app::StepReport report = assembly.coprocessor().step({began});
+        const std::int64_t took = clock.now_us() - began;
+        flight_log.end(report, assembly.coprocessor(), {began}, took, background);
+        if (const auto text = status.note(report, watched, began, took)) {
+            background.print(host::Stream::out, *text);
+        }
+    }
+    void run()
+    {
+        std::int64_t next = clock.now_us();
+        while (stop_requested == 0) {
+            step();
+            next += kTickMicroseconds;
+            next = std::max(next, clock.now_us());  // after a late step: no burst of steps to catch up
+            wait_until(next, clock, devices.cloud_line());
+        }
+    }
+    void stop()
+    {
+        const TimePoint end{clock.now_us()};
+        flight_log.begin_shut_down(end);
+        assembly.coprocessor().shut_down(end);
+        housekeeping.store_all();
+        let_go_out(devices.serial, clock);
+        devices.watchdog.close();
+        devices.serial.close();
+        flight_log.end_shut_down(end);
+        if (!options.quiet) {
+            background.print(host::Stream::error, "jinkd: stopped");
+        }
+    }
+};
 
 int run(const Options& options, const app::Parameters& initial, const files::ParamValues& stored,
         const geometry::MeshMap* map, const std::string& device, std::uint32_t baud)
 {
     hal::SystemClock clock;
-    hal::TermiosSerialPort serial;
-    hal::SocketCanPort can;
-    host::CanReadAhead frames(can, app::CanBus::kMaxFramesPerStep);
-    hal::LinuxWatchdog watchdog;
-    if ((!device.empty() && !host::open_serial(serial, device, baud)) ||
-        (!options.can.empty() && !host::open_can(can, options.can)) ||
-        !host::open_watchdog(watchdog, options.watchdog)) {
-        return EXIT_FAILURE;
-    }
-    host::ReadAhead line(serial, app::Coprocessor::kMaxBytesPerStep);
-    hal::TermiosSerialPort cloud_port;
-    std::optional<host::ReadAhead> cloud_line;
-    if (!options.cloud.empty()) {
-        if (!open_cloud(options.cloud, cloud_port)) {
-            return EXIT_FAILURE;
-        }
-        cloud_line.emplace(cloud_port, host::ReadAhead::kCloudRoom);
-    }
+    Devices devices;
     link::mavlink::Signing signing;
     files::SigningState signing_state;
-    if (!host::set_up_signing(options.signing, signing_state, signing)) {
+    if (!devices.open(options, device, baud) || !host::set_up_signing(options.signing, signing_state, signing)) {
         return EXIT_FAILURE;
     }
     const flightlog::Setup setup = set_up(options, initial, stored, map, signing);
     host::Logging flight_log(options.log, setup);
-    const flightlog::AssemblyPorts ports{setup.on_bus ? nullptr : &flight_log.line(line),
-                                         setup.has_bus ? &flight_log.can(frames) : nullptr,
-                                         cloud_line ? &flight_log.cloud(*cloud_line) : nullptr};
-    flightlog::Assembly assembly(setup, initial, ports, watchdog, signing, map);
+    const flightlog::AssemblyPorts ports{setup.on_bus ? nullptr : &flight_log.line(devices.line),
+                                         setup.has_bus ? &flight_log.can(devices.frames) : nullptr,
+                                         devices.cloud ? &flight_log.cloud(*devices.cloud) : nullptr};
+    flightlog::Assembly assembly(setup, initial, ports, devices.watchdog, signing, map);
     if (!assembly.has_time_for_plans()) {
         complain_now("--clock: a step at this clock has no time for a plan");
         return EXIT_FAILURE;
@@ -217,62 +286,30 @@ int run(const Options& options, const app::Parameters& initial, const files::Par
         complain_now("the reach sets are damaged and left out");
     }
     app::Coprocessor& coprocessor = assembly.coprocessor();
-    link::mavlink::Endpoint& endpoint = assembly.endpoint();
     if (!options.airspace_file.empty() &&
         !host::load_airspace(options.airspace_file, clock, coprocessor, flight_log.recorder())) {
         return EXIT_FAILURE;
     }
-    host::StatusLog log(options.quiet ? 0.0 : options.status_period);
-    const host::Watched watched{coprocessor,    endpoint,          setup.on_bus ? assembly.bus()->serial() : line,
-                                assembly.bus(), assembly.clouds(), flight_log.output()};
+    host::StatusLog status(options.quiet ? 0.0 : options.status_period);
+    const hal::SerialPort& mavlink = setup.on_bus ? assembly.bus()->serial() : devices.line;
+    const host::Watched watched{coprocessor,    assembly.endpoint(), mavlink,
+                                assembly.bus(), assembly.clouds(),   flight_log.output()};
     host::BackgroundCounts counts;
     {
         host::Background background(
             {options.airspace_file, options.state_file, options.signing.store, initial.values()});
-        host::Housekeeping housekeeping(background, coprocessor, endpoint, signing, signing_state.given);
+        host::Housekeeping housekeeping(background, coprocessor, assembly.endpoint(), signing, signing_state.given);
         housekeeping.has_airspace(!options.airspace_file.empty());
         housekeeping.record_to(flight_log.recorder());
         if (options.realtime > 0) {
             go_realtime(options.realtime);  // this thread alone
         }
-        std::int64_t next = clock.now_us();
-        while (stop_requested == 0) {
-            serial.service(clock.now_us());
-            can.service(clock.now_us());
-            cloud_port.service(clock.now_us());
-            line.pump();
-            frames.pump();
-            const std::int64_t began = clock.now_us();  // read after the bytes, so that no byte is newer
-            if (reload_requested != 0) {
-                reload_requested = 0;
-                housekeeping.reload();
-            }
-            housekeeping.work({began});
-            flight_log.begin({began});
-            const app::StepReport report = coprocessor.step({began});
-            const std::int64_t took = clock.now_us() - began;
-            flight_log.end(report, coprocessor, {began}, took, background);
-            if (const auto text = log.note(report, watched, began, took)) {
-                background.print(host::Stream::out, *text);
-            }
-            next += kTickMicroseconds;
-            next = std::max(next, clock.now_us());  // after a late step: no burst of steps to catch up
-            wait_until(next, clock, cloud_line ? &*cloud_line : nullptr);
-        }
-        const TimePoint end{clock.now_us()};
-        flight_log.begin_shut_down(end);
-        coprocessor.shut_down(end);
-        flight_log.end_shut_down(end);
-        housekeeping.store_all();
-        let_go_out(serial, clock);
-        watchdog.close();
-        serial.close();
-        if (!options.quiet) {
-            background.print(host::Stream::error, "jinkd: stopped");
-        }
+        Loop loop{options, clock, devices, assembly, flight_log, housekeeping, background, status, watched};
+        loop.run();
+        loop.stop();
         counts = background.counts();
     }
-    if (!options.summary.empty() && !log.write_summary(options.summary, watched, counts)) {
+    if (!options.summary.empty() && !status.write_summary(options.summary, watched, counts)) {
         complain_now(options.summary + " cannot be written");
         return EXIT_FAILURE;
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <random>
 
+#include "firmware/link/dronecan/tunnel.hpp"
 #include "firmware/link/mavlink/encoder.hpp"
 #include "firmware/link/mavlink/messages.hpp"
 #include "firmware/linux/flight_log/sent_texts.hpp"
@@ -103,6 +104,45 @@ TEST(KeyEraser, LeavesOtherFramesAlone)
         const std::vector<std::byte> before = bytes;
         ASSERT_FALSE(eraser.erase(bytes));
         ASSERT_EQ(bytes, before);
+    }
+}
+
+/// Through the tunnel of a bus, in transfers of any length.
+TEST(KeyEraser, ErasesAKeyInTheTunnelOfABus)
+{
+    using namespace link::dronecan;
+    const std::vector<std::byte> frame = setup_signing_frame();
+    for (std::size_t piece = 1; piece <= frame.size(); ++piece) {
+        NodeOptions options;
+        options.node = 10;
+        Node peer(options);
+        Tunnel tunnel(TunnelOptions{42, 0});
+        HalRecorder recorder(100'000);
+        std::vector<std::byte> kept;
+        bool noted = false;
+        std::size_t frames = 0;
+        for (std::span<const std::byte> rest(frame); !rest.empty();) {
+            rest = rest.subspan(tunnel.write(peer, rest.first(std::min(piece, rest.size()))));
+            recorder.begin({1});
+            while (const Frame* const out = peer.outgoing().front()) {
+                hal::CanFrame received;
+                received.id = out->id;
+                received.extended = true;
+                received.length = out->length;
+                std::copy_n(out->data.begin(), Frame::kBytes, received.data.begin());
+                recorder.received(&received);
+                peer.outgoing().pop();
+                ++frames;
+            }
+            const std::span<const std::byte> record = recorder.end().record();
+            kept.insert(kept.end(), record.begin(), record.end());
+            noted = noted ||
+                    std::find(record.begin(), record.end(), static_cast<std::byte>(Entry::key_removed)) != record.end();
+            recorder.clear();
+        }
+        ASSERT_TRUE(noted) << piece;
+        ASSERT_GT(frames, 8U);
+        ASSERT_LE(longest_part(kept, secret()), 2U) << piece;
     }
 }
 
