@@ -25,9 +25,11 @@ bool is_setup_signing(const std::byte* header)
 
 constexpr std::uint32_t kNodeMask = 0x7F;
 
-/// The bytes that a frame of a DroneCAN tunnel carries (uavcan.tunnel.Targetted and Broadcast); empty for others. A
-/// byte of the transfer's state is behind them.
-std::span<const std::byte> tunnelled(const hal::CanFrame& frame)
+constexpr std::size_t kStateBytes = 1;  ///< of the transfer, behind the data of each frame
+
+/// The data of a frame of a DroneCAN tunnel (uavcan.tunnel.Targetted and Broadcast); empty for others.
+/// @param head  bytes of the transfer before those that are tunnelled: set by the first frame, less by those skipped
+std::span<const std::byte> tunnelled(const hal::CanFrame& frame, std::size_t& head)
 {
     constexpr std::uint32_t kService = 0x80;
     constexpr std::uint32_t kTargetted = 3001;
@@ -36,15 +38,17 @@ std::span<const std::byte> tunnelled(const hal::CanFrame& frame)
     constexpr unsigned kEnd = 0x40;
     const std::uint32_t type = frame.id >> 8U & 0xFFFFU;
     const std::size_t length = std::min<std::size_t>(frame.length, frame.data.size());
-    if (!frame.extended || (frame.id & kService) != 0 || (type != kTargetted && type != kBroadcast) || length < 2) {
+    if (!frame.extended || (frame.id & kService) != 0 || (type != kTargetted && type != kBroadcast) ||
+        length < kStateBytes) {
         return {};
     }
     const auto state = static_cast<unsigned>(frame.data[length - 1]);
-    std::size_t head = 0;
     if ((state & kStart) != 0) {  // a checksum where there are several frames; then protocol, target, port, baud rate
         head = ((state & kEnd) != 0 ? 0U : 2U) + (type == kTargetted ? 6U : 2U);
     }
-    return head + 1 < length ? std::span(frame.data).subspan(head, length - 1 - head) : std::span<const std::byte>();
+    const std::size_t skipped = std::min(head, length - kStateBytes);
+    head -= skipped;
+    return std::span(frame.data).subspan(skipped, length - kStateBytes - skipped);
 }
 
 }  // namespace
@@ -191,9 +195,10 @@ void HalRecorder::received(const hal::CanFrame* frame) noexcept
     same_[static_cast<std::size_t>(Port::can)] = 0;
     if (frame != nullptr) {
         entries_.frame(*frame);
-        const std::span<const std::byte> bytes = tunnelled(*frame);
+        Tunnel& tunnel = tunnels_[frame->id & kNodeMask];
+        const std::span<const std::byte> bytes = tunnelled(*frame, tunnel.head);
         if (!bytes.empty()) {
-            erase_keys(tunnels_[frame->id & kNodeMask], bytes, 1);
+            erase_keys(tunnel.eraser, bytes, kStateBytes);
         }
     }
 }

@@ -57,11 +57,16 @@ private:
     void erase_keys(KeyEraser& eraser, std::span<const std::byte> bytes, std::size_t behind) noexcept;
 
     static constexpr std::size_t kNodes = 128;
+    /// MAVLink that comes through the bus from one node.
+    struct Tunnel {
+        KeyEraser eraser;
+        std::size_t head = 0;  ///< bytes of the present transfer that still come before those of MAVLink
+    };
 
     EntryWriter entries_;
     bool recording_ = false;
     KeyEraser eraser_;
-    std::array<KeyEraser, kNodes> tunnels_;  ///< of MAVLink through the bus, by the sender's node id
+    std::array<Tunnel, kNodes> tunnels_;  ///< by the sender's node id
     SentTexts texts_;
     std::array<Health, kPorts> health_{};
     std::array<std::uint32_t, kPorts> same_{};  ///< health calls without a difference since the last entry
