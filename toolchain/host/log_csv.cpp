@@ -153,8 +153,7 @@ std::uint64_t write_log_csv(ulog::Reader& log, const std::filesystem::path& fold
             const ulog::Format& format = *log.topic(ulog::read_number<std::uint16_t>(content));
             files.write(format.name, heading(format), line_of(format, content.subspan(2)));
         } else if (message->type == ulog::Type::text) {
-            const std::span<const std::byte> bytes = content.subspan(9);
-            std::string text = log_text({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+            std::string text = log_text(ulog::text_of(content.subspan(9)));
             for (std::size_t at = 0; (at = text.find('"', at)) != std::string::npos; at += 2) {
                 text.insert(at, "\"");
             }

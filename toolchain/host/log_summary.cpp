@@ -57,12 +57,10 @@ void note_data(const ulog::Format& format, std::span<const std::byte> content, L
 
 void note_text(std::span<const std::byte> content, LogSummary& summary)
 {
-    if (summary.lines.size() >= kMaxLines) {
-        return;
+    if (summary.lines.size() < kMaxLines) {
+        summary.lines.push_back({seconds_at(content.subspan(1)), static_cast<char>(content[0]),
+                                 log_text(ulog::text_of(content.subspan(9)))});
     }
-    const std::span<const std::byte> text = content.subspan(9);
-    summary.lines.push_back({seconds_at(content.subspan(1)), static_cast<char>(content[0]),
-                             log_text({reinterpret_cast<const char*>(text.data()), text.size()})});
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ public:
     template <class... Values>
     Line& add(const char* format, Values... values) noexcept
     {
+        // NOLINTNEXTLINE(cppcoreguidelines-pro-type-vararg): GCC 12 has no std::format
         const int n = std::snprintf(text_.data() + size_, text_.size() - size_, format, values...);
         size_ = std::min(size_ + static_cast<std::size_t>(std::max(n, 0)), text_.size() - 1);
         return *this;

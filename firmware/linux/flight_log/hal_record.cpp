@@ -14,38 +14,6 @@ constexpr unsigned kRateSwitch = 8U;
 
 }  // namespace
 
-Health to_numbers(const hal::PortHealth& h) noexcept
-{
-    return {static_cast<std::uint64_t>(h.state),
-            h.bytes_in,
-            h.bytes_out,
-            h.bytes_refused,
-            h.overruns,
-            h.line_errors,
-            h.read_errors,
-            h.write_errors,
-            h.open_failures,
-            h.disconnects,
-            h.reconnects};
-}
-
-Health to_numbers(const hal::CanHealth& h) noexcept
-{
-    return {static_cast<std::uint64_t>(h.state),
-            h.frames_in,
-            h.frames_out,
-            h.frames_refused,
-            h.frames_bad,
-            h.overruns,
-            h.bus_errors,
-            h.bus_offs,
-            h.restarts,
-            h.read_errors,
-            h.write_errors,
-            h.downs,
-            h.ups};
-}
-
 hal::PortHealth to_port_health(const Health& n) noexcept
 {
     return {static_cast<hal::PortState>(n[0]), n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10]};
@@ -97,15 +65,19 @@ void EntryWriter::area(const app::Constraint& a) noexcept
 
 void EntryWriter::health(const Health& before, const Health& now) noexcept
 {
-    std::uint16_t differs = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) {
-        differs = static_cast<std::uint16_t>(differs | (now[i] != before[i] ? 1U << i : 0U));
-    }
-    put(differs);
+    unsigned differs = 0;
+    std::array<std::uint64_t, kHealthNumbers> differences{};
+    std::size_t n = 0;
     for (std::size_t i = 0; i < now.size(); ++i) {
         if (now[i] != before[i]) {
-            count(now[i] - before[i]);  // modulo 2^64: a counter that is smaller takes ten bytes
+            differs |= 1U << i;
+            differences[n++] = now[i] - before[i];  // modulo 2^64: a counter that is smaller takes ten bytes
         }
+    }
+    byte(differs & 0xFFU);
+    byte(differs >> 8U);
+    for (std::size_t i = 0; i < n; ++i) {
+        count(differences[i]);
     }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -41,8 +42,36 @@ inline constexpr std::size_t kPorts = 3;
 /// A port's health as numbers: the state, then the counters in their order.
 inline constexpr std::size_t kHealthNumbers = 13;
 using Health = std::array<std::uint64_t, kHealthNumbers>;
-[[nodiscard]] Health to_numbers(const hal::PortHealth& health) noexcept;
-[[nodiscard]] Health to_numbers(const hal::CanHealth& health) noexcept;
+[[nodiscard]] inline Health to_numbers(const hal::PortHealth& h) noexcept
+{
+    return {static_cast<std::uint64_t>(h.state),
+            h.bytes_in,
+            h.bytes_out,
+            h.bytes_refused,
+            h.overruns,
+            h.line_errors,
+            h.read_errors,
+            h.write_errors,
+            h.open_failures,
+            h.disconnects,
+            h.reconnects};
+}
+[[nodiscard]] inline Health to_numbers(const hal::CanHealth& h) noexcept
+{
+    return {static_cast<std::uint64_t>(h.state),
+            h.frames_in,
+            h.frames_out,
+            h.frames_refused,
+            h.frames_bad,
+            h.overruns,
+            h.bus_errors,
+            h.bus_offs,
+            h.restarts,
+            h.read_errors,
+            h.write_errors,
+            h.downs,
+            h.ups};
+}
 [[nodiscard]] hal::PortHealth to_port_health(const Health& numbers) noexcept;
 [[nodiscard]] hal::CanHealth to_can_health(const Health& numbers) noexcept;
 
@@ -120,7 +149,7 @@ public:
     {
         T value{};
         const std::span<const std::byte> from = bytes(sizeof value);
-        std::copy(from.begin(), from.end(), reinterpret_cast<std::byte*>(&value));
+        std::copy(from.begin(), from.end(), std::as_writable_bytes(std::span(&value, 1)).begin());
         return value;
     }
     [[nodiscard]] hal::CanFrame frame() noexcept;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <cstdio>
 #include <ctime>
 #include <tuple>
 #include <utility>
@@ -24,15 +23,15 @@ std::string name_of_run(std::time_t time)
     std::tm utc{};
     ::gmtime_r(&time, &utc);
     std::array<char, 40> text{};
-    std::strftime(text.data(), text.size(), "jink_%Y%m%d_%H%M%S", &utc);
+    static_cast<void>(std::strftime(text.data(), text.size(), "jink_%Y%m%d_%H%M%S", &utc));
     return text.data();
 }
 
 std::string numbered(const std::string& run, std::uint32_t number)
 {
-    std::array<char, 16> text{};
-    std::snprintf(text.data(), text.size(), "_%03u", number);
-    return run + text.data() + std::string(kSuffix);
+    std::string digits = std::to_string(number);
+    digits.insert(0, 3 - std::min<std::size_t>(digits.size(), 3), '0');
+    return run + "_" + digits + std::string(kSuffix);
 }
 
 bool is_log(const std::string& name)

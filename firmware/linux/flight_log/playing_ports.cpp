@@ -2,7 +2,7 @@
 #include "firmware/linux/flight_log/playing_ports.hpp"
 
 #include <algorithm>
-#include <cstdio>
+#include <string_view>
 
 namespace jink::flightlog {
 namespace {
@@ -40,11 +40,12 @@ const char* name_of(Port port)
 std::string hex_of(std::span<const std::byte> bytes)
 {
     constexpr std::size_t kShown = 12;
+    constexpr std::string_view kDigits = "0123456789abcdef";
     std::string text;
     for (const std::byte b : bytes.first(std::min(bytes.size(), kShown))) {
-        std::array<char, 4> digits{};
-        std::snprintf(digits.data(), digits.size(), "%02x ", static_cast<unsigned>(b));
-        text += digits.data();
+        text += kDigits[static_cast<std::size_t>(b) >> 4U];
+        text += kDigits[static_cast<std::size_t>(b) & 0xFU];
+        text += ' ';
     }
     return text + (bytes.size() > kShown ? "..." : "");
 }

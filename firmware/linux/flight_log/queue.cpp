@@ -38,7 +38,7 @@ bool Queue::add(std::span<const std::byte> message, std::int64_t now_us) noexcep
     }
     std::uint64_t at = head;
     if (is_dropping_) {
-        std::array<std::byte, kDropout> buffer;
+        std::array<std::byte, kDropout> buffer{};
         const auto ms = std::clamp<std::int64_t>((now_us - dropping_since_) / 1000, 0, 65535);
         copy_in(at, ulog::Composer(buffer).begin(ulog::Type::dropout).put(static_cast<std::uint16_t>(ms)).end());
         at += kDropout;

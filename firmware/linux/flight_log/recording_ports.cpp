@@ -57,7 +57,7 @@ bool KeyEraser::erase(std::span<std::byte> bytes) noexcept
 {
     constexpr std::size_t kTail = kHeader - 1;
     bool erased = false;
-    std::array<std::byte, 2 * kTail> joint;
+    std::array<std::byte, 2 * kTail> joint{};
     std::copy(tail_.begin(), tail_.end(), joint.begin());
     const std::size_t head = std::min(bytes.size(), kTail);
     std::copy_n(bytes.begin(), head, joint.begin() + kTail);
@@ -155,7 +155,7 @@ void HalRecorder::erase_keys(KeyEraser& eraser, std::span<const std::byte> bytes
         }
         return;
     }
-    std::array<std::byte, 256> lost;  // a frame may go on in the next record: the eraser sees all bytes
+    std::array<std::byte, 256> lost{};  // a frame may go on in the next record: the eraser sees all bytes
     for (std::size_t n = 0; !bytes.empty(); bytes = bytes.subspan(n)) {
         n = std::min(bytes.size(), lost.size());
         std::copy_n(bytes.begin(), n, lost.begin());

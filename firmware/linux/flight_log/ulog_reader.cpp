@@ -11,11 +11,6 @@ namespace {
 constexpr std::array<std::uint8_t, 7> kMagic{'U', 'L', 'o', 'g', 0x01, 0x12, 0x35};
 constexpr std::size_t kFlagBytes = 40;
 
-std::string text_of(std::span<const std::byte> bytes)
-{
-    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 bool is_name(std::string_view text, std::string_view more)
 {
     return !text.empty() && std::all_of(text.begin(), text.end(), [&](char c) {
@@ -50,6 +45,13 @@ std::optional<Field> parse_field(std::string_view text)
 }
 
 }  // namespace
+
+std::string text_of(std::span<const std::byte> bytes)
+{
+    std::string text(bytes.size(), '\0');
+    std::memcpy(text.data(), bytes.data(), bytes.size());
+    return text;
+}
 
 std::optional<Format> parse_format(std::string_view text)
 {
@@ -140,7 +142,7 @@ bool Reader::read_bytes(std::size_t n)
 {
     const std::size_t had = buffer_.size();
     buffer_.resize(had + n);
-    in_.read(reinterpret_cast<char*>(buffer_.data() + had), static_cast<std::streamsize>(n));
+    in_.read(static_cast<char*>(static_cast<void*>(buffer_.data() + had)), static_cast<std::streamsize>(n));
     if (in_.bad()) {
         return fail(End::unreadable);
     }

@@ -117,6 +117,8 @@ private:
     std::map<std::string, Keyed> defaults_;
 };
 
+[[nodiscard]] std::string text_of(std::span<const std::byte> bytes);
+
 /// 'I', 'P' and 'Q' in the data.
 [[nodiscard]] std::optional<Keyed> parse_keyed(std::span<const std::byte> content, Type type);
 

@@ -4,7 +4,6 @@
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -24,7 +23,7 @@ constexpr int kNiceness = 10;
 
 void pause(std::int64_t us)
 {
-    const timespec t{0, us * 1000};
+    const timespec t{0, static_cast<long>(us * 1000)};
     ::nanosleep(&t, nullptr);
 }
 
@@ -58,7 +57,7 @@ void Writer::run(const std::shared_ptr<Shared>& shared)
 {
     sched_param normal{};
     ::sched_setscheduler(0, SCHED_OTHER, &normal);
-    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kNiceness);
+    ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kNiceness);
     bool last = false;
     while (!last) {
         last = shared->stop;
